@@ -1,11 +1,11 @@
-//! Hands the compiler's flags and Sinew's version on to the program, which prints them beside its figures.
+//! Passes the compiler's flags and Sinew's version to the program, which prints them beside its figures.
 
-/// Where the workspace of Sinew has its version.
+/// Manifest with the version of Sinew's workspace.
 const ROOT_MANIFEST: &str = "../../Cargo.toml";
 
 fn main() {
     let variable = |name: &str| std::env::var(name).unwrap_or_default();
-    // The release profile is the one in Cargo.toml; Cargo does not tell build scripts of its LTO.
+    // The release profile is the one in Cargo.toml; Cargo does not pass its LTO to build scripts.
     let lto = if variable("PROFILE") == "release" { ", lto=fat, codegen-units=1" } else { "" };
     let flags = variable("CARGO_ENCODED_RUSTFLAGS").replace('\u{1f}', " ");
     let flags = if flags.is_empty() { String::new() } else { format!(", {flags}") };

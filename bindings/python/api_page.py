@@ -10,7 +10,8 @@ PAGE = ROOT / "docs/python-api.md"
 HEAD = """# Sinew in Python: all names
 
 Made of the stubs by `bindings/python/api_page.py`; [python.md](python.md) shows how they are used. Metres, kilograms, seconds, radians; +Y is up. A pose is seven
-numbers (place, quaternion x y z w), a velocity six (linear, angular). `(n, 7)` is the shape of an array.
+numbers (place, quaternion x y z w), a velocity six (linear, angular). `(n, 7)` is the shape of an array. Arguments stand here with their
+choices and defaults; their types are in the stubs, where editors and type checkers find them.
 """
 
 
@@ -35,15 +36,23 @@ def doc(node: ast.FunctionDef | ast.ClassDef) -> str:
     return (ast.get_docstring(node) or "").replace("\n", " ")
 
 
+def drop_types(arguments: ast.arguments) -> ast.arguments:
+    """Keeps only the annotations that list choices."""
+    for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
+        if argument.annotation and "Literal" not in plain(ast.unparse(argument.annotation)):
+            argument.annotation = None
+    return arguments
+
+
 def signature(function: ast.FunctionDef) -> str:
-    arguments = ast.unparse(function.args)
+    arguments = ast.unparse(drop_types(function.args))
     arguments = arguments.removeprefix("self, ").removeprefix("cls, ").removeprefix("self").removeprefix("cls")
     result = ast.unparse(function.returns) if function.returns else "None"
-    return plain(f"({arguments}) -> {result}")
+    return plain(f"({arguments})" + ("" if result == "None" else f" -> {result}"))
 
 
 def rows(nodes: list[ast.stmt]) -> list[str]:
-    table = ["| name | what |", "|---|---|"]
+    entries = []
     for node in nodes:
         if not isinstance(node, ast.FunctionDef):
             continue
@@ -53,8 +62,8 @@ def rows(nodes: list[ast.stmt]) -> list[str]:
         name = f"`{node.name}`" if is_property else f"`{node.name}{signature(node)}`"
         if is_property and node.returns:
             name = f"`{node.name}: {plain(ast.unparse(node.returns))}`"
-        table.append(f"| {name.replace('|', chr(92) + '|')} | {doc(node)} |")
-    return table if len(table) > 2 else []
+        entries.append(f"- {name}: {doc(node)}")
+    return entries
 
 
 def page() -> str:

@@ -28,13 +28,13 @@ use std::time::Duration;
 
 pub use counts::check as check_counts;
 
-/// The page for readers.
+/// Path of the page.
 const PAGE: &str = "docs/benchmarks.md";
 
 /// Number of rounds in which the engines alternate.
 const ROUNDS: u32 = 3;
 
-/// Number of starts of a heap, in which the engines alternate instead: a single run of a chaotic scene says little.
+/// Number of starts of a heap, between which the engines alternate: a single run of a chaotic scene says little.
 const STARTS: u32 = 5;
 
 /// Steps of a scene in a quick run.
@@ -43,19 +43,19 @@ const QUICK_STEPS: u32 = 60;
 /// Time limit of a run: some scenes diverge on some engines.
 const LIMIT: Duration = Duration::from_secs(900);
 
-/// Not a peer scene: a character from rig to baked clip, whose speed is compared to real time.
+/// Not a scene of the peers: a character from rig to baked clip, whose speed is compared to real time.
 const BAKE: &str = "bake";
 
 /// Extensions of files that hold characters.
 const RIGS: &[&str] = &["glb", "gltf", "vrm", "fbx"];
 
-/// Not a peer scene: characters that fall limp until they sleep, read from files.
+/// Not a scene of the peers: characters of files that fall limp until they sleep.
 const LIMP: &str = "limp";
 
-/// Not a peer scene: some scenes on one thread and on two, by wall time.
+/// Not a scene of the peers: some scenes on one thread and on two, by wall time.
 const THREADS: &str = "threads";
 
-/// Scenes of it, and the steps of each: enough for a heap.
+/// Its scenes, and the steps of each, which suffice for a heap.
 const THREADED: &[(&str, u32)] = &[("box_rain", 120), ("ragdoll_pile", 300)];
 
 /// `cargo xtask bench`: writes docs/benchmarks.md and bench/benchmarks.json.
@@ -64,45 +64,45 @@ const THREADED: &[(&str, u32)] = &[("box_rain", 120), ("ragdoll_pile", 300)];
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask bench --scene ragdoll_pile --scene chain_swing_1000 --quick")]
 pub struct Bench {
-    /// Only this scene, of those that `peers list` names, or `bake`, `limp` or `threads`; others keep the figures that they have
+    /// Only this scene of `peers list`, or `bake`, `limp` or `threads`; others keep their figures
     #[arg(long = "scene", value_name = "NAME")]
     scenes: Vec<String>,
-    /// Only this engine, of those that `peers list` names; of the scenes that run, the figures of others are forgotten
+    /// Only this engine of `peers list`; the scenes that run lose the figures of the others
     #[arg(long = "engine", value_name = "NAME")]
     engines: Vec<String>,
-    /// How often the engines take turns; heaps are run from 5 starts that differ a little, and each run is judged
+    /// Number of rounds; heaps run from 5 starts that differ a little, and each run is judged
     #[arg(long, default_value_t = ROUNDS, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
-    /// Instead of as many steps as a scene says; the page tells how many there were
+    /// Number of steps instead of the scene's; the page shows it
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     steps: Option<u32>,
-    /// One short round, printed and not written down
+    /// One short round, printed and not stored
     #[arg(long)]
     quick: bool,
-    /// Exit with 1 if Sinew falls short of a speed that it must have
+    /// Exit with 1 if Sinew misses a required speed
     #[arg(long)]
     check: bool,
-    /// Instead, count the instructions of the kernels and compare them with bench/counts/baseline.txt
+    /// Count the instructions of the kernels instead, and compare them with bench/counts/baseline.txt
     #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "check"])]
     counts: bool,
-    /// Instead, time the eight-lane kernels beside the limit of the machine's arithmetic; with --check, exit with 1 if one
-    /// has less than its share
+    /// Time the eight-lane kernels beside the limit of the machine's arithmetic instead; with --check, exit with 1 if one
+    /// misses its share
     #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "counts"])]
     kernels: bool,
-    /// Instead, print where Sinew's step spends its time on a scene and how much there is to do: one that `peers list` names,
-    /// or else `sinew scenes`. With --steps: as many, after a warm-up of a third of the scene
+    /// Print the times and counts of Sinew's stages on a scene instead, of `peers list`
+    /// or `sinew scenes`. With --steps: this many, after a warm-up of a third of the scene
     #[arg(long, value_name = "SCENE", conflicts_with_all = ["scenes", "engines", "quick", "check", "counts", "kernels", "page"])]
     trace: Option<String>,
     /// Number of steps before a trace starts, instead of a third of the scene
     #[arg(long, value_name = "STEPS", requires = "trace")]
     warm_up: Option<u32>,
-    /// Instead, write the page anew from the figures that there are
+    /// Write the page from the stored figures instead
     #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "check", "counts", "kernels"])]
     page: bool,
-    /// Instead, add the figures of another machine, a file in the form of bench/benchmarks.json, and write the page anew
+    /// Add the figures of another machine instead, a file in the form of bench/benchmarks.json, and write the page
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "engines", "quick", "check", "counts", "kernels", "trace", "page"])]
     take: Option<PathBuf>,
-    /// Take the counts as the right ones and write them down
+    /// Store the counts as the expected ones
     #[arg(long, requires = "counts")]
     bless: bool,
 }
@@ -143,7 +143,7 @@ impl Bench {
         let [joints, stands] =
             [requirements::HOLDS, requirements::STANDS].map(|rows| page::holds(&results, rows));
         let [physics, animation] = [page::glance(&results), page::animation(&results)];
-        println!("{physics}\n{joints}\n{stands}\n{animation}\n{}", page::figures_alone(&results));
+        println!("{physics}\n{joints}\n{stands}\n{animation}\n{}", page::ragdolls(&results));
         println!("{}", page::speeds(&results));
         Ok(self.verdict(&results))
     }
@@ -198,13 +198,13 @@ impl Bench {
         Ok(results)
     }
 
-    /// Writes the results so far, so that stopping a long run loses only one scene.
+    /// Stores the results so far, so that stopping a long run loses only one scene.
     fn keep(&self, results: &Results, scenes: &[Scene]) -> Result<()> {
         let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
         if self.quick { Ok(()) } else { write(results.clone(), &names) }
     }
 
-    /// Runs a scene on all engines that support it, alternating, so that other load affects all alike.
+    /// Runs a scene on all engines that support it, alternating, so that other load affects all equally.
     fn race(&self, engines: &[Engine], scene: &Scene) -> Result<Vec<EngineResult>> {
         let result = |engine: &Engine| EngineResult { name: engine.name.clone(), reports: Vec::new() };
         let engines: Vec<&Engine> = engines.iter().filter(|engine| engine.is_for(scene)).collect();
@@ -243,7 +243,7 @@ impl Bench {
     }
 }
 
-/// Summary of a run for the console.
+/// Returns a summary of a run for the console.
 fn in_a_word(report: &Value) -> String {
     match report["cpu_ms"]["median"].as_f64() {
         Some(median) => format!("{:>9} ms", figures::rounded(median)),
@@ -255,7 +255,7 @@ fn in_a_word(report: &Value) -> String {
     }
 }
 
-/// For the demo: simulated seconds per processor second of its bake, and how often its file, if it had 6,000 vertices, is converted to a
+/// For the demo: simulated seconds per processor second of its bake, and the number of conversions of its file, scaled to 6,000 vertices, to a
 /// ragdoll in 100 ms.
 fn bake() -> Result<(Option<f64>, Option<f64>)> {
     let sinew = command::build_sinew(Profile::Release)?;
@@ -273,7 +273,7 @@ fn bake() -> Result<(Option<f64>, Option<f64>)> {
     Ok((Some(realtime), Some(100.0 / milliseconds * (vertices / 6000.0))))
 }
 
-/// Simulated seconds per processor second of characters that fall limp until they sleep, for the rigs in [`SHARED`]; empty without them.
+/// Simulated seconds per processor second of limp characters until they sleep, for the rigs in [`SHARED`]; empty without them.
 fn limp() -> Result<BTreeMap<String, f64>> {
     let folder = command::root().join(SHARED);
     let Ok(files) = fs::read_dir(&folder) else {
@@ -289,7 +289,7 @@ fn limp() -> Result<BTreeMap<String, f64>> {
     Ok(["median", "slowest_humanoid"].into_iter().filter_map(factor).collect())
 }
 
-/// For each scene, the speed-up of a step by a second thread: the median of alternating rounds.
+/// Speed-up of a step by a second thread for each scene: the median of alternating rounds.
 fn two_threads(rounds: u32) -> Result<BTreeMap<String, f64>> {
     let binary = peers::build_ours()?;
     let wall = |scene: &str, steps: u32, threads: u32| -> Result<f64> {
@@ -309,7 +309,7 @@ fn two_threads(rounds: u32) -> Result<BTreeMap<String, f64>> {
     Ok(factors)
 }
 
-/// File with the figures of earlier runs, in the repository, since a full run takes longer than a machine may be available.
+/// File with the figures of earlier runs, which is committed, since a full run takes hours.
 fn file() -> PathBuf {
     command::root().join("bench/benchmarks.json")
 }
@@ -352,7 +352,7 @@ fn write_page(all: &Results, names: &[&str]) -> Result<()> {
     let page = command::root().join(PAGE);
     if page::scene_count(&fs::read_to_string(&page).unwrap_or_default()) > all.scenes.len() {
         eprintln!(
-            "{PAGE} stays as it is: it has more than the scenes measured here, without {}",
+            "{PAGE} is unchanged: it has more scenes than were measured here, which lack {}",
             missing.join(", ")
         );
         return Ok(());

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 const MANIFEST: &str = "bindings/Cargo.toml";
-/// Pages whose programs are run as they are printed.
+/// Pages whose programs are run.
 const C_PAGES: &[&str] = &["docs/c.md"];
 const PYTHON_PAGES: &[&str] = &["README.md", "docs/python.md"];
 /// Strict warnings, so that the header never disturbs a user's build.
@@ -50,7 +50,7 @@ fn cargo(arguments: &[&str]) -> Command {
     cargo
 }
 
-/// The library's tests, its header up to date, and its example and the programs of the pages: plainly, as C++, and with the address sanitizer.
+/// Runs the library's tests, checks its header, and builds its example and the programs of the pages: plainly, as C++, and with the address sanitizer.
 ///
 /// # Errors
 /// If a program does not build, or its exit status is not 0.
@@ -100,11 +100,11 @@ fn compile_and_run(program: &Path, folder: &Path, options: &[&str]) -> Result<()
     command::run(Command::new(binary).env("ASAN_OPTIONS", "detect_leaks=1").stdout(Stdio::null()))
 }
 
-/// The wheel, built, and installed in an environment of its own: its tests, its types, the programs of the pages, the notebook, and Ray on
+/// Builds the wheel and installs it in its own environment: its tests, its types, the programs of the pages, the notebook, and Ray on
 /// two workers.
 ///
 /// # Errors
-/// If something of it fails, or the network is not there.
+/// If a part fails, or there is no network.
 pub fn python() -> Result<()> {
     command::run(cargo(&["clippy"]).args(["-p", "sinew_py", "--", "-D", "warnings"]))?;
     let folder = target().join("python");
@@ -148,14 +148,14 @@ pub fn python() -> Result<()> {
     command::run(convert.current_dir(&tests).env("PATH", path_with(&user.join("bin"))))
 }
 
-/// The start of a command that installs packages into an environment.
+/// Returns the start of a command that installs packages into an environment.
 pub fn pip(venv: &Path) -> Command {
     let mut pip = Command::new(venv.join("bin/pip"));
     pip.args(["install", "--quiet", "--disable-pip-version-check"]);
     pip
 }
 
-/// The wheel, built by the maturin of an environment into a folder, which is emptied before.
+/// Builds the wheel by the maturin of an environment into a folder, which is emptied before.
 ///
 /// # Errors
 /// If it does not build.
@@ -171,7 +171,7 @@ pub fn wheel(builder: &Path, out: &Path) -> Result<PathBuf> {
     Ok(wheels.first().context("maturin made no wheel")?.path())
 }
 
-/// Programs printed on pages.
+/// Returns the programs on pages.
 fn printed(pages: &[&str], language: &str) -> Result<Vec<String>> {
     let mut all = Vec::new();
     for page in pages {

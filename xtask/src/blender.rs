@@ -1,4 +1,4 @@
-//! The extension for Blender: its zip with the wheel inside, and its trial in Blender's own module for Python.
+//! The extension for Blender: its zip with the wheel, and its test in Blender's Python module.
 
 use crate::bindings;
 use crate::command;
@@ -7,26 +7,26 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// Blender as a module, and the Python that it is made for.
+/// Blender as a module, and its Python.
 const BPY: &str = "bpy==5.0.1";
 const PYTHON: &str = "python3.11";
-/// Rigs of tests/rigs.py that go through the whole job; those of files need the data.
+/// Rigs of tests/rigs.py for the whole test; those of files need the data.
 const RIGS: &[&str] = &["cesium_man", "knight", "rigify_human", "fox", "scale_100"];
 const DATA: &str = "../shared/data";
 
 /// `cargo xtask blender`.
 #[derive(clap::Args)]
 pub struct Blender {
-    /// Also install it into Blender's module for Python (1 GB from PyPI) and try everything on five rigs
+    /// Also install it into Blender's Python module (1 GB from PyPI) and test everything on five rigs
     #[arg(long)]
     check: bool,
 }
 
 impl Blender {
-    /// Makes the zip, and tries it if that is asked for.
+    /// Makes the zip, and tests it on request.
     ///
     /// # Errors
-    /// If it cannot be made, or a trial fails.
+    /// If it cannot be made, or a test fails.
     pub fn run(&self) -> Result<()> {
         if self.check { check() } else { zip().map(drop) }
     }
@@ -56,10 +56,10 @@ fn zip() -> Result<PathBuf> {
     Ok(path.into())
 }
 
-/// The zip, installed by Blender's own operator in an empty folder of settings: every operator, and the whole job on each rig.
+/// Tests the zip, installed by Blender's own operator with empty settings: every operator, and the whole workflow on each rig.
 ///
 /// # Errors
-/// If something of it fails, or the network is not there.
+/// If a part fails, or there is no network.
 pub fn check() -> Result<()> {
     let data = command::root().join(DATA);
     if !data.exists() {

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 const PAGE: &str = "docs/guide/src/book.md";
-/// Beside the page; its links start with the last part.
+/// Folder beside the page; its links start with the last part.
 const FOLDER: &str = "docs/guide/src/book";
 /// Pixels of a picture.
 const SIZE: [&str; 2] = ["560", "315"];
@@ -38,10 +38,10 @@ const MOMENTS: &[(&str, &str)] = &[
     ("zero_gravity_pile", "1"),
 ];
 
-/// `cargo xtask book`: draws them anew.
+/// `cargo xtask book`: draws the pictures.
 ///
 /// The page shows the picture of a scene as `![NAME](book/NAME.png)`, or `![NAME](book/NAME.png "at 1.5 s")` to say
-/// when it is taken. A scene that the page tells to `sinew run`, and does not show, gets a link after that paragraph.
+/// A scene that the page tells to `sinew run` without a picture gets a link after that paragraph.
 #[derive(clap::Args)]
 pub struct Book {}
 
@@ -67,7 +67,7 @@ impl Book {
     }
 }
 
-/// The page with a link after the first paragraph that says how to run a scene, where it has none.
+/// Returns the page with a link after the first paragraph that runs a scene, where it has none.
 fn with_links(page: &str) -> String {
     let mut shown: Vec<String> = page.lines().filter_map(link).map(|(scene, _)| scene.to_owned()).collect();
     let mut paragraphs = Vec::new();
@@ -89,7 +89,7 @@ fn link_to(scene: &str) -> String {
     format!("![{scene}](book/{scene}.png{title})")
 }
 
-/// Scenes that a paragraph tells to run, as inline code or in a block of commands.
+/// Returns the scenes that a paragraph runs, as inline code or in a block of commands.
 fn run_in(paragraph: &str) -> Vec<String> {
     let mut scenes = Vec::new();
     for (start, command) in paragraph.match_indices("sinew run ") {
@@ -103,7 +103,7 @@ fn run_in(paragraph: &str) -> Vec<String> {
     scenes
 }
 
-/// Scene and time of a line that shows a picture.
+/// Returns scene and time of a line with a picture.
 fn link(line: &str) -> Option<(&str, Option<&str>)> {
     let (_, rest) = line.trim().strip_prefix("![")?.split_once("](book/")?;
     let target = rest.strip_suffix(')')?;
@@ -112,7 +112,7 @@ fn link(line: &str) -> Option<(&str, Option<&str>)> {
     Some((file.strip_suffix(".png")?, at))
 }
 
-/// Scenes with the times at which they are shown, as the page's links say.
+/// Returns the scenes with the times of their pictures.
 fn pictures(page: &str) -> Result<BTreeMap<String, Option<String>>> {
     let mut pictures = BTreeMap::new();
     for (scene, at) in page.lines().filter_map(link) {
@@ -133,7 +133,7 @@ fn draw(binary: &Path, folder: &Path, scene: &str, at: Option<&str>) -> Result<(
     command::output(&mut view).map(drop)
 }
 
-/// Removes pictures that the page no longer shows.
+/// Removes pictures without a link.
 fn remove_others(folder: &Path, pictures: &BTreeMap<String, Option<String>>) -> Result<()> {
     for entry in fs::read_dir(folder).context(FOLDER)? {
         let path = entry.context(FOLDER)?.path();

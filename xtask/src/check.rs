@@ -1,4 +1,4 @@
-//! What a contributor runs before a commit: format, lints, the rules of the house, and tests of the crates that changed.
+//! Checks before a commit: format, lints, house rules, and tests of the changed crates.
 
 use crate::{ci, command, tidy};
 use anyhow::Result;
@@ -7,16 +7,16 @@ use std::process::Command;
 /// `cargo xtask check`.
 #[derive(clap::Args)]
 pub struct Check {
-    /// Commit to compare with; what was changed since then, committed or not, is tested
+    /// Commit to compare with; changes since then are tested, committed or not
     #[arg(long, value_name = "COMMIT", default_value = "HEAD")]
     since: String,
 }
 
 impl Check {
-    /// Runs format, lints, the rules of the house and the tests of changed crates, in this order, up to the first that fails.
+    /// Runs format, lints, house rules and the tests of changed crates, in this order, up to the first failure.
     ///
     /// # Errors
-    /// If one fails, or git cannot tell what changed.
+    /// If one fails, or git fails.
     pub fn run(&self) -> Result<()> {
         let changed = self.changed()?;
         ci::fmt()?;
@@ -33,7 +33,7 @@ impl Check {
         command::run(&mut test)
     }
 
-    /// Crates with a changed, added or removed file, by name.
+    /// Returns the crates with a changed, added or removed file, by name.
     fn changed(&self) -> Result<Vec<String>> {
         let mut git = Command::new("git");
         let tracked =
@@ -48,7 +48,7 @@ impl Check {
     }
 }
 
-/// The crate that a file belongs to.
+/// Returns the crate of a file.
 fn package_of(path: &str) -> Option<String> {
     match path.split('/').collect::<Vec<_>>()[..] {
         ["crates", package, _, ..] => Some(package.to_owned()),

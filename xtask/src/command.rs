@@ -6,7 +6,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The folder that holds the workspace.
+/// Returns the root of the workspace.
 pub fn root() -> PathBuf {
     // Cargo sets the variable; the compile-time value serves a binary started by hand.
     let manifest = env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
@@ -14,12 +14,12 @@ pub fn root() -> PathBuf {
     manifest.parent().map(Path::to_path_buf).unwrap_or(manifest)
 }
 
-/// The build folder.
+/// Returns the target folder.
 pub fn target() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
-/// The running cargo, in the root of the repository.
+/// Returns a command of the running cargo in the root of the repository.
 pub fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(arguments).current_dir(root());
@@ -63,7 +63,7 @@ pub fn output_json(command: &mut Command) -> Result<Value> {
     serde_json::from_str(&text).with_context(|| format!("`{}`: stdout is not one JSON value", shown(command)))
 }
 
-/// Returns true if there is a program of that name.
+/// Whether there is a program of that name.
 pub fn answers(program: &str) -> bool {
     let mut command = Command::new(program);
     command.arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
@@ -72,7 +72,7 @@ pub fn answers(program: &str) -> bool {
 /// Installs Debian's `package` unless `program` exists. A fresh machine has no package lists yet.
 ///
 /// # Errors
-/// If it cannot.
+/// If that fails.
 pub fn provide(program: &str, package: &str) -> Result<()> {
     if answers(program) {
         return Ok(());
@@ -91,7 +91,7 @@ pub enum Profile {
     Release,
 }
 
-/// Builds the command line, without its window, and gives the path of its binary.
+/// Builds the command line without its window and returns the path of its binary.
 ///
 /// # Errors
 /// If it does not compile.
@@ -103,7 +103,7 @@ pub fn build_sinew(profile: Profile) -> Result<PathBuf> {
     build(&mut command, "sinew")
 }
 
-/// Runs `command`, a `cargo build`, and gives the path of the executable `name`, wherever the target folder is.
+/// Runs `command`, a `cargo build`, and returns the path of the executable `name` in any target folder.
 ///
 /// # Errors
 /// If it does not compile.

@@ -1,19 +1,21 @@
-//! `docs/contract.md`, the table of the command line's JSON keys, as data. The tests of `sinew_cli` read it with this too.
+//! `docs/contract.md`, the lists of the command line's JSON keys, as data. The tests of `sinew_cli` read it with this too.
 
 use serde_json::Value;
 
-/// Where the table is.
+/// Path of the page.
 pub const PATH: &str = "docs/contract.md";
 
-/// A row of the table: one key of one or more commands.
-#[derive(Debug, PartialEq, Eq)]
+/// An item of a list: one key of one or more commands.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
     commands: Vec<String>,
     /// Path to the value: names with dots between; `[]` after a name goes into each element.
     pub key: String,
     kind: String,
     presence: Presence,
-    /// Where it stands, from 1.
+    /// Command and key of an object with the same keys.
+    like: Option<(String, String)>,
+    /// Line number, from 1.
     pub line: usize,
 }
 
@@ -35,27 +37,35 @@ enum Presence {
 
 const KINDS: &[&str] = &["number", "integer", "string", "boolean", "array", "object"];
 
-/// All rows, or the line and reason of the first that is malformed.
+/// Returns all rows, or the line and the reason of the first malformed one.
 ///
 /// # Errors
-/// If a row of a table that starts with `| command |` has not five columns, or a type that is not known.
+/// If a line that starts with "- `" below a heading with commands is not "- `key` (type): meaning", or has an unknown type.
 pub fn parse(text: &str) -> Result<Vec<Row>, (usize, String)> {
     let mut rows = Vec::new();
-    let mut in_table = false;
+    let mut commands = Vec::new();
     for (index, content) in text.lines().enumerate() {
-        let line = index + 1;
-        in_table = content.starts_with('|') && (in_table || content.starts_with("| command |"));
-        if in_table && !content.starts_with("| command |") && !content.starts_with("|-") {
-            rows.push(row(content, line).map_err(|what| (line, what))?);
+        if let Some(heading) = content.strip_prefix("### ") {
+            commands = heading.split(", ").map(|command| command.trim_matches('`').to_owned()).collect();
+        } else if !commands.is_empty() && content.starts_with("- `") {
+            rows.push(row(content, &commands, index + 1).map_err(|what| (index + 1, what))?);
         }
     }
+    let same: Vec<Row> = rows.iter().flat_map(|row| keys_of_like(&rows, row)).collect();
+    rows.extend(same);
     Ok(rows)
 }
 
-fn row(content: &str, line: usize) -> Result<Row, String> {
-    let cells: Vec<&str> = content.trim_matches('|').split('|').map(str::trim).collect();
-    let [commands, key, kind, _unit, _meaning] = cells[..] else {
-        return Err(format!("{} columns, not 5", cells.len()));
+fn row(content: &str, commands: &[String], line: usize) -> Result<Row, String> {
+    let item = content.strip_prefix("- `").and_then(|item| item.split_once("` ("));
+    let parts = item.and_then(|(key, rest)| Some((key, rest.split_once("): ")?.0)));
+    let (key, kind) = parts.ok_or("not \"- `key` (type): meaning\"")?;
+    let (kind, like) = match kind.split_once(" as ") {
+        Some((kind, like)) => {
+            let like = like.trim_matches('`').split_once("` `").ok_or("no command and key after `as`")?;
+            (kind, Some((like.0.to_owned(), like.1.to_owned())))
+        }
+        None => (kind, None),
     };
     let (kind, presence) = match (kind.strip_suffix(" or null"), kind.strip_suffix(", optional")) {
         (Some(kind), _) => (kind, Presence::Nullable),
@@ -65,16 +75,24 @@ fn row(content: &str, line: usize) -> Result<Row, String> {
     if !KINDS.contains(&kind) {
         return Err(format!("type `{kind}` is none of {}", KINDS.join(", ")));
     }
-    Ok(Row {
-        commands: commands.split(", ").map(|command| command.trim_matches('`').to_owned()).collect(),
-        key: key.trim_matches('`').to_owned(),
-        kind: kind.to_owned(),
-        presence,
-        line,
-    })
+    let (key, kind) = (key.to_owned(), kind.to_owned());
+    Ok(Row { commands: commands.to_vec(), key, kind, presence, like, line })
 }
 
-/// What in `output`, the JSON of `command`, does not keep the contract.
+/// Returns the rows of the object that `row` is like, as keys of `row`.
+fn keys_of_like(rows: &[Row], row: &Row) -> Vec<Row> {
+    let Some((command, like)) = &row.like else { return Vec::new() };
+    let below = |other: &Row| Some(other.key.strip_prefix(like.as_str())?.strip_prefix('.')?.to_owned());
+    let others = rows.iter().filter(|other| other.commands.contains(command));
+    let keys = others.filter_map(|other| Some((other, below(other)?)));
+    keys.map(|(other, leaf)| {
+        let key = format!("{}.{leaf}", row.key);
+        Row { commands: row.commands.clone(), key, line: row.line, ..other.clone() }
+    })
+    .collect()
+}
+
+/// Returns the violations of the contract in `output`, the JSON of `command`.
 pub fn violations(rows: &[Row], command: &str, output: &Value) -> Vec<String> {
     let mut violations = Vec::new();
     for row in rows.iter().filter(|row| row.commands.iter().any(|name| name == command)) {
@@ -96,7 +114,7 @@ pub fn violations(rows: &[Row], command: &str, output: &Value) -> Vec<String> {
     violations
 }
 
-/// The values reached from `values` along `path`. Absent ones are skipped: they have a row of their own.
+/// Returns the values reached from `values` along `path`. Skips absent ones, which have rows of their own.
 fn descend<'a>(values: Vec<&'a Value>, path: &[&str]) -> Vec<&'a Value> {
     path.iter().fold(values, |values, step| match step.strip_suffix("[]") {
         Some(name) => values.iter().filter_map(|value| value[name].as_array()).flatten().collect(),
@@ -120,26 +138,34 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    const TABLE: &str = "# Contract\n\n| command | key | type | unit | meaning |\n|---|---|---|---|---|\n\
-        | `demo`, `bake` | `nan` | integer | – | a count |\n\
-        | `demo` | `up_s` | number or null | s | up again |\n\
-        | `build` | `bodies` | array | – | bodies |\n\
-        | `build` | `bodies[].bone` | string | – | name |\n\
-        | `build` | `bodies[].radius_m` | number, optional | m | of a capsule |\n";
+    const LISTS: &str = "# Contract\n\n### `demo`, `bake`\n\n- `nan` (integer): a count\n\
+        \n### `demo`\n\n- `up_s` (number or null): up again\n\
+        - `build` (object as `build` `quality`): the same figures\n\
+        \n### `build`\n\n- `bodies` (array): bodies\n\
+        - `bodies[].bone` (string): name\n\
+        - `bodies[].radius_m` (number, optional): of a capsule\n\
+        - `quality` (object, optional): figures\n\
+        - `quality.gap_m` (number): a gap\n";
 
     fn check_output(command: &str, output: &Value, expected: &[&str]) {
-        let rows = parse(TABLE).expect("the table is well formed");
+        let rows = parse(LISTS).expect("the lists are well formed");
         assert_eq!(violations(&rows, command, output), expected);
     }
 
     #[test]
-    fn keys_and_types_are_held_against_the_table() {
+    fn violations_name_missing_keys_and_wrong_types() {
+        let like = json!({ "gap_m": 0.1 });
         check_output("bake", &json!({ "nan": 0 }), &[]);
-        check_output("demo", &json!({ "nan": 0, "up_s": null }), &[]);
+        check_output("demo", &json!({ "nan": 0, "up_s": null, "build": like }), &[]);
         check_output(
             "demo",
-            &json!({ "nan": 0.5 }),
+            &json!({ "nan": 0.5, "build": like }),
             &["demo: `nan` is 0.5, not integer", "demo: key `up_s` is missing"],
+        );
+        check_output(
+            "demo",
+            &json!({ "nan": 0, "up_s": null, "build": {} }),
+            &["demo: key `build.gap_m` is missing"],
         );
         check_output(
             "build",

@@ -1,14 +1,14 @@
-//! Bytes from nowhere against the readers: every target of `fuzz/`, one after the other.
+//! Fuzzing of the readers: every target of `fuzz/`, one after the other.
 
 use crate::command;
 use anyhow::{Result, bail};
 
 const FOLDER: &str = "fuzz";
 
-/// `cargo xtask fuzz`: looks for bytes that break something, each target for a while.
+/// `cargo xtask fuzz`: fuzzes each target for a while.
 ///
-/// What it finds lies in fuzz/artifacts; what it learns, in fuzz/corpus, from which the next run goes on. Files in
-/// fuzz/seeds, and in `../shared/data` if they are there, are where it begins.
+/// Failures are in fuzz/artifacts; the corpus is in fuzz/corpus, from which the next run continues. It starts with the files in
+/// fuzz/seeds, and in `../shared/data` if there are any.
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask fuzz --target bvh --seconds 600")]
 pub struct Fuzz {
@@ -20,7 +20,7 @@ pub struct Fuzz {
     seconds: u32,
 }
 
-/// A target, where its first inputs lie beside those of fuzz/seeds, and how many bytes an input has at most.
+/// A target, the folder of its first inputs besides fuzz/seeds, and the largest input in bytes.
 struct Target {
     name: &'static str,
     seeds: &'static str,
@@ -45,7 +45,7 @@ const TARGETS: &[Target] = &[
 ];
 
 impl Fuzz {
-    /// # Errors
+    /// If a target fails, with its name; or if there is no such target, or no `cargo fuzz`.
     /// If a target breaks, with its name; or if there is no such target, or no `cargo fuzz`.
     pub fn run(&self) -> Result<()> {
         if let Some(name) =
@@ -74,7 +74,7 @@ impl Fuzz {
     fn fuzz(&self, target: &Target) -> Result<()> {
         let corpus = format!("{FOLDER}/corpus/{}", target.name);
         std::fs::create_dir_all(command::root().join(&corpus))?;
-        // The fuzzer itself asks for flags that are unstable.
+        // The fuzzer needs unstable flags.
         let mut fuzz = command::cargo(&["fuzz", "run", "--fuzz-dir", FOLDER, "--target-dir"]);
         fuzz.arg(command::target().join("fuzz")).args([target.name, &corpus]);
         let own = format!("{FOLDER}/seeds/{}", target.name);

@@ -25,7 +25,7 @@ const ALL: &[Variant] =
 /// `cargo xtask golden`: all builds and thread counts.
 #[derive(clap::Args)]
 pub struct Golden {
-    /// Take the hashes of this build as the right ones and write them down
+    /// Store the hashes of this build as the expected ones
     #[arg(long)]
     bless: bool,
 }

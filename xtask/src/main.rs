@@ -1,4 +1,4 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | blender | npm | release | web | fuzz | lives | soak`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | blender | npm | release | web | fuzz | lives | soak | sample`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -16,6 +16,7 @@ mod new_user;
 mod npm;
 mod ragdolls;
 mod release;
+mod sample;
 mod searches;
 mod sizes;
 mod spawns;
@@ -36,46 +37,48 @@ struct Xtask {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Format, lints, rules and tests of what changed: before a commit
+    /// Format, lints, rules and tests of changed crates: before a commit
     Check(check::Check),
-    /// Everything that must hold before a change is merged, but for `cargo test --workspace`
+    /// All checks before a merge, besides `cargo test --workspace`
     Ci(ci::Ci),
-    /// The rules of the house that no compiler checks
+    /// House rules that no compiler checks
     Tidy(tidy::Tidy),
     /// State hashes of all scenes, against the committed ones
     Golden(golden::Golden),
-    /// The pictures of docs/guide/src/book.md, drawn anew
+    /// Draw the pictures of docs/guide/src/book.md
     Book(book::Book),
-    /// The quality of the ragdolls of many rigs, into docs/ragdoll-quality.md
+    /// Measure the ragdolls of many rigs, into docs/ragdoll-quality.md
     Ragdolls(ragdolls::Ragdolls),
-    /// What is seen in characters from anywhere, how they fall, and pictures of them, into out/wild
+    /// Recognise, build, drop and picture many characters, into out/wild
     Wild(wild::Wild),
     /// Time and quality beside other engines, into docs/benchmarks.md; or instructions of the kernels
     Bench(bench::Bench),
-    /// What README and guide print, built and run in an empty folder outside the workspace
+    /// Build and run the programs of README and guide in an empty folder
     NewUser(new_user::NewUser),
-    /// Size of the library in a page, for the table of the guide
+    /// Size of the library in a page, for the guide
     Sizes(sizes::Sizes),
-    /// The libraries for C and Python, built, installed and tried as their users have them
+    /// Build, install and test the libraries for C and Python
     Bindings(bindings::Bindings),
-    /// The npm package `sinew-physics`, built, packed and tried as its users have it
+    /// Build, pack and test the npm package `sinew-physics`
     Npm(npm::Npm),
-    /// The extension for Blender as a zip; and its trial in Blender's module for Python
+    /// The extension for Blender as a zip, and its test in Blender's Python module
     Blender(blender::Blender),
-    /// A rehearsal of a release: versions, packages, artifacts, and the steps that are left to a person
+    /// Rehearse a release: versions, packages, artifacts, and the steps left to a person
     Release(release::Release),
-    /// The viewer as a page, a folder of static files; and its trial in a browser
+    /// The viewer as a page of static files, and its test in a browser
     Web(web::Web),
-    /// Bytes from nowhere against the readers, and clips against the runtime
+    /// Fuzz the readers
     Fuzz(fuzz::Fuzz),
     /// Random lives, from where the last run ended
     Lives(searches::Lives),
-    /// An hour of game, watched from step to step
+    /// An hour of game, checked after each step
     Soak(searches::Soak),
+    /// Random comments, messages, names and page lines, for a reader who judges their words
+    Sample(sample::Sample),
 }
 
 fn main() -> ExitCode {
-    // Without the backtrace that anyhow adds where RUST_BACKTRACE is set: what was found must not scroll away.
+    // Without the backtrace that anyhow adds with RUST_BACKTRACE: the findings must stay visible.
     run().unwrap_or_else(|error| {
         eprintln!("Error: {error:#}");
         ExitCode::FAILURE
@@ -98,6 +101,7 @@ fn run() -> anyhow::Result<ExitCode> {
         Task::Fuzz(fuzz) => fuzz.run()?,
         Task::Lives(lives) => lives.run()?,
         Task::Soak(soak) => soak.run()?,
+        Task::Sample(sample) => sample.run()?,
         Task::Npm(npm) => npm.run()?,
         Task::Release(release) => release.run()?,
         Task::Web(web) => web.run()?,

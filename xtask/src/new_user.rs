@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// A page whose programs are tried, and the name of the project that they are put into.
+/// A page whose programs are tested, and the name of their project.
 const PAGES: &[(&str, &str)] = &[("README.md", "readme"), ("docs/guide/src/first_ragdoll.md", "guide")];
 const BEVY_PAGE: &str = "integrations/bevy_sinew/README.md";
 
@@ -19,7 +19,7 @@ pub struct NewUser {
 }
 
 impl NewUser {
-    /// Tries the library, and the plugin if asked.
+    /// Tests the library, and the plugin on request.
     ///
     /// # Errors
     /// As [`library`] and [`bevy`].
@@ -29,19 +29,19 @@ impl NewUser {
     }
 }
 
-/// Programs of README and of the guide's first chapter build and run, in release builds.
+/// Builds and runs the programs of README and of the guide's first chapter in release builds.
 ///
 /// # Errors
-/// If one does not.
+/// If one fails.
 pub fn library() -> Result<()> {
     let dependencies = format!("sinew = {{ path = {:?} }}\n", command::root().join("crates/sinew"));
     PAGES.iter().try_for_each(|&(page, name)| project(name, page, &dependencies, &["--release"]))
 }
 
-/// The program of the plugin's README, with the dependencies that it prints, in a debug build, which takes half the time.
+/// Builds and runs the program of the plugin's README with the dependencies that it lists, in a debug build, which takes half the time.
 ///
 /// # Errors
-/// If it does not build or run, or none are printed.
+/// If it does not build or run, or lists no dependencies.
 pub fn bevy() -> Result<()> {
     let text = read(BEVY_PAGE)?;
     let printed = blocks(&text, "toml").into_iter().next().context("no dependencies are printed")?;
@@ -58,7 +58,7 @@ pub fn read(page: &str) -> Result<String> {
     fs::read_to_string(command::root().join(page)).with_context(|| page.to_owned())
 }
 
-/// A project with each block of Rust of a page as a program, in an empty folder; all are run.
+/// Makes a project with each Rust block of a page as a program in an empty folder, and runs all.
 fn project(name: &str, page: &str, dependencies: &str, profile: &[&str]) -> Result<()> {
     let folder = std::env::temp_dir().join(format!("sinew-new-user-{name}-{}", std::process::id()));
     fs::create_dir_all(folder.join("src/bin")).with_context(|| folder.display().to_string())?;
@@ -92,12 +92,12 @@ fn try_in(folder: &Path, name: &str, page: &str, dependencies: &str, profile: &[
     Ok(())
 }
 
-/// A program with a `main`: that of the text, or all of the text in one.
+/// Returns a program with a `main`: the text's own, or one around the text.
 fn whole(program: &str) -> String {
     if program.contains("fn main()") { program.to_owned() } else { format!("fn main() {{\n{program}}}\n") }
 }
 
-/// Fenced blocks of a language, as they are printed: lines that only tests see are no part of them.
+/// Returns fenced blocks of a language as printed, without lines that only tests see.
 pub fn blocks(text: &str, language: &str) -> Vec<String> {
     let mut blocks = Vec::new();
     let mut open: Option<(bool, String)> = None;

@@ -1,4 +1,4 @@
-//! A rehearsal of a release: everything that a machine can check or build, then the steps that are left to a person.
+//! A rehearsal of a release: everything that a machine can check or build, then the steps left to a person.
 
 use crate::command;
 use anyhow::{Context, Result, bail};
@@ -19,7 +19,7 @@ const VERSIONED: [(&str, &str); 5] = [
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask release --dry-run")]
 pub struct Release {
-    /// Publishes nothing; there is no other way yet, so that a release is never an accident
+    /// Publishes nothing; there is no other mode yet, so that no release happens by accident
     #[arg(long, required = true)]
     dry_run: bool,
     /// Leave out the wheel, the npm package and the extension for Blender, which need Python, Node and a network
@@ -61,7 +61,7 @@ impl Release {
     }
 }
 
-/// Version of the workspace, which all manifests must repeat.
+/// Returns the version of the workspace, which all manifests must repeat.
 fn same_version() -> Result<String> {
     let mut versions = Vec::new();
     for (manifest, start) in VERSIONED {
@@ -76,13 +76,13 @@ fn same_version() -> Result<String> {
     Ok(version)
 }
 
-/// Number in quotation marks on the first line that begins so.
+/// Returns the number in quotation marks on the first line with this start.
 fn version_in(manifest: &str, start: &str) -> Option<String> {
     let rest = manifest.lines().find_map(|line| line.trim_start().strip_prefix(start))?;
     Some(rest.split('"').nth(1)?.to_owned())
 }
 
-/// The change log names the version or has unreleased changes.
+/// Checks that the change log names the version or has unreleased changes.
 fn is_logged(version: &str) -> Result<()> {
     let log = fs::read_to_string(command::root().join("CHANGELOG.md"))?;
     if !log.lines().any(|line| line == "## Unreleased" || line.starts_with(&format!("## {version}"))) {
@@ -91,7 +91,7 @@ fn is_logged(version: &str) -> Result<()> {
     Ok(())
 }
 
-/// Compares public names with the last tag; gives what is left to do where there is no tool or no tag.
+/// Compares public names with the last tag; returns the step that is left where there is no tool or no tag.
 fn compare_api() -> Result<Option<String>> {
     let tags = command::output(Command::new("git").args(["tag", "--list", "v*", "--sort=-version:refname"]))?;
     let Some(last) = tags.lines().next() else {

@@ -12,7 +12,7 @@ const CHUNK: f64 = 5.0;
 
 /// `cargo xtask lives`: random lives of worlds, or of characters in them, from the seed at which the last run ended.
 ///
-/// Each chunk of five minutes adds a line to a file outside the repository: seeds, lives, calls, failures. It ends at the first chunk with a failure, which it
+/// Each chunk of five minutes adds a line to a file outside the repository: seeds, lives, calls, failures. The search ends at the first chunk with a failure, which it
 /// prints as a short program.
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask lives --of characters --minutes 60")]
@@ -26,7 +26,7 @@ pub struct Lives {
     /// How long
     #[arg(long, value_name = "M", default_value_t = 20.0)]
     minutes: f64,
-    /// Folder that keeps how far each search is; by default that of the user's state
+    /// Folder for the progress of each search; by default that of the user's state
     #[arg(long, value_name = "DIR")]
     progress: Option<PathBuf>,
 }
@@ -34,11 +34,11 @@ pub struct Lives {
 /// Kind of search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum Of {
-    /// Worlds, by all calls of theirs
+    /// Worlds, by all calls of `World`
     Worlds,
-    /// Worlds with characters in them, by all calls of both
+    /// Worlds with characters, by all calls of both
     Characters,
-    /// Worlds of up to 500 bodies, loaded into fresh ones at five moments each
+    /// Worlds of up to 500 bodies, loaded into new ones at five moments each
     Strangers,
 }
 
@@ -48,7 +48,9 @@ impl Of {
         match self {
             Self::Worlds => ("lives", ["sinew_physics", "lives", "lives_hold"]),
             Self::Characters => ("characters", ["sinew_ragdoll", "lives", "lives_hold"]),
-            Self::Strangers => ("strangers", ["sinew_physics", "it", "strangers_have_the_same_future"]),
+            Self::Strangers => {
+                ("strangers", ["sinew_physics", "it", "unrelated_worlds_have_the_same_future"])
+            }
         }
     }
 }
@@ -78,7 +80,7 @@ impl Lives {
     }
 }
 
-/// The folder in which programs of this user keep their state.
+/// Returns the folder for the state of this user's programs.
 fn folder_of_state() -> Result<PathBuf> {
     let home = || env::var_os("HOME").map(|home| PathBuf::from(home).join(".local/state"));
     let state = env::var_os("XDG_STATE_HOME").map(PathBuf::from).or_else(home);
@@ -93,7 +95,7 @@ fn last_line(log: &Path) -> Result<String> {
     Ok(text.lines().last().unwrap_or_default().to_owned())
 }
 
-/// Seed after those of the last line, which begins with `seeds a..b`; 0 without one.
+/// Returns the seed after those of the last line, which begins with `seeds a..b`; 0 without one.
 fn next_seed(log: &Path) -> Result<u64> {
     let line = last_line(log)?;
     if line.is_empty() {
@@ -135,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_search_goes_on_where_it_ended() {
+    fn a_search_continues_where_it_ended() {
         let log = env::temp_dir().join(format!("sinew-search-{}.log", std::process::id()));
         assert_eq!(next_seed(&log).expect("no log is a beginning"), 0);
         fs::write(&log, "seeds 0..60, 60 lives\nseeds 60..1790, 1730 lives\n").expect("a file");

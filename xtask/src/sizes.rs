@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// `cargo xtask sizes`: builds the physics alone and the library for WebAssembly and prints the table. Takes some ten minutes.
+/// `cargo xtask sizes`: builds the physics alone and the library for WebAssembly and prints the table. Takes about ten minutes.
 #[derive(clap::Args)]
 pub struct Sizes {
     /// Optimisation levels
@@ -15,7 +15,7 @@ pub struct Sizes {
     opt: Vec<char>,
 }
 
-/// A world with bodies that is stepped.
+/// A program that steps a world with bodies.
 const PHYSICS: &str = r#"use sinew_physics::{BodyDef, Shape, World, WorldDef};
 use std::cell::RefCell;
 thread_local! { static WORLD: RefCell<World> = RefCell::new(World::new(WorldDef::default())); }
@@ -35,7 +35,7 @@ pub extern "C" fn step() -> f32 {
 }
 "#;
 
-/// A character from the bytes of a GLB that is stepped, with what is built in where the file has no motions.
+/// A program that steps a character from the bytes of a GLB, with the built-in motions where the file has none.
 const CHARACTER: &str = r#"use sinew::formats::{ReadOptions, no_files, read_gltf};
 use sinew::prelude::*;
 use std::cell::RefCell;
@@ -54,7 +54,7 @@ fn hero(bytes: &[u8]) -> Option<(World, Character)> {
     Some((world, hero))
 }
 /// # Safety
-/// `bytes` are as many as `length` says.
+/// `bytes` points to `length` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn load(bytes: *const u8, length: usize) -> bool {
     let bytes = unsafe { core::slice::from_raw_parts(bytes, length) };
@@ -71,7 +71,7 @@ pub extern "C" fn step() -> f32 {
 }
 "#;
 
-/// Crates that are measured, with the program that holds what a page needs of them.
+/// Measured crates, each with a program of what a page needs.
 const PROGRAMS: &[(&str, &str)] = &[("sinew_physics", PHYSICS), ("sinew", CHARACTER)];
 
 impl Sizes {
@@ -95,7 +95,7 @@ impl Sizes {
     }
 }
 
-/// Bytes of a program, and of the same packed by `gzip -9`.
+/// Returns the bytes of a program, and of the same packed by `gzip -9`.
 fn measure(name: &str, program: &str, flags: &str, opt: char) -> Result<[usize; 2]> {
     let folder = command::target().join("sizes").join(name);
     fs::create_dir_all(folder.join("src"))?;

@@ -1,4 +1,4 @@
-//! Random falls of every rig there is: what must hold in each of them.
+//! Random falls of every available rig, and the bars of each.
 
 use crate::command::{self, Profile};
 use crate::ragdolls::{self, Measured};
@@ -8,15 +8,15 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// Falls of each rig before every merge, and when all is asked for.
+/// Falls of each rig before every merge, and with `--full`.
 pub const SOME: u32 = 100;
 pub const ALL: u32 = 10_000;
 
-/// Lets the mannequin fall, and each rig beside the repository: no number that is not finite, no energy from nothing, no
+/// Runs falls of the mannequin and of each rig beside the repository: no NaN, no energy from nothing, no
 /// open joint.
 ///
 /// # Errors
-/// With the numbers of the falls that break a bar.
+/// With the numbers of the falls that miss a bar.
 pub fn check(spawns: u32) -> Result<()> {
     let binary = command::build_sinew(Profile::Release)?;
     let folder = std::env::temp_dir().join(format!("sinew-spawns-{}", std::process::id()));
@@ -47,7 +47,7 @@ fn check_in(binary: &Path, folder: &Path, spawns: u32) -> Result<()> {
                     failed.push(format!("{name}: {}", gate["failures"]));
                 }
             }
-            // The mannequin has a skin, and so it is a fault if it is refused.
+            // The mannequin has a skin, so a refusal is a fault.
             Measured::Refused(what) => {
                 ensure!(file.parent() != Some(folder), "{name} is refused: {what}");
                 eprintln!("{name}: refused, {what}");
@@ -60,7 +60,7 @@ fn check_in(binary: &Path, folder: &Path, spawns: u32) -> Result<()> {
     Ok(())
 }
 
-/// How many falls broke a bar. A report that says nothing of it, or of other falls, is none.
+/// Returns the number of falls that miss a bar. A report without it, or of another number of falls, is an error.
 fn broken(gate: &Value, spawns: u32) -> Result<u64> {
     ensure!(gate["spawns"] == spawns, "{spawns} falls were asked for, not {}", gate["spawns"]);
     gate["failed"].as_u64().context("`quality.gate.failed` is missing")
@@ -85,7 +85,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn a_report_without_its_falls_is_no_pass() {
+    fn a_report_without_its_falls_fails() {
         assert_eq!(broken(&json!({ "spawns": 100, "failed": 0 }), 100).ok(), Some(0));
         assert_eq!(broken(&json!({ "spawns": 100, "failed": 3 }), 100).ok(), Some(3));
         assert!(broken(&json!({ "spawns": 1, "failed": 0 }), 100).is_err());

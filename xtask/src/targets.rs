@@ -1,36 +1,36 @@
-//! Other processors: that the code builds for them, and that WebAssembly computes what x86-64 does.
+//! Other processors: the code builds for them, and WebAssembly computes the bits of x86-64.
 
 use crate::command;
 use anyhow::Result;
 use std::process::Command;
 
-/// Of browsers.
+/// Target of browsers.
 pub const BROWSER: &str = "wasm32-unknown-unknown";
 
-/// Of programs that print: Node runs them.
+/// Target of programs that Node runs.
 const PROGRAM: &str = "wasm32-wasip1";
 
-/// Of phones and of some desks.
+/// Target of phones and of some desktops.
 const ARM: &str = "aarch64-unknown-linux-gnu";
 
 /// Runs such a program in Node.
 const RUNNER: &str = "xtask/src/wasi.mjs";
 
-/// Tests that hold the eight lanes, and the kernels on them, against hashes of all processors. Nothing else is run here.
+/// Tests that compare the eight lanes and their kernels with hashes of all processors. Nothing else is run here.
 const SOUP: &str = "golden_soup";
 
-/// The library that users add compiles for the browser.
+/// Compiles the library for the browser.
 ///
 /// # Errors
-/// If it does not.
+/// If that fails.
 pub fn browser() -> Result<()> {
     build_for(BROWSER, &["build", "--package", "sinew"])
 }
 
-/// The registers of aarch64 compile; what they compute is not seen here.
+/// Compiles the registers of aarch64; nothing is run.
 ///
 /// # Errors
-/// If they do not.
+/// If that fails.
 pub fn arm() -> Result<()> {
     build_for(ARM, &["check", "--package", "sinew_math"])
 }
@@ -44,10 +44,10 @@ fn build_for(target: &str, arguments: &[&str]) -> Result<()> {
     command::run(command::cargo(arguments).args(["--target", target]))
 }
 
-/// The golden soup has the same bits in Node, with vectors and without.
+/// Checks that the golden soup has the same bits in Node, with vectors and without.
 ///
 /// # Errors
-/// If it has not, or does not compile.
+/// If the bits differ, or it does not compile.
 pub fn soup() -> Result<()> {
     if let Err(missing) = add(PROGRAM).and_then(|()| command::provide("node", "nodejs")) {
         eprintln!("{missing:#}");
@@ -73,7 +73,7 @@ fn soup_with(flags: &str, tests: &[&str]) -> Result<()> {
 /// Adds a target to the toolchain.
 ///
 /// # Errors
-/// If it cannot.
+/// If that fails.
 pub fn add(target: &str) -> Result<()> {
     command::run(Command::new("rustup").args(["target", "add", target]))
 }

@@ -1,8 +1,8 @@
-//! The rules of the house that no compiler checks. Each rule is one file and one function from the repository to
-//! findings; a test beside it plants a violation and sees it found.
+//! House rules that no compiler checks. Each rule is one file and one function from the repository to
+//! findings; a test beside it plants a violation and expects its finding.
 //!
-//! The rules read tokens, not types ([`lexer`]): comments and strings never trigger them, but a name that is reached
-//! through a macro or an alias escapes. What needs types is in `clippy.toml` (`disallowed-methods`).
+//! The rules read tokens, not types ([`lexer`]): comments and strings never trigger them, but they miss names that are reached
+//! through a macro or an alias. Rules that need types are in `clippy.toml` (`disallowed-methods`).
 
 mod arrows;
 mod bits;
@@ -55,19 +55,19 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
 /// `cargo xtask tidy`.
 #[derive(clap::Args)]
 pub struct Tidy {
-    /// Print what the crates' houses are like, too
+    /// Also print figures of each crate
     #[arg(long)]
     table: bool,
 }
 
 impl Tidy {
-    /// Without the table.
+    /// Runs the rules without the table.
     pub const CHECK: Self = Self { table: false };
 
-    /// Prints what breaks a rule, one line each.
+    /// Prints violations of the rules, one line each.
     ///
     /// # Errors
-    /// If anything does, or the repository cannot be read.
+    /// If there is one, or the repository cannot be read.
     pub fn run(&self) -> Result<()> {
         let repo = Repo::read()?;
         if self.table {
@@ -85,7 +85,7 @@ impl Tidy {
     }
 }
 
-/// A row for each crate: files and how they hang together, and names at its root.
+/// Returns a row for each crate: files, circles, and names at its root.
 fn table(repo: &Repo) -> String {
     let mut text = "crate              files  flat  circle  back up  names\n".to_owned();
     for circles::House { name, files, flat, circle } in circles::houses(repo) {
@@ -100,7 +100,7 @@ fn check(repo: &Repo) -> Vec<Finding> {
     RULES.iter().flat_map(|rule| rule(repo)).collect()
 }
 
-/// A place that breaks a rule.
+/// A violation of a rule.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Finding {
     file: String,
@@ -151,7 +151,7 @@ impl File {
     }
 }
 
-/// What the rules look at.
+/// The repository as the rules see it.
 pub struct Repo {
     /// Text files, by path.
     pub files: Vec<File>,
@@ -160,7 +160,9 @@ pub struct Repo {
 }
 
 impl Repo {
-    fn read() -> Result<Self> {
+    /// # Errors
+    /// If a folder cannot be read, or cargo fails.
+    pub fn read() -> Result<Self> {
         let mut files = Vec::new();
         let root = command::root();
         collect(&root, "", &mut files).with_context(|| root.display().to_string())?;
@@ -169,7 +171,7 @@ impl Repo {
         Ok(Self { files, metadata })
     }
 
-    /// The file at `path`, if it is there.
+    /// Returns the file at `path`, if it exists.
     pub fn file(&self, path: &str) -> Option<&File> {
         self.files.iter().find(|file| file.path == path)
     }
@@ -184,7 +186,7 @@ impl Repo {
     }
 }
 
-/// What holds nothing of ours. Folders of builds are named like `target` or `target-something`; `.git` is a file in a linked
+/// Folders without source files. Build folders are named like `target` or `target-something`; `.git` is a file in a linked
 /// working tree.
 fn is_foreign(name: &str) -> bool {
     name == ".git" || name == "out" || name == "node_modules" || name.starts_with("target")
@@ -216,19 +218,19 @@ mod tests {
     use super::*;
 
     impl Repo {
-        /// A repository of these files (path, text) and no packages.
+        /// Returns a repository of these files (path, text) and no packages.
         pub(crate) fn planted(files: &[(&str, &str)]) -> Self {
             let files = files.iter().map(|&(path, text)| File { path: path.into(), text: text.into() });
             Self { files: files.collect(), metadata: Value::Null }
         }
 
-        /// A repository of these packages, as `cargo metadata` writes them, and no files.
+        /// Returns a repository of these packages, as `cargo metadata` writes them, and no files.
         pub(crate) fn planted_packages(packages: &Value) -> Self {
             Self { files: Vec::new(), metadata: serde_json::json!({ "packages": packages }) }
         }
     }
 
-    /// `rule`, on a repository that holds only `text` at `path`, finds these lines.
+    /// Checks that `rule`, on a repository with only `text` at `path`, finds these lines.
     pub(crate) fn check_lines(rule: fn(&Repo) -> Vec<Finding>, path: &str, text: &str, expected: &[usize]) {
         let findings = rule(&Repo::planted(&[(path, text)]));
         let lines: Vec<usize> = findings.iter().map(|finding| finding.line).collect();

@@ -1,4 +1,4 @@
-//! Characters that nobody here has made: what Sinew sees in them, how they fall, and pictures of them lying.
+//! Characters from elsewhere: recognised roles, falls, and pictures of them lying.
 
 mod page;
 mod sheet;
@@ -13,18 +13,18 @@ use std::process::Command;
 use std::sync::Mutex;
 use std::time::Instant;
 
-/// Beside the repository.
+/// Folder beside the repository.
 const DATA: &str = "../shared/data";
 /// Folders of files with meshes, which fall.
 const FOLDERS: [&str; 2] = ["rigs", "rigs_wild"];
 const PAGE: &str = "out/wild/tables.md";
-/// For reports and pictures; git does not see it.
+/// Folder for reports and pictures, which git ignores.
 const OUT: &str = "out/wild";
-/// Length of a bake, seconds: who falls at 0.5 s lies by then.
+/// Length of a bake, seconds: a character that falls at 0.5 s lies by then.
 const SECONDS: &str = "6";
 
 /// `cargo xtask wild`: builds, drops and bakes every rig beside the repository, recognises every skeleton, and writes their figures and
-/// sheets of pictures of all of them fallen.
+/// sheets of pictures of them fallen.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -38,13 +38,13 @@ pub struct Wild {
     only: Vec<String>,
 }
 
-/// What became of a file.
+/// Result of a file.
 struct Row {
-    /// Under ../shared/data.
+    /// Path under ../shared/data.
     file: String,
     /// `{"build","bake","build_s","bake_s"}`, or `{"refused"}`.
     report: Value,
-    /// It fallen.
+    /// Its picture after the fall.
     picture: PathBuf,
 }
 
@@ -79,7 +79,7 @@ impl Wild {
     }
 }
 
-/// Roles right of all, per file that the table of the tests of `sinew_anim` knows: it is the only home of what is right. Built like the program, so
+/// Correct roles of all, per file in the table of the tests of `sinew_anim`, which has the right answers. Built with the program's profile, so
 /// that nothing is compiled twice.
 fn roles(out: &Path) -> Result<Value> {
     let path = out.join("roles.json");
@@ -90,7 +90,7 @@ fn roles(out: &Path) -> Result<Value> {
     serde_json::from_str(&text).with_context(|| path.display().to_string())
 }
 
-/// All files, as many at a time as there are processors, in their order.
+/// Runs all files in parallel; results are in the order of the files.
 fn measure_all(binary: &Path, data: &Path, out: &Path, files: &[PathBuf]) -> Result<Vec<Row>> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let next = Mutex::new(files.iter().enumerate());
@@ -111,7 +111,7 @@ fn measure_all(binary: &Path, data: &Path, out: &Path, files: &[PathBuf]) -> Res
     rows.into_iter().map(|(_, row)| row).collect()
 }
 
-/// A file's report, from the last run where that is newer than the program.
+/// Returns a file's report, from the last run if that is newer than the program.
 fn measure(binary: &Path, data: &Path, out: &Path, path: &Path) -> Result<Row> {
     let file = path.strip_prefix(data).unwrap_or(path).display().to_string();
     let stem = file.replace('/', "_");
@@ -133,7 +133,7 @@ fn is_newer(file: &Path, than: &Path) -> Result<bool> {
     Ok(changed(file)? > changed(than).with_context(|| than.display().to_string())?)
 }
 
-/// Builds, drops and bakes, and draws how it lies.
+/// Builds, drops and bakes, and draws the fallen character.
 fn fall(binary: &Path, path: &Path, baked: &Path, picture: &Path) -> Result<Value> {
     let start = Instant::now();
     let build = match ragdolls::measure(binary, path, 0)? {

@@ -1,8 +1,8 @@
-//! Instructions that the kernels take, counted under valgrind: the same on a busy machine and on a quiet one.
+//! Instructions of the kernels, counted under valgrind, which do not depend on other load.
 //!
 //! Six scenes as whole steps (`scene_step`), then kernels, one character in each of its states (`character_step`: the world and its
-//! update), a hundred that walk, with hit bodies and without (`walkers_step`), and the springs of a hundred (`springs_step`). `cargo xtask bench --counts` runs these and compares them with
-//! `bench/counts/baseline.txt`. What is not public is measured as the step of a world in which it is nearly all there is.
+//! update), a hundred walkers with and without hit bodies (`walkers_step`), and springs (`springs_step`). `cargo xtask bench --counts` runs these and compares them with
+//! `bench/counts/baseline.txt`. Private code is measured as the step of a world that does little else.
 
 use gungraun::Callgrind;
 use gungraun::prelude::*;
@@ -18,7 +18,7 @@ use sinew_scenes::scenes::{self, Instance};
 use std::hint::black_box;
 use std::sync::Arc;
 
-/// The mannequin of `ragdoll_drop` after `steps`, its buffers warm.
+/// Returns the mannequin of `ragdoll_drop` after `steps`, with warm buffers.
 fn ragdoll(steps: u32) -> Instance {
     let scene = scenes::find("ragdoll_drop").expect("the registry has it");
     let mut drop = scene.start(&scene.settings());
@@ -30,17 +30,17 @@ fn ragdoll(steps: u32) -> Instance {
     drop
 }
 
-/// In the air, 0.2 s after it was let go.
+/// In the air, 0.2 s after release.
 fn falling() -> Instance {
     ragdoll(12)
 }
 
-/// Coming down on the floor: the busiest steps of the fall.
+/// Landing: the busiest steps of the fall.
 fn landing() -> Instance {
     ragdoll(60)
 }
 
-/// On the floor, still and awake.
+/// At rest on the floor, awake.
 fn lying() -> Instance {
     ragdoll(95)
 }
@@ -54,14 +54,14 @@ fn ragdoll_step(mut drop: Instance) -> Instance {
     drop
 }
 
-/// Ten chains of a hundred links and a weight: factor and solve of long trees, and nothing else.
+/// Ten chains of a hundred links and a weight: factor and solve of long trees.
 fn chains() -> World {
     let (mut world, ..) = blueprint::chain_100_links().build();
     world.step();
     world
 }
 
-/// One box that lies on a floor: a manifold of four points, and its complementarity problem.
+/// A box on a floor: a manifold of four points, and its complementarity problem.
 fn lone_box() -> World {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     let cuboid = |half_extents, y| BodyDef {
@@ -77,9 +77,9 @@ fn lone_box() -> World {
     world
 }
 
-/// Balls in flight beside boxes that sleep on a floor, so many of each.
+/// Returns `awake` balls in flight beside `asleep` boxes that sleep on a floor.
 fn beside_sleepers(awake: u32, asleep: u32) -> World {
-    // What rests sleeps at once.
+    // Resting bodies sleep at once.
     let sleep_thresholds = SleepThresholds { time: 0.0, ..SleepThresholds::default() };
     let mut world = World::new(WorldDef { sleep_thresholds, ..WorldDef::default() });
     let body =
@@ -100,7 +100,7 @@ fn beside_sleepers(awake: u32, asleep: u32) -> World {
     world
 }
 
-/// A scene after so many steps.
+/// Returns a scene after this many steps.
 fn after(steps: u32, blueprint: &blueprint::Blueprint) -> World {
     let (mut world, ..) = blueprint.build();
     for _ in 0..steps {
@@ -129,7 +129,7 @@ fn humanoid_lying() -> World {
     after(90, &blueprint::humanoid_lying())
 }
 
-/// 14 cubes, and a figure that has fallen down on them.
+/// 14 cubes with a figure fallen on them.
 fn ragdoll_on_boxes() -> World {
     after(40, &blueprint::ragdoll_on_boxes(3))
 }
@@ -232,7 +232,7 @@ impl Actor {
     }
 }
 
-/// It has walked for a second; then something is done to it, and so many steps go by.
+/// It walks for a second; then an action follows, and this many steps.
 fn actor(done: fn(&mut World, &mut Character), steps: u32) -> Actor {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -293,7 +293,7 @@ fn character_step(mut actor: Actor) -> Actor {
     actor
 }
 
-/// A hundred mannequins that walk on a floor, three metres apart.
+/// A hundred walking mannequins on a floor, three metres apart.
 struct Walkers {
     world: World,
     characters: Vec<Character>,
@@ -352,7 +352,7 @@ impl Maned {
     }
 }
 
-/// The mannequin with eight strands around its head, each of which meets a ball for the head.
+/// The mannequin with eight strands around its head, each with a ball for the head as collider.
 fn strands() -> CharacterDef {
     let mut rig = sinew::mannequin::mannequin().rig;
     let head = rig.joints.iter().position(|joint| joint.name == "head").expect("it has a head");
@@ -386,7 +386,7 @@ fn strands() -> CharacterDef {
     CharacterDef::new(rig, ragdoll, &analysis.bind_model)
 }
 
-/// After a second of swinging, then so many steps of easing.
+/// After a second of swinging, then this many steps of easing.
 fn maned(eased: u32) -> Maned {
     let mut maned = Maned { def: strands(), swings: vec![SpringSwing::new(); 100], frame: 0 };
     assert_eq!(maned.def.springs().joints().len(), 40);
@@ -396,7 +396,7 @@ fn maned(eased: u32) -> Maned {
     maned
 }
 
-// 4,000 spring bones, a step: 7.5 million instructions are some 1 ms.
+// 4,000 spring bones, a step: 7.5 million instructions are about 1 ms.
 #[library_benchmark]
 #[bench::near(maned(0), SpringSwing::step)]
 #[bench::easing(maned(10), SpringSwing::ease)]
@@ -419,7 +419,7 @@ library_benchmark_group!(
         springs_step
     ]
 );
-// Caches are not simulated: instructions alone are compared, in half the time.
+// Caches are not simulated: only instructions are compared, in half the time.
 main!(
     config = LibraryBenchmarkConfig::default().tool(Callgrind::with_args(["--cache-sim=no"])),
     library_benchmark_groups = kernels

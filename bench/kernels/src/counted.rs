@@ -1,16 +1,16 @@
-//! Lanes that count what is asked of them.
+//! Lanes that count operations.
 
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{LaneMask, Lanes, Mask, Real, WIDTH};
 use std::cell::Cell;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// How many operations on eight lanes. Loads and stores are not counted.
+/// Number of operations on eight lanes. Loads and stores are not counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Operations {
     /// Multiplications.
     pub mul: u64,
-    /// Additions, subtractions, comparisons, the smaller and the larger: what an adder does.
+    /// Additions, subtractions, comparisons, minima and maxima: operations of an adder.
     pub add: u64,
     /// Divisions.
     pub div: u64,
@@ -34,18 +34,18 @@ fn tick(field: impl Fn(&mut Operations) -> &mut u64) {
     });
 }
 
-/// What a kernel asks for.
+/// Operations of a kernel.
 pub fn count<K: Kernel>(kernel: K) -> Operations {
     COUNT.set(Operations::default());
     kernel.run::<Counted>();
     COUNT.get()
 }
 
-/// One number for all eight: it is the operations that count.
+/// One number for all eight, since only the operations count.
 #[derive(Clone, Copy)]
 pub struct Counted(f32);
 
-/// Likewise.
+/// The same.
 #[derive(Clone, Copy)]
 pub struct CountedMask(bool);
 
@@ -89,7 +89,7 @@ impl LaneMask for CountedMask {
         if self.0 { u8::MAX } else { 0 }
     }
 
-    /// Always: among eight there is nearly always one for which a kernel goes on.
+    /// Always true: among eight lanes nearly always one continues.
     fn any(self) -> bool {
         true
     }

@@ -1,5 +1,5 @@
-//! What the machine's arithmetic allows: how many additions, multiplications, both by turns, divisions and roots of eight
-//! lanes it does in a second when nothing waits for anything.
+//! Limit of the machine's arithmetic: additions, multiplications, both in turn, divisions and roots of eight
+//! lanes per second when nothing waits.
 
 use crate::counted::Operations;
 use crate::seconds;
@@ -10,7 +10,7 @@ use std::hint::black_box;
 /// Operations of each chain in a run.
 const LENGTH: u64 = 256;
 
-/// What is repeated.
+/// Repeated operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Operation {
     Mul,
@@ -24,7 +24,7 @@ enum Operation {
 const OPERATIONS: [Operation; 5] =
     [Operation::Mul, Operation::Add, Operation::MulAdd, Operation::Div, Operation::Sqrt];
 
-/// `N` chains of operations that do not wait for each other.
+/// `N` chains of operations that do not depend on each other.
 struct Chains<const N: usize>(Operation);
 
 impl<const N: usize> Kernel for Chains<N> {
@@ -37,7 +37,7 @@ impl<const N: usize> Kernel for Chains<N> {
             *chain = L::splat(black_box(1.5));
         }
         let by = L::splat(black_box(1.000_000_1));
-        // One loop for each, or the choice would be in the loop.
+        // One loop for each, or the branch would be in the loop.
         match self.0 {
             Operation::Mul => {
                 for _ in 0..LENGTH {
@@ -86,7 +86,7 @@ impl<const N: usize> Kernel for Chains<N> {
     }
 }
 
-/// Seconds that one operation on eight lanes takes, the best that was seen.
+/// Seconds of one operation on eight lanes, the smallest that was measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits([f64; OPERATIONS.len()]);
 
@@ -97,10 +97,10 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Another sample of each.
+    /// Adds a sample of each.
     pub fn measure(&mut self, level: Level) {
         for (operation, best) in OPERATIONS.into_iter().zip(&mut self.0) {
-            // As many chains as hide the latency and fit the registers: how many those are, the machine knows.
+            // As many chains as hide the latency and fit the registers; the number depends on the machine.
             let times = [
                 time::<4>(level, operation),
                 time::<6>(level, operation),
@@ -112,7 +112,7 @@ impl Limits {
         }
     }
 
-    /// The least time in which the machine can do so many.
+    /// Returns the least time in which the machine can do these operations.
     pub fn seconds(&self, operations: &Operations) -> f64 {
         let [mul, add, either, div, sqrt] = self.0;
         let &Operations { mul: muls, add: adds, div: divs, sqrt: roots, .. } = operations;
@@ -121,7 +121,7 @@ impl Limits {
         bounds.into_iter().fold(0.0, f64::max)
     }
 
-    /// In operations on eight lanes a second.
+    /// In operations on eight lanes per second.
     pub fn print(&self, level: Level) {
         for (operation, time) in OPERATIONS.iter().zip(self.0) {
             println!("{level:?} limit.{operation:?} {:.4e} {:.4e}", 1.0 / time, 1.0 / time);

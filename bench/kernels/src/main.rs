@@ -1,6 +1,6 @@
-//! Speed of the eight-lane kernels, beside what the machine's arithmetic allows, measured in the same minute.
+//! Speed of the eight-lane kernels, beside the limit of the machine's arithmetic measured in the same minute.
 //!
-//! `cargo xtask bench --kernels` runs this and makes a table of it. Printed are lines of
+//! `cargo xtask bench --kernels` runs this and makes a table of it. The output has lines of
 //! `level kernel items_per_second limit_items_per_second`.
 #![forbid(unsafe_code)]
 
@@ -12,10 +12,10 @@ use limit::Limits;
 use sinew_math::dispatch::Level;
 use std::time::{Duration, Instant};
 
-/// A sample is to be short, so that some are measured while nobody else wants the processor.
+/// Short samples, so that some run while the processor is free.
 const SAMPLE: Duration = Duration::from_micros(400);
 
-/// Samples of each figure. They are taken in turns, so that a clock that changes does so for all.
+/// Samples of each figure. They are taken in turns, so that a change of the clock rate affects all.
 const ROUNDS: usize = 200;
 
 fn main() {
@@ -38,7 +38,7 @@ fn main() {
     }
 }
 
-/// How long a call takes, on average over as many as fill a sample.
+/// Returns the time of a call, averaged over as many as fill a sample.
 fn seconds(mut call: impl FnMut()) -> f64 {
     let start = Instant::now();
     let mut calls = 0_u32;

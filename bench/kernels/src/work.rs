@@ -1,4 +1,4 @@
-//! The kernels, with data to work on.
+//! The kernels, with data.
 
 use crate::counted::{self, Operations};
 use sinew_geometry::boxes::Obb;
@@ -9,15 +9,15 @@ use sinew_math::dispatch::{self, Level};
 use sinew_math::{Random, Vec3};
 use std::hint::black_box;
 
-/// How many points: with their answers they stay in the second cache.
+/// Number of points: with their answers they fit the second-level cache.
 const POINTS: usize = 8_192;
 
-/// How many pairs, likewise.
+/// Number of pairs, for the same reason.
 const PAIRS: usize = 2_048;
 
 /// A kernel and its data.
 pub struct Work {
-    /// What it is called in the table.
+    /// Name in the table.
     pub name: &'static str,
     kind: Kind,
 }
@@ -29,7 +29,7 @@ enum Kind {
     Separations { axes: Axes, pairs: Pairs, found: Separations },
 }
 
-/// All of them.
+/// Returns all kernels.
 pub fn all() -> Vec<Work> {
     let mut random = Random::new(7);
     let obb = cuboid(&mut random);
@@ -50,7 +50,7 @@ pub fn all() -> Vec<Work> {
     ]
 }
 
-/// Somewhere near the origin: about half of the pairs overlap.
+/// Returns a pose near the origin: about half of the pairs overlap.
 fn cuboid(random: &mut Random) -> Obb {
     let mut half = || random.range(0.2, 0.8);
     let half_extents = Vec3::new(half(), half(), half());
@@ -58,7 +58,7 @@ fn cuboid(random: &mut Random) -> Obb {
 }
 
 impl Work {
-    /// Of what a run does how many.
+    /// Items of a run.
     pub fn items(&self) -> usize {
         match &self.kind {
             Kind::Contains { points, .. } | Kind::Distances { points, .. } => points.len(),
@@ -66,7 +66,7 @@ impl Work {
         }
     }
 
-    /// Once over the data.
+    /// Runs once over the data.
     pub fn run_at(&mut self, level: Level) {
         match &mut self.kind {
             Kind::Contains { obb, points, inside } => {
@@ -88,7 +88,7 @@ impl Work {
         }
     }
 
-    /// What a run asks of the arithmetic.
+    /// Returns the operations of a run.
     pub fn operations(&self) -> Operations {
         match &self.kind {
             Kind::Contains { obb, points, inside } => {

@@ -1,4 +1,4 @@
-//! Interface that an engine implements to be measured.
+//! Interface of a measured engine.
 
 use serde_json::{Value, json};
 use sinew::math::{Rotation, SwingTwistLimit, Transform, Vec3};
@@ -8,52 +8,52 @@ use thiserror::Error;
 use crate::scenes::{BoxPairs, ClothScene, Field, RayScene};
 use sinew_scenes::crowd::CrowdScene;
 
-/// An engine under measurement, with the settings it comes with.
+/// An engine under measurement, with its default settings.
 ///
-/// What an engine cannot run it answers with [`Unsupported`], never with a scene that is nearly the same.
+/// If an engine cannot run a scene it returns [`Unsupported`], never a similar scene.
 pub trait Engine: Sync {
-    /// What is measured.
+    /// Name, version and settings.
     fn describe(&self) -> Description;
 
-    /// What it is made for. Scenes of other fields are not for it.
+    /// Its field. Scenes of other fields are not for it.
     fn fields(&self) -> &'static [Field] {
         &[Field::Physics]
     }
 
-    /// A world with everything the blueprint says, before its first step.
+    /// Returns a world with all of the blueprint, before its first step.
     ///
     /// # Errors
-    /// What the engine lacks.
+    /// If the engine lacks a feature.
     fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported>;
 
     /// A cloth over obstacles.
     ///
     /// # Errors
-    /// What the engine lacks.
+    /// If the engine lacks a feature.
     fn build_cloth(&self, _scene: &ClothScene) -> Result<Box<dyn ClothSimulation>, Unsupported> {
         Err(Unsupported::new("no cloth"))
     }
 
-    /// Static boxes, ready to be met by rays.
+    /// Returns static boxes, ready for rays.
     ///
     /// # Errors
-    /// What the engine lacks.
+    /// If the engine lacks a feature.
     fn build_rays(&self, _scene: &RayScene) -> Result<Box<dyn RayCaster>, Unsupported> {
         Err(Unsupported::new("no rays"))
     }
 
-    /// Pairs of boxes, in the form in which the engine tests them.
+    /// Returns pairs of boxes, in the form in which the engine tests them.
     ///
     /// # Errors
-    /// What the engine lacks.
+    /// If the engine lacks a feature.
     fn build_boxes(&self, _pairs: &BoxPairs) -> Result<Box<dyn OverlapTester>, Unsupported> {
         Err(Unsupported::new("no public test of two boxes for overlap"))
     }
 
-    /// Characters, each with a memory of its own, before the first pose.
+    /// Returns characters, each with its own memory, before the first pose.
     ///
     /// # Errors
-    /// What the engine lacks.
+    /// If the engine lacks a feature.
     fn build_crowd<'a>(&self, _crowd: &'a CrowdScene) -> Result<Box<dyn Crowd + 'a>, Unsupported> {
         Err(Unsupported::new("no animation"))
     }
@@ -80,28 +80,28 @@ pub trait ClothSimulation {
     fn particles(&self, out: &mut Vec<ParticleState>);
 }
 
-/// Static boxes that rays meet.
+/// Static boxes for rays.
 pub trait RayCaster {
-    /// How many of the scene's rays `range` meet a box; for each, the closest hit is found.
+    /// Returns how many of the scene's rays `range` hit a box; for each, the closest hit is found.
     fn count_hits(&mut self, range: core::ops::Range<usize>) -> usize;
 }
 
 /// Pairs of boxes that may overlap.
 pub trait OverlapTester {
-    /// How many of the pairs in `range` overlap.
+    /// Returns how many of the pairs in `range` overlap.
     fn count_overlaps(&mut self, range: core::ops::Range<usize>) -> usize;
 }
 
 /// Characters that play clips.
 pub trait Crowd {
-    /// Samples both clips for every character at its times of this step, blends them, and brings them to model space.
+    /// Samples both clips for every character at its times of this step, blends them, and computes model space.
     fn step(&mut self, step: usize);
 
-    /// What a character came to in the last step, which was `step`.
+    /// Returns a character's result of the last step, which was `step`.
     fn pose(&mut self, character: usize, step: usize) -> CharacterPose;
 }
 
-/// What became of a character's joints.
+/// Result of a character's joints.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CharacterPose {
     /// For each clip, the sampled rotation of every joint relative to its parent.
@@ -110,7 +110,7 @@ pub struct CharacterPose {
     pub places: Vec<Vec3>,
 }
 
-/// Where a body is and how it moves.
+/// Pose and velocity of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyState {
     /// World position and orientation of the body's **origin** (not of its centre of mass).
@@ -128,7 +128,7 @@ impl BodyState {
     }
 }
 
-/// Where a particle is and how it moves.
+/// Place and velocity of a particle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ParticleState {
     /// World, metres.
@@ -137,14 +137,14 @@ pub struct ParticleState {
     pub velocity: Vec3,
 }
 
-/// What is measured: printed beside every figure.
+/// Description that is printed beside every figure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Description {
     /// Name on the command line.
     pub name: &'static str,
     /// Version of the code that runs.
     pub version: String,
-    /// How it was compiled.
+    /// Compiler flags.
     pub flags: String,
     /// Solver settings, in words; "defaults" first where they are.
     pub settings: String,
@@ -162,7 +162,7 @@ impl Description {
     }
 }
 
-/// What an engine lacks to run a scene.
+/// Feature that an engine lacks to run a scene.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{0}")]
 pub struct Unsupported(String);
@@ -188,7 +188,7 @@ pub fn circular_cone(limit: &SwingTwistLimit) -> Result<f32, Unsupported> {
     }
 }
 
-/// Frame of a joint as its two bodies see it in the start pose.
+/// Frame of a joint in its two bodies in the start pose.
 pub fn joint_frames(scene: &Blueprint, joint: &BlueprintJoint) -> [Transform; 2] {
     [joint.a, joint.b].map(|place| {
         let body = &scene.bodies[place];

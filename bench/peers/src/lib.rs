@@ -1,6 +1,6 @@
-//! The same scenes on Sinew and on other engines, measured by one tool: time, and beside it what the time bought.
+//! The same scenes on Sinew and on other engines, measured by one tool: time, and the quality beside it.
 #![deny(unsafe_code)] // `ffi` alone allows it
-// ozz-animation-rs hands out vectors of `std::simd`.
+// ozz-animation-rs returns vectors of `std::simd`.
 #![cfg_attr(feature = "ozz", feature(portable_simd))]
 
 pub mod engine;

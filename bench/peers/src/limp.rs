@@ -1,5 +1,5 @@
-//! Cost of limp characters: each rig falls from random poses until it sleeps, and the processor time is compared with the time that
-//! passed in the world.
+//! Cost of limp characters: each rig falls from random poses until it sleeps, and the processor time is compared with the simulated
+//! time.
 
 use crate::measure::quantile;
 use cpu_time::ProcessTime;
@@ -15,10 +15,10 @@ const HEIGHT: f32 = 0.3;
 /// Largest speed and spin at the start, m/s and rad/s.
 const SPEED: f32 = 2.0;
 const SPIN: f32 = 3.0;
-/// Steps after which a fall that has not ended is given up.
+/// Steps after which an unfinished fall is given up.
 const MOST_STEPS: u32 = 1_200;
 
-/// `falls` falls of each of the files' characters. Files without one that can be built are named with the reason.
+/// Runs `falls` falls of each of the files' characters. Files without one that can be built are listed with the reason.
 pub fn run(files: &[PathBuf], falls: u32) -> Value {
     let (mut factors, mut humanoids) = (Vec::new(), Vec::new());
     let characters: Vec<Value> = files
@@ -54,7 +54,7 @@ fn character(file: &Path) -> Result<(RagdollDef, bool), String> {
     Ok((def, analysis.humanoid))
 }
 
-/// Simulated seconds per second of processor time, and what is told of it.
+/// Simulated seconds per second of processor time, and the report.
 fn fall_often(file: &Path, def: &RagdollDef, falls: u32) -> (f64, Value) {
     let (mut simulated, mut took, mut asleep) = (0.0, 0.0, 0);
     let mut random = Random::new(1);
@@ -83,7 +83,7 @@ fn fall_often(file: &Path, def: &RagdollDef, falls: u32) -> (f64, Value) {
     (factor, figures)
 }
 
-/// A world with a floor and the limp character above it, turned and moving anyhow.
+/// Returns a world with a floor and the limp character above it, with random rotation and velocities.
 fn release(def: &RagdollDef, random: &mut Random) -> (World, Ragdoll) {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));

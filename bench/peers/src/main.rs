@@ -27,33 +27,33 @@ enum Command {
     List,
     /// Version, flags and settings of the engines in this binary.
     Versions,
-    /// Time that each stage of Sinew's step takes on a scene, µs, and counts of its work.
+    /// Time of each stage of Sinew's step on a scene, µs, and counts of its work.
     Trace {
-        /// Name of the scene: one that `peers list` or `sinew scenes` prints.
+        /// Name of a scene in `peers list` or `sinew scenes`.
         #[arg(long)]
         scene: String,
         /// After the warm-up, instead of the rest of the scene.
         #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
         steps: Option<u32>,
-        /// Steps that are not looked at, instead of a third of the scene.
+        /// Steps before the measurement, instead of a third of the scene.
         #[arg(long)]
         warm_up: Option<u32>,
-        /// On several there is the wall's time of the whole step alone.
+        /// With several threads only the wall time of the whole step is measured.
         #[arg(long, default_value_t = 1)]
         threads: usize,
     },
-    /// Random walks of our mover and of Rapier's controller on the same grounds: depths, sticks, steps climbed, µs per move.
+    /// Random walks of our mover and of Rapier's controller on the same terrains: depths, sticks, steps climbed, µs per move.
     Walks {
-        /// Number of walks on each ground.
+        /// Number of walks on each terrain.
         #[arg(long, default_value_t = 200)]
         count: usize,
-        /// Folder with `house_2story_stairs.glb` and `kaykit_dungeon`; without them there are the cabin and clutter.
+        /// Folder with `house_2story_stairs.glb` and `kaykit_dungeon`; without it only the cabin and the clutter are used.
         #[arg(long, default_value = "../shared/data/worlds")]
         worlds: PathBuf,
     },
-    /// A scene of our own ragdolls for MuJoCo: the figure, where it starts, what it falls on.
+    /// A scene of our own ragdolls for MuJoCo: the figure, its starts, the obstacles.
     Mjcf {
-        /// As `peers list` names it.
+        /// Name in `peers list`.
         #[arg(long, value_parser = parse_scene)]
         scene: &'static Scene,
         /// As for `run`.
@@ -62,7 +62,7 @@ enum Command {
     },
     /// Writes the state of a scene of bodies after some steps of Sinew, for `resume`.
     Save {
-        /// As `peers list` names it.
+        /// Name in `peers list`.
         #[arg(long, value_parser = parse_scene)]
         scene: &'static Scene,
         /// Steps before it.
@@ -75,15 +75,15 @@ enum Command {
         #[arg(short, long)]
         out: PathBuf,
     },
-    /// Goes on from a state that `save` wrote: two builds from one state, timed, or counted by callgrind (runs of few and of more steps, less each other).
+    /// Continues from a state that `save` wrote: two builds from one state, timed, or counted by callgrind (runs of few and of more steps, and their difference).
     Resume {
-        /// File that `save` wrote.
+        /// File of `save`.
         state: PathBuf,
-        /// Steps to go on for.
+        /// Number of steps.
         #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
         steps: u32,
     },
-    /// Lets characters fall limp until they sleep: what that costs, beside the time that passes.
+    /// Falls of limp characters until they sleep: processor time beside simulated time.
     Limp {
         /// Rigs, as `sinew ragdoll build` reads them.
         #[arg(required = true)]
@@ -94,19 +94,19 @@ enum Command {
     },
     /// Runs a scene on an engine, on one thread.
     Run {
-        /// As `peers list` names it.
+        /// Name in `peers list`.
         #[arg(long, value_parser = parse_engine)]
         engine: &'static Entry,
-        /// As `peers list` names it.
+        /// Name in `peers list`.
         #[arg(long, value_parser = parse_scene)]
         scene: &'static Scene,
-        /// Instead of as many as the scene says.
+        /// Number of steps, instead of the scene's.
         #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
         steps: Option<u32>,
-        /// Bodies put aside by up to 0.1 mm, as this number says, instead of where the scene has them.
+        /// Seed for moving bodies by up to 0.1 mm from the scene's start.
         #[arg(long)]
         start: Option<u64>,
-        /// Run it again, untimed, and look at what the time bought.
+        /// Run it again, untimed, and measure the quality.
         #[arg(long)]
         quality: bool,
     },
@@ -148,7 +148,7 @@ fn main() -> ExitCode {
         Command::Mjcf { scene, start } => match start.map_or(Start::Own, Start::Perturbed).of((scene.work)())
         {
             Work::Bodies(blueprint) if scene.field == Field::Figures => mjcf(&blueprint),
-            _ => return failure(&format!("{} is no scene of figures", scene.name)),
+            _ => return failure(&format!("{} is not a scene of ragdolls", scene.name)),
         },
         Command::Run { engine: Entry { name, engine: None }, .. } => {
             return failure(&format!(

@@ -26,17 +26,17 @@ impl StepTimes {
         Self { milliseconds }
     }
 
-    /// How many steps there were.
+    /// Returns the number of steps.
     pub fn count(&self) -> usize {
         self.milliseconds.len()
     }
 
-    /// Half of the steps took no longer.
+    /// Returns the median.
     pub fn median(&self) -> f64 {
         quantile(&self.milliseconds, 0.5)
     }
 
-    /// As part of a report; `last_third` is the median of the last third of the steps, which in a pile have settled.
+    /// Returns it as part of a report; `last_third` is the median of the last third of the steps, when piles have settled.
     pub fn to_json(&self) -> Value {
         let all = &self.milliseconds;
         json!({
@@ -50,7 +50,7 @@ impl StepTimes {
     }
 }
 
-/// The smallest value that at least the share `q` of the values does not exceed.
+/// Returns the smallest value that at least the share `q` of the values does not exceed.
 pub(crate) fn quantile(values: &[f64], q: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -58,25 +58,25 @@ pub(crate) fn quantile(values: &[f64], q: f64) -> f64 {
     sorted[rank.saturating_sub(1)]
 }
 
-/// Memory of this process, from /proc; not known on other systems than Linux.
+/// Memory of this process, from /proc; unknown on systems other than Linux.
 pub struct Memory {
     resident_kib: Option<u64>,
 }
 
 impl Memory {
-    /// Resident now.
+    /// Returns the resident memory now.
     pub fn now() -> Self {
         Self { resident_kib: status("VmRSS:") }
     }
 
-    /// How far the peak of resident memory is above what it was then, MiB.
+    /// Returns by how much the peak of resident memory exceeds the start, MiB.
     pub fn peak_above_mib(&self) -> Option<f64> {
         let peak = status("VmHWM:")?;
         Some(peak.saturating_sub(self.resident_kib?) as f64 / 1024.0)
     }
 }
 
-/// An entry of `/proc/self/status`, KiB.
+/// Returns an entry of `/proc/self/status`, KiB.
 fn status(key: &str) -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let entry = status.lines().find_map(|line| line.strip_prefix(key))?;

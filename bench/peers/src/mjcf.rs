@@ -1,4 +1,4 @@
-//! Scenes of our own ragdolls for MuJoCo: the same figures, and where each starts.
+//! Scenes of our own ragdolls for MuJoCo: the same figures and starts.
 
 use serde_json::{Value, json};
 use sinew::formats::write_mjcf;
@@ -6,7 +6,7 @@ use sinew::math::{Transform, Vec3};
 use sinew::physics::{BodyKind, Shape};
 use sinew_scenes::blueprint::{self, Blueprint};
 
-/// One figure as MJCF on a plane, where the first bodies of all figures start, and the boxes that stand around, in the
+/// Returns one figure as MJCF on a plane, the starts of the first bodies of all figures, and the boxes around, in the
 /// axes of the file: z up. Joints are at 0 in the file's pose as in the blueprint's start.
 pub fn mjcf(scene: &Blueprint) -> Value {
     let place = |at: &Transform| {

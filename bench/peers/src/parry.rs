@@ -1,4 +1,4 @@
-//! Shapes and poses as Parry wants them: Rapier collides with it, and for every engine it judges penetration.
+//! Shapes and poses for Parry: Rapier's collision library, and the judge of penetration for every engine.
 
 use crate::engine::Unsupported;
 use parry3d::math::{Pose, Rotation as ParryRotation, Vector};
@@ -34,7 +34,7 @@ pub fn from_pose(pose: &Pose) -> Transform {
     Transform::new(from_vector(pose.translation), Rotation::from_xyzw(q.x, q.y, q.z, q.w))
 }
 
-/// Vertices and triangles of a shape that is made of them.
+/// Returns vertices and triangles of a shape that consists of them.
 pub fn triangles(shape: &Shape) -> Option<(Vec<Vec3>, Vec<[u32; 3]>)> {
     match shape {
         Shape::Mesh(mesh) => Some((mesh.vertices().to_vec(), mesh.triangles().collect())),
@@ -60,7 +60,7 @@ pub fn triangles(shape: &Shape) -> Option<(Vec<Vec3>, Vec<[u32; 3]>)> {
 /// The same shape.
 ///
 /// # Errors
-/// If Parry has none of its kind.
+/// If Parry lacks its kind.
 pub fn shape(shape: &Shape) -> Result<SharedShape, Unsupported> {
     Ok(match *shape {
         Shape::Box { half_extents: h } => SharedShape::cuboid(h.x, h.y, h.z),

@@ -1,4 +1,4 @@
-//! Runs of Sinew that begin in the middle: two builds are held against each other from one state, by times or by counts of instructions.
+//! Runs of Sinew that start from a saved state: two builds are compared by times or by counts of instructions.
 
 use crate::measure::StepTimes;
 use crate::run::Start;
@@ -9,13 +9,13 @@ use sinew::physics::{World, WorldDef};
 use std::fs;
 use std::path::Path;
 
-/// Writes the state of a scene after so many steps to a file.
+/// Writes the state of a scene after this many steps to a file.
 ///
 /// # Errors
 /// In words, if the scene is no world of bodies, or the file cannot be written.
 pub fn save(scene: &Scene, start: Start, steps: u32, to: &Path) -> Result<Value, String> {
     let Work::Bodies(blueprint) = start.of((scene.work)()) else {
-        return Err(format!("{} is no scene of bodies", scene.name));
+        return Err(format!("{} is not a scene of bodies", scene.name));
     };
     let (mut world, ..) = blueprint.build();
     (0..steps).for_each(|_| world.step());
@@ -25,7 +25,7 @@ pub fn save(scene: &Scene, start: Start, steps: u32, to: &Path) -> Result<Value,
     Ok(json!({ "scene": scene.name, "steps": steps, "hash": format!("{:016x}", world.hash()) }))
 }
 
-/// Goes on from a state that was saved, for so many steps.
+/// Continues from a saved state for this many steps.
 ///
 /// # Errors
 /// In words, if the file cannot be read or is no state of this version.

@@ -1,4 +1,4 @@
-//! One scene on one engine: a run for the time, and on demand another for the quality.
+//! One scene on one engine: a run for the time, and optionally another for the quality.
 
 use crate::engine::{BodyState, Engine, Unsupported};
 use crate::measure::{Memory, StepTimes};
@@ -8,35 +8,35 @@ use serde_json::{Value, json};
 use sinew_scenes::blueprint::Blueprint;
 use sinew_scenes::crowd::CrowdScene;
 
-/// Depths are looked at after every one of so many steps.
+/// Interval of the steps at which depths are measured.
 const PENETRATION_EVERY: usize = 10;
 
-/// Of a crowd, one of so many characters is looked at, another one after each step.
+/// Of a crowd one in this many characters is measured, another one after each step.
 const CHARACTERS_EVERY: usize = 37;
 
-/// Whether the run is repeated to look at its quality.
+/// Whether the run is repeated to measure its quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judging {
     /// Time only.
     Off,
-    /// Another run, which is not timed, and is looked at after every step.
+    /// Another run, which is not timed, and is measured after every step.
     On,
 }
 
 /// Largest displacement of a body in a perturbed start, metres.
 const ASIDE: f32 = 1e-4;
 
-/// Start of a scene: as its blueprint says, or perturbed by a seed.
+/// Start of a scene: its blueprint's, or perturbed by a seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// As it is written.
+    /// The blueprint's.
     Own,
-    /// Bodies put aside by up to 0.1 mm as this seed says, in every engine alike.
+    /// Bodies moved by up to 0.1 mm by this seed, equally in every engine.
     Perturbed(u64),
 }
 
 impl Start {
-    /// The same work from this start.
+    /// Returns the same work from this start.
     pub fn of(self, work: Work) -> Work {
         match (self, work) {
             (Self::Perturbed(seed), Work::Bodies(scene)) => Work::Bodies(scene.perturbed(seed, ASIDE)),
@@ -45,9 +45,9 @@ impl Start {
     }
 }
 
-/// What was measured, as one JSON object; `"unsupported"` in it says why there are no figures.
+/// Returns the result as one JSON object; `"unsupported"` gives the reason for missing figures.
 ///
-/// `steps`: as many as the scene says if `None`.
+/// `steps`: the scene's own number if `None`.
 pub fn run(
     engine: &dyn Engine,
     scene: &Scene,
@@ -134,7 +134,7 @@ fn run_cloth(
         "peak_rss_mib": memory.peak_above_mib(),
     });
     if judging == Judging::On {
-        // Nothing was looked at during the run, and its end is all that is judged.
+        // Nothing was measured during the run, so only its end is judged.
         let mut particles = Vec::new();
         simulation.particles(&mut particles);
         figures["quality"] = ClothMeter::new(scene).finish(&particles).to_json();

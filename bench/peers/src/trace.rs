@@ -16,29 +16,29 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// Share of a step that reading the processor's clock may take; else the wall's is read, which costs less.
+/// Share of a step that reading the processor's clock may take; otherwise the wall clock is read, which costs less.
 const CLOCK_SHARE: f64 = 0.02;
 
-/// Steps by which the clock is chosen.
+/// Steps for the choice of the clock.
 const TRIAL: u32 = 3;
 
-/// Reads by which a clock's cost is known.
+/// Number of reads that measure a clock's cost.
 const READS: u32 = 1_000;
 
-/// A scene to trace, and for how many steps.
+/// A scene to trace, and its number of steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Trace<'a> {
     /// A scene of the peers, or else of `sinew scenes`.
     pub scene: &'a str,
     /// Steps after the warm-up; as many as the scene has left if `None`.
     pub steps: Option<u32>,
-    /// Steps that are not looked at; a third of the scene's if `None`.
+    /// Steps before the trace; a third of the scene's if `None`.
     pub warm_up: Option<u32>,
-    /// On so many; stages and counts are of one alone.
+    /// Number of threads; stages and counts need one.
     pub threads: usize,
 }
 
-/// A world that goes on, and what a picture of it costs nothing to know.
+/// A running world and its counters.
 enum Run {
     World(Box<sinew::physics::World>),
     Scene(Box<Instance>),
@@ -54,7 +54,7 @@ impl Run {
 }
 
 impl Trace<'_> {
-    /// Runs the scene and gives time and counts of each stage as one JSON object.
+    /// Runs the scene and returns time and counts of each stage as one JSON object.
     ///
     /// # Errors
     /// If there is no such scene, or it cannot be built without settings.
@@ -82,7 +82,7 @@ impl Trace<'_> {
         Ok(self.report(clock, warm_up, &records))
     }
 
-    /// On several threads: the wall's time of whole steps.
+    /// With several threads: wall time of whole steps.
     fn threaded(&self, run: &mut Run, warm_up: u32, steps: u32) -> Value {
         let threads = Threads::new(self.threads);
         (0..warm_up).for_each(|_| run.step(&threads, &NoProfiler));
@@ -96,7 +96,7 @@ impl Trace<'_> {
         json!({ "scene": self.scene, "warm_up": warm_up, "steps": steps, "step": step })
     }
 
-    /// Gives the time of whole steps, for work that is no world's (rays, boxes, clips).
+    /// Returns the time of whole steps, for work without a world (rays, boxes, clips).
     fn whole(&self, scene: &scenes::Scene) -> Result<Value, String> {
         let entry = engines::find("sinew").and_then(|entry| entry.engine).ok_or("this build has no Sinew")?;
         let steps = self.steps.map(|steps| steps as usize);
@@ -158,7 +158,7 @@ fn traced(run: &mut Run, clock: Clock) -> Record {
     Record { cpu, wall, ..record }
 }
 
-/// Processor time, unless there are so many zones that it would be a part of what it measures.
+/// Processor time, unless there are so many zones that reading it would affect the result.
 fn choose_clock(run: &mut Run, steps: u32) -> Clock {
     let trial: Vec<Record> = (0..steps).map(|_| traced(run, Clock::Wall)).collect();
     let reads: f64 = trial.iter().map(|record| f64::from(record.reads)).sum();
@@ -173,7 +173,7 @@ fn choose_clock(run: &mut Run, steps: u32) -> Clock {
 /// Clock that times stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Clock {
-    /// Processor time of the process, which has one thread: neighbours do not count, but a read is a call of the system.
+    /// Processor time of the process, which has one thread: other load does not count, but a read is a system call.
     Processor,
     Wall,
 }
@@ -246,11 +246,11 @@ struct Count {
     calls: u64,
 }
 
-/// Listens to one step on one thread.
+/// Profiler of one step on one thread.
 struct Recorder {
     watch: Watch,
     record: Mutex<Record>,
-    /// When the zones began that are open.
+    /// Start times of the open zones.
     open: Mutex<Vec<Duration>>,
 }
 

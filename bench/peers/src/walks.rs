@@ -1,4 +1,4 @@
-//! The same random walks by our mover and by Rapier's controller: how deep, how often stuck, which steps, how long.
+//! The same random walks by our mover and by Rapier's controller: depth, sticks, climbed steps, time.
 
 use crate::measure::quantile;
 use cpu_time::ProcessTime;
@@ -8,17 +8,17 @@ use sinew::math::{Random, Rotation, Vec3};
 use sinew_scenes::walks::{Ours, Tally, Terrain, Walker};
 use std::path::Path;
 
-/// Walks that share a seed, and a clutter.
+/// Number of walks that share a seed and a clutter.
 const SHARE: usize = 20;
-/// Free space around a capsule that counts as room, metres: more than the 18 mm that Rapier's controller keeps by its defaults.
+/// Space around a capsule that counts as room, metres: more than the 18 mm that Rapier's controller keeps by default.
 const MARGIN: f32 = 0.025;
 /// Heights of treads, metres, all below what a capsule climbs, and speeds at which they are walked onto, m/s.
 const TREADS: [f32; 6] = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3];
 const SPEEDS: [f32; 4] = [1.0, 2.0, 4.0, 6.0];
-/// Angles between way and tread, radians.
+/// Angles between direction and tread, radians.
 const SKEWS: [f32; 3] = [0.0, 0.5, 1.0];
 
-/// Makers of walkers with their feet somewhere on a terrain.
+/// Functions that make walkers with their feet on a terrain.
 type Maker = fn(&Terrain, Vec3) -> Box<dyn Walker>;
 
 fn ours(on: &Terrain, feet: Vec3) -> Box<dyn Walker> {
@@ -32,7 +32,7 @@ const WALKERS: &[(&str, Maker)] = &[
     ("rapier", crate::engines::rapier::walker),
 ];
 
-/// A walker whose time is taken.
+/// A walker whose moves are timed.
 struct Timed {
     walker: Box<dyn Walker>,
     microseconds: Vec<f64>,
@@ -54,11 +54,11 @@ impl Walker for Timed {
     }
 }
 
-/// Random walks, `count` on each terrain, and treads, of all walkers of this build. `worlds`: a folder with `house_2story_stairs.glb` and
-/// `kaykit_dungeon`; those that are not there are left out.
+/// Runs random walks, `count` on each terrain, and treads, of all walkers of this build. `worlds`: a folder with `house_2story_stairs.glb` and
+/// `kaykit_dungeon`; missing ones are left out.
 ///
 /// # Errors
-/// A file that is there and cannot be read.
+/// If a file exists and cannot be read.
 pub fn run(count: usize, worlds: &Path) -> Result<Value, sinew::formats::Error> {
     let terrains = terrains(worlds)?;
     let mut rows = Vec::new();
@@ -71,7 +71,7 @@ pub fn run(count: usize, worlds: &Path) -> Result<Value, sinew::formats::Error> 
     Ok(json!({ "walks": rows }))
 }
 
-/// Terrains by name; the clutter is another one for each seed.
+/// Returns terrains by name; the clutter differs for each seed.
 fn terrains(worlds: &Path) -> Result<Vec<(&'static str, Option<Terrain>)>, sinew::formats::Error> {
     let load = |name: &str, scale: f32| -> Result<Option<TriangleMesh>, sinew::formats::Error> {
         let path = worlds.join(name);
@@ -121,7 +121,7 @@ fn walks(name: &str, maker: Maker, ground: &str, terrain: Option<&Terrain>, coun
     })
 }
 
-/// Treads, walked onto at all speeds and angles; climbed is one that bears the capsule after two seconds.
+/// Walks onto treads at all speeds and angles; a tread is climbed if it carries the capsule after two seconds.
 fn treads(name: &str, maker: Maker) -> Value {
     let (mut offered, mut climbed, mut missed) = (0, 0, Vec::new());
     for height in TREADS {
@@ -131,7 +131,7 @@ fn treads(name: &str, maker: Maker) -> Value {
                 let way = Rotation::from_axis_angle(Vec3::Y, skew) * Vec3::X;
                 let mut walker = maker(&on, Vec3::new(-0.6, 0.005, 0.0));
                 (0..30).for_each(|_| walker.step(Vec3::ZERO));
-                // Two metres of way, and a second to come to rest.
+                // Two metres of walking, and a second to come to rest.
                 let steps = (2.0 / (speed * way.x) * 60.0) as usize + 30;
                 (0..steps).for_each(|_| walker.step(way * speed));
                 (0..30).for_each(|_| walker.step(Vec3::ZERO));

@@ -52,7 +52,7 @@ thread_local! {
     static LAST: RefCell<CString> = RefCell::default();
 }
 
-/// Runs what a call does; a panic becomes an error, and nothing is printed of it.
+/// Runs the body of a call; a panic becomes an error, and nothing is printed.
 pub(crate) fn guard(call: impl FnOnce() -> Outcome) -> SinewStatus {
     let (status, what) = match caught(call) {
         Ok(()) => (SinewStatus::Ok, String::new()),
@@ -151,11 +151,11 @@ fn check_count<T>(count: usize, name: &str) -> Outcome {
     if count <= most {
         Ok(())
     } else {
-        Err(error(SinewStatus::BadArgument, format!("{count} {name} are too many")))
+        Err(error(SinewStatus::BadArgument, format!("too many {name}: {count}")))
     }
 }
 
-/// There is room for a value: asked before anything is changed that could not be told of.
+/// Checks that there is room for a value, before anything is changed.
 pub(crate) fn room<T>(pointer: *mut T, name: &str) -> Outcome {
     if pointer.is_null() { Err(null(name)) } else { Ok(()) }
 }
@@ -166,7 +166,7 @@ pub(crate) fn room<T>(pointer: *mut T, name: &str) -> Outcome {
 /// The pointer is null or points to room for a `T`.
 pub(crate) unsafe fn give<T>(pointer: *mut T, name: &str, value: T) -> Outcome {
     room(pointer, name)?;
-    // SAFETY: as the caller promises; what was there may never have been a value, so it is not dropped.
+    // SAFETY: as the caller promises; the old content may be uninitialized, so it is not dropped.
     unsafe { pointer.write(value) };
     Ok(())
 }

@@ -155,13 +155,13 @@ impl SinewRotation {
         if length == 0.0 {
             return Ok(Rotation::IDENTITY);
         }
-        // One that is a unit already keeps its bits, so that what was given can be given back.
+        // A unit quaternion keeps its bits, so that a returned value equals the given one.
         Ok(if (length - 1.0).abs() < 1e-6 { q } else { q.normalize() })
     }
 }
 
 impl SinewPose {
-    /// As the library has it.
+    /// Returns the library's form.
     pub(crate) fn read(self, name: &str) -> Outcome<Transform> {
         Ok(Transform::new(self.position.read(name)?, self.rotation.read(name)?))
     }

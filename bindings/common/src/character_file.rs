@@ -75,7 +75,7 @@ impl Corrections {
         };
         let (unit, height) = (positive(self.unit, "unit")?, positive(self.height, "height")?);
         if unit.is_some() && height.is_some() {
-            return Err(Failure::argument("unit and height say the same: give one of the two"));
+            return Err(Failure::argument("unit and height set the same: give one of the two"));
         }
         settings.unit = unit.map(Unit::Scale).or(height.map(Unit::Height)).or(settings.unit);
         settings.mass = positive(self.mass, "mass")?.or(settings.mass);
@@ -206,7 +206,7 @@ impl CharacterFile {
         Ok(Self { name, document, analysis, settings, garments })
     }
 
-    /// The ragdoll of the character, and what the build says of it.
+    /// The ragdoll of the character, and the notes of the build.
     ///
     /// # Errors
     /// Names the file and the problem of the file or the options.

@@ -62,7 +62,7 @@ pub fn poses(numbers: &[f32], name: &str) -> PyResult<Vec<Transform>> {
         let rotation = Rotation { x: p[3], y: p[4], z: p[5], w: p[6] };
         let length = rotation.length();
         if length.is_nan() || length < 1e-6 {
-            return Err(bad(format!("{name}: a quaternion of no length")));
+            return Err(bad(format!("{name}: a quaternion must not be zero")));
         }
         // A unit keeps its bits, so that poses that were asked for can be set again.
         let rotation = if (length - 1.0).abs() < 1e-6 { rotation } else { rotation.normalize() };

@@ -89,7 +89,7 @@ impl Actor {
             return Err(bad(format!("times are finite, not {wrong}")));
         }
         if !(0.0..f32::INFINITY).contains(&return_seconds) {
-            return Err(bad(format!("a return takes 0 s or longer, not {return_seconds}")));
+            return Err(bad(format!("return_seconds must not be negative, not {return_seconds}")));
         }
         let place = match pose {
             Some(pose) => poses(&floats(pose, &[Some(7)], "pose")?, "pose")?[0],
@@ -474,7 +474,7 @@ impl Bake {
         Ok(PyBytes::new(py, &py.detach(|| self.bytes(mesh))?))
     }
 
-    /// The character, its motion and its ragdoll as USD text (.usda), and what that cannot hold, a sentence each.
+    /// The character, its motion and its ragdoll as USD text (.usda), and a sentence on each loss.
     #[pyo3(signature = (*, physics=true))]
     fn usda(&self, py: Python<'_>, physics: bool) -> PyResult<(String, Vec<String>)> {
         let input = UsdInput {

@@ -127,7 +127,7 @@ impl BatchWorlds {
             world.mark();
             (world, figure)
         };
-        let count = if count > 0 { count } else { return Err(bad("there is at least one world")) };
+        let count = if count > 0 { count } else { return Err(bad("at least one world is needed")) };
         let cores = std::thread::available_parallelism().map_or(1, core::num::NonZero::get);
         let threads = if threads == 0 { cores } else { threads.min(256) };
         py.detach(|| {

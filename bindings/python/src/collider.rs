@@ -116,7 +116,7 @@ impl Collider {
         let mut def = BodyDef { kind: BodyKind::Dynamic, ..self.def.clone() };
         def.shapes.iter_mut().for_each(|shape| shape.density = density);
         if def.shapes.iter().any(|shape| matches!(shape.shape, Shape::Mesh(_) | Shape::HalfSpace)) {
-            return Err(bad("a mesh or a half-space has no mass: it is static, or goes by keys"));
+            return Err(bad("a mesh or a half-space has no mass: it must be static or keyed"));
         }
         Ok(Self { def, keys: None })
     }
@@ -126,10 +126,10 @@ impl Collider {
         let times = floats(times, &[None], "times")?;
         let keys = crate::arrays::poses(&floats(poses, &[Some(times.len()), Some(7)], "poses")?, "poses")?;
         if times.is_empty() || !times.is_sorted() {
-            return Err(bad("times of keys ascend, and there is at least one"));
+            return Err(bad("times of keys must ascend, and at least one is needed"));
         }
         if self.def.shapes.iter().any(|shape| shape.shape == Shape::HalfSpace) {
-            return Err(bad("a half-space is static"));
+            return Err(bad("a half-space must be static"));
         }
         Ok(Self { def: self.def.clone(), keys: Some((times, keys)) })
     }

@@ -90,7 +90,7 @@ fn scaled_shape(shape: &Shape, factor: f32) -> PyResult<Shape> {
             radius_bottom: radius_bottom * factor,
             radius_top: radius_top * factor,
         },
-        _ => return Err(bad("this shape cannot be scaled: give a new one")),
+        _ => return Err(bad("this shape cannot be scaled; give a new one")),
     })
 }
 
@@ -245,7 +245,7 @@ impl Ragdoll {
         Ok((ragdoll, findings_dict(py, found)?))
     }
 
-    /// The definition as a MuJoCo model, and what that cannot hold, a sentence each.
+    /// The definition as a MuJoCo model, and a sentence on each loss.
     #[pyo3(signature = (name="ragdoll"))]
     fn to_mjcf(&self, py: Python<'_>, name: &str) -> PyResult<(String, Vec<String>)> {
         let MjcfText { text, notes } = py.detach(|| guarded(|| write_mjcf(&self.repair.def, name)))?;
@@ -289,7 +289,7 @@ impl Ragdoll {
         Ok(Self { repair: Repair::new(def), notes: Vec::new(), mean_error: None })
     }
 
-    /// A copy with one body and its joint otherwise: what is not given stays. Ranges in radians.
+    /// A copy with changes of one body and its joint: omitted values stay. Ranges in radians.
     #[pyo3(signature = (bone, *, mass=None, shape=None, size=None, scale=None, swing_y=None, swing_z=None, twist=None, friction_torque=None))]
     fn edited(
         &self,
@@ -314,7 +314,7 @@ impl Ragdoll {
         };
         let wanted = Edit { mass, shape: new_shape, scale, swing_y, swing_z, twist, friction_torque };
         wanted.apply(&mut def, index)?;
-        // Written and read again: what a file must not hold is refused by its sentence.
+        // Written and read again, so that invalid definitions are refused with the reader's message.
         let def = read_ragdoll(write_ragdoll(&def).as_bytes()).map_err(|error| bad(error.to_string()))?;
         let repair = Repair { reference: self.repair.reference.clone(), ..Repair::new(def) };
         Ok(Self { repair, notes: self.notes.clone(), mean_error: self.mean_error })

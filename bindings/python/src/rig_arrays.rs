@@ -21,7 +21,7 @@ pub fn skeleton(
 ) -> PyResult<Rig> {
     let count = Some(names.len());
     if names.is_empty() {
-        return Err(bad("joints: there are none"));
+        return Err(bad("joints must not be empty"));
     }
     let parents: Vec<i64> = elements(parents, &[count], "parents")?;
     let translations = vectors(&floats(translations, &[count, Some(3)], "translations")?);
@@ -55,7 +55,7 @@ fn unit(q: &[f32], name: &str) -> PyResult<Rotation> {
     let rotation = Rotation { x: q[0], y: q[1], z: q[2], w: q[3] };
     let length = rotation.length();
     if length.is_nan() || length < 1e-6 {
-        return Err(bad(format!("{name}: a quaternion of no length")));
+        return Err(bad(format!("{name}: a quaternion must not be zero")));
     }
     Ok(rotation.normalize())
 }
@@ -75,7 +75,7 @@ pub fn skin(
         None => rest_model(rig).iter().map(Affine::inverse).collect::<Vec<_>>(),
     };
     if let Some(joint) = inverse_bind.iter().position(|bind| !bind.is_finite()) {
-        return Err(bad(format!("inverse_bind: joint {joint} has no size")));
+        return Err(bad(format!("inverse_bind: the matrix of joint {joint} is singular")));
     }
     rig.skins.push(Skin { name: String::new(), joints: (0..count).collect(), inverse_bind });
     for (index, given) in meshes.iter().enumerate() {
@@ -148,7 +148,7 @@ pub fn clips(rig: &Rig, given: &Bound<'_, PyDict>) -> PyResult<Vec<Clip>> {
     let mut clips = Vec::new();
     for (name, clip) in given {
         let name: String = name.extract()?;
-        let clip = clip.cast::<PyDict>().map_err(|_| bad(format!("clips[{name:?}] is no dictionary")))?;
+        let clip = clip.cast::<PyDict>().map_err(|_| bad(format!("clips[{name:?}] is not a dictionary")))?;
         clips.push(one_clip(rig, name, clip)?);
     }
     Ok(clips)

@@ -46,7 +46,7 @@ pub fn world_def(
     sleeping: bool,
 ) -> PyResult<WorldDef> {
     if !(1e-9..1e9).contains(&dt) {
-        return Err(bad(format!("a step takes a time, not {dt} s")));
+        return Err(bad(format!("dt must be positive and finite, not {dt} s")));
     }
     let default = WorldDef::default();
     let def = WorldDef {
@@ -554,7 +554,7 @@ impl World {
             let mut each = characters.iter_mut().flatten();
             each.try_for_each(|character| character.load(&mut r).map_err(|what| what.to_string()))
         })?;
-        loaded.map_err(|what| SinewError::new_err(format!("no state of this world: {what}")))?;
+        loaded.map_err(|what| SinewError::new_err(format!("not a state of this world: {what}")))?;
         (self.world, self.characters) = (world, characters);
         Ok(())
     }

@@ -1,4 +1,4 @@
-"""Characters: from bytes and arrays, corrected, baked with all that can be done to them, alive in a world."""
+"""Characters from bytes and arrays, with corrections, in bakes with all actions, and in a world."""
 
 import numpy as np
 import pytest
@@ -76,7 +76,7 @@ def wave(parts: dict[str, object], frames: int = 60) -> ClipArrays:
 
 
 class TestLoading:
-    def test_bytes_are_the_file(self, file, character):
+    def test_bytes_load_like_the_file(self, file, character):
         again = sinew.load_bytes(file.glb(), name="mannequin")
         assert again.joints == file.joints and again.clips == file.clips
         assert again.character().bake(seconds=2).hash == character.bake(seconds=2).hash
@@ -93,7 +93,7 @@ class TestLoading:
         two = sinew.load_bytes(made.glb(), name="character", unit=1.0)
         assert two.character(two.build(), clip="wave").bake(seconds=2).hash == one.hash
 
-    def test_an_exact_clip_is_where_the_arrays_have_it(self):
+    def test_an_exact_clip_keeps_its_place(self):
         parts = figure()
         clip = wave(parts)
         made = sinew.load_arrays(**parts, clips={"wave": clip}, unit=1.0)
@@ -117,7 +117,7 @@ class TestLoading:
         with pytest.raises(sinew.FileError, match="nowhere"):
             sinew.load_bytes(file.glb(), ignore=["nowhere"])
 
-    def test_arrays_that_cannot_be_are_value_errors(self):
+    def test_invalid_arrays_raise_value_errors(self):
         for wrong in (
             {"parents": [5] * 17},
             {"rotations": np.zeros((17, 4))},
@@ -145,7 +145,7 @@ class TestEditing:
         with pytest.raises(ValueError, match="wing"):
             ragdoll.edited("wing", mass=1.0)
 
-    def test_the_doctor_mends(self, file):
+    def test_cured_repairs_findings(self, file):
         broken = file.build().edited("leftLowerLeg", mass=900.0)
         cured, report = broken.cured()
         assert any(finding["fixed"] for finding in report["findings"])
@@ -187,7 +187,7 @@ class TestBakes:
         assert away[:14].max() < 0.02 and away[15:60].max() > 0.05 and away[-10:].max() < 0.02
         assert "powered" in driven.states
 
-    def test_it_returns_to_its_clip(self):
+    def test_a_character_returns_to_its_clip(self):
         parts = figure()
         made = sinew.load_arrays(**parts, clips={"wave": wave(parts, 180)}, unit=1.0)
         character = made.character(clip="wave", exact=True)
@@ -208,7 +208,7 @@ class TestBakes:
         assert len(met) == 2 and met[0].hash != apart[0].hash
         assert not np.array_equal(met[0].positions, apart[0].positions)
 
-    def test_progress_is_told_and_cancels(self, character):
+    def test_progress_is_reported_and_cancels(self, character):
         told: list[float] = []
         character.bake(seconds=60, progress=told.append)
         assert told == sorted(told) and (not told or 0 < told[0] <= told[-1] <= 1)
@@ -217,7 +217,7 @@ class TestBakes:
         with pytest.raises(ZeroDivisionError):
             character.bake(seconds=600, progress=lambda share: bool(1 / 0))
 
-    def test_what_cannot_be_is_a_value_error(self, character):
+    def test_invalid_arguments_raise_value_errors(self, character):
         for wrong in (
             lambda: sinew.Drive("floating"),
             lambda: sinew.Drive("powered", strength=2.0),
@@ -237,7 +237,7 @@ class TestLive:
         world.add_floor()
         return world
 
-    def test_it_walks_is_hit_and_gets_up(self, character):
+    def test_a_character_walks_is_hit_and_gets_up(self, character):
         world = self.world()
         hero = world.add_character(character, pose=IDENTITY)
         hero.set_move([0, 0, 1.2])
@@ -271,7 +271,7 @@ class TestLive:
         with pytest.raises(ValueError, match="wing"):
             hero.hit("wing", [0, 0, 1])
 
-    def test_it_holds_lets_go_and_loses_a_limb(self, character):
+    def test_a_character_holds_lets_go_and_loses_a_limb(self, character):
         world = self.world()
         hero = world.add_character(character)
         world.step()

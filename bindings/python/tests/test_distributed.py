@@ -1,4 +1,4 @@
-"""Runs on a local Ray of two workers: nothing lost, nothing twice, the same bits, failures as rows."""
+"""Runs on a local Ray of two workers: each task once, the same bits, failures as rows."""
 
 import json
 import os
@@ -27,7 +27,7 @@ def two_workers():
 
 
 def killing_once(flag: Path, at: int):
-    """A fall, but for the first time that task `at` is done: then its worker is killed, in the middle of its chunk."""
+    """A fall; the first run of task `at` kills its worker in the middle of its chunk."""
 
     def fall(task: distributed.Task) -> distributed.Row:
         if task.index == at and not flag.exists():
@@ -45,7 +45,7 @@ def kills_at_seven(task: distributed.Task) -> distributed.Row:
 
 
 def check_whole(out: Path, count: int, seconds: float):
-    """Every task has one row, and the hash and the file of a run by itself."""
+    """Checks that every task has one row, and the hash and the file of a single run."""
     table = distributed.read(out)
     assert table["index"].to_pylist() == list(range(count))
     character = sinew.mannequin().character()
@@ -58,7 +58,7 @@ def check_whole(out: Path, count: int, seconds: float):
     assert not strays, "no part was left half done"
 
 
-def test_a_worker_that_is_killed_in_the_middle_costs_nothing(tmp_path):
+def test_a_killed_worker_loses_no_task(tmp_path):
     out, flag = tmp_path / "falls", tmp_path / "killed"
     function = killing_once(flag, 9)
     settings = [{"seconds": 1.0}]
@@ -67,7 +67,7 @@ def test_a_worker_that_is_killed_in_the_middle_costs_nothing(tmp_path):
     check_whole(out, 18, 1.0)
 
 
-def test_a_run_that_was_stopped_goes_on_with_what_is_missing(tmp_path):
+def test_a_stopped_run_continues_with_missing_tasks(tmp_path):
     out = tmp_path / "falls"
     settings = [{"seconds": 1.0}]
     distributed.run(distributed.fall, out=out, seeds=range(8), settings=settings, chunk=2, progress=None)

@@ -1,4 +1,4 @@
-"""The package as a user has it: files, worlds, batches, bakes, errors."""
+"""The installed package: files, worlds, batches, bakes, errors."""
 
 import json
 import struct
@@ -48,7 +48,7 @@ class TestFiles:
         tested = ragdoll.drop_test()
         assert tested["verdict"] == "good" and tested["drop"]["joint_gap_max_m"] < 0.005
 
-    def test_the_doctor_finds_what_is_wrong(self, ragdoll, tmp_path):
+    def test_the_doctor_finds_faults(self, ragdoll, tmp_path):
         broken = json.loads(ragdoll.to_json())
         broken["bodies"][3]["mass"]["kg"] *= 200
         path = tmp_path / "broken.sinew.json"
@@ -57,7 +57,7 @@ class TestFiles:
         assert findings, "a shank of some hundred kilograms"
         assert all({"code", "severity", "bones", "cause", "evidence", "fix"} <= finding.keys() for finding in findings)
 
-    def test_a_definition_comes_back(self, ragdoll, tmp_path):
+    def test_a_definition_round_trips(self, ragdoll, tmp_path):
         path = tmp_path / "it.sinew.json"
         ragdoll.save(path)
         assert sinew.load_ragdoll(path).to_json() == ragdoll.to_json()
@@ -134,7 +134,7 @@ class TestWorld:
             one.load(state[:100])
         assert one.hash() == end
 
-    def test_poses_that_were_asked_for_can_be_set_again(self, ragdoll):
+    def test_returned_poses_can_be_set_again(self, ragdoll):
         world = sinew.World()
         bodies, joints = world.add_ragdoll(ragdoll, pose=[0, 1, 0, 0, 0, 0, 1])
         assert len(joints) == len(bodies) - 1
@@ -147,7 +147,7 @@ class TestWorld:
         assert world.poses(bodies) == pytest.approx(poses, abs=1e-6)
         assert np.array_equal(world.velocities(bodies), velocities)
 
-    def test_what_cannot_be_is_a_value_error(self, ragdoll):
+    def test_invalid_arguments_raise_value_errors(self, ragdoll):
         world = sinew.World()
         box = world.add_body("box", [1, 1, 1])
         for wrong in (
@@ -174,7 +174,7 @@ class TestWorld:
 
 
 class TestBatch:
-    def test_side_by_side_and_one_by_one_are_the_same_bits(self, ragdoll):
+    def test_batched_and_single_worlds_have_the_same_bits(self, ragdoll):
         count = 12
         rng = np.random.default_rng(3)
         motions = np.zeros((count, 7), np.float32)
@@ -239,7 +239,7 @@ class TestBatch:
 
 
 class TestBake:
-    def test_it_walks_falls_and_gets_up(self, mannequin):
+    def test_a_character_walks_falls_and_gets_up(self, mannequin):
         baked = mannequin.character().bake(seconds=9.0, hits=[(1.0, "chest", (0, 0, 110))])
         assert {"animated", "limp", "getting up"} <= set(baked.states)
         frames, joints = len(baked.times), len(mannequin.joints)
@@ -259,7 +259,7 @@ class TestBake:
         document = glb_json(fall.glb(mesh=False))
         assert len(document["animations"]) == 1 and not document.get("meshes")
 
-    def test_what_cannot_be_is_a_value_error(self, mannequin):
+    def test_invalid_arguments_raise_value_errors(self, mannequin):
         character = mannequin.character()
         with pytest.raises(ValueError, match="'wing'"):
             character.bake(hits=[(0.1, "wing", (0, 0, 1))])

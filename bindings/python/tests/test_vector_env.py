@@ -1,4 +1,4 @@
-"""The environment: its contract, its seeds, and that a controller is worth something in it."""
+"""The environment: its interface, its seeds, and the reward of a controller."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from sinew.vector_env import HumanoidVectorEnv, pd_baseline  # noqa: E402
 
 
 def standing(policy, push: float, count: int = 16, actions: int = 240) -> float:
-    """Share that has stayed up for 8 s."""
+    """Share that stays up for 8 s."""
     env = HumanoidVectorEnv(count, seconds=100.0, push=push)
     observations, _ = env.reset(seed=5)
     up = np.ones(count, bool)
@@ -19,7 +19,7 @@ def standing(policy, push: float, count: int = 16, actions: int = 240) -> float:
     return float(up.mean())
 
 
-def test_it_keeps_to_the_contract_of_gymnasium():
+def test_the_environment_passes_gymnasiums_checks():
     env = HumanoidVectorEnv(3, seconds=0.5)
     observations, info = env.reset(seed=1)
     assert isinstance(env, gymnasium.vector.VectorEnv) and info == {}
@@ -47,7 +47,7 @@ def test_the_seed_decides_everything():
     assert np.array_equal(ends[0], ends[1]) and not np.array_equal(ends[0], ends[2])
 
 
-def test_the_baseline_stands_where_noise_falls_and_a_push_fells_it():
+def test_the_baseline_stands_longer_than_noise():
     rng = np.random.default_rng(0)
     noise = standing(lambda env, _: rng.uniform(-1, 1, env.action_space.shape).astype(np.float32), push=0.0)
     calm, pushed = standing(pd_baseline, push=0.0), standing(pd_baseline, push=100.0)
@@ -72,7 +72,7 @@ def test_gymnasium_makes_it_by_name():
         HumanoidVectorEnv(1, render_mode="human")
 
 
-def test_one_is_the_first_of_many():
+def test_one_environment_equals_the_first_of_many():
     from sinew.vector_env import HumanoidEnv
 
     one, many = HumanoidEnv(push=60.0), HumanoidVectorEnv(1, push=60.0)

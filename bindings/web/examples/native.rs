@@ -30,7 +30,7 @@ fn step(world: &mut World, characters: &mut [Character], count: u32) {
     }
 }
 
-/// Two copies, one of them shoved after a second: the hash after ten.
+/// Two copies, one of them shoved after a second: the hash after ten seconds.
 fn fall(def: &Arc<CharacterDef>) -> u64 {
     let mut world = ground();
     let place = |x: f32| Transform::from_translation(Vec3::new(x, 0.0, 0.0));
@@ -41,7 +41,7 @@ fn fall(def: &Arc<CharacterDef>) -> u64 {
     world.hash()
 }
 
-/// A wall of boxes, a ball that is thrown at it, a hanging chain: the hash after ten seconds.
+/// A wall of boxes, a thrown ball, a hanging chain: the hash after ten seconds.
 fn boxes() -> u64 {
     let mut world = ground();
     let cube = Shape::cuboid(Vec3::new(0.25, 0.25, 0.25));
@@ -66,7 +66,7 @@ fn boxes() -> u64 {
     world.hash()
 }
 
-/// Milliseconds of a step of a limp character, and of 30 that walk and 10 that fall: the best of some rounds, for others use the machine as well.
+/// Milliseconds of a step of a limp character, and of 30 walking and 10 falling ones: the best of several rounds, because others use the machine.
 fn times(def: &Arc<CharacterDef>) -> [f64; 2] {
     let mut limp = Vec::new();
     for _ in 0..9 {

@@ -254,10 +254,10 @@ impl Inner {
 
     /// Restores a state; if the bytes are invalid, nothing changes.
     pub fn load(&mut self, bytes: &[u8]) -> Outcome {
-        let failed = |what: &dyn core::fmt::Display| Failure(format!("no state of this world: {what}"));
+        let failed = |what: &dyn core::fmt::Display| Failure(format!("not a state of this world: {what}"));
         let mut r = Reader::new(bytes);
         if r.raw(MAGIC.len()).ok() != Some(MAGIC) {
-            return Err(failed(&"it does not begin as one of this version does"));
+            return Err(failed(&"it does not have the first bytes of this version"));
         }
         let mut world = r.block().map_err(|what| failed(&what))?;
         let characters = self.load_characters(&mut r)?;
@@ -275,7 +275,7 @@ impl Inner {
     }
 
     fn load_characters(&self, r: &mut Reader<'_>) -> Outcome<Vec<(usize, Character)>> {
-        let failed = |what: sinew::math::ReadError| Failure(format!("no state of this world: {what}"));
+        let failed = |what: sinew::math::ReadError| Failure(format!("not a state of this world: {what}"));
         let count = r.count(8).map_err(failed)?;
         if count != self.characters.iter().flatten().count() {
             return Err(Failure::new("the state is of a world with other characters"));
@@ -296,7 +296,7 @@ impl Inner {
     }
 
     fn load_grabs(&self, r: &mut Reader<'_>) -> Outcome<Vec<Option<Gripped>>> {
-        let failed = |what: sinew::math::ReadError| Failure(format!("no state of this world: {what}"));
+        let failed = |what: sinew::math::ReadError| Failure(format!("not a state of this world: {what}"));
         let mut grabs: Vec<Option<Gripped>> = self.grabs.iter().map(|_| None).collect();
         for _ in 0..r.count(8).map_err(failed)? {
             let (serial, point) = (r.u64().map_err(failed)?, GrabPoint::load(r).map_err(failed)?);

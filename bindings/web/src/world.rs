@@ -29,7 +29,7 @@ impl World {
         Ok(World { inner: Shared::new(Inner::new(sinew::physics::World::new(def))) })
     }
 
-    /// Lets `seconds` pass: takes the whole steps that they and what waited before hold, then shows what lies between the last two.
+    /// Lets `seconds` pass: takes the whole steps in them and the rest of earlier calls, then shows a pose between the last two.
     /// Returns the number of steps. Call it once a frame with the time since the last.
     pub fn update(&self, seconds: f64) -> Outcome<u32> {
         let time = Duration::try_from_secs_f64(seconds)
@@ -45,7 +45,7 @@ impl World {
         })
     }
 
-    /// Share of a step that waits to be taken, 0 to 1: by how much what is shown lies between the last two steps.
+    /// Share of a step that is left over, 0 to 1: the place of the shown pose between the last two steps.
     #[wasm_bindgen(getter)]
     pub fn alpha(&self) -> Outcome<f32> {
         self.inner.read(|inner| Ok(inner.alpha()))
@@ -190,7 +190,7 @@ impl World {
         })
     }
 
-    /// Has a kinematic body arrive at a pose after `seconds` (one step by default), pushing what is in its way.
+    /// Moves a kinematic body to a pose within `seconds` (one step by default), pushing what is in its way.
     #[wasm_bindgen(js_name = moveTo)]
     pub fn move_to(
         &self,
@@ -209,7 +209,7 @@ impl World {
         })
     }
 
-    /// Sets the velocity of a body, m/s and rad/s; what is left out stays as it is.
+    /// Sets the velocity of a body, m/s and rad/s; omitted values stay.
     #[wasm_bindgen(js_name = setVelocity)]
     pub fn set_velocity(&self, id: u64, linear: Option<Vec3Like>, angular: Option<Vec3Like>) -> Outcome {
         let linear = linear.map(|v| vec3(&v, "linear")).transpose()?;
@@ -368,7 +368,7 @@ impl World {
         })
     }
 
-    /// Velocity of the centre of mass of all that moves, weighed by mass, N·s.
+    /// Velocity of the centre of mass of all moving bodies, weighted by mass, N·s.
     pub fn momentum(&self) -> Outcome<Vec3Out> {
         self.inner.read(|inner| Ok(vector(inner.world.momentum().linear).unchecked_into()))
     }

@@ -1,4 +1,4 @@
-// Tries the packed package as its users have it: what its README prints, in Node, in Vite, and in the page of the tests.
+// Tests the packed package as users have it: the programs of its README, in Node, in Vite, and in the page of the tests.
 import { spawn } from 'node:child_process';
 import { cp, mkdir, readFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
@@ -6,7 +6,7 @@ import { fileURLToPath } from 'node:url';
 import { blocks, browse, check, emptyFolder, open, run, serve, told, until, write } from './harness.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
-// Of the front page: a desk's and a phone's.
+// Widths of the front page on a desktop and on a phone.
 const SIZES = [[1280, 720], [390, 844]];
 const pictures = join(told.out, 'pictures');
 const names = Object.keys(told.native.hashes).filter((name) => name !== 'boxes');
@@ -33,7 +33,7 @@ async function typed() {
   return { folder, vite };
 }
 
-// A server that goes on; its address.
+// Starts a server and returns its address.
 async function serving(folder) {
   const server = spawn('npx', ['vite', '--port', '0', '--host', '127.0.0.1'], { cwd: folder, detached: true });
   const address = await new Promise((done, failed) => {
@@ -49,7 +49,7 @@ async function serving(folder) {
   return { address, end: () => process.kill(-server.pid) };
 }
 
-// The README's page: the hero falls, gets up and walks on, by the development server; the built page likewise begins.
+// The README's page by the development server: the hero falls, gets up and walks on. The built page starts too.
 async function readme(browser) {
   const { folder, vite } = await typed();
   try {
@@ -113,7 +113,7 @@ async function falls(page, ask, name) {
   const fell = await ask('falls', name);
   await page.screenshot({ path: join(pictures, `fall_${name}.png`) });
   console.log(`${name}: ${fell.bound} of ${fell.joints} joints bound, fell ${fell.fell.toFixed(2)} m, ${fell.heard.join(' ')}, ${fell.state}`);
-  // Ankles that a figure lacks are made up.
+  // Missing ankles are added.
   check(fell.bound >= fell.joints - 2, `${name}: the joints are bound`);
   check(fell.heard.includes('limp') && fell.heard.includes('landed'), `${name} falls`);
 }
@@ -157,7 +157,7 @@ async function drags(page, ask) {
   check(await page.evaluate(() => !window.drag.isDragging && window.hero.state === 'limp'), 'it was let go, limp');
 }
 
-// Wrong calls are errors with a sentence, in Node.
+// Wrong calls throw errors with a message, in Node.
 async function errors(folder) {
   await cp(join(here, 'errors.mjs'), join(folder, 'errors.mjs'));
   console.log(run(folder, 'node', 'errors.mjs').trim());

@@ -1,4 +1,4 @@
-// What is wrong is an `Error` with a sentence, and changes nothing. Run in Node, in the folder where the package is installed.
+// Wrong calls throw an `Error` with a message, and change nothing. Run in Node, in the folder where the package is installed.
 import assert from 'node:assert/strict';
 import { CharacterDef, World, init, mannequinGlb } from 'sinew-physics';
 

@@ -1,11 +1,11 @@
-// What the tests share: commands, a server of files on the loopback, a browser.
+// Shared by the tests: commands, a server of files on the loopback, a browser.
 import { execFileSync } from 'node:child_process';
 import { createServer } from 'node:http';
 import { mkdir, readFile, rm, writeFile } from 'node:fs/promises';
 import { extname, join } from 'node:path';
 import puppeteer from 'puppeteer-core';
 
-// What `cargo xtask npm` says: where the tarball, the repository and the rigs are, and what the native library computes.
+// Input from `cargo xtask npm`: paths of the tarball, the repository and the rigs, and results of the native library.
 export const told = JSON.parse(process.argv[2]);
 
 const KINDS = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.wasm': 'application/wasm' };
@@ -16,7 +16,7 @@ export function check(holds, what) {
   if (!holds) throw new Error(`not so: ${what}`);
 }
 
-// Runs a program, its output on ours; returns what it wrote on stdout.
+// Runs a program, forwards its output, and returns its stdout.
 export function run(folder, program, ...words) {
   console.error(`$ ${program} ${words.join(' ')}`);
   return execFileSync(program, words, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'inherit'] });

@@ -21,7 +21,7 @@ const server = await serve({
 }, here);
 const browser = await browse();
 const ask = async (name, ...values) => {
-  // A page for each, so that none finds the code of another warm.
+  // A page for each, so that none uses code that another has warmed up.
   const page = await open(browser, `${server.address}/page.html`);
   await until(page, 'the page', () => window.tests);
   const found = await page.evaluate((name, values) => window.tests[name](...values), name, values);

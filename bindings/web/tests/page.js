@@ -1,4 +1,4 @@
-// What `check.mjs` calls in the page.
+// Functions that `check.mjs` calls in the page.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { VRMLoaderPlugin } from '@pixiv/three-vrm';
@@ -76,7 +76,7 @@ export const tests = {
     return told;
   },
 
-  // A scene that stands until the test says otherwise: for the mouse.
+  // A scene at rest until the test uses the mouse.
   async stand(name) {
     const physics = await Sinew.create();
     const { scene, camera } = stage();
@@ -157,7 +157,7 @@ export const tests = {
     return { taken, heap, left };
   },
 
-  // All else of the adapter: colliders, height fields, rays, joints, ropes, soft balls, snapshots, a parent that is turned.
+  // The rest of the adapter: colliders, height fields, rays, joints, ropes, soft balls, snapshots, a rotated parent.
   async rest() {
     const physics = await Sinew.create({ gravity: [0, -9.81, 0] });
     const { scene, camera } = stage();

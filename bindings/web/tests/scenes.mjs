@@ -9,7 +9,7 @@ export function ground() {
   return world;
 }
 
-// Two copies, one of them shoved after a second: the hash after ten.
+// Two copies, one of them shoved after a second: the hash after ten seconds.
 export function fall(def) {
   const world = ground();
   const both = [0, 1.5].map((x) => world.spawn(def, [x, 0, 0]));
@@ -21,7 +21,7 @@ export function fall(def) {
   return hash;
 }
 
-// A wall of boxes, a ball that is thrown at it, a hanging chain.
+// A wall of boxes, a thrown ball, a hanging chain.
 export function boxes() {
   const world = ground();
   const cube = { type: 'box', halfExtents: [0.25, 0.25, 0.25] };

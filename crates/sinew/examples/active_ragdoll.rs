@@ -1,11 +1,11 @@
 //! An active ragdoll: `cargo run -p sinew --example active_ragdoll`.
 //!
-//! Its muscles draw it to its clips while it walks; pushes move it, it steps to catch itself and goes on. A hard one fells it, and it gets up.
+//! Its muscles follow its clips while it walks. Light pushes move it, and it steps to catch itself; a hard push fells it, and it gets up.
 
 use sinew::prelude::*;
 use std::sync::Arc;
 
-/// Farthest that its chest was beside its feet while it walked for some seconds, metres.
+/// Returns the largest distance of its chest from its feet while it walks for some seconds, metres.
 fn walk(world: &mut World, puppet: &mut Character, seconds: f32) -> f32 {
     let chest = puppet.def().body_named("chest").expect("it has a chest");
     let mut sway = 0.0;
@@ -19,12 +19,12 @@ fn walk(world: &mut World, puppet: &mut Character, seconds: f32) -> f32 {
     sway
 }
 
-/// Is pushed, and pushed over.
+/// Pushes it, first lightly, then hard.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
 
-    // All that there is to it.
+    // The whole setup.
     let def = Arc::new(sinew::mannequin::character());
     let mut puppet = Character::spawn(&mut world, &def, Transform::IDENTITY);
     puppet.set_preset(&mut world, Preset::Powered);

@@ -1,6 +1,6 @@
 //! A character: `cargo run -p sinew --example character_get_up`.
 //!
-//! It walks, is struck, falls, lies, gets up and walks on; the pose that it is drawn in never jumps.
+//! It walks, is struck, falls, lies, gets up and walks on. The drawn pose never jumps.
 
 use sinew::prelude::*;
 use std::sync::Arc;
@@ -25,11 +25,11 @@ pub fn main() {
             println!("{:5.2} s: {:?}", world.time(), hero.state());
             seen.push(hero.state());
         }
-        // Its steps are events as well.
+        // Footsteps are events as well.
         for event in hero.events().iter().filter(|event| !matches!(event, CharacterEvent::Clip(_))) {
             println!("{:5.2} s: {event:?}", world.time());
         }
-        // What a renderer draws, in the file's own joints.
+        // The pose for a renderer, in the file's own joints.
         let head = world.center_of_mass(hero.bodies()[def.body_named("head").expect("and a head")]);
         farthest = farthest.max(last.map_or(0.0, |last: Vec3| (head - last).length()));
         last = Some(head);

@@ -1,11 +1,11 @@
-//! A knight loses an arm and walks on, loses a leg and falls; its limbs are bodies of their own, each with its part of the skin.
+//! A knight loses an arm and walks on, then loses a leg and falls. Each limb has its own bodies and its part of the skin.
 //!
 //! `cargo run --release --example dismember -p sinew`
 
 use sinew::prelude::*;
 use std::sync::Arc;
 
-/// Steps the world with the knight in it, and prints what it tells.
+/// Steps the world with the knight, and prints its events.
 fn play(world: &mut World, knight: &mut Character, seconds: f32) {
     for _ in 0..(seconds * 60.0) as usize {
         world.step();
@@ -29,7 +29,7 @@ fn main() {
     let def = Arc::new(sinew::mannequin::character());
     let mut knight = Character::spawn(&mut world, &def, Transform::IDENTITY);
     play(&mut world, &mut knight, 1.0);
-    // Without an arm it walks on. The limb falls by itself, and knows which joints of the skin are its own.
+    // Without an arm it walks on. The limb falls, and knows its joints of the skin.
     let mut arm = knight.detach(&mut world, "leftUpperArm").expect("it has two arms");
     println!(
         "the arm has {} bodies and {} joints of the skin",
@@ -42,11 +42,11 @@ fn main() {
     let leg = knight.detach(&mut world, "rightLowerLeg").expect("it has two legs");
     play(&mut world, &mut knight, 8.0);
     assert_eq!(knight.state(), State::Limp);
-    // A limb comes apart as well.
+    // A limb can be cut again.
     let hand = arm.detach(&mut world, "leftHand").expect("the arm has a hand");
     assert!(knight.detach(&mut world, "leftHand").is_none(), "the hand went with the arm");
 
-    // What a renderer draws: one mesh for each part, the rest of it shrunk to where that was cut.
+    // For a renderer: one mesh per part, with the other vertices shrunk to the cut.
     let (mut body, mut limb) = (Vec::new(), Vec::new());
     knight.skin_palette(0, 1.0, &mut body);
     arm.skin_palette(&world, 0, 1.0, &mut limb);

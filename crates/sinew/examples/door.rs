@@ -17,7 +17,7 @@ fn run(world: &mut World, seconds: f32) -> Vec<JointId> {
     broken
 }
 
-/// Kicks a door open, and has a motor open it.
+/// Kicks a door open, then lets a motor open it.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     let frame = world.add_body(&BodyDef::fixed(Shape::cuboid(Vec3::new(0.05, 1.0, 0.05))).at(Vec3::Y));

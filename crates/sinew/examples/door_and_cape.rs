@@ -1,11 +1,11 @@
 //! A door and a cape: `cargo run -p sinew --example door_and_cape`.
 //!
-//! A walker pushes a door open and goes through, felled it drops its sword. The cape hangs on the chest's body, there in every state.
+//! A walker pushes a door open and goes through; when it falls it drops its sword. The cape hangs on the chest's body in every state.
 
 use sinew::prelude::*;
 use std::sync::Arc;
 
-/// A door on a hinge between two walls, 1.5 m ahead.
+/// Adds a door on a hinge between two walls, 1.5 m ahead.
 fn door(world: &mut World) -> BodyId {
     let cuboid = |x: f32, y: f32, z: f32| Shape::Box { half_extents: Vec3::new(x, y, z) };
     let wall = |x: f32| BodyDef::fixed(cuboid(0.95, 1.2, 0.05)).at(Vec3::new(x, 1.2, 1.5));
@@ -17,7 +17,7 @@ fn door(world: &mut World) -> BodyId {
     leaf
 }
 
-/// A cape that hangs from a body by its first row.
+/// Adds a cape that hangs from a body by its first row.
 fn cape(world: &mut World, chest: BodyId, shoulders: Vec3) -> GroupId {
     let mut cloth = ClothDef {
         corner: shoulders + Vec3::X * 0.2,
@@ -42,7 +42,7 @@ fn cape(world: &mut World, chest: BodyId, shoulders: Vec3) -> GroupId {
     world.add_particles(&cloth.group)
 }
 
-/// Goes through the door, and falls behind it.
+/// Walks through the door and falls behind it.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));

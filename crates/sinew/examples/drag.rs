@@ -1,4 +1,4 @@
-//! A mouse drags a limp character by the hand; then another takes it by the wrist and drags it away.
+//! A mouse drags a limp character by the hand; then another character takes its wrist and drags it away.
 //!
 //! `cargo run --release --example drag -p sinew`
 
@@ -12,7 +12,7 @@ fn main() {
     let body = |name: &str| def.body_named(name).expect("it has that body");
     let mut puppet = Character::spawn(&mut world, &def, Transform::IDENTITY);
     puppet.go_limp(&mut world);
-    // The mouse takes the hand where it is, and leads it to wherever it points: no faster than `Grab::speed`, no harder than its force.
+    // The mouse takes the hand where it is and pulls it along, with at most `Grab::speed` and `Grab::max_force`.
     let hand = puppet.bodies()[body("rightHand")];
     let at = world.center_of_mass(hand);
     let mut mouse = GrabPoint::take(&mut world, hand, at, &Grab::POINT).expect("the hand is there");
@@ -30,7 +30,7 @@ fn main() {
         world.reaction(mouse.joint()).force.length()
     );
     assert!(away < 0.1 && puppet.state() == State::Limp, "who is held does not get up");
-    // Another comes, is given the hand, and walks away with it.
+    // Another character takes the hand and walks away with it.
     let at = world.center_of_mass(hand) * Vec3::new(1.0, 0.0, 1.0);
     let mut hero =
         Character::spawn(&mut world, &def, Transform::from_translation(at + Vec3::new(-0.3, 0.0, 0.3)));

@@ -1,10 +1,10 @@
 //! Events: `cargo run -p sinew --example events`.
 //!
-//! A ball rolls through a trigger, onto a plate, and against a wall: the gate and the wall tell of it once.
+//! A ball rolls through a sensor, onto a plate, and against a wall: the sensor and the wall report it once.
 
 use sinew::prelude::*;
 
-/// Rolls a ball past everything that tells of it.
+/// Rolls a ball through all of them.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));

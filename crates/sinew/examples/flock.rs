@@ -1,9 +1,9 @@
 //! A flock: `cargo run -p sinew --example flock`.
 //!
-//! Birds are balls like any other: they bounce off each other and off the tower in their way. What makes them a flock is
-//! a kind of our own (Reynolds, "Flocks, Herds, and Schools", SIGGRAPH 1987): each bird keeps clear of those close by,
-//! flies as its neighbours fly, and stays with them; all of them are drawn to a place that the flock chooses anew now and
-//! then. And none of them leaves the aviary.
+//! Birds are bodies: they bounce off each other and off the tower in their way. A custom object makes them a flock
+//! (Reynolds, "Flocks, Herds, and Schools", SIGGRAPH 1987): each bird avoids near ones,
+//! matches its neighbours' velocity, and stays with them. All are attracted to a place that changes now and
+//! then, and none leaves the aviary.
 
 use sinew::prelude::*;
 use std::time::Duration;
@@ -13,25 +13,25 @@ const BIRDS: usize = 40;
 const MASS: f32 = 0.05;
 /// Cruising speed, m/s.
 const SPEED: f32 = 5.0;
-/// Most that a wing can do, m/s².
+/// Largest acceleration of a wing, m/s².
 const AGILITY: f32 = 25.0;
-/// A bird sees so far, m, and shuns what is closer than that.
+/// Distance that a bird sees, m, and the distance that it keeps.
 const SIGHT: f32 = 3.0;
 const CLEARANCE: f32 = 0.8;
 /// Radius of the aviary, m.
 const AVIARY: f32 = 12.0;
-/// Seconds until the flock looks for another place.
+/// Seconds until the flock chooses another place.
 const PATIENCE: f32 = 4.0;
 
 /// Birds that fly together.
 struct Flock {
     birds: Vec<BodyId>,
-    /// Place that they are drawn to, and for how long yet, s.
+    /// The attracting place, and its remaining time, s.
     goal: Vec3,
     patience: f32,
-    /// Seed of the places to come.
+    /// Seed of the next places.
     seed: u64,
-    /// Position and velocity of each bird, as the substep finds them.
+    /// Position and velocity of each bird in the current substep.
     seen: Vec<(Vec3, Vec3)>,
 }
 
@@ -46,7 +46,7 @@ impl Flock {
         self.seed = random.bits();
     }
 
-    /// The acceleration that bird `i` would like.
+    /// Returns the wanted acceleration of bird `i`.
     fn steer(&self, i: usize) -> Vec3 {
         let (place, velocity) = self.seen[i];
         let (mut apart, mut center, mut drift, mut count) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, 0.0);
@@ -68,7 +68,7 @@ impl Flock {
         wish * (AGILITY / wish.length().max(AGILITY))
     }
 
-    /// Length of the mean of the birds' directions: 0 if they fly all ways, 1 if all fly the same.
+    /// Returns the length of the mean of the birds' directions: 0 for random directions, 1 for equal ones.
     fn order(&self, world: &World) -> f32 {
         let direction = |&id: &BodyId| world.velocity(id).linear.normalize_or_zero();
         self.birds.iter().map(direction).sum::<Vec3>().length() / self.birds.len() as f32
@@ -80,7 +80,7 @@ impl PhysicsObject for Flock {
         "flock"
     }
 
-    /// Hatches the birds, anywhere, flying anywhere.
+    /// Adds the birds at random places with random velocities.
     fn init(&mut self, world: &mut World) {
         let mut random = Random::new(self.seed);
         let radius = 0.1;
@@ -110,7 +110,7 @@ impl PhysicsObject for Flock {
         }
     }
 
-    /// The aviary's net is no shape: whoever is outside is put back, with the velocity that takes it there.
+    /// The aviary's net is not a shape: a bird outside is put back, with the velocity of that motion.
     fn satisfy_constraints(&mut self, corrections: &mut Corrections<'_>) {
         for &id in &self.birds {
             let place = corrections.center_of_mass(id);
@@ -151,7 +151,7 @@ impl PhysicsObject for Flock {
     }
 }
 
-/// Flies for some seconds in frames of 1/30 s; gives how far any was out of the net, and the least distance of two, m.
+/// Flies for some seconds in frames of 1/30 s; returns the largest distance of a bird beyond the net, and the least distance of two, m.
 fn fly(world: &mut World, flock: ObjectId, seconds: u32) -> (f32, f32) {
     let (mut outside, mut apart) = (0.0, f32::INFINITY);
     for _ in 0..seconds * 30 {
@@ -166,7 +166,7 @@ fn fly(world: &mut World, flock: ObjectId, seconds: u32) -> (f32, f32) {
     (outside, apart)
 }
 
-/// Lets the flock find itself, and shows that its state is all there is to it.
+/// Lets the flock form, and shows that a snapshot holds its whole state.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     let tower = Shape::Capsule { half_height: AVIARY, radius: 0.5 };

@@ -1,11 +1,11 @@
 //! A level: `cargo run -p sinew --example level`.
 //!
-//! Triangles as a drawn level has them: a mesh to roll on, terrain as a height field, and a hull of points.
+//! Triangles of a level: a mesh to roll on, terrain as a height field, and a hull of points.
 
 use sinew::prelude::*;
 use std::sync::Arc;
 
-/// A strip of quads down a slope: what a modelling program would export.
+/// Returns a strip of quads down a slope, as a modelling program would export it.
 fn slide() -> Shape {
     let edge = |i: u32, z: f32| Vec3::new(i as f32, 4.0 - 0.5 * i as f32, z);
     let vertices: Vec<Vec3> = (0..=8).flat_map(|i| [edge(i, -1.0), edge(i, 1.0)]).collect();
@@ -14,7 +14,7 @@ fn slide() -> Shape {
     Shape::mesh(&vertices, &triangles).expect("these are triangles")
 }
 
-/// A bowl of terrain, 1 m deep.
+/// Returns a bowl of terrain, 1 m deep.
 fn bowl() -> Shape {
     let height = |i: usize| {
         let (x, z) = ((i % 11) as f32 - 5.0, (i / 11) as f32 - 5.0);

@@ -1,21 +1,21 @@
 //! A pendulum clock: `cargo run -p sinew --example pendulum_clock`.
 //!
-//! The pendulum is a body on a hinge, like any other. The escapement is a kind of our own: near the plumb line it pushes the
-//! pendulum the way it goes, which makes up for the air's drag, and it counts the swings for the hands. A push that is
-//! the same on both sides of the plumb line leaves the period alone (Airy 1826), so the clock goes as the free pendulum
-//! would: by `T = 2π √(I/(m g l)) (1 + A²/16)` at an amplitude of `A` radians.
+//! The pendulum is a body on a hinge. The escapement is a custom object: near the plumb line it pushes the
+//! pendulum in its direction, which makes up for the air's drag, and it counts the swings for the hands. A push that is
+//! symmetric about the plumb line does not change the period (Airy 1826), so the clock has the period of the free pendulum,
+//! `T = 2π √(I/(m g l)) (1 + A²/16)` at an amplitude of `A` radians.
 
 use core::f32::consts::{PI, TAU};
 use sinew::prelude::*;
 use std::time::Duration;
 
-/// Gravity of the earth, m/s².
+/// Gravity of the Earth, m/s².
 const GRAVITY: f32 = 9.81;
-/// From one plumb line to the next but one, s: each swing is a second.
+/// Period, s: each swing takes a second.
 const PERIOD: f32 = 2.0;
 /// Amplitude of the pendulum, radians.
 const AMPLITUDE: f32 = 0.06;
-/// The escapement pushes so far to both sides of the plumb line, radians.
+/// The escapement pushes within this angle of the plumb line, radians.
 const REACH: f32 = 0.02;
 /// Share of its speed that the pendulum would lose in a second without a push.
 const DRAG: f32 = 0.02;
@@ -29,19 +29,19 @@ enum Side {
     Right,
 }
 
-/// An escapement: it keeps a pendulum going, and counts its swings.
+/// An escapement: it keeps a pendulum swinging, and counts its swings.
 struct Escapement {
     pendulum: BodyId,
-    /// N·m, the way the pendulum goes.
+    /// N·m, in the pendulum's direction.
     torque: f32,
-    /// Side on which the pendulum was last.
+    /// Last side of the pendulum.
     side: Side,
-    /// Number of times that it has passed the plumb line.
+    /// Number of passes through the plumb line.
     ticks: u32,
 }
 
 impl Escapement {
-    /// On a pendulum to the right.
+    /// Returns an escapement for a pendulum that starts on the right.
     fn new(pendulum: BodyId, torque: f32) -> Self {
         Self { pendulum, torque, side: Side::Right, ticks: 0 }
     }
@@ -51,7 +51,7 @@ impl Escapement {
         trig::atan2(bob.x, -bob.y)
     }
 
-    /// A hand that turns once in so many seconds, from its axle.
+    /// Returns a hand that turns once in this many seconds, from its axle.
     fn hand(&self, seconds: u32, length: f32) -> Vec3 {
         let angle = TAU * (self.ticks % seconds) as f32 / seconds as f32;
         Vec3::new(trig::sin(angle), trig::cos(angle), 0.1) * length
@@ -98,13 +98,13 @@ impl PhysicsObject for Escapement {
     }
 }
 
-/// The clock, let go where it will go on swinging to.
+/// Returns the clock, released at its steady amplitude.
 fn clock() -> (World, ObjectId) {
     let gravity = Vec3::NEG_Y * GRAVITY;
     let mut world = World::new(WorldDef { gravity, sleeping: Sleeping::Off, ..WorldDef::default() });
     let case = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
 
-    // I/(m l) is the length of the thread with the same period; of a ball I = m (l² + 0.4 r²).
+    // I/(m l) is the length of the thread with the same period; for a ball I = m (l² + 0.4 r²).
     let round = 1.0 + AMPLITUDE * AMPLITUDE / 16.0;
     let thread = GRAVITY * (PERIOD / (TAU * round)) * (PERIOD / (TAU * round));
     let length = 0.5 * (thread + (thread * thread - 1.6 * RADIUS * RADIUS).sqrt());
@@ -119,7 +119,7 @@ fn clock() -> (World, ObjectId) {
     let poses = [case, pendulum].map(|id| world.transform(id));
     world.add_joint(&JointDef::new(case, pendulum, poses[0], poses[1], at, hinge));
 
-    // In a period the drag takes π I ω A² DRAG, and the escapement gives its torque over 4 REACH.
+    // In a period the drag takes π I ω A² DRAG; the escapement adds its torque over 4 REACH.
     let inertia = world.mass(pendulum).mass * length * thread;
     let torque = PI * inertia * (TAU / PERIOD) * AMPLITUDE * AMPLITUDE * DRAG / (4.0 * REACH);
     let escapement = world.add_object(Box::new(Escapement::new(pendulum, torque)));
@@ -130,12 +130,12 @@ fn clock() -> (World, ObjectId) {
     (world, escapement)
 }
 
-/// Lets the clock go for some minutes; gives the mean period of the last one, s, and how far it swings then, radians.
+/// Runs the clock for some minutes; returns the mean period of the last one, s, and the amplitude, radians.
 fn run(world: &mut World, escapement: ObjectId, minutes: u32) -> (f64, f32) {
     let mut passed: Vec<f64> = Vec::new();
     let (mut before, mut swing) = (0.0, 0.0);
     for frame in 0..minutes * 60 * 30 {
-        // Thirty frames a second, two steps in each.
+        // Thirty frames a second, two steps each.
         world.update_with(Duration::from_nanos(33_333_334), |world| {
             world.step();
             let bob = world.center_of_mass(world.object::<Escapement>(escapement).pendulum);
@@ -154,7 +154,7 @@ fn run(world: &mut World, escapement: ObjectId, minutes: u32) -> (f64, f32) {
     ((passed[passed.len() - 1] - passed[0]) / periods, swing)
 }
 
-/// Winds the clock, compares it with theory, and shows that its state is all there is to it.
+/// Starts the clock, compares it with theory, and shows that a snapshot holds its whole state.
 pub fn main() {
     let (mut world, escapement) = clock();
     world.mark();
@@ -165,7 +165,7 @@ pub fn main() {
         "three minutes: {ticks} ticks of a second; {fast:+.1} s a day; it swings to {swing:.4} rad for {AMPLITUDE}"
     );
     assert_eq!(ticks, 180);
-    // It looks at the pendulum 240 times a second, so it pushes half a substep late: that alone is 2 s a day.
+    // It reads the pendulum 240 times a second, so it pushes half a substep late: that alone is 2 s a day.
     assert!(fast.abs() < 5.0, "within 5 s a day");
     assert!((swing / AMPLITUDE - 1.0).abs() < 0.01);
 
@@ -178,7 +178,7 @@ pub fn main() {
     let mut snapshot = Writer::new();
     world.save(&mut snapshot);
     let mut other = World::new(WorldDef::default());
-    // An escapement of no pendulum yet: which it is comes with its state.
+    // An escapement without a pendulum: its state names the pendulum.
     other.register_kind(|| Box::new(Escapement::new(BodyId::from_bits(0), 0.0)));
     other.load(&mut Reader::new(snapshot.as_bytes())).expect("it was just saved");
     let goes_on = [&mut world, &mut other].map(|world| {

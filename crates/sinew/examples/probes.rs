@@ -1,11 +1,11 @@
-//! Questions of a game to its world: `cargo run -p sinew --example probes`.
+//! Queries of a game: `cargo run -p sinew --example probes`.
 //!
-//! A laser lights the first thing in its way, a grenade hurts whoever it sees, a foot feels for the ground under it, and a
-//! door asks whether it may close.
+//! A laser finds the first thing in its way, a grenade finds the people in sight, a foot finds the ground below it, and a
+//! door checks whether it may close.
 
 use sinew::prelude::*;
 
-/// Layers of this game.
+/// Collision layers of this game.
 const LEVEL: u32 = 1;
 const PEOPLE: u32 = 2;
 
@@ -13,7 +13,7 @@ fn on(layers: u32, shape: Shape) -> ShapeDef {
     ShapeDef { filter: Filter { layers, ..Filter::default() }, ..ShapeDef::new(shape) }
 }
 
-/// A floor, a wall, stairs, and three people, one of them behind the wall.
+/// Returns a floor, a wall, stairs, and three people, one of them behind the wall.
 fn level() -> (World, [BodyId; 3]) {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(on(LEVEL, Shape::HalfSpace)));
@@ -30,12 +30,12 @@ fn level() -> (World, [BodyId; 3]) {
     (world, people)
 }
 
-/// First thing that a ray meets, whatever it is.
+/// Returns the first body that a ray hits.
 fn laser(world: &World, from: Vec3, to: Vec3) -> Option<BodyHit> {
     world.query().first(&Ray::between(from, to))
 }
 
-/// The people within `radius` of a blast whom the level does not hide from it.
+/// Returns the people within `radius` of a blast that the level does not hide.
 fn hurt_by_grenade(world: &World, blast: Vec3, radius: f32) -> Vec<BodyId> {
     let people = QueryFilter {
         meets: Filter { mask: PEOPLE, ..QueryFilter::default().meets },
@@ -48,21 +48,21 @@ fn hurt_by_grenade(world: &World, blast: Vec3, radius: f32) -> Vec<BodyId> {
     hurt
 }
 
-/// Height of the ground under a foot, and how steep it is there, radians: felt with a ball, which no crack swallows.
+/// Returns the height and slope of the ground under a foot, radians, by casting a ball, which cracks do not catch.
 fn ground_below(world: &World, owner: BodyId, foot: Vec3) -> Option<(f32, f32)> {
     let sole = Probe::at(Shape::Sphere { radius: 0.08 }, foot + Vec3::Y * 0.5);
     let step = ShapeCast { probe: sole, translation: Vec3::Y * -1.5 };
     let hit = world.query().filter(QueryFilter::without(&[owner])).first(&step)?;
-    // A start inside says nothing about the ground.
+    // A start inside a shape says nothing about the ground.
     hit.start.is_none().then(|| (hit.point.y, sinew::math::trig::acos(hit.normal.y)))
 }
 
-/// True if nobody stands where a door would be.
+/// Returns true if the door's place is free.
 fn may_close(world: &World, doorway: Aabb) -> bool {
     !world.query().filter(QueryFilter::of(BodyKinds::DYNAMIC)).any(&OverlapWith(doorway.into()))
 }
 
-/// Asks each question once, and shows that the answers are right.
+/// Runs each query once, and checks the answers.
 pub fn main() {
     let (world, [first, second, hidden]) = level();
 

@@ -1,6 +1,6 @@
 //! A ragdoll: `cargo run -p sinew --example ragdoll_from_file -- character.glb`.
 //!
-//! A rigged file becomes bodies and joints, falls, and the pose that a renderer draws comes back. Without a file it is the
+//! A rigged file becomes bodies and joints, falls, and returns the pose for a renderer. Without a file it is the
 //! embedded mannequin.
 
 use sinew::prelude::*;

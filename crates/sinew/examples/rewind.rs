@@ -4,7 +4,7 @@
 
 use sinew::prelude::*;
 
-/// Takes a world back, and has it go the same way again.
+/// Rewinds a world, and lets it take the same steps again.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));

@@ -1,6 +1,6 @@
 //! A fight with rollback: `cargo run -p sinew --example rollback_fight`.
 //!
-//! One player's blows come eight frames late. What was guessed wrong is done again, to the bits of a machine that knew all at once.
+//! One player's inputs come eight frames late. Wrongly guessed frames are repeated, with the bits of a machine that had all inputs in time.
 
 use sinew::prelude::*;
 use std::collections::VecDeque;
@@ -29,7 +29,7 @@ impl Fight {
         Self { world, fighters }
     }
 
-    /// One frame: whoever strikes hits the other's chest.
+    /// One frame: a strike hits the other's chest.
     fn frame(&mut self, strikes: [bool; 2]) {
         for (who, side) in [(0, 1.0), (1, -1.0)] {
             if strikes[who] {
@@ -58,7 +58,7 @@ fn strikes(frame: usize) -> [bool; 2] {
     [frame % 50 == 20, frame % 90 == 65]
 }
 
-/// Fights with one player's blows known at once and the other's late.
+/// Runs a fight with one player's inputs in time and the other's late.
 pub fn main() {
     let (mut known, mut guessed, mut past, mut again) = (Fight::new(), Fight::new(), VecDeque::new(), 0);
     for frame in 0..300 {

@@ -1,6 +1,6 @@
 //! A rope: `cargo run -p sinew --example rope`.
 //!
-//! Particles between a hook and a load: it swings, and the hook is carried away.
+//! Particles between a hook and a load: it swings, and the hook moves away.
 
 use sinew::prelude::*;
 
@@ -26,7 +26,7 @@ pub fn main() {
     println!("it swung through {lowest:.2} m");
     assert!((lowest - 1.85).abs() < 0.05, "a rope and half a load below the hook");
 
-    // Carried off at walking pace.
+    // The hook moves at walking pace.
     let dt = world.def().dt();
     for step in 1..=240 {
         let to = Vec3::new(1.2 * dt * step as f32, 4.0, 0.0);

@@ -1,10 +1,10 @@
 //! A stack: `cargo run -p sinew --example stack`.
 //!
-//! Ten boxes stand on each other until a ball knocks them over. What moved is asked without looking at what did not.
+//! Ten boxes stand on each other until a ball knocks them over. `bodies_moved` lists only the poses that changed.
 
 use sinew::prelude::*;
 
-/// Steps the world for so many seconds; the number of poses that a renderer would have had to fetch.
+/// Steps the world for this many seconds; returns the number of changed poses.
 fn run(world: &mut World, seconds: f32) -> usize {
     (0..(seconds * 60.0) as usize).fold(0, |moved, _| {
         world.step();

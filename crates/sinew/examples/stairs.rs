@@ -1,7 +1,7 @@
 //! Stairs: `cargo run -p sinew --example stairs`.
 //!
-//! A character goes up a flight of stairs, over a landing and down a ramp. Its feet stand on what is under them by themselves
-//! (`InWorld::foot_planting`): the example looks how far its lower foot is from the ground under heel or toes.
+//! A character climbs a flight of stairs, crosses a landing and walks down a ramp. Foot placement keeps its feet on the ground
+//! (`InWorld::foot_planting`): the example measures the distance of its lower foot from the ground under heel or toes.
 
 use sinew::prelude::*;
 use std::sync::Arc;
@@ -20,14 +20,14 @@ fn build(world: &mut World) {
     world.add_body(&BodyDef { rotation: turn, ..ramp.at(middle) });
 }
 
-/// Height of the ground there, metres.
+/// Returns the height of the ground there, metres.
 fn ground(z: f32) -> f32 {
     let stairs = 0.17 * (((z - 1.0) / 0.3).floor() + 1.0).clamp(0.0, 8.0);
     let ramp = 1.36 - (z - 5.1) * 0.268; // tan 15°
     if z < 5.1 { stairs } else { ramp.max(0.0) }
 }
 
-/// Goes up and down.
+/// Walks up and down.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     build(&mut world);

@@ -1,6 +1,6 @@
 //! Fields: `cargo run -p sinew --example wind`.
 //!
-//! Wind blows leaves away, water bears what is lighter than it, and a bomb goes off.
+//! Wind blows leaves away, light things float on water, and a bomb explodes.
 
 use sinew::prelude::*;
 
@@ -8,7 +8,7 @@ fn run(world: &mut World, seconds: f32) {
     (0..(seconds * 60.0) as usize).for_each(|_| world.step());
 }
 
-/// Lets three forces of nature act.
+/// Adds three fields.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace).at(Vec3::Y * -3.0));

@@ -5,7 +5,7 @@
 use sinew::prelude::*;
 use std::sync::Arc;
 
-/// The mannequin, from the bytes of a file.
+/// Returns the mannequin, from the bytes of a file.
 pub fn mannequin() -> sinew::LoadedCharacter {
     use sinew::formats::{ReadOptions, no_files, read_gltf, write_gltf};
     let own = sinew::mannequin::mannequin();
@@ -14,7 +14,7 @@ pub fn mannequin() -> sinew::LoadedCharacter {
     sinew::character_of(file, "mannequin.glb", &Default::default()).expect("it has a skin")
 }
 
-/// Runs the file that was named, or the mannequin's.
+/// Runs the given file, or the mannequin's.
 pub fn main() {
     match std::env::args_os().nth(1) {
         Some(path) => run(sinew::load_character(path).unwrap_or_else(|error| panic!("{error}"))),

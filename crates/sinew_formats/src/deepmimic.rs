@@ -177,7 +177,7 @@ fn times(frames_at: At<'_>, rows: &[Vec<f32>]) -> Result<Vec<f32>> {
     for (i, row) in rows[..rows.len() - 1].iter().enumerate() {
         sum += f64::from(row[0]);
         if !(sum as f32 > times[i] && (sum as f32).is_finite()) {
-            return Err(frames_at.items()?[i].malformed("the frame does not last"));
+            return Err(frames_at.items()?[i].malformed("the frame has no duration"));
         }
         times.push(sum as f32);
     }

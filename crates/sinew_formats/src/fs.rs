@@ -102,12 +102,12 @@ fn place_of(path: &Path) -> io::Result<PathBuf> {
             return Ok(place);
         }
         if !data.is_symlink() {
-            return Err(io::Error::other("is there and is not a regular file"));
+            return Err(io::Error::other("exists and is not a regular file"));
         }
         let target = fs::read_link(&place)?;
         place = place.parent().unwrap_or(Path::new("")).join(target);
     }
-    Err(io::Error::other("is a link that leads to a link without end"))
+    Err(io::Error::other("is a link in a circle of links"))
 }
 
 /// A file's bytes under a temporary name next to the target; deleted on drop if not renamed.

@@ -199,7 +199,7 @@ fn read_mass(at: At<'_>) -> Result<MassProperties> {
     let moments = mass.inertia.eigen().0;
     let light = (LIGHTEST..=HEAVIEST).contains(&mass.mass);
     if !(light && moments.z >= LIGHTEST * LIGHTEST && moments.x <= HEAVIEST) {
-        return Err(at.malformed("a mass or moment that no solver can work with"));
+        return Err(at.malformed("a mass or moment out of range"));
     }
     if sinew_math::abs3(mass.center).max_element() > FARTHEST {
         return Err(at.malformed("its centre lies more than 1,000 km away"));
@@ -241,7 +241,7 @@ fn read_joint(at: At<'_>, child: usize, bodies: &[RagdollBodyDef]) -> Result<Rag
     let parent_at = at.need("parent")?;
     let parent = read_reference(parent_at, bodies)?;
     if parent >= child {
-        return Err(parent_at.malformed("a parent has to stand before its child"));
+        return Err(parent_at.malformed("a parent must come before its child"));
     }
     let frame = |key: &str| at.get(key)?.map_or(Ok(Transform::IDENTITY), read_frame);
     Ok(RagdollJointDef {
@@ -257,7 +257,7 @@ fn read_joint(at: At<'_>, child: usize, bodies: &[RagdollBodyDef]) -> Result<Rag
 fn read_torque(at: At<'_>) -> Result<f32> {
     let torque = at.not_negative()?;
     if torque > HEAVIEST {
-        return Err(at.malformed("a torque that no solver can work with"));
+        return Err(at.malformed("a torque out of range"));
     }
     Ok(torque)
 }
@@ -294,7 +294,7 @@ fn read_cone(at: At<'_>) -> Result<SwingTwistLimit> {
         let at = at.need(key)?;
         let range = read_range(at)?;
         if range.lo > 0.0 || range.hi < 0.0 {
-            return Err(at.malformed("zero has to lie inside a swing's range"));
+            return Err(at.malformed("a swing's range must contain zero"));
         }
         Ok(range)
     };

@@ -224,7 +224,7 @@ impl TaperedCapsule {
 pub struct Slice {
     /// Lowest height, metres.
     pub from: f64,
-    /// Highest height, metres.
+    /// Largest height, metres.
     pub to: f64,
     /// Squared radius as a polynomial of the height, `[a, b, c]` for `a + b y + c y²`, m².
     pub radius_squared: [f64; 3],

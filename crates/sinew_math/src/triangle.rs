@@ -69,7 +69,7 @@ mod tests {
 
     /// No sampled point of the triangle is nearer than the computed one.
     #[test]
-    fn none_is_nearer() {
+    fn closest_points_are_nearest() {
         let mut random = Random::new(3);
         let mut found = [0; 3];
         for _ in 0..1_000 {

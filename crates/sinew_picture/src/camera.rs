@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn the_subject_stays_in_reach_and_a_calm_one_moves_nothing() {
+    fn the_camera_follows_and_ignores_small_motion() {
         let mut follow = FollowCamera::new(Vec3::ZERO, 2.0, Vec3::Z);
         follow.update(Vec3::new(0.3, 0.0, 0.0), 0.1);
         assert_eq!(follow.camera().target, Vec3::ZERO);

@@ -73,7 +73,7 @@ pub struct Renderer {
     footprints: Footprints,
 }
 
-/// Footprints that are to be drawn, split by how they are seen.
+/// Footprints to draw, split by their visibility.
 #[derive(Clone, Debug, Default)]
 struct Footprints {
     solid: Vec<Footprint>,
@@ -232,7 +232,7 @@ struct ShadeRow<'a> {
 impl Kernel for ShadeRow<'_> {
     type Output = ();
 
-    // Spans are plain loops: what they gain here is the compiler's use of wider registers.
+    // Spans are plain loops, for which the compiler uses wider registers.
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { renderer, shader, y, row } = self;
@@ -280,7 +280,7 @@ fn points_of(model: &Model, corners: [u32; 3]) -> Option<[Vec3; 3]> {
     points.iter().all(near).then_some(points)
 }
 
-/// Appends the parts of a triangle that lie on the picture; false where there are none.
+/// Appends the visible parts of a triangle; returns false if there are none.
 fn project(
     points: [Vec3; 3],
     id: u32,

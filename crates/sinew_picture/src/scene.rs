@@ -40,7 +40,7 @@ pub struct Model {
 /// The look of a surface: matt, lit by the sun and the sky.
 #[derive(Clone, Debug)]
 pub struct RenderMaterial {
-    /// Linear share of the light that comes back, 0..=1. Default a light grey.
+    /// Linear share of the reflected light, 0..=1. Default a light grey.
     pub color: [f32; 3],
     /// 0 (unseen) to 1 (solid, default). Of several translucent surfaces in a line only the nearest is seen.
     pub opacity: f32,

@@ -47,7 +47,7 @@ const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
 const PARTICLE: [f32; 3] = [0.70, 0.34, 0.05];
 const SPRING: [f32; 3] = [0.25, 0.22, 0.18];
 const JOINT: [f32; 3] = [0.10, 0.11, 0.12];
-/// Colour of what objects of a user's own draw, linear.
+/// Colour of lines that the user's objects draw, linear.
 const OBJECT: [f32; 3] = [0.70, 0.05, 0.30];
 /// Share of the way to [`PALE`] that a body's colour goes when it falls asleep.
 const SLEEP: f32 = 0.3;
@@ -65,8 +65,8 @@ pub fn body_color(number: usize) -> [f32; 3] {
     COLORS[number % COLORS.len()]
 }
 
-/// The box around all that a picture of the world is about: what can move, what joints hang on, what objects draw;
-/// where there is none of these, around all that stands and has an end. `None` in an empty world.
+/// Returns the box around the subject of a picture of the world: movable bodies, anchors of joints, drawings of objects;
+/// without any of these, around all bounded static shapes. `None` in an empty world.
 pub fn subject(world: &World) -> Option<Aabb> {
     let moving = world.body_ids().filter(|&id| world.kind(id) != BodyKind::Static);
     let particles = world.group_ids().map(|id| world.particles(id)).filter(|g| !g.positions().is_empty());
@@ -82,7 +82,7 @@ pub fn subject(world: &World) -> Option<Aabb> {
     })
 }
 
-/// True if a picture is about the shape: floors and levels go on beyond what is of interest.
+/// Returns true if a picture shows the whole shape: floors and levels extend beyond it.
 fn is_solid(shape: &Shape) -> bool {
     !matches!(shape, Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_))
 }
@@ -188,7 +188,7 @@ pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, canvas: &mu
 /// Lines that the world's objects draw of themselves.
 fn lines_of_objects(world: &World) -> Lines {
     let mut lines = Lines::default();
-    // The world draws all that it has; most have no objects, and a crowd many shapes.
+    // The world draws everything; most have no objects, and a crowd many shapes.
     if world.object_ids().next().is_some() {
         world.draw(&mut lines);
     }
@@ -270,7 +270,7 @@ fn paint_group(group: &ParticleGroup, frame: &Frame, canvas: &mut dyn Canvas) {
     thin(&springs, SPRING, frame, canvas);
 }
 
-/// Lines of [`World::draw`], or of what else draws, that no surface shows.
+/// Lines of [`World::draw`], or of other drawings, that no surface shows.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     /// In the order in which they were drawn.

@@ -1,6 +1,6 @@
 //! Scenes, characters and recordings in a window, drawn by the graphics card.
 //!
-//! [`App`] is the viewer without a window: a [`Session`] that runs, hands on it, a camera, panels. [`open`] puts it into a window,
+//! [`App`] is the viewer without a window: a running [`Session`], input, a camera, panels. [`open`] puts it into a window,
 //! [`Headless`] into pictures. [`Offscreen`] draws a [`Stage`] without any of that.
 #![forbid(unsafe_code)]
 

@@ -40,7 +40,7 @@ impl Painter {
         self.target = Target::new(&self.gpu, self.format, size);
     }
 
-    /// Takes over what the panels of a frame changed.
+    /// Uploads the changes of a frame's panels.
     pub fn panels(&mut self, ctx: &egui::Context, output: egui::FullOutput) -> Panels {
         let egui::FullOutput { mut textures_delta, shapes, pixels_per_point, .. } = output;
         for (id, deltas) in textures_delta.set.drain() {
@@ -84,7 +84,7 @@ impl Painter {
         self.panels.render(&mut pass.forget_lifetime(), &panels.jobs, &panels.screen);
     }
 
-    /// Frees what the panels no longer show, once they have been drawn.
+    /// Frees textures that the panels no longer show, after drawing.
     pub fn finish(&mut self, panels: &Panels) {
         panels.free.iter().for_each(|id| self.panels.free_texture(id));
     }
@@ -92,7 +92,7 @@ impl Painter {
     /// A picture of the viewer.
     ///
     /// # Errors
-    /// If it does not come back from the card.
+    /// If the GPU does not return it.
     pub fn picture(&mut self, app: &App, panels: &Panels) -> Result<Image, GpuError> {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let picture = texture(&self.gpu, "screenshot", self.format, self.target.size(), 1, usage);

@@ -17,7 +17,7 @@ pub struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    /// A stage with what a scene holds.
+    /// Returns a stage with the content of a scene.
     pub fn of(scene: Scene) -> Self {
         Self { scene, ..Self::default() }
     }

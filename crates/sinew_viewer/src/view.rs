@@ -127,7 +127,7 @@ impl Orbit {
         }
     }
 
-    /// Ray through a point of the picture (0 to 1, from the upper left corner), as far as one can see.
+    /// Returns the ray through a point of the picture (0 to 1, from the upper left corner), up to the far plane.
     pub fn ray(&self, x: f32, y: f32, aspect: f32) -> Ray {
         let camera = self.camera();
         let axes = camera.axes(aspect);
@@ -220,7 +220,7 @@ fn has_floor(session: &Session) -> bool {
     shapes.any(|(shape, _)| !matches!(shape, Shape::Sphere { .. } | Shape::Capsule { .. }))
 }
 
-/// Lines of a level grid below what floats free, so that one sees where down is and how far things are.
+/// Lines of a level grid below floating bodies, which show the vertical and distances.
 fn add_grid(around: &Aabb, stage: &mut Stage<'_>) {
     let size = max((around.max - around.min).max_element(), 0.5);
     let mut cell = 0.01;
@@ -265,7 +265,7 @@ mod tests {
             orbit.rise_above(&world);
             assert!(orbit.camera().position.y > 0.01, "{height} {distance}: {:?}", orbit.camera());
         }
-        // From below the ground one sees what is there.
+        // From below the ground everything is visible.
         let mut below = Orbit { target: Vec3::NEG_Y, yaw: 0.0, pitch: -0.5, distance: 3.0 };
         let before = below;
         below.rise_above(&world);

@@ -28,7 +28,7 @@ impl Plugin for SinewGizmosPlugin {
 #[derive(Clone, Copy, Debug, Default, GizmoConfigGroup, Reflect)]
 pub struct PhysicsGizmos;
 
-/// Colours of what is drawn.
+/// Colours of the gizmos.
 #[derive(Resource, Clone, Copy, Debug, PartialEq)]
 pub struct GizmoColors {
     /// Outlines of static shapes. Default grey.

@@ -22,7 +22,7 @@ pub(crate) mod bits {
 
     pub fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<Entity, D::Error> {
         let bits = u64::deserialize(input)?;
-        Entity::try_from_bits(bits).ok_or_else(|| D::Error::custom("these are no bits of an entity"))
+        Entity::try_from_bits(bits).ok_or_else(|| D::Error::custom("not the bits of an entity"))
     }
 }
 

@@ -19,7 +19,7 @@ const TOLERANCE: f64 = 0.02;
 /// The runner must be of the same version as the crate `gungraun` in the manifest.
 const RUNNER_VERSION: &str = "0.20.0";
 
-/// Instructions per microsecond of long trees on the reference machine (62 million in 8 ms): for orientation, not for comparisons.
+/// Instructions per microsecond of long trees on the reference machine (62 million in 8 ms), for orientation.
 const PER_MICROSECOND: f64 = 7_500.0;
 
 /// A kernel's cost.
@@ -124,7 +124,7 @@ fn of<'a>(counts: &'a Counts, kernel: &str) -> Option<&'a Count> {
     counts.kernels.iter().find(|count| count.kernel == kernel)
 }
 
-/// A table for people.
+/// Returns a table for people.
 fn print(found: &Counts, committed: Option<&Counts>) {
     println!("{:<32} {:>14} {:>9} {:>9}", "kernel", "instructions", "about µs", "change");
     for Count { kernel, instructions } in &found.kernels {
@@ -182,7 +182,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read() {
+    fn written_text_reads_back_equal() {
         let counts = parse("# rustc 1.95.0 x86_64\nstep.a 10\nstep.b 20\n").expect("well formed");
         assert_eq!(parse(&text(&counts)).expect("well formed"), counts);
         let error = parse("# rustc\nstep.a 10\nstep.b many").expect_err("`many` is no number");

@@ -14,7 +14,7 @@ pub enum Unit {
     Energy,
     /// In radians, written in degrees.
     Angle,
-    /// Of things.
+    /// A count.
     Count,
 }
 
@@ -22,9 +22,9 @@ pub enum Unit {
 pub struct Figure {
     /// Heading in tables.
     pub heading: &'static str,
-    /// What it counts.
+    /// Its unit.
     pub unit: Unit,
-    /// The figure, if it was measured.
+    /// The figure, if measured.
     pub of: fn(&EngineResult) -> Option<f64>,
 }
 
@@ -111,7 +111,7 @@ pub fn headline(scene: &str) -> &'static Figure {
     }
 }
 
-/// Whether the joints do not hold what they join any more, so that the time is that of another scene.
+/// Whether the joints came apart, so that the time is for different work.
 pub fn came_apart(engine: &EngineResult) -> bool {
     const GAP_MAX: f64 = 0.5;
     const STRETCH_MAX: f64 = 1.0;
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn what_came_apart_is_known() {
+    fn open_joints_are_detected() {
         let of = |quality| engine("jolt", &[1.0], &quality);
         assert!(came_apart(&of(json!({ "joint_gap_peak_m": 11.0 }))));
         assert!(came_apart(&of(json!({ "joint_gap_peak_m": 0.2, "stretch_peak": 16.6 }))));

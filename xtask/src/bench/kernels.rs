@@ -1,4 +1,4 @@
-//! Speed of the eight-lane kernels, as a share of what the machine's arithmetic allows (specification §5).
+//! Speed of the eight-lane kernels, as a share of the limit of the machine's arithmetic (specification §5).
 
 use super::machine::Machine;
 use crate::command;
@@ -7,7 +7,7 @@ use std::process::Command;
 
 const MANIFEST: &str = "bench/kernels/Cargo.toml";
 
-/// Of the widest level, the least share of the limit that a kernel must reach, and the goal.
+/// Least share of the limit at the widest level, and the goal.
 const SHARES: &[(&str, f64, f64)] = &[
     ("point_in_obb", 0.4, 0.7),
     ("point_obb_distance", 0.4, 0.7),
@@ -15,17 +15,17 @@ const SHARES: &[(&str, f64, f64)] = &[
     ("obb_obb_15_axes", 0.3, 0.6),
 ];
 
-/// The program names the limits themselves so, in operations on eight lanes.
+/// Prefix of the limits in the program's output, in operations on eight lanes.
 const LIMIT: &str = "limit.";
 
-/// What was measured of a kernel, or of the machine.
+/// Result of a kernel, or of the machine.
 #[derive(Clone, Debug, PartialEq)]
 struct Figure {
     level: String,
     name: String,
-    /// Items in a second.
+    /// Items per second.
     rate: f64,
-    /// As many as the machine could do.
+    /// Limit of the machine.
     limit: f64,
 }
 
@@ -35,7 +35,7 @@ impl Figure {
     }
 }
 
-/// Builds the kernels, measures them, and prints a table. Gives a line for each that falls short of its share.
+/// Builds the kernels, measures them, and prints a table. Returns a line for each that misses its share.
 ///
 /// # Errors
 /// If they do not build or run.
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn a_torn_line_is_an_error() {
+    fn a_malformed_line_is_an_error() {
         assert!(parse("Avx2 point_in_obb 2e9").is_err());
     }
 }

@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_missing_is_said_in_one_line() {
+    fn missing_tools_are_listed_in_one_line() {
         assert_eq!(complaint(&[]), None);
         assert_eq!(
             complaint(&[&NEEDS[0], &NEEDS[2]]).as_deref(),

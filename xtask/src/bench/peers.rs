@@ -1,4 +1,4 @@
-//! The binary of `bench/peers`: built up to three times, and run engine by engine, scene by scene.
+//! The binary of `bench/peers`: built up to three times, and run by engine and scene.
 
 use crate::command;
 use anyhow::{Context, Result, bail};
@@ -14,10 +14,10 @@ const MANIFEST: &str = "bench/peers/Cargo.toml";
 /// MuJoCo, by its Python wheel.
 const MUJOCO: &str = "mujoco";
 
-/// Runs it as the binary runs the others.
+/// Program that runs it.
 const MUJOCO_SCRIPT: &str = "bench/peers/mujoco_run.py";
 
-/// Field of the scenes that it runs.
+/// Field of its scenes.
 const FIGURES: &str = "figures";
 
 /// Rapier with eight lanes.
@@ -26,10 +26,10 @@ const WIDE: &str = "rapier_simd8";
 /// Animation.
 const OZZ: &str = "ozz";
 
-/// It calls functions of `std::simd` that have other names from Rust 1.95 on.
+/// It calls functions of `std::simd` that were renamed in Rust 1.95.
 const OZZ_TOOLCHAIN: &str = "1.94.0";
 
-/// Flags for the registers of this machine, where it has them.
+/// Flags for AVX2, where the machine has it.
 const WIDE_FLAGS: &str = "-C target-cpu=x86-64-v3";
 
 /// Interval between checks of a running process.
@@ -38,31 +38,31 @@ const POLL: Duration = Duration::from_millis(20);
 /// An engine in a binary.
 #[derive(Clone, Debug)]
 pub struct Engine {
-    /// As the binary and the reports name it.
+    /// Name in the binary and the reports.
     pub name: String,
     binary: PathBuf,
-    /// Which knows the scenes.
+    /// Binary with it.
     peers: PathBuf,
-    /// Before the scene.
+    /// Arguments before the scene.
     arguments: Vec<String>,
-    /// What it is made for.
+    /// Its field.
     fields: Vec<String>,
 }
 
 /// A scene of the peers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scene {
-    /// As the binary names it.
+    /// Name in the binary.
     pub name: String,
     /// In one line.
     pub about: String,
-    /// What engine it is for.
+    /// Its field.
     field: String,
-    /// Whether a small change of its start makes another run of it.
+    /// Whether its run changes with a small change of its start.
     pub is_chaotic: bool,
 }
 
-/// Whether a run is followed by one that is looked at instead of timed.
+/// Whether a second run measures the quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judging {
     /// Time only.
@@ -71,19 +71,19 @@ pub enum Judging {
     On,
 }
 
-/// How a scene is run.
+/// Options of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Run {
-    /// Instead of as many as the scene says.
+    /// Number of steps, instead of the scene's.
     pub steps: Option<u32>,
-    /// Number of a start that differs a little from the scene's own.
+    /// Number of a slightly changed start.
     pub start: Option<u32>,
-    /// Whether it is judged.
+    /// Whether quality is measured.
     pub judging: Judging,
 }
 
-/// Builds the peers as most users have them, and Rapier once more for wide registers where this machine has them: the
-/// two cannot be in one binary. ozz-animation-rs comes from a compiler of its own. Those that are `wanted`, Sinew first.
+/// Builds the peers as most users have them, and Rapier again for wide registers where this machine has them, because
+/// one binary cannot have both. ozz-animation-rs needs its own compiler. Returns the `wanted` ones, Sinew first.
 ///
 /// # Errors
 /// If one does not compile.
@@ -132,7 +132,7 @@ fn cargo_build(features: &str) -> Command {
     build
 }
 
-/// With nothing that the older compiler has no part in, as fast as the machine can.
+/// Optimised for this machine, without what the older compiler cannot build.
 fn ozz_build() -> Command {
     let mut build = Command::new("rustup");
     build.current_dir(command::root()).args(["run", OZZ_TOOLCHAIN, "cargo"]).args(BUILD);
@@ -143,7 +143,7 @@ fn ozz_build() -> Command {
     build
 }
 
-/// A binary of Sinew alone, which needs nothing but a Rust toolchain.
+/// Builds Sinew alone, which needs only a Rust toolchain.
 ///
 /// # Errors
 /// If it does not compile.
@@ -157,7 +157,7 @@ fn has_mujoco() -> bool {
     import.is_ok_and(|status| status.success())
 }
 
-/// `peers` tells it what the scenes are.
+/// The program that lists the scenes.
 fn mujoco(peers: &Path) -> Engine {
     let script = command::root().join(MUJOCO_SCRIPT);
     let arguments = [&script, Path::new("--peers"), peers].map(|part| part.to_string_lossy().into_owned());
@@ -176,7 +176,7 @@ fn build_with(folder: &str, build: &mut Command) -> Result<PathBuf> {
     command::build(build.arg("--target-dir").arg(folder), "peers")
 }
 
-/// The engines of a binary.
+/// Returns the engines of a binary.
 fn engines(binary: &Path) -> Result<Vec<Engine>> {
     let list = command::output_json(Command::new(binary).arg("list"))?;
     let engines = list["engines"].as_array().context("`peers list` names no engines")?;
@@ -193,10 +193,10 @@ fn engines(binary: &Path) -> Result<Vec<Engine>> {
         .collect()
 }
 
-/// All scenes.
+/// Returns all scenes.
 ///
 /// # Errors
-/// If the binary does not say.
+/// If the binary fails.
 pub fn scenes(engine: &Engine) -> Result<Vec<Scene>> {
     let list = command::output_json(Command::new(&engine.peers).arg("list"))?;
     let scenes = list["scenes"].as_array().context("`peers list` names no scenes")?;
@@ -210,12 +210,12 @@ pub fn scenes(engine: &Engine) -> Result<Vec<Scene>> {
 }
 
 impl Engine {
-    /// Whether it is made for such scenes.
+    /// Whether it is for such scenes.
     pub fn is_for(&self, scene: &Scene) -> bool {
         self.fields.contains(&scene.field)
     }
 
-    /// Runs a scene; gives what the process printed, or an object with `failed` if it died or took too long: that is
+    /// Runs a scene. Returns the process's output, or an object with `failed` if it crashed or took too long, which is
     /// a result, too.
     ///
     /// # Errors
@@ -240,7 +240,7 @@ impl Engine {
     }
 }
 
-/// What a program prints, or in words why it does not end well.
+/// Returns the output of a program, or the reason of its failure.
 fn output_within(command: &mut Command, limit: Duration) -> Result<Result<String, String>> {
     let mut child = command.stdout(Stdio::piped()).spawn().context("cannot start `peers`")?;
     let Some(mut stdout) = child.stdout.take() else { bail!("`peers` has no stdout") };
@@ -274,7 +274,7 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn a_run_ends_well_dies_or_is_stopped() {
+    fn a_run_succeeds_fails_or_times_out() {
         let long = Duration::from_secs(60);
         assert_eq!(shell("echo 1", long), Ok("1\n".to_owned()));
         assert_eq!(shell("exit 3", long), Err("exit status: 3".to_owned()));

@@ -6,14 +6,14 @@ use std::collections::BTreeMap;
 /// All scenes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Results {
-    /// In the order in which the peers list them.
+    /// In the order of the peers' list.
     pub scenes: Vec<SceneResult>,
-    /// Simulated seconds per processor second of a bake on one thread, if that was measured.
+    /// Simulated seconds per processor second of a bake on one thread, if measured.
     pub bake: Option<f64>,
     /// Number of conversions of a rig of 6,000 vertices to a ragdoll in 100 ms, if measured with the bake.
     pub build: Option<f64>,
-    /// Simulated seconds per processor second of characters that fall limp until they sleep: `median` of all rigs and `slowest_humanoid`,
-    /// where that was measured.
+    /// Simulated seconds per processor second of limp characters until they sleep: `median` of all rigs and `slowest_humanoid`,
+    /// if measured.
     pub limp: BTreeMap<String, f64>,
     /// By scene: wall time on one thread over that on two, if measured.
     pub threads: BTreeMap<String, f64>,
@@ -24,29 +24,29 @@ pub struct Results {
 /// A scene on all engines, their rounds interleaved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneResult {
-    /// As the peers name it.
+    /// Name in the peers' list.
     pub name: String,
     /// In one line.
     pub about: String,
     /// Commit that was measured.
     pub revision: String,
-    /// Ours first.
+    /// Sinew first.
     pub engines: Vec<EngineResult>,
 }
 
 /// A scene on one engine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EngineResult {
-    /// As the peers name it.
+    /// Name in the peers' list.
     pub name: String,
     /// One report from each round, unmodified.
     pub reports: Vec<Value>,
 }
 
-/// Processor time of a step, milliseconds: of each statistic over the steps of a round, the median over the rounds.
+/// Processor time of a step, milliseconds: for each statistic over the steps of a round, the median over the rounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
-    /// Mean step: the time of the whole run over its steps, with the crash and with the sleep.
+    /// Mean step: the time of the whole run over its steps, impacts and sleep included.
     pub mean: f64,
     /// The same in the best round.
     pub best: f64,
@@ -66,7 +66,7 @@ impl Results {
         self.scenes.iter().find(|scene| scene.name == name)
     }
 
-    /// True if the scene of that name was measured, or the bake, the limp characters or the threads.
+    /// Whether the scene of that name was measured, or the bake, the limp characters or the threads.
     pub fn has(&self, name: &str) -> bool {
         self.scene(name).is_some()
             || name == super::BAKE && self.bake.is_some()
@@ -93,7 +93,7 @@ impl Results {
         }
     }
 
-    /// As it is written to the file.
+    /// Returns the content of the file.
     pub fn to_json(&self) -> Value {
         let engine = |engine: &EngineResult| (engine.name.clone(), Value::from(engine.reports.clone()));
         let scene = |scene: &SceneResult| {
@@ -254,7 +254,7 @@ impl EngineResult {
 pub mod tests {
     use super::*;
 
-    /// An engine with a round for each of these mean times.
+    /// Returns an engine with a round for each of these mean times.
     pub fn engine(name: &str, means: &[f64], quality: &Value) -> EngineResult {
         let report = |&mean: &f64| {
             json!({
@@ -267,7 +267,7 @@ pub mod tests {
         EngineResult { name: name.into(), reports: means.iter().map(report).collect() }
     }
 
-    /// A scene of these engines.
+    /// Returns a scene of these engines.
     pub fn scene(name: &str, engines: Vec<EngineResult>) -> SceneResult {
         SceneResult { name: name.into(), about: "a scene".into(), revision: "abc".into(), engines }
     }

@@ -1,16 +1,16 @@
-//! Tables in Markdown, aligned, so that they read as well in a terminal and a diff as on a page.
+//! Aligned tables in Markdown, which are readable in a terminal and a diff, too.
 
 use std::fmt;
 
-/// A table; its first row is the heading. Words stand at the left of their columns, numbers at the right.
+/// A table; its first row is the heading. Text is aligned left, numbers right.
 pub struct Table {
-    /// How many columns, the first ones, hold words.
+    /// Number of text columns, which are the first ones.
     words: usize,
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// With a heading and nothing below; the first `words` columns are to hold words.
+    /// Returns a table with a heading and no rows; the first `words` columns are text.
     pub fn new<S: Into<String>>(words: usize, heading: impl IntoIterator<Item = S>) -> Self {
         Self { words, rows: vec![heading.into_iter().map(Into::into).collect()] }
     }

@@ -1,4 +1,4 @@
-//! Where the step of a scene spends its time, and how much there is to do, for people.
+//! Times of the stages of a scene's step, and counts of their work, for people.
 
 use super::figures::rounded;
 use super::peers;
@@ -12,7 +12,7 @@ use std::process::Command;
 /// Bytes of a MiB.
 const MIB: f64 = (1 << 20) as f64;
 
-/// Traces a scene with a binary of its own and prints what it found.
+/// Traces a scene with its own binary and prints the result.
 ///
 /// # Errors
 /// If it cannot be built, or there is no such scene.

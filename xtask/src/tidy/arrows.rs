@@ -1,10 +1,10 @@
-//! Which crate may depend on which (design §1), and on which crates from outside.
+//! Allowed dependencies between crates (design §1), and of crates on external ones.
 
 use super::{Finding, Repo};
 use serde_json::Value;
 
-/// Each crate, and the crates it may name; it may also name what those may. One row per crate of the design,
-/// including those that are not there yet.
+/// Each crate, and the crates that it may use; their dependencies are allowed, too. One row per crate of the design,
+/// including those that do not exist yet.
 const ARROWS: &[(&str, &[&str])] = &[
     ("sinew_math", &[]),
     ("sinew_geometry", &["sinew_math"]),
@@ -25,7 +25,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("needs_data", &[]),
 ];
 
-/// Crates from outside (by the start of their name) that only some of ours may name.
+/// External crates (by the start of their name) that only some crates may use.
 const RESERVED: &[(&str, &[&str], &str)] = &[
     ("wgpu", &["sinew_viewer", "sinew_web"], "only viewer and web know a GPU"),
     ("winit", &["sinew_viewer", "sinew_web"], "only viewer and web know a window"),
@@ -34,7 +34,7 @@ const RESERVED: &[(&str, &[&str], &str)] = &[
     ("rayon", &[], "threads come from a TaskRunner"),
 ];
 
-/// Every normal dependency between crates of the workspace has its arrow, and reserved crates stay where they belong.
+/// Checks that every normal dependency between crates is allowed, and reserved crates are used only where allowed.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     repo.packages().flat_map(check_package).collect()
 }
@@ -52,7 +52,7 @@ fn check_package(package: &Value) -> Vec<Finding> {
     let allowed = reachable(name);
     let mut findings = Vec::new();
     for dependency in package["dependencies"].as_array().into_iter().flatten() {
-        // Tests may look at anything, so only normal edges count; cargo writes those as null.
+        // Tests may use anything, so only normal edges count; cargo writes those as null.
         if !dependency["kind"].is_null() {
             continue;
         }
@@ -78,7 +78,7 @@ fn check_package(package: &Value) -> Vec<Finding> {
     findings
 }
 
-/// All crates that `name` may depend on.
+/// Returns all crates that `name` may depend on.
 fn reachable(name: &str) -> Vec<&'static str> {
     let direct = ARROWS.iter().find(|&&(row, _)| row == name).map_or(&[][..], |&(_, direct)| direct);
     direct.iter().flat_map(|&next| std::iter::once(next).chain(reachable(next))).collect()

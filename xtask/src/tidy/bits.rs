@@ -1,9 +1,9 @@
-//! Arithmetic whose bits differ between targets, kept out of the code that decides the state
+//! Keeps arithmetic whose bits differ between targets out of the code that decides the state
 //! (docs/adr/0006-glam-and-bits.md has the measurements).
 //!
-//! Types are not known here, so the rule is stricter than needed where a name is shared: `.max(x)` on integers has to
-//! say so, by its argument (`.max(1)`, `.min(list.len())`) or by a path (`usize::max(a, b)`). And it is blind to a
-//! method that a macro makes up, or one that another crate calls for us.
+//! Types are not known here, so the rule is stricter than needed for shared names: `.max(x)` on integers must
+//! be recognisable, by its argument (`.max(1)`, `.min(list.len())`) or by a path (`usize::max(a, b)`). It misses
+//! methods that a macro defines, or that another crate calls.
 
 use super::lexer::{self, Kind, Token};
 use super::{File, Finding, Repo};
@@ -22,7 +22,7 @@ const EXACT: &[&str] = &[
 /// glam types with a SIMD layout: their sums are ordered differently on each target.
 const TYPES: &[&str] = &["Quat", "Vec3A", "Vec4", "Mat4", "Mat3A", "Affine3A", "Affine2"];
 
-/// Where `glam::Quat` is converted from and to.
+/// Files that convert from and to `glam::Quat`.
 const CONVERSIONS: &str = "crates/sinew_math/src/rotations/rotation.rs";
 
 /// Methods of floats and of glam vectors that are not made of `+ − × ÷ √` alone, or are contracted on some targets.
@@ -69,7 +69,7 @@ const SELECTION: &str = "use sinew_math::{min, max, clamp} (min3, max3 for vecto
 /// Methods that integers, iterators and orderings share with floats.
 const SHARED: &[&str] = &["min", "max", "clamp"];
 
-/// What may follow `Vec3::`, `Mat3::` and `Vec2::`.
+/// Allowed after `Vec3::`, `Mat3::` and `Vec2::`.
 const CONSTRUCTORS: &[&str] = &[
     "new",
     "splat",
@@ -116,7 +116,7 @@ const CONSTRUCTORS: &[&str] = &[
     "mul_vec3",
 ];
 
-/// The code of exact crates uses exact arithmetic.
+/// Checks that the code of exact crates uses exact arithmetic.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let is_exact = |file: &&File| file.crate_of_source().is_some_and(|name| EXACT.contains(&name));
     repo.rust_files().filter(is_exact).flat_map(check_file).collect()

@@ -1,19 +1,19 @@
-//! Files of a crate that name each other in a circle: who reads one of them has to know all. And how many files lie side by side.
+//! Files of a crate that name each other in a circle, which a reader has to know together; and the number of files in one folder.
 //!
-//! A file names another if one of its paths leads to something that the other defines, whatever re-exports lie between; a
-//! re-export by itself names nothing. Methods are not seen, since a token does not say whose they are.
+//! A file names another if one of its paths leads to something that the other defines, through any re-exports; a
+//! re-export alone names nothing. Methods are not seen, because tokens do not show their types.
 
 use super::lexer::{self, Kind, Token};
 use super::rooms::is_test;
 use super::{File, Finding, Repo};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Most files of one circle.
+/// Limit on the files of one circle.
 const CIRCLE_FILES_MAX: usize = 10;
-/// Most files that stand beside `lib.rs` without a folder of their own, itself included.
+/// Limit on the files beside `lib.rs` without a folder of their own, itself included.
 const FLAT_FILES_MAX: usize = 12;
 
-/// Circles are small, and few files stand flat in a `src/`.
+/// Checks the sizes of circles, and the number of files flat in a `src/`.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let crates: BTreeSet<&str> = repo.rust_files().filter_map(File::crate_of_source).collect();
     let mut findings = Vec::new();
@@ -44,7 +44,7 @@ pub struct House<'a> {
     pub name: &'a str,
     /// Files of its source, tests left out.
     pub files: usize,
-    /// Number of files that stand flat beside `lib.rs`.
+    /// Number of files flat beside `lib.rs`.
     pub flat: usize,
     /// Files of the largest circle; 1 if there is none.
     pub circle: usize,
@@ -78,7 +78,7 @@ struct Module<'a> {
     code: Vec<Token<'a>>,
     /// Names that it defines.
     items: BTreeSet<&'a str>,
-    /// Names that it imports, each with its path, and what it imports all of.
+    /// Names that it imports, each with its path, and glob imports.
     imports: Vec<Import<'a>>,
 }
 
@@ -92,7 +92,7 @@ pub struct Import<'a> {
     pub is_public: bool,
 }
 
-/// A definition: the module of it, and whether it was found there or only expected.
+/// A definition: its module, and whether it was found there or only expected.
 type Found = Option<(usize, bool)>;
 
 impl<'a> Source<'a> {
@@ -118,9 +118,9 @@ impl<'a> Source<'a> {
         (0..self.modules.len()).map(of).collect()
     }
 
-    /// Module that defines what a path leads to from the module `at`.
+    /// Returns the module that defines the end of a path from the module `at`.
     fn resolve(&self, at: usize, path: &[&'a str], depth: usize) -> Found {
-        // An import that leads in a circle, through a name that two macros make, ends here.
+        // A circular import, through a name that two macros define, ends here.
         if depth > 16 {
             return None;
         }
@@ -204,7 +204,7 @@ impl<'a> Module<'a> {
         Self { inside, path, code, items, imports }
     }
 
-    /// Whether a word stands in its code.
+    /// Whether a word occurs in its code.
     fn uses(&self, word: &str) -> bool {
         self.code.iter().any(|token| token.text == word)
     }
@@ -216,7 +216,7 @@ impl<'a> Module<'a> {
         let mut paths = Vec::new();
         let mut at = 0;
         while at < self.code.len() {
-            // `pub(in path)` names nothing that it needs.
+            // `pub(in path)` uses nothing.
             let is_scope = at > 1 && text(at - 1) == "in" && text(at - 2) == "(";
             let begins = is_word(at) && text(at + 1) == "::" && (at == 0 || text(at - 1) != "::");
             let mut path = vec![text(at)];
@@ -233,12 +233,12 @@ impl<'a> Module<'a> {
     }
 }
 
-/// What a file imports.
+/// Returns the imports of a file.
 pub fn imports(file: &File) -> Vec<Import<'_>> {
     Module::read(file).imports
 }
 
-/// Adds what a tree of a `use` imports, `prefix` being the path that leads to it.
+/// Adds the imports of a `use` tree, with the path `prefix` before it.
 fn import<'a>(tree: &[Token<'a>], prefix: &mut Vec<&'a str>, is_public: bool, imports: &mut Vec<Import<'a>>) {
     let before = prefix.len();
     let mut at = 0;
@@ -270,7 +270,7 @@ fn import<'a>(tree: &[Token<'a>], prefix: &mut Vec<&'a str>, is_public: bool, im
     prefix.truncate(before);
 }
 
-/// Circles of more than one: strongly connected components (Tarjan 1972).
+/// Returns circles of more than one: strongly connected components (Tarjan 1972).
 fn circles(arrows: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
     let mut search =
         Search { arrows, order: vec![None; arrows.len()], low: vec![0; arrows.len()], ..Search::default() };
@@ -278,13 +278,13 @@ fn circles(arrows: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
     search.circles
 }
 
-/// A search in depth.
+/// A depth-first search.
 #[derive(Default)]
 struct Search<'a> {
     arrows: &'a [BTreeSet<usize>],
-    /// When each was come to.
+    /// Order in which each was visited.
     order: Vec<Option<usize>>,
-    /// The earliest that each leads back to.
+    /// Earliest one that each leads back to.
     low: Vec<usize>,
     stack: Vec<usize>,
     visited: usize,
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_re_exported_counts_where_it_is_defined() {
+    fn re_exports_count_where_they_are_defined() {
         let files = [
             ("lib.rs", "mod room;"),
             ("room/mod.rs", "mod low; mod high; pub use low::Low; pub use high::High;"),

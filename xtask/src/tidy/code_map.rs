@@ -1,19 +1,19 @@
-//! The code map of `ARCHITECTURE.md` is that of the code: what it names is there, and it names all that lies at the top of a crate.
+//! Compares the code map of `ARCHITECTURE.md` with the code: everything that it names exists, and it names everything at the top of a crate.
 
 use super::{Finding, Repo};
 
 const MAP: &str = "ARCHITECTURE.md";
-/// Pages that lead to files, too.
+/// Other pages with names of files.
 const PAGES: &[&str] = &["CONTRIBUTING.md", "docs/step.md", "docs/glossary.md"];
 
-/// Each section of a crate names its files and folders, and no others; the files that other pages name are there.
+/// Checks that each section of a crate names its files and folders, and no others; and that files named by other pages exist.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings: Vec<Finding> = PAGES.iter().flat_map(|page| missing(repo, page)).collect();
     findings.extend(check_map(repo));
     findings
 }
 
-/// Files that a page names and that are nowhere.
+/// Returns files that a page names and that do not exist.
 fn missing(repo: &Repo, page: &str) -> Vec<Finding> {
     let text = repo.file(page).map_or("", |file| file.text.as_str());
     let lines = text
@@ -94,7 +94,7 @@ impl<'a> Section<'a> {
     }
 }
 
-/// Sections under headings like "### `sinew_math`".
+/// Returns the sections under headings like "### `sinew_math`".
 fn sections(text: &str) -> Vec<Section<'_>> {
     let mut sections: Vec<Section<'_>> = Vec::new();
     let mut is_within = false;
@@ -110,7 +110,7 @@ fn sections(text: &str) -> Vec<Section<'_>> {
     sections
 }
 
-/// Pieces of code in a line, with `{a,b}.rs` spelt out.
+/// Returns the code in a line, with `{a,b}.rs` expanded.
 fn code(line: &str) -> Vec<String> {
     let pieces = line.split('`').skip(1).step_by(2);
     pieces
@@ -128,7 +128,7 @@ fn is_path(c: char) -> bool {
     c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '_' | '/' | '.')
 }
 
-/// Whether a piece of code is a file or a folder of the crate at hand.
+/// Whether a piece of code is a file or a folder of the crate.
 fn is_place(name: &str) -> bool {
     let ends = name.ends_with(".rs") || name.ends_with('/');
     let is_of_root = ["crates/", "docs/", "xtask/", "fuzz/", "bench/", "tests/", "out/", "src/"];
@@ -140,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_page_that_leads_nowhere_is_found() {
+    fn a_page_with_a_missing_file_is_found() {
         let page = "`trig.rs`, `sinew_math/trig.rs` and `sinew_math/src/trig.rs`, `crates/sinew_math/src/trig.rs`,\n`sine.rs`";
         let repo = Repo::planted(&[("docs/step.md", page), ("crates/sinew_math/src/trig.rs", "")]);
         let found: Vec<String> = check(&repo).iter().map(ToString::to_string).collect();
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_named_is_there_and_what_is_there_is_named() {
+    fn map_and_code_agree() {
         let found = |map: &str| -> Vec<String> {
             let files = [
                 (MAP, map),

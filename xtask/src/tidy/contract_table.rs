@@ -1,9 +1,9 @@
-//! `docs/contract.md` can be read by machines.
+//! Checks that `docs/contract.md` can be parsed.
 
 use super::{Finding, Repo};
 use crate::contract::{PATH, parse};
 
-/// The table can be read, and no command has a key twice.
+/// Reports items that cannot be parsed, and keys that a command has twice.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let Some(file) = repo.file(PATH) else { return Vec::new() };
     let rows = match parse(&file.text) {
@@ -13,7 +13,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (index, row) in rows.iter().enumerate() {
         if rows[..index].iter().any(|other| row.repeats(other)) {
-            findings.push(Finding::new(PATH, row.line, format!("`{}` is there twice", row.key)));
+            findings.push(Finding::new(PATH, row.line, format!("`{}` is listed twice", row.key)));
         }
     }
     findings
@@ -23,18 +23,17 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
 mod tests {
     use super::*;
 
-    const TABLE: &str = "| command | key | type | unit | meaning |\n|---|---|---|---|---|\n\
-        | `demo`, `bake` | `nan` | integer | – | a count |\n";
+    const LISTS: &str = "### `demo`, `bake`\n\n- `nan` (integer): a count\n";
 
     #[test]
-    fn a_malformed_table_is_found() {
+    fn malformed_lines_are_reported() {
         let found = |text: &str| {
             check(&Repo::planted(&[(PATH, text)])).iter().map(ToString::to_string).collect::<Vec<_>>()
         };
-        assert!(found(TABLE).is_empty());
-        let twice = format!("{TABLE}| `bake` | `nan` | integer | – | again |\n");
-        assert_eq!(found(&twice), ["docs/contract.md:4: `nan` is there twice"]);
-        assert_eq!(found("| command | key |\n| a | b |"), ["docs/contract.md:2: 2 columns, not 5"]);
-        assert_eq!(found("| command |\n| a | b | float | c | d |").len(), 1);
+        assert!(found(LISTS).is_empty());
+        let twice = format!("{LISTS}\n### `bake`\n\n- `nan` (integer): again\n");
+        assert_eq!(found(&twice), ["docs/contract.md:7: `nan` is listed twice"]);
+        assert_eq!(found("### `a`\n- `b`: c"), ["docs/contract.md:2: not \"- `key` (type): meaning\""]);
+        assert_eq!(found("### `a`\n- `b` (float): c").len(), 1);
     }
 }

@@ -1,12 +1,12 @@
-//! Every crate from outside was decided for: it has its row in the ADR, and comes in through the root manifest.
+//! Every external crate is recorded: it has its row in the ADR, and is declared in the root manifest.
 
 use super::{Finding, Repo};
 
 const MANIFEST: &str = "Cargo.toml";
 const RECORD: &str = "docs/adr/0007-dependencies.md";
 
-/// The root manifest's dependencies and the record's rows ("| `name` | …") agree, every one is used, and no crate goes
-/// round them.
+/// Checks that the root manifest's dependencies and the record's rows ("| `name` | …") agree, every one is used, and no crate
+/// declares its own.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
     let Some(manifest) = repo.file(MANIFEST) else { return findings };
@@ -36,7 +36,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     findings
 }
 
-/// Pairs of a crate of ours and a crate from outside that it names, for whatever purpose.
+/// Returns pairs of a crate of the workspace and an external crate that it uses, for any purpose.
 fn used(repo: &Repo) -> Vec<(&str, &str)> {
     let mut used = Vec::new();
     for package in repo.packages() {
@@ -48,7 +48,7 @@ fn used(repo: &Repo) -> Vec<(&str, &str)> {
     used
 }
 
-/// Names in `[workspace.dependencies]` that are not folders of this repository, with their lines.
+/// Returns names in `[workspace.dependencies]` that are not folders of this repository, with their lines.
 fn declared(manifest: &str) -> Vec<(&str, usize)> {
     let numbered = manifest.lines().enumerate();
     let section = numbered.skip_while(|(_, line)| *line != "[workspace.dependencies]").skip(1);
@@ -58,7 +58,7 @@ fn declared(manifest: &str) -> Vec<(&str, usize)> {
     foreign.map(|((name, _), line)| (name.trim(), line)).collect()
 }
 
-/// Names in the first column of the record's table, with their lines.
+/// Returns names in the first column of the record's table, with their lines.
 fn recorded(record: &str) -> Vec<(&str, usize)> {
     let rows = record.lines().enumerate();
     let names =

@@ -1,21 +1,21 @@
-//! Examples that users learn from: each public module of characters and files has one, and programs are short.
+//! Examples for users: each public module of characters and files has one, and programs are short.
 
 use super::{File, Finding, Repo};
 
 /// Crates of which every public module has an example in its documentation.
 const CRATES: &[&str] = &["sinew_formats", "sinew_ragdoll"];
 
-/// Programs that can be read in a minute.
+/// Folders of programs that can be read in a minute.
 const EXAMPLES: &str = "crates/sinew/examples/";
 
-/// Most lines of one.
+/// Limit on the lines of one.
 const MOST_LINES: usize = 60;
 
-/// Examples that may be longer, since each is a whole part of a game: kinds of bodies of one's own with their state, all questions to a world,
-/// a fight over a network, a character with all that hangs on it.
+/// Examples that may be longer, since each is a whole part of a game: custom kinds of bodies with their state, all queries of a world,
+/// a fight over a network, a character with all its accessories.
 const LONGER: &[&str] = &["door_and_cape", "flock", "pendulum_clock", "probes", "rollback_fight"];
 
-/// Each public module of those crates without an example that is compiled and run; each example that is too long, or names what the
+/// Finds public modules of those crates without an example that is compiled and run, and examples that are too long, or use names that the
 /// prelude lacks.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
@@ -44,7 +44,7 @@ fn example(file: &File, name: &str) -> Vec<Finding> {
     findings
 }
 
-/// Findings for the modules that a file declares public.
+/// Returns findings for the public modules of a file.
 fn modules(repo: &Repo, file: &File) -> Vec<Finding> {
     let folder = match file.path.rsplit_once('/') {
         Some((folder, "lib.rs" | "mod.rs")) => folder,
@@ -65,7 +65,7 @@ fn modules(repo: &Repo, file: &File) -> Vec<Finding> {
     findings
 }
 
-/// True if the documentation at the head of a module has a block of Rust that runs.
+/// Whether the documentation at the head of a module has a Rust block that runs.
 fn has_example(text: &str) -> bool {
     let mut is_open = false;
     text.lines().filter_map(|line| line.strip_prefix("//! ```")).any(|info| {
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn other_crates_may_go_without() {
+    fn other_crates_need_no_examples() {
         check_lines(check, "crates/sinew_physics/src/lib.rs", "pub mod b;\n", &[]);
         check_lines(check, "crates/sinew_formats/src/lib.rs", "pub mod b;\n", &[1]);
     }

@@ -2,15 +2,15 @@
 
 use super::{File, Finding, Repo};
 
-/// Words that a first line cannot stand on: "Of the moving bodies, kg" says nothing where the name of the item is not seen.
+/// Words that cannot start a first line: "Of the moving bodies, kg" says nothing without the name of the item.
 const FRAGMENTS: &[&str] = &["What", "How", "Of", "Where", "Whether", "Which", "Likewise", "Those"];
 
-/// Each first line in a crate that is a fragment.
+/// Finds each first line in a crate that is a fragment.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     repo.rust_files().filter(|file| file.crate_of_source().is_some()).flat_map(fragments).collect()
 }
 
-/// First lines of documentation that begin with such a word.
+/// Returns first lines of documentation that begin with such a word.
 fn fragments(file: &File) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut is_first = true;

@@ -1,5 +1,5 @@
-//! `docs/guide` is whole: its pages are in its contents and among the tests, its links lead somewhere, and the names that
-//! other engines' names are mapped to are those of the code.
+//! Checks `docs/guide`: its pages are in its contents and among the tests, its links work, and the names in tables of
+//! other engines exist in the code.
 
 use super::lexer::{self, Kind};
 use super::{Finding, Repo};
@@ -7,12 +7,12 @@ use std::collections::BTreeSet;
 
 const PAGES: &str = "docs/guide/src/";
 const CONTENTS: &str = "docs/guide/src/SUMMARY.md";
-/// Doc tests of pages that are about the library.
+/// Doc tests of pages about the library.
 const TESTED: &str = "crates/sinew/src/lib.rs";
-/// Doc tests of those that are about the plugin.
+/// Doc tests of pages about the plugin.
 const TESTED_IN_BEVY: &str = "integrations/bevy_sinew/src/lib.rs";
 
-/// Pages are listed, those with code are tested, links of pages lead to files, and tables of names know ours.
+/// Checks that pages are listed, those with code are tested, links lead to files, and names in tables exist.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let text = |path| repo.file(path).map_or("", |file| file.text.as_str());
     let (contents, tests) = (text(CONTENTS), [text(TESTED), text(TESTED_IN_BEVY)].concat());
@@ -44,13 +44,13 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     findings
 }
 
-/// Targets of a line's links, without anchors; those to other sites are left out.
+/// Returns the targets of a line's links, without anchors and other sites.
 fn links(line: &str) -> impl Iterator<Item = &str> {
     let targets = line.split("](").skip(1).filter_map(|rest| rest.split([')', ' ', '#']).next());
     targets.filter(|target| !target.is_empty() && !target.contains("://"))
 }
 
-/// True if a link from a page of the guide is that of a file.
+/// Whether a link from a page of the guide is that of a file.
 fn leads_somewhere(repo: &Repo, link: &str) -> bool {
     let mut path: Vec<&str> = PAGES.trim_end_matches('/').split('/').collect();
     for part in link.split('/') {
@@ -59,7 +59,7 @@ fn leads_somewhere(repo: &Repo, link: &str) -> bool {
             part => path.push(part),
         }
     }
-    // Pictures are no text, and not among the files that rules see.
+    // Pictures are not among the files that rules see.
     link.ends_with(".png") || repo.file(&path.join("/")).is_some()
 }
 
@@ -68,7 +68,7 @@ fn ours(line: &str) -> &str {
     line.trim_end().trim_end_matches('|').rsplit(" | ").next().unwrap_or_default()
 }
 
-/// Names in the code of a text, but for placeholders of one letter and the marks that stand for a rest.
+/// Returns the names in the code of a text, without placeholders of one letter and ellipses.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let code = text.split('`').skip(1).step_by(2).filter(|code| !code.starts_with("sinew "));
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_that_nobody_lists_or_tests_is_found() {
+    fn an_unlisted_or_untested_page_is_found() {
         let page = ("docs/guide/src/a.md", "```rust\nlet x = 1;\n```\n");
         let contents = (CONTENTS, "- [A](a.md)\n");
         assert!(found(&[page, contents, (TESTED, TEST)]).is_empty());
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_link_that_leads_nowhere_is_found() {
+    fn a_broken_link_is_found() {
         let contents = (CONTENTS, "- [A](a.md)\n");
         let links =
             "[b](../../b.md#there), [web](https://bevy.org), [here](#here)\n\n[c](c.md) ![p](p.png)\n";

@@ -1,13 +1,13 @@
-//! What one machine or one evening left behind.
+//! Paths of one machine, and unfinished code.
 
 use super::{Finding, Repo, lexer};
 
-/// Folders of some machine. Split in two, so that this file does not hold what it looks for.
+/// Home folders. Split in two, so that this file does not contain them.
 const PATHS: &[(&str, &str)] = &[("/wo", "rk/"), ("/ro", "ot/"), ("/t", "mp/")];
 
 const MACROS: &[&str] = &["dbg !", "todo !", "unimplemented !"];
 
-/// No path of one machine in any text, no unfinished code.
+/// Checks that no text has a path of one machine, and no code is unfinished.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
     for file in &repo.files {

@@ -1,6 +1,6 @@
 //! Rust source as a list of tokens: just enough of the language to tell code from comments and strings.
 
-/// What a token is.
+/// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Identifier or keyword.
@@ -18,7 +18,7 @@ pub enum Kind {
 /// A piece of code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token<'a> {
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
     /// As written.
     pub text: &'a str,
@@ -41,7 +41,7 @@ pub fn tokens(source: &str) -> Vec<Token<'_>> {
     tokens
 }
 
-/// Kind (`None` for space and comments) and length in bytes of what `rest` starts with.
+/// Kind (`None` for space and comments) and length in bytes of the start of `rest`.
 fn next(rest: &str) -> (Option<Kind>, usize) {
     let first = rest.chars().next().unwrap_or(' ');
     if first.is_whitespace() {
@@ -150,7 +150,7 @@ fn number(rest: &str) -> usize {
     length
 }
 
-/// Indices at which the tokens of `pattern` (separated by spaces) stand in a row.
+/// Returns the indices at which the tokens of `pattern` (separated by spaces) follow each other.
 pub fn find<'a>(tokens: &'a [Token<'_>], pattern: &str) -> impl Iterator<Item = usize> + use<'a> {
     let pattern: Vec<String> = pattern.split(' ').map(str::to_owned).collect();
     (0..tokens.len()).filter(move |&at| {
@@ -206,7 +206,7 @@ pub fn end_of_item(tokens: &[Token<'_>], start: usize) -> usize {
     tokens.len() - 1
 }
 
-/// Pieces of a list between its commas, those within brackets aside.
+/// Returns the parts of a list between its commas, without splitting brackets.
 pub fn parts<'b, 'a>(list: &'b [Token<'a>]) -> Vec<&'b [Token<'a>]> {
     let mut parts = Vec::new();
     let (mut at, mut start) = (0, 0);

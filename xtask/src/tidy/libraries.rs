@@ -1,9 +1,9 @@
-//! What the libraries do without: files, clocks, logs, globals, the process around them.
+//! Forbidden in libraries: files, clocks, logs, globals, the process around them.
 
 use super::lexer::{self, Kind, Token};
 use super::{File, Finding, Repo};
 
-/// Crates that a user links. Tests in them are free to do what they like.
+/// Crates that a user links. Their tests may use anything.
 const LIBRARIES: &[&str] = &[
     "sinew_math",
     "sinew_geometry",
@@ -19,7 +19,7 @@ const LIBRARIES: &[&str] = &[
 /// The only file that reads and writes files.
 const FILE_ACCESS: &str = "crates/sinew_formats/src/fs.rs";
 
-/// Patterns of tokens, and what to do instead.
+/// Patterns of tokens, and their replacement.
 const FORBIDDEN: &[(&str, &str)] = &[
     ("Instant", "libraries read no clock; stage times come from a Profiler"),
     ("SystemTime", "libraries read no clock"),
@@ -47,7 +47,7 @@ const FORBIDDEN_IN_STD: &[(&str, &str)] = &[
 /// Types whose statics can change.
 const CELLS: &[&str] = &["Mutex", "RwLock", "Cell", "RefCell", "OnceCell", "UnsafeCell"];
 
-/// No library does what the tables above forbid.
+/// Checks that no library uses what the tables above forbid.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let is_library = |file: &&File| file.crate_of_source().is_some_and(|name| LIBRARIES.contains(&name));
     repo.rust_files().filter(is_library).flat_map(check_file).collect()
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn innocent_code_is_not() {
+    fn allowed_code_is_not_found() {
         check_lines(
             check,
             FILE,

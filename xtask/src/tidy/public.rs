@@ -1,4 +1,4 @@
-//! What the libraries offer at their roots: a list that grows on purpose, and in which no name stands for two things.
+//! Names at the roots of the libraries: a list that changes on purpose only, in which no name has two meanings.
 
 use super::circles::{self, Import};
 use super::lexer;
@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The list: a crate and a name in each line, in order.
 const LIST: &str = "xtask/public.txt";
-/// Crates that no one adds as a library.
+/// Crates that are not used as libraries.
 const BINARIES: &[&str] = &["sinew_cli", "sinew_scenes"];
 
 /// Number of names that a crate offers at its root.
@@ -16,7 +16,7 @@ pub fn offered(repo: &Repo, name: &str) -> usize {
     repo.file(LIST).map_or(0, |list| list.text.lines().filter(of_crate).count())
 }
 
-/// The roots of the libraries offer what the list says, and each type's name is its own.
+/// Checks that the roots of the libraries offer the listed names, and each type's name is unique.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let Some(list) = repo.file(LIST) else { return Vec::new() };
     let mut findings = Vec::new();

@@ -1,4 +1,4 @@
-//! Which room of a crate may name which: a crate's folders and files at the top of its `src/`, from the ground up.
+//! Allowed uses between the rooms of a crate: its folders and files at the top of its `src/`, from the ground up.
 
 use super::lexer::{self, Kind, Token};
 use super::{File, Finding, Repo};
@@ -33,33 +33,33 @@ const ROOMS: &[(&str, &[&str])] = &[(
     ],
 )];
 
-/// Existing arrows back up, by file and room. The list may only shrink.
+/// Existing upward arrows, by file and room. The list may only shrink.
 const EXCEPTIONS: &[(&str, &str)] = &[
-    // The step is given the whole world, and the user's objects and the movers act on it within the step.
+    // The step gets the whole world, on which the user's objects and the movers act within the step.
     ("crates/sinew_physics/src/step/mod.rs", "world"),
     ("crates/sinew_physics/src/step/mod.rs", "user_object"),
     ("crates/sinew_physics/src/step/mod.rs", "mover"),
-    // What users write against is given the world.
+    // Interfaces for users take the world.
     ("crates/sinew_physics/src/user_object/mod.rs", "world"),
-    // The world owns its movers, which are nothing but what they do in a world.
+    // The world owns its movers, which act on a world.
     ("crates/sinew_physics/src/world/mod.rs", "mover"),
     ("crates/sinew_physics/src/world/snapshot.rs", "mover"),
-    // What shelters from a blast is asked by a ray.
+    // A ray tests what shelters from a blast.
     ("crates/sinew_physics/src/world/explosions.rs", "query"),
 ];
 
-/// Most arrows back up.
+/// Limit on the upward arrows.
 const EXCEPTIONS_MAX: usize = 10;
 const _: () = assert!(EXCEPTIONS.len() <= EXCEPTIONS_MAX, "too many arrows back up");
 
-/// Number of arrows back up in a crate; `None` if it has no rooms.
+/// Number of upward arrows in a crate; `None` if it has no rooms.
 pub fn arrows_back_up(name: &str) -> Option<usize> {
     let source = format!("crates/{name}/");
     let has_rooms = ROOMS.iter().any(|&(with_rooms, _)| with_rooms == name);
     has_rooms.then(|| EXCEPTIONS.iter().filter(|(file, _)| file.starts_with(&source)).count())
 }
 
-/// Every arrow between rooms goes down, but for the exceptions, which are all needed and few.
+/// Checks that every arrow between rooms goes down, except for the listed ones, which are all needed and few.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     check_rooms(repo, ROOMS, EXCEPTIONS)
 }
@@ -101,7 +101,7 @@ fn check_rooms(repo: &Repo, crates: &[(&str, &[&str])], exceptions: &[(&str, &st
     findings
 }
 
-/// The room that a file stands in: its folder at the top of `src/`, or itself.
+/// Returns the room of a file: its folder at the top of `src/`, or itself.
 fn room_of(file: &File) -> &str {
     let inside = file.path.splitn(4, '/').nth(3).unwrap_or_default();
     inside.split('/').next().unwrap_or_default().trim_end_matches(".rs")
@@ -132,7 +132,7 @@ fn exports(lib: &File) -> Vec<(&str, &str)> {
     exports
 }
 
-/// What a file names right below `crate`, with the lines.
+/// Returns the names right below `crate` that a file uses, with the lines.
 fn named(file: &File) -> Vec<(&str, usize)> {
     // As many `super` as lead to the top.
     let inside = file.path.splitn(4, '/').nth(3).unwrap_or_default();
@@ -147,7 +147,7 @@ fn named(file: &File) -> Vec<(&str, usize)> {
     tops.iter().flat_map(below).flat_map(|at| firsts(&tokens, at)).collect()
 }
 
-/// The word at `at`, or those with which the parts of the group there begin.
+/// Returns the word at `at`, or the first words of the parts of the group there.
 fn firsts<'a>(tokens: &[Token<'a>], at: usize) -> Vec<(&'a str, usize)> {
     let Some(first) = tokens.get(at) else { return Vec::new() };
     if first.text != "{" {

@@ -1,4 +1,4 @@
-//! Functions fit a screen, files fit a head.
+//! Limits on the lengths of functions and files.
 
 use super::lexer::{self, Kind};
 use super::{File, Finding, Repo};
@@ -9,7 +9,7 @@ const FILE_LINES_MAX: usize = 1_000;
 /// Lines of `path function-name lines` or `path file lines`; `#` starts a comment.
 const EXCEPTIONS: &str = "xtask/exceptions.txt";
 
-/// How many exceptions there may be. May only be lowered.
+/// Number of exceptions. May only be lowered.
 const EXCEPTIONS_MAX: usize = 0;
 
 /// Something with a length: a file, or a function in one.
@@ -24,11 +24,11 @@ struct Exception {
     path: String,
     name: String,
     lines: usize,
-    /// In the list of exceptions.
+    /// Its line in the list of exceptions.
     line: usize,
 }
 
-/// Nothing is longer than its limit, but for the exceptions, each with its exact length; and those are all needed.
+/// Checks that nothing exceeds its limit, except for the exceptions, each with its exact length; and that those are all needed.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     check_up_to(repo, EXCEPTIONS_MAX)
 }
@@ -75,7 +75,7 @@ fn limit(piece: &Piece) -> usize {
     if piece.name == "file" { FILE_LINES_MAX } else { FUNCTION_LINES_MAX }
 }
 
-/// The exceptions, or the number of the first line that is none.
+/// Returns the exceptions, or the number of the first malformed line.
 fn parse(text: &str) -> Result<Vec<Exception>, usize> {
     let mut exceptions = Vec::new();
     for (index, content) in text.lines().enumerate() {
@@ -95,7 +95,7 @@ fn parse(text: &str) -> Result<Vec<Exception>, usize> {
     Ok(exceptions)
 }
 
-/// The file and its functions, nested ones included.
+/// Returns the file and its functions, nested ones included.
 fn pieces(file: &File) -> Vec<Piece> {
     let whole =
         Piece { path: file.path.clone(), name: "file".into(), line: 1, lines: file.text.lines().count() };

@@ -1,4 +1,4 @@
-//! One name per stage: the code's list of stages is the manual's.
+//! The code's list of stages equals the manual's.
 
 use super::lexer::{self, Kind};
 use super::{Finding, Repo};
@@ -8,7 +8,7 @@ const STAGE: &str = "crates/sinew_physics/src/stage.rs";
 const MANUAL: &str = "docs/step.md";
 const STEP_LINES_MAX: usize = 80;
 
-/// `step/mod.rs` is short, and `enum Stage` has the stages of `docs/step.md` in the same order.
+/// Checks that `step/mod.rs` is short, and `enum Stage` has the stages of `docs/step.md` in the same order.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
     if let Some(step) = repo.file(STEP) {
@@ -39,11 +39,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     if findings.is_empty()
         && let Some(((name, line), (other, _))) = pairs.find(|(coded, documented)| coded.0 != documented.0)
     {
-        findings.push(Finding::new(
-            STAGE,
-            *line,
-            format!("stage `{name}` stands where {MANUAL} has `{other}`"),
-        ));
+        findings.push(Finding::new(STAGE, *line, format!("stage `{name}` is where {MANUAL} has `{other}`")));
     }
     if findings.is_empty() && drawn(&manual.text, &coded).is_some_and(|drawn| drawn != coded.len()) {
         findings.push(Finding::new(MANUAL, 1, "the diagram has not all stages in their order"));
@@ -51,7 +47,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     findings
 }
 
-/// Number of words in the manual's first diagram that are the stages in their order; `None` if it has no diagram.
+/// Returns the number of words in the manual's first diagram that are the stages in their order; `None` if it has no diagram.
 fn drawn(text: &str, stages: &[(String, usize)]) -> Option<usize> {
     let diagram = text.split("```").nth(1)?.strip_prefix("text\n")?;
     let words = diagram.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty());
@@ -59,18 +55,18 @@ fn drawn(text: &str, stages: &[(String, usize)]) -> Option<usize> {
     Some(words.filter(|word| left.next_if_eq(word).is_some()).count())
 }
 
-/// Stages by heading: "## `name`".
+/// Returns stages by heading: "## `name`".
 fn headings(text: &str) -> Vec<(String, usize)> {
     let stage = |line: &str| Some(line.strip_prefix("## `")?.strip_suffix('`')?.to_owned());
     text.lines().enumerate().filter_map(|(index, line)| Some((stage(line)?, index + 1))).collect()
 }
 
-/// Variants of `enum Stage`, in snake case.
+/// Returns the variants of `enum Stage`, in snake case.
 fn variants(text: &str) -> Vec<(String, usize)> {
     let tokens = lexer::tokens(text);
     let Some(open) = lexer::find(&tokens, "enum Stage {").next().map(|at| at + 2) else { return Vec::new() };
     let body = &tokens[open..=lexer::closing(&tokens, open)];
-    // A variant stands before a comma or the closing brace, and is no part of an attribute.
+    // A variant is before a comma or the closing brace, and not part of an attribute.
     let pairs =
         body.windows(2).filter(|pair| pair[0].kind == Kind::Word && matches!(pair[1].text, "," | "}"));
     pairs.map(|pair| (snake_case(pair[0].text), pair[0].line)).collect()
@@ -126,7 +122,7 @@ mod tests {
         assert_eq!(
             check_stages(CODE, "## `integrate_velocity`\n## `pairs`\n"),
             [
-                "crates/sinew_physics/src/stage.rs:3: stage `pairs` stands where docs/step.md has `integrate_velocity`"
+                "crates/sinew_physics/src/stage.rs:3: stage `pairs` is where docs/step.md has `integrate_velocity`"
             ]
         );
     }

@@ -1,14 +1,14 @@
-//! Constants of behaviour stand in the `tuning.rs` of their room, where each says what turning it does.
+//! Constants of behaviour are in the `tuning.rs` of their room, where each states the effect of a change.
 
 use super::lexer::{self, Kind};
 use super::rooms::is_test;
 use super::{Finding, Repo};
 
-/// Crates whose constants of behaviour have such a home.
+/// Crates whose constants of behaviour have such a file.
 const CRATES: &[&str] = &["sinew_physics", "sinew_anim", "sinew_ragdoll"];
 
-/// Numbers that are none of behaviour: bounds of rounding, of what can be represented, of a series; a unit; sizes that are only drawn;
-/// a table of anatomy, a drop as the contract has it, the verdict's bars. By file and name; may only shrink.
+/// Other numbers: bounds of rounding, of representable values, of a series; a unit; sizes that are only drawn;
+/// a table of anatomy, a drop of the contract, the verdict's bars. By file and name; may only shrink.
 const OTHERS: &[(&str, &str)] = &[
     ("sinew_anim/src/animator/advance.rs", "SHORTEST"),
     ("sinew_anim/src/animator/fire.rs", "MOMENT"),
@@ -70,7 +70,7 @@ const OTHERS: &[(&str, &str)] = &[
     ("sinew_ragdoll/src/skin/judge.rs", "SUNK"),
 ];
 
-/// Every float constant is in a `tuning.rs` or listed, and every constant in a `tuning.rs` says where it is to be seen.
+/// Checks that every float constant is in a `tuning.rs` or listed, and that every constant in a `tuning.rs` names a scene or test.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut needed = vec![false; OTHERS.len()];
@@ -88,7 +88,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
                 let explained = file.text.lines().take(line - 1).collect::<Vec<_>>();
                 let docs = explained.iter().rev().take_while(|line| line.starts_with("///"));
                 let text: String = docs.copied().collect();
-                // Its own scene or test, or the constant that it goes with.
+                // Its own scene or test, or the constant that it belongs to.
                 if !["hown by", "No scene", "[`"].iter().any(|told| text.contains(told)) {
                     let message = format!("`{name}` does not say where it is to be seen");
                     findings.push(Finding::new(&file.path, line, message));
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_says_where_it_is_to_be_seen() {
+    fn a_constant_names_its_scene_or_test() {
         assert_eq!(lines("step/tuning.rs", "/// Speed, m/s.\npub const SLOW: f32 = 0.5;"), [2]);
         let told = "/// Speed, m/s.\n///\n/// Larger: it sleeps. Shown by `coin`.\npub const SLOW: f32 = 0.5;\n\n/// Spin, rad/s.\n///\n/// As [`SLOW`].\nconst SPIN: f32 = 1.0;";
         assert!(lines("step/tuning.rs", told).is_empty());

@@ -1,4 +1,4 @@
-//! Where `unsafe` may stand (design §5).
+//! Allowed places of `unsafe` (design §5).
 
 use super::lexer;
 use super::{Finding, Repo};
@@ -17,7 +17,7 @@ const ALLOWED: &[&str] = &[
     "bindings/web/src",
 ];
 
-/// `unsafe` stands only in the modules above. Every crate root forbids it, or, where the crate has one of those modules
+/// Checks that `unsafe` is only in the modules above. Every crate root forbids it, or, where the crate has one of those modules
 /// (`forbid` cannot be lifted), denies it.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
@@ -48,7 +48,7 @@ fn is_allowed(path: &str) -> bool {
     after.into_iter().any(|after| after == ".rs" || after.starts_with('/'))
 }
 
-/// The source folder whose crate root is `path`.
+/// Returns the source folder whose crate root is `path`.
 fn source_of_root(path: &str) -> Option<&str> {
     let source = path.strip_suffix("lib.rs").or_else(|| path.strip_suffix("main.rs"))?;
     source.ends_with("/src/").then_some(source)

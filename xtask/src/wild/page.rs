@@ -45,7 +45,7 @@ const BAKES: [&str; 8] = [
     "still after, s",
 ];
 
-/// The whole page.
+/// Returns the whole page.
 pub fn page(rows: &[Row], roles: &Value) -> String {
     let mut page = format!("{HEAD}\n{}\n", summary(rows, roles));
     let _ = write!(
@@ -63,7 +63,7 @@ pub fn page(rows: &[Row], roles: &Value) -> String {
     page
 }
 
-/// Sum over all files of one column of roles: right, of all.
+/// Returns the sum over all files of one column of roles: correct, of all.
 fn sum(roles: &Value, column: &str) -> (u64, u64) {
     let pairs = roles.as_object().into_iter().flatten().filter_map(|(_, row)| pair(&row[column]));
     pairs.fold((0, 0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1))
@@ -169,12 +169,12 @@ fn reasons(rows: &[Row]) -> String {
         }
         let of_drops = &row.report["build"]["quality"]["reasons"];
         let of_bake = &row.report["bake"]["notes"];
-        // That no clip is played in a drop is said of every file.
+        // That no clip is played in a drop holds for every file.
         let said = of_drops.as_array().into_iter().flatten().filter_map(Value::as_str);
         for reason in said.filter(|reason| !reason.starts_with("hand-over")) {
             let _ = writeln!(text, "- {}: {reason}", row.file);
         }
-        // That it stays down is what the command asked for.
+        // The command asked for staying down.
         let noted = of_bake.as_array().into_iter().flatten().filter_map(Value::as_str);
         for note in noted.filter(|note| !note.starts_with("it does not get up")) {
             let _ = writeln!(text, "- {}, baked: {note}", row.file);
@@ -183,7 +183,7 @@ fn reasons(rows: &[Row]) -> String {
     text
 }
 
-/// A number times a factor, a dash where there is none.
+/// Returns a number times a factor, or a dash.
 fn figure(value: &Value, factor: f64, digits: usize) -> String {
     value.as_f64().map_or("–".to_owned(), |x| {
         // Adding zero turns −0 into 0.
@@ -199,7 +199,7 @@ mod tests {
     use std::path::PathBuf;
 
     #[test]
-    fn a_refused_file_is_counted_and_told() {
+    fn a_refused_file_is_counted_and_listed() {
         let row = Row {
             file: "rigs/odd.glb".into(),
             report: json!({ "refused": "no skin" }),

@@ -1,4 +1,4 @@
-//! Many pictures on few sheets.
+//! Sheets of many pictures.
 
 use super::Row;
 use anyhow::{Context, Result, ensure};
@@ -6,17 +6,17 @@ use std::fs;
 use std::io::{BufReader, BufWriter};
 use std::path::Path;
 
-/// Pixels of a picture, across and down.
+/// Size of a picture, pixels.
 pub const SIZE: [usize; 2] = [480, 300];
-/// Pictures of a sheet, across and down.
+/// Number of pictures on a sheet, across and down.
 const GRID: [usize; 2] = [3, 3];
 /// Bytes of a pixel.
 const RGB: usize = 3;
 
-/// Writes sheet-1.png and so on, in the order of the rows, each picture with its file's name in it.
+/// Writes sheet-1.png and so on, in the order of the rows, each picture with its file's name.
 ///
 /// # Errors
-/// If a picture cannot be read, or a sheet not be written.
+/// If a picture cannot be read, or a sheet cannot be written.
 pub fn write(rows: &[Row], out: &Path) -> Result<()> {
     let drawn: Vec<&Row> = rows.iter().filter(|row| row.report["refused"].is_null()).collect();
     for (number, rows) in drawn.chunks(GRID[0] * GRID[1]).enumerate() {
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_stand_beside_and_below_each_other() {
+    fn pictures_form_a_grid() {
         let mut sheet = vec![0; GRID[0] * SIZE[0] * GRID[1] * SIZE[1] * RGB];
         place(&vec![7; SIZE[0] * SIZE[1] * RGB], [1, 2], &mut sheet);
         let at = |x: usize, y: usize| sheet[(y * GRID[0] * SIZE[0] + x) * RGB];

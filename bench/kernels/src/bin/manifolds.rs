@@ -1,7 +1,7 @@
-//! Contact manifolds of two shapes, beside those of Parry: the same random pairs, asked for the first time.
+//! Contact manifolds of two shapes, beside Parry's: the same random pairs, without cached data.
 //!
-//! `manifolds` prints nanoseconds a pair and how many pairs touch; `manifolds ENGINE KINDS` (as `sinew box-hull`) asks one engine
-//! for one kind of pair ten times over, for `valgrind --tool=callgrind`.
+//! `manifolds` prints nanoseconds per pair and the number of touching pairs; `manifolds ENGINE KINDS` (as `sinew box-hull`) runs one engine
+//! on one kind of pair ten times, for `valgrind --tool=callgrind`.
 #![forbid(unsafe_code)]
 
 use parry3d::math::{Pose, Rotation as ParryRotation, Vector};
@@ -16,14 +16,14 @@ use std::time::Instant;
 
 /// Pairs of each kind.
 const PAIRS: usize = 4_096;
-/// Times that all of them are asked.
+/// Rounds over all of them.
 const ROUNDS: usize = 10;
-/// Gap up to which points count, metres.
+/// Search distance for points, metres.
 const MARGIN: f32 = 0.02;
 
 const KINDS: [&str; 5] = ["box", "ball", "capsule", "cylinder", "hull"];
 
-/// Two shapes, each as both engines have it.
+/// Two shapes in the form of both engines.
 struct Pair {
     shapes: [Shape; 2],
     frames: [Transform; 2],
@@ -66,7 +66,7 @@ fn pairs(kinds: [&str; 2]) -> Vec<Pair> {
     (0..PAIRS).map(pair).collect()
 }
 
-/// How many pairs touch.
+/// Returns the number of touching pairs.
 fn sinew(pairs: &[Pair]) -> usize {
     let mut manifold = Manifold::default();
     let touches = |pair: &&Pair| {

@@ -1,7 +1,7 @@
-//! Springs of a contiguous cloth that one core projects in a second: 100 by 100 particles in flight, threads and diagonals, nothing near.
+//! Springs of cloth that one core projects in a second: 100 by 100 free particles, threads and diagonals, nothing near.
 //!
-//! Substeps of many iterations and of few tell what an iteration takes; the same cloth with a single spring tells what of it goes
-//! to particles.
+//! The difference of substeps with many and few iterations gives the time of an iteration; cloth with a single spring gives the share
+//! of the particles.
 #![forbid(unsafe_code)]
 
 use sinew_math::Vec3;
@@ -12,7 +12,7 @@ use std::time::Instant;
 
 /// Cells along a side.
 const CELLS: u32 = 99;
-/// Steps of a sample: the least time of one counts.
+/// Steps of a sample; the fastest sample counts.
 const STEPS: usize = 30;
 /// Iterations of a substep, few and many.
 const ITERATIONS: [u32; 2] = [2, 42];

@@ -1,7 +1,7 @@
 //! Box3D with its defaults.
 //!
-//! Beside Rapier it takes 0.68 of the time for the pile of figures, 1.05 for the pyramid, 1.61 for the chain of 100 links
-//! on an Intel Xeon; earlier figures, of another commit on a Zen 4, were 0.59, 0.94 and 1.44.
+//! On an Intel Xeon it takes 0.68 of Rapier's time for the pile of figures, 1.05 for the pyramid, 1.61 for the chain of 100 links;
+//! another commit on a Zen 4 took 0.59, 0.94 and 1.44.
 
 use crate::engine::{
     BodyState, Description, Engine, OverlapTester, RayCaster, Simulation, Unsupported, circular_cone,
@@ -16,19 +16,19 @@ use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyKind, JointKind, Sensing, ShapeDef, Sleeping};
 use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
 
-/// Substeps of a step: as its samples and its manual have it.
+/// Substeps of a step: as in its samples and its manual.
 const SUBSTEPS: i32 = 4;
 
-/// Below this distance Box3D's own overlap tests call shapes overlapping (`B3_OVERLAP_SLOP`), metres.
+/// Below this distance Box3D's own overlap tests report an overlap (`B3_OVERLAP_SLOP`), metres.
 const OVERLAP_SLOP: f32 = 5e-4;
 
-/// Half sizes of the box that stands for a half-space, metres; its upper face is the plane.
+/// Half sizes of the box that replaces a half-space, metres; its upper face is the plane.
 const HALF_SPACE: Vec3 = Vec3::new(1000.0, 10.0, 1000.0);
 
-/// Sides of the hull that stands for a cylinder or a cone.
+/// Sides of the hull that replaces a cylinder or a cone.
 const SIDES: usize = 24;
 
-/// x of our joint frames becomes z of Box3D's, in which hinges, cones and twists are about z.
+/// x of our joint frames becomes z of Box3D's, whose hinges, cones and twists are about z.
 const Z_TO_X: Rotation = Rotation { x: 0.5, y: 0.5, z: 0.5, w: 0.5 };
 
 /// This engine.
@@ -39,7 +39,7 @@ impl Engine for Box3d {
         let lanes = if cfg!(target_arch = "x86_64") { "SSE2" } else { "NEON or scalar" };
         Description {
             name: "box3d",
-            // The crate does not say which commit it bundles.
+            // The crate does not state its commit of Box3D.
             version: format!("{}, C source in crate box3d-sys 0.1.16", version()),
             flags: format!(
                 "Release: -O3 -DNDEBUG -ffp-contract=off, {lanes} (4 lanes), BOX3D_VALIDATE=OFF, no LTO"
@@ -108,19 +108,19 @@ fn add_body(world: &mut World, def: &BodyDef, sleeping: Sleeping) -> Result<(), 
     Ok(())
 }
 
-/// Box3D multiplies the larger share of two shapes by the larger of their radii, of which only meshes have none: what rolls
-/// on a large box meets more resistance than it says.
+/// Box3D multiplies the larger share of two shapes by the larger of their radii, of which only meshes have none: bodies on
+/// large boxes meet more resistance than stated.
 fn refuse_rolling_on_boxes(scene: &Blueprint) -> Result<(), Unsupported> {
     let mut shapes = scene.bodies.iter().flat_map(|def| def.shapes.iter().map(move |part| (def.kind, part)));
     let rolls = shapes.clone().any(|(_, part)| part.material.rolling != 0.0);
     let has_no_radius = |part: &ShapeDef| triangles(&part.shape).is_some();
     if rolls && shapes.any(|(kind, part)| kind != BodyKind::Dynamic && !has_no_radius(part)) {
-        return Err(Unsupported::new("rolling resistance on what is no mesh and does not move"));
+        return Err(Unsupported::new("rolling resistance on a static shape other than a mesh"));
     }
     Ok(())
 }
 
-/// Radius that Box3D takes for the lever of rolling resistance, metres.
+/// Radius that Box3D uses as the lever of rolling resistance, metres.
 fn rolling_radius(shape: &sinew::physics::Shape) -> f32 {
     use sinew::physics::Shape as Ours;
     match *shape {
@@ -162,7 +162,7 @@ fn shape(def: &ShapeDef) -> Result<Shape, Unsupported> {
     })
 }
 
-/// Corners of what stands for a circle about y: Box3D has round things as hulls only.
+/// Returns the corners of a polygon for a circle about y: Box3D has round solids only as hulls.
 fn ring(y: f32, radius: f32) -> [Vec3; SIDES] {
     core::array::from_fn(|side| {
         let (sin, cos) = trig::sin_cos(core::f32::consts::TAU * side as f32 / SIDES as f32);
@@ -233,7 +233,7 @@ impl RayCaster for Box3dRays {
     }
 }
 
-/// The distance of two boxes (GJK): Box3D has no other public test of two boxes that stops short of a manifold.
+/// Returns the distance of two boxes (GJK): Box3D has no other public test of two boxes without a manifold.
 struct Box3dBoxes {
     pairs: Vec<BoxPair>,
 }

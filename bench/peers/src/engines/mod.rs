@@ -15,7 +15,7 @@ use crate::engine::Engine;
 /// An engine by its name, built into this binary or not.
 #[derive(Clone, Copy)]
 pub struct Entry {
-    /// On the command line.
+    /// Name on the command line.
     pub name: &'static str,
     /// `None` if this binary was built without it.
     pub engine: Option<&'static dyn Engine>,
@@ -42,7 +42,7 @@ pub const ENGINES: &[Entry] = &[
     Entry { name: "ozz", engine: None },
 ];
 
-/// The engine of that name.
+/// Returns the engine of that name.
 pub fn find(name: &str) -> Option<&'static Entry> {
     ENGINES.iter().find(|entry| entry.name == name)
 }

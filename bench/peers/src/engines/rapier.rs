@@ -14,7 +14,7 @@ use sinew::physics::{BodyDef, BodyKind, JointKind, ShapeDef, Sleeping};
 use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
 use sinew_scenes::walks::{Terrain, Walker, capsule};
 
-/// What this build of it is called.
+/// Name of this build.
 pub const NAME: &str = if cfg!(feature = "simd8") { "rapier_simd8" } else { "rapier" };
 
 /// This engine.
@@ -52,7 +52,7 @@ impl Engine for Rapier {
             world.insert_impulse_joint(bodies[def.a], bodies[def.b], joint(def, scene)?);
         }
         for &(a, b) in &scene.apart {
-            // Without a hook of the user's, a joint that holds nothing is what parts a pair.
+            // Without a hook of the user, a joint without locked axes disables a pair.
             let parted = GenericJointBuilder::new(JointAxesMask::empty()).contacts_enabled(false);
             world.insert_impulse_joint(bodies[a], bodies[b], parted);
         }
@@ -68,7 +68,7 @@ impl Engine for Rapier {
             let ball = ColliderBuilder::ball(radius).translation(vector(center));
             world.insert_collider(ball.friction(scene.friction), None);
         }
-        // Its grid runs along the first direction last; ours along rows, which are x.
+        // Its grid varies fastest along its first direction; ours along rows, which are x.
         let [along_rows, to_next_row] = [Vec3::X, Vec3::Z].map(|axis| vector(axis * scene.spacing));
         let surface = ColliderBuilder::ball(0.1).friction(scene.friction);
         let cloth =
@@ -88,7 +88,7 @@ impl Engine for Rapier {
         for place in &scene.boxes {
             world.insert_collider(static_box(place), None);
         }
-        // Builds the tree that rays go down.
+        // Builds the tree for rays.
         world.step();
         let rays = scene.rays.iter().map(|ray| Ray::new(vector(ray.origin), vector(ray.direction))).collect();
         Ok(Box::new(RapierRays { world, rays }))
@@ -148,7 +148,7 @@ fn collider(def: &ShapeDef, body: &BodyDef) -> Result<ColliderBuilder, Unsupport
         return Err(Unsupported::new("rolling resistance"));
     }
     let [layers, mask] = [def.filter.layers, def.filter.mask].map(Group::from_bits_retain);
-    // A mass that is given replaces that of the shapes.
+    // A given mass replaces that of the shapes.
     let density = if body.mass.is_some() { 0.0 } else { def.density };
     Ok(ColliderBuilder::new(shape(&def.shape)?)
         .position(pose(def.body_from_shape))
@@ -261,7 +261,7 @@ impl OverlapTester for ParryBoxes {
     }
 }
 
-/// A capsule led by Rapier's controller, with its defaults but for what [`capsule`] says: step and snap height, slopes, accelerations.
+/// A capsule moved by Rapier's controller, with its defaults except for [`capsule`]: step and snap height, slopes, accelerations.
 struct RapierWalker {
     world: PhysicsWorld,
     controller: KinematicCharacterController,
@@ -272,10 +272,10 @@ struct RapierWalker {
     is_grounded: bool,
 }
 
-/// A walker of Rapier with its feet somewhere on a terrain.
+/// Returns a walker of Rapier with its feet somewhere on a terrain.
 ///
 /// # Panics
-/// If the terrain has a shape that Rapier has not.
+/// If Rapier lacks a shape of the terrain.
 pub fn walker(on: &Terrain, feet: Vec3) -> Box<dyn Walker> {
     let def = capsule();
     let mut world = world(Vec3::new(0.0, -9.81, 0.0));
@@ -288,7 +288,7 @@ pub fn walker(on: &Terrain, feet: Vec3) -> Box<dyn Walker> {
             world.insert_collider(solid.position(place), Some(handle));
         }
     }
-    // Builds the tree that is asked.
+    // Builds the tree for queries.
     world.step();
     let step = CharacterLength::Absolute(def.step_height);
     let controller = KinematicCharacterController {
@@ -325,14 +325,14 @@ impl Walker for RapierWalker {
         let change = if !self.is_grounded && wish == Vec3::ZERO { Vec3::ZERO } else { wish - level };
         let length = change.length();
         self.velocity += if length > most { change * (most / length) } else { change };
-        // As its examples do: it falls from rest where the ground bore it.
+        // As in its examples: it falls from rest where the ground carried it.
         self.velocity.y = if self.is_grounded { 0.0 } else { self.velocity.y } - 9.81 * DT;
         let queries = self.world.query_pipeline();
         let wanted = vector(self.velocity * DT);
         let moved = self.controller.move_shape(DT, &queries, &self.shape, &self.pose, wanted, |_| {});
         self.pose.translation += moved.translation;
         self.is_grounded = moved.grounded;
-        // What stopped it stops it.
+        // Obstacles stop its velocity.
         let went = from_vector(moved.translation) / DT;
         let [before, after] = [self.velocity, went].map(|v| Vec3::new(v.x, 0.0, v.z).length());
         if after < before {

@@ -1,4 +1,4 @@
-//! Sinew, as it is in this repository.
+//! Sinew from this repository.
 
 use crate::engine::{
     BodyState, CharacterPose, ClothSimulation, Crowd, Description, Engine, OverlapTester, ParticleState,
@@ -107,10 +107,10 @@ impl Simulation for SinewWorld {
 
 /// Stiffness of a square of the cloth along its threads and along its diagonals, N/m.
 const STRETCHING: f32 = 2e3;
-/// Bending stiffness per width, N·m: with it a bend resists as much as a distance over two cells does in Jolt's cloth.
+/// Bending stiffness per width, N·m: a bend then resists as much as a distance over two cells does in Jolt's cloth.
 const BENDING: f32 = 1e-3;
 
-/// The scene as a [`ClothDef`] makes it: both threads, both diagonals of each cell, bends over two cells; two iterations per substep.
+/// Returns the scene as a [`ClothDef`] makes it: both threads, both diagonals of each cell, bends over two cells; two iterations per substep.
 fn cloth(scene: &ClothScene) -> GroupDef {
     let last = scene.side - 1;
     let cells = last as u32;
@@ -170,7 +170,7 @@ impl RayCaster for SinewRays {
     }
 }
 
-/// Eight pairs at a time, stored as its users would: the pairs of each step together.
+/// Eight pairs at a time, stored as users would: the pairs of each step together.
 struct SinewBoxes {
     steps: Vec<Pairs>,
     overlapping: Vec<u8>,

@@ -1,6 +1,6 @@
-//! Box3D behind a safe face.
+//! Safe interface to Box3D.
 //!
-//! What keeps it safe: ids never leave their [`World`], so none outlives it or is used with another; definitions come
+//! Why it is safe: ids never leave their [`World`], so none outlives it or is used with another; definitions come
 //! from Box3D's own defaults and are lent for the length of a call, which copies them.
 
 #![allow(unsafe_code)]
@@ -14,30 +14,30 @@ use sinew::physics::MassProperties;
 use sinew::physics::ray::Ray;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Held while worlds come and go: Box3D's table of worlds has no lock of its own.
+/// Locked while worlds are created and destroyed: Box3D's table of worlds has no lock of its own.
 static WORLDS: Mutex<()> = Mutex::new(());
 
-/// Corners that a hull may have (`B3_MAX_HULL_VERTICES`).
+/// Largest number of corners of a hull (`B3_MAX_HULL_VERTICES`).
 const MOST_HULL_CORNERS: i32 = 128;
 
 fn lock_worlds() -> MutexGuard<'static, ()> {
     WORLDS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Version of the library, as it says itself.
+/// Version that the library reports.
 pub fn version() -> String {
     // SAFETY: takes nothing, returns a value.
     let b3Version { major, minor, revision } = unsafe { b3GetVersion() };
     format!("{major}.{minor}.{revision}")
 }
 
-/// A world and everything in it. Bodies are named by the order in which they were added.
+/// A world and all its objects. Bodies are named by the order in which they were added.
 pub struct World {
     id: b3WorldId,
     bodies: Vec<b3BodyId>,
     /// Which the shapes of the world refer to.
     meshes: Vec<*mut b3MeshData>,
-    /// Queries of one world from several threads are nowhere promised to be safe.
+    /// Box3D does not promise that queries of one world from several threads are safe.
     not_shared: PhantomData<*const ()>,
 }
 
@@ -50,7 +50,7 @@ pub enum Motion {
     Dynamic = b3BodyType_b3_dynamicBody,
 }
 
-/// A body to be made.
+/// Definition of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Body {
     pub motion: Motion,
@@ -71,20 +71,20 @@ pub enum Shape {
     Mesh { vertices: Vec<Vec3>, triangles: Vec<[u32; 3]> },
 }
 
-/// What a shape is made of and whom it meets.
+/// Material and filter of a shape.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
     pub density: f32,
     pub friction: f32,
     pub restitution: f32,
-    /// Share of the shape's radius, which of a box is a quarter of that of the largest ball inside.
+    /// Share of the shape's radius, which for a box is a quarter of that of the largest ball inside.
     pub rolling: f32,
     pub layers: u32,
     pub mask: u32,
     pub group: i32,
 }
 
-/// What a joint leaves free, and how much torque resists it. Hinges, cones and twists are about **z** of the joint's
+/// Free directions of a joint, and the torque that resists. Hinges, cones and twists are about **z** of the joint's
 /// frames.
 #[derive(Clone, Copy, Debug)]
 pub enum Joint {
@@ -109,7 +109,7 @@ impl World {
         Self { id, bodies: Vec::new(), meshes: Vec::new(), not_shared: PhantomData }
     }
 
-    /// Adds a body without shapes; gives its place.
+    /// Adds a body without shapes; returns its index.
     pub fn add_body(&mut self, body: &Body) -> usize {
         // SAFETY: takes nothing, returns a value.
         let mut def = unsafe { b3DefaultBodyDef() };
@@ -128,10 +128,10 @@ impl World {
     /// Adds a shape to a body, whose mass and inertia grow by those of the shape.
     ///
     /// # Errors
-    /// If Box3D takes no such hull: it has at most 128 corners in all.
+    /// If Box3D refuses the hull: it has at most 128 corners in all.
     ///
     /// # Panics
-    /// If there is no such body, or Box3D takes no such mesh.
+    /// If there is no such body, or Box3D refuses the mesh.
     pub fn add_shape(&mut self, body: usize, shape: &Shape, surface: &Surface) -> Result<(), Unsupported> {
         let body = self.bodies[body];
         // SAFETY: takes nothing, returns a value.
@@ -185,7 +185,7 @@ impl World {
         Ok(())
     }
 
-    /// Replaces mass, centre and inertia that a body has from its shapes.
+    /// Replaces mass, centre and inertia of a body.
     ///
     /// # Panics
     /// If there is no such body.
@@ -197,7 +197,7 @@ impl World {
         unsafe { b3Body_SetMassData(self.bodies[body], data) };
     }
 
-    /// Velocities of a body: of its centre of mass, and angular in world axes.
+    /// Sets velocities of a body: of its centre of mass, and angular in world axes.
     ///
     /// # Panics
     /// If there is no such body.
@@ -210,7 +210,7 @@ impl World {
         }
     }
 
-    /// Keeps two bodies from colliding with each other.
+    /// Disables collisions of two bodies.
     ///
     /// # Panics
     /// If there are no such bodies.
@@ -225,7 +225,7 @@ impl World {
         }
     }
 
-    /// Joins two bodies, which then do not collide with each other.
+    /// Joins two bodies, which then do not collide.
     ///
     /// # Panics
     /// If there are no such bodies.
@@ -243,7 +243,7 @@ impl World {
                 Joint::Revolute { limit, friction } => {
                     let mut def = b3DefaultRevoluteJointDef();
                     attach(&mut def.base);
-                    // A motor that wants to stand still is friction.
+                    // A motor with target velocity 0 is friction.
                     (def.enableMotor, def.maxMotorTorque) = (friction > 0.0, friction);
                     if let Some([lower, upper]) = limit {
                         def.enableLimit = true;
@@ -300,14 +300,14 @@ impl World {
         unsafe { [b3Body_GetLinearVelocity(id), b3Body_GetAngularVelocity(id)].map(from_vector) }
     }
 
-    /// How many bodies do not sleep, of those that can move.
+    /// Returns the number of awake bodies.
     pub fn awake_bodies(&self) -> usize {
         // SAFETY: the world lives as long as `self`; returns a value.
         let count = unsafe { b3World_GetAwakeBodyCount(self.id) };
         usize::try_from(count).expect("a count is not negative")
     }
 
-    /// Whether a ray meets a shape; the closest is found. One that starts inside a shape does not see it.
+    /// Returns whether a ray hits a shape; the closest is found. A ray that starts inside a shape does not hit it.
     pub fn meets_ray(&self, ray: &Ray) -> bool {
         // SAFETY: the world lives as long as `self`, which is on one thread; no callback runs; returns values.
         unsafe {
@@ -329,21 +329,21 @@ impl Drop for World {
     }
 }
 
-/// The hull of points, to be destroyed by its owner.
+/// Returns the hull of points; the caller destroys it.
 fn hull(points: &[Vec3]) -> Result<*mut b3HullData, Unsupported> {
     let points: Vec<_> = points.iter().map(|&point| vector(point)).collect();
-    // Box3D would make a simpler hull of more: another scene.
+    // Box3D would simplify a hull of more: another scene.
     let count = i32::try_from(points.len()).ok().filter(|&count| count <= MOST_HULL_CORNERS);
     let count = count.ok_or_else(|| Unsupported::new("no hulls of more than 128 corners"))?;
-    // SAFETY: there are as many points as it is told, and they live through the call.
+    // SAFETY: the count is that of the points, and they live through the call.
     let hull = unsafe { b3CreateHull(points.as_ptr(), count, count) };
     if hull.is_null() { Err(Unsupported::new("a hull that Box3D refuses")) } else { Ok(hull) }
 }
 
-/// A mesh of one-sided triangles, counter-clockwise seen from outside, to be destroyed by its owner.
+/// Returns a mesh of one-sided triangles, counter-clockwise from outside; the caller destroys it.
 ///
 /// # Panics
-/// If Box3D takes no such mesh.
+/// If Box3D refuses the mesh.
 fn mesh(vertices: &[Vec3], triangles: &[[u32; 3]]) -> *mut b3MeshData {
     let count = |len: usize| i32::try_from(len).expect("a mesh of a test scene is small");
     let mut points: Vec<_> = vertices.iter().map(|&vertex| vector(vertex)).collect();
@@ -359,7 +359,7 @@ fn mesh(vertices: &[Vec3], triangles: &[[u32; 3]]) -> *mut b3MeshData {
         useMedianSplit: false,
         identifyEdges: true,
     };
-    // SAFETY: there are as many vertices and indices as it is told, and they live through the call, which copies them;
+    // SAFETY: the counts are those of the vertices and indices, and they live through the call, which copies them;
     // null and 0 ask for no list of triangles without area.
     let mesh = unsafe { b3CreateMesh(&raw const def, ptr::null_mut(), 0) };
     assert!(!mesh.is_null(), "Box3D takes the mesh");
@@ -385,7 +385,7 @@ impl BoxPair {
         Self { corners, a_from_b: transform(world_from_a.inverse() * world_from_b) }
     }
 
-    /// Distance, metres; 0 where they overlap. The first call of a pair that the library has no cache for.
+    /// Returns the distance, metres; 0 for an overlap. Without the library's cache for a pair.
     pub fn distance(&self) -> f32 {
         let proxy = |points: &[b3Vec3; 8]| b3ShapeProxy { points: points.as_ptr(), count: 8, radius: 0.0 };
         let input = b3DistanceInput {

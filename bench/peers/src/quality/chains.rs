@@ -4,7 +4,7 @@ use super::worse;
 use sinew::physics::BodyKind;
 use sinew_scenes::blueprint::Blueprint;
 
-/// Dynamic bodies that hang together, none by more than two joints.
+/// Connected dynamic bodies, none with more than two joints.
 pub(super) struct Chain {
     /// Places of its joints.
     joints: Vec<usize>,
@@ -33,7 +33,7 @@ impl Chain {
         chains
     }
 
-    /// `None` if the bodies branch, or no two of their joints are apart.
+    /// Returns `None` if the bodies branch, or all of their joints coincide.
     fn new(bodies: &[usize], scene: &Blueprint, joints_of: &[Vec<usize>]) -> Option<Self> {
         let anchor = |joint: usize| scene.joints[joint].world_from_joint.translation;
         let mut chain = Self { joints: Vec::new(), links: 0, length: 0.0 };
@@ -65,7 +65,7 @@ impl Chain {
     }
 }
 
-/// Dynamic bodies that joints hold together, directly or through others.
+/// Returns dynamic bodies that joints connect, directly or through others.
 fn together_with(
     start: usize,
     scene: &Blueprint,

@@ -1,4 +1,4 @@
-//! What became of a cloth.
+//! Quality of cloth.
 
 use super::worse;
 use crate::engine::ParticleState;
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use sinew::math::{Transform, Vec3};
 use sinew::physics::Shape;
 
-/// Watches a cloth.
+/// Measures a cloth.
 pub struct ClothMeter<'a> {
     scene: &'a ClothScene,
 }
@@ -15,7 +15,7 @@ pub struct ClothMeter<'a> {
 /// At the end of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClothQuality {
-    /// Mean over the structural links of how far their length is from the rest length, as a share of that.
+    /// Mean over the structural links of the deviation of their length from the rest length, as a share of that.
     pub stretch_mean: f32,
     /// The largest of these.
     pub stretch_max: f32,
@@ -26,7 +26,7 @@ pub struct ClothQuality {
 }
 
 impl<'a> ClothMeter<'a> {
-    /// Of this scene.
+    /// Returns the measurement of this scene.
     pub fn new(scene: &'a ClothScene) -> Self {
         Self { scene }
     }
@@ -54,7 +54,7 @@ impl<'a> ClothMeter<'a> {
         }
     }
 
-    /// From a point to the nearest obstacle, metres; negative inside.
+    /// Returns the distance from a point to the nearest obstacle, metres; negative inside.
     fn distance(&self, point: Vec3) -> f32 {
         let boxes = self.scene.boxes.iter().map(|place| {
             Shape::Box { half_extents: place.half_extents }.signed_distance(&place.world_from_box, point).0

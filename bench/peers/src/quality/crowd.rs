@@ -1,4 +1,4 @@
-//! How far the poses of a crowd are from what their clips say.
+//! Difference of a crowd's poses from their clips.
 
 use super::worse;
 use crate::engine::CharacterPose;
@@ -7,7 +7,7 @@ use sinew::anim::{LocalTransform, WeightedPose, Wrap, blend, local_to_model, res
 use sinew::math::{Affine, Rotation};
 use sinew_scenes::crowd::CrowdScene;
 
-/// Compares poses with those of the raw clips: spherical between keys, blended and put together in plain `f32`.
+/// Compares poses with those of the raw clips: spherical interpolation between keys, blending and hierarchy in plain `f32`.
 pub struct CrowdMeter<'a> {
     scene: &'a CrowdScene,
     rest: Vec<LocalTransform>,
@@ -17,17 +17,17 @@ pub struct CrowdMeter<'a> {
     quality: CrowdQuality,
 }
 
-/// The worst of all poses looked at.
+/// Largest errors of all measured poses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CrowdQuality {
-    /// Angle between the rotation of a joint as sampled and as its clip has it, radians.
+    /// Angle between the rotation of a sampled joint and its clip, radians.
     pub rotation_error_max: f32,
-    /// Distance of a joint of the blended pose from where it should be, model space, metres.
+    /// Distance of a joint of the blended pose from its place, model space, metres.
     pub model_error_max: f32,
 }
 
 impl<'a> CrowdMeter<'a> {
-    /// Of this scene.
+    /// Returns the measurement of this scene.
     pub fn new(scene: &'a CrowdScene) -> Self {
         let rest = rest_pose(&scene.rig);
         Self {
@@ -40,7 +40,7 @@ impl<'a> CrowdMeter<'a> {
         }
     }
 
-    /// A character's pose after `step`.
+    /// Measures a character's pose after `step`.
     ///
     /// # Panics
     /// If there is not one entry for each joint.
@@ -68,7 +68,7 @@ impl<'a> CrowdMeter<'a> {
         }
     }
 
-    /// After the last pose.
+    /// Returns the result after the last pose.
     pub fn finish(self) -> CrowdQuality {
         self.quality
     }
@@ -84,7 +84,7 @@ impl CrowdQuality {
     }
 }
 
-/// Radians, from the chord in `f64`: an angle from a cosine would be off by more than is looked for.
+/// Radians, from the chord in `f64`: an angle from a cosine would be less exact than the errors.
 fn angle(a: Rotation, b: Rotation) -> f32 {
     let pairs = [(a.x, b.x), (a.y, b.y), (a.z, b.z), (a.w, b.w)].map(|(a, b)| (f64::from(a), f64::from(b)));
     let sign = if pairs.iter().map(|(a, b)| a * b).sum::<f64>() < 0.0 { -1.0 } else { 1.0 };

@@ -14,7 +14,7 @@ pub struct EnergyQuality {
     pub total_start: f64,
     /// The same at the end.
     pub total_end: f64,
-    /// The same at its largest, the start included: more than at the start means that it came from nowhere.
+    /// The largest one, the start included: more than at the start is a gain from nothing.
     pub total_peak: f64,
 }
 
@@ -28,7 +28,7 @@ pub(super) struct EnergyMeter {
 
 impl EnergyMeter {
     pub fn new(scene: &Blueprint) -> Self {
-        // Our world has integrated the densities; the sum of what follows is this module's own.
+        // Our world has integrated the densities; the sum below is computed independently.
         let (world, ids, _) = scene.build();
         let masses = scene.dynamic().map(|place| (place, world.mass(ids[place]))).collect();
         let mut meter = Self { gravity: scene.gravity, masses, total_start: 0.0, total_peak: 0.0 };
@@ -65,7 +65,7 @@ impl EnergyMeter {
         }
     }
 
-    /// Kinetic and potential energy, summed in f64: small changes of large sums are looked for.
+    /// Returns kinetic and potential energy, summed in f64, because the changes are small.
     fn energy(&self, states: &[BodyState]) -> (f64, f64) {
         let (mut kinetic, mut potential) = (0.0, 0.0);
         for (place, mass) in &self.masses {

@@ -1,4 +1,4 @@
-//! How far joints come apart.
+//! Gaps of joints.
 
 use super::chains::Chain;
 use super::worse;
@@ -33,7 +33,7 @@ pub(super) struct JointMeter {
     stretch_peak: f32,
 }
 
-/// Bodies of a joint, and where it is in each.
+/// Bodies of a joint, and its place in each.
 struct Anchors {
     bodies: [usize; 2],
     local: [Vec3; 2],

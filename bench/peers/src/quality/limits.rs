@@ -1,4 +1,4 @@
-//! How far joints turn beyond their limits.
+//! Overshoot of joint limits.
 
 use super::worse;
 use crate::engine::{BodyState, joint_frames};
@@ -8,10 +8,10 @@ use sinew::math::{Range, Rotation, SwingTwistLimit, Vec3, trig};
 use sinew::physics::JointKind;
 use sinew_scenes::blueprint::Blueprint;
 
-/// A joint that is further than this beyond a limit is counted, radians.
+/// Overshoot from which on a joint is counted, radians.
 const TOLERANCE: f32 = 0.1;
 
-/// Limits by what they limit.
+/// Limits by kind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LimitQuality {
     /// Swing cones of balls.
@@ -20,22 +20,22 @@ pub struct LimitQuality {
     pub twist: LimitTally,
     /// Ranges of hinges.
     pub hinge: LimitTally,
-    /// Angles between the two axes of hinges, which should be none.
+    /// Angles between the two axes of hinges, which should be 0.
     pub axis: LimitTally,
 }
 
-/// Excesses of one sort of limit.
+/// Overshoots of one kind of limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LimitTally {
-    /// How many joints have it.
+    /// Number of joints with it.
     pub joints: usize,
-    /// How many are more than 0.1 rad beyond it at the end.
+    /// Number of joints more than 0.1 rad beyond it at the end.
     pub exceeded_end: usize,
-    /// How many were so after any step.
+    /// Number of joints beyond it after any step.
     pub exceeded_run: usize,
-    /// Largest excess at the end, radians.
+    /// Largest overshoot at the end, radians.
     pub worst_end: f32,
-    /// Largest excess after any step, radians.
+    /// Largest overshoot after any step, radians.
     pub worst_run: f32,
 }
 
@@ -70,7 +70,7 @@ impl LimitTally {
     }
 }
 
-/// Not a number counts as exceeded.
+/// NaN counts as exceeded.
 fn is_exceeded(excess: f32) -> bool {
     excess.is_nan() || excess > TOLERANCE
 }
@@ -93,7 +93,7 @@ enum Limit {
     Hinge(Option<Range>),
 }
 
-/// Radians beyond the limits of a joint: swing and twist of a ball, angle and axis of a hinge; 0 inside.
+/// Returns the radians beyond the limits of a joint: swing and twist of a ball, angle and axis of a hinge; 0 inside.
 type Excess = [f32; 2];
 
 impl LimitMeter {

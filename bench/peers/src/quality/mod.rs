@@ -1,4 +1,4 @@
-//! What the time of a run bought, from the bodies' states alone: the same tool for every engine.
+//! Quality of a run, from the bodies' states alone: the same tool for every engine.
 
 mod chains;
 mod cloth;
@@ -27,7 +27,7 @@ use serde_json::{Map, Value, json};
 use sinew::physics::{Sensing, ShapeDef};
 use sinew_scenes::blueprint::Blueprint;
 
-/// Watches a run.
+/// Measures a run.
 pub struct QualityMeter {
     steps: usize,
     joints: JointMeter,
@@ -37,7 +37,7 @@ pub struct QualityMeter {
     place: PlaceMeter,
 }
 
-/// What it saw.
+/// Result of a run.
 #[derive(Clone, Debug)]
 pub struct Quality {
     /// `None` without joints.
@@ -53,7 +53,7 @@ pub struct Quality {
 }
 
 impl QualityMeter {
-    /// Before the first step. Penetration, which costs the most, is looked at every `penetration_every` steps.
+    /// Starts before the first step. Penetration, which costs the most, is measured every `penetration_every` steps.
     pub fn new(scene: &Blueprint, penetration_every: usize) -> Self {
         Self {
             steps: 0,
@@ -90,7 +90,7 @@ impl QualityMeter {
 }
 
 impl Quality {
-    /// As part of a report; `null` where the scene has no such thing or a number is not finite.
+    /// Returns it as part of a report; `null` where the scene lacks the object or a number is not finite.
     pub fn to_json(&self) -> Value {
         let mut report = Map::new();
         let mut add = |key: &str, value: Value| report.insert(key.into(), value);
@@ -118,12 +118,12 @@ impl Quality {
     }
 }
 
-/// Whether anything can touch a shape and be pushed.
+/// Returns whether anything can touch a shape and be pushed.
 fn collides(shape: &ShapeDef) -> bool {
     shape.sensing == Sensing::Solid && shape.filter.mask != 0 && shape.filter.layers != 0
 }
 
-/// The larger of two; one that is no number wins, so that it shows.
+/// Returns the larger of two; NaN wins, so that it shows.
 fn worse(a: f32, b: f32) -> f32 {
     if b.is_nan() || b > a { b } else { a }
 }

@@ -1,4 +1,4 @@
-//! How deep shapes are inside each other.
+//! Penetration of shapes.
 
 use super::collides;
 use crate::engine::{BodyState, Unsupported};
@@ -16,17 +16,17 @@ use sinew_scenes::blueprint::Blueprint;
 pub struct PenetrationQuality {
     /// Deepest at the end.
     pub end_max: f32,
-    /// Of the pairs that overlap at the end, 99 % are no deeper.
+    /// 99th percentile of the overlaps at the end.
     pub end_p99: f32,
-    /// Deepest after any step that was looked at.
+    /// Deepest after any measured step.
     pub run_max: f32,
-    /// From one such step to the next.
+    /// Interval of measured steps.
     pub every: usize,
 }
 
 pub(super) struct PenetrationMeter {
     shapes: Vec<Solid>,
-    /// Pairs of bodies that joints hold or the scene parts, the smaller place first, sorted: they do not collide.
+    /// Pairs of bodies that joints connect or the scene disables, the smaller index first, sorted: they do not collide.
     apart: Vec<(usize, usize)>,
     every: usize,
     run_max: f32,
@@ -43,7 +43,7 @@ struct Solid {
 
 impl PenetrationMeter {
     pub fn new(scene: &Blueprint, every: usize) -> Self {
-        // Depths of some shapes are not those of the scene: one that Parry does not have, and nothing is judged.
+        // Depths need all shapes of the scene: if Parry lacks one, nothing is measured.
         let shapes = Self::solids(scene).unwrap_or_default();
         let mut apart: Vec<_> = scene.joints.iter().map(|joint| ordered(joint.a, joint.b)).collect();
         apart.extend(scene.apart.iter().map(|&(a, b)| ordered(a, b)));
@@ -85,14 +85,14 @@ impl PenetrationMeter {
         Some(PenetrationQuality { end_max, end_p99, run_max: self.run_max.max(end_max), every: self.every })
     }
 
-    /// Depth of each pair that overlaps.
+    /// Returns the depth of each pair that overlaps.
     fn depths(&self, states: &[BodyState]) -> Vec<f32> {
         let placed = self.shapes.iter().map(|shape| {
             let pose = parry::pose(states[shape.body].world_from_body * shape.body_from_shape);
             PlacedShape { shape, pose, bounds: shape.shape.compute_aabb(&pose) }
         });
         let mut placed: Vec<_> = placed.filter(PlacedShape::is_finite).collect();
-        // Sweep along x: only what starts before the other ends can overlap it.
+        // Sweep along x: only shapes that start before another ends can overlap it.
         placed.sort_by(|a, b| a.bounds.mins.x.total_cmp(&b.bounds.mins.x));
         let mut depths = Vec::new();
         for (i, a) in placed.iter().enumerate() {
@@ -111,7 +111,7 @@ impl PenetrationMeter {
     }
 }
 
-/// A shape where it is now.
+/// A shape in its current pose.
 struct PlacedShape<'a> {
     shape: &'a Solid,
     pose: Pose,
@@ -119,20 +119,20 @@ struct PlacedShape<'a> {
 }
 
 impl PlacedShape<'_> {
-    /// Bodies that have no place any more count as lost, not as deep.
+    /// Bodies with NaN count as lost, not as deep.
     fn is_finite(&self) -> bool {
         self.pose.is_finite()
     }
 
     fn depth_in(&self, other: &Self) -> Option<f32> {
         let depth = depth_of_shapes(&self.pose, &self.shape.shape, &other.pose, &other.shape.shape)?;
-        // What takes the bounding boxes apart takes the shapes apart, so the depth cannot be more.
+        // Separating the bounding boxes separates the shapes, so the depth cannot be larger.
         let overlap = self.bounds.maxs.min(other.bounds.maxs) - self.bounds.mins.max(other.bounds.mins);
         Some(depth.min(overlap.min_element()))
     }
 }
 
-/// The smallest distance that takes two shapes apart, metres; `None` if they are.
+/// Returns the smallest distance that separates two shapes, metres; `None` if they are apart.
 fn depth_of_shapes(pose_a: &Pose, a: &SharedShape, pose_b: &Pose, b: &SharedShape) -> Option<f32> {
     if let (Some(a), Some(b)) = (a.as_cuboid(), b.as_cuboid()) {
         return depth_of_boxes(pose_a, a, pose_b, b);
@@ -142,7 +142,7 @@ fn depth_of_shapes(pose_a: &Pose, a: &SharedShape, pose_b: &Pose, b: &SharedShap
     (contact.dist < 0.0).then_some(-contact.dist)
 }
 
-/// By the axis on which two boxes overlap least. Parry's `contact` finds the axis too, but measures the depth from the
+/// Uses the axis of least overlap of two boxes. Parry's `contact` finds the axis too, but measures the depth from the
 /// nearest face to a corner, which may be a face across: 3 m for a cube of 1 m on a slab of 2 m.
 fn depth_of_boxes(pose_a: &Pose, a: &Cuboid, pose_b: &Pose, b: &Cuboid) -> Option<f32> {
     let b_in_a = pose_a.inv_mul(pose_b);

@@ -1,4 +1,4 @@
-//! Where the dynamic bodies are at the end.
+//! Final places of the dynamic bodies.
 
 use super::{collides, worse};
 use crate::engine::BodyState;
@@ -7,7 +7,7 @@ use sinew::math::{Transform, Vec3};
 use sinew::physics::{BodyKind, Shape};
 use sinew_scenes::blueprint::Blueprint;
 
-/// Further below all static shapes than this, a body is lost, metres.
+/// Depth below all static shapes from which on a body is lost, metres.
 const LOST_BELOW: f32 = 1.0;
 
 /// Of dynamic bodies.
@@ -17,13 +17,13 @@ pub struct PlaceQuality {
     pub lost: usize,
     /// Mean height of the bodies' origins, metres.
     pub mean_height: f64,
-    /// Largest distance of a body from where it started, metres.
+    /// Largest distance of a body from its start, metres.
     pub displacement_max: f32,
 }
 
 pub(super) struct PlaceMeter {
     bodies: Vec<Start>,
-    /// Bodies that collide are lost below, metres.
+    /// Height below which colliding bodies are lost, metres.
     bottom: f32,
 }
 
@@ -45,7 +45,7 @@ impl PlaceMeter {
             let shapes = def.shapes.iter().filter(|shape| collides(shape));
             shapes.map(move |shape| bottom(&shape.shape, world_from_body * shape.body_from_shape))
         });
-        // Where nothing is below, nothing can be fallen through.
+        // Without a static shape below, no body can be lost.
         let bottom = bottoms.reduce(f32::min).map_or(f32::NEG_INFINITY, |bottom| bottom - LOST_BELOW);
         Self { bodies: bodies.collect(), bottom }
     }
@@ -64,14 +64,14 @@ impl PlaceMeter {
     }
 }
 
-/// Lowest height that a static shape reaches, metres; a half-space ends at its plane.
+/// Returns the lowest height of a static shape, metres; a half-space ends at its plane.
 fn bottom(shape: &Shape, world_from_shape: Transform) -> f32 {
     if *shape == Shape::HalfSpace {
         return world_from_shape.translation.y;
     }
     match parry::shape(shape) {
         Ok(shape) => shape.compute_aabb(&parry::pose(world_from_shape)).mins.y,
-        // Further down than it reaches, if anything.
+        // A bound below its true lowest point.
         Err(_) => world_from_shape.translation.y - shape.bounding_radius(),
     }
 }

@@ -13,7 +13,7 @@ pub struct BoxPair {
     pub b: PlacedBox,
 }
 
-/// Pairs in a row; 51.4 % overlap.
+/// A list of pairs; 51.4 % overlap.
 pub struct BoxPairs {
     /// Tested from first to last, then again.
     pub pairs: Vec<BoxPair>,
@@ -22,7 +22,7 @@ pub struct BoxPairs {
 }
 
 impl BoxPairs {
-    /// The first `count` of a fixed sequence, of which `per_step` are tested in one step.
+    /// Returns the first `count` of a fixed sequence, of which `per_step` are tested in one step.
     pub fn new(count: usize, per_step: usize) -> Self {
         let mut random = Random::new(42);
         let pairs = (0..count)
@@ -40,7 +40,7 @@ impl BoxPairs {
         Self { pairs, per_step }
     }
 
-    /// Pairs of the measured step number `step`, round and round.
+    /// Returns the pairs of the measured step number `step`, cyclically.
     pub fn pairs_of_step(&self, step: usize) -> core::ops::Range<usize> {
         let start = step * self.per_step % self.pairs.len();
         start..start + self.per_step

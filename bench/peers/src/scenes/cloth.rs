@@ -4,15 +4,15 @@ use super::rays::PlacedBox;
 use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 
-/// A square grid of particles in the plane y = const, and what it falls on.
+/// A square grid of particles in the plane y = const, and its obstacles.
 ///
 /// Links run along both directions of the grid, along both diagonals of every cell, and over two cells (bending). No
 /// self-collision.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClothScene {
-    /// Particles along a side.
+    /// Number of particles along a side.
     pub side: usize,
-    /// From particle to particle, metres.
+    /// Distance of neighbours, metres.
     pub spacing: f32,
     /// World position of the first particle; rows run along +x, the next row is at +z.
     pub corner: Vec3,
@@ -62,12 +62,12 @@ impl ClothScene {
         row * self.side + column
     }
 
-    /// The particles that never move: both corners of the first row.
+    /// Returns the particles that never move: both corners of the first row.
     pub fn pinned(&self) -> [usize; 2] {
         [self.index(0, 0), self.index(0, self.side - 1)]
     }
 
-    /// What it falls on, as static bodies.
+    /// Returns its obstacles as static bodies.
     pub fn obstacles(&self) -> Vec<BodyDef> {
         let ball = |&(position, radius): &(Vec3, f32)| BodyDef {
             kind: BodyKind::Static,

@@ -1,4 +1,4 @@
-//! The scenes: those made of bodies come from `sinew_scenes`, the others are here.
+//! The scenes: those of bodies come from `sinew_scenes`, the others are here.
 
 mod boxes;
 mod cloth;
@@ -21,36 +21,36 @@ pub struct Scene {
     pub name: &'static str,
     /// In one line.
     pub about: &'static str,
-    /// Whom it is for.
+    /// Field that it is for.
     pub field: Field,
     /// Sensitivity of the scene to its start.
     pub course: Course,
-    /// What an engine is given to do.
+    /// Work of an engine.
     pub work: fn() -> Work,
 }
 
 /// Sensitivity of a scene's run to a small change of its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Course {
-    /// A small change of the run.
+    /// The run changes little.
     Steady,
-    /// Another run: figures are those of several starts.
+    /// The run differs: figures are those of several starts.
     Chaotic,
 }
 
-/// What an engine may be made for.
+/// Field of an engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
-    /// Bodies, joints, cloth, questions about shapes.
+    /// Bodies, joints, cloth, queries of shapes.
     Physics,
-    /// Figures whose joints have the limits and the friction of a body's, awake.
+    /// Ragdolls with joint limits and friction, awake.
     Figures,
     /// Clips and poses.
     Animation,
 }
 
 impl Field {
-    /// In reports.
+    /// Name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Physics => "physics",
@@ -60,7 +60,7 @@ impl Field {
     }
 }
 
-/// What an engine is given to do.
+/// Work of an engine.
 pub enum Work {
     /// Bodies and joints.
     Bodies(Blueprint),
@@ -189,13 +189,13 @@ pub const SCENES: &[Scene] = &[
     },
 ];
 
-/// The scene of that name.
+/// Returns the scene of that name.
 pub fn find(name: &str) -> Option<&'static Scene> {
     SCENES.iter().find(|scene| scene.name == name)
 }
 
 impl Work {
-    /// Steps that it is measured for.
+    /// Returns the number of measured steps.
     pub fn steps(&self) -> usize {
         match self {
             Self::Bodies(scene) => scene.steps as usize,

@@ -5,7 +5,7 @@ use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew_scenes::blueprint::{in_box, rotation};
 
-/// Rays that share one measured step: long enough for the clock.
+/// Rays that share one measured step: enough for the clock.
 const RAYS_PER_STEP: usize = 1_000;
 
 /// A box in space.
@@ -30,7 +30,7 @@ impl PlacedBox {
     }
 }
 
-/// Static boxes, and rays that look for their closest hit.
+/// Static boxes, and rays whose closest hit is searched.
 pub struct RayScene {
     /// 10,000 boxes, half extents 0.2 to 1 m, in a cube of side 100 m.
     pub boxes: Vec<PlacedBox>,
@@ -61,7 +61,7 @@ impl RayScene {
         Self { boxes, rays }
     }
 
-    /// Rays of the measured step number `step`, round and round.
+    /// Returns the rays of the measured step number `step`, cyclically.
     pub fn rays_of_step(&self, step: usize) -> core::ops::Range<usize> {
         let start = step * RAYS_PER_STEP % self.rays.len();
         start..start + RAYS_PER_STEP

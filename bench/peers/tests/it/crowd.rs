@@ -1,4 +1,4 @@
-//! Characters that blend two clips, on every engine of this build that plays clips.
+//! Characters that blend two clips, on every engine of this build with clips.
 
 use crate::engines::engines_of;
 use sinew_peers::quality::CrowdMeter;

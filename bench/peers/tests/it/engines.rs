@@ -1,4 +1,4 @@
-//! Every engine of this build as the quality tool sees it, against closed forms.
+//! Every engine of this build against closed forms, by the quality tool.
 
 use sinew::math::{Rotation, Transform, Vec3, trig};
 use sinew::physics::{BodyDef, BodyKind, Filter, Hull, MassProperties, Shape, ShapeDef, Sleeping};
@@ -8,12 +8,12 @@ use sinew_peers::quality::{Quality, QualityMeter};
 use sinew_peers::scenes::Field;
 use sinew_scenes::blueprint::Blueprint;
 
-/// All of this build that have bodies.
+/// Returns all engines of this build with bodies.
 pub fn engines() -> impl Iterator<Item = &'static dyn Engine> {
     engines_of(Field::Physics)
 }
 
-/// All of this build that are made for a field.
+/// Returns all engines of this build for a field.
 pub fn engines_of(field: Field) -> impl Iterator<Item = &'static dyn Engine> {
     ENGINES.iter().filter_map(|entry| entry.engine).filter(move |engine| engine.fields().contains(&field))
 }
@@ -63,9 +63,9 @@ fn after(engine: &dyn Engine, scene: &Blueprint, steps: usize) -> (Vec<BodyState
     (states, quality)
 }
 
-/// A second of free fall with spin; damped by 5 %/s where it says so.
+/// A second of free fall with spin; damped by 5 %/s in the second case.
 #[test]
-fn what_falls_falls_and_spins_on() {
+fn falling_bodies_match_free_fall_and_keep_spin() {
     for engine in engines() {
         let name = engine.describe().name;
         let mut free = body(BodyKind::Dynamic, Shape::Sphere { radius: 0.5 }, Vec3::new(1.0, 50.0, 2.0));
@@ -90,7 +90,7 @@ fn what_falls_falls_and_spins_on() {
     }
 }
 
-/// What only some engines have rests at its own height, too, or is refused.
+/// Shapes that only some engines have rest at their own height, too, or are refused.
 #[test]
 fn round_shapes_and_hulls_have_their_sizes_or_are_refused() {
     let corners = [Vec3::new(0.3, -0.2, 0.3), Vec3::new(-0.3, -0.2, 0.3), Vec3::new(0.0, -0.2, -0.3)];
@@ -127,7 +127,7 @@ fn round_shapes_and_hulls_have_their_sizes_or_are_refused() {
     }
 }
 
-/// A body of two shapes spins about its centre of mass, which half a turn takes to the other side of its origin.
+/// A body of two shapes spins about its centre of mass; half a turn moves its origin to the other side.
 #[test]
 fn bodies_spin_about_their_centres_of_mass() {
     let capsule = Shape::TaperedCapsule { half_height: 0.2, radius_bottom: 0.1, radius_top: 0.2 };
@@ -167,7 +167,7 @@ fn shapes_have_their_sizes() {
         let (states, quality) = after(engine, &scene(bodies), 90);
         for (state, height) in states[1..4].iter().zip([0.3, 0.25, 0.1]) {
             let y = state.world_from_body.translation.y;
-            // Jolt lets what rests sink by 20 mm.
+            // Jolt lets resting bodies sink by 20 mm.
             assert!((y - height).abs() < 0.025, "{name}: {y} for {height}");
         }
         assert!(states[4].world_from_body.translation.y < -5.0, "{name}: a ghost stands");

@@ -1,4 +1,4 @@
-//! Joints, masses and half-spaces mean the same to every engine of this build.
+//! Joints, masses and half-spaces act the same in every engine of this build.
 
 use crate::engines::engines;
 use sinew::math::limits::hinge_angle;
@@ -37,7 +37,7 @@ fn run(engine: &dyn Engine, scene: &Blueprint, steps: usize) -> Vec<BodyState> {
     states
 }
 
-/// Rotation of a joint's second frame as its first sees it.
+/// Returns the rotation of a joint's second frame in its first.
 fn joint_rotation(scene: &Blueprint, states: &[BodyState]) -> Rotation {
     let joint = &scene.joints[0];
     let [frame_a, frame_b] = joint_frames(scene, joint);
@@ -46,7 +46,7 @@ fn joint_rotation(scene: &Blueprint, states: &[BodyState]) -> Rotation {
     a.inverse() * b
 }
 
-/// A box that hangs by a joint at the origin from a fixed body without shapes, its centre at `arm`.
+/// Returns a box that hangs by a joint at the origin from a fixed body without shapes, its centre at `arm`.
 fn hung(arm: Vec3, axes: Rotation, kind: JointKind) -> Blueprint {
     let hook = fixed(BodyDef::default());
     let world_from_joint = Transform::new(Vec3::ZERO, axes);
@@ -95,7 +95,7 @@ fn a_ball_joint_stops_at_its_cone() {
 
 #[test]
 fn a_twist_stops_at_either_limit() {
-    // Beside its axis, which is level, the box turns about x until it meets the stop.
+    // Beside its axis, which is level, the box rotates about x until it reaches the stop.
     let swing = Range::symmetric(0.01);
     let limit = SwingTwistLimit { swing_y: swing, swing_z: swing, twist: Range::new(-0.3, 0.5) };
     for (arm, stop) in [(Vec3::NEG_Z, -0.3), (Vec3::Z, 0.5)] {
@@ -132,7 +132,7 @@ fn jointed_bodies_overlap_and_others_do_not() {
 
 #[test]
 fn mass_and_inertia_are_those_given() {
-    // A fixed joint between a light and a heavy body that turn: their common centre goes straight.
+    // A fixed joint between a light and a heavy rotating body: their common centre moves straight.
     let spinning = |mass: f32, x: f32| BodyDef {
         linear_velocity: Vec3::Y * x,
         angular_velocity: Vec3::Z,
@@ -155,7 +155,7 @@ fn mass_and_inertia_are_those_given() {
 }
 
 #[test]
-fn an_oblique_centre_of_mass_is_where_it_was_put() {
+fn an_oblique_centre_of_mass_is_as_defined() {
     let center = Vec3::new(0.2, 0.1, 0.0);
     let inertia = Sym3 { diagonal: Vec3::new(1.0, 2.0, 2.5), off: Vec3::new(0.0, 0.0, -0.3) };
     let def = BodyDef {

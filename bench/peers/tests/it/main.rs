@@ -1,4 +1,4 @@
-//! The tests: the quality tool against states made by hand, the scenes against their known sizes, and every
+//! The tests: the quality tool on states with known faults, the scenes against their known sizes, and every
 //! engine of this build against closed forms.
 
 mod crowd;

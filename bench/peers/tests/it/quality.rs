@@ -41,7 +41,7 @@ fn start(scene: &Blueprint) -> Vec<BodyState> {
     scene.bodies.iter().map(|def| BodyState::at(def.position, def.rotation)).collect()
 }
 
-/// Of a run whose steps end in these states.
+/// Returns the result of a run whose steps end in these states.
 fn judge(scene: &Blueprint, steps: &[Vec<BodyState>]) -> Quality {
     let mut meter = QualityMeter::new(scene, 1);
     for states in steps {
@@ -70,7 +70,7 @@ fn a_gap_is_measured_where_the_joint_is() {
     let scene = two_links();
     let whole = start(&scene);
     let mut torn = whole.clone();
-    // The first link turns a quarter about its own middle: both its joints open by √½ m.
+    // The first link rotates by a quarter turn about its own centre: both its joints open by √½ m.
     torn[1].world_from_body.rotation = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_2);
     let opening = 0.5f32.sqrt();
     let quality = judge(&scene, &[torn.clone(), whole]).joints.expect("joints");
@@ -86,7 +86,7 @@ fn a_gap_is_measured_where_the_joint_is() {
 }
 
 #[test]
-fn what_branches_is_no_chain() {
+fn branching_bodies_are_not_a_chain() {
     let mut scene = two_links();
     scene.bodies.push(cube(Vec3::Y));
     scene.joints.push(joint(1, 4, Vec3::Y, JointKind::Ball { limit: None }));
@@ -97,7 +97,7 @@ fn what_branches_is_no_chain() {
 }
 
 #[test]
-fn each_limit_is_exceeded_by_what_the_body_is_turned() {
+fn overshoot_equals_the_rotation_beyond_each_limit() {
     let limit = SwingTwistLimit {
         swing_y: Range::symmetric(0.5),
         swing_z: Range::symmetric(0.5),
@@ -123,7 +123,7 @@ fn each_limit_is_exceeded_by_what_the_body_is_turned() {
     assert_eq!((inside.cone.joints, inside.cone.exceeded_run, inside.twist.exceeded_run), (1, 0, 0));
     close(inside.cone.worst_run, 0.0);
 
-    // The whole swing counts, not its components, and what has come back in counts for the run alone.
+    // The whole swing counts, not its components; a joint that came back counts for the run alone.
     let cone = turned(kinds[0], &[about(Vec3::new(0.0, 1.0, 1.0), 0.8), about(Vec3::Z, 0.55)]).cone;
     close(cone.worst_run, 0.3);
     close(cone.worst_end, 0.05);
@@ -144,10 +144,10 @@ fn each_limit_is_exceeded_by_what_the_body_is_turned() {
 }
 
 #[test]
-fn depth_is_the_least_way_out() {
+fn depth_is_the_shortest_way_out() {
     let scene = scene(vec![floor(), cube(Vec3::Y * 0.5), cube(Vec3::Y * 1.5)], vec![]);
     let mut states = start(&scene);
-    // 20 mm in the floor, 50 mm in the cube above, which has its edge down there.
+    // 20 mm in the floor, 50 mm in the cube above, whose edge is down there.
     states[1].world_from_body.translation.y = 0.48;
     states[2].world_from_body.translation.y = 0.98 + 0.5f32.sqrt() - 0.05;
     states[2].world_from_body.rotation = Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_4);
@@ -156,9 +156,9 @@ fn depth_is_the_least_way_out() {
     close(quality.run_max, 0.05);
 }
 
-/// Parry's own `contact` says 3 m to some of these.
+/// Parry's own `contact` returns 3 m for some of these.
 #[test]
-fn cubes_that_merely_touch_are_not_deep() {
+fn touching_cubes_have_no_depth() {
     for x in -8..=8 {
         let at = Vec3::new(x as f32, 0.5 - 1e-6, 0.37 * x as f32);
         let scene = scene(vec![floor(), cube(at)], vec![]);
@@ -168,7 +168,7 @@ fn cubes_that_merely_touch_are_not_deep() {
 }
 
 #[test]
-fn capsules_and_balls_are_as_deep_as_their_radii_say() {
+fn depth_of_capsules_and_balls_follows_their_radii() {
     let capsule = Shape::Capsule { half_height: 0.5, radius: 0.2 };
     let ball = Shape::Sphere { radius: 0.3 };
     let bodies = vec![
@@ -181,7 +181,7 @@ fn capsules_and_balls_are_as_deep_as_their_radii_say() {
 }
 
 #[test]
-fn what_may_not_collide_is_never_deep() {
+fn disabled_pairs_have_no_depth() {
     let ball = JointKind::Ball { limit: None };
     let inside = [cube(Vec3::Y * 3.0), cube(Vec3::Y * 3.2)];
     let jointed = scene(inside.to_vec(), vec![joint(0, 1, Vec3::Y * 3.0, ball)]);
@@ -196,7 +196,7 @@ fn what_may_not_collide_is_never_deep() {
 }
 
 #[test]
-fn depth_in_the_run_is_seen_after_every_nth_step() {
+fn depth_is_measured_every_nth_step() {
     let scene = scene(vec![floor(), cube(Vec3::Y * 0.5)], vec![]);
     let depths = [0.0, 0.3, 0.1, 0.2, 0.0];
     let mut meter = QualityMeter::new(&scene, 2);
@@ -212,7 +212,7 @@ fn depth_in_the_run_is_seen_after_every_nth_step() {
 }
 
 #[test]
-fn energy_is_of_motion_spin_and_height() {
+fn energy_sums_motion_spin_and_height() {
     let mut def = cube(Vec3::Y * 2.0);
     def.linear_velocity = Vec3::X * 3.0;
     let scene = scene(vec![floor(), def], vec![]);
@@ -243,7 +243,7 @@ fn bodies_below_the_floor_or_without_numbers_are_lost() {
 }
 
 #[test]
-fn what_collides_with_nothing_may_hang_below_everything() {
+fn bodies_without_contacts_are_never_lost() {
     let mut hook = floor();
     hook.shapes[0].filter = Filter { mask: 0, ..Filter::default() };
     let hung = scene(vec![hook, cube(Vec3::NEG_Y * 9.0)], vec![]);

@@ -6,7 +6,7 @@ use sinew::physics::ray::Ray;
 use sinew_peers::engine::Unsupported;
 use sinew_peers::scenes::{BoxPairs, ClothScene, RayScene};
 
-/// Whether an engine can, or else the reason it gives.
+/// Returns whether an engine supports it, or else its reason.
 fn offered<T>(result: Result<T, Unsupported>, name: &str) -> Option<T> {
     match result {
         Ok(offered) => Some(offered),
@@ -32,7 +32,7 @@ fn rays_find_what_brute_force_finds() {
         let name = engine.describe().name;
         let Some(mut caster) = offered(engine.build_rays(&scene), name) else { continue };
         let found = caster.count_hits(0..RAYS);
-        // Rays that start inside a box count for some engines and not for others: 3 in 1,000.
+        // Engines differ on rays that start inside a box: 3 in 1,000.
         assert!(found.abs_diff(expected) <= RAYS / 200, "{name}: {found} of {expected}");
     }
 }

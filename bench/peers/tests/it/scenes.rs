@@ -1,4 +1,4 @@
-//! The scenes have the sizes that their figures are known for, and their reports what readers need.
+//! The scenes have their documented sizes, and reports have all keys.
 
 use sinew_peers::engine::Engine;
 use sinew_peers::engines;
@@ -35,7 +35,7 @@ fn bodies_and_joints_are_as_many_as_published() {
     assert_eq!(counts("crowd_pile"), (1_905, 1_900, 1_800));
 }
 
-/// Engines differ by their answers to the same words; so nothing in the words may be one's own.
+/// Engines are compared by the same descriptions, so these must not name one engine's features.
 #[test]
 fn every_engine_has_our_ragdolls() {
     let crowd = scenes::find("crowd_pile").expect("a scene");
@@ -49,7 +49,7 @@ fn every_engine_has_our_ragdolls() {
 }
 
 #[test]
-fn mujoco_is_told_of_every_figure_and_wall() {
+fn mujoco_gets_every_figure_and_wall() {
     let Work::Bodies(scene) = (scenes::find("humanoid_pile_10").expect("a scene").work)() else {
         panic!("no bodies")
     };
@@ -85,7 +85,7 @@ fn the_cloth_is_a_square_of_four_metres() {
 }
 
 #[test]
-fn what_an_engine_cannot_run_it_says() {
+fn unsupported_scenes_are_reported() {
     let cloth = scenes::find("cloth").expect("a scene");
     let report = run(sinew(), cloth, Start::Own, Some(1), Judging::Off);
     assert_eq!(report["scene"], "cloth");

@@ -1,4 +1,4 @@
-//! The committed header is the one that the sources give.
+//! The committed header equals the generated one.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ fn the_header_is_up_to_date() {
     let made = cbindgen::Builder::new().with_crate(here).with_config(config).generate().expect("it is made");
     let mut text = Vec::new();
     made.write(&mut text);
-    // A heading of Rust's docs, which means this to a reader of C.
+    // A heading of Rust's docs, which has this meaning in C.
     let text = String::from_utf8(text).expect("it is text").replace("// # Safety", "// The caller promises:");
     let path = here.join("include/sinew.h");
     if std::env::var_os("SINEW_BLESS").is_some() {

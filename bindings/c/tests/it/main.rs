@@ -1,4 +1,4 @@
-//! The library as C sees it: by its functions, and its header.
+//! Tests of the library by its C functions, and of its header.
 
 mod header;
 mod misuse;

@@ -1,12 +1,12 @@
-//! Mistakes of callers: they get a status and a sentence, never a crash, and a world that is as it was.
+//! Mistakes of callers give a status and a sentence, never a crash, and leave the world unchanged.
 
 use sinew_c::*;
 use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};
 
-/// The sentence of the last error.
+/// Returns the sentence of the last error.
 fn sentence() -> String {
-    // SAFETY: it is always text.
+    // SAFETY: it is always a valid string.
     unsafe { CStr::from_ptr(sinew_last_error()) }.to_str().expect("UTF-8").to_owned()
 }
 
@@ -14,14 +14,14 @@ struct Owned(*mut SinewWorld);
 
 impl Drop for Owned {
     fn drop(&mut self) {
-        // SAFETY: made below, and freed once.
+        // SAFETY: created below, and freed once.
         unsafe { sinew_world_free(self.0) }
     }
 }
 
 fn world() -> Owned {
     let mut world = null_mut();
-    // SAFETY: null is the defaults.
+    // SAFETY: null selects the defaults.
     assert_eq!(unsafe { sinew_world_new(null(), &mut world) }, SinewStatus::Ok);
     Owned(world)
 }
@@ -32,7 +32,7 @@ fn ball() -> SinewShape {
 
 fn def(shapes: &[SinewShape]) -> SinewBodyDef {
     let mut def = std::mem::MaybeUninit::uninit();
-    // SAFETY: there is room for one.
+    // SAFETY: the buffer holds one.
     let mut def = unsafe {
         assert_eq!(sinew_body_def_default(def.as_mut_ptr()), SinewStatus::Ok);
         def.assume_init()
@@ -43,7 +43,7 @@ fn def(shapes: &[SinewShape]) -> SinewBodyDef {
 
 fn add(world: &Owned) -> SinewBodyId {
     let (shapes, mut id) = ([ball()], SinewBodyId::default());
-    // SAFETY: all of it is there.
+    // SAFETY: all pointers are valid.
     let status = unsafe { sinew_world_add_body(world.0, &def(&shapes), &mut id) };
     assert_eq!(status, SinewStatus::Ok, "{}", sentence());
     id
@@ -53,7 +53,7 @@ fn add(world: &Owned) -> SinewBodyId {
 fn null_pointers_are_named() {
     let world = world();
     let (shapes, mut steps, mut pose) = ([ball()], 0, SinewPose::default());
-    // SAFETY: null is what they are to be told of.
+    // SAFETY: null must be reported as an error.
     unsafe {
         assert_eq!(sinew_world_new(null(), null_mut()), SinewStatus::NullPointer);
         assert_eq!(sentence(), "world is null");
@@ -84,11 +84,11 @@ fn null_pointers_are_named() {
 }
 
 #[test]
-fn ids_of_what_is_gone_or_was_never_there_are_stale() {
+fn removed_and_unknown_ids_are_stale() {
     let (world, other) = (world(), world());
     let id = add(&world);
     let (mut pose, mut gap) = (SinewPose::default(), 0.0);
-    // SAFETY: the pointers are those of what is there.
+    // SAFETY: all pointers are valid.
     unsafe {
         assert_eq!(sinew_world_poses(other.0, &id, 1, &mut pose), SinewStatus::StaleId);
         assert_eq!(sinew_world_remove_body(world.0, id), SinewStatus::Ok);
@@ -105,12 +105,12 @@ fn ids_of_what_is_gone_or_was_never_there_are_stale() {
 }
 
 #[test]
-fn numbers_that_cannot_be_leave_the_world_as_it_was() {
+fn invalid_numbers_leave_the_world_unchanged() {
     let world = world();
     let id = add(&world);
     let hash = || {
         let mut hash = 0;
-        // SAFETY: both are there.
+        // SAFETY: both are valid.
         assert_eq!(unsafe { sinew_world_hash(world.0, &mut hash) }, SinewStatus::Ok);
         hash
     };
@@ -121,7 +121,7 @@ fn numbers_that_cannot_be_leave_the_world_as_it_was() {
     let unknown = [SinewShape { kind: 99, ..ball() }];
     let plane = [SinewShape { kind: SinewShapeKind::HalfSpace as u32, ..ball() }];
     let (mut out, mut count) = (SinewBodyId::default(), 0);
-    // SAFETY: the pointers are those of what is there.
+    // SAFETY: all pointers are valid.
     unsafe {
         let bad = |status: SinewStatus| assert_eq!(status, SinewStatus::BadArgument, "{}", sentence());
         bad(sinew_world_push(world.0, id, nan, null()));
@@ -172,12 +172,12 @@ fn numbers_that_cannot_be_leave_the_world_as_it_was() {
 }
 
 #[test]
-fn buffers_that_are_too_small_are_told_how_large_they_must_be() {
+fn small_buffers_return_the_needed_size() {
     let world = world();
     add(&world);
     add(&world);
     let (mut one, mut count) = ([SinewBodyId { bits: 42 }], 0);
-    // SAFETY: the capacity is what there is.
+    // SAFETY: the capacity is the buffer's.
     unsafe {
         assert_eq!(sinew_world_bodies(world.0, one.as_mut_ptr(), 1, &mut count), SinewStatus::TooSmall);
         assert_eq!((one[0].bits, count), (42, 2), "nothing is written");
@@ -204,7 +204,7 @@ fn errors_of_files_name_the_file_and_the_place() {
     let broken = folder.join(format!("sinew-c-{}.glb", std::process::id()));
     std::fs::write(&broken, b"glTF but not for long").expect("it is written");
     let path = |path: &std::path::Path| CString::new(path.display().to_string()).expect("no zeros");
-    // SAFETY: text and room are there.
+    // SAFETY: text and buffer are valid.
     unsafe {
         let none = path(&folder.join("there is no such file.glb"));
         assert_eq!(sinew_character_def_load(none.as_ptr(), &mut def), SinewStatus::BadFile);
@@ -223,7 +223,7 @@ fn a_character_in_a_world_that_is_not_its_own_is_an_error() {
     let (here, elsewhere) = (world(), world());
     let (mut def, mut character) = (null_mut(), null_mut());
     let origin = SinewPose::default();
-    // SAFETY: the pointers are those of what is there; each is freed once.
+    // SAFETY: all pointers are valid; each handle is freed once.
     unsafe {
         assert_eq!(sinew_character_def_load(null(), &mut def), SinewStatus::Ok, "{}", sentence());
         assert_eq!(

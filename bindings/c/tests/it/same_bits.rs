@@ -1,4 +1,4 @@
-//! A world that C steps has the bits of one that Rust steps, on any number of threads, and after a snapshot.
+//! A world stepped from C has the bits of one stepped from Rust, on any number of threads, and after a snapshot.
 
 use sinew::physics::{BodyDef, Shape, World, WorldDef};
 use sinew_c::*;
@@ -20,7 +20,7 @@ fn in_rust() -> u64 {
 
 fn in_c(threads: u32, saves_at: Option<u32>) -> u64 {
     let (mut world, mut hash) = (null_mut(), 0);
-    // SAFETY: all pointers are those of what is there, and the world is freed once.
+    // SAFETY: all pointers are valid, and the world is freed once.
     unsafe {
         assert_eq!(sinew_world_new(null(), &mut world), SinewStatus::Ok);
         let mut def = std::mem::MaybeUninit::uninit();

@@ -78,7 +78,7 @@ export class SinewBody extends EventDispatcher {
   }
 
   /**
-   * Puts body and object elsewhere at once.
+   * Moves body and object to another place at once.
    * @param {Vec3Like} to
    * @param {Quaternion} [turn]
    */

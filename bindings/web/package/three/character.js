@@ -243,7 +243,7 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Has all of it moved by clips, by muscles toward its clips, or by nothing.
+   * Moves all of it by clips, by muscles toward its clips, or not at all.
    * @param {CharacterPreset} preset
    */
   setPreset(preset) {

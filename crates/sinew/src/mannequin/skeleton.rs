@@ -37,7 +37,7 @@ pub(super) enum Bone {
 
 use Bone::*;
 
-/// Name (VRM 1 bone names but for the root) and parent, in index order.
+/// Name (VRM 1 bone names except for the root) and parent, in index order.
 const JOINTS: [(Bone, &str, Option<Bone>); Bone::COUNT] = [
     (Root, "mannequin", None),
     (Hips, "hips", Some(Root)),

@@ -44,7 +44,7 @@ pub enum BuiltinError {
     Motion(#[from] MotionError),
     /// No get-up works on its body.
     #[error(
-        "on its build the built-in ways to get up do not come out: {0:.2} m of it, or of what it holds, would be in the floor"
+        "the built-in get-ups do not fit its build: it, or what it holds, would be {0:.2} m in the floor"
     )]
     InFloor(f32),
 }

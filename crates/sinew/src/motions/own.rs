@@ -9,7 +9,7 @@ use crate::ragdoll::{CharacterDef, Locomotion, MotionSet};
 const WALK: &str = "walk";
 const IDLE: &str = "idle";
 const FASTER: [&str; 3] = ["jog", "run", "sprint"];
-/// Words of clips that do not go forward, or do something else as well.
+/// Words of clips that do not move forward, or do more than that.
 const NOT_AHEAD: [&str; 11] =
     ["back", "left", "right", "strafe", "turn", "stop", "start", "jump", "shoot", "attack", "aim"];
 const GET_UP: [&str; 3] = ["getup", "standup", "gettingup"];
@@ -79,7 +79,10 @@ pub fn own_motions(def: &CharacterDef, analysis: &RigAnalysis, clips: Vec<Clip>)
             }
             Err(reason) if is_looped => notes.push(format!("{} has no footsteps: {reason}", name(clip))),
             Err(reason) => {
-                notes.push(format!("{} is left out, for nothing keeps it in step: {reason}", name(clip)));
+                notes.push(format!(
+                    "{} is left out because its steps cannot be matched: {reason}",
+                    name(clip)
+                ));
             }
         }
     }

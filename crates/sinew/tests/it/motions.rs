@@ -83,7 +83,7 @@ fn feet_stand_on_the_floor_and_nothing_of_the_trunk_is_in_it() {
         let motions = builtin_motions(def, analysis).unwrap_or_else(|error| panic!("{name}: {error}"));
         for (fit, what) in motions.fits.iter().zip(["walk", "idle", "supine", "prone"]) {
             assert!(!fit.contacts.is_empty(), "{name}: no foot ever stands in {what}");
-            // Of a giant by as much more; what has no legs to speak of may miss.
+            // A giant's error is scaled; a body with very short legs may miss.
             let size = def.ragdoll.height / 1.8;
             let off = worst_stance(def, analysis, fit);
             let is_stub = fit.scale < 0.3 * size;
@@ -108,7 +108,7 @@ fn a_cycle_closes_and_goes_at_the_pace_of_the_legs() {
         let take = &fit.take;
         assert_eq!(take.pose(0), take.pose(take.frames() - 1), "{}", clip.name);
     }
-    // The ankle goes back under the body as fast as the body is said to go on.
+    // The ankle moves back under the body at the stated speed.
     let take = &motions.fits[0].take;
     let ankle = analysis.joint_with(Role::Foot(Side::Left)).expect("a foot");
     let at = |frame: usize| {

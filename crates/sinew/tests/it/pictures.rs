@@ -1,4 +1,4 @@
-//! Pictures of the documentation, which are drawings (SVG) within its pages: drawn anew, they must be those that are committed.
+//! Pictures of the documentation, which are SVG drawings: redrawn, they must equal the committed ones.
 //! `SINEW_BLESS=1 cargo test -p sinew --test it pictures` writes them.
 
 use sinew::anim::local_to_model;

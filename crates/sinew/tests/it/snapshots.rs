@@ -11,7 +11,7 @@ use std::time::Instant;
 /// Ticks that a rollback does again.
 const TICKS: usize = 8;
 
-/// A world, and who is in it.
+/// A world, and its characters.
 struct Match {
     world: World,
     characters: Vec<Character>,

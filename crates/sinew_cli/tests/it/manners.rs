@@ -57,7 +57,7 @@ fn a_link_is_written_through_and_a_device_never_replaced() {
     let device = folder.path("device.json");
     std::os::unix::fs::symlink("/dev/null", &device).expect("a link");
     let run = sinew(&["ragdoll", "build", &file, "-o", &device]);
-    assert_eq!(run.refusal(1), format!("error: {device}: cannot write: is there and is not a regular file"));
+    assert_eq!(run.refusal(1), format!("error: {device}: cannot write: exists and is not a regular file"));
     // A link to an input is that input.
     let own = folder.path("own.glb");
     std::os::unix::fs::symlink("mannequin.glb", &own).expect("a link");
@@ -221,9 +221,7 @@ fn a_role_says_what_it_rests_on() {
 fn every_shape_of_a_body_is_in_the_contract() {
     let contract = include_str!("../../../../docs/contract.md");
     let source = include_str!("../../src/report/ragdoll_report.rs");
-    let row = |key: &str| {
-        contract.lines().any(|line| line.starts_with(&format!("| `ragdoll build` | `bodies[].{key}` |")))
-    };
+    let row = |key: &str| contract.lines().any(|line| line.starts_with(&format!("- `bodies[].{key}` (")));
     let shapes = ["box", "capsule", "sphere", "hull", "tapered_capsule", "cylinder", "cone"];
     let line = contract.lines().find(|line| line.contains("`bodies[].shape`")).expect("a row for shapes");
     for shape in shapes {

@@ -63,7 +63,7 @@ impl Hierarchy {
                     open.push(found.open(words, Some(parent), true)?);
                 }
                 _ => {
-                    let what = format!("{} stands where {expected} is due", quoted(word));
+                    let what = format!("expected {expected}, found {}", quoted(word));
                     return Err(Error::malformed(what, words.place()));
                 }
             }

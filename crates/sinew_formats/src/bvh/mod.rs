@@ -1,8 +1,8 @@
 //! Biovision Hierarchy (BVH): a skeleton and its motion as text, the format of most free motion capture.
 //!
-//! The makers of the format never wrote it down, so files differ in almost every detail. What this reader takes:
+//! The format was never written down by its makers, so files differ in almost every detail. This reader accepts:
 //! rotation channels in any order and number, per joint; positions at any joint; joints of no length; missing End
-//! Sites; any line ends and any white space. What it assumes and mends stands in [`BvhDocument::notes`].
+//! Sites; any line ends and any white space. Assumptions and corrections are in [`BvhDocument::notes`].
 //!
 //! ```
 //! use sinew_formats::{BvhOptions, BvhWriteOptions, read_bvh, write_bvh};

@@ -39,7 +39,7 @@ impl Motion {
             let what = format!("declares {declared} frames, has {found}");
             match expected {
                 BvhRows::AsDeclared => return Err(Error::malformed(what, words.place())),
-                BvhRows::AsPresent => notes.push(format!("{what}: those that are there were taken")),
+                BvhRows::AsPresent => notes.push(format!("{what}: read the present ones")),
             }
         }
         Ok(Self { frame_time, rows })
@@ -53,7 +53,7 @@ fn read_count(words: &mut Words<'_>) -> Result<f64> {
     if declared >= 0.0 && declared.fract() == 0.0 {
         return Ok(declared);
     }
-    Err(Error::malformed(format!("{declared} is no number of frames"), words.place()))
+    Err(Error::malformed(format!("{declared} is not a number of frames"), words.place()))
 }
 
 /// `Frame Time: T`, repaired.
@@ -81,7 +81,7 @@ fn expect_label(words: &mut Words<'_>, label: &str) -> Result<()> {
     if word.eq_ignore_ascii_case(&with_colon) {
         return Ok(());
     }
-    let what = format!("{} stands where `{with_colon}` is due", crate::error::quoted(word));
+    let what = format!("expected `{with_colon}`, found {}", crate::error::quoted(word));
     Err(Error::malformed(what, words.place()))
 }
 
@@ -214,7 +214,7 @@ impl Frames {
         let frames = count.unwrap_or(0).saturating_sub(first);
         let times: Vec<f32> = (0..frames).map(|i| (i as f64 * frame_time) as f32).collect();
         if times.windows(2).any(|pair| !(pair[0] < pair[1] && pair[1].is_finite())) {
-            let what = format!("{frames} frames {frame_time} s apart are no times that can be told apart");
+            let what = format!("{frames} frames {frame_time} s apart have equal times in 32 bits");
             return Err(Error::malformed(what, "frame time"));
         }
         let mut channels = Vec::new();

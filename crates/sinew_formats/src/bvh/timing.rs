@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_can_mean_one_rate_is_mended() {
+    fn only_unambiguous_frame_rates_are_corrected() {
         for (printed, rate) in [
             (".0083333", Some(120)),
             ("0.008333", Some(120)),

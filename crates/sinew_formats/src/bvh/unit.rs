@@ -58,7 +58,7 @@ fn infer(hierarchy: &Hierarchy, notes: &mut Vec<String>) -> f32 {
         return metres;
     }
     notes.push(format!(
-        "the skeleton, {span:.1} units along the bones, fits no human: units taken as centimetres"
+        "the skeleton, {span:.1} units along the bones, does not fit a human: units taken as centimetres"
     ));
     0.01
 }

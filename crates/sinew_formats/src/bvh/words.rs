@@ -61,7 +61,9 @@ impl<'a> Words<'a> {
 
     /// The next word, which must exist.
     pub fn need(&mut self, expected: &str) -> Result<&'a str> {
-        self.next().ok_or_else(|| Error::malformed(format!("ends where {expected} is due"), self.place()))
+        self.next().ok_or_else(|| {
+            Error::malformed(format!("expected {expected}, found the end of the file"), self.place())
+        })
     }
 
     /// The next word, which must be this one, case-insensitive.
@@ -70,7 +72,7 @@ impl<'a> Words<'a> {
         if word.eq_ignore_ascii_case(expected) {
             return Ok(());
         }
-        Err(Error::malformed(format!("{} stands where `{expected}` is due", quoted(word)), self.place()))
+        Err(Error::malformed(format!("expected `{expected}`, found {}", quoted(word)), self.place()))
     }
 
     /// The next word as a finite number. `what` names it in the error.

@@ -74,7 +74,7 @@ pub fn write_bvh(rig: &Rig, clip: &Clip, options: &BvhWriteOptions<'_>) -> Resul
     let mut writer = Writer::new(rig, clip, options);
     let frames = (f64::from(clip.duration) / options.frame_time).round();
     if frames >= Take::MOST_FRAMES as f64 {
-        return Err(Error::malformed(format!("{frames} frames are too many"), "frame time"));
+        return Err(Error::malformed(format!("too many frames: {frames}"), "frame time"));
     }
     let rows = writer.rows(clip, frames as usize + 1);
     let mut text = writer.hierarchy();
@@ -145,7 +145,7 @@ impl<'a> Writer<'a> {
         }
         let mut notes = Vec::new();
         if clip.channels.iter().any(|channel| channel.property == Property::Scale) {
-            notes.push("left out: scale channels, which the format has not".into());
+            notes.push("left out: scale channels, which the format lacks".into());
         }
         if rig.joints.iter().filter(|joint| joint.parent.is_none()).count() > 1 {
             notes.push("the rig has several roots; many programs read only the first".into());

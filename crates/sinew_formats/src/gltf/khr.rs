@@ -40,7 +40,7 @@ pub fn write_khr(document: &Document, bind_model: &[Affine], def: &RagdollDef) -
     assert_eq!(bind_model.len(), document.rig.joints.len(), "the bind pose has one transform per joint");
     let known = &document.json["extensions"];
     if known.get(BODIES).is_some() || known.get(SHAPES).is_some() {
-        return Err(Error::unsupported("the file has physics of its own", format!("extensions.{BODIES}")));
+        return Err(Error::unsupported("the file already has physics", format!("extensions.{BODIES}")));
     }
     let mut editor = Editor::open(document)?;
     editor.embed_external(document)?;
@@ -193,7 +193,7 @@ impl Writer<'_> {
         if (self.def.unit_scale - 1.0).abs() > 0.05 {
             let unit = self.def.unit_scale;
             self.notes.push(format!(
-                "a unit of the file is {unit} m: a reader that takes it for a metre sees a giant or a dwarf"
+                "a unit of the file is {unit} m: a reader that assumes metres gets another size"
             ));
         }
         let body = BodySettings::default().material;

@@ -160,8 +160,8 @@ pub(crate) fn note_of_loose(changed: &[SkinPart]) -> Option<String> {
     let vertices: usize = changed.iter().map(|part| part.vertices.len()).sum();
     match vertices {
         0 => None,
-        1 => Some("1 vertex hangs on no bone: it follows the nearest skin".into()),
-        _ => Some(format!("{vertices} vertices hang on no bone: they follow the nearest skin")),
+        1 => Some("1 vertex has no bone: it follows the nearest skin".into()),
+        _ => Some(format!("{vertices} vertices have no bone: they follow the nearest skin")),
     }
 }
 

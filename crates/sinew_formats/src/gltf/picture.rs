@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_large_or_no_picture_is_refused() {
+    fn oversized_and_invalid_pictures_are_refused() {
         let refused = |bytes: &[u8], budget| decode_picture(bytes, budget).unwrap_err();
         assert_eq!(refused(&bytes(RED), 255), "8 x 8 pixels, more than all pictures of a file may take");
         assert_eq!(refused(b"BM", 1000), "neither PNG nor JPEG");

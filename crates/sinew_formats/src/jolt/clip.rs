@@ -23,7 +23,10 @@ pub fn read_jolt_animation(bytes: &[u8], rig: &Rig) -> Result<Clip> {
         let name = track.member("mJointName")?;
         let joint = rig.joints.iter().position(|joint| joint.name == name.text().unwrap_or_default());
         let joint = joint.ok_or_else(|| {
-            name.malformed(format!("{} is no joint of the skeleton", quoted(name.text().unwrap_or_default())))
+            name.malformed(format!(
+                "{} is not a joint of the skeleton",
+                quoted(name.text().unwrap_or_default())
+            ))
         })?;
         if clip.channels.iter().any(|channel| channel.joint == joint) {
             return Err(name.malformed("a second track of the same joint"));
@@ -34,7 +37,7 @@ pub fn read_jolt_animation(bytes: &[u8], rig: &Rig) -> Result<Clip> {
             let key = objects.need(key_at)?;
             let time = key.member("mTime")?.number()?;
             if times.last().is_some_and(|&last| last >= time) {
-                return Err(key_at.malformed("a key that is not later than the one before"));
+                return Err(key_at.malformed("a key that is not after the previous one"));
             }
             let r = key.member("mRotation")?.rotation()?;
             times.push(time);

@@ -113,7 +113,7 @@ impl Objects {
             Value::Id(0) => Ok(None),
             Value::Id(id) => match self.by_id.get(id) {
                 Some(object) => Ok(Some(object)),
-                None => Err(at.malformed(format!("names object {id:08X}, which is not there"))),
+                None => Err(at.malformed(format!("names object {id:08X}, which does not exist"))),
             },
             _ => Err(at.malformed("not an object")),
         }
@@ -165,14 +165,14 @@ impl At {
         let Value::Word(word) = &self.value else { return Err(self.malformed("not a number")) };
         match word.parse::<f32>() {
             Ok(x) if x.is_finite() => Ok(x),
-            _ => Err(self.malformed(format!("{} is no finite number", quoted(word)))),
+            _ => Err(self.malformed(format!("{} is not a finite number", quoted(word)))),
         }
     }
 
     /// A whole number.
     pub fn count(&self) -> Result<u32> {
         let Value::Word(word) = &self.value else { return Err(self.malformed("not a number")) };
-        word.parse().map_err(|_| self.malformed(format!("{} is no whole number", quoted(word))))
+        word.parse().map_err(|_| self.malformed(format!("{} is not a whole number", quoted(word))))
     }
 
     pub fn text(&self) -> Result<&str> {
@@ -245,7 +245,7 @@ fn kind<'a>(words: &mut impl Iterator<Item = &'a str>, number: usize) -> Result<
                 break Kind::Instance(words.next().unwrap_or_default().to_owned());
             }
             other => {
-                let what = format!("a member of type {}", quoted(other.unwrap_or_default()));
+                let what = format!("unknown type {} of a member", quoted(other.unwrap_or_default()));
                 return Err(Error::unsupported(what, place(number)));
             }
         }
@@ -299,7 +299,10 @@ impl Values<'_, '_> {
                 } else {
                     let word = self.word()?;
                     let id = identifier(&word).ok_or_else(|| {
-                        Error::malformed(format!("{} is no number of an object", quoted(&word)), place(line))
+                        Error::malformed(
+                            format!("{} is not the number of an object", quoted(&word)),
+                            place(line),
+                        )
                     })?;
                     Value::Id(id)
                 }
@@ -312,7 +315,7 @@ impl Values<'_, '_> {
         let (number, _) = self.lines.ahead()?;
         let word = self.word()?;
         let count: usize = word.parse().map_err(|_| {
-            Error::malformed(format!("{} is no length of an array", quoted(&word)), place(number))
+            Error::malformed(format!("{} is not the length of an array", quoted(&word)), place(number))
         })?;
         let mut list = Vec::new();
         for _ in 0..count {
@@ -336,7 +339,7 @@ impl Values<'_, '_> {
             .split_whitespace()
             .map(|word| word.parse::<f32>().ok().filter(|x| x.is_finite()))
             .collect::<Option<_>>()
-            .ok_or_else(|| Error::malformed("a line with what is no finite number", place(line)))?;
+            .ok_or_else(|| Error::malformed("a line without a finite number", place(line)))?;
         if numbers.len() != count {
             return Err(Error::malformed(format!("{} numbers, not {count}", numbers.len()), place(line)));
         }

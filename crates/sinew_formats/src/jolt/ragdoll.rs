@@ -77,7 +77,11 @@ impl Read {
             parent => {
                 let found = self.rig.joints.iter().position(|joint| joint.name == parent);
                 Some(found.ok_or_else(|| {
-                    parent_name.malformed(format!("{} is no joint before {}", quoted(parent), quoted(&name)))
+                    parent_name.malformed(format!(
+                        "{} is not a joint before {}",
+                        quoted(parent),
+                        quoted(&name)
+                    ))
                 })?)
             }
         };
@@ -151,7 +155,7 @@ impl Read {
         };
         let (lo, hi) = (number("mTwistMinAngle")?, number("mTwistMaxAngle")?);
         if !(-core::f32::consts::PI <= lo && lo <= hi && hi <= core::f32::consts::PI) {
-            return Err(c.malformed("a twist range that is none"));
+            return Err(c.malformed("an empty twist range"));
         }
         let limit = SwingTwistLimit {
             swing_y: half("mPlaneHalfConeAngle")?,

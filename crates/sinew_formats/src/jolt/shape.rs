@@ -61,7 +61,7 @@ fn collect(
         "StaticCompoundShapeSettings" | "MutableCompoundShapeSettings" => {
             let parts = object.member("mSubShapes")?;
             if parts.list()?.is_empty() {
-                return Err(object.malformed("a compound of nothing"));
+                return Err(object.malformed("an empty compound"));
             }
             for part in parts.list()? {
                 let part = objects.need(part)?;
@@ -84,7 +84,7 @@ fn collect(
             }
             let mass = shape.mass_properties(density);
             if !(mass.mass > 0.0 && mass.mass.is_finite() && mass.inertia.is_finite()) {
-                return Err(object.malformed("a solid of no weight, or of too much"));
+                return Err(object.malformed("a solid of zero or infinite mass"));
             }
             solids.push(Solid { shape, part_from_shape: part_from_this, mass });
             Ok(())

@@ -129,7 +129,7 @@ impl<'a> Tree<'a> {
         }
         def.shapes = contents.geoms.into_iter().filter_map(|geom| geom.shape).collect();
         if kind != BodyKind::Static && def.shapes.iter().any(|shape| shape.shape == Shape::HalfSpace) {
-            return Err(unsupported(element, "only what never moves can be a plane"));
+            return Err(unsupported(element, "only static bodies can be planes"));
         }
         let name = element.attribute("name").unwrap_or_default().to_owned();
         Ok(Link { name, element, parent, weld, freedom: contents.freedom, def })
@@ -179,7 +179,7 @@ impl<'a> Reading<'a, '_> {
         let rotation = match turned[..] {
             [] => Rotation::IDENTITY,
             [value] => self.compiler.rotation(value)?,
-            [one, two, ..] => return Err(two.malformed(format!("`{}` says it already", one.key()))),
+            [one, two, ..] => return Err(two.malformed(format!("`{}` sets the same", one.key()))),
         };
         Ok(Transform::new(y_up(Vec3::from_array(position)), rotation))
     }

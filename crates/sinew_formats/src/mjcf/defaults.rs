@@ -29,7 +29,7 @@ struct Class<'a> {
     joint: BTreeMap<&'a str, Value<'a>>,
 }
 
-/// The class that holds for all.
+/// The class that applies to all elements.
 pub(super) const MAIN: usize = 0;
 
 impl<'a> Classes<'a> {
@@ -120,7 +120,7 @@ impl<'a> Merged<'a, '_> {
         match first[..] {
             [] => Ok(None),
             [one] => Ok(Some(one)),
-            [one, two, ..] => Err(two.malformed(format!("`{}` says it already", one.key()))),
+            [one, two, ..] => Err(two.malformed(format!("`{}` sets the same", one.key()))),
         }
     }
 

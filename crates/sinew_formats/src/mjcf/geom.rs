@@ -52,7 +52,7 @@ impl Geom {
             if filter.layers != 0 {
                 return Err(geom.get("type").map_or_else(|| malformed(geom.element, "no type"), at));
             }
-            notes.left_out("shapes that are only there to be seen");
+            notes.left_out("shapes without contacts");
             return Ok(Self { shape: None, mass: None });
         }
         let segment = geom.get("fromto").map(Segment::read).transpose()?;

@@ -262,8 +262,7 @@ impl BodyJoint {
         let differs =
             |hinge: &Pivot| (hinge.stiffness, hinge.damping) != (hinges[0].stiffness, hinges[0].damping);
         if hinges.iter().any(differs) {
-            notes
-                .changed(format!("springs of {} are not the same; here all have the softest", names(hinges)));
+            notes.changed(format!("springs of {} differ; all became the softest", names(hinges)));
         }
         Ok(Self {
             frame: Transform::new(shared_anchor(hinges, notes), axes),
@@ -322,7 +321,7 @@ fn shared_anchor(hinges: &[Pivot], notes: &mut Notes) -> Vec3 {
     let apart = hinges.iter().map(|hinge| (hinge.anchor - hinges[0].anchor).length()).fold(0.0, max);
     if apart > SAME_ANCHOR {
         let names = names(hinges);
-        notes.changed(format!("{names} are {apart:.3} m apart; here they are one, in the middle"));
+        notes.changed(format!("{names} are {apart:.3} m apart; they became one, in the middle"));
     }
     sum / max(hinges.len() as f32, 1.0)
 }

@@ -244,7 +244,7 @@ fn excluded_pairs(root: Element<'_>, tree: &Tree<'_>, notes: &mut Notes) -> Resu
                 }
             }
             "pair" => notes.left_out("contact pairs"),
-            _ => return Err(malformed(element, format!("{} is no part of it", quoted(tag)))),
+            _ => return Err(malformed(element, format!("unknown element {}", quoted(tag)))),
         }
     }
     let links = &tree.links;

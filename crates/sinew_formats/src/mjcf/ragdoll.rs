@@ -35,7 +35,7 @@ impl MjcfModel {
     pub fn to_ragdoll(&self) -> Result<MjcfRagdoll> {
         let root = self.bodies.iter().position(|body| body.def.kind == BodyKind::Dynamic);
         let root =
-            root.ok_or_else(|| Error::unsupported("no body moves: there is no ragdoll in it", "worldbody"))?;
+            root.ok_or_else(|| Error::unsupported("no body moves, so there is no ragdoll", "worldbody"))?;
         let mut notes = Vec::new();
         let mut kept: Vec<usize> = vec![root];
         let mut joints: Vec<&MjcfJoint> = Vec::new();
@@ -112,7 +112,7 @@ impl MjcfModel {
             [one] => Ok((one.shape.clone(), one.body_from_shape)),
             [] => {
                 let radius = sinew_math::trig::cbrt(mass.mass / FLESH * 0.75 / PI);
-                notes.push(format!("{} has no shape: a ball of its mass stands in", quoted(name)));
+                notes.push(format!("{} has no shape: it gets a ball of its mass", quoted(name)));
                 Ok((Shape::Sphere { radius }, Transform::from_translation(mass.center)))
             }
             several => {
@@ -178,7 +178,7 @@ fn outline(shape: &ShapeDef) -> Vec<Vec3> {
 fn turning(joint: &MjcfJoint, notes: &mut Vec<String>) -> Result<(JointKind, Transform)> {
     let unsupported = |what: &str| {
         let name = quoted(&joint.name);
-        Err(Error::unsupported(format!("{name} {what}: the joints of a ragdoll only turn"), "worldbody"))
+        Err(Error::unsupported(format!("{name} {what}: joints of a ragdoll only rotate"), "worldbody"))
     };
     let (twist, swing) = match joint.kind {
         JointKind::Ball { .. } | JointKind::Hinge { .. } | JointKind::Universal { .. } | JointKind::Fixed => {
@@ -190,7 +190,7 @@ fn turning(joint: &MjcfJoint, notes: &mut Vec<String>) -> Result<(JointKind, Tra
             (twist, swing_y)
         }
         JointKind::Slider { .. } => return unsupported("slides"),
-        _ => return unsupported("is a rod or moves as no limb does"),
+        _ => return unsupported("is a rod or has a motion that limbs lack"),
     };
     let range = |motion: AxisMotion| match motion {
         AxisMotion::Limited(range) => Range::new(clamp(range.lo, -PI, 0.0), clamp(range.hi, 0.0, PI)),

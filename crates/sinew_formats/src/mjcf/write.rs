@@ -190,15 +190,15 @@ impl Writer<'_> {
             Shape::Capsule { half_height, radius } => ("capsule", vec![radius, half_height]),
             Shape::Cylinder { half_height, radius } => ("cylinder", vec![radius, half_height]),
             Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
-                note("a capsule of the mean radius stands for the tapered one");
+                note("a tapered capsule became a capsule of the mean radius");
                 ("capsule", vec![0.5 * (radius_bottom + radius_top), half_height])
             }
             Shape::Cone { half_height, radius } => {
-                note("a cylinder stands for the cone");
+                note("a cone became a cylinder");
                 ("cylinder", vec![radius, half_height])
             }
             ref other => {
-                note("a box stands for the hull");
+                note("a hull became a box");
                 let bounds = other.aabb(&Transform::IDENTITY);
                 at = (bounds.min + bounds.max) * 0.5;
                 let h = (bounds.max - bounds.min) * 0.5;

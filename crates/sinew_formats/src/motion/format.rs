@@ -61,7 +61,7 @@ impl MotionFormat {
             _ => Err(match foreign(bytes) {
                 Some(what) => Error::unsupported(what, "byte 0"),
                 None => Error::malformed(
-                    "not a glTF file, nor BVH, FBX, DeepMimic or Jolt: begins like none",
+                    "not a glTF file, nor BVH, FBX, DeepMimic or Jolt: unknown first bytes",
                     "byte 0",
                 ),
             }),

@@ -146,7 +146,7 @@ fn read_nodes(root: At<'_>) -> Result<Vec<Node<'_>>> {
         seen += 1;
         open.extend(&below[index]);
     }
-    if seen < nodes.len() { Err(root.malformed("nodes are in a circle")) } else { Ok(nodes) }
+    if seen < nodes.len() { Err(root.malformed("nodes form a circle")) } else { Ok(nodes) }
 }
 
 fn local(node: At<'_>) -> Result<Affine> {
@@ -172,7 +172,7 @@ fn unit(of: At<'_>, key: &str) -> Result<Rotation> {
     if length > 1e-6 && length.is_finite() {
         Ok(rotation.normalize())
     } else {
-        Err(of.malformed(format!("`{key}` is a quaternion of no length")))
+        Err(of.malformed(format!("`{key}` must not be zero")))
     }
 }
 
@@ -561,7 +561,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_one_line_with_its_place() {
+    fn errors_are_one_line_with_a_place() {
         for (right, wrong, words) in [
             ("\"shape\": 1", "\"shape\": 9", "index 9 is out of range"),
             ("\"joint\": 0", "\"joint\": 4", "out of range"),
@@ -579,7 +579,7 @@ mod tests {
     }
 
     #[test]
-    fn no_part_of_a_file_brings_it_down() {
+    fn damaged_files_do_not_panic() {
         for end in 0..ROPE.len() {
             let _ = read_physics_gltf(&ROPE.as_bytes()[..end]);
             let mut changed = ROPE.as_bytes().to_vec();

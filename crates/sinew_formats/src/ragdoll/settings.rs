@@ -119,7 +119,7 @@ pub fn read_ragdoll_settings(bytes: &[u8]) -> Result<Settings> {
     only(root, &ROOT_KEYS)?;
     let unit = match (root.get("unit_scale")?, root.get("height")?) {
         (Some(_), Some(height)) => {
-            return Err(height.malformed("`unit_scale` says it already: give one of the two"));
+            return Err(height.malformed("`unit_scale` sets the same: give one of the two"));
         }
         (Some(scale), None) => Some(Unit::Scale(scale.positive()?)),
         (None, Some(height)) => Some(Unit::Height(height.positive()?)),
@@ -186,7 +186,7 @@ fn read_bone(at: At<'_>) -> Result<BoneSettings> {
             let Some(at) = limits.get(key)? else { return Ok(None) };
             let range = read_range(at)?;
             if range.lo > 0.0 || range.hi < 0.0 {
-                return Err(at.malformed("zero has to lie inside a swing's range"));
+                return Err(at.malformed("a swing's range must contain zero"));
             }
             Ok(Some(range))
         };
@@ -288,7 +288,7 @@ fn read_mesh(at: At<'_>) -> Result<Option<MeshSettings>> {
     let Some(mesh) = at.get("mesh")? else {
         for key in ["held", "most_particles"] {
             if let Some(there) = at.get(key)? {
-                return Err(there.malformed("only a garment of a `mesh` has it"));
+                return Err(there.malformed("only a garment with a `mesh` has it"));
             }
         }
         at.need("chains")?;
@@ -296,7 +296,7 @@ fn read_mesh(at: At<'_>) -> Result<Option<MeshSettings>> {
     };
     for key in ["chains", "closed"] {
         if let Some(there) = at.get(key)? {
-            return Err(there.malformed("a garment is of `chains` or of a `mesh`, not of both"));
+            return Err(there.malformed("a garment has `chains` or a `mesh`, not both"));
         }
     }
     let usual = MeshSettings::new(mesh.str()?);

@@ -9,7 +9,7 @@
 //! joints, links with two parent joints, cycles.
 //!
 //! - **The root link** is free; a root named `world` stands.
-//! - **Links without mass** between joints get one of a gram, as frames have it in files; a note says so. The root frame of most robots is one.
+//! - **Links without mass** between joints get one of a gram, because files have them as frames; a note says so. The root frame of most robots is one.
 //! - **Collision** of links with a joint between them is off, as most simulators have it; `<dynamics>` damping is a spring without stiffness, friction the joint's.
 //!
 //! ```
@@ -168,7 +168,7 @@ fn read_inertial(element: Element<'_>, notes: &mut Notes) -> Result<Option<MassP
     };
     let own = MassProperties { mass, center: Vec3::ZERO, inertia };
     if check_mass(&own).is_err() {
-        notes.left_out("inertias that no solid has");
+        notes.left_out("impossible inertias");
         return Ok(Some(MassProperties {
             inertia: Sym3::from_diagonal(Vec3::splat(FRAME.1 / FRAME.0 * mass)),
             ..own
@@ -252,7 +252,7 @@ fn read_kind(element: Element<'_>) -> Result<Kind> {
             let axis = Vec3::from_array(value.numbers()?);
             let length = axis.length();
             if length < 1e-6 {
-                return Err(value.malformed("an axis has a length"));
+                return Err(value.malformed("an axis must not be zero"));
             }
             axis / length
         }
@@ -283,7 +283,7 @@ fn read_kind(element: Element<'_>) -> Result<Kind> {
     if let JointKind::Hinge { limit: Some(range) } | JointKind::Slider { limit: Some(range) } = joint
         && range.lo > range.hi
     {
-        return Err(malformed(element, "its limits leave nothing"));
+        return Err(malformed(element, "its limits are empty"));
     }
     Ok(Kind::Held(joint, axis))
 }
@@ -297,7 +297,7 @@ fn ordered<'a>(
     let mut above: Vec<Option<usize>> = vec![None; links.len()];
     for (index, joint) in joints.iter().enumerate() {
         if above[joint.child].replace(index).is_some() {
-            let what = format!("link {} hangs on two joints", quoted(links[joint.child].name));
+            let what = format!("link {} has two parents", quoted(links[joint.child].name));
             return Err(unsupported(joint.element, what));
         }
     }
@@ -313,7 +313,7 @@ fn ordered<'a>(
     if order.len() < links.len() {
         let stray = (0..links.len()).find(|link| order.iter().all(|(other, _)| other != link));
         let name = stray.map_or("", |link| links[link].name);
-        return Err(Error::malformed(format!("link {} hangs on itself", quoted(name)), xml::place(root)));
+        return Err(Error::malformed(format!("link {} is its own ancestor", quoted(name)), xml::place(root)));
     }
     Ok(order)
 }
@@ -342,7 +342,7 @@ fn model(
         let at = Transform::new(at.translation, at.rotation.normalize());
         placed[link] = (bodies.len(), at);
         let mass = own.mass.unwrap_or_else(|| {
-            notes.left_out("frames without mass, which got a gram");
+            notes.left_out("links without mass, which got a gram");
             let inertia = Sym3::from_diagonal(Vec3::splat(FRAME.1));
             MassProperties { mass: FRAME.0, center: Vec3::ZERO, inertia }
         });
@@ -431,14 +431,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_one_line_with_its_place() {
+    fn errors_are_one_line_with_a_place() {
         for (wrong, right, words) in [
             ("child link=\"upper\"", "child link=\"wing\"", "no link `wing`"),
             ("lower=\"-0.5\"", "lower=\"2\"", "above `upper`"),
-            ("axis xyz=\"0 1 0\"", "axis xyz=\"0 0 0\"", "an axis has a length"),
+            ("axis xyz=\"0 1 0\"", "axis xyz=\"0 0 0\"", "an axis must not be zero"),
             ("type=\"revolute\"", "type=\"planar\"", "planar joints are not read"),
             ("mass value=\"1\"", "mass value=\"nan\"", "not within"),
-            ("<parent link=\"base\"/>", "<parent link=\"tip\"/>", "hangs on itself"),
+            ("<parent link=\"base\"/>", "<parent link=\"tip\"/>", "is its own ancestor"),
             ("radius=\"0.05\"", "radius=\"0\"", "line"),
         ] {
             let error = read_urdf(ARM.replace(wrong, right).as_bytes()).expect_err(right).to_string();
@@ -450,7 +450,7 @@ mod tests {
     }
 
     #[test]
-    fn no_part_of_a_file_brings_it_down() {
+    fn damaged_files_do_not_panic() {
         let bytes = ARM.as_bytes();
         for end in 0..bytes.len() {
             let _ = read_urdf(&bytes[..end]);

@@ -53,7 +53,7 @@ pub struct UsdInput<'a> {
 /// # Panics
 /// If the clip or the ragdoll does not belong to the rig, or `fps` is below 1.
 pub fn write_usda(input: &UsdInput<'_>) -> UsdText {
-    assert!(input.fps >= 1.0, "a frame a second at least");
+    assert!(input.fps >= 1.0, "at least one frame a second");
     let mut writer = Writer { out: String::new(), notes: Vec::new() };
     let last = (input.clip.duration * input.fps).round();
     writer.line(0, "#usda 1.0");
@@ -202,7 +202,7 @@ impl Writer {
     fn meshes(&mut self, rig: &Rig) {
         let rigid = rig.meshes.iter().filter(|mesh| mesh.skin.is_none()).count();
         if rigid > 0 {
-            self.notes.push(format!("{rigid} meshes that hang on a joint without a skin are left out"));
+            self.notes.push(format!("{rigid} rigid meshes are left out"));
         }
         if !rig.meshes.is_empty() {
             self.notes.push("pictures and colours of the skin are left out".to_owned());

@@ -1,4 +1,4 @@
-//! A clip written into the user's own file: everything old is still there, and what comes back is what went in.
+//! A clip written into the user's own file: all old content stays, and the clip reads back equal.
 
 use crate::data::{GLTF, files, shared_data};
 use needs_data::needs_data;
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use sinew_anim::{Channel, Clip, Interpolation, Property};
 use sinew_formats::{Container, Document, ReadOptions, append_clip, load_gltf, no_files, read_gltf};
 
-/// A motion of every joint that has neither a matrix nor a skinned mesh, with every kind of channel.
+/// Returns a motion of every joint that has neither a matrix nor a skinned mesh, with every kind of channel.
 fn motion(document: &Document) -> Clip {
     let free = |joint: &usize| {
         let node = &document.json["nodes"][document.rig.joints[*joint].source];
@@ -40,7 +40,7 @@ fn motion(document: &Document) -> Clip {
     clip
 }
 
-/// Everything in `old` is in `new` at the same place; lists may be longer. Places in `allowed` may differ.
+/// Checks that `new` has everything in `old` at the same place; lists may be longer. Places in `allowed` may differ.
 fn assert_kept(old: &Value, new: &Value, path: &str, allowed: &dyn Fn(&str) -> bool) {
     if allowed(path) {
         return;
@@ -67,14 +67,14 @@ fn assert_kept(old: &Value, new: &Value, path: &str, allowed: &dyn Fn(&str) -> b
 
 #[needs_data]
 #[test]
-fn the_old_file_is_still_in_the_new_one() {
+fn appending_keeps_the_old_file() {
     let data = shared_data();
     for path in files(&data.join("rigs"), &GLTF) {
         let old = load_gltf(&path, ReadOptions::default()).unwrap();
         let clip = motion(&old);
         let extras = json!({"sinew_events": []});
         let bytes = append_clip(&old, &clip, "Moved", Some(extras.clone())).unwrap();
-        // For a run of the Khronos glTF validator over the outputs.
+        // For runs of the Khronos glTF validator over the outputs.
         if let Some(folder) = std::env::var_os("SINEW_KEEP_OUTPUTS") {
             let name = path.file_name().unwrap().to_str().unwrap();
             std::fs::write(std::path::Path::new(&folder).join(format!("{name}.glb")), &bytes).unwrap();
@@ -111,7 +111,7 @@ fn shift(joint: usize, to: [f32; 3]) -> Channel {
 }
 
 #[test]
-fn a_matrix_gives_way_only_where_the_clip_moves_its_node() {
+fn a_matrix_is_replaced_only_if_the_clip_moves_its_node() {
     let document = read_gltf(WITH_MATRIX.as_bytes(), ReadOptions::default(), &mut no_files).unwrap();
     let still =
         Clip { channels: vec![shift(0, [5.0, 6.0, 7.0]), shift(1, [1.0, 0.0, 0.0])], ..Clip::default() };
@@ -173,7 +173,7 @@ fn morph_targets_are_kept() {
     assert_eq!(new.clips.len(), old.clips.len() + 1);
 }
 
-/// A mannequin whose last vertices hang on `neutral_bone`.
+/// Returns a mannequin whose last vertices are bound to `neutral_bone`.
 fn with_loose_vertices(count: usize) -> sinew_anim::Rig {
     let mut rig = sinew::mannequin::mannequin().rig;
     let mesh = rig.meshes.iter_mut().find(|mesh| mesh.skin.is_some()).expect("a skin");
@@ -197,11 +197,11 @@ fn with_loose_vertices(count: usize) -> sinew_anim::Rig {
 }
 
 #[test]
-fn weights_that_loose_vertices_got_are_written() {
+fn inferred_weights_of_loose_vertices_are_written() {
     let file = sinew_formats::write_gltf(&with_loose_vertices(5), &[]).unwrap();
     let read = |bytes: &[u8]| read_gltf(bytes, ReadOptions::default(), &mut no_files).unwrap();
     let document = read(&file);
-    assert_eq!(document.warnings, ["5 vertices hang on no bone: they follow the nearest skin"]);
+    assert_eq!(document.warnings, ["5 vertices have no bone: they follow the nearest skin"]);
     let neutral = document.rig.joints.iter().position(|joint| joint.name == "neutral_bone");
     let moves = |document: &Document| {
         let of_mesh = |mesh: &sinew_anim::RigMesh| {

@@ -1,4 +1,4 @@
-//! BVH: real files, files made of all that can differ, and the way back.
+//! BVH: real files, files with every variation, and round trips.
 
 use crate::data::{files, shared_data};
 use needs_data::needs_data;
@@ -18,7 +18,7 @@ fn read(text: &str) -> BvhDocument {
     read_bvh(text.as_bytes(), BvhOptions { unit: BvhUnit::Metres(1.0), ..AS_IT_IS }).unwrap()
 }
 
-/// Error of the reader for a text, or "" if it accepts it.
+/// Returns the error of the reader for a text, or "" if it accepts it.
 fn complaint(text: &str) -> String {
     read_bvh(text.as_bytes(), AS_IT_IS).err().map(|e| e.to_string()).unwrap_or_default()
 }
@@ -64,11 +64,11 @@ Frame Time: 0.5
 ";
 
 #[test]
-fn channels_turn_in_the_order_in_which_they_stand() {
+fn channels_rotate_in_file_order() {
     let found = read(TWO_JOINTS);
     let at = |frame: usize, joint: usize| model(&found.rig, &pose(&found, frame))[joint].translation;
     let near = |a: Vec3, b: [f32; 3]| assert!((a - Vec3::from_array(b)).length() < 1e-5, "{a}");
-    // A quarter turn about z carries the arm from x up to y.
+    // A quarter turn about z moves the arm from x up to y.
     near(at(0, 1), [5.0, 8.0, 7.0]);
     near(at(0, 2), [5.0, 9.0, 7.0]);
     // The arm turns about y, then about its new z: its end, along x, goes to y. The hips' turn about x makes that z.
@@ -142,7 +142,7 @@ fn complaints_name_the_line() {
     for (from, to, expected) in [
         ("HIERARCHY", "hello", "not a BVH file: does not begin with `HIERARCHY` (line 1)"),
         ("ROOT hips", "ROOT", "a joint without a name (line 2)"),
-        ("JOINT arm", "JOIN arm", "`JOIN` stands where `}`, `JOINT` or `End Site` is due (line 6)"),
+        ("JOINT arm", "JOIN arm", "expected `}`, `JOINT` or `End Site`, found `JOIN` (line 6)"),
         ("OFFSET 2", "OFFSET two", "an offset: `two` is not a number (line 8)"),
         ("CHANNELS 3", "CHANNELS 4", "unknown channel `End` (line 10, joint `arm`)"),
         (
@@ -154,7 +154,7 @@ fn complaints_name_the_line() {
         ("Yrotation Zrotation", "Yrotation Yrotation", "`Yrotation` is listed twice (line 9, joint `arm`)"),
         ("Frames: 2", "Frames: 4000000000", "declares 4000000000 frames, has 2 (line 20)"),
         ("Frames: 2", "Frames: 1", "declares 1 frames, has 2 (line 20)"),
-        ("Frames: 2", "Frames: -2", "-2 is no number of frames (line 17)"),
+        ("Frames: 2", "Frames: -2", "-2 is not a number of frames (line 17)"),
         ("Frame Time: 0.5", "Frame Time: 0", "a frame time of 0 s (line 18)"),
         ("Frame Time: 0.5", "Frame Time: nan", "the frame time: `nan` is not finite (line 18)"),
         ("90 0 0 5", "90 0 NaN 5", "`NaN` is not finite (line 19, Yrotation of `hips`)"),
@@ -172,7 +172,7 @@ fn complaints_name_the_line() {
 }
 
 #[test]
-fn rows_that_are_missing_or_too_many_are_told_of() {
+fn missing_and_extra_rows_are_reported() {
     let options = BvhOptions { rows: BvhRows::AsPresent, ..AS_IT_IS };
     for (declared, note) in [(5, "declares 5 frames, has 2"), (1, "declares 1 frames, has 2")] {
         let text = TWO_JOINTS.replace("Frames: 2", &format!("Frames: {declared}"));
@@ -201,7 +201,7 @@ fn a_hundred_thousand_nested_joints_are_read_and_written() {
 
 #[needs_data]
 #[test]
-fn units_are_told_by_the_length_of_the_bones() {
+fn units_follow_from_bone_lengths() {
     for (name, metres) in [
         ("cmu_12_01_walk.bvh", 0.0254 / 0.45),
         ("cmu_01_01_jumps.bvh", 0.0254 / 0.45),
@@ -246,7 +246,7 @@ fn options_of(document: &BvhDocument) -> BvhWriteOptions<'_> {
 }
 
 /// Largest difference of two motions of one skeleton, frame by frame: radians, metres. In model space, so that a rig
-/// whose joints have other axes in rest is the same motion.
+/// whose joints have other rest axes has the same motion.
 fn difference(a: &BvhDocument, b: &BvhDocument) -> (f32, f32) {
     assert_eq!(a.frames, b.frames);
     let (mut turn, mut shift) = (0.0, 0.0);
@@ -264,7 +264,7 @@ fn difference(a: &BvhDocument, b: &BvhDocument) -> (f32, f32) {
 
 #[needs_data]
 #[test]
-fn every_file_comes_back_as_it_was() {
+fn every_file_round_trips() {
     let data = shared_data();
     let found = files(&data.join("mocap"), &["bvh"]);
     assert!(found.len() >= 6);
@@ -284,14 +284,14 @@ fn every_file_comes_back_as_it_was() {
     }
 }
 
-/// A skeleton and a motion of all that the format can hold.
+/// Returns a skeleton and a motion with everything that the format can hold.
 fn random_motion(random: &mut Random) -> (Rig, Clip, Vec<Vec<BvhChannel>>) {
     let (joints, frames) = (1 + random.index(12), 1 + random.index(5));
     let (mut rig, mut clip, mut layout) = (Rig::default(), Clip::default(), Vec::new());
     let times: Vec<f32> = (0..frames).map(|i| (i as f64 * 0.125) as f32).collect();
     clip.duration = times[frames - 1];
     for i in 0..joints {
-        // Some joints sit right on their parents.
+        // Some joints are exactly at their parents.
         let translation = if random.index(4) == 0 { Vec3::ZERO } else { random.in_cube() };
         let parent = (i > 0).then(|| random.index(i));
         let rest = LocalTransform { translation, ..LocalTransform::default() };
@@ -325,7 +325,7 @@ fn random_motion(random: &mut Random) -> (Rig, Clip, Vec<Vec<BvhChannel>>) {
 }
 
 #[test]
-fn random_motions_come_back_as_they_were() {
+fn random_motions_round_trip() {
     let mut random = Random::new(11);
     for case in 0..500 {
         let (rig, clip, layout) = random_motion(&mut random);
@@ -353,7 +353,7 @@ fn random_motions_come_back_as_they_were() {
     }
 }
 
-/// Joints of a glTF rig have axes of their own at rest; in the file they have those of the model.
+/// Joints of a glTF rig have their own axes at rest; in the file they have the model's.
 #[needs_data]
 #[test]
 fn a_rig_with_turned_joints_keeps_its_motion() {
@@ -380,12 +380,12 @@ fn a_rig_with_turned_joints_keeps_its_motion() {
 }
 
 #[test]
-fn writing_refuses_what_makes_no_file() {
+fn writing_refuses_invalid_clips() {
     let (rig, clip, layout) = random_motion(&mut Random::new(1));
     let with = |options: BvhWriteOptions<'_>| write_bvh(&rig, &clip, &options).unwrap_err().to_string();
     let plain = BvhWriteOptions::default;
     assert_eq!(with(BvhWriteOptions { frame_time: 0.0, ..plain() }), "must be above 0 (frame time)");
-    assert_eq!(with(BvhWriteOptions { frame_time: 1e-300, ..plain() }).split(' ').nth(1), Some("frames"));
+    assert!(with(BvhWriteOptions { frame_time: 1e-300, ..plain() }).starts_with("too many frames: "));
     assert_eq!(
         with(BvhWriteOptions { metres_per_unit: f32::NAN, ..plain() }),
         "must be above 0 (metres per unit)"
@@ -400,7 +400,7 @@ fn writing_refuses_what_makes_no_file() {
     assert!(write_bvh(&Rig::default(), &clip, &plain()).is_err());
 }
 
-/// Reads, and where that works holds the result against the promises of the types.
+/// Reads the bytes and, if that works, checks the promises of the types.
 fn read_and_check(bytes: &[u8]) -> Option<String> {
     let options = BvhOptions { rows: BvhRows::AsPresent, ..BvhOptions::default() };
     let strict = read_bvh(bytes, BvhOptions::default());
@@ -431,7 +431,7 @@ fn read_and_check(bytes: &[u8]) -> Option<String> {
 fn a_file_cut_anywhere_is_refused() {
     let end = TWO_JOINTS.trim_end().len();
     for length in 0..end {
-        // The last number may lose digits and still be one.
+        // The last number may lose digits and still be valid.
         assert!(read_and_check(&TWO_JOINTS.as_bytes()[..length]).is_some(), "{length}");
     }
     let data = shared_data();
@@ -451,7 +451,7 @@ fn a_file_cut_anywhere_is_refused() {
     }
 }
 
-/// Random bytes changed. 10,000 cases when `SINEW_FULL` is set, a tenth of that otherwise.
+/// Random bytes changed: 10,000 cases with `SINEW_FULL` set, otherwise a tenth.
 #[test]
 fn mutated_files_do_no_harm() {
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 10_000 } else { 1000 };
@@ -481,7 +481,7 @@ fn mutated_files_do_no_harm() {
 }
 
 #[test]
-fn chains_get_their_ends_where_asked() {
+fn chains_get_end_sites_on_request() {
     let (rig, clip) = crate::data::bar();
     let options = BvhWriteOptions { metres_per_unit: 1.0, ..BvhWriteOptions::default() };
     let unit = BvhUnit::Metres(1.0);

@@ -9,7 +9,7 @@ pub fn shared_data() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"))
 }
 
-/// Every file below `folder` with one of these extensions, in a fixed order.
+/// Returns every file below `folder` with one of these extensions, in a fixed order.
 pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut open = vec![folder.to_path_buf()];
@@ -30,7 +30,7 @@ pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
 /// Extensions of glTF and its relatives.
 pub const GLTF: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];
 
-/// Three joints in a row, metres apart, the middle one of which turns by a right angle in half a second.
+/// Returns three joints in a row, metres apart; the middle one rotates by a right angle in half a second.
 pub fn bar() -> (Rig, Clip) {
     let joint = |name: &str, parent: Option<usize>, source| {
         let translation = if source == 0 { Vec3::ZERO } else { Vec3::Y };

@@ -43,7 +43,7 @@ fn clips_are_what_the_manifest_says() {
     }
 }
 
-/// The get-up starts on the back and ends on the feet; the run never touches the ground with more than its feet.
+/// The get-up starts on the back and ends on the feet; in the run only the feet touch the ground.
 #[needs_data]
 #[test]
 fn bodies_are_where_they_should_be() {
@@ -91,7 +91,7 @@ fn complaints_name_the_place() {
     let still = format!("[0{}]", ",0".repeat(43));
     let text = format!(r#"{{"Frames":[{still},{still}]}}"#);
     let error = read_deepmimic(text.as_bytes(), &character).unwrap_err();
-    assert_eq!(error.to_string(), "the frame does not last (Frames[0])");
+    assert_eq!(error.to_string(), "the frame has no duration (Frames[0])");
     let wrong = String::from_utf8(bytes("deepmimic_humanoid3d.txt")).unwrap();
     let said =
         |from: &str, to: &str| read_deepmimic_character(wrong.replacen(from, to, 1).as_bytes()).unwrap_err();

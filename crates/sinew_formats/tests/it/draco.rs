@@ -1,4 +1,4 @@
-//! Meshes compressed by Draco: read as they were within what was rounded, and nothing worse than an error from bad streams.
+//! Meshes compressed by Draco: read within the quantization error; bad streams give errors.
 
 use crate::data::shared_data;
 use draco_core::{
@@ -13,7 +13,7 @@ use sinew_math::{Random, Vec3};
 /// Vertices along a side of the sheet.
 const SIDE: usize = 12;
 
-/// A bent sheet of `SIDE` × `SIDE` vertices that hangs on two joints.
+/// Returns a bent sheet of `SIDE` × `SIDE` vertices bound to two joints.
 fn place(i: usize) -> Vec3 {
     let (x, y) = ((i % SIDE) as f32, (i / SIDE) as f32);
     Vec3::new(x * 0.1, y * 0.1, x * y * 0.01)
@@ -36,7 +36,7 @@ fn attribute(kind: GeometryAttributeType, width: usize, data: DataType, bytes: &
     attribute
 }
 
-/// The sheet as a stream: positions, texture coordinates, slots and weights, by unique ids 0 to 3.
+/// Returns the sheet as a stream: positions, texture coordinates, slots and weights, by unique ids 0 to 3.
 fn stream(method: i32) -> Vec<u8> {
     let mut mesh = Mesh::new();
     let all = 0..SIDE * SIDE;
@@ -68,7 +68,7 @@ fn stream(method: i32) -> Vec<u8> {
     out.data().to_vec()
 }
 
-/// A file with the stream as its only mesh.
+/// Returns a file with the stream as its only mesh.
 fn file(stream: &[u8]) -> Value {
     let vertices = SIDE * SIDE;
     let accessor = |component: u32, kind: &str, count: usize| json!({"componentType": component, "type": kind, "count": count});
@@ -109,7 +109,7 @@ fn read(json: &Value, stream: &[u8]) -> Result<Document> {
 }
 
 #[test]
-fn what_was_compressed_comes_back() {
+fn compressed_meshes_round_trip() {
     // Sequential, edgebreaker.
     for method in [0, 1] {
         let stream = stream(method);
@@ -182,7 +182,7 @@ fn complaints_about_a_stream_name_its_place() {
     assert_eq!(said, "elements have 3 numbers in the Draco stream, not 4");
     let said = case(&with(|own| own["bufferView"] = 4.into()), &good);
     assert_eq!(said, "index 4 is out of range: there are 1 buffer views");
-    // More triangles in the stream than the file says, and more in the file than it can hold.
+    // More triangles in the stream than the file declares, and more in the file than it can hold.
     assert!(
         case(&|json| json["accessors"][0]["count"] = 30.into(), &good)
             .contains("has more than its accessors say")
@@ -191,14 +191,14 @@ fn complaints_about_a_stream_name_its_place() {
     assert_eq!(said, "1333333333 elements are more than the size of the file justifies");
 }
 
-/// A stream whose header lies about how much there is: refused without the memory for it.
+/// A stream whose header claims more than it has is refused without allocating it.
 #[test]
-fn a_stream_that_claims_gigabytes_takes_none() {
+fn oversized_counts_allocate_nothing() {
     let honest = stream(1);
     let mut random = Random::new(5);
     for case in 0..cases() {
         let mut lying = honest.clone();
-        // The header and the counts behind it: numbers of vertices, faces, symbols.
+        // The header and the counts after it: numbers of vertices, faces, symbols.
         for _ in 0..3 {
             let at = 5 + random.index(40.min(lying.len() - 5));
             lying[at] = if random.index(2) == 0 { 0xff } else { random.index(256) as u8 };
@@ -228,12 +228,12 @@ fn mutated_streams_do_no_harm() {
     }
 }
 
-/// Number of random cases: all with `SINEW_FULL` set.
+/// Returns the number of random cases: all with `SINEW_FULL` set.
 fn cases() -> usize {
     if std::env::var_os("SINEW_FULL").is_some() { 5000 } else { 100 }
 }
 
-/// Most memory that a call allocated at one time, bytes.
+/// Returns the peak memory of a call, bytes.
 fn peak(call: impl FnOnce()) -> u64 {
     allocation_counter::measure(call).bytes_max
 }
@@ -254,7 +254,7 @@ fn the_compressed_rigs_of_shared_are_read() {
         let mesh = document.rig.meshes.iter().find(|mesh| mesh.skin.is_some()).unwrap();
         let part = &mesh.primitives[0];
         assert_eq!((part.positions.len(), part.indices.len() / 3), (vertices, triangles), "{file}");
-        // The box of the positions is in the file, as it was before they were rounded.
+        // The file has the bounds of the positions before quantization.
         let accessor =
             document.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"].as_u64().unwrap();
         let accessor = &document.json["accessors"][usize::try_from(accessor).unwrap()];
@@ -270,7 +270,7 @@ fn the_compressed_rigs_of_shared_are_read() {
     }
 }
 
-/// Seeds of the fuzzer: a stream of each method after the counts that its file claims.
+/// Seeds of the fuzzer: a stream of each method after the counts that its file declares.
 #[test]
 fn seeds_of_the_fuzzer_are_whole_files() {
     for (method, name) in [(0, "sequential"), (1, "edgebreaker")] {

@@ -22,7 +22,7 @@ fn punch() -> ClipEvent {
 }
 
 #[test]
-fn what_is_written_is_read() {
+fn written_text_reads_back_equal() {
     let left = ClipEvent { payload: "left".into(), ..ClipEvent::new(0.3, "footstep") };
     let events = vec![vec![punch(), left], Vec::new(), vec![ClipEvent::new(2.0, "end")], vec![punch()]];
     let text = write_events(&clips(), &events);
@@ -42,7 +42,7 @@ fn events_are_sorted_by_time() {
 }
 
 #[test]
-fn lies_are_told_with_their_place() {
+fn wrong_values_are_refused_with_their_place() {
     let refused = |text: &str, what: &str, place: &str| {
         let error = read_events(text.as_bytes(), &clips()).unwrap_err();
         assert!(error.what.contains(what) && error.where_ == place, "{text}: {error}");
@@ -88,7 +88,7 @@ fn extras_of_an_animation() {
         append_clip(&document, &document.clips[0], "again", events_extras(&[ClipEvent::new(0.2, "clap")]));
     let document = read_gltf(&more.unwrap(), ReadOptions::default(), &mut no_files).unwrap();
     assert_eq!(document.events, [vec![punch()], vec![ClipEvent::new(0.2, "clap")]]);
-    // The extras of others are none of our business.
+    // Unknown extras are ignored.
     let foreign = append_clip(&document, &document.clips[0], "x", Some("text".into())).unwrap();
     assert!(read_gltf(&foreign, ReadOptions::default(), &mut no_files).unwrap().events[2].is_empty());
     let bare = serde_json::json!({"sinew_events": [{"time": 0.25, "name": "tap"}]});

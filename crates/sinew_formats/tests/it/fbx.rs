@@ -45,7 +45,7 @@ fn the_thigh_turns_evenly() {
     for k in 0..=20 {
         let time = k as f32 / 20.0;
         let (sin, cos) = trig::sin_cos(core::f32::consts::FRAC_PI_2 * time);
-        // Linear in the angle, as slerp between keys of one axis is.
+        // Linear in the angle, like slerp between keys of one axis.
         near(pose_at(&file, time)[shank].translation, Vec3::new(0.1, 1.0 - 0.4 * cos, -0.4 * sin));
     }
 }
@@ -66,11 +66,11 @@ fn the_skin_follows_its_bones() {
     for p in &positions {
         assert!(wanted.iter().any(|corner| (*corner - *p).length() < 1e-5), "{p} is no corner of the box");
     }
-    // Faces look outwards: the volume enclosed is that of the box.
+    // Faces point outwards: the enclosed volume is that of the box.
     let triangles = part.indices.chunks_exact(3).map(|t| [0, 1, 2].map(|k| positions[t[k] as usize]));
     let volume: f32 = triangles.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
     assert!((volume - 0.1 * 0.1 * 0.8).abs() < 1e-6, "{volume}");
-    // After the turn: about the thigh's joint at (0.1, 1, 0), what was below is behind.
+    // After the rotation about the thigh's joint at (0.1, 1, 0), what was below is behind.
     skin_vertices(rig, 0, 0, &pose_at(&file, 1.0), &mut positions, &mut normals);
     for p in &positions {
         let back = Vec3::new(p.x, 1.0 + p.z, -(p.y - 1.0));
@@ -79,7 +79,7 @@ fn the_skin_follows_its_bones() {
 }
 
 #[test]
-fn a_cut_anywhere_is_no_panic() {
+fn a_truncated_file_does_not_panic() {
     let text = leg();
     let mut refused = 0;
     for length in 0..text.len() {
@@ -93,7 +93,7 @@ fn a_cut_anywhere_is_no_panic() {
 }
 
 #[test]
-fn garbage_is_no_panic() {
+fn garbage_does_not_panic() {
     let text = leg().into_bytes();
     let mut random = Random::new(0xFB);
     for _ in 0..300 {
@@ -103,7 +103,7 @@ fn garbage_is_no_panic() {
             bytes[at] = random.index(256) as u8;
         }
         if let Ok(file) = read_fbx(&bytes) {
-            // What passes can be used.
+            // The result can be used.
             let joints = file.rig.joints.len();
             assert!(file.clips.iter().flat_map(|clip| &clip.channels).all(|channel| channel.joint < joints));
             if joints > 0 {
@@ -115,7 +115,7 @@ fn garbage_is_no_panic() {
     assert_eq!(error.kind, ErrorKind::Malformed);
 }
 
-/// A PNG of one red pixel.
+/// Returns a PNG of one red pixel.
 const RED: [u8; 70] = [
     137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 1, 0, 0, 0, 1, 8, 6, 0, 0, 0, 31,
     21, 196, 137, 0, 0, 0, 13, 73, 68, 65, 84, 120, 156, 99, 248, 207, 192, 240, 31, 0, 5, 0, 1, 255, 137,
@@ -133,7 +133,7 @@ fn a_material_has_its_colour_and_its_picture() {
     let part = &file.rig.meshes[0].primitives[0];
     assert_eq!((part.texture, part.base_color), (Some(0), [1.0; 4]), "{:?}", file.notes);
     assert_eq!(file.rig.textures[0].rgba, [255, 0, 0, 255]);
-    // Beside it, where its folder on another machine is left out.
+    // Beside it; its folder on another machine is ignored.
     let text = pictured_leg(None, "skin.png");
     let mut asked = Vec::new();
     let mut beside = |path: &str| {
@@ -143,7 +143,7 @@ fn a_material_has_its_colour_and_its_picture() {
     let file = read_fbx_with(text.as_bytes(), decode, &mut beside).unwrap();
     assert_eq!(file.rig.textures.len(), 1, "{:?}", file.notes);
     assert!(asked.iter().all(|path| !path.contains("..") && !path.contains(':')), "{asked:?}");
-    // Missing, broken, or not wanted: the colour is left, and a note says what became of the picture.
+    // Missing, broken, or not wanted: the colour stays, and a note names the picture.
     let broken = pictured_leg(Some(&png[..20]), "skin.png");
     for (text, options) in [(&text, decode), (&broken, decode), (&text, ReadOptions::default())] {
         let file = read_fbx_with(text.as_bytes(), options, &mut |path| missing(path)).unwrap();

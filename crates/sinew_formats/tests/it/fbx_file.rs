@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-/// Ticks of a second.
+/// Ticks per second.
 const SECOND: u64 = 46_186_158_000;
 
-/// Corners of the box that hangs on the leg, centimetres, z up: 10 × 10 × 80.
+/// Corners of the box bound to the leg, centimetres, z up: 10 × 10 × 80.
 pub fn corners() -> [[i32; 3]; 8] {
     core::array::from_fn(|i| {
         let at = |bit: usize, low, high| if i >> bit & 1 == 0 { low } else { high };
@@ -26,7 +26,7 @@ fn limb(id: u32, name: &str, at: [i32; 3]) -> String {
     )
 }
 
-/// A cluster of the corners in `range`, on a limb that stood at `at` without a rotation.
+/// Returns a cluster of the corners in `range`, on a limb at `at` without a rotation.
 fn cluster(id: u32, range: core::ops::Range<usize>, at: [f64; 3]) -> String {
     let matrix =
         |[x, y, z]: [f64; 3]| [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0];
@@ -40,7 +40,7 @@ fn cluster(id: u32, range: core::ops::Range<usize>, at: [f64; 3]) -> String {
     )
 }
 
-/// Hips at a height of 1 m, a thigh 10 cm beside them and a shank 40 cm below, z up in centimetres. The thigh turns by 90°
+/// Returns hips at a height of 1 m, a thigh 10 cm beside them and a shank 40 cm below, z up in centimetres. The thigh rotates by 90°
 /// about x within a second; a box is bound to thigh (upper four corners) and shank (lower four).
 pub fn leg() -> String {
     let mut text = String::from(
@@ -112,7 +112,7 @@ pub fn leg() -> String {
     text
 }
 
-/// The [`leg`] with a material on its box and a picture on that: the bytes of the picture in the file, or no more than its name.
+/// Returns the [`leg`] with a material on its box and a picture: with its bytes in the file, or only its name.
 pub fn pictured_leg(picture: Option<&[u8]>, name: &str) -> String {
     let content = picture.map_or(String::new(), |bytes| format!(" Content: ,\n \"{}\"\n", base64(bytes)));
     let objects = format!(

@@ -17,7 +17,7 @@ const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/moving_files
 const START: &str = "<!-- made by `cargo test -p sinew_formats formats_table`, with UPDATE_EXPECT=1 -->\n";
 const END: &str = "<!-- end of what is made -->\n";
 
-/// Largest difference of a clip's keys from what is sampled at their times, of a file's numbers.
+/// Largest difference of a clip's keys from samples at their times.
 fn key_error(rig: &Rig, clip: &Clip) -> f32 {
     let mut worst = 0.0;
     let mut pose = rest_pose(rig);
@@ -33,7 +33,7 @@ fn key_error(rig: &Rig, clip: &Clip) -> f32 {
     worst
 }
 
-/// Largest difference of what was sampled from a key, component by component; −q is q, and what is no unit quaternion is made one.
+/// Largest difference of a sample from a key, component by component; −q equals q, and quaternions are normalized.
 fn distance(channel: &Channel, found: LocalTransform, key: &[f32]) -> f32 {
     let largest = |off: [f32; 4]| off.into_iter().fold(0.0, |a, b: f32| sinew_math::max(a, b.abs()));
     let vector = |v: sinew_math::Vec3| largest([v.x - key[0], v.y - key[1], v.z - key[2], 0.0]);
@@ -65,7 +65,7 @@ fn interpolations(clip: &Clip) -> String {
     clip.channels.iter().map(name).collect::<BTreeSet<_>>().into_iter().collect::<Vec<_>>().join(", ")
 }
 
-/// Text as it may stand in a cell of a table.
+/// Escapes text for a cell of a table.
 fn cell(text: &str) -> String {
     text.replace('|', "\\|")
 }
@@ -111,7 +111,7 @@ fn clip_rows(out: &mut String, folder: &Path) {
     }
 }
 
-/// The orders in which a file's joints list their rotations.
+/// Returns the orders of rotations of a file's joints.
 fn orders(document: &BvhDocument) -> String {
     let order = |channels: &Vec<BvhChannel>| -> String {
         channels.iter().filter(|channel| channel.is_rotation()).map(|channel| &channel.name()[..1]).collect()

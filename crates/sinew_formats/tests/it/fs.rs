@@ -1,10 +1,10 @@
-//! Files on disk: whole or not at all, and nothing from outside a glTF's folder.
+//! Files on disk: written whole or not at all, and nothing read outside a glTF's folder.
 
 use sinew_formats::{ErrorKind, ReadOptions, load_gltf, read_bytes, write_all_atomic, write_atomic};
 use std::fs;
 use std::path::PathBuf;
 
-/// An empty folder of this test run's own.
+/// Returns an empty folder of this test run.
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("sinew-formats-{}-{name}", std::process::id()));
     let _ = fs::remove_dir_all(&folder);
@@ -19,7 +19,7 @@ fn a_write_replaces_and_leaves_nothing_beside_it() {
     write_atomic(&path, b"one").unwrap();
     write_atomic(&path, b"two").unwrap();
     assert_eq!(read_bytes(&path).unwrap(), b"two");
-    // A folder of that name cannot be replaced by a file: the write fails and cleans up.
+    // A file cannot replace a folder: the write fails and cleans up.
     fs::create_dir(folder.join("taken")).unwrap();
     let error = write_atomic(folder.join("taken"), b"x").unwrap_err();
     assert_eq!(error.kind, ErrorKind::Io);
@@ -30,10 +30,10 @@ fn a_write_replaces_and_leaves_nothing_beside_it() {
     fs::remove_dir_all(folder).unwrap();
 }
 
-/// A link's target is written, and the link stays; what is no regular file is never replaced.
+/// A link's target is written, and the link stays; only regular files are replaced.
 #[cfg(unix)]
 #[test]
-fn nothing_but_a_regular_file_is_replaced() {
+fn only_regular_files_are_replaced() {
     use std::os::unix::fs::symlink;
     let folder = folder("replaced");
     fs::create_dir(folder.join("far")).unwrap();
@@ -50,10 +50,10 @@ fn nothing_but_a_regular_file_is_replaced() {
     symlink("circle.json", folder.join("circle.json")).unwrap();
     let socket = std::os::unix::net::UnixListener::bind(folder.join("socket.json")).unwrap();
     for (name, why) in [
-        ("device.json", "is there and is not a regular file"),
-        ("socket.json", "is there and is not a regular file"),
-        ("far", "is there and is not a regular file"),
-        ("circle.json", "is a link that leads to a link without end"),
+        ("device.json", "exists and is not a regular file"),
+        ("socket.json", "exists and is not a regular file"),
+        ("far", "exists and is not a regular file"),
+        ("circle.json", "is a link in a circle of links"),
     ] {
         let error = write_atomic(folder.join(name), b"new").unwrap_err();
         assert_eq!(error.what, format!("cannot write: {why}"), "{name}");
@@ -65,7 +65,7 @@ fn nothing_but_a_regular_file_is_replaced() {
 }
 
 #[test]
-fn of_several_files_none_appears_before_all_are_written() {
+fn several_files_appear_only_when_all_are_written() {
     let folder = folder("several");
     let (good, bad) = (folder.join("a"), folder.join("none/b"));
     let error = write_all_atomic(&[(&good, "one"), (&bad, "two")]).unwrap_err();

@@ -1,10 +1,10 @@
-//! Ways in which vertex data may be stored: each against the numbers that went in.
+//! Storage forms of vertex data: each is compared with the original numbers.
 
 use sinew_anim::{Primitive, Rig};
 use sinew_formats::{ReadOptions, no_files, read_gltf};
 use sinew_math::{Affine, Rotation, Vec3};
 
-/// A one-mesh file: `primitive` without its braces, accessors, views and the bytes of its only buffer in hexadecimal.
+/// Returns a one-mesh file: `primitive` without its braces, accessors, views and the bytes of its only buffer in hexadecimal.
 fn read(primitive: &str, accessors: &str, views: &str, bytes: &[u8]) -> Primitive {
     let escaped: String = bytes.iter().map(|b| format!("%{b:02x}")).collect();
     let json = format!(

@@ -1,4 +1,4 @@
-//! Bytes that want to break the reader: an error with a place each time, never a panic, never memory on credit.
+//! Malicious bytes: each gives an error with a place, without a panic and without large allocations.
 
 use crate::data::{GLTF, files, shared_data};
 use needs_data::needs_data;
@@ -11,12 +11,12 @@ use std::path::Path;
 
 const DECODE: ReadOptions = ReadOptions { textures: Textures::Decode };
 
-/// Error of the reader for a JSON text, or "" if it accepts it.
+/// Returns the error of the reader for a JSON text, or "" if it accepts it.
 fn complaint(json: &str) -> String {
     read_gltf(json.as_bytes(), DECODE, &mut no_files).err().map(|e| e.to_string()).unwrap_or_default()
 }
 
-/// A GLB of a JSON text and a binary chunk.
+/// Returns a GLB of a JSON text and a binary chunk.
 fn glb(json: &str, bin: &[u8]) -> Vec<u8> {
     let padded = json.to_owned() + &" ".repeat(json.len().next_multiple_of(4) - json.len());
     let total = 12 + 8 + padded.len() + 8 + bin.len();
@@ -30,7 +30,7 @@ fn glb(json: &str, bin: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A skinned triangle, small enough to cut at every byte. `joints` are the twelve slots of its vertices.
+/// Returns a skinned triangle, small enough to cut at every byte. `joints` are the twelve slots of its vertices.
 fn triangle(joints: [u8; 12]) -> Vec<u8> {
     let json = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
         "nodes":[{"mesh":0,"skin":0},{"name":"bone"}],"skins":[{"joints":[1]}],
@@ -144,7 +144,7 @@ fn complaints_name_the_place() {
     }
 }
 
-/// One mesh placed by very many nodes may not make much of little.
+/// One mesh placed by very many nodes must not use much memory.
 #[test]
 fn instances_cannot_multiply_memory_without_bound() {
     let bin = vec![0; 1_200_000];
@@ -159,7 +159,7 @@ fn instances_cannot_multiply_memory_without_bound() {
     assert!(error.what.contains("more than the size of the file justifies"), "{error}");
 }
 
-/// Deep chains are data, not call depth.
+/// Deep chains do not cause deep recursion.
 #[test]
 fn a_chain_of_a_hundred_thousand_nodes_is_read() {
     let nodes: Vec<_> = (1..100_000).map(|i| format!(r#"{{"children":[{i}]}}"#)).collect();
@@ -169,7 +169,7 @@ fn a_chain_of_a_hundred_thousand_nodes_is_read() {
     assert_eq!(document.rig.joints[99_999].parent, Some(99_998));
 }
 
-/// Reads a file and, where that works, holds it against the promises of the types.
+/// Reads a file and, if that works, checks the promises of the types.
 fn read_and_check(bytes: &[u8], path: &Path) -> Result<()> {
     let folder = path.parent().unwrap();
     let mut beside = |name: &str| std::fs::read(folder.join(name)).or_else(|_| no_files(name));
@@ -188,7 +188,7 @@ fn assert_one_line(error: &Error) {
 
 #[needs_data]
 #[test]
-fn files_made_to_be_bad_do_no_harm() {
+fn malicious_files_give_errors() {
     let data = shared_data();
     let (mut read, mut refused) = (0, 0);
     for folder in ["bad_input", "negative", "worlds"] {
@@ -210,14 +210,14 @@ fn files_made_to_be_bad_do_no_harm() {
 
 #[needs_data]
 #[test]
-fn valid_files_that_are_no_characters_are_read() {
+fn valid_files_without_characters_are_read() {
     let data = shared_data();
     for path in files(&data.join("negative"), &GLTF) {
         load_gltf(&path, DECODE).unwrap_or_else(|e| panic!("{e}"));
     }
 }
 
-/// Random bytes changed in small rigs. 2,000 cases when `SINEW_FULL` is set, a tenth of that otherwise.
+/// Random bytes changed in small rigs: 2,000 cases with `SINEW_FULL` set, otherwise a tenth.
 #[needs_data]
 #[test]
 fn mutated_rigs_do_no_harm() {
@@ -240,7 +240,7 @@ fn mutated_rigs_do_no_harm() {
     }
 }
 
-/// Gives bytes to each reader that they may be meant for.
+/// Passes bytes to each reader that may accept them.
 fn read_as_whatever(bytes: &[u8], path: &Path) {
     let folder = path.parent().unwrap();
     let mut beside = |name: &str| std::fs::read(folder.join(name)).or_else(|_| no_files(name));
@@ -257,9 +257,9 @@ fn read_as_whatever(bytes: &[u8], path: &Path) {
     }
 }
 
-/// Every file that is not too long, cut at every 64th byte: an error or a shorter file, never a panic. Files up to 256 KiB when `SINEW_FULL` is set.
+/// Every file that is not too long, cut at every 64th byte, gives an error or a shorter file, never a panic. Files up to 256 KiB with `SINEW_FULL` set.
 #[test]
-fn files_that_were_cut_do_no_harm() {
+fn truncated_files_give_errors_or_shorter_files() {
     const EXTENSIONS: [&str; 10] = ["glb", "gltf", "vrm", "vrma", "bvh", "fbx", "obj", "xml", "json", "txt"];
     let longest = if std::env::var_os("SINEW_FULL").is_some() { 256 << 10 } else { 6 << 10 };
     let seeds = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds")).to_path_buf();

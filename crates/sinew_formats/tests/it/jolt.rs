@@ -1,4 +1,4 @@
-//! Ragdolls and animations of Jolt: a small one written here, bytes that want to break the reader, and Jolt's own human.
+//! Ragdolls and animations of Jolt: a small one written here, malicious bytes, and Jolt's own human.
 
 use crate::data::shared_data;
 use needs_data::needs_data;
@@ -9,7 +9,7 @@ use sinew_physics::{BodyDef, JointKind, Shape, World, WorldDef};
 use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
 use sinew_ragdoll::{BodySettings, BodyState, DriveMode, Drives, Muscle, Pin, Ragdoll};
 
-/// Two parts: a ball, and a capsule half a metre above it whose joint is half way.
+/// Two parts: a ball, and a capsule half a metre above it, with the joint half way between.
 const SMALL: &str = r#"TOS 1.00
 
 declare RagdollSettings 2
@@ -222,32 +222,32 @@ fn an_animation_is_keys_by_joint() {
     assert_eq!((turns.interpolation, turns.times.as_slice()), (Interpolation::Linear, &[0.0, 0.5][..]));
     assert_eq!(turns.values[4..], [0.0, 0.0, 0.6, 0.8]);
     let error = read_jolt_animation(animation([0.5, 0.5]).as_bytes(), &rig).unwrap_err();
-    assert_eq!(error.to_string(), "a key that is not later than the one before (line 18)");
+    assert_eq!(error.to_string(), "a key that is not after the previous one (line 18)");
     let error = read_jolt_animation(animation([0.0, 1.0]).as_bytes(), &Rig::default()).unwrap_err();
-    assert_eq!(error.to_string(), "`tip` is no joint of the skeleton (line 13)");
+    assert_eq!(error.to_string(), "`tip` is not a joint of the skeleton (line 13)");
     let error = read_jolt_animation(SMALL.as_bytes(), &rig).unwrap_err();
     assert!(error.to_string().starts_with("no animation in it"), "{error}");
 }
 
 #[test]
-fn what_is_wrong_is_named_with_its_line() {
+fn errors_name_their_line() {
     for (from, to, what) in [
         ("TOS 1.00", "TOF 1.00", "not a text object file: does not begin with `TOS` (line 1)"),
-        ("\"root\"\n      \"\"", "\"root\"\n      \"tip\"", "`tip` is no joint before `root` (line 59)"),
+        ("\"root\"\n      \"\"", "\"root\"\n      \"tip\"", "`tip` is not a joint before `root` (line 59)"),
         ("SphereShapeSettings", "TorusShapeSettings", "a shape of class `TorusShapeSettings` (line 69)"),
         (
             "  mRadius float\n\nobject Sphere",
             "  mRadius quaternions\n\nobject Sphere",
-            "a member of type `quaternions` (line 67)",
+            "unknown type `quaternions` of a member (line 67)",
         ),
         (
             "  0.1\n\ndeclare Static",
             "  -0.1\n\ndeclare Static",
             "a radius must be positive and finite (line 69)",
         ),
-        ("      0 1.5 0\n", "      0 nan 0\n", "a line with what is no finite number (line 45)"),
-        ("      00000005\n", "      00000009\n", "names object 00000009, which is not there (line 54)"),
-        ("  0.375\n", "  0.375.0\n", "`0.375.0` is no finite number (line 128)"),
+        ("      0 1.5 0\n", "      0 nan 0\n", "a line without a finite number (line 45)"),
+        ("      00000005\n", "      00000009\n", "names object 00000009, which does not exist (line 54)"),
+        ("  0.375\n", "  0.375.0\n", "`0.375.0` is not a finite number (line 128)"),
     ] {
         let text = SMALL.replace(from, to);
         assert_ne!(text, SMALL);
@@ -276,7 +276,7 @@ fn every_prefix_and_every_changed_byte_gives_an_answer() {
     }
 }
 
-/// Jolt's human and a clip of its.
+/// Jolt's human and one of its clips.
 fn human(clip: &str) -> (JoltRagdoll, Clip) {
     let folder = shared_data().join("peers/jolt");
     let ragdoll = read_jolt_ragdoll(&std::fs::read(folder.join("Human.tof")).unwrap()).unwrap();
@@ -303,7 +303,7 @@ fn jolts_human_is_whole() {
     assert_eq!(role("L_Leg_sjnt_1"), Some("leftLowerLeg"));
     assert_eq!(role("R_Arm_sjnt_1"), Some("rightLowerArm"));
     assert!((2.0..4.0).contains(&clip.duration) && clip.channels.len() == 46, "{} s", clip.duration);
-    // At rest its joints' anchors meet, and no joint is far beyond its limits.
+    // At rest its joints' anchors coincide, and no joint is far beyond its limits.
     for joint in &def.joints {
         let [a, b] = [(joint.parent, joint.frame_parent), (joint.child, joint.frame_child)]
             .map(|(body, frame)| def.bodies[body].character_from_body * frame);
@@ -324,7 +324,7 @@ fn model_poses(rig: &Rig, pose: &[LocalTransform]) -> Vec<Transform> {
     model
 }
 
-/// World poses of the bodies as a clip has them.
+/// World poses of the bodies in a clip.
 struct Stage {
     ragdoll: JoltRagdoll,
     clip: Clip,
@@ -360,8 +360,8 @@ impl Stage {
             .collect()
     }
 
-    /// Root mean square over joints and over time after the first second of the angle between a joint as it is and as the
-    /// clip has it, degrees; and the largest mean force of the pins, N.
+    /// Root mean square, over joints and over time after the first second, of the angle between a joint and the
+    /// clip, degrees; and the largest mean force of the pins, N.
     fn track(&self, mode: DriveMode) -> (f32, f32) {
         let def = &self.ragdoll.def;
         let mut world = World::new(WorldDef::default());

@@ -1,4 +1,4 @@
-//! Numbers that are not finite: mended with a note where they do not matter, refused where they do.
+//! Numbers that are not finite: replaced with a note where they do not matter, refused elsewhere.
 
 use crate::data::shared_data;
 use needs_data::needs_data;
@@ -8,10 +8,10 @@ use std::fmt::Write as _;
 
 const NAN: f32 = f32::NAN;
 
-/// Two triangles, one after the other, and a vertex of none; each attribute is three, two or four numbers a vertex.
+/// Two separate triangles, and an unused vertex; each attribute has three, two or four numbers per vertex.
 const VERTICES: usize = 7;
 
-/// A file of attributes by name; weights go with slots 0 and 1 of a skin of two.
+/// Returns a file of attributes by name; weights use slots 0 and 1 of a skin of two joints.
 fn file(attributes: &[(&str, usize, Vec<f32>)]) -> Result<Document> {
     let mut bin: Vec<u8> = Vec::new();
     let (mut views, mut accessors, mut named) = (Vec::new(), Vec::new(), serde_json::Map::new());
@@ -59,7 +59,7 @@ fn positions() -> Vec<f32> {
     (0..VERTICES).flat_map(|i| [i as f32, (i * i) as f32, (i % 3) as f32]).collect()
 }
 
-/// Weight 1 for slot 0 in the first triangle, for slot 1 behind it.
+/// Weight 1 for slot 0 in the first triangle, for slot 1 after it.
 fn weights() -> Vec<f32> {
     (0..VERTICES).flat_map(|i| if i < 3 { [1.0, 0.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0, 0.0] }).collect()
 }
@@ -70,7 +70,7 @@ fn spoilt(mut numbers: Vec<f32>, at: usize, with: f32) -> Vec<f32> {
 }
 
 #[test]
-fn what_only_shows_is_mended_with_a_note() {
+fn cosmetic_values_are_replaced_with_a_note() {
     let up: Vec<f32> = [0.0, 1.0, 0.0].repeat(VERTICES);
     for with in [NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let document = file(&[
@@ -96,10 +96,10 @@ fn what_only_shows_is_mended_with_a_note() {
 }
 
 #[test]
-fn weights_that_are_not_finite_are_those_of_the_nearest_skin() {
+fn nonfinite_weights_come_from_the_nearest_skin() {
     let mut lost = weights();
     lost[20..24].fill(NAN);
-    // One weight of several is left.
+    // One of several weights remains.
     lost[1] = NAN;
     let document = file(&[("POSITION", 3, positions()), ("WEIGHTS_0", 4, lost)]).unwrap();
     let part = &document.rig.meshes[0].primitives[0];
@@ -107,7 +107,7 @@ fn weights_that_are_not_finite_are_those_of_the_nearest_skin() {
     assert_eq!(part.weights[0], [1.0, 0.0, 0.0, 0.0]);
     let expected = [
         "2 of 7 elements are not finite: taken as 0 (meshes[0].primitives[0].attributes.WEIGHTS_0)",
-        "1 vertex hangs on no bone: it follows the nearest skin",
+        "1 vertex has no bone: it follows the nearest skin",
     ];
     assert_eq!(document.warnings, expected);
 }

@@ -1,4 +1,4 @@
-//! Compressed and quantised glTF. The encoder here is small and makes no effort to be good at it.
+//! Compressed and quantized glTF. The encoder here is small and does not optimize.
 
 use crate::meshopt_encoder::{attributes, sequence, triangles};
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use sinew_anim::{Clip, Primitive, Rig};
 use sinew_formats::{Document, ErrorKind, ReadOptions, no_files, read_gltf};
 use sinew_math::{Random, Rotation, Vec3};
 
-/// A glTF in the making: views are compressed, or written as they are.
+/// A glTF under construction: views are compressed, or stored raw.
 #[derive(Default)]
 struct File {
     bin: Vec<u8>,
@@ -14,7 +14,7 @@ struct File {
     accessors: Vec<Value>,
 }
 
-/// Encoding in which a view is stored.
+/// Encoding of a view.
 #[derive(Clone, Copy, PartialEq)]
 enum Storage {
     Plain,
@@ -68,7 +68,7 @@ const COLUMNS: usize = 20;
 const ROWS: usize = 15;
 const KEYS: usize = 40;
 
-/// Vertices of a wavy sheet as quantised numbers: place of 16 bits, slots and weights of 8.
+/// Vertices of a wavy sheet as quantized numbers: positions of 16 bits, slots and weights of 8.
 fn place(i: usize) -> [u16; 4] {
     let (x, y) = (i % COLUMNS, i / COLUMNS);
     [(x * 3000) as u16, (y * 4000) as u16, ((x * y * 37) % 500) as u16, 0]
@@ -85,7 +85,7 @@ fn sheet() -> Vec<u32> {
     indices
 }
 
-/// Turns of the second joint.
+/// Rotations of the second joint.
 fn turn(key: usize) -> Rotation {
     Rotation::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), key as f32 * 0.07 - 1.0)
 }
@@ -95,7 +95,7 @@ fn shorts(r: Rotation) -> [i16; 4] {
     [r.x, r.y, r.z, r.w].map(|x| (x * 32767.0).round() as i16)
 }
 
-/// A skinned, quantised sheet with an animation; each view stored in that way.
+/// Returns a skinned, quantized sheet with an animation; every view is stored in that encoding.
 fn file(storage: Storage, version: u8) -> (Value, Vec<u8>, Vec<u32>) {
     let mut file = File::default();
     let vertices = COLUMNS * ROWS;
@@ -161,7 +161,7 @@ fn part(rig: &Rig) -> &Primitive {
 }
 
 #[test]
-fn quantised_numbers_are_what_they_stand_for() {
+fn quantized_numbers_decode_exactly() {
     let (root, bin, indices) = file(Storage::Plain, 0);
     let document = read(&glb(&root, &bin)).unwrap();
     let part = part(&document.rig);
@@ -195,7 +195,7 @@ fn compressed_files_are_the_plain_ones() {
     }
 }
 
-/// One view through a filter, read back as floats through the translations of a node.
+/// Passes one view through a filter and reads it back as floats through the translations of a node.
 fn filtered(filter: &'static str, bytes: &[u8], stride: usize, component: u32, kind: &str) -> Vec<f32> {
     let mut file = File::default();
     let count = bytes.len() / stride;
@@ -217,7 +217,7 @@ fn filtered(filter: &'static str, bytes: &[u8], stride: usize, component: u32, k
 }
 
 #[test]
-fn filters_give_back_what_went_in() {
+fn filters_round_trip() {
     let mut random = Random::new(7);
     // Quaternions: the three smaller numbers of 15 bits, the largest left out.
     let turns: Vec<Rotation> = (0..200).map(|_| random.rotation()).collect();
@@ -283,7 +283,7 @@ fn sequences_and_random_triangles() {
     }
 }
 
-/// Indices of a primitive that are stored so.
+/// Returns the indices of a primitive that are stored so.
 fn decoded(mode: &'static str, stream: &[u8], count: usize) -> Vec<u32> {
     let mut file = File::default();
     let (offset, length) = file.put(stream);
@@ -326,7 +326,7 @@ fn broken_streams_are_refused() {
             assert!(error.kind == ErrorKind::Malformed && error.where_ == place, "{length}: {error}");
         }
     }
-    // A claim that the bytes do not justify is refused before anything is allocated.
+    // A count that the bytes do not justify is refused before anything is allocated.
     let mut greedy = root;
     greedy["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["count"] = json!(1_u64 << 40);
     assert!(read(&glb(&greedy, &bin)).unwrap_err().what.contains("justifies"));

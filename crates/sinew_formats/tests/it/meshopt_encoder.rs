@@ -32,7 +32,7 @@ fn group(numbers: &[u8], bits: u32, out: &mut Vec<u8>) {
     out.extend(numbers.iter().filter(|&&n| n >= most));
 }
 
-/// One byte of each element of a block, in the fewest bits of these for each group.
+/// Writes one byte of each element of a block, in the fewest bits of these for each group.
 fn lane(mut numbers: Vec<u8>, bits: [u32; 4]) -> Vec<u8> {
     numbers.resize(numbers.len().div_ceil(16) * 16, 0);
     let groups: Vec<&[u8]> = numbers.chunks(16).collect();
@@ -52,7 +52,7 @@ fn lane(mut numbers: Vec<u8>, bits: [u32; 4]) -> Vec<u8> {
     [headers, data].concat()
 }
 
-/// Version 1 takes each way of differences and of storing a lane in turn.
+/// Version 1 uses each kind of differences and of lane encodings in turn.
 pub fn attributes(bytes: &[u8], stride: usize, version: u8) -> Vec<u8> {
     let mut out = vec![0xA0 | version];
     let mut last = bytes[..stride].to_vec();
@@ -89,7 +89,7 @@ pub fn attributes(bytes: &[u8], stride: usize, version: u8) -> Vec<u8> {
                     _ => [0, 1, 3][(number + k / 4 + i) % 3],
                 };
                 byte |= (way & 3) << (2 * i);
-                // With four bits at most, large numbers follow their groups.
+                // With at most four bits, large numbers follow their groups.
                 data.extend(match way {
                     4 => lane(numbers, [0, 2, 4, 8]),
                     0 => lane(numbers, [0, 1, 2, 4]),
@@ -115,16 +115,16 @@ pub fn attributes(bytes: &[u8], stride: usize, version: u8) -> Vec<u8> {
     out
 }
 
-/// Byte that follows codes 0xF0 to 0xFD: which of the other two corners is new (0), or how many vertices back.
+/// Byte after codes 0xF0 to 0xFD: which of the other two corners is new (0), or how many vertices back.
 const TABLE: [u8; 16] =
     [0x00, 0x12, 0x10, 0x01, 0x11, 0x21, 0x20, 0x02, 0x13, 0x31, 0x30, 0x03, 0x22, 0x33, 0, 0];
 
-/// Entry that was pushed so many before the next.
+/// Returns the entry that was pushed this many before the next.
 fn back_by<T: Copy>(list: &[T], by: usize) -> Option<T> {
     list.len().checked_sub(by).map(|at| list[at])
 }
 
-/// A stream of version 1, and the triangles as it gives them back: with the same corners, some begin with another.
+/// Returns a stream of version 1, and the decoded triangles: with the same corners, some starting at another.
 pub fn triangles(indices: &[u32]) -> (Vec<u8>, Vec<u32>) {
     let (mut codes, mut data, mut out) = (vec![0xE1], Vec::new(), Vec::new());
     let (mut edges, mut vertices): (Vec<[u32; 2]>, Vec<u32>) = (Vec::new(), Vec::new());
@@ -176,7 +176,7 @@ pub fn triangles(indices: &[u32]) -> (Vec<u8>, Vec<u32>) {
         } else {
             codes.push(if kinds[0] == 0 { 0xFE } else { 0xFF });
             data.push(others);
-            // The byte 0 begins anew with the numbers.
+            // The byte 0 restarts the numbering.
             assert_ne!(others, 0, "two new vertices beside an old one are not in these tests");
             for (&corner, _) in corners.iter().zip(kinds).filter(|&(_, kind)| kind == 15) {
                 varint(zigzag(corner.wrapping_sub(last)), &mut data);
@@ -196,7 +196,7 @@ pub fn triangles(indices: &[u32]) -> (Vec<u8>, Vec<u32>) {
     (([codes, data, TABLE.to_vec()]).concat(), out)
 }
 
-/// A stream of any indices; every third by the second of the two last ones.
+/// Returns a stream of any indices; every third is relative to the second of the last two.
 pub fn sequence(indices: &[u32]) -> Vec<u8> {
     let (mut out, mut last) = (vec![0xD1], [0_u32; 2]);
     for (i, &index) in indices.iter().enumerate() {

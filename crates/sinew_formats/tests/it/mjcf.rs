@@ -1,4 +1,4 @@
-//! MJCF: MuJoCo's humanoid against what MuJoCo makes of it, small models against closed forms, and hostile bytes.
+//! MJCF: MuJoCo's humanoid compared with MuJoCo, small models against closed forms, and malicious bytes.
 
 use crate::data::shared_data;
 use core::f32::consts::FRAC_1_SQRT_2 as H;
@@ -52,7 +52,7 @@ const BODIES: [BodyRow; 16] = [
 
 #[needs_data]
 #[test]
-fn the_bodies_of_the_humanoid_are_those_that_mujoco_makes() {
+fn humanoid_bodies_match_mujoco() {
     let model = humanoid();
     assert_eq!(model.bodies.len(), 1 + BODIES.len());
     assert_eq!(model.bodies[0].def.kind, BodyKind::Static);
@@ -71,7 +71,7 @@ fn the_bodies_of_the_humanoid_are_those_that_mujoco_makes() {
     assert!((total - 40.844_02).abs() < 1e-4, "{total} kg");
 }
 
-/// Full tensors of two bodies that have none of the axes for principal ones: MuJoCo 4.0.0.
+/// Full tensors of two bodies whose principal axes are not the frame's: MuJoCo 4.0.0.
 #[needs_data]
 #[test]
 fn inertia_is_turned_like_the_body() {
@@ -96,7 +96,7 @@ fn joint<'a>(model: &'a MjcfModel, child: &str) -> &'a MjcfJoint {
 
 #[needs_data]
 #[test]
-fn the_joints_of_the_humanoid_are_where_mujoco_has_them() {
+fn humanoid_joints_match_mujoco() {
     let model = humanoid();
     assert_eq!(model.joints.len(), 15);
     let pose = model.rest_pose();
@@ -127,7 +127,7 @@ fn assert_range(found: Range, lo: f32, hi: f32) {
     assert!(max((found.lo - expected.lo).abs(), (found.hi - expected.hi).abs()) < 1e-6, "{found:?}");
 }
 
-/// Limits of a joint that swings about one axis and twists.
+/// Returns the limits of a joint that swings about one axis and twists.
 fn two_ranges(joint: &MjcfJoint) -> [Range; 2] {
     let JointKind::SixDof(six) = joint.kind else { panic!("{:?}", joint.kind) };
     assert_eq!((six.linear, six.swing_z), ([AxisMotion::Locked; 3], AxisMotion::Locked));
@@ -139,7 +139,7 @@ fn two_ranges(joint: &MjcfJoint) -> [Range; 2] {
 
 #[needs_data]
 #[test]
-fn the_ranges_of_the_humanoid_are_those_of_its_classes() {
+fn humanoid_ranges_follow_its_classes() {
     let model = humanoid();
     let JointKind::Hinge { limit: Some(knee) } = joint(&model, "shin_right").kind else { panic!("a hinge") };
     assert_range(knee, -160.0, 2.0);
@@ -147,7 +147,7 @@ fn the_ranges_of_the_humanoid_are_those_of_its_classes() {
         JointKind::Ball { limit: Some(limit) } => limit,
         kind => panic!("{child}: {kind:?}"),
     };
-    // Hips: twist about y, and swings about x and z. Turned right-handed, the z axis of one side points down.
+    // Hips: twist about y, and swings about x and z. Right-handed, the z axis of one side points down.
     for (side, z) in [("thigh_right", (-35.0, 60.0)), ("thigh_left", (-35.0, 60.0))] {
         let hip = limit(side);
         assert_range(hip.twist, -150.0, 20.0);
@@ -161,7 +161,7 @@ fn the_ranges_of_the_humanoid_are_those_of_its_classes() {
 
 #[needs_data]
 #[test]
-fn what_mujoco_keeps_from_colliding_is_kept_from_it() {
+fn disabled_pairs_match_mujoco() {
     let model = humanoid();
     let excluded = |a: &str, b: &str| {
         let (a, b) = (model.body(a).expect(a), model.body(b).expect(b));
@@ -171,7 +171,7 @@ fn what_mujoco_keeps_from_colliding_is_kept_from_it() {
         });
         joined || model.excluded_pairs.contains(&(a.min(b), a.max(b)))
     };
-    // Joined, excluded by the file, part of a part, jointed to what it is a part of.
+    // Jointed, excluded by the file, part of a part, jointed to its whole.
     assert!(excluded("thigh_left", "shin_left") && excluded("waist_lower", "thigh_left"));
     assert!(excluded("head", "torso") && excluded("head", "upper_arm_left"));
     assert!(excluded("hand_right", "upper_arm_right") && excluded("head", "waist_lower"));
@@ -182,7 +182,7 @@ fn what_mujoco_keeps_from_colliding_is_kept_from_it() {
 /// Places of bodies in keyframes, MuJoCo 4.0.0. Feet are left out: their two hinges are 4 cm apart there.
 #[needs_data]
 #[test]
-fn keyframes_are_the_poses_that_mujoco_makes() {
+fn keyframes_match_mujoco() {
     let model = humanoid();
     for (keyframe, rows) in [
         (
@@ -220,11 +220,11 @@ fn keyframes_are_the_poses_that_mujoco_makes() {
 
 #[needs_data]
 #[test]
-fn what_is_left_out_is_said() {
+fn omitted_features_are_noted() {
     let model = humanoid();
     for note in [
-        "`ankle_y_right` and `ankle_x_right` are 0.040 m apart; here they are one, in the middle",
-        "springs of `abdomen_z` and `abdomen_y` are not the same; here all have the softest",
+        "`ankle_y_right` and `ankle_x_right` are 0.040 m apart; they became one, in the middle",
+        "springs of `abdomen_z` and `abdomen_y` differ; all became the softest",
         "left out: rotor inertia of joints (21)",
         "left out: tendons (2)",
         "left out: actuators (21)",
@@ -246,7 +246,7 @@ fn one_body(settings: &str, attributes: &str, contents: &str) -> MjcfModel {
 
 /// Quaternions (w, x, y, z) of MuJoCo 4.0.0.
 #[test]
-fn rotations_mean_what_they_mean_in_mujoco() {
+fn rotations_match_mujoco() {
     for (settings, attributes, [w, x, y, z]) in [
         ("", "euler='10 20 30'", [0.9437144, 0.1276794, 0.1448781, 0.2685358]),
         ("<compiler eulerseq='zyX'/>", "euler='10 20 30'", [0.9515485, 0.2392983, 0.1448781, 0.1276794]),
@@ -268,9 +268,9 @@ fn rotations_mean_what_they_mean_in_mujoco() {
     }
 }
 
-/// A turned box, a capsule of given mass and a ball; and a given tensor: MuJoCo 4.0.0.
+/// A rotated box, a capsule of given mass and a ball; and a given tensor: MuJoCo 4.0.0.
 #[test]
-fn masses_of_turned_shapes_are_those_of_mujoco() {
+fn masses_of_rotated_shapes_match_mujoco() {
     let geoms = "<geom type='box' size='.1 .2 .3' pos='.5 0 0' euler='20 0 0' density='500'/>
         <geom type='capsule' size='.05' fromto='0 0 0 0 .3 .4' mass='2'/>
         <geom type='sphere' size='.1' pos='0 0 -.2'/>";
@@ -330,7 +330,7 @@ fn three_hinges_keep_their_ranges_one_by_one() {
         angles[used] = random.range(-1.5, 1.5);
         let model = on_hinges(&axes, &angles, [-60.0, 30.0]);
         let JointKind::Ball { limit: Some(limit) } = model.joints[0].kind else { panic!("a ball") };
-        // Each hinge alone is stopped where its own range ends, whatever the handedness of the three axes.
+        // Each hinge alone stops at the end of its own range, for either handedness of the three axes.
         let beyond = Range::degrees(-60.0, 30.0).excess(angles[used]);
         let found = limit.overshoot(model.keyframes[0].moved[0].1.rotation);
         assert!((found - beyond).abs() < 1e-4, "hinge {used} at {}: {found} for {beyond}", angles[used]);
@@ -338,7 +338,7 @@ fn three_hinges_keep_their_ranges_one_by_one() {
 }
 
 #[test]
-fn ranges_follow_the_compiler_the_reference_and_what_is_said() {
+fn ranges_follow_compiler_reference_and_joint() {
     let range = |settings: &str, joint: &str| {
         let model = read(&format!(
             "<mujoco>{settings}<worldbody><body><joint {joint}/><geom size='.1'/></body></worldbody></mujoco>"
@@ -361,7 +361,7 @@ fn ranges_follow_the_compiler_the_reference_and_what_is_said() {
 }
 
 #[test]
-fn classes_nest_and_the_nearest_holds() {
+fn the_nearest_nested_class_applies() {
     let model = read(
         "<mujoco><default><geom size='.1'/><default class='a'><geom size='.2' type='capsule'/>
             <default class='b'><geom size='.3 .5'/></default></default></default>
@@ -391,7 +391,7 @@ fn shapes_meet_where_either_is_affine_to_the_other() {
     assert_eq!(with_last, [true, true, false, false, false]);
 }
 
-/// Error of the reader for contents of a `<mujoco>`, or "" if it accepts them.
+/// Returns the error of the reader for contents of a `<mujoco>`, or "" if it accepts them.
 fn complaint(contents: &str) -> String {
     let text = format!("<mujoco>\n{contents}</mujoco>");
     read_mjcf(text.as_bytes()).err().map(|error| error.to_string()).unwrap_or_default()
@@ -421,7 +421,7 @@ fn complaints_name_the_place() {
         ),
         (
             body("<geom size='1' quat='1 0 0 0' euler='0 0 0'/>"),
-            "`euler`: `quat` says it already (line 3 column 33)",
+            "`euler`: `quat` sets the same (line 3 column 33)",
         ),
         (
             "<compiler eulerseq='xyzx'/>".into(),
@@ -445,7 +445,7 @@ fn complaints_name_the_place() {
     assert_eq!(read_mjcf(b"\xff<").unwrap_err().to_string(), "not UTF-8 (byte 0)");
 }
 
-/// The depth of a file is not that of our stack.
+/// Deeply nested files do not cause deep recursion.
 #[test]
 fn deep_nesting_is_refused_and_no_overflow() {
     let nested = |tag: &str, end: &str, count: usize| tag.repeat(count) + &end.repeat(count);
@@ -459,7 +459,7 @@ fn deep_nesting_is_refused_and_no_overflow() {
 }
 
 #[test]
-fn what_would_take_too_long_or_too_much_is_refused() {
+fn oversized_models_are_refused() {
     let attributes: String = (0..2000).map(|i| format!(" a{i}=''")).collect();
     assert_eq!(complaint(&format!("<size{attributes}/>")), "more than 1000 attributes (line 2)");
     assert_eq!(complaint("<size xmlns:a='b'/>"), "XML namespaces are not read (line 2)");
@@ -475,7 +475,7 @@ fn assert_one_line(error: &Error) {
     assert!(!error.where_.is_empty(), "{text}");
 }
 
-/// A model that is read can be put into a world in each of its poses, and stepped.
+/// A model can be put into a world in each of its poses, and stepped.
 fn read_and_try(bytes: &[u8]) -> Result<(), Error> {
     let model = read_mjcf(bytes)?;
     let poses = model.keyframes.iter().map(|keyframe| model.pose(keyframe));
@@ -498,15 +498,15 @@ fn every_prefix_of_the_humanoid_is_refused() {
     }
 }
 
-/// Random bytes of the humanoid changed, and numbers of it replaced by hostile ones. 10,000 cases when `SINEW_FULL` is
-/// set, a hundredth of that otherwise.
+/// Random bytes of the humanoid changed, and its numbers replaced by extreme ones: 10,000 cases with `SINEW_FULL`
+/// set, otherwise a hundredth.
 #[needs_data]
 #[test]
 fn mutated_humanoids_do_no_harm() {
     const WORDS: [&str; 10] = ["0", "-1", "1e9", "1e-30", "nan", "1e40", "", "\"", "<body>", "0 0 0 0"];
     let text = humanoid_text();
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 10_000 } else { 100 };
-    // Behind the comment at its head.
+    // After the comment at its head.
     let start = text.find("<mujoco").expect("the root");
     let mut random = Random::new(5);
     let (mut read, mut refused) = (0, 0);
@@ -548,7 +548,7 @@ fn a_free_body_is_placed_and_its_parts_follow() {
 }
 
 #[test]
-fn springs_and_slides_are_those_of_the_file() {
+fn springs_and_slides_match_the_file() {
     let model = read(
         "<mujoco><worldbody><body pos='0 0 1'><joint type='slide' axis='0 0 2' range='-.5 .25' ref='.125' stiffness='30'
             damping='4' springref='.25' frictionloss='3'/><geom size='.1'/>
@@ -571,9 +571,9 @@ fn springs_and_slides_are_those_of_the_file() {
     assert!(rest.rotation.angle_to(quarter) < 1e-3, "{rest:?}");
 }
 
-/// ζ = 0.2 gives back `exp(−0.2π/√0.96)`, whichever way it is written.
+/// ζ = 0.2 returns `exp(−0.2π/√0.96)` in either notation.
 #[test]
-fn geoms_rub_roll_and_bounce_as_the_file_says() {
+fn contact_properties_match_the_file() {
     let material = |attributes: &str| {
         let model = one_body("", "", &format!("<geom size='.1' {attributes}/>"));
         model.bodies.iter().flat_map(|body| &body.def.shapes).next().expect("it has a geom").material

@@ -1,4 +1,4 @@
-//! Any file with clips by one function.
+//! Reading of any file with clips by one function.
 
 use crate::data::{bar, files, shared_data};
 use needs_data::needs_data;
@@ -8,7 +8,7 @@ use sinew_formats::{
 };
 
 #[test]
-fn the_bytes_tell_the_format() {
+fn format_is_detected_from_bytes() {
     let is = |bytes: &[u8], format: MotionFormat| assert_eq!(MotionFormat::of(bytes).unwrap(), format);
     is(b"glTF\x02\0\0\0", MotionFormat::Glb);
     is(b" \n{\"asset\":{}}", MotionFormat::Gltf);
@@ -17,7 +17,7 @@ fn the_bytes_tell_the_format() {
     is(b"{\"Skeleton\": {}}", MotionFormat::DeepMimicCharacter);
     is(b"Kaydara FBX Binary  \0", MotionFormat::Fbx);
     is(b"; FBX 7.4.0 project file", MotionFormat::Fbx);
-    for (bytes, what) in [(&b""[..], "empty"), (b"solid cube", "begins like none"), (b"{", "not JSON")] {
+    for (bytes, what) in [(&b""[..], "empty"), (b"solid cube", "unknown first bytes"), (b"{", "not JSON")] {
         let error = MotionFormat::of(bytes).unwrap_err();
         assert!(error.kind == ErrorKind::Malformed && error.what.contains(what), "{error}");
     }
@@ -78,7 +78,7 @@ fn every_captured_file_loads_by_one_function() {
 
 #[cfg(feature = "fs")]
 #[test]
-fn an_events_file_beside_counts_for_the_clips_it_names() {
+fn an_events_file_applies_to_the_clips_it_names() {
     use sinew_formats::{events_path, load_motion, write_events, write_motion};
     let folder = std::env::temp_dir().join(format!("sinew-formats-events-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();

@@ -1,4 +1,4 @@
-//! OBJ files: what is read, and what is refused with its line.
+//! OBJ files: accepted content, and refusals with their line.
 
 use sinew_formats::read_obj;
 use sinew_math::Vec3;
@@ -18,7 +18,7 @@ fn faces_of_every_kind_are_read() {
     assert_eq!(mesh.colors.len(), 4);
 }
 
-/// An arrow head, whose fan from the first corner would leave it.
+/// An arrow head, which a fan from its first corner would not triangulate.
 #[test]
 fn concave_faces_keep_their_area() {
     let text = "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf 1 2 3 4\nf 2 3 4 1\nf 3 4 1 2\nf 4 1 2 3\n";
@@ -36,7 +36,7 @@ fn concave_faces_keep_their_area() {
 }
 
 #[test]
-fn lies_are_refused_with_their_line() {
+fn wrong_lines_are_refused_with_their_number() {
     const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     let many = format!("{SQUARE}f{}\n", " 1".repeat(5000));
     for (text, expected) in [
@@ -77,26 +77,26 @@ fn lies_are_refused_with_their_line() {
 }
 
 #[test]
-fn twisted_faces_end() {
+fn twisted_faces_finish_quickly() {
     let text = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nf 1 2 3 4 5\nf 1 1 1 1 1\n";
     assert_eq!(read_obj(text.as_bytes()).expect("odd, but a file").triangles.len(), 6);
 }
 
 #[test]
-fn a_comment_that_ends_in_a_backslash_keeps_to_its_line() {
+fn a_trailing_backslash_does_not_continue_a_comment() {
     let text = "# made from C:\\models\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\n  # \\\nf 1 \\\n2 \\\n3\n";
     let mesh = read_obj(text.as_bytes()).expect("a good file");
     assert_eq!((mesh.positions.len(), mesh.triangles), (3, vec![[0, 1, 2]]));
 }
 
-/// Each line joined to all before it anew would be 80 GB of copying.
+/// If each line were joined to all earlier ones, 80 GB would be copied.
 #[test]
-fn many_continued_lines_end() {
+fn many_continued_lines_finish_quickly() {
     let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n{}2 3\n", "\\\n".repeat(400_000));
     assert_eq!(read_obj(text.as_bytes()).expect("a good file").triangles, [[0, 1, 2]]);
 }
 
-/// Spikes around a circle, every other corner turned inward: cut without loss.
+/// A star: every other corner points inward; no area is lost.
 #[test]
 fn a_large_jagged_face_keeps_its_area() {
     let corner = |k: usize| {
@@ -116,9 +116,9 @@ fn a_large_jagged_face_keeps_its_area() {
     assert!((areas.sum::<f32>() - expected).abs() < 1e-4);
 }
 
-/// A hundred faces of the most corners, twisted in every way: without a bound, the work of an hour.
+/// A hundred twisted faces of the maximum size, which take an hour without a bound.
 #[test]
-fn large_twisted_faces_end() {
+fn large_twisted_faces_finish_quickly() {
     let mut random = sinew_math::Random::new(3);
     let point = |p: Vec3| format!("v {} {} {}\n", p.x, p.y, p.z);
     let mut text: String = (0..1024).map(|_| point(random.in_cube())).collect();

@@ -56,7 +56,7 @@ fn random_body(random: &mut Random, index: usize) -> RagdollBodyDef {
 }
 
 #[test]
-fn what_is_written_reads_back_equal() {
+fn written_files_read_back_equal() {
     let mut random = Random::new(11);
     let mut def = RagdollDef {
         bodies: (0..40).map(|i| random_body(&mut random, i)).collect(),
@@ -88,7 +88,7 @@ fn what_is_written_reads_back_equal() {
     }
     let back = read_ragdoll(write_ragdoll(&def).as_bytes()).unwrap();
     assert_eq!(back, def);
-    // Equality takes −0 for 0; a snapshot does not.
+    // Equality treats −0 as 0; a snapshot does not.
     assert_eq!(format!("{back:?}"), format!("{def:?}"));
 }
 
@@ -108,7 +108,7 @@ fn zeros_keep_their_sign() {
 }
 
 #[test]
-fn angles_that_people_think_of_stay_short() {
+fn round_angles_stay_short() {
     let mut def = read_ragdoll(example().as_bytes()).unwrap();
     def.joints[0].kind = JointKind::Hinge { limit: Some(Range::degrees(-2.5, 140.0)) };
     let text = write_ragdoll(&def);
@@ -132,21 +132,17 @@ fn complaints_name_the_place() {
         (
             r#""parent": "Hips""#,
             r#""parent": "LeftUpLeg""#,
-            "a parent has to stand before its child (bodies[1].joint.parent)",
+            "a parent must come before its child (bodies[1].joint.parent)",
         ),
         ("[-40, 40]", "[40, -40]", "the lower end comes first (bodies[1].joint.limits_deg.swing_y)"),
-        (
-            "[-40, 40]",
-            "[4, 40]",
-            "zero has to lie inside a swing's range (bodies[1].joint.limits_deg.swing_y)",
-        ),
+        ("[-40, 40]", "[4, 40]", "a swing's range must contain zero (bodies[1].joint.limits_deg.swing_y)"),
         (
             "[-35, 35]",
             "[-35, 350]",
             "must lie between -180 and 180 degrees (bodies[1].joint.limits_deg.twist[1])",
         ),
         (r#""kg": 40"#, r#""kg": 0"#, "must be more than 0 (bodies[0].mass.kg)"),
-        (r#""kg": 40"#, r#""kg": 1e30"#, "a mass or moment that no solver can work with (bodies[0].mass)"),
+        (r#""kg": 40"#, r#""kg": 1e30"#, "a mass or moment out of range (bodies[0].mass)"),
         (
             r#""position": [0, 0.95, 0]"#,
             r#""position": [0, 3e38, 0]"#,
@@ -191,10 +187,10 @@ fn bytes_changed_at_random_do_no_harm() {
     }
 }
 
-/// Numbers that lie, in a whole body: refused, or examined, mended and written again, whatever they say.
+/// Wrong numbers in a whole body are refused, or examined, fixed and written again.
 #[needs_data]
 #[test]
-fn lies_are_refused_or_examined() {
+fn wrong_values_are_refused_or_examined() {
     let data = crate::data::shared_data();
     let document = load_gltf(data.join("rigs/mannequiny.glb"), ReadOptions::default()).unwrap();
     let analysis = sinew_anim::analyze(&document.rig).unwrap();
@@ -224,7 +220,7 @@ fn lies_are_refused_or_examined() {
     assert!(10 * read > cases, "only {read} of {cases} were read");
 }
 
-/// JSON pointers of all numbers.
+/// Returns JSON pointers to all numbers.
 fn numbers(value: &Value, at: String, places: &mut Vec<String>) {
     match value {
         Value::Number(_) => places.push(at),

@@ -54,13 +54,9 @@ fn complaints_name_the_place_and_the_nearest_key() {
         (
             r#""mass": 82"#,
             r#""unit_scale": 0.01"#,
-            "`unit_scale` says it already: give one of the two (height)",
+            "`unit_scale` sets the same: give one of the two (height)",
         ),
-        (
-            "[-80, 80]",
-            "[10, 80]",
-            "zero has to lie inside a swing's range (bones.upperArm.limits_deg.swing_y)",
-        ),
+        ("[-80, 80]", "[10, 80]", "a swing's range must contain zero (bones.upperArm.limits_deg.swing_y)"),
         ("[-2, 130]", "[130, -2]", "the lower end comes first (bones.lowerLeg.limits_deg.twist)"),
         (r#"["leftHand", "leftUpperLeg"]"#, r#"["leftHand"]"#, "must name two bones (disable_pairs[0])"),
         (r#""version": 1"#, r#""version": 2"#, "version 2 is newer than 1, the last one known (version)"),
@@ -90,7 +86,7 @@ fn bytes_changed_at_random_do_no_harm() {
     }
 }
 
-/// Settings that are taught are those that are read.
+/// The documented settings are those that are read.
 #[test]
 fn the_examples_of_the_page_are_read() {
     let page = include_str!("../../../../docs/ragdoll.md");
@@ -137,7 +133,7 @@ fn garments_are_named_or_listed() {
         (r#"[{"chains": ["a"], "radius": 0}]"#, "garments[0].radius"),
         (r#"[{"chains": ["a"]}, {"chains": ["b"], "closed": 1}]"#, "garments[1].closed"),
         (r#"[{"chains": ["a"], "shearing": -1}]"#, "garments[0].shearing"),
-        // What no particle could weigh, or no spring be.
+        // Values that no particle or spring can have.
         (r#"[{"chains": ["a"], "area_density": 3e38}]"#, "between 0.001 and 1000"),
         (r#"[{"chains": ["a"], "area_density": 1e-44}]"#, "between 0.001 and 1000"),
         (r#"[{"mesh": "a", "spacing": 1e-30}]"#, "garments[0].spacing"),

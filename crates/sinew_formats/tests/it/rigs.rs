@@ -1,4 +1,4 @@
-//! Rigs that nobody here drew: what the manifest beside them says is what is read.
+//! Rigs from elsewhere: the reader agrees with the manifest beside them.
 
 use crate::data::{GLTF, files, shared_data};
 use needs_data::needs_data;
@@ -11,7 +11,7 @@ fn load(name: &str) -> Document {
     load_gltf(path, ReadOptions { textures: Textures::Decode }).unwrap()
 }
 
-/// (skin joints, vertices, triangles, clips, duration of the first clip) as the manifest of the data states them.
+/// (skin joints, vertices, triangles, clips, duration of the first clip) in the manifest of the data.
 fn check(name: &str, skin_joints: usize, vertices: usize, triangles: usize, clips: usize, duration: f32) {
     let document = load(name);
     let rig = &document.rig;
@@ -40,7 +40,7 @@ fn counts_match_the_manifest() {
     check("quaternius_Robot.glb", 43, 7218, 3238, 14, 3.33);
 }
 
-/// The promises that the documentation of [`Rig`] and [`Clip`](sinew_anim::Clip) makes.
+/// Checks the promises in the documentation of [`Rig`] and [`Clip`](sinew_anim::Clip).
 pub fn assert_sound(document: &Document) {
     let rig = &document.rig;
     for (i, joint) in rig.joints.iter().enumerate() {
@@ -97,8 +97,8 @@ fn every_rig_keeps_the_promises_of_its_types() {
     }
 }
 
-/// At rest a skinned mesh is where the file's bind pose says: rest × inverse bind is the identity, up to the place of
-/// the armature, for rigs of which the manifest says that both poses agree.
+/// At rest a skinned mesh is in the file's bind pose: rest × inverse bind is the identity, up to the place of
+/// the armature, for rigs whose manifest says that both poses agree.
 #[needs_data]
 #[test]
 fn inverse_bind_matrices_undo_the_rest_pose() {

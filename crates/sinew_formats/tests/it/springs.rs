@@ -1,4 +1,4 @@
-//! Springs of VRM files, both versions, and files that lie about them.
+//! Springs of VRM files, both versions, and wrong files.
 
 use crate::data::shared_data;
 use needs_data::needs_data;
@@ -8,7 +8,7 @@ use sinew_formats::{Document, ReadOptions, Result, load_gltf, no_files, read_glt
 use sinew_math::{Rotation, Vec3};
 use sinew_ragdoll::settings::SpringSource;
 
-/// Six nodes: a body with a head, a strand of three on the head, and a place beside it.
+/// Returns six nodes: a body with a head, a strand of three on the head, and a place beside it.
 const NODES: &str = r#""asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[
     {"name":"body","children":[1]},{"name":"head","translation":[0,1,0],"children":[2,5]},
     {"name":"a","translation":[0,0.1,0],"rotation":[0,0,1,0],"children":[3]},
@@ -71,7 +71,7 @@ fn limits_of_springs_hold_for_their_joints() {
             r#"{{"VRMC_springBone":{{"springs":[{{"extensions":{{"VRMC_springBone_limit":{limit}}},
             "joints":[{{"node":2}},{{"node":4}}]}}]}}}}"#
         ));
-        // A joint between the two is passed over: the tip is that of the next one named.
+        // A joint between the two is skipped: the tip is the next named joint.
         let tail = springs.chains[0].bones[0].tail;
         assert!((tail - Vec3::new(0.0, 0.5, 0.0)).length() < 1e-6, "{tail}");
         springs.chains[0].bones[0].limit.unwrap().kind
@@ -83,7 +83,7 @@ fn limits_of_springs_hold_for_their_joints() {
 }
 
 #[test]
-fn version_0_swings_all_that_hangs_on_a_root() {
+fn version_0_springs_include_all_descendants() {
     let springs = springs(
         r#"{"VRM":{"secondaryAnimation":{
         "boneGroups":[{"comment":"hair","stiffiness":2,"gravityPower":0.5,"gravityDir":{"x":0,"y":-1,"z":0.5},
@@ -105,7 +105,7 @@ fn version_0_swings_all_that_hangs_on_a_root() {
 }
 
 #[test]
-fn what_lies_is_told_with_its_place() {
+fn wrong_springs_are_refused_with_their_place() {
     let version_1 = |what: &str| format!("{{\"VRMC_springBone\":{{{what}}}}}");
     let version_0 = |what: &str| format!("{{\"VRM\":{{\"secondaryAnimation\":{{{what}}}}}}}");
     for (extensions, what, place) in [
@@ -131,8 +131,8 @@ fn what_lies_is_told_with_its_place() {
 }
 
 #[test]
-fn what_cannot_swing_is_left_out_with_a_warning() {
-    // A joint that does not hang on the one before it, and one that is in two springs.
+fn unusable_springs_are_skipped_with_a_warning() {
+    // A joint that is not below the one before it, and one that is in two springs.
     let document = read(
         r#"{"VRMC_springBone":{"springs":[{"joints":[{"node":2},{"node":3},{"node":5}]},
         {"joints":[{"node":2},{"node":3},{"node":4}]}]}}"#,
@@ -147,7 +147,7 @@ fn what_cannot_swing_is_left_out_with_a_warning() {
 }
 
 #[test]
-fn groups_that_multiply_are_refused() {
+fn excessive_collider_groups_are_refused() {
     // A few kilobytes that would name millions of colliders.
     let colliders = vec![r#"{"node":1,"shape":{"sphere":{}}}"#; 2000].join(",");
     let members: Vec<String> = (0..2000).map(|index| index.to_string()).collect();
@@ -190,7 +190,7 @@ fn settings_link_strands() {
     assert_eq!((links[0].chains.as_slice(), links[0].closed), (["Kilt_*".to_owned()].as_slice(), Some(true)));
     assert_eq!((links[0].link.share, links[0].link.holds_apart), (0.8, true));
     assert_eq!((links[1].closed, links[1].link), (None, SpringLink::default()));
-    // Without links, those that come with the springs; with none, none.
+    // Without links, those of the springs; with none, none.
     assert_eq!(read(r#"{"source": "file"}"#).unwrap().spring_links, None);
     let none = read(r#"{"links": []}"#).unwrap();
     assert_eq!((none.springs, none.spring_links), (None, Some(Vec::new())));

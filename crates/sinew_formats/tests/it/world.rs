@@ -50,7 +50,7 @@ fn the_example_of_the_page_is_read_and_stands() {
     assert_eq!(bodies[4].mass.map(|mass| mass.mass), Some(0.01));
     assert_eq!(read_world(write_world(&bodies).as_bytes()).unwrap(), bodies);
 
-    // A set-up that reads back equal is the same world, to the last bit, and stays so.
+    // A set-up that reads back equal is the same world to the last bit, and stays so.
     let [mut world, mut again] =
         [bodies.clone(), read_world(write_world(&bodies).as_bytes()).unwrap()].map(|bodies| {
             let mut world = World::new(WorldDef::default());
@@ -66,9 +66,9 @@ fn the_example_of_the_page_is_read_and_stands() {
     }
 }
 
-/// Every key that the page lists is known, and every shape and kind that is known is on the page.
+/// Every key on the page is known, and every known shape and kind is on the page.
 #[test]
-fn the_page_lists_what_there_is() {
+fn the_page_lists_every_key_and_kind() {
     let page = include_str!("../../../../docs/world.md");
     let complaint = |json: &str| read_world(json.as_bytes()).unwrap_err().what;
     let body = complaint(r#"{"sinew":"world","version":1,"bodies":[{"?":0}]}"#);
@@ -196,7 +196,7 @@ fn random_body(random: &mut Random) -> BodyDef {
 }
 
 #[test]
-fn what_is_written_reads_back_equal() {
+fn written_files_read_back_equal() {
     let mut random = Random::new(7);
     let bodies: Vec<_> = (0..200).map(|_| random_body(&mut random)).collect();
     let text = write_world(&bodies);

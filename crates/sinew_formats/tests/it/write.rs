@@ -1,4 +1,4 @@
-//! A rig made by code as a file: what is read back is what went in.
+//! A rig made by code, written to a file, reads back equal.
 
 use sinew_anim::{
     Channel, Clip, Interpolation, Joint, LocalTransform, Primitive, Property, Rig, RigMesh, Skin,
@@ -24,7 +24,7 @@ fn triangle() -> Primitive {
     }
 }
 
-/// Two joints, a skinned mesh, and a rigid one on the first, whose node comes between the joints in the file's order.
+/// Returns two joints, a skinned mesh, and a rigid one on the first, whose node comes between the joints in the file's order.
 fn rig() -> Rig {
     let skinned = Primitive {
         joints: vec![[1, 0, 0, 0], [0, 1, 0, 0], [1, 0, 0, 0]],

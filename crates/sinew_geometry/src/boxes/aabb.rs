@@ -37,7 +37,7 @@ impl Aabb {
     /// # Panics
     /// If a number is not finite or a half extent is negative.
     pub fn around(center: Vec3, half_extents: Vec3) -> Self {
-        assert!(center.is_finite(), "a box stands somewhere");
+        assert!(center.is_finite(), "the centre of a box must be finite");
         expect_half_extents(half_extents);
         Self::reaching(center, half_extents)
     }

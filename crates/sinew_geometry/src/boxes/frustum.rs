@@ -35,7 +35,7 @@ impl Frustum {
     /// # Panics
     /// If a number is not finite or out of its range.
     pub fn new(world_from_eye: Transform, fov_y: f32, aspect: f32, near: f32, far: f32) -> Self {
-        assert!(world_from_eye.is_finite(), "an eye is somewhere");
+        assert!(world_from_eye.is_finite(), "the place of an eye must be finite");
         assert!(fov_y > 0.0 && fov_y < core::f32::consts::PI, "an angle of view is above 0 and below π");
         assert!(aspect > 0.0 && aspect < f32::INFINITY, "a picture has a width and a height");
         assert!(near > 0.0 && near < far && far < f32::INFINITY, "the near plane is before the far one");

@@ -23,7 +23,7 @@ impl Obb {
     /// # Panics
     /// If a number is not finite or a half extent is negative.
     pub fn new(center: Vec3, rotation: Rotation, half_extents: Vec3) -> Self {
-        assert!(center.is_finite() && rotation.is_finite(), "a box stands somewhere");
+        assert!(center.is_finite() && rotation.is_finite(), "the centre of a box must be finite");
         super::expect_half_extents(half_extents);
         Self { center, rotation, half_extents }
     }

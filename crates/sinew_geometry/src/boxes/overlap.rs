@@ -19,7 +19,7 @@ impl Sphere {
     /// # Panics
     /// If a number is not finite or the radius is negative.
     pub fn new(center: Vec3, radius: f32) -> Self {
-        assert!(center.is_finite(), "a ball stands somewhere");
+        assert!(center.is_finite(), "the centre of a ball must be finite");
         expect_radius(radius);
         Self { center, radius }
     }
@@ -40,7 +40,7 @@ impl Capsule {
     /// # Panics
     /// If a number is not finite or the radius is negative.
     pub fn new(ends: [Vec3; 2], radius: f32) -> Self {
-        assert!(ends[0].is_finite() && ends[1].is_finite(), "a capsule's ends are somewhere");
+        assert!(ends[0].is_finite() && ends[1].is_finite(), "the ends of a capsule must be finite");
         expect_radius(radius);
         Self { ends, radius }
     }

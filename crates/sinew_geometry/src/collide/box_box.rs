@@ -182,7 +182,7 @@ mod tests {
 
     /// Skipping edges that separate by no more than enough does not change which direction separates best.
     #[test]
-    fn edges_that_part_too_little_are_left_out() {
+    fn edges_below_the_given_separation_are_skipped() {
         let mut random = Random::new(41);
         let (mut found, mut left_out) = (0, 0);
         for case in 0..20_000 {

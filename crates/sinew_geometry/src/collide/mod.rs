@@ -259,7 +259,7 @@ mod tests {
 
     /// Contacts of pairs that drift past each other do not depend on the cached axis.
     #[test]
-    fn what_parted_shapes_before_decides_nothing() {
+    fn cached_axes_do_not_change_results() {
         let mut random = Random::new(71);
         let (mut same, mut parted, mut touching) = (0, 0, 0);
         for _ in 0..400 {

@@ -279,7 +279,7 @@ mod tests {
 
     /// The closest of all corners and edges are found, whatever is skipped.
     #[test]
-    fn nothing_closer_is_left_out() {
+    fn the_closest_feature_is_kept() {
         let mut random = Random::new(8);
         let mut apart = 0;
         for case in 0..400 {

@@ -192,7 +192,7 @@ mod tests {
 
     /// Two boxes side by side at random poses: their common side is hidden, the protruding part of the other is not.
     #[test]
-    fn what_abuts_hides_its_common_side_alone() {
+    fn an_abutting_shape_hides_only_the_common_side() {
         let mut random = Random::new(5);
         for case in 0..200 {
             let frame = Transform::new(random.in_cube() * 5.0, random.rotation());
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_deep_inside_shows_nothing_and_twins_show_all() {
+    fn deep_shapes_show_no_side_and_twins_show_all() {
         let at = Transform::new(Vec3::ZERO, Rotation::from_axis_angle(Vec3::Z, 0.3));
         let edge = at.point(Vec3::new(0.5, 0.5, 0.0));
         let faces = || Faces::around(&cube(), &at, edge, 0.004).expect("it is there");

@@ -1,4 +1,4 @@
-//! From points to a hull, and from corners and faces to all that follows from them.
+//! Builds hulls: corners and faces from points, and derived data from corners and faces.
 
 use super::grid::{Grid, SIZES};
 use super::mass::Integrals;

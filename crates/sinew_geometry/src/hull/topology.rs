@@ -87,7 +87,7 @@ impl<'a> Topology<'a> {
     }
 }
 
-/// A [`Topology`] of one's own.
+/// An owned [`Topology`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Outline {
     faces: Vec<Loop>,

@@ -161,7 +161,7 @@ fn meets(bounds: &Aabb, sweep: &Sweep) -> bool {
 }
 
 #[test]
-fn what_comes_and_goes_is_found_as_by_trying_all() {
+fn a_changing_tree_matches_brute_force() {
     let mut random = Random::new(1);
     for case in 0..cases(20_000) {
         let scale = [1.0, 100.0, 1e6][case % 3];
@@ -215,7 +215,7 @@ fn a_row_does_not_make_a_deep_tree() {
 
 /// Infinite boxes are found by all queries, and the others as before.
 #[test]
-fn boxes_without_end_hurt_nothing() {
+fn infinite_boxes_are_handled() {
     let mut random = Random::new(3);
     let mut pair = Pair { tree: Tree::default(), leaves: Vec::new() };
     for i in 0..200 {
@@ -235,7 +235,7 @@ fn boxes_without_end_hurt_nothing() {
 
 /// A query of any reach finds every leaf and no empty slot.
 #[test]
-fn queries_without_end_find_every_leaf_once() {
+fn infinite_queries_find_every_leaf_once() {
     let mut random = Random::new(4);
     for count in [1, 3, 8, 9, 61] {
         let mut tree = Tree::default();

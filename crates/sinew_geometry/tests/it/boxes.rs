@@ -1,4 +1,4 @@
-//! Boxes against brute force in `f64`. Each pair is asked 1,000 times, or 100,000 times when `SINEW_FULL` is set, as
+//! Boxes against brute force in `f64`: 1,000 cases of each pair, or 100,000 with `SINEW_FULL` set, as
 //! `cargo xtask ci --full` does.
 
 mod batch;

@@ -1,8 +1,8 @@
-//! Random cases: how many, and of what sizes.
+//! Random cases: their number and sizes.
 
 use sinew_math::{Random, Vec3};
 
-/// Number of `all` cases that are run: a hundredth unless `SINEW_FULL` is set, as `cargo xtask ci --full` does.
+/// Returns the number of cases to run of `all`: a hundredth unless `SINEW_FULL` is set, as `cargo xtask ci --full` does.
 pub fn cases(all: u32) -> u32 {
     if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
 }

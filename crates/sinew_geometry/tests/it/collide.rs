@@ -11,7 +11,7 @@ fn unit_box(center: Vec3, rotation: Rotation) -> Placed {
     Placed { shape: Shape::Box { half_extents: Vec3::splat(0.5) }, frame: Transform::new(center, rotation) }
 }
 
-/// A box sunk into another by 1 mm touches at its four corners; turned, at four of the eight corners of an octagon.
+/// A box 1 mm inside another touches at its four corners; rotated, at four of the eight corners of an octagon.
 #[test]
 fn box_on_box_touches_at_four_corners() {
     let below = unit_box(Vec3::ZERO, Rotation::IDENTITY);
@@ -40,7 +40,7 @@ fn box_on_box_touches_at_four_corners() {
     assert!(area > 0.53, "{area}");
 }
 
-/// Small boxes on a far larger one have their corners as contacts, whichever comes first.
+/// Small boxes on a much larger one have their corners as contacts, in either order.
 #[test]
 fn small_box_on_large_box_touches_at_its_own_corners() {
     let ground = Placed {
@@ -79,7 +79,7 @@ fn crossed_edges_touch_at_one_point() {
     }
 }
 
-/// Boxes that pass corner by corner get the distance of the corners and nothing that is far from both.
+/// Boxes that pass each other near a corner have the distance of the corners as separation, and no distant points.
 #[test]
 fn corners_that_pass_each_other_touch_at_the_corners() {
     let a = unit_box(Vec3::ZERO, Rotation::IDENTITY);
@@ -91,7 +91,7 @@ fn corners_that_pass_each_other_touch_at_the_corners() {
     assert_eq!(a.collide(&b, 0.017).count, 0);
 }
 
-/// A capsule lying on a box, hanging over its rim: one point at its end, one where the box ends.
+/// A capsule on a box that hangs over its edge: one point at its end, one where the box ends.
 #[test]
 fn capsule_on_box_touches_along_a_line() {
     let ground = unit_box(Vec3::ZERO, Rotation::IDENTITY);
@@ -109,7 +109,7 @@ fn capsule_on_box_touches_along_a_line() {
     assert!(m.points().iter().all(|p| (p.separation + 0.001).abs() < 1e-5));
 }
 
-/// Features keep their names while a box rocks and slides by less than a millimetre.
+/// Feature ids stay while a box rocks and slides by less than a millimetre.
 #[test]
 fn features_survive_small_motion() {
     let mut random = Random::new(4);
@@ -132,7 +132,7 @@ fn features_survive_small_motion() {
     }
 }
 
-/// Whatever the shapes: a finite unit normal for coincident centres, flat boxes, capsules without a middle.
+/// For any shapes: a finite unit normal for coincident centres, flat boxes, capsules of length zero.
 #[test]
 fn degenerate_pairs_have_finite_contacts() {
     let shapes = [
@@ -165,7 +165,7 @@ fn degenerate_pairs_have_finite_contacts() {
     }
 }
 
-/// Numbers that are none give no contact, and no panic.
+/// NaN gives no contact and no panic.
 #[test]
 fn nan_gives_no_contact() {
     let shapes = [

@@ -1,5 +1,5 @@
-//! Any two convex shapes: gaps and casts. Each kind of pair is asked 1,000 times, or
-//! 100,000 times when `SINEW_FULL` is set.
+//! Gaps and casts of any two convex shapes: 1,000 cases of each pair of kinds, or
+//! 100,000 with `SINEW_FULL` set.
 
 mod cast;
 mod gaps;

@@ -1,4 +1,4 @@
-//! From meshes to boxes: closed forms, brute force, bad input.
+//! Meshes to boxes: closed forms, brute force, bad input.
 
 use sinew_geometry::boxes::Cuboid;
 use sinew_geometry::cook::{CookError, CookOptions, Cooked, MeshBvh, cook};
@@ -19,7 +19,7 @@ impl Mesh {
         self.triangles.extend((1..corners.len() as u32 - 1).map(|k| [first, first + k, first + k + 1]));
     }
 
-    /// A box without the faces `left_out` (−x, +x, −y, +y, −z, +z), and its frame.
+    /// Returns a box without the faces `left_out` (−x, +x, −y, +y, −z, +z), and its frame.
     fn block(&mut self, center: Vec3, half: Vec3, rotation: Rotation, left_out: &[usize]) {
         const FACES: [[usize; 4]; 6] =
             [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
@@ -31,7 +31,7 @@ impl Mesh {
         }
     }
 
-    /// An outline in x and y (counter-clockwise, cut into convex pieces) drawn out along z from 0 to `depth`.
+    /// Extrudes an outline in x and y (counter-clockwise, in convex pieces) along z from 0 to `depth`.
     fn prism(outline: &[[f32; 2]], pieces: &[&[usize]], depth: f32) -> Self {
         let mut mesh = Self::default();
         let at = |i: usize, z: f32| Vec3::new(outline[i][0], outline[i][1], z);
@@ -74,7 +74,7 @@ impl Mesh {
     }
 }
 
-/// A closed flight of steps, each `rise` high and `run` deep, going down along x.
+/// Returns a closed flight of steps, each `rise` high and `run` deep, going down along x.
 fn stairs(steps: usize, rise: f32, run: f32, width: f32) -> Mesh {
     let mut outline = vec![[0.0, 0.0], [steps as f32 * run, 0.0]];
     let mut pieces = Vec::new();
@@ -86,7 +86,7 @@ fn stairs(steps: usize, rise: f32, run: f32, width: f32) -> Mesh {
     let grounds: Vec<[f32; 2]> = (1..steps).map(|k| [k as f32 * run, 0.0]).collect();
     outline.splice(1..1, grounds);
     for k in 0..steps {
-        // The column between ground corners k and k + 1, whose top are two corners of the outline.
+        // The column between ground corners k and k + 1, whose top has two corners of the outline.
         let top = 2 * (steps - 1 - k) + steps + 1;
         pieces.push(vec![k, k + 1, top, top + 1]);
     }
@@ -118,7 +118,7 @@ fn a_turned_box_becomes_itself() {
 #[test]
 fn an_l_is_two_boxes() {
     let outline = [[0.0, 0.0], [1.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
-    // The corner on the lower edge is on no side of the left piece: as modelled by hand, not as by an exporter.
+    // The corner on the lower edge is on no side of the left piece: as modelled by hand, not by an exporter.
     let mesh = Mesh::prism(&outline, &[&[0, 1, 4, 5, 6], &[1, 2, 3, 4]], 1.5);
     let cooked = mesh.cook(150);
     assert_eq!(cooked.boxes.len(), 2, "{cooked:?}");
@@ -141,7 +141,7 @@ fn every_step_of_a_flight_is_a_box() {
     }
 }
 
-/// A closed flight of steps whose treads are level but for a worn edge: the last `worn` of the run falls by `drop`.
+/// Returns a closed flight of steps whose treads are level except for a worn edge: the last `worn` of the run falls by `drop`.
 fn worn_stairs(steps: usize, [rise, run, width]: [f32; 3], worn: f32, drop: f32) -> Mesh {
     let mut outline: Vec<[f32; 2]> = (0..=steps).map(|k| [k as f32 * run, 0.0]).collect();
     for step in 0..steps {
@@ -188,7 +188,7 @@ fn a_tread_stays_level_and_as_high_as_it_was_drawn() {
 
 #[test]
 fn few_triangles_use_the_budget() {
-    // A barn: four walls with a gateway, and a gable roof on them, as a player would model it.
+    // A barn: four walls with a gateway, and a gable roof.
     let mut mesh = Mesh::default();
     let no_faces: [usize; 0] = [];
     mesh.block(Vec3::new(-4.0, 1.5, 0.0), Vec3::new(0.1, 1.5, 6.0), Rotation::IDENTITY, &no_faces);
@@ -275,7 +275,7 @@ fn a_shell_is_filled_only_if_that_is_closer() {
 
 #[test]
 fn the_budget_is_kept_at_least_cost() {
-    // Pairs of blocks with a gap of 1 cm, one of them with a pimple: what goes first is what is not missed.
+    // Pairs of blocks with a gap of 1 cm, one of them with a small bump: the least important parts are dropped first.
     let mut mesh = Mesh::default();
     for row in 0..10 {
         for column in 0..10 {
@@ -292,9 +292,9 @@ fn the_budget_is_kept_at_least_cost() {
     assert_eq!(mesh.cook(1).boxes.len(), 1);
 }
 
-/// As many parts as would take minutes if each were held against each.
+/// So many parts that comparing all pairs would take minutes.
 #[test]
-fn thousands_of_parts_end() {
+fn thousands_of_parts_finish_quickly() {
     let mut mesh = Mesh::default();
     for i in 0..4000 {
         let center = Vec3::new((i % 20) as f32, (i / 20 % 10) as f32, (i / 200) as f32);
@@ -340,7 +340,7 @@ fn bad_meshes_are_refused_with_their_place() {
     let mut flat = mesh.clone();
     flat.positions.fill(Vec3::X);
     assert_eq!(refuse(&flat).1, "none of the 12 triangles has an area");
-    // A vertex that no triangle uses does no harm.
+    // A vertex without a triangle does no harm.
     mesh.positions.push(Vec3::splat(f32::INFINITY));
     assert_eq!(mesh.cook(150).boxes.len(), 1);
 }
@@ -355,9 +355,9 @@ fn degenerate_and_repeated_triangles_are_left_out() {
     assert_eq!((repairs.degenerate, repairs.repeated, repairs.open_edges), (2, 1, 0));
 }
 
-/// Random meshes, most of them nonsense: whatever comes, boxes or an error.
+/// Random, mostly invalid meshes: each gives boxes or an error.
 #[test]
-fn nonsense_does_no_harm() {
+fn random_meshes_give_boxes_or_errors() {
     let mut random = Random::new(11);
     for case in 0..21 {
         let count = 3 + random.index(30);
@@ -409,7 +409,7 @@ fn closest_points_equal_brute_force() {
     }
 }
 
-/// To a triangle: to its plane if p is above it, else to the nearest of its edges.
+/// Distance to a triangle: to its plane if p is above it, else to the nearest of its edges.
 fn brute_distance(&[a, b, c]: &[Vec3; 3], p: Vec3) -> f32 {
     let normal = (b - a).cross(c - a).normalize();
     let above = Mat3::from_cols(b - a, c - a, normal).inverse() * (p - a);

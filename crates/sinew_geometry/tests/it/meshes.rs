@@ -1,4 +1,4 @@
-//! A triangle against shapes, a mesh against rays and points: held against brute force.
+//! A triangle against shapes, a mesh against rays and points, by brute force.
 
 use crate::cases::cases;
 use sinew_geometry::collide::{Manifold, collide_all};
@@ -25,7 +25,7 @@ fn mesh_of(corners: &[Vec3]) -> Shape {
     Shape::Mesh(Arc::new(Mesh::new(corners, &triangles).unwrap()))
 }
 
-/// Kinds of convex shapes that have an end.
+/// Bounded kinds of convex shapes.
 const KINDS: usize = 7;
 
 fn shape(kind: usize, random: &mut Random) -> Shape {
@@ -45,8 +45,8 @@ fn shape(kind: usize, random: &mut Random) -> Shape {
     }
 }
 
-/// Distance of a convex shape from a triangle, negative where the triangle enters it: its signed distance is a convex function
-/// over the triangle, whose least value two nested searches find.
+/// Returns the distance of a convex shape from a triangle, negative for an overlap: its signed distance is a convex function
+/// over the triangle, whose minimum two nested searches find.
 fn distance(shape: &Shape, frame: &Transform, &[a, b, c]: &[Vec3; 3]) -> f32 {
     let least = |f: &dyn Fn(f32) -> f32| {
         let (mut low, mut high) = (0.0_f32, 1.0_f32);
@@ -74,9 +74,9 @@ fn nearest(manifolds: &[Manifold]) -> f32 {
     points.fold(f32::INFINITY, |least, point| least.min(point.separation))
 }
 
-/// 100,000 cases of each kind when `SINEW_FULL` is set, a hundredth of that otherwise.
+/// 100,000 cases of each kind with `SINEW_FULL` set, otherwise a hundredth.
 #[test]
-fn a_triangle_and_a_shape_are_as_far_apart_as_by_search() {
+fn triangle_distances_match_search() {
     let mut random = Random::new(41);
     for kind in 0..KINDS {
         near_a_triangle(kind, &mut random);
@@ -91,7 +91,7 @@ fn near_a_triangle(kind: usize, random: &mut Random) {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).normalize();
         let over = a + (b - a) * random.range(-0.2, 0.7) + (c - a) * random.range(-0.2, 0.7);
-        // From behind there is no triangle: the middle is in front.
+        // A triangle is solid from its front only: the centre is in front.
         let rotation = random.rotation();
         let away = normal * random.range(0.02, 1.0) - rotation * middle(&shape);
         let frame = Transform::new(over + away, rotation);
@@ -99,7 +99,7 @@ fn near_a_triangle(kind: usize, random: &mut Random) {
         let found = contacts(&mesh, &Transform::IDENTITY, &shape, &frame);
         let separation = nearest(&found);
         let place = format!("case {case}: {shape:?} at {frame:?} over {corners:?}: {expected}, {found:?}");
-        // For a round end an octagon stands, for a round side a line.
+        // Round ends are octagons here, round sides are lines.
         let round =
             matches!(shape, Shape::Cylinder { .. } | Shape::Cone { .. } | Shape::TaperedCapsule { .. });
         let tolerance = 2e-3 + if round { 0.08 * shape.bounding_radius() } else { 0.0 };
@@ -110,10 +110,10 @@ fn near_a_triangle(kind: usize, random: &mut Random) {
             assert!(found.len() == 1 && (separation - expected).abs() < tolerance, "{place}");
         } else if expected < -1e-3 {
             deep += 1;
-            // Out along the normal, the shape is out.
+            // Moved along the normal, the shape no longer overlaps.
             assert!(found.len() == 1 && separation < 0.0, "{place}");
             let left = distance(&shape, &moved_out(&frame, &found[0]), &corners);
-            // What is as deep within a twentieth counts as deepest. A capsule deeper than half its thickness is measured over the
+            // Depths within a twentieth count as deepest. A capsule deeper than half its thickness is measured over the
             // triangle alone.
             let measured = expected > -0.5 * shape.inner_radius() || !matches!(shape, Shape::Capsule { .. });
             assert!(!measured || left > -2e-3 + 0.05 * separation, "{place}, {left}");
@@ -126,15 +126,15 @@ fn near_a_triangle(kind: usize, random: &mut Random) {
     assert!(apart * 5 > cases(100_000) && deep * 10 > cases(100_000), "{apart} apart, {deep} deep");
 }
 
-/// A millimetre further out along the normal than a manifold says.
+/// Moves a shape a millimetre further along the normal than its manifold says.
 fn moved_out(frame: &Transform, manifold: &Manifold) -> Transform {
     let separation = nearest(core::slice::from_ref(manifold));
     Transform::new(frame.translation - manifold.normal * (separation - 1e-3), frame.rotation)
 }
 
-/// Over the triangle the hull's lowest face is not what reaches down furthest: a steeper one beside it does, by 23 mm.
+/// Over the triangle the hull's lowest face is not its deepest part: a steeper face beside it is deeper by 23 mm.
 #[test]
-fn what_reaches_deepest_beside_the_lowest_face_counts() {
+fn the_deepest_face_beside_the_lowest_counts() {
     let corners =
         [Vec3::new(-0.967, 0.802, 0.770), Vec3::new(-0.015, -0.123, 0.869), Vec3::new(-0.248, 0.688, -0.870)];
     let points = [
@@ -159,10 +159,10 @@ fn what_reaches_deepest_beside_the_lowest_face_counts() {
     assert!(before < -0.09 && (0.0..2e-3).contains(&after), "{before}, {after}: {found:?}");
 }
 
-/// An edge of a box straight over the top of a pyramid is as far from it as it is high: no side of the pyramid takes the top for
-/// a point of an edge, which the other sides would deny.
+/// An edge of a box above the top of a pyramid has its height as distance: no side of the pyramid takes the top for
+/// a point of an edge, which the other sides would reject.
 #[test]
-fn an_edge_over_a_peak_is_felt() {
+fn an_edge_over_a_peak_has_contacts() {
     let peak = Vec3::Y * 0.5;
     let foot = [(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)].map(|(x, z)| Vec3::new(x, 0.0, z));
     let vertices = [peak, foot[0], foot[1], foot[2], foot[3]];
@@ -196,7 +196,7 @@ fn order_and_place_do_not_matter() {
             let turned = contacts(&mesh, &turn, &shape, &(turn * frame));
             let place = format!("case {case}: {shape:?} at {frame:?} over {corners:?}: {found:?} {turned:?}");
             let (here, there) = (nearest(&found), nearest(&turned));
-            // At the margin, and where the centre is in the plane, rounding decides whether there is a contact.
+            // At the margin, and with the centre in the plane, rounding decides whether there is a contact.
             if !found.is_empty() && !turned.is_empty() {
                 assert!((here - there).abs() < 5e-3, "{place}");
             }
@@ -233,7 +233,7 @@ fn bumps(random: &mut Random, side: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (vertices, triangles)
 }
 
-/// The same terrain as a mesh and as a height field, and its triangles.
+/// Returns the same terrain as a mesh and as a height field, and its triangles.
 fn terrain(random: &mut Random, side: usize) -> (Shape, Shape, Vec<[Vec3; 3]>) {
     let (vertices, triangles) = bumps(random, side);
     let def = HeightFieldDef {
@@ -248,9 +248,9 @@ fn terrain(random: &mut Random, side: usize) -> (Shape, Shape, Vec<[Vec3; 3]>) {
     (mesh, Shape::HeightField(Arc::new(HeightField::new(def).unwrap())), corners)
 }
 
-/// The nearest contact of a shape over terrain is that with the nearest of its triangles, each asked by itself.
+/// The nearest contact of a shape over terrain is that with the nearest of its triangles, each tested alone.
 #[test]
-fn terrain_is_as_far_away_as_its_nearest_triangle() {
+fn terrain_distance_is_that_of_the_nearest_triangle() {
     let mut random = Random::new(45);
     let (mesh, field, corners) = terrain(&mut random, 12);
     let alone: Vec<Shape> = corners.iter().map(|corners| mesh_of(corners)).collect();
@@ -266,7 +266,7 @@ fn terrain_is_as_far_away_as_its_nearest_triangle() {
             if mesh.cast_ray(&still, &down).is_none() {
                 continue;
             }
-            // From behind a triangle of a closed surface is not there.
+            // A triangle of a closed surface is not solid from behind.
             let reach = shape.aabb(&frame).expand(MARGIN);
             let faces = |&[a, b, c]: &[Vec3; 3]| (b - a).cross(c - a).dot(middle - a) > 0.0;
             let meets = |&[a, b, c]: &[Vec3; 3]| {
@@ -298,13 +298,13 @@ fn terrain_is_as_far_away_as_its_nearest_triangle() {
     }
 }
 
-/// A point well inside: from where a triangle is in front or behind.
+/// Returns a point well inside: in front of or behind a triangle.
 fn middle(shape: &Shape) -> Vec3 {
     let centred = matches!(shape, Shape::Hull(_) | Shape::Cone { .. });
     if centred { shape.mass_properties(1.0).center } else { Vec3::ZERO }
 }
 
-/// Point where a ray comes through a triangle from above, by its plane and barycentric coordinates in `f64`.
+/// Returns the point where a ray passes through a triangle from above, by its plane and barycentric coordinates in `f64`.
 fn pierced(&[a, b, c]: &[Vec3; 3], ray: &Ray) -> Option<f64> {
     let wide = |v: Vec3| v.to_array().map(f64::from);
     let sub = |p: [f64; 3], q: [f64; 3]| core::array::from_fn::<f64, 3, _>(|k| p[k] - q[k]);
@@ -328,7 +328,7 @@ fn pierced(&[a, b, c]: &[Vec3; 3], ray: &Ray) -> Option<f64> {
 }
 
 #[test]
-fn rays_meet_terrain_as_they_meet_its_triangles() {
+fn terrain_rays_match_triangle_rays() {
     let mut random = Random::new(43);
     let (mesh, field, corners) = terrain(&mut random, 20);
     let mut hits = 0;
@@ -355,7 +355,7 @@ fn rays_meet_terrain_as_they_meet_its_triangles() {
         }
     }
     assert!(hits * 4 > cases(100_000), "{hits} hits");
-    // Down through every edge and vertex: nothing slips through between two triangles.
+    // Down through every edge and vertex: nothing passes between two triangles.
     for i in 1..40 {
         for j in 1..40 {
             let over = Vec3::new(0.25 * i as f32, 5.0, 0.25 * j as f32);

@@ -18,7 +18,7 @@ const SHAPES: [Shape; 11] = [
     Shape::HalfSpace,
 ];
 
-/// Shapes that have an end: all but the half-space.
+/// Bounded shapes: all except the half-space.
 fn solids() -> &'static [Shape] {
     SHAPES.split_last().expect("there are shapes").1
 }
@@ -27,7 +27,7 @@ fn from_axis(p: Vec3) -> f32 {
     (p.x * p.x + p.z * p.z).sqrt()
 }
 
-/// True if a point is in the shape, written down once more.
+/// Whether a point is in the shape, computed independently.
 fn holds(shape: &Shape, p: Vec3) -> bool {
     match *shape {
         Shape::Box { half_extents: h } => p.x.abs() <= h.x && p.y.abs() <= h.y && p.z.abs() <= h.z,
@@ -37,7 +37,7 @@ fn holds(shape: &Shape, p: Vec3) -> bool {
             (p.x * p.x + p.z * p.z + beyond * beyond).sqrt() <= radius
         }
         Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
-            // In one of the balls between the two: ρ² + (y − c)² ≤ r², where c and r are linear in the share of the way.
+            // In one of the balls between the two: ρ² + (y − c)² ≤ r², where c and r are linear along the axis.
             let (rho, y) = (f64::from(p.x).hypot(f64::from(p.z)), f64::from(p.y));
             let beyond = |t: f64| {
                 let center = f64::from(half_height) * (2.0 * t - 1.0);
@@ -70,7 +70,7 @@ fn frames(random: &mut Random) -> Transform {
     Transform::new(random.in_cube() * 3.0, random.rotation())
 }
 
-/// Marching along the ray finds the same entry; the normal is that of the surface there.
+/// Marching along the ray finds the same entry; the normal is the surface's there.
 #[test]
 fn rays_enter_where_marching_does() {
     const STEPS: u32 = 4000;
@@ -128,7 +128,7 @@ fn long_rays_keep_their_precision() {
 }
 
 #[test]
-fn rays_without_length_or_number_hit_nothing_outside() {
+fn degenerate_rays_hit_nothing_outside() {
     for shape in SHAPES {
         let outside = Vec3::new(0.0, 3.0, 0.0);
         for direction in [Vec3::ZERO, Vec3::Y, Vec3::new(f32::NAN, 0.0, 0.0)] {
@@ -145,7 +145,7 @@ fn rays_without_length_or_number_hit_nothing_outside() {
     }
 }
 
-/// Going out along the normal by the distance ends on the surface, and no sampled surface point is closer.
+/// Moving out along the normal by the distance ends on the surface, and no sampled surface point is closer.
 #[test]
 fn signed_distance_is_the_closest_surface() {
     let mut random = Random::new(2);
@@ -166,7 +166,7 @@ fn signed_distance_is_the_closest_surface() {
     }
 }
 
-/// A point of the surface, found by bisection between a point inside and one outside.
+/// Returns a point of the surface by bisection between a point inside and one outside.
 fn surface_point(shape: &Shape, random: &mut Random) -> Option<Vec3> {
     let (mut inside, mut outside) = (random.in_cube(), random.direction() * 3.0);
     if !holds(shape, inside) || holds(shape, outside) {
@@ -183,7 +183,7 @@ fn surface_point(shape: &Shape, random: &mut Random) -> Option<Vec3> {
     Some(inside)
 }
 
-/// Volume, mass and inertia by integration over a grid; shifted, turned and put together.
+/// Volume, mass and inertia by integration over a grid; shifted, rotated and combined.
 #[test]
 fn mass_properties_match_integration() {
     const CELLS: i32 = 80;
@@ -193,7 +193,7 @@ fn mass_properties_match_integration() {
     for shape in solids() {
         let (mut mass, mut moment, mut inertia) = (0.0f64, 0.0f64, [0.0f64; 3]);
         for k in 0..CELLS * CELLS * CELLS {
-            // Anywhere in its cell, or whole layers of cells would be in or out.
+            // Random within its cell, else whole layers of cells would be in or out.
             let mut at = |i: i32| (i as f32 + random.unit()) * CELL - 1.0;
             let p = Vec3::new(at(k % CELLS), at(k / CELLS % CELLS), at(k / CELLS / CELLS));
             if holds(shape, p) {
@@ -218,9 +218,9 @@ fn mass_properties_match_integration() {
     assert_eq!(Shape::HalfSpace.mass_properties(density), MassProperties::default());
 }
 
-/// A box cut in two and put together again, in a turned frame.
+/// A box cut in two and combined again, in a rotated frame.
 #[test]
-fn halves_of_a_box_weigh_as_the_whole() {
+fn masses_of_two_halves_sum_to_the_box() {
     let whole = Shape::Box { half_extents: Vec3::new(0.4, 0.2, 0.1) }.mass_properties(1000.0);
     let half = Shape::Box { half_extents: Vec3::new(0.2, 0.2, 0.1) }.mass_properties(1000.0);
     let frame =
@@ -237,7 +237,7 @@ fn halves_of_a_box_weigh_as_the_whole() {
     assert_eq!(MassProperties::default().combine(&MassProperties::default()), MassProperties::default());
 }
 
-/// Bounds hold every point of the shape, and each of their sides is touched.
+/// Bounds contain every point of the shape, and each of their sides is touched.
 #[test]
 fn bounds_are_tight() {
     let mut random = Random::new(3);
@@ -265,7 +265,7 @@ fn bounds_are_tight() {
 }
 
 #[test]
-fn sizes_that_are_none_are_named() {
+fn invalid_sizes_are_named() {
     for shape in SHAPES {
         assert_eq!(shape.check(), Ok(()));
     }

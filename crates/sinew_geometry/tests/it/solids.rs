@@ -1,4 +1,4 @@
-//! Hulls to try things with.
+//! Hulls for tests.
 
 use sinew_geometry::{Hull, Shape};
 use sinew_math::{Random, Vec3};
@@ -15,12 +15,12 @@ pub fn corners(half: Vec3) -> Vec<Vec3> {
     (0..8).map(|bits| half * Vec3::new(side(bits, 0), side(bits, 1), side(bits, 2))).collect()
 }
 
-/// The box of these half extents as a hull.
+/// Returns the box of these half extents as a hull.
 pub fn box_hull(half: Vec3) -> Shape {
     Shape::Hull(hull_of(&corners(half)))
 }
 
-/// A hull of 5 to 40 points on a stretched ball of about the given radius.
+/// Returns a hull of 5 to 40 points on a stretched ball of about the given radius.
 pub fn pebble(radius: f32, random: &mut Random) -> Shape {
     let stretch = Vec3::new(1.0, random.range(0.5, 1.0), random.range(0.4, 1.0)) * radius;
     let count = 5 + random.index(36);

@@ -9,7 +9,7 @@ use sinew_math::{Random, Rotation, Transform, Vec3};
 fn brute_force(shape: &Shape, at: &Transform, plane: &WaterPlane, cells: i32) -> (f32, Vec3) {
     let reach = shape.bounding_radius();
     let size = 2.0 * reach / cells as f32;
-    // Aslant to all faces, or whole layers of cells would be in or out.
+    // Tilted against all faces, else whole layers of cells would be in or out.
     let turned = Rotation::from_axis_angle(Vec3::new(0.6, 0.48, 0.64), 0.7);
     let (mut volume, mut moment) = (0.0f64, [0.0f64; 3]);
     for i in 0..cells * cells * cells {
@@ -27,7 +27,7 @@ fn brute_force(shape: &Shape, at: &Transform, plane: &WaterPlane, cells: i32) ->
 }
 
 #[test]
-fn they_agree_with_brute_force() {
+fn submerged_volumes_match_brute_force() {
     let mut random = Random::new(9);
     let shapes = [
         Shape::Sphere { radius: 0.4 },
@@ -42,7 +42,7 @@ fn they_agree_with_brute_force() {
     for shape in shapes {
         let whole = shape.volume();
         for case in 0..40 {
-            // Upright and lying ones among them.
+            // Including upright and lying ones.
             let rotation = match case {
                 0 | 1 => Rotation::IDENTITY,
                 2 | 3 => Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_2),
@@ -65,7 +65,7 @@ fn they_agree_with_brute_force() {
 }
 
 #[test]
-fn the_two_parts_make_the_whole() {
+fn both_parts_sum_to_the_whole() {
     let mut random = Random::new(4);
     for i in 0..2000 {
         let shape = match i % 6 {

@@ -1,4 +1,4 @@
-//! Vectors in `f64`, for what is held against brute force.
+//! Vectors in `f64` for brute force.
 
 use sinew_math::{Rotation, Vec3};
 

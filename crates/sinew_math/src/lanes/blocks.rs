@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     #[should_panic = "record 19 of 19"]
-    fn a_record_of_the_filling_is_not_there() {
+    fn padding_records_cannot_be_read() {
         let blocks: Blocks<1> = (0..19).map(|i| [i as f32]).collect();
         blocks.get(19);
     }

@@ -111,7 +111,7 @@ impl Kernel for Operations<'_> {
 }
 
 #[test]
-fn lanes_do_what_one_number_does() {
+fn lanes_match_scalar_arithmetic() {
     let soup = soup();
     for level in Level::available() {
         let (results, masks) = dispatch::run_at(level, Operations(&soup));
@@ -153,7 +153,7 @@ impl Kernel for WideOperations<'_> {
 }
 
 #[test]
-fn wide_lanes_do_what_one_wide_number_does() {
+fn wide_lanes_match_scalar_arithmetic() {
     let soup = soup();
     for level in Level::available() {
         for (&[a, b], result) in soup.iter().zip(dispatch::run_at(level, WideOperations(&soup))) {
@@ -207,7 +207,7 @@ impl Kernel for Answers {
 }
 
 #[test]
-fn the_second_is_chosen_where_neither_is_smaller() {
+fn min_returns_the_second_of_unordered_numbers() {
     let expected = [-0.0, 0.0, 1.0, 1.0, f32::NAN, -0.0].map(bits);
     assert_eq!(answers::<f32>().map(bits), expected);
     for level in Level::available() {
@@ -268,7 +268,7 @@ impl Kernel for Turned {
 }
 
 #[test]
-fn lanes_turn_round() {
+fn lanes_are_reversed() {
     for level in Level::available() {
         for by in 0..WIDTH {
             let expected = core::array::from_fn(|lane| ((lane + by) % WIDTH) as f32);

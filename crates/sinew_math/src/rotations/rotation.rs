@@ -15,14 +15,14 @@ use core::ops::Mul;
 ///
 /// ```
 /// use sinew_math::{Rotation, Vec3};
-/// // From axis and angle, radians, counter-clockwise for who looks against the axis.
+/// // From axis and angle, radians, counter-clockwise as seen against the axis.
 /// let q = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_2);
 /// assert!((q * Vec3::Z - Vec3::X).length() < 1e-6);
 /// // To a matrix, whose columns are where the axes go, and from it.
 /// let m = q.to_mat3();
 /// assert!((m * Vec3::Z - Vec3::X).length() < 1e-6);
 /// assert!(Rotation::from_mat3(&m).angle_to(q) < 1e-6);
-/// // Normalise: what many products have worn off.
+/// // Normalise to remove the error of many products.
 /// let worn = Rotation::from_xyzw(q.x * 1.01, q.y * 1.01, q.z * 1.01, q.w * 1.01);
 /// assert!((worn.normalize().length() - 1.0).abs() < 1e-6);
 /// // Inverse: the turn back.

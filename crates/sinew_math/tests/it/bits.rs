@@ -1,5 +1,5 @@
-//! The same bits on every target and in every profile: what a few thousand turns come to is written down here, and
-//! changes only where a formula does.
+//! The same bits on every target and in every profile: the hash of a few thousand rotations is stored here, and
+//! changes only if a formula does.
 
 use sinew_math::{
     EulerConvention, Orthonormalization, Quaternion, Random, Rotation, StableHasher, Vec3, orthonormalize,

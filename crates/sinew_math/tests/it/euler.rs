@@ -4,7 +4,7 @@ use super::oracle::{CASES, Exact, angle, worst_of};
 use core::f32::consts::{FRAC_PI_2, PI, TAU};
 use sinew_math::{EulerAngles, EulerAxes, EulerConvention, EulerOrder, GimbalLock, Random, Rotation, trig};
 
-/// Cases of each convention, where all of them together are enough.
+/// Cases of each convention, where their total is enough.
 const SHARE: usize = CASES / 20;
 
 /// From the definition.
@@ -20,7 +20,7 @@ fn exact(convention: EulerConvention, angles: [f64; 3]) -> Exact {
     }
 }
 
-/// The middle angles at which a convention locks.
+/// Middle angles at which a convention is in gimbal lock.
 fn locks(convention: EulerConvention) -> [f32; 2] {
     if convention.order.is_proper() { [0.0, PI] } else { [-FRAC_PI_2, FRAC_PI_2] }
 }
@@ -35,7 +35,7 @@ fn check_range(convention: EulerConvention, found: EulerAngles) {
     assert!((0.0..=FRAC_PI_2 + 1e-6).contains(&found.lock_margin), "{convention:?} {found:?}");
 }
 
-/// Over all conventions and cases: a rotation, its angles, and how far these are from it at most.
+/// Calls a function for all conventions and cases with a rotation, its angles, and the largest error of the angles.
 fn worst(cases: usize, seed: u64, mut rotation: impl FnMut(EulerConvention, &mut Random) -> Rotation) -> f64 {
     let mut most = 0.0;
     for convention in EulerConvention::all() {
@@ -87,12 +87,12 @@ fn rotations_close_to_lock_round_trip() {
         let sign = if random.index(2) == 0 { 1.0 } else { -1.0 };
         Rotation::from_euler(convention, [random.range(-PI, PI), lock + sign * near, random.range(-PI, PI)])
     });
-    // The locked ones give up what the margin allows.
+    // At lock the error is up to the margin.
     assert!(error < 4.5e-6, "{error}");
 }
 
 #[test]
-fn angles_come_back_where_they_are_free() {
+fn angles_round_trip_away_from_lock() {
     for convention in EulerConvention::all() {
         let error = worst_of(SHARE, 23, |random| {
             let [lo, hi] = locks(convention);
@@ -107,7 +107,7 @@ fn angles_come_back_where_they_are_free() {
                 let apart = f64::from(found.angles[i] - angles[i]).rem_euclid(f64::from(TAU));
                 f64::min(apart, f64::from(TAU) - apart)
             };
-            // An error in the rotation counts the more in the outer angles, the closer the lock.
+            // An error in the rotation grows in the outer angles near the lock.
             let outer = f64::max(off(0), off(2)) * f64::from(trig::sin(found.lock_margin));
             f64::max(outer, off(1))
         });
@@ -154,7 +154,7 @@ fn small_turns_keep_their_digits() {
 }
 
 #[test]
-fn fixed_axes_are_moving_ones_last_first() {
+fn extrinsic_equals_reversed_intrinsic() {
     let mut random = Random::new(25);
     for _ in 0..1000 {
         let [a, b, c] = [0; 3].map(|_| random.range(-PI, PI));

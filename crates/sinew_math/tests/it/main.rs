@@ -1,4 +1,4 @@
-//! Tests of the mathematics against arithmetic in `f64`, over random cases and those at the edge.
+//! Tests of the mathematics against arithmetic in `f64`, over random and extreme cases.
 
 mod bits;
 mod euler;

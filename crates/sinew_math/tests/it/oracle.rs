@@ -1,4 +1,4 @@
-//! Rotations in `f64`, written down from the definitions, and random cases.
+//! Rotations in `f64` by their definitions, and random cases.
 
 use sinew_math::{Mat3, Random, Rotation, Vec3};
 
@@ -53,7 +53,7 @@ impl Exact {
         2.0 * norm([x, y, z]).atan2(w.abs())
     }
 
-    /// Angle from this rotation to `r`, radians; a length that is not 1 counts as well.
+    /// Returns the angle from this rotation to `r`, radians; a length other than 1 counts as well.
     pub fn error(self, r: Rotation) -> f64 {
         let [w, x, y, z] = [r.w, r.x, r.y, r.z].map(f64::from);
         let distance = |sign: f64| {
@@ -77,14 +77,14 @@ pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The largest of several errors; a NaN is the largest of all.
+/// Returns the largest of several errors; NaN counts as the largest.
 pub fn largest(errors: impl IntoIterator<Item = f64>) -> f64 {
     errors
         .into_iter()
         .fold(0.0, |most, error| if error.is_nan() { f64::INFINITY } else { f64::max(most, error) })
 }
 
-/// Distance of a vector from an exact one, over the length of the latter.
+/// Returns the distance of a vector from an exact one over the latter's length.
 pub fn off(found: Vec3, expected: [f64; 3]) -> f64 {
     let found = wide(found);
     norm([found[0] - expected[0], found[1] - expected[1], found[2] - expected[2]]) / norm(expected)
@@ -96,7 +96,7 @@ pub fn matrix_off(a: &Mat3, b: &Mat3) -> f64 {
     largest(a.iter().zip(b).map(|(x, y)| f64::from(x - y).abs()))
 }
 
-/// Angles of every size: from 1e-9 to 7, either sign, and those at which formulas turn over.
+/// Returns angles of every size: from 1e-9 to 7, either sign, and those where formulas switch.
 pub fn angle(random: &mut Random) -> f32 {
     const EDGES: [f64; 6] = [
         0.0,
@@ -116,7 +116,7 @@ pub fn angle(random: &mut Random) -> f32 {
     (sign * size) as f32
 }
 
-/// Runs [`CASES`] and gives the largest error, and prints which case has it.
+/// Runs [`CASES`], returns the largest error and prints its case.
 pub fn worst(seed: u64, error: impl FnMut(&mut Random) -> f64) -> f64 {
     worst_of(CASES, seed, error)
 }

@@ -54,7 +54,7 @@ fn rotations_are_kept() {
 }
 
 #[test]
-fn stretch_is_taken_out_whole() {
+fn polar_removes_all_stretch() {
     // M = R S with S symmetric and positive: the polar rotation is R, whatever S.
     let error = worst(32, |random| {
         let (rotation, frame) = (random.rotation(), random.rotation());
@@ -69,7 +69,7 @@ fn stretch_is_taken_out_whole() {
     assert!(error < 1.5e-5, "{error}");
 }
 
-/// No other rotation is nearer: neither one that Gram-Schmidt finds nor any beside it.
+/// No other rotation is nearer: neither Gram-Schmidt's nor any beside it.
 #[test]
 fn polar_is_nearest() {
     worst(33, |random| {
@@ -86,8 +86,8 @@ fn polar_is_nearest() {
 }
 
 #[test]
-fn polar_has_no_favourite_axis() {
-    // Seen from other axes it is the same answer; Gram-Schmidt's is not.
+fn polar_is_independent_of_axes() {
+    // In other axes the answer is the same; Gram-Schmidt's is not.
     let turned = |m: &Mat3, method| {
         let axes = Rotation::from_axis_angle(Vec3::ONE.normalize(), 1.0);
         let there = orthonormalize(&(*m * axes.to_mat3()), method).rotation;
@@ -112,7 +112,7 @@ fn size_does_not_matter() {
 
 #[test]
 fn mirrored_matrices_have_an_answer() {
-    // The least stretched axis is the one to be turned round.
+    // The least stretched axis is reversed.
     let mirror = Mat3::from_diagonal(Vec3::new(2.0, -0.5, 1.0));
     let found = orthonormalize(&mirror, Orthonormalization::Polar);
     assert!(

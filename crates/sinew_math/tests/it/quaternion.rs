@@ -9,7 +9,7 @@ fn random_quaternion(random: &mut Random) -> Quaternion {
     Quaternion::new(random.range(-1.0, 1.0), random.in_cube()) * size
 }
 
-/// Distance of two quaternions over their size.
+/// Returns the distance of two quaternions over their size.
 fn apart(a: Quaternion, b: Quaternion) -> f64 {
     f64::from((a - b).norm()) / f64::from(b.norm())
 }
@@ -31,7 +31,7 @@ fn quotient_takes_one_vector_into_the_other() {
 }
 
 #[test]
-fn quotients_that_are_numbers_or_nothing() {
+fn degenerate_vectors_have_stated_quotients() {
     let a = Vec3::new(0.0, 2.0, 0.0);
     assert_eq!(Quaternion::quotient(a, a), Some(Quaternion::ONE));
     assert_eq!(Quaternion::quotient(Vec3::ZERO, a), Some(Quaternion::ZERO));
@@ -60,7 +60,7 @@ fn versor_times_scale() {
         let (scale, axis, angle) = (random.range(0.01, 9.0), random.direction(), random.range(0.0, PI));
         let q = Quaternion::from_scale_axis_angle(scale, axis, angle);
         let turned = Exact::about(wide(axis), f64::from(angle));
-        // Any vector, not only those at right angles to the axis.
+        // Any vector, not only perpendicular ones.
         let v = random.direction();
         let expected = turned.turn(wide(v)).map(|x| x * f64::from(scale));
         largest([
@@ -122,7 +122,7 @@ fn sandwich_is_a_rotation_by_twice_the_angle() {
 
 #[test]
 fn quotients_in_one_plane_follow_each_other() {
-    // c/a = (c/b)(b/a), whatever the vectors; and where all lie in one plane, turns and stretches do as well.
+    // c/a = (c/b)(b/a) for any vectors; in one plane rotations and stretches compose as well.
     let error = worst(44, |random| {
         let [a, b, c] = [0; 3].map(|_| random.direction() * random.range(0.1, 5.0));
         let q = |to, from| Quaternion::quotient(to, from).expect("none is zero");
@@ -137,7 +137,7 @@ fn quotients_in_one_plane_follow_each_other() {
 }
 
 #[test]
-fn parts_make_up_the_whole() {
+fn parts_recombine_to_the_quaternion() {
     let error = worst(45, |random| {
         let (q, t) = (random_quaternion(random), random.range(-2.0, 3.0));
         largest([apart(q.power(t) * q.power(1.0 - t), q), apart(q.power(2.0), q * q)])

@@ -44,7 +44,7 @@ fn to_axis_and_angle() {
     assert_eq!(Rotation::from_xyzw(0.0, 1.0, 0.0, 0.0).to_axis_angle(), (Vec3::Y, PI));
     let (axis, angle) = Rotation::from_axis_angle(Vec3::Z, TAU - 1e-3).to_axis_angle();
     assert!((axis + Vec3::Z).length() < 1e-3 && (angle - 1e-3).abs() < 1e-6, "{axis} {angle}");
-    // However small: the quaternion's vector part holds it.
+    // Any small angle: the quaternion's vector part holds it.
     let (axis, angle) = Rotation::from_axis_angle(Vec3::Y, 1e-30).to_axis_angle();
     assert!((axis - Vec3::Y).length() < 1e-6 && (angle / 1e-30 - 1.0).abs() < 1e-6, "{axis} {angle}");
 }
@@ -57,7 +57,7 @@ fn exponential_of_a_vector() {
         let exact = if vector == Vec3::ZERO { Exact::IDENTITY } else { exact };
         exact.error(Rotation::from_scaled_axis(vector))
     });
-    // The longest are two turns long, and have an ulp of 1e-6.
+    // The longest are two full turns, and have an ulp of 1e-6.
     assert!(error < 1.5e-6, "{error}");
     assert_eq!(Rotation::from_scaled_axis(Vec3::ZERO), Rotation::IDENTITY);
     assert_eq!(Rotation::from_scaled_axis(Vec3::splat(f32::NAN)), Rotation::IDENTITY);
@@ -66,7 +66,7 @@ fn exponential_of_a_vector() {
 
 #[test]
 fn logarithm_undoes_the_exponential() {
-    // Of vectors up to half a turn, relative to their own length, so that small ones count.
+    // Vectors up to half a turn, relative to their own length, so that small ones count.
     let error = worst(5, |random| {
         let vector = random.direction() * trig::pow(10.0, random.range(-9.0, 0.49));
         off(Rotation::from_scaled_axis(vector).to_scaled_axis(), wide(vector))
@@ -95,9 +95,9 @@ fn arc_between_directions() {
         let to = Vec3::from_array(exact.map(|x| x as f32)).normalize();
         let arc = Rotation::from_arc(from, to);
         let landed = off(arc * from, wide(to));
-        // It is the shortest: its axis lies at right angles to both.
+        // It is the shortest: its axis is perpendicular to both.
         let astray = f64::from(arc.vector().dot(from).abs());
-        // Less exact toward opposite directions, but not next to them.
+        // Less exact near opposite directions.
         let is_less_exact = (-0.999_999..0.0).contains(&from.dot(to));
         let scale = if is_less_exact { norm(cross(wide(from), wide(to))) } else { 1.0 };
         largest([landed, astray]) * scale
@@ -180,7 +180,7 @@ fn normalise() {
     }
 }
 
-/// Rotations that slerp should give, from the definition: `a` turned by a share of the way to `b`; the short way and the long one.
+/// Rotations that slerp should return, by definition: `a` rotated by a share of the way to `b`; the short way and the long one.
 fn part_way(a: Exact, b: Exact, t: f64) -> [Exact; 2] {
     let [w, x, y, z] = b.then(a.inverse()).0;
     let sin = norm([x, y, z]);
@@ -200,10 +200,10 @@ fn spherical_blend() {
         let t = random.unit();
         let [short, long] =
             part_way(Exact::of(a), Exact::of(b), f64::from(t)).map(|way| way.error(a.slerp(b, t)));
-        // Half a turn apart, either way will do.
+        // Half a turn apart, either way is valid.
         if a.dot(b).abs() < 1e-6 { f64::min(short, long) } else { short }
     });
-    // Where the linear blend stands in, below 3.6°, it lags by this.
+    // Below 3.6° the linear blend is used, which lags by this.
     assert!(error < 3e-6, "{error}");
 }
 
@@ -227,7 +227,7 @@ fn linear_blend_takes_the_same_path() {
         let (start, end) = (Exact::of(a), Exact::of(b));
         let whole = end.then(start.inverse());
         let part = Exact::of(a.nlerp(b, t)).then(start.inverse());
-        // About the same axis, so not out of the great circle.
+        // About the same axis, so still on the great circle.
         let (v, w) = ([1, 2, 3].map(|i| whole.0[i]), [1, 2, 3].map(|i| part.0[i]));
         assert!(part.angle() <= whole.angle() + 1e-6);
         norm(cross(v, w))

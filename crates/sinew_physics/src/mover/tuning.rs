@@ -42,13 +42,13 @@ pub(super) const SLIDE_AWAY: f32 = 0.3;
 /// Largest length of a slide along walls, as a multiple of the remaining motion.
 ///
 /// Larger: a mover wedged between crates shoots up between them. Smaller: it stops where a steep slope leads it on.
-/// Shown by the test `mover::a_cleft_that_opens_upward_shoots_nobody_up`.
+/// Shown by the test `mover::an_upward_cleft_does_not_eject_a_mover`.
 pub(super) const LONGEST_DETOUR: f32 = 4.0;
 
 /// Largest length of a displacement out of walls, as a multiple of the largest penetration: that of a wedge of 4°.
 ///
 /// Larger: a mover wedged between crates is pushed up between them. Smaller: it stays in sharp corners. Shown by the
-/// test `mover::a_cleft_that_opens_upward_shoots_nobody_up`.
+/// test `mover::an_upward_cleft_does_not_eject_a_mover`.
 pub(super) const LONGEST_WAY_OUT: f32 = 32.0;
 
 /// Length of a motion that continues beside a face that it may reach, in radii.

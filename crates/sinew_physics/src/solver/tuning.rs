@@ -233,7 +233,7 @@ pub(super) const REFRESH_TURN_LANES: f32 = 0.05;
 ///
 /// Without it, spinning rods missed up to 33 of 80 balls that flew through their discs, and hit as many at positions that the rods had
 /// left. Larger: slower rods miss balls too. Smaller: limbs moved by clips cost more, and the bits of their contacts change. Sensible from
-/// 0.05 to 0.2. Shown by the test `spinning::rods_strike_what_flies_through_their_discs`.
+/// 0.05 to 0.2. Shown by the test `spinning::rods_hit_balls_that_fly_through_their_discs`.
 pub(super) const REFRESH_TURN_LED: f32 = 0.1;
 
 /// Turn within a substep from which on the contacts of a rolling rim are recomputed, radians.
@@ -553,13 +553,13 @@ pub(super) const STANDING_SPEED: f32 = 0.1;
 ///
 /// A body that bears less than 4,000 times its weight has no mass scaling, and an ulp of that impulse changes its velocity by 1e-5 m/s.
 /// Larger: squeezed bodies react slowly. Smaller: an ulp of a tower's load tosses its lowest cube by 4 m/s (ADR 0015). Sensible from 1e-3
-/// to 0.05. Shown by `stack_mass_ratio`, the test `stacks::towers_of_any_masses_stand_on_a_floor_that_bears_their_weight`.
+/// to 0.05. Shown by `stack_mass_ratio`, the test `stacks::towers_of_any_masses_stand_and_load_the_floor_by_their_weight`.
 pub(super) const MASS_SCALE: f32 = 6e-3;
 
 /// Ratio of masses below which no body has mass scaling, a number.
 ///
 /// Below it, the sums of loads are not computed. Larger: squeezed bodies are tossed. Smaller: heaps of mixed sizes pay for these sums.
-/// Sensible from 100 to 4,000. Shown by the test `stacks::what_is_not_squeezed_weighs_what_it_weighs_beside_what_is_heavy`.
+/// Sensible from 100 to 4,000. Shown by the test `stacks::unsqueezed_bodies_keep_their_mass_beside_heavy_ones`.
 pub(super) const BALLASTED_RATIO: f32 = 1e3;
 
 // ---- Safeguards ----
@@ -580,13 +580,13 @@ pub(super) const ENERGY_SLACK: f32 = 1e-3;
 ///
 /// If a solution exceeds it, the island moves as one rigid piece for the pass. Speeds are limited before the solve, so the factor must be
 /// well above 1. Sensible from
-/// 1.5 to 10. Shown by the test `trouble::impulses_beyond_all_measure_are_limited_and_told_of`.
+/// 1.5 to 10. Shown by the test `trouble::extreme_impulses_are_limited_and_reported`.
 pub(super) const DIVERGED_SPEED: f32 = 2.5;
 
 /// Spin above which a solution counts as diverged, rad/s.
 ///
 /// The effect is that of [`DIVERGED_SPEED`]; it must be well above the spin that the world's limit on turns allows. Sensible from 1e3 to
-/// 1e5. Shown by the test `trouble::spins_beyond_all_measure_are_limited_and_told_of`.
+/// 1e5. Shown by the test `trouble::extreme_spins_are_limited_and_reported`.
 pub(super) const DIVERGED_SPIN: f32 = 1e4;
 
 /// Largest increase of a joint's error in a substep before the substep counts as unsolved, for gaps in metres and angles in radians.
@@ -633,5 +633,5 @@ pub(super) const CUT_STRANDS: usize = 24;
 ///
 /// Force integration slows a body that exceeds its limits. If contacts saw the full approach speed, they would count this slowing as a pull
 /// of forces, and a bounce would return half of it. Larger: bounces use speeds at which no body moves. Smaller: the bits of speeds slightly
-/// above the limits change. Sensible from 2 to 100. Shown by the test `events::hits_beyond_all_measure_are_told_in_numbers`.
+/// above the limits change. Sensible from 2 to 100. Shown by the test `events::extreme_hits_are_reported_finite`.
 pub(super) const BEYOND_MEASURE: f32 = 4.0;

@@ -105,5 +105,5 @@ pub(super) const KEPT_POINT: f32 = 0.005;
 /// A faster body is slowed when forces act, after contacts were computed: a bounce at its requested speed would need an
 /// infinite impulse. Sensible from 1e5, well above [`WorldDef::max_speed`](crate::WorldDef::max_speed), to 1e12.
 /// Larger: impulses of heavy bodies are infinite. Smaller: allowed speeds bounce too slowly. Shown by the test
-/// `events::hits_beyond_all_measure_are_told_in_numbers`.
+/// `events::extreme_hits_are_reported_finite`.
 pub(super) const MOST_APPROACH: f32 = 1e6;

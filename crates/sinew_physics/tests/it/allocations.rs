@@ -1,6 +1,6 @@
-//! A warm step allocates nothing (specification §5): one that has no more to do than a step before it had.
+//! A warm step allocates nothing (specification §5) if it has no more to do than an earlier step.
 //!
-//! The crate `allocation_counter` brings a global allocator that counts per thread: tests beside this one are not seen.
+//! The crate `allocation_counter` brings a global allocator that counts per thread, so tests on other threads do not count.
 
 use crate::build::{ball, box_body, capsule_body, floor, joint, sphere_body};
 use crate::humanoid::figure;
@@ -11,21 +11,21 @@ use sinew_physics::particles::{AttachmentDef, AttachmentTarget, RopeDef};
 use sinew_physics::ray::Ray;
 use sinew_physics::*;
 
-/// Steps until the boxes are thrown back to where they began.
+/// Steps until the boxes are moved back to their start.
 const CYCLE: usize = 150;
 
-/// Boxes that fall again and again, and more that fall the first time only: heaps differ from one fall to the next.
+/// Boxes that fall in every cycle, and boxes that fall in the first one only: heaps differ from one fall to the next.
 const BOXES: usize = 40;
 const MORE_BOXES: usize = 20;
 
-/// Falls that are looked at.
+/// Number of measured falls.
 const CYCLES: usize = 6;
 
-/// Steps until what hangs from joints and springs has come to rest, or nearly.
+/// Steps until bodies on joints and springs are almost at rest.
 const SETTLE: usize = 400;
 
-/// Everything that a step can hold: loose boxes, a figure, a chain, a ring of joints and a rope that carries a weight.
-/// The boxes are given with the poses in which they begin.
+/// Returns a world with everything that a step can hold: loose boxes, a figure, a chain, a ring of joints and a rope with a weight,
+/// and the boxes with their first poses.
 fn crowded() -> (World, Vec<(BodyId, Transform)>) {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     floor(&mut world);
@@ -51,7 +51,7 @@ fn pile(world: &mut World, count: u32) -> Vec<(BodyId, Transform)> {
     (0..count).map(&mut place).collect()
 }
 
-/// A sensor that the pile falls through.
+/// Adds a sensor that the pile falls through.
 fn gate(world: &mut World) {
     let mut gate = box_body(Vec3::new(0.5, 0.5, 0.5), Vec3::new(3.0, 0.5, 0.0));
     gate.kind = BodyKind::Static;
@@ -59,7 +59,7 @@ fn gate(world: &mut World) {
     world.add_body(&gate);
 }
 
-/// Capsules hung from the world, stretched out to the side.
+/// Adds a chain of capsules that hangs from the world, stretched out to the side.
 fn chain(world: &mut World, links: u32) {
     let mut last = world.add_body(&BodyDef {
         kind: BodyKind::Static,
@@ -74,7 +74,7 @@ fn chain(world: &mut World, links: u32) {
     }
 }
 
-/// Spheres joined in a circle, which falls flat.
+/// Adds a ring of spheres that falls flat.
 fn ring(world: &mut World, count: u32) {
     let place = |i: u32| {
         let angle = i as f32 * core::f32::consts::TAU / count as f32;
@@ -88,7 +88,7 @@ fn ring(world: &mut World, count: u32) {
     }
 }
 
-/// From the world's height down to a weight, which swings out of the boxes' reach: each that came near would ask for room.
+/// Adds a rope from the world to a weight, which swings out of the boxes' reach: more boxes near it would need more memory.
 fn rope(world: &mut World) {
     let (from, to) = (Vec3::new(0.0, 2.5, 20.0), Vec3::new(0.0, 1.5, 21.0));
     let weight = world.add_body(&sphere_body(0.15, to));
@@ -100,7 +100,7 @@ fn rope(world: &mut World) {
     world.add_particles(&rope);
 }
 
-/// Makes one island of everything that moves, by joints that hold nothing.
+/// Joins all moving bodies to one island by joints that hold nothing.
 fn tie(world: &mut World) -> Vec<JointId> {
     let free = AxisMotion::Free;
     let six = SixDof { linear: [free; 3], twist: free, swing_y: free, swing_z: free };
@@ -112,7 +112,7 @@ fn tie(world: &mut World) -> Vec<JointId> {
     moving.windows(2).map(tie).collect()
 }
 
-/// Counts over the steps of one cycle.
+/// Returns the counts over the steps of one cycle.
 #[derive(Debug, Default)]
 struct Seen {
     allocations: u64,
@@ -132,8 +132,8 @@ fn run(world: &mut World, steps: usize, seen: &mut Seen) {
     }
 }
 
-/// Takes the boxes apart for a step, so that they forget their contacts, and lets them fall as the first time: each cycle
-/// asks for the room of the one before, no more.
+/// Separates the boxes for a step, so that their contacts are forgotten, and drops them as before: each cycle
+/// needs as much memory as the first.
 fn cycle(world: &mut World, boxes: &[(BodyId, Transform)]) -> Seen {
     let mut seen = Seen::default();
     for apart in [true, false] {
@@ -164,7 +164,7 @@ fn a_warm_step_allocates_nothing() {
     for &(id, _) in more {
         world.remove_body(id);
     }
-    // Contacts of an island without joints lie in blocks, which the tied one has none of.
+    // Contacts of an island without joints lie in blocks; the tied world has none.
     cycle(&mut world, boxes);
     for _ in 0..CYCLES {
         let warm = cycle(&mut world, boxes);
@@ -175,10 +175,10 @@ fn a_warm_step_allocates_nothing() {
 }
 
 #[test]
-fn objects_let_a_warm_step_allocate_nothing() {
+fn a_warm_step_with_objects_allocates_nothing() {
     let mut world = inhabited();
     let mut seen = Seen::default();
-    // Each island has a workspace of its own here, by its number: it takes a while until each has seen the largest.
+    // Each island has its own workspace here, by its number: it takes some steps until each has seen the largest.
     run(&mut world, SETTLE + CYCLE, &mut seen);
     let before = seen.allocations;
     run(&mut world, CYCLE, &mut seen);
@@ -186,7 +186,7 @@ fn objects_let_a_warm_step_allocate_nothing() {
 }
 
 #[test]
-fn the_counter_sees_one_push() {
+fn the_counter_counts_one_allocation() {
     let mut list: Vec<u32> = Vec::new();
     assert_eq!(allocation_counter::measure(|| list.push(1)).count_total, 1);
     list.clear();

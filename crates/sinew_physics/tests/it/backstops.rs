@@ -1,4 +1,4 @@
-//! Balls behind single particles: they stop these and nothing else, without friction, and push their body as much as the particle.
+//! Backstops: balls that stop one particle each, without friction, and push their body as much as the particle.
 
 use crate::build::{box_body, sphere_body};
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer};
@@ -14,7 +14,7 @@ fn particle(position: Vec3, mass: f32) -> ParticleDef {
     ParticleDef { position, velocity: Vec3::ZERO, mass, radius: RADIUS }
 }
 
-/// A body that is nowhere near its backstops.
+/// Returns a body far away from its backstops.
 fn far_from_it(kind: BodyKind, frame: Transform) -> BodyDef {
     let body_from_shape = Transform::from_translation(Vec3::new(0.0, -5.0, 1.0));
     let shape = ShapeDef { body_from_shape, ..ShapeDef::new(Shape::Sphere { radius: 0.1 }) };
@@ -27,10 +27,10 @@ fn far_from_it(kind: BodyKind, frame: Transform) -> BodyDef {
     }
 }
 
-/// A weight on a spring beside a frictionless ball comes to rest on it where spring and gravity press along the normal alone; one without the ball goes through
-/// its place.
+/// A particle on a spring beside a frictionless ball comes to rest where spring and gravity act along the normal; a particle without
+/// the ball passes through.
 #[test]
-fn a_particle_rests_where_the_ball_says() {
+fn a_particle_rests_on_its_backstop() {
     let mut world = World::new(WorldDef::default());
     let frame =
         Transform::new(Vec3::new(0.4, 1.0, -0.3), Rotation::from_axis_angle(Vec3::ONE.normalize(), 0.7));
@@ -69,9 +69,9 @@ fn a_particle_rests_where_the_ball_says() {
     assert!((below - center).length() < reach - 0.05, "the ball is on its way");
 }
 
-/// A particle without a backstop goes through that of another, and a stranger's body does as well.
+/// A particle passes through the backstop of another particle, and so does another body.
 #[test]
-fn nothing_else_meets_it() {
+fn backstops_affect_only_their_particle() {
     let mut world = World::new(WorldDef::default());
     let body = world.add_body(&far_from_it(BodyKind::Static, Transform::IDENTITY));
     let at = |x: f32| particle(Vec3::new(x, 1.0, 0.0), 0.1);
@@ -88,9 +88,9 @@ fn nothing_else_meets_it() {
     assert!(world.transform(ball).translation.y < -1.0);
 }
 
-/// The blow of a particle on the backstop of a free body is without restitution: both have one speed along the normal, and momentum and angular momentum stay.
+/// A particle hits the backstop of a free body without restitution: both have one speed along the normal; momentum and angular momentum stay.
 #[test]
-fn it_pushes_its_body_as_it_is_pushed() {
+fn backstop_impulses_are_equal_and_opposite() {
     for aside in [0.0, 0.15] {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
         let (radius, mass, speed) = (0.1, 0.3, 2.0);
@@ -131,12 +131,12 @@ fn it_pushes_its_body_as_it_is_pushed() {
     }
 }
 
-/// It goes along with a body that moves and turns as it likes.
+/// The particle stays on its backstop while the body moves and rotates.
 #[test]
-fn a_body_takes_it_along() {
+fn a_backstop_moves_with_its_body() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let body = world.add_body(&far_from_it(BodyKind::Kinematic, Transform::IDENTITY));
-    // Ahead of it, as it sets out.
+    // Ahead of it at the start.
     let (linear, angular) = (Vec3::Y * 0.2, Vec3::Y * -2.0);
     let way = linear + angular.cross(Vec3::X - world.center_of_mass(body));
     let ahead = way.normalize();
@@ -225,9 +225,9 @@ fn threads_and_snapshots_have_the_same_bits() {
     assert!(on > 10, "{on} particles lie on theirs");
 }
 
-/// A group that sleeps on its backstop sleeps with the body, and wakes when that is moved.
+/// A group that sleeps on its backstop sleeps with the body, and wakes when the body is moved.
 #[test]
-fn it_sleeps_and_wakes_with_its_body() {
+fn a_backstop_sleeps_and_wakes_with_its_body() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
     let body = world.add_body(&box_body(Vec3::splat(0.2), Vec3::Y * 0.2));
@@ -279,7 +279,7 @@ fn definitions_are_checked() {
 
 #[test]
 #[should_panic(expected = "have backstops")]
-fn a_body_with_a_backstop_stays() {
+fn a_body_with_a_backstop_cannot_be_removed() {
     let mut world = World::new(WorldDef::default());
     let body = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     world.add_particles(&GroupDef {

@@ -1,4 +1,4 @@
-//! Bobs that hang from stones under a plank: what swings slowly in an island neither gains nor loses by how the island is solved.
+//! Bobs that hang from stones under a plank: slow swings in an island neither gain nor lose energy by the way it is solved.
 
 use crate::build::ball;
 use sinew_math::{Range, Rotation, Vec3, trig};
@@ -6,14 +6,14 @@ use sinew_physics::{
     BodyDef, BodyId, BodyKind, JointDef, JointId, JointKind, Shape, ShapeDef, Sleeping, World, WorldDef,
 };
 
-/// Stones on the floor under a plank that makes them one island. From each hangs a bob.
+/// Returns stones on the floor under a plank, which makes them one island, with a bob below each.
 struct Row {
     world: World,
     bobs: Vec<BodyId>,
     joints: Vec<JointId>,
 }
 
-/// So few are solved by response, so many as a heap.
+/// Number of stones of an island that is solved by response, and of a heap.
 const STONES: [usize; 2] = [3, 10];
 const LENGTH: f32 = 0.5;
 
@@ -41,7 +41,7 @@ impl Row {
         Self { world, bobs, joints }
     }
 
-    /// The farthest that each bob gets from below its anchor along x in so many steps, m.
+    /// Returns the largest displacement of each bob along x, m.
     fn reach(&mut self, steps: usize) -> Vec<f32> {
         let mut most = vec![0.0; self.bobs.len()];
         for _ in 0..steps {
@@ -59,8 +59,8 @@ impl Row {
 }
 
 #[test]
-fn bobs_that_swing_beneath_stones_go_on() {
-    // What swings more slowly beneath few stones loses a fifth and more in 15 s, which is a defect that is known and not explained.
+fn bobs_beneath_stones_keep_their_swing() {
+    // Slower bobs beneath few stones lose a fifth of their swing in 15 s: a known defect without explanation.
     let few = [(STONES[0], 0.3)];
     for (stones, tilt) in [0.005, 0.02, 0.1, 0.3].map(|tilt| (STONES[1], tilt)).into_iter().chain(few) {
         let mut row = Row::new(stones, tilt, ball);
@@ -73,7 +73,7 @@ fn bobs_that_swing_beneath_stones_go_on() {
 }
 
 #[test]
-fn bobs_that_sink_slowly_onto_their_stops_stay_there() {
+fn bobs_lowered_onto_stops_stay() {
     let mut row = Row::new(STONES[1], 0.25, |world, stone, bob, anchor| {
         let mut joint = ball(world, stone, bob, anchor);
         let about_z = Rotation::from_axis_angle(Vec3::Y, -std::f32::consts::FRAC_PI_2);

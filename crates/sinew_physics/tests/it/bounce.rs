@@ -1,4 +1,4 @@
-//! Restitution: heights, pairs, and what stands on something.
+//! Restitution: heights, pairs, and bouncing bodies on others.
 
 use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Vec3, max};
@@ -32,8 +32,8 @@ fn rebounds(world: &mut World, ball: BodyId, ground: f32, count: usize) -> Vec<f
 }
 
 #[test]
-fn a_ball_comes_back_to_the_square_of_its_restitution() {
-    // So that even the last comes in at 2 m/s.
+fn rebound_height_is_restitution_squared() {
+    // Even the last one comes in at 2 m/s.
     for (restitution, count) in [(0.5f32, 2), (0.8, 5), (1.0, 8)] {
         for height in [2.0f32, 5.0, 10.0] {
             let mut world = World::new(WorldDef::default());
@@ -43,7 +43,7 @@ fn a_ball_comes_back_to_the_square_of_its_restitution() {
             let mut expected = height;
             for peak in rebounds(&mut world, ball, 0.0, count) {
                 expected *= restitution * restitution;
-                // A peak between two steps: g dt² / 8 and what a substep does not see.
+                // A peak between two steps is missed by g dt² / 8, plus the error of a substep.
                 let tolerance = 2e-3 * expected + 6e-4;
                 assert!((peak - expected).abs() < tolerance, "{restitution}, {height} m: {peak}, {expected}");
             }
@@ -52,7 +52,7 @@ fn a_ball_comes_back_to_the_square_of_its_restitution() {
 }
 
 #[test]
-fn what_lies_on_the_floor_bears_a_bounce() {
+fn a_resting_body_carries_a_bounce() {
     for (planks, share) in [(1, 0.01), (2, 0.02)] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -88,7 +88,7 @@ fn collided(masses: &[f32], speed: f32, gap: f32) -> Vec<f32> {
 }
 
 #[test]
-fn two_balls_part_as_momentum_and_energy_say() {
+fn two_balls_conserve_momentum_and_energy() {
     for [m1, m2] in [[1.0f32, 1.0], [1.0, 3.0], [5.0, 1.0], [0.01, 10.0]] {
         let speeds = collided(&[m1, m2], 3.0, 0.0);
         let expected = [3.0 * (m1 - m2) / (m1 + m2), 3.0 * 2.0 * m1 / (m1 + m2)];
@@ -100,7 +100,7 @@ fn two_balls_part_as_momentum_and_energy_say() {
 
 #[test]
 fn the_last_ball_of_a_cradle_leaves() {
-    // Apart by more than a ball moves within a substep, so that one hit is over when the next begins.
+    // The gaps exceed the way of a ball in a substep, so that one hit is over when the next begins.
     let speeds = collided(&[1.0; 5], 2.0, 0.01);
     for (speed, expected) in speeds.iter().zip([0.0, 0.0, 0.0, 0.0, 2.0]) {
         assert!((speed - expected).abs() < 1e-4, "{speeds:?}");
@@ -108,7 +108,7 @@ fn the_last_ball_of_a_cradle_leaves() {
 }
 
 #[test]
-fn bounces_of_a_weightless_heap_give_no_energy() {
+fn bounces_of_a_weightless_heap_add_no_energy() {
     let mut world =
         World::new(WorldDef { gravity: Vec3::ZERO, sleeping: Sleeping::Off, ..WorldDef::default() });
     let mut random = sinew_math::Random::new(7);
@@ -124,7 +124,7 @@ fn bounces_of_a_weightless_heap_give_no_energy() {
     for _ in 0..300 {
         world.step();
         let now = world.energy().kinetic;
-        // Corners of a box that bounce at once, each by its own speed, may gain a little (0.13 % is the most here).
+        // Corners of a box that bounce at once, each at its own speed, may gain a little (at most 0.13 % here).
         // Sums in 32 bits are off by their rounding.
         let no_more = start * (1.0 + 1e-6);
         assert!(now < before * 1.002 && now <= no_more, "step {}: {before} J, {now} J", world.step_count());

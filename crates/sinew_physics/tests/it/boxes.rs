@@ -1,4 +1,4 @@
-//! Questions to the world about points and regions.
+//! Queries of a world with points and regions.
 
 use crate::cases::{cases, half_extents};
 use sinew_math::{Random, Rotation, Transform, Vec3};
@@ -41,9 +41,9 @@ fn bodies_answer_over_all_their_shapes() {
     assert!(!world.contains_point(bare, Vec3::ONE));
 }
 
-/// Every body that a region overlaps shows some of its points in it, and those that it misses show none.
+/// Bodies that a region overlaps have sample points in it; bodies that it misses have none.
 #[test]
-fn regions_find_the_bodies_whose_points_they_hold() {
+fn regions_find_bodies_with_points_inside() {
     let mut random = Random::new(95);
     for case in 0..cases(10_000) {
         let mut world = World::new(WorldDef::default());
@@ -68,7 +68,7 @@ fn regions_find_the_bodies_whose_points_they_hold() {
             let distance = |p: &Vec3| world.nearest_surface(id, *p).expect("it has a shape").distance;
             let nearest = points.iter().map(distance).fold(f32::INFINITY, f32::min);
             if found.contains(&id) {
-                // Samples lie about a sixth of the region's size apart.
+                // Samples are about a sixth of the region's size apart.
                 assert!(nearest < 0.35, "case {case}: {id:?} is {nearest} from {region:?}");
             } else {
                 assert!(nearest > 0.0, "case {case}: {id:?} is in {region:?}");

@@ -1,4 +1,4 @@
-//! Changes of bodies and shapes by the user while the world runs: the next step must know all of them.
+//! Changes of bodies and shapes while the world runs: the next step uses all of them.
 
 use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Random, Range, Reader, Rotation, Transform, Vec3, Writer};
@@ -27,7 +27,7 @@ fn height(world: &World, id: BodyId) -> f32 {
     world.transform(id).translation.y
 }
 
-/// A world that knows nothing but what a snapshot of another holds.
+/// Returns a world that is loaded from a snapshot of another.
 fn reborn(world: &World) -> World {
     let (mut w, mut shapes) = (Writer::new(), Writer::new());
     world.save(&mut w);
@@ -38,7 +38,7 @@ fn reborn(world: &World) -> World {
     other
 }
 
-/// Random lives found it: the leaf of the shape that went was that of the body's first again, of which it had none.
+/// Found by random lives: the removed shape's leaf was used again as the first leaf of the body, which had none.
 #[test]
 fn a_body_of_a_used_index_loses_its_last_shape() {
     let mut world = world();
@@ -101,7 +101,7 @@ fn user_data_is_kept_and_saved() {
 }
 
 #[test]
-fn another_centre_of_mass_leaves_every_point_as_fast_as_it_was() {
+fn changing_the_centre_of_mass_keeps_point_velocities() {
     let mut world = world();
     world.set_gravity(Vec3::ZERO);
     let def = BodyDef {
@@ -128,9 +128,9 @@ fn another_centre_of_mass_leaves_every_point_as_fast_as_it_was() {
     assert!(world.joint_gap(joint) < 1e-4);
 }
 
-/// As one that was made so.
+/// A mass that is set later acts as one of the definition.
 #[test]
-fn mass_that_is_given_later_is_that_of_the_definition() {
+fn mass_set_later_equals_mass_in_the_definition() {
     let properties = MassProperties {
         mass: 7.0,
         center: Vec3::new(0.05, 0.1, -0.05),
@@ -142,7 +142,7 @@ fn mass_that_is_given_later_is_that_of_the_definition() {
     let (mut one, mut other) = (world(), world());
     let (a, b) = (one.add_body(&made), other.add_body(&def));
     other.set_mass(b, properties);
-    // The centre of mass of `def` was the origin: what it was said to go with is another point's.
+    // The centre of mass of `def` was the origin; the new mass has another.
     let velocity = one.velocity(a);
     other.set_velocity(b, velocity);
     for world in [&mut one, &mut other] {
@@ -163,7 +163,7 @@ fn a_crate_whose_load_shifts_tips_over_its_ledge() {
     world.set_mass(load, MassProperties { center: Vec3::X * 0.4, ..world.mass(load) });
     run(&mut world, 120);
     assert!(height(&world, load) < 1.0, "it fell, to {} m", height(&world, load));
-    // And it lies as it would if it had been loaded so.
+    // The result equals that of a loaded world.
     assert_eq!(reborn(&world).hash(), world.hash());
 }
 
@@ -210,7 +210,7 @@ fn a_body_takes_every_kind() {
 }
 
 #[test]
-fn what_was_dynamic_weighs_again_what_it_weighed() {
+fn a_body_made_dynamic_again_keeps_its_mass() {
     let mut world = world();
     let given =
         MassProperties { center: Vec3::new(0.0, 0.1, 0.0), ..Shape::sphere(0.3).mass_properties(800.0) };
@@ -231,7 +231,7 @@ fn what_was_dynamic_weighs_again_what_it_weighed() {
 }
 
 #[test]
-fn a_joint_holds_what_becomes_static_and_back() {
+fn a_joint_holds_a_body_that_becomes_static_and_back() {
     let mut world = world();
     let (a, b) = (world.add_body(&sphere_body(0.1, Vec3::ZERO)), world.add_body(&sphere_body(0.1, Vec3::X)));
     let joint = world.add_joint(&world.distance(a, b, Vec3::ZERO, Vec3::X, Range { lo: 1.0, hi: 1.0 }));
@@ -266,7 +266,7 @@ fn shapes_come_and_go_with_their_events() {
     assert_eq!(pairs(&world.events().shapes_begin), [(2, 0)], "the new one is touched");
     run(&mut world, 60);
     assert!((height(&world, balls[2]) - 0.2).abs() < 0.01, "and bears");
-    // The first goes: the others move up.
+    // The first is removed; the others move up.
     world.remove_shape(ShapeId { body: shelf, shape: 0 }, MassUpdate::FromShapes);
     assert!(world.is_awake(balls[0]));
     let mut other = reborn(&world);
@@ -283,7 +283,7 @@ fn shapes_come_and_go_with_their_events() {
     for ball in [balls[1], balls[2]] {
         assert!((height(&world, ball) - 0.2).abs() < 0.01, "it did not: {}", height(&world, ball));
     }
-    // A thicker one lifts what lies on it, and nothing is told.
+    // A thicker shape lifts the body on it, without an event.
     let first = ShapeId { body: shelf, shape: 0 };
     let thick = ShapeDef { shape: Shape::cuboid(Vec3::new(0.4, 0.104, 0.4)), ..world.shape_def(first) };
     world.set_shape(first, &thick, MassUpdate::FromShapes);
@@ -295,7 +295,7 @@ fn shapes_come_and_go_with_their_events() {
 }
 
 #[test]
-fn masses_follow_shapes_unless_they_are_to_stay() {
+fn masses_follow_shapes_unless_kept() {
     let mut world = world();
     let ball = world.add_body(&sphere_body(0.5, Vec3::ZERO));
     let one = Shape::sphere(0.5).mass_properties(1000.0).mass;
@@ -332,7 +332,7 @@ fn a_dynamic_body_keeps_a_shape_with_mass() {
 
 #[test]
 #[should_panic(expected = "BodyId 0v0 has no shape 3")]
-fn a_shape_that_is_not_there_is_named() {
+fn a_missing_shape_is_named() {
     let mut world = world();
     let ball = world.add_body(&sphere_body(0.5, Vec3::ZERO));
     world.set_sensing(ShapeId { body: ball, shape: 3 }, Sensing::Sensor);
@@ -384,9 +384,9 @@ fn change(world: &mut World, random: &mut Random) {
     }
 }
 
-/// What the world knows beside its state must not be of what was: one that is loaded anew before each step knows nothing else.
+/// Derived data must follow the changes: the second world is loaded anew before each step and has no older data.
 #[test]
-fn a_world_that_is_changed_goes_on_as_one_that_is_loaded_anew() {
+fn a_changed_world_equals_a_reloaded_one() {
     let mut random = Random::new(7);
     let mut touched = 0;
     for _ in 0..4 {
@@ -410,7 +410,7 @@ fn a_world_that_is_changed_goes_on_as_one_that_is_loaded_anew() {
             assert_eq!(world.hash(), other.hash(), "step {step}");
             let (one, two) = (world.events(), other.events());
             assert_eq!((&one.begin, &one.end), (&two.begin, &two.end), "step {step}");
-            // Who touches whom is what has begun and not ended.
+            // Pairs that touch are those that began and did not end.
             for pair in &one.begin {
                 assert!(told.insert(*pair), "{pair:?} begins twice");
             }
@@ -424,14 +424,14 @@ fn a_world_that_is_changed_goes_on_as_one_that_is_loaded_anew() {
 }
 
 #[test]
-fn a_kinematic_body_is_where_it_was_to_move() {
+fn a_kinematic_body_reaches_its_target() {
     let mut world = world();
     let dt = world.def().dt();
     let shape = ShapeDef {
         body_from_shape: Transform::from_translation(Vec3::new(0.4, 0.0, 0.1)),
         ..ShapeDef::new(Shape::cuboid(Vec3::new(0.5, 0.1, 0.2)))
     };
-    // Its centre of mass is not its origin.
+    // Its centre of mass is off its origin.
     let paddle = world.add_body(&BodyDef::dynamic(shape));
     world.set_kind(paddle, BodyKind::Kinematic);
     let mut random = Random::new(5);
@@ -445,9 +445,9 @@ fn a_kinematic_body_is_where_it_was_to_move() {
     }
 }
 
-/// Near ones and far ones, turns short and long, bodies of every kind, that lay still or went already.
+/// Near and far moves, small and large rotations, bodies of every kind, at rest or moving.
 #[test]
-fn many_are_led_with_the_bits_of_one() {
+fn batched_moves_equal_single_moves() {
     let mut random = Random::new(9);
     let mut world = world();
     let dt = world.def().dt();
@@ -491,7 +491,7 @@ fn many_are_led_with_the_bits_of_one() {
 type Make = fn(&World, BodyId, BodyId, Vec3) -> JointDef;
 
 #[test]
-fn short_joints_hold_what_they_say() {
+fn short_joints_keep_their_length() {
     let axis = Vec3::new(1.0, 2.0, -2.0);
     let make: [Make; 5] = [
         |world, a, b, _| world.ball(a, b, Vec3::new(0.5, 0.1, 0.0)),
@@ -528,7 +528,7 @@ fn short_joints_hold_what_they_say() {
 }
 
 #[test]
-fn a_rope_is_no_longer_than_it_is() {
+fn a_rope_joint_keeps_its_length() {
     let mut world = world();
     let hook = world.add_body(&BodyDef::fixed(Shape::sphere(0.1)).at(Vec3::Y * 3.0));
     let load = world.add_body(&sphere_body(0.2, Vec3::new(0.5, 3.0, 0.0)));
@@ -572,7 +572,7 @@ fn locked_axes_hold_and_free_ones_go_on() {
         let locked = (0..3).filter(|i| locks.contains(all[3 + i])).count();
         for (i, angle) in turned.into_iter().enumerate() {
             let due = if locks.contains(all[3 + i]) { 0.0 } else { [0.3, 0.2, 0.1][i] };
-            // Two free axes are a universal joint's: the small swings turn each other a little.
+            // Two free axes are a universal joint's; small swings rotate each other a little.
             let within = if locked == 1 { 0.02 } else { 2e-3 };
             assert!((angle - due).abs() < within, "{locks:?}, axis {i}: {angle} of {due} rad");
         }

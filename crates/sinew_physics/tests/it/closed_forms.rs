@@ -54,7 +54,7 @@ fn pendulum_periods() {
     }
 }
 
-/// Time between two passes through the lowest point in the same direction, seconds, interpolated.
+/// Returns the time between two passes through the lowest point in the same direction, seconds, interpolated.
 fn swing_period(world: &mut World, bob: BodyId) -> f32 {
     let mut passes = Vec::new();
     let mut before = world.transform(bob).translation.x;
@@ -91,7 +91,7 @@ fn coulomb_friction_holds_below_its_angle_and_slides_above() {
                 let t = 600.0 * world.def().dt();
                 let (sin, cos) = sinew_math::trig::sin_cos(angle);
                 let gain = 9.81 * (sin - friction * cos);
-                // It slid for the first second as well: s = a (t₁ t + t²/2).
+                // It also slid during the first second: s = a (t₁ t + t²/2).
                 let expected = gain * (t + 0.5 * t * t);
                 assert!((moved / expected - 1.0).abs() < 0.02, "μ {friction}: slid {moved} for {expected}");
                 assert!((world.transform(id).translation - start).dot(down) > 0.0);
@@ -143,7 +143,7 @@ fn a_stack_of_ten_boxes_stands() {
         .collect();
     run(&mut world, 600);
     let top = world.transform(ids[9]).translation;
-    // Soft contacts give by the weight above them: 1 mm of dead zone and up to 5 mm at the bottom.
+    // Soft contacts yield under the weight above them: 1 mm of dead zone and up to 5 mm at the bottom.
     assert!(top.x.abs() < 1e-3 && top.z.abs() < 1e-3 && (4.75 - top.y) < 0.04, "top at {top:?}");
     assert!(ids.iter().all(|&id| !world.is_awake(id)));
 }

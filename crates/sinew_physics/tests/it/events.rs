@@ -1,5 +1,5 @@
-//! Events of random worlds against an oracle that looks at the poses of each step, for every number of threads and across
-//! snapshots, while bodies come, go, and are changed.
+//! Events of random worlds against an oracle that computes them from the poses of each step, for every number of threads and across
+//! snapshots, while bodies are added, removed and changed.
 
 use sinew_math::{Random, Reader, Transform, Vec3, Writer};
 use sinew_physics::stage::NoProfiler;
@@ -7,12 +7,12 @@ use sinew_physics::*;
 use std::collections::BTreeSet;
 
 const STEPS: usize = 120;
-/// Two surfaces nearer than this are left out, metres: one is in the other or not, by rounding; what sleeps goes by where it
-/// was found last.
+/// Surfaces nearer than this are not judged, metres: rounding decides whether they overlap, and sleeping bodies keep their last
+/// result.
 const UNSURE: f64 = 3e-5;
 const UNSURE_ASLEEP: f64 = 0.02;
 
-/// A shape as the oracle sees it: a box, or a ball if it has a radius. World axes.
+/// A shape of the oracle: a box, or a ball if it has a radius. World axes.
 struct Solid {
     center: [f64; 3],
     axes: [[f64; 3]; 3],
@@ -49,12 +49,12 @@ impl Solid {
         Self { center: wide(frame.translation), axes, half, radius }
     }
 
-    /// Half its length along a unit direction.
+    /// Returns half its length along a unit direction.
     fn reach(&self, along: Three) -> f64 {
         (0..3).map(|i| self.half[i] * dot(self.axes[i], along).abs()).sum::<f64>() + self.radius
     }
 
-    /// Gap between two solids, or for boxes that overlap the least way out, negative; for boxes that do not, no more than the
+    /// Returns the gap between two solids. For overlapping boxes it is the shortest way out, negative; for separate boxes a lower bound of the
     /// gap.
     fn gap(&self, other: &Self) -> f64 {
         let apart = minus(other.center, self.center);
@@ -77,7 +77,7 @@ impl Solid {
         })
     }
 
-    /// Signed distance of a point from a box.
+    /// Returns the signed distance of a point from a box.
     fn gap_to(&self, point: Three) -> f64 {
         let local: [f64; 3] =
             core::array::from_fn(|i| dot(minus(point, self.center), self.axes[i]).abs() - self.half[i]);
@@ -86,14 +86,14 @@ impl Solid {
     }
 }
 
-/// Told of by the world so far: pairs that began and have not ended.
+/// Pairs that began and did not end.
 #[derive(Default)]
 struct Told {
     bodies: BTreeSet<(BodyId, BodyId)>,
     shapes: BTreeSet<(ShapeId, ShapeId)>,
 }
 
-/// Nothing begins twice, and nothing ends that did not begin; lists are in order.
+/// Checks that nothing begins twice or ends without a begin, and that lists are sorted.
 fn follow<T: Ord + Copy + core::fmt::Debug, K: Ord>(
     told: &mut BTreeSet<T>,
     begin: &[T],
@@ -174,7 +174,7 @@ fn random_world(r: &mut Random) -> World {
     world
 }
 
-/// Changes the world at random between two steps, as a user may.
+/// Changes the world at random between two steps.
 fn disturb(world: &mut World, r: &mut Random, parted: &mut BTreeSet<(BodyId, BodyId)>) {
     let ids: Vec<BodyId> = world.body_ids().skip(1).collect();
     if ids.len() < 2 {
@@ -190,7 +190,7 @@ fn disturb(world: &mut World, r: &mut Random, parted: &mut BTreeSet<(BodyId, Bod
         3 => world.set_contact_rule(shape, [ContactRule::Push, ContactRule::Ghost][r.index(2)]),
         4 if id != other => {
             world.disable_pair(id, other);
-            // As bits: they are used with the other ways' worlds, too.
+            // As bits, which the other worlds use, too.
             let [a, b] = [id, other].map(|id| BodyId::from_bits(id.to_bits()));
             parted.insert((BodyId::min(a, b), BodyId::max(a, b)));
         }
@@ -214,19 +214,19 @@ fn disturb(world: &mut World, r: &mut Random, parted: &mut BTreeSet<(BodyId, Bod
     }
 }
 
-/// Shapes that pushed each other in the last step.
+/// Pairs of shapes that pushed each other in the last step.
 fn pushed(world: &World) -> BTreeSet<(ShapeId, ShapeId)> {
     let pushing = world.contacts().filter(|contact| contact.impulse() > 0.0);
     pushing.map(|contact| (contact.a, contact.b)).collect()
 }
 
-/// Gap within which what touched goes on touching, metres: 0.2 % of the smallest extent, 0.5 mm at most.
+/// Gap below which a touching pair still touches, metres: 0.2 % of the smallest extent, at most 0.5 mm.
 fn linger(p: &Solid, q: &Solid) -> f64 {
     let extent = |s: &Solid| 2.0 * (s.radius + s.half.into_iter().fold(f64::INFINITY, f64::min));
     (0.002 * extent(p).min(extent(q))).min(5e-4)
 }
 
-/// Tells of each pair of shapes once whether it touches as the bodies lie now: surely, or surely not. `touched` did before.
+/// Judges each pair of shapes once: whether it surely touches, or surely does not, at the current poses. `touched`: pairs that did before.
 fn look(
     world: &World,
     parted: &BTreeSet<(BodyId, BodyId)>,
@@ -266,7 +266,7 @@ fn look(
     }
 }
 
-/// One world in one way of running it, held against the others by what it tells.
+/// A world and the way of running it, compared with the others by their events.
 struct Way {
     world: World,
     threads: usize,
@@ -285,7 +285,7 @@ impl Way {
     }
 }
 
-/// Gives how many pairs were looked at.
+/// Returns the number of judged pairs.
 fn check(seed: u64) -> usize {
     let ways = [(1, false), (2, false), (4, false), (1, true)];
     let mut ways = ways.map(|(threads, restores)| {
@@ -334,9 +334,9 @@ fn events_are_what_the_poses_say_for_any_threads_and_across_snapshots() {
     assert!(seen > if full { 100_000 } else { 3_000 }, "{seen} pairs of shapes were looked at");
 }
 
-/// A body put to sleep just outside a sensor ends its overlap; one put to sleep just inside keeps it.
+/// Putting a body to sleep just outside a sensor ends its overlap; just inside keeps it.
 #[test]
-fn what_is_put_to_sleep_beside_a_sensor_is_not_in_it() {
+fn sleeping_beside_a_sensor_ends_the_overlap() {
     for seed in 0..100 {
         let mut random = Random::new(seed);
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -361,9 +361,9 @@ fn what_is_put_to_sleep_beside_a_sensor_is_not_in_it() {
     }
 }
 
-/// Speeds beyond all numbers are limited by the step; what it tells of them is finite.
+/// The step limits huge speeds, and its events about them are finite.
 #[test]
-fn hits_beyond_all_measure_are_told_in_numbers() {
+fn extreme_hits_are_reported_finite() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let corners = [(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)];
     let points = corners.map(|(x, z)| Vec3::new(x, 0.0, z));

@@ -1,4 +1,4 @@
-//! NaN and infinity in any number of any setter of the world: a panic, and the world is as it was.
+//! NaN and infinity in any number of any setter of the world panic and leave the world unchanged.
 
 use crate::build::{ball, box_body, floor, sphere_body};
 use core::panic::AssertUnwindSafe;
@@ -8,7 +8,7 @@ use sinew_physics::*;
 
 const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
-/// A world with one of each.
+/// Returns a world with one object of each kind.
 struct Fixture {
     world: World,
     body: BodyId,
@@ -45,7 +45,7 @@ fn particles() -> GroupDef {
     }
 }
 
-/// `act` panics with each of the numbers, and leaves the world as it found it.
+/// Checks that `act` panics with each of the numbers and leaves the world unchanged.
 fn refuses(what: &str, bad: &[f32], act: impl Fn(&mut Fixture, f32)) {
     for &x in bad {
         let mut fixture = Fixture::new();
@@ -56,7 +56,7 @@ fn refuses(what: &str, bad: &[f32], act: impl Fn(&mut Fixture, f32)) {
     }
 }
 
-/// `act` panics with each bad number in each of the components of a vector, and leaves the world as it found it.
+/// Checks that `act` panics with each bad number in each component of a vector, and leaves the world unchanged.
 fn refuses_in(what: &str, act: impl Fn(&mut Fixture, Vec3)) {
     for k in 0..3 {
         refuses(what, &BAD, |fixture, x| {
@@ -67,7 +67,7 @@ fn refuses_in(what: &str, act: impl Fn(&mut Fixture, Vec3)) {
     }
 }
 
-/// `act` panics with each bad number in a pose, and leaves the world as it found it.
+/// Checks that `act` panics with each bad number in a pose, and leaves the world unchanged.
 fn refuses_pose(what: &str, act: impl Fn(&mut Fixture, Transform)) {
     refuses_in(what, |f, v| act(f, Transform::from_translation(v)));
     refuses(what, &BAD, |f, x| {
@@ -231,7 +231,7 @@ fn fields() {
 
 #[test]
 fn joints() {
-    // Added and set: neither takes it. Caps and ends of ranges may be infinite.
+    // Both adding and setting refuse it. Caps and ends of ranges may be infinite.
     let set = |f: &mut Fixture, change: &dyn Fn(&mut JointDef)| {
         let mut def = f.world.joint(f.joint);
         change(&mut def);

@@ -1,4 +1,4 @@
-//! Bodies that hang on ropes and bear others: these weigh on the ropes.
+//! Bodies that hang on ropes and carry others: the ropes feel the whole weight.
 
 use crate::build::box_body;
 use sinew_math::{Reader, Vec3, Writer};
@@ -7,9 +7,9 @@ use sinew_physics::*;
 
 const PLANK: Vec3 = Vec3::new(0.6, 0.02, 0.2);
 const PLANK_MASS: f32 = 5.0;
-/// Half of an edge of the box, metres.
+/// Half an edge of the box, metres.
 const BOX: f32 = 0.1;
-/// Tension of a rope at double its length, N; its length is 1 m, its mass 0.1 kg.
+/// Tension of a rope of twice its length, N; its length is 1 m, its mass 0.1 kg.
 const STIFFNESS: f32 = 4e4;
 const LINKS: u32 = 4;
 const ROPE_MASS: f32 = 0.1;
@@ -21,7 +21,7 @@ struct Laden {
     ropes: Vec<GroupId>,
 }
 
-/// A plank on a rope at each corner, all in one group or each its own, and so far above it a box.
+/// Returns a plank on a rope at each corner, all in one group or each its own, and a box of `mass` at `height` over it.
 fn laden(mass: f32, height: f32, apart: bool) -> Laden {
     let mut world = World::new(WorldDef::default());
     let mut def = BodyDef { sleeping: Sleeping::Off, ..box_body(PLANK, Vec3::ZERO) };
@@ -43,7 +43,7 @@ fn laden(mass: f32, height: f32, apart: bool) -> Laden {
         };
         let (rope, first) = (def.build().group, ropes.particles.len() as u32);
         ropes.particles.extend(rope.particles);
-        // Damped as is critical for a quarter of the load on the whole rope.
+        // Critical damping for a quarter of the load on the whole rope.
         let damping = LINKS as f32 * (STIFFNESS * (mass + PLANK_MASS)).sqrt();
         ropes.springs.extend(rope.springs.iter().map(|s| SpringDef {
             a: s.a + first,
@@ -71,7 +71,7 @@ fn laden(mass: f32, height: f32, apart: bool) -> Laden {
 }
 
 impl Laden {
-    /// Sum of what the ropes pull their places in the world down with, N, in the last substep.
+    /// Returns the sum of the ropes' pulls on their hooks, N, in the last substep.
     fn tension(&self) -> f32 {
         let per_second = 60.0 * WorldDef::default().substeps as f32;
         let groups = self.ropes.iter().map(|&id| self.world.particles(id));
@@ -80,7 +80,7 @@ impl Laden {
         of_world.map(|(_, impulse)| -impulse.y * per_second).sum()
     }
 
-    /// Runs until all is at rest; the most that the energy exceeds what it was, J, and the last second's way up and down, metres.
+    /// Runs until everything rests; returns the largest energy gain, J, and the motion up and down in the last second, metres.
     fn run(&mut self, steps: usize) -> (f32, f32) {
         let begin = self.world.energy().total();
         let (mut gain, mut low, mut high) = (0.0_f32, f32::INFINITY, f32::NEG_INFINITY);
@@ -96,15 +96,15 @@ impl Laden {
     }
 }
 
-/// A body on ropes is borne with all that lies on it: the ropes' stretch is that of the whole weight, and so is their tension.
+/// Ropes carry a body and everything on it: stretch and tension are those of the whole weight.
 #[test]
-fn what_lies_on_a_hung_plank_weighs_on_its_ropes() {
+fn ropes_carry_the_load_on_a_plank() {
     are_weighed_on(false);
 }
 
-/// As well where each rope is a group of its own.
+/// The same where each rope is its own group.
 #[test]
-fn what_lies_on_a_plank_weighs_on_ropes_of_their_own_groups() {
+fn separate_rope_groups_carry_the_load_on_a_plank() {
     are_weighed_on(true);
 }
 
@@ -114,7 +114,7 @@ fn are_weighed_on(apart: bool) {
         let mut laden = laden(mass, height, apart);
         let (gain, tremble) = laden.run(900);
         let sag = -laden.world.center_of_mass(laden.plank).y;
-        // Each rope bears half of its own weight on the mean.
+        // Each rope carries half of its own weight on average.
         let due = ((PLANK_MASS + mass) / 4.0 + 0.5 * ROPE_MASS) * 9.81 / STIFFNESS;
         let (tension, weight) = (laden.tension(), (PLANK_MASS + mass + 4.0 * ROPE_MASS) * 9.81);
         let above = laden.world.center_of_mass(laden.load).y + sag - PLANK.y - BOX;
@@ -124,7 +124,7 @@ fn are_weighed_on(apart: bool) {
         assert!((tension / weight - 1.0).abs() < 0.01, "{what}: {tension} N for {weight}");
         assert!(above.abs() < 1e-3, "{what}: {above} m above the plank");
         assert!(gain < 0.01 * weight * (height + due), "{what}: gained {gain} J");
-        // What fell with twenty times the plank's mass trembles for longer than this, by 1.4 mm.
+        // A fall of twenty times the plank's mass oscillates longer than this, by 1.4 mm.
         if mass * height < 20.0 {
             assert!((sag / due - 1.0).abs() < 0.005, "{what}: sag {sag} for {due}");
             assert!(tremble < 1e-5, "{what}: trembles by {tremble} m");
@@ -132,9 +132,9 @@ fn are_weighed_on(apart: bool) {
     }
 }
 
-/// Snapshots hold the mass that moves along with a body on ropes.
+/// Snapshots hold the added mass of a body on ropes.
 #[test]
-fn a_laden_plank_goes_on_alike_when_it_is_loaded() {
+fn a_loaded_plank_restores_equally() {
     for apart in [false, true] {
         let mut laden = laden(20.0, 0.1, apart);
         for step in 0..60 {

@@ -43,7 +43,7 @@ impl Builder {
         id
     }
 
-    /// A joint at `at` whose x axis is `axis`, both in the figure's frame.
+    /// Returns a joint at `at` whose x axis is `axis`, both in the figure's frame.
     fn join(&mut self, a: BodyId, b: BodyId, at: Vec3, axis: Vec3, kind: JointKind) {
         let frame = Transform::new(at, Rotation::from_arc(Vec3::X, axis));
         let mut def = joint(&self.world, a, b, self.placed * frame, kind);
@@ -63,7 +63,7 @@ fn hinge(lo: f32, hi: f32) -> JointKind {
     JointKind::Hinge { limit: Some(Range::degrees(lo, hi)) }
 }
 
-/// The figure stands with its feet at the origin of `placed`, arms out.
+/// Adds the figure with its feet at the origin of `placed`, arms out.
 pub fn figure(mut world: World, placed: Transform, velocity: Vec3) -> Figure {
     world.step(); // settles what is static
     let mut b = Builder { world, placed, velocity, bodies: Vec::new(), joints: Vec::new() };

@@ -1,4 +1,4 @@
-//! Ids of what was removed and of other worlds are refused, with what is wrong, at the caller.
+//! Ids of removed objects and of other worlds panic at the caller with a message.
 
 use crate::build::sphere_body;
 use sinew_math::{Random, Reader, Transform, Vec3, Writer};
@@ -8,11 +8,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
 
 thread_local! {
-    /// File in which the last panic of this thread is said to be.
+    /// File that the last panic of this thread named.
     static PLACE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Text of the panic of `f`, and the file in which it is said to be.
+/// Returns the message of the panic of `f`, and the file that it named.
 fn panic_of<T>(f: impl FnOnce() -> T) -> (String, String) {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -32,7 +32,7 @@ fn world() -> World {
 }
 
 #[test]
-fn what_was_removed_is_named_at_the_caller() {
+fn removed_ids_panic_at_the_caller() {
     let mut world = world();
     let gone = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     world.remove_body(gone);
@@ -45,9 +45,9 @@ fn what_was_removed_is_named_at_the_caller() {
     assert!(!world.contains(gone));
 }
 
-/// By every call that changes a body or asks for one.
+/// For every call that changes or reads a body.
 #[test]
-fn every_setter_names_what_was_removed() {
+fn every_setter_names_the_removed_id() {
     let mut world = world();
     let gone = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     let other = world.add_body(&sphere_body(0.1, Vec3::X));
@@ -81,7 +81,7 @@ fn every_setter_names_what_was_removed() {
     }
 }
 
-/// Numbers that are none are refused before anything is changed.
+/// Bad numbers are refused before anything changes.
 #[test]
 fn every_setter_refuses_bad_numbers() {
     let mut world = world();
@@ -129,9 +129,9 @@ fn ids_of_another_world_are_refused() {
     assert_eq!(panic_of(|| one.field(field)).0, "FieldId 0v0 is of another world");
 }
 
-/// Bits do not tell the world: a game keeps them in its own files.
+/// The bits of an id do not hold the world, because games store ids in their own files.
 #[test]
-fn ids_from_bits_go_with_any_world() {
+fn ids_from_bits_work_in_any_world() {
     let (mut one, mut other) = (world(), world());
     let mine = one.add_body(&sphere_body(0.1, Vec3::ZERO));
     let theirs = other.add_body(&sphere_body(0.1, Vec3::X));
@@ -141,9 +141,9 @@ fn ids_from_bits_go_with_any_world() {
     assert_eq!(panic_of(|| one.transform(BodyId::from_bits(7))).0, "BodyId 7v0 was never in this world");
 }
 
-/// Who loads the snapshot of another world goes on using that one's ids, and neither hash tells which world it is.
+/// A world that loads the snapshot of another accepts the other's ids, and the hashes are equal.
 #[test]
-fn a_snapshot_goes_with_any_world() {
+fn a_snapshot_loads_into_any_world() {
     let (mut one, mut other) = (world(), world());
     let mine = one.add_body(&sphere_body(0.1, Vec3::ZERO));
     let theirs = other.add_body(&sphere_body(0.1, Vec3::ZERO));
@@ -160,10 +160,10 @@ fn a_snapshot_goes_with_any_world() {
     assert_eq!(panic_of(|| one.transform(mine)).0, "BodyId 0v0 was removed");
 }
 
-/// A body goes in the same moment in which a shape leaves its bounds: the pairs of both are looked for at once, and those of the one that went
+/// A body is removed in the moment in which a shape leaves its bounds: both search for pairs at once, and the pairs of the removed body
 /// must not be among them.
 #[test]
-fn a_body_that_goes_takes_its_pairs_along() {
+fn removing_a_body_removes_its_pairs() {
     let sensor = |radius: f32| ShapeDef { sensing: Sensing::Sensor, ..ShapeDef::new(Shape::sphere(radius)) };
     let moving = |def: BodyDef, at: Vec3, linear_velocity: Vec3| BodyDef { linear_velocity, ..def }.at(at);
     for seed in 0..200 {

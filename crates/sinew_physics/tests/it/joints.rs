@@ -22,7 +22,7 @@ fn lump(world: &mut World, position: Vec3, mass: f32, inertia: f32) -> BodyId {
     world.add_body(&BodyDef { position, mass, ..BodyDef::default() })
 }
 
-/// Frame at a point whose x axis is the world's z: a hinge that lets things swing in the picture.
+/// Returns a frame at a point whose x axis is the world's z: hinges then swing in the x-y plane.
 fn facing(at: Vec3) -> Transform {
     Transform::new(at, Rotation::from_arc(Vec3::X, Vec3::Z))
 }
@@ -88,7 +88,7 @@ fn a_motor_steps_as_a_second_order_system() {
         let omega = core::f32::consts::TAU * hertz;
         for step in 1..=120 {
             world.step();
-            // Velocities stand between positions: half a substep ahead, as a falling body is.
+            // Velocities are half a substep ahead of positions.
             let t = step as f32 / 60.0 + 0.5 / 240.0;
             let decay = trig::exp(-zeta * omega * t);
             let expected = if zeta < 1.0 {
@@ -130,7 +130,7 @@ fn a_weak_motor_pushes_with_its_cap_and_no_more() {
     near(world.velocity(b).angular.z, -2.0, 0.005, "the other way");
 }
 
-/// Work of the stop's impulse is none of the motor's: whatever its cap, it brings its load to the new speed and no faster.
+/// The stop's impulse does no work of the motor: with any cap the motor brings its load to the new speed and no faster.
 #[test]
 fn a_motor_reversed_at_its_stop_leaves_it_at_its_speed() {
     let mut random = Random::new(57);
@@ -167,7 +167,7 @@ fn a_motor_reversed_at_its_stop_leaves_it_at_its_speed() {
         let way = speed * world.def().dt();
         for step in 1..=20 {
             world.step();
-            // A weak one needs a while; none is faster than it should be.
+            // A weak one needs longer; none is faster than its target.
             let expected = sinew_math::max(stop + way * step as f32, -0.5);
             let gone = at(&world);
             let bar = 2e-4 + 0.01 * way.abs();
@@ -179,12 +179,12 @@ fn a_motor_reversed_at_its_stop_leaves_it_at_its_speed() {
     }
 }
 
-/// A power of ten between 1 and 10 to this one.
+/// Returns a random power of ten from 1 to 10 to `most`.
 fn decades(random: &mut Random, most: f32) -> f32 {
     trig::exp(random.range(0.0, most) * core::f32::consts::LN_10)
 }
 
-/// Changes that a user makes to a motor at its stop.
+/// Changes of a motor at its stop.
 #[derive(Clone, Copy)]
 enum Change {
     Speed,
@@ -218,7 +218,7 @@ fn a_motor_too_weak_for_the_load_sinks_and_one_strong_enough_holds() {
 
 #[test]
 fn motors_in_a_chain_saturate_only_where_they_are_weak() {
-    // Three horizontal links; the root motor must carry 1.5 + 2.5·… of torque, the tip's little.
+    // Three horizontal links: the root's motor carries all, the tip's little.
     let mut world = world(G);
     let mut last = anchor(&mut world);
     let mut joints = Vec::new();
@@ -244,8 +244,8 @@ fn motors_in_a_chain_saturate_only_where_they_are_weak() {
 }
 
 #[test]
-fn saturated_motors_give_what_they_work_and_no_more() {
-    // A light piece between two heavy ones: with the full push of both motors and no joint to hold it, it would spin a thousand times as
+fn saturated_motors_add_only_their_work() {
+    // A light piece between two heavy ones: the full push of both motors without a joint would spin it a thousand times faster.
     // fast as it ever does.
     let mut world = world(0.0);
     let kilograms = |half: Vec3, kg: f32| kg / (8.0 * half.x * half.y * half.z);
@@ -313,7 +313,7 @@ fn distances_are_rods_ropes_and_springs() {
         rod.step();
         assert!(rod.joint_gap(id) < 1e-4, "the rod keeps its length: {}", rod.joint_gap(id));
     }
-    // A rope lets its end fall, then holds it.
+    // A rope lets its end fall freely, then holds it.
     let mut rope = world(G);
     let a = anchor(&mut rope);
     let b = lump(&mut rope, Vec3::X * 0.1, 1.0, 0.01);
@@ -380,9 +380,9 @@ fn a_soft_weld_bends_under_load_by_its_stiffness() {
 }
 
 #[test]
-fn six_directions_are_free_or_held_as_said() {
+fn six_directions_are_free_or_held_as_defined() {
     use AxisMotion::{Free, Limited, Locked};
-    // Free in x and about z alone: a bead that may turn like a wheel.
+    // Free in x and about z alone.
     let six = SixDof {
         linear: [Free, Locked, Limited(Range::new(-0.1, 0.1))],
         twist: Locked,
@@ -408,7 +408,7 @@ fn six_directions_are_free_or_held_as_said() {
 }
 
 #[test]
-fn a_hand_drags_a_body_to_it_and_no_harder_than_it_may() {
+fn a_drag_joint_pulls_with_bounded_force() {
     let mut world = world(G);
     let hand = anchor(&mut world);
     let b = lump(&mut world, Vec3::new(2.0, 0.0, 0.0), 3.0, 0.1);
@@ -442,7 +442,7 @@ fn friction_slows_a_hinge_by_its_torque() {
 }
 
 #[test]
-fn friction_that_comes_later_slows_from_then_on() {
+fn friction_set_later_acts_at_once() {
     let (mut world, b, def) = arm(0.0);
     let id = world.add_joint(&def);
     world.set_velocity(b, Velocity { linear: Vec3::Y * 2.5, angular: Vec3::Z * 5.0 });
@@ -455,7 +455,7 @@ fn friction_that_comes_later_slows_from_then_on() {
 }
 
 #[test]
-fn reactions_are_the_weights_that_hang_below() {
+fn reactions_equal_the_hanging_weights() {
     let mut world = world(G);
     let mut last = anchor(&mut world);
     let mut joints = Vec::new();
@@ -479,7 +479,7 @@ fn reactions_are_the_weights_that_hang_below() {
 }
 
 #[test]
-fn reactions_bear_what_hangs_by_springs() {
+fn reactions_include_weights_on_springs() {
     let mut world = world(G);
     let a = anchor(&mut world);
     let b = lump(&mut world, Vec3::NEG_Y * 0.5, 1.0, 0.1);
@@ -494,7 +494,7 @@ fn reactions_bear_what_hangs_by_springs() {
 }
 
 #[test]
-fn joints_break_above_their_strength_and_tell() {
+fn joints_break_above_their_strength_and_report() {
     for (strength, breaks) in [(18.0, true), (21.0, false)] {
         let mut world = world(G);
         let a = anchor(&mut world);
@@ -533,7 +533,7 @@ fn joints_break_above_their_strength_and_tell() {
 }
 
 #[test]
-fn soft_limits_give_by_their_stiffness() {
+fn soft_limits_yield_by_their_stiffness() {
     let (mut world, b, mut def) = arm(G);
     def.kind = JointKind::Hinge { limit: Some(Range::new(-0.2, 1.0)) };
     def.limit_softness = Some(Softness::Stiffness { stiffness: 100.0, damping: 10.0 });
@@ -609,8 +609,8 @@ fn limits_hold_against_load_for_every_kind() {
     }
 }
 
-/// A parallelogram of four bars hinged about z, hung by its upper bar's ends: three moving bars, four hinges, one loop,
-/// whose rows say several things twice.
+/// Returns a parallelogram of four bars hinged about z, hung by the ends of its upper bar: three moving bars, four hinges, one loop
+/// with redundant rows.
 #[test]
 fn a_four_bar_linkage_of_hinges_stays_closed() {
     let mut world = world(G);
@@ -688,7 +688,7 @@ fn a_stiff_spring_that_pulls_beyond_a_stop_rests_at_it() {
 
 #[test]
 fn a_damped_weld_holds_a_body_that_turns() {
-    // The load m ω² r stretches the weld by 1.5 µm; rows along the way a body sets out on would lose 0.1 mm a substep.
+    // The load m ω² r stretches the weld by 1.5 µm; rows along the initial direction would lose 0.1 mm a substep.
     let mut world = world(0.0);
     let anchor = anchor(&mut world);
     let b = lump(&mut world, Vec3::X * 0.3, 0.05, 1e-4);

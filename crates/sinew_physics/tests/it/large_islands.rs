@@ -1,4 +1,4 @@
-//! Islands so large that threads work on them together, with the bits that one thread has.
+//! Islands so large that several threads solve them, with the bits of one thread.
 
 use sinew_math::{Random, Vec3};
 use sinew_physics::stage::{Counter, NoProfiler, Profiler, Stage};
@@ -7,7 +7,7 @@ use sinew_physics::{
 };
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Boxes, capsules and balls that fall on each other in a pit, some of which bounce or resist rolling.
+/// Returns boxes, capsules and balls that fall on each other in a pit; some bounce, some resist rolling.
 fn pit(side: usize, layers: usize) -> World {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     let half = 0.55 * side as f32;
@@ -46,7 +46,7 @@ fn pit(side: usize, layers: usize) -> World {
     world
 }
 
-/// Most contacts of an island.
+/// Largest contact count of an island.
 #[derive(Default)]
 struct Most(AtomicUsize);
 
@@ -63,7 +63,7 @@ impl Profiler for Most {
     }
 }
 
-/// Makes fewer calls than it was asked for, or more.
+/// Runner that makes fewer calls than requested, or more.
 struct Careless(usize);
 
 impl TaskRunner for Careless {
@@ -83,7 +83,7 @@ fn course(runner: &dyn TaskRunner, steps: usize) -> Vec<u64> {
 }
 
 #[test]
-fn threads_together_make_the_bits_that_one_makes() {
+fn several_threads_give_the_bits_of_one() {
     let steps = 40;
     let alone = course(&Serial, steps);
     for runner in
@@ -100,6 +100,6 @@ fn the_heap_of_these_tests_is_one_large_island() {
         world.step_with(&Serial, &most);
     }
     let most = most.0.load(Ordering::Relaxed);
-    // Colours of such a heap have more than the three dozen blocks of eight from which they are divided.
+    // Colours of this heap have more than 36 blocks of eight, so they are divided.
     assert!(most > 2_500, "{most} contacts");
 }

@@ -1,4 +1,4 @@
-//! Springs that close loops, solved as a whole: nets that bear what is many times heavier than they are, planks on two ropes.
+//! Springs that close loops, solved as a whole: nets with loads many times their own weight, planks on two ropes.
 
 use sinew_math::{Random, Vec3, max};
 use sinew_physics::particles::{
@@ -12,7 +12,7 @@ const CELLS: u32 = 12;
 const BALL: f32 = 0.3;
 const RADIUS: f32 = 0.02;
 
-/// A net of 2 kg and four square metres at a height of 2 m, held along its border, without friction.
+/// Returns a net of 2 kg and four square metres at a height of 2 m, held along its border, without friction.
 fn net(stretching: f32) -> GroupDef {
     let net = ClothDef {
         corner: Vec3::new(-1.0, 2.0, -1.0),
@@ -44,8 +44,8 @@ fn difference(a: [f64; 3], b: [f64; 3]) -> ([f64; 3], f64) {
     (d, d.iter().map(|x| x * x).sum::<f64>().sqrt())
 }
 
-/// Height of the centre of a ball of so many kg that lies still without friction in the net, metres: dynamic relaxation with kinetic damping
-/// in 64 bits, the ball a stiff spring for what is in it.
+/// Returns the height of the centre of a ball of `mass` kg at rest without friction in the net, metres: dynamic relaxation with kinetic damping
+/// in 64 bits; the ball is a stiff spring.
 fn rest_height(def: &GroupDef, mass: f64) -> f64 {
     const STIFF: f64 = 1e6;
     let mut at: Vec<_> = def.particles.iter().map(|p| p.position.to_array().map(f64::from)).collect();
@@ -100,7 +100,7 @@ fn rest_height(def: &GroupDef, mass: f64) -> f64 {
 }
 
 #[test]
-fn a_net_bears_fifty_times_its_mass_where_statics_say() {
+fn a_net_carries_fifty_times_its_mass_at_the_static_height() {
     for (stretching, mass) in [(5e3, 15.0), (5e3, 100.0), (5e4, 100.0)] {
         let def = net(stretching);
         let mut world = World::new(WorldDef::default());
@@ -153,9 +153,9 @@ fn solved(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     found
 }
 
-/// Random tangles of springs, some held: velocities after a substep solve `(M + h² K + h D) v⁺ = M v + h f`.
+/// Random spring networks with some held particles: velocities after a substep solve `(M + h² K + h D) v⁺ = M v + h f`.
 #[test]
-fn loops_are_solved_as_the_whole_matrix_is() {
+fn loops_match_the_dense_solution() {
     const H: f32 = 1.0 / 240.0;
     let mut random = Random::new(24);
     for case in 0..40 {
@@ -173,7 +173,7 @@ fn loops_are_solved_as_the_whole_matrix_is() {
             for b in 0..a {
                 if b + 1 == a || random.unit() < 0.3 {
                     let length = (def.particles[a].position - def.particles[b].position).length();
-                    // Taut by so little that none is linearised anew.
+                    // So little stretched that none is linearised again.
                     let s = SpringDef::new([a as u32, b as u32], length * 0.9999, random.range(10.0, 1e5));
                     def.springs.push(SpringDef { damping: random.range(0.0, 10.0), ..s });
                 }
@@ -199,7 +199,7 @@ fn loops_are_solved_as_the_whole_matrix_is() {
     }
 }
 
-/// Velocities of all particles but the first `held`, of the dense system.
+/// Velocities of all particles but the first `held`, by the dense system.
 fn whole_matrix(def: &GroupDef, held: usize, h: f64) -> Vec<f64> {
     let count = 3 * (def.particles.len() - held);
     let mut rows = vec![vec![0.0; count + 1]; count];
@@ -239,7 +239,7 @@ fn whole_matrix(def: &GroupDef, held: usize, h: f64) -> Vec<f64> {
     solved(rows)
 }
 
-/// Six planks of 4 kg in a row on two ropes of one group, which pass through all of them.
+/// Returns six planks of 4 kg in a row on two ropes of one group, which pass through all of them.
 fn bridge(tension: f32) -> World {
     let mut world = World::new(WorldDef::default());
     let mut ropes = GroupDef::default();
@@ -267,7 +267,7 @@ fn bridge(tension: f32) -> World {
                 }
             };
             ropes.attachments.push(AttachmentDef { particle, target });
-            // From plank to plank; each plank keeps its own two points apart.
+            // From plank to plank; each plank holds its own two points.
             if k % 2 == 1 {
                 let length = x - points[k - 1].0;
                 let spring = SpringDef::new([particle - 1, particle], length, tension / length);
@@ -279,11 +279,11 @@ fn bridge(tension: f32) -> World {
     world
 }
 
-/// Two ropes through the same planks close loops: pulled one after the other they threw planks with 388 J from the bridge.
+/// Two ropes through the same planks close loops: solved one after the other they threw planks off the bridge with 388 J.
 ///
-/// Planks move before springs pull, so that what swings back is stretched by `v h` more than it should be: with 10 kN, `k h²/m` is 2.2 at a plank's corner.
+/// Planks move before springs act, so a swing back is stretched by `v h` too much: with 10 kN, `k h²/m` is 2.2 at a plank's corner.
 #[test]
-fn two_ropes_through_the_same_planks_give_little_energy() {
+fn two_ropes_through_planks_add_little_energy() {
     for (tension, most) in [(1e3, 1.5), (1e4, 15.0)] {
         let mut world = bridge(tension);
         let second = world.body_ids().nth(1).unwrap();

@@ -1,4 +1,4 @@
-//! Meshes and height fields: what slides over them feels no edge between triangles; what falls on them comes to rest.
+//! Meshes and height fields: sliding bodies feel no edge between triangles; falling bodies come to rest.
 
 mod levels;
 
@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// Tiles along a side of the floor.
 const TILES: usize = 100;
-/// Side of a tile, metres: 20 m/s for two seconds are 40 m.
+/// Side of a tile, metres: 20 m/s for two seconds is 40 m.
 const TILE: f32 = 0.5;
 const FRICTION: f32 = 0.4;
 
@@ -16,7 +16,7 @@ const FRICTION: f32 = 0.4;
 enum Floor {
     /// All diagonals run the same way.
     Plain,
-    /// Diagonals and the order of the triangles at random, each tile with vertices of its own.
+    /// Diagonals and the order of the triangles are random; each tile has its own vertices.
     Shuffled,
     Field,
 }
@@ -103,7 +103,7 @@ fn slide(floor: &Shape, slider: &Shape, height: f32, speed: f32, friction: f32) 
     for step in 0..120 {
         world.step();
         let y = world.transform(id).translation.y;
-        // It first sinks by what contacts leave overlapping.
+        // It first sinks by the slop of contacts.
         if step == 20 {
             rest = Some(y);
         }
@@ -115,7 +115,7 @@ fn slide(floor: &Shape, slider: &Shape, height: f32, speed: f32, friction: f32) 
     (deviation, world.velocity(id).linear.length())
 }
 
-/// Turned a little, so that no side runs along the tiles; a capsule lies down.
+/// Turned a little, so that no side is parallel to the tiles; a capsule lies down.
 fn lying(slider: &Shape) -> Transform {
     let down = match slider {
         Shape::Capsule { .. } => Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_2),
@@ -141,7 +141,7 @@ fn friction_on_a_tiled_floor_is_that_of_a_plane() {
             sliders().into_iter().filter(|(slider, _)| matches!(slider, Shape::Box { .. }))
         {
             let (deviation, end) = slide(&shape, &slider, height, 20.0, FRICTION);
-            // Two seconds, but for the first substep.
+            // Two seconds without the first substep.
             let expected = 20.0 - FRICTION * 9.81 * 2.0;
             println!("{floor:?} {slider:?}: {deviation} m, {end} m/s for {expected}");
             assert!(deviation < 1e-3, "{floor:?} {slider:?}: {deviation} m");
@@ -151,7 +151,7 @@ fn friction_on_a_tiled_floor_is_that_of_a_plane() {
 }
 
 #[test]
-fn nothing_catches_on_a_tiled_floor() {
+fn bodies_slide_over_a_tiled_floor_without_catching() {
     for floor in [Floor::Plain, Floor::Shuffled, Floor::Field] {
         let shape = floor_shape(floor);
         for (slider, height) in sliders() {

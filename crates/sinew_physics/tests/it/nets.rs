@@ -1,4 +1,4 @@
-//! Strands, cloth and blobs, and what particles do at speed.
+//! Strands, cloth and blobs, and fast particles.
 
 use crate::build::floor;
 use sinew_math::{Random, Sym3, Transform, Vec3, max, min};
@@ -16,7 +16,7 @@ fn run(world: &mut World, steps: usize) {
     }
 }
 
-/// Each step may add no energy but a hundredth of what moves.
+/// Energy that a step may add, as a share of the kinetic energy.
 fn run_without_gain(world: &mut World, steps: usize) {
     for step in 0..steps {
         let before = world.energy();
@@ -26,9 +26,9 @@ fn run_without_gain(world: &mut World, steps: usize) {
     }
 }
 
-/// Clamped level, a strand sinks as a chain of elastic corners does: each turns by the moment of what hangs beyond it.
+/// A strand clamped level bends as a chain of elastic corners: each turns by the moment of the weight beyond it.
 #[test]
-fn a_strand_sinks_as_a_beam() {
+fn a_strand_bends_as_a_beam() {
     const LINKS: u32 = 8;
     let (length, mass, bending) = (1.0, 0.08, 1.0);
     let rope =
@@ -65,7 +65,7 @@ fn a_chain_of_fifty_masses_stretches_by_mg_over_k() {
         particles: (0..=MASSES).map(particle).collect(),
         springs: (0..MASSES).map(|k| SpringDef::new([k, k + 1], 0.2, 1e5)).collect(),
         linear_damping: 4.0,
-        // It is measured to a micrometre.
+        // Measured to a micrometre.
         sleeping: Sleeping::Off,
         ..GroupDef::default()
     };
@@ -81,8 +81,8 @@ fn a_chain_of_fifty_masses_stretches_by_mg_over_k() {
     }
 }
 
-/// Half a period of a mass on a spring: at a ratio of 0.2 it comes back to exp(−π ζ/√(1 − ζ²)) = 0.53 of its height, at
-/// 1 it never passes its rest, and a string does not push.
+/// Half a period of a mass on a spring: at a damping ratio of 0.2 it returns to exp(−π ζ/√(1 − ζ²)) = 0.53 of its height, at
+/// 1 it never passes its rest position, and a string does not push.
 #[test]
 fn springs_are_damped_by_their_ratio_and_may_go_slack() {
     let lowest = |ratio: f32, resists: Resists| {
@@ -135,10 +135,10 @@ fn numbers_that_are_not_finite_panic_in_the_setter() {
     assert!(!panics(&|group| group.apply_impulse(0, Vec3::X)));
 }
 
-/// Shapes of every kind, moving and turning, are hit by particles at up to 100 m/s: on the way from one end of a substep to
-/// the next, seen from the shape, none is inside.
+/// Particles hit moving and rotating shapes of every kind at up to 100 m/s: on the way from one end of a substep to
+/// the next, in the shape's frame, none is inside.
 #[test]
-fn nothing_passes_through_what_moves_and_turns() {
+fn particles_never_pass_through_moving_shapes() {
     let mut random = Random::new(7);
     let h = 1.0 / 240.0;
     for case in 0..600 {
@@ -192,9 +192,9 @@ fn nothing_passes_through_what_moves_and_turns() {
     }
 }
 
-/// A kinematic wall that sweeps at 50 m/s takes all particles along, from step to step as within one.
+/// A kinematic wall at 50 m/s pushes all particles along, within a step and from step to step.
 #[test]
-fn a_fast_wall_leaves_nothing_behind() {
+fn a_fast_wall_pushes_all_particles() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let mut random = Random::new(3);
     let wall = BodyDef {
@@ -219,7 +219,7 @@ fn a_fast_wall_leaves_nothing_behind() {
     }
 }
 
-/// A ball of skin and air that falls keeps its air, and comes to rest without ever gaining energy.
+/// A falling blob keeps its volume of air, and comes to rest without gaining energy.
 #[test]
 fn a_blob_falls_and_rests() {
     let mut world = World::new(WorldDef::default());
@@ -246,7 +246,7 @@ fn a_blob_falls_and_rests() {
     assert!((lowest - 0.005).abs() < 1e-3, "{lowest}");
 }
 
-/// Air that is pressed to half of its height gives way to the sides.
+/// Air pressed to half of its height expands to the sides.
 #[test]
 fn a_pressed_blob_keeps_its_volume() {
     let mut world = World::new(WorldDef::default());

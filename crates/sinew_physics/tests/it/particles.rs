@@ -40,7 +40,7 @@ fn obstacle(shape: Shape, world_from_shape: Transform, friction: f32, restitutio
     }
 }
 
-/// Runs a group whose attachments are all fixed, with obstacles that don't move.
+/// Runs a group whose attachments are all fixed, with obstacles at rest.
 fn run(group: &mut ParticleGroup, h: f32, seconds: f32, obstacles: &[Obstacle]) {
     let anchors: Vec<Anchor> =
         group.attachments().iter().map(|a| fixed(group.positions()[a.particle as usize])).collect();
@@ -49,7 +49,7 @@ fn run(group: &mut ParticleGroup, h: f32, seconds: f32, obstacles: &[Obstacle]) 
     }
 }
 
-/// `masses` hanging below each other from a particle that is held at the origin.
+/// Returns a chain of `masses` below a particle that is held at the origin.
 fn chain(masses: &[f32], stiffness: f32, damping: f32, target: AttachmentTarget) -> GroupDef {
     let at = |k: usize| Vec3::new(0.0, -(k as f32), 0.0);
     let mut particles = vec![particle(at(0), 1.0, 0.0)];
@@ -89,7 +89,7 @@ fn one_mass_stretches_its_spring_by_mg_over_k() {
     }
 }
 
-/// Every spring of a chain carries what hangs below it, a weight of a hundred links included.
+/// Every spring of a chain carries the weight below it, also in a chain of a hundred links.
 #[test]
 fn a_chain_stretches_by_mg_over_k_link_by_link() {
     let mut masses = [0.1; 10];
@@ -163,7 +163,7 @@ fn a_rope_hangs_as_a_catenary() {
     assert!((pull / expected - 1.0).abs() < 0.005, "{pull} N at the hook, {expected}");
 }
 
-/// Two parallel springs are a loop: each is half as stretched as one alone.
+/// Two parallel springs are a loop: each stretches half as much as one alone.
 #[test]
 fn a_spring_that_closes_a_loop_shares_the_load() {
     let mut def =
@@ -177,7 +177,7 @@ fn a_spring_that_closes_a_loop_shares_the_load() {
     assert!((pull + 2.0 * 9.81).abs() < 0.2, "{pull} N at the hook");
 }
 
-/// A point body of 1 kg on a spring that would shake it apart if it felt the spring one substep late: nothing is
+/// A point body of 1 kg on a spring that would diverge if it acted one substep late: no energy is
 /// gained, and momentum is kept.
 #[test]
 fn a_stiff_spring_moves_a_light_body_both_ways() {
@@ -203,7 +203,7 @@ fn a_stiff_spring_moves_a_light_body_both_ways() {
         let stretch = (group.positions()[1] - position).length() - 1.0;
         assert!(stretch.abs() < 0.02, "{stretch}");
     }
-    // The attached particle's own 10 g ride along with the body.
+    // The attached particle's own 10 g move with the body.
     let momentum = velocity * 1.01 + group.velocities()[1] * 5.0;
     assert!((momentum - Vec3::new(5.0, 2.5, 0.0)).length() < 0.01 * 5.6, "{momentum}");
 }
@@ -290,7 +290,7 @@ fn bounces_return_the_square_of_the_restitution() {
     }
 }
 
-/// Slides exactly if the slope is steeper than the friction, and then at the rate that is left over.
+/// A particle slides exactly if the slope exceeds the friction angle, with the remaining acceleration.
 #[test]
 fn friction_holds_below_its_angle_and_slides_above() {
     let friction: f32 = 0.5;
@@ -317,9 +317,9 @@ fn friction_holds_below_its_angle_and_slides_above() {
     }
 }
 
-/// A particle that begins inside a solid comes out at half a metre a second, keeps no velocity from that, and does not stretch its spring.
+/// A particle that begins inside a solid leaves at half a metre a second, keeps no velocity from that, and does not stretch its spring.
 #[test]
-fn what_begins_inside_comes_out_slowly() {
+fn particles_starting_inside_come_out_slowly() {
     let h = 1.0 / 480.0;
     let slab = obstacle(Shape::Box { half_extents: Vec3::new(1.0, 0.5, 1.0) }, Transform::IDENTITY, 0.3, 0.0);
     let def = GroupDef {
@@ -342,9 +342,9 @@ fn what_begins_inside_comes_out_slowly() {
     assert!(group.velocities().iter().all(|v| v.length() < 0.01), "{:?}", group.velocities());
 }
 
-/// Particles slide on a body that can move as on the ground, by gravity less Coulomb's friction, though they are up to a hundred million times lighter.
+/// Particles slide on a movable body as on the ground, by gravity less Coulomb friction, though they are up to a hundred million times lighter.
 #[test]
-fn grains_slide_on_heavy_bodies_as_on_the_ground() {
+fn particles_slide_on_heavy_bodies_as_on_the_ground() {
     let (angle, friction) = (0.6f32, 0.4);
     let tilt = Rotation::from_axis_angle(Vec3::new(0.48, 0.6, 0.64), angle);
     let up = tilt * Vec3::Y;
@@ -369,7 +369,7 @@ fn grains_slide_on_heavy_bodies_as_on_the_ground() {
         };
         let mut group = ParticleGroup::new(&def);
         for _ in 0..480 {
-            // Held from outside: its velocity is reset each substep.
+            // Held from outside: the test resets its velocity in each substep.
             let inverse_inertia = Sym3::IDENTITY * inverse_mass;
             let mut body = [ObstacleBody { inverse_mass, inverse_inertia, ..STATIC_BODY }];
             group.substep(1.0 / 480.0, GRAVITY, &[], core::slice::from_ref(&slope), &mut body);
@@ -381,9 +381,9 @@ fn grains_slide_on_heavy_bodies_as_on_the_ground() {
     }
 }
 
-/// A body that carries a particle feels its weight.
+/// A body carries the weight of a particle.
 #[test]
-fn a_particle_weighs_on_the_body_below() {
+fn a_body_carries_the_weight_of_a_particle() {
     let def =
         GroupDef { particles: vec![particle(Vec3::new(0.2, 0.1, 0.0), 2.0, 0.0)], ..GroupDef::default() };
     let mut group = ParticleGroup::new(&def);
@@ -391,7 +391,7 @@ fn a_particle_weighs_on_the_body_below() {
         obstacle(Shape::Box { half_extents: Vec3::new(1.0, 0.1, 1.0) }, Transform::IDENTITY, 0.5, 0.0);
     let h = 1.0 / 240.0;
     for step in 0..240 {
-        // Held from outside: its velocity is reset each substep.
+        // Held from outside: the test resets its velocity in each substep.
         let mut body = [ObstacleBody { inverse_mass: 0.1, inverse_inertia: Sym3::IDENTITY, ..STATIC_BODY }];
         group.substep(h, GRAVITY, &[], core::slice::from_ref(&table), &mut body);
         let impulses = group.body_impulses();
@@ -404,7 +404,7 @@ fn a_particle_weighs_on_the_body_below() {
     }
 }
 
-/// A rope thrown over a box comes to rest on it, ends hanging, and does not sink in.
+/// A rope thrown over a box comes to rest on it with hanging ends, and does not sink in.
 #[test]
 fn a_rope_over_a_box_rests() {
     let mut def = RopeDef {
@@ -431,7 +431,7 @@ fn a_rope_over_a_box_rests() {
     assert!(ends.iter().all(|p| p.y < -0.2 && p.y > -0.8), "{ends:?}");
 }
 
-/// A heavy rope lands on a light box that nothing holds: what one loses the other gains, and neither is flung away.
+/// A heavy rope lands on a light free box: momentum passes from one to the other, and neither is thrown away.
 #[test]
 fn a_heavy_rope_and_a_light_box_share_momentum() {
     for rope_mass in [0.1, 1.0, 5.0] {
@@ -473,7 +473,7 @@ fn a_heavy_rope_and_a_light_box_share_momentum() {
     }
 }
 
-/// Laid over a pulley without friction, a rope carries the weight at its end along its whole length.
+/// A rope over a frictionless pulley carries the weight at its end along its whole length.
 #[test]
 fn a_rope_over_a_pulley_carries_its_weight_undiminished() {
     const LINKS: u32 = 40;
@@ -509,14 +509,14 @@ fn a_rope_over_a_pulley_carries_its_weight_undiminished() {
     let pulley = obstacle(pulley, Transform::new(Vec3::ZERO, along_z), 0.0, 0.0);
     run(&mut group, 1.0 / 480.0, 20.0, &[pulley]);
     let pull = group.attachment_impulses()[0].x * 480.0;
-    // The weight, and all of the rope's height.
+    // The weight, and the weight of the rope over its height.
     let drop = group.positions()[0].y - group.positions()[LINKS as usize].y;
     let expected = 9.81 * (2.0 + 0.02 * drop / link);
     assert!((pull / expected - 1.0).abs() < 0.01, "{pull} N at the hook, {expected} N hang");
 }
 
 #[test]
-fn a_loaded_group_goes_on_as_the_saved_one() {
+fn a_loaded_group_continues_equally() {
     let mut def = RopeDef {
         from: Vec3::new(-1.0, 0.7, 0.1),
         to: Vec3::new(1.0, 0.7, 0.0),
@@ -563,22 +563,22 @@ fn a_loaded_group_goes_on_as_the_saved_one() {
         let mut broken = bytes.clone();
         let at = random.index(broken.len());
         broken[at] = random.bits() as u8;
-        // Errors or a valid group; never a panic.
+        // Errors or a valid group, never a panic.
         if let Ok(group) = ParticleGroup::load(&mut Reader::new(&broken)) {
             assert_eq!(group.positions().len(), group.masses().len());
         }
     }
 }
 
-/// The place of a particle before a wall slowed it must not decide whom it meets next: a snapshot does not tell.
+/// The place of a particle before a wall stopped it must not affect its next contacts, because snapshots do not hold it.
 #[test]
-fn a_particle_that_has_struck_a_wall_goes_on_alike_in_a_loaded_world() {
+fn an_impact_does_not_change_a_loaded_worlds_future() {
     // Impacts in each part of a step.
     for delay in 0..16 {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
         let wall = box_body(Vec3::ONE, Vec3::X);
         world.add_body(&BodyDef { kind: BodyKind::Static, ..wall });
-        // Beside the way, too slow to be seen moving and too fast to be at rest.
+        // Off the path, too slow to count as moving and too fast to rest.
         let trembling = box_body(Vec3::splat(0.05), Vec3::new(-0.13, 0.065, 0.0));
         world.add_body(&BodyDef { linear_velocity: Vec3::Y * 0.03, ..trembling });
         let position = Vec3::X * (-1.0 - 0.03 * delay as f32);
@@ -600,9 +600,9 @@ fn a_particle_that_has_struck_a_wall_goes_on_alike_in_a_loaded_world() {
     }
 }
 
-/// A particle falls through the body that its group passes and rests on the one beneath, also from a snapshot on.
+/// A particle falls through a body that its group ignores and rests on the one beneath, also after loading a snapshot.
 #[test]
-fn a_group_passes_through_the_bodies_that_it_names() {
+fn a_group_passes_through_its_ignored_bodies() {
     let mut world = World::new(WorldDef { gravity: GRAVITY, ..WorldDef::default() });
     let shelf = |height: f32| {
         BodyDef::fixed(Shape::Box { half_extents: Vec3::new(1.0, 0.1, 1.0) }).at(Vec3::Y * height)

@@ -1,4 +1,4 @@
-//! Particles between a body and what is fixed: they bear it, neither is pushed into the other, and nobody pays for nothing.
+//! Particles between a body and something fixed: they carry the body, nothing is pushed in, and no energy appears.
 
 use crate::build::{floor, joint};
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, trig};
@@ -40,9 +40,9 @@ fn sunk(world: &World, id: GroupId) -> f32 {
     depths.fold(0.0, f32::max)
 }
 
-/// A heavy roller that goes over a rope on the ground squeezes it: that takes from the roller's energy and gives none to the rope, whose knots stay on the ground.
+/// A heavy roller crosses a rope on the ground: it loses energy, the rope gains none, and its particles stay on the ground.
 #[test]
-fn a_roller_goes_over_a_rope() {
+fn a_roller_crosses_a_rope_without_energy_gain() {
     for (stiffness, turn) in [(1e3, 0.0), (5e4, 0.0), (5e4, 0.7), (5e4, 1.5)] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -69,9 +69,9 @@ fn a_roller_goes_over_a_rope() {
     }
 }
 
-/// A roller set down on cloth on the ground lies on it, and does not sink through it.
+/// A roller set down on cloth on the ground rests on it and does not sink in.
 #[test]
-fn cloth_on_the_ground_bears_a_roller() {
+fn cloth_on_the_ground_carries_a_roller() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     let roller = roller(&mut world, 2.0 * RADIUS + 0.01, 0.0);
@@ -100,9 +100,9 @@ fn cloth_on_the_ground_bears_a_roller() {
     assert!(height > 1.8 * RADIUS, "{height} m above the ground");
 }
 
-/// The end of a rope that is made in the crease between two limbs, where there is no room for it, comes out of it, and nobody pays for that.
+/// The end of a rope that starts in the narrow crease between two limbs comes out without a gain of energy.
 #[test]
-fn what_is_made_in_a_crease_comes_out_of_it() {
+fn a_rope_end_starting_in_a_crease_comes_out() {
     for bend in [0.2_f32, 0.8, 1.6] {
         let mut world = World::new(WorldDef::default());
         let limb = |turn: f32| {
@@ -141,7 +141,7 @@ fn what_is_made_in_a_crease_comes_out_of_it() {
     }
 }
 
-/// Cloth that lies on the ground, of so many cells of 5 cm, 1 kg/m².
+/// Returns cloth on the ground, in cells of 5 cm, 1 kg/m².
 fn carpet(corner: Vec3, cells: [u32; 2], friction: f32) -> GroupDef {
     let [columns, rows] = cells;
     let (across, down) = (Vec3::X * (0.05 * columns as f32), Vec3::Z * (0.05 * rows as f32));
@@ -163,7 +163,7 @@ fn carpet(corner: Vec3, cells: [u32; 2], friction: f32) -> GroupDef {
     cloth.group
 }
 
-/// A crate of so many kg, half a metre wide, at this height of its lower face.
+/// Adds a crate of `mass` kg, half a metre wide, with its lower face at this height.
 fn crate_of(world: &mut World, mass: f32, bottom: f32) -> BodyId {
     let half_extents = Vec3::new(0.25, 0.15, 0.25);
     let mut def = BodyDef {
@@ -175,7 +175,7 @@ fn crate_of(world: &mut World, mass: f32, bottom: f32) -> BodyId {
     world.add_body(&def)
 }
 
-/// A crate lies on cloth, which weighs next to nothing, as it would on the floor: at the thickness of the cloth, still, and asleep.
+/// A crate rests on light cloth as on the floor: at the thickness of the cloth, still, and asleep.
 #[test]
 fn crates_lie_and_sleep_on_cloth() {
     for mass in [1.0, 100.0, 2000.0] {
@@ -187,14 +187,14 @@ fn crates_lie_and_sleep_on_cloth() {
             world.step();
         }
         let bottom = world.center_of_mass(id).y - 0.15;
-        // As deep as a crate sinks into the floor by itself: a fifth of a slop, and what is soft of the contact.
+        // As deep as a crate sinks into the floor: a fifth of the slop, and the softness of the contact.
         assert!((bottom - 2.0 * RADIUS).abs() < 2e-3, "{mass} kg: {bottom} m above the floor");
         assert!(sunk(&world, cloth) < 1e-4, "{mass} kg: {} m in the floor", sunk(&world, cloth));
         assert!(!world.is_awake(id), "{mass} kg: it is awake after 4 s");
     }
 }
 
-/// A crate that comes to lie on cloth over a crate that sleeps wakes that one, which then bears it; both go to sleep.
+/// A crate that settles on cloth over a sleeping crate wakes it and is carried by it; both go to sleep.
 #[test]
 fn crates_wake_through_cloth() {
     let mut world = World::new(WorldDef::default());
@@ -208,7 +208,7 @@ fn crates_wake_through_cloth() {
         world.step();
     }
     assert!(!world.is_awake(below), "cloth alone wakes nobody");
-    // So low that it comes slower than what strikes.
+    // Its fall is slower than an impact.
     let above = crate_of(&mut world, 5.0, 0.3 + 2.0 * RADIUS + 0.001);
     let mut woke = false;
     for _ in 0..30 {
@@ -222,11 +222,11 @@ fn crates_wake_through_cloth() {
     assert!(!world.is_awake(below) && !world.is_awake(above), "they lie still");
 }
 
-/// Cloth under a crate is held by what presses it: pulled with less than the friction of its load it stays, with more it comes out.
+/// The load on cloth under a crate holds it by friction: it stays for a smaller pull, and comes out for a larger one.
 #[test]
 fn cloth_under_a_crate_is_held_by_its_friction() {
     let (mass, friction) = (2.0, 0.5);
-    // The floor and the crate each hold it with their friction, 0.55 times the load.
+    // Floor and crate each hold it by friction, 0.55 times the load.
     for (pull, stays) in [(0.6 * friction * mass * 9.81, true), (4.0 * friction * mass * 9.81, false)] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -252,7 +252,7 @@ fn cloth_under_a_crate_is_held_by_its_friction() {
     }
 }
 
-/// Cloth pulled out from under a crate, which goes up and down alone, slides by Coulomb's law: floor and crate each rub it by the load, once.
+/// Cloth pulled from under a crate that moves up and down only slides by Coulomb's law: floor and crate each act with the load once.
 #[test]
 fn cloth_slides_from_under_a_crate_by_coulombs_law() {
     let (load, friction, mass) = (4.0 * 9.81, 0.5, 0.4 * 0.4);
@@ -290,10 +290,10 @@ fn cloth_slides_from_under_a_crate_by_coulombs_law() {
     }
 }
 
-/// A ball in the wedge between the floor and a slab that leans on it from a hinge bears the slab if half the angle of the wedge is less than that of friction,
-/// 16.7°; else the slab comes down and drives it out along the floor, until it does.
+/// A ball in the wedge between the floor and a hinged slab carries the slab if half the opening angle is below the friction angle,
+/// 16.7°; else the slab comes down and pushes it out along the floor until it does.
 #[test]
-fn what_is_nipped_bears_and_what_is_not_slips_out() {
+fn a_ball_in_a_narrow_wedge_carries_and_in_a_wide_one_slips_out() {
     for (degrees, is_nipped) in [(30.0_f32, true), (80.0, false)] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -331,9 +331,9 @@ fn what_is_nipped_bears_and_what_is_not_slips_out() {
     }
 }
 
-/// A world that goes on from a snapshot in the middle of what is pinched does so with the same bits.
+/// A world loaded from a snapshot during a pinch continues with the same bits.
 #[test]
-fn what_is_pinched_goes_on_from_a_snapshot() {
+fn pinched_contacts_restore_equally() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     world.add_particles(&carpet(Vec3::new(-0.4, 0.0, -0.4), [16, 16], 0.6));
@@ -357,8 +357,8 @@ fn what_is_pinched_goes_on_from_a_snapshot() {
     }
 }
 
-/// A tether that a floor keeps from getting shorter, since its one end is below and the other lies on it, pulls the body that holds the one no harder than it would pull
-/// the other: not with all that would bring the body to it.
+/// A tether that the floor keeps from shortening, with one end below the floor and the other on it, pulls the body at its lower end only as hard as it
+/// would pull the upper particle, not with the force that would close it.
 #[test]
 fn a_tether_through_the_floor_does_not_tear() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -377,13 +377,13 @@ fn a_tether_through_the_floor_does_not_tear() {
     });
     world.step();
     let speed = world.velocity(id).linear.length();
-    // Its error in each of some iterations, as a speed, times a gram over a kilogram.
+    // Its error in an iteration as a speed, times a gram over a kilogram.
     assert!((0.01..0.5).contains(&speed), "{speed} m/s");
 }
 
-/// Pinched contacts forget bodies and shapes that go: a world that is saved then can be loaded.
+/// Pinched contacts forget removed bodies and shapes: a world saved afterwards can be loaded.
 #[test]
-fn what_goes_is_forgotten() {
+fn removed_bodies_leave_no_pinched_contacts() {
     for takes_shape in [false, true] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -405,9 +405,9 @@ fn what_goes_is_forgotten() {
     }
 }
 
-/// A crate on cloth on a belt is carried along, and one whose contact a function of the user's drops comes through.
+/// A crate on cloth on a belt is carried along; a crate whose contact the user's function drops falls through.
 #[test]
-fn surfaces_do_through_cloth_what_they_do_without() {
+fn surface_velocities_and_modifiers_act_through_cloth() {
     for drops in [false, true] {
         let mut world = World::new(WorldDef::default());
         world.register_modifier(1, |_, _| None);

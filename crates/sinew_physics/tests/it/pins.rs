@@ -1,4 +1,4 @@
-//! Pins (world-space springs and motors on bodies), bodies that become kinematic, and the work of both.
+//! Pins (springs and motors from bodies to the world), bodies that become kinematic, and the work of both.
 
 use crate::build::ball;
 use sinew_math::{Reader, Sym3, Transform, Vec3, Writer};
@@ -45,7 +45,7 @@ fn omega2(hertz: f32) -> f32 {
     (core::f32::consts::TAU * hertz) * (core::f32::consts::TAU * hertz)
 }
 
-/// `count` links of different masses in a row along x, half a metre apart, jointed in the middle between two.
+/// Returns `count` links of different masses in a row along x, half a metre apart, with joints between neighbours.
 fn chain(world: &mut World, count: usize) -> (Vec<BodyId>, Vec<JointId>) {
     let bodies: Vec<BodyId> =
         (0..count).map(|i| lump(world, Vec3::new(0.5 * i as f32, 1.0, 0.0), 1.0 + (i % 3) as f32)).collect();
@@ -65,7 +65,7 @@ fn weight(world: &World, bodies: &[BodyId]) -> f32 {
 }
 
 #[test]
-fn a_pinned_body_sags_by_its_weight_over_the_stiffness_and_the_pin_tells_its_weight() {
+fn a_pinned_body_sags_by_weight_over_stiffness() {
     for stiffness in [500.0, 5e4, 1e6] {
         let mut world = world();
         let ground = ground(&mut world);
@@ -108,7 +108,7 @@ fn a_chain_with_every_link_pinned_holds_its_joints() {
 }
 
 #[test]
-fn pins_at_the_ends_carry_what_lies_between() {
+fn pins_at_the_ends_carry_a_chain() {
     let mut world = world();
     let ground = ground(&mut world);
     let (bodies, joints) = chain(&mut world, 9);
@@ -121,7 +121,7 @@ fn pins_at_the_ends_carry_what_lies_between() {
 }
 
 #[test]
-fn a_weak_pin_gives_what_it_has() {
+fn a_weak_pin_pulls_with_its_cap() {
     let mut world = world();
     let ground = ground(&mut world);
     let body = lump(&mut world, Vec3::Y, 4.0);
@@ -143,7 +143,7 @@ fn an_underdamped_pin_on_a_light_end_does_not_shake() {
     let end = lump(&mut world, Vec3::new(2.75, 1.0, 0.0), 0.01);
     let def = ball(&world, bodies[5], end, Vec3::new(2.7, 1.0, 0.0));
     world.add_joint(&def);
-    // It is to carry 12 kg, and turns a ten-thousandth of their inertia.
+    // It should carry 12 kg, and rotate a ten-thousandth of their inertia.
     pin(&mut world, ground, end, frequency(15.0, 0.3));
     run(&mut world, 0.2);
     for _ in 0..120 {
@@ -206,7 +206,7 @@ fn energy_rises_by_the_work_of_pins_at_most() {
 }
 
 #[test]
-fn what_is_made_kinematic_goes_its_way_and_comes_back_as_it_was() {
+fn a_body_made_kinematic_and_back_keeps_its_properties() {
     let mut world = world();
     let (bodies, joints) = chain(&mut world, 6);
     let before = world.mass(bodies[2]);
@@ -238,7 +238,7 @@ fn what_is_made_kinematic_goes_its_way_and_comes_back_as_it_was() {
 }
 
 #[test]
-fn a_body_that_is_led_works_on_what_hangs_on_it_and_what_it_pushes() {
+fn kinematic_bodies_report_work_on_joints_and_contacts() {
     let mut world = world();
     let (bodies, _) = chain(&mut world, 4);
     world.set_kind(bodies[0], BodyKind::Kinematic);
@@ -263,7 +263,7 @@ fn a_body_that_is_led_works_on_what_hangs_on_it_and_what_it_pushes() {
 }
 
 #[test]
-fn a_body_that_is_led_works_on_particles_that_hang_on_it_and_that_it_lifts() {
+fn kinematic_bodies_report_work_on_particles() {
     let lift = |held: bool| {
         let mut world = world();
         let half_extents = Vec3::new(1.0, 0.1, 1.0);
@@ -286,7 +286,7 @@ fn a_body_that_is_led_works_on_particles_that_hang_on_it_and_that_it_lifts() {
         world.add_particles(&group);
         run(&mut world, 5.0);
         world.set_velocity(plate, Velocity { linear: Vec3::Y * 0.5, ..Velocity::default() });
-        // It has come to that speed, and what the jerk left has died down.
+        // It has reached that speed, and the oscillation of the start has decayed.
         run(&mut world, 3.0);
         let (before, mut work) = (world.energy().total(), 0.0);
         for _ in 0..120 {
@@ -295,7 +295,7 @@ fn a_body_that_is_led_works_on_particles_that_hang_on_it_and_that_it_lifts() {
         }
         (world.energy().total() - before, work)
     };
-    // m g v t, and what damping in air takes.
+    // m g v t, and the loss to air damping.
     let expected = 2.0 * 9.81 * 0.5 * 2.0;
     for held in [true, false] {
         let (rise, work) = lift(held);

@@ -1,4 +1,4 @@
-//! Effects of the quality of a step: on substeps, sweeps and errors; never on how hard joints and contacts are.
+//! Effects of a step's quality: on substeps, sweeps and errors, never on the firmness of joints and contacts.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use sinew_math::{Reader, Transform, Vec3, Writer};
@@ -36,7 +36,7 @@ fn substeps(world: &mut World) -> u64 {
     counter.0.into_inner()
 }
 
-/// A rod of 1 m that hangs on a fixed point at `hook` and starts level.
+/// Returns a rod of 1 m that hangs on a fixed point at `hook` and starts level.
 fn rod(world: &mut World, hook: Vec3, quality: Option<Quality>) -> BodyId {
     let fixed = world.add_body(&BodyDef::fixed(Shape::Sphere { radius: 0.01 }).at(hook));
     let at = hook + 0.5 * Vec3::X;
@@ -85,7 +85,7 @@ fn a_lone_body_in_flight_has_the_substeps_of_its_quality() {
     assert_eq!(taken, [4, 4, 8]); // flight costs next to nothing: fast has no less
 }
 
-/// Largest change of the energy of a swinging rod within ten seconds, as a share of what it swings with.
+/// Returns the largest energy error of a swinging rod within ten seconds, as a share of its energy.
 fn drift(quality: Quality) -> f64 {
     let mut world = world(quality);
     rod(&mut world, Vec3::ZERO, None);

@@ -1,6 +1,6 @@
-//! Questions to worlds: against every shape by itself, against oracles in `f64`, and at the edges of what can be asked.
+//! Queries of worlds: against every shape alone, against oracles in `f64`, and with extreme arguments.
 //!
-//! Each question is asked 1,000 times, or 100,000 times when `SINEW_FULL` is set, as `cargo xtask ci --full` does.
+//! Each query runs 1,000 times, or 100,000 times with `SINEW_FULL` set, as `cargo xtask ci --full` does.
 
 mod balls;
 mod filters;

@@ -1,14 +1,14 @@
-//! Random worlds: trees, nets and loops of all kinds of joints, broken, changed and joined anew while they run. Whatever
-//! comes, numbers stay finite, nothing gives energy that it does not have, and a restored world goes on as the saved one
+//! Random worlds: trees, nets and loops of all kinds of joints, broken, changed and joined while they run.
+//! Numbers stay finite, nothing releases energy that it does not have, and a restored world continues as the saved one
 //! did.
 //!
-//! 100 worlds, or 10,000 when `SINEW_FULL` is set, as `cargo xtask ci --full` does. To look into one:
+//! 100 worlds, or 10,000 with `SINEW_FULL` set, as `cargo xtask ci --full` does. To examine one:
 //! `SINEW_WORLDS=17..18 cargo test --release -p sinew_physics --test it -- --ignored --nocapture survey` runs the seeds of
-//! the range, makes what fails as small as it goes and prints it.
+//! the range, shrinks failing worlds and prints them.
 //!
-//! Energy is held against worlds without motors, moving kinematic bodies, soft zones, and springs given by frequency: what
-//! these store cannot be told from outside. Nor in steps in which the test itself changes something, nor while joints come
-//! together after that.
+//! Energy is checked in worlds without motors, moving kinematic bodies, soft zones, and springs given by frequency: their stored
+//! energy cannot be computed from outside. It is not checked in steps in which the test changes something, nor while joints close
+//! afterwards.
 
 mod energy;
 mod generate;
@@ -23,30 +23,30 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 const STEPS: u32 = 600;
 
-/// True with a probability.
+/// Returns true with a probability.
 fn chance(random: &mut Random, probability: f32) -> bool {
     random.unit() < probability
 }
 
-/// A power of ten with an exponent between two.
+/// Returns a power of ten with an exponent between two.
 fn decades(random: &mut Random, lo: f32, hi: f32) -> f32 {
     trig::exp(random.range(lo, hi) * core::f32::consts::LN_10)
 }
 
-/// Worlds of the first hundred that do not hold yet, and why. A world that holds again leaves the list.
+/// Worlds of the first hundred that fail, and why. A world that holds again is removed from the list.
 const KNOWN: &[(&str, &[u64])] =
     &[("eight bodies in fifteen joints with springs and soft limits gain 1.5 % in one step", &[27])];
 
-/// Worlds in a thousand, beyond the first hundred, that do not hold yet: 279 of 9,900, none with a panic or another
+/// Worlds in a thousand beyond the first hundred that fail: 279 of 9,900, none by a panic or another
 /// future.
 const KNOWN_PER_THOUSAND: usize = 28;
 
 type Outcome = (u64, Result<Figures, Failure>);
 
-/// Worlds after which those who wait are told how far a long run is.
+/// Number of worlds between progress messages of a long run.
 const PROGRESS: u64 = 500;
 
-/// Runs the worlds of some seeds on all cores; outcomes by seed.
+/// Runs the worlds of some seeds on all cores; returns outcomes by seed.
 fn outcomes(seeds: core::ops::Range<u64>) -> Vec<Outcome> {
     let next = AtomicU64::new(seeds.start);
     let failed = AtomicU64::new(0);
@@ -82,7 +82,7 @@ pub fn asked_seeds() -> Option<core::ops::Range<u64>> {
     Some(lo.parse().expect("a seed")..hi.parse().expect("a seed"))
 }
 
-/// The world of a seed holds.
+/// Checks the world of a seed.
 fn random_world(seed: u64) {
     let plan = generate::world(seed);
     if let Err(failure) = check(&plan, STEPS) {
@@ -96,7 +96,7 @@ fn is_known(seed: u64) -> bool {
 }
 
 #[test]
-fn random_worlds_stay_finite_give_no_energy_and_restore() {
+fn random_worlds_stay_finite_add_no_energy_and_restore() {
     for (seed, outcome) in outcomes(0..100) {
         match outcome {
             Ok(_) if is_known(seed) => println!("world {seed} holds again: take it off the list"),
@@ -119,7 +119,7 @@ fn ten_thousand_random_worlds_hold() {
     assert!(!failed.iter().any(|(_, failure)| never(failure)), "panic or another future: {failed:?}");
 }
 
-/// Runs the worlds of the range `SINEW_WORLDS`, prints what fails made small, and the distribution of gaps.
+/// Runs the worlds of the range `SINEW_WORLDS`, prints failing ones shrunk, and the distribution of gaps.
 #[test]
 #[ignore = "for people: prints, asserts nothing"]
 fn survey() {

@@ -8,7 +8,7 @@ const RADIUS: f32 = 0.5;
 const HALF_THICKNESS: f32 = 0.02;
 const GRAVITY: f32 = 9.81;
 
-/// A disc that rolls in a circle: its axis goes round the vertical at `rate` rad/s and leans by `lean` radians from the level.
+/// Returns a disc that rolls in a circle: its axis goes round the vertical at `rate` rad/s and leans by `lean` radians from the level.
 struct Rolling {
     axis: Vec3,
     angular_velocity: Vec3,
@@ -17,7 +17,7 @@ struct Rolling {
 }
 
 /// Steady rolling. With the axis `e`, the arm `r` from the centre to the lowest point of the rim, and `ω = Ω y + s e`: the rim
-/// does not slip, `v = −ω × r`; the centre goes round, `a = Ω y × v`; the ground's force `m (a + g y)` turns the angular
+/// does not slip, `v = −ω × r`; the centre moves in a circle, `a = Ω y × v`; the ground's force `m (a + g y)` turns the angular
 /// momentum, `Ω y × L = r × m (a + g y)`. That is linear in the spin `s`.
 fn rolling(rate: f32, lean: f32) -> Rolling {
     let (sin, cos) = trig::sin_cos(lean);
@@ -33,7 +33,7 @@ fn rolling(rate: f32, lean: f32) -> Rolling {
     Rolling { axis, angular_velocity, velocity: -angular_velocity.cross(arm), height: -arm.y }
 }
 
-/// Mean rate at which a disc's axis goes round in the first second, as a share of what it should be.
+/// Returns the mean rate of a disc's axis in the first second over the closed form.
 fn share_of_rate(ground: impl Fn(&mut World), rate: f32, lean: f32) -> f32 {
     let mut world = World::new(WorldDef::default());
     ground(&mut world);
@@ -62,7 +62,7 @@ fn plane(world: &mut World) {
     floor(world);
 }
 
-/// A slab, which takes the general way from shape to shape.
+/// A slab, which uses the general path from shape to shape.
 fn slab(world: &mut World) {
     let half_extents = Vec3::new(10.0, 0.5, 10.0);
     let mut shape = ShapeDef::new(Shape::Box { half_extents });

@@ -1,4 +1,4 @@
-//! Particles and springs as part of a world: with bodies, both ways.
+//! Particles and springs in a world, coupled with bodies in both directions.
 
 use crate::build::{box_body, floor, sphere_body};
 use sinew_math::Vec3;
@@ -62,19 +62,19 @@ fn a_rope_holds_a_body_and_hangs_from_a_beam() {
     .group;
     let hold =
         |particle, body, point| AttachmentDef { particle, target: AttachmentTarget::Body { body, point } };
-    // As it is, it would let the weight swing for minutes.
+    // Without more damping the weight would swing for minutes.
     rope.damp(2.0);
-    // It is measured to some micrometres.
+    // Measured to some micrometres.
     rope.sleeping = Sleeping::Off;
     rope.attachments = vec![hold(0, beam, -Vec3::Y * 0.1), hold(10, weight, Vec3::Y * 0.1)];
     world.add_particles(&rope);
     let mass = world.mass(weight).mass;
     run(&mut world, 900);
-    // The weight stretches all of it, the rope's own weight half of it on average.
+    // The weight stretches all of it; the rope's own weight acts on half of it on average.
     let sunk = 1.8 - world.transform(weight).translation.y;
     let expected = (mass + 0.1) * 9.81 / 5000.0;
     assert!((sunk / expected - 1.0).abs() < 0.002, "sunk by {sunk} for {expected}");
-    // Between two steps the pull of the last substep is there and the weight of the next is not: g h.
+    // Between two steps the pull of the last substep counts and the weight of the next does not: g h.
     assert!(world.velocity(weight).linear.length() < 0.05);
 }
 
@@ -93,7 +93,7 @@ fn a_rope_falls_over_a_box_and_rests_on_it() {
     }
     .build()
     .group;
-    // What hangs beside the box rubs on nothing, and would swing for minutes.
+    // The ends beside the box touch nothing, and would swing for minutes.
     rope.linear_damping = 0.5;
     let id = world.add_particles(&rope);
     run(&mut world, 600);
@@ -132,7 +132,7 @@ fn rope_and_body_keep_their_momentum_together() {
 }
 
 #[test]
-fn a_world_with_particles_restores_and_threads_alike() {
+fn a_world_with_particles_restores_equally_on_any_threads() {
     let build = || {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -203,7 +203,7 @@ fn a_rope_pulls_through_a_body_that_it_holds_twice() {
     }
 }
 
-/// A plank on so many ropes, each of which holds it at two knots and is held at both ends.
+/// Returns a plank on this many ropes, each of which holds it at two particles and is held at both ends.
 fn hung_plank(ropes: usize) -> World {
     const LINK: f32 = 0.15;
     const HALF: Vec3 = Vec3::new(0.13, 0.02, 0.8);
@@ -221,12 +221,12 @@ fn hung_plank(ropes: usize) -> World {
         let ends = [-1.5, 1.5].map(|x| Vec3::X * x * LINK + z);
         let def = RopeDef { from: ends[0], to: ends[1], links: 3, mass: 2.0, stiffness: 4e4, radius: 0.01 };
         let mut group = def.build().group;
-        // Taut with 400 N, and not damped.
+        // Stretched by 400 N, and not damped.
         for spring in &mut group.springs {
             (spring.rest_length, spring.damping) = (LINK - 0.01, 0.0);
         }
         group.sleeping = Sleeping::Off;
-        // It lies inside the plank.
+        // Inside the plank.
         group.filter.mask = 0;
         group.hold_in_world(&[0, 3]);
         for (knot, x) in [(1, -0.5), (2, 0.5)] {
@@ -250,10 +250,10 @@ fn a_plank_on_taut_ropes_gains_no_energy() {
     }
 }
 
-/// A stiff rope flies on as it was thrown: nothing acts on it, so that momentum and energy stay. Its springs pull with many thousand times
-/// its momentum in each substep; what is lost of that in rounding once made it writhe, and fly off with another velocity within a step.
+/// A stiff rope keeps its motion: nothing acts on it, so momentum and energy stay. Its springs pull with many thousand times
+/// its momentum in each substep; lost rounding once made it writhe and change its velocity within a step.
 #[test]
-fn a_stiff_rope_flies_as_it_was_thrown() {
+fn a_stiff_rope_keeps_its_motion() {
     for (stiffness, velocity) in [(1e3, 1.0), (1e5, 1.0), (1e5, 10.0)] {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
         let rope = RopeDef {

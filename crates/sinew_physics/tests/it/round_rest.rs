@@ -30,7 +30,7 @@ fn ground(world: &mut World, boxed: bool) {
     }
 }
 
-/// Dropped upright and aslant, they come to rest on the ground, without sinking in, and sleep.
+/// Dropped upright and tilted, they come to rest on the ground without sinking in, and sleep.
 #[test]
 fn round_shapes_settle_and_sleep() {
     for boxed in [false, true] {
@@ -56,7 +56,7 @@ fn round_shapes_settle_and_sleep() {
     }
 }
 
-/// A cylinder put on its end stands there as it was put.
+/// A cylinder put on its end stays there.
 #[test]
 fn a_standing_cylinder_stands_still() {
     for boxed in [false, true] {
@@ -74,7 +74,7 @@ fn a_standing_cylinder_stands_still() {
     }
 }
 
-/// A lying cylinder that rolls without slipping goes on doing so: it loses no more than a twentieth of its speed in 2 s.
+/// A cylinder that rolls without slipping loses at most a twentieth of its speed in 2 s.
 #[test]
 fn a_lying_cylinder_rolls() {
     for boxed in [false, true] {

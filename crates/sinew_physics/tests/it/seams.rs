@@ -1,10 +1,10 @@
-//! Seams of the ground: what slides and rolls over shapes that abut goes as over one, and real edges stop it.
+//! Seams of the ground: bodies slide and roll over abutting shapes as over one, and real edges stop them.
 
 use crate::solids::box_hull;
 use sinew_math::{Random, Rotation, Transform, Vec3, max, trig};
 use sinew_physics::*;
 
-/// Shapes of which the ground is built.
+/// Kinds of ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Tiles {
     One,
@@ -12,7 +12,7 @@ enum Tiles {
     Hulls,
     /// Shapes of a single body.
     Shapes,
-    /// Raised, lowered and parted by less than a slop.
+    /// Raised, lowered and separated by less than a slop.
     Rough,
     /// Meshes without sides.
     Sheets,
@@ -20,11 +20,11 @@ enum Tiles {
     Blocks,
     /// Height fields.
     Fields,
-    /// All of these and boxes by turns.
+    /// All of these and boxes in turn.
     Mixed,
 }
 
-/// Every kind of tiles.
+/// All kinds of tiles.
 const ALL: [Tiles; 8] = [
     Tiles::Boxes,
     Tiles::Hulls,
@@ -36,7 +36,7 @@ const ALL: [Tiles; 8] = [
     Tiles::Mixed,
 ];
 
-/// A mesh of a tile whose top is at its origin's height and half a metre above.
+/// Returns a mesh of a tile whose top is at its origin's height and half a metre above.
 fn block(is_closed: bool) -> Shape {
     let corner =
         |i: u32| Vec3::new(0.5 - (i & 1) as f32, 0.5 - (i >> 1 & 1) as f32, 0.5 - (i >> 2 & 1) as f32);
@@ -55,7 +55,7 @@ fn field() -> Shape {
 
 const SIDE: i32 = 9;
 
-/// Ground whose top is at height 0.
+/// Returns ground whose top is at height 0.
 fn lay(world: &mut World, tiles: Tiles, material: Material, random: &mut Random) {
     let tile = |shape: Shape| ShapeDef { material, ..ShapeDef::new(shape) };
     let half = Vec3::splat(0.5);
@@ -98,7 +98,7 @@ fn lay(world: &mut World, tiles: Tiles, material: Material, random: &mut Random)
     }
 }
 
-/// A body on the ground, how it lies, and whether it rolls.
+/// A body on the ground, its pose, and whether it rolls.
 struct Goer {
     shape: Shape,
     height: f32,
@@ -132,7 +132,7 @@ fn goer(kind: usize, way: Vec3, random: &mut Random) -> Goer {
     }
 }
 
-/// Result of a run: level speed at the end, height at the end and at the most, each over where it began.
+/// Result of a run: level speed at the end, height at the end and largest height, both relative to the start.
 #[derive(Debug)]
 struct Way {
     speed: f32,
@@ -165,7 +165,7 @@ fn went(tiles: Tiles, kind: usize, speed: f32, seed: u64) -> Way {
 }
 
 #[test]
-fn what_goes_over_seams_goes_as_over_one_box() {
+fn sliding_over_seams_matches_one_box() {
     let mut seed = 0;
     for kind in 0..8 {
         for speed in [0.5, 1.0, 3.0, 6.0, 10.0] {
@@ -180,9 +180,9 @@ fn what_goes_over_seams_goes_as_over_one_box() {
     }
 }
 
-/// A step of 5 mm and a gap that is wider than a slop are met; walls on the ground and beside it stop what comes.
+/// A step of 5 mm and a gap wider than a slop are hit; walls on the ground and beside it stop bodies.
 #[test]
-fn real_edges_stop_what_comes() {
+fn real_edges_stop_bodies() {
     for (name, at, half) in [
         ("a wall beside the floor", Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.5, 1.0, 0.5)),
         ("a wall on the floor", Vec3::new(0.4, 0.5, 0.0), Vec3::new(0.1, 0.5, 0.5)),

@@ -14,7 +14,7 @@ const FOLD: u32 = 2;
 const FOLDS: u32 = 5;
 const ROWS: u32 = (LAYER + FOLD) * FOLDS + LAYER;
 
-/// A strip folded five times, its layers a little apart, which is to fall.
+/// Returns a strip folded five times, its layers a little apart, which will fall.
 fn pleated(thickness: f32) -> Cloth {
     let mut cloth = ClothDef {
         corner: Vec3::ZERO,
@@ -47,7 +47,7 @@ fn pleated(thickness: f32) -> Cloth {
     cloth
 }
 
-/// Number of threads that pierce a triangle of the cloth that they are no edge of.
+/// Returns the number of threads that pierce a triangle of the cloth without being its edge.
 fn crossings(positions: &[Vec3]) -> usize {
     let wide = COLUMNS as usize + 1;
     let mut triangles = Vec::new();
@@ -77,7 +77,7 @@ fn pierces([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
     sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0)
 }
 
-/// A world with a floor, a pleated strip and a box of this mass above it; with 0 none.
+/// Returns a world with a floor, a pleated strip and a box of this mass above it; none for 0.
 fn folded(load: f32, thickness: f32) -> (World, GroupId) {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -92,7 +92,7 @@ fn folded(load: f32, thickness: f32) -> (World, GroupId) {
     (world, group)
 }
 
-/// Crossings in all of `steps` steps, every tenth looked at; energy above what it began with, J; and the height of the
+/// Returns the crossings in `steps` steps, counted every tenth; the energy gain, J; and the height of the
 /// last body, metres.
 fn fall(load: f32, thickness: f32, steps: usize) -> (usize, f32, f32) {
     let (mut world, group) = folded(load, thickness);
@@ -110,7 +110,7 @@ fn fall(load: f32, thickness: f32, steps: usize) -> (usize, f32, f32) {
 }
 
 #[test]
-fn folds_do_not_go_through_each_other() {
+fn folds_do_not_intersect() {
     // A box as heavy as the cloth, and one thirteen times as heavy as the particles under it.
     for load in [0.1, 0.2] {
         let (seen, gain, height) = fall(load, THICKNESS, 240);
@@ -119,7 +119,7 @@ fn folds_do_not_go_through_each_other() {
         assert!(gain < 0.002, "{load} kg: {gain} J");
         assert!(height > 0.03 + 0.01 + 4.0 * THICKNESS, "{load} kg: {height} m");
     }
-    // The count tells them from layers that do not meet.
+    // The count distinguishes them from layers that do not meet.
     let (seen, ..) = fall(0.2, 0.0, 240);
     assert!(seen > 50, "{seen} crossings without thickness");
 }
@@ -138,7 +138,7 @@ fn folds_come_to_rest() {
     assert!(top > 0.01 + 4.0 * THICKNESS, "{top} m");
 }
 
-/// Particles of these places, velocities and masses that keep a tenth of a metre from each other, without gravity.
+/// Returns particles of these places, velocities and masses that keep a tenth of a metre from each other, without gravity.
 fn pair(particles: [(Vec3, Vec3, f32); 2], joined: bool) -> ParticleGroup {
     let particle = |(position, velocity, mass)| ParticleDef { position, velocity, mass, radius: 0.01 };
     ParticleGroup::new(&GroupDef {
@@ -150,7 +150,7 @@ fn pair(particles: [(Vec3, Vec3, f32); 2], joined: bool) -> ParticleGroup {
 }
 
 #[test]
-fn two_that_meet_go_on_together() {
+fn two_colliding_particles_move_on_together() {
     let mut group = pair([(Vec3::ZERO, Vec3::X, 1.0), (Vec3::X * 0.2, -Vec3::X, 3.0)], false);
     for _ in 0..200 {
         group.substep(1e-3, Vec3::ZERO, &[], &[], &mut []);
@@ -164,7 +164,7 @@ fn two_that_meet_go_on_together() {
 }
 
 #[test]
-fn what_a_spring_joins_may_be_near() {
+fn spring_neighbours_may_be_near() {
     for (joined, distance) in [(true, 0.05), (false, 0.1)] {
         let mut group = pair([(Vec3::ZERO, Vec3::ZERO, 1.0), (Vec3::X * 0.05, Vec3::ZERO, 1.0)], joined);
         for _ in 0..1000 {
@@ -172,13 +172,13 @@ fn what_a_spring_joins_may_be_near() {
         }
         let apart = (group.positions()[1] - group.positions()[0]).length();
         assert!((apart - distance).abs() < 1e-4, "joined: {joined}, {apart} m");
-        // What comes out of each other does not fly apart.
+        // Overlapping particles that separate do not fly apart.
         assert!(group.velocities().iter().all(|v| v.length() < 1e-4), "{:?}", group.velocities());
     }
 }
 
 #[test]
-fn restored_and_on_threads_it_is_the_same() {
+fn self_collision_restores_equally_on_any_threads() {
     let [mut one, mut two] = [folded(0.1, THICKNESS).0, folded(0.1, THICKNESS).0];
     let threads = Threads::new(2);
     for _ in 0..40 {

@@ -17,7 +17,7 @@ where
 }
 
 #[test]
-fn definitions_come_back_as_they_were() {
+fn definitions_round_trip() {
     there_and_back(&WorldDef { gravity: Vec3::new(0.1, -3.7, 0.0), ..WorldDef::default() });
     let corners: Vec<Vec3> =
         (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32)).collect();
@@ -41,7 +41,7 @@ fn definitions_come_back_as_they_were() {
 }
 
 #[test]
-fn joints_and_fields_come_back_as_they_were() {
+fn joints_and_fields_round_trip() {
     let mut world = World::new(WorldDef::default());
     let (a, b) = (
         world.add_body(&BodyDef::fixed(Shape::sphere(0.1))),
@@ -69,7 +69,7 @@ fn joints_and_fields_come_back_as_they_were() {
 }
 
 #[test]
-fn what_is_not_said_is_the_default() {
+fn missing_fields_have_defaults() {
     let def: BodyDef = from_str(r#"{"position": [0, 2, 0], "gravity_scale": 0.5}"#).expect("it is enough");
     assert_eq!(def, BodyDef { gravity_scale: 0.5, ..BodyDef::default().at(Vec3::Y * 2.0) });
     let hull: Result<Shape, _> = from_str(r#"{"Hull": [[0, 0, 0], [1, 0, 0]]}"#);

@@ -1,4 +1,4 @@
-//! Bodies that bear far more than they weigh.
+//! Bodies that carry many times their own weight.
 
 use crate::build::{box_body, floor};
 use sinew_math::{Random, Vec3, trig};
@@ -6,7 +6,7 @@ use sinew_physics::*;
 
 const HALF: f32 = 0.25;
 
-/// Cubes on top of each other with masses from the bottom up, kg.
+/// Adds a tower of cubes with masses from the bottom up, kg.
 fn tower(world: &mut World, masses: &[f32]) -> Vec<BodyId> {
     masses.iter().enumerate().map(|(i, &mass)| cube(world, place(i), mass)).collect()
 }
@@ -34,7 +34,7 @@ fn run(world: &mut World, steps: usize) {
     }
 }
 
-/// Upward force of the floor (the first body) on what stands on it in the last step, N.
+/// Upward force of the floor (the first body) in the last step, N.
 fn floor_force(world: &World, on: BodyId) -> f64 {
     let of_floor = world.contacts_of(on).filter(|contact| contact.normal.y > 0.9 && contact.b.body == on);
     let impulse = |contact: BodyContact| contact.points().iter().map(|p| f64::from(p.impulse)).sum::<f64>();
@@ -42,7 +42,7 @@ fn floor_force(world: &World, on: BodyId) -> f64 {
 }
 
 #[test]
-fn towers_of_any_masses_stand_on_a_floor_that_bears_their_weight() {
+fn towers_of_any_masses_stand_and_load_the_floor_by_their_weight() {
     towers_of_any_masses_shift_by(1e-3);
 }
 
@@ -52,7 +52,7 @@ fn towers_of_any_masses_shift_by_a_tenth_of_a_millimetre() {
     towers_of_any_masses_shift_by(1e-4);
 }
 
-/// Forty random towers, each cube of which ends at most so far aside, metres.
+/// Builds forty random towers; each cube ends at most this far aside, metres.
 fn towers_of_any_masses_shift_by(most_aside: f32) {
     let mut random = Random::new(71);
     for case in 0..40 {
@@ -83,7 +83,7 @@ fn towers_of_any_masses_shift_by(most_aside: f32) {
 }
 
 #[test]
-fn what_is_not_squeezed_weighs_what_it_weighs_beside_what_is_heavy() {
+fn unsqueezed_bodies_keep_their_mass_beside_heavy_ones() {
     let mut world = world_with_floor();
     let light = cube(&mut world, place(0), 0.1);
     cube(&mut world, place(0) + Vec3::X * (2.0 * HALF), 1e6);
@@ -95,7 +95,7 @@ fn what_is_not_squeezed_weighs_what_it_weighs_beside_what_is_heavy() {
 }
 
 #[test]
-fn what_is_hit_from_one_side_takes_the_speed_of_what_is_heavy() {
+fn a_light_body_hit_by_a_heavy_one_takes_its_speed() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let light = cube(&mut world, Vec3::ZERO, 0.1);
     let heavy = cube(&mut world, -Vec3::X * 0.6, 1e6);
@@ -105,7 +105,7 @@ fn what_is_hit_from_one_side_takes_the_speed_of_what_is_heavy() {
     assert!((v - Vec3::X * 10.0).length() < 1e-5, "{v:?}");
 }
 
-/// A wall of 30 rows of cubes: unlike small piles, its sweeps end before all that they have begun has come to an end.
+/// A wall of 30 rows of cubes: unlike in small piles, sweeps end before the load has settled.
 #[test]
 fn a_wall_at_rest_stays_at_rest() {
     const ROWS: usize = 30;
@@ -118,7 +118,7 @@ fn a_wall_at_rest_stays_at_rest() {
     for step in 60..160 {
         world.step();
         let energy = world.energy().kinetic;
-        // 1 cm/s of all of them is 2.9 J; one substep without contacts, 48 J.
+        // 1 cm/s for all of them is 2.9 J; one substep without contacts, 48 J.
         assert!(energy < 5.0, "{energy} J in step {step}");
     }
 }

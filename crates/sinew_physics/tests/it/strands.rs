@@ -1,4 +1,4 @@
-//! Chains of plain ball joints, up to eight side by side: as they swing alone, and as they would as islands.
+//! Chains of plain ball joints, up to eight side by side: they move as alone, and as they would as islands.
 
 use crate::build::{ball, capsule_body};
 use sinew_math::{Random, ReadError, Reader, Transform, Vec3, Writer};
@@ -6,7 +6,7 @@ use sinew_physics::*;
 
 const LENGTH: f32 = 0.3;
 
-/// A chain of links of 1 to 50 kg that swings, number `i` of a crowd in which none comes near another.
+/// Returns a swinging chain of links of 1 to 50 kg, number `i` of a crowd in which no two meet.
 struct Chain {
     bodies: Vec<BodyId>,
     joints: Vec<JointId>,
@@ -56,7 +56,7 @@ impl Chain {
     }
 }
 
-/// Pushes bodies by as good as nothing, so that their islands are solved as such.
+/// Pushes bodies by nearly nothing, so that their islands are solved as such.
 struct Touch(Vec<BodyId>);
 
 impl PhysicsObject for Touch {
@@ -78,7 +78,7 @@ fn run(world: &mut World, steps: usize) {
 
 #[test]
 fn bits_are_the_same_alone_and_beside_others() {
-    // From 24 links on a strand is cut into pieces, one to a lane.
+    // From 24 links on a strand is cut into pieces, one per lane.
     let lengths = |i: u32| [4, 7, 7, 26][i as usize % 4];
     let mut crowd = World::new(WorldDef::default());
     let chains: Vec<_> = (0..15).map(|i| Chain::new(&mut crowd, i, lengths(i), i != 8)).collect();
@@ -92,7 +92,7 @@ fn bits_are_the_same_alone_and_beside_others() {
 }
 
 #[test]
-fn a_strand_is_what_an_island_does() {
+fn strands_match_islands() {
     for (i, links, is_held) in [(0, 1, true), (1, 2, true), (2, 9, true), (3, 2, false), (4, 9, false)] {
         let [mut strand, mut island] = [(); 2].map(|()| World::new(WorldDef::default()));
         let [a, b] = [&mut strand, &mut island].map(|world| Chain::new(world, i, links, is_held));
@@ -120,7 +120,7 @@ fn a_strand_is_what_an_island_does() {
 }
 
 #[test]
-fn objects_disturb_only_what_they_act_on() {
+fn objects_change_only_their_bodies() {
     let [mut with, mut without] = [(); 2].map(|()| World::new(WorldDef::default()));
     let [with_chains, chains] =
         [&mut with, &mut without].map(|world| [0, 1].map(|i| Chain::new(world, i, 5, true)));
@@ -151,7 +151,7 @@ fn momentum_of_a_free_strand_stays() {
 }
 
 #[test]
-fn joints_of_a_long_rope_carry_what_hangs_below_them() {
+fn joints_of_a_long_rope_carry_the_weight_below() {
     for links in [24, 31, 49, 100] {
         let mut world = World::new(WorldDef::default());
         let anchor = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
@@ -177,7 +177,7 @@ fn joints_of_a_long_rope_carry_what_hangs_below_them() {
 }
 
 #[test]
-fn a_long_tangle_that_whirls_stays_closed() {
+fn joints_of_a_long_whirling_chain_stay_closed() {
     for (seed, links) in [(1, 41), (2, 42), (3, 64), (4, 71), (5, 90)] {
         let mut random = Random::new(seed);
         let mut world = World::new(WorldDef::default());
@@ -221,7 +221,7 @@ fn a_joint_that_is_open_closes_as_in_an_island() {
     island.add_object(Box::new(Touch(b.bodies.clone())));
     run(&mut strand, 1);
     run(&mut island, 1);
-    // The islands' solver has it: to the bit.
+    // The islands' solver takes it: equal to the bit.
     assert_eq!(a.state(&strand), b.state(&island));
     run(&mut strand, 30);
     assert!(strand.joint_gap(a.joints[2]) < 1e-5, "{}", strand.joint_gap(a.joints[2]));

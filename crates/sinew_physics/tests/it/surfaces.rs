@@ -1,4 +1,4 @@
-//! Materials, contact rules and hits against closed forms; what may change while the world runs.
+//! Materials, contact rules and hits against closed forms, and changes of them while the world runs.
 
 use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, trig};
@@ -41,7 +41,7 @@ fn reloaded(world: &World, into: &mut World) {
     into.load(&mut Reader::new(w.as_bytes())).expect("it is a snapshot");
 }
 
-/// A block of a material on a slope of the same, at rest; speed and place are along the slope, downhill.
+/// Returns a block on a slope, both of a material, at rest; speed and place are along the slope, downhill.
 fn on_slope(angle: f32, material: Material) -> (World, BodyId, Vec3) {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     let turn = Rotation::from_axis_angle(Vec3::Z, angle);
@@ -66,7 +66,7 @@ fn a_block_holds_to_the_static_angle_and_slides_with_the_other_coefficient() {
     run(&mut world, 600);
     let crept = (world.transform(block).translation - start).length();
     assert!(crept < 1e-3, "it crept {crept} m in 10 s");
-    // A push makes it slide, and it stops again: it is steeper than the angle of sliding, so that it does not.
+    // A push makes it slide, and it stops again: the slope is below the angle of sliding.
     world.apply_impulse_at_center(block, down * world.mass(block).mass);
     run(&mut world, 60);
     assert!(world.velocity(block).linear.dot(down) > 1.5, "{:?}", world.velocity(block));
@@ -100,7 +100,7 @@ fn a_belt_carries_a_box_to_its_speed() {
     let belt = Material { friction, surface_velocity: Vec3::X * speed, ..Material::DEFAULT };
     for kind in [BodyKind::Static, BodyKind::Kinematic] {
         let mut world = World::new(WorldDef::default());
-        // Turned: the velocity is that of the shape's frame.
+        // Rotated: the velocity is in the shape's frame.
         let turn = Rotation::from_axis_angle(Vec3::Y, 0.7);
         let mut def = made_of(box_body(Vec3::new(20.0, 0.5, 20.0), Vec3::Y * -0.5), belt);
         (def.kind, def.rotation) = (kind, turn);
@@ -120,7 +120,7 @@ fn a_belt_carries_a_box_to_its_speed() {
 }
 
 #[test]
-fn a_belt_that_stops_and_starts_is_felt_at_once() {
+fn a_belt_acts_at_once_when_it_stops_and_starts() {
     let mut world = World::new(WorldDef::default());
     let belt = world.add_body(&fixed(box_body(Vec3::new(20.0, 0.5, 20.0), Vec3::Y * -0.5)));
     let load = world.add_body(&box_body(Vec3::splat(0.2), Vec3::Y * 0.2));
@@ -138,7 +138,7 @@ fn a_belt_that_stops_and_starts_is_felt_at_once() {
 }
 
 #[test]
-fn a_turntable_turns_what_lies_on_its_middle() {
+fn a_turntable_turns_a_body_on_its_axis() {
     let mut world = World::new(WorldDef::default());
     let table = Material { surface_spin: Vec3::Y * 2.0, ..Material::DEFAULT };
     world.add_body(&fixed(made_of(box_body(Vec3::new(5.0, 0.5, 5.0), Vec3::Y * -0.5), table)));
@@ -149,7 +149,7 @@ fn a_turntable_turns_what_lies_on_its_middle() {
 }
 
 #[test]
-fn a_particle_is_carried_too_and_passes_what_does_not_push() {
+fn surfaces_carry_particles_and_ghosts_let_them_pass() {
     let mut world = World::new(WorldDef::default());
     let belt = Material { friction: 0.5, surface_velocity: Vec3::X * 1.5, ..Material::DEFAULT };
     world.add_body(&fixed(made_of(box_body(Vec3::new(20.0, 0.5, 20.0), Vec3::Y * -0.5), belt)));
@@ -183,20 +183,20 @@ fn rolling_resistance_brakes_a_ball() {
     run(&mut world, 30);
     let before = world.velocity(ball).linear.x;
     run(&mut world, 60);
-    // f = m a + …: a ball that rolls has 7/5 of its mass; the torque ρ m g acts at its radius.
+    // f = m a + …: a rolling ball has 7/5 of its mass; the torque ρ m g acts at its radius.
     let expected = rolling * G / (1.4 * radius);
     let lost = (before - world.velocity(ball).linear.x) / (60.0 * world.def().dt());
     assert_near(lost, expected, 0.01, "m/s² against rolling");
 }
 
-/// A platform 10 cm thick whose top is at a height.
+/// Returns a platform 10 cm thick whose top is at a height.
 fn platform(world: &mut World, top: f32) -> BodyId {
     let slab = fixed(box_body(Vec3::new(2.0, 0.05, 2.0), Vec3::Y * (top - 0.05)));
     world.add_body(&under_rule(slab, ContactRule::OneWay(OneWay::default())))
 }
 
 #[test]
-fn a_one_way_platform_lets_pass_from_below_and_holds_from_above() {
+fn a_one_way_platform_passes_upward_and_holds_downward() {
     for (speed, radius) in [(6.0, 0.2), (8.0, 0.02), (30.0, 0.1)] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -217,7 +217,7 @@ fn a_one_way_platform_lets_pass_from_below_and_holds_from_above() {
 }
 
 #[test]
-fn what_passes_goes_on_passing_also_after_a_restore() {
+fn a_passing_body_keeps_passing_after_a_restore() {
     // Its apex is inside the platform: it must fall out again, not be put on top.
     let start = || {
         let mut world = World::new(WorldDef::default());
@@ -242,13 +242,13 @@ fn what_passes_goes_on_passing_also_after_a_restore() {
     assert!((world.transform(ball).translation.y - 0.1).abs() < 3e-3);
 }
 
-/// Speed that brings something to a height, m/s.
+/// Returns the speed that reaches a height, m/s.
 fn trig_speed(height: f32) -> f32 {
     (2.0 * G * height).sqrt()
 }
 
 #[test]
-fn a_ghost_is_told_of_and_does_not_push() {
+fn a_ghost_is_reported_without_pushing() {
     let mut world = World::new(WorldDef::default());
     let ghost = fixed(box_body(Vec3::splat(0.5), Vec3::ZERO));
     let ghost = world.add_body(&under_rule(ghost, ContactRule::Ghost));
@@ -266,7 +266,7 @@ fn a_ghost_is_told_of_and_does_not_push() {
     assert_near(1.0 - world.transform(ball).translation.y, 0.5 * G * t * (t + h), 1e-3, "it falls freely");
 }
 
-/// Lets nobody pass but those of the user's number 7; throws those of number 8 up at 5 m/s.
+/// Lets only bodies with user data 7 pass; throws those with 8 up at 5 m/s.
 fn bouncer(found: &FoundContact<'_>, mut material: ContactMaterial) -> Option<ContactMaterial> {
     assert!(!found.points.is_empty());
     let number = found.sides[0].user_data + found.sides[1].user_data;
@@ -311,13 +311,13 @@ fn a_modifier_drops_contacts_and_throws() {
     assert_eq!(world.hash(), other.hash());
 }
 
-/// Bodies whose numbers add up to an odd one do not meet.
+/// Bodies whose numbers have an odd sum do not collide.
 fn even(a: &PairSide, b: &PairSide) -> bool {
     (a.user_data + b.user_data).is_multiple_of(2)
 }
 
 #[test]
-fn a_pair_function_parts_and_its_choice_is_part_of_the_state() {
+fn a_pair_function_disables_pairs_and_is_state() {
     let mut world = World::new(WorldDef::default());
     world.register_pair_function(1, even);
     let ground = world.add_body(&fixed(box_body(Vec3::new(5.0, 0.5, 5.0), Vec3::Y * -0.5)));
@@ -343,7 +343,7 @@ fn a_pair_function_parts_and_its_choice_is_part_of_the_state() {
 }
 
 #[test]
-fn a_disabled_pair_wakes_and_parts_and_meets_again_when_enabled() {
+fn disabling_and_enabling_a_pair_wakes_it() {
     let mut world = World::new(WorldDef::default());
     let ground = floor(&mut world);
     let below = world.add_body(&box_body(Vec3::splat(0.5), Vec3::Y * 0.5));
@@ -362,7 +362,7 @@ fn a_disabled_pair_wakes_and_parts_and_meets_again_when_enabled() {
 }
 
 #[test]
-fn a_filter_a_rule_and_sensing_change_at_once_and_wake() {
+fn filter_rule_and_sensing_changes_act_at_once_and_wake() {
     let mut world = World::new(WorldDef::default());
     let slab = world.add_body(&fixed(box_body(Vec3::new(5.0, 0.5, 5.0), Vec3::Y * -0.5)));
     let ball = world.add_body(&sphere_body(0.1, Vec3::Y * 0.1));
@@ -387,7 +387,7 @@ fn a_filter_a_rule_and_sensing_change_at_once_and_wake() {
 }
 
 #[test]
-fn a_hit_tells_how_fast_and_what_it_took_once() {
+fn a_hit_reports_speed_and_impulse_once() {
     for (restitution, tolerance) in [(0.0, 0.01), (0.5, 0.02)] {
         for i in 0..40 {
             let height = 0.3 + 0.07 * i as f32;
@@ -405,9 +405,9 @@ fn a_hit_tells_how_fast_and_what_it_took_once() {
             let (mass, speed) = (world.mass(ball).mass, trig_speed(height));
             assert_eq!((hit.a.body, hit.b.body, hit.normal), (ground, ball, Vec3::Y));
             assert_eq!(hit.materials[1].tag, 7);
-            // It is that of the step's beginning: up to a step of falling is missing.
+            // The approach speed is that of the step's beginning: up to a step of falling is missing.
             assert!(hit.approach < speed * 1.001 && hit.approach > speed - 1.1 * G / 60.0, "{hit:?} {speed}");
-            // What follows in the same step holds the ball up.
+            // The rest of the same step holds the ball up.
             let weight = mass * G * 2.0 / 60.0;
             let expected = mass * speed * (1.0 + restitution);
             let slack = tolerance * expected + weight;
@@ -418,7 +418,7 @@ fn a_hit_tells_how_fast_and_what_it_took_once() {
 }
 
 #[test]
-fn a_pile_at_rest_tells_of_no_hit() {
+fn a_pile_at_rest_reports_no_hit() {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     floor(&mut world);
     for i in 0..5 {
@@ -431,7 +431,7 @@ fn a_pile_at_rest_tells_of_no_hit() {
 }
 
 #[test]
-fn contacts_tell_what_they_carry() {
+fn contacts_report_their_load() {
     let angle = 0.3;
     let (mut world, block, down) = on_slope(angle, Material::DEFAULT);
     run(&mut world, 120);
@@ -446,7 +446,7 @@ fn contacts_tell_what_they_carry() {
 }
 
 #[test]
-fn sensors_see_what_stands_moves_sleeps_and_goes() {
+fn sensors_report_static_moving_sleeping_and_removed_bodies() {
     let mut world = World::new(WorldDef::default());
     let ground = floor(&mut world);
     let mut gate = fixed(box_body(Vec3::splat(0.5), Vec3::Y * 0.5));
@@ -457,7 +457,7 @@ fn sensors_see_what_stands_moves_sleeps_and_goes() {
     (door.kind, door.linear_velocity) = (BodyKind::Kinematic, Vec3::Y * -2.0);
     let door = world.add_body(&door);
     world.step();
-    // The floor is static as the gate is: they do not see each other.
+    // Floor and gate are static: they do not see each other.
     assert_eq!(world.events().sensor_begin, [(gate, sleeper)]);
     assert!(!world.events().sensor_begin.iter().any(|pair| pair.0 == ground));
     // 0.9 m at 2 m/s are 27 steps.
@@ -486,7 +486,7 @@ fn sensors_see_what_stands_moves_sleeps_and_goes() {
 }
 
 #[test]
-fn a_pair_of_bodies_with_many_shapes_is_told_of_once() {
+fn a_pair_of_many_shapes_is_reported_once() {
     let mut world = World::new(WorldDef::default());
     let ground = floor(&mut world);
     let mut table = box_body(Vec3::splat(0.1), Vec3::Y * 0.12);
@@ -508,7 +508,7 @@ fn a_pair_of_bodies_with_many_shapes_is_told_of_once() {
 
 #[test]
 #[should_panic(expected = "friction")]
-fn a_material_that_is_no_number_is_refused() {
+fn a_nan_material_is_refused() {
     let (mut world, block, _) = on_slope(0.0, Material::DEFAULT);
     let shape = only_shape(&world, block);
     world.set_material(shape, Material { friction: f32::NAN, ..Material::DEFAULT });
@@ -547,6 +547,6 @@ fn a_pair_function_that_is_not_registered_is_refused() {
 
 #[test]
 #[should_panic(expected = "speed of a hit")]
-fn a_hit_speed_that_is_no_number_is_refused() {
+fn a_nan_hit_speed_is_refused() {
     let _ = World::new(WorldDef { hit_speed: f32::NAN, ..WorldDef::default() });
 }

@@ -1,4 +1,4 @@
-//! The pool behind `Threads`: every call is made, whatever the batch, and nothing is left behind.
+//! The pool behind `Threads`: every call is made for any batch, and nothing is left behind.
 
 use core::sync::atomic::{AtomicUsize, Ordering};
 use sinew_math::Random;
@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::thread;
 use std::time::Duration;
 
-/// Calls that a batch of `count` makes.
+/// Returns the calls that a batch of `count` makes.
 fn calls(threads: &Threads, count: usize) -> usize {
     let made = AtomicUsize::new(0);
     threads.run(count, &|| _ = made.fetch_add(1, Ordering::Relaxed));
@@ -16,7 +16,7 @@ fn calls(threads: &Threads, count: usize) -> usize {
 }
 
 #[test]
-fn each_batch_makes_as_many_calls_as_it_says() {
+fn each_batch_makes_every_call() {
     for of in [0, 1, 2, 3, 8] {
         let threads = Threads::new(of);
         assert_eq!(threads.count(), of.max(1));
@@ -28,7 +28,7 @@ fn each_batch_makes_as_many_calls_as_it_says() {
 
 /// Batches of all sizes, at once and after pauses in which the workers fall asleep.
 #[test]
-fn random_batches_lose_nothing() {
+fn random_batches_lose_no_call() {
     let threads = Threads::new(4);
     let mut random = Random::new(5);
     for round in 0..20_000 {
@@ -59,7 +59,7 @@ fn work_is_shared() {
     });
 }
 
-/// The caller has nothing left to do and sleeps until the last call has returned.
+/// The caller has no more work and sleeps until the last call has returned.
 #[test]
 fn long_calls_are_waited_for() {
     let threads = Threads::new(3);
@@ -120,7 +120,7 @@ fn several_threads_of_the_host_may_share_a_pool() {
 }
 
 #[test]
-fn a_pool_can_go_at_any_time() {
+fn a_pool_can_be_dropped_at_any_time() {
     for round in 0..200 {
         let threads = Threads::new(1 + round % 5);
         if round % 2 == 0 {

@@ -1,4 +1,4 @@
-//! Touches that are easily lost or told of twice: of what slept, what bounced, what rolls gently, what meets many triangles.
+//! Touches that are easily lost or reported twice: of sleeping, bouncing and slowly rolling bodies, and of many triangles.
 
 use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer};
@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 type Pair = (BodyId, BodyId);
 
-/// Events of some steps.
+/// Events of several steps.
 #[derive(Debug, Default)]
 struct Seen {
     begin: Vec<Pair>,
@@ -54,7 +54,7 @@ fn nap() -> (World, BodyId, BodyId, BodyId) {
 }
 
 #[test]
-fn what_slept_ends_its_touches_when_it_is_taken_away() {
+fn removing_a_sleeping_body_ends_its_touches() {
     let ways: [fn(&mut World, BodyId); 4] = [
         |world, sleeper| world.set_transform(sleeper, Transform::from_translation(Vec3::Y * 9.0)),
         |world, sleeper| world.remove_body(sleeper),
@@ -85,7 +85,7 @@ fn what_slept_ends_its_touches_when_it_is_taken_away() {
 }
 
 #[test]
-fn parting_what_does_not_touch_wakes_nobody() {
+fn disabling_an_untouched_pair_wakes_nothing() {
     let (mut world, floor, zone, sleeper) = nap();
     let other = world.add_body(&box_body(Vec3::splat(0.2), Vec3::new(3.0, 0.2, 0.0)));
     run(&mut world, 120);
@@ -102,8 +102,8 @@ fn parting_what_does_not_touch_wakes_nobody() {
 }
 
 #[test]
-fn what_comes_gently_and_what_bounces_at_once_touch() {
-    // On the floor at 5 cm/s, and from 1 to 20 m/s with most of it coming back.
+fn slow_and_bouncing_contacts_are_reported() {
+    // On the floor at 5 cm/s, and from 1 to 20 m/s with high restitution.
     for (speed, restitution) in [(0.05, 0.0), (1.5, 0.9), (5.0, 0.9), (20.0, 1.0)] {
         let def = WorldDef { sleeping: Sleeping::Off, gravity: Vec3::ZERO, ..WorldDef::default() };
         let mut world = World::new(def);
@@ -137,7 +137,7 @@ fn a_ball_that_rolls_along_touches_each_slab_once() {
     assert_eq!(seen.end, expected[..4]);
 }
 
-/// A trench of two slopes, each of many triangles, and steps at its end that turn the normals from tile to tile.
+/// Returns a trench of two slopes, each of many triangles, with steps at its end that turn the normals from tile to tile.
 fn trench() -> Shape {
     let (length, width) = (40, 3);
     let vertex = |i: usize, j: usize| {
@@ -169,7 +169,7 @@ fn many_triangles_are_one_touch_and_one_hit() {
     assert_eq!((seen.shapes_begin, seen.shapes_end, seen.hits), (1, 0, 1));
     let parts = world.contacts_of(block).count();
     assert!(parts > 1, "{parts} parts");
-    // Both slopes go on bearing it, however it slides on: from tile to tile they rise and fall by 10 mm.
+    // Both slopes keep carrying it while it slides: from tile to tile they rise and fall by 10 mm.
     let lying = world.transform(block).translation.y;
     run(&mut world, 300);
     let lies = world.transform(block).translation.y;

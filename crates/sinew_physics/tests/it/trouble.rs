@@ -1,4 +1,4 @@
-//! Numeric trouble: what is not finite is stopped and told of, and the rest goes on.
+//! Numeric trouble: bodies with numbers that are not finite are stopped and reported, and the rest continues.
 
 use crate::build::{floor, sphere_body};
 use sinew_math::{Transform, Vec3};
@@ -6,7 +6,7 @@ use sinew_physics::field::PARAMETERS;
 use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef};
 use sinew_physics::*;
 
-/// On what is faster than 1 m/s.
+/// Acts on bodies faster than 1 m/s.
 fn poison(point: &FieldPoint, _: &[f32; PARAMETERS]) -> Wrench {
     let force = if point.velocity.length() > 1.0 { Vec3::splat(f32::NAN) } else { Vec3::ZERO };
     Wrench { force, ..Wrench::default() }
@@ -25,7 +25,7 @@ fn particle(position: Vec3) -> GroupDef {
 }
 
 #[test]
-fn particles_that_are_not_finite_stop_where_they_were() {
+fn nonfinite_particles_are_rolled_back() {
     let mut world = poisoned();
     let group = world.add_particles(&particle(Vec3::Y));
     world.mark();
@@ -44,7 +44,7 @@ fn particles_that_are_not_finite_stop_where_they_were() {
 }
 
 #[test]
-fn what_hangs_on_a_quarantined_body_hangs_on_a_fixed_one() {
+fn a_quarantined_body_acts_as_a_fixed_anchor() {
     let mut world = poisoned();
     let body = world.add_body(&sphere_body(0.1, Vec3::Y * 5.0));
     let mut def = particle(Vec3::Y * 5.0);
@@ -88,7 +88,7 @@ fn a_star_does_not_fall_asleep_under_its_satellite() {
 }
 
 #[test]
-fn a_slow_world_lets_things_spin() {
+fn a_low_speed_limit_does_not_limit_spin() {
     let mut world = World::new(WorldDef { max_speed: 50.0, ..WorldDef::default() });
     floor(&mut world);
     let mut ball = sphere_body(0.1, Vec3::Y * 0.0999);
@@ -101,7 +101,7 @@ fn a_slow_world_lets_things_spin() {
 }
 
 #[test]
-fn a_pose_is_turned_not_scaled() {
+fn set_transform_normalizes_the_rotation() {
     let mut world = World::new(WorldDef::default());
     let ball = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     let long = sinew_math::Rotation::from_xyzw(0.0, 0.0, 0.0, 3.0);
@@ -109,10 +109,10 @@ fn a_pose_is_turned_not_scaled() {
     assert_eq!(world.transform(ball).rotation.length(), 1.0);
 }
 
-/// A velocity beyond all measure is reduced to what the world allows, in its direction, and told of once: also where squares of it are beyond
+/// A huge velocity is reduced to the world's limit in its direction and reported once, also where its square exceeds
 /// 32 bits.
 #[test]
-fn impulses_beyond_all_measure_are_limited_and_told_of() {
+fn extreme_impulses_are_limited_and_reported() {
     for (on_floor, jointed) in [(false, false), (true, false), (false, true)] {
         for impulse in [1e10, 1e18, 1e20, 1e30, 3e38] {
             let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -140,7 +140,7 @@ fn impulses_beyond_all_measure_are_limited_and_told_of() {
 }
 
 #[test]
-fn spins_beyond_all_measure_are_limited_and_told_of() {
+fn extreme_spins_are_limited_and_reported() {
     for impulse in [1e10, 1e20, 1e30, 3e38] {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
         let body = world.add_body(&sphere_body(0.1, Vec3::ZERO));
@@ -157,10 +157,10 @@ fn spins_beyond_all_measure_are_limited_and_told_of() {
     }
 }
 
-/// Rows see the surface of what is led at such a spin go on along its tangent, to where it never is: they pushed a cone on a
-/// slider away for good, and told that it touches.
+/// Rows extrapolate the surface of a body that spins this fast along its tangent, to where it never is: they once pushed a cone on a
+/// slider away for good, and reported a touch.
 #[test]
-fn a_kinematic_spin_beyond_all_measure_pushes_nothing_far_away() {
+fn an_extreme_kinematic_spin_pushes_nothing_far_away() {
     for spin in [1e4, 1e6, 1e12] {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
         let arm = ShapeDef {
@@ -180,7 +180,7 @@ fn a_kinematic_spin_beyond_all_measure_pushes_nothing_far_away() {
 }
 
 #[test]
-fn what_is_led_beyond_all_numbers_stops_and_is_told_of() {
+fn kinematic_bodies_beyond_f32_stop_and_are_reported() {
     let mut world = World::new(WorldDef::default());
     let led = BodyDef { linear_velocity: Vec3::X * f32::MAX, ..BodyDef::kinematic(Shape::sphere(0.5)) };
     let body = world.add_body(&led);

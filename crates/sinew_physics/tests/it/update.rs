@@ -1,4 +1,4 @@
-//! Frames of any length: the same state after every step, and no frame that takes for ever.
+//! Frames of any length: the same state after every step, and bounded time per frame.
 
 use crate::objects::inhabited;
 use core::time::Duration;
@@ -7,10 +7,10 @@ use sinew_physics::particles::{GroupDef, ParticleDef};
 use sinew_physics::stage::NoProfiler;
 use sinew_physics::*;
 
-/// Steps that are compared.
+/// Number of compared steps.
 const STEPS: u64 = 180;
 
-/// Hash after every tenth step, when no time waits for the next.
+/// Returns the hash after every tenth step, taken when no time is left over.
 fn hashes(mut frame: impl FnMut() -> Duration) -> Vec<u64> {
     let mut world = inhabited();
     let step = world.def().step_nanoseconds;
@@ -18,7 +18,7 @@ fn hashes(mut frame: impl FnMut() -> Duration) -> Vec<u64> {
     for k in (10..=STEPS).step_by(10) {
         let mut left = Duration::from_nanos(step * k) - Duration::from_nanos(step * (k - 10));
         while left > Duration::ZERO {
-            // The last one is as long as it takes.
+            // The last frame has the length that is missing.
             let time = Duration::min(frame(), left);
             assert_eq!(world.update(time).dropped, Duration::ZERO);
             left -= time;
@@ -49,7 +49,7 @@ fn the_state_after_step_k_is_the_same_at_any_frame_rate() {
 }
 
 #[test]
-fn what_cannot_be_caught_up_is_dropped_and_told() {
+fn time_beyond_catch_up_steps_is_dropped_and_reported() {
     let mut world = World::new(WorldDef { catch_up_steps: 4, ..WorldDef::default() });
     let step = Duration::from_nanos(world.def().step_nanoseconds);
     assert_eq!(world.update(step * 4), Update { steps: 4, alpha: 0.0, dropped: Duration::ZERO });
@@ -65,7 +65,7 @@ fn what_cannot_be_caught_up_is_dropped_and_told() {
 }
 
 #[test]
-fn by_default_a_quarter_of_a_second_is_caught_up() {
+fn a_quarter_of_a_second_is_caught_up_by_default() {
     let mut world = World::new(WorldDef::default());
     let late = world.update(Duration::from_secs(1));
     assert_eq!(late.steps, 15);
@@ -73,7 +73,7 @@ fn by_default_a_quarter_of_a_second_is_caught_up() {
 }
 
 #[test]
-fn every_step_of_a_frame_is_the_hosts() {
+fn the_host_gets_every_step_of_a_frame() {
     let push = Vec3::new(3.0, 0.0, 0.0);
     let world = || {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -96,12 +96,12 @@ fn every_step_of_a_frame_is_the_hosts() {
 
 #[test]
 #[should_panic(expected = "each call takes one step")]
-fn a_step_that_is_none() {
+fn an_invalid_step_length_panics() {
     World::new(WorldDef::default()).update_with(Duration::from_millis(20), |_| {});
 }
 
 #[test]
-fn what_is_drawn_lies_between_two_steps() {
+fn interpolated_poses_lie_between_two_steps() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let shapes = vec![ShapeDef::new(Shape::Sphere { radius: 0.1 })];
     let def = BodyDef { linear_velocity: Vec3::X, shapes, ..BodyDef::default() };
@@ -114,7 +114,7 @@ fn what_is_drawn_lies_between_two_steps() {
         let alpha = world.update(frame).alpha;
         time += frame.as_secs_f32();
         if world.step_count() > 0 {
-            // One step behind what has passed.
+            // One step behind the time that has passed.
             let expected = time - world.def().dt();
             let of_particle = world.particles(group).interpolated(alpha).next();
             for x in [world.interpolated(body, alpha).translation.x, of_particle.map_or(0.0, |at| at.x)] {

@@ -4,7 +4,7 @@ use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Reader, Rotation, Vec3, Writer, max};
 use sinew_physics::*;
 
-/// A kinematic arm, an upright capsule of 10 cm, that goes with a velocity.
+/// Returns a kinematic arm, an upright capsule of 10 cm, with a velocity.
 fn arm(world: &mut World, at: Vec3, velocity: Vec3) -> BodyId {
     let shape = Shape::Capsule { half_height: 0.4, radius: 0.1 };
     let rule = ContactRule::Yields(Yields::default());
@@ -24,7 +24,7 @@ fn level() -> World {
     world
 }
 
-/// A ball of 0.43 kg that bounces.
+/// Returns a ball of 0.43 kg that bounces.
 fn ball(world: &mut World, at: Vec3, velocity: Vec3) -> BodyId {
     let mut def = sphere_body(0.11, at);
     (def.linear_velocity, def.mass) = (velocity, Some(Shape::Sphere { radius: 0.11 }.mass_properties(77.0)));
@@ -53,7 +53,7 @@ fn a_ball_bounces_off_and_is_kicked() {
 }
 
 #[test]
-fn a_crate_is_let_be_and_told_of() {
+fn a_yielding_contact_with_a_crate_is_reported() {
     let mut world = level();
     let arm = arm(&mut world, Vec3::new(-0.8, 0.5, 0.0), Vec3::X * 3.0);
     let mut def = box_body(Vec3::splat(0.25), Vec3::Y * 0.25);
@@ -73,11 +73,11 @@ fn a_crate_is_let_be_and_told_of() {
 }
 
 #[test]
-fn what_is_jammed_against_a_wall_is_not_crushed() {
+fn a_body_jammed_against_a_wall_is_not_crushed() {
     let mut world = level();
     let wall = Shape::Box { half_extents: Vec3::new(0.2, 1.0, 1.0) };
     world.add_body(&BodyDef::fixed(wall).at(Vec3::new(0.45, 1.0, 0.0)));
-    // So slow that the force for it would do.
+    // Slow enough for the force to suffice.
     arm(&mut world, Vec3::new(-0.4, 0.5, 0.0), Vec3::X * 0.05);
     let mut def = box_body(Vec3::splat(0.25), Vec3::Y * 0.25);
     def.mass = Some(Shape::Box { half_extents: Vec3::splat(0.25) }.mass_properties(80.0));
@@ -91,7 +91,7 @@ fn what_is_jammed_against_a_wall_is_not_crushed() {
 }
 
 #[test]
-fn what_is_heavy_and_fast_goes_through_and_what_is_dynamic_pushes() {
+fn heavy_fast_bodies_pass_and_dynamic_shapes_push() {
     let fly = |kind: BodyKind| {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
         let mut def = box_body(Vec3::splat(0.25), Vec3::X * -1.5);
@@ -113,7 +113,7 @@ fn what_is_heavy_and_fast_goes_through_and_what_is_dynamic_pushes() {
 }
 
 #[test]
-fn movers_go_through_and_a_snapshot_goes_on_the_same() {
+fn movers_pass_yielding_shapes_and_snapshots_restore_equally() {
     let mut world = level();
     arm(&mut world, Vec3::new(1.0, 0.6, 0.0), Vec3::X * -0.5);
     let mover = world.add_mover(&MoverDef::at(Vec3::ZERO));
@@ -137,7 +137,7 @@ fn movers_go_through_and_a_snapshot_goes_on_the_same() {
 
 #[test]
 #[should_panic(expected = "must not be negative")]
-fn a_bound_that_is_no_number_is_refused() {
+fn a_nan_bound_is_refused() {
     let mut world = level();
     let mut def = sphere_body(0.1, Vec3::Y);
     def.shapes[0].rule = ContactRule::Yields(Yields { max_force: f32::NAN, ..Yields::default() });

@@ -1,4 +1,4 @@
-//! A world with names for what is in it, so that the same deeds can be done to several.
+//! A world with names for its objects, so that the same calls can be applied to several worlds.
 
 use crate::code::{self, Code, rusty};
 use crate::extension::Extension;
@@ -10,10 +10,10 @@ use sinew_physics::stage::NoProfiler;
 use sinew_physics::*;
 use std::collections::BTreeMap;
 
-/// Things of a kind that a life has made, by name: a number that stays when deeds before are left out.
+/// Objects of a kind that a life has created, by name: a number that stays when earlier deeds are removed.
 pub type Names<T> = Vec<(u64, T)>;
 
-/// Another world that is to go on beside this one.
+/// Another world that will continue beside this one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Twin {
     /// A new world that loads a snapshot.
@@ -32,23 +32,23 @@ pub struct Actor {
     pub movers: Names<MoverId>,
     pub forces: Names<ForceId>,
     pub objects: Names<ObjectId>,
-    /// Answers of the deed at hand.
+    /// Answers of the current deed.
     pub said: String,
     /// Calls by name.
     pub calls: BTreeMap<&'static str, u64>,
-    /// Lines of the program that does the same, if it is told.
+    /// Lines of the equivalent program, if it is recorded.
     pub lines: Option<Vec<String>>,
-    /// A twin that the deed at hand asks for.
+    /// A twin that the current deed asks for.
     pub wanted: Option<Twin>,
     pub threads: Option<Threads>,
-    /// Objects that are kept beside the world, such as characters.
+    /// Objects beside the world, such as characters.
     pub more: Extension,
-    /// Name of the deed at hand, and how many things it has named.
+    /// Name of the current deed, and how many objects it has named.
     deed: u64,
     named: u64,
 }
 
-/// Calls a method of the actor's world and notes it.
+/// Calls a method of the actor's world and records it.
 macro_rules! call {
     ($actor:ident.$name:ident($($argument:expr),* $(,)?)) => {{
         if $actor.lines.is_some() {
@@ -60,7 +60,7 @@ macro_rules! call {
     }};
 }
 
-/// Asks the actor's world something and says the answer.
+/// Queries the actor's world and records the answer.
 macro_rules! ask {
     ($actor:ident.$name:ident($($argument:expr),* $(,)?)) => {{
         let answer = call!($actor.$name($($argument),*));
@@ -68,7 +68,7 @@ macro_rules! ask {
     }};
 }
 
-/// Asks the actor's world for a list and says what is in it.
+/// Queries the actor's world for a list and records its content.
 macro_rules! ask_all {
     ($actor:ident.$name:ident($($argument:expr),* $(,)?)) => {{
         let answer: Vec<_> = call!($actor.$name($($argument),*)).collect();
@@ -76,7 +76,7 @@ macro_rules! ask_all {
     }};
 }
 
-/// An owner of bodies and joints.
+/// Returns an owner of bodies and joints.
 pub fn owner() -> Owner {
     Owner { name: "cart".into(), calls: "`Cart::scrap`".into(), parts: vec!["wheel".into()] }
 }
@@ -85,13 +85,13 @@ pub fn owner() -> Owner {
 const OWNER: &str =
     "&Owner { name: \"cart\".into(), calls: \"`Cart::scrap`\".into(), parts: vec![\"wheel\".into()] }";
 
-/// Says an answer, for other worlds to be held against.
+/// Records an answer, to compare with other worlds.
 pub fn say(said: &mut String, name: &str, answer: &dyn core::fmt::Debug) {
     writeln!(said, "{name}: {answer:?}").expect("memory");
 }
 
 impl Actor {
-    /// Notes a call that gives [`owner`] one thing.
+    /// Records a call that passes one object to [`owner`].
     pub fn note_owned(&mut self, name: &'static str, id: &dyn core::fmt::Debug) {
         if self.lines.is_some() {
             self.tell(
@@ -124,7 +124,7 @@ impl Actor {
         }
     }
 
-    /// The same names with another world.
+    /// Returns the same names with another world.
     pub fn twin(&self, kind: Twin) -> Self {
         let world = match kind {
             Twin::Clone => self.world.clone(),
@@ -150,7 +150,7 @@ impl Actor {
         self.wanted = None;
     }
 
-    /// A name for what was made.
+    /// Returns a name for a new object.
     pub fn name(&mut self) -> u64 {
         self.named += 1;
         self.deed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(self.named)
@@ -160,7 +160,7 @@ impl Actor {
         *self.calls.entry(name).or_insert(0) += 1;
     }
 
-    /// Notes a call as a line of the program.
+    /// Records a call as a line of the program.
     pub fn tell(&mut self, name: &str, arguments: &[String]) {
         self.line(format!("world.{name}({});", arguments.join(", ")));
     }
@@ -171,7 +171,7 @@ impl Actor {
         }
     }
 
-    /// Gives what the last line makes a name in the program.
+    /// Names the result of the last line in the program.
     pub fn let_be(&mut self, id: &dyn core::fmt::Debug) {
         if let Some(last) = self.lines.as_mut().and_then(|lines| lines.last_mut()) {
             *last = format!("let {} = {last}", rusty(&format!("{id:?}")));
@@ -196,7 +196,7 @@ impl Actor {
         id
     }
 
-    /// Names a joint that the last call has made.
+    /// Names a joint that the last call created.
     pub fn name_joint(&mut self, id: JointId) {
         self.let_be(&id);
         let name = self.name();
@@ -244,7 +244,7 @@ impl Actor {
         self.objects.push((name, id));
     }
 
-    /// One of the bodies but the floor that is of some kind, if there is one.
+    /// Returns a body of some kind other than the floor, if there is one.
     pub fn body(&self, numbers: &mut Numbers, is: impl Fn(&World, BodyId) -> bool) -> Option<BodyId> {
         let there = |id: BodyId| self.world.contains(id) && is(&self.world, id);
         pick(&self.bodies, numbers.bits(), there)
@@ -287,14 +287,14 @@ impl Actor {
         pick(&self.forces, numbers.bits(), there)
     }
 
-    /// One of a body's shapes, if it has any.
+    /// Returns one of a body's shapes, if it has any.
     pub fn shape(&self, numbers: &mut Numbers, body: BodyId) -> Option<ShapeId> {
         let count = self.world.shape_ids(body).count();
         let number = numbers.index(count.max(1)) as u32;
         (count > 0).then_some(ShapeId { body, shape: number })
     }
 
-    /// A body that nothing keeps from being taken out.
+    /// Returns a body that may be removed.
     pub fn removable(&self, numbers: &mut Numbers) -> Option<BodyId> {
         self.body(numbers, |world, id| !is_worn(world, id) && world.body_owner(id).is_none())
     }
@@ -320,7 +320,7 @@ impl Actor {
     }
 }
 
-/// True if particles hang on a body or an object needs it: it cannot be taken out.
+/// Whether particles hang on a body or an object needs it, so that it cannot be removed.
 pub fn is_worn(world: &World, id: BodyId) -> bool {
     let by_particles = world.group_ids().any(|group| {
         let group = world.particles(group);
@@ -331,7 +331,7 @@ pub fn is_worn(world: &World, id: BodyId) -> bool {
     by_particles || world.object_ids().any(|object| world.object::<functions::Tug>(object).body == id)
 }
 
-/// A world that never knew the original, with all that the original's snapshot says.
+/// Returns a new world that loads the original's snapshot.
 pub fn stranger(original: &World) -> World {
     let mut world = World::new(WorldDef::default());
     functions::register(&mut world);
@@ -343,7 +343,7 @@ pub fn stranger(original: &World) -> World {
     world
 }
 
-/// Has a world load its own snapshot.
+/// Makes a world load its own snapshot.
 pub fn reload(world: &mut World) {
     let (mut shapes, mut state) = (Writer::new(), Writer::new());
     world.save_shapes(&mut shapes);
@@ -352,7 +352,7 @@ pub fn reload(world: &mut World) {
     world.load(&mut Reader::new(state.as_bytes())).expect("a saved world is valid");
 }
 
-/// The thing whose name the key likes best: the same one whatever others there are.
+/// Returns the object whose name ranks highest for the key: the same one whatever others there are.
 pub fn pick<T: Copy>(all: &[(u64, T)], key: u64, is: impl Fn(T) -> bool) -> Option<T> {
     let rank = |name: u64| {
         let mixed = (name ^ key).wrapping_mul(0xff51_afd7_ed55_8ccd);

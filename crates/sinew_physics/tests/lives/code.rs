@@ -1,9 +1,9 @@
-//! Values and calls as Rust, for the program that a failure is told by.
+//! Values and calls as Rust, for the program that shows a failure.
 
 use core::fmt::Debug;
 use sinew_physics::*;
 
-/// A value that can be written down as Rust.
+/// A value that can be written as Rust.
 pub trait Code {
     fn code(&self) -> String;
 }
@@ -14,13 +14,13 @@ impl<T: Debug> Code for T {
     }
 }
 
-/// An argument of a call, which is borrowed where it is so in the deed.
+/// An argument of a call, borrowed where the deed borrows it.
 pub fn argument(written: &str, value: &dyn Debug) -> String {
     let borrowed = if written.starts_with('&') { "&" } else { "" };
     format!("{borrowed}{}", rusty(&format!("{value:?}")))
 }
 
-/// Variants by their names, the enum that they are of, and what follows the name: nothing, `(` or ` {`.
+/// Variants by name, their enum, and what follows the name: nothing, `(` or ` {`.
 const VARIANTS: &[(&str, &str, &str)] = &[
     ("BodyKind", "Static Kinematic Dynamic", ""),
     ("Sleeping", "On Off", ""),
@@ -51,7 +51,7 @@ const VARIANTS: &[(&str, &str, &str)] = &[
     ("particles::Resists", "Both Stretch", ""),
 ];
 
-/// Enums whose variants have names of others, by the field that they are in.
+/// Enums whose variants share names with others, by their field.
 const FIELDS: &[(&str, &str)] = &[
     ("state", "JointState"),
     ("collision", "JointCollision"),
@@ -64,7 +64,7 @@ const FIELDS: &[(&str, &str)] = &[
 const LISTS: &str =
     " shapes particles springs bends tethers volumes triangles faces attachments backstops passes ";
 
-/// Rust of what `Debug` writes.
+/// Returns Rust for the output of `Debug`.
 pub fn rusty(text: &str) -> String {
     let mut out = String::new();
     let (mut rest, mut field) = (text, "");
@@ -119,7 +119,7 @@ fn is_id(part: &str) -> bool {
     part.starts_with(|c: char| c.is_ascii_digit())
 }
 
-/// A word that is no field and no number.
+/// A word that is neither a field nor a number.
 fn name(word: &str, field: &str, rest: &str) -> String {
     match word {
         "Vec3" => return "Vec3::new".to_owned(),
@@ -141,7 +141,7 @@ fn name(word: &str, field: &str, rest: &str) -> String {
     variant.map_or_else(|| word.to_owned(), |(kind, ..)| format!("{kind}::{word}"))
 }
 
-/// A shape as the call that makes it.
+/// Returns a shape as the call that makes it.
 fn shape(shape: &Shape) -> String {
     match shape {
         Shape::Hull(hull) => format!("Shape::hull(&{}).expect(\"a hull\")", hull.vertices().code()),
@@ -149,7 +149,7 @@ fn shape(shape: &Shape) -> String {
     }
 }
 
-/// Fields whose values differ from the default, as `name: value, `.
+/// Returns the fields whose values differ from the default, as `name: value, `.
 macro_rules! changed {
     ($value:expr, $default:expr, $($field:ident),*) => {{
         let mut text = String::new();

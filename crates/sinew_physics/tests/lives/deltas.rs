@@ -1,10 +1,10 @@
-//! Deltas of snapshots: exact, small where little changes, and refused where they are not what was written.
+//! Deltas of snapshots: exact, small for small changes, and refused if damaged.
 
 use crate::lies::at_each_step;
 use sinew_math::Random;
 use sinew_physics::*;
 
-/// Snapshots of a life, step by step, things coming and going between them.
+/// Returns snapshots of a life, step by step, with objects added and removed between them.
 fn snapshots(seed: u64) -> Vec<Snapshot> {
     let mut all = Vec::new();
     at_each_step(seed, |world| all.push(Snapshot::of(world)));
@@ -12,7 +12,7 @@ fn snapshots(seed: u64) -> Vec<Snapshot> {
 }
 
 #[test]
-fn a_delta_brings_back_the_later_snapshot() {
+fn a_delta_restores_the_later_snapshot() {
     for seed in 0..20 {
         let all = snapshots(seed);
         for (i, j) in [(0, 1), (1, 2), (5, 6), (0, 14), (14, 0), (13, 14), (7, 7)] {
@@ -36,7 +36,7 @@ fn a_delta_brings_back_the_later_snapshot() {
 }
 
 #[test]
-fn what_sleeps_and_stands_costs_next_to_nothing() {
+fn resting_bodies_add_almost_nothing_to_a_delta() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
     for i in 0..200 {

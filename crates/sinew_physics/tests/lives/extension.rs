@@ -1,4 +1,4 @@
-//! Objects kept beside a world, with deeds of their own: here none. The lives of the ragdoll crate run by the same files and have
+//! Objects kept beside a world, with their own deeds: none here. The lives of the ragdoll crate use the same files and have
 //! characters in this place.
 
 use crate::actor::Twin;
@@ -10,10 +10,10 @@ use sinew_physics::World;
 
 /// Types whose public methods the lives call.
 pub const CALLED: &[&str] = &["World"];
-/// Deeds beside those to the world, and names of those that begin a life.
+/// Deeds besides those of the world, and names of those that begin a life.
 pub const DEEDS: &[&[Deed]] = &[];
 pub const MAKERS: &[&str] = &[];
-/// Steps in which deeds are done.
+/// Steps with deeds.
 pub const BUSY: Range<u32> = 20..100;
 
 /// Objects kept beside a world.
@@ -33,29 +33,29 @@ impl Extension {
 
     pub fn after_step(&mut self, _: &mut World) {}
 
-    /// Bytes of its state.
+    /// Returns the bytes of its state.
     pub fn state(&self) -> Vec<u8> {
         Vec::new()
     }
 
-    /// Events of the last step.
+    /// Returns the events of the last step.
     pub fn events(&self) -> String {
         String::new()
     }
 
-    /// True if it gives energy that nobody counts.
+    /// Whether it releases energy that nothing counts.
     pub fn drives(&self) -> bool {
         false
     }
 
-    /// Looks at it after a step; `quiet`: steps since the last deed.
+    /// Checks it after a step; `quiet`: steps since the last deed.
     ///
     /// # Errors
-    /// If something is as it must not be.
+    /// If a check fails.
     pub fn look(&mut self, _: &World, _: Temper, _quiet: u32) -> Result<(), Fault> {
         Ok(())
     }
 
-    /// Takes all of it out of the world.
+    /// Removes all of it from the world.
     pub fn empty(&mut self, _: &mut World) {}
 }

@@ -1,4 +1,4 @@
-//! Functions and objects of the user's own that lives register.
+//! Functions and objects of the user that lives register.
 
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::field::{FieldPoint, PARAMETERS};
@@ -35,7 +35,7 @@ pub struct Tug {
     pub place: Vec3,
     /// N/m.
     pub stiffness: f32,
-    /// Substeps that it was asked in.
+    /// Substeps in which it was called.
     pub asked: u32,
 }
 
@@ -53,7 +53,7 @@ impl PhysicsObject for Tug {
         self.asked += 1;
         if forces.contains(self.body) {
             let pull = (self.place - forces.center_of_mass(self.body)) * self.stiffness;
-            // From beyond all numbers it pulls no more.
+            // Limits the pull from huge distances.
             if pull.length() < 1e12 {
                 forces.apply_force_at_center(self.body, pull);
             }

@@ -1,11 +1,11 @@
-//! The calls that there are, as the sources of the crate at hand have them: each needs a deed that makes it.
+//! The public calls in the sources of the crate: each needs a deed that makes it.
 
 use crate::extension::CALLED;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// Names of all public methods of the types that lives call: those of `World` by themselves, of others after the type's.
+/// Returns the names of all public methods of the types that lives call: those of `World` alone, of others after the type's.
 pub fn methods() -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src")];
@@ -25,7 +25,7 @@ pub fn methods() -> BTreeSet<String> {
     found
 }
 
-/// Name under which lives count a call.
+/// Returns the name under which lives count a call.
 fn named(of: &str, method: &str) -> String {
     if of == "World" { method.to_owned() } else { format!("{of}::{method}") }
 }
@@ -45,13 +45,13 @@ fn of_file(source: &str, found: &mut BTreeSet<String>) {
     }
 }
 
-/// True if the lives call every method.
+/// Checks that the lives call every method.
 pub fn has_all(calls: &BTreeMap<&'static str, u64>) -> bool {
     methods().iter().all(|name| calls.contains_key(name.as_str()))
 }
 
 /// # Panics
-/// If there is a method that no life calls, or the lives call one that is not there.
+/// If no life calls a method, or the lives call one that does not exist.
 pub fn expect_all(calls: &BTreeMap<&'static str, u64>) {
     let there = methods();
     let missing: Vec<&String> = there.iter().filter(|name| !calls.contains_key(name.as_str())).collect();

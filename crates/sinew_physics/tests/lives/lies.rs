@@ -1,5 +1,5 @@
-//! Snapshots that lie: bytes of a saved world of which some are others. Loading refuses them or makes a world of them, and that
-//! world can be stepped; nothing panics, and nothing takes long.
+//! Damaged snapshots: bytes of a saved world, some of them replaced. Loading refuses them or makes a world that
+//! can be stepped; nothing panics, and nothing takes long.
 
 use crate::actor::Actor;
 use crate::functions;
@@ -9,15 +9,15 @@ use sinew_math::{Random, Reader, Writer};
 use sinew_physics::*;
 use std::time::{Duration, Instant};
 
-/// Lies about each world, the fifth part of them unless `SINEW_FULL` is set, and worlds.
+/// Number of damaged snapshots of each world (a fifth of it unless `SINEW_FULL` is set), and of worlds.
 const LIES: usize = 500;
 const WORLDS: u64 = 20;
-/// Steps of what is loaded all the same.
+/// Steps of a world that loads nevertheless.
 const STEPS: usize = 3;
-/// Time for one to be loaded and stepped.
+/// Limit of the time for loading and stepping one.
 const LONG: Duration = Duration::from_secs(5);
 
-/// A world in the middle of a life, as bytes: its shapes and its state.
+/// Returns a world in the middle of a life, as bytes: its shapes and its state.
 fn saved(seed: u64) -> (Vec<u8>, Vec<u8>) {
     let mut last = (Vec::new(), Vec::new());
     at_each_step(seed, |world| {
@@ -29,7 +29,7 @@ fn saved(seed: u64) -> (Vec<u8>, Vec<u8>) {
     last
 }
 
-/// Shows a world after each of the first steps of a life.
+/// Passes a world to a function after each of the first steps of a life.
 pub fn at_each_step(seed: u64, mut show: impl FnMut(&World)) {
     let life = Life::of(seed);
     let (world, floor) = life.world();
@@ -52,14 +52,14 @@ fn lie(bytes: &mut Vec<u8>, random: &mut Random) {
         2 => bytes[at] = [0, 1, 0x7f, 0x80, 0xff][random.index(5)],
         3 => bytes.truncate(at),
         4 => {
-            // A number that is none, none that is finite, a huge one, or an index.
+            // NaN, infinity, a huge number, or an index.
             let number = [f32::NAN, f32::INFINITY, f32::MAX, -1.0, 0.0][random.index(5)].to_bits();
             let number = if random.unit() < 0.3 { random.index(40) as u32 } else { number };
             let end = usize::min(at + 4, bytes.len());
             bytes[at..end].copy_from_slice(&number.to_le_bytes()[..end - at]);
         }
         _ => {
-            // A piece of it is another piece.
+            // Copies a piece of it over another piece.
             let (from, length) = (random.index(bytes.len()), 1 + random.index(32));
             let length = usize::min(length, bytes.len() - usize::max(at, from));
             bytes.copy_within(from..from + length, at);
@@ -67,7 +67,7 @@ fn lie(bytes: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// Loads a snapshot and steps what comes of it; true if it was taken.
+/// Loads a snapshot and steps the world; returns whether it was accepted.
 fn live_on(shapes: &[u8], state: &[u8]) -> bool {
     let mut world = World::new(WorldDef::default());
     functions::register(&mut world);
@@ -82,7 +82,7 @@ fn live_on(shapes: &[u8], state: &[u8]) -> bool {
 }
 
 #[test]
-fn lying_snapshots_are_refused_or_lived_with() {
+fn damaged_snapshots_are_refused_or_step() {
     let mut random = Random::new(57);
     let (mut taken, mut all) = (0, 0);
     let lies = if std::env::var_os("SINEW_FULL").is_some() { LIES } else { LIES / 5 };
@@ -107,5 +107,5 @@ fn lying_snapshots_are_refused_or_lived_with() {
             all += 1;
         }
     }
-    eprintln!("{all} lying snapshots, {taken} taken");
+    eprintln!("{all} damaged snapshots, {taken} loaded");
 }

@@ -1,4 +1,4 @@
-//! A life: a world's settings and what is done to it before which step, from a seed.
+//! A life: a world's settings and the deeds before each step, from a seed.
 
 use crate::deeds::{self, Deed, MAKERS};
 use crate::extension;
@@ -10,14 +10,14 @@ use sinew_physics::*;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     HalfSpace,
-    /// A thick one: the short way out of it is up.
+    /// A thick one: the shortest way out of it is up.
     Box,
-    /// Boxes that abut.
+    /// Abutting boxes.
     Boxes,
     Mesh,
 }
 
-/// Something done before a step.
+/// A deed before a step.
 #[derive(Clone, Copy)]
 pub struct Act {
     pub step: u32,
@@ -36,14 +36,14 @@ pub struct Life {
     pub steps: u32,
 }
 
-/// Deeds whose works keep energy from being held against a world, and share of lives that do without them.
+/// Deeds after which energy cannot be checked, and the share of lives without them.
 const STIRRING: [&str; 5] = ["add_force", "set_force", "add_field", "add_particles", "add_object"];
 const PLAIN: f32 = 0.3;
-/// Steps after the last deed, in which a life is only looked at.
+/// Steps after the last deed, in which a life is only checked.
 const QUIET: u32 = 50;
 
 impl Life {
-    /// The life of a seed.
+    /// Returns the life of a seed.
     pub fn of(seed: u64) -> Self {
         let mut n = Numbers::new(seed ^ 0x5eed_0000, Taste::Any, Temper::Calm);
         let taste = n.one_of(&[Taste::Round, Taste::Equal, Taste::Bounds, Taste::Any, Taste::Any]);
@@ -92,7 +92,7 @@ impl Life {
         life
     }
 
-    /// A calm life that does each deed twice, six of them before each step: calls that are rare in others are in it.
+    /// Returns a calm life that does each deed twice, six of them before each step, so that it has the calls that are rare in others.
     pub fn of_each_deed(seed: u64) -> Self {
         let mut n = Numbers::new(!seed, Taste::Any, Temper::Calm);
         let all = deeds::all();
@@ -106,12 +106,12 @@ impl Life {
         Self { taste, temper, ground, def: WorldDef::default(), acts, steps }
     }
 
-    /// Numbers for one of its deeds.
+    /// Returns numbers for one of its deeds.
     pub fn numbers(&self, act: &Act) -> Numbers {
         Numbers::new(act.number, self.taste, self.temper)
     }
 
-    /// The world that it begins with, and its ground.
+    /// Returns its first world and its ground.
     pub fn world(&self) -> (World, BodyId) {
         let mut world = World::new(self.def.clone());
         crate::functions::register(&mut world);

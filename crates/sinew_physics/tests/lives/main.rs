@@ -1,4 +1,4 @@
-//! Random lives: worlds made and changed by sequences of all calls that there are, looked at from step to step.
+//! Random lives: worlds created and changed by sequences of all public calls, and checked after each step.
 //!
 //! A seed draws a life (`life.rs`): a sequence of deeds (`deeds/`), each of which calls the world with numbers that are
 //! round, equal, at their bounds, zero, huge or arbitrary (`numbers.rs`). Several worlds run the same life (`run.rs`): on one thread,
@@ -31,7 +31,7 @@ mod watch;
 
 use planted::Plant;
 
-/// Lives of a plain run of the tests: of the first fifty those that take less than a second.
+/// Lives of a plain test run: of the first fifty those that take less than a second.
 const SOME: &[u64] = &[
     0, 1, 2, 4, 5, 6, 7, 8, 9, 11, 13, 14, 15, 16, 18, 19, 20, 21, 22, 24, 25, 26, 27, 29, 31, 32, 33, 34,
     35, 36, 37, 39, 40, 41, 42, 43, 44, 45, 46, 49,
@@ -58,7 +58,7 @@ fn methods_are_read_from_the_sources() {
     assert!(!found.contains("expect_mut"), "what is private is no call");
 }
 
-/// Plants by the lives that find them soon.
+/// Planted faults with the lives that find them soon.
 const FINDERS: [(Plant, &[u64]); 7] = [
     (Plant::ForgottenField, &[5, 12, 17, 68, 11]),
     (Plant::ThreadOrder, &[51, 66, 29, 18, 39]),
@@ -69,7 +69,7 @@ const FINDERS: [(Plant, &[u64]); 7] = [
     (Plant::ThroughTheFloor, &[66, 18, 34, 6, 37]),
 ];
 
-/// Lives among which each is found, where the finders no longer do.
+/// Lives that are searched where the listed ones no longer find a fault.
 const LIVES: u64 = 80;
 
 #[test]

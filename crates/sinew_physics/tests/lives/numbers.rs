@@ -1,12 +1,12 @@
-//! Numbers that a life is made of: round, equal, at their bounds, zero, huge, or any.
+//! Numbers of a life: round, equal, at their bounds, zero, huge, or any.
 
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::Velocity;
 
-/// Choice of numbers of a life.
+/// Kind of numbers of a life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taste {
-    /// Few, which people write down.
+    /// Few, such as people write.
     Round,
     /// One for each range.
     Equal,
@@ -16,12 +16,12 @@ pub enum Taste {
     Any,
 }
 
-/// Temper of a life: what its calls may ask for.
+/// Range of the arguments of a life's calls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Temper {
     /// Sizes and speeds of games.
     Calm,
-    /// Now and then numbers up to the greatest that there are.
+    /// Sometimes numbers up to the largest possible ones.
     Wild,
 }
 
@@ -35,7 +35,7 @@ pub struct Numbers {
 const HUGE: [f32; 7] = [1e3, 1e6, 1e9, 1e12, 1e20, 1e30, f32::MAX];
 const TINY: [f32; 4] = [0.0, 1e-3, 1e-12, f32::MIN_POSITIVE];
 const ROUND: [f32; 9] = [0.0, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 100.0];
-/// Share of numbers of a wild life that are out of all measure.
+/// Share of extreme numbers of a wild life.
 const WILD_SHARE: f32 = 0.08;
 
 impl Numbers {
@@ -43,7 +43,7 @@ impl Numbers {
         Self { random: Random::new(seed), taste, temper }
     }
 
-    /// Any number: what deeds choose by.
+    /// Returns any number, by which deeds choose.
     pub fn bits(&mut self) -> u64 {
         self.random.bits()
     }
@@ -60,7 +60,7 @@ impl Numbers {
         all[self.random.index(all.len())]
     }
 
-    /// A number of a range, by taste.
+    /// Returns a number of a range, by the life's kind.
     pub fn between(&mut self, lo: f32, hi: f32) -> f32 {
         match self.taste {
             Taste::Any => self.random.range(lo, hi),
@@ -74,7 +74,7 @@ impl Numbers {
         }
     }
 
-    /// A number of both signs, at most this far from 0; of a wild life now and then beyond all measure.
+    /// Returns a number of either sign, at most this far from 0; in a wild life sometimes extreme.
     pub fn signed(&mut self, most: f32) -> f32 {
         let sign = if self.chance(0.5) { 1.0 } else { -1.0 };
         if self.is_wild() {
@@ -84,7 +84,7 @@ impl Numbers {
         if self.chance(0.2) { 0.0 } else { sign * self.between(0.0, most) }
     }
 
-    /// A number of a range that is not negative; of a wild life now and then beyond all measure.
+    /// Returns a number of a range that is not negative; in a wild life sometimes extreme.
     pub fn least(&mut self, lo: f32, hi: f32) -> f32 {
         if self.is_wild() { self.one_of(&HUGE) } else { self.between(lo, hi) }
     }
@@ -97,7 +97,7 @@ impl Numbers {
         Vec3::new(self.signed(most), self.signed(most), self.signed(most))
     }
 
-    /// A direction that is a joint's or a surface's.
+    /// Returns a direction for a joint or a surface.
     pub fn direction(&mut self) -> Vec3 {
         match self.taste {
             Taste::Any => self.random.direction(),
@@ -124,7 +124,7 @@ impl Numbers {
         }
     }
 
-    /// A place over the floor, within the reach of the others.
+    /// Returns a place above the floor, near the others.
     pub fn place(&mut self) -> Vec3 {
         let (x, z) = (self.signed(3.0), self.signed(3.0));
         Vec3::new(x, self.between(0.5, 3.0), z)

@@ -1,4 +1,4 @@
-//! Faults that are planted, each of a kind that the search has to find.
+//! Planted faults, each of a kind that the search must find.
 
 use crate::life::Life;
 use crate::run::run;
@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 /// Fault that is planted into a world, or into its events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plant {
-    /// A snapshot that forgets how long bodies have lain still.
+    /// A snapshot that forgets times at rest.
     ForgottenField,
-    /// A thread that comes first where it should not.
+    /// A race between threads.
     ThreadOrder,
     NotANumber,
     EventTwice,
@@ -34,14 +34,14 @@ impl Plant {
     ];
 }
 
-/// Steps at the end of a life in which a planted fault is there.
+/// Steps at the end of a life with the planted fault.
 pub const LAST: u32 = 15;
 
 impl Plant {
-    /// Changes a world that was just made from another.
+    /// Changes a world that was just created from another.
     pub fn in_twin(self, world: &mut World) {
         if self == Self::ForgottenField {
-            // What a snapshot without the times of rest would bring back: bodies at rest begin anew.
+            // The result of a snapshot without times at rest: resting bodies begin anew.
             let rested: Vec<BodyId> = world.body_ids().filter(|&id| world.is_awake(id)).collect();
             rested.into_iter().for_each(|id| world.wake(id));
         }
@@ -68,13 +68,13 @@ impl Plant {
         let moving = world.body_ids().find(|&id| world.kind(id) == BodyKind::Dynamic && world.is_awake(id));
         if let Some(id) = moving {
             let v = world.velocity(id);
-            // The last bit, as a sum in another order has it.
+            // The last bit, as a sum in another order would give.
             let x = f32::from_bits(v.linear.x.to_bits() ^ 1);
             world.set_velocity(id, Velocity { linear: Vec3 { x, ..v.linear }, ..v });
         }
     }
 
-    /// Events that a step tells beside those that it tells.
+    /// Returns additional events of a step.
     pub fn events(self, is_due: bool, told: &Events) -> Events {
         let mut more = Events::default();
         match self {
@@ -85,7 +85,7 @@ impl Plant {
         more
     }
 
-    /// A velocity as it is seen after a step: no call of a world leaves one that is not finite.
+    /// Replaces a velocity after a step: no call of a world leaves one that is not finite.
     pub fn seen(self, is_due: bool, velocity: Velocity) -> Velocity {
         if self == Self::NotANumber && is_due && velocity.linear.y < 0.0 {
             return Velocity { linear: Vec3 { y: f32::NAN, ..velocity.linear }, ..velocity };
@@ -94,7 +94,7 @@ impl Plant {
     }
 }
 
-/// Holds a body below the floor, as what has fallen through it would be.
+/// Holds a body below the floor, as if it had fallen through.
 fn sink(world: &mut World) {
     let dynamic = world.body_ids().find(|&id| world.kind(id) == BodyKind::Dynamic);
     if let Some(id) = dynamic {
@@ -105,7 +105,7 @@ fn sink(world: &mut World) {
 }
 
 impl Plant {
-    /// True if a life has found this fault, and not some other.
+    /// Whether a life has found this fault and not another.
     pub fn is_found(self, fault: &Fault) -> bool {
         match self {
             Self::ForgottenField | Self::ThreadOrder => matches!(fault, Fault::Differs(_)),
@@ -117,7 +117,7 @@ impl Plant {
         }
     }
 
-    /// The lives of `seeds` that find this fault, those that take least time first.
+    /// Returns the lives of `seeds` that find this fault, the fastest first.
     pub fn found_in(self, seeds: Range<u64>) -> Vec<(Duration, u64)> {
         let found = |seed| {
             let began = Instant::now();

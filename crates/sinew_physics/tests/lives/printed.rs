@@ -1,4 +1,4 @@
-//! What a life prints is a program that does the same.
+//! The program that a life prints does the same.
 
 use crate::deeds;
 use crate::life::{Act, Ground, Life};
@@ -7,7 +7,7 @@ use crate::run::{program, run};
 use sinew_physics::WorldDef;
 use std::path::Path;
 
-/// The program that is kept.
+/// The stored program.
 #[allow(
     unused,
     clippy::all,
@@ -20,7 +20,7 @@ mod kept {
 /// Its particles are few.
 const SEED: u64 = 8;
 
-/// A life that does each deed, all before its first step: what is printed does not depend on what steps make of it.
+/// A life that does each deed before its first step: the printed text does not depend on steps.
 fn of_each_deed() -> Life {
     let mut n = Numbers::new(SEED, Taste::Any, Temper::Calm);
     let is_maker = |name| deeds::MAKERS.contains(&name) && name != "add_particles";
@@ -31,7 +31,7 @@ fn of_each_deed() -> Life {
     Life { taste, temper, ground, def: WorldDef::default(), acts, steps: 45 }
 }
 
-/// The file `program.txt`, which is compiled, is what the life prints, and does what the life does. `SINEW_BLESS` writes it anew.
+/// The file `program.txt`, which is compiled, equals the printed text, and does what the life does. `SINEW_BLESS` writes it.
 #[test]
 fn a_printed_program_does_what_the_life_did() {
     let life = of_each_deed();

@@ -1,4 +1,4 @@
-//! Runs a life in several worlds that have to be the same.
+//! Runs a life in several worlds that must be equal.
 
 use crate::actor::{Actor, Twin, is_worn};
 use crate::life::{Ground, Life};
@@ -16,21 +16,21 @@ pub struct Failure {
     pub fault: Fault,
 }
 
-/// Calls of a life by name, and how it went.
+/// Calls of a life by name, and its result.
 pub struct Outcome {
     pub result: Result<(), Failure>,
     pub calls: BTreeMap<&'static str, u64>,
-    /// Deeds that found something to do.
+    /// Deeds that had an object to act on.
     pub deeds: u64,
-    /// Largest rise of energy, as a share of what is allowed.
+    /// Largest rise of energy, as a share of the allowed one.
     pub rise: f32,
     /// Hash of the first world's last state.
     pub hash: u64,
-    /// The program that does the same, if it was asked for.
+    /// The equivalent program, if it was requested.
     pub program: Option<Vec<String>>,
 }
 
-/// Most worlds beside the two that begin.
+/// Largest number of worlds besides the first two.
 const MOST_TWINS: usize = 2;
 
 thread_local! {
@@ -38,7 +38,7 @@ thread_local! {
     static CATCHES: RefCell<bool> = const { RefCell::new(false) };
 }
 
-/// Panics of lives are kept, not written.
+/// Panics of lives are caught, not printed.
 fn catch_panics() {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -53,7 +53,7 @@ fn catch_panics() {
     });
 }
 
-/// What a function returns, or what it panics with.
+/// Returns the result of a function, or its panic.
 pub fn caught<T>(run: impl FnOnce() -> T) -> Result<T, String> {
     catch_panics();
     CATCHES.with(|catches| *catches.borrow_mut() = true);
@@ -68,7 +68,7 @@ pub fn caught<T>(run: impl FnOnce() -> T) -> Result<T, String> {
 struct Run<'a> {
     life: &'a Life,
     actors: Vec<Actor>,
-    /// What the twins are, for who reads of a fault.
+    /// Descriptions of the twins, for messages.
     names: Vec<String>,
     watch: Watch,
     plant: Option<Plant>,
@@ -76,7 +76,7 @@ struct Run<'a> {
     deeds: u64,
 }
 
-/// Runs a life, with a fault planted in it or none; `told`: as a program too.
+/// Runs a life with an optional planted fault; `told`: also as a program.
 pub fn run(life: &Life, plant: Option<Plant>, told: bool) -> Outcome {
     let (world, floor) = life.world();
     let mut first = Actor::new(world, floor, None);
@@ -112,7 +112,7 @@ impl Run<'_> {
         self.empty()
     }
 
-    /// Does a deed to all worlds.
+    /// Does a deed in all worlds.
     fn act(&mut self, act: &crate::life::Act) -> Result<(), Fault> {
         let steps = self.actors[0].world.step_count();
         let mut done = false;
@@ -147,7 +147,7 @@ impl Run<'_> {
         }
     }
 
-    /// Another world goes on beside the others.
+    /// Adds another world beside the others.
     fn join(&mut self, kind: Twin) -> Result<(), Fault> {
         if self.actors.len() >= 2 + MOST_TWINS {
             return Ok(());
@@ -182,7 +182,7 @@ impl Run<'_> {
         self.compare()
     }
 
-    /// A step was taken: all worlds are as they must be, and the same.
+    /// Checks all worlds after a step, and that they are equal.
     fn compare(&mut self) -> Result<(), Fault> {
         let is_due = self.step + LAST >= self.life.steps;
         if let Some(plant) = self.plant {
@@ -192,7 +192,7 @@ impl Run<'_> {
         let plant = self.plant;
         let seen = |velocity| plant.map_or(velocity, |plant| plant.seen(is_due, velocity));
         self.watch.look(self.life, &mut self.actors[0], seen)?;
-        // The watch asks for both.
+        // The watch needs both.
         ["events", "work"].into_iter().for_each(|name| self.actors[0].count(name));
         let events = self.actors[0].world.events().clone();
         if let Some(plant) = self.plant {
@@ -233,7 +233,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Takes everything out; whatever began has to end.
+    /// Removes everything; whatever began must end.
     fn empty(&mut self) -> Result<(), Fault> {
         for actor in &mut self.actors {
             actor.begin(1);
@@ -256,7 +256,7 @@ impl Run<'_> {
     }
 }
 
-/// The first lines that differ.
+/// Returns the first lines that differ.
 fn differing(p: &str, q: &str) -> (String, String) {
     let lines = p.lines().zip(q.lines()).find(|(p, q)| p != q);
     let (p, q) = lines.unwrap_or((p, q));
@@ -270,7 +270,7 @@ fn unlike(p: &Events, q: &Events) -> String {
     format!("{p} for {q}")
 }
 
-/// The program that does what a life did, until it failed.
+/// Returns the program that does what a life did until it failed.
 pub fn program(life: &Life, lines: &[String]) -> String {
     let mut out =
         String::from("use crate::actor::{reload, stranger};\nuse crate::functions::{Tug, register};\n");

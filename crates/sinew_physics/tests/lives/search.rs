@@ -1,4 +1,4 @@
-//! Runs many lives beside each other, and tells of those that fail.
+//! Runs many lives side by side, and reports those that fail.
 
 use crate::life::Life;
 use crate::run::{self, Outcome, run};
@@ -11,23 +11,23 @@ use std::time::{Duration, Instant};
 
 /// Time of a full run.
 const LONG: Duration = Duration::from_secs(600);
-/// Lives of each deed that are run at most for calls that are in none of those that were asked for.
+/// Largest number of additional lives of each deed, for calls that the requested lives do not make.
 const RARE: u64 = 8;
-/// Time after which a life is told to be slow.
+/// Time after which a life is reported as slow.
 const SLOW: Duration = Duration::from_secs(2);
-/// Lives after which those who wait are told how far it is.
+/// Lives between progress messages.
 const PROGRESS: u64 = 500;
 
 /// Lives that a test run covers.
 struct Asked {
-    /// Seeds, or numbers of those that are listed.
+    /// Seeds, or indices into a list.
     seeds: Range<u64>,
     listed: &'static [u64],
     time: Duration,
 }
 
 impl Asked {
-    /// Seeds from one to before another (`SINEW_LIVES=17..1000`), those from one on for some time (`SINEW_LIVES=17.. SINEW_MINUTES=20`), all for ten
+    /// Returns a range of seeds (`SINEW_LIVES=17..1000`), those from one on for some time (`SINEW_LIVES=17.. SINEW_MINUTES=20`), all for ten
     /// minutes (`SINEW_FULL`), or else some.
     fn of(some: &'static [u64]) -> Self {
         let minutes = std::env::var("SINEW_MINUTES").ok();
@@ -45,14 +45,14 @@ impl Asked {
         }
     }
 
-    /// Seed of a number, if it is one of those.
+    /// Returns the seed of a number, if it is one of these.
     fn seed(&self, number: u64) -> Option<u64> {
         let listed = self.listed.get(number as usize).copied();
         self.seeds.contains(&number).then(|| listed.unwrap_or(number))
     }
 }
 
-/// A failure made short, as text.
+/// Returns a shrunk failure as text.
 fn told(seed: u64, outcome: &Outcome) -> String {
     let failure = outcome.result.as_ref().expect_err("a failure");
     let (least, failure) = shrink::shrunk(&Life::of(seed), failure);
@@ -70,11 +70,11 @@ struct Sum {
     calls: BTreeMap<&'static str, u64>,
     rise: f32,
     failed: Vec<(u64, String)>,
-    /// First seed that was not looked at.
+    /// First seed that was not run.
     next: u64,
 }
 
-/// Runs lives until their seeds or their time are over.
+/// Runs lives until their seeds or their time are used up.
 fn all(asked: &Asked, workers: usize) -> Sum {
     let (next, start) = (AtomicU64::new(asked.seeds.start), Instant::now());
     let worker = || {
@@ -121,7 +121,7 @@ fn all(asked: &Asked, workers: usize) -> Sum {
     total
 }
 
-/// Lives that run beside each other.
+/// Number of lives that run side by side.
 pub fn workers() -> usize {
     std::env::var("SINEW_WORKERS")
         .ok()
@@ -129,10 +129,10 @@ pub fn workers() -> usize {
         .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, core::num::NonZero::get))
 }
 
-/// Runs lives and reports those that fail, the first of them as a short program.
+/// Runs lives and reports failures, the first of them as a short program.
 ///
 /// # Panics
-/// If one fails, or if at least as many as `some` leave a call out.
+/// If one fails, or if at least as many as `some` lack a call.
 pub fn search(some: &'static [u64]) {
     let asked = Asked::of(some);
     let mut sum = all(&asked, workers());
@@ -174,7 +174,7 @@ fn log(line: &str) {
     }
 }
 
-/// Makes the failures among the lives that are asked for short, and prints them.
+/// Shrinks the failures among the requested lives, and prints them.
 pub fn shorten(some: &'static [u64]) {
     let asked = Asked::of(some);
     for seed in asked.seeds.clone().filter_map(|number| asked.seed(number)) {

@@ -1,13 +1,13 @@
-//! Makes a life that fails as short as it goes while it fails in the same way.
+//! Shrinks a failing life as long as it fails in the same way.
 
 use crate::life::Life;
 use crate::run::{Failure, run};
 use std::time::{Duration, Instant};
 
-/// Time after which what is left is taken as it is.
+/// Time after which shrinking stops.
 const TIME: Duration = Duration::from_secs(60);
 
-/// A life from which nothing can be left out, and how it fails.
+/// A minimal life, and its fault.
 pub fn shrunk(life: &Life, failure: &Failure) -> (Life, Failure) {
     let start = Instant::now();
     let mut least = (life.clone(), failure.clone());
@@ -43,7 +43,7 @@ fn cut_end(least: &mut (Life, Failure)) {
     least.0.acts.retain(|act| act.step <= last);
 }
 
-/// Takes a life if it fails as the other does.
+/// Accepts a life if it fails as the other does.
 fn fails_alike(less: Life, least: &mut (Life, Failure)) -> bool {
     let Err(found) = run(&less, None, false).result else { return false };
     if !found.fault.is_like(&least.1.fault) {
@@ -54,7 +54,7 @@ fn fails_alike(less: Life, least: &mut (Life, Failure)) -> bool {
     true
 }
 
-/// Deeds come as early as they may.
+/// Moves deeds to the earliest possible step.
 fn earlier(least: &mut (Life, Failure), start: Instant) {
     for by in [64, 16, 4, 1] {
         let mut from = 0;

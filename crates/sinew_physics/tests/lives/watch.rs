@@ -1,4 +1,4 @@
-//! Watches one world from step to step: what must hold whatever is done to it.
+//! Checks one world after each step: what must hold for any calls.
 
 use crate::actor::Actor;
 use crate::life::{Ground, Life};
@@ -7,27 +7,27 @@ use sinew_math::Vec3;
 use sinew_physics::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Something that must not be.
+/// Fault of a world.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
     Panic(String),
     NotFinite(String),
-    /// An event that comes twice, or an end without a begin.
+    /// A repeated begin, or an end without a begin.
     Event(String),
-    /// Bodies that are told to touch, far apart; or events that never end.
+    /// Bodies reported as touching that are far apart, or events that never end.
     Touch(String),
     Below(String),
-    /// A limb that flies, or a joint that gapes.
+    /// A limb that flies away, or an open joint.
     #[allow(dead_code, reason = "worlds without characters have none")]
     Limb(String),
-    /// With the rise as a share of what is allowed.
+    /// With the rise as a share of the allowed one.
     Energy(f32, String),
-    /// Another world that should be the same.
+    /// Another world that should be equal differs.
     Differs(String),
 }
 
 impl Fault {
-    /// True if the other is the same kind of fault: of panics, with the same words; of energy, with half as much or more.
+    /// Whether the other is the same kind of fault: for panics, with the same words; for energy, at least half as large.
     pub fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Panic(p), Self::Panic(q)) => words(p) == words(q),
@@ -52,33 +52,33 @@ pub struct Watch {
     sensed_shapes: BTreeSet<ShapePair>,
     /// Steps for which a pair has been far apart.
     apart: BTreeMap<BodyPair, u32>,
-    /// Steps for which a body has been below the floor and has not risen, and its height.
+    /// Steps for which a body has been below the floor without rising, and its height.
     below: BTreeMap<BodyId, (u32, f32)>,
     /// Steps since the last deed that changes something.
     quiet: u32,
     energy: Option<Energy>,
-    /// Largest rise of energy, as a share of what is allowed.
+    /// Largest rise of energy, as a share of the allowed one.
     pub rise: f32,
 }
 
-/// Steps after a deed from which on energy is held against a world.
+/// Steps after a deed from which on energy is checked.
 const SETTLED: u32 = 30;
-/// Rise of energy within a step, as a share of the kinetic energy or of 1 J/kg, and of what height and springs hold: rounding.
+/// Allowed rise of energy in a step, as a share of the kinetic energy or of 1 J/kg, and of potential energy: rounding.
 const RISE: f32 = 0.01;
 const ROUNDING: f32 = 1e-5;
-/// The same while something is where it cannot stay, pressed into another.
+/// The same while bodies are pressed into each other.
 const STRAINED: f32 = 2.0;
-/// Overlaps (metres), gaps (metres) and overshoots (radians) from which on it is so.
+/// Overlaps (metres), gaps (metres) and overshoots (radians) from which on that holds.
 const OVERLAP: f32 = 5e-3;
 const GAP: f32 = 1e-3;
 const OVERSHOOT: f32 = 0.02;
-/// Gap at which bodies surely do not touch, metres, and steps until that must have been told.
+/// Gap at which bodies surely do not touch, metres, and steps until the end must have been reported.
 const FAR: f32 = 0.05;
 const LATE: u32 = 3;
 /// Depth of a whole body below the floor, metres, and steps for which it may be pressed there.
 const DEPTH: f32 = 0.05;
 const PRESSED: u32 = 60;
-/// Rise within a step of what is on its way out of the floor, metres.
+/// Rise per step of a body that leaves the floor, metres.
 const RISES: f32 = 1e-3;
 
 fn fault<T>(fault: impl Fn(String) -> Fault, text: String) -> Result<T, Fault> {
@@ -105,15 +105,15 @@ fn noted<T: Ord + Copy + core::fmt::Debug>(
 }
 
 impl Watch {
-    /// A deed was done.
+    /// Called after a deed.
     pub fn disturb(&mut self) {
         self.quiet = 0;
     }
 
-    /// A step was taken.
+    /// Checks the world after a step.
     ///
     /// # Errors
-    /// If something is as it must not be.
+    /// If a check fails.
     pub fn look(
         &mut self,
         life: &Life,
@@ -132,7 +132,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Counts what a step tells of.
+    /// Counts the events of a step.
     pub fn events(&mut self, events: &Events) -> Result<(), Fault> {
         noted(&mut self.touching, &events.begin, &events.end, "touch")?;
         noted(&mut self.shapes, &events.shapes_begin, &events.shapes_end, "touch of shapes")?;
@@ -141,7 +141,7 @@ impl Watch {
         noted(&mut self.sensed_shapes, begin, end, "sensing of shapes")
     }
 
-    /// Pairs that touch or sense are near each other.
+    /// Checks that touching and sensed pairs are near each other.
     fn stale(&mut self, actor: &Actor) -> Result<(), Fault> {
         let world = &actor.world;
         let dt = world.def().dt();
@@ -171,7 +171,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Nothing that the floor bears is below it.
+    /// Checks that no body that the floor carries is below it.
     fn floor(&mut self, life: &Life, actor: &Actor) -> Result<(), Fault> {
         let world = &actor.world;
         let reach = match life.ground {
@@ -198,7 +198,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Energy rises by no more than what comes in.
+    /// Checks that energy rises by no more than the work.
     fn energy(&mut self, actor: &Actor) -> Result<(), Fault> {
         let world = &actor.world;
         let now = world.energy();
@@ -221,10 +221,10 @@ impl Watch {
         Ok(())
     }
 
-    /// The world is empty: whatever began has ended.
+    /// Checks an empty world: whatever began has ended.
     ///
     /// # Errors
-    /// If something has not.
+    /// If something did not end.
     pub fn end(&self) -> Result<(), Fault> {
         let open = self.touching.len() + self.shapes.len() + self.sensed.len() + self.sensed_shapes.len();
         if open == 0 {
@@ -257,7 +257,7 @@ fn finite(world: &World, seen: impl Fn(Velocity) -> Velocity) -> Result<(), Faul
     Ok(())
 }
 
-/// True if nothing keeps a body from lying on the floor.
+/// Whether nothing keeps a body from lying on the floor.
 fn is_borne(world: &World, id: BodyId, floor: BodyId) -> bool {
     let plain = |shape: ShapeId| {
         world.sensing(shape) == Sensing::Solid
@@ -273,7 +273,7 @@ fn is_borne(world: &World, id: BodyId, floor: BodyId) -> bool {
         && !world.neighbors(id).any(pressed)
 }
 
-/// True if nothing gives energy but what is counted as work.
+/// Whether no source of energy is uncounted.
 fn is_passive(world: &World) -> bool {
     let is_still = |id: BodyId| {
         let runs = |shape: ShapeId| {
@@ -297,12 +297,12 @@ fn is_passive(world: &World) -> bool {
         && world.joint_ids().all(is_plain)
 }
 
-/// True if shapes overlap by much: taking them apart raises weights.
+/// Whether shapes overlap deeply: separating them raises weights.
 fn is_strained(world: &World) -> bool {
     world.contacts().any(|contact| contact.points().iter().any(|point| point.separation < -OVERLAP))
 }
 
-/// True if joints gape: some cannot close, since a body that nothing moves is elsewhere.
+/// Whether joints are open: some cannot close, because a body that nothing moves is elsewhere.
 fn is_torn(world: &World) -> bool {
     let enabled = |id: &JointId| world.joint(*id).state == JointState::Enabled;
     let open = |id: JointId| world.joint_gap(id) > GAP || world.joint_overshoot(id) > OVERSHOOT;

@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn crossing_the_near_plane_leaves_what_is_in_front() {
+    fn clipping_keeps_the_part_in_front() {
         let polygon = clip([[0.0, 0.5, 1.0], [-0.5, -0.5, 1.0], [0.0, 0.0, -1.0]], 0.5);
         assert_eq!(polygon.corners().len(), 4);
         assert!(polygon.corners().iter().all(|v| v[2] >= 0.5));

@@ -393,7 +393,7 @@ pub(crate) struct Pixel {
     pub(crate) start: usize,
 }
 
-/// Takes what [`scan`] finds.
+/// Gets the results of [`scan`].
 pub(crate) trait Cells {
     /// Depths of eight samples side by side, from the first of a pixel on, and which of them are covered: at least one. To be marked
     /// `#[inline(always)]`.
@@ -619,7 +619,7 @@ mod tests {
     }
 
     #[test]
-    fn covers_what_the_half_planes_say() {
+    fn coverage_matches_half_planes() {
         let mut random = Random::new(11);
         for case in 0..600 {
             let mut vertices = [vertex(&mut random), vertex(&mut random), vertex(&mut random)];

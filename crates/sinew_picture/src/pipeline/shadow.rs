@@ -1,4 +1,4 @@
-//! Shadow map: an orthographic depth picture taken from the sun, which tells where its light does not reach.
+//! Shadow map: an orthographic depth picture from the sun, which shows where its light does not reach.
 
 use crate::pipeline::clip::{clip, is_whole, unseen};
 use crate::pipeline::raster::{Area, Cells, Footprint, Lattice, NOTHING, Pixel, ScreenVertex, floor, scan};
@@ -13,7 +13,7 @@ pub(crate) struct ShadowMap {
     size: usize,
     /// Height toward the sun per texel; −∞ where nothing is. Rows are whole lanes.
     heights: Vec<f32>,
-    /// Greatest height per square of [`BLOCK`] texels: most points lie above all that could shade them.
+    /// Greatest height per square of [`BLOCK`] texels: most points lie above all shapes that could shade them.
     highest: Vec<f32>,
     /// Triangles that are still to be drawn into the map.
     casting: Vec<Footprint>,
@@ -132,7 +132,7 @@ impl ShadowMap {
         }
     }
 
-    /// Draws what was cast into the map.
+    /// Draws the collected shapes into the map.
     pub(crate) fn finish(&mut self) {
         dispatch::run(Raise(self));
     }
@@ -215,7 +215,7 @@ impl ShadowMap {
     }
 }
 
-/// Draws all that was cast into a map.
+/// Draws all collected shapes into a map.
 struct Raise<'a>(&'a mut ShadowMap);
 
 impl Kernel for Raise<'_> {

@@ -1,4 +1,4 @@
-//! Visible surfaces, against rays shot one by one and against what must not be seen.
+//! Visible surfaces, against rays shot one by one and against hidden surfaces.
 
 use sinew::math::{Random, Transform, Vec2, Vec3};
 use sinew::physics::Shape;
@@ -15,7 +15,7 @@ const CAMERA: Camera = Camera { position: Vec3::ZERO, target: Vec3::NEG_Z, fov_y
 
 /// The same light from all sides, and a white sky: a surface shows its own colour.
 fn plain(models: Vec<Model>) -> Scene {
-    // Things get 0.55 of the sky's light, and all of the ground's.
+    // Objects get 0.55 of the sky's light, and all of the ground's.
     let sky = Sky { zenith: [1.0 / 0.55; 3], horizon: [1.0 / 0.55; 3], ground: [1.0; 3], haze_distance: 1e6 };
     let sun = Sun { color: [0.0; 3], ..Sun::default() };
     Scene { models, sky, sun, ..Scene::default() }
@@ -40,7 +40,7 @@ fn is_sky(image: &Image, x: u32, y: u32) -> bool {
     image.pixel(x, y)[..3] == [255, 255, 255]
 }
 
-/// Ray through the middle of a pixel at depth 1, by the definition of a pinhole camera.
+/// Returns the ray through the middle of a pixel at depth 1, by the definition of a pinhole camera.
 fn ray(x: u32, y: u32) -> Vec3 {
     let half = sinew::math::trig::tan(0.5 * CAMERA.fov_y);
     let across = (x as f32 + 0.5) / WIDTH as f32 * 2.0 - 1.0;
@@ -48,7 +48,7 @@ fn ray(x: u32, y: u32) -> Vec3 {
     Vec3::new(across * half * WIDTH as f32 / HEIGHT as f32, -down * half, -1.0)
 }
 
-/// Depth at which a ray from the origin meets a triangle, and how far inside it is (least barycentric coordinate).
+/// Returns the depth at which a ray from the origin hits a triangle, and its least barycentric coordinate.
 fn shoot(ray: Vec3, [a, b, c]: [Vec3; 3]) -> Option<(f32, f32)> {
     let normal = (b - a).cross(c - a);
     let depth = a.dot(normal) / ray.dot(normal);
@@ -63,7 +63,7 @@ fn every_pixel_shows_the_nearest_triangle() {
     let mut random = Random::new(2);
     let mut disputed = 0;
     for _ in 0..40 {
-        // Corners before, beside and behind the camera: many triangles cross the near plane.
+        // Corners in front of, beside and behind the camera: many triangles cross the near plane.
         let mut corner =
             || Vec3::new(random.range(-4.0, 4.0), random.range(-4.0, 4.0), random.range(-6.0, 1.5));
         let triangles: Vec<[Vec3; 3]> = (0..12).map(|_| [corner(), corner(), corner()]).collect();
@@ -103,7 +103,7 @@ fn srgb(linear: f32) -> f32 {
 fn a_ground_of_many_triangles_has_no_hole() {
     let mut random = Random::new(8);
     let side = 24;
-    // Jittered corners from far behind the camera to far before it.
+    // Jittered corners from far behind the camera to far in front of it.
     let mut model = triangle([Vec3::ZERO; 3], [0.5; 3]);
     model.positions = (0..side * side)
         .map(|i| {
@@ -119,7 +119,7 @@ fn a_ground_of_many_triangles_has_no_hole() {
         let image = draw(&plain(vec![model.clone()]), antialiasing);
         let lit = image.pixel(WIDTH / 2, HEIGHT - 1);
         for (x, y) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y))) {
-            // Rays that meet the ground within 30 m to each side.
+            // Rays that hit the ground within 30 m to each side.
             let at = ray(x, y) / -ray(x, y).y;
             if ray(x, y).y < -0.04 && at.x.abs() < 30.0 && at.z.abs() < 30.0 {
                 assert_eq!(image.pixel(x, y), lit, "pixel {x} {y}");
@@ -142,7 +142,7 @@ fn smoothed_edges_show_the_share_that_is_covered() {
 }
 
 #[test]
-fn odd_input_is_left_out() {
+fn invalid_triangles_are_skipped() {
     let good = [Vec3::new(-1.0, -1.0, -3.0), Vec3::new(1.0, -1.0, -3.0), Vec3::new(0.0, 1.0, -3.0)];
     let expected = draw(&plain(vec![triangle(good, [0.5; 3])]), Antialiasing::Samples4);
     let mut models = vec![triangle(good, [0.5; 3]), Model::default()];
@@ -166,7 +166,7 @@ fn odd_input_is_left_out() {
 }
 
 #[test]
-fn odd_cameras_lines_and_lights_do_no_harm() {
+fn extreme_cameras_lines_and_lights_do_not_panic() {
     let mut renderer = Renderer::new(RenderSettings { width: 1, height: 1, ..RenderSettings::default() });
     let mut scene =
         Scene { models: vec![draw::floor(Vec3::ZERO, 1e6, [0.5; 3], [0.2; 3])], ..Scene::default() };
@@ -206,7 +206,7 @@ fn back_faces_are_drawn_or_not_as_asked() {
 }
 
 #[test]
-fn glass_mixes_with_what_is_behind_it() {
+fn glass_blends_with_the_background() {
     let at = |z: f32| [Vec3::new(-9.0, -9.0, z), Vec3::new(9.0, -9.0, z), Vec3::new(0.0, 9.0, z)];
     let wall = triangle(at(-4.0), [0.0, 0.0, 1.0]);
     let mut glass = triangle(at(-2.0), [1.0, 0.0, 0.0]);

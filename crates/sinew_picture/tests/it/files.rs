@@ -1,4 +1,4 @@
-//! Files read back by the crates that read everyone's.
+//! Encoded files read back by common decoders.
 
 use crate::stairs;
 use sinew_picture::{EncodeError, Image, PictureFormat, RenderSettings, Renderer, encode};
@@ -6,7 +6,7 @@ use std::io::Cursor;
 
 const FPS: u32 = 30;
 
-/// Movement, a frame like its predecessor, one pixel of difference, and sides that are odd numbers.
+/// Movement, a repeated frame, one pixel of difference, and odd sides.
 fn frames() -> Vec<Image> {
     let settings = RenderSettings { width: 161, height: 91, shadow_texels: 256, ..RenderSettings::default() };
     let mut renderer = Renderer::new(settings);
@@ -115,7 +115,7 @@ fn a_gif_looks_like_its_images_and_keeps_time() {
 }
 
 #[test]
-fn what_cannot_be_encoded_is_an_error() {
+fn unencodable_pictures_are_errors() {
     let image = Image::filled(4, 3, [9, 8, 7, 255]);
     let other = Image::filled(3, 4, [9, 8, 7, 255]);
     for format in [PictureFormat::Gif, PictureFormat::Png, PictureFormat::WebP] {
@@ -134,7 +134,7 @@ fn what_cannot_be_encoded_is_an_error() {
 }
 
 #[test]
-fn file_names_tell_the_format() {
+fn the_file_name_selects_the_format() {
     for (extension, format) in [
         ("gif", Some(PictureFormat::Gif)),
         ("PNG", Some(PictureFormat::Png)),

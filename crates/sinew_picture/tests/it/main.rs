@@ -1,4 +1,4 @@
-//! Pictures as a user makes them.
+//! Integration tests through the public interface.
 
 mod drawing;
 mod files;

@@ -78,7 +78,7 @@ pub fn crowd_pile() -> Blueprint {
     heap("crowd_pile", 100, Limits::Common)
 }
 
-/// Builds a heap in layers, in a pit as wide as the heap is to be high.
+/// Builds a heap in layers, in a pit as wide as the heap is high.
 fn heap(name: &'static str, count: usize, limits: Limits) -> Blueprint {
     let mut scene = Blueprint::new(name, Sleeping::Off, 600);
     scene.body(made_of_flesh(floor()));

@@ -38,7 +38,7 @@ pub struct Blueprint {
     pub name: &'static str,
     /// m/s².
     pub gravity: Vec3,
-    /// Sleeping mode: tells if bodies may fall asleep.
+    /// Sleeping mode of the bodies.
     pub sleeping: Sleeping,
     /// Number of steps of 1/60 s in a run.
     pub steps: u32,

@@ -41,7 +41,7 @@ pub trait Script: Send {
         0.0
     }
 
-    /// The figures so far.
+    /// Returns the figures so far.
     fn metrics(&self, world: &World) -> Vec<Metric>;
 
     /// View of the scene in a picture.
@@ -116,7 +116,7 @@ impl Instance {
         self.script.camera_hint()
     }
 
-    /// Draws what a picture shows beside the world.
+    /// Draws the additions to the picture of the world.
     pub fn draw(&self, out: &mut dyn DebugDraw) {
         self.script.draw(&self.world, out);
     }
@@ -213,7 +213,7 @@ impl Instance {
     }
 }
 
-/// One step, and what goes along with it.
+/// Takes one step, with the scene's own actions.
 fn step(
     world: &mut World,
     script: &mut dyn Script,

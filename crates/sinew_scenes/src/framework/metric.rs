@@ -1,4 +1,4 @@
-//! Figures of a run, and what they should be.
+//! Figures of a run, and their bars.
 
 /// Expectation of a figure at the end of a scene's steps.
 #[derive(Clone, Copy, Debug, PartialEq)]

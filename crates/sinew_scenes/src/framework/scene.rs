@@ -1,4 +1,4 @@
-//! A named scenario.
+//! A scene of the registry.
 
 use super::instance::Instance;
 use super::setting::{Setting, Settings, Setup};
@@ -67,7 +67,7 @@ impl Scene {
     /// Builds it.
     ///
     /// # Panics
-    /// If the settings are those of another scene, or one that has to be set is not: see [`Settings::check`].
+    /// If the settings are of another scene, or a required one is missing: see [`Settings::check`].
     pub fn start(&self, settings: &Settings) -> Instance {
         self.start_under(settings, 1.0)
     }

@@ -120,7 +120,7 @@ pub enum SettingError {
     Missing {
         /// The setting.
         key: &'static str,
-        /// Values that it takes.
+        /// Accepted values.
         domain: String,
     },
 }

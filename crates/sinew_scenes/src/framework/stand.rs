@@ -52,7 +52,7 @@ impl Stand {
     }
 }
 
-/// Its centre of mass, turned as it is.
+/// Its centre of mass, rotated with it.
 pub(crate) fn center(world: &World, id: BodyId) -> Transform {
     Transform::new(world.center_of_mass(id), world.transform(id).rotation)
 }

@@ -62,7 +62,7 @@ pub enum Operation {
 
 /// Frequency at which connected bodies swing on the hand, Hz. Lower: they lag behind the hand; higher: they jerk.
 const HERTZ: f32 = 2.5;
-/// Force of a hand, in weights of the connected bodies (at 9.81 m/s²). Lower: it cannot lift what lies under other things; higher: it tears
+/// Force of a hand, in weights of the connected bodies (at 9.81 m/s²). Lower: it cannot lift a body under others; higher: it tears
 /// joints.
 const STRENGTH: f32 = 12.0;
 /// Weight of a kilogram, N.

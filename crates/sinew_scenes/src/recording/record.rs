@@ -61,7 +61,7 @@ impl Recorder {
         &self.instance
     }
 
-    /// Hands, and so what they hold.
+    /// Hands, and the bodies that they hold.
     pub fn hands(&self) -> &Hands {
         &self.hands
     }
@@ -162,7 +162,7 @@ impl Replay {
         &self.instance
     }
 
-    /// Hands, and so what they hold.
+    /// Hands, and the bodies that they hold.
     pub fn hands(&self) -> &Hands {
         &self.hands
     }

@@ -1,4 +1,4 @@
-//! Scenes as plain data: as many bodies and joints as their descriptions count, and joints that fit.
+//! Scenes as plain data: bodies and joints agree with their descriptions' counts, and joints fit.
 
 use sinew_scenes::blueprint::{self, Blueprint};
 
@@ -21,7 +21,7 @@ fn check(scene: &Blueprint, bodies: usize, dynamic: usize, joints: usize) {
 }
 
 #[test]
-fn they_are_as_large_as_described() {
+fn blueprints_have_their_described_sizes() {
     check(&blueprint::ragdoll_pile(), 1551, 1500, 1400);
     check(&blueprint::rain(), 1 + 100 + 300 * 15, 300 * 15, 300 * 14);
     check(&blueprint::ragdolls(), 1 + 4 + 8 * 15, 8 * 15, 8 * 14);
@@ -54,9 +54,9 @@ fn they_are_as_large_as_described() {
     assert_eq!((full.bodies.len(), full.dynamic().count(), full.joints.len()), (10_000, 9_900, 19_800 - 99));
 }
 
-/// Deepest that a moving body of the start is in a fixed one or in a moving one `stride` places or more away, metres.
+/// Returns the largest initial depth of a moving body in a fixed one or in a moving one at least `stride` indices away, metres.
 fn overlap(scene: &Blueprint, stride: usize) -> f32 {
-    /// Middles further apart than this belong to bodies that do not touch, metres.
+    /// Bodies whose centres are further apart do not touch, metres.
     const NEAR: f32 = 1.1;
     let (world, bodies, _) = scene.build();
     let far = |a: usize, b: usize| {
@@ -75,7 +75,7 @@ fn overlap(scene: &Blueprint, stride: usize) -> f32 {
 
 #[test]
 fn figures_and_boxes_of_heaps_start_apart() {
-    // Bodies of one figure follow each other, and may overlap where the definition parts them.
+    // Bodies of one figure follow each other, and may overlap where the definition disables the pair.
     let heaps = [(blueprint::humanoid_lying(), 19), (blueprint::humanoid_pile(33), 19)];
     for (scene, stride) in heaps.into_iter().chain([(blueprint::box_heap(6, 6), 1)]) {
         let overlap = overlap(&scene, stride);
@@ -103,7 +103,7 @@ fn mass_ratio(scene: &Blueprint) -> f32 {
 }
 
 #[test]
-fn weights_are_as_heavy_as_described() {
+fn masses_match_the_descriptions() {
     assert_eq!(mass_ratio(&blueprint::stack_mass_ratio(4, 10.0)), 1000.0);
     assert_eq!(mass_ratio(&blueprint::stack_ratio(6)), 32768.0);
     assert_eq!(mass_ratio(&blueprint::heavy_rope()), 1800.0);

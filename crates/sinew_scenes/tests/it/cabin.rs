@@ -12,7 +12,7 @@ fn half_extents(prop: &Prop) -> Option<Vec3> {
     }
 }
 
-/// Highest surface under the point (x, z) among the props that are not tilted, and the ground.
+/// Returns the highest surface under the point (x, z) among level props and the ground.
 fn height(props: &[Prop], x: f32, z: f32) -> f32 {
     let over = |prop: &Prop| -> Option<f32> {
         let half = half_extents(prop)?;
@@ -68,7 +68,7 @@ fn the_way_to_the_stairs_is_level_and_free() {
         let walker = Vec3::new(0.4, 0.9, 0.5 * spawn.walk_length);
         for prop in props.iter().filter(|p| !["roof", "stringer"].contains(&p.name)) {
             let Some(half) = half_extents(prop) else { continue };
-            // The bounding ball of what is turned about the vertical is wide enough here.
+            // The bounding ball of props rotated about the vertical is wide enough here.
             let reach = if prop.body.rotation.y == 0.0 { half } else { Vec3::splat(half.length()) };
             let gap = abs3(prop.body.position - center) - (reach + walker);
             assert!(gap.max_element() > 0.0, "{site:?}: {} is in the way", prop.name);

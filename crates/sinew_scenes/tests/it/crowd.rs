@@ -1,4 +1,4 @@
-//! The crowd: saved at any moment it goes on as it was, and costs no memory while it walks.
+//! The crowd: a save at any moment continues equally, and walking allocates nothing.
 
 use sinew::math::{Reader, Writer};
 use sinew_scenes::scenes::{Instance, find};
@@ -23,7 +23,7 @@ fn figure(run: &Instance, name: &str) -> f64 {
 }
 
 #[test]
-fn goes_on_from_any_moment() {
+fn a_saved_crowd_continues_equally() {
     let mut run = started(&["n=6", "waves=2"]);
     let mut seen = [0.0; 4];
     for moment in [20, 60, 130, 190, 240, 300, 330, 400, 460] {
@@ -51,8 +51,8 @@ fn goes_on_from_any_moment() {
 }
 
 #[test]
-fn walks_without_a_byte_of_memory() {
-    // Before the first of them is hit.
+fn a_walking_crowd_allocates_nothing() {
+    // Before the first hit.
     let mut run = started(&["n=5"]);
     (0..14).for_each(|_| run.step());
     let counted = allocation_counter::measure(|| (0..30).for_each(|_| run.step()));

@@ -67,7 +67,7 @@ fn weights_add_up_to_one_and_every_bone_has_skin() {
     assert!(blended > 300, "{blended} blended vertices");
 }
 
-/// Each edge of a closed, consistently wound surface is there exactly once in each direction.
+/// Checks that each edge of a closed, consistently wound surface exists exactly once in each direction.
 #[test]
 fn surface_is_closed_and_winds_outward() {
     for primitive in primitives() {
@@ -84,7 +84,7 @@ fn surface_is_closed_and_winds_outward() {
     }
 }
 
-/// Label of the connected part that each vertex belongs to.
+/// Returns a label of the connected part of each vertex.
 fn parts(primitive: &Primitive) -> Vec<usize> {
     let mut label: Vec<usize> = (0..primitive.positions.len()).collect();
     loop {
@@ -160,7 +160,7 @@ fn left_mirrors_right() {
     }
 }
 
-/// The mannequin is in every recording's start state: a change of its bits is a change of format.
+/// The mannequin is in every recording's start state, so a change of its bits is a change of format.
 #[test]
 fn bits_are_those_of_the_release() {
     let mannequin = mannequin();

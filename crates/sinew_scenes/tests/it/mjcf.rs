@@ -35,7 +35,7 @@ fn mujocos_humanoid_rests_as_high_as_in_mujoco() {
 }
 
 #[test]
-fn the_scene_asks_for_its_file_and_is_in_no_list() {
+fn the_mjcf_scene_needs_its_file_and_is_unlisted() {
     let scene = find("mjcf_drop").expect("it can be found");
     assert!(registry().iter().all(|listed| listed.name != scene.name));
     let mut settings = scene.settings();

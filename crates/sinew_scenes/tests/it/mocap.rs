@@ -24,7 +24,7 @@ fn a_captured_walk_fits_three_bodies() {
 }
 
 #[test]
-fn what_is_no_motion_is_refused() {
+fn files_without_motion_are_refused() {
     let scene = find("mocap").expect("it can be found");
     let mut settings = scene.settings();
     let missing = settings.check().expect_err("it has no file yet");

@@ -5,7 +5,7 @@ use sinew::math::{Affine, Rotation, Vec3};
 use sinew_scenes::mannequin::drills::{punch, running, walking};
 use sinew_scenes::mannequin::{Mannequin, Path, WALK_SPEED, mannequin};
 
-/// Samples per second: between the keys as well as on them.
+/// Samples per second, which fall between the keys as well as on them.
 const RATE: f32 = 120.0;
 
 fn model_at(character: &Mannequin, clip: &Clip, time: f32) -> Vec<Affine> {
@@ -65,7 +65,7 @@ fn cycles_close_and_getting_up_ends_where_idling_begins() {
     }
 }
 
-/// A foot's contact points in the foot's bind axes, and when in the foot's cycle each bears weight.
+/// A foot's contact points in the foot's bind axes, and the times in the foot's cycle when each carries weight.
 const HEEL: (Vec3, [f32; 2]) = (Vec3::new(0.0, -0.08, -0.055), [0.0, 0.3125]);
 const BALL: (Vec3, [f32; 2]) = (Vec3::new(0.0, -0.056, 0.135), [0.09375, 0.625]);
 
@@ -89,7 +89,7 @@ fn planted_feet_do_not_slide_at_the_walking_speed() {
     }
 }
 
-/// Signed bend of a hinge about its bind axis, degrees, and how far the joint turns about any other axis.
+/// Signed bend of a hinge about its bind axis, degrees, and its rotation about any other axis.
 fn hinge(character: &Mannequin, clip: &Clip, time: f32, name: &str, axis: Vec3) -> (f32, f32) {
     let mut local = rest_pose(&character.rig);
     sample(clip, &character.rig, time, Wrap::Clamp, &mut local);
@@ -140,7 +140,7 @@ fn skin_stays_above_the_floor_and_touches_it() {
 #[test]
 fn runners_and_boxers_are_on_the_floor_or_above_it() {
     let character = mannequin();
-    // A run leaves it.
+    // Except in a run.
     for (clip, highest) in [(walking(Path::Circle(2.0)).clip, 0.02), (running().clip, 0.08), (punch(), 0.02)]
     {
         for time in times(&clip).step_by(4) {
@@ -189,7 +189,7 @@ fn getting_up_starts_lying_and_ends_upright() {
     }
 }
 
-/// No joint jumps: a person's fastest joint here is a foot swinging at about 4 m/s.
+/// No joint jumps: the fastest joint of a person here is a swinging foot, at about 4 m/s.
 #[test]
 fn joints_move_at_human_speed() {
     let character = mannequin();

@@ -11,10 +11,10 @@ use sinew_scenes::walks::{Ours, Tally, Terrain};
 
 const WORLDS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/worlds");
 
-/// Walks that share a seed.
+/// Number of walks per seed.
 const SHARE: usize = 20;
 
-/// Seeds of `all` random walks, `SHARE` of them each: the first, but all with `SINEW_FULL=1` set, or with `SINEW_FULL=k/n` the k-th of n parts.
+/// Seeds of `all` random walks, `SHARE` of them each: the first, all with `SINEW_FULL=1` set, or with `SINEW_FULL=k/n` the k-th of n parts.
 fn seeds(all: usize) -> impl Iterator<Item = u64> {
     let all = (all / SHARE) as u64;
     let part = std::env::var("SINEW_FULL").ok();
@@ -63,8 +63,8 @@ fn depth(world: &World, id: MoverId) -> f32 {
     found.first().map_or(0.0, |deepest| deepest.depth)
 }
 
-/// Walks all of some number, `SHARE` for a seed, on the ground of that seed, at up to 50 m/s every other time: never inside of anything, never through, and from where one ends it gets
-/// to the farthest place to which a flood fill finds room, `places` or more on the mean.
+/// Runs walks, `SHARE` for a seed, on the ground of that seed, never inside or through; from the end of each the mover reaches
+/// the farthest place that a flood fill finds, `places` or more on average.
 fn wander(name: &str, all: usize, places: usize, ground: impl Fn(u64) -> Terrain) {
     let mut tally = Tally::default();
     for seed in seeds(all) {
@@ -113,7 +113,7 @@ fn walks_in_clutter() {
     wander("clutter", 2_000, 50, Terrain::clutter);
 }
 
-/// Out of the door, down the stairs, and back up, at speeds from a stroll to a sprint.
+/// Out of the door, down the stairs, and back up, at 1 to 6 m/s.
 #[test]
 fn the_cabins_stairs_down_and_up_without_leaving_the_ground() {
     for speed in [1.0, 2.0, 3.5, 6.0] {
@@ -164,6 +164,6 @@ fn the_dungeons_stairs_are_climbed() {
             highest = if height > highest { height } else { highest };
         }
     }
-    // The landing is 4 m high, its walls go on above that.
+    // The landing is 4 m high; its walls continue above.
     assert!((highest - 4.0).abs() < 0.02, "it came up to {highest} m");
 }

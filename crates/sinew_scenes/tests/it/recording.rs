@@ -1,4 +1,4 @@
-//! Recordings: the same again, what differs first, files of others.
+//! Recordings: equal replays, the first difference, and files of other versions.
 
 use sinew::math::hash::hash_bytes;
 use sinew::math::{Random, Vec3};
@@ -6,7 +6,7 @@ use sinew::physics::stage::NoProfiler;
 use sinew::physics::{BodyKind, Threads};
 use sinew_scenes::recording::{Difference, KeyFrame, Operation, Recorder, Recording, Replay, compare};
 
-/// A stack that is pulled, struck and shot at; `harder` changes one push.
+/// Records a stack that is pulled, struck and shot at; `harder` changes one push.
 fn played(harder: f32) -> Recording {
     let mut recorder = Recorder::start("stack", &[]).expect("there is such a scene");
     let world = recorder.instance().world();
@@ -50,7 +50,7 @@ fn a_recording_comes_to_the_same_states_on_any_number_of_threads() {
         assert_eq!((step.step, step.found), (steps, step.recorded));
     }
     assert_eq!(steps, 90);
-    // Hands have done something: the pulled body left its place, the ball and the box are there.
+    // The operations acted: the pulled body left its place, the ball and the box exist.
     let KeyFrame { bodies, .. } = &recording.key_frames[3];
     assert_eq!(bodies.len(), recording.key_frames[0].bodies.len() + 2);
 }
@@ -62,14 +62,14 @@ fn the_first_difference_is_found() {
     let Some(Difference::State { step, body: Some((id, [mine, theirs])) }) = compare(&a, &b) else {
         panic!("{:?}", compare(&a, &b));
     };
-    // Pushed before the 41st step, it is elsewhere after it.
+    // Pushed before the 41st step, it differs after it.
     assert_eq!(step, 41);
     assert!(mine != theirs && (mine.translation - theirs.translation).length() < 1e-3, "{id:?}");
     let short = Recording { steps: a.steps[..50].to_vec(), ..a.clone() };
     assert_eq!(compare(&a, &short), Some(Difference::Length { common: 50 }));
     let other = Recording { scene: "pendulum".into(), ..a.clone() };
     assert_eq!(compare(&a, &other), Some(Difference::Scene));
-    // What cannot be played again is compared by its key frames: here of a scene that no longer exists.
+    // Recordings that cannot be replayed are compared by their key frames: here of a scene that no longer exists.
     let [gone, moved] = [&a, &b].map(|it| Recording { scene: "long_gone".into(), ..it.clone() });
     let Some(Difference::State { step: 41, body: Some(_) }) = compare(&gone, &moved) else {
         panic!("{:?}", compare(&gone, &moved));
@@ -77,7 +77,7 @@ fn the_first_difference_is_found() {
 }
 
 #[test]
-fn a_tampered_hash_is_told_at_its_step() {
+fn a_tampered_hash_is_reported_at_its_step() {
     let mut recording = played(1.0);
     recording.steps[17].hash ^= 1;
     let mut replay = Replay::start(recording).expect("it starts");
@@ -85,7 +85,7 @@ fn a_tampered_hash_is_told_at_its_step() {
     assert_eq!(wrong.map(|step| step.step), Some(18));
 }
 
-/// A file of format 1 as an earlier version wrote it, with an operation of a kind that nobody knows. It must be readable for ever.
+/// A file of format 1 from an earlier version, with an operation of an unknown kind. It must stay readable.
 const KEPT: &str = "\
     73696e6577726563 01000000 05000000302e302e31 09000000667265655f66616c6c 00000000 8988883c \
     01000000 efcdab8967452301 02000000 01000000 03 03000000 c80102 \
@@ -93,7 +93,7 @@ const KEPT: &str = "\
     0000803f 00000040 00004040 00000000 00000000 00000000 0000803f";
 
 #[test]
-fn a_kept_file_is_read() {
+fn a_stored_file_is_read() {
     let digits: Vec<u8> = KEPT.bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
     let byte =
         |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).expect("ASCII"), 16).expect("hexadecimal");
@@ -112,9 +112,9 @@ fn a_kept_file_is_read() {
     assert_eq!(refused(&later), "is a recording of format 9; this version reads 1 and 2 (byte 8)");
 }
 
-/// A single flipped bit is reported, wherever it is.
+/// A single flipped bit anywhere is reported.
 #[test]
-fn every_flipped_bit_is_seen() {
+fn every_flipped_bit_is_reported() {
     let bytes = played(1.0).to_bytes();
     for bit in 0..8 * bytes.len() {
         let mut flipped = bytes.clone();
@@ -124,7 +124,7 @@ fn every_flipped_bit_is_seen() {
 }
 
 #[test]
-fn poses_that_are_not_those_of_the_states_are_seen() {
+fn wrong_poses_in_key_frames_are_reported() {
     let mut recording = played(1.0);
     let frame = &mut recording.key_frames[1];
     let (step, body) = (frame.step, frame.bodies[0].0);
@@ -136,7 +136,7 @@ fn poses_that_are_not_those_of_the_states_are_seen() {
     assert_eq!(wrong, [(step, body.to_bits())]);
 }
 
-/// Writes the checksums of a file's blocks anew.
+/// Rewrites the checksums of a file's blocks.
 fn sum_up(bytes: &mut [u8]) {
     let mut at = 12;
     while let Some(length) = bytes.get(at..at + 4) {
@@ -150,7 +150,7 @@ fn sum_up(bytes: &mut [u8]) {
     }
 }
 
-/// Any bytes are read or refused, and what is read is played without a panic: their checksums are right.
+/// Any bytes with valid checksums are read or refused, and replay without a panic.
 #[test]
 fn hostile_files_are_refused() {
     let bytes = played(1.0).to_bytes();

@@ -1,23 +1,23 @@
-//! Every scene of the registry: its figures, and what they depend on.
+//! Every scene of the registry: its figures, and their dependence on gravity.
 
 use sinew::physics::World;
 use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, Settings, find, registry};
 
-/// Figures that are not yet as expected, by scene. One that comes to be met must be taken off, or its test fails.
+/// Figures outside their bars, by scene. One that is met must be removed, or its test fails.
 const NOT_YET: &[(&str, &[&str])] = &[
     // 2.07 mm instead of 2; its line of thrust is nearer to the middle than when it met this.
     ("arch", &["shift_max_m"]),
-    // One who has just got up is lifted by half a metre within a step where it stands on somebody; walks set feet into steps of stairs and toes into the floor; to lie
-    // still, be rolled over and get up takes 4.3 s.
+    // A character that has just got up is lifted by half a metre if it stands on another; walks put feet into stairs and toes into the floor; lying
+    // still, rolling over and getting up takes 4.3 s.
     ("brawl", &["animated_ms", "depth_m", "up_after_s"]),
     // Heaps are chaotic: from starts that differ by 1 mm the sticks sleep after 212 to 226 steps.
     ("mesh_drop", &["asleep_steps"]),
-    // A foot that the clip of getting up sets on the cape stands on it for a frame with 2 mm to spare, its middle 17 mm inside; and the shin stretches the skirt to three times
-    // its length, which its rows count too high (ADR 0027): limbs work 2.3 J in a step in which the skirt comes to hold 3.3 J more.
+    // A get-up clip puts a foot on the cape for a frame with 2 mm to spare, its middle 17 mm inside; and the shin stretches the skirt to three times
+    // its length, whose energy its rows overestimate (ADR 0027): limbs do 2.3 J of work in a step in which the skirt gains 3.3 J.
     ("skirt", &["deepest_in_wearer_m", "energy_gain_max"]),
 ];
 
-/// Scenes in which gravity has no part, and one whose bound is about walls alone (`fast_particle`).
+/// Scenes without gravity, and one whose bar is about walls alone (`fast_particle`).
 const BLIND_TO_GRAVITY: &[&str] = &[
     "fast_particle",
     "gimbal",
@@ -56,8 +56,8 @@ fn metrics_after(scene: &Scene, settings: &Settings, gravity_factor: f32) -> Vec
     after(scene, settings, gravity_factor).metrics()
 }
 
-/// Allocations of steps after the scene, in which all that sleeps is awake again, as it once was. Some piles sleep after half a
-/// second: the steps before give them the time in which trees of bounds have been through their rounds.
+/// Counts the allocations of steps after the scene, with all sleeping bodies awake as before. Some piles sleep after half a
+/// second: the steps before let the bounds trees reach their largest size.
 fn warm_allocations(world: &mut World) -> u64 {
     let mut allocations = 0;
     for _ in 0..4 {
@@ -81,7 +81,7 @@ fn not_yet(name: &str) -> &'static [&'static str] {
     NOT_YET.iter().find(|(scene, _)| *scene == name).map_or(&[], |(_, figures)| figures)
 }
 
-/// Runs a scene as it is by default: exactly the figures of [`NOT_YET`] miss what is expected of them, and no warm step
+/// Runs a scene with its defaults: exactly the figures of [`NOT_YET`] miss their bars, and no warm step
 /// allocates.
 fn check(name: &str) {
     let mut run = after(scene(name), &scene(name).settings(), 1.0);
@@ -93,7 +93,7 @@ fn check(name: &str) {
     assert_eq!(warm_allocations(run.world_mut()), 0, "{name} allocates");
 }
 
-/// Checks a scene as `check` does, and that more figures miss under a gravity that is a little wrong.
+/// Checks a scene as `check` does, and that more figures miss if gravity is slightly wrong.
 fn check_with_gravity(name: &str) {
     check(name);
     for factor in [0.99, 1.01] {
@@ -103,7 +103,7 @@ fn check_with_gravity(name: &str) {
     }
 }
 
-/// One test for each scene of the registry, large ones only when asked for, and one that none is forgotten.
+/// Defines one test for each scene of the registry (large ones only when asked for) and one that finds missing scenes.
 macro_rules! scenes {
     (always: [$($name:ident),* $(,)?], large: [$($large:ident),* $(,)?] $(,)?) => {
         $(#[test] fn $name() { check_with_gravity(stringify!($name)); })*
@@ -245,7 +245,7 @@ scenes!(
 );
 
 #[test]
-fn what_is_not_yet_met_is_expected() {
+fn known_misses_are_expected() {
     for &(name, figures) in NOT_YET {
         let metrics = scene(name).start(&scene(name).settings()).metrics();
         for figure in figures {
@@ -256,7 +256,7 @@ fn what_is_not_yet_met_is_expected() {
     }
 }
 
-/// Closed forms of turns hold for all of their settings, not only for those that the scenes come with.
+/// Closed forms of rotations hold for all settings, not only the defaults.
 #[test]
 fn turns_with_other_settings() {
     let assignments = [
@@ -296,11 +296,11 @@ fn a_pyramid_of_a_hundred_rows() {
     assert_eq!(unmet(&metrics), UNMET, "{metrics:#?}");
 }
 
-/// 100 falls, of which the one that everyone runs shows a few.
+/// 100 falls; the default run has a few of them.
 #[test]
 #[ignore = "minutes in a debug build: cargo test --release --package sinew_scenes -- --ignored"]
 fn a_hundred_poses() {
-    // 5.5 mm instead of 5, 26 mm instead of 10: hands that a thigh falls on.
+    // 5.5 mm instead of 5, 26 mm instead of 10: hands under a falling thigh.
     const UNMET: &[&str] = &["penetration_rest_max_m", "nonadjacent_overlap_max_m"];
     let mut settings = scene("ragdoll_poses").settings();
     settings.assign("poses=100").expect("it is in range");

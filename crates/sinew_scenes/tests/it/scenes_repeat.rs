@@ -1,4 +1,4 @@
-//! Every scene gives the same bits, however it is run; and its settings are checked.
+//! Every scene gives the same bits in every way of running it; its settings are checked.
 
 use core::time::Duration;
 use sinew::math::{Random, Reader, Transform, Writer};
@@ -6,7 +6,7 @@ use sinew::physics::stage::NoProfiler;
 use sinew::physics::{Threads, World, WorldDef};
 use sinew_scenes::scenes::{Instance, Scene, SettingError, find, registry};
 
-/// Enough for everything to fall, hit and lie; fewer of what takes long in a debug build.
+/// Steps in which everything falls, hits and comes to rest; fewer for scenes that are slow in debug builds.
 fn steps(scene: &Scene) -> u64 {
     match scene.name {
         "ragdoll_pile" => 4,
@@ -55,7 +55,7 @@ fn at_any_frame_rate() {
         for rate in [24, 60, 144] {
             let mut run = started(scene);
             let step = run.world().def().step_nanoseconds;
-            // The last frame is as long as it takes to come to the same number of steps.
+            // The last frame is as long as needed for the same number of steps.
             let mut left = steps(scene) * step;
             while left > 0 {
                 let frame = u64::min(1_000_000_000 / rate, left);
@@ -88,10 +88,10 @@ fn restored_in_the_middle() {
     }
 }
 
-/// As [`restored_in_the_middle`], in a world that never knew the scene's, on two threads. Scenes with functions or objects of their own are left
-/// out: such a world does not know them.
+/// Like [`restored_in_the_middle`], in a new world and on two threads. Scenes with their own functions or objects are left
+/// out, because a new world does not have them.
 #[test]
-fn loaded_by_strangers() {
+fn loaded_into_unrelated_worlds() {
     let mut met = 0;
     for (number, scene) in registry().iter().enumerate() {
         let mut run = started(scene);
@@ -117,9 +117,9 @@ fn loaded_by_strangers() {
     assert!(met * 10 > registry().len() * 9, "{met} scenes of {} were met", registry().len());
 }
 
-/// A brawl that is saved at any moment, with characters in every state, goes on in a world that never knew it as in its own.
+/// A brawl saved at any moment, with characters in every state, continues in a new world as in its own.
 #[test]
-fn a_brawl_goes_on_among_strangers() {
+fn a_brawl_continues_in_an_unrelated_world() {
     let scene = find("brawl").expect("the registry has it");
     for powered in 0..2 {
         let mut settings = scene.settings();
@@ -153,7 +153,7 @@ fn settings_are_checked() {
     let scene = find("mass_ratio").expect("the registry has it");
     let mut settings = scene.settings();
     settings.assign("links=3").expect("a whole number in range");
-    // Two trees, of which one hangs on a hook.
+    // Two trees, one of which hangs on a hook.
     assert_eq!(scene.start(&settings).world().joint_ids().count(), 2 + 3);
     assert_eq!(scene.start(&scene.settings()).world().joint_ids().count(), 39 + 40);
 
@@ -173,7 +173,7 @@ fn settings_are_checked() {
 }
 
 #[test]
-fn names_and_settings_are_fit_for_a_command_line() {
+fn names_and_settings_are_valid_on_a_command_line() {
     for scene in registry() {
         let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
         let plain = |name: &str| name.chars().all(fits);

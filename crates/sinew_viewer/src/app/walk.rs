@@ -20,7 +20,7 @@ pub(super) fn toggle(app: &mut App) {
             app.running = true;
             app.tell("W A S D walk, with Shift they run; G ends it");
         }
-        (None, None) => app.tell("nobody here can be led: open the scene 'street'"),
+        (None, None) => app.tell("no character here can be steered: open the scene 'street'"),
         (Some(_), _) => {
             app.session.apply(Operation::Steer { way: Vec3::ZERO });
             app.leads = None;

@@ -12,7 +12,7 @@ pub(crate) const LINE: usize = 9;
 /// Numbers of a skinned vertex beside those of a vertex: two with four slots, four weights.
 pub(crate) const SKIN: usize = 2 + 4;
 
-/// All pipelines, and the layouts of what they are given.
+/// All pipelines, and the layouts of their inputs.
 #[derive(Debug)]
 pub(crate) struct Pipelines {
     pub frame_layout: wgpu::BindGroupLayout,

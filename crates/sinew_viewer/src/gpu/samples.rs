@@ -34,7 +34,7 @@ impl Target {
         self.size
     }
 
-    /// Draws from now on into a part of it alone: left, top, width and height, pixels. What sticks out is cut off.
+    /// Restricts drawing to a part of it: left, top, width and height, pixels.
     pub fn set_area(&mut self, [left, top, width, height]: [f32; 4]) {
         let most = self.size.map(|side| side as f32);
         let (left, top) = (left.clamp(0.0, most[0] - 1.0), top.clamp(0.0, most[1] - 1.0));

@@ -188,7 +188,7 @@ impl Session {
         self.instance().world()
     }
 
-    /// Hands, and so what they hold.
+    /// Hands, and the bodies that they hold.
     pub fn hands(&self) -> &Hands {
         match &self.run {
             Run::Live(recorder) => recorder.hands(),

@@ -91,7 +91,7 @@ impl Subject {
         }
     }
 
-    /// One line on what it is about.
+    /// Returns a description in one line.
     pub fn about(&self) -> String {
         match self {
             Self::Scene(scene, ..) => scene.about.to_owned(),

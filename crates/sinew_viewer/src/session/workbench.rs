@@ -54,7 +54,7 @@ impl Workbench {
     /// A ragdoll without its rig.
     pub(super) fn of_bodies(def: RagdollDef, name: &str) -> Self {
         let source = Source::Bodies(Box::new(def));
-        Self::made(source, name, Vec::new()).expect("a definition without wishes is as it was read")
+        Self::made(source, name, Vec::new()).expect("a definition without settings is unchanged")
     }
 
     fn made(source: Source, name: &str, wishes: Vec<(String, BoneSettings)>) -> Result<Self, String> {
@@ -75,7 +75,7 @@ impl Workbench {
         Ok(Self { name: name.to_owned(), source, wishes, def, findings, report })
     }
 
-    /// The ragdoll as it is now.
+    /// Returns the current ragdoll.
     pub fn def(&self) -> &RagdollDef {
         &self.def
     }

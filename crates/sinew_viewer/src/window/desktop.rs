@@ -14,7 +14,7 @@ use winit::window::{Window, WindowAttributes};
 /// Size of the window at first, points.
 const SIZE: [f32; 2] = [1280.0, 760.0];
 
-/// Opens a window on what the options say, and returns when it is closed.
+/// Opens a window as the options say, and returns when it is closed.
 ///
 /// # Errors
 /// If there is no window system, no driver, or the subject cannot be started.
@@ -31,7 +31,7 @@ pub fn open(options: Options) -> Result<(), ViewerError> {
     viewer.error.map_or(Ok(()), |error| Err(error.into()))
 }
 
-/// A desktop, and what it does for the window.
+/// A desktop, and its services for the window.
 pub(super) struct Host {
     size: [f32; 2],
 }
@@ -52,7 +52,7 @@ impl Host {
         Some(Told::Screen(wait(screen)))
     }
 
-    /// Whoever opened the window is told by what [`open`] returns.
+    /// [`open`] returns the outcome to the caller.
     pub fn failed(&self, _: &GpuError) {}
 
     /// Nobody else looks at the frames.

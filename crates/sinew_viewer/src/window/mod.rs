@@ -64,7 +64,7 @@ enum Told {
     Files(Vec<NamedFile>),
 }
 
-/// A window with all that draws into it.
+/// A window and its renderer.
 struct Screen {
     window: Arc<Window>,
     surface: wgpu::Surface<'static>,
@@ -74,7 +74,7 @@ struct Screen {
     input: egui_winit::State,
     /// Complaints of the driver since the last frame.
     complaints: Arc<Mutex<Vec<String>>>,
-    /// Why it could not do what it was opened for.
+    /// Reason why it could not do its task.
     failure: Option<String>,
 }
 

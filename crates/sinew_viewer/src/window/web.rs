@@ -20,7 +20,7 @@ extern "C" {
     fn console_error(line: &str);
     /// Page around the canvas, an object with the methods below.
     pub type Page;
-    /// A line that the viewer tells.
+    /// A message of the viewer.
     #[wasm_bindgen(method)]
     fn tell(this: &Page, line: &str);
     /// The line why nothing is drawn.
@@ -32,7 +32,7 @@ extern "C" {
     /// A file to be kept.
     #[wasm_bindgen(method)]
     fn keep(this: &Page, name: &str, bytes: &[u8]);
-    /// The canvas as it is now is to be kept as a picture.
+    /// The canvas should be saved as a picture.
     #[wasm_bindgen(method)]
     fn picture(this: &Page, name: &str);
 }
@@ -86,14 +86,14 @@ pub fn show(
     Ok(Shown { proxy, files: Vec::new() })
 }
 
-/// A page, and what it does for the viewer.
+/// A page, and its services for the viewer.
 pub(super) struct Host {
     canvas: HtmlCanvasElement,
     page: Page,
     /// True to draw by WebGL2 also where there is WebGPU.
     webgl: bool,
     proxy: EventLoopProxy<Told>,
-    /// The last line that was told.
+    /// The last message.
     told: RefCell<String>,
 }
 
@@ -107,7 +107,7 @@ impl Host {
         if self.webgl { wgpu::Backends::GL } else { wgpu::Backends::all() }
     }
 
-    /// The screen, which is told later.
+    /// The screen, which is known later.
     pub fn await_screen(
         &self,
         screen: impl Future<Output = Result<Box<Screen>, GpuError>> + 'static,

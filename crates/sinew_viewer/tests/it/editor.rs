@@ -1,4 +1,4 @@
-//! A ragdoll that is edited: by fields of the definition, by keys, by handles in the picture; dropped again and saved.
+//! Editing of a ragdoll: by fields of the definition, by keys, by handles in the picture; dropped again and saved.
 
 use crate::files::{folder, mannequin_glb};
 use crate::hands::{settled, viewer};
@@ -13,7 +13,7 @@ use sinew_viewer::{Headless, Session, Subject, limits};
 
 const SIZE: [u32; 2] = [1280, 760];
 
-/// A viewer of the mannequin as a dropped file, paused.
+/// Returns a viewer of the mannequin as a dropped file, paused.
 pub fn bench(name: &str) -> Option<Headless> {
     let mut viewer = viewer("pendulum", SIZE)?;
     let path = folder(name).join("mannequin.glb");
@@ -31,14 +31,14 @@ fn place(def: &RagdollDef, role: &str) -> usize {
     def.bodies.iter().position(|body| body.role == role).expect("it has one")
 }
 
-/// The ranges of the joint of a body, degrees.
+/// Returns the ranges of the joint of a body, degrees.
 fn degrees(def: &RagdollDef, role: &str) -> [Option<[f32; 2]>; 3] {
     let child = place(def, role);
     let joint = def.joints.iter().find(|joint| joint.child == child).expect("it has a parent");
     limits(&joint.kind).map(|range| range.map(|Range { lo, hi }| [lo.to_degrees(), hi.to_degrees()]))
 }
 
-/// Chooses a body by keys.
+/// Selects a body by keys.
 pub fn choose(viewer: &mut Headless, role: &str) {
     let times = place(def(viewer), role) + 1;
     for _ in 0..times {
@@ -49,7 +49,7 @@ pub fn choose(viewer: &mut Headless, role: &str) {
     assert!(line.starts_with(&format!("chose {role} ")), "{line}");
 }
 
-/// The saved file, read again.
+/// Returns the saved file, read again.
 fn saved(viewer: &mut Headless) -> RagdollDef {
     viewer.ctrl(Key::S);
     viewer.frame().expect("the card draws");
@@ -74,7 +74,7 @@ fn keys_change_a_limit_which_is_saved() {
     let [Some(y), ..] = after else { panic!("it swings") };
     assert!((y[0] - f32::min(lo + 20.0, 0.0)).abs() < 0.01 && (y[1] - f32::max(hi - 20.0, 0.0)).abs() < 0.01);
     assert_eq!(degrees(def(&viewer), "rightUpperArm"), degrees(&saved(&mut viewer), "rightUpperArm"));
-    // The test anew stands at its start and falls by the new limits.
+    // The new test starts again and falls by the new limits.
     assert_eq!(viewer.app().session().world().step_count(), 0);
     let world = viewer.app().session().world();
     let ragdoll = viewer.app().session().ragdoll();
@@ -84,9 +84,9 @@ fn keys_change_a_limit_which_is_saved() {
     assert!((range.hi.to_degrees() - y[1]).abs() < 0.01);
 }
 
-/// The handle of a limit is drawn by the mouse, and the limit comes to where the mouse is.
+/// The mouse drags the handle of a limit, and the limit follows.
 #[test]
-fn a_handle_is_drawn() {
+fn dragging_a_handle_changes_a_limit() {
     let Some(mut viewer) = bench("edited_by_handles") else { return };
     choose(&mut viewer, "rightUpperLeg");
     let before = degrees(def(&viewer), "rightUpperLeg");
@@ -143,7 +143,7 @@ fn a_handle_is_drawn() {
     assert!(volume(&viewer) > 1.1 * small, "{small} m, then {} m", volume(&viewer));
 }
 
-/// Roles, shapes and masses: a rig is built anew with each.
+/// Roles, shapes and masses: each change builds the rig anew.
 #[test]
 fn roles_shapes_and_masses() {
     let path = folder("edited_all").join("mannequin.glb");
@@ -158,12 +158,12 @@ fn roles_shapes_and_masses() {
     assert!((built.bodies[head].mass.mass - 7.5).abs() < 1e-3);
     let world = session.world();
     assert!((world.mass(session.ragdoll()[head]).mass - 7.5).abs() < 1e-3, "it falls with that mass");
-    // A body without hips cannot be: the line says so, and nothing changes.
+    // A body without hips is refused with a message, and nothing changes.
     let dropped = BoneSettings { body: Some(BodyWish::Drop), ..BoneSettings::default() };
     let line = session.edit(place(&built, "hips"), dropped).expect_err("it hangs on its hips");
     println!("{line}");
     assert_eq!(def(&session), built);
-    // Another role: the shin on the left is what it is told to be.
+    // Another role: the left shin gets the given one.
     let (shin, foot) = (place(&built, "leftLowerLeg"), place(&built, "leftFoot"));
     let bone = built.bodies[foot].bone.clone();
     let told = BoneSettings { role: Some(Role::Toes(Side::Left)), ..BoneSettings::default() };
@@ -186,7 +186,7 @@ fn roles_shapes_and_masses() {
     assert!(def(&session).bodies[head].mass.mass < 6.0);
 }
 
-/// A ragdoll file has no rig: masses and limits change, shapes and roles are refused with a line.
+/// A ragdoll file has no rig: masses and limits change, shapes and roles are refused with a message.
 #[test]
 fn a_definition_without_a_rig() {
     let mannequin = sinew::mannequin::character();

@@ -1,4 +1,4 @@
-//! Memory over many scenes opened and closed, processor time of a frame.
+//! Memory while many scenes open and close, and processor time of a frame.
 
 use crate::hands::viewer;
 use crate::pictures::{gpu, look};
@@ -11,23 +11,23 @@ use std::time::Instant;
 /// Times that each scene is opened. `SINEW_ROUNDS` overrides it.
 const ROUNDS: usize = 50;
 
-/// Growth of the resident memory from the fifth round to the last that is taken for noise, bytes.
+/// Growth of the resident memory from the fifth round to the last that counts as noise, bytes.
 const NOISE: u64 = 32 << 20;
 
-/// Resident memory of this process, bytes; `None` where the system does not tell.
+/// Returns the resident memory of this process, bytes; `None` where the system does not report it.
 fn resident() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS"))?;
     Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? << 10)
 }
 
-/// Processor time of this thread, ms; `None` where the system does not tell.
+/// Returns the processor time of this thread, ms; `None` where the system does not report it.
 fn thread_time() -> Option<f64> {
     let schedule = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     Some(schedule.split_whitespace().next()?.parse::<f64>().ok()? / 1e6)
 }
 
-/// Opens every scene again and again, with a picture of each: memory does not grow, and no call to the card fails (which
+/// Opens every scene repeatedly, with a picture of each: memory does not grow, and no GPU call fails (which
 /// panics).
 #[test]
 #[ignore = "some 40 s a round in a debug build: `cargo xtask ci --full`"]
@@ -64,8 +64,8 @@ fn every_scene_opens_and_closes() {
     }
 }
 
-/// Prints what a frame with a hundred skinned figures costs the thread that encodes it, beside one of an empty stage, which has
-/// as much to bring back.
+/// Prints the time that encoding a frame with a hundred skinned figures takes, beside an empty stage, which
+/// reads back as much.
 #[test]
 #[ignore = "a measurement, which asserts no time: `cargo xtask ci --full`"]
 fn a_frame_with_a_hundred_figures() {

@@ -11,7 +11,7 @@ use sinew::ragdoll::{BuildOptions, build};
 use sinew_viewer::{Headless, NamedFile, Session, Subject};
 use std::path::{Path, PathBuf};
 
-/// A folder of this test alone, empty.
+/// Returns an empty folder of this test.
 pub fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     if folder.exists() {
@@ -45,7 +45,7 @@ fn height(viewer: &Headless) -> f32 {
     world.body_ids().map(|id| world.transform(id).translation.y).fold(0.0, f32::max)
 }
 
-/// Takes two seconds of steps; what stood lies.
+/// Runs two seconds of steps, after which standing figures lie.
 fn falls(viewer: &mut Headless, name: &str) {
     let before = height(viewer);
     for _ in 0..120 {
@@ -74,9 +74,9 @@ fn a_ragdoll_that_is_dropped_falls() {
     falls(&mut viewer, "dropped_ragdoll");
 }
 
-/// Bytes with names, as a page is given them: a glTF finds the file beside it, and has the bits of the same file on a disk.
+/// Bytes with names, as a page passes them: a glTF finds the file beside it, and has the bits of the same file on a disk.
 #[test]
-fn files_without_a_folder_are_as_those_with_one() {
+fn dropped_bytes_load_as_files_do() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let folder = folder("dropped_on_a_page");
     let glb = mannequin_glb();
@@ -108,7 +108,7 @@ fn parts(glb: &[u8]) -> (&[u8], &[u8]) {
 }
 
 #[test]
-fn what_cannot_be_read_is_a_line_and_changes_nothing() {
+fn unreadable_files_give_a_message_and_change_nothing() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let folder = folder("dropped_nonsense");
     let nonsense: [(&str, &[u8]); 6] = [
@@ -159,9 +159,9 @@ fn a_bvh_that_is_dropped_plays() {
     assert_ne!(still, moved);
 }
 
-/// The saved file has the motion that was played as one more clip: its joints go where they went.
+/// The saved file has the played motion as an additional clip with the same joint poses.
 #[test]
-fn what_was_played_is_saved_as_glb() {
+fn the_played_motion_is_saved_as_glb() {
     let glb = mannequin_glb();
     let file = NamedFile { name: "mannequin.glb".into(), bytes: glb.clone() };
     let subject = Subject::dropped(vec![file]).expect("it is a character");
@@ -182,7 +182,7 @@ fn what_was_played_is_saved_as_glb() {
     let clip = document.clips.last().expect("it has clips");
     assert_eq!((document.clips.len(), clip.name.as_str()), (5, "played"));
     assert!((clip.duration - 1.5).abs() < 1e-4, "{} s", clip.duration);
-    // The file stands upright at the origin of the world, its soles on the floor; its unit is the metre.
+    // In the file it stands upright at the world's origin with its soles on the floor; the unit is the metre.
     let root = Affine::from(session.workbench().expect("a ragdoll").def().character_from_model);
     let mut model = Vec::new();
     let mut pose = rest_pose(&document.rig);

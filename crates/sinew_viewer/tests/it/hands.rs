@@ -1,4 +1,4 @@
-//! The viewer without a window: keys, search, hands, pictures of it.
+//! The viewer without a window: keys, search, mouse, and pictures.
 
 use crate::pictures::{gpu, look};
 use egui::Key;
@@ -7,14 +7,14 @@ use sinew_viewer::{App, Headless, Options, Subject};
 
 const SIZE: [u32; 2] = [1280, 760];
 
-/// A viewer of a scene, paused, in pictures of a size in pixels.
+/// Returns a paused viewer of a scene with pictures of a size in pixels.
 pub fn viewer(scene: &str, size: [u32; 2]) -> Option<Headless> {
     let subject = Some(Subject::scene(scene, &[]).expect("there is such a scene"));
     let app = App::new(Options { subject, paused: true, ..Options::default() }).expect("it starts");
     Some(Headless::new(app, gpu()?, size))
 }
 
-/// Frames until the panels have found their sizes.
+/// Frames until the panels have their final sizes.
 pub fn settled(viewer: &mut Headless) -> Image {
     (0..3).map(|_| viewer.frame().expect("the card draws")).last().expect("three frames")
 }
@@ -105,9 +105,9 @@ fn a_ball_is_thrown_and_layers_are_drawn() {
     assert_ne!(plain, layered);
 }
 
-/// A file that cannot be shown is a line, and the viewer goes on.
+/// A file that cannot be shown gives a message, and the viewer continues.
 #[test]
-fn a_bad_file_is_a_line() {
+fn a_bad_file_gives_a_message() {
     let Some(mut viewer) = viewer("pendulum", SIZE) else { return };
     viewer.app_mut().open_file("nowhere.json".as_ref());
     assert_eq!(viewer.app().message(), Some("nowhere.json: no such file"));
@@ -115,7 +115,7 @@ fn a_bad_file_is_a_line() {
     look("message", &settled(&mut viewer));
 }
 
-/// W walks the scene's character away from the camera, letting go stands it still, and the recording does the same again.
+/// W walks the scene's character away from the camera, releasing it stops, and the recording replays the same.
 #[test]
 fn keys_walk_a_character() {
     let Some(mut viewer) = viewer("street", [640, 360]) else { return };
@@ -155,7 +155,7 @@ fn keys_walk_a_character() {
     assert_eq!(replay.instance().steered(), Some(place(&viewer)));
 }
 
-/// It opens on figures that are drawn with their skin, and they stay in the picture.
+/// It opens with figures drawn with their skin, which stay in the picture.
 #[test]
 fn the_first_scene_stays_in_sight() {
     let Some(gpu) = gpu() else { return };

@@ -1,8 +1,8 @@
-//! Pictures of the viewer that are kept: each is compared with one that a person has looked at, and again after a change that it
+//! Stored pictures of the viewer: each is compared with one that a person has checked, and again after a change that it
 //! must notice.
 //!
-//! Ignored unless asked for: `cargo xtask ci --full` runs them. Without a driver they say that they skipped. Drivers round in their
-//! own ways, so that pictures may differ a little. `SINEW_BLESS=1` writes them anew, into `tests/pictures`.
+//! Ignored unless asked for: `cargo xtask ci --full` runs them. Without a driver they print that they skip. Drivers round
+//! differently, so pictures may differ a little. `SINEW_BLESS=1` writes them to `tests/pictures`.
 
 use crate::editor::choose;
 use crate::files::mannequin_glb;
@@ -15,22 +15,22 @@ use sinew_picture::{Image, PictureFormat, Scene, Sun, encode};
 use sinew_viewer::{App, Headless, Layer, NamedFile, Offscreen, Options, Orbit, Stage, Subject};
 use std::path::{Path, PathBuf};
 
-/// Size of the viewer, points; kept pictures are half as large.
+/// Size of the viewer, points; stored pictures are half as large.
 const SIZE: [u32; 2] = [880, 496];
-/// Side of a tile, pixels of a kept picture.
+/// Side of a tile, pixels of a stored picture.
 const TILE: u32 = 12;
 /// Largest difference of the means of a tile, of 255. Another driver's edges and rounding stay below a third of it.
 const MOST_OF_TILE: f64 = 6.0;
 /// Largest share of pixels that differ by more than 40 in one channel.
 const MOST_FAR: f64 = 0.01;
-/// Most bytes of a kept picture.
+/// Limit on the bytes of a stored picture.
 const MOST_BYTES: usize = 40 << 10;
 
 fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures").join(format!("{name}.png"))
 }
 
-/// Half as large; colours in steps of 8, which a driver's rounding and a file's size both like.
+/// Half the size; colours in steps of 8, which hides rounding of drivers and keeps files small.
 fn halved(image: &Image) -> Image {
     let (width, height) = (image.width / 2, image.height / 2);
     let mut rgba = Vec::new();
@@ -46,7 +46,7 @@ fn halved(image: &Image) -> Image {
     Image { width, height, rgba }
 }
 
-/// Largest difference of the means of a tile, and the share of pixels that are far off.
+/// Returns the largest difference of the means of a tile, and the share of pixels that are far off.
 fn difference(a: &Image, b: &Image) -> (f64, f64) {
     assert_eq!((a.width, a.height), (b.width, b.height));
     let (mut worst, mut far) = (0.0, 0);
@@ -88,7 +88,7 @@ fn read(name: &str) -> Image {
     Image { width, height, rgba }
 }
 
-/// Compares a picture with the kept one; `changed` is one with something missing or elsewhere, which must not pass for it.
+/// Compares a picture with the stored one; `changed` has something missing or moved and must differ.
 fn check(name: &str, picture: &Image, changed: &Image) {
     let [picture, changed] = [picture, changed].map(halved);
     let png =
@@ -116,7 +116,7 @@ fn check(name: &str, picture: &Image, changed: &Image) {
     assert!(!is_alike(other), "{name}: a change is not noticed: {other:?}");
 }
 
-/// A viewer of a subject without times, paused.
+/// Returns a paused viewer of a subject without times.
 fn open(subject: Option<Subject>) -> Option<Headless> {
     let options = Options { subject, paused: true, hides_times: true, ..Options::default() };
     let mut viewer = Headless::new(App::new(options).expect("it starts"), gpu()?, SIZE);
@@ -137,20 +137,20 @@ fn step(viewer: &mut Headless, steps: u32) {
     }
 }
 
-/// Takes the camera nearer.
+/// Moves the camera nearer.
 fn near(viewer: &mut Headless, by: f32) {
     let orbit = viewer.app().orbit();
     viewer.app_mut().set_orbit(Orbit { distance: by * orbit.distance, ..orbit });
 }
 
-/// The picture now, and after a change.
+/// Returns the picture now, and after a change.
 fn check_change(name: &str, viewer: &mut Headless, change: impl FnOnce(&mut Headless)) {
     let picture = settled(viewer);
     change(viewer);
     check(name, &picture, &settled(viewer));
 }
 
-/// The scene with a layer, which is missed where it is off.
+/// Compares the scene with a layer, and without it.
 fn check_layer(name: &str, viewer: &mut Headless, layer: Layer) {
     viewer.app_mut().toggle(layer);
     check_change(name, viewer, |viewer| viewer.app_mut().toggle(layer));
@@ -289,7 +289,7 @@ fn edited_limit() {
     });
 }
 
-/// A recording that was taken back, and a second run that parts from it.
+/// A recording that was rewound, and a second run that diverges from it.
 #[test]
 #[ignore = "compares pictures: cargo xtask ci --full"]
 fn timeline_with_ghost() {

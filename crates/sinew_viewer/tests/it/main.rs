@@ -1,4 +1,4 @@
-//! Integration tests of the viewer: pictures by the driver that is there, panels and hands without a window, a window under Xvfb.
+//! Integration tests of the viewer: pictures by the present driver, panels and input without a window, a window under Xvfb.
 
 mod editor;
 mod endurance;

@@ -1,4 +1,4 @@
-//! Pictures by the card against pictures by the processor, which need no driver.
+//! Pictures by the GPU compared with pictures by the processor, which need no driver.
 
 use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::{Hull, Shape};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 const SIZE: [u32; 2] = [480, 270];
 
-/// A device, or a line that says why there is none.
+/// Returns a device, or a message why there is none.
 pub fn gpu() -> Option<Gpu> {
     match Gpu::open() {
         Ok(gpu) => Some(gpu),
@@ -23,7 +23,7 @@ pub fn gpu() -> Option<Gpu> {
     }
 }
 
-/// Mean difference of two pictures over all channels, and the share of pixels that differ by more than 40 in one.
+/// Returns the mean difference of two pictures over all channels, and the share of pixels that differ by more than 40 in one.
 fn difference(a: &Image, b: &Image) -> (f64, f64) {
     assert_eq!((a.width, a.height), (b.width, b.height));
     let sum: u64 = a.rgba.iter().zip(&b.rgba).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
@@ -33,7 +33,7 @@ fn difference(a: &Image, b: &Image) -> (f64, f64) {
     (sum as f64 / a.rgba.len() as f64, count as f64 / (a.rgba.len() / 4) as f64)
 }
 
-/// Writes a picture where a person asked for it by `SINEW_LOOK=FOLDER`.
+/// Writes a picture to the folder of `SINEW_LOOK`, if it is set.
 pub fn look(name: &str, image: &Image) {
     if let Some(folder) = std::env::var_os("SINEW_LOOK") {
         let bytes =
@@ -43,7 +43,7 @@ pub fn look(name: &str, image: &Image) {
     }
 }
 
-/// All shapes, a textured and a translucent surface, lines before and behind, on a checkered floor.
+/// All shapes, a textured and a translucent surface, lines in front and behind, on a checkered floor.
 pub fn paint(canvas: &mut dyn Canvas) {
     let corners = [[0.0; 3], [0.5, 0.0, 0.0], [0.0, 0.0, 0.5], [0.1, 0.6, 0.1]].map(Vec3::from_array);
     let shapes = [
@@ -110,11 +110,11 @@ fn the_card_draws_what_the_processor_draws() {
     let found = offscreen.render(&stage, &camera()).expect("the card draws");
     look("card", &found);
     look("processor", &expected);
-    // Edges and the rims of shadows are smoothed in other ways.
+    // Edges and the borders of shadows are smoothed differently.
     let (mean, far) = difference(&expected, &found);
     println!("mean difference {mean:.3} of 255, {:.2} % of pixels far off", 100.0 * far);
     assert!(mean < 3.0 && far < 0.02, "mean {mean}, far {far}");
-    // The test can fail: without the shapes, and without the sun's shadows, it is another picture.
+    // The test can fail: the pictures without shapes and without shadows differ.
     let bare = offscreen.render(&Stage::of(Scene { sun, ..Scene::default() }), &camera());
     assert!(difference(&expected, &bare.expect("the card draws")).0 > 10.0);
     let again = offscreen.render(&stage, &camera()).expect("the card draws");
@@ -136,7 +136,7 @@ fn a_skin_is_where_its_joints_are() {
     let mut offscreen = Offscreen::new(gpu, SIZE);
     let found = offscreen.render(&stage, &camera).expect("the card draws");
     look("skin_card", &found);
-    // The same figures as models that the processor has skinned.
+    // The same figures as models skinned by the processor.
     let mut skinned = self::stage(&session, &camera, &[]);
     let figures = std::mem::take(&mut skinned.figures);
     for figure in &figures {

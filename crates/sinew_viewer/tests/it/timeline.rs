@@ -1,4 +1,4 @@
-//! Recordings on a timeline: forth and back to the same bits, a second run beside the first.
+//! Recordings on a timeline: seeking back and forth gives the same bits; a second run beside the first.
 
 use crate::hands::{settled, viewer};
 use crate::pictures::look;
@@ -10,13 +10,13 @@ use std::time::{Duration, Instant};
 
 const SIZE: [u32; 2] = [1280, 760];
 
-/// A recording of a scene; a body is struck before a step, if one is given.
+/// Returns a recording of a scene; a body is struck before a step, if one is given.
 pub fn recorded(scene: &str, steps: u64, strike: Option<u64>) -> Recording {
     let mut recorder = Recorder::start(scene, &[]).expect("there is such a scene");
     for step in 0..steps {
         if strike == Some(step) {
             let world = recorder.instance().world();
-            // Where there are particles alone, nothing is struck.
+            // In scenes with particles alone nothing is struck.
             if let Some(body) = world.body_ids().filter(|&id| world.mass(id).mass > 0.0).last() {
                 let (point, mass) = (world.center_of_mass(body), world.mass(body).mass);
                 recorder.apply(Operation::Push { body, impulse: Vec3::new(1.5, 0.5, 0.0) * mass, point });
@@ -31,15 +31,15 @@ fn played(recording: &Recording) -> Subject {
     Subject::Recording("run.sinewrec".into(), Box::new(recording.clone()))
 }
 
-/// Goes there, however long it takes.
+/// Seeks to a step, however long it takes.
 fn seek(session: &mut Session, step: u64) {
     while !session.seek(step, Instant::now() + Duration::from_secs(1)) {}
 }
 
-/// Scenes of bodies, of joints, of particles, of characters beside the world and within it: wherever one goes, the state is that
+/// Scenes of bodies, joints, particles, and characters: after any seek the state is that
 /// of the recording, and so are the figures.
 #[test]
-fn forth_and_back_to_the_same_bits() {
+fn seeking_gives_the_same_bits() {
     for scene in ["stack", "pendulum", "rope_on_box", "stairs", "two_tracks", "flag", "dominoes"] {
         let recording = recorded(scene, 130, Some(40));
         let mut session = Session::start(played(&recording)).expect("it is ours");
@@ -59,7 +59,7 @@ fn forth_and_back_to_the_same_bits() {
             assert_eq!(session.metrics(), figures[step as usize], "{scene}, step {step}");
             assert_eq!(session.past_metrics().len() as u64, step + 1, "{scene}");
         }
-        // From there it goes on as it did.
+        // From there it continues as recorded.
         while session.step() {}
         assert_eq!(session.diverged(), None, "{scene}");
         assert_eq!(session.world().hash(), recording.steps[129].hash, "{scene}");
@@ -90,7 +90,7 @@ fn a_second_run_is_a_ghost() {
     assert!(live.set_ghost("plain.sinewrec", plain).is_err());
 }
 
-/// A run that was just made is put on a timeline, by a button; keys and the mouse go through it.
+/// A button puts the current run on a timeline; keys and the mouse seek in it.
 #[test]
 fn the_timeline_is_dragged() {
     let Some(mut viewer) = viewer("stack", SIZE) else { return };
@@ -115,7 +115,7 @@ fn the_timeline_is_dragged() {
     viewer.app_mut().compare_with("plain.sinewrec", recorded("stack", 100, None));
     let line = viewer.app().message().expect("it says so").to_owned();
     assert!(line.contains("differs from step 11 on: body "), "{line}");
-    // The bar stands above the buttons, right of the scenes and of the number of the step.
+    // The bar is above the buttons, right of the scenes and of the step number.
     let area = viewer.app().area();
     let (x, y) = (0.5 * (area.left() + 150.0 + SIZE[0] as f32 - 18.0), area.bottom() + 22.0);
     viewer.move_to(x, y);

@@ -106,7 +106,7 @@ impl Walker {
 }
 
 #[test]
-fn what_animates_the_joints_is_what_the_character_strives_for() {
+fn a_character_follows_bevys_animation() {
     let mut walker = Walker::new(false);
     let mut most = 0.0f32;
     for step in 0..90 {
@@ -128,7 +128,7 @@ fn what_animates_the_joints_is_what_the_character_strives_for() {
 }
 
 #[test]
-fn who_is_animated_by_bevy_falls_and_gets_up() {
+fn a_character_animated_by_bevy_falls_and_gets_up() {
     let mut walker = Walker::new(false);
     (0..70).for_each(|_| walker.frame());
     let led = walker.spins();
@@ -157,7 +157,7 @@ fn who_is_animated_by_bevy_falls_and_gets_up() {
 }
 
 #[test]
-fn clips_that_go_over_the_ground_are_held_in_place() {
+fn travelling_clips_are_held_in_place() {
     let mut walker = Walker::new(true);
     let pelvis = walker.def.ragdoll.bodies[0].joint;
     for step in 0..90 {

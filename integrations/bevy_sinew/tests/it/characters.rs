@@ -24,7 +24,7 @@ fn the_target_flinches_and_falls() {
 }
 
 #[test]
-fn the_crowd_has_as_much_detail_as_is_seen() {
+fn crowd_detail_follows_distance() {
     crowd::main();
 }
 
@@ -56,7 +56,7 @@ fn hit(app: &mut App, entity: Entity, impulse: Vec3) {
 }
 
 #[test]
-fn characters_have_the_bits_that_the_library_gives_them() {
+fn characters_have_the_bits_of_the_library() {
     let mut app = app();
     let mut world = PhysicsWorld::new(WorldDef::default());
     let floor = ground(&mut app);
@@ -89,7 +89,7 @@ fn characters_have_the_bits_that_the_library_gives_them() {
 }
 
 #[test]
-fn joints_of_the_scene_are_where_the_pose_has_them() {
+fn scene_joints_follow_the_pose() {
     let mut app = app();
     ground(&mut app);
     let def = Arc::new(mannequin::character());
@@ -121,7 +121,7 @@ fn joints_of_the_scene_are_where_the_pose_has_them() {
 }
 
 #[test]
-fn characters_are_put_elsewhere_tell_and_go() {
+fn characters_teleport_report_and_despawn() {
     let mut app = app();
     ground(&mut app);
     app.init_resource::<Heard>();

@@ -1,4 +1,4 @@
-//! The plugin, without a window: against the library by itself, and against what a user may do to entities.
+//! The plugin without a window: compared with the library alone, and under changes of entities.
 
 use bevy_app::{App, FixedUpdate};
 use bevy_ecs::prelude::*;
@@ -79,7 +79,7 @@ fn physics(app: &App) -> &Physics {
 }
 
 #[test]
-fn a_scene_has_the_bits_that_the_library_gives_it() {
+fn a_scene_has_the_bits_of_the_library() {
     let mut app = app();
     let mut world = PhysicsWorld::new(WorldDef::default());
     let shape =
@@ -111,7 +111,7 @@ fn a_scene_has_the_bits_that_the_library_gives_it() {
     }
 }
 
-/// kB of the process, where the system tells.
+/// Resident memory of the process, kB, where the system reports it.
 fn memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS"))?;
@@ -120,11 +120,11 @@ fn memory() -> Option<u64> {
 
 /// In a process of its own, for memory is counted by process.
 #[test]
-fn a_thousand_come_and_go_each_frame_and_leave_nothing() {
+fn a_thousand_spawns_a_frame_leak_nothing() {
     const ALONE: &str = "SINEW_TEST_ALONE";
     if std::env::var_os(ALONE).is_none() {
         let mut alone = std::process::Command::new(std::env::current_exe().expect("it runs"));
-        alone.args(["--exact", "a_thousand_come_and_go_each_frame_and_leave_nothing", "--nocapture"]);
+        alone.args(["--exact", "a_thousand_spawns_a_frame_leak_nothing", "--nocapture"]);
         assert!(alone.env(ALONE, "1").status().expect("it starts").success());
         return;
     }
@@ -200,7 +200,7 @@ fn children_are_where_their_bodies_are() {
 struct Heard(Vec<(&'static str, Entity, Entity)>);
 
 #[test]
-fn messages_and_observers_tell_the_same() {
+fn messages_and_observers_report_the_same() {
     let mut app = app();
     let floor = ground(&mut app);
     let ball = app.world_mut().spawn(ball(Vec3::Y * 2.0)).id();
@@ -224,7 +224,7 @@ fn messages_and_observers_tell_the_same() {
 }
 
 #[test]
-fn what_is_changed_is_seen() {
+fn changes_of_components_reach_the_world() {
     let mut app = app();
     let ball = app.world_mut().spawn((ball(Vec3::Y * 5.0), Velocity::default())).id();
     run(&mut app, 2);
@@ -233,7 +233,7 @@ fn what_is_changed_is_seen() {
     app.world_mut().get_mut::<Transform>(ball).expect("it has one").translation = Vec3::X * 7.0;
     run(&mut app, 1);
     assert!((at(&app, ball) - Vec3::X * 7.0).length() < 0.05, "{}", at(&app, ball));
-    // A velocity, which comes back changed by gravity.
+    // A velocity, which returns changed by gravity.
     app.world_mut().get_mut::<Velocity>(ball).expect("it has one").linear = Vec3::Z * 3.0;
     run(&mut app, 1);
     let velocity = app.world().get::<Velocity>(ball).expect("it has one").linear;
@@ -259,7 +259,7 @@ fn what_is_changed_is_seen() {
 }
 
 #[test]
-fn joints_and_fields_come_change_and_go() {
+fn joints_and_fields_are_added_changed_and_removed() {
     let mut app = app();
     let hook = app.world_mut().spawn((RigidBody::Static, Transform::from_xyz(0.0, 3.0, 0.0))).id();
     let bob = app.world_mut().spawn(ball(Vec3::new(1.0, 3.0, 0.0))).id();
@@ -287,7 +287,7 @@ fn joints_and_fields_come_change_and_go() {
 }
 
 #[test]
-fn what_is_drawn_lies_between_two_steps() {
+fn interpolated_poses_lie_between_two_steps() {
     let mut app = app();
     app.insert_resource(Interpolation::On);
     let frame = Duration::from_nanos(16_666_667 / 4);

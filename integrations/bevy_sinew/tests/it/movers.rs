@@ -10,7 +10,7 @@ fn mover(app: &mut App, place: Vec3, walk: Vec3) -> Entity {
 }
 
 #[test]
-fn movers_have_the_bits_that_the_library_gives_them() {
+fn movers_have_the_bits_of_the_library() {
     let mut app = app();
     let mut world = PhysicsWorld::new(WorldDef::default());
     let floor = ground(&mut app);
@@ -41,7 +41,7 @@ fn movers_have_the_bits_that_the_library_gives_them() {
 }
 
 #[test]
-fn movers_are_put_elsewhere_crouch_and_go() {
+fn movers_teleport_crouch_and_despawn() {
     let mut app = app();
     ground(&mut app);
     let entity = mover(&mut app, Vec3::ZERO, Vec3::ZERO);

@@ -17,7 +17,7 @@ fn round<T: FromReflect + PartialReflect>(app: &App, value: &T) -> T {
 }
 
 #[test]
-fn components_come_back_from_a_scene_as_they_were() {
+fn components_round_trip_through_a_scene() {
     let app = app();
     let shapes = vec![Shape::sphere(0.25).into(), Shape::cuboid(Vec3::splat(0.5)).into()];
     assert_eq!(round(&app, &Collider(shapes.clone())), Collider(shapes));

@@ -34,7 +34,7 @@ pub fn files(app: &mut App) -> Files {
     files
 }
 
-/// Draws what an example spawns.
+/// Draws the entities of an example.
 pub fn add(app: &mut App, files: Files, camera: Transform) {
     app.insert_resource(files);
     app.insert_resource(ClearColor(Color::srgb(0.62, 0.72, 0.82)));

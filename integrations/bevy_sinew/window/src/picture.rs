@@ -1,4 +1,4 @@
-//! A picture of the window at a time, with a check that it shows what moves.
+//! A picture of the window at a time, with a check that it shows the moving bodies.
 
 use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured, save_to_disk};
@@ -6,7 +6,7 @@ use bevy::time::TimeUpdateStrategy;
 use bevy_sinew::{CharacterBody, CharacterHandle, CharacterJoints, Physics, RigidBody};
 use std::path::PathBuf;
 
-/// Least difference of a channel between what is seen and the sky or the ground, of 255.
+/// Least difference of a channel between a visible body and the sky or the ground, of 255.
 const SEEN: u8 = 25;
 
 /// A picture that is due.
@@ -27,10 +27,10 @@ impl Picture {
         let (mut path, mut at) = (None, 1.0);
         while let Some(arg) = args.next() {
             match arg.as_str() {
-                "--picture" => path = Some(args.next().ok_or("--picture wants a file")?),
+                "--picture" => path = Some(args.next().ok_or("--picture needs a file")?),
                 "--at" => {
-                    let seconds = args.next().ok_or("--at wants seconds")?;
-                    at = seconds.parse().map_err(|_| format!("--at wants seconds, not {seconds}"))?;
+                    let seconds = args.next().ok_or("--at needs seconds")?;
+                    at = seconds.parse().map_err(|_| format!("--at needs seconds, not {seconds}"))?;
                 }
                 file if file.ends_with(".glb") => {} // of the example
                 other => return Err(format!("there is no {other}")),
@@ -93,7 +93,7 @@ fn check(
     let (mut seen, mut missed) = (0, 0);
     for (entity, place) in characters.iter().filter_map(chest).chain(bodies) {
         let Some(color) = camera.world_to_viewport(eye, place).ok().and_then(color) else { continue };
-        // Sky and ground are shades of grey and blue; what moves is orange, or of wood.
+        // Sky and ground are shades of grey and blue; moving bodies are orange or wooden.
         let is_seen = color[0] > color[2].saturating_add(SEEN);
         println!("{entity} at {place:.2}: {color:?}{}", if is_seen { "" } else { ", which is not its own" });
         if is_seen { seen += 1 } else { missed += 1 }

@@ -24,7 +24,7 @@ use std::time::Duration;
 /// Largest distance of a joint's entity to its place on the body that carries it, metres: a tenth of a millimetre, for rounding.
 const OFF: f32 = 1e-4;
 
-/// An app without a window, with what loads and plays a file; each update is a fixed step.
+/// An app without a window that loads and plays a file; each update is a fixed step.
 fn app() -> App {
     let dir = Dir::default();
     let mannequin = mannequin::mannequin();
@@ -156,7 +156,7 @@ fn bevys_player_poses_it() {
     for part in [0.1, 0.35, 0.6, 0.85] {
         let time = part * walk.duration;
         hero.animation().seek_to(time).pause();
-        // A frame's animation is what the next frame's step takes.
+        // The next frame's step uses a frame's animation.
         hero.run(2);
         let mut due = own.rest().to_vec();
         sample(walk, &own.rig, time, Wrap::Loop, &mut due);

@@ -10,7 +10,7 @@ use oxijolt::{
 use sinew::math::Vec3;
 use sinew::physics::Sleeping;
 
-/// Of all links of the cloth, m/N. With the 1e-5 of Jolt's samples, made for particles of 1 kg, this cloth of 2 g
+/// Compliance of all links of the cloth, m/N. With the 1e-5 of Jolt's samples, made for particles of 1 kg, this cloth of 2 g
 /// particles explodes at its first contact.
 const COMPLIANCE: f32 = 5e-3;
 
@@ -31,7 +31,7 @@ pub fn build(scene: &ClothScene) -> Result<Box<dyn ClothSimulation>, Unsupported
     Ok(Box::new(JoltCloth { world, cloth }))
 }
 
-/// Jolt's own links for a sheet of triangles: edges, shear along both diagonals, and distances over every edge that two
+/// Returns Jolt's own links for a sheet of triangles: edges, shear along both diagonals, and distances over every edge that two
 /// triangles share (58,806 in all).
 fn links(scene: &ClothScene) -> Result<SoftBodySharedSettings, Unsupported> {
     let pinned = scene.pinned();

@@ -1,4 +1,4 @@
-//! Whom a body meets: layers of Jolt from our filters, groups of Jolt from joints.
+//! Collision filters: layers of Jolt from our filters, groups of Jolt from joints.
 
 use super::refused;
 use crate::engine::Unsupported;
@@ -9,7 +9,7 @@ use sinew::physics::{BodyDef, BodyKind, Filter};
 use sinew_scenes::blueprint::Blueprint;
 use std::collections::BTreeMap;
 
-/// What bodies of one layer of Jolt have in common.
+/// Filter that bodies of one layer of Jolt share.
 #[derive(Clone, Copy, PartialEq)]
 struct Kind {
     filter: Filter,
@@ -33,7 +33,7 @@ pub struct Filters {
 
 impl Filters {
     /// # Errors
-    /// A body whose shapes differ in whom they meet, or more jointed bodies in one piece than Jolt can keep apart.
+    /// If a body's shapes have different filters, or more jointed bodies are connected than Jolt's tables hold.
     pub fn new(scene: &Blueprint) -> Result<Self, Unsupported> {
         let mut kinds: Vec<Kind> = Vec::new();
         let mut kind_of = Vec::with_capacity(scene.bodies.len());
@@ -84,9 +84,9 @@ impl Filters {
         !(a.is_static && b.is_static) && a.filter.meets(b.filter)
     }
 
-    /// Puts each set of bodies that hang together by joints into a group, in which jointed pairs and parted ones do not
+    /// Puts each set of bodies connected by joints into a group, in which jointed pairs and disabled ones do not
     /// collide.
-    /// Groups of the same make, such as ragdolls, share a table. Bodies that would not meet anyway need none.
+    /// Equal groups, such as ragdolls, share a table. Bodies that would not collide anyway need none.
     fn keep_jointed_apart(&mut self, scene: &Blueprint) -> Result<(), Unsupported> {
         let meet = |pair: &[usize; 2]| self.kinds_meet(self.kind_of[pair[0]], self.kind_of[pair[1]]);
         let jointed = scene.joints.iter().map(|joint| [joint.a, joint.b]);
@@ -114,7 +114,7 @@ impl Filters {
     }
 }
 
-/// The one filter of all of a body's shapes; that of a body without shapes meets nothing.
+/// Returns the filter of all of a body's shapes; a body without shapes collides with nothing.
 fn filter(def: &BodyDef) -> Result<Filter, Unsupported> {
     let Some(first) = def.shapes.first() else {
         return Ok(Filter { layers: 0, mask: 0, group: 0 });
@@ -134,7 +134,7 @@ fn table(size: u32, apart: &[[u32; 2]]) -> Result<GroupFilterTable, Unsupported>
     Ok(builder.build())
 }
 
-/// Sets of two or more of `count` things that `pairs` connect, each set ascending.
+/// Returns the sets of two or more of `count` items that `pairs` connect, each ascending.
 fn connected(count: usize, pairs: &[[usize; 2]]) -> Vec<Vec<usize>> {
     let mut parent: Vec<usize> = (0..count).collect();
     let root = |parent: &[usize], mut of: usize| {
@@ -145,7 +145,7 @@ fn connected(count: usize, pairs: &[[usize; 2]]) -> Vec<Vec<usize>> {
     };
     for &[a, b] in pairs {
         let (a, b) = (root(&parent, a), root(&parent, b));
-        // The smaller index becomes the root: sets come in the order of their first members.
+        // The smaller index becomes the root: sets are in the order of their first members.
         parent[a.max(b)] = a.min(b);
     }
     let mut sets: BTreeMap<usize, Vec<usize>> = BTreeMap::new();

@@ -1,11 +1,11 @@
 //! Jolt with its defaults, through the safe crate `oxijolt`.
 //!
-//! Against earlier figures of Jolt 5.5.1 with link-time optimisation on a Zen 4, this Jolt 5.6.0 without it on an Intel
-//! Xeon takes about as long beside Rapier for joints (pile of figures 0.79 of Rapier's time, then 0.72; chain 0.98, then
-//! 1.01), but longer for stacks of boxes (pyramid of 15 layers 1.40, then 0.98 to 1.10) and rays (0.9, then 0.6). It is
-//! not this crate's doing: of the pyramid, 51 % is one self-contained function of Jolt, the velocity solver of a contact,
-//! which 5.6 has new friction in; of the rays, 86 % is Jolt's tree and boxes. Nor the caches: pyramids of 6 and 11 layers
-//! stand at 1.43 and 1.44.
+//! Compared with earlier figures of Jolt 5.5.1 with link-time optimisation on a Zen 4, this Jolt 5.6.0 without it on an Intel
+//! Xeon takes about as long relative to Rapier for joints (pile of figures 0.79 of Rapier's time, then 0.72; chain 0.98, then
+//! 1.01), but longer for stacks of boxes (pyramid of 15 layers 1.40, then 0.98 to 1.10) and rays (0.9, then 0.6). This
+//! crate is not the cause: of the pyramid, 51 % is one function of Jolt, the velocity solver of a contact,
+//! which has new friction in 5.6; of the rays, 86 % is Jolt's tree and boxes. Caches are not the cause either: pyramids of 6 and 11
+//! layers have 1.43 and 1.44.
 
 mod cloth;
 mod filters;
@@ -29,10 +29,10 @@ use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
 /// Of Jolt 5.6.0, as the crate bundles it.
 const JOLT_COMMIT: &str = "e77f1755";
 
-/// Room for contacts, in body pairs and in manifolds: a step that finds no room is not measured but stops the run.
+/// Capacity for contacts, in body pairs and in manifolds: a step that exceeds it is not measured but stops the run.
 const MAX_CONTACTS: u32 = 65_536;
 
-/// Scratch memory of a step, bytes; only what is used of it is ever touched.
+/// Scratch memory of a step, bytes; only the used part is touched.
 const SCRATCH: u32 = 256 << 20;
 
 /// This engine.
@@ -89,15 +89,15 @@ impl Engine for Jolt {
         Ok(Box::new(JoltRays { world, rays }))
     }
 
-    // `OrientedBox::Overlaps`, the fastest of all (18 to 24 ns), is C++ only: neither oxijolt nor the C API below it
-    // has it, nor any other test of two shapes that are in no world.
+    // `OrientedBox::Overlaps`, the fastest of all (18 to 24 ns), is C++ only: neither oxijolt nor the C interface below it
+    // has it, nor any other test of two shapes outside a world.
 }
 
 fn refused(error: impl core::fmt::Display) -> Unsupported {
     Unsupported::new(error.to_string())
 }
 
-/// Empty, with room for `bodies`.
+/// Returns an empty world with room for `bodies`.
 fn new_world(gravity: Vec3, bodies: usize, layers: CollisionLayers) -> Result<PhysicsWorld, Unsupported> {
     let settings = WorldSettings::default()
         .single_threaded()
@@ -142,7 +142,7 @@ fn add_joint(world: &mut PhysicsWorld, [a, b]: [BodyId; 2], def: &BlueprintJoint
     }
     let Transform { translation, rotation } = def.world_from_joint;
     let at = point(translation);
-    // oxijolt takes no axis that is off 1 by more than 2.5e-7.
+    // oxijolt refuses axes whose length is off 1 by more than 2.5e-7.
     let [x, y] = [Vec3::X, Vec3::Y].map(|axis| vector((rotation * axis).normalize()));
     match def.kind {
         JointKind::Ball { limit: None } => {
@@ -207,7 +207,7 @@ impl Simulation for JoltWorld {
     }
 }
 
-/// oxijolt looks up the hit's normal and layer too: less than a tenth of the time.
+/// oxijolt also looks up the hit's normal and layer: less than a tenth of the time.
 struct JoltRays {
     world: PhysicsWorld,
     rays: Vec<RayCast>,

@@ -7,30 +7,30 @@ use oxijolt::{BodySettings, CompoundChild, Inertia};
 use sinew::math::{Transform, Vec3, min};
 use sinew::physics::{BodyDef, BodyKind, MassProperties, Shape, ShapeDef};
 
-/// Jolt rounds the edges of boxes by this for speed, metres (its default).
+/// Jolt rounds the edges of boxes by this radius for speed, metres (its default).
 pub const CONVEX_RADIUS: f32 = 0.05;
 
-/// Half sizes of the box that stands for a half-space, metres; its upper face is the plane.
+/// Half sizes of the box that replaces a half-space, metres; its upper face is the plane.
 const HALF_SPACE: Vec3 = Vec3::new(900.0, 10.0, 900.0);
 
-/// Rounding of the edges of a shape that holds a ball of this radius.
+/// Returns the rounding of the edges of a shape that contains a ball of this radius.
 fn edge_radius(inner_radius: f32) -> f32 {
     min(CONVEX_RADIUS, 0.5 * inner_radius)
 }
 
-/// As given, or that of the shapes with their densities.
+/// Returns the given mass, or that of the shapes with their densities.
 fn mass(def: &BodyDef) -> MassProperties {
     def.mass.unwrap_or_else(|| sum(&def.shapes, |part| part.shape.mass_properties(part.density)))
 }
 
-/// Mass of shapes together, in their body's frame.
+/// Returns the total mass of shapes, in their body's frame.
 fn sum(shapes: &[ShapeDef], mass: impl Fn(&ShapeDef) -> MassProperties) -> MassProperties {
     shapes.iter().fold(MassProperties::default(), |sum, part| {
         sum.combine(&mass(part).transformed(&part.body_from_shape))
     })
 }
 
-/// Mass of a shape as Jolt has it: all have the same density, and a tapered capsule is a box of its mean width.
+/// Returns the mass of a shape as Jolt has it: all have the same density, and a tapered capsule is a box of its mean width.
 fn mass_in_jolt(part: &ShapeDef) -> MassProperties {
     let Shape::TaperedCapsule { half_height, radius_bottom, radius_top } = part.shape else {
         return part.shape.mass_properties(1.0);
@@ -41,19 +41,19 @@ fn mass_in_jolt(part: &ShapeDef) -> MassProperties {
     Shape::Box { half_extents }.mass_properties(1.0).transformed(&middle)
 }
 
-/// Gives a dynamic body its mass: ours, for Jolt's shapes have no density of their own here.
+/// Sets the mass of a dynamic body to ours, because Jolt's shapes have no density of their own here.
 pub fn with_mass(settings: BodySettings, def: &BodyDef) -> BodySettings {
     let properties = mass(def);
     let rows = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (properties.inertia * axis).to_array());
     settings.mass_and_inertia(properties.mass, Inertia::Tensor(rows))
 }
 
-/// All shapes of a body as one, its centre of mass where the body has it.
+/// Returns all shapes of a body as one, with the body's centre of mass.
 pub fn shape(def: &BodyDef) -> Result<oxijolt::Shape, Unsupported> {
     let placed = |part: &ShapeDef| Ok((shape_alone(&part.shape)?, body_from_shape(part)));
     let mut parts = def.shapes.iter().map(placed).collect::<Result<Vec<_>, Unsupported>>()?;
     let shape = match parts.len() {
-        // Bodies without shapes there are none; its layer keeps this one from meeting anything.
+        // There are no bodies without shapes in Jolt; the layer disables this one's contacts.
         0 => return oxijolt::Shape::new_sphere(CONVEX_RADIUS).map_err(refused),
         1 if parts[0].1 == Transform::IDENTITY => parts.remove(0).0,
         _ => compound(&parts)?,

@@ -1,7 +1,7 @@
-//! Skeletons and animations as the bytes that ozz-animation reads: it has a format, and no builder.
+//! Skeletons and animations as the bytes that ozz-animation reads: it has a format, but no builder.
 //!
-//! An animation's keys are sorted by the time at which they are needed, that of the key before; each says how many keys
-//! before it that one lies. Every track has two keys at least.
+//! An animation's keys are sorted by the time at which they are needed, that of the key before; each stores how many keys
+//! back that one is. Every track has at least two keys.
 
 use core::cmp::Ordering;
 use sinew::anim::{Channel, Clip, LocalTransform, Property, rest_pose};
@@ -10,7 +10,7 @@ use sinew_scenes::crowd::CrowdScene;
 /// Joints side by side in ozz's poses; tracks are filled up to a multiple.
 const SIDE_BY_SIDE: usize = 4;
 
-/// What a file begins with on machines like this one.
+/// Magic bytes of a file on machines like this one.
 const ENDIAN_TAG: u8 = cfg!(target_endian = "little") as u8;
 
 /// The rig of a crowd, version 2 of the format.
@@ -32,7 +32,7 @@ pub fn skeleton(scene: &CrowdScene) -> Vec<u8> {
     bytes.0
 }
 
-/// A clip of a crowd, version 7 of the format: each key of the clip is one, and what does not move has two.
+/// Returns a clip of a crowd, version 7 of the format: each key of the clip is one, and constant tracks have two.
 ///
 /// # Panics
 /// If a channel is not of the clip's key times: nothing else is needed here.
@@ -49,7 +49,7 @@ pub fn animation(scene: &CrowdScene, clip: &Clip) -> Vec<u8> {
     for keys in [&translations, &rotations, &scales] {
         bytes.u32(keys.len());
     }
-    // No iframes, from which to start after a jump: two numbers for each property.
+    // No iframes, from which seeking starts: two numbers for each property.
     (0..6).for_each(|_| bytes.u32(0));
     bytes.0.extend(clip.name.as_bytes());
     times.iter().for_each(|time| bytes.f32(time / clip.duration));
@@ -58,14 +58,14 @@ pub fn animation(scene: &CrowdScene, clip: &Clip) -> Vec<u8> {
             bytes.0.push(u8::try_from(key.time).expect("fewer than 256 times"));
         }
         keys.iter().for_each(|key| bytes.u16(key.back));
-        // How far apart iframes are, as a share of the whole.
+        // Interval of iframes, as a share of the whole.
         bytes.f32(1.0);
         keys.iter().flat_map(|key| key.packed).for_each(|number| bytes.u16(number));
     }
     bytes.0
 }
 
-/// With identities up to a multiple of four.
+/// Pads with identities to a multiple of four.
 fn filled(mut pose: Vec<LocalTransform>) -> Vec<LocalTransform> {
     pose.resize(pose.len().next_multiple_of(SIDE_BY_SIDE), LocalTransform::default());
     pose
@@ -82,7 +82,7 @@ struct Key {
     time: usize,
     /// Time at which it is needed; none for the first one.
     needed: Option<usize>,
-    /// How many keys back the one before is.
+    /// Number of keys back to the one before.
     back: u16,
     packed: [u16; 3],
 }
@@ -154,14 +154,14 @@ fn halves(value: &[f32]) -> [u16; 3] {
     [half(value[0]), half(value[1]), half(value[2])]
 }
 
-/// To the nearest half-precision number; for what is neither tiny nor huge.
+/// Rounds to the nearest half-precision number, for values that are neither tiny nor huge.
 fn half(value: f32) -> u16 {
     let sign = if value.is_sign_negative() { 0x8000 } else { 0 };
-    // Below the least normal number, 2⁻¹⁴, there are multiples of 2⁻²⁴.
+    // Below the least normal number, 2⁻¹⁴, are multiples of 2⁻²⁴.
     if value.abs() < 6.2e-5 {
         return sign | (value.abs() * 16_777_216.0 + 0.5) as u16;
     }
-    // The exponent changes its bias from 127 to 15, and 13 bits of the fraction go.
+    // The exponent's bias changes from 127 to 15, and 13 bits of the fraction are dropped.
     let rounded = value.abs().to_bits() + 0x1000 - (112 << 23);
     sign | u16::try_from(rounded >> 13).expect("below 65,504")
 }

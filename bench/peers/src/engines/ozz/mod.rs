@@ -43,7 +43,7 @@ impl Engine for Ozz {
 
 type Locals = Rc<RefCell<Vec<SoaTransform>>>;
 
-/// A sampling context for each clip and the matrices of each character; what lies between is shared.
+/// A sampling context for each clip and the matrices of each character; intermediate buffers are shared.
 struct OzzCrowd<'a> {
     scene: &'a CrowdScene,
     characters: Vec<OzzCharacter>,

@@ -18,7 +18,7 @@ pub(super) fn decode(bytes: &[u8], count: usize, stride: usize) -> Decoded {
     let version = match bytes.first() {
         Some(0xA0) => 0,
         Some(0xA1) => 1,
-        _ => return Err("it does not begin like attributes"),
+        _ => return Err("it does not have the first byte of attributes"),
     };
     // The end of the stream holds the initial element and the channel types.
     let tail = stride + if version == 0 { 0 } else { stride / 4 };

@@ -46,7 +46,7 @@ pub(super) fn decode_triangles(bytes: &[u8], count: usize) -> Indices {
     let version = match bytes.first() {
         Some(0xE0) => 0,
         Some(0xE1) => 1,
-        _ => return Err("it does not begin like triangles"),
+        _ => return Err("it does not have the first byte of triangles"),
     };
     let mut reader = Reader { rest: &bytes[1..] };
     let codes = reader.take(count / 3)?;
@@ -166,7 +166,7 @@ impl Triangles<'_> {
 pub(super) fn decode_sequence(bytes: &[u8], count: usize) -> Indices {
     match bytes.first() {
         Some(0xD0 | 0xD1) => {}
-        _ => return Err("it does not begin like indices"),
+        _ => return Err("it does not have the first byte of indices"),
     }
     // The four padding bytes let decoders read ahead.
     let length = bytes.len().checked_sub(5).ok_or("it is cut off")?;

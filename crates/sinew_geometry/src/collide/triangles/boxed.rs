@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_beyond_the_margin_is_left_out() {
+    fn features_beyond_the_margin_are_skipped() {
         let [near, far] = [0.01, 0.5].map(|separation| ManifoldPoint { separation, ..Default::default() });
         assert_eq!(within(&[near, near], 0.1), &[near, near]);
         assert_eq!(within(&[near, far], 0.1), &[near]);

@@ -186,7 +186,7 @@ impl Teller<'_> {
         outline.cut(self.triangle, self.solid.tolerance()).moved(-shift)
     }
 
-    /// Records what is over the triangle, once it has moved by `shift`; false if nothing is.
+    /// Records the part of the shape over the triangle, after a motion by `shift`; returns false if there is none.
     fn face(&mut self, shift: Vec3, when: When) -> bool {
         let over = self.over_face(shift);
         let has_points = self.face_points(&over, when);

@@ -1,4 +1,4 @@
-//! Boxes by eights: one by one to the bit, at every level that the processor has; against enumeration; and against a
+//! Batches of eight boxes: bits equal those of single boxes at every level that the processor has; against enumeration; and against a
 //! hash that is the same on all processors.
 
 use super::oracle::WideBox;
@@ -14,22 +14,22 @@ use sinew_geometry::boxes::{Cuboid, Overlap, Penetration};
 use sinew_math::dispatch::{self, Level};
 use sinew_math::{Random, StableHasher, Vec3};
 
-/// All are run always: they take microseconds.
+/// All cases run always: they take microseconds.
 const CASES: usize = 100_000;
 
-/// Hash of the answers to the soup, on x86-64, aarch64 and wasm.
+/// Hash of the answers for the soup, on x86-64, aarch64 and wasm.
 const GOLDEN: u64 = 0xeb39_4a58_1e5a_bc31;
 
 fn bit(bytes: &[u8], index: usize) -> bool {
     bytes[index / 8] >> (index % 8) & 1 == 1
 }
 
-/// All NaN are one: neither their sign nor their payload is anybody's promise.
+/// Makes all NaN equal: their sign and payload are not defined.
 fn bits(number: f32) -> u32 {
     if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() }
 }
 
-/// In, on, near and far from a box.
+/// Returns points in, on, near and far from a box.
 fn point_about(of: &Obb, random: &mut Random) -> Vec3 {
     let corner = random.in_cube().map(|x| if x < 0.0 { -1.0 } else { 1.0 });
     let place = match random.index(5) {
@@ -87,7 +87,7 @@ fn many_points_are_answered_like_one() {
             for (k, &point) in points.iter().enumerate() {
                 assert_eq!(bit(&inside, k), of.contains_point(point), "{level:?}: {point} in {of:?}");
                 let (found, one) = (distances[k], of.signed_distance(point));
-                // One by one, what is closer than that is on the surface.
+                // For single boxes, closer points count as on the surface.
                 let is_same =
                     found.to_bits() == one.to_bits() || (found.abs() <= 1e-12 && one.abs() <= 1e-12);
                 assert!(is_same, "{level:?}: {found:e}, {one:e}: {point} and {of:?}");
@@ -119,7 +119,7 @@ fn many_pairs_are_answered_like_one() {
     }
 }
 
-/// The same depth, direction and gap as by enumeration, and either way round.
+/// The same depth, direction and gap as by enumeration, in either order.
 #[test]
 fn separations_match_enumeration() {
     let mut random = Random::new(63);
@@ -138,7 +138,7 @@ fn separations_match_enumeration() {
 }
 
 #[test]
-fn faces_alone_never_say_more() {
+fn face_axes_never_exceed_all_axes() {
     let mut random = Random::new(64);
     let boxes: Vec<[Obb; 2]> = (0..CASES).map(|_| pair(&mut random)).collect();
     let pairs = pairs_of(&boxes);
@@ -153,7 +153,7 @@ fn faces_alone_never_say_more() {
     assert!(edges > CASES / 50, "edges were better {edges} times");
 }
 
-/// Two boxes whose number `index` of twenty is `value`.
+/// Returns two boxes whose number `index` of twenty is `value`.
 fn spoilt(boxes: &[Obb; 2], index: usize, value: f32) -> [Obb; 2] {
     let mut boxes = *boxes;
     let of = &mut boxes[index / 10];
@@ -174,7 +174,7 @@ fn spoilt(boxes: &[Obb; 2], index: usize, value: f32) -> [Obb; 2] {
 }
 
 #[test]
-fn nan_stays_where_it_is() {
+fn nan_affects_only_its_own_lane() {
     let mut random = Random::new(65);
     let boxes: [[Obb; 2]; 8] = core::array::from_fn(|_| pair(&mut random));
     let whole = pairs_of(&boxes);
@@ -219,7 +219,7 @@ fn a_point_with_nan_is_nowhere() {
     }
 }
 
-/// Pairs of boxes that every processor has to answer alike: of all sizes, from the smallest numbers to the largest; NaN.
+/// Pairs of boxes for which every processor must give the same answer: of all sizes, and NaN.
 fn soup() -> Vec<[Obb; 2]> {
     let mut random = Random::new(67);
     let mut soup: Vec<[Obb; 2]> = (0..2_000).map(|_| pair(&mut random)).collect();
@@ -242,7 +242,7 @@ fn soup() -> Vec<[Obb; 2]> {
     soup
 }
 
-/// In the order in which the axes are tried.
+/// In the order in which the axes are tested.
 fn place(axis: SeparatingAxis) -> u8 {
     match axis {
         SeparatingAxis::FaceOfA(k) => k,

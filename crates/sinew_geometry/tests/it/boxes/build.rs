@@ -1,4 +1,4 @@
-//! Making boxes, and their measures.
+//! Construction of boxes, and their measures.
 
 use super::random_pairs::place;
 use crate::cases::{cases, half_extents};
@@ -8,7 +8,7 @@ use sinew_math::{Random, Rotation, Vec3};
 use std::panic::catch_unwind;
 
 #[test]
-fn sizes_and_places_that_are_none_panic() {
+fn nonfinite_sizes_and_places_panic() {
     let turn = Rotation::IDENTITY;
     for bad in [-1.0, f32::NAN, f32::INFINITY] {
         let half = Vec3::new(1.0, bad, 1.0);
@@ -32,7 +32,7 @@ fn sizes_and_places_that_are_none_panic() {
     assert_eq!(Aabb::new(Vec3::ONE, Vec3::ONE).half_extents(), Vec3::ZERO);
 }
 
-/// Volume, area and inertia of a box of 2 × 4 × 6 m, by hand; and of a plate that has no volume.
+/// Volume, area and inertia of a box of 2 × 4 × 6 m, by hand; and of a plate without volume.
 #[test]
 fn measures() {
     let obb = Obb::new(Vec3::new(7.0, 0.0, 0.0), Rotation::IDENTITY, Vec3::new(1.0, 2.0, 3.0));
@@ -44,7 +44,7 @@ fn measures() {
     assert_eq!(plate.inertia(3.0).diagonal, Vec3::new(1.0, 2.0, 1.0));
 }
 
-/// A turned box weighs what the shape of a body weighs in the same frame.
+/// A rotated box has the mass of a body's shape in the same frame.
 #[test]
 fn mass_properties_are_those_of_the_shape() {
     let mut random = Random::new(71);
@@ -61,7 +61,7 @@ fn mass_properties_are_those_of_the_shape() {
     }
 }
 
-/// Corners are as far from the centre as they should be, each on its sides of the axes.
+/// Corners have the right distance from the centre and lie on the right sides of the axes.
 #[test]
 fn corners_are_numbered_by_their_sides() {
     let mut random = Random::new(72);

@@ -9,7 +9,7 @@ use sinew_geometry::ray::Ray;
 use sinew_geometry::{Aabb, Obb};
 use sinew_math::{Random, Rotation, Vec3};
 
-/// A ray toward the box, past it, along an axis, or from inside.
+/// Returns a ray toward the box, past it, along an axis, or from inside.
 fn ray_about(obb: &Obb, random: &mut Random) -> Ray {
     let reach = obb.half_extents.length() + 1e-3;
     let in_box = |q: Vec3| obb.center + obb.rotation * (obb.half_extents * q);
@@ -26,7 +26,7 @@ fn ray_about(obb: &Obb, random: &mut Random) -> Ray {
     Ray { origin: from, direction: (to - from) * random.range(0.3, 2.0) }
 }
 
-/// Share of the segment before it enters the box, by bisection of the distance that is left to it: `None` if it misses.
+/// Returns the share of the segment before it enters the box, by bisection of the remaining distance; `None` if it misses.
 fn entry(wide_box: &WideBox, ray: &Ray) -> Option<f64> {
     let (origin, along) = (wide(ray.origin), wide(ray.direction));
     let up_to = |t: f64| wide_box.distance_to_segment([origin, add(origin, along, t)]);
@@ -48,7 +48,7 @@ fn check(cuboid: &impl Cuboid, wide_box: &WideBox, of_center: f64, ray: &Ray, ca
     let tolerance = 1e-6 * (wide_box.size() + from_center + length(along)) + of_center;
     let near = |t: f64| wide_box.signed_distance(add(origin, along, t)).abs();
     let Some(hit) = said else {
-        // Roundings let a ray pass that grazes: then so does a box that is smaller by as much.
+        // Rounding lets a grazing ray pass; it then also misses a box that is smaller by as much.
         let smaller = WideBox { half: wide_box.half.map(|h| h - tolerance), ..*wide_box };
         let missed = smaller.half.iter().any(|h| *h < 0.0) || entry(&smaller, ray).is_none();
         assert!(missed, "case {case}: {ray:?} enters {wide_box:?}");
@@ -71,13 +71,13 @@ fn check(cuboid: &impl Cuboid, wide_box: &WideBox, of_center: f64, ray: &Ray, ca
     let t = f64::from(hit.fraction);
     assert!(near(t) <= tolerance, "case {case}: {hit:?} is {} off {wide_box:?}", near(t));
     assert!(hit.normal.dot(ray.direction) <= 0.0, "case {case}: {hit:?}");
-    // The normal's face holds the point.
+    // The normal's face contains the point.
     let [point, normal] =
         [wide_box.local(add(origin, along, t)), wide_box.local(add(wide_box.center, wide(hit.normal), 1.0))];
     let face = (0..3).find(|k| normal[*k].abs() > 0.999_99).expect("a face's normal");
     let off = (point[face] * normal[face].signum() - wide_box.half[face]).abs();
     assert!(off <= tolerance, "case {case}: {hit:?} is {off} off its face");
-    // Nothing of the ray before the hit is inside by more than roundings.
+    // Nothing of the ray before the hit is inside by more than rounding.
     let smaller = WideBox { half: wide_box.half.map(|h| (h - 2.0 * tolerance).max(0.0)), ..*wide_box };
     if let Some(first) = entry(&smaller, ray).filter(|_| smaller.half.iter().all(|h| *h > 0.0)) {
         assert!(t <= first + 1e-6 + of_center / length(along), "case {case}: {hit:?}, entered at {first}");
@@ -95,7 +95,7 @@ fn rays_enter_where_bisection_does() {
         hits += u32::from(obb.cast_ray(&ray).is_some());
         let aabb = Aabb::around(place(&mut random), half_extents(1.0, &mut random));
         let ray = ray_about(&Obb::from(aabb), &mut random);
-        // Half of the gap between two numbers along each axis.
+        // Half of the spacing of numbers along each axis.
         let of_center = length(wide(aabb.center())) * 1e-7;
         check(&aabb, &WideBox::from(&aabb), of_center, &ray, case);
     }
@@ -103,7 +103,7 @@ fn rays_enter_where_bisection_does() {
     assert!((20..90).contains(&share), "{share} % hit");
 }
 
-/// The half-line goes on where the segment ends.
+/// The half-line continues where the segment ends.
 #[test]
 fn half_lines_have_no_end() {
     let obb = Obb::new(Vec3::new(10.0, 0.0, 0.0), Rotation::IDENTITY, Vec3::ONE);
@@ -117,7 +117,7 @@ fn half_lines_have_no_end() {
     assert_eq!(obb.cast_ray(&touching).map(|hit| hit.fraction), Some(1.0));
 }
 
-/// Flat boxes stop rays too, and a ray in the plane of one meets its rim.
+/// Flat boxes stop rays too; a ray in the plane of one hits its edge.
 #[test]
 fn rays_meet_flat_boxes() {
     let sheet = Obb::new(Vec3::ZERO, Rotation::IDENTITY, Vec3::new(1.0, 0.0, 1.0));

@@ -10,13 +10,13 @@ fn holds_all(obb: &Obb, points: &[Vec3]) -> bool {
     points.iter().all(|&p| obb.contains_point(p))
 }
 
-/// Volume of the box along the axes of a rotation.
+/// Returns the volume of the box along the axes of a rotation.
 fn volume_along(rotation: Rotation, points: &[Vec3]) -> f32 {
     let turned: Vec<Vec3> = points.iter().map(|&p| rotation.inverse() * p).collect();
     Aabb::from_points(&turned).map_or(0.0, |bounds| bounds.volume())
 }
 
-/// The least volume that random turns, ever smaller ones, find.
+/// Returns the least volume that random rotations of decreasing size find.
 fn searched(points: &[Vec3], random: &mut Random) -> f32 {
     let mut starts: Vec<(f32, Rotation)> = (0..400)
         .map(|_| random.rotation())
@@ -48,7 +48,7 @@ fn corners_of_a_box_give_the_box_back() {
         let fit = Obb::from_points(&corners).expect("finite points");
         assert!(holds_all(&fit, &corners), "{obb:?} {fit:?}");
         assert!((fit.volume() - obb.volume()).abs() < 1e-5 * (1.0 + obb.volume()), "{obb:?} {fit:?}");
-        // Flat ones too: their sides are those of the box, in another order.
+        // Flat boxes too: their sides are those of the box, in another order.
         let sorted = |half: Vec3| {
             let mut sides = half.to_array();
             sides.sort_by(f32::total_cmp);
@@ -60,7 +60,7 @@ fn corners_of_a_box_give_the_box_back() {
     }
 }
 
-/// The least box around a regular tetrahedron is the cube of whose faces its edges are diagonals: a third of the cube.
+/// The smallest box around a regular tetrahedron is the cube whose face diagonals are its edges: three times its volume.
 #[test]
 fn a_tetrahedron_fits_its_cube() {
     let mut random = Random::new(82);
@@ -75,7 +75,7 @@ fn a_tetrahedron_fits_its_cube() {
     }
 }
 
-/// A prism on a regular triangle: the rectangle of least area around a triangle stands on a side and is twice as large.
+/// A prism on a regular triangle: the smallest rectangle around a triangle stands on a side and is twice as large.
 #[test]
 fn a_prism_stands_on_a_side() {
     let height = 0.5 * 3.0f32.sqrt();
@@ -89,7 +89,7 @@ fn a_prism_stands_on_a_side() {
     assert!((fit.volume() - 0.5 * height).abs() < 1e-5, "{fit:?}");
 }
 
-/// Random clouds: never larger than the simpler boxes, and about as small as a search by random turns finds.
+/// Random clouds: never larger than the simpler boxes, and about as small as a random search finds.
 #[test]
 fn no_box_is_much_smaller() {
     let mut random = Random::new(83);
@@ -117,7 +117,7 @@ fn no_box_is_much_smaller() {
 /// Makes a box around points.
 type Fit = fn(&[Vec3]) -> Option<Obb>;
 
-/// One point, points on a line, in a plane, all the same; none; and numbers that are none.
+/// One point, points on a line, in a plane, all equal; none; and NaN or infinity.
 #[test]
 fn degenerate_clouds_have_an_answer() {
     let (p, along) = (Vec3::new(3.0, -1.0, 2.0), Vec3::new(0.6, 0.0, 0.8));
@@ -162,7 +162,7 @@ fn a_merged_box_holds_both() {
         for axes in [a.rotation, b.rotation] {
             assert!(both.volume() <= volume_along(axes, &corners) * 1.0001 + 1e-5, "{a:?} {b:?}");
         }
-        // Of flat boxes rounding decides whether one holds the other.
+        // For flat boxes rounding decides whether one contains the other.
         let a = Obb { half_extents: a.half_extents + Vec3::splat(0.01), ..a };
         let inner = Obb { half_extents: a.half_extents * 0.5, ..a };
         assert_eq!((a.merge(&inner), inner.merge(&a)), (a, a));
@@ -173,7 +173,7 @@ fn a_merged_box_holds_both() {
     assert_eq!(low.merge(&high), Aabb::new(-Vec3::ONE, Vec3::new(1.0, 4.0, 1.0)));
 }
 
-/// Bounds of a turned box: `|R| h` about its centre, touched by corners on every side.
+/// Bounds of a rotated box: `|R| h` about its centre, touched by corners on every side.
 #[test]
 fn bounds_touch_corners() {
     let mut random = Random::new(85);

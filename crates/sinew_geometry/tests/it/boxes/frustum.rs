@@ -15,7 +15,7 @@ fn frustum(random: &mut Random) -> Frustum {
     Frustum::new(eye, random.range(0.2, 2.2), random.range(0.5, 2.0), near, near + random.range(1.0, 20.0))
 }
 
-/// Depth of a point inside all six planes, roughly: the least of the six heights.
+/// Returns roughly the depth of a point inside all six planes: the least of the six heights.
 fn depth(frustum: &Frustum, eye: &WideBox, p: Wide) -> f64 {
     let [x, y, z] = eye.local(p);
     let ahead = -z;
@@ -69,7 +69,7 @@ fn boxes_are_culled_as_their_points_are_seen() {
     }
     let all = cases(100_000);
     assert!(counts.iter().all(|count| count * 20 > all), "{counts:?}");
-    // Sampling misses some points that are seen, so this is an upper bound.
+    // Sampling misses some visible points, so this is an upper bound.
     assert!(untold * 100 < 15 * all, "{untold} of {all} are called intersecting and show no point");
 }
 
@@ -92,7 +92,7 @@ fn balls_are_culled_by_their_depth() {
     }
 }
 
-/// A place in the picture, the segment under it, and back.
+/// A place in the picture, its segment, and back.
 #[test]
 fn rays_go_through_the_picture() {
     let mut random = Random::new(93);
@@ -111,7 +111,7 @@ fn rays_go_through_the_picture() {
     }
 }
 
-/// The first box on the way is picked, of two alike the first in the list.
+/// The first box along the segment is picked; of equal ones, the first in the list.
 #[test]
 fn the_nearest_box_is_picked() {
     let eye = Transform::from_translation(Vec3::new(0.0, 0.0, 10.0));
@@ -131,7 +131,7 @@ fn the_nearest_box_is_picked() {
 }
 
 #[test]
-fn eyes_that_see_nothing_panic() {
+fn degenerate_cameras_panic() {
     let at = Transform::IDENTITY;
     let lost = Transform::from_translation(Vec3::new(f32::NAN, 0.0, 0.0));
     assert!(catch_unwind(|| Frustum::new(lost, 1.0, 1.0, 0.1, 10.0)).is_err());

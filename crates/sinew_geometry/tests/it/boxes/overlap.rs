@@ -8,7 +8,7 @@ use sinew_geometry::boxes::{Capsule, Cuboid, Overlap, Penetration, Sphere};
 use sinew_geometry::{Aabb, Obb};
 use sinew_math::{Random, Rotation, Transform, Vec3};
 
-/// Checks what is said about a pair against `meets(shift, grow)`: whether the two, one of them moved by `shift` and grown
+/// Checks the answers for a pair against `meets(shift, grow)`: whether the two, one moved by `shift` and grown
 /// by `grow`, have a point in common.
 pub fn check(
     found: Option<Penetration>,
@@ -30,7 +30,7 @@ pub fn check(
     if meets(add(still, n, depth + 2.0 * fine), -fine) {
         return Err(format!("{depth} along {direction} does not part them"));
     }
-    // Neither the same way nor another one is shorter.
+    // No other way out is shorter.
     for k in 0..6 {
         let other = if k == 0 {
             direction
@@ -48,8 +48,8 @@ pub fn check(
     Ok(())
 }
 
-/// Errors that two boxes may have: roundings of their sizes, their distance, and of the centre of an aligned one; and where
-/// rounding leaves no direction across edges that are nearly parallel, what that direction is worth.
+/// Error bounds for two boxes: rounding of their sizes, their distance, and the centre of an aligned one; and where
+/// edges are nearly parallel, the uncertainty of the direction across them.
 pub fn tolerances(a: &WideBox, b: &WideBox, of_center: f64) -> [f64; 2] {
     let scale = a.size() + b.size() + length(add(a.center, b.center, -1.0));
     let fine = 1e-6 * scale + of_center + 1e-12;
@@ -101,7 +101,7 @@ fn aligned_and_oriented_boxes_match_enumeration() {
         let rotation = frame.rotation * b.rotation;
         let turned =
             Obb::new(aligned.center() + frame.rotation * (b.center - a.center), rotation, b.half_extents);
-        // Half of the gap between two numbers along each axis.
+        // Half of the spacing of numbers along each axis.
         let of_center = length(wide(aligned.center())) * 1e-7;
         check_boxes(
             (&aligned, &WideBox::from(&aligned)),
@@ -121,7 +121,7 @@ fn aligned_boxes_match_enumeration() {
     }
 }
 
-/// A ball or a capsule about a box: its first end and the second one.
+/// A ball or a capsule near a box: its two ends.
 fn core_about(obb: &Obb, random: &mut Random) -> [Vec3; 2] {
     let reach = obb.half_extents.length() + 1e-3;
     let far = if random.index(6) == 0 { 100.0 } else { 1.0 };
@@ -208,7 +208,7 @@ fn capsules_match_a_search_along_their_cores() {
 
 /// Boxes that touch overlap, at depth 0.
 #[test]
-fn touch_counts() {
+fn touching_boxes_overlap() {
     let unit = Obb::new(Vec3::ZERO, Rotation::IDENTITY, Vec3::ONE);
     let beside = Obb::new(Vec3::new(2.0, 0.0, 0.0), Rotation::IDENTITY, Vec3::ONE);
     let way = unit.penetration(&beside).expect("they touch");
@@ -234,7 +234,7 @@ fn touch_counts() {
 
 /// Boxes that are rectangles, segments and points.
 #[test]
-fn flat_boxes_meet_like_what_they_are() {
+fn flat_boxes_overlap_exactly() {
     let point = |p: Vec3| Obb::new(p, Rotation::from_scaled_axis(Vec3::new(0.3, 0.2, 0.9)), Vec3::ZERO);
     assert!(point(Vec3::ONE).overlaps(&point(Vec3::ONE)));
     assert!(!point(Vec3::ONE).overlaps(&point(Vec3::new(1.0, 1.0, 1.001))));

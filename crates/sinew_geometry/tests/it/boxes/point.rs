@@ -8,7 +8,7 @@ use sinew_geometry::boxes::{Cuboid, Penetration};
 use sinew_geometry::{Aabb, Obb};
 use sinew_math::{Random, Rotation, Transform, Vec3};
 
-/// A point about the box: around it, in it, on its surface, far away, or its centre.
+/// Returns a point near the box: around it, in it, on its surface, far away, or its centre.
 fn point_about(obb: &Obb, random: &mut Random) -> Vec3 {
     let reach = obb.half_extents.length();
     let in_box = |q: Vec3| obb.center + obb.rotation * (obb.half_extents * q);
@@ -25,7 +25,7 @@ fn point_about(obb: &Obb, random: &mut Random) -> Vec3 {
     }
 }
 
-/// Checks everything said about a point.
+/// Checks all answers for a point.
 fn check(cuboid: &impl Cuboid, wide_box: &WideBox, point: Vec3, case: u32) {
     let distance = wide_box.signed_distance(wide(point));
     let tolerance = 1e-6 * (wide_box.size() + distance.abs());
@@ -65,7 +65,7 @@ fn points_match_the_nearest_of_six_faces() {
     }
 }
 
-/// On exact numbers the surface belongs to the box and the next number does not.
+/// For exact numbers the surface belongs to the box and the next number does not.
 #[test]
 fn the_surface_belongs_to_the_box() {
     let aabb = Aabb::new(Vec3::new(-1.0, 2.0, 4.0), Vec3::new(1.0, 4.0, 4.0));
@@ -82,7 +82,7 @@ fn the_surface_belongs_to_the_box() {
     }
 }
 
-/// A box turned by half of a right angle: how deep and in which direction, by hand.
+/// A box rotated by half of a right angle: depth and direction by hand.
 #[test]
 fn the_way_out_goes_through_the_nearest_face() {
     let turned = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_4);
@@ -97,7 +97,7 @@ fn the_way_out_goes_through_the_nearest_face() {
     assert_eq!(obb.point_penetration(corner), None);
 }
 
-/// A motion of both changes no answer.
+/// Moving both does not change the answers.
 #[test]
 fn answers_move_with_the_box() {
     let mut random = Random::new(43);

@@ -1,4 +1,4 @@
-//! Random boxes and pairs: near each other and far, touching, contained, flat, aligned and nearly so.
+//! Random boxes and pairs: near and far, touching, contained, flat, aligned and nearly aligned.
 
 use super::oracle::{WideBox, cross};
 use crate::cases::half_extents;
@@ -6,7 +6,7 @@ use crate::wide::{add, dot, length, wide};
 use sinew_geometry::Obb;
 use sinew_math::{Random, Rotation, Vec3};
 
-/// A third aligned, a third nearly so.
+/// A third aligned, a third nearly.
 pub fn rotation(random: &mut Random) -> Rotation {
     match random.index(3) {
         0 => Rotation::IDENTITY,
@@ -15,18 +15,18 @@ pub fn rotation(random: &mut Random) -> Rotation {
     }
 }
 
-/// Somewhere within a metre or, in a quarter of the cases, 10 km away.
+/// Within a metre or, in a quarter of the cases, 10 km away.
 pub fn place(random: &mut Random) -> Vec3 {
     if random.index(4) == 0 { random.direction() * 1e4 } else { random.in_cube() }
 }
 
-/// A box of millimetres to hundreds of metres.
+/// Returns a box of millimetres to hundreds of metres.
 pub fn obb(random: &mut Random) -> Obb {
     let scale = [0.001, 0.1, 1.0, 100.0][random.index(4)];
     Obb::new(place(random), random.rotation(), half_extents(scale, random))
 }
 
-/// Two boxes: anywhere about each other, touching, one in the other, or far apart.
+/// Returns two boxes: near each other, touching, one in the other, or far apart.
 pub fn pair(random: &mut Random) -> [Obb; 2] {
     let a = obb(random);
     let ratio = [0.1, 1.0, 1.0, 5.0][random.index(4)];
@@ -46,7 +46,7 @@ pub fn pair(random: &mut Random) -> [Obb; 2] {
     [a, b]
 }
 
-/// Centre of B with which its extent along a separating axis begins where A's ends.
+/// Returns the centre of B at which its extent along a separating axis begins where A's ends.
 fn touching(a: &Obb, b: &Obb, random: &mut Random) -> Vec3 {
     let (wa, wb) = (WideBox::from(a), WideBox::from(b));
     let (i, j) = (random.index(3), random.index(3));

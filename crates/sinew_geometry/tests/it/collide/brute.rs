@@ -1,5 +1,5 @@
-//! Every pair of kinds against the support functions of both: a search over all directions, in `f64`. Each pair is asked
-//! 1,000 times, or 100,000 times when `SINEW_FULL` is set, as `cargo xtask ci --full` does.
+//! Every pair of kinds against the support functions of both: a search over all directions, in `f64`. 1,000 cases of each
+//! pair, or 100,000 with `SINEW_FULL` set, as `cargo xtask ci --full` does.
 
 use super::placed::{Kind, Placed, all_pairs, gap, random_rotation, random_shape, unit, wide};
 use crate::cases::cases;
@@ -8,8 +8,8 @@ use sinew_geometry::{Shape, convex};
 use sinew_math::{Random, Transform, Vec3};
 use std::collections::BTreeMap;
 
-/// The largest gap over all directions: the distance of two convex shapes, or minus the depth of their overlap.
-/// Candidate directions, then, in one of ten cases, a search from the best ones.
+/// Returns the largest gap over all directions: the distance of two convex shapes, or minus the depth of their overlap.
+/// It tests candidate directions and, in one of ten cases, searches from the best ones.
 fn true_gap(a: &Placed, b: &Placed, random: &mut Random) -> f64 {
     if a.shape == Shape::HalfSpace {
         return gap(a, b, wide(a.frame.rotation * Vec3::Y));
@@ -36,7 +36,7 @@ fn true_gap(a: &Placed, b: &Placed, random: &mut Random) -> f64 {
     refined.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Random steps, ever shorter: the gap has kinks on which a search along fixed directions gets stuck.
+/// Random steps of decreasing size: the gap has kinks on which a search along fixed directions stops.
 fn refine(a: &Placed, b: &Placed, mut best: f64, mut n: [f64; 3], random: &mut Random) -> f64 {
     let mut step = 0.2;
     while step > 1e-6 {
@@ -56,7 +56,7 @@ fn refine(a: &Placed, b: &Placed, mut best: f64, mut n: [f64; 3], random: &mut R
     best
 }
 
-/// Two shapes near contact: overlapping by up to a third of their size or apart by up to a tenth.
+/// Returns two shapes near contact: overlapping by up to a third of their size or apart by up to a tenth.
 fn random_pair(ka: Kind, kb: Kind, random: &mut Random) -> (Placed, Placed) {
     let scale = [0.01, 0.1, 1.0, 10.0][random.index(4)];
     let ratio = [1.0, 1.0, 5.0][random.index(3)];
@@ -76,7 +76,7 @@ fn random_pair(ka: Kind, kb: Kind, random: &mut Random) -> (Placed, Placed) {
     (a, b)
 }
 
-/// By growing polytopes (GJK and EPA): where the shapes are to be, and a direction more to try.
+/// By GJK and EPA: intended places of the shapes, and an additional direction to test.
 fn way(a: &Placed, b: &Placed) -> convex::Gap {
     convex::gap(&a.shape, &a.frame, &b.shape, &b.frame).expect("one of them has an end")
 }
@@ -85,15 +85,15 @@ fn nearest(manifold: &Manifold) -> f64 {
     manifold.points().iter().map(|p| f64::from(p.separation)).fold(f64::INFINITY, f64::min)
 }
 
-/// By how much the gap along a normal may be less than the largest: faces are preferred to edges that are slightly better,
-/// and their normals to those that are slightly off; for the rest it is the best direction.
+/// Allowed difference of the gap along a normal and the largest gap: faces are preferred to slightly better edges,
+/// and their normals to slightly different ones.
 fn preference(ka: Kind, kb: Kind, a: &Placed, b: &Placed, truth: f64) -> f64 {
     let thinnest = f64::from(a.shape.inner_radius().min(b.shape.inner_radius()));
     match (ka, kb) {
         (Kind::HalfSpace, _) | (Kind::Box | Kind::Sphere, Kind::Sphere) | (Kind::Sphere, Kind::Capsule) => {
             0.0
         }
-        // Rounding turns the direction between two cores the further, the nearer they are, and the gap is taken where they meet.
+        // Rounding rotates the direction between two cores more, the nearer they are, and the gap is measured where they meet.
         (Kind::Capsule, Kind::Capsule) => {
             let cores = truth + f64::from(a.shape.inner_radius() + b.shape.inner_radius());
             let size = f64::from(a.size() + b.size());
@@ -105,14 +105,14 @@ fn preference(ka: Kind, kb: Kind, a: &Placed, b: &Placed, truth: f64) -> f64 {
     }
 }
 
-/// Verdict of a check: what is wrong, if something is.
+/// Result of a check: the fault, if there is one.
 type Verdict = Result<(), String>;
 
 fn hold(holds: bool, otherwise: impl FnOnce() -> String) -> Verdict {
     if holds { Ok(()) } else { Err(otherwise()) }
 }
 
-/// Judges random cases of each pair of kinds, and tells of every pair that has cases which fail how many, and the first.
+/// Checks random cases of each pair of kinds; for each failing pair, reports the number of failures and the first.
 fn judge(seed: u64, mut of: impl FnMut(Kind, Kind, &Placed, &Placed, &mut Random) -> Verdict) {
     let mut random = Random::new(seed);
     let mut wrong = Vec::new();
@@ -139,7 +139,7 @@ fn matches_the_support_functions() {
         let size = f64::from(a.size() + b.size());
         let margin = 0.05 * a.size().max(b.size());
         let m = a.collide(b, margin);
-        // Every direction bounds the gap from below: the search may stop short of its best, but not of these.
+        // Every direction bounds the gap from below: the search may stop short of its best direction, but not of these.
         let along_of = |normal: Vec3| unit(wide(normal)).map_or(f64::NEG_INFINITY, |n| gap(a, b, n));
         let along = if m.count > 0 { along_of(m.normal) } else { f64::NEG_INFINITY };
         let truth = true_gap(a, b, random).max(along).max(along_of(way(a, b).normal));
@@ -153,7 +153,7 @@ fn matches_the_support_functions() {
         let preference = preference(ka, kb, a, b, truth);
         hold(along > truth - preference - rounding, || context("not the best direction"))?;
         hold(nearest(&m) > along - rounding - 1e-4 * size, || context("too deep"))?;
-        // Over a plane the deepest point is always among them; else it must be where shapes do not touch yet.
+        // Over a plane the deepest point is always among them; otherwise only for shapes that do not touch yet.
         if ka == Kind::HalfSpace {
             return hold(nearest(&m) < truth + rounding, || context("not the deepest"));
         }
@@ -162,8 +162,8 @@ fn matches_the_support_functions() {
     });
 }
 
-/// A point lies half-way between the surfaces along the normal, on both shapes: but for edges that are taken as parallel, ends of
-/// capsules that lean, and deep overlaps that neither faces nor edges describe.
+/// A point lies half-way between the surfaces along the normal, on both shapes, except for nearly parallel edges, ends of
+/// tilted capsules, and deep overlaps without face or edge contact.
 #[test]
 fn points_lie_between_the_surfaces() {
     let mut tallies: BTreeMap<String, Tally> = BTreeMap::new();
@@ -193,7 +193,7 @@ fn points_lie_between_the_surfaces() {
     assert!(off * 100 < points, "{off} of {points} points are off a surface");
 }
 
-/// Number of points, and of those that are off a surface by more than a hundredth and a twentieth of the larger shape.
+/// Returns the number of points, and of those that are off a surface by more than a hundredth and a twentieth of the larger shape.
 #[derive(Debug, Default)]
 struct Tally {
     points: u32,
@@ -201,17 +201,17 @@ struct Tally {
     far: u32,
 }
 
-/// True if two answers to one question are as good: along both normals the shapes are equally far apart, but for what
-/// [`preference`] leaves open, and the separations say so. Which of them is told is then up to rounding, and so is the place
-/// along what is level.
+/// Whether two answers to one query are equally good: along both normals the shapes are equally far apart, within
+/// [`preference`], and the separations agree. Rounding then decides which one is returned, and the place
+/// along level directions.
 fn is_tie(kind: Kind, a: &Placed, b: &Placed, ab: &Manifold, ba: &Manifold) -> bool {
     let slack = preference(kind, kind, a, b, nearest(ab)) + 2e-5 * f64::from(a.size().max(b.size()));
     let along = [ab.normal, -ba.normal].map(|normal| gap(a, b, wide(normal)));
     (along[0] - along[1]).abs() < slack && (nearest(ab) - nearest(ba)).abs() < slack
 }
 
-/// The other order of the shapes gives the opposite normal, the same points, and features with exchanged halves. Two of one
-/// kind, whose order nothing tells, may have another answer where that is as good, which is rare.
+/// The other order of the shapes gives the opposite normal, the same points, and features with exchanged halves. Two shapes of one
+/// kind may rarely have another answer that is as good.
 #[test]
 fn the_order_of_the_shapes_does_not_matter() {
     let mut ties: BTreeMap<(Kind, Kind), u32> = BTreeMap::new();
@@ -230,11 +230,11 @@ fn the_order_of_the_shapes_does_not_matter() {
     assert!(ties.values().all(|&ties| ties <= 2 + cases(100_000) / 1_000), "{ties:?}");
 }
 
-/// Checks that one manifold is the other one of the exchanged shapes.
+/// Checks that one manifold is the exchanged other one.
 fn is_exchanged(ka: Kind, kb: Kind, size: f32, ab: &Manifold, ba: &Manifold) -> Verdict {
     let context = |what: &str| format!("{what}\n{ab:?}\n{ba:?}");
     hold((ab.normal + ba.normal).length() < 1e-3, || context("another normal"))?;
-    // Of two hulls, whose faces have many corners, other four may be kept: see `hull::pairs`.
+    // Hulls with many corners per face may keep four others: see `hull::pairs`.
     if (ka, kb) == (Kind::Hull, Kind::Hull) {
         return Ok(());
     }
@@ -250,7 +250,7 @@ fn is_exchanged(ka: Kind, kb: Kind, size: f32, ab: &Manifold, ba: &Manifold) -> 
     Ok(())
 }
 
-/// A pair that is turned and moved as one has its contact there.
+/// A pair that is moved as one has its contact there.
 #[test]
 fn contacts_turn_with_the_shapes() {
     let mut other = 0;
@@ -267,7 +267,7 @@ fn contacts_turn_with_the_shapes() {
             let at_margin = |separation: f64| separation > f64::from(margin) - slack;
             return hold(at_margin(near) && at_margin(far), context);
         }
-        // Ties are settled by a direction of the world, and near a tie rounding decides.
+        // A world direction decides ties, and near a tie rounding does.
         other += u32::from((motion.rotation * here.normal - there.normal).length() > 0.05);
         hold((near - far).abs() < slack, context)
     });

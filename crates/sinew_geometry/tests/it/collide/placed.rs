@@ -13,7 +13,7 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// Furthest extent along the unit vector `n` (for a half-space: of its plane, if `n` is its normal).
+    /// Returns the furthest extent along the unit vector `n` (for a half-space: of its plane, if `n` is its normal).
     fn support(&self, n: [f64; 3]) -> f64 {
         let m = self.frame.rotation.to_mat3();
         let along = |v: Vec3| f64::from(v.x) * n[0] + f64::from(v.y) * n[1] + f64::from(v.z) * n[2];
@@ -94,11 +94,11 @@ pub enum Kind {
     HalfSpace,
 }
 
-/// All kinds that have an end.
+/// All bounded kinds.
 pub const FINITE: [Kind; 7] =
     [Kind::Box, Kind::Sphere, Kind::Capsule, Kind::TaperedCapsule, Kind::Cylinder, Kind::Cone, Kind::Hull];
 
-/// Every two kinds that may meet, in one order. A half-space comes first.
+/// Returns every two kinds that may meet, in one order. A half-space comes first.
 pub fn all_pairs() -> impl Iterator<Item = (Kind, Kind)> {
     let with_itself_and_later = |(k, a): (usize, Kind)| FINITE[k..].iter().map(move |&b| (a, b));
     let planes = FINITE.into_iter().map(|kind| (Kind::HalfSpace, kind));
@@ -109,7 +109,7 @@ pub fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
     if kind == Kind::Hull {
         return pebble(scale, random);
     }
-    // A ball is a capsule, too: what is fitted to heads is one without length.
+    // A ball is also a capsule: heads are fitted by capsules of length zero.
     let is_ball = kind == Kind::Capsule && random.index(10) == 0;
     let mut side = || scale * random.range(0.2, 1.0);
     match kind {
@@ -119,7 +119,7 @@ pub fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
         Kind::Capsule => Shape::Capsule { half_height: side(), radius: 0.4 * side() },
         Kind::TaperedCapsule => {
             let radius_bottom = 0.4 * side();
-            // Neither ball holds the other.
+            // Neither ball contains the other.
             Shape::TaperedCapsule { half_height: side(), radius_bottom, radius_top: 0.4 * side() }
         }
         Kind::Cylinder => Shape::Cylinder { half_height: side(), radius: 0.6 * side() },
@@ -129,7 +129,7 @@ pub fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
 }
 
 pub fn random_rotation(random: &mut Random) -> Rotation {
-    // A third of the cases are aligned, a third nearly so: that is where contacts live.
+    // A third of the cases are aligned, a third nearly, as contacts often are.
     match random.index(3) {
         0 => Rotation::IDENTITY,
         1 => Rotation::from_scaled_axis(random.in_cube() * 0.02),

@@ -1,4 +1,4 @@
-//! Casts of shapes against the gaps on their way.
+//! Casts of shapes against the gaps on their path.
 
 use super::gaps::any_pair;
 use crate::cases::cases;
@@ -13,7 +13,7 @@ fn casts_stop_where_the_gap_closes() {
     for (ka, kb) in all_pairs() {
         let (mut hits, mut starts) = (0, 0);
         for case in 0..cases(100_000) {
-            // The half-space, if there is one, is what is met.
+            // A half-space, if there is one, is the target.
             let (b, a) = any_pair(ka, kb, &mut random);
             let size = a.size() + b.size();
             let motion = (random.in_cube() + (b.frame.translation - a.frame.translation) / size) * size;
@@ -23,7 +23,7 @@ fn casts_stop_where_the_gap_closes() {
             };
             let hit = cast_shape(&a.shape, &a.frame, motion, &b.shape, &b.frame);
             let context = || format!("{ka:?} {kb:?} case {case}: {hit:?} along {motion}\n{a:?}\n{b:?}");
-            // What is held to be touching, and the rounding of places on the way.
+            // The touch tolerance, and rounding of places on the path.
             let close = 2e-5 * size + 1e-6 * (a.frame.translation.length() + b.frame.translation.length());
             let before = hit.map_or(1.0, |hit| hit.fraction);
             if along(0.0).distance <= 0.0 {

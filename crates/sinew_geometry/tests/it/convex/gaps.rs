@@ -1,5 +1,5 @@
-//! Gaps proved by what they say: points on both surfaces bound a distance from above, the support functions along the normal
-//! from below. How deep shapes overlap is bounded by all directions that are tried.
+//! Gaps are proved by bounds: points on both surfaces bound a distance from above, the support functions along the normal
+//! from below. Tested directions bound the depth of overlaps.
 
 use crate::cases::cases;
 use crate::collide::{
@@ -13,7 +13,7 @@ fn ask(a: &Placed, b: &Placed) -> Gap {
     gap(&a.shape, &a.frame, &b.shape, &b.frame).expect("one of them has an end")
 }
 
-/// Up to a thousand times as long as thin.
+/// Up to a thousand times as long as thick.
 fn stretched(shape: Shape, random: &mut Random) -> Shape {
     let mut share = || [1.0, 1.0, 0.1, 0.001][random.index(4)];
     match shape {
@@ -31,7 +31,7 @@ fn stretched(shape: Shape, random: &mut Random) -> Shape {
     }
 }
 
-/// Shapes of 1 mm to 100 m, of like size or not; apart, touching, overlapping a little or deeply.
+/// Returns shapes of 1 mm to 100 m, of similar size or not; apart, touching, overlapping a little or deeply.
 pub fn any_pair(ka: Kind, kb: Kind, random: &mut Random) -> (Placed, Placed) {
     const SCALES: [f32; 5] = [0.001, 0.02, 1.0, 10.0, 100.0];
     let scale_a = SCALES[random.index(5)];
@@ -45,7 +45,7 @@ pub fn any_pair(ka: Kind, kb: Kind, random: &mut Random) -> (Placed, Placed) {
     let reach = a.size() + b.size();
     b.frame.translation = a.frame.translation + random.direction() * (reach * random.range(0.0, 1.2));
     if random.index(2) == 0 {
-        // To where they touch, or nearly.
+        // Moves them until they nearly touch.
         let now = ask(&a, &b);
         let wanted = reach * [0.0, 1e-4, -1e-4, 0.01, -0.01][random.index(5)];
         b.frame.translation += now.normal * (wanted - now.distance);
@@ -53,10 +53,10 @@ pub fn any_pair(ka: Kind, kb: Kind, random: &mut Random) -> (Placed, Placed) {
     (a, b)
 }
 
-/// Checks a gap; by how much it is off at most, in shares of the sizes.
+/// Checks a gap; returns its largest error as a share of the sizes.
 fn check(a: &Placed, b: &Placed, found: &Gap, random: &mut Random) -> Result<f64, String> {
     let size = f64::from(a.size() + b.size()) + f64::from(found.distance).abs();
-    // Places are known to their rounding.
+    // Places are known within rounding.
     let places = f64::from(a.frame.translation.length() + b.frame.translation.length());
     let fine = 2e-6 * size + 2e-7 * places;
     let distance = f64::from(found.distance);
@@ -85,7 +85,7 @@ fn check(a: &Placed, b: &Placed, found: &Gap, random: &mut Random) -> Result<f64
     if a.shape == Shape::HalfSpace {
         return Ok(worst / size);
     }
-    // Any other way out is as long, or longer.
+    // No other way out is shorter.
     for k in 0..40 {
         let near = found.normal + random.in_cube() * [0.01, 0.1, 0.5][k % 3];
         let other = if k < 12 { near } else { random.direction() };
@@ -119,9 +119,9 @@ fn gaps_are_proved_by_points_and_planes() {
     }
 }
 
-/// The other order gives the same gap from the other side; the pair turned and moved, the same gap there.
+/// The other order gives the same gap from the other side; the moved pair has the same gap there.
 #[test]
-fn gaps_keep_under_exchange_and_motion() {
+fn gaps_are_invariant_under_exchange_and_motion() {
     let mut random = Random::new(12);
     for (ka, kb) in all_pairs() {
         for case in 0..cases(100_000) {
@@ -135,7 +135,7 @@ fn gaps_keep_under_exchange_and_motion() {
             let size = a.size() + b.size() + found.distance.abs() + 0.5 * places;
             let context =
                 || format!("{ka:?} {kb:?} case {case}: {found:?} {swapped:?} {turned:?}\n{a:?}\n{b:?}");
-            // Round shapes that are nearly concentric are nearly as deep in many directions, and the best may be missed.
+            // Nearly concentric round shapes are equally deep in many directions, so the best may be missed.
             let slack = if found.distance < 0.0 { 5e-5 * size } else { 5e-6 * size };
             assert!((found.distance - swapped.distance).abs() < slack, "{}", context());
             assert!((found.distance - turned.distance).abs() < slack, "{}", context());
@@ -148,9 +148,9 @@ fn gaps_keep_under_exchange_and_motion() {
     }
 }
 
-/// Three ways to say how two boxes lie to each other: separating axes, GJK and EPA, and a sweep of directions.
+/// Three methods for the gap of two boxes: separating axes, GJK and EPA, and a search over directions.
 #[test]
-fn boxes_are_judged_alike_by_axes_by_growth_and_by_sweep() {
+fn three_gap_methods_agree_for_boxes() {
     let mut random = Random::new(13);
     for case in 0..cases(100_000) {
         let (a, b) = any_pair(Kind::Box, Kind::Box, &mut random);
@@ -164,7 +164,7 @@ fn boxes_are_judged_alike_by_axes_by_growth_and_by_sweep() {
         let thinnest = f64::from(a.shape.inner_radius().min(b.shape.inner_radius()));
         let preference = 0.06 * distance.abs() + 0.011 * thinnest + 2e-3 * f64::from(size);
         assert!(by_axes <= distance + 4e-6 * f64::from(size), "{}", context());
-        // Boxes that pass each other corner by corner have no separating axis as good as their distance.
+        // Boxes near each other at corners have no separating axis as good as their distance.
         assert!(by_axes >= distance - preference || distance > 0.0, "{}", context());
         if let Err(what) = check(&a, &b, &found, &mut random) {
             panic!("{what}: {}", context());
@@ -173,7 +173,7 @@ fn boxes_are_judged_alike_by_axes_by_growth_and_by_sweep() {
 }
 
 #[test]
-fn numbers_that_are_none_have_no_gap() {
+fn nan_has_no_gap() {
     for kind in FINITE {
         let shape = random_shape(kind, 1.0, &mut Random::new(1));
         let nowhere = Transform::from_translation(Vec3::new(f32::NAN, 0.0, 0.0));

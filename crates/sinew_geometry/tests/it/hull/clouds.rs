@@ -1,4 +1,4 @@
-//! Quickhull: random clouds, and those that are hardest: flat, regular, doubled, far away.
+//! Quickhull: random clouds, and the hardest ones: flat, regular, duplicated, far away.
 
 use super::{cases, corners};
 use sinew_geometry::hull::{MAX_FACES, MAX_VERTICES};
@@ -11,12 +11,12 @@ fn cloud(kind: usize, random: &mut Random) -> Vec<Vec3> {
     let mut points: Vec<Vec3> = match kind {
         0 => (0..count).map(|_| random.in_cube()).collect(),
         1 => (0..count).map(|_| random.direction()).collect(),
-        // All but flat.
+        // Nearly flat.
         2 => (0..count).map(|_| turn * (random.in_cube() * Vec3::new(1.0, 1e-3, 1.0))).collect(),
         // A grid, whole or in part: coplanar and collinear throughout.
         3 => (0..count).map(|_| (random.in_cube() * 2.5).round()).collect(),
         4 => corners(Vec3::new(0.3, 1.0, 0.7)).into_iter().map(|p| turn * p).collect(),
-        // A prism, turned, with points on its faces and edges.
+        // A rotated prism with points on its faces and edges.
         5 => {
             let sides = 3 + random.index(20);
             let rim = (0..sides).flat_map(|k| {
@@ -44,7 +44,7 @@ fn size(points: &[Vec3]) -> f32 {
     max(sides.x, max(sides.y, sides.z))
 }
 
-/// Closed, flat-faced, convex: Euler's formula, corners on their faces, all others below.
+/// Checks that a hull is closed, flat-faced and convex: Euler's formula, corners on their faces, all others below.
 fn check_solid(hull: &Hull, size: f32, context: &str) {
     let (faces, vertices) = (hull.faces().len(), hull.vertices().len());
     assert!((4..=MAX_FACES).contains(&faces) && (4..=MAX_VERTICES).contains(&vertices), "{context}");
@@ -78,7 +78,7 @@ fn random_clouds_have_hulls_that_hold_them() {
         let hull = match Hull::new(&points) {
             Ok(hull) => hull,
             Err(error) => {
-                // Few points of a grid or of a cluster may lie in a plane.
+                // A few points of a grid or of a cluster may lie in a plane.
                 assert!(matches!(kind, 0..=3 | 6..), "{error}: {context}");
                 refused += 1;
                 continue;
@@ -133,7 +133,7 @@ fn a_grid_is_a_cube() {
     assert!((hull.volume() - 0.8).abs() < 1e-6);
 }
 
-/// More faces than there may be: the hull is simplified, and says by its distances how much it lost.
+/// With more faces than the limit the hull is simplified, and reports the error.
 #[test]
 fn a_round_cloud_is_simplified() {
     let mut random = Random::new(13);
@@ -146,7 +146,7 @@ fn a_round_cloud_is_simplified() {
 }
 
 #[test]
-fn what_is_no_solid_is_an_error() {
+fn degenerate_clouds_are_errors() {
     let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
     let new = |points: &[Vec3]| Hull::new(points).expect_err("no solid");
     assert_eq!(new(&[]), HullError::TooFewPoints);

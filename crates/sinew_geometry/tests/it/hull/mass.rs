@@ -1,4 +1,4 @@
-//! Volume, centre and inertia of hulls: closed forms, and a sum over voxels as a second opinion. Rays and distances by them.
+//! Volume, centre and inertia of hulls against closed forms and a sum over voxels; rays and distances.
 
 use super::{box_hull, corners, hull_of, pebble};
 use sinew_geometry::Shape;
@@ -63,7 +63,7 @@ fn voxels_agree() {
     }
 }
 
-/// Walks along rays in small steps: the first step inside is where the ray hits, and distances shrink as the ray nears.
+/// Walks along rays in small steps: the first step inside is the hit, and distances decrease along the ray.
 #[test]
 fn rays_and_distances_agree() {
     let mut random = Random::new(15);
@@ -91,7 +91,7 @@ fn rays_and_distances_agree() {
             (Some(hit), None) => assert!(shape.signed_distance(&frame, ray.at(hit.fraction + 1e-3)).0 < 1e-3),
             (None, None) => {}
         }
-        // The closest point of the surface is as far away as said, and the normal leads away from it.
+        // The closest point of the surface has the returned distance, and the normal points away from it.
         let p = frame.point(random.in_cube() * 2.0);
         let (distance, normal) = shape.signed_distance(&frame, p);
         let (on_surface, _) = shape.signed_distance(&frame, p - normal * distance);
@@ -104,9 +104,9 @@ fn rays_and_distances_agree() {
     assert!(hits > 150, "{hits} hits");
 }
 
-/// Water, bounds and regions see a hull of a box's corners as the box.
+/// Water, bounds and regions treat a hull of a box's corners as the box.
 #[test]
-fn a_box_of_corners_is_a_box_to_all_questions() {
+fn a_hull_of_box_corners_answers_as_the_box() {
     let mut random = Random::new(22);
     let half = Vec3::new(0.3, 1.0, 0.7);
     let shapes = [box_hull(half), Shape::Box { half_extents: half }];

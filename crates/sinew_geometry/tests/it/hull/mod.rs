@@ -1,4 +1,4 @@
-//! Convex hulls: made from clouds of points, against brute force in `f64`. A hundredth of the random cases unless `SINEW_FULL`
+//! Convex hulls of point clouds against brute force in `f64`: a hundredth of the random cases unless `SINEW_FULL`
 //! is set, as `cargo xtask ci --full` does.
 
 mod clouds;

@@ -1,4 +1,4 @@
-//! Hull against hull: all face normals and all crossed edges in `f64`, and all pairs of corners, edges and faces where the
+//! Hull against hull: all face normals and all edge pairs in `f64`, and all pairs of corners, edges and faces where the
 //! hulls are apart. Boxes as hulls of their corners against boxes.
 
 use super::{box_hull, cases, pebble};
@@ -57,7 +57,7 @@ fn gap(a: &Oracle, b: &Oracle, n: Wide) -> f64 {
     -b.support(n.map(|x| -x)) - a.support(n)
 }
 
-/// The largest gap over all face normals and all crossed edges.
+/// Returns the largest gap over all face normals and all edge pairs.
 fn best_axis(a: &Oracle, b: &Oracle) -> f64 {
     let faces =
         a.faces.iter().map(|f| gap(a, b, f.0)).chain(b.faces.iter().map(|f| gap(a, b, f.0.map(|x| -x))));
@@ -96,7 +96,7 @@ fn segments([p, q]: [Wide; 2], [r, s]: [Wide; 2]) -> f64 {
     best
 }
 
-/// Distance of two hulls that are apart.
+/// Returns the distance of two separate hulls.
 fn distance(a: &Oracle, b: &Oracle) -> f64 {
     let to_faces = |from: &Oracle, to: &Oracle| {
         let mut best = f64::INFINITY;
@@ -130,7 +130,7 @@ struct Case {
 }
 
 impl Case {
-    /// Two pebbles near contact: a third of them face to face, edge to edge or nearly so.
+    /// Returns two random hulls near contact: a third of them face to face, edge to edge or nearly so.
     fn new(random: &mut Random) -> Self {
         let scale = [0.01, 0.1, 1.0, 10.0][random.index(4)];
         let ratio = [1.0, 1.0, 5.0][random.index(3)];
@@ -150,7 +150,7 @@ impl Case {
         let place = random.in_cube() * scale;
         let frame_a = Transform::new(place, common * turn(random));
         let mut frame_b = Transform::new(place, common * turn(random));
-        // Pushed apart along a random direction until they meet, and a little on or back.
+        // Moved along a random direction until they touch, and a little further or back.
         let away = random.direction();
         let (mut low, mut high) = (0.0, 3.0 * scale * (1.0 + ratio));
         let meets = |t: f32, frame_b: &mut Transform| {
@@ -210,7 +210,7 @@ fn equals_brute_force() {
         let context = || format!("case {number}: {truth} by {axis}, {found:?}\n{:?}", case.frames);
         let rounding = 1e-5 * f64::from(case.size);
         let thinnest = f64::from(case.shapes[0].inner_radius().min(case.shapes[1].inner_radius()));
-        // Faces are preferred to edges that are slightly better.
+        // Faces are preferred to slightly better edges.
         let preference = 0.06 * axis.abs() + 0.011 * thinnest.min(0.05);
         if found.count == 0 {
             assert!(truth > f64::from(margin) - rounding, "missed: {}", context());
@@ -261,7 +261,7 @@ fn neither_order_nor_turning_matters() {
         }
         assert!((found.normal + swapped.normal).length() < 1e-2, "{}", context());
         assert!((nearest(&found) - nearest(&swapped)).abs() < f64::from(tolerance), "{}", context());
-        // Ties between faces of A and B are settled by a direction of the world: then the normal turns a little.
+        // A world direction decides ties between faces of A and B; then the normal rotates a little.
         let same = (turn * found.normal - turned.normal).length() < 0.05
             && (nearest(&found) - nearest(&turned)).abs() < f64::from(tolerance);
         other += u32::from(!same);
@@ -272,7 +272,7 @@ fn neither_order_nor_turning_matters() {
 
 /// A hull of a box's eight corners has the box's contacts.
 #[test]
-fn a_box_of_corners_is_a_box() {
+fn a_hull_of_box_corners_has_box_contacts() {
     let mut random = Random::new(20);
     let mut met = 0;
     for number in 0..cases(100_000) {

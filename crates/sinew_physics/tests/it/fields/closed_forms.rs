@@ -97,7 +97,7 @@ fn masses_of_stars_do_not_overflow() {
 }
 
 #[test]
-fn what_attracts_gives_and_takes_the_same() {
+fn mutual_gravity_is_equal_and_opposite() {
     // Bodies and particles in one field; nothing touches.
     let mut world = weightless();
     let mut random = sinew_math::Random::new(3);
@@ -126,7 +126,7 @@ fn what_attracts_gives_and_takes_the_same() {
 }
 
 #[test]
-fn drag_comes_to_its_steady_speed() {
+fn drag_reaches_terminal_velocity() {
     // c = 0.3, k = 0.02, m g = 19.62: v = (√(c² + 4 k m g) − c) / 2k.
     let (c, k, weight) = (0.3f32, 0.02f32, 2.0 * 9.81f32);
     let steady = ((c * c + 4.0 * k * weight).sqrt() - c) / (2.0 * k);
@@ -161,7 +161,7 @@ fn drag_far_beyond_stability_stops_and_never_turns_back() {
     close(-world.velocity(id).linear.y, 0.001 * 9.81 / 1e4, 1e-3, "it creeps");
 }
 
-/// Force of a wind of 10 m/s along x on a body at rest that nothing holds up.
+/// Returns the force of a wind of 10 m/s along x on a free body at rest.
 fn blown(def: &BodyDef, wind: Wind) -> Wrench {
     let mut world = weightless();
     let id = world.add_body(def);
@@ -170,7 +170,7 @@ fn blown(def: &BodyDef, wind: Wind) -> Wrench {
 }
 
 #[test]
-fn wind_presses_on_the_shadow_that_a_shape_casts() {
+fn wind_force_follows_projected_area() {
     let wind = Wind { velocity: Vec3::X * 10.0, density: 1.2, drag: 1.1, ..Wind::default() };
     let pressure = 0.5 * 1.2 * 100.0 * 1.1;
     let pi = core::f32::consts::PI;
@@ -194,7 +194,7 @@ fn wind_presses_on_the_shadow_that_a_shape_casts() {
 }
 
 #[test]
-fn a_plate_aslant_is_lifted() {
+fn a_tilted_plate_gets_lift() {
     let wind = Wind { velocity: Vec3::X * 10.0, density: 1.2, drag: 1.0, lift: 0.8, gusts: None };
     // Its face looks to −x and up: 30° from the stream's direction.
     let rotation = Rotation::from_axis_angle(Vec3::Z, -30f32.to_radians());
@@ -248,7 +248,7 @@ fn gusts_are_smooth_bounded_and_seeded() {
 }
 
 #[test]
-fn what_floats_is_as_deep_as_it_is_dense() {
+fn floating_depth_follows_density() {
     for (name, def, share) in [
         ("box", box_body(Vec3::new(0.5, 0.2, 0.4), Vec3::new(-5.0, 0.1, 0.0)), 0.3),
         ("ball", sphere_body(0.3, Vec3::new(0.0, 0.1, 0.0)), 0.6),
@@ -276,7 +276,7 @@ fn what_floats_is_as_deep_as_it_is_dense() {
 }
 
 #[test]
-fn what_sinks_comes_to_its_steady_speed() {
+fn sinking_bodies_reach_terminal_velocity() {
     let mut world = World::new(WorldDef::default());
     let mut def = sphere_body(0.1, Vec3::Y * -5.0);
     def.shapes[0].density = 2500.0;

@@ -1,4 +1,4 @@
-//! Forces, impulses and hits that the user gives.
+//! Forces, impulses and hits from the user.
 
 use super::closed_forms::{point_mass, run, weightless};
 use crate::build::{ball, box_body, sphere_body};
@@ -6,7 +6,7 @@ use sinew_math::{Rotation, Vec3};
 use sinew_physics::*;
 
 #[test]
-fn a_lasting_force_is_that_of_every_step() {
+fn a_lasting_force_equals_a_force_each_step() {
     let (mut lasting, mut stepwise) = (weightless(), weightless());
     let def = box_body(Vec3::new(0.1, 0.2, 0.3), Vec3::ZERO);
     let a = lasting.add_body(&def);
@@ -65,8 +65,8 @@ fn a_thruster_turns_with_its_body() {
 }
 
 #[test]
-fn a_lasting_force_keeps_to_its_point() {
-    // A pendulum pulled along x by a force on its bob instead of gravity: it comes to hang along x.
+fn a_lasting_force_acts_at_its_point() {
+    // A pendulum pulled along x by a force on its bob instead of gravity hangs along x.
     let mut world = weightless();
     let hook = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
     let mut def = box_body(Vec3::new(0.05, 0.5, 0.05), Vec3::Y * -0.5);
@@ -109,7 +109,7 @@ fn a_bullet_off_centre_moves_on_with_the_point_it_struck() {
     let before = world.momentum();
     let impulse = world.apply_bullet_impact(block, mass, velocity, point);
     let struck = world.velocity(block).at(point);
-    // What the bullet has left is what it did not give.
+    // The rest of the bullet's momentum.
     assert!((struck - (velocity - impulse / mass)).length() < 1e-3, "{struck}");
     let after = world.momentum();
     let linear = after.linear + struck * mass - (before.linear + velocity * mass);

@@ -5,7 +5,7 @@ use sinew_math::{Reader, Rotation, Vec3, Writer};
 use sinew_physics::particles::{ClothDef, GroupDef};
 use sinew_physics::*;
 
-/// A square metre of cloth of 0.2 kg in the plane of x and z, turned about z; each particle weighs a third of its faces.
+/// Returns a square metre of cloth of 0.2 kg in the plane of x and z, turned about z; each particle has a third of its faces' mass.
 fn sheet(angle: f32) -> GroupDef {
     let turn = Rotation::from_axis_angle(Vec3::Z, angle);
     let def = ClothDef {
@@ -34,13 +34,13 @@ fn wind(velocity: Vec3) -> Wind {
     Wind { velocity, density: 1.2, drag: 1.3, ..Wind::default() }
 }
 
-/// Force of a wind on all of a group as it is now, N.
+/// Returns the force of a wind on a group in its current pose, N.
 fn whole(world: &World, field: FieldId, group: GroupId) -> Vec3 {
     let count = world.particles(group).positions().len() as u32;
     (0..count).map(|i| world.field_force_on_particle(field, group, i)).sum()
 }
 
-/// Force on a square metre at rest.
+/// Returns the force on a square metre at rest.
 fn blown(angle: f32, wind: Wind) -> Vec3 {
     let mut world = weightless();
     let group = world.add_particles(&sheet(angle));
@@ -49,11 +49,11 @@ fn blown(angle: f32, wind: Wind) -> Vec3 {
 }
 
 #[test]
-fn a_sheet_aslant_bears_the_square_of_what_comes_straight_at_it() {
+fn sheet_force_follows_normal_speed_squared() {
     for degrees in [0.0f32, 25.0, 60.0, 85.0, 120.0, 180.0] {
         let angle = degrees.to_radians();
         let (sin, cos) = sinew_math::trig::sin_cos(angle);
-        // Down from above, and up from below: either side bears it.
+        // Down from above, and up from below: both sides count.
         for down in [1.0, -1.0] {
             let force = blown(angle, wind(Vec3::NEG_Y * (8.0 * down)));
             close(force.length(), 0.5 * 1.2 * 1.3 * 64.0 * cos * cos, 1e-4, "pressure");
@@ -64,9 +64,9 @@ fn a_sheet_aslant_bears_the_square_of_what_comes_straight_at_it() {
     assert!(blown(90f32.to_radians(), wind(Vec3::Y * 8.0)).length() < 1e-6, "it slides along it");
 }
 
-/// Lift as of a plate: `½ ρ C_l |w|² A cos θ sin θ`, across the stream.
+/// Lift of a plate: `½ ρ C_l |w|² A cos θ sin θ`, across the stream.
 #[test]
-fn a_sheet_aslant_is_lifted() {
+fn a_tilted_sheet_gets_lift() {
     let angle = 30f32.to_radians();
     let lifts = |lift| Wind { drag: 0.0, lift, ..wind(Vec3::NEG_Y * 8.0) };
     let force = blown(angle, lifts(0.7));
@@ -76,7 +76,7 @@ fn a_sheet_aslant_is_lifted() {
 }
 
 #[test]
-fn a_flat_sheet_falls_at_its_steady_speed() {
+fn a_flat_sheet_reaches_terminal_velocity() {
     let mut world =
         World::new(WorldDef { gravity: Vec3::Y * -9.81, sleeping: Sleeping::Off, ..WorldDef::default() });
     let group = world.add_particles(&sheet(0.0));
@@ -88,9 +88,9 @@ fn a_flat_sheet_falls_at_its_steady_speed() {
     close(whole(&world, still, group).y, 0.2 * 9.81, 5e-3, "it bears its weight");
 }
 
-/// Silk of a gram in a storm, still where the explicit force would throw it by a hundred times the storm's speed.
+/// Silk of a gram in a storm keeps still, where an explicit force would give it a hundred times the storm's speed.
 #[test]
-fn light_sheets_are_taken_along_and_never_pass_the_storm() {
+fn light_sheets_never_exceed_the_wind() {
     let mut world = weightless();
     let mut silk = sheet(0.0);
     silk.particles.iter_mut().for_each(|particle| particle.mass *= 1e-3 / 0.2);
@@ -128,7 +128,7 @@ fn faces_are_of_three_particles_and_there_once() {
 }
 
 #[test]
-fn a_restored_sheet_flies_on_as_the_saved_one() {
+fn a_restored_sheet_continues_equally() {
     let mut world = World::new(WorldDef::default());
     world.add_particles(&sheet(0.4));
     let gusts = Some(Gusts { speed: 3.0, length: 0.5, time: 0.3, seed: 9 });

@@ -73,7 +73,7 @@ fn saved(world: &World) -> Vec<u8> {
 }
 
 #[test]
-fn a_restored_world_goes_on_as_the_saved_one() {
+fn a_restored_world_continues_equally() {
     let mut world = crowded(2.0);
     run(&mut world, 50);
     let bytes = saved(&world);
@@ -108,7 +108,7 @@ fn threads_do_not_matter() {
 
 #[test]
 fn a_warm_step_with_fields_allocates_nothing() {
-    // So far apart that none meets another: contacts come and go in a test of their own.
+    // Far apart, so that no two meet: another test covers contacts.
     let mut world = crowded(40.0);
     run(&mut world, 20);
     let seen = allocation_counter::measure(|| run(&mut world, 50));
@@ -145,7 +145,7 @@ fn sleeper() -> (World, BodyId) {
 }
 
 #[test]
-fn what_wakes_and_what_keeps_awake() {
+fn fields_wake_and_keep_awake() {
     let up = FieldKind::Uniform(UniformGravity { acceleration: Vec3::Y });
     let (mut world, id) = sleeper();
     let region = Region::ball(Vec3::ZERO, 2.0, Fade::None);
@@ -167,7 +167,7 @@ fn what_wakes_and_what_keeps_awake() {
 }
 
 #[test]
-fn what_attracts_sleeps_and_wakes_together() {
+fn attracting_bodies_sleep_and_wake_together() {
     let (mut world, id) = sleeper();
     let other = world.add_body(&box_body(Vec3::splat(0.2), Vec3::new(-3.0, 0.2, 0.0)));
     let law = MutualGravity { constant: 1e-3, softening: 0.0 };
@@ -179,11 +179,11 @@ fn what_attracts_sleeps_and_wakes_together() {
     run(&mut world, 120);
     let third = world.add_body(&box_body(Vec3::splat(0.2), Vec3::new(0.0, 0.2, 3.0)));
     world.step();
-    assert!(world.is_awake(id) && world.is_awake(third), "one that came wakes those it attracts");
+    assert!(world.is_awake(id) && world.is_awake(third), "a new body wakes those it attracts");
 }
 
 #[test]
-fn a_particle_hung_on_a_body_hands_on_what_it_feels() {
+fn attached_particles_pass_forces_to_their_body() {
     let mut world = weightless();
     let body = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     let mut def = particle(0.5, 0.0, Vec3::ZERO);

@@ -1,4 +1,4 @@
-//! The library of shapes, snapshots that name them, and wrong bytes.
+//! The library of shapes, snapshots that refer to it, and damaged bytes.
 
 use super::{box_hull, pebble};
 use crate::build::floor;
@@ -21,7 +21,7 @@ fn body(shape: Shape, position: Vec3) -> BodyDef {
     BodyDef { position, shapes: vec![ShapeDef::new(shape)], ..BodyDef::default() }
 }
 
-/// Some hulls that fall, and a wind inside a hull.
+/// Returns falling hulls, and a wind inside a hull.
 fn pebbles() -> World {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
@@ -95,9 +95,9 @@ fn the_hash_covers_the_content() {
     assert_ne!(world(Vec3::ONE), world(Vec3::new(1.0, 1.0, 1.000_1)));
 }
 
-/// Whatever one byte is changed to, or wherever the bytes end: an error or a valid library, and never a panic.
+/// Any changed byte and any cut gives an error or a valid library, never a panic.
 #[test]
-fn every_byte_of_a_library_may_be_wrong() {
+fn damaged_shape_libraries_give_errors() {
     let bytes = library(&pebbles());
     let mut errors = 0;
     for at in 0..bytes.len() {

@@ -1,4 +1,4 @@
-//! Levels of triangles in a world: boxes at rest, ramps, bowls, fast bodies, events, snapshots.
+//! Triangle levels in a world: boxes at rest, ramps, bowls, fast bodies, events, snapshots.
 
 use super::{FRICTION, Floor, floor_shape, ground, surfaced};
 use sinew_math::trig::{cos, sin};
@@ -20,7 +20,7 @@ fn thrown(shape: Shape, position: Vec3, velocity: Vec3, friction: f32) -> BodyDe
     }
 }
 
-/// A surface from a grid over x and z, `n` cells to a side, `cell` metres each.
+/// Returns a surface from a grid over x and z, `n` cells to a side, `cell` metres each.
 fn grid(n: usize, cell: f32, height: impl Fn(f32, f32) -> f32) -> Shape {
     let mut vertices = Vec::new();
     for j in 0..=n {
@@ -45,13 +45,13 @@ fn sleepless() -> World {
 }
 
 #[test]
-fn what_rests_on_a_mesh_stays() {
+fn bodies_at_rest_on_a_mesh_stay() {
     let mut world = sleepless();
     ground(&mut world, floor_shape(Floor::Shuffled), FRICTION);
     let half = Vec3::new(0.2, 0.1, 0.3);
     let mut bodies = Vec::new();
     for k in 0..12 {
-        // Over faces, edges and vertices, turned each by another angle.
+        // Over faces, edges and vertices, each turned by another angle.
         let place = Vec3::new(1.0 + 0.125 * k as f32, 0.101, 1.5 * k as f32 - 8.0);
         let turn = Rotation::from_axis_angle(Vec3::Y, 0.26 * k as f32);
         let def = thrown(Shape::Box { half_extents: half }, place, Vec3::ZERO, FRICTION);
@@ -72,7 +72,7 @@ fn what_rests_on_a_mesh_stays() {
 }
 
 #[test]
-fn a_ramp_lifts_what_slides_onto_it() {
+fn a_ramp_lifts_sliding_bodies() {
     for (degrees, speed) in [(10.0_f32, 5.0), (30.0, 5.0), (10.0, 20.0), (30.0, 20.0), (60.0, 10.0)] {
         let angle = degrees.to_radians();
         let slope = sin(angle) / cos(angle);
@@ -140,7 +140,7 @@ fn fast_bodies_do_not_pass() {
 
 #[test]
 fn a_ball_swings_in_a_bowl() {
-    // Of radius 3 m, by triangles of 5 cm: as a pendulum of 3 m less the ball's radius, which does not turn.
+    // A bowl of radius 3 m with triangles of 5 cm: a ball without rotation swings as a pendulum of 3 m less the ball's radius.
     let (bowl, radius) = (3.0_f32, 0.2);
     let level = grid(80, 0.05, |x, z| bowl - (bowl * bowl - x * x - z * z).sqrt());
     let mut world = sleepless();
@@ -169,7 +169,7 @@ fn a_ball_swings_in_a_bowl() {
 }
 
 #[test]
-fn events_count_a_pair_once() {
+fn events_report_a_pair_once() {
     let mut world = sleepless();
     // A corner of three walls: three manifolds.
     let vertices = [Vec3::ZERO, Vec3::X * 3.0, Vec3::Y * 3.0, Vec3::Z * 3.0];
@@ -184,7 +184,7 @@ fn events_count_a_pair_once() {
         begun += world.events().begin.len();
         ended += world.events().end.len();
     }
-    // It may leave once as it is thrown back.
+    // It may leave once when it bounces.
     assert!(begun == ended + 1 && begun <= 2, "{begun} begun, {ended} ended");
     let p = world.center_of_mass(id);
     assert!((p - Vec3::splat(0.2)).length() < 0.02, "in the corner: {p}");

@@ -1,4 +1,4 @@
-//! Random walks among random convex solids: never inside, never through, and never stuck where there is room.
+//! Random walks among random convex solids: movers are never inside, never pass through, and never get stuck where there is room.
 
 use super::{cases, depth};
 use sinew_math::trig::{cos, sin};
@@ -66,8 +66,8 @@ fn free_place(world: &World, random: &mut Random, def: &MoverDef) -> MoverDef {
     }
 }
 
-/// Each walk goes 90 steps at up to 50 m/s and turns now and then; after each step the world is asked whether the capsule is in
-/// anything, and whether a ray from where its centre was meets something before where it is.
+/// Each walk takes 90 steps at up to 50 m/s and turns now and then. After each step the test queries whether the capsule overlaps
+/// anything, and whether a ray from its last centre to the new one hits something.
 #[test]
 fn random_walks_in_clutter_are_never_inside_and_never_through() {
     let mut random = Random::new(11);
@@ -93,7 +93,7 @@ fn random_walks_in_clutter_are_never_inside_and_never_through() {
                 deepest = if deep > deepest { deep } else { deepest };
                 assert!(deep < 1e-4, "{deep} m inside at {now}");
                 assert!(now.x.abs() < ROOM && now.z.abs() < ROOM && now.y > 0.89, "it got out: {now}");
-                // A step up goes over a corner: the way is up, then along.
+                // A step up goes over a corner: up, then along.
                 let over = before + Vec3::Y * 0.4;
                 let along = |from: Vec3| world.query().any(&Ray { origin: from, direction: now - from });
                 let slides = (now - before).length() < 0.25;
@@ -105,10 +105,10 @@ fn random_walks_in_clutter_are_never_inside_and_never_through() {
     println!("deepest {deepest} m");
 }
 
-/// A mover gets on wherever a capsule of its size, with its skin, can go on by 10 cm at the same height or a little lower, if it
-/// is told to go there.
+/// A mover can move on wherever a capsule of its size, with its skin, fits 10 cm further at the same height or a little lower, if it
+/// is steered there.
 #[test]
-fn it_is_never_stuck_where_there_is_room() {
+fn movers_are_never_stuck_where_there_is_room() {
     let mut random = Random::new(12);
     let mut stuck = 0;
     let mut tried = 0;

@@ -49,7 +49,7 @@ fn stairs_are_climbed_and_descended_without_leaving_the_ground() {
 }
 
 #[test]
-fn what_is_higher_than_a_step_is_a_wall() {
+fn edges_above_the_step_height_are_walls() {
     for (height, climbs) in
         [(0.1, true), (0.3, true), (0.34, true), (0.37, false), (0.5, false), (1.0, false)]
     {
@@ -69,7 +69,7 @@ fn what_is_higher_than_a_step_is_a_wall() {
 }
 
 #[test]
-fn off_a_ledge_it_falls_as_a_stone_does() {
+fn a_mover_off_a_ledge_falls_freely() {
     let mut world = level();
     block(&mut world, Vec3::new(-5.0, 0.0, -2.0), Vec3::new(0.0, 10.0, 2.0));
     let id = world.add_mover(&MoverDef::at(Vec3::new(-2.0, 10.0, 0.0)));
@@ -94,7 +94,7 @@ fn off_a_ledge_it_falls_as_a_stone_does() {
 }
 
 #[test]
-fn a_jump_is_as_high_as_its_speed_says() {
+fn jump_height_follows_jump_speed() {
     for speed in [2.0, 4.5, 8.0_f32] {
         let mut world = level();
         let id = world.add_mover(&MoverDef::default());
@@ -114,9 +114,9 @@ fn a_jump_is_as_high_as_its_speed_says() {
             world.mover_jump(id, speed);
             assert!(steps < 200);
         }
-        // The step in which it lands must not take the last wish.
+        // The step in which it lands must not use up the last jump request.
         let expected = speed * speed / (2.0 * 9.81);
-        // The highest point may lie half a step off the nearest step.
+        // The highest point may lie half a step from the nearest step.
         let between = 9.81 * 0.5 * (0.5 * world.def().dt()) * (0.5 * world.def().dt());
         assert!(top <= expected + 1e-4 && top >= expected - between - 1e-4, "{top} of {expected}");
         let seconds = steps as f32 * world.def().dt();
@@ -125,7 +125,7 @@ fn a_jump_is_as_high_as_its_speed_says() {
 }
 
 #[test]
-fn it_grows_only_where_there_is_room() {
+fn a_mover_grows_only_where_there_is_room() {
     let mut world = level();
     block(&mut world, Vec3::new(2.0, 1.2, -2.0), Vec3::new(4.0, 1.5, 2.0));
     let id = world.add_mover(&MoverDef::default());
@@ -152,7 +152,7 @@ fn it_grows_only_where_there_is_room() {
 }
 
 #[test]
-fn ground_is_told_with_its_material() {
+fn ground_reports_its_material() {
     let mut world = level();
     let mut stage = BodyDef::fixed(Shape::Box { half_extents: Vec3::new(2.0, 0.5, 2.0) });
     stage.shapes[0].material.tag = 7;

@@ -1,4 +1,4 @@
-//! Movers: against closed forms, and against what queries of the world say of where they are.
+//! Movers against closed forms and against queries of the world at their place.
 
 mod clutter;
 mod ground;
@@ -30,7 +30,7 @@ pub fn turned(world: &mut World, half_extents: Vec3, at: Vec3, angle: f32) -> Bo
     world.add_body(&def)
 }
 
-/// Steps until the mover stands.
+/// Returns the steps until the mover stands.
 pub fn settle(world: &mut World, id: MoverId) {
     for _ in 0..120 {
         world.step();
@@ -38,7 +38,7 @@ pub fn settle(world: &mut World, id: MoverId) {
     assert!(world.mover(id).is_grounded(), "it stands at {}", world.mover(id).position());
 }
 
-/// Largest penetration depth of a mover's capsule in anything, by the world's own queries, metres.
+/// Returns the largest penetration depth of a mover's capsule, by queries of the world, metres.
 pub fn depth(world: &World, id: MoverId) -> f32 {
     let mover = world.mover(id);
     let shape = Shape::Capsule { half_height: mover.half_height(), radius: mover.def().radius };
@@ -48,7 +48,7 @@ pub fn depth(world: &World, id: MoverId) -> f32 {
     found.first().map_or(0.0, |deepest| deepest.depth)
 }
 
-/// Number of random cases to try: `few`, but `all` with `SINEW_FULL` set.
+/// Returns the number of random cases: `few`, or `all` with `SINEW_FULL` set.
 pub fn cases(few: usize, all: usize) -> usize {
     if std::env::var_os("SINEW_FULL").is_some() { all } else { few }
 }

@@ -12,9 +12,9 @@ fn crate_of(world: &mut World, mass: f32, at: Vec3, friction: f32) -> BodyId {
     world.add_body(&def)
 }
 
-/// Friction of a floor of 0.6 and a crate of 0.6 on `m` is `0.6 m g`: what 800 N can move weighs up to 136 kg.
+/// Floor and crate have friction 0.6, so a crate of `m` kg needs `0.6 m g`: 800 N move up to 136 kg.
 #[test]
-fn it_pushes_what_its_force_can_move_and_no_more() {
+fn push_force_bounds_what_a_mover_moves() {
     for (mass, moves) in [(10.0, true), (60.0, true), (110.0, true), (170.0, false), (1000.0, false)] {
         let mut world = level();
         let crate_ = crate_of(&mut world, mass, Vec3::new(1.5, 0.4, 0.0), 0.6);
@@ -33,9 +33,9 @@ fn it_pushes_what_its_force_can_move_and_no_more() {
     }
 }
 
-/// A ball of 200 kg at 5 m/s against 80 kg that stand: momentum is shared, and the mover is never faster than an elastic hit.
+/// A ball of 200 kg at 5 m/s hits a standing mover of 80 kg: momentum is shared, and the mover is never faster than after an elastic hit.
 #[test]
-fn a_heavy_ball_pushes_it_by_momentum() {
+fn a_heavy_ball_pushes_a_mover_by_momentum() {
     for speed in [2.0, 5.0, 15.0, 30.0] {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
         let mut def = BodyDef::dynamic(Shape::Sphere { radius: 0.5 }).at(Vec3::new(-4.0, 0.9, 0.0));
@@ -59,7 +59,7 @@ fn a_heavy_ball_pushes_it_by_momentum() {
 }
 
 #[test]
-fn a_light_ball_does_not_move_it_much_and_does_not_pass() {
+fn a_light_ball_bounces_off_a_mover() {
     let mut world = level();
     let mut def = BodyDef::dynamic(Shape::Sphere { radius: 0.1 }).at(Vec3::new(-4.0, 1.2, 0.0));
     def.shapes[0].density = 0.4 / (4.0 / 3.0 * core::f32::consts::PI * 0.001);
@@ -74,7 +74,7 @@ fn a_light_ball_does_not_move_it_much_and_does_not_pass() {
 }
 
 #[test]
-fn its_weight_tips_a_plank_and_lies_on_a_raft() {
+fn a_movers_weight_tips_a_plank_and_loads_a_raft() {
     let mut world = level();
     let beam = Shape::Box { half_extents: Vec3::new(0.1, 0.1, 1.0) };
     world.add_body(&BodyDef::fixed(beam).at(Vec3::Y * 0.1));
@@ -95,7 +95,7 @@ fn its_weight_tips_a_plank_and_lies_on_a_raft() {
 }
 
 #[test]
-fn what_lies_on_its_head_lies_and_falls_when_it_walks_away() {
+fn a_load_on_a_movers_head_falls_when_it_walks_away() {
     let mut world = level();
     let id = world.add_mover(&MoverDef { radius: 0.5, ..MoverDef::default() });
     settle(&mut world, id);
@@ -112,7 +112,7 @@ fn what_lies_on_its_head_lies_and_falls_when_it_walks_away() {
 }
 
 #[test]
-fn what_flies_passes_a_mover_that_lets_it() {
+fn flying_bodies_pass_a_mover_that_lets_them() {
     let after = |lets_pass: f32, mass: f32| {
         let mut world = level();
         let id = world.add_mover(&MoverDef { lets_pass, ..MoverDef::default() });
@@ -141,9 +141,9 @@ fn what_flies_passes_a_mover_that_lets_it() {
     assert!(after(0.0, 0.5).0 < 1.0 && after(60.0, 5.0).0 < 19.0, "else, and if it is heavy, it is stopped");
 }
 
-/// A leaf of 16 kg that swings at 3 m/s at its middle has less momentum than the mover lets pass; on its hinge it does not pass.
+/// A door of 16 kg at 3 m/s at its middle has less momentum than the mover lets pass; on its hinge it does not pass.
 #[test]
-fn a_door_that_swings_does_not_pass_a_mover_that_lets_what_flies() {
+fn a_hinged_door_never_passes_a_mover() {
     let swing = |is_hung: bool| {
         let mut world = level();
         let id = world.add_mover(&MoverDef { lets_pass: 60.0, ..MoverDef::default() });
@@ -171,7 +171,7 @@ fn a_door_that_swings_does_not_pass_a_mover_that_lets_what_flies() {
     };
     let (deepest, farthest, moved) = swing(true);
     assert!(deepest < 0.005, "the leaf is {deepest} m inside of the mover");
-    // Its middle would swing to -0.45 m, if the mover were not in its way.
+    // Without the mover its middle would swing to -0.45 m.
     assert!((-0.85..-0.46).contains(&farthest), "the leaf comes as far as {farthest} m");
     assert!(moved > 0.01, "it pushes the mover by {moved} m");
     let (deepest, ..) = swing(false);
@@ -179,7 +179,7 @@ fn a_door_that_swings_does_not_pass_a_mover_that_lets_what_flies() {
 }
 
 #[test]
-fn the_work_of_a_push_is_told() {
+fn the_work_of_a_push_is_reported() {
     let mut world = level();
     let id = world.add_mover(&MoverDef::at(Vec3::X * -1.2));
     let load = crate_of(&mut world, 30.0, Vec3::Y * 0.4, 0.6);
@@ -195,9 +195,9 @@ fn the_work_of_a_push_is_told() {
     assert!(way > 1.0 && (work / expected - 1.0).abs() < 0.05, "{work} J for {expected} over {way} m");
 }
 
-/// A seesaw: its energy rises by the work of the weight on it, on the way that it goes.
+/// A seesaw: its energy rises by the work of the mover's weight.
 #[test]
-fn the_work_of_its_weight_is_told_on_the_way_that_its_bearer_goes() {
+fn the_work_of_a_movers_weight_is_reported() {
     let mut world = World::new(WorldDef::default());
     let post = world.add_body(&BodyDef::fixed(Shape::Sphere { radius: 0.05 }).at(Vec3::new(-2.0, 0.0, 0.0)));
     let half_extents = Vec3::new(0.5, 0.05, 0.5);
@@ -214,7 +214,7 @@ fn the_work_of_its_weight_is_told_on_the_way_that_its_bearer_goes() {
         work += world.work().movers;
         let now = world.energy();
         rise = now.kinetic - start.kinetic + now.potential - start.potential;
-        // The way of the first substep is a whole one at the end's speed.
+        // The first substep moves at the speed of its end.
         let late = 0.3 * work / step as f32;
         assert!(rise < work + 0.1 && work < rise + late + 0.1, "{rise} J more by {work} J in step {step}");
     }

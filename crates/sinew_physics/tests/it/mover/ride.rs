@@ -14,7 +14,7 @@ fn platform(world: &mut World, half_extents: Vec3, at: Vec3, linear: Vec3, angul
 
 /// Up and down by 4 m, 20 s long.
 #[test]
-fn a_lift_carries_it() {
+fn a_lift_carries_a_mover() {
     let mut world = level();
     let lift = platform(&mut world, Vec3::new(2.0, 0.1, 2.0), Vec3::Y * 0.4, Vec3::ZERO, Vec3::ZERO);
     let id = world.add_mover(&MoverDef::at(Vec3::new(0.3, 0.6, 0.2)));
@@ -32,10 +32,10 @@ fn a_lift_carries_it() {
     }
 }
 
-/// It leaves a lift with the lift's velocity and the jump's, whichever way the lift goes and however fast: over the lift it rises by the jump's
-/// own speed.
+/// A mover that jumps off a lift has the lift's velocity plus the jump's, for either direction and any speed: over the lift it rises by the jump's
+/// own height.
 #[test]
-fn a_jump_from_a_lift_rises_over_it_by_its_own_speed() {
+fn a_jump_from_a_lift_adds_its_velocity() {
     let mut random = Random::new(3);
     for case in 0..40 {
         let (speed, jump) = (random.range(-12.0, 12.0), random.range(0.3, 5.0));
@@ -46,7 +46,7 @@ fn a_jump_from_a_lift_rises_over_it_by_its_own_speed() {
         let id = world.add_mover(&MoverDef::at(Vec3::Y * 0.005));
         let (mut apex, mut left) = (0.0, Vec3::ZERO);
         for step in 0..420 {
-            // It gathers speed for 3 s, so that the mover rides all the time.
+            // The lift accelerates for 3 s, so that the mover rides all the time.
             let share = sinew_math::min(step as f32 / 180.0, 1.0);
             let linear = Vec3::new(side, speed, 0.0) * share;
             world.set_velocity(lift, Velocity { linear, angular: Vec3::ZERO });
@@ -66,7 +66,7 @@ fn a_jump_from_a_lift_rises_over_it_by_its_own_speed() {
         let (g, dt) = (9.81, world.def().dt());
         let expected = Vec3::new(side, speed + jump - g * dt, 0.0);
         assert!((left - expected).length() < 1e-3, "case {case}: {left} for {expected}");
-        // Between two steps the apex may be missed by half a step.
+        // The apex may lie half a step from the nearest step.
         let rise = jump * jump / (2.0 * g);
         assert!(
             (apex - rise).abs() < 2e-3 + 0.01 * rise,
@@ -76,7 +76,7 @@ fn a_jump_from_a_lift_rises_over_it_by_its_own_speed() {
 }
 
 #[test]
-fn a_turntable_carries_and_turns_it() {
+fn a_turntable_carries_and_turns_a_mover() {
     let mut world = level();
     let spin = Vec3::Y * 1.5;
     let table = platform(&mut world, Vec3::new(3.0, 0.1, 3.0), Vec3::Y * 0.4, Vec3::X * 0.1, spin);
@@ -106,7 +106,7 @@ fn a_turntable_carries_and_turns_it() {
 }
 
 #[test]
-fn a_belt_carries_it_and_walking_adds() {
+fn a_belt_carries_a_mover_and_walking_adds() {
     let mut world = level();
     let mut belt = BodyDef::fixed(Shape::Box { half_extents: Vec3::new(20.0, 0.1, 2.0) }).at(Vec3::Y * 0.1);
     belt.shapes[0].material.surface_velocity = Vec3::X * 1.5;
@@ -127,7 +127,7 @@ fn a_belt_carries_it_and_walking_adds() {
 }
 
 #[test]
-fn a_wall_that_comes_pushes_it() {
+fn a_moving_wall_pushes_a_mover() {
     let mut world = level();
     platform(&mut world, Vec3::new(0.2, 2.0, 2.0), Vec3::new(3.0, 2.0, 0.0), Vec3::X * -2.0, Vec3::ZERO);
     let id = world.add_mover(&MoverDef::default());
@@ -140,7 +140,7 @@ fn a_wall_that_comes_pushes_it() {
 }
 
 #[test]
-fn a_one_way_floor_lets_it_up_and_holds_it() {
+fn a_one_way_floor_passes_and_holds_a_mover() {
     let mut world = level();
     let mut shelf = BodyDef::fixed(Shape::Box { half_extents: Vec3::new(2.0, 0.1, 2.0) }).at(Vec3::Y * 1.9);
     shelf.shapes[0].rule = ContactRule::OneWay(OneWay::default());
@@ -174,7 +174,7 @@ fn movers_stop_each_other() {
     }
     let apart = (world.mover(b).position() - world.mover(a).position()).x;
     assert!(apart < 0.61, "they meet: {apart}");
-    // One that may not meet the other passes.
+    // A mover with another filter passes.
     let ghost = Filter { mask: 0, ..world.mover(b).def().filter };
     world.set_mover_filter(b, ghost);
     for _ in 0..120 {
@@ -206,9 +206,9 @@ fn a_mover_stands_on_another_and_a_filter_lets_it_through_walls() {
     assert!(world.mover(high).position().x > 2.0);
 }
 
-/// A hand on which somebody stands is jerked away from under the soles: it slips, and he stands.
+/// A hand is pulled away from under a mover: the mover slips and stays.
 #[test]
-fn what_is_jerked_away_under_it_slips() {
+fn a_support_pulled_away_slips_under_a_mover() {
     let mut world = level();
     let half_extents = Vec3::new(0.2, 0.03, 0.2);
     let mut def = BodyDef::dynamic(Shape::Box { half_extents }).at(Vec3::Y * 0.03);

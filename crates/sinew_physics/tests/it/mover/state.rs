@@ -1,4 +1,4 @@
-//! Snapshots, rollback, threads, frames, memory, and settings that make no sense.
+//! Snapshots, rollback, threads, frames, memory, and invalid settings.
 
 use super::{block, level};
 use sinew_math::trig::{cos, sin};
@@ -47,7 +47,7 @@ fn run(world: &mut World, ids: &[MoverId], steps: usize) {
 }
 
 #[test]
-fn a_snapshot_holds_all_that_decides() {
+fn a_snapshot_holds_all_mover_state() {
     let (mut world, ids) = busy();
     run(&mut world, &ids, 77);
     let mut w = Writer::new();
@@ -66,9 +66,9 @@ fn a_snapshot_holds_all_that_decides() {
     }
 }
 
-/// Back by eight steps, in which a mover came and another one went.
+/// Rolls back by eight steps, in which one mover was added and one removed.
 #[test]
-fn rollback_goes_the_same_way_again() {
+fn rollback_repeats_the_same_path() {
     let (mut world, mut ids) = busy();
     run(&mut world, &ids, 40);
     for _ in 0..10 {
@@ -106,9 +106,9 @@ fn threads_change_nothing() {
     assert!(hashes[0] == hashes[1] && hashes[1] == hashes[2], "{hashes:?}");
 }
 
-/// Frames of 30, 60 and 144 a second: movers move in steps, and where they are is a matter of steps alone.
+/// Frames of 30, 60 and 144 a second: movers move in steps, so their place depends on the number of steps alone.
 #[test]
-fn frames_of_any_length_come_to_the_same() {
+fn any_frame_length_gives_the_same_state() {
     let after = |frames: u32| {
         let (mut world, ids) = busy();
         for (i, &id) in ids.iter().enumerate() {
@@ -130,7 +130,7 @@ fn frames_of_any_length_come_to_the_same() {
     assert_eq!(after(144), expected);
 }
 
-/// The same two seconds again and again: after the first times there is room for all that they need.
+/// The same two seconds are repeated: after the first times nothing more is allocated.
 #[test]
 fn a_warm_step_with_movers_does_not_allocate() {
     let (mut world, ids) = busy();
@@ -159,7 +159,7 @@ fn a_warm_step_with_movers_does_not_allocate() {
 }
 
 #[test]
-fn settings_that_make_no_sense_are_named() {
+fn invalid_settings_are_named() {
     let good = MoverDef::default();
     assert!(good.check().is_ok());
     for wrong in [

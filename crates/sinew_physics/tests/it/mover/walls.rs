@@ -1,4 +1,4 @@
-//! Walls, corners, wedges, seams, and speeds at which a step is longer than a wall is thick.
+//! Walls, corners, wedges, seams, and speeds at which a step exceeds a wall's thickness.
 
 use super::{block, depth, level, settle, turned};
 use sinew_math::trig::{cos, sin};
@@ -6,7 +6,7 @@ use sinew_math::{Rotation, Vec3};
 use sinew_physics::*;
 
 #[test]
-fn a_wall_stops_it_at_its_skin_and_it_slides_along() {
+fn a_mover_stops_at_its_skin_and_slides_along_a_wall() {
     let mut world = level();
     block(&mut world, Vec3::new(2.0, 0.0, -50.0), Vec3::new(2.2, 3.0, 50.0));
     let id = world.add_mover(&MoverDef::default());
@@ -31,7 +31,7 @@ fn a_wall_stops_it_at_its_skin_and_it_slides_along() {
 }
 
 #[test]
-fn it_walks_as_fast_as_it_is_told() {
+fn a_mover_reaches_its_walk_speed() {
     let mut world = level();
     let id = world.add_mover(&MoverDef::default());
     settle(&mut world, id);
@@ -49,15 +49,15 @@ fn it_walks_as_fast_as_it_is_told() {
     assert!((gone.z - 2.0 * seconds).abs() < 1e-3 && gone.x.abs() < 1e-4 && gone.y.abs() < 1e-3, "{gone}");
 }
 
-/// Two walls that meet at an angle, from a right angle to 5 degrees; the mover presses in and must lie still.
+/// Two walls meet at an angle from 90 to 5 degrees; the mover presses into the corner and must lie still.
 #[test]
-fn wedges_hold_it_still() {
+fn wedges_hold_a_mover_still() {
     for degrees in [90.0_f32, 60.0, 40.0, 20.0, 10.0, 5.0] {
         for aside in [0.0, 0.3, -0.5] {
             let half = degrees.to_radians() * 0.5;
             let mut world = level();
             for side in [-1.0, 1.0] {
-                // Its inner face goes through the origin, along the wedge's side.
+                // Its inner face passes through the origin, along the wedge's side.
                 let along = Vec3::new(-cos(half), 0.0, side * sin(half));
                 let outward = Vec3::new(sin(half), 0.0, side * cos(half));
                 let mut wall = BodyDef::fixed(Shape::Box { half_extents: Vec3::new(20.0, 2.0, 0.25) })
@@ -79,7 +79,7 @@ fn wedges_hold_it_still() {
                 assert_eq!(depth(&world, id), 0.0, "{degrees}° {aside}");
                 last = now;
             }
-            // Where a capsule and its skin fit in.
+            // Where a capsule and its skin fit.
             let deepest = -0.3 / sin(half);
             assert!(last.x < deepest + 1e-3, "{degrees}° {aside}: {last} beyond {deepest}");
             assert!(last.x > deepest - 0.02 / sin(half), "{degrees}° {aside}: {last} before {deepest}");
@@ -87,9 +87,9 @@ fn wedges_hold_it_still() {
     }
 }
 
-/// Abutting boxes, under the feet and beside them, slow nothing down.
+/// Abutting boxes, below and beside the mover, do not slow it down.
 #[test]
-fn it_does_not_catch_between_boxes_that_abut() {
+fn a_mover_does_not_catch_between_abutting_boxes() {
     let mut world = World::new(WorldDef::default());
     for i in 0..40 {
         let x = i as f32 * 0.5;
@@ -115,7 +115,7 @@ fn it_does_not_catch_between_boxes_that_abut() {
 
 /// A floor and a wall of many triangles.
 #[test]
-fn it_does_not_catch_on_the_seams_of_a_mesh() {
+fn a_mover_does_not_catch_on_mesh_seams() {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for i in 0..=40_u32 {
         let x = i as f32 * 0.37;
@@ -151,7 +151,7 @@ fn it_does_not_catch_on_the_seams_of_a_mesh() {
 
 /// 50 m/s is 0.8 m a step; the walls are 1 cm, boxes and one-sided triangles.
 #[test]
-fn thin_walls_stop_it_at_50_metres_a_second() {
+fn thin_walls_stop_a_mover_at_50_metres_a_second() {
     for turn in 0..16 {
         let angle = turn as f32 * 0.4;
         let way = Vec3::new(cos(angle), 0.0, sin(angle));
@@ -232,9 +232,9 @@ fn a_slope_is_walked_on_up_to_the_limit_and_slid_down_beyond_it() {
     }
 }
 
-/// Two walls closer than the skin that lean apart by a hair: the skin would be free of both high above.
+/// Two walls closer than the skin that lean apart slightly: the skin would fit only high above.
 #[test]
-fn a_cleft_that_opens_upward_shoots_nobody_up() {
+fn an_upward_cleft_does_not_eject_a_mover() {
     for lean in [0.0006_f32, 0.001, 0.002, 0.005] {
         for walk in [Vec3::ZERO, Vec3::Z, Vec3::new(0.5, 0.0, 0.5)] {
             let mut world = level();

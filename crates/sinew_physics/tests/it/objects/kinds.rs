@@ -1,9 +1,9 @@
-//! Kinds of objects for tests: each does one thing.
+//! Kinds of objects for tests, each with one effect.
 
 use sinew_math::{ReadError, Reader, Vec3, Writer, max};
 use sinew_physics::*;
 
-/// Does nothing, but counts how often it is asked.
+/// Has no effect, but counts its calls.
 #[derive(Default)]
 pub struct Counter {
     pub asked: u32,
@@ -28,7 +28,7 @@ impl PhysicsObject for Counter {
     }
 }
 
-/// A spring without length from a place in the world to the centre of a body.
+/// Spring of length zero from a place in the world to the centre of a body.
 pub struct Spring {
     pub body: BodyId,
     pub place: Vec3,
@@ -53,7 +53,7 @@ impl PhysicsObject for Spring {
     }
 }
 
-/// Always the same force at the centre of a body, N.
+/// Constant force at the centre of a body, N.
 pub struct Thrust {
     pub body: BodyId,
     pub force: Vec3,
@@ -104,7 +104,7 @@ impl PhysicsObject for Leash {
     }
 }
 
-/// A ball that nothing but particles touch; they leave it where they came in, without friction.
+/// Ball that only particles touch; it projects them to its surface, without friction.
 pub struct Bump {
     pub center: Vec3,
     pub radius: f32,
@@ -131,7 +131,7 @@ impl PhysicsObject for Bump {
     }
 }
 
-/// Does what a test says, once, in one of its two turns.
+/// Runs a test's function once, in one of the object's two calls.
 pub struct Once<F> {
     pub act: Option<F>,
 }
@@ -151,7 +151,7 @@ impl<F: FnOnce(&mut Forces<'_>) + Send + Sync + 'static> PhysicsObject for Once<
     }
 }
 
-/// Does what a test says, once, when everything has moved.
+/// Runs a test's function once, after everything has moved.
 pub struct OnceMoved<F> {
     pub act: Option<F>,
 }

@@ -1,4 +1,4 @@
-//! Objects of the user's own: when they are asked, what they can do, and that nothing else notices them.
+//! Objects of the user: when they are called, what they can do, and that they affect nothing else.
 
 mod kinds;
 mod state;
@@ -46,14 +46,14 @@ fn particles(world: &World) -> Vec<Vec3> {
     world.group_ids().flat_map(|id| world.particles(id).positions()).copied().collect()
 }
 
-/// Runs one step with an object that acts once, and takes it out again.
+/// Runs one step with an object that acts once, and removes it.
 fn act_once(world: &mut World, act: impl FnOnce(&mut Forces<'_>) + Send + Sync + 'static) {
     let id = world.add_object(Box::new(Once { act: Some(act) }));
     world.step();
     world.remove_object(id);
 }
 
-/// Runs one step with an object that acts once, when everything has moved, and takes it out again.
+/// Runs one step with an object that acts once after everything has moved, and removes it.
 fn act_once_moved(world: &mut World, act: impl FnOnce(&mut Corrections<'_>) + Send + Sync + 'static) {
     let id = world.add_object(Box::new(OnceMoved { act: Some(act) }));
     world.step();
@@ -61,7 +61,7 @@ fn act_once_moved(world: &mut World, act: impl FnOnce(&mut Corrections<'_>) + Se
 }
 
 #[test]
-fn what_does_nothing_changes_nothing() {
+fn objects_without_effect_change_nothing() {
     let (mut with, mut without) = (mixed(), mixed());
     let counter = with.add_object(Box::new(Counter::default()));
     for step in 1..=240 {
@@ -90,9 +90,9 @@ fn a_force_acts_substep_by_substep() {
     }
 }
 
-/// The force of an object adds to what the world does, once: gravity as a field, and a force that lasts.
+/// The force of an object adds to the world's own, once: gravity as a field, and a lasting force.
 #[test]
-fn a_force_adds_to_fields_and_to_forces_that_last() {
+fn an_objects_force_adds_to_fields_and_lasting_forces() {
     let mut world = weightless();
     let body = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     let weight = world.mass(body).mass * 9.81;
@@ -110,7 +110,7 @@ fn a_force_adds_to_fields_and_to_forces_that_last() {
 }
 
 #[test]
-fn forces_and_impulses_do_what_newton_says() {
+fn forces_and_impulses_match_newtons_laws() {
     let mut world = weightless();
     let body = world.add_body(&box_body(Vec3::new(0.1, 0.2, 0.3), Vec3::ZERO));
     let (mass, h) = (world.mass(body).mass, world.def().dt() / 4.0);
@@ -119,12 +119,12 @@ fn forces_and_impulses_do_what_newton_says() {
         forces.apply_impulse(body, Vec3::new(0.0, 2.0, 0.0), Vec3::ZERO);
         forces.apply_torque(body, Vec3::new(0.0, 0.0, 5.0));
     });
-    // A force lasts for one substep of the four.
+    // A force lasts for one of the four substeps.
     let Velocity { linear, angular } = world.velocity(body);
     assert!((linear - Vec3::new(30.0 * h, 2.0, 0.0) / mass).length() < 1e-6, "{linear}");
     let moment = mass / 3.0 * (0.01 + 0.04);
     assert!((angular - Vec3::Z * (5.0 * h / moment)).length() < 1e-6, "{angular}");
-    // Off the centre it turns: p × of an arm of 0.3 m.
+    // Off the centre it also rotates: p × of an arm of 0.3 m.
     act_once_moved(&mut world, move |corrections| {
         let point = corrections.center_of_mass(body) + Vec3::Z * 0.3;
         corrections.apply_impulse(body, Vec3::X, point);
@@ -134,7 +134,7 @@ fn forces_and_impulses_do_what_newton_says() {
 }
 
 #[test]
-fn what_is_seen_is_where_things_are_in_the_substep() {
+fn objects_see_poses_of_the_current_substep() {
     let mut world = weightless();
     let mut def = sphere_body(0.1, Vec3::ZERO);
     def.linear_velocity = Vec3::X;
@@ -181,7 +181,7 @@ fn a_leash_is_a_pendulum() {
 }
 
 #[test]
-fn a_correction_goes_through_the_joints() {
+fn corrections_act_through_joints() {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     let hook = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
     let (mut last, mut joints) = (hook, Vec::new());
@@ -191,7 +191,7 @@ fn a_correction_goes_through_the_joints() {
         joints.push(world.add_joint(&ball(&world, last, link, at - Vec3::X * 0.1)));
         last = link;
     }
-    // The last link's centre, 1.1 m from the hook, hangs on a thread of 0.2 m besides.
+    // The last link's centre, 1.1 m from the hook, also hangs on a thread of 0.2 m.
     let (place, length) = (Vec3::new(1.1, 0.2, 0.0), 0.2);
     world.add_object(Box::new(Leash { body: last, place, length }));
     let (mut off, mut gap) = (0.0, 0.0);
@@ -204,7 +204,7 @@ fn a_correction_goes_through_the_joints() {
 }
 
 #[test]
-fn joints_are_felt_in_the_response() {
+fn responses_include_joints() {
     let mut world = weightless();
     let hook = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
     let rod = world.add_body(&box_body(Vec3::new(0.5, 0.05, 0.05), Vec3::X * 0.5));
@@ -246,7 +246,7 @@ fn particles_rest_on_an_obstacle_of_the_users_own() {
 }
 
 #[test]
-fn a_push_wakes_and_nothing_else_does() {
+fn only_a_push_of_an_object_wakes() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     let body = world.add_body(&box_body(Vec3::splat(0.2), Vec3::Y * 0.2));

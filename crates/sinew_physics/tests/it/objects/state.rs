@@ -1,4 +1,4 @@
-//! Objects in snapshots: exact, and never more broken than the bytes.
+//! Objects in snapshots: exact, and robust against damaged bytes.
 
 use super::kinds::{Bump, Counter, Leash, Spring};
 use super::{mixed, panics};
@@ -6,7 +6,7 @@ use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::stage::NoProfiler;
 use sinew_physics::*;
 
-/// The mixed world, with objects that push a box, hold a link and are in the rope's way.
+/// The mixed world, with objects that push a box, hold a link and block the rope.
 pub fn inhabited() -> World {
     let mut world = mixed();
     let bodies: Vec<BodyId> = world.body_ids().collect();
@@ -48,7 +48,7 @@ fn threads_do_not_matter() {
 }
 
 #[test]
-fn a_restored_world_goes_on_as_the_saved_one() {
+fn a_restored_world_continues_equally() {
     let mut world = inhabited();
     run(&mut world, 50);
     let bytes = saved(&world);
@@ -84,7 +84,7 @@ fn reset_is_exact() {
 }
 
 #[test]
-fn objects_come_and_go_with_the_snapshots() {
+fn snapshots_add_and_remove_objects() {
     let mut world = mixed();
     let [first, second] = [3, 5].map(|asked| world.add_object(Box::new(Counter { asked })));
     let both = saved(&world);
@@ -94,7 +94,7 @@ fn objects_come_and_go_with_the_snapshots() {
     assert!(third != first, "the slot is used again, the id is not");
     let other = saved(&world);
 
-    // Back to where the third was not, and on to where it is again, since its kind may be made.
+    // Back to before the third object, and forward to where it exists again, since its kind is registered.
     let unknown = world.load(&mut Reader::new(&both)).expect_err("the first is gone");
     assert!(unknown.to_string().starts_with("an object that is not there, of no known kind"), "{unknown}");
     assert_eq!(saved(&world), other, "nothing has changed");
@@ -113,7 +113,7 @@ fn objects_come_and_go_with_the_snapshots() {
     assert_eq!(new.hash(), { world.hash() });
 }
 
-/// Reads one byte too few or too many of what it wrote.
+/// Reads one byte less or more than it wrote.
 struct Careless {
     reads: usize,
 }
@@ -138,7 +138,7 @@ fn a_wrong_load_is_an_error_and_changes_nothing() {
     let bytes = saved(&world);
     world.object_mut::<Counter>(counter).asked = 8;
     let before = saved(&world);
-    // What the first object took by then is taken back, and so the second must be able to load its own.
+    // The load of the first object is undone, so the second must be able to load its own state.
     for cut in (0..bytes.len()).step_by(41).chain(bytes.len() - 40..bytes.len()) {
         assert!(world.load(&mut Reader::new(&bytes[..cut])).is_err());
         assert_eq!(saved(&world), before, "cut at {cut}");
@@ -150,7 +150,7 @@ fn a_wrong_load_is_an_error_and_changes_nothing() {
 }
 
 #[test]
-fn every_byte_may_be_wrong() {
+fn damaged_snapshots_with_objects_give_errors() {
     let mut world = inhabited();
     run(&mut world, 5);
     let bytes = saved(&world);
@@ -160,7 +160,7 @@ fn every_byte_may_be_wrong() {
         for flip in [0x01, 0x80, 0xff] {
             let mut wrong = bytes.clone();
             wrong[at] ^= flip;
-            // Many wrong bytes are only other numbers.
+            // Many damaged bytes are only other numbers.
             drop(other.load(&mut Reader::new(&wrong)));
         }
     }
@@ -176,7 +176,7 @@ fn an_object_of_another_type() {
 
 #[test]
 #[should_panic(expected = "was removed")]
-fn an_object_that_was_taken_out() {
+fn a_removed_object_is_refused() {
     let mut world = mixed();
     let id = world.add_object(Box::new(Counter::default()));
     world.remove_object(id);

@@ -1,4 +1,4 @@
-//! Balls as probes: what they meet follows from the distance of their centres alone, in `f64`.
+//! Balls as probes: results follow from the distance of their centres alone, in `f64`.
 
 use super::oracle::WideShape;
 use super::random::{KINDS, frame, shape};
@@ -11,7 +11,7 @@ use sinew_physics::*;
 const NEAR: f64 = 4e-6;
 
 #[test]
-fn balls_go_by_the_distance_of_their_centres() {
+fn ball_queries_follow_centre_distances() {
     let mut random = Random::new(410);
     let (mut overlaps, mut hits) = (0, 0);
     for case in 0..cases(100_000) {
@@ -55,7 +55,7 @@ fn balls_go_by_the_distance_of_their_centres() {
             Some(hit) => {
                 hits += 1;
                 let fraction = f64::from(hit.fraction);
-                // It may stop short by what counts as touching, 1e-5 of the smaller one and 1e-7 of the way.
+                // It may stop short by the touch tolerance, 1e-5 of the smaller one and 1e-7 of the way.
                 let there =
                     wide_shape.signed_distance(wide(center + translation * hit.fraction)) - f64::from(radius);
                 assert!(there.abs() < 1.5e-5, "{}: {hit:?}, {there} from touching", told("hit"));

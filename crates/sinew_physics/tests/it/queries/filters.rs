@@ -1,4 +1,4 @@
-//! Filters of queries: which shapes a question is about.
+//! Filters of queries: which shapes a query includes.
 
 use sinew_math::Vec3;
 use sinew_physics::ray::Ray;
@@ -23,7 +23,7 @@ fn filtered(layers: u32, mask: u32, group: i32) -> ShapeDef {
     ShapeDef { filter: Filter { layers, mask, group }, ..ball() }
 }
 
-/// Numbers of the bodies that a ray meets.
+/// Returns the numbers of the bodies that a ray hits.
 fn met(world: &World, ids: &[BodyId], ray: &Ray, filter: QueryFilter<'_>) -> Vec<usize> {
     let mut hits = Vec::new();
     world.query().filter(filter).all(ray, &mut hits);
@@ -73,7 +73,7 @@ fn kinds_sensors_and_exceptions() {
 }
 
 #[test]
-fn predicates_see_the_body_and_the_number_of_the_shape() {
+fn predicates_get_body_and_shape_number() {
     let mut world = World::new(WorldDef::default());
     let shapes = vec![
         ball(),

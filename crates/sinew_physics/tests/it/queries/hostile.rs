@@ -1,4 +1,4 @@
-//! Numbers that no question should be asked with, and worlds that nobody should make.
+//! Queries with extreme numbers, and extreme worlds.
 
 use super::random::{KINDS, Populated, shape};
 use crate::cases::cases;
@@ -8,7 +8,7 @@ use sinew_physics::*;
 
 const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
-/// Each place of a vector by turns.
+/// Sets each component of a vector in turn.
 fn bad_vectors() -> impl Iterator<Item = Vec3> {
     BAD.into_iter().flat_map(|x| [Vec3::new(x, 0.0, 0.0), Vec3::new(0.1, x, 0.0), Vec3::new(0.0, 0.2, x)])
 }
@@ -25,7 +25,7 @@ where
 }
 
 #[test]
-fn what_is_not_finite_has_no_answer() {
+fn nonfinite_queries_have_no_answer() {
     let mut random = Random::new(408);
     let world = Populated::new(30, 1.0, &mut random).world;
     for bad in bad_vectors() {
@@ -55,7 +55,7 @@ fn half_spaces_do_not_ask() {
     world.query().any(&OverlapWith(Probe::at(Shape::HalfSpace, Vec3::ZERO)));
 }
 
-/// However long the ray, it meets what is on it.
+/// A ray of any length hits what is on it.
 #[test]
 fn long_rays_hit() {
     let mut world = World::new(WorldDef::default());
@@ -83,7 +83,7 @@ fn long_rays_hit() {
     }
 }
 
-/// A number of any size, and now and then a special one.
+/// Returns a number of any size, sometimes a special one.
 fn wild(random: &mut Random) -> f32 {
     const SPECIAL: [f32; 10] = [
         0.0,

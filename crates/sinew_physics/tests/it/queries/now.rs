@@ -1,4 +1,4 @@
-//! Questions see bodies where they are now, whatever brought them there.
+//! Queries use the current poses, whatever changed them.
 
 use super::random::{Populated, body, filter, frame};
 use crate::build::{box_body, floor};
@@ -10,7 +10,7 @@ use sinew_physics::{
     Sensors, Shape, ShapeDef, ShapeId, Velocity, World, WorldDef,
 };
 
-/// First hit, holders of a point and nearest surface, by asking every shape.
+/// Returns first hit, containing bodies and nearest surface, by asking every shape.
 fn agrees(populated: &Populated, random: &mut Random) {
     let filter = filter(&[], random);
     let query = populated.world.query().filter(filter);
@@ -76,7 +76,7 @@ fn after_every_kind_of_change() {
     }
 }
 
-/// Height at which a ray from above meets a body, metres in the world.
+/// Returns the height at which a ray from above hits a body, metres in the world.
 fn top(world: &World, id: BodyId) -> Option<f32> {
     let at = world.center_of_mass(id);
     let ray = Ray { origin: at + Vec3::Y * 5.0, direction: Vec3::Y * -10.0 };
@@ -100,7 +100,7 @@ fn asleep_and_awake_alike() {
     assert!(!world.query().any(&ContainsPoint(Vec3::new(7.0, 3.0, 0.0))));
 }
 
-/// The pose after the step is asked, not the one with which it began, however fast the body is.
+/// Queries use the pose after the step, not before it, for any speed of the body.
 #[test]
 fn after_a_step_the_new_pose() {
     let mut world = World::new(WorldDef::default());
@@ -117,7 +117,7 @@ fn after_a_step_the_new_pose() {
     }
 }
 
-/// True for each of a ray from above, a box around it, and a ball that lies on it that meets a body, each by itself.
+/// Whether a ray from above, a box around it, and a ball on it find a body, each alone.
 fn met(world: &mut World, id: BodyId, filter: QueryFilter<'_>) -> [bool; 3] {
     let query = world.query().filter(filter).accept(|body, _| body == id);
     let around = OverlapWith(Probe::at(Shape::Box { half_extents: Vec3::splat(2.0) }, Vec3::ZERO));
@@ -135,9 +135,9 @@ fn met(world: &mut World, id: BodyId, filter: QueryFilter<'_>) -> [bool; 3] {
     [seen[0], seen[1], touches]
 }
 
-/// A change of filter counts at once, also of a static body of a single shape, of which copies are kept beside the tree.
+/// A change of filter acts at once, also for a static body of a single shape, of which the tree keeps a copy.
 #[test]
-fn after_a_shape_was_changed_whom_it_meets() {
+fn after_a_filter_change() {
     let mut world = World::new(WorldDef::default());
     let mut def = box_body(Vec3::splat(0.5), Vec3::ZERO);
     def.kind = BodyKind::Static;

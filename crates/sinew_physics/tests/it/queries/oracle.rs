@@ -1,4 +1,4 @@
-//! Shapes in `f64`, by their distance functions alone: what a ray or a moved ball meets follows by search.
+//! Shapes in `f64` by their distance functions: hits of rays and moved balls are found by search.
 
 use crate::wide::{Wide, add, axes, dot, length, wide};
 use sinew_math::Transform;
@@ -69,7 +69,7 @@ impl<'a> WideShape<'a> {
         }
     }
 
-    /// Least distance along a segment: a convex function of the place on it.
+    /// Returns the least distance along a segment, which is a convex function of the place on it.
     pub fn least_distance(&self, origin: Wide, direction: Wide) -> f64 {
         let at = |t: f64| self.signed_distance(add(origin, direction, t));
         let (mut lo, mut hi) = (0.0, 1.0);

@@ -9,7 +9,7 @@ use sinew_physics::{
 /// Number of kinds of bounded shapes.
 pub const KINDS: usize = 7;
 
-/// A bounded shape of a kind, around its origin, about a metre large.
+/// Returns a bounded shape of a kind, around its origin, about a metre large.
 pub fn shape(kind: usize, random: &mut Random) -> Shape {
     let mut size = || random.range(0.15, 0.8);
     match kind {
@@ -29,7 +29,7 @@ pub fn frame(spread: f32, random: &mut Random) -> Transform {
     Transform::new(random.in_cube() * spread, random.rotation())
 }
 
-/// A body of up to three shapes of all kinds, filters, sensors among them.
+/// Returns a body of up to three shapes of all kinds, with filters and sensors.
 pub fn body(spread: f32, random: &mut Random) -> BodyDef {
     let at = frame(spread, random);
     let count = 1 + random.index(3);
@@ -47,14 +47,14 @@ pub fn body(spread: f32, random: &mut Random) -> BodyDef {
     BodyDef { kind, position: at.translation, rotation: at.rotation, shapes, ..BodyDef::default() }
 }
 
-/// A world, and what its bodies were made from.
+/// A world, and the definitions of its bodies.
 pub struct Populated {
     pub world: World,
     pub bodies: Vec<(BodyId, BodyDef)>,
 }
 
 impl Populated {
-    /// So many bodies in a cube of `2 spread`, and a sloped ground below; some were taken out again, others took their places.
+    /// Returns this many bodies in a cube of `2 spread` above a slope; some were removed and replaced.
     pub fn new(bodies: usize, spread: f32, random: &mut Random) -> Self {
         let mut populated = Self { world: World::new(WorldDef::default()), bodies: Vec::new() };
         populated.add(BodyDef {
@@ -79,13 +79,13 @@ impl Populated {
         id
     }
 
-    /// Takes one of them out.
+    /// Removes one of them.
     pub fn remove(&mut self, random: &mut Random) {
         let (id, _) = self.bodies.swap_remove(random.index(self.bodies.len()));
         self.world.remove_body(id);
     }
 
-    /// Every shape that passes, where it is now.
+    /// Returns every shape that passes the filter, in its current pose.
     pub fn shapes(&self, filter: &QueryFilter<'_>) -> impl Iterator<Item = (ShapeId, Shape, Transform)> {
         self.bodies.iter().flat_map(move |(id, def)| {
             let passes = move |def: &BodyDef, shape: usize| {
@@ -104,7 +104,7 @@ impl Populated {
     }
 }
 
-/// A filter that lets about half of the shapes pass.
+/// Returns a filter that passes about half of the shapes.
 pub fn filter<'a>(except: &'a [BodyId], random: &mut Random) -> QueryFilter<'a> {
     let kinds = [BodyKinds::ALL, BodyKinds::STATIC | BodyKinds::DYNAMIC, BodyKinds::KINEMATIC];
     QueryFilter {

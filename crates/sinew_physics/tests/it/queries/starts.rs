@@ -1,11 +1,11 @@
-//! Meaning of a start inside, for every shape and every question alike.
+//! Queries that start inside a shape, for every shape and every query.
 
 use super::random::{KINDS, shape};
 use sinew_math::{Random, Transform, Vec3};
 use sinew_physics::ray::Ray;
 use sinew_physics::*;
 
-/// One static body of each kind of shape, each in a world of its own, and its shape.
+/// Returns one static body of each kind of shape, each in its own world, and its shape.
 fn each_shape() -> impl Iterator<Item = (World, Shape)> {
     let mut random = Random::new(407);
     let mut shapes: Vec<Shape> = (0..KINDS).map(|kind| shape(kind, &mut random)).collect();
@@ -47,11 +47,11 @@ fn a_ray_that_starts_inside_and_goes_nowhere() {
     }
 }
 
-/// On the surface is inside, whichever way the ray goes.
+/// A ray that starts on the surface starts inside, in any direction.
 #[test]
 fn a_ray_that_starts_on_the_surface() {
     for (world, shape) in each_shape() {
-        // The highest number at which it is not above the surface.
+        // The highest number that is not above the surface.
         let above = |y: f32| shape.signed_distance(&Transform::IDENTITY, Vec3::Y * y).0 > 0.0;
         let (mut top, mut outside) = (0.0, 4.0);
         for _ in 0..60 {
@@ -105,7 +105,7 @@ fn a_cast_that_starts_inside() {
     }
 }
 
-/// A shape that rests on something touches it, and a cast from there hits wherever it leads; a hair above it may go its way.
+/// A shape that rests on another touches it, and a cast from there hits in any direction; slightly above it may move away.
 #[test]
 fn a_cast_that_starts_on_the_surface() {
     let mut world = World::new(WorldDef::default());

@@ -1,4 +1,4 @@
-//! Questions to meshes and height fields, against trying every triangle.
+//! Queries of meshes and height fields, against trying every triangle.
 
 use super::random::{KINDS, frame, shape};
 use crate::cases::cases;
@@ -23,7 +23,7 @@ fn world_of(shape: Shape, at: &Transform) -> World {
     world
 }
 
-/// A closed mesh answers what comes from outside as the box does whose surface it is; from inside it is not there for rays.
+/// A closed mesh answers queries from outside as the box with the same surface; rays from inside do not hit it.
 #[test]
 fn a_closed_mesh_answers_as_a_box_does() {
     let mut random = Random::new(411);
@@ -58,7 +58,7 @@ fn a_closed_mesh_answers_as_a_box_does() {
             assert!(!meshed.any(&OverlapWith(probe.clone())), "case {case}");
             let translation = at.point(random.in_cube() * 0.5) - probe.world_from_shape.translation;
             let cast = ShapeCast { probe, translation };
-            // How fast the surfaces come together, as a share of the way: a place is as much less certain.
+            // The relative speed of the surfaces along the path: the hit is as much less certain.
             let closing = |hit: BodyHit| -hit.normal.dot(translation) / translation.length();
             match (meshed.first(&cast), solid.first(&cast)) {
                 (Some(a), Some(b)) => {
@@ -81,7 +81,7 @@ fn a_closed_mesh_answers_as_a_box_does() {
     assert!(hits > cases(20_000) / 3 && casts > cases(20_000) / 5, "{hits} hits, {casts} casts");
 }
 
-/// Terrain is met from above, pushes up, and holds nothing.
+/// Terrain is hit from above, pushes up, and contains nothing.
 #[test]
 fn height_fields_are_met_from_above() {
     let (columns, rows, spacing) = (5, 5, [1.0, 1.0]);

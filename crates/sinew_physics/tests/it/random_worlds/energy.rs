@@ -14,7 +14,7 @@ pub struct Energies {
     pub mass: f64,
 }
 
-/// Velocities stand between positions, half a substep back: there heights and springs are measured. At the end of the
+/// Velocities are half a substep behind positions; heights and springs are measured there. At the end of the
 /// step an undamped spring's energy would seem to rise and fall by the share `ωh/2`.
 pub fn energies(world: &World) -> Energies {
     let back = -0.5 * world.def().dt() / world.def().substeps as f32;
@@ -35,7 +35,7 @@ pub fn energies(world: &World) -> Energies {
     sum
 }
 
-/// Pose of a body a time away.
+/// Returns the pose of a body a time away.
 fn moved(world: &World, id: BodyId, time: f32) -> Transform {
     let (pose, v, center) = (world.transform(id), world.velocity(id), world.center_of_mass(id));
     let rotation = pose.rotation.integrate(v.angular, time);
@@ -50,7 +50,7 @@ fn stiffness(softness: Option<Softness>) -> f32 {
     }
 }
 
-/// Energy that a joint stores, as far as its stiffnesses are given as such, with frame B seen from frame A.
+/// Returns the energy that a joint stores in stiffnesses that are given as such, with frame B seen from frame A.
 fn elastic(def: &JointDef, seen: &Transform) -> f32 {
     let locks = locks(&def.kind);
     let weld = stiffness(def.weld) * weld_square(&def.kind, &locks, seen);
@@ -61,7 +61,7 @@ fn elastic(def: &JointDef, seen: &Transform) -> f32 {
     0.5 * (weld + limit + spring)
 }
 
-/// Directions that are held: translations, then twist and swings.
+/// Held directions: translations, then twist and swings.
 fn locks(kind: &JointKind) -> [bool; 6] {
     match kind {
         JointKind::Ball { .. } => [true, true, true, false, false, false],
@@ -82,7 +82,7 @@ fn masked_square(v: Vec3, mask: &[bool]) -> f32 {
     of(v.x, mask[0]) + of(v.y, mask[1]) + of(v.z, mask[2])
 }
 
-/// Square of the distance from where the held directions should be.
+/// Returns the square of the distance from the place of the held directions.
 fn weld_square(kind: &JointKind, locks: &[bool; 6], seen: &Transform) -> f32 {
     let linear = match kind {
         JointKind::Distance { range } if locks[0] => {
@@ -95,7 +95,7 @@ fn weld_square(kind: &JointKind, locks: &[bool; 6], seen: &Transform) -> f32 {
     let angular = match locks[3..] {
         [true, true, true] => seen.rotation.to_scaled_axis().length_squared(),
         [twist, y, z] => {
-            // Twist fades where a swing of half a turn leaves it undefined.
+            // Twist fades near a swing of half a turn, where it is undefined.
             let (_, turn) = SwingTwistLimit::angles(seen.rotation);
             masked_square(Vec3::new(turn * 0.5 * (1.0 + x_b.x), x_b.z, x_b.y), &[twist, y, z])
         }
@@ -121,7 +121,7 @@ fn spring_square(kind: &JointKind, locks: &[bool; 6], seen: &Transform, rest: &T
     linear + masked_square(turn, &open[3..])
 }
 
-/// Sum of the squares of how far the joint is beyond each of its limits.
+/// Returns the sum of the squares of the joint's overshoots.
 fn beyond_square(kind: &JointKind, seen: &Transform) -> f32 {
     let square = |room: f32| min(room, 0.0) * min(room, 0.0);
     let outside = |range: Range, x: f32| square(x - range.lo) + square(range.hi - x);
@@ -158,7 +158,7 @@ fn twist_square(range: Range, rotation: Rotation) -> f32 {
 }
 
 #[test]
-fn energy_of_an_undamped_swing_stays_what_was_wound_up() {
+fn an_undamped_swing_keeps_its_energy() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let a = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
     let b = world.add_body(&crate::build::sphere_body(0.1, Vec3::ZERO));

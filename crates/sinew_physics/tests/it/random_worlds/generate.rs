@@ -1,4 +1,4 @@
-//! Random plans of worlds, the same for the same seed.
+//! Random plans of worlds, equal for equal seeds.
 
 use super::joints::{self, Temper};
 use super::plan::{BodyPlan, Change, Frames, JointPlan, WorldPlan};
@@ -6,7 +6,7 @@ use super::{STEPS, chance, decades};
 use sinew_math::{Random, Rotation, Transform, Vec3, max};
 use sinew_physics::*;
 
-/// Joints of trees hang on earlier bodies: on the last one, which makes chains, or on any.
+/// Joints of trees connect to earlier bodies: to the last one, which gives chains, or to any.
 #[derive(Clone, Copy)]
 enum Growth {
     Chain,
@@ -45,7 +45,7 @@ fn gravity(r: &mut Random) -> Vec3 {
     if chance(r, 0.75) { Vec3::new(0.0, -9.81, 0.0) } else { Vec3::ZERO }
 }
 
-/// Any shape, `size` metres across.
+/// Returns any shape, `size` metres across.
 fn shape(r: &mut Random, size: f32) -> Shape {
     let half = 0.5 * size;
     match r.index(3) {
@@ -93,7 +93,7 @@ fn velocity(r: &mut Random, speed: f32) -> Velocity {
     Velocity { linear: r.in_cube() * speed, angular: r.in_cube() * (2.0 * speed) }
 }
 
-/// Trees from a fixed, moved or free body, perhaps several.
+/// Returns trees from a fixed, moved or free body.
 fn forest(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
     let spread = Spread::random(r);
     let count = if chance(r, 0.1) { 9 + r.index(22) } else { 2 + r.index(7) };
@@ -128,7 +128,7 @@ fn forest(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
     }
 }
 
-/// Place where a body is joined to another, and place where it then lies, both in the world.
+/// Place where a body is joined to another, and its own place then, both in the world.
 fn neighbor(r: &mut Random, parent: &BodyPlan, child: &BodyPlan) -> (Vec3, Vec3) {
     let way = r.direction();
     let on = (way + r.in_cube() * 0.5).normalize();
@@ -136,7 +136,7 @@ fn neighbor(r: &mut Random, parent: &BodyPlan, child: &BodyPlan) -> (Vec3, Vec3)
     (at, at + on * (child.shape.bounding_radius() * r.range(0.3, 1.0)))
 }
 
-/// A grid of bodies joined to their neighbours, hung by corners.
+/// Returns a grid of bodies joined to their neighbours, hung by corners.
 fn net(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
     let (width, height) = (2 + r.index(4), 2 + r.index(4));
     let (size, mass) = (decades(r, -1.5, -0.5), decades(r, -1.0, 1.0));
@@ -187,14 +187,14 @@ fn lift(r: &mut Random, plan: &mut WorldPlan) {
     }
 }
 
-/// Two bodies of which one moves.
+/// Returns two bodies of which one moves.
 fn pair(r: &mut Random, plan: &WorldPlan) -> Option<[usize; 2]> {
     let (a, b) = (r.index(plan.bodies.len()), r.index(plan.bodies.len()));
     let moves = |i: usize| plan.bodies[i].kind == BodyKind::Dynamic;
     (a != b && (moves(a) || moves(b))).then_some([a, b])
 }
 
-/// More joints than trees have, some of which say what others say already.
+/// Adds more joints than trees have; some are redundant.
 fn loops(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
     if chance(r, 0.6) {
         return;

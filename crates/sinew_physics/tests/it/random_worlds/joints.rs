@@ -6,17 +6,17 @@ use core::f32::consts::PI;
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, min};
 use sinew_physics::*;
 
-/// Features that a world's joints may have.
+/// Allowed features of a world's joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Temper {
-    /// Only what stores energy in a way that can be computed from outside, or takes it away: stiffnesses given as such
+    /// Only features that store energy in a way that can be computed from outside, or remove it: stiffnesses given as such
     /// (one that follows the masses changes with the pose), no motors, no soft zones.
     Passive,
-    /// Everything.
+    /// All features.
     Driven,
 }
 
-/// A joint between two bodies of the plan at a point of the world.
+/// Returns a joint between two bodies of the plan at a point of the world.
 pub fn joint(r: &mut Random, plan: &WorldPlan, bodies: [usize; 2], at: Vec3, temper: Temper) -> JointPlan {
     let [a, b] = bodies;
     let world_from_joint = Transform::new(at, r.rotation());
@@ -57,7 +57,7 @@ pub fn joint(r: &mut Random, plan: &WorldPlan, bodies: [usize; 2], at: Vec3, tem
     joint
 }
 
-/// Smaller of a body's mass and its least moment, roughly; nothing where it does not move.
+/// Returns roughly the smaller of a body's mass and its least moment; `None` where it does not move.
 fn lightest(plan: &WorldPlan, body: usize) -> f32 {
     let body = &plan.bodies[body];
     let thin = body.shape.inner_radius();
@@ -80,7 +80,7 @@ fn cone(r: &mut Random) -> SwingTwistLimit {
     SwingTwistLimit { swing_y: around(r, 2.5), swing_z: around(r, 2.5), twist: around(r, 3.0) }
 }
 
-/// A range that need not hold zero where that may release energy.
+/// Returns a range that may exclude zero where that may release energy.
 fn interval(r: &mut Random, widest: f32, temper: Temper) -> Range {
     if temper == Temper::Driven && chance(r, 0.1) {
         let lo = r.range(-widest, widest);
@@ -89,7 +89,7 @@ fn interval(r: &mut Random, widest: f32, temper: Temper) -> Range {
     around(r, widest)
 }
 
-/// Random kind for the joints of a net.
+/// Returns a random kind for the joints of a net.
 pub fn net_kind(r: &mut Random) -> JointKind {
     match r.index(4) {
         0 => JointKind::Distance { range: Range::new(0.0, 1.0) },
@@ -112,7 +112,7 @@ fn kind(r: &mut Random, temper: Temper) -> JointKind {
     }
 }
 
-/// In units of the distance at birth: a rod, a rope, a band.
+/// In units of the initial distance: a rod, a rope, a band.
 fn distance(r: &mut Random) -> Range {
     match r.index(3) {
         0 => Range::new(1.0, 1.0),
@@ -134,14 +134,14 @@ fn six(r: &mut Random) -> SixDof {
     SixDof { linear, twist: axis(r, 3.0), swing_y: axis(r, 1.5), swing_z: axis(r, 1.5) }
 }
 
-/// True if soft limits may be had: the energy of those of a cone cannot be told from outside deep beyond it, where its room is
-/// one to first order only.
+/// Whether soft limits are allowed: the energy of a cone's cannot be computed from outside deep beyond it, where its room is
+/// exact to first order only.
 fn stores_limits(kind: &JointKind, temper: Temper) -> bool {
     let turns = matches!(kind, JointKind::Ball { .. } | JointKind::Universal { .. } | JointKind::SixDof(_));
     temper == Temper::Driven || !turns
 }
 
-/// True if springs may be had: those about some axes of rotation but not about others are none that store.
+/// Whether springs are allowed: those about only some axes of rotation store no energy.
 fn stores_springs(kind: &JointKind, temper: Temper) -> bool {
     temper == Temper::Driven || !matches!(kind, JointKind::SixDof(_))
 }
@@ -158,8 +158,8 @@ fn rest(r: &mut Random, kind: &JointKind) -> Transform {
     }
 }
 
-/// Passive ones are damped unless they are slow beside a substep: an undamped one that swings within a few substeps has
-/// no energy that could be read off positions and velocities that stand half a substep apart.
+/// Passive ones are damped unless they are slow compared with a substep: an undamped one that swings within a few substeps has
+/// no energy that could be read from positions and velocities half a substep apart.
 fn softness(r: &mut Random, temper: Temper, light: f32) -> Softness {
     if temper == Temper::Driven && chance(r, 0.5) {
         let damping_ratio = if chance(r, 0.2) { 0.0 } else { decades(r, -2.0, 1.0) };

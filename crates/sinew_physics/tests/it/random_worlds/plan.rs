@@ -1,4 +1,4 @@
-//! A random world as plain data, so that one that fails can be made smaller and printed.
+//! A random world as plain data, so that a failing one can be shrunk and printed.
 
 use sinew_math::{Range, Transform, Vec3};
 use sinew_physics::*;
@@ -9,16 +9,16 @@ pub struct WorldPlan {
     pub sleeping: Sleeping,
     /// A half-space at height 0.
     pub floor: bool,
-    /// Pairs that overlap at the start, or that a joint holds at any time, pass through each other always: contacts that
-    /// push bodies apart would raise weights.
+    /// Pairs that overlap at the start, or that a joint connects at any time, never collide: contacts that
+    /// separate bodies would raise weights.
     pub parted: bool,
-    /// Nothing in it gives energy but what the test does itself.
+    /// Nothing in it releases energy but the test's own changes.
     pub passive: bool,
     pub bodies: Vec<BodyPlan>,
     pub joints: Vec<JointPlan>,
-    /// Before which step, and what.
+    /// Step before which it happens, and the change.
     pub changes: Vec<(u32, Change)>,
-    /// Before which step it is saved.
+    /// Step before which the world is saved.
     pub save_at: u32,
 }
 
@@ -35,14 +35,14 @@ pub struct BodyPlan {
 
 #[derive(Clone, Debug)]
 pub struct JointPlan {
-    /// Positions in the plan's bodies.
+    /// Indices into the plan's bodies.
     pub a: usize,
     pub b: usize,
-    /// Before which step it is made; 0: with the world.
+    /// Step before which it is created; 0: with the world.
     pub born: u32,
-    /// In A's frame; that of B agrees with it in the pose at birth, but for distances.
+    /// In A's frame; B's agrees with it in the initial pose, except for distances.
     pub frame_a: Transform,
-    /// Anchor in B's frame of a distance, whose range and rest length are in units of the distance at birth.
+    /// Anchor in B's frame of a distance, whose range and rest length are in units of the initial distance.
     pub anchor_b: Vec3,
     pub kind: JointKind,
     pub weld: Option<Softness>,
@@ -55,12 +55,12 @@ pub struct JointPlan {
     pub collision: JointCollision,
 }
 
-/// Change to a world in its run. What is no longer there is left alone.
+/// Change of a running world. Objects that no longer exist are skipped.
 #[derive(Clone, Debug)]
 pub enum Change {
     RemoveJoint(usize),
     SetState(usize, JointState),
-    /// The joint becomes that of the plan; its bodies stay, and the frames too or they start anew in the present pose.
+    /// The joint becomes that of the plan. Its bodies stay; its frames stay too, or start in the current pose.
     Redefine(usize, Box<JointPlan>, Frames),
     SetMotor(usize, Option<Motor>),
     RemoveBody(usize),
@@ -124,7 +124,7 @@ impl BodyPlan {
 }
 
 impl JointPlan {
-    /// A joint of this plan between two bodies in their present pose.
+    /// Returns a joint of this plan between two bodies in their current pose.
     pub fn def(&self, world: &World, a: BodyId, b: BodyId) -> JointDef {
         let world_from_joint = world.transform(a) * self.frame_a;
         let (a_pose, b_pose) = (world.transform(a), world.transform(b));
@@ -153,7 +153,7 @@ impl JointPlan {
 }
 
 impl WorldPlan {
-    /// The same without a body and all that names it.
+    /// Returns the plan without a body and everything that refers to it.
     pub fn without_body(&self, body: usize) -> Self {
         let mut plan = self.clone();
         while let Some(j) = plan.joints.iter().position(|joint| joint.a == body || joint.b == body) {
@@ -169,7 +169,7 @@ impl WorldPlan {
         plan
     }
 
-    /// The same without a joint and all that names it.
+    /// Returns the plan without a joint and everything that refers to it.
     pub fn without_joint(&self, joint: usize) -> Self {
         let mut plan = self.clone();
         plan.joints.remove(joint);

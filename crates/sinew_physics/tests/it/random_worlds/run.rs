@@ -1,4 +1,4 @@
-//! Runs a plan and watches it.
+//! Runs a plan and checks it.
 
 use super::energy::{Energies, energies};
 use super::plan::{Change, Frames, JointPlan, WorldPlan};
@@ -8,18 +8,18 @@ use sinew_physics::*;
 
 /// Largest rise of energy within a step, as a share of max(kinetic energy, 1 J/kg).
 const ENERGY_GAIN: f64 = 0.01;
-/// Share of the springs' energy that rounding of poses may seem to give.
+/// Share of the springs' energy that rounding of poses may appear to add.
 const ROUNDING: f64 = 1e-5;
-/// After a change that leaves joints apart or beyond their stops, energy is not held against the world until they have
-/// come together, nor longer than this many steps.
+/// After a change that leaves joints open or beyond their stops, energy is not checked until they
+/// have closed, but for at most this many steps.
 const SETTLING: u32 = 60;
-/// Together: metres and radians.
+/// Closed: metres and radians.
 const GAP_CLOSED: f32 = 1e-3;
 const STOP_REACHED: f32 = 0.02;
-/// Joints are not made between bodies further apart, metres: what has flown apart would be held by arms a
-/// hundred times its size.
+/// Joints are not created between bodies further apart, metres: their arms would be a
+/// hundred times the bodies' size.
 const REACH: f32 = 10.0;
-/// So many steps after it was saved the world is compared with its restored twin.
+/// Steps after a save when the world is compared with its restored twin.
 const TWIN_STEPS: u32 = 60;
 /// A world is violent while a body is faster, m/s or rad/s.
 const VIOLENT_LINEAR: f32 = 15.0;
@@ -29,7 +29,7 @@ const VIOLENT_ANGULAR: f32 = 30.0;
 pub enum Fault {
     NotFinite,
     Quarantined,
-    /// Rise of energy in the step, as a share of what is there.
+    /// Rise of energy in the step, as a share of the present energy.
     EnergyGain(f64),
     Restore,
     Panic(String),
@@ -43,19 +43,19 @@ impl Fault {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
-    /// In which step; 0 for a panic.
+    /// Step of the fault; 0 for a panic.
     pub step: u32,
     pub fault: Fault,
 }
 
-/// Figures of a run that held.
+/// Figures of a run without a fault.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Figures {
     /// Largest gap of an exact joint while all joints formed trees and nothing was violent, metres.
     pub gap: f32,
     /// Largest rise of energy, as [`Fault::EnergyGain`].
     pub gain: f64,
-    /// Steps whose energy was held against the world.
+    /// Steps whose energy was checked.
     pub watched: u32,
 }
 
@@ -100,7 +100,7 @@ impl<'a> Run<'a> {
         (w.into_bytes(), self.ids.clone())
     }
 
-    /// In a new world, so that nothing is kept but what was saved.
+    /// In a new world, so that only saved state is kept.
     fn restored(plan: &'a WorldPlan, (bytes, ids): (Vec<u8>, Ids)) -> Self {
         let mut world = World::new(WorldDef::default());
         world.load(&mut Reader::new(&bytes)).expect("a saved world is valid");
@@ -115,7 +115,7 @@ impl<'a> Run<'a> {
         self.ids.joints[joint].filter(|&id| self.world.contains_joint(id))
     }
 
-    /// Does what the plan has for a step; true if that was something.
+    /// Applies the plan's changes of a step; returns whether there was one.
     fn change(&mut self, step: u32) -> bool {
         let plan = self.plan;
         let mut changed = false;
@@ -134,7 +134,7 @@ impl<'a> Run<'a> {
         changed
     }
 
-    /// `None` if there is nothing left to change.
+    /// Returns `None` if there is nothing left to change.
     fn apply(&mut self, change: &Change) -> Option<()> {
         match change {
             Change::RemoveJoint(j) => self.world.remove_joint(self.joint(*j)?),
@@ -191,7 +191,7 @@ impl<'a> Run<'a> {
         joints.filter(|(_, def)| def.state == JointState::Enabled)
     }
 
-    /// True if a joint is apart or beyond its stops.
+    /// Whether a joint is open or beyond its stops.
     fn is_settling(&self) -> bool {
         self.enabled_joints().any(|(id, _)| {
             self.world.joint_gap(id) > GAP_CLOSED || self.world.joint_overshoot(id) > STOP_REACHED
@@ -205,7 +205,7 @@ impl<'a> Run<'a> {
             .any(|v| v.linear.length() > VIOLENT_LINEAR || v.angular.length() > VIOLENT_ANGULAR)
     }
 
-    /// True if no joint closes a loop; what is not dynamic is one ground.
+    /// Whether no joint closes a loop; all bodies that are not dynamic are one ground.
     fn is_forest(&self) -> bool {
         let bodies: Vec<BodyId> = self.world.body_ids().collect();
         let node = |id: BodyId| match self.world.kind(id) {
@@ -223,7 +223,7 @@ impl<'a> Run<'a> {
         true
     }
 
-    /// Largest gap of joints that hold exactly, metres.
+    /// Returns the largest gap of exact joints, metres.
     fn gap(&self) -> f32 {
         self.enabled_joints()
             .filter(|(_, def)| def.weld.is_none() && def.limit_softness.is_none())
@@ -232,7 +232,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Watches the energy from step to step.
+/// Checks the energy from step to step.
 #[derive(Default)]
 struct Meter {
     before: Energies,
@@ -241,7 +241,7 @@ struct Meter {
 }
 
 impl Meter {
-    /// Rise of energy in the step that is over, as a share, if it is the world's own doing.
+    /// Returns the rise of energy in the last step, as a share, if the world itself caused it.
     fn rise(&mut self, run: &Run<'_>, changed: bool) -> Option<f64> {
         let now = energies(&run.world);
         let before = core::mem::replace(&mut self.before, now);

@@ -1,4 +1,4 @@
-//! Sleep: what falls asleep and what does not; what wakes it.
+//! Sleep: which bodies fall asleep, and what wakes them.
 
 mod particles;
 mod rest;

@@ -1,4 +1,4 @@
-//! Particles and sleepers.
+//! Particles and sleeping bodies.
 
 use super::{Nap, linear, nap, run, slab};
 use crate::build::{box_body, floor};
@@ -17,7 +17,7 @@ fn grains(height: f32) -> GroupDef {
 }
 
 #[test]
-fn what_particles_strike_wakes_as_they_come() {
+fn fast_particles_wake_bodies() {
     // From 1 m above the crate, 0.45 s.
     let Nap { mut world, sleeper, .. } = nap();
     world.add_particles(&grains(1.41));
@@ -27,15 +27,15 @@ fn what_particles_strike_wakes_as_they_come() {
     assert!(world.is_awake(sleeper));
 }
 
-/// Sleepers wake by contact, not by whether their bounds overlap: a world loaded from a snapshot has other bounds.
+/// Bodies wake by contact, not by overlapping bounds: a world loaded from a snapshot has other bounds.
 #[test]
-fn what_is_within_its_bounds_but_far_from_it_does_not_wake_a_sleeper() {
+fn overlapping_bounds_do_not_wake_a_body() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let slope = Rotation::from_axis_angle(Vec3::Z, core::f32::consts::FRAC_PI_4);
     let plank = BodyDef::dynamic(Shape::cuboid(Vec3::new(3.0, 0.05, 0.5))).turned(slope);
     let sleeper = world.add_body(&plank);
     world.put_to_sleep(sleeper);
-    // 1.4 m over the plank, in its bounds, toward it at 1 m/s.
+    // 1.4 m above the plank, in its bounds, toward it at 1 m/s.
     let away = slope * Vec3::Y;
     let mut flying = grains(0.0);
     for grain in &mut flying.particles {
@@ -50,7 +50,7 @@ fn what_is_within_its_bounds_but_far_from_it_does_not_wake_a_sleeper() {
 }
 
 #[test]
-fn what_particles_lie_on_sleeps() {
+fn bodies_under_resting_particles_sleep() {
     let Nap { mut world, sleeper, .. } = nap();
     let id = world.add_particles(&grains(0.41));
     run(&mut world, 30);
@@ -60,7 +60,7 @@ fn what_particles_lie_on_sleeps() {
 }
 
 #[test]
-fn what_flies_past_wakes_nobody() {
+fn passing_particles_wake_nothing() {
     let Nap { mut world, sleeper, .. } = nap();
     let mut def = grains(0.5);
     def.gravity_scale = 0.0;
@@ -73,7 +73,7 @@ fn what_flies_past_wakes_nobody() {
     assert!(!world.is_awake(sleeper));
 }
 
-/// A cloth that hangs by two corners, and has come to rest asleep.
+/// Returns a cloth that hangs by two corners, asleep.
 fn curtain() -> (World, GroupId) {
     let mut cloth = ClothDef {
         corner: Vec3::new(-0.5, 2.0, 0.0),
@@ -102,7 +102,7 @@ fn curtain() -> (World, GroupId) {
     (world, id)
 }
 
-/// `act` on a sleeping curtain wakes it at once or within so many steps.
+/// Checks that `act` on a sleeping curtain wakes it at once or within `steps` steps.
 fn wakes_curtain(what: &str, steps: usize, act: impl FnOnce(&mut World, GroupId)) {
     let (mut world, id) = curtain();
     act(&mut world, id);
@@ -126,7 +126,7 @@ fn a_cloth_at_rest_sleeps_where_it_is() {
 }
 
 #[test]
-fn what_is_done_to_particles_wakes_them() {
+fn changes_wake_particles() {
     wakes_curtain("a push", 1, |world, id| world.particles_mut(id).apply_impulse(40, Vec3::Z * 1e-6));
     wakes_curtain("a velocity", 1, |world, id| world.particles_mut(id).set_velocity(40, Vec3::ZERO));
     wakes_curtain("a place", 1, |world, id| {
@@ -145,7 +145,7 @@ fn what_is_done_to_particles_wakes_them() {
 }
 
 #[test]
-fn what_comes_to_particles_wakes_them() {
+fn contacts_wake_particles() {
     let ball = |at: Vec3, velocity: Vec3| BodyDef {
         linear_velocity: velocity,
         gravity_scale: 0.0,
@@ -167,7 +167,7 @@ fn what_comes_to_particles_wakes_them() {
     assert!(!world.particles(id).is_awake(), "what flies past wakes nobody");
 }
 
-/// A box that hangs on a rope, both asleep.
+/// Returns a box that hangs on a rope, both asleep.
 fn hung() -> (World, GroupId, BodyId) {
     let mut world = World::new(WorldDef::default());
     let calm =
@@ -189,7 +189,7 @@ fn hung() -> (World, GroupId, BodyId) {
 }
 
 #[test]
-fn what_hangs_together_wakes_together() {
+fn attached_groups_and_bodies_wake_together() {
     let (mut world, id, body) = hung();
     world.apply_impulse_at_center(body, Vec3::X);
     world.step();
@@ -204,7 +204,7 @@ fn what_hangs_together_wakes_together() {
 }
 
 #[test]
-fn a_world_taken_back_sleeps_and_wakes_the_same() {
+fn a_restored_world_sleeps_and_wakes_equally() {
     let (mut world, id, body) = hung();
     let mut at_rest = Writer::new();
     world.save(&mut at_rest);
@@ -228,7 +228,7 @@ fn a_world_taken_back_sleeps_and_wakes_the_same() {
 }
 
 #[test]
-fn what_a_rope_swings_over_sleeps() {
+fn a_body_under_a_swinging_rope_sleeps() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     let at = Vec3::Y * 0.25;
@@ -254,7 +254,7 @@ fn what_a_rope_swings_over_sleeps() {
     assert!(!world.is_awake(body) && way < 1e-3, "the box has gone {way} m");
 }
 
-/// A net of a square metre at a height of 1 m.
+/// Returns a net of a square metre at a height of 1 m.
 fn net(damping_ratio: f32) -> GroupDef {
     let net = ClothDef {
         corner: Vec3::new(-0.5, 1.0, -0.5),
@@ -272,7 +272,7 @@ fn net(damping_ratio: f32) -> GroupDef {
     net.build().group
 }
 
-/// A net that is not calm and a ball that sleeps on it all the same.
+/// A ball sleeps on a net that still moves.
 fn netted() -> (World, GroupId, BodyId) {
     let mut world = World::new(WorldDef::default());
     let mut net = net(1.0);
@@ -299,7 +299,7 @@ fn netted() -> (World, GroupId, BodyId) {
 }
 
 #[test]
-fn what_lay_on_particles_wakes_when_they_go() {
+fn bodies_wake_when_the_particles_below_are_removed() {
     let (mut world, net, ball) = netted();
     let at = world.center_of_mass(ball);
     for pin in 0..22 {
@@ -323,7 +323,7 @@ fn what_lay_on_particles_wakes_when_they_go() {
 }
 
 #[test]
-fn what_a_net_has_caught_falls_asleep() {
+fn a_body_in_a_net_falls_asleep() {
     let mut world = World::new(WorldDef::default());
     let mut net = net(0.2);
     let is_border = |i: &u32| [0, 10].contains(&(i % 11)) || [0, 10].contains(&(i / 11));

@@ -1,4 +1,4 @@
-//! Who falls asleep, when, and with whom.
+//! Which bodies fall asleep, when, and with which others.
 
 use super::{Nap, all_asleep, linear, nap, run, slab, steps_to_sleep};
 use crate::build::{ball, box_body, floor, half_space_tilted, sphere_body};
@@ -23,13 +23,13 @@ fn adrift(velocity: Velocity) -> (World, BodyId) {
 }
 
 #[test]
-fn what_stays_for_half_a_second_sleeps() {
+fn bodies_still_for_half_a_second_sleep() {
     let (mut world, _) = adrift(Velocity::default());
     assert!((30..=31).contains(&steps_to_sleep(&mut world)));
 }
 
 #[test]
-fn what_creeps_does_not_sleep() {
+fn creeping_bodies_do_not_sleep() {
     // In half a second 7 mm, or 0.03 rad.
     for velocity in [linear(Vec3::X * 0.014), Velocity { angular: Vec3::Y * 0.06, ..Velocity::default() }] {
         let (mut world, id) = adrift(velocity);
@@ -42,8 +42,8 @@ fn what_creeps_does_not_sleep() {
 }
 
 #[test]
-fn what_creeps_down_a_slope_does_not_sleep() {
-    // Without friction, braked by the air: v = g sin θ (1/c + h), since what brakes comes before what pulls.
+fn bodies_creeping_down_a_slope_do_not_sleep() {
+    // Without friction, with air drag: v = g sin θ (1/c + h), since drag acts before gravity.
     let (angle, damping) = (0.2, 200.0);
     let mut world = World::new(WorldDef::default());
     half_space_tilted(&mut world, angle, 0.0);
@@ -55,9 +55,9 @@ fn what_creeps_down_a_slope_does_not_sleep() {
     assert!(world.is_awake(id) && (speed - expected).abs() < 0.03 * expected, "{speed} m/s, not {expected}");
 }
 
-/// At the top of its way up a slope a ball is slow for seconds and turns back all the same; a crate that friction holds there sleeps.
+/// At the top of its way up a slope a ball is slow for seconds and still rolls back; a crate held by friction there sleeps.
 #[test]
-fn what_turns_back_on_a_slope_does_not_sleep() {
+fn a_ball_turning_back_on_a_slope_does_not_sleep() {
     for k in 0..15 {
         let angle = (0.1 + 0.1 * k as f32).to_radians();
         let (up, along) = (
@@ -90,7 +90,7 @@ fn what_turns_back_on_a_slope_does_not_sleep() {
 }
 
 #[test]
-fn what_is_pushed_slowly_does_not_sleep() {
+fn slowly_pushed_bodies_do_not_sleep() {
     let Nap { mut world, sleeper, .. } = nap();
     let def = slab(0.1, Vec3::new(-0.31, 0.2, 0.0));
     let pusher = world.add_body(&BodyDef { linear_velocity: Vec3::X * 0.002, ..def });
@@ -103,7 +103,7 @@ fn what_is_pushed_slowly_does_not_sleep() {
     assert!(steps_to_sleep(&mut world) <= 40);
 }
 
-/// Shakes a body to and fro, `amplitude` metres either way, ten times a second.
+/// Shakes a body back and forth by `amplitude` metres, ten times a second.
 struct Shaker {
     body: BodyId,
     amplitude: f32,
@@ -129,9 +129,9 @@ impl PhysicsObject for Shaker {
 }
 
 #[test]
-fn what_trembles_in_its_place_may_sleep() {
+fn trembling_bodies_may_sleep() {
     for (amplitude, sleeps) in [(0.0005, true), (0.005, false)] {
-        // So that it swings about where it starts: x = −a cos ωt.
+        // It swings about its start: x = −a cos ωt.
         let (mut world, body) = adrift(Velocity::default());
         world.add_object(Box::new(Shaker { body, amplitude }));
         let mut slept = false;
@@ -174,7 +174,7 @@ fn thresholds_are_settings() {
 }
 
 #[test]
-fn one_that_may_not_sleep_keeps_its_island_awake_and_no_other() {
+fn a_sleepless_body_keeps_only_its_island_awake() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     let box_at = |x, y| box_body(Vec3::splat(0.2), Vec3::new(x, y, 0.0));
@@ -210,7 +210,7 @@ fn an_island_is_put_to_sleep_by_hand() {
 }
 
 #[test]
-fn parts_that_came_apart_sleep_one_by_one() {
+fn separated_parts_sleep_independently() {
     let mut world = weightless();
     let [still, mover] = [0.0, 0.5].map(|x| world.add_body(&sphere_body(0.1, Vec3::X * x)));
     let joint = ball(&world, still, mover, Vec3::X * 0.25);
@@ -228,7 +228,7 @@ fn parts_that_came_apart_sleep_one_by_one() {
 }
 
 #[test]
-fn what_carries_all_joins_none() {
+fn static_bodies_do_not_connect_islands() {
     for kind in [BodyKind::Static, BodyKind::Kinematic] {
         let mut world = World::new(WorldDef::default());
         let carrier = world.add_body(&BodyDef { kind, ..slab(3.0, Vec3::ZERO) });

@@ -1,4 +1,4 @@
-//! Waking: what wakes a sleeper, and what does not.
+//! Waking: what wakes a sleeping body, and what does not.
 
 use super::{ENOUGH, Nap, all_asleep, linear, nap, run, slab, steps_to_sleep};
 use crate::build::{ball, box_body, joint, sphere_body};
@@ -6,7 +6,7 @@ use sinew_math::{Range, Reader, Transform, Vec3, Writer};
 use sinew_physics::ray::Ray;
 use sinew_physics::*;
 
-/// `act` on a crate that sleeps on a floor wakes it at once, or within the next step.
+/// Checks that `act` wakes a crate that sleeps on a floor at once, or within the next step.
 fn wakes(what: &str, act: impl FnOnce(&mut Nap)) {
     let mut nap = nap();
     act(&mut nap);
@@ -14,7 +14,7 @@ fn wakes(what: &str, act: impl FnOnce(&mut Nap)) {
     assert!(nap.world.is_awake(nap.sleeper), "{what} wakes");
 }
 
-/// `act` leaves a crate that sleeps on a floor asleep, where it is.
+/// Checks that `act` leaves a crate that sleeps on a floor asleep, in its place.
 fn leaves_asleep(what: &str, act: impl FnOnce(&mut Nap)) {
     let mut nap = nap();
     let at = nap.world.transform(nap.sleeper);
@@ -24,7 +24,7 @@ fn leaves_asleep(what: &str, act: impl FnOnce(&mut Nap)) {
 }
 
 #[test]
-fn what_is_done_to_a_body_wakes_it() {
+fn changes_of_a_body_wake_it() {
     let tiny = Vec3::Y * 1e-6;
     wakes("a push", |nap| nap.world.apply_force_at_center(nap.sleeper, tiny));
     wakes("a push at a point", |nap| nap.world.apply_force(nap.sleeper, tiny, Vec3::X));
@@ -42,7 +42,7 @@ fn what_is_done_to_a_body_wakes_it() {
 }
 
 #[test]
-fn lasting_forces_wake_as_they_come_change_and_go() {
+fn lasting_forces_wake_when_added_changed_or_removed() {
     let Nap { mut world, sleeper, .. } = nap();
     let def = ForceDef { force: Vec3::Y, ..ForceDef::default() };
     let id = world.add_force(sleeper, &def);
@@ -74,7 +74,7 @@ fn gravity_wakes_when_it_changes() {
 }
 
 #[test]
-fn a_support_that_goes_wakes_what_it_carried() {
+fn removing_a_support_wakes_the_bodies_above() {
     wakes("a floor that is taken out", |nap| nap.world.remove_body(nap.floor));
     wakes("a floor that is put elsewhere", |nap| {
         nap.world.set_transform(nap.floor, Transform::from_translation(Vec3::Y * -5.0));
@@ -88,7 +88,7 @@ fn a_support_that_goes_wakes_what_it_carried() {
 }
 
 #[test]
-fn an_awake_body_wakes_what_it_comes_to() {
+fn an_awake_body_wakes_bodies_on_contact() {
     let Nap { mut world, sleeper, .. } = nap();
     let ball = world.add_body(&sphere_body(0.1, Vec3::Y * 1.5));
     let mut woke = None;
@@ -104,7 +104,7 @@ fn an_awake_body_wakes_what_it_comes_to() {
 }
 
 #[test]
-fn a_kinematic_body_wakes_what_it_carries_and_what_it_runs_into() {
+fn a_moving_kinematic_body_wakes_its_contacts() {
     let mut world = World::new(WorldDef::default());
     let lift = world.add_body(&slab(1.0, Vec3::ZERO));
     let passenger = world.add_body(&box_body(Vec3::splat(0.1), Vec3::Y * 0.15));
@@ -131,7 +131,7 @@ fn a_kinematic_body_wakes_what_it_carries_and_what_it_runs_into() {
     assert!(ahead > 0.295, "it is pushed along, {ahead} m ahead");
 }
 
-/// A ball that hangs asleep from a kinematic hook by a hinge about z.
+/// Returns a ball that hangs asleep from a kinematic hook by a hinge about z.
 fn hanging() -> (World, BodyId, BodyId, JointId) {
     let mut world = World::new(WorldDef::default());
     let hook = world.add_body(&slab(0.05, Vec3::ZERO));
@@ -144,7 +144,7 @@ fn hanging() -> (World, BodyId, BodyId, JointId) {
 }
 
 #[test]
-fn an_anchor_wakes_what_hangs_on_it_when_it_moves() {
+fn a_moved_anchor_wakes_jointed_bodies() {
     let (mut world, hook, bob, _) = hanging();
     world.set_velocity(hook, linear(Vec3::X * 0.01));
     world.step();
@@ -200,7 +200,7 @@ fn a_motor_wakes_when_it_gets_another_target() {
 }
 
 #[test]
-fn a_joint_that_breaks_lets_go_of_both_sides() {
+fn a_broken_joint_wakes_both_bodies() {
     let (mut world, _, bob, id) = hanging();
     let def = JointDef { strength: Strength { force: 1.0, ..Strength::UNBREAKABLE }, ..world.joint(id) };
     world.set_joint(id, &def);
@@ -215,7 +215,7 @@ fn wall(x: f32) -> BodyDef {
 }
 
 #[test]
-fn what_is_put_into_it_wakes_it() {
+fn overlapping_bodies_wake_a_body() {
     wakes("a static body that comes", |nap| {
         nap.world.add_body(&wall(0.35));
     });
@@ -234,7 +234,7 @@ fn what_is_put_into_it_wakes_it() {
 }
 
 #[test]
-fn what_nobody_feels_wakes_nobody() {
+fn changes_without_effect_wake_nothing() {
     leaves_asleep("a static body that comes", |nap| {
         nap.world.add_body(&wall(0.4));
     });

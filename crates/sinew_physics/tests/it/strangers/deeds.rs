@@ -1,10 +1,10 @@
-//! Calls that a game makes between two steps, drawn from the world itself, so that worlds that are the same do the same.
+//! Calls that a game makes between two steps, drawn from the world itself, so that equal worlds get equal calls.
 
 use super::populate;
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3};
 use sinew_physics::*;
 
-/// Share of the steps before which something is done.
+/// Share of the steps with a call before them.
 const BUSY: f32 = 0.25;
 
 fn never_twins(p: &PairSide, q: &PairSide) -> bool {
@@ -15,7 +15,7 @@ fn slippery(_: &FoundContact<'_>, material: ContactMaterial) -> Option<ContactMa
     Some(ContactMaterial { friction: 0.05, ..material })
 }
 
-/// Functions that snapshots name.
+/// Functions that snapshots refer to.
 pub fn register(world: &mut World) {
     world.register_pair_function(1, never_twins);
     world.register_modifier(1, slippery);
@@ -26,7 +26,7 @@ fn any<T: Copy>(random: &mut Random, all: impl Iterator<Item = T>) -> Option<T> 
     (!all.is_empty()).then(|| all[random.index(all.len())])
 }
 
-/// A body that moves or may move; the ground is none.
+/// Returns a body that moves or may move, but not the ground.
 fn loose(world: &World, random: &mut Random) -> Option<BodyId> {
     any(random, world.body_ids().filter(|&id| world.kind(id) != BodyKind::Static))
 }
@@ -35,7 +35,7 @@ fn dynamic(world: &World, random: &mut Random) -> Option<BodyId> {
     any(random, world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic))
 }
 
-/// A body with that a group goes.
+/// Returns a body and whether a group goes with it.
 fn is_worn(world: &World, id: BodyId) -> bool {
     let attached = |group: &particles::ParticleGroup| {
         group.attachments().iter().any(
@@ -45,7 +45,7 @@ fn is_worn(world: &World, id: BodyId) -> bool {
     world.group_ids().any(|group| attached(world.particles(group)))
 }
 
-/// A joint of any kind between two bodies where they are.
+/// Returns a joint of any kind between two bodies in their current poses.
 pub fn joint(world: &World, random: &mut Random, a: BodyId, b: BodyId, at: Vec3) -> JointDef {
     let cone = SwingTwistLimit {
         swing_y: Range::new(-0.5, 0.5),
@@ -82,7 +82,7 @@ fn motor(random: &mut Random) -> Motor {
     }
 }
 
-/// Does something to a world, or nothing.
+/// Makes one random call, or none.
 pub fn act(world: &mut World, random: &mut Random) {
     for id in world.mover_ids().collect::<Vec<_>>() {
         if random.unit() < 0.03 {
@@ -103,7 +103,7 @@ pub fn act(world: &mut World, random: &mut Random) {
     };
 }
 
-/// Pushes, places, leads or wakes something.
+/// Pushes, places, leads or wakes a body.
 fn push(world: &mut World, random: &mut Random) -> Option<()> {
     let id = loose(world, random)?;
     let speed = random.range(0.0, 8.0);
@@ -137,7 +137,7 @@ fn push(world: &mut World, random: &mut Random) -> Option<()> {
     Some(())
 }
 
-/// Bodies come, go, or become of another kind, weight or surface.
+/// Adds or removes bodies, or changes their kind, mass or surface.
 fn change(world: &mut World, random: &mut Random) -> Option<()> {
     let id = loose(world, random)?;
     match random.index(9) {
@@ -169,7 +169,7 @@ fn change(world: &mut World, random: &mut Random) -> Option<()> {
     Some(())
 }
 
-/// Shapes come, go, or become others.
+/// Adds, removes or changes shapes.
 fn reshape(world: &mut World, random: &mut Random) -> Option<()> {
     let id = loose(world, random)?;
     let count = world.shape_ids(id).count();
@@ -199,7 +199,7 @@ fn reshape(world: &mut World, random: &mut Random) -> Option<()> {
     Some(())
 }
 
-/// Joints, pairs and forces come, go, or become others.
+/// Adds, removes or changes joints, pairs and forces.
 fn join(world: &mut World, random: &mut Random) -> Option<()> {
     let (a, b) = (dynamic(world, random)?, loose(world, random)?);
     let held = any(random, world.joint_ids());

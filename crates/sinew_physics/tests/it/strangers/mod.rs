@@ -1,11 +1,11 @@
-//! Worlds of strangers: a snapshot that is loaded into a world that never knew the one it was taken of has the same future, on another number of
-//! threads too, whatever the world holds and whatever is done to it.
+//! A snapshot loaded into an unrelated world has the same future, also on another number of
+//! threads, for any contents and any calls.
 //!
-//! Worlds of 10 to 300 bodies (500 in a long run) of all kinds lie, sleep, are pushed, joined, sensed and changed; each is saved at random moments and goes on
-//! beside the worlds that loaded it, which do to themselves what it does. Snapshots and events are equal after each step.
+//! Worlds of 10 to 300 bodies (500 in a long run) rest, sleep, are pushed, joined, sensed and changed. Each is saved at random moments and continues
+//! beside the worlds that loaded it, which get the same calls. Snapshots and events are equal after each step.
 //!
-//! A few worlds, or 300 when `SINEW_FULL` is set. `SINEW_WORLDS=17..18 cargo test --release -p sinew_physics --test it -- --nocapture strangers`
-//! runs the seeds of the range and tells how far it is. `cargo xtask lives --of strangers` goes on from seed to seed, each world for 600 steps.
+//! A few worlds, or 300 with `SINEW_FULL` set. `SINEW_WORLDS=17..18 cargo test --release -p sinew_physics --test it -- --nocapture strangers`
+//! runs the seeds of the range and prints progress. `cargo xtask lives --of strangers` goes on from seed to seed, 600 steps each.
 
 mod deeds;
 mod populate;
@@ -19,16 +19,16 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Steps of each world, and of those of a long run.
+/// Steps of each world, and of a long run.
 const STEPS: usize = 300;
 const MORE_STEPS: usize = 600;
-/// Most bodies of each, and of those of a long run.
+/// Largest number of bodies of each, and of a long run.
 const MOST: usize = 300;
 const MORE: usize = 500;
-/// Moments at which each is saved.
+/// Number of saves of each.
 const MOMENTS: usize = 5;
 
-/// A world that goes on from a snapshot of another.
+/// A world that continues from a snapshot of another.
 struct Stranger {
     world: World,
     born: usize,
@@ -36,7 +36,7 @@ struct Stranger {
 }
 
 impl Stranger {
-    /// One that has loaded a snapshot into a world that has never been another.
+    /// Loads a snapshot into a new world.
     fn of(original: &World, born: usize, threads: usize) -> Self {
         let mut world = World::new(WorldDef::default());
         deeds::register(&mut world);
@@ -49,7 +49,7 @@ impl Stranger {
     }
 }
 
-/// Random numbers for what is done before a step.
+/// Random numbers for the calls before a step.
 fn deeds_of(seed: u64, step: usize) -> Random {
     Random::new(seed.wrapping_mul(1_000_003).wrapping_add(step as u64))
 }
@@ -90,7 +90,7 @@ fn seeds() -> core::ops::Range<u64> {
 }
 
 #[test]
-fn strangers_have_the_same_future() {
+fn unrelated_worlds_have_the_same_future() {
     if let Ok(minutes) = std::env::var("SINEW_MINUTES") {
         return for_minutes(minutes.parse().expect("SINEW_MINUTES is a number"));
     }

@@ -68,7 +68,7 @@ pub fn body(random: &mut Random, at: Vec3) -> BodyDef {
     def
 }
 
-/// A plane, boxes beside each other, a mesh or a height field.
+/// Adds a plane, abutting boxes, a mesh or a height field.
 fn ground(world: &mut World, random: &mut Random, width: f32) {
     let cells = (width.ceil() as i32).clamp(2, 12);
     match random.index(4) {
@@ -98,12 +98,12 @@ fn ground(world: &mut World, random: &mut Random, width: f32) {
     }
 }
 
-/// A place in a pile that is so many metres wide.
+/// Returns a place in a pile of this width, metres.
 pub fn place(random: &mut Random, width: f32, height: f32) -> Vec3 {
     Vec3::new(random.range(-width, width), random.range(0.3, height), random.range(-width, width))
 }
 
-/// Boxes in rows and layers, which soon sleep.
+/// Adds boxes in rows and layers, which soon sleep.
 fn wall(world: &mut World, random: &mut Random, count: usize) {
     let (rows, corner) = (1 + random.index(4), random.in_cube() * Vec3::new(2.0, 0.0, 2.0));
     for i in 0..count {
@@ -113,7 +113,7 @@ fn wall(world: &mut World, random: &mut Random, count: usize) {
     }
 }
 
-/// Links that hang on each other, on the first body, or on nothing.
+/// Adds links that hang on each other, on the first body, or on nothing.
 fn chain(world: &mut World, random: &mut Random, ground: BodyId) {
     let start = place(random, 3.0, 4.0);
     let mut last = (random.unit() < 0.6).then_some(ground);
@@ -131,7 +131,7 @@ fn chain(world: &mut World, random: &mut Random, ground: BodyId) {
     }
 }
 
-/// A rope, a strand, cloth or a blob, some of it held by a body or in the world.
+/// Adds a rope, a strand, cloth or a blob, partly held by a body or in the world.
 fn particles(world: &mut World, random: &mut Random) {
     let at = Vec3::new(random.range(-2.0, 2.0), random.range(1.5, 3.0), random.range(-2.0, 2.0));
     let links = 4 + random.index(8) as u32;
@@ -195,7 +195,7 @@ fn field(random: &mut Random) -> FieldDef {
     FieldDef { region, ..FieldDef::new(kind) }
 }
 
-/// A world of 10 to `most` bodies.
+/// Returns a world of 10 to `most` bodies.
 pub fn world(random: &mut Random, most: usize) -> World {
     let mut def = WorldDef::default();
     if random.unit() < 0.1 {

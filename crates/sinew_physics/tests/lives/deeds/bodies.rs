@@ -1,4 +1,4 @@
-//! Deeds to bodies and shapes.
+//! Deeds that change bodies and shapes.
 
 use super::{Deed, parts};
 use crate::actor::{Actor, owner};
@@ -52,7 +52,7 @@ fn add(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     parts::is_valid(&def).then(|| _ = a.add_body(&def))
 }
 
-/// Boxes in layers, which soon sleep.
+/// Adds boxes in layers, which soon sleep.
 fn wall(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let (count, corner) = (4 + n.index(9), Vec3::new(n.between(-2.0, 2.0), 0.0, n.between(-2.0, 2.0)));
     for i in 0..count {
@@ -69,7 +69,7 @@ fn remove(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// One goes and another comes, which takes its index.
+/// Removes one and adds another, which takes its index.
 fn replace(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.removable(n)?;
     let at = if n.chance(0.5) { a.world.transform(id).translation } else { n.place() };
@@ -78,7 +78,7 @@ fn replace(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     parts::is_valid(&def).then(|| _ = a.add_body(&def))
 }
 
-/// All that is near a place goes at once.
+/// Removes everything near a place.
 fn clear_place(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let at = n.place();
     for (_, id) in a.bodies.clone() {
@@ -104,7 +104,7 @@ fn teleport(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// A small step aside, or none.
+/// Returns a small step aside, or none.
 fn nudge(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.any_body(n)?;
     let pose = a.world.transform(id);
@@ -127,7 +127,7 @@ fn stop(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// A velocity in reach of `f32` takes it there.
+/// A velocity within the range of `f32` takes it there.
 fn is_near(a: &Actor, id: BodyId, to: &Transform, seconds: f32) -> bool {
     let way = to.translation - a.world.transform(id).translation;
     (way / seconds).is_finite() && way.length() / seconds < 1e30
@@ -274,7 +274,7 @@ fn set_shape(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     put_shape(a, id, &def, update)
 }
 
-/// All shapes of a body become larger or smaller.
+/// Scales all shapes of a body.
 fn scale(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let body = a.any_body(n)?;
     let factor = n.one_of(&[0.5, 0.9, 1.0, 1.1, 2.0]);
@@ -344,7 +344,7 @@ fn set_pair_function(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// Nobody takes it out until it is disowned.
+/// It cannot be removed until it is disowned.
 fn own(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.removable(n)?;
     a.note_owned("own_bodies", &id);

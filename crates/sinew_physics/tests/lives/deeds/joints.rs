@@ -1,4 +1,4 @@
-//! Deeds to joints.
+//! Deeds that change joints.
 
 use super::{Deed, parts};
 use crate::actor::{Actor, owner};
@@ -68,7 +68,7 @@ fn motor(n: &mut Numbers) -> Motor {
     }
 }
 
-/// The rest of a definition: whatever a joint may have.
+/// Returns the rest of a definition, with any feature of joints.
 fn furnished(n: &mut Numbers, mut def: JointDef) -> JointDef {
     if n.chance(0.3) {
         def.motor = Some(motor(n));
@@ -98,7 +98,7 @@ fn furnished(n: &mut Numbers, mut def: JointDef) -> JointDef {
     def
 }
 
-/// Two bodies near each other, one of them dynamic, and a place between.
+/// Returns two bodies near each other, one of them dynamic, and a place between them.
 fn ends(a: &Actor, n: &mut Numbers) -> Option<(BodyId, BodyId, Vec3)> {
     let p = a.dynamic(n)?;
     let q = if n.chance(0.15) { a.floor } else { a.any_body(n)? };
@@ -147,7 +147,7 @@ fn add_by_name(a: &mut Actor, n: &mut Numbers) -> Option<()> {
             return Some(());
         }
     };
-    // The program makes it from its numbers.
+    // The program computes it from its numbers.
     if let Some(lines) = &mut a.lines {
         lines.pop();
     }
@@ -167,7 +167,7 @@ fn by_axis_locks(a: &mut Actor, n: &mut Numbers, p: BodyId, q: BodyId) -> Option
     Some(())
 }
 
-/// Links that hang on each other and on something.
+/// Adds links that hang on each other and on something.
 fn chain(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let start = n.place() + Vec3::Y;
     let way = n.direction() * 0.3;

@@ -1,4 +1,4 @@
-//! Deeds: what a game does between two steps, each drawn from a few numbers and from what is there.
+//! Deeds: calls of a game between two steps, each drawn from a few numbers and the present objects.
 
 mod bodies;
 mod joints;
@@ -14,7 +14,7 @@ use crate::numbers::Numbers;
 /// Operation on a world, drawn at random; does nothing if the world has no object that it applies to.
 pub struct Deed {
     pub name: &'static str,
-    /// Share among others.
+    /// Relative frequency.
     pub weight: u32,
     pub run: fn(&mut Actor, &mut Numbers) -> Option<()>,
 }
@@ -35,6 +35,6 @@ pub fn all() -> Vec<&'static Deed> {
     of_the_world.iter().chain(extension::DEEDS).copied().flatten().collect()
 }
 
-/// Deeds that make a world to live in.
+/// Deeds that create a world to live in.
 pub const MAKERS: &[&str] =
     &["add_body", "add_body", "wall", "add_joint", "chain", "add_particles", "add_mover", "add_field"];

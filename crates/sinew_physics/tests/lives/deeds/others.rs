@@ -1,4 +1,4 @@
-//! Deeds to forces, fields, particles, movers and objects.
+//! Deeds that change forces, fields, particles, movers and objects.
 
 use super::{Deed, parts};
 use crate::actor::Actor;
@@ -157,7 +157,7 @@ fn remove_field(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// A rope, a strand, cloth or a blob.
+/// Returns a rope, a strand, cloth or a blob.
 fn group(n: &mut Numbers, at: Vec3) -> GroupDef {
     let to = at + Vec3::new(n.between(0.3, 1.0), n.between(-0.5, 0.0), 0.0);
     let rope = RopeDef {
@@ -361,7 +361,7 @@ fn remove_object(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// A pose that a shape may be asked about from.
+/// Returns a pose for queries with a shape.
 pub fn near_pose(n: &mut Numbers) -> Transform {
     let at = n.place();
     Transform::new(if at.length() < 1e6 { at } else { Vec3::Y }, n.rotation())

@@ -1,11 +1,11 @@
-//! Definitions that deeds make things from.
+//! Definitions that deeds create objects from.
 
 use crate::functions::NUMBER;
 use crate::numbers::{Numbers, Temper};
 use sinew_math::{Transform, Vec3};
 use sinew_physics::*;
 
-/// A solid of about the size of a game's things.
+/// Returns a solid of about the size of a game's objects.
 pub fn shape(n: &mut Numbers, lo: f32, hi: f32) -> Shape {
     match n.index(9) {
         0..3 => Shape::cuboid(Vec3::new(n.between(lo, hi), n.between(lo, hi), n.between(lo, hi))),
@@ -143,12 +143,12 @@ pub fn body(n: &mut Numbers, at: Vec3) -> BodyDef {
     def
 }
 
-/// True if every shape of a body's definition is valid.
+/// Whether every shape of a body's definition is valid.
 pub fn is_valid(def: &BodyDef) -> bool {
     def.shapes.iter().all(|shape| shape.check().is_ok())
 }
 
-/// True if shapes other than one give a body a mass.
+/// Whether the shapes other than one have mass.
 pub fn weighs(world: &World, id: BodyId, without: Option<u32>) -> bool {
     world.shape_ids(id).filter(|shape| Some(shape.shape) != without).any(|shape| {
         let def = world.shape_def(shape);

@@ -1,4 +1,4 @@
-//! Questions, which change nothing and have the same answers in every world that is the same.
+//! Queries, which change nothing and have equal answers in equal worlds.
 
 use super::{Deed, others, parts};
 use crate::actor::{Actor, say};
@@ -105,7 +105,7 @@ fn ask_world(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     ask_all!(a.object_ids());
     ask_all!(a.bodies());
     ask_all!(a.contacts());
-    // What was changed since the step is not told of by a snapshot.
+    // Snapshots do not hold the changes since the step.
     a.count("bodies_moved");
     _ = a.world.bodies_moved().count();
     Some(())

@@ -1,4 +1,4 @@
-//! Deeds to time and state: frames of any length, snapshots, copies.
+//! Deeds with time and state: frames of any length, snapshots, copies.
 
 use super::Deed;
 use crate::actor::{Actor, Twin};
@@ -61,7 +61,7 @@ fn clone(a: &mut Actor, _: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// Some steps ahead, and back.
+/// Steps ahead, and goes back.
 fn mark_and_reset(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let steps = 1 + n.index(8);
     ["mark", "reset", "hash"].into_iter().for_each(|name| a.count(name));

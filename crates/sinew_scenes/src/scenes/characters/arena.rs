@@ -34,7 +34,7 @@ const SPEED: f32 = 0.9;
 const ARM: f32 = 0.85;
 /// Steps between two pushes of one.
 const RESTS: u32 = 75;
-/// Step at which the referee, who stands beside the ring, jumps.
+/// Step at which the referee, beside the ring, jumps.
 const JUMPS: u64 = 60;
 /// Sides of the ring.
 const SIDES: usize = 12;

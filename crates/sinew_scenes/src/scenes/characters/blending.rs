@@ -147,7 +147,7 @@ impl Script for TwoTracks {
     }
 }
 
-/// From the left and in front of those who face +Z.
+/// From the left and in front of characters that face +Z.
 pub(in crate::scenes) fn facing() -> CameraHint {
     CameraHint { direction: Vec3::new(0.75, 0.28, 1.0), ..CameraHint::default() }
 }

@@ -26,7 +26,12 @@ pub(in crate::scenes) const BRAWL: Scene = Scene {
         Setting::whole("n", 20, (1, 200), "number of mannequins"),
         Setting::whole("crates", 12, (0, 200), "number of crates"),
         Setting::number("hits", 4.0, (0.0, 60.0), "blows each second, of 5 to 90 N·s"),
-        Setting::whole("powered", 0, (0, 1), "1: muscles hold those who stand, 0: their clips lead them"),
+        Setting::whole(
+            "powered",
+            0,
+            (0, 1),
+            "1: standing mannequins are powered, 0: they follow their clips",
+        ),
         Setting::whole("tiles", 0, (0, 1), "1: the floor is of boxes of 1 m, 0: one half-space"),
         Setting::whole("seed", 1, (0, 10_000), "number that decides places, ways and blows"),
     ],

@@ -32,7 +32,7 @@ pub(in crate::scenes) const PUNCH: Scene = Scene {
     build: punched,
 };
 
-/// The feet, as the payload of their events tells.
+/// The feet, by the payload of their events.
 const FEET: [&str; 2] = ["leftToes", "rightToes"];
 /// When the first foot falls, clip seconds: off the grid of steps.
 const FIRST: f32 = 0.0625;

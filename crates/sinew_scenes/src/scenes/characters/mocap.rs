@@ -48,7 +48,7 @@ struct Build {
 
 const CHILD: Build = Build { height: 0.8, legs: 0.72, arms: 0.8, head: 1.5, place: Vec3::new(1.4, 0.0, 1.0) };
 const HUMAN: Build = Build { height: 1.75, legs: 1.0, arms: 1.0, head: 1.0, place: Vec3::ZERO };
-/// Long legs and hardly any arms: what a human actor would drive as a T-rex.
+/// Long legs and very short arms: a T-rex as a human actor would drive it.
 const GIANT: Build =
     Build { height: 14.0, legs: 1.15, arms: 0.45, head: 1.6, place: Vec3::new(-4.5, 0.0, -3.0) };
 

@@ -72,7 +72,7 @@ struct ElasticPairs {
 }
 
 impl Pair {
-    /// `v₁' = ((m₁ − m₂) v₁ + 2 m₂ v₂) / (m₁ + m₂)`, and likewise the other: momentum and energy stay.
+    /// `v₁' = ((m₁ − m₂) v₁ + 2 m₂ v₂) / (m₁ + m₂)`, and the same for the other: momentum and energy stay.
     fn metrics(&self, world: &World) -> [Metric; 2] {
         let after =
             |own: f32, other: f32, [v, u]: [f32; 2]| ((own - other) * v + 2.0 * other * u) / (own + other);

@@ -19,7 +19,7 @@ pub(in crate::scenes) const BLOCK_OVERHANG: Scene = Scene {
 };
 
 /// Half the length of a plank, metres. Contacts give by their slop, 2 % of the thickness but at most 5 mm: on planks as
-/// long and thin as these it tilts a stack by less than what it has in hand.
+/// long and thin as these it tilts a stack by less than its margin.
 const HALF_LENGTH: f32 = 2.0;
 const HALF_WIDTH: f32 = 0.3;
 const TABLE: Vec3 = Vec3::new(6.0, 2.0, 5.0);

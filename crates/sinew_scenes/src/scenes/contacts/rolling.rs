@@ -1,4 +1,4 @@
-//! Things that come to roll by friction.
+//! Bodies that friction makes roll.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -166,7 +166,7 @@ impl RollingBalls {
     }
 
     /// Accelerations of the box and of a ball, m/s²: the floor's friction is `f₁`, a ball's `f₂`, and a homogeneous ball
-    /// that is pulled at its foot moves with 2/7 of what is below it.
+    /// that is pulled at its foot moves with 2/7 of the acceleration below it.
     fn accelerations() -> [f32; 2] {
         let balls = BALLS as f32;
         let f1 = ON_FLOOR * (BOX_MASS + balls * BALL_MASS) * GRAVITY;

@@ -1,4 +1,4 @@
-//! Water: what floats and what sinks.
+//! Water: floating and sinking bodies.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};

@@ -188,7 +188,7 @@ struct SunEarth {
     /// Sums of the changes of their velocities.
     gained: [f32; 2],
     angle: AngleTurned,
-    /// The largest that the sum of both momenta was, as a share of the Earth's.
+    /// Largest sum of both momenta, as a share of the Earth's.
     momentum: f32,
 }
 

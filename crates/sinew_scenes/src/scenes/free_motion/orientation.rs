@@ -50,7 +50,7 @@ struct Drift {
     body: BodyId,
     polar: BodyId,
     gram_schmidt: BodyId,
-    /// At the ends of the bare matrix's columns, about the origin: each goes on along its tangent for a step, which is
+    /// At the ends of the bare matrix's columns, about the origin: each moves along its tangent for a step, which is
     /// `R + dt ω × R`.
     tips: [BodyId; 3],
     /// rad/s.

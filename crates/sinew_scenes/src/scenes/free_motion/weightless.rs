@@ -139,7 +139,7 @@ impl Spin {
         let moments = bodies.iter().zip(masses()).map(|(&id, mass)| world.center_of_mass(id) * mass);
         let center = moments.sum::<Vec3>() / masses().sum::<f32>();
         for &id in bodies {
-            // The centre comes to lie in the origin, about which the world counts momenta.
+            // The centre of mass moves to the origin, about which the world measures angular momentum.
             let Transform { translation, rotation } = world.transform(id);
             world.set_transform(id, Transform::new(translation - center, rotation));
             let linear = spin.cross(world.center_of_mass(id));

@@ -195,7 +195,7 @@ impl Script for Hung {
             self.support.metric(),
         ];
         if self.chains.iter().any(|chain| chain.level) {
-            // A level chain at rest bears nothing of its weight: what holds the hook's end up dies away link by link.
+            // A level chain at rest carries none of its weight: the force of the hook decays link by link.
             metrics.push(Metric::awaited("first_m_s2", self.first, Expected::near(GRAVITY, 0.002)));
         }
         metrics

@@ -45,7 +45,7 @@ struct Bob {
     amplitude: f32,
     /// Energy, J.
     start: f32,
-    /// The farthest that the energy was from the start, J.
+    /// Largest difference of the energy from the start, J.
     drift: f32,
     /// Energy for one metre of height, J.
     depth: f32,
@@ -142,7 +142,7 @@ pub(in crate::scenes) const TRIPLE_PENDULUM: Scene = Scene {
     about: "three rods let go from the horizontal keep their energy for a minute",
     steps: 3600,
     settings: &[],
-    // Likewise, `[7/3 3/2 1/2; 3/2 4/3 1/2; 1/2 1/2 1/3] α = g/l [5/2; 3/2; 1/2]`.
+    // Similarly, `[7/3 3/2 1/2; 3/2 4/3 1/2; 1/2 1/2 1/3] α = g/l [5/2; 3/2; 1/2]`.
     build: |setup| rods(setup, &[33.0 / 26.0, -9.0 / 26.0, 3.0 / 26.0]),
 };
 
@@ -174,7 +174,7 @@ struct Rods {
     starts: &'static [f32],
     /// Energy, J.
     start: f32,
-    /// The farthest that the energy was from the start, J.
+    /// Largest difference of the energy from the start, J.
     drift: f32,
     /// Angular accelerations in the first step, rad/s², downward.
     first: Vec<f32>,

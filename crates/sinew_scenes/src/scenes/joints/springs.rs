@@ -65,7 +65,7 @@ fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: &[f32]) -> Instance {
         b: i as u32 + 1,
         rest_length: LENGTH,
         stiffness,
-        // A fifth of what is critical for one mass on one spring.
+        // A fifth of the critical damping of one mass on one spring.
         damping: 0.4 * (mass * stiffness).sqrt(),
         resists: Resists::Both,
     };
@@ -85,7 +85,7 @@ fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: &[f32]) -> Instance {
 
 struct Hung {
     group: GroupId,
-    /// Stretch that each spring should have, by what hangs below it over `k`, metres.
+    /// Expected stretch of each spring, by the weight below it over `k`, metres.
     stretches: Vec<f32>,
 }
 

@@ -116,7 +116,7 @@ fn shape(mode: usize, i: usize) -> f32 {
     trig::sin(core::f32::consts::PI * (mode * i) as f32 / (MASSES + 1) as f32)
 }
 
-/// Depth of mass `i` at rest below the upper hook: its springs are stretched by what pulls, `i (N + 1 − i) m g / 2k`
+/// Depth of mass `i` at rest below the upper hook: its springs are stretched by the load, `i (N + 1 − i) m g / 2k`
 /// lower than without weight.
 fn rest(i: usize) -> f32 {
     let sunk = MASS * GRAVITY * (i * (MASSES + 1 - i)) as f32 / (2.0 * STIFFNESS);
@@ -213,7 +213,7 @@ impl Script for Modes {
                 Metric::awaited(NAMES[chain.mode - 1], chain.frequency(), expected)
             })
             .collect();
-        // Mode 3 swings fastest, and its middle is where gravity puts it on the mean of many swings.
+        // Mode 3 swings fastest; its mean over many swings is the rest position under gravity.
         let mean = self.chains[MODES - 1].lowest / world.step_count() as f32;
         let sunk = STRETCHED * (MASSES / 2) as f32;
         let expected = Expected::near(rest(MASSES / 2) - sunk, 0.005);

@@ -114,7 +114,7 @@ pub(in crate::scenes) const STEEL_VS_BASKETBALL: Scene = Scene {
         steel.shapes[0].density = 7850.0;
         let steel = world.add_body(&steel);
         let mut basketball = soft(setup, 2).build();
-        // A step of implicit Euler damps a swing by ω h / 2: what is to bounce takes short ones.
+        // A step of implicit Euler damps a swing by ω h / 2, so bouncing needs short ones.
         basketball.group.iterations = 32;
         let basketball = world.add_particles(&basketball.group);
         let bounces = [Bounce::default(); 2];

@@ -1,4 +1,4 @@
-//! Planks that hang on two ropes bear figures that fall on them.
+//! Planks that hang on two ropes carry figures that fall on them.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -40,11 +40,11 @@ const HIGH: f32 = 3.6;
 /// Stiffness of a spring that is a metre long, N (shorter ones than from plank to plank are no stiffer), and mass of each knot of the ropes, kg.
 const STIFFNESS: f32 = 4e4;
 const KNOT: f32 = 0.5;
-/// Parts of a substep that the ropes are moved in: what many planks hang on gains energy in longer ones.
+/// Iterations of the ropes in a substep: with many planks longer ones gain energy.
 const PARTS: u32 = 32;
-/// Damping of springs, as a share of what is critical for a plank's corner.
+/// Damping of springs, as a share of the critical one for a plank's corner.
 const DAMPED: f32 = 1.0;
-/// Drag of planks and ropes, 1/s: what swings comes to rest in some seconds.
+/// Drag of planks and ropes, 1/s: swings decay in some seconds.
 const AIR: f32 = 1.0;
 /// Share of the weight by which a sum of pulls may be off.
 const BORNE: f64 = 0.005;

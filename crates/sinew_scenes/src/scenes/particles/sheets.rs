@@ -137,7 +137,7 @@ pub(in crate::scenes) const CURTAIN: Scene = Scene {
 
 /// Radius of the ball, metres.
 const BALL: f32 = 0.2;
-/// kg/m³; it weighs some 5 kg, twenty times what the curtain does.
+/// kg/m³; it weighs about 5 kg, twenty times the curtain.
 const BALL_DENSITY: f32 = 150.0;
 /// Mass of each particle of the curtain, kg.
 const GRAIN: f32 = 2e-3;

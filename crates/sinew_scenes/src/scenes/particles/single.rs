@@ -126,7 +126,7 @@ pub(in crate::scenes) const FAST_PARTICLE: Scene = Scene {
     build: fast_particle,
 };
 
-/// From the middle of the room to its walls, and half of what those are thick, metres.
+/// From the middle of the room to its walls, and half of their thickness, metres.
 const ROOM: f32 = 1.0;
 const WALL: f32 = 0.025;
 /// Radius of a fast particle, metres.
@@ -188,7 +188,7 @@ impl Script for Room {
         let fastest = shots.velocities().iter().fold(0.0, |most, v| max(most, v.length()));
         vec![
             Metric::new("beyond_wall_m", self.furthest, Expected::AtMost(1e-4)),
-            // What falls in a room of 2 m gains no more than that is worth.
+            // A fall in a room of 2 m gains no more than its potential energy.
             Metric::new("fastest_m_s", fastest, Expected::AtMost(f64::from(self.speed) + 7.0)),
         ]
     }

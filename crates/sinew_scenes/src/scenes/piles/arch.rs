@@ -135,7 +135,7 @@ impl Masonry {
     }
 
     /// Farthest that the line of thrust crosses a joint from its middle, as a share of the way to the joint's end. The line is
-    /// known from what the first pier does. At 1 the joint opens like a hinge.
+    /// known from the first pier. At 1 the joint opens like a hinge.
     fn line_of_thrust(&self, pier: Reaction) -> f32 {
         let mut force = pier.force;
         // About the world's z axis.

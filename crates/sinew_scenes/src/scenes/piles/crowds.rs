@@ -75,7 +75,7 @@ fn pile(setup: &Setup<'_>) -> Instance {
 
 /// Number of bodies of a figure.
 const BODIES_OF_ONE: usize = 15;
-/// Beyond a limit, radians: what counts as exceeded.
+/// Overshoot that counts as exceeded, radians.
 const EXCEEDED: f32 = 0.1;
 /// Steps from one look at all overlaps to the next: they cost more than a step.
 const LOOK: u64 = 30;

@@ -22,7 +22,7 @@ const SETTINGS: &[Setting] = &[
     Setting::number("heavy", 1.0, (0.001, 10.0), "of the heavy pair, likewise"),
 ];
 
-/// Scene of something that stands, beside copies of it that bear loads.
+/// Scene of a standing structure, beside copies of it with loads.
 const fn laden(name: &'static str, about: &'static str, build: fn(&Setup<'_>) -> Instance) -> Scene {
     Scene { chapter: Chapter::Piles, name, about, steps: STEPS, settings: SETTINGS, build }
 }
@@ -170,7 +170,7 @@ const LOADS: [Load; 6] = [
         depth: "hanging_depth_m",
         add: |setup, host, plan| {
             let (body, at) = host.edge;
-            // Beside what it hangs from.
+            // Beside its support.
             let link = 0.5 * host.half;
             loads::hanging(plan, body, at + Vec3::X * (0.15 * link), link, setup.number("light") * host.mass);
         },

@@ -1,4 +1,4 @@
-//! Stacks, walls, arches, heaps, and what stands on them.
+//! Stacks, walls, arches, heaps, and loads on them.
 
 pub(super) mod arch;
 pub(super) mod blocks;

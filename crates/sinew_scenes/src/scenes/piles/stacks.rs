@@ -92,7 +92,7 @@ pub(in crate::scenes) const LARGE_PYRAMID: Scene = Scene {
     },
 };
 
-/// Until when what stands has to sleep, seconds.
+/// Time limit for falling asleep, seconds.
 const SOON: Expected = Expected::AtMost(8.0);
 
 /// The bodies of a plan, which should stay where they are, and far away a ball that falls.

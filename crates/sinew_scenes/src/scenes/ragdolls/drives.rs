@@ -225,7 +225,7 @@ struct Led {
 }
 
 impl Led {
-    /// Sets what step number `step` (from 0) is to do.
+    /// Sets the actions of step number `step` (from 0).
     fn drive(&mut self, world: &mut World, step: u64) {
         let states = self.walk.states(step + 1, world.def().dt());
         let targets: Vec<Transform> = states.iter().map(|state| state.world_from_body).collect();

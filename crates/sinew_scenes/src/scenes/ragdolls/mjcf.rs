@@ -9,7 +9,7 @@ use sinew::formats::mjcf::{MjcfInstance, MjcfModel};
 use sinew::math::{Transform, Vec3, max};
 use sinew::physics::{BodyId, BodyKind, JointId, World};
 
-/// Not listed: it is about a file that is not ours.
+/// Not listed, because it needs an external file.
 pub(in crate::scenes) const DROP: Scene = Scene {
     chapter: Chapter::Ragdolls,
     name: "mjcf_drop",
@@ -114,7 +114,7 @@ struct Figure {
 }
 
 impl Figure {
-    /// In its keyframe, or in the pose of the file if it has none of that name; moved by `aside`.
+    /// Returns the pose of its keyframe, or of the file if it has none of that name, moved by `aside`.
     fn spawn(
         world: &mut World,
         model: &MjcfModel,

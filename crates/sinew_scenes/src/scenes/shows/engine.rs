@@ -20,7 +20,7 @@ pub(in crate::scenes) const FRAME_RATES: Scene = Scene {
     build: frame_rates,
 };
 
-/// Rates of even frames, per second, and the figure in which each is told.
+/// Rates of even frames, per second, and the figure of each.
 const RATES: [(u32, &str); 4] =
     [(24, "differ_24"), (30, "differ_30"), (60, "differ_60"), (144, "differ_144")];
 
@@ -155,7 +155,7 @@ pub(in crate::scenes) const TAUTOCHRONE: Scene = Scene {
     },
 };
 
-/// Figures in which the periods are told, from the lowest start to the highest.
+/// Figures of the periods, from the lowest start to the highest.
 const PERIODS: [&str; 3] = ["period_low_s", "period_middle_s", "period_high_s"];
 
 /// Radius of the circle that draws the cycloid, metres.

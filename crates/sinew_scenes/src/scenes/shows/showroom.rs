@@ -30,7 +30,7 @@ const NEXT_FLOOR: f32 = 6.5;
 const NEXT_BODY: f32 = 1.5;
 /// From a floor up to the next one, metres.
 const STAIR: f32 = 0.5;
-/// Material by which what rolls stops: where it does is no closed form.
+/// Material that stops rolling bodies: where they stop has no closed form.
 const SURFACE: Material = Material { friction: 0.6, restitution: 0.0, rolling: 0.05, ..Material::DEFAULT };
 
 fn build(setup: &Setup<'_>) -> Instance {
