@@ -111,7 +111,8 @@ fn build(folder: &Path, address: &str) -> Result<()> {
 fn source() -> Option<String> {
     let mut git = Command::new("git");
     let address =
-        command::output(git.args(["config", "--get", "remote.origin.url"]).current_dir(command::root())).ok()?;
+        command::output(git.args(["config", "--get", "remote.origin.url"]).current_dir(command::root()))
+            .ok()?;
     let address = address.trim().trim_end_matches(".git");
     // An address with a name or a secret in it is nobody else's.
     (address.starts_with("https://") && !address.contains('@')).then(|| address.to_owned())

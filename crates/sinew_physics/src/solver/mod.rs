@@ -174,6 +174,8 @@ struct Scratch {
     swept: Vec<Vec6>,
     /// Velocities within a sweep by turns, after the contacts.
     contacted: Vec<Vec6>,
+    /// Velocities before the sweeps by turns of `relax`.
+    relaxed_from: Vec<Vec6>,
     /// Impulses of the limits.
     limits: Vec<f32>,
     /// Velocities from which the joints of the substep are solved.

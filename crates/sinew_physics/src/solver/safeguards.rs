@@ -22,7 +22,7 @@ impl IslandSolver {
         let moving = self.links.len();
         let before = self.kinetic_energy(&self.unconstrained) + self.push_energy;
         let rise = self.kinetic_energy(&self.velocities[..moving]) - before;
-        if self.is_in_lanes() || rise <= ENERGY_SLACK * max(before, self.mass()) {
+        if rise <= ENERGY_SLACK * max(before, self.mass()) {
             return;
         }
         self.velocities[..moving].copy_from_slice(&self.unconstrained);

@@ -44,10 +44,10 @@ pub(super) const GRADED_RATIO: f32 = 100.0;
 
 /// Trees of joints beyond which an island is solved by turns, a number.
 ///
-/// The response of all links grows with trees times contacts (ADR 0017). Sensible from 2 to 16. Larger: heaps of some figures take longer.
-/// Smaller: few figures agree less exactly with their contacts: with 2 a heap of ten takes two thirds of the time, but limp limbs of the brawl reach 27 m/s
-/// instead of 17 (means of eight seeds). Shown by `ragdoll_pile` (beyond), `ragdoll_poses` (below) and `brawl`.
-pub(super) const RESPONSE_TREES: usize = 8;
+/// The response of all links grows with trees times contacts (ADR 0017). Sensible from 1 to 16. Larger: heaps of some figures take
+/// half as long again. Smaller: single figures press 6 mm into each other when they hit. Shown by `brawl` (beyond) and `ragdoll_poses`
+/// (below).
+pub(super) const RESPONSE_TREES: usize = 2;
 
 /// Number of contacts, without those of [`RESPONSE_CONTACTS_PER_LINK`], above which an island with joints is solved by turns.
 ///

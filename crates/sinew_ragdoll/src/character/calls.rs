@@ -269,7 +269,8 @@ impl Character {
 
     // What moves it
 
-    /// Hits a body with an impulse (N·s, world axes) at its centre of mass. A character that is in a world and
+    /// Hits a body with an impulse (N·s, world axes) at its centre of mass; what would make it faster than 12 m/s goes
+    /// to the bodies above it in its chain. A character that is in a world and
     /// [tough](super::InWorld::toughness) enough flinches; any other goes limp at its present speed. Returns the work
     /// of the impulse, joules; 0 for a [detached](Self::detach) body.
     ///

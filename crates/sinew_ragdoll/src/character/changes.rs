@@ -200,7 +200,7 @@ impl Character {
     ) -> f32 {
         assert!(body < self.def.ragdoll.bodies.len(), "there is such a body");
         if self.physique.has(body) && self.react(world, body, impulse) {
-            self.physique.push(body, impulse, point, world)
+            self.physique.push(&self.def, body, impulse, point, world)
         } else {
             0.0
         }

@@ -3,7 +3,8 @@
 use super::figure::Scratch;
 use super::physique::Physique;
 use super::{CharacterDef, CharacterEvent};
-use crate::character::tuning::{GIVES_WAY, TELEPORTED};
+use crate::character::tuning::{GIVES_WAY, HIT_SPEED, TELEPORTED};
+use crate::def::RagdollDef;
 use crate::owner::{is_limb, together};
 use sinew_anim::LocalTransform;
 use sinew_math::{Transform, Vec3, max, min, normalize_or};
@@ -133,37 +134,61 @@ impl Physique {
         })
     }
 
-    /// Applies the impulse that a led body stopped: to the body, and, as far as that would make it faster than the
-    /// striker, to the bodies above it up to the pelvis. All of it on a hand would fling the hand away.
+    /// Applies the impulse that a led body stopped, shared along its chain by the striker's speed. What is left beyond
+    /// the pelvis is lost.
     pub fn take_up(&self, def: &CharacterDef, body: usize, strike: Strike, world: &mut World) {
-        let def = &def.ragdoll;
         let way = normalize_or(strike.impulse, Vec3::ZERO);
-        let parent = |&body: &usize| body.checked_sub(1).map(|joint| def.joints[joint].parent);
         let mut left = strike.impulse.length();
-        let speed = max(strike.speed, GIVES_WAY);
-        for body in core::iter::successors(Some(body), parent) {
-            let share = min(left, def.bodies[body].mass.mass * speed);
+        for (body, share) in shares(&def.ragdoll, body, max(strike.speed, GIVES_WAY)) {
+            let given = min(left, share);
             let id = self.limp().bodies[body];
             if world.kind(id) == BodyKind::Dynamic {
-                world.apply_impulse_at_center(id, way * share);
+                world.apply_impulse_at_center(id, way * given);
             }
-            left -= share;
+            left -= given;
         }
     }
 
-    /// Applies an impulse to a body, at a point or at its centre of mass; returns the work, joules.
-    pub fn push(&self, body: usize, impulse: Vec3, point: Option<Vec3>, world: &mut World) -> f32 {
-        let id = self.limp().bodies[body];
-        if world.kind(id) != BodyKind::Dynamic {
-            return 0.0;
+    /// Applies an impulse to a body, at a point or at its centre of mass, and returns the work, joules. What would make
+    /// the body faster than [`HIT_SPEED`] goes to the bodies above it, and beyond the pelvis to the struck body: all of
+    /// a blow to the trunk on a hand would fling the hand away.
+    pub fn push(
+        &self,
+        def: &CharacterDef,
+        body: usize,
+        impulse: Vec3,
+        point: Option<Vec3>,
+        world: &mut World,
+    ) -> f32 {
+        let way = normalize_or(impulse, Vec3::ZERO);
+        let mut left = impulse.length();
+        let mut given = Vec::new();
+        for (body, share) in shares(&def.ragdoll, body, HIT_SPEED) {
+            given.push((body, min(left, share)));
+            left -= min(left, share);
         }
-        let before = world.body_energy(id).kinetic;
-        match point {
-            Some(point) => world.apply_impulse(id, impulse, point),
-            None => world.apply_impulse_at_center(id, impulse),
+        given[0].1 += left;
+        let mut work = 0.0;
+        for (of, size) in given.into_iter().filter(|(_, size)| *size > 0.0) {
+            let id = self.limp().bodies[of];
+            if world.kind(id) != BodyKind::Dynamic {
+                continue;
+            }
+            let before = world.body_energy(id).kinetic;
+            match point.filter(|_| of == body) {
+                Some(point) => world.apply_impulse(id, way * size, point),
+                None => world.apply_impulse_at_center(id, way * size),
+            }
+            work += world.body_energy(id).kinetic - before;
         }
-        world.body_energy(id).kinetic - before
+        work
     }
+}
+
+/// Impulses that give a body and each one above it up to the pelvis this speed, m/s: N·s.
+fn shares(def: &RagdollDef, body: usize, speed: f32) -> impl Iterator<Item = (usize, f32)> {
+    let parent = |&body: &usize| body.checked_sub(1).map(|joint| def.joints[joint].parent);
+    core::iter::successors(Some(body), parent).map(move |body| (body, def.bodies[body].mass.mass * speed))
 }
 
 /// Impulse of a hit on one of its bodies by another, `way` being the direction from that to it, N·s: at most what the

@@ -32,6 +32,11 @@ pub(crate) const LEGS_WEAKEN: f32 = 0.2;
 /// Larger: treading on a body kicks it. Smaller: a foot stays pressed on a trodden body. Shown by the tests of `grab`.
 pub(crate) const GIVES_WAY: f32 = 3.0;
 
+/// Fastest speed that [`hit`](super::Character::hit) gives the struck body alone, m/s; the rest of the blow goes up its chain.
+///
+/// A fist or foot strikes at 8 to 12 m/s. Larger: a strong blow flings a hand away. Smaller: weak blows move trunks. Shown by `brawl`.
+pub(crate) const HIT_SPEED: f32 = 12.0;
+
 /// Ratio of the blow that fells a character still near the ground to the one that fells a standing one.
 ///
 /// Larger: nothing stops a get-up. Smaller: in a crowd few come to stand. Shown by the tests of `blows`.

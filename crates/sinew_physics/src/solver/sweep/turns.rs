@@ -98,7 +98,16 @@ impl IslandSolver {
         self.contacts.begin_pass(pass, &self.velocities, self.h, runner);
         self.arrange_limits(pass);
         self.dirty.start(self.policy.tolerance, self.trees.len(), 0, self.limit_blocks.len());
+        let bounded = pass == Pass::Relax && self.is_passive();
+        if bounded {
+            self.scratch.relaxed_from.clear();
+            self.scratch.relaxed_from.extend_from_slice(&self.velocities[..self.links.len()]);
+        }
         self.run_turns(pass, 1, runner);
+        if bounded {
+            core::mem::swap(&mut self.scratch.before, &mut self.scratch.relaxed_from);
+            self.keep_energy();
+        }
     }
 
     /// Resumes `solve` after limits gained rows. Only trees that the new rows or position corrections change are visited by limits.
