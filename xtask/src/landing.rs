@@ -34,8 +34,18 @@ pub const GALLERY: [(&str, u32, &str, &str); 12] = [
 
 /// Ways to use Sinew: name, page, one line, and commands from a clone.
 const WAYS: [(&str, &str, &str, &str); 6] = [
-    ("Rust", "first_ragdoll.html", "The library: worlds, joints, characters, files.", "cargo add sinew --path sinew/crates/sinew"),
-    ("Bevy", "bevy.html", "A plugin: entities, transforms, gizmos, events.", "cargo add bevy_sinew --path sinew/integrations/bevy_sinew"),
+    (
+        "Rust",
+        "first_ragdoll.html",
+        "The library: worlds, joints, characters, files.",
+        "cargo add sinew --path sinew/crates/sinew",
+    ),
+    (
+        "Bevy",
+        "bevy.html",
+        "A plugin: entities, transforms, gizmos, events.",
+        "cargo add bevy_sinew --path sinew/integrations/bevy_sinew",
+    ),
     ("Blender", "blender.html", "An extension: falls become actions on your rig.", "cargo xtask blender"),
     (
         "npm and three.js",
@@ -49,7 +59,12 @@ const WAYS: [(&str, &str, &str, &str); 6] = [
         "A wheel with batches of worlds, Gymnasium and Ray.",
         "maturin build --release -m bindings/python/Cargo.toml --out wheels\npip install wheels/*.whl",
     ),
-    ("C", "c.html", "One header and a library.", "cargo build --release --manifest-path bindings/Cargo.toml -p sinew_c"),
+    (
+        "C",
+        "c.html",
+        "One header and a library.",
+        "cargo build --release --manifest-path bindings/Cargo.toml -p sinew_c",
+    ),
 ];
 
 /// Pages about the calls of each language.

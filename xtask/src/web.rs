@@ -95,7 +95,7 @@ fn build(folder: &Path, address: &str) -> Result<()> {
     let source = source();
     let facts = Facts { address, bytes, source: source.as_deref(), chapters: &chapters };
     landing::write(&root, folder, &facts)?;
-    // reference(folder)?;
+    reference(folder)?;
     let bytes = LOADED.iter().map(|file| gzipped(&folder.join(file))).sum::<Result<u64>>()?;
     eprintln!(
         "{}: the start page loads {:.2} MB compressed; {} chapters of the book with {scenes} scenes",
@@ -111,7 +111,8 @@ fn build(folder: &Path, address: &str) -> Result<()> {
 fn source() -> Option<String> {
     let mut git = Command::new("git");
     let address =
-        command::output(git.args(["config", "--get", "remote.origin.url"]).current_dir(command::root())).ok()?;
+        command::output(git.args(["config", "--get", "remote.origin.url"]).current_dir(command::root()))
+            .ok()?;
     let address = address.trim().trim_end_matches(".git");
     // An address with a name or a secret in it is nobody else's.
     (address.starts_with("https://") && !address.contains('@')).then(|| address.to_owned())
