@@ -233,7 +233,7 @@ impl Formula {
             let opens = takes_all && self.opens();
             match self.tokens.peek() {
                 Some(Token::Atom(_) | Token::Function(_) | Token::Root | Token::Open(_)) => {
-                    out += &self.factor()?
+                    out += &self.factor()?;
                 }
                 Some(Token::Bar(_)) if out.is_empty() || opens => out += &self.factor()?,
                 _ => return (!out.is_empty()).then_some(out),

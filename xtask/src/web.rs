@@ -95,7 +95,7 @@ fn build(folder: &Path, address: &str) -> Result<()> {
     let source = source();
     let facts = Facts { address, bytes, source: source.as_deref(), chapters: &chapters };
     landing::write(&root, folder, &facts)?;
-    // reference(folder)?;
+    reference(folder)?;
     let bytes = LOADED.iter().map(|file| gzipped(&folder.join(file))).sum::<Result<u64>>()?;
     eprintln!(
         "{}: the start page loads {:.2} MB compressed; {} chapters of the book with {scenes} scenes",
