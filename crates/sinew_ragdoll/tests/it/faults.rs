@@ -169,3 +169,31 @@ fn a_character_that_shrinks_to_get_up_is_told() {
     assert_eq!(fault.at_most, Verdict::Bad);
     assert!(fault.reason.contains("0.38 times"), "{}", fault.reason);
 }
+
+/// The width of a stance is that of its feet: rusted arms that reach out wider than it is tall make it no broad body.
+#[test]
+fn outstretched_arms_do_not_hide_who_stays_upright() {
+    let rig = mannequin().rig;
+    let analysis = analyze(&rig).expect("a skin");
+    let mut ragdoll = built();
+    ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque += 1e4);
+    let arms: Vec<usize> = (ragdoll.bodies.iter())
+        .filter(|body| body.role.ends_with("LowerArm") || body.role.ends_with("Hand"))
+        .map(|body| body.joint)
+        .collect();
+    let mut character = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    character.after_settling = AfterSettling::StayDown;
+    let ground = [BodyDef::fixed(Shape::HalfSpace)];
+    let input = BakeInput {
+        bodies: &ground,
+        limp_at: Some(0.0),
+        seconds: 6.0,
+        ..BakeInput::new(Arc::new(character))
+    };
+    let mut baked = bake(&input);
+    for frame in &mut baked.frames {
+        arms.iter().for_each(|&joint| frame.pose[joint].translation *= 4.0);
+    }
+    let found = faults_of_bake(&input, &baked);
+    assert!(found.iter().any(|fault| fault.reason.contains("stays upright")), "{found:?}");
+}
