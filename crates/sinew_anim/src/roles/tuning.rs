@@ -212,7 +212,7 @@ pub(crate) const LEAST_SPINE_SKIN: f32 = 0.02;
 /// Distance before the shoulder from which on skin is an arm's, as a share of the upper arm.
 ///
 /// Larger: sides of the chest are arms. Smaller: shoulders of bare arms are chest. Shown by the tests of `variants`.
-pub(crate) const BEFORE_SHOULDER: f32 = 0.2;
+pub(crate) const BEFORE_SHOULDER: f32 = 0.1;
 
 /// Shortest clavicle that is a body, as a share of the height.
 ///

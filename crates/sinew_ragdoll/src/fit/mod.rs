@@ -154,6 +154,8 @@ fn protruding(bones: &Bones, bone: usize, patch: &Patch, nearest: &Fit) -> Optio
     let far = if part == Part::Tail { SPIKED } else { PROTRUDING } * bones.size();
     let frame = solid::fit_box(bones, bone, patch);
     let within = solid::within_joints(bones, bone, patch, &frame);
+    // Spikes of a tail may lie along it.
+    let within = |point: Vec3| if part == Part::Tail { point } else { within(point) };
     let out = |sample: &patch::Sample| {
         nearest.shape.signed_distance(&nearest.character_from_body, within(sample.point)).0
     };
