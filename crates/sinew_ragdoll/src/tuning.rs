@@ -159,6 +159,19 @@ pub(crate) const BURDENED: f32 = 1.6;
 /// Larger: spikes in the floor. Smaller: hulls for thick tails. Shown by the tests of `skin`.
 pub(crate) const SPIKED: f32 = 0.04;
 
+/// Distance of skin from the shape that is nearest to it, from which on the part gets the hull of its skin, as a share of
+/// the character's size.
+///
+/// Larger: hats and packs in the floor. Smaller: hulls for hair and clothes, which cost more. Shown by the tests of `skin`.
+pub(crate) const PROTRUDING: f32 = 0.06;
+
+/// Distance of a box's corner from the nearest skin, from which on the part gets the hull of its skin, as a share of the
+/// character's size.
+///
+/// Larger: characters float on the corners of their boxes. Smaller: hulls for round trunks, which cost more. Shown by the
+/// tests of `skin`.
+pub(crate) const HOLLOW: f32 = 0.2;
+
 /// Ratio of the volumes of twins above which both get the better-fitting shape.
 ///
 /// Larger: lopsided bodies. Smaller: equalises parts that really differ. Shown by the tests of `build`.

@@ -1,12 +1,13 @@
 //! The bind pose of joints and skin.
 
+use super::beside::{beside_the_bones, move_side_skeletons};
 use super::graph::ancestors;
 use super::names::{Part, read_names};
 use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, LocalTransform, Rig, RigMesh};
 use crate::roles::tuning::{BOUND_ALIKE, COINCIDENT, LARGEST_BESIDE};
 use crate::skinning::skin_vertices;
-use sinew_math::{Affine, Vec3, max, max3, min3};
+use sinew_math::{Affine, Vec3, max3, min3};
 use std::collections::BTreeMap;
 
 /// Geometry of a rig in its bind pose, model space, file units.
@@ -150,6 +151,25 @@ impl Bound {
         sinew_math::max(d.x, sinew_math::max(d.y, d.z))
     }
 
+    /// Area of the skin that a joint moves where `counts` (a place in model space) holds.
+    pub fn moved_by(&self, rig: &Rig, joint: JointIdx, counts: impl Fn(Vec3) -> bool) -> f32 {
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        let mut sum = 0.0;
+        for (m, mesh) in rig.meshes.iter().enumerate() {
+            let Some(skin) = mesh.skin.map(|skin| &rig.skins[skin]) else { continue };
+            for (p, primitive) in mesh.primitives.iter().enumerate().filter(|(_, p)| !p.joints.is_empty()) {
+                skin_vertices(rig, m, p, &self.model, &mut positions, &mut normals);
+                let share = vertex_areas(&positions, &primitive.indices);
+                for (i, _) in positions.iter().enumerate().filter(|(_, at)| counts(**at)) {
+                    let slots = primitive.joints[i].into_iter().zip(primitive.weights[i]);
+                    let own = slots.filter(|(slot, _)| skin.joints[usize::from(*slot)] == joint);
+                    sum += own.map(|(_, weight)| weight * share[i]).sum::<f32>();
+                }
+            }
+        }
+        sum
+    }
+
     fn add_primitive(&mut self, rig: &Rig, m: usize, p: usize) {
         let primitive = &rig.meshes[m].primitives[p];
         let Some(skin) = rig.meshes[m].skin.map(|s| &rig.skins[s]).filter(|_| !primitive.joints.is_empty())
@@ -240,10 +260,12 @@ pub(crate) fn bind_pose(rig: &Rig) -> Vec<Affine> {
     let mut rest = Vec::new();
     local_to_model(rig, &rest_pose(rig), &Affine::IDENTITY, &mut rest);
     let mut bound: Vec<Option<Affine>> = vec![None; rig.joints.len()];
-    // The skin with the most vertices defines its joints; smaller ones (a sword) only add missing ones.
+    // The mesh that most joints move defines its skin's joints, of equals the one with the most vertices: one of a gun alone
+    // lies where the hand rests. Smaller ones only add missing joints.
     let mut meshes: Vec<&RigMesh> = rig.meshes.iter().filter(|mesh| mesh.skin.is_some()).collect();
     let vertices = |mesh: &RigMesh| mesh.primitives.iter().map(|p| p.positions.len()).sum::<usize>();
-    meshes.sort_by_key(|mesh| core::cmp::Reverse(vertices(mesh)));
+    let movers = |mesh: &RigMesh| moving_slots(rig, mesh).into_iter().filter(|moves| *moves).count();
+    meshes.sort_by_cached_key(|mesh| core::cmp::Reverse((movers(mesh), vertices(mesh))));
     for mesh in meshes {
         let Some(skin) = mesh.skin.map(|s| &rig.skins[s]) else { continue };
         let model_from_mesh = model_from_mesh(rig, mesh, &rest);
@@ -254,6 +276,7 @@ pub(crate) fn bind_pose(rig: &Rig) -> Vec<Affine> {
             }
         }
     }
+    move_side_skeletons(rig, &rest, &mut bound);
     let beside = beside_the_bones(rig, &rest, &bound);
     let mut model: Vec<Affine> = Vec::with_capacity(rig.joints.len());
     for (i, joint) in rig.joints.iter().enumerate() {
@@ -263,34 +286,17 @@ pub(crate) fn bind_pose(rig: &Rig) -> Vec<Affine> {
     model
 }
 
-/// Positions of rigid mesh nodes beside the skeleton in the bind pose: a hat without a bone is placed relative to the
-/// rest pose, and follows the nearest joint. `None` for all others, and if that joint rests as it was bound.
-fn beside_the_bones(rig: &Rig, rest: &[Affine], bound: &[Option<Affine>]) -> Vec<Option<Affine>> {
-    let mut bears = vec![false; rig.joints.len()];
-    let bones = (0..rig.joints.len()).filter(|&joint| bound[joint].is_some());
-    bones.clone().for_each(|bone| {
-        bears[bone] = true;
-        ancestors(rig, bone).for_each(|above| bears[above] = true);
-    });
-    let mut beside = vec![None; rig.joints.len()];
-    // For each such mesh the highest node below those that carry bones; its first mesh gives the position.
-    for mesh in rig.meshes.iter().filter(|mesh| mesh.skin.is_none()) {
-        let line = core::iter::once(mesh.joint).chain(ancestors(rig, mesh.joint));
-        let own: Vec<JointIdx> = line.take_while(|&at| !bears[at]).collect();
-        let on_bone = |top: JointIdx| ancestors(rig, top).any(|above| bound[above].is_some());
-        let Some(&top) = own.last().filter(|&&top| beside[top].is_none() && !on_bone(top)) else { continue };
-        let corners = mesh.primitives.iter().flat_map(|primitive| &primitive.positions);
-        let (sum, count) = corners.fold((Vec3::ZERO, 0.0), |(sum, count), at| (sum + *at, count + 1.0));
-        let middle = rest[mesh.joint].point(sum / max(count, 1.0));
-        let away = |bone: JointIdx| (rest[bone].translation - middle).length();
-        let nearest = bones.clone().reduce(|a, b| if away(b) < away(a) { b } else { a });
-        beside[top] = nearest.and_then(|bone| {
-            let moved = bound[bone]? * rest[bone].inverse();
-            let is_moved = !alike(&moved, &Affine::IDENTITY) && moved.is_finite();
-            is_moved.then(|| moved * rest[top])
-        });
+/// Per slot of its skin true if it moves a vertex of the mesh.
+pub(super) fn moving_slots(rig: &Rig, mesh: &RigMesh) -> Vec<bool> {
+    let mut moves = vec![false; mesh.skin.map_or(0, |skin| rig.skins[skin].joints.len())];
+    for primitive in &mesh.primitives {
+        for (slots, weights) in primitive.joints.iter().zip(&primitive.weights) {
+            slots.iter().zip(weights).filter(|(_, weight)| **weight > 0.0).for_each(|(&slot, _)| {
+                moves[usize::from(slot)] = true;
+            });
+        }
     }
-    beside
+    moves
 }
 
 /// Transform of the skinned mesh to model space in its bind pose.
@@ -300,14 +306,7 @@ fn beside_the_bones(rig: &Rig, rest: &[Affine], bound: &[Option<Affine>]) -> Vec
 /// skeleton, which poses hardly move. Joints without skin are ignored: a control may be bound anywhere.
 fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     let skin = &rig.skins[mesh.skin.expect("only skinned meshes are asked for")];
-    let mut moves = vec![false; skin.joints.len()];
-    for primitive in &mesh.primitives {
-        for (slots, weights) in primitive.joints.iter().zip(&primitive.weights) {
-            slots.iter().zip(weights).filter(|(_, weight)| **weight > 0.0).for_each(|(&slot, _)| {
-                moves[usize::from(slot)] = true;
-            });
-        }
-    }
+    let moves = moving_slots(rig, mesh);
     let mut carried = vec![0_u32; rig.joints.len()];
     for (&joint, _) in skin.joints.iter().zip(&moves).filter(|(_, moves)| **moves) {
         carried[joint] += 1;
@@ -364,7 +363,7 @@ fn most_alike(all: &[Affine], passes: impl Fn(&Affine) -> bool) -> Option<Affine
 }
 
 /// Equal up to a thousandth of their scale.
-fn alike(a: &Affine, b: &Affine) -> bool {
+pub(super) fn alike(a: &Affine, b: &Affine) -> bool {
     let scale = a.linear.x_axis.length() + b.linear.x_axis.length() + 1e-12;
     let columns = [
         a.linear.x_axis - b.linear.x_axis,

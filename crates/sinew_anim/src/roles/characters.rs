@@ -9,7 +9,7 @@ use sinew_math::{Affine, Vec3, max, max3, min, min3};
 /// The characters of a rig, each by its meshes (indices into [`Rig::meshes`]), in the order of their first mesh.
 ///
 /// A character is a skeleton beside the others. One within another, or small beside it, belongs to that: eyes, a hat,
-/// clothes with bones at the body's. A skeleton of similar size with bones elsewhere is a character. Empty without
+/// clothes with bones at the body's, a cape of few bones. A skeleton of similar size with bones elsewhere is a character. Empty without
 /// skins.
 ///
 /// # Panics
@@ -30,7 +30,11 @@ pub fn characters(rig: &Rig) -> Vec<Vec<usize>> {
             (Some(main), Some(extent)) => {
                 let is_other = extent.longest() > LARGE_WITHIN * main.longest()
                     && !shares_bones(rig, &bind, meshes, &skeletons[skeleton], main.longest());
-                extent.belongs_to(&main) && !is_other
+                // A cape hangs half outside the body.
+                let is_worn = extent.common(&main) > 0.0
+                    && bones(rig, &skeletons[skeleton]) < BONES_OF_A_CHARACTER
+                    && bones(rig, meshes) >= BONES_OF_A_CHARACTER;
+                is_worn || extent.belongs_to(&main) && !is_other
             }
             _ => true,
         };
@@ -43,6 +47,15 @@ pub fn characters(rig: &Rig) -> Vec<Vec<usize>> {
     characters.iter_mut().for_each(|meshes| meshes.sort_unstable());
     characters.sort();
     characters
+}
+
+/// Number of bones of a skeleton.
+fn bones(rig: &Rig, meshes: &[usize]) -> usize {
+    let skins = meshes.iter().filter_map(|&m| rig.meshes[m].skin);
+    let mut bones: Vec<JointIdx> = skins.flat_map(|skin| rig.skins[skin].joints.iter().copied()).collect();
+    bones.sort_unstable();
+    bones.dedup();
+    bones.len()
 }
 
 /// True if most bones of a skeleton coincide with those of another of similar size.
@@ -69,15 +82,20 @@ impl Extent {
         max(sides.x, max(sides.y, sides.z))
     }
 
-    /// True if it lies mostly within the other, or is small and near it; a skeleton of similar size beside the other is
-    /// a character.
-    fn belongs_to(&self, main: &Self) -> bool {
+    /// Share of it within the other along the axis with the least; below 0 if they are apart.
+    fn common(&self, main: &Self) -> f32 {
         let common = min3(self.hi, main.hi) - max3(self.lo, main.lo);
         let share = |k: usize| {
             let own = self.hi[k] - self.lo[k];
             if own > 0.0 { common[k] / own } else { f32::from(u8::from(common[k] >= 0.0)) }
         };
-        let least = min(share(0), min(share(1), share(2)));
+        min(share(0), min(share(1), share(2)))
+    }
+
+    /// True if it lies mostly within the other, or is small and near it; a skeleton of similar size beside the other is
+    /// a character.
+    fn belongs_to(&self, main: &Self) -> bool {
+        let least = self.common(main);
         let is_small = self.longest() < SMALL_BESIDE * main.longest();
         least > LIES_WITHIN || is_small && least > -1.0
     }
@@ -104,7 +122,7 @@ fn extent(rig: &Rig, bind: &[Affine], meshes: &[usize]) -> Option<Extent> {
 ///
 /// # Panics
 /// If the rig's indices are out of range.
-fn skeletons(rig: &Rig) -> Vec<Vec<usize>> {
+pub(super) fn skeletons(rig: &Rig) -> Vec<Vec<usize>> {
     let mut is_bone = vec![false; rig.joints.len()];
     rig.skins.iter().flat_map(|skin| &skin.joints).for_each(|&joint| is_bone[joint] = true);
     // Key of a joint: the node that carries the highest bone above it, or that bone if the node is a root of the scene.

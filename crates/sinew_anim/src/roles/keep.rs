@@ -2,13 +2,15 @@
 
 use super::bind::Bound;
 use super::graph::{Graph, ancestors};
-use super::role::Role;
+use super::role::{Role, Side};
 use super::{KeptBone, RoleGuess};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::tuning::{
-    LARGEST_ON_ARMATURE, LARGEST_WORN, LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN, VOTERS, WORN_WITHIN,
+    BEFORE_SHOULDER, LARGEST_ON_ARMATURE, LARGEST_WORN, LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN,
+    VOTERS, WORN_WITHIN,
 };
 use crate::skinning::skin_vertices;
+use crate::weights::distance_squared;
 use sinew_math::{Vec3, max, max3, min, min3};
 
 /// Input of the selection.
@@ -190,9 +192,31 @@ impl Selection<'_> {
             } else {
                 sum = 0.0;
             }
-            sum += self.bound.area[part];
+            sum += self.bound.area[part] - self.skin_on_bare_arms(part);
             open = sum < LEAST_SPINE_SKIN * total;
         }
+    }
+
+    /// Area of the skin that a part of the spine moves on upper arms without skin of their own: from just before the shoulder
+    /// on along the arm, and nearer to the arm's bone than to the line from hips to neck.
+    fn skin_on_bare_arms(&self, part: JointIdx) -> f32 {
+        let place = |role: Role| self.joint_of(role).map(|joint| self.bound.model[joint].translation);
+        let bare_arm = |side: Side| {
+            let upper = self.joint_of(Role::UpperArm(side)).filter(|&upper| self.bound.area[upper] <= 0.0)?;
+            Some([self.bound.model[upper].translation, place(Role::LowerArm(side))?])
+        };
+        let arms: Vec<[Vec3; 2]> = [Side::Left, Side::Right].into_iter().filter_map(bare_arm).collect();
+        let (Some(hips), Some(neck)) = (place(Role::Hips), place(Role::Neck).or(place(Role::Head))) else {
+            return 0.0;
+        };
+        let is_on_arm = |at: Vec3| {
+            arms.iter().any(|&[shoulder, elbow]| {
+                let arm = elbow - shoulder;
+                (at - shoulder).dot(arm) > -BEFORE_SHOULDER * arm.length_squared()
+                    && distance_squared(at, [shoulder, elbow]) < distance_squared(at, [hips, neck])
+            })
+        };
+        if arms.is_empty() { 0.0 } else { self.bound.moved_by(self.rig, part, is_on_arm) }
     }
 
     /// Removes joints without skin, including that of merged ones; the root stays.
@@ -215,8 +239,8 @@ impl Selection<'_> {
         }
     }
 
-    /// Per joint the kept index that it follows: its parent, else the one its skin runs into, else the nearest. Joints
-    /// without skin and parent keep their own motion.
+    /// Per joint the kept index that it follows: its parent, else the one its skin runs into, else that of the joint above
+    /// it, else the nearest. Joints without skin and parent keep their own motion.
     fn owners(&self, joints: &[JointIdx], place: &[Option<usize>]) -> Vec<Option<usize>> {
         let mut owner = place.to_vec();
         let mut waiting: Vec<JointIdx> = Vec::new();
@@ -251,8 +275,10 @@ impl Selection<'_> {
             let Some((_, _, at, body)) = best else { break };
             owner[waiting.remove(at)] = Some(body);
         }
+        // Parents first: strands of hair go with its root, not each with what it hangs over.
         for joint in waiting {
-            owner[joint] = Some(self.nearest(joint, joints, &owner));
+            let above = ancestors(self.rig, joint).find_map(|above| owner[above]);
+            owner[joint] = Some(above.unwrap_or_else(|| self.nearest(joint, joints, &owner)));
         }
         self.own_hung(&mut owner);
         self.own_beside(&mut owner);

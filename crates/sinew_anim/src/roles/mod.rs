@@ -9,6 +9,7 @@
 mod anatomy;
 mod assembly;
 mod axes;
+mod beside;
 mod bind;
 mod characters;
 mod correct;

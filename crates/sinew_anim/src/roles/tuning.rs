@@ -70,6 +70,20 @@ pub(crate) const LARGEST_BESIDE: usize = 8;
 /// of `assembly`.
 pub(crate) const BOUND_ALIKE: f32 = 0.1;
 
+// roles/beside.rs
+
+/// Farthest that the root of a side skeleton rests from a bone of the main one to move with it in the bind pose, as a share of
+/// the main one's size.
+///
+/// Larger: a pet is moved with its owner. Smaller: hair stays where the body rests. Shown by the tests of `assembly`.
+pub(crate) const AT_MAIN: f32 = 0.15;
+
+/// Least ratio of the bones of the main skeleton to those of one beside it that goes with it.
+///
+/// Larger: hair of many strands stays where the body rests. Smaller: a second character is moved. Shown by the tests of
+/// `assembly`.
+pub(crate) const SIDE_BONES: usize = 2;
+
 // roles/characters.rs
 
 /// Least share of a skeleton's box, along each axis, inside another's, to belong to it.
@@ -194,6 +208,11 @@ pub(crate) const LEAST_BODY_SKIN: f32 = 0.004;
 ///
 /// Larger: snakes become stiff. Smaller: short vertebrae make weak joints. Shown by the tests of `creatures`.
 pub(crate) const LEAST_SPINE_SKIN: f32 = 0.02;
+
+/// Distance before the shoulder from which on skin is an arm's, as a share of the upper arm.
+///
+/// Larger: sides of the chest are arms. Smaller: shoulders of bare arms are chest. Shown by the tests of `variants`.
+pub(crate) const BEFORE_SHOULDER: f32 = 0.1;
 
 /// Shortest clavicle that is a body, as a share of the height.
 ///

@@ -200,6 +200,51 @@ fn a_hat_with_a_skeleton_of_its_own_goes_with_the_head() {
     assert_eq!(found.merge_into[hat], Some(part("head")));
 }
 
+/// A cape with a skeleton of its own hangs behind the back, half of it outside the body's box.
+#[test]
+fn a_cape_with_a_skeleton_of_its_own_goes_with_the_body() {
+    let mut rig = toy::body(mixamo);
+    let chest = Vec3::from_array(toy::BODY[part("chest")].2);
+    let place = chest - Vec3::new(0.02, 0.4, 0.41);
+    let cape = add_skeleton(&mut rig, "Bone", place, 0.46);
+    let cloth = rig.meshes.last_mut().expect("just added");
+    cloth.primitives[0].positions.iter_mut().for_each(|at| at.x = place.x + 0.1 * (at.x - place.x));
+    let found = is_whole(&rig, &[]);
+    assert_eq!(characters(&rig).len(), 1);
+    assert!(found.merge_into[cape].is_some(), "{:?}", found.notes);
+}
+
+/// Long hair with a skeleton of its own goes with the head as a whole, although its end is nearest to the chest.
+#[test]
+fn hair_with_a_skeleton_of_its_own_goes_with_the_head_from_root_to_tip() {
+    let mut rig = toy::body(mixamo);
+    let head = Vec3::from_array(toy::BODY[part("head")].2);
+    let root = add_skeleton(&mut rig, "hairjnt", head + Vec3::new(0.0, 0.12, -0.06), 0.05);
+    let tip = add_skeleton(&mut rig, "hairjnt2", head + Vec3::new(0.0, -0.25, -0.08), 0.05);
+    let (root_place, tip_place) = (rig.joints[root].rest.translation, rig.joints[tip].rest.translation);
+    rig.joints[tip].parent = Some(root);
+    rig.joints[tip].rest.translation = tip_place - root_place;
+    let found = is_whole(&rig, &[]);
+    assert_eq!(found.merge_into[root], Some(part("head")));
+    assert_eq!(found.merge_into[tip], Some(part("head")));
+}
+
+/// Hair with a skeleton of its own is placed at the head of a figure that rests bent: it is bound there, too.
+#[test]
+fn hair_beside_a_figure_that_rests_otherwise_than_it_was_bound_is_on_its_head() {
+    let mut rig = toy::body(mixamo);
+    rig.joints[part("neck")].rest.rotation = Rotation::from_axis_angle(Vec3::X, 1.2);
+    let rest: Vec<LocalTransform> = rig.joints.iter().map(|joint| joint.rest).collect();
+    let mut model = Vec::new();
+    sinew_anim::local_to_model(&rig, &rest, &Affine::IDENTITY, &mut model);
+    let off = Vec3::new(0.0, 0.12, 0.0);
+    let hair = add_skeleton(&mut rig, "hairjnt", model[part("head")].point(off), 0.05);
+    let found = is_whole(&rig, &[]);
+    let bound = found.bind_model[hair].translation - found.bind_model[part("head")].translation;
+    assert!((bound - off).length() < 1e-3, "{bound}");
+    assert_eq!(found.merge_into[hair], Some(part("head")));
+}
+
 #[test]
 fn who_stands_beside_is_another_character() {
     let mut rig = toy::body(mixamo);
@@ -810,4 +855,71 @@ fn a_hat_that_follows_the_head_by_a_clip_rides_where_the_clip_has_it() {
     assert!((height(&bound) + Vec3::Y * 0.1).length() < 1e-4, "{}", height(&bound));
     let held = bound.as_in(&rig, &clip);
     assert!((height(&held) - Vec3::Y * 0.15).length() < 1e-4, "{}", height(&held));
+}
+
+/// Auto-Rig Pro's names for the parts of the toy.
+fn auto_rig_pro(role: Role) -> String {
+    let side = |side: Side| if side == Side::Left { "l" } else { "r" };
+    match role {
+        Role::Hips => "root.x".to_owned(),
+        Role::Spine => "spine_01.x".into(),
+        Role::Chest => "spine_02.x".into(),
+        Role::Neck => "neck.x".into(),
+        Role::Head => "head.x".into(),
+        Role::UpperArm(s) => format!("arm_stretch.{}", side(s)),
+        Role::LowerArm(s) => format!("forearm_stretch.{}", side(s)),
+        Role::Hand(s) => format!("hand.{}", side(s)),
+        Role::UpperLeg(s) => format!("thigh_stretch.{}", side(s)),
+        Role::LowerLeg(s) => format!("leg_stretch.{}", side(s)),
+        Role::Foot(s) => format!("foot.{}", side(s)),
+        other => other.name(),
+    }
+}
+
+/// Auto-Rig Pro calls the pelvis `root`; it carries nothing, and thighs and trunk hang on controls.
+#[test]
+fn a_pelvis_called_root_that_carries_nothing_is_the_hips() {
+    let mut rig = toy::body(auto_rig_pro);
+    let hips = Vec3::from_array(toy::BODY[part("hips")].2);
+    let floor = add_bare(&mut rig, "c_traj", None, Vec3::ZERO, Vec3::ZERO);
+    let master = add_bare(&mut rig, "c_root_master.x", Some(floor), hips, Vec3::ZERO);
+    hang(&mut rig, part("hips"), master, hips);
+    hang(&mut rig, part("spine"), master, hips);
+    ["leftUpperLeg", "rightUpperLeg"]
+        .into_iter()
+        .for_each(|leg| hang(&mut rig, part(leg), floor, Vec3::ZERO));
+    kick(&mut rig);
+    let sorted = in_order(&rig);
+    let found = analyze(&sorted).expect("a skin");
+    let joint = found.joint_with(Role::Hips).expect("hips");
+    assert_eq!(sorted.joints[joint].name, "root.x", "{:?}", found.notes);
+    let spine = found.joint_with(Role::Spine).expect("a spine");
+    assert_eq!(sorted.joints[spine].name, "spine_01.x");
+}
+
+/// A gun of many vertices in the hand of a figure that rests otherwise than it was bound: the body says how it was bound.
+#[test]
+fn a_gun_with_more_vertices_than_the_body_says_nothing_of_the_bind_pose() {
+    let mut rig = toy::body(mixamo);
+    for (name, turn) in [("rightUpperArm", 1.2), ("leftUpperArm", -1.2), ("rightLowerArm", -0.9)] {
+        rig.joints[part(name)].rest.rotation = Rotation::from_axis_angle(Vec3::new(0.6, 0.8, 0.0), turn);
+    }
+    let slot = u16::try_from(part("rightHand")).expect("few");
+    let place = Vec3::from_array(toy::BODY[part("rightHand")].2);
+    let mut gun = Primitive::default();
+    for piece in 0..30_u32 {
+        let along = Vec3::Z * (0.01 * piece as f32);
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+        gun.positions.extend(corners.map(|corner| place + along + corner * 0.02));
+        gun.joints.extend([[slot, 0, 0, 0]; 4]);
+        gun.weights.extend([[1.0, 0.0, 0.0, 0.0]; 4]);
+        gun.indices.extend([0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].map(|corner| 4 * piece + corner));
+    }
+    rig.meshes.push(RigMesh { name: "gun".into(), joint: 0, skin: Some(0), primitives: vec![gun] });
+    let found = analyze(&rig).expect("a skin");
+    assert!(found.humanoid, "{:?}", found.notes);
+    for (joint, (name, _, at)) in toy::BODY.iter().enumerate() {
+        let off = (found.bind_model[joint].translation - Vec3::from_array(*at)).length();
+        assert!(off < 1e-3, "{name} is bound {off} m off");
+    }
 }

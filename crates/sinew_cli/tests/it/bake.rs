@@ -500,3 +500,70 @@ fn a_bake_is_judged_like_a_drop() {
         "{baked:#}"
     );
 }
+
+/// A mannequin whose joints are rusted stands limp: it is pushed over, unless a time to go limp or a hit is given.
+#[test]
+fn who_stays_upright_is_pushed_over_unless_told_otherwise() {
+    let folder = Folder::new("pushed");
+    let file = folder.file("rusted.glb", glb(&mannequin().rig, &[]));
+    let bones: Vec<String> = ["spine", "chest", "neck", "head", "upperLeg", "lowerLeg", "foot"]
+        .into_iter()
+        .map(|role| format!(r#""{role}": {{ "friction_torque": 10000 }}"#))
+        .collect();
+    let bones = bones.join(", ");
+    let settings = format!(r#"{{ "sinew": "ragdoll-settings", "version": 1, "bones": {{ {bones} }} }}"#);
+    folder.file("rusted.ragdoll.json", settings);
+    let out = folder.path("out.glb");
+    let baked = |extra: &[&str]| {
+        let arguments = ["bake", &file, "--no-builtin-motions", "--seconds", "5", "-o", &out, "--json"];
+        sinew(&[&arguments[..], extra].concat()).json()
+    };
+    let is_said = |object: &serde_json::Value, key: &str, what: &str| {
+        let said = object[key].as_array().expect("sentences");
+        said.iter().any(|said| said.as_str().is_some_and(|said| said.contains(what)))
+    };
+    let object = baked(&[]);
+    assert!(is_said(&object, "notes", "it is pushed over at 0.5 s"), "{object:#}");
+    assert!(!is_said(&object, "reasons", "stays upright"), "{object:#}");
+    for extra in [["--limp-at", "0.5"], ["--hit", "leftHand=0,0.1,0@0.5"]] {
+        let object = baked(&extra);
+        assert!(!is_said(&object, "notes", "it is pushed over"), "{object:#}");
+    }
+    assert!(is_said(&baked(&["--limp-at", "0.5"]), "reasons", "stays upright"));
+}
+
+/// A character that lies in its file, and sinks in its clip before it falls, lies on the floor at its lowest.
+#[test]
+fn who_lies_in_its_file_lies_on_the_floor_at_its_lowest() {
+    let folder = Folder::new("lies");
+    let mut rig = mannequin().rig;
+    let root = rig.joints.iter().position(|joint| joint.parent.is_none()).expect("a root");
+    let hips = rig.joints.iter().position(|joint| joint.name == "hips").expect("hips");
+    let turn = Rotation::from_axis_angle(Vec3::X, -core::f32::consts::FRAC_PI_2);
+    rig.joints[root].rest.rotation = turn;
+    let back = Affine::from_scale_rotation_translation(Vec3::ONE, turn, Vec3::ZERO).inverse();
+    for skin in &mut rig.skins {
+        skin.inverse_bind.iter_mut().for_each(|inverse| *inverse = *inverse * back);
+    }
+    let turned = |at: &mut Vec3| *at = turn * *at;
+    rig.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives).for_each(|part| {
+        part.positions.iter_mut().for_each(turned);
+        part.normals.iter_mut().for_each(turned);
+    });
+    // Down and up again along the file's own up, which is the back of the body.
+    let at = rig.joints[hips].rest.translation;
+    let sunk = at - turn.inverse() * Vec3::Y * 0.25;
+    let channel = sinew::anim::Channel {
+        joint: hips,
+        property: sinew::anim::Property::Translation,
+        interpolation: sinew::anim::Interpolation::Linear,
+        times: vec![0.0, 0.3, 0.6],
+        values: [at, sunk, at].iter().flat_map(|at| at.to_array()).collect(),
+    };
+    let clip = Clip { name: "Idle".into(), duration: 0.6, channels: vec![channel] };
+    let file = folder.file("lies.glb", glb(&rig, &[clip]));
+    let out = folder.path("out.glb");
+    let object = sinew(&["bake", &file, "--clip", "Idle", "--seconds", "2", "-o", &out, "--json"]).json();
+    let lowest = object["skin"]["standing_height_m"].as_f64().expect("a height");
+    assert!(lowest.abs() < 0.02, "{lowest} m; {object:#}");
+}

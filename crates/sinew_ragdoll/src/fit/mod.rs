@@ -23,9 +23,11 @@ mod round;
 mod solid;
 pub mod surface;
 
-use crate::build::bones::{Bone, Bones};
+use crate::build::bones::{Anatomy, Bone, Bones};
 use crate::build::part::Part;
-use crate::tuning::{BURDENED, INTRICATE, LEAST_HALF, PAST_JOINT, SHRINK, SPIKED, TAPERED, UNLIKE, UNUSUAL};
+use crate::tuning::{
+    BURDENED, HOLLOW, INTRICATE, LEAST_HALF, PAST_JOINT, PROTRUDING, SHRINK, SPIKED, TAPERED, UNLIKE, UNUSUAL,
+};
 use core::mem::discriminant;
 use patch::{Patch, Selection, Symmetry};
 use sinew_math::{Mat3, Rotation, Transform, Vec3, clamp, max, min};
@@ -79,7 +81,7 @@ fn holding(bones: &Bones, fits: &[Fit], bone: usize, shares: &[Share]) -> Option
         return None;
     }
     let patch = Patch::select(shares, Symmetry::AsIs)?;
-    solid::fit_whole_hull(&solid::fit_box(bones, bone, &patch), &patch)
+    solid::fit_whole_hull(&solid::fit_box(bones, bone, &patch), &patch, |point| point)
 }
 
 /// The shape of a bone, or the mirror image of its twin's if that fits better: a pad skinned to a shoulder is not part
@@ -132,23 +134,54 @@ fn fit_bone(bones: &Bones, bone: usize, shares: &[Share], choice: ShapeChoice) -
     match choice {
         ShapeChoice::Box => solid::fit_box(bones, bone, &patch),
         ShapeChoice::Capsule => round::fit_capsule(bones, bone, &patch),
-        ShapeChoice::Auto => spiked(bones, bone, &patch).unwrap_or_else(|| nearest(bones, bone, &patch)),
+        ShapeChoice::Auto => {
+            let fit = nearest(bones, bone, &patch);
+            let hull = protruding(bones, bone, &patch, &fit).or_else(|| hollow(bones, bone, &patch, &fit));
+            hull.unwrap_or(fit)
+        }
     }
 }
 
-/// The hull of a tail part with its spikes, which would otherwise sink into the floor; `None` for a tail without
-/// spikes.
-fn spiked(bones: &Bones, bone: usize, patch: &Patch) -> Option<Fit> {
-    if bones.list[bone].part != Part::Tail {
+/// The hull of a part of whose skin something protrudes far from the nearest shape (a hat, a crest, spikes, a pack): that
+/// would otherwise sink into the floor. `None` if nothing does, and for limbs.
+fn protruding(bones: &Bones, bone: usize, patch: &Patch, nearest: &Fit) -> Option<Fit> {
+    let part = bones.list[bone].part;
+    let is_end = bones.children[bone].is_empty();
+    let is_central = part == Part::Head || is_trunk(part) && (is_end || bones.anatomy == Anatomy::Human);
+    if part != Part::Tail && !is_central {
         return None;
     }
-    let Fit { shape, character_from_body, .. } = nearest(bones, bone, patch);
-    let out = |sample: &patch::Sample| shape.signed_distance(&character_from_body, sample.point).0;
+    let far = if part == Part::Tail { SPIKED } else { PROTRUDING } * bones.size();
+    let frame = solid::fit_box(bones, bone, patch);
+    let within = solid::within_joints(bones, bone, patch, &frame);
+    // Spikes of a tail may lie along it.
+    let within = |point: Vec3| if part == Part::Tail { point } else { within(point) };
+    let out = |sample: &patch::Sample| {
+        nearest.shape.signed_distance(&nearest.character_from_body, within(sample.point)).0
+    };
     let farthest = patch.samples.iter().map(out).fold(0.0, max);
-    if farthest <= SPIKED * bones.size() {
+    if farthest <= far {
         return None;
     }
-    solid::fit_whole_hull(&solid::fit_box(bones, bone, patch), patch)
+    solid::fit_whole_hull(&frame, patch, within)
+}
+
+/// The hull of a part of the trunk of whose box a corner is far from all skin (a trunk with its arms): on that the character
+/// would float. `None` for other shapes.
+fn hollow(bones: &Bones, bone: usize, patch: &Patch, nearest: &Fit) -> Option<Fit> {
+    let Shape::Box { half_extents: half } = nearest.shape else { return None };
+    let far = HOLLOW * bones.size();
+    let is_bare = |corner: u32| {
+        let sign = |bit: u32| if corner >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let at = nearest.character_from_body.point(half * Vec3::new(sign(0), sign(1), sign(2)));
+        patch.samples.iter().all(|sample| (sample.point - at).length_squared() > far * far)
+    };
+    let is_hollow = is_trunk(bones.list[bone].part) && (0..8).any(is_bare);
+    is_hollow.then(|| solid::fit_hull(nearest, patch))?
+}
+
+fn is_trunk(part: Part) -> bool {
+    matches!(part, Part::Pelvis | Part::Spine)
 }
 
 /// The shape with the least error among all kinds, weighted by how well the kind suits the part.

@@ -1,12 +1,12 @@
 //! Boxes and hulls around skin.
 
-use super::patch::Patch;
+use super::patch::{Patch, bounds};
 use super::{Fit, LEAST_HALF, SHRINK, clip_at_joints, measured};
 use crate::build::bones::Bones;
 use crate::build::part::Part;
 use crate::fit::frame::{box_frame, with_y};
 use crate::tuning::TOWARD_CORNERS;
-use sinew_math::{Rotation, Transform, Vec3, max3, min3};
+use sinew_math::{Rotation, Transform, Vec3, clamp, max3, min3};
 use sinew_physics::{Hull, Shape};
 use std::sync::Arc;
 
@@ -40,9 +40,27 @@ pub(super) fn fit_hull(cuboid: &Fit, patch: &Patch) -> Option<Fit> {
     hull_of(cuboid, patch, |point| max3(min3(point, half), -half))
 }
 
-/// As [`fit_hull`], around all of the skin, wherever it reaches.
-pub(super) fn fit_whole_hull(cuboid: &Fit, patch: &Patch) -> Option<Fit> {
-    hull_of(cuboid, patch, |point| point)
+/// As [`fit_hull`], around all of the skin, wherever `within` leaves it (character space).
+pub(super) fn fit_whole_hull(cuboid: &Fit, patch: &Patch, within: impl Fn(Vec3) -> Vec3) -> Option<Fit> {
+    let frame = cuboid.character_from_body;
+    hull_of(cuboid, patch, |point| frame.inverse_point(within(frame.point(point))))
+}
+
+/// Moves a point of the skin along the bone to the end of its part where it lies beyond one of its joints.
+pub(super) fn within_joints(
+    bones: &Bones,
+    bone: usize,
+    patch: &Patch,
+    cuboid: &Fit,
+) -> impl Fn(Vec3) -> Vec3 {
+    let axis = cuboid.character_from_body.rotation * Vec3::Y;
+    let center = patch.center;
+    let (lo, hi) = bounds(&patch.samples, |point| (point - center).dot(axis));
+    let (lo, hi) = clip_at_joints(bones, bone, center, axis, lo, hi);
+    move |point| {
+        let along = (point - center).dot(axis);
+        point + axis * (clamp(along, lo, hi) - along)
+    }
 }
 
 fn hull_of(cuboid: &Fit, patch: &Patch, within: impl Fn(Vec3) -> Vec3) -> Option<Fit> {

@@ -1,6 +1,7 @@
 //! Faults that no single figure tells: each planted into the mannequin.
 
 use sinew_anim::analyze;
+use sinew_math::{Rotation, Vec3};
 use sinew_physics::{BodyDef, Shape};
 use sinew_ragdoll::quality::{Doubt, faults_of_bake, faults_of_ragdoll, toppled};
 use sinew_ragdoll::{
@@ -168,4 +169,38 @@ fn a_character_that_shrinks_to_get_up_is_told() {
     let fault = sized(&baked).expect("a fault");
     assert_eq!(fault.at_most, Verdict::Bad);
     assert!(fault.reason.contains("0.38 times"), "{}", fault.reason);
+}
+
+/// The width of a stance is that of its feet: rusted arms that reach out wider than it is tall make it no broad body.
+#[test]
+fn outstretched_arms_do_not_hide_who_stays_upright() {
+    let rig = mannequin().rig;
+    let analysis = analyze(&rig).expect("a skin");
+    let mut ragdoll = built();
+    ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque += 1e4);
+    let joint = |role: &str| {
+        ragdoll.bodies.iter().find(|body| body.role == role).map(|body| body.joint).expect("it has a body")
+    };
+    let arms = [("left", Vec3::X), ("right", -Vec3::X)].map(|(side, out)| {
+        let [upper, lower] = ["UpperArm", "LowerArm"].map(|part| joint(&format!("{side}{part}")));
+        (upper, lower, Rotation::from_arc(rig.joints[lower].rest.translation.normalize(), out))
+    });
+    let mut character = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    character.after_settling = AfterSettling::StayDown;
+    let ground = [BodyDef::fixed(Shape::HalfSpace)];
+    let input = BakeInput {
+        bodies: &ground,
+        limp_at: Some(0.0),
+        seconds: 6.0,
+        ..BakeInput::new(Arc::new(character))
+    };
+    let mut baked = bake(&input);
+    for frame in &mut baked.frames {
+        for (upper, lower, turn) in arms {
+            frame.pose[upper].rotation = turn;
+            frame.pose[lower].translation *= 4.0;
+        }
+    }
+    let found = faults_of_bake(&input, &baked);
+    assert!(found.iter().any(|fault| fault.reason.contains("stays upright")), "{found:?}");
 }

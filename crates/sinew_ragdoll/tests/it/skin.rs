@@ -330,3 +330,54 @@ fn a_cap_goes_along_and_a_pack_and_a_sword_have_bodies() {
     let skin = subject.over(&drop_test(&subject.def).falls);
     assert!(skin.rest_height_m.is_some_and(|height| height > -0.05), "{skin:?}");
 }
+
+/// Adds a box to the skin of a role, its middle `off` the joint (model space, metres).
+fn grown(rig: &mut Rig, role: Role, off: Vec3, half: Vec3) {
+    let analysis = analyze(rig).expect("a skin");
+    let joint = analysis.joint_with(role).expect("the role");
+    let slot = rig.skins[0].joints.iter().position(|&at| at == joint).expect("it moves skin");
+    let middle = analysis.bind_model[joint].translation + off;
+    let corner = |i: u32| {
+        let side = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        middle + half * Vec3::new(side(0), side(1), side(2))
+    };
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let part = Primitive {
+        positions: (0..8).map(corner).collect(),
+        joints: vec![[u16::try_from(slot).expect("few"), 0, 0, 0]; 8],
+        weights: vec![[1.0, 0.0, 0.0, 0.0]; 8],
+        indices: faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect(),
+        ..Primitive::default()
+    };
+    let joint = rig.meshes[0].joint;
+    rig.meshes.push(RigMesh { name: "grown".into(), joint, skin: Some(0), primitives: vec![part] });
+}
+
+/// A hat with a wide brim and a pack that are the skin of head and chest: the shapes go around them.
+#[test]
+fn hats_and_packs_that_are_skinned_to_the_body_lie_on_the_floor() {
+    let mut rig = mannequin().rig;
+    grown(&mut rig, Role::Head, Vec3::Y * 0.22, Vec3::new(0.3, 0.01, 0.3));
+    grown(&mut rig, Role::Head, Vec3::Y * 0.42, Vec3::new(0.03, 0.2, 0.03));
+    grown(&mut rig, Role::Chest, Vec3::new(0.0, 0.05, -0.25), Vec3::new(0.12, 0.15, 0.2));
+    let subject = Subject::of(rig);
+    let skin = subject.over(&drop_test(&subject.def).falls);
+    assert!(skin.rest_height_m.is_some_and(|height| height > -0.05), "{skin:?}");
+    assert!(skin.covered_share > 0.99, "{skin:?}");
+    let head = &subject.def.bodies[subject.body("head")].shape;
+    assert!(matches!(head, Shape::Hull(_)), "{head:?}");
+}
+
+/// A trunk of whose skin arms that hang forward are a part has no box whose empty corners it lies on.
+#[test]
+fn a_trunk_with_arms_does_not_float_on_an_empty_corner_of_its_box() {
+    let mut rig = mannequin().rig;
+    for side in [-1.0, 1.0] {
+        grown(&mut rig, Role::Chest, Vec3::new(side * 0.2, 0.5, 0.4), Vec3::new(0.04, 0.04, 0.35));
+    }
+    let subject = Subject::of(rig);
+    let chest = &subject.def.bodies[subject.body("chest")];
+    assert!(matches!(chest.shape, Shape::Hull(_)), "{:?}", chest.shape);
+    let skin = subject.over(&drop_test(&subject.def).falls);
+    assert!(skin.rest_height_m.is_some_and(|height| (-0.1..0.03).contains(&height)), "{skin:?}");
+}

@@ -1,9 +1,11 @@
 //! The falling character: its ragdoll, and its own or the built-in motions.
 
 use super::clips::Motions;
+use super::lies::lies;
 use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
 use sinew::anim::retarget::RetargetError;
+use sinew::math::Vec3;
 use sinew::motions::{BuiltinError, set_motions_with_builtin};
 use sinew::ragdoll::{AfterSettling, CharacterDef, GroundContact, Locomotion, MotionSet, RagdollDef};
 
@@ -35,7 +37,10 @@ pub fn actor(
     let mut get_ups = def.get_ups_among(&motions.clips);
     get_ups.retain(|&clip| Some(clip) != motions.looped);
     let Motions { clips, looped, .. } = motions;
-    let own = MotionSet { clips, looped, get_ups, locomotion: Locomotion::ByClip, ..MotionSet::default() };
+    // Who lies in its file would walk along its own axes into the floor.
+    let is_lying = lies(&def.ragdoll, analysis.hints.up.unwrap_or(Vec3::Y));
+    let locomotion = if is_lying { Locomotion::Exact } else { Locomotion::ByClip };
+    let own = MotionSet { clips, looped, get_ups, locomotion, ..MotionSet::default() };
     if !own.get_ups.is_empty() {
         def.set_motions(own).map_err(failed)?;
         return Ok((def, GetsUpBy::Own));

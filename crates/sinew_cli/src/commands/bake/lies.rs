@@ -3,7 +3,7 @@
 use crate::judge::LIMP_AT;
 use sinew::anim::{Wrap, local_to_model, rest_pose, sample::sample, skin_vertices};
 use sinew::math::{Affine, Rotation, Transform, Vec3, min};
-use sinew::ragdoll::CharacterDef;
+use sinew::ragdoll::{CharacterDef, RagdollDef};
 
 /// Cosine above which a character counts as standing: its own up axis within 45° of the file's.
 const STANDS: f32 = 0.7;
@@ -11,14 +11,19 @@ const STANDS: f32 = 0.7;
 /// Number of sampled times of the looped clip besides its start: about ten per second.
 const LOOKS: usize = 5;
 
+/// True if a character lies in its file, whose up axis is `up`.
+pub fn lies(ragdoll: &RagdollDef, up: Vec3) -> bool {
+    (ragdoll.character_from_model.rotation * up).y <= STANDS
+}
+
 /// Placement of a character from its file: as it `stands`, or rotated and lowered onto the ground there if it lies.
 /// `up` is the file's up axis.
 pub fn as_in_file(stands: Transform, character: &CharacterDef, up: Vec3) -> Transform {
     let character_from_model = character.mapping().character_from_model();
-    let up = character.ragdoll.character_from_model.rotation * up;
-    if up.y > STANDS {
+    if !lies(&character.ragdoll, up) {
         return stands;
     }
+    let up = character.ragdoll.character_from_model.rotation * up;
     let turn = Rotation::from_arc(up, Vec3::Y);
     let lowest =
         lowest_point(character, &(Affine::from(Transform::new(Vec3::ZERO, turn)) * character_from_model));
