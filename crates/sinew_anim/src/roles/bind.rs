@@ -151,25 +151,6 @@ impl Bound {
         sinew_math::max(d.x, sinew_math::max(d.y, d.z))
     }
 
-    /// Area of the skin that a joint moves where `counts` (a place in model space) holds.
-    pub fn moved_by(&self, rig: &Rig, joint: JointIdx, counts: impl Fn(Vec3) -> bool) -> f32 {
-        let (mut positions, mut normals) = (Vec::new(), Vec::new());
-        let mut sum = 0.0;
-        for (m, mesh) in rig.meshes.iter().enumerate() {
-            let Some(skin) = mesh.skin.map(|skin| &rig.skins[skin]) else { continue };
-            for (p, primitive) in mesh.primitives.iter().enumerate().filter(|(_, p)| !p.joints.is_empty()) {
-                skin_vertices(rig, m, p, &self.model, &mut positions, &mut normals);
-                let share = vertex_areas(&positions, &primitive.indices);
-                for (i, _) in positions.iter().enumerate().filter(|(_, at)| counts(**at)) {
-                    let slots = primitive.joints[i].into_iter().zip(primitive.weights[i]);
-                    let own = slots.filter(|(slot, _)| skin.joints[usize::from(*slot)] == joint);
-                    sum += own.map(|(_, weight)| weight * share[i]).sum::<f32>();
-                }
-            }
-        }
-        sum
-    }
-
     fn add_primitive(&mut self, rig: &Rig, m: usize, p: usize) {
         let primitive = &rig.meshes[m].primitives[p];
         let Some(skin) = rig.meshes[m].skin.map(|s| &rig.skins[s]).filter(|_| !primitive.joints.is_empty())

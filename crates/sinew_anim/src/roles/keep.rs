@@ -2,15 +2,13 @@
 
 use super::bind::Bound;
 use super::graph::{Graph, ancestors};
-use super::role::{Role, Side};
+use super::role::Role;
 use super::{KeptBone, RoleGuess};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::tuning::{
-    BEFORE_SHOULDER, LARGEST_ON_ARMATURE, LARGEST_WORN, LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN,
-    VOTERS, WORN_WITHIN,
+    LARGEST_ON_ARMATURE, LARGEST_WORN, LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN, VOTERS, WORN_WITHIN,
 };
 use crate::skinning::skin_vertices;
-use crate::weights::distance_squared;
 use sinew_math::{Vec3, max, max3, min, min3};
 
 /// Input of the selection.
@@ -192,31 +190,9 @@ impl Selection<'_> {
             } else {
                 sum = 0.0;
             }
-            sum += self.bound.area[part] - self.skin_on_bare_arms(part);
+            sum += self.bound.area[part];
             open = sum < LEAST_SPINE_SKIN * total;
         }
-    }
-
-    /// Area of the skin that a part of the spine moves on upper arms without skin of their own: from just before the shoulder
-    /// on along the arm, and nearer to the arm's bone than to the line from hips to neck.
-    fn skin_on_bare_arms(&self, part: JointIdx) -> f32 {
-        let place = |role: Role| self.joint_of(role).map(|joint| self.bound.model[joint].translation);
-        let bare_arm = |side: Side| {
-            let upper = self.joint_of(Role::UpperArm(side)).filter(|&upper| self.bound.area[upper] <= 0.0)?;
-            Some([self.bound.model[upper].translation, place(Role::LowerArm(side))?])
-        };
-        let arms: Vec<[Vec3; 2]> = [Side::Left, Side::Right].into_iter().filter_map(bare_arm).collect();
-        let (Some(hips), Some(neck)) = (place(Role::Hips), place(Role::Neck).or(place(Role::Head))) else {
-            return 0.0;
-        };
-        let is_on_arm = |at: Vec3| {
-            arms.iter().any(|&[shoulder, elbow]| {
-                let arm = elbow - shoulder;
-                (at - shoulder).dot(arm) > -BEFORE_SHOULDER * arm.length_squared()
-                    && distance_squared(at, [shoulder, elbow]) < distance_squared(at, [hips, neck])
-            })
-        };
-        if arms.is_empty() { 0.0 } else { self.bound.moved_by(self.rig, part, is_on_arm) }
     }
 
     /// Removes joints without skin, including that of merged ones; the root stays.

@@ -209,11 +209,6 @@ pub(crate) const LEAST_BODY_SKIN: f32 = 0.004;
 /// Larger: snakes become stiff. Smaller: short vertebrae make weak joints. Shown by the tests of `creatures`.
 pub(crate) const LEAST_SPINE_SKIN: f32 = 0.02;
 
-/// Distance before the shoulder from which on skin is an arm's, as a share of the upper arm.
-///
-/// Larger: sides of the chest are arms. Smaller: shoulders of bare arms are chest. Shown by the tests of `variants`.
-pub(crate) const BEFORE_SHOULDER: f32 = 0.1;
-
 /// Shortest clavicle that is a body, as a share of the height.
 ///
 /// Larger: shoulders are rigid. Smaller: bodies that nothing collides with. Shown by the tests of `roles`.

@@ -164,7 +164,7 @@ fn settings_of_meshes_that_are_wrong_name_file_and_place() {
     let out = folder.path("fall.glb");
     for (garment, place, told) in [
         (r#"{"mesh": "Skrit"}"#, "garments[0].mesh", "Skirt"),
-        (r#"{"mesh": "Skirt", "chains": ["hips"]}"#, "garments[0].chains", "not of both"),
+        (r#"{"mesh": "Skirt", "chains": ["hips"]}"#, "garments[0].chains", "not both"),
         (r#"{"mesh": "Skirt", "held": 2}"#, "garments[0].held", "nothing of it is left to hang"),
         (r#"{"chains": ["hips"], "held": 0.1}"#, "garments[0].held", "only a garment of a `mesh`"),
         (r#"{"mesh": "Skirt", "most_particles": 2}"#, "garments[0].most_particles", "between 4 and 4000"),

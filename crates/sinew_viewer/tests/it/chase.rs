@@ -40,8 +40,11 @@ fn outermost(sample: Sample, aspect: f32, follows: bool, pushes: bool) -> f32 {
             Operation::Push { body, impulse, point: Vec3::ZERO }.apply_to(&mut stage);
         }
         stage.step();
+        if step % 2 != 0 {
+            continue; // no frame
+        }
         let subject = bounds(&stage).center();
-        if step % 2 == 0 && follows {
+        if follows {
             orbit.target += chase.go(subject, FRAME, orbit.distance);
             orbit.rise_above(stage.world());
             let camera = orbit.camera().position;
