@@ -558,7 +558,7 @@ fn who_lies_in_its_file_lies_on_the_floor_at_its_lowest() {
         property: sinew::anim::Property::Translation,
         interpolation: sinew::anim::Interpolation::Linear,
         times: vec![0.0, 0.3, 0.6],
-        values: [at, sunk, at].iter().flat_map(|at| at.to_array()).collect(),
+        values: [at, sunk, at].iter().flat_map(sinew::prelude::Vec3::to_array).collect(),
     };
     let clip = Clip { name: "Idle".into(), duration: 0.6, channels: vec![channel] };
     let file = folder.file("lies.glb", glb(&rig, &[clip]));

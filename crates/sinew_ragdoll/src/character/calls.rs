@@ -307,11 +307,11 @@ impl Character {
                 self.physique.drives.set_all(DriveMode::Keyed, POWERED_HALF_LIFE);
                 self.activity = Activity::Flinching(Flinch { seconds: RETURNED_AFTER * POWERED_HALF_LIFE });
             }
-            (Preset::Animated, State::Limp | State::Preparing) if may_get_up => {
-                // What holds it would be torn off by bodies that clips lead.
-                if !self.grips.is_gripped(&self.physique, world) {
-                    self.get_up(world);
-                }
+            // Bodies that clips lead would tear off what holds them.
+            (Preset::Animated, State::Limp | State::Preparing)
+                if may_get_up && !self.grips.is_gripped(&self.physique, world) =>
+            {
+                self.get_up(world);
             }
             (Preset::Flinching, State::Animated | State::Flinching) => {
                 for body in blows::pelvis_children(&self.def.ragdoll) {
