@@ -63,7 +63,7 @@ pub fn output_json(command: &mut Command) -> Result<Value> {
     serde_json::from_str(&text).with_context(|| format!("`{}`: stdout is not one JSON value", shown(command)))
 }
 
-/// Whether there is a program of that name.
+/// True if there is a program of that name.
 pub fn answers(program: &str) -> bool {
     let mut command = Command::new(program);
     command.arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()

@@ -20,7 +20,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Whether both rows give the same key to one command.
+    /// True if both rows give the same key to one command.
     pub fn repeats(&self, other: &Self) -> bool {
         other.key == self.key && other.commands.iter().any(|command| self.commands.contains(command))
     }

@@ -241,7 +241,7 @@ impl Formula {
         }
     }
 
-    /// Whether a bar opens: something other than an end follows. Within bars the first bar closes.
+    /// True if a bar opens: something other than an end follows. Within bars the first bar closes.
     fn opens(&self) -> bool {
         let mut ahead = self.tokens.clone();
         ahead.next();

@@ -67,7 +67,7 @@ pub trait Simulation {
     /// Replaces `out` by the state of every body, static ones too, in the blueprint's order.
     fn states(&self, out: &mut Vec<BodyState>);
 
-    /// Whether a dynamic body is awake.
+    /// True if a dynamic body is awake.
     fn is_awake(&self) -> bool;
 }
 

@@ -11,10 +11,10 @@ use sinew_scenes::crowd::CrowdScene;
 /// Interval of the steps at which depths are measured.
 const PENETRATION_EVERY: usize = 10;
 
-/// Of a crowd one in this many characters is measured, another one after each step.
+/// Divisor of a crowd: one in this many characters is measured, another one after each step.
 const CHARACTERS_EVERY: usize = 37;
 
-/// Whether the run is repeated to measure its quality.
+/// True if the run is repeated to measure its quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judging {
     /// Time only.

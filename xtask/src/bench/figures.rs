@@ -111,7 +111,7 @@ pub fn headline(scene: &str) -> &'static Figure {
     }
 }
 
-/// Whether the joints came apart, so that the time is for different work.
+/// True if the joints came apart, so that the time is for different work.
 pub fn came_apart(engine: &EngineResult) -> bool {
     const GAP_MAX: f64 = 0.5;
     const STRETCH_MAX: f64 = 1.0;

@@ -97,12 +97,12 @@ step. *energy gained* is the largest energy of the world above its start, *energ
 are 0 for all engines are left out.
 ";
 
-/// Whether a scene compares animation engines.
+/// True if a scene compares animation engines.
 fn is_animation(scene: &SceneResult) -> bool {
     scene.name == "crowd"
 }
 
-/// Whether a scene compares ragdolls with MuJoCo alone.
+/// True if a scene compares ragdolls with MuJoCo alone.
 fn is_of_ragdolls(scene: &SceneResult) -> bool {
     scene.name.starts_with("humanoid_")
 }

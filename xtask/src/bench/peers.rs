@@ -58,11 +58,11 @@ pub struct Scene {
     pub about: String,
     /// Its field.
     field: String,
-    /// Whether its run changes with a small change of its start.
+    /// True if its run changes with a small change of its start.
     pub is_chaotic: bool,
 }
 
-/// Whether a second run measures the quality.
+/// True if a second run measures the quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judging {
     /// Time only.
@@ -78,7 +78,7 @@ pub struct Run {
     pub steps: Option<u32>,
     /// Number of a slightly changed start.
     pub start: Option<u32>,
-    /// Whether quality is measured.
+    /// True if quality is measured.
     pub judging: Judging,
 }
 
@@ -210,7 +210,7 @@ pub fn scenes(engine: &Engine) -> Result<Vec<Scene>> {
 }
 
 impl Engine {
-    /// Whether it is for such scenes.
+    /// True if it is for such scenes.
     pub fn is_for(&self, scene: &Scene) -> bool {
         self.fields.contains(&scene.field)
     }

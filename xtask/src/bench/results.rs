@@ -66,7 +66,7 @@ impl Results {
         self.scenes.iter().find(|scene| scene.name == name)
     }
 
-    /// Whether the scene of that name was measured, or the bake, the limp characters or the threads.
+    /// True if the scene of that name was measured, or the bake, the limp characters or the threads.
     pub fn has(&self, name: &str) -> bool {
         self.scene(name).is_some()
             || name == super::BAKE && self.bake.is_some()

@@ -164,7 +164,7 @@ fn forbidden(tokens: &[Token<'_>], at: usize, converts: bool) -> Option<String> 
     None
 }
 
-/// Whether the arguments in the bracket at `open` show that the call is on integers or on an iterator.
+/// True if the arguments in the bracket at `open` show that the call is on integers or on an iterator.
 fn is_of_integers(tokens: &[Token<'_>], open: usize) -> bool {
     let arguments = &tokens[open + 1..lexer::closing(tokens, open)];
     let is_integer = |token: &Token<'_>| match token.kind {

@@ -88,7 +88,7 @@ pub struct Import<'a> {
     pub name: &'a str,
     /// As written.
     pub path: Vec<&'a str>,
-    /// Whether it is `pub` to some extent.
+    /// True if it is `pub` to some extent.
     pub is_public: bool,
 }
 
@@ -204,7 +204,7 @@ impl<'a> Module<'a> {
         Self { inside, path, code, items, imports }
     }
 
-    /// Whether a word occurs in its code.
+    /// True if a word occurs in its code.
     fn uses(&self, word: &str) -> bool {
         self.code.iter().any(|token| token.text == word)
     }

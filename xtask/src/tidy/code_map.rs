@@ -128,7 +128,7 @@ fn is_path(c: char) -> bool {
     c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '_' | '/' | '.')
 }
 
-/// Whether a piece of code is a file or a folder of the crate.
+/// True if a piece of code is a file or a folder of the crate.
 fn is_place(name: &str) -> bool {
     let ends = name.ends_with(".rs") || name.ends_with('/');
     let is_of_root = ["crates/", "docs/", "xtask/", "fuzz/", "bench/", "tests/", "out/", "src/"];

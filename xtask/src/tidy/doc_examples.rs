@@ -65,7 +65,7 @@ fn modules(repo: &Repo, file: &File) -> Vec<Finding> {
     findings
 }
 
-/// Whether the documentation at the head of a module has a Rust block that runs.
+/// True if the documentation at the head of a module has a Rust block that runs.
 fn has_example(text: &str) -> bool {
     let mut is_open = false;
     text.lines().filter_map(|line| line.strip_prefix("//! ```")).any(|info| {

@@ -50,7 +50,7 @@ fn links(line: &str) -> impl Iterator<Item = &str> {
     targets.filter(|target| !target.is_empty() && !target.contains("://"))
 }
 
-/// Whether a link from a page of the guide is that of a file.
+/// True if a link from a page of the guide is that of a file.
 fn leads_somewhere(repo: &Repo, link: &str) -> bool {
     let mut path: Vec<&str> = PAGES.trim_end_matches('/').split('/').collect();
     for part in link.split('/') {

@@ -107,7 +107,7 @@ fn room_of(file: &File) -> &str {
     inside.split('/').next().unwrap_or_default().trim_end_matches(".rs")
 }
 
-/// Whether a file is compiled for tests alone: its module is declared under `#[cfg(test)]`.
+/// True if a file is compiled for tests alone: its module is declared under `#[cfg(test)]`.
 pub fn is_test(file: &File, repo: &Repo) -> bool {
     let Some((folder, name)) = file.path.trim_end_matches(".rs").rsplit_once('/') else { return false };
     let parent = repo.file(&format!("{folder}/mod.rs"));

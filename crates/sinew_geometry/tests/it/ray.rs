@@ -27,7 +27,7 @@ fn from_axis(p: Vec3) -> f32 {
     (p.x * p.x + p.z * p.z).sqrt()
 }
 
-/// Whether a point is in the shape, computed independently.
+/// True if a point is in the shape, computed independently.
 fn holds(shape: &Shape, p: Vec3) -> bool {
     match *shape {
         Shape::Box { half_extents: h } => p.x.abs() <= h.x && p.y.abs() <= h.y && p.z.abs() <= h.z,

@@ -320,7 +320,7 @@ impl Actor {
     }
 }
 
-/// Whether particles hang on a body or an object needs it, so that it cannot be removed.
+/// True if particles hang on a body or an object needs it, so that it cannot be removed.
 pub fn is_worn(world: &World, id: BodyId) -> bool {
     let by_particles = world.group_ids().any(|group| {
         let group = world.particles(group);

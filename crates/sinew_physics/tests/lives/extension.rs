@@ -43,7 +43,7 @@ impl Extension {
         String::new()
     }
 
-    /// Whether it releases energy that nothing counts.
+    /// True if it releases energy that nothing counts.
     pub fn drives(&self) -> bool {
         false
     }

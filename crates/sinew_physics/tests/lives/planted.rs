@@ -105,7 +105,7 @@ fn sink(world: &mut World) {
 }
 
 impl Plant {
-    /// Whether a life has found this fault and not another.
+    /// True if a life has found this fault and not another.
     pub fn is_found(self, fault: &Fault) -> bool {
         match self {
             Self::ForgottenField | Self::ThreadOrder => matches!(fault, Fault::Differs(_)),

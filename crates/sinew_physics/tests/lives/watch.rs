@@ -27,7 +27,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Whether the other is the same kind of fault: for panics, with the same words; for energy, at least half as large.
+    /// True if the other is the same kind of fault: for panics, with the same words; for energy, at least half as large.
     pub fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Panic(p), Self::Panic(q)) => words(p) == words(q),
@@ -257,7 +257,7 @@ fn finite(world: &World, seen: impl Fn(Velocity) -> Velocity) -> Result<(), Faul
     Ok(())
 }
 
-/// Whether nothing keeps a body from lying on the floor.
+/// True if nothing keeps a body from lying on the floor.
 fn is_borne(world: &World, id: BodyId, floor: BodyId) -> bool {
     let plain = |shape: ShapeId| {
         world.sensing(shape) == Sensing::Solid
@@ -273,7 +273,7 @@ fn is_borne(world: &World, id: BodyId, floor: BodyId) -> bool {
         && !world.neighbors(id).any(pressed)
 }
 
-/// Whether no source of energy is uncounted.
+/// True if no source of energy is uncounted.
 fn is_passive(world: &World) -> bool {
     let is_still = |id: BodyId| {
         let runs = |shape: ShapeId| {
@@ -297,12 +297,12 @@ fn is_passive(world: &World) -> bool {
         && world.joint_ids().all(is_plain)
 }
 
-/// Whether shapes overlap deeply: separating them raises weights.
+/// True if shapes overlap deeply: separating them raises weights.
 fn is_strained(world: &World) -> bool {
     world.contacts().any(|contact| contact.points().iter().any(|point| point.separation < -OVERLAP))
 }
 
-/// Whether joints are open: some cannot close, because a body that nothing moves is elsewhere.
+/// True if joints are open: some cannot close, because a body that nothing moves is elsewhere.
 fn is_torn(world: &World) -> bool {
     let enabled = |id: &JointId| world.joint(*id).state == JointState::Enabled;
     let open = |id: JointId| world.joint_gap(id) > GAP || world.joint_overshoot(id) > OVERSHOOT;

@@ -343,7 +343,7 @@ impl Gait {
         self.mover = Some(world.add_mover(&mover));
         (self.yaw, self.air, self.pace) = (0.0, 0.0, 0.0);
         (self.velocity, self.beside, self.falls) = (Vec3::ZERO, Vec3::ZERO, false);
-        self.calm();
+        self.clear_shoves();
     }
 
     /// True once it has left the ground: at once in a jump, after a moment over an edge or a kerb.
@@ -362,14 +362,14 @@ impl Gait {
         self.pulled = way * min(speed, PULL_SPEED);
     }
 
-    /// Forgets shoves and pulls.
-    fn calm(&mut self) {
+    /// Clears shoves and pulls.
+    fn clear_shoves(&mut self) {
         (self.shoved, self.blown, self.pulled) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
     }
 
     /// Removes its mover because it lies.
     pub fn sit_down(&mut self, world: &mut World) {
-        self.calm();
+        self.clear_shoves();
         if let Some(mover) = self.mover.take().filter(|&mover| world.contains_mover(mover)) {
             world.remove_mover(mover);
         }
@@ -378,7 +378,7 @@ impl Gait {
     /// Restarts at a new place.
     pub fn teleport(&mut self, place: Vec3, world: &mut World) {
         (self.air, self.beside, self.velocity) = (0.0, Vec3::ZERO, Vec3::ZERO);
-        self.calm();
+        self.clear_shoves();
         if let Some(mover) = self.mover {
             let skin = world.mover(mover).def().skin;
             world.set_mover_position(mover, place + Vec3::Y * skin);

@@ -149,9 +149,10 @@ impl Physique {
         }
     }
 
-    /// Applies an impulse to a body, at a point or at its centre of mass, and returns the work, joules. What would make
-    /// the body faster than [`HIT_SPEED`] goes to the bodies above it, and beyond the pelvis to the struck body: all of
-    /// a blow to the trunk on a hand would fling the hand away.
+    /// Applies an impulse to a body, at a point or at its centre of mass, and returns the work, joules.
+    ///
+    /// A share that would make the body faster than [`HIT_SPEED`] goes to the bodies above it, or the blow would fling a
+    /// hand away. What is left beyond the pelvis goes to the struck body.
     pub fn push(
         &self,
         def: &CharacterDef,
@@ -162,16 +163,15 @@ impl Physique {
     ) -> f32 {
         let way = normalize_or(impulse, Vec3::ZERO);
         let mut left = impulse.length();
-        let mut given = Vec::new();
-        for (body, share) in shares(&def.ragdoll, body, HIT_SPEED) {
-            given.push((body, min(left, share)));
-            left -= min(left, share);
-        }
-        given[0].1 += left;
+        let whole: f32 = shares(&def.ragdoll, body, HIT_SPEED).map(|(_, share)| share).sum();
+        let mut beyond = max(left - whole, 0.0);
         let mut work = 0.0;
-        for (of, size) in given.into_iter().filter(|(_, size)| *size > 0.0) {
+        for (of, share) in shares(&def.ragdoll, body, HIT_SPEED) {
+            let given = min(left, share);
+            left -= given;
+            let size = given + core::mem::take(&mut beyond);
             let id = self.limp().bodies[of];
-            if world.kind(id) != BodyKind::Dynamic {
+            if size <= 0.0 || world.kind(id) != BodyKind::Dynamic {
                 continue;
             }
             let before = world.body_energy(id).kinetic;

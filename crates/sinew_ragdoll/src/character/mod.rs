@@ -187,7 +187,7 @@ impl Character {
         self.advance(world);
         self.plant(world);
         self.attend(world);
-        self.mind_held(world);
+        self.give_way_to_grips(world);
     }
 
     fn go_rising(&mut self, world: &mut World) {
@@ -202,7 +202,7 @@ impl Character {
         }
         self.plant(world);
         self.attend(world);
-        self.mind_held(world);
+        self.give_way_to_grips(world);
     }
 
     /// Advances the clips and the character over the ground by a step.
@@ -248,7 +248,7 @@ impl Character {
         if !self.is_in_world() {
             return;
         }
-        self.feel_pushes(world);
+        self.apply_pushes(world);
         if self.state() == State::Limp {
             return;
         }
@@ -258,8 +258,8 @@ impl Character {
         }
     }
 
-    /// Blasts, other impulses on its led bodies, and fields.
-    fn feel_pushes(&mut self, world: &mut World) {
+    /// Reacts to blasts, other impulses on its led bodies, and fields.
+    fn apply_pushes(&mut self, world: &mut World) {
         let pushes = self.physique.pushes(world);
         let blown = self.physique.field_impulse(world);
         let total: Vec3 = pushes.iter().map(|(_, push)| push.impulse).sum();
@@ -356,7 +356,7 @@ impl Character {
     }
 
     /// Gives way with a limb that something holds; held by the pelvis, or while it gets up, it goes limp.
-    fn mind_held(&mut self, world: &mut World) {
+    fn give_way_to_grips(&mut self, world: &mut World) {
         if self.physique.hit.is_empty() || self.physique.ragdoll.is_some() {
             return;
         }

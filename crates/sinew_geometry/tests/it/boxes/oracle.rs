@@ -75,7 +75,7 @@ impl WideBox {
         })
     }
 
-    /// Whether a part of a segment is in the box, grown by `grow` on every side.
+    /// True if a part of a segment is in the box, grown by `grow` on every side.
     fn meets_segment(&self, ends: [Wide; 2], grow: f64) -> bool {
         let [p, q] = ends.map(|p| self.local(p));
         let (mut first, mut last) = (0.0f64, 1.0f64);
@@ -95,7 +95,7 @@ impl WideBox {
         first <= last
     }
 
-    /// Whether two boxes, the first grown by `grow`, have a point in common: then an edge of one enters the
+    /// True if two boxes, the first grown by `grow`, have a point in common: then an edge of one enters the
     /// other.
     pub fn meets(&self, other: &Self, grow: f64) -> bool {
         if self.half.iter().any(|h| h + grow < 0.0) {

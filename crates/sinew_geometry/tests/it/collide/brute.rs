@@ -201,7 +201,7 @@ struct Tally {
     far: u32,
 }
 
-/// Whether two answers to one query are equally good: along both normals the shapes are equally far apart, within
+/// True if two answers to one query are equally good: along both normals the shapes are equally far apart, within
 /// [`preference`], and the separations agree. Rounding then decides which one is returned, and the place
 /// along level directions.
 fn is_tie(kind: Kind, a: &Placed, b: &Placed, ab: &Manifold, ba: &Manifold) -> bool {

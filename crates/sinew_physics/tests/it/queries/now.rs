@@ -117,7 +117,7 @@ fn after_a_step_the_new_pose() {
     }
 }
 
-/// Whether a ray from above, a box around it, and a ball on it find a body, each alone.
+/// True if a ray from above, a box around it, and a ball on it find a body, each alone.
 fn met(world: &mut World, id: BodyId, filter: QueryFilter<'_>) -> [bool; 3] {
     let query = world.query().filter(filter).accept(|body, _| body == id);
     let around = OverlapWith(Probe::at(Shape::Box { half_extents: Vec3::splat(2.0) }, Vec3::ZERO));

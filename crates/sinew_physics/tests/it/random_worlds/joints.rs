@@ -134,14 +134,14 @@ fn six(r: &mut Random) -> SixDof {
     SixDof { linear, twist: axis(r, 3.0), swing_y: axis(r, 1.5), swing_z: axis(r, 1.5) }
 }
 
-/// Whether soft limits are allowed: the energy of a cone's cannot be computed from outside deep beyond it, where its room is
+/// True if soft limits are allowed: the energy of a cone's cannot be computed from outside deep beyond it, where its room is
 /// exact to first order only.
 fn stores_limits(kind: &JointKind, temper: Temper) -> bool {
     let turns = matches!(kind, JointKind::Ball { .. } | JointKind::Universal { .. } | JointKind::SixDof(_));
     temper == Temper::Driven || !turns
 }
 
-/// Whether springs are allowed: those about only some axes of rotation store no energy.
+/// True if springs are allowed: those about only some axes of rotation store no energy.
 fn stores_springs(kind: &JointKind, temper: Temper) -> bool {
     temper == Temper::Driven || !matches!(kind, JointKind::SixDof(_))
 }

@@ -191,7 +191,7 @@ impl<'a> Run<'a> {
         joints.filter(|(_, def)| def.state == JointState::Enabled)
     }
 
-    /// Whether a joint is open or beyond its stops.
+    /// True if a joint is open or beyond its stops.
     fn is_settling(&self) -> bool {
         self.enabled_joints().any(|(id, _)| {
             self.world.joint_gap(id) > GAP_CLOSED || self.world.joint_overshoot(id) > STOP_REACHED
@@ -205,7 +205,7 @@ impl<'a> Run<'a> {
             .any(|v| v.linear.length() > VIOLENT_LINEAR || v.angular.length() > VIOLENT_ANGULAR)
     }
 
-    /// Whether no joint closes a loop; all bodies that are not dynamic are one ground.
+    /// True if no joint closes a loop; all bodies that are not dynamic are one ground.
     fn is_forest(&self) -> bool {
         let bodies: Vec<BodyId> = self.world.body_ids().collect();
         let node = |id: BodyId| match self.world.kind(id) {

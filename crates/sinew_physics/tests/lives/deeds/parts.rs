@@ -143,12 +143,12 @@ pub fn body(n: &mut Numbers, at: Vec3) -> BodyDef {
     def
 }
 
-/// Whether every shape of a body's definition is valid.
+/// True if every shape of a body's definition is valid.
 pub fn is_valid(def: &BodyDef) -> bool {
     def.shapes.iter().all(|shape| shape.check().is_ok())
 }
 
-/// Whether the shapes other than one have mass.
+/// True if the shapes other than one have mass.
 pub fn weighs(world: &World, id: BodyId, without: Option<u32>) -> bool {
     world.shape_ids(id).filter(|shape| Some(shape.shape) != without).any(|shape| {
         let def = world.shape_def(shape);
