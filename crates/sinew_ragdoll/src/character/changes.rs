@@ -7,6 +7,7 @@ use super::get_up::{Choice, Rising, Way, choose, is_taken, is_under, standing};
 use super::hit_bodies::Strike;
 use super::limp::{Lying, Stillness};
 use super::prepare::Preparing;
+use super::rises::Grounds;
 use super::stumble::{Balance, Balancing};
 use super::wear::{Bearer, Wear};
 use super::{
@@ -299,6 +300,16 @@ impl Character {
         }
     }
 
+    /// Its clips lead all bodies again.
+    pub(super) fn recover(&mut self, world: &mut World) {
+        let (foresight, scratch) = self.ahead();
+        foresight.next(world.def().dt(), scratch);
+        self.leave_bodies(world);
+        self.activity = Activity::Animated;
+        self.events.push(CharacterEvent::Recovered);
+        self.physique.lead_to(&self.scratch.before, &self.scratch.after, world);
+    }
+
     // Powered
 
     /// Muscles and pins drive all bodies to the clips.
@@ -428,12 +439,12 @@ impl Character {
         let lies = self.figure.stance(&def, &mut self.scratch);
         let lying = self.scratch.before.clone();
         let own = self.detail.map(|_| self.physique.own());
-        let lean = ground::slope(world, &lies.points, own);
+        let lean = ground::slope(world, &lies.points, own, def.ragdoll.total_mass);
         let choice = choose(&moves.get_ups, &moves.landmarks, &lies);
         let way = match choice {
             Some(Choice { get_up, start, pose_similarity }) => {
                 self.settle_into(world, pose_similarity.motion, lean, INTO_GET_UP);
-                self.pass(get_up.deepest, INTO_GET_UP);
+                self.pass(world, get_up.deepest, INTO_GET_UP);
                 self.feet.pass_to(&def, &lying, pose_similarity.motion, &start.bodies);
                 let once =
                     TrackDef { start: start.time, loop_mode: LoopMode::Once, ..TrackDef::new(get_up.id) };
@@ -442,7 +453,7 @@ impl Character {
             None => {
                 let upright = moves.landmarks.compare(&moves.upright, &lies).motion;
                 self.settle_into(world, upright, lean, INTO_STANDING);
-                self.pass(moves.deepest, INTO_STANDING);
+                self.pass(world, moves.deepest, INTO_STANDING);
                 def.play_looped(&mut self.gait.animator, 0.0);
                 Way::Without(INTO_STANDING)
             }
@@ -462,7 +473,9 @@ impl Character {
         let def = self.def.clone();
         let moves = def.moves();
         let stands = self.figure.stance(&def, &mut self.scratch);
-        let from = self.feet.shown_depths(&def, &self.figure, &mut self.scratch.model);
+        let own = self.detail.map(|_| self.physique.own());
+        let from =
+            self.feet.shown_depths(&def, &self.figure, Grounds { world, own }, &mut self.scratch.model);
         let upright = moves.landmarks.compare(&moves.upright, &stands).motion;
         self.settle_into(world, upright, Vec3::ZERO, INTO_LOOP);
         self.feet.pass(&def, from, moves.deepest, INTO_LOOP);
@@ -476,9 +489,14 @@ impl Character {
     }
 
     /// Starts a transition of this many seconds to a pose no deeper than `to`, from the shown pose.
-    fn pass(&mut self, to: super::clearance::Depths, seconds: f32) {
-        let from = self.feet.shown_depths(&self.def, &self.figure, &mut self.scratch.model);
+    fn pass(&mut self, world: &World, to: super::clearance::Depths, seconds: f32) {
+        let own = self.detail.map(|_| self.physique.own());
+        let (grounds, model) = (Grounds { world, own }, &mut self.scratch.model);
+        let from = self.feet.shown_depths(&self.def, &self.figure, grounds, model);
         self.feet.pass(&self.def, from, to, seconds);
+        if self.feet.is_passing() {
+            self.feet.passage.follow_ground(&self.def, &self.figure, grounds, model);
+        }
     }
 
     /// Stands on the ground at `place`, stops all tracks of the whole body, and lets the present pose and motion decay

@@ -18,6 +18,8 @@ use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
 /// Number of parts: the trunk with its knees, the feet, the hands, the elbows, left ones first.
 pub(super) const PARTS: usize = 7;
 const TRUNK: usize = 0;
+/// Largest number of times that trunk and limbs are raised: the second time for knees below raised feet.
+const MOST_PASSES: usize = 3;
 pub(super) const FEET: [usize; 2] = [1, 2];
 const HANDS: [usize; 2] = [3, 4];
 const ELBOWS: [usize; 2] = [5, 6];
@@ -39,6 +41,9 @@ pub(super) struct Passage {
     /// Seconds since its start, and its duration.
     pub age: f32,
     pub seconds: f32,
+    /// Smoothed height of the ground under each part over the floor of the clip, metres, and its rate of change, m/s.
+    pub rises: Depths,
+    pub rise_rates: Depths,
 }
 
 /// A stepping foot.
@@ -55,10 +60,13 @@ pub(super) struct Step {
 }
 
 impl Passage {
-    /// Allowed depths after this many seconds more.
+    /// Allowed depths in the floor of the clip after this many seconds more.
     pub fn allowed(&self, later: f32) -> Depths {
         let share = if self.seconds > 0.0 { smoothstep((self.age + later) / self.seconds) } else { 1.0 };
-        core::array::from_fn(|part| self.from[part] + (self.to[part] - self.from[part]) * share)
+        core::array::from_fn(|part| {
+            let in_ground = self.from[part] + (self.to[part] - self.from[part]) * share;
+            in_ground - (self.rises[part] + self.rise_rates[part] * later)
+        })
     }
 
     /// Steps of the feet: at once while it lies, alternately once it stands.
@@ -100,7 +108,8 @@ impl LimbChain {
         let Step { from, far, along, over } = steps?[foot];
         // A lying leg has no sole that could slide; lifting its foot would press the knee into the floor.
         let stands = from.rotation * (def.bind()[self.bones.end].to_rigid().rotation.inverse() * Vec3::Y);
-        if along >= 1.0 || from == to || stands.y < STEPS_FROM {
+        let is_over = along >= 1.0 && over <= 0.0;
+        if is_over || from == to || stands.y < STEPS_FROM {
             return None;
         }
         let way = to.translation - from.translation;
@@ -163,11 +172,15 @@ impl Clearance {
         self.limbs.iter().find(|limb| limb.end == FEET[foot]).map(|limb| limb.bones.end)
     }
 
-    fn depth(&self, part: usize, model: &[Affine], palette: &mut Vec<Affine>) -> f32 {
-        let surface = &self.parts[part];
+    /// Outmost points of a part, in the space of `model`.
+    pub fn places(&self, part: usize, model: &[Affine], palette: &mut Vec<Affine>) -> Vec<Vec3> {
+        let Some(surface) = self.parts.get(part) else { return Vec::new() };
         surface.palette(model, palette);
-        let heights = surface.sample.iter().map(|&vertex| surface.place(palette, vertex).y);
-        -heights.fold(f32::INFINITY, min)
+        surface.sample.iter().map(|&vertex| surface.place(palette, vertex)).collect()
+    }
+
+    fn depth(&self, part: usize, model: &[Affine], palette: &mut Vec<Affine>) -> f32 {
+        -self.places(part, model, palette).iter().map(|place| place.y).fold(f32::INFINITY, min)
     }
 
     /// Depths of all parts; `model` is in character space.
@@ -216,31 +229,33 @@ impl Clearance {
             .iter()
             .map(|&(joint, carrier)| model[carrier].to_rigid().inverse() * model[joint].to_rigid())
             .collect();
-        if lifts[TRUNK] > 0.0 {
-            let up = Transform::new(Vec3::Y * lifts[TRUNK], Rotation::IDENTITY);
-            def.mapping().reframe(pose, up, Transform::IDENTITY);
-            local_to_model(rig, pose, &root, model);
-        }
         let mut palette = Vec::new();
-        for ((limb, was), step) in self.limbs.iter().zip(ends).zip(steps) {
-            let bones = limb.bones;
-            if lifts[TRUNK] > 0.0 || lifts[limb.end] > 0.0 || step.is_some() {
-                let mut wanted = step.unwrap_or(was);
-                wanted.translation.y += if step.is_some() { 0.0 } else { lifts[limb.end] };
-                put(rig, bones, wanted, &root, pose, model);
-                let up = lift(self.depth(limb.end, model, &mut palette), limb.end);
-                if step.is_some() && up > 0.0 {
-                    wanted.translation.y += up;
-                    put(rig, bones, wanted, &root, pose, model);
-                }
+        let mut trunk = lifts[TRUNK];
+        for _ in 0..MOST_PASSES {
+            if trunk > 0.0 {
+                let up = Transform::new(Vec3::Y * trunk, Rotation::IDENTITY);
+                def.mapping().reframe(pose, up, Transform::IDENTITY);
+                local_to_model(rig, pose, &root, model);
             }
-            let Some(middle) = limb.middle else { continue };
-            let up = lift(self.depth(middle, model, &mut palette), middle);
-            let bone = model[bones.lower].translation - model[bones.upper].translation;
-            if up > 0.0 && bone.length() > 0.0 {
-                let turned = Rotation::from_arc(bone.normalize(), (bone + Vec3::Y * up).normalize());
-                let rotation = turned * model[bones.upper].to_rigid().rotation;
-                turn_to(rig, bones.upper, rotation, &root, pose, model);
+            for ((limb, &was), &step) in self.limbs.iter().zip(&ends).zip(&steps) {
+                if trunk > 0.0 || lifts[limb.end] > 0.0 || step.is_some() {
+                    let raised =
+                        Transform { translation: was.translation + Vec3::Y * lifts[limb.end], ..was };
+                    put(rig, limb.bones, step.unwrap_or(raised), &root, pose, model);
+                    let up = lift(self.depth(limb.end, model, &mut palette), limb.end);
+                    if let Some(mut wanted) = step.filter(|_| up > 0.0) {
+                        wanted.translation.y += up;
+                        put(rig, limb.bones, wanted, &root, pose, model);
+                    }
+                }
+                let Some(middle) = limb.middle else { continue };
+                let up = lift(self.depth(middle, model, &mut palette), middle);
+                raise_middle(rig, limb.bones, up, &root, pose, model);
+            }
+            // A raised foot presses its knee into the floor, which is the trunk's.
+            trunk = lift(self.depth(TRUNK, model, &mut palette), TRUNK);
+            if trunk <= 0.0 {
+                break;
             }
         }
         for (&(joint, carrier), at) in self.strays.iter().zip(carried) {
@@ -269,6 +284,23 @@ fn put(
     let side = model[bones.lower].translation - middle;
     two_bone_ik(rig, bones, &TwoBoneGoal::at(end.translation, Pole::Keep(side)), pose, model);
     turn_to(rig, bones.end, end.rotation, root, pose, model);
+}
+
+/// Turns a limb about its upper joint until the middle joint is `up` metres higher, in the axes of `model`.
+fn raise_middle(
+    rig: &Rig,
+    bones: TwoBone,
+    up: f32,
+    root: &Affine,
+    pose: &mut [LocalTransform],
+    model: &mut Vec<Affine>,
+) {
+    let bone = model[bones.lower].translation - model[bones.upper].translation;
+    if up > 0.0 && bone.length() > 0.0 {
+        let turned = Rotation::from_arc(bone.normalize(), (bone + Vec3::Y * up).normalize());
+        let rotation = turned * model[bones.upper].to_rigid().rotation;
+        turn_to(rig, bones.upper, rotation, root, pose, model);
+    }
 }
 
 /// Sets a joint's rotation in the axes of `model`, with its descendants.

@@ -5,14 +5,13 @@
 //! damped spring, so that an edge below a moving foot causes no jump.
 
 use super::activity::Activity;
-use super::clearance::{Depths, FEET, PARTS, Passage, larger};
+use super::clearance::{Depths, PARTS, Passage, larger};
 use super::figure::Figure;
 use super::legs::{Legs, Need, Planting, Tilts};
+use super::rises::Grounds;
 use super::tread::Treads;
 use super::{CharacterDef, GroundContact, Locomotion, State, ground};
-use crate::character::tuning::{
-    FOOT_EDGE, FOOT_FLOOR, FOOT_RANGE, FOOT_SEARCH, FOOT_SHARE, PLANTED_SOONER, WALKS_FROM,
-};
+use crate::character::tuning::{FOOT_EDGE, FOOT_FLOOR, FOOT_RANGE, FOOT_SEARCH, PLANTED_SOONER, WALKS_FROM};
 use sinew_anim::{Animator, LocalTransform, local_to_model, smoothstep};
 use sinew_math::{Affine, Transform, Vec3, max};
 use sinew_physics::{BodyId, World};
@@ -69,6 +68,10 @@ impl Feet {
     /// Plants the feet of a character that gets up, or has and still stands there. For one that walks they return to
     /// the clips.
     pub fn plant(&mut self, stand: &Stand<'_>, world: &World, model: &mut Vec<Affine>) {
+        if self.is_passing() {
+            let grounds = Grounds { world, own: stand.own };
+            self.passage.follow_ground(stand.def, stand.figure, grounds, model);
+        }
         self.go_on_passing(stand.activity.state(), world.def().dt());
         self.follow_ground(stand, world, model);
         let state = stand.activity.state();
@@ -145,10 +148,16 @@ impl Feet {
         self.bring_home(def, offsets, place, pose, model);
     }
 
-    /// Depths of the pose that is shown, and its ankles.
-    pub fn shown_depths(&self, def: &CharacterDef, figure: &Figure, model: &mut Vec<Affine>) -> Depth {
-        local_to_model(&def.rig, self.led(&figure.pose), &def.mapping().character_from_model(), model);
-        let depths = larger(def.clearance().depths(model), [0.0; PARTS]);
+    /// Depths in the ground of the pose that is shown, and its ankles.
+    pub fn shown_depths(
+        &self,
+        def: &CharacterDef,
+        figure: &Figure,
+        grounds: Grounds<'_>,
+        model: &mut Vec<Affine>,
+    ) -> Depth {
+        let [_, ground] = grounds.depths(def, figure, self.led(&figure.pose), model);
+        let depths = larger(ground, [0.0; PARTS]);
         let ankle = |foot: usize| match def.clearance().ankle(foot) {
             Some(ankle) => figure.place * model[ankle].to_rigid(),
             None => Transform::IDENTITY,
@@ -159,7 +168,7 @@ impl Feet {
     /// Starts a transition of this many seconds to a pose no deeper than `to`, from the shown pose.
     pub fn pass(&mut self, def: &CharacterDef, (from, ankles): Depth, to: Depths, seconds: f32) {
         self.passage = match def.ground_contact {
-            GroundContact::Enforced => Passage { from, to, ankles, far: [0.0; 2], age: 0.0, seconds },
+            GroundContact::Enforced => Passage { from, to, ankles, seconds, ..Passage::default() },
             GroundContact::AsBlended => Passage::default(),
         };
     }
@@ -209,13 +218,7 @@ impl Feet {
         if share <= 0.0 || def.clearance().is_empty() {
             return;
         }
-        let mut allowed = self.passage.allowed(later);
-        let planting = self.planting.ahead(later);
-        for (foot, part) in FEET.into_iter().enumerate() {
-            // Feet on uneven ground go where it is.
-            allowed[part] += max(-planting.heights[foot], 0.0)
-                + planting.slopes[foot].abs() * FOOT_SHARE * def.ragdoll.height;
-        }
+        let allowed = self.passage.allowed(later);
         let steps = self.passage.steps(later, state, place);
         def.clearance().clear(def, &allowed, share, Some(steps), pose, model);
     }

@@ -29,6 +29,25 @@ pub(super) fn found_below(world: &World, point: Vec3, above: f32, own: Option<&[
     hit.start.is_none().then_some(hit)
 }
 
+/// Height of the ground under a point as [`below`], without detached limbs, other characters, and dynamic bodies lighter
+/// than `least` kg.
+pub(super) fn firm_below(
+    world: &World,
+    point: Vec3,
+    above: f32,
+    own: Option<&[BodyId]>,
+    least: f32,
+) -> Option<f32> {
+    let hit = found_below(world, point, above, own)?;
+    is_firm(world, hit.body, least).then_some(hit.point.y)
+}
+
+/// True of ground that bears a character: neither a limb nor a dynamic body lighter than `least` kg.
+pub(super) fn is_firm(world: &World, body: BodyId, least: f32) -> bool {
+    let is_dynamic = world.kind(body) == BodyKind::Dynamic;
+    !is_dynamic || (world.body_owner(body).is_none() && world.mass(body).mass >= least)
+}
+
 pub(super) fn bearer(world: &World, ray: &Ray, own: &[BodyId]) -> Option<BodyHit> {
     let bears = |body: BodyId, shape: u32| {
         !matches!(world.contact_rule(ShapeId { body, shape }), ContactRule::Ghost | ContactRule::Yields(_))
@@ -85,10 +104,11 @@ pub(super) fn bears(def: &RagdollDef, own: &[BodyId], world: &World) -> bool {
 }
 
 /// The ground under a body as a plane through its heights under these points: the rotation from the vertical to the
-/// plane's normal, scaled axis. Stairs act as the slope through their treads.
-pub(super) fn slope(world: &World, points: &[Vec3], own: Option<&[BodyId]>) -> Vec3 {
-    let under =
-        |&point: &Vec3| below(world, point, LYING_SEARCH, own).map(|y| Vec3::new(point.x, y, point.z));
+/// plane's normal, scaled axis. Stairs act as the slope through their treads. `least`: as for [`firm_below`].
+pub(super) fn slope(world: &World, points: &[Vec3], own: Option<&[BodyId]>, least: f32) -> Vec3 {
+    let under = |&point: &Vec3| {
+        firm_below(world, point, LYING_SEARCH, own, least).map(|y| Vec3::new(point.x, y, point.z))
+    };
     let places: Vec<Vec3> = points.iter().filter_map(under).collect();
     if places.len() < 3 {
         return Vec3::ZERO;

@@ -55,6 +55,15 @@ impl Physique {
         (self.before, scratch.after) = (now, before);
     }
 
+    /// Moves the hit bodies, which are at `now`, to `next` within the next step; world.
+    pub fn lead_to(&mut self, now: &[Transform], next: &[Transform], world: &mut World) {
+        self.before.clear();
+        self.before.extend_from_slice(now);
+        let dt = world.def().dt();
+        let own = self.hit.iter().zip(next).enumerate().filter(|(index, _)| self.has(*index));
+        own.for_each(|(_, (&id, &next))| world.move_to(id, next, dt));
+    }
+
     /// The hardest blow to its bodies in the last step, if it is felt. `steps`: it stands on its own feet, whose steps
     /// are no blows.
     pub fn felt(&self, def: &CharacterDef, steps: bool, world: &World) -> Option<(usize, Strike)> {

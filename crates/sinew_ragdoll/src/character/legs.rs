@@ -182,7 +182,7 @@ impl Planting {
 }
 
 /// `x″ = −ω²(x − g) − 2ω x′` for `dt` seconds, solved exactly.
-fn follow(x: &mut f32, rate: &mut f32, goal: f32, quickness: f32, dt: f32) {
+pub(super) fn follow(x: &mut f32, rate: &mut f32, goal: f32, quickness: f32, dt: f32) {
     let decay = trig::exp(-quickness * dt);
     let off = *x - goal;
     let carried = *rate + quickness * off;

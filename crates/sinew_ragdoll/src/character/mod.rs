@@ -58,6 +58,7 @@ mod pose_similarity;
 mod powered;
 mod prepare;
 mod recognise;
+mod rises;
 mod save;
 mod show;
 mod size;
@@ -322,10 +323,7 @@ impl Character {
         if self.goes_on_flinching(world) {
             self.drive_bodies(world);
         } else {
-            self.leave_bodies(world);
-            self.activity = Activity::Animated;
-            self.events.push(CharacterEvent::Recovered);
-            self.lead_bodies(world);
+            self.recover(world);
         }
         self.steer(world);
     }

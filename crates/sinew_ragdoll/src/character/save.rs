@@ -421,20 +421,22 @@ impl Grips {
 
 impl Passage {
     fn save(&self, w: &mut Writer) {
-        let Self { from, to, ankles, far, age, seconds } = self;
-        from.iter().chain(to).chain(far).chain([age, seconds]).for_each(|&x| w.f32(x));
+        let Self { from, to, ankles, far, age, seconds, rises, rise_rates } = self;
+        let parts = [from, to, rises, rise_rates].into_iter().flatten();
+        parts.chain(far).chain([age, seconds]).for_each(|&x| w.f32(x));
         ankles.iter().for_each(|&ankle| w.transform(ankle));
     }
 
     fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
-        let mut numbers = [0.0; 2 * PARTS + 4];
+        let mut numbers = [0.0; 4 * PARTS + 4];
         for number in &mut numbers {
             *number = r.f32()?;
         }
         let part = |first: usize| -> Depths { core::array::from_fn(|part| numbers[first + part]) };
-        let [left, right, age, seconds] = core::array::from_fn(|k| numbers[2 * PARTS + k]);
+        let [left, right, age, seconds] = core::array::from_fn(|k| numbers[4 * PARTS + k]);
         let ankles = [r.transform()?, r.transform()?];
-        Ok(Self { from: part(0), to: part(PARTS), ankles, far: [left, right], age, seconds })
+        let [from, to, rises, rise_rates] = [0, 1, 2, 3].map(|k| part(k * PARTS));
+        Ok(Self { from, to, ankles, far: [left, right], age, seconds, rises, rise_rates })
     }
 }
 

@@ -18,7 +18,7 @@ use sinew_anim::ik::hold_feet;
 use sinew_anim::{LocalTransform, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, clamp, max, min, trig};
 use sinew_physics::ray::Ray;
-use sinew_physics::{BodyHit, BodyKind, World};
+use sinew_physics::{BodyHit, World};
 
 /// A foot, apart from the height in [`Planting`](super::legs::Planting).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -222,11 +222,9 @@ impl Stand<'_> {
             let over = Vec3::new(point.x, level, point.z);
             let hit = ground::found_below(world, over, FOOT_SEARCH, self.own)?;
             // Light bodies are kicked, limbs are stepped over.
-            let is_loose = world.kind(hit.body) == BodyKind::Dynamic
-                && (world.body_owner(hit.body).is_some()
-                    || world.mass(hit.body).mass < LEAST_TREAD * self.def.ragdoll.total_mass);
+            let is_firm = ground::is_firm(world, hit.body, LEAST_TREAD * self.def.ragdoll.total_mass);
             let over = hit.point.y - level;
-            (!is_loose && over <= FOOT_RANGE && over >= -TREAD_RANGE * size).then_some((over, hit))
+            (is_firm && over <= FOOT_RANGE && over >= -TREAD_RANGE * size).then_some((over, hit))
         };
         let [ankle, ball] = step.points.map(|point| point + tread.offset);
         let tip = step.sole[2] + tread.offset;

@@ -81,6 +81,18 @@ pub(crate) const GRIP_STRETCH: f32 = 0.01;
 /// Larger: a grip pulls visibly harder than allowed. Smaller: it lets go too early. Shown by the tests of `grab`.
 pub(crate) const GRIP_SHARE: f32 = 0.9;
 
+// character/rises.rs
+
+/// Distance between the points of a part below which the ground is sought, as a share of the height.
+///
+/// Larger: a hand over the edge of a step sinks into it. Smaller: more rays. Shown by `brawl`.
+pub(crate) const PROBES_APART: f32 = 0.08;
+
+/// Natural frequency with which the parts of a rising character follow the ground, critically damped, rad/s.
+///
+/// Larger: hands jerk over edges. Smaller: they pass through them. Shown by `brawl`.
+pub(crate) const PART_QUICKNESS: f32 = 12.0;
+
 // character/grab.rs
 
 /// Distance between the bounds of two characters from which they collide again after a release, metres, twice.
@@ -260,11 +272,6 @@ pub(crate) const STEPS_FROM: f32 = 0.0;
 ///
 /// Larger: it jerks in between. Smaller: it slides. Shown by the tests of `rising`.
 pub(crate) const STRAIGHT_UP: f32 = 0.22;
-
-/// Length of a foot, as a share of the character's height, over which the ground under it may fall.
-///
-/// Larger: toes in the floor of a slope. Smaller: feet over it. Shown by the tests of `slopes`.
-pub(crate) const FOOT_SHARE: f32 = 0.15;
 
 // character/grab.rs
 
