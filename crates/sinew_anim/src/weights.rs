@@ -257,11 +257,16 @@ struct Bone {
 
 impl Bone {
     fn distance_squared(&self, at: Vec3) -> f32 {
-        let along = self.to - self.from;
-        let length = along.length_squared();
-        let share = if length > 0.0 { clamp((at - self.from).dot(along) / length, 0.0, 1.0) } else { 0.0 };
-        (self.from + along * share - at).length_squared()
+        distance_squared(at, [self.from, self.to])
     }
+}
+
+/// Squared distance from a point to the segment between two others, in the square of their unit.
+pub(crate) fn distance_squared(at: Vec3, [from, to]: [Vec3; 2]) -> f32 {
+    let along = to - from;
+    let length = along.length_squared();
+    let share = if length > 0.0 { clamp((at - from).dot(along) / length, 0.0, 1.0) } else { 0.0 };
+    (from + along * share - at).length_squared()
 }
 
 fn bones(rig: &Rig, skin: usize, model: &[Affine]) -> Vec<Bone> {

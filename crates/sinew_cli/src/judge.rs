@@ -50,6 +50,8 @@ pub fn judge_life(
     }
     let mut faults = faults_of_ragdoll(&character.document.rig, def);
     faults.extend(faults_of_bake(life.fall.input, &life.fall.baked));
+    let stays_down = |why: &str| Fault { at_most: Verdict::Usable, reason: why.to_owned() };
+    faults.extend(life.stays_down.map(stays_down));
     let skin = SkinReport::of(character, def, tested, Some(life));
     faults.extend(skin.rising.faults(def.height));
     Fault::weigh(&faults, &mut verdict, &mut reasons);
@@ -69,7 +71,7 @@ pub fn with_default_life<T>(
     see: impl FnOnce(Life<'_>) -> T,
 ) -> Result<T> {
     let motions = Motions::gather(character, &[], None)?;
-    let (falls, _) = actor(character, def.clone(), motions, true)?;
+    let (falls, gets_up_by) = actor(character, def.clone(), motions, true)?;
     let ground = [BodyDef::fixed(Shape::HalfSpace)];
     let up = character.analysis.hints.up.unwrap_or(Vec3::Y);
     let input = BakeInput {
@@ -83,5 +85,6 @@ pub fn with_default_life<T>(
     let fall = Fall::simulate(&input, doubt);
     let pushed = toppled(&input, &fall.baked);
     let fall = pushed.as_ref().map_or(fall, |pushed| Fall::simulate(pushed, doubt));
-    Ok(see(Life { fall: &fall, floor: Some(0.0) }))
+    let stays_down = gets_up_by.flaw();
+    Ok(see(Life { fall: &fall, floor: Some(0.0), stays_down: stays_down.as_deref() }))
 }

@@ -115,9 +115,17 @@ impl Affine {
         self.linear * v
     }
 
-    /// The rigid part: translation, and the rotation nearest to the linear part without scale and shear.
+    /// The rigid part: translation, and the rotation nearest to the linear part without scale and shear. Of a mirrored
+    /// linear part it is the rotation of its negative: a change of rotation then reads the same in both spaces.
     pub fn to_rigid(&self) -> Transform {
-        Transform::new(self.translation, Rotation::from_mat3_lossy(&self.linear))
+        let linear = if self.is_mirrored() { -self.linear } else { self.linear };
+        Transform::new(self.translation, Rotation::from_mat3_lossy(&linear))
+    }
+
+    /// True if the linear part turns a right hand into a left one.
+    fn is_mirrored(&self) -> bool {
+        let m = &self.linear;
+        m.x_axis.cross(m.y_axis).dot(m.z_axis) < 0.0
     }
 
     /// True if every number is finite.

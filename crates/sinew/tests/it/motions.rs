@@ -9,7 +9,7 @@ use sinew::anim::{
 };
 use sinew::formats::{ReadOptions, load_gltf};
 use sinew::mannequin::{WALK_SPEED, mannequin};
-use sinew::math::{Affine, Transform, Vec3};
+use sinew::math::{Affine, Rotation, Transform, Vec3};
 use sinew::motions::{builtin_motions, set_motions_with_builtin};
 use sinew::ragdoll::{BuildOptions, CharacterDef, Locomotion, MotionSet, Opening, RagdollBodyDef, build};
 use std::path::PathBuf;
@@ -164,4 +164,43 @@ fn what_a_get_up_says_nothing_of_stays_as_in_the_loop() {
         let of_sword = motions.clips[get_up].channels.iter().find(|channel| channel.joint == sword);
         assert_eq!(of_sword.map(|channel| channel.values.as_slice()), Some([0.0, 0.1, 0.0].as_slice()));
     }
+}
+
+/// The rig under a node that mirrors it in x, its mesh bound there: left and right are named the wrong way round.
+fn mirrored(rig: &Rig) -> Rig {
+    let mut rig = rig.clone();
+    let half_turn = Rotation::from_axis_angle(Vec3::X, core::f32::consts::PI);
+    let rest = LocalTransform { rotation: half_turn, scale: Vec3::splat(-1.0), ..LocalTransform::default() };
+    for joint in &mut rig.joints {
+        joint.parent = Some(joint.parent.map_or(0, |parent| parent + 1));
+    }
+    rig.joints.insert(0, Joint { name: "Armature".into(), parent: None, rest, source: rig.joints.len() });
+    let mirror = rest.to_affine();
+    for skin in &mut rig.skins {
+        skin.joints.iter_mut().for_each(|joint| *joint += 1);
+        skin.inverse_bind.iter_mut().for_each(|inverse| *inverse = *inverse * mirror.inverse());
+    }
+    for mesh in &mut rig.meshes {
+        mesh.joint += 1;
+        mesh.primitives
+            .iter_mut()
+            .flat_map(|part| &mut part.positions)
+            .for_each(|at| *at = mirror.point(*at));
+    }
+    rig.stated_roles.clear();
+    rig
+}
+
+/// A negative scale above the skeleton: get-ups come out on it as on any body.
+#[test]
+fn a_mirrored_skeleton_gets_up() {
+    let rig = mannequin().rig;
+    let depth = |rig: Rig| {
+        let (def, analysis) = character(rig);
+        let motions = builtin_motions(&def, &analysis).expect("a human");
+        let deepest = motions.fits.iter().map(|fit| def.deepest_skin(&fit.take));
+        deepest.fold(0.0_f32, f32::max)
+    };
+    let [plain, mirrored] = [depth(rig.clone()), depth(mirrored(&rig))];
+    assert!((plain - mirrored).abs() < 0.01, "{mirrored} m in the floor, {plain} m without the mirror");
 }

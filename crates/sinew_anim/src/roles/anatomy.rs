@@ -9,7 +9,7 @@ use super::creature::{generic_roles, up_by_feet};
 use super::gait::{Pair, Swing};
 use super::graph::{Graph, ancestors};
 use super::humanoid::{Evidence, Humanoid, Limb, Split, Stance};
-use super::names::{Part, Reading, read_names, settle_duplicates, settle_trunk};
+use super::names::{Part, Reading, read_names, settle_duplicates, settle_limbs, settle_trunk};
 use super::role::{Role, Side};
 use super::species::Species;
 use super::symmetry::Symmetry;
@@ -115,6 +115,7 @@ impl<'a> Scene<'a> {
         settle_duplicates(&mut readings, &names, |joint| {
             (bound.area[joint] > 0.0).then(|| ancestors(rig, joint).count())
         });
+        settle_limbs(&mut readings, &parents);
         settle_trunk(&mut readings, &parents, |joint| bound.area[joint] > 0.0);
         for &(role, joint) in known {
             (readings[joint].part, readings[joint].side) = (part_of(role), role.side());

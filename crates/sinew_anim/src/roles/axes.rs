@@ -10,8 +10,25 @@ use sinew_math::{Mat3, Rotation, Vec3, max, min};
 
 /// The model's axis nearest to a direction.
 pub(super) fn snap(direction: Vec3) -> Vec3 {
-    let axes = [Vec3::Y, Vec3::Z, Vec3::X, -Vec3::Y, -Vec3::Z, -Vec3::X];
-    axes.into_iter().reduce(|a, b| if b.dot(direction) > a.dot(direction) { b } else { a }).unwrap_or(Vec3::Y)
+    nearest(direction).0
+}
+
+/// `y`, `-z` and the like: the axis nearest to a direction.
+pub(super) fn name(direction: Vec3) -> &'static str {
+    nearest(direction).1
+}
+
+fn nearest(direction: Vec3) -> (Vec3, &'static str) {
+    let axes = [
+        (Vec3::Y, "y"),
+        (Vec3::Z, "z"),
+        (Vec3::X, "x"),
+        (-Vec3::Y, "-y"),
+        (-Vec3::Z, "-z"),
+        (-Vec3::X, "-x"),
+    ];
+    let nearer = |a: (Vec3, _), b: (Vec3, _)| if b.0.dot(direction) > a.0.dot(direction) { b } else { a };
+    axes.into_iter().reduce(nearer).unwrap_or((Vec3::Y, "y"))
 }
 
 /// The four model axes perpendicular to `lateral`: the file's own up first, then those of other programs.

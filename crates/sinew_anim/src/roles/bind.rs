@@ -241,13 +241,7 @@ pub(crate) fn bind_pose(rig: &Rig) -> Vec<Affine> {
     let mut rest = Vec::new();
     local_to_model(rig, &rest_pose(rig), &Affine::IDENTITY, &mut rest);
     let mut bound: Vec<Option<Affine>> = vec![None; rig.joints.len()];
-    // The mesh that most joints move defines its skin's joints, of equals the one with the most vertices: one of a gun alone
-    // lies where the hand rests. Smaller ones only add missing joints.
-    let mut meshes: Vec<&RigMesh> = rig.meshes.iter().filter(|mesh| mesh.skin.is_some()).collect();
-    let vertices = |mesh: &RigMesh| mesh.primitives.iter().map(|p| p.positions.len()).sum::<usize>();
-    let movers = |mesh: &RigMesh| moving_slots(rig, mesh).into_iter().filter(|moves| *moves).count();
-    meshes.sort_by_cached_key(|mesh| core::cmp::Reverse((movers(mesh), vertices(mesh))));
-    for mesh in meshes {
+    for mesh in by_weight(rig) {
         let Some(skin) = mesh.skin.map(|s| &rig.skins[s]) else { continue };
         let model_from_mesh = model_from_mesh(rig, mesh, &rest);
         for (&joint, inverse) in skin.joints.iter().zip(&skin.inverse_bind) {
@@ -265,6 +259,35 @@ pub(crate) fn bind_pose(rig: &Rig) -> Vec<Affine> {
         model.push(bound[i].or(beside[i]).unwrap_or(hung));
     }
     model
+}
+
+/// Skinned meshes, the one that defines the bind pose first: a mesh of the trunk before one of a limb or a gun alone,
+/// which lies where a posed hand rests; of these the one that most joints move, of equals the one with the most vertices.
+fn by_weight(rig: &Rig) -> Vec<&RigMesh> {
+    let mut meshes: Vec<&RigMesh> = rig.meshes.iter().filter(|mesh| mesh.skin.is_some()).collect();
+    let movers = |mesh: &RigMesh| -> Vec<JointIdx> {
+        let skin = &rig.skins[mesh.skin.expect("a skinned mesh")];
+        skin.joints
+            .iter()
+            .zip(moving_slots(rig, mesh))
+            .filter_map(|(&joint, moves)| moves.then_some(joint))
+            .collect()
+    };
+    let mut all: Vec<JointIdx> = meshes.iter().flat_map(|mesh| movers(mesh)).collect();
+    all.sort_unstable();
+    all.dedup();
+    let mut carried = vec![0; rig.joints.len()];
+    for &joint in &all {
+        core::iter::once(joint).chain(ancestors(rig, joint)).for_each(|at| carried[at] += 1);
+    }
+    let weight = |mesh: &RigMesh| {
+        let movers = movers(mesh);
+        let is_trunk = movers.iter().any(|&joint| 2 * carried[joint] >= all.len());
+        let vertices: usize = mesh.primitives.iter().map(|part| part.positions.len()).sum();
+        (is_trunk, movers.len(), vertices)
+    };
+    meshes.sort_by_cached_key(|mesh| core::cmp::Reverse(weight(mesh)));
+    meshes
 }
 
 /// Per slot of its skin true if it moves a vertex of the mesh.

@@ -2,13 +2,15 @@
 
 use super::bind::Bound;
 use super::graph::{Graph, ancestors};
-use super::role::Role;
+use super::role::{Role, Side};
 use super::{KeptBone, RoleGuess};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::tuning::{
-    LARGEST_ON_ARMATURE, LARGEST_WORN, LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN, VOTERS, WORN_WITHIN,
+    LARGEST_ON_ARMATURE, LARGEST_WORN, LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN, ON_BARE_ARM,
+    VOTERS, WORN_WITHIN,
 };
 use crate::skinning::skin_vertices;
+use crate::weights::distance_squared;
 use sinew_math::{Vec3, max, max3, min, min3};
 
 /// Input of the selection.
@@ -190,9 +192,35 @@ impl Selection<'_> {
             } else {
                 sum = 0.0;
             }
-            sum += self.bound.area[part];
+            sum += self.bound.area[part] * (1.0 - self.share_on_bare_arms(part));
             open = sum < LEAST_SPINE_SKIN * total;
         }
+    }
+
+    /// Share, 0 to 1, of the vertices of a part of the spine that belong to upper arms without skin of their own:
+    /// beyond the shoulder, and far nearer to the arm's bone than to the trunk's line.
+    fn share_on_bare_arms(&self, part: JointIdx) -> f32 {
+        let place = |role: Role| self.joint_of(role).map(|joint| self.bound.model[joint].translation);
+        let bare_arm = |side: Side| {
+            let upper = self.joint_of(Role::UpperArm(side)).filter(|&upper| self.bound.area[upper] <= 0.0)?;
+            Some([self.bound.model[upper].translation, place(Role::LowerArm(side))?])
+        };
+        let arms: Vec<[Vec3; 2]> = [Side::Left, Side::Right].into_iter().filter_map(bare_arm).collect();
+        let (Some(hips), Some(neck)) = (place(Role::Hips), place(Role::Neck).or(place(Role::Head))) else {
+            return 0.0;
+        };
+        let is_on = |at: Vec3, [shoulder, elbow]: [Vec3; 2]| {
+            (at - shoulder).dot(elbow - shoulder) > 0.0
+                && distance_squared(at, [shoulder, elbow])
+                    < ON_BARE_ARM * ON_BARE_ARM * distance_squared(at, [hips, neck])
+        };
+        let (mut all, mut on_arms) = (0.0, 0.0);
+        let moved = self.bound.vertices.iter().zip(&self.bound.movers);
+        for (&at, _) in moved.filter(|(_, mover)| **mover == part) {
+            all += 1.0;
+            on_arms += f32::from(u8::from(arms.iter().any(|&arm| is_on(at, arm))));
+        }
+        on_arms / max(all, 1.0)
     }
 
     /// Removes joints without skin, including that of merged ones; the root stays.

@@ -293,9 +293,13 @@ fn analyze_bound(
     let Anatomy { graph, roles, humanoid, up, left, mut notes, .. } = anatomy;
     let stance = Stance::new(&bound, up);
     let (unit_scale, unit_guess) = units::unit_scale(&body, hints);
+    let named = axes::name;
     match hints.up {
         Some(of_file) if up.dot(of_file) < 0.9 => notes.push(format!(
-            "it lies in its file: from hips to head it goes along {up}, and up is {of_file}; --up says otherwise"
+            "it lies in its file: from hips to head it goes along {}, and up is {}; --up {} stands it up",
+            named(up),
+            named(of_file),
+            named(up)
         )),
         None if up.dot(Vec3::Y) < 0.9 => {
             notes.push(format!("the body stands along {up} of the file, not along +Y"));

@@ -209,6 +209,13 @@ pub(crate) const LEAST_BODY_SKIN: f32 = 0.004;
 /// Larger: snakes become stiff. Smaller: short vertebrae make weak joints. Shown by the tests of `creatures`.
 pub(crate) const LEAST_SPINE_SKIN: f32 = 0.02;
 
+/// Distance from the bone of an upper arm without skin, over that from the trunk's line, below which the spine's skin is
+/// the arm's.
+///
+/// Larger: hanging arms take the skin of the waist. Smaller: arms thicken the chest. Shown by the variants of
+/// `RiggedFigure` (1) and of `Witch` (0.5).
+pub(crate) const ON_BARE_ARM: f32 = 0.7;
+
 /// Shortest clavicle that is a body, as a share of the height.
 ///
 /// Larger: shoulders are rigid. Smaller: bodies that nothing collides with. Shown by the tests of `roles`.

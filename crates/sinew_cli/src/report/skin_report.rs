@@ -21,11 +21,14 @@ pub struct SkinReport {
     pub rising: RisingQuality,
 }
 
-/// A character's baked life, and the height of its floor, metres, if that is constant.
+/// A character's baked life.
 #[derive(Clone, Copy)]
 pub struct Life<'a> {
     pub fall: &'a Fall<'a>,
+    /// Height of the floor, metres, if that is constant.
     pub floor: Option<f32>,
+    /// Why it stays down where it should get up, a sentence.
+    pub stays_down: Option<&'a str>,
 }
 
 impl SkinReport {

@@ -4,7 +4,7 @@ use crate::sinew::{Folder, glb, sinew};
 use serde_json::Value;
 use sinew::anim::sample::sample;
 use sinew::anim::weights::lost_weights;
-use sinew::anim::{Channel, Clip, Interpolation, Property, Rig, Wrap, local_to_model, rest_pose};
+use sinew::anim::{Channel, Clip, Interpolation, Primitive, Property, Rig, Wrap, local_to_model, rest_pose};
 use sinew::formats::{ReadOptions, load_gltf};
 use sinew::math::{Affine, Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
@@ -243,4 +243,33 @@ fn who_lies_in_the_file_begins_lying() {
     let ([start, end], _) = trunks(&["--up", "-z"], 2.0);
     assert!(start.z < -0.4, "{start}");
     assert!(end.z > -0.3, "it has fallen: {end}");
+}
+
+/// A human in a hoop that no get-up keeps out of the floor stays down: usable at most, with the reason.
+#[test]
+fn a_human_that_stays_down_is_not_good() {
+    let folder = Folder::new("verdict-down");
+    let mut rig = mannequin().rig;
+    let hips = joint(&rig, "hips");
+    let (mut model, rest) = (Vec::new(), rest_pose(&rig));
+    local_to_model(&rig, &rest, &Affine::IDENTITY, &mut model);
+    let middle = model[hips].translation;
+    let mesh = rig.meshes.iter_mut().find(|mesh| mesh.skin.is_some()).expect("a skin");
+    let slot = rig.skins[mesh.skin.expect("a skin")].joints.iter().position(|&joint| joint == hips);
+    let slot = u16::try_from(slot.expect("the hips have skin")).expect("few");
+    let corners = [Vec3::X, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Z].map(|way| middle + way * 1.2);
+    let thick = corners.iter().flat_map(|&at| [at - Vec3::Y * 0.02, at + Vec3::Y * 0.02]);
+    mesh.primitives.push(Primitive {
+        positions: thick.collect(),
+        normals: vec![Vec3::Y; 8],
+        joints: vec![[slot, 0, 0, 0]; 8],
+        weights: vec![[1.0, 0.0, 0.0, 0.0]; 8],
+        indices: vec![1, 3, 5, 1, 5, 7, 0, 4, 2, 0, 6, 4],
+        ..Primitive::default()
+    });
+    let file = folder.file("hoop.glb", glb(&rig, &[]));
+    for (verdict, reasons) in both(&folder, &file, &[]) {
+        assert!(reasons.contains("it does not get up: "), "{verdict}: {reasons}");
+        assert_ne!(verdict, "good", "{reasons}");
+    }
 }

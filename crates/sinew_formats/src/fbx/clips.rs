@@ -84,6 +84,7 @@ fn channel<const N: usize>(
         times.push(time);
         values.extend(value);
     }
+    from_start::<N>(&mut times, &mut values);
     (!times.is_empty()).then_some(Channel {
         joint,
         property,
@@ -91,4 +92,42 @@ fn channel<const N: usize>(
         times,
         values,
     })
+}
+
+/// Drops the keys before the start of the take, which a file may hold; the value at the start stays.
+fn from_start<const N: usize>(times: &mut Vec<f32>, values: &mut Vec<f32>) {
+    let before = times.iter().take_while(|time| **time < 0.0).count();
+    let Some(last) = before.checked_sub(1) else { return };
+    if let Some(&next) = times.get(before) {
+        let share = -times[last] / (next - times[last]);
+        for at in last * N..before * N {
+            values[at] += (values[at + N] - values[at]) * share;
+        }
+        if let [x, y, z, w] = values[last * N..before * N] {
+            let unit = Rotation::from_xyzw(x, y, z, w).normalize();
+            values[last * N..before * N].copy_from_slice(&[unit.x, unit.y, unit.z, unit.w]);
+        }
+    }
+    times[last] = 0.0;
+    let dropped = last + usize::from(times.get(before) == Some(&0.0));
+    times.drain(..dropped);
+    values.drain(..dropped * N);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_before_the_take_give_way_to_the_value_at_its_start() {
+        let key = |time: f64, x: f32| (time, [x]);
+        let cut = |keys: &[(f64, [f32; 1])]| {
+            let channel = channel(0, Property::Scale, keys.iter().copied()).expect("it has keys");
+            (channel.times, channel.values)
+        };
+        assert_eq!(cut(&[key(-3.0, 9.0), key(-1.0, 1.0), key(3.0, 5.0)]), (vec![0.0, 3.0], vec![2.0, 5.0]));
+        assert_eq!(cut(&[key(-1.0, 1.0), key(0.0, 4.0), key(1.0, 5.0)]), (vec![0.0, 1.0], vec![4.0, 5.0]));
+        assert_eq!(cut(&[key(-2.0, 7.0), key(-1.0, 1.0)]), (vec![0.0], vec![1.0]));
+        assert_eq!(cut(&[key(0.5, 1.0)]), (vec![0.5], vec![1.0]));
+    }
 }

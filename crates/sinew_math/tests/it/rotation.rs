@@ -2,7 +2,7 @@
 
 use super::oracle::{Exact, angle, cross, largest, norm, off, wide, worst};
 use core::f32::consts::{FRAC_PI_2, PI, TAU};
-use sinew_math::{Random, Rotation, Vec3, trig};
+use sinew_math::{Affine, Random, Rotation, Vec3, trig};
 
 #[test]
 fn from_axis_and_angle() {
@@ -280,4 +280,21 @@ fn ten_thousand_products_stay_rotations() {
         rotation = rotation.integrate(random.in_cube() * 10.0, 0.01);
     }
     assert!((rotation.length() - 1.0).abs() < 3e-7, "{}", rotation.length());
+}
+
+/// A rotation of the space above, seen from within a mirrored frame, is the one that the frame's rigid part gives.
+#[test]
+fn a_mirrored_frame_conjugates_like_its_rigid_part() {
+    let turn = Rotation::from_scaled_axis(Vec3::new(0.4, -1.1, 0.3));
+    let change = Rotation::from_scaled_axis(Vec3::new(-0.7, 0.2, 0.9));
+    for scale in [Vec3::new(-2.0, 2.0, 2.0), Vec3::splat(-0.2), Vec3::new(1.0, 1.0, -1.0), Vec3::ONE] {
+        let frame = Affine::from_scale_rotation_translation(scale, turn, Vec3::X);
+        let rigid = frame.to_rigid().rotation;
+        let within = Affine { linear: frame.inverse().linear * change.to_mat3() * frame.linear, ..frame };
+        let expected = rigid.inverse() * change * rigid;
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+            let away = within.vector(axis) - expected * axis;
+            assert!(away.length() < 1e-5, "{scale}: {axis} is {away} off");
+        }
+    }
 }

@@ -54,8 +54,8 @@ pub(crate) fn carries_character(rig: &Rig, def: &RagdollDef) -> Vec<bool> {
     with_what_is_below(rig, merged)
 }
 
-/// The pelvis, or its highest ancestor that moves skin with a body, and every other child of a node above it with skin
-/// or a body among its descendants. Skin above the pelvis would stay behind if its joint were at rest.
+/// The pelvis, or its highest ancestor that moves skin with a body, and every other child of a node above it that
+/// carries skin or what moves with a body. Skin above the pelvis would stay behind if its joint were at rest.
 pub(super) fn find(rig: &Rig, def: &RagdollDef) -> Vec<Head> {
     let merged = |joint: JointIdx| def.bodies.iter().any(|body| body.merged.contains(&joint));
     let above = core::iter::successors(rig.joints[def.bodies[0].joint].parent, |&at| rig.joints[at].parent);
@@ -66,7 +66,7 @@ pub(super) fn find(rig: &Rig, def: &RagdollDef) -> Vec<Head> {
         above_pelvis[joint] = true;
         at = rig.joints[joint].parent;
     }
-    let counts = with_what_is_below(rig, def.bodies.iter().map(|body| body.joint));
+    let counts = carries_character(rig, def);
     let is_head = |&joint: &JointIdx| {
         let hangs = rig.joints[joint].parent.is_none_or(|parent| above_pelvis[parent]);
         joint != pelvis && counts[joint] && !above_pelvis[joint] && hangs

@@ -1,10 +1,13 @@
 //! From a pose to bodies and back, on rigs with the ways of real files.
 
 use crate::actor::{in_centimetres_and_z_up, somewhere, walker};
-use sinew_anim::{LocalTransform, Wrap, local_to_model, sample};
+use sinew_anim::{
+    Joint, LocalTransform, Primitive, Rig, RigMesh, Wrap, analyze, local_to_model, rest_pose, sample,
+};
 use sinew_math::{Affine, Random, Rotation, Transform, Vec3};
-use sinew_ragdoll::CharacterDef;
-use sinew_ragdoll::mapping::Physical;
+use sinew_ragdoll::mapping::{Mapping, Physical};
+use sinew_ragdoll::{BuildOptions, CharacterDef, build};
+use sinew_scenes::mannequin::mannequin;
 
 fn model_of(def: &CharacterDef, pose: &[LocalTransform]) -> Vec<Affine> {
     let mut model = Vec::new();
@@ -152,4 +155,28 @@ fn bodies_of_a_pose_are_those_of_its_model() {
             assert!(!def.mapping().bodies_from_pose(&pose, somewhere(), &mut frames, &mut quick));
         }
     }
+}
+
+/// A mesh that hangs on the root beside the skeleton goes with its body, and with the character wherever clips play.
+#[test]
+fn an_object_beside_the_skeleton_goes_with_the_character() {
+    let mut rig = mannequin().rig;
+    let at = |rig: &Rig, name: &str| rig.joints.iter().position(|joint| joint.name == name).expect("a joint");
+    let (root, head) = (rig.joints[at(&rig, "hips")].parent, at(&rig, "head"));
+    let (mut model, rest) = (Vec::new(), rest_pose(&rig));
+    local_to_model(&rig, &rest, &Affine::IDENTITY, &mut model);
+    let place = model[root.expect("a root")].inverse().point(model[head].translation);
+    let hat = rig.joints.len();
+    let rest = LocalTransform { translation: place, ..LocalTransform::default() };
+    rig.joints.push(Joint { name: "hat".into(), parent: root, rest, source: hat });
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * 0.1).to_vec();
+    let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
+    let primitive = Primitive { positions, indices, ..Primitive::default() };
+    rig.meshes.push(RigMesh { name: String::new(), joint: hat, skin: None, primitives: vec![primitive] });
+    let analysis = analyze(&rig).expect("a skin");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("a ragdoll");
+    let carrier = ragdoll.bodies.iter().find(|body| body.merged.contains(&hat) || body.joint == hat);
+    assert!(carrier.is_some(), "no body carries the hat");
+    let mapping = Mapping::new(&rig, &ragdoll, &analysis.bind_model);
+    assert!(mapping.heads().any(|joint| joint == hat), "the hat stays where the file has it");
 }

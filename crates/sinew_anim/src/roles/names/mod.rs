@@ -153,6 +153,27 @@ pub(super) fn settle_duplicates(
     }
 }
 
+/// Exchanges the upper and the lower bone of limbs that are named in the wrong order, 'Elbow' above 'Arm': a limb's
+/// upper bone carries its lower one.
+pub(super) fn settle_limbs(readings: &mut [Reading], parents: &[Option<usize>]) {
+    for (upper, lower) in [(Part::UpperArm, Part::LowerArm), (Part::UpperLeg, Part::LowerLeg)] {
+        for side in [Side::Left, Side::Right] {
+            let with = |part: Part| {
+                let mut of_part = (0..readings.len())
+                    .filter(|&at| readings[at].part == Some(part) && readings[at].side == Some(side));
+                of_part.next().filter(|_| of_part.next().is_none())
+            };
+            let (Some(above), Some(below)) = (with(upper), with(lower)) else { continue };
+            let carries = |carrier: usize, at: usize| {
+                core::iter::successors(parents[at], |&up| parents[up]).any(|up| up == carrier)
+            };
+            if carries(below, above) {
+                (readings[above].part, readings[below].part) = (Some(lower), Some(upper));
+            }
+        }
+    }
+}
+
 /// Finds the skinned joint at which the trunk begins and reads it as hips: it is not named hips but carries the thighs
 /// and the rest of the trunk. No part of the spine is above the hips.
 pub(super) fn settle_trunk(
@@ -348,6 +369,18 @@ mod tests {
     fn check(names: &[&str], expected: &[(Option<Part>, Option<Side>)]) {
         let got: Vec<_> = read_names(names, &[]).into_iter().map(|r| (r.part, r.side)).collect();
         assert_eq!(got, expected, "{names:?}");
+    }
+
+    #[test]
+    fn a_bone_named_elbow_above_one_named_arm_is_the_upper_arm() {
+        let names = ["Shoulder.L", "Elbow.L", "Arm.L", "Hand.L", "UpperLeg.L", "LowerLeg.L"];
+        let parents = [None, Some(0), Some(1), Some(2), None, Some(4)];
+        let mut readings = read_names(&names, &parents);
+        settle_limbs(&mut readings, &parents);
+        use Part::*;
+        let expected = [Clavicle, UpperArm, LowerArm, Hand, UpperLeg, LowerLeg].map(Some);
+        let found: Vec<Option<Part>> = readings.into_iter().map(|reading| reading.part).collect();
+        assert_eq!(found, expected);
     }
 
     #[test]

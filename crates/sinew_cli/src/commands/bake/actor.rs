@@ -18,6 +18,16 @@ pub enum GetsUpBy {
     Builtin,
     /// There are none; the reason, to follow 'it does not get up: '.
     Nothing(String),
+    /// The built-in ones exist, but none comes out on this body; the reason, as above.
+    Unfit(String),
+}
+
+impl GetsUpBy {
+    /// The flaw of a human that stays down because no built-in motion fits it.
+    pub fn flaw(&self) -> Option<String> {
+        let Self::Unfit(why) = self else { return None };
+        Some(format!("it does not get up: {why}"))
+    }
 }
 
 /// Advice for a user whose character has no get-up clips.
@@ -45,20 +55,22 @@ pub fn actor(
         def.set_motions(own).map_err(failed)?;
         return Ok((def, GetsUpBy::Own));
     }
-    let why = if builtin {
+    let gets_up_by = if builtin {
         match set_motions_with_builtin(&mut def, analysis, own.clone()) {
             Ok(()) => return Ok((def, GetsUpBy::Builtin)),
             Err(BuiltinError::Motion(error)) => return Err(failed(error)),
-            Err(BuiltinError::Retarget(RetargetError::NotHumanoid(_))) => {
-                format!("Sinew's own motions are a human's, and this is none; {CLIPS_HELP}")
-            }
-            Err(error) => format!("{error}; {CLIPS_HELP}"),
+            Err(BuiltinError::Retarget(RetargetError::NotHumanoid(_))) => GetsUpBy::Nothing(format!(
+                "Sinew's own motions are a human's, and this is none; {CLIPS_HELP}"
+            )),
+            Err(error) => GetsUpBy::Unfit(format!("{error}; {CLIPS_HELP}")),
         }
     } else {
-        format!("no clip of its own does it, and --no-builtin-motions leaves out Sinew's; {CLIPS_HELP}")
+        GetsUpBy::Nothing(format!(
+            "no clip of its own does it, and --no-builtin-motions leaves out Sinew's; {CLIPS_HELP}"
+        ))
     };
     // A lying body without a get-up motion would float to its feet.
     def.after_settling = AfterSettling::StayDown;
     def.set_motions(own).map_err(failed)?;
-    Ok((def, GetsUpBy::Nothing(why)))
+    Ok((def, gets_up_by))
 }

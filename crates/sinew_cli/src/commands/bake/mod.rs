@@ -206,8 +206,9 @@ impl Bake {
         let is_level = self.world.is_none() && place.stands.translation.y == self.floor.unwrap_or(0.0);
         let floor = is_level.then_some(place.stands.translation.y);
         let tested = drop_test(&input.character.ragdoll);
-        let Judgement { verdict, reasons, skin } =
-            judge_life(&file, &tested, Life { fall: &fall, floor }, doubt.as_ref());
+        let stays_down = gets_up_by.flaw();
+        let life = Life { fall: &fall, floor, stays_down: stays_down.as_deref() };
+        let Judgement { verdict, reasons, skin } = judge_life(&file, &tested, life, doubt.as_ref());
         (fall.verdict, fall.reasons) = (verdict, reasons);
         notes.extend(skin.flaws.iter().map(|flaw| format!("skin: {flaw}")));
         notes.extend(self.write(&file, &fall)?);

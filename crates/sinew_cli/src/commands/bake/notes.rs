@@ -98,7 +98,7 @@ fn stays_down(
     let touched = events.iter().any(|(_, event)| matches!(event, CharacterEvent::Touched));
     let why = if !touched {
         format!("it touches nothing until the end, at {end} s")
-    } else if let GetsUpBy::Nothing(why) = gets_up_by {
+    } else if let GetsUpBy::Nothing(why) | GetsUpBy::Unfit(why) = gets_up_by {
         why.clone()
     } else if has(|event| matches!(event, CharacterEvent::GettingUp { .. })) {
         format!("it is on its way up at the end, at {end} s: --seconds gives it more time")
