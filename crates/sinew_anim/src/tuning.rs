@@ -249,7 +249,7 @@ pub(crate) const SPRING_RADIUS: f32 = 0.15;
 /// Default share of a link's error corrected per 1/60 s.
 ///
 /// Larger: a skirt is one stiff sheet. Smaller: its strands separate where a leg pulls. Shown by
-/// `links_hold_strands_together`.
+/// `spring_links_limit_the_distance_of_strands`.
 pub(crate) const SPRING_LINK_SHARE: f32 = 0.5;
 
 // weights.rs

@@ -1,4 +1,4 @@
-//! Deeds to characters.
+//! Random actions on characters.
 
 use crate::actor::{Actor, say};
 use crate::code::rusty;
@@ -69,10 +69,10 @@ pub fn note(
     }
 }
 
-/// Farthest that a character of a wild life stands from the origin, metres: beyond, squares of lengths are no numbers.
+/// Largest distance of a character from the origin in a wild life, metres; beyond it, squares of lengths overflow.
 const FARTHEST: f32 = 1e12;
 
-/// A place to stand: on the floor or a little over it; of a wild life anywhere.
+/// A place to stand: on the floor or slightly above it; in a wild life anywhere.
 fn place(n: &mut Numbers) -> Transform {
     let turn = n.between(-3.0, 3.0);
     let (x, z) = (n.signed(2.0).clamp(-FARTHEST, FARTHEST), n.signed(2.0).clamp(-FARTHEST, FARTHEST));
@@ -116,7 +116,7 @@ fn despawn(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// An impulse that a body of its mass takes in a game; of a wild life any.
+/// An impulse plausible for the body's mass; in a wild life any.
 fn blow(a: &Actor, n: &mut Numbers, who: usize, body: usize) -> Vec3 {
     let impulse = n.vector(60.0);
     let mass = a.more.cast[who].character.def().ragdoll.bodies[body].mass.mass;
@@ -285,7 +285,7 @@ fn reset_worn(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// A character is made anew from its bytes.
+/// Recreates a character from its bytes.
 fn reload(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let who = who(a, n)?;
     let mut w = Writer::new();
@@ -300,7 +300,7 @@ fn reload(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// All that a character can be asked.
+/// Calls all getters of a character.
 fn ask_character(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     macro_rules! asked {
         ($character:ident, $said:ident, $calls:ident, $($name:ident)*) => {
@@ -342,7 +342,7 @@ fn ask_character(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// A ball flies at somebody.
+/// Throws a ball at a character.
 fn throw_at(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let target = part(a, n)?;
     let (way, speed, radius) = (n.direction(), n.between(3.0, 20.0), n.between(0.05, 0.25));
@@ -356,7 +356,7 @@ fn throw_at(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// A slab that nothing stops comes at somebody.
+/// Moves an unstoppable slab toward a character.
 fn door(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let target = part(a, n)?;
     let (side, speed) = (n.one_of(&[Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z]), n.between(0.2, 1.0));
