@@ -196,19 +196,19 @@ impl Extension {
         for body in self.loose(world) {
             let speed = world.velocity(body).linear.length();
             if speed > FAST && world.sleeping(body) == Sleeping::On {
-                return Err(Fault::Limb(format!("{body:?} of a character flies at {speed} m/s")));
+                return Err(Fault::Limb(format!("{body:?} of a character moves at {speed} m/s")));
             }
             for joint in world.joints_of(body).filter(|&joint| world.joint_owner(joint).is_some()) {
                 let gap = world.joint_gap(joint);
                 if gap > GAP {
-                    return Err(Fault::Limb(format!("{joint:?} of a character gapes by {gap} m")));
+                    return Err(Fault::Limb(format!("{joint:?} of a character has a gap of {gap} m")));
                 }
             }
         }
         Ok(())
     }
 
-    /// Takes all of it out of the world.
+    /// Removes everything from the world.
     pub fn empty(&mut self, world: &mut World) {
         self.points.drain(..).for_each(|(_, point)| point.release(world));
         self.limbs.drain(..).for_each(|(.., limb)| limb.despawn(world));
@@ -216,25 +216,25 @@ impl Extension {
         let owned = world
             .joint_ids()
             .find(|&joint| world.joint_owner(joint).is_some_and(|(of, _)| is_ours(&of.name)));
-        assert!(owned.is_none(), "a joint of a character stays: {owned:?}");
+        assert!(owned.is_none(), "a joint of a character remains: {owned:?}");
         let owned =
             world.body_ids().find(|&body| world.body_owner(body).is_some_and(|(of, _)| is_ours(&of.name)));
-        assert!(owned.is_none(), "a body of a character stays: {owned:?}");
+        assert!(owned.is_none(), "a body of a character remains: {owned:?}");
     }
 }
 
-/// True of the names of owners that no life gives.
+/// True for owner names that no other code of the lives uses.
 fn is_ours(name: &str) -> bool {
     name != "cart"
 }
 
-/// Bodies of a character that were not cut off.
+/// Bodies of a character that are not detached.
 pub fn own(character: &Character) -> impl Iterator<Item = BodyId> {
     let bodies = character.bodies().iter().enumerate();
     bodies.filter(|&(index, _)| character.has_body(index)).map(|(_, &body)| body)
 }
 
-/// One of the characters, if there are any.
+/// Index of one of the characters, if there are any.
 pub fn who(a: &Actor, n: &mut Numbers) -> Option<usize> {
     let names: Vec<(u64, usize)> =
         a.more.cast.iter().enumerate().map(|(i, member)| (member.name, i)).collect();
