@@ -18,14 +18,14 @@ pub struct Fall<'a> {
     pub baked: Baked,
     /// Simulated seconds per second of processor time.
     pub realtime_factor: f64,
-    /// Verdict on its fitness for use.
+    /// Verdict on the fall.
     pub verdict: Verdict,
     /// Reasons for the verdict: figures outside their bars, one sentence each.
     pub reasons: Vec<String>,
 }
 
 impl<'a> Fall<'a> {
-    /// Simulates and judges it, taking doubt about the mass into account.
+    /// Simulates and judges the fall, with doubts about the mass.
     pub fn simulate(input: &'a BakeInput<'a>, doubt: Option<&Doubt>) -> Self {
         let (baked, cpu_seconds) = timed(|| bake(input));
         let seconds = baked.steps as f64 * input.world.step_nanoseconds as f64 * 1e-9;

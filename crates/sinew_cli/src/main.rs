@@ -1,4 +1,4 @@
-//! The `sinew` command line: arguments in, report out. Each command is a struct in a file of its own.
+//! The `sinew` command line. Each command is a struct in a file of its own.
 #![forbid(unsafe_code)]
 
 mod commands;
@@ -34,7 +34,7 @@ Start here:
 
 A file that is read may be -, which is standard input.";
 
-/// Physics for characters: give it a rigged file, and it falls, collides, is hit, gets up and walks on.
+/// Physics for characters: simulates how a rigged character falls, collides, reacts to hits, gets up and walks on.
 #[derive(Parser)]
 #[command(name = "sinew", version, after_help = AFTER_HELP, styles = STYLES, max_term_width = 100)]
 struct Sinew {
@@ -68,8 +68,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The command, with `-1` after an option accepted as its value everywhere, so that the code that reads the value
-/// reports errors.
+/// The command, with `-1` accepted as a value after every option, so that the parser of that value reports the error.
 fn with_negative_numbers(command: clap::Command) -> clap::Command {
     let accept = |arg: clap::Arg| {
         let takes = arg.get_action().takes_values();

@@ -26,7 +26,7 @@ pub enum CorrectionError {
     #[error("nothing that moves skin is left")]
     NothingLeft,
     /// A role, or a joint, is given twice.
-    #[error("`{}` is said twice: a role has one bone, and a bone one role", .0.name())]
+    #[error("`{}` is given twice: a role has one bone, and a bone one role", .0.name())]
     Twice(Role),
     /// A human role for a rig that is not read as human; these roles are missing.
     #[error(

@@ -111,7 +111,7 @@ enum Order {
 enum PaceArg {
     /// The file's duration
     Same,
-    /// Longer by the root of the ratio of leg lengths, as giants walk
+    /// Scaled by the root of the ratio of leg lengths (Froude's law): large bodies move slowly
     Froude,
 }
 
@@ -128,7 +128,7 @@ struct Content {
     rig: Rig,
     clips: Vec<Clip>,
     events: Vec<Vec<ClipEvent>>,
-    /// Frames a second, where the source has some.
+    /// Frames per second, if the source has a rate.
     rate: Option<f64>,
     /// Notes on losses and assumptions, one sentence each.
     notes: Vec<String>,
@@ -224,7 +224,7 @@ impl Convert {
         };
         let carried = carry(motion, &document.rig, Some(&analysis), &options)?;
         if carried.is_empty() {
-            return Err(Failure::of_file(&motion.name, "there is no clip to carry over"));
+            return Err(Failure::of_file(&motion.name, "there is no clip to retarget"));
         }
         let lines: Vec<String> = carried.iter().map(Carried::to_text).collect();
         let mut notes = motion.file.notes.clone();
@@ -360,14 +360,14 @@ fn draw(outputs: &Outputs, new: usize, picture: &PictureFile) -> Result<Vec<u8>>
         .map_err(|error| Failure::of_file(picture.path().display().to_string(), error))
 }
 
-/// A line per clip, and the notes.
+/// One line per clip, and the notes.
 type Told = (Vec<String>, Vec<String>);
 
 fn line_of(clip: &Clip) -> String {
     format!("{}: {:.2} s", shown(&clip.name), clip.duration)
 }
 
-/// A clip as one pose a frame.
+/// Samples a clip as one pose per frame.
 fn take(rig: &Rig, clip: &Clip, rate: f64, file: &str) -> Result<Take> {
     if rig.joints.is_empty() {
         return Err(Failure::of_file(file, "there are no joints"));

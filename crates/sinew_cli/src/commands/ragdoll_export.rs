@@ -43,7 +43,7 @@ enum Format {
 }
 
 impl Format {
-    /// Extensions that a file of it may have.
+    /// Extensions allowed for the format.
     fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Khr => &["glb", "vrm"],

@@ -1,4 +1,4 @@
-//! Files with clips, of any format.
+//! Reads files with clips in any format.
 
 use crate::failure::Result;
 use crate::input::kin::units_beside;
@@ -55,16 +55,16 @@ impl Motion {
     }
 }
 
-/// An error with the option that avoids it, if any.
+/// Adds the option that avoids the error to its text, if there is one.
 fn helped(mut error: Error) -> Error {
     if error.what.starts_with("declares ") && error.what.contains(" frames, has ") {
-        error.what += "; 'sinew convert --any-rows' takes those that are there";
+        error.what += "; 'sinew convert --any-rows' accepts the existing ones";
     }
     error
 }
 
-/// From the skin, else as a skeleton in its most upright pose: any few nodes resemble some creature, so the latter
-/// accepts humans only.
+/// Analyses the skin, or without one the skeleton in its most upright pose. The latter accepts only humans, because any
+/// few nodes resemble some creature.
 fn analyze_any(file: &MotionFile) -> Option<RigAnalysis> {
     let hints = Hints { exporter: file.generator.clone(), ..Hints::of_clips(&file.rig, &file.clips) };
     if let Ok(analysis) = analyze_hinted(&file.rig, &hints) {

@@ -32,9 +32,9 @@ pub fn one_object(value: &Value) -> String {
     format!("{value:#}\n")
 }
 
-/// The shortest decimal that identifies a number; null if it is not finite.
+/// The shortest decimal that identifies a number; null for non-finite numbers.
 pub fn number(x: f32) -> Value {
-    // The decimal digits of the f32, not those of the f64 nearest to it.
+    // Uses the decimal digits of the f32, not those of its f64 value.
     x.to_string().parse::<f64>().map_or(Value::Null, Value::from)
 }
 

@@ -192,7 +192,7 @@ fn degenerate_and_duplicate_triangles_are_counted() {
     let triangles = "v -9 0 -9\nv -9 0 9\nv 9 0 9\nf 1 2 3\nf 1 2 3\nf 1 1 2\nf 1 2 2\n";
     let level = folder.file("level.obj", triangles);
     let run = sinew(&["bake", &file, "--world", &level, "--limp-at", "0", "--seconds", "0.1", "-o", &out]);
-    let line = "  left out of the world: 2 triangles without area, 1 that are there twice\n";
+    let line = "  left out of the world: 2 triangles without area, 1 that are duplicates\n";
     assert!(run.stdout.contains(line), "{run:?}");
 }
 
@@ -316,7 +316,7 @@ fn human_without_clips_gets_up_by_builtin_motions() {
     };
     let object = baked(&bare, &[]);
     let up = object["up_s"].as_f64().expect("it is up") as f32;
-    says(&object, "gets up by motions that come with Sinew");
+    says(&object, "gets up by built-in motions");
     let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
     let hips = |time: f32| {
         let (rig, clip) = (&document.rig, document.clips.last().expect("a clip"));
@@ -335,11 +335,11 @@ fn human_without_clips_gets_up_by_builtin_motions() {
 
     let object = baked(&bare, &["--no-builtin-motions"]);
     assert!(object["up_s"].is_null());
-    says(&object, "--no-builtin-motions leaves out Sinew's");
+    says(&object, "--no-builtin-motions leaves out the built-in ones");
     let data = shared_data();
     let object = baked(&data.join("rigs/Fox.glb").display().to_string(), &[]);
     assert!(object["up_s"].is_null());
-    says(&object, "it does not get up: Sinew's own motions are a human's, and this is none");
+    says(&object, "it does not get up: the built-in motions are for humans, and this character is not human");
 }
 
 fn block(min: [f32; 3], max: [f32; 3]) -> BodyDef {
@@ -374,7 +374,7 @@ fn character_is_placed_where_there_is_room() {
     };
     let notes = bake(&[]).json()["notes"].to_string();
     let (_, stands) = notes.split_once("it stands at ").expect("the note names a place");
-    let (place, _) = stands.split_once(", the place").expect("the note gives the reason");
+    let (place, _) = stands.split_once(", the free place").expect("the note gives the reason");
     let at: Vec<f32> = place.split(',').map(|number| number.parse().expect("a number")).collect();
     assert!((12.0..20.0).contains(&at[0]) && at[1] == 7.0 && at[2].abs() < 4.0, "{at:?}");
     // Below the roof there is 1.7 m, too little for a fall. An explicit place is used anyway, without a search.

@@ -147,7 +147,7 @@ fn unknown_names_are_reported_with_the_nearest() {
         "{run:?}"
     );
     let twice = ["ragdoll", "build", &file, "--role", "hips=Bone_0", "--role", "hips=Bone_1"];
-    assert!(sinew(&twice).refusal(2).contains("--role hips=Bone_1 is said twice"));
+    assert!(sinew(&twice).refusal(2).contains("--role hips=Bone_1 is given twice"));
     let all = line(&["--ignore", "Bone_0"]);
     assert!(all.ends_with("nothing that moves skin is left (--ignore)"), "{all}");
 }

@@ -40,7 +40,7 @@ fn output_with_unknown_extension_is_rejected_with_the_known_ones() {
     }
     let picture = folder.path("same.gif");
     let run = sinew(&["view", "pendulum", "--picture", &picture, "--movie", &picture, "--seconds", "0.1"]);
-    assert!(run.refusal(2).ends_with("is asked for twice: give each output a name of its own"));
+    assert!(run.refusal(2).ends_with("is given twice: each output needs its own name"));
     assert_eq!(folder.names(), ["mannequin.glb"]);
 }
 
@@ -71,7 +71,10 @@ fn errors_name_the_option_that_helps() {
         MOTION\nFrames: 3\nFrame Time: 0.05\n0 0 0\n1 1 1\n";
     let short = folder.file("short.bvh", bvh);
     let line = sinew(&["convert", &short, &folder.path("out.glb")]).refusal(1).to_owned();
-    assert!(line.contains("declares 3 frames, has 2; 'sinew convert --any-rows' takes those"), "{line}");
+    assert!(
+        line.contains("declares 3 frames, has 2; 'sinew convert --any-rows' accepts the existing ones"),
+        "{line}"
+    );
     assert_eq!(sinew(&["convert", &short, &folder.path("out.glb"), "--any-rows"]).code, Some(0));
     let mimic = folder.file("run.txt", r#"{"Loop":"wrap","Frames":[[0.1,0,1,0,1,0,0,0]]}"#);
     let line = sinew(&["inspect", &mimic]).refusal(1).to_owned();
@@ -138,11 +141,11 @@ fn steps_that_do_not_happen_are_reported() {
     );
     said(
         &["--seconds", "6", "--no-builtin-motions"],
-        "it does not get up: no clip of its own does it, and --no-builtin-motions leaves out Sinew's",
+        "it does not get up: it has no get-up clip, and --no-builtin-motions leaves out the built-in ones",
     );
     let empty = folder.file("empty.json", r#"{"sinew":"world","version":1,"bodies":[]}"#);
     let nowhere = bake(&["--seconds", "1", "--world", &empty]);
-    assert!(nowhere.refusal(1).contains("no ground to stand on; --at X,Y,Z says where"), "{nowhere:?}");
+    assert!(nowhere.refusal(1).contains("no ground to stand on; --at X,Y,Z sets its place"), "{nowhere:?}");
     let nowhere = bake(&["--seconds", "1", "--world", &empty, "--at", "0,0,0"]);
     assert!(nowhere.refusal(1).contains("no ground under the character at 0,0,0; --floor"), "{nowhere:?}");
     let all = said(&["--seconds", "1", "--at", "0,9,0"], "it does not get up: it touches nothing");
@@ -156,7 +159,7 @@ fn steps_that_do_not_happen_are_reported() {
     };
     let low = folder.file("low.json", write_world(&[low]));
     said(&["--seconds", "1", "--world", &low, "--at", "0,0,0"], "low.json is 2.50 m below the character");
-    said(&["--seconds", "1", "--world", &low], "it stands at 0.00,-2.50,0.00, the place with room");
+    said(&["--seconds", "1", "--world", &low], "it stands at 0.00,-2.50,0.00, the free place");
 }
 
 /// The nodes of a file may be in any order; the list is a tree.

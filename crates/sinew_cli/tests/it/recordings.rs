@@ -41,7 +41,7 @@ fn recording_verifies_and_diff_finds_the_step() {
     let told = sinew(&["replay", &tampered]);
     assert!(told.stdout.contains("from step 50 on"), "{told:?}");
     let diff = sinew(&["replay", &mine, "--diff", &tampered]);
-    assert!(diff.refusal(1).contains("though in the pose of no body"), "{diff:?}");
+    assert!(diff.refusal(1).contains("but not in the pose of a body"), "{diff:?}");
 }
 
 #[test]

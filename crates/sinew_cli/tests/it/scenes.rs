@@ -41,9 +41,7 @@ fn unknown_names_are_usage_errors() {
     let line = |arguments: &[&str]| sinew(arguments).refusal(2).to_owned();
     let suggested = line(&["run", "pendulm"]);
     assert!(suggested.starts_with("error: no scene 'pendulm'; the nearest of "), "{suggested}");
-    assert!(
-        suggested.contains(" are pendulum, ") && suggested.ends_with("; 'sinew scenes' lists what there is")
-    );
+    assert!(suggested.contains(" are pendulum, ") && suggested.ends_with("; 'sinew scenes' lists all"));
     assert!(line(&["view", "pendulm", "--picture", "x.png"]).contains(" are pendulum, "));
     assert!(line(&["run", "pendulum", "--set", "nix=1"]).starts_with("error: --set: no setting `nix`"));
     assert!(line(&["run", "pendulum", "--set", "amplitude"]).contains("is not key=value"));
@@ -77,7 +75,7 @@ fn mjcf_model_is_dropped() {
 #[test]
 fn scene_that_misses_its_bars_fails_with_its_report() {
     let run = sinew(&["run", "arch", "--json"]);
-    assert_eq!(run.refusal(1), "error: arch misses what is expected of it: shift_max_m");
+    assert_eq!(run.refusal(1), "error: arch misses its expectations: shift_max_m");
     let object: serde_json::Value =
         serde_json::from_str(&run.stdout).expect("a JSON object despite the failure");
     assert!(object["metrics"]["shift_max_m"].is_number());

@@ -77,14 +77,14 @@ fn falling_world_file_is_drawn() {
 fn undrawable_input_is_a_usage_error() {
     let line = |arguments: &[&str]| sinew(arguments).refusal(2).to_owned();
     let of_nothing = line(&["view", "--picture", "a.png"]);
-    assert_eq!(of_nothing, "error: a picture of what? name a scene or a file");
+    assert_eq!(of_nothing, "error: nothing to draw: name a scene or a file");
     let recording = line(&["view", "run.sinewrec", "--picture", "a.png"]);
     assert!(recording.contains("'sinew replay': run.sinewrec"), "{recording}");
     let missing = sinew(&["view", "fall.glb", "--picture", "a.png"]);
     assert_eq!(missing.refusal(1), "error: fall.glb: no such file");
     let unknown = line(&["view", "nix", "--picture", "a.png"]);
     assert!(unknown.starts_with("error: no scene 'nix'; the nearest of "), "{unknown}");
-    assert!(unknown.ends_with("; 'sinew scenes' lists what there is"), "{unknown}");
+    assert!(unknown.ends_with("; 'sinew scenes' lists all"), "{unknown}");
     for wrong in [
         &["--picture", "a.bmp"][..],
         &["--picture", "a.png", "--at", "-1"],
