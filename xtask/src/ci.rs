@@ -112,7 +112,7 @@ fn window() -> Result<()> {
     Ok(())
 }
 
-/// Compiler of the examples in a window: the full Bevy needs a newer one than the plugin, which the pinned one builds.
+/// Compiler of the windowed examples: the full Bevy needs a newer one than the plugin.
 const WINDOW_TOOLCHAIN: &str = "1.97.1";
 
 /// Compiles the plugin for Bevy without features and tests it with all; then tests the whole of Bevy with files loaded by Bevy, and two
@@ -153,7 +153,7 @@ fn bevy_window(example: &str, at: &str) -> Result<()> {
 
 /// Checks that crates can be published: metadata, licences, versions of internal crates. Other checks cover compilation.
 fn packages() -> Result<()> {
-    // Neither is published.
+    // These two are not published.
     let not = ["--exclude", "xtask", "--exclude", "needs_data"];
     let mut package = command::cargo(&["package", "--workspace", "--no-verify"]);
     package.args(not);

@@ -80,7 +80,7 @@ enum Task {
 }
 
 fn main() -> ExitCode {
-    // Without the backtrace that anyhow adds with RUST_BACKTRACE: the findings must stay visible.
+    // No backtrace from anyhow with RUST_BACKTRACE: it would hide the findings.
     run().unwrap_or_else(|error| {
         eprintln!("Error: {error:#}");
         ExitCode::FAILURE

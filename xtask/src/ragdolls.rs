@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const PAGE: &str = "docs/ragdoll-quality.md";
-/// Rigs that lie beside the repository.
+/// Folder of rigs beside the repository.
 pub const SHARED: &str = "../shared/data/rigs";
 /// Files that may hold a rig.
 const RIGS: [&str; 3] = ["glb", "gltf", "vrm"];
@@ -22,7 +22,7 @@ pub struct Ragdolls {
     /// Folder with rigs, or with folders of rigs
     #[arg(long, default_value = SHARED)]
     rigs: PathBuf,
-    /// Random falls of each
+    /// Number of random falls of each rig
     #[arg(long, default_value_t = 100)]
     gate: u32,
 }
@@ -59,7 +59,7 @@ impl Ragdolls {
                 Measured::Built(report) => {
                     rows.row(row(name, report));
                     let said = report["quality"]["reasons"].as_array().into_iter().flatten();
-                    // The page says once that no clip is played.
+                    // That no clip is played is stated once on the page.
                     for reason in
                         said.filter_map(Value::as_str).filter(|reason| !reason.starts_with("hand-over"))
                     {

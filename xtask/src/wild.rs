@@ -1,4 +1,4 @@
-//! Characters from elsewhere: recognised roles, falls, and pictures of them lying.
+//! Public characters: recognised roles, falls, and pictures of them after the fall.
 
 mod page;
 mod sheet;
@@ -15,7 +15,7 @@ use std::time::Instant;
 
 /// Folder beside the repository.
 const DATA: &str = "../shared/data";
-/// Folders of files with meshes, which fall.
+/// Folders of mesh files to simulate.
 const FOLDERS: [&str; 2] = ["rigs", "rigs_wild"];
 const PAGE: &str = "out/wild/tables.md";
 /// Folder for reports and pictures, which git ignores.
@@ -23,8 +23,8 @@ const OUT: &str = "out/wild";
 /// Length of a bake, seconds: a character that falls at 0.5 s lies by then.
 const SECONDS: &str = "6";
 
-/// `cargo xtask wild`: builds, drops and bakes every rig beside the repository, recognises every skeleton, and writes their figures and
-/// sheets of pictures of them fallen.
+/// `cargo xtask wild`: builds, drops and bakes every rig beside the repository, recognises every skeleton, and writes
+/// their figures and sheets of pictures after the fall.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -79,8 +79,8 @@ impl Wild {
     }
 }
 
-/// Correct roles of all, per file in the table of the tests of `sinew_anim`, which has the right answers. Built with the program's profile, so
-/// that nothing is compiled twice.
+/// Correct and total roles per file, from the tests of `sinew_anim`, which have the expected roles. Built with the
+/// program's profile, so that nothing is compiled twice.
 fn roles(out: &Path) -> Result<Value> {
     let path = out.join("roles.json");
     let test = [

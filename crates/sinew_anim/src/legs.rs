@@ -9,7 +9,7 @@ use sinew_math::{Affine, Rotation, Vec3};
 /// A leg with two sole points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foot {
-    /// Whose.
+    /// The foot's side.
     pub side: Side,
     /// Hip, knee and ankle.
     pub leg: TwoBone,

@@ -19,7 +19,7 @@ struct Rider {
 /// The joints of a rig that move skin of a part of the body without being below it: a second bone of the trunk above
 /// the hips, halves of a pelvis, the root of a coat, eyes with their own skeleton, a hat beside the skeleton.
 ///
-/// The file's clips move them as authored. Motions from other bodies do not know them: [`carry`](Self::carry) moves
+/// The file's clips move them as authored. Motions from other bodies do not include them: [`carry`](Self::carry) moves
 /// them with their part, as a ragdoll does.
 ///
 /// ```

@@ -28,7 +28,7 @@ pub fn page(results: &Results, missing: &[&str]) -> String {
     page
 }
 
-/// Everything about each scene.
+/// Writes all figures of each scene.
 pub fn scenes(results: &Results) -> String {
     let mut page = format!("# Benchmarks, scene by scene\n\n{SCENES}");
     for scene in &results.scenes {
@@ -228,7 +228,7 @@ pub fn speeds(results: &Results) -> Table {
     table
 }
 
-/// Everything about one scene.
+/// Writes the figures of one scene.
 fn details(scene: &SceneResult) -> String {
     let sizes = ["bodies", "particles", "characters", "joints", "steps"].into_iter();
     let sizes = sizes.filter_map(|key| Some((scene.size(key).filter(|&size| size > 0)?, key)));
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn the_page_has_all_parts() {
+    fn page_has_all_parts() {
         let page = page(&results(), &["net", "bake"]);
         for part in ["At a glance", "yet: net, bake.", "-O3"] {
             assert!(page.contains(part), "{part} is missing:\n{page}");

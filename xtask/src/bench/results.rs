@@ -17,7 +17,7 @@ pub struct Results {
     pub limp: BTreeMap<String, f64>,
     /// By scene: wall time on one thread over that on two, if measured.
     pub threads: BTreeMap<String, f64>,
-    /// Machine of the last measurement, in words; `None` in older files.
+    /// Machine of the last measurement as text; `None` in older files.
     pub machine: Option<String>,
 }
 
@@ -26,7 +26,7 @@ pub struct Results {
 pub struct SceneResult {
     /// Name in the peers' list.
     pub name: String,
-    /// In one line.
+    /// One-line description.
     pub about: String,
     /// Commit that was measured.
     pub revision: String,

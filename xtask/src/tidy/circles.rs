@@ -1,4 +1,5 @@
-//! Files of a crate that name each other in a circle, which a reader has to know together; and the number of files in one folder.
+//! Files of a crate that name each other in a circle, which a reader must understand together; and the number of files
+//! in one folder.
 //!
 //! A file names another if one of its paths leads to something that the other defines, through any re-exports; a
 //! re-export alone names nothing. Methods are not seen, because tokens do not show their types.
@@ -120,7 +121,7 @@ impl<'a> Source<'a> {
 
     /// Returns the module that defines the end of a path from the module `at`.
     fn resolve(&self, at: usize, path: &[&'a str], depth: usize) -> Found {
-        // A circular import, through a name that two macros define, ends here.
+        // Stops at a circular import through a name that two macros define.
         if depth > 16 {
             return None;
         }

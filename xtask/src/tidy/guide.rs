@@ -35,7 +35,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
             if name.starts_with("from_") && line.starts_with('|') {
                 let known = known.get_or_insert_with(|| names(repo));
                 for word in words(ours(line)).filter(|word| !known.contains(word)) {
-                    let message = format!("`{word}` is no name of Sinew's");
+                    let message = format!("`{word}` is not a name in Sinew");
                     findings.push(Finding::new(&page.path, index + 1, message));
                 }
             }
@@ -125,6 +125,6 @@ mod tests {
         let code = ("crates/sinew/src/world.rs", "/// `invented`\npub fn add_body(def: &Def) {}");
         let table = "| A | Sinew |\n|---|---|\n| `any` | `add_body(&def)`; `x` |\n| `b` | `invented` |\n";
         let found = found(&[("docs/guide/src/from_a.md", table), contents, code]);
-        assert_eq!(found, ["docs/guide/src/from_a.md:4: `invented` is no name of Sinew's"]);
+        assert_eq!(found, ["docs/guide/src/from_a.md:4: `invented` is not a name in Sinew"]);
     }
 }

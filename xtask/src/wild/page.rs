@@ -169,12 +169,12 @@ fn reasons(rows: &[Row]) -> String {
         }
         let of_drops = &row.report["build"]["quality"]["reasons"];
         let of_bake = &row.report["bake"]["notes"];
-        // That no clip is played in a drop holds for every file.
+        // Every file lacks clips in its drops: that reason is left out.
         let said = of_drops.as_array().into_iter().flatten().filter_map(Value::as_str);
         for reason in said.filter(|reason| !reason.starts_with("hand-over")) {
             let _ = writeln!(text, "- {}: {reason}", row.file);
         }
-        // The command asked for staying down.
+        // The command requested to stay down, so its note is left out.
         let noted = of_bake.as_array().into_iter().flatten().filter_map(Value::as_str);
         for note in noted.filter(|note| !note.starts_with("it does not get up")) {
             let _ = writeln!(text, "- {}, baked: {note}", row.file);
@@ -199,7 +199,7 @@ mod tests {
     use std::path::PathBuf;
 
     #[test]
-    fn a_refused_file_is_counted_and_listed() {
+    fn rejected_file_is_counted_and_listed() {
         let row = Row {
             file: "rigs/odd.glb".into(),
             report: json!({ "refused": "no skin" }),

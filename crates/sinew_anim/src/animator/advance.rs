@@ -223,7 +223,7 @@ fn within(moment: f64, seconds: f64) -> f64 {
     if inside < seconds { inside } else { seconds }
 }
 
-/// Never against the direction of play: phases are rounded.
+/// Clamps a step to the direction of play, because phases are rounded.
 fn onward(from: Place, to: Place, speed: f64) -> Place {
     let is_back = if speed < 0.0 { to > from } else { to < from };
     if is_back { from } else { to }

@@ -1,4 +1,4 @@
-//! From tracks to one pose and one step of the root.
+//! Combines tracks into one pose and one root motion.
 
 use super::root_inertia::{RootInertia, RootVelocity};
 use super::{Animator, FILL_BELOW, Slot, crossfade};

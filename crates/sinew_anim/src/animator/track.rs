@@ -14,7 +14,7 @@ impl TrackId {
         self.0
     }
 
-    /// From that number; it names no track of an animator that does not have it.
+    /// Restores an id from that number; it refers to no track if the animator lacks it.
     pub fn from_bits(bits: u64) -> Self {
         Self(bits)
     }
@@ -44,7 +44,7 @@ pub enum Easing {
     Smooth,
     /// `x²`: slow at first.
     In,
-    /// `x (2 − x)`: slow at last.
+    /// `x (2 − x)`: slow at the end.
     Out,
 }
 
@@ -86,7 +86,7 @@ pub struct TrackDef {
 }
 
 impl TrackDef {
-    /// Looped from its start, at its own speed, on the whole body, alone.
+    /// A track that loops its clip from the start at its own speed, with weight 1, on all joints.
     pub fn new(clip: ClipId) -> Self {
         Self {
             clip,

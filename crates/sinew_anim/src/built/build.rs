@@ -1,4 +1,4 @@
-//! From a raw clip to a built one.
+//! Builds a playable clip from a raw one.
 
 use super::code::{Bounds, Key, ROTATION_BOUND, SmallestThree};
 use super::curve::Curve;

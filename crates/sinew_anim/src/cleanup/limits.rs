@@ -10,7 +10,7 @@ use sinew_math::max;
 pub struct JointExcess {
     /// The joint.
     pub joint: JointIdx,
-    /// In how many frames.
+    /// Number of frames.
     pub frames: usize,
     /// Largest excess, radians.
     pub largest: f32,
@@ -20,7 +20,7 @@ pub struct JointExcess {
 /// report.
 ///
 /// # Panics
-/// If a limit is of a joint that the take has not.
+/// If the take lacks the joint of a limit.
 pub fn project_limits(take: &mut Take, limits: &[LearnedLimit]) -> Vec<JointExcess> {
     let mut report = Vec::new();
     for limit in limits {

@@ -1,4 +1,4 @@
-//! Frames in which a joint jumps away and back.
+//! Removes spikes: frames in which a joint jumps away and back.
 
 use crate::clip::take::Take;
 use crate::rig::{JointIdx, LocalTransform};
@@ -27,9 +27,9 @@ impl Default for SpikeSettings {
 /// A removed spike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spike {
-    /// Whose.
+    /// The joint.
     pub joint: JointIdx,
-    /// First frame of it.
+    /// First frame of the spike.
     pub frame: usize,
     /// Number of frames.
     pub frames: usize,

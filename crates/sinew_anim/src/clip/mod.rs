@@ -1,4 +1,4 @@
-//! Keyframed motion as the file holds it.
+//! Keyframed motion as stored in a file.
 
 pub mod reduce;
 pub mod root_motion;

@@ -36,7 +36,7 @@ pub struct KeyError {
 }
 
 impl KeyError {
-    /// As a share of the bound: above 1 it is broken.
+    /// Ratio to the bound; above 1 the bound is violated.
     fn over(self, bound: KeyBound) -> f32 {
         max(self.distance / bound.distance, self.angle / bound.angle)
     }
@@ -63,7 +63,7 @@ const ROUNDS: usize = 4;
 /// As [`sample`](crate::clip::sample::sample()), and if the bound is negative or not finite.
 pub fn reduce_keys(rig: &Rig, clip: &Clip, root: &Affine, bound: KeyBound) -> Reduced {
     let sound = |x: f32| (0.0..f32::INFINITY).contains(&x);
-    assert!(sound(bound.distance) && sound(bound.angle), "a bound is not negative, and finite: {bound:?}");
+    assert!(sound(bound.distance) && sound(bound.angle), "a bound must be finite and at least 0: {bound:?}");
     let before = count(clip);
     let all = || Reduced { clip: clip.clone(), error: KeyError::default(), keys: [before, before] };
     if bound.distance <= 0.0 || bound.angle <= 0.0 || rig.joints.is_empty() || moves_twice(rig, clip) {
@@ -287,7 +287,7 @@ fn longest_squared(map: &Affine) -> f32 {
 fn turned_squared(a: &Affine, b: &Affine) -> f32 {
     let (a, b) = (&a.linear, &b.linear);
     let axes = [(a.x_axis, b.x_axis), (a.y_axis, b.y_axis), (a.z_axis, b.z_axis)];
-    // By differences: the cosine of a small angle has lost it.
+    // Uses differences, because the cosine of a small angle loses precision.
     let moved = |(a, b): (Vec3, Vec3)| {
         let [la, lb] = [a, b].map(Vec3::length);
         if min(la, lb) > 0.0 { (a * (1.0 / la) - b * (1.0 / lb)).length_squared() } else { 0.0 }

@@ -1,4 +1,4 @@
-//! Feet on ground other than the animation's flat floor.
+//! Places feet on ground that differs from the animation's flat floor.
 
 use super::two_bone::{Pole, TwoBone, TwoBoneGoal, two_bone_ik};
 use super::{set_rotation, shift};
@@ -41,7 +41,7 @@ pub struct PlacedFoot {
     pub raised: f32,
     /// Angle by which it was tilted.
     pub tilted: f32,
-    /// Distance of its ankle from where it should be.
+    /// Distance of its ankle from its goal.
     pub miss: f32,
 }
 
@@ -137,7 +137,7 @@ fn highest_pelvis(model: &[Affine], leg: &TwoBone, target: Vec3, up: Vec3) -> f3
 struct Step {
     raise: f32,
     target: Vec3,
-    /// Rotation of the foot before.
+    /// Rotation of the foot before placement.
     rotation: Rotation,
     tilt: Rotation,
 }

@@ -6,12 +6,12 @@ const MOST_LAPS: u64 = 1 << 53;
 /// Continuation after the end of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LoopMode {
-    /// The start: its end and its start are one moment.
+    /// Continues at the start; end and start are one time.
     #[default]
     Loop,
     /// Backward, then forward again.
     PingPong,
-    /// Nothing: the last pose holds, and played backward the first.
+    /// Stops: the last pose holds, and played backward the first.
     Once,
 }
 
@@ -159,7 +159,7 @@ impl Playhead {
 /// From one position to another: forward it passes everything after the first up to the second, backward everything
 /// before the first down to the second.
 ///
-/// So several steps pass what one step from the first position to the last does.
+/// Several steps therefore pass the same events as one step over the same distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
     /// The position before.

@@ -1,4 +1,4 @@
-//! Any number of poses into one, in an order of their own.
+//! Blends any number of poses into one, independently of their order.
 
 use super::add::Add;
 use super::parts::Parts;

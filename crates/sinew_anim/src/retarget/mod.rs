@@ -89,7 +89,7 @@ pub enum RetargetError {
     #[error("{0} must be above 0 and finite")]
     NotPositive(&'static str),
     /// The clip lasts longer than [`Take::MOST_FRAMES`] frames.
-    #[error("the clip lasts {0} frames, which is more than can be")]
+    #[error("the clip lasts {0} frames, which exceeds the limit")]
     TooLong(usize),
 }
 
@@ -102,7 +102,7 @@ pub struct Retargeted {
     pub contacts: Vec<FootContact>,
     /// Roles that both bodies have: actor's joint, character's joint.
     pub pairs: Vec<(Role, JointIdx, JointIdx)>,
-    /// Roles of the character that the actor has not: these joints go along with their parents.
+    /// Roles of the character that the actor lacks: these joints follow their parents.
     pub unmatched: Vec<Role>,
     /// Length of the character's legs over that of the actor's.
     pub scale: f32,

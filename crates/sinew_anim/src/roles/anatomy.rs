@@ -308,23 +308,25 @@ impl<'a> Scene<'a> {
             let (left, which) =
                 if against >= 2.0 { (-named, "the shape counts") } else { (named, "the names count") };
             notes.push(format!(
-                "the feet point the other way than left and right are named: {which}, and which way the body faces is in doubt"
+                "the feet point opposite to the front that the names of left and right imply: {which}, and the front of the body is in doubt"
             ));
             return lateral * left;
         }
         if feet == 0.0 && walk != 0.0 {
-            notes.push("the feet hardly tell which way the body faces: the way they walk does".into());
+            notes.push(
+                "the feet hardly show the front of the body: it is taken from the walking direction".into(),
+            );
             return lateral * walk;
         }
         if feet == 0.0 && bent != 0.0 {
-            notes.push("the feet hardly tell which way the body faces: the elbows do".into());
+            notes.push("the feet hardly show the front of the body: it is taken from the elbows".into());
             return lateral * bent;
         }
         // Half a per cent of the height and more is a foot, less is noise.
         if lead.abs() > LEAST_FOOT {
             return lateral * lead.signum();
         }
-        notes.push("the feet do not tell which way the body faces".into());
+        notes.push("the feet do not show the front of the body".into());
         let ahead = if up.y.abs() > 0.5 { Vec3::Z } else { -Vec3::Y };
         lateral * if forward.dot(ahead) < 0.0 { -1.0 } else { 1.0 }
     }

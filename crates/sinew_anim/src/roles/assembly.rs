@@ -41,7 +41,7 @@ pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<
             }
         }
     }
-    // And whose twin moves skin: a mirrored figure has both.
+    // The twin of the bone has skin: a mirrored figure has both.
     for (joint, reading) in readings.iter().enumerate().filter(|&(joint, _)| !moves(joint)) {
         let Some(part) = reading.part.filter(|part| LONG.contains(part)) else { continue };
         let Some(side) = reading.side else { continue };

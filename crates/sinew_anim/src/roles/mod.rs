@@ -295,7 +295,7 @@ fn analyze_bound(
     let (unit_scale, unit_guess) = units::unit_scale(&body, hints);
     match hints.up {
         Some(of_file) if up.dot(of_file) < 0.9 => notes.push(format!(
-            "it lies in its file: from hips to head it goes along {up}, and up is {of_file}; --up says otherwise"
+            "the character lies in its file: from hips to head it points along {up}, but up is {of_file}; --up sets another axis"
         )),
         None if up.dot(Vec3::Y) < 0.9 => {
             notes.push(format!("the body stands along {up} of the file, not along +Y"));

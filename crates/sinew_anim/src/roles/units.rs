@@ -275,7 +275,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
     let is_sure = is_only && body.humanoid && unit.metres == 1.0;
     // Without a choice there is no evidence to weigh.
     let (others, words) = if is_only {
-        ("no other unit makes it so".to_owned(), "")
+        ("no other unit fits".to_owned(), "")
     } else {
         (format!("it may also be {}", others.join(", ")), witnesses.words.as_str())
     };
@@ -290,7 +290,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
 fn assumed(body: &Measured, sizes: &Sizes, witnesses: &Witnesses) -> (f32, &'static str) {
     match witnesses.legs {
         Some((leg, metres)) if !body.humanoid && body.species.is_none() => {
-            (clamp(body.size * metres / leg, sizes.fits.start, sizes.fits.end), ", as its stride tells")
+            (clamp(body.size * metres / leg, sizes.fits.start, sizes.fits.end), ", by its stride")
         }
         _ => (sizes.assumed, ""),
     }

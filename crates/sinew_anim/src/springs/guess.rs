@@ -153,7 +153,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_tell_what_swings() {
+    fn names_identify_springs() {
         let of = |name: &str| material_of(name).map(|kind| MATERIALS[kind].words[0]);
         assert_eq!(of("J_Sec_Hair1_01"), Some("hair"));
         assert_eq!(of("Ear2.L"), Some("ear"));

@@ -489,7 +489,7 @@ fn negative_or_non_finite_weights_panic() {
 }
 
 #[test]
-#[should_panic = "an update takes 0 s or longer"]
+#[should_panic = "seconds must be finite and at least 0"]
 fn negative_time_step_panics() {
     let set = stage::set(13);
     Animator::new(&set).update(&set, -0.1);

@@ -108,7 +108,11 @@ fn walking_direction_gives_the_front() {
         assert!((ahead - Vec3::Z * toward).length() < 1e-5, "{ahead}");
         let left = found.joint_with(Role::Hand(Side::Left)).expect("a left hand");
         assert_eq!(toy::BODY[left].0, if toward > 0.0 { "leftHand" } else { "rightHand" });
-        assert!(found.notes.iter().any(|note| note.contains("the way they walk does")), "{:?}", found.notes);
+        assert!(
+            found.notes.iter().any(|note| note.contains("from the walking direction")),
+            "{:?}",
+            found.notes
+        );
     }
     // Names have priority over the walk.
     let mut named = toy::body(Role::name);

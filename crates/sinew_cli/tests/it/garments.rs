@@ -167,7 +167,7 @@ fn invalid_mesh_garment_settings_name_file_and_place() {
     for (garment, place, told) in [
         (r#"{"mesh": "Skrit"}"#, "garments[0].mesh", "Skirt"),
         (r#"{"mesh": "Skirt", "chains": ["hips"]}"#, "garments[0].chains", "not both"),
-        (r#"{"mesh": "Skirt", "held": 2}"#, "garments[0].held", "nothing of it is left to hang"),
+        (r#"{"mesh": "Skirt", "held": 2}"#, "garments[0].held", "no part can move"),
         (r#"{"chains": ["hips"], "held": 0.1}"#, "garments[0].held", "only a garment with a `mesh`"),
         (r#"{"mesh": "Skirt", "most_particles": 2}"#, "garments[0].most_particles", "between 4 and 4000"),
         (r#"{"mesh": "Skirt"}, {"mesh": "Tartan"}"#, "garments[1].mesh", "a garment already"),

@@ -73,10 +73,7 @@ fn unit_reason_and_alternatives_are_noted() {
     let rig = mannequin().rig;
     let of_unit = |object: &Value| notes(object).into_iter().find(|note| note.contains("taken as"));
     let metres = of_unit(&build(&rig, &[])).expect("a note");
-    assert!(
-        metres.contains("taken as metres: 1.") && metres.contains("no other unit makes it so"),
-        "{metres}"
-    );
+    assert!(metres.contains("taken as metres: 1.") && metres.contains("no other unit fits"), "{metres}");
     let object = build(&scaled(rig.clone(), 100.0), &[]);
     let note = of_unit(&object).expect("a note");
     assert!(note.contains("taken as centimetres: 1.") && note.contains("a human is 0.9 to 3 m"), "{note}");

@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_the_common_conventions() {
+    fn common_naming_conventions_are_read() {
         use Part::*;
         let (l, r) = (Some(Side::Left), Some(Side::Right));
         let names =
@@ -376,7 +376,7 @@ mod tests {
 
     /// Body parts in the languages of asset stores, on both sides, in any case.
     #[test]
-    fn names_in_other_languages_and_in_any_case() {
+    fn names_are_read_in_other_languages_and_any_case() {
         use Part::*;
         let (l, r) = (Some(Side::Left), Some(Side::Right));
         let wanted = [
@@ -426,7 +426,7 @@ mod tests {
     }
 
     #[test]
-    fn words_whose_meaning_hangs_on_the_others() {
+    fn word_meaning_depends_on_the_other_names() {
         use Part::*;
         let (l, r) = (Some(Side::Left), Some(Side::Right));
         let smpl = [
