@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A scene of our own ragdolls on MuJoCo: prints what `peers run` prints.
+"""Runs a scene of our own ragdolls on MuJoCo and prints the same report as `peers run`.
 
 Needs `pip install mujoco`. The figures come from `peers mjcf`, so that both engines run the same bodies, masses, joints,
 limits, friction and pairs that do not collide. MuJoCo runs at its own default step of 2 ms, single-threaded. Its times are
@@ -14,9 +14,9 @@ import time
 import xml.etree.ElementTree as ET
 
 STEP = 1.0 / 60.0
-# Steps of MuJoCo that are timed at once: 50 ms of the scene, three steps of the others.
+# Steps of MuJoCo in one timed batch: 50 ms of the scene, three steps of the others.
 BATCH_SECONDS = 3 * STEP
-# Batches between two looks at depths, as often as the others are looked at.
+# Batches between two measurements of depth, as often as for the other engines.
 LOOK_EVERY = 5
 EXCEEDED = 0.1
 

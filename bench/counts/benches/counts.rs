@@ -26,11 +26,11 @@ fn ragdoll(steps: u32) -> Instance {
         drop.world_mut().step();
     }
     let world = drop.world();
-    assert!(world.body_ids().any(|id| world.is_awake(id)), "it is not yet asleep");
+    assert!(world.body_ids().any(|id| world.is_awake(id)), "the scene is asleep already");
     drop
 }
 
-/// In the air, 0.2 s after release.
+/// The mannequin in the air, 0.2 s after release.
 fn falling() -> Instance {
     ragdoll(12)
 }
@@ -200,7 +200,7 @@ fn collide_64(pairs: Vec<(Placed, Placed)>) -> usize {
     points
 }
 
-/// Steps after which nothing is searched or allocated any more.
+/// Steps after which no search or allocation happens any more.
 const WARM: usize = 4;
 
 /// A hundred characters that each blend two clips of 50 joints, warm.

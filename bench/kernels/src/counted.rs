@@ -41,11 +41,11 @@ pub fn count<K: Kernel>(kernel: K) -> Operations {
     COUNT.get()
 }
 
-/// One number for all eight, since only the operations count.
+/// One number for all eight lanes, since only the operations count.
 #[derive(Clone, Copy)]
 pub struct Counted(f32);
 
-/// The same.
+/// A mask for all eight lanes.
 #[derive(Clone, Copy)]
 pub struct CountedMask(bool);
 

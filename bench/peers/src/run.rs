@@ -47,7 +47,7 @@ impl Start {
 
 /// Returns the result as one JSON object; `"unsupported"` gives the reason for missing figures.
 ///
-/// `steps`: the scene's own number if `None`.
+/// `steps`: number of steps; the scene's own if `None`.
 pub fn run(
     engine: &dyn Engine,
     scene: &Scene,

@@ -40,7 +40,7 @@ pub struct LimitTally {
 }
 
 impl LimitQuality {
-    /// As part of a report.
+    /// The tally as part of a report.
     pub fn to_json(&self) -> Value {
         let tally = |tally: &LimitTally| {
             json!({

@@ -119,7 +119,7 @@ struct PlacedShape<'a> {
 }
 
 impl PlacedShape<'_> {
-    /// Bodies with NaN count as lost, not as deep.
+    /// Bodies with NaN count as lost, not as penetrating.
     fn is_finite(&self) -> bool {
         self.pose.is_finite()
     }

@@ -39,7 +39,7 @@ pub struct RayScene {
 }
 
 impl RayScene {
-    /// Always the same.
+    /// Builds the scene, always the same one.
     pub fn new() -> Self {
         let mut random = Random::new(7);
         let boxes = (0..10_000)

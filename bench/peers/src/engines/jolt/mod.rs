@@ -26,7 +26,7 @@ use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, JointKind, Sensing, Sleeping};
 use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
 
-/// Of Jolt 5.6.0, as the crate bundles it.
+/// Commit of Jolt 5.6.0 that the crate bundles.
 const JOLT_COMMIT: &str = "e77f1755";
 
 /// Capacity for contacts, in body pairs and in manifolds: a step that exceeds it is not measured but stops the run.
