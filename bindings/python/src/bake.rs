@@ -64,7 +64,7 @@ type Hit<'py> = (f32, String, Bound<'py, PyAny>);
 
 #[pymethods]
 impl Actor {
-    /// Actions on a character in a bake.
+    /// Creates the actor from Python's arguments.
     #[new]
     #[pyo3(signature = (character, *, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, pose=None, phase=0.0, name="sinew"))]
     fn new(
@@ -208,7 +208,7 @@ impl Stage {
     }
 }
 
-/// Wall time between two calls of the user's function, seconds.
+/// Least wall time between two calls of the user's function, seconds.
 const TELLS_EVERY: f32 = 0.05;
 
 /// Reports a bake's progress to Python, and checks whether to continue.

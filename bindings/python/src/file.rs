@@ -37,7 +37,7 @@ fn corrections(
         let text: String = py.import("json")?.call_method1("dumps", (whole,))?.extract()?;
         read_ragdoll_settings(text.as_bytes()).map_err(|error| bad(format!("settings: {error}")))
     });
-    // A dictionary has no order that counts here: sorted, the same arguments give the same bits.
+    // The order of a dictionary has no meaning here: sorted, the same arguments give the same bits.
     let sorted = |map: Option<HashMap<String, String>>| {
         let mut list: Vec<_> = map.unwrap_or_default().into_iter().collect();
         list.sort();

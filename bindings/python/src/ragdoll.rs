@@ -77,7 +77,7 @@ pub fn quality_dict<'py>(py: Python<'py>, q: &FallQuality) -> PyResult<Bound<'py
     Ok(dict)
 }
 
-/// A shape in another size.
+/// Returns a shape scaled by a factor.
 fn scaled_shape(shape: &Shape, factor: f32) -> PyResult<Shape> {
     Ok(match *shape {
         Shape::Box { half_extents } => Shape::Box { half_extents: half_extents * factor },
@@ -94,7 +94,7 @@ fn scaled_shape(shape: &Shape, factor: f32) -> PyResult<Shape> {
     })
 }
 
-/// Wishes for one body and the joint above it.
+/// Requested changes of one body and the joint above it.
 struct Edit {
     mass: Option<f32>,
     shape: Option<Shape>,

@@ -1,4 +1,4 @@
-//! Rigs and clips out of arrays.
+//! Creates rigs and clips from arrays.
 
 use crate::arrays::{elements, floats, vectors};
 use crate::errors::bad;
@@ -9,7 +9,7 @@ use sinew::anim::{
 };
 use sinew::math::{Affine, Mat3, Rotation, Vec3};
 
-/// Most influences of a vertex.
+/// Largest number of influences of a vertex.
 const INFLUENCES: usize = 4;
 
 /// A rig without skin: names, parents (-1 for a root), and the rest pose.
@@ -194,7 +194,7 @@ fn one_clip(rig: &Rig, name: String, given: &Bound<'_, PyDict>) -> PyResult<Clip
     Ok(Clip { duration: times[times.len() - 1], name, channels })
 }
 
-/// Unit quaternions, each on the side of the one before.
+/// Unit quaternions, each with the sign nearest to the previous one.
 fn near<'a>(rows: impl Iterator<Item = &'a [f32]>, name: &str) -> PyResult<Vec<f32>> {
     let mut values = Vec::new();
     let mut last: Option<Rotation> = None;

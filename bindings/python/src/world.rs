@@ -131,7 +131,7 @@ impl World {
         }
     }
 
-    /// World, then characters.
+    /// State of the world, followed by that of its characters.
     fn state(&self) -> Writer {
         let mut w = Writer::new();
         self.world.save(&mut w);

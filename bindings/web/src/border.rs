@@ -1,4 +1,4 @@
-//! Border to JavaScript: errors, panics, and handles shared by several objects.
+//! Border to JavaScript: errors, panics, and shared handles.
 
 use std::cell::{Cell, RefCell};
 use std::panic::{PanicHookInfo, set_hook};

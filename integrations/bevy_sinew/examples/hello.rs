@@ -42,5 +42,5 @@ pub fn main() {
             println!("frame {frame}: {:.3} m", height(&mut app));
         }
     }
-    assert!((height(&mut app) - 0.5).abs() < 0.01, "it lies on the ground");
+    assert!((height(&mut app) - 0.5).abs() < 0.01, "it is not on the ground");
 }

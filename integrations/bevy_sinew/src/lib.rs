@@ -168,7 +168,7 @@ impl DerefMut for Physics {
     }
 }
 
-/// Order in which entities are added to the world: that of their creation.
+/// Order in which entities are added to the world: by creation.
 pub(crate) fn order(entity: Entity) -> (u32, u64) {
     (entity.index_u32(), entity.to_bits())
 }

@@ -9,7 +9,7 @@ use bevy_math::Vec3;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use sinew_physics::{FieldDef, FieldId, JointDef, JointId, JointKind};
 
-/// Entities as bits: Bevy serialises entities only with a feature of its scenes.
+/// Stores entities as bits, because Bevy serialises entities only with a feature of its scenes.
 #[cfg(feature = "reflect")]
 pub(crate) mod bits {
     use bevy_ecs::entity::Entity;
