@@ -75,7 +75,7 @@ def load_bytes(
     height: float | None = None,
     mass: float | None = None,
 ) -> CharacterFile:
-    """Reads a character from the bytes of a GLB, VRM or FBX, or of a glTF that holds its buffers; `name` stands in errors. All else as `load`."""
+    """Reads a character from the bytes of a GLB, VRM or FBX, or of a glTF that holds its buffers; `name` is used in errors. Other arguments as in `load`."""
 
 def load_arrays(
     joints: Sequence[str],
@@ -96,7 +96,7 @@ def load_arrays(
     height: float | None = None,
     mass: float | None = None,
 ) -> CharacterFile:
-    """Makes a character of arrays, +Y up: names of joints, their parents (n,), -1 for a root and else before them, and their rest pose in their parents: translations (n, 3), rotations (n, 4) x y z w, scales (n, 3). `inverse_bind` (n, 4, 4) is from a mesh to each joint; without it meshes are where the rest pose has them. All else as `load`."""
+    """Creates a character from arrays, +Y up: names of joints, their parents (n,), -1 for a root and else before them, and their rest pose in their parents: translations (n, 3), rotations (n, 4) x y z w, scales (n, 3). `inverse_bind` (n, 4, 4) is from a mesh to each joint; without it meshes are where the rest pose has them. All else as `load`."""
 
 def bake(
     actors: Sequence[Actor],
@@ -111,7 +111,7 @@ def bake(
     """Simulates several characters in one world, where they meet each other. `world` is the name of a file or a list of colliders, by default a floor; `wind` and `gravity` are m/s and m/s². `progress` is called with the share that is done; if it returns False the bake ends with `Cancelled`."""
 
 def mannequin() -> CharacterFile:
-    """The mannequin that comes with Sinew, 1.75 m, with a walk and two ways to get up."""
+    """The built-in mannequin, 1.75 m, with a walk and two ways to get up."""
 
 def load_ragdoll(path: _Path) -> Ragdoll:
     """Reads a ragdoll: a definition (.json), an MJCF or URDF model (.xml, .urdf), or a character, from which it is built."""
@@ -293,7 +293,7 @@ class Character:
 
     @property
     def place_in_file(self) -> _Floats:
-        """Pose at which it stands where its file has it: (7,). Places of the file times its unit are then places of the world."""
+        """Pose at which the character stands as in its file: (7,). Positions of the file times its unit are then world positions."""
 
     @property
     def raised(self) -> float:

@@ -278,7 +278,7 @@ impl Trail {
     }
 }
 
-/// Whether a scene has reached its end, when every expectation applies.
+/// State of a scene: running, or at its end, when every expectation applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Moment {
     OnTheWay,
