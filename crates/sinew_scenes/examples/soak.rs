@@ -14,7 +14,7 @@ struct Part {
     scene: &'static str,
     settings: &'static [&'static str],
     round: Option<u64>,
-    /// Speed caused by the scene's blows to single limbs, m/s.
+    /// Speed that the scene's blows give a single limb, m/s.
     blows: f32,
 }
 
@@ -99,7 +99,7 @@ impl Seen {
         }
         if self.speed > max(FAST, part.blows) {
             faults.push(format!(
-                "something flies at {:.1} m/s at {:.2} s",
+                "the fastest body moves at {:.1} m/s at {:.2} s",
                 self.speed,
                 self.speed_at as f32 / 60.0
             ));
@@ -140,7 +140,7 @@ fn started(part: &Part, round: u64) -> Instance {
     let scene = find(part.scene).expect("the registry has it");
     let mut settings = scene.settings();
     for setting in part.settings {
-        // Skip round numbers that the setting does not allow.
+        // Skip the round numbers that the setting does not allow.
         let number = if part.scene == "crowd" { 50 + round % 40 } else { round };
         settings.assign(&setting.replace('#', &number.to_string())).expect("it is in range");
     }

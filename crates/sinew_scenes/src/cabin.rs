@@ -19,7 +19,7 @@ pub enum Site {
 /// A static body to collide with and to draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prop {
-    /// Name of the thing; not unique.
+    /// Name of the prop; not unique.
     pub name: &'static str,
     /// One shape at the body's origin: a box, or for the ground a half-space.
     pub body: BodyDef,
@@ -161,7 +161,7 @@ fn railing(props: &mut Vec<Prop>) {
     }
 }
 
-/// Solid steps down to the ground, so that nothing slips in between, and a stringer on each side.
+/// Solid steps down to the ground, so that nothing slips between them, and a stringer on each side.
 fn stairs(props: &mut Vec<Prop>) {
     let half_width = 0.5 * STAIRS_WIDTH;
     for step in 1..STEPS {

@@ -163,7 +163,7 @@ impl Chains {
 /// detected by joint names, each changed by `adjust`.
 ///
 /// # Panics
-/// Never: the character is valid.
+/// Never panics, because the character is valid.
 pub fn dressed(garments: &[&Chains], adjust: impl Fn(&mut Garment)) -> CharacterDef {
     let bare = crate::mannequin::mannequin().rig;
     let (ragdoll, _) =

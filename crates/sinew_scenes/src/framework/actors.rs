@@ -54,7 +54,7 @@ impl Cast {
         BuiltClip::build(clip, &self.rig, &ClipBuildOptions::default()).expect("clips made by code are good")
     }
 
-    /// The joint of that name.
+    /// Index of the joint of that name.
     pub fn joint(&self, name: &str) -> usize {
         let place = self.rig.joints.iter().position(|joint| joint.name == name);
         place.expect("the rig has a joint of that name")

@@ -1,4 +1,4 @@
-//! Springs that carry loads much heavier than they are.
+//! Springs that carry loads much heavier than themselves.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -12,15 +12,15 @@ use sinew::physics::{BodyId, World};
 pub(in crate::scenes) const TRAMPOLINE: Scene = Scene {
     chapter: Chapter::Particles,
     name: "trampoline",
-    about: "two heavy boxes sink onto springs, trees below one and a net below the other, and come to rest where these bear them",
+    about: "two heavy boxes sink onto springs, trees below one and a net below the other, and come to rest at the depth of a closed form",
     steps: 900,
-    settings: &[Setting::number("mass", 100.0, (1.0, 1000.0), "of each box, kg")],
+    settings: &[Setting::number("mass", 100.0, (1.0, 1000.0), "mass of each box, kg")],
     build: trampoline,
 };
 
 /// Half of a box, metres.
 const BOX: Vec3 = Vec3::new(0.3, 0.1, 0.3);
-/// Particles along each edge of the mat below it, and their spacing, metres.
+/// Number of particles along each edge of the mat below a box, and their spacing, metres.
 const SIDE: u32 = 3;
 const SPACING: f32 = 0.25;
 /// Length of the ties to both sides along x, metres.
@@ -37,7 +37,7 @@ const KNOT_RADIUS: f32 = 0.02;
 const LET_GO: f32 = 0.12;
 
 fn trampoline(setup: &Setup<'_>) -> Instance {
-    // With sleep, they would stop within the few millimetres in which a swing counts as rest.
+    // With sleep they would stop within the few millimetres that count as rest.
     let mut world = setup.sleepless_world();
     let mass = setup.number("mass");
     let boxes = [(false, -0.8), (true, 0.8)].map(|(is_net, z)| {
@@ -97,9 +97,10 @@ fn sag(weight: f32) -> f64 {
 
 struct Trampoline {
     boxes: [BodyId; 2],
-    /// Closed form, metres.
+    /// Expected depth, metres.
     sag: f64,
-    /// Height of each at the end of the last step, metres, and the larger of the ways from that of the one before.
+    /// Height of each box at the end of the last step, metres, and the larger of the displacements of the two from the
+    /// step before.
     heights: [f32; 2],
     moved: f32,
 }
