@@ -58,7 +58,7 @@ pub(super) fn is_marked(findings: &[Finding], joint: usize) -> bool {
     })
 }
 
-/// Default frames, and anchors that differ.
+/// Finding about default frames or different anchors.
 fn frames(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let bodies = [joint.child, joint.parent];
@@ -88,7 +88,8 @@ fn frames(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     })
 }
 
-/// A pivot away from the start of its bone: far from the rig's, or at the parent's origin and outside the child.
+/// Finding about a pivot away from the start of its bone: far from the rig's, or at the parent's origin and outside the
+/// child.
 fn pivot(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let (pivot, child) = (exam.bones.list[joint.child].head, &exam.def.bodies[joint.child]);
@@ -143,7 +144,7 @@ fn width(range: Range) -> f32 {
     range.hi - range.lo
 }
 
-/// True if some direction of a joint has no limit worth the name.
+/// True if some direction of a joint has no effective limit.
 pub(super) fn is_unlimited(kind: &JointKind) -> bool {
     match kind {
         JointKind::Ball { limit: None }
@@ -200,7 +201,7 @@ fn too_narrow(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     Some(exam.finding(Code::LimitTooNarrow, &[joint.child, joint.parent], evidence))
 }
 
-/// Most joints of a human with one and the same range.
+/// Finding if most joints of a human have the same range.
 fn all_alike(exam: &Exam<'_>) -> Option<Finding> {
     if exam.bones.anatomy != Anatomy::Human {
         return None;
@@ -210,7 +211,7 @@ fn all_alike(exam: &Exam<'_>) -> Option<Finding> {
         .joints
         .iter()
         .filter_map(|joint| match joint.kind {
-            // Unlimited joints have their own finding.
+            // Unlimited joints have a finding of their own.
             JointKind::Ball { limit: Some(limit) } if width(limit.twist) <= NO_LIMIT => {
                 Some((joint.child, limit))
             }
@@ -244,7 +245,7 @@ fn all_alike(exam: &Exam<'_>) -> Option<Finding> {
     Some(exam.finding(Code::LimitsAllAlike, &bodies, evidence))
 }
 
-/// A knee or elbow that goes as far beyond straight as it bends.
+/// Finding about a knee or elbow that bends as far backwards as forwards.
 fn both_ways(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let parts = (exam.part(joint.parent), exam.part(joint.child));
@@ -322,7 +323,7 @@ fn too_stiff(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let hertz = hertz(exam, index, softness);
     let nyquist = 0.5 / exam.repair.substep;
-    // Written so that NaN is a finding.
+    // The comparison is written so that NaN is a finding.
     if hertz <= nyquist {
         return None;
     }
@@ -355,7 +356,7 @@ pub(super) fn turning_inertia(exam: &Exam<'_>, index: usize) -> f32 {
         *side = side.combine(&def.mass.transformed(&def.character_from_body));
     }
     let pivot = exam.bones.list[child].head;
-    // About the axis with the least inertia: bodies in line with the pivot add nothing about their own line.
+    // Use the axis with the least inertia: bodies in line with the pivot add nothing about their own line.
     let [above, below] = sides.map(|side| {
         let arm = side.center - pivot;
         let about_pivot = side.inertia.to_mat3()

@@ -88,7 +88,7 @@ fn overlap(exam: &Exam<'_>, (a, b): (usize, usize)) -> Option<Finding> {
     })
 }
 
-/// All pairs of limb ends with the trunk are disabled, although they do not overlap.
+/// Finding if all pairs of limb ends with the trunk are disabled, although they do not overlap.
 fn no_self_collision(exam: &Exam<'_>) -> Option<Finding> {
     let pairs = limbs_and_trunk(exam);
     let is_disabled = |&(a, b): &(usize, usize)| {
@@ -128,7 +128,7 @@ fn fights(exam: &Exam<'_>, pairs: &[(usize, usize)]) -> Vec<Finding> {
         if exam.bones.distance(a, b) != 2 {
             continue;
         }
-        // The body that the joint moves: the child of the two.
+        // The joint moves the child of the two.
         let moved = [b, a].into_iter().find(|&body| body > 0 && body > other_of(exam, body, a, b));
         let Some(child) = moved else { continue };
         if is_unlimited(&exam.def.joints[child - 1].kind) {

@@ -9,7 +9,7 @@ use crate::tuning::TOLERATED;
 
 /// Usual height of a person, metres.
 ///
-/// Only reported. Shown by the tests of `doctor`.
+/// Affects only reports. Shown by the tests of `doctor`.
 pub(crate) const USUAL_HEIGHT: f32 = 1.7;
 
 /// Confidence of a role below which the doctor reports it, 0 to 1.

@@ -72,12 +72,12 @@ pub struct BindPose<'a> {
 }
 
 impl BindPose<'_> {
-    /// Character space, metres, from model space, file units.
+    /// Converts a point from model space, file units, to character space, metres.
     pub fn character_point(&self, model_point: Vec3) -> Vec3 {
         self.character_from_model.point(model_point * self.unit_scale)
     }
 
-    /// Character space, metres, from model space, file units.
+    /// Transform from model space, file units, to character space, metres.
     pub fn character_from_file(&self) -> Affine {
         let turn = self.character_from_model;
         let scale = Vec3::splat(self.unit_scale);

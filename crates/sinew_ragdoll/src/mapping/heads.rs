@@ -9,7 +9,7 @@ use sinew_math::{Affine, Transform, Vec3};
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Head {
     pub joint: JointIdx,
-    /// Its parent's space in model space, all nodes above it at rest.
+    /// Transform from its parent's space to model space, with all nodes above it at rest.
     model_from_parent: Affine,
     parent_from_model: Affine,
 }

@@ -53,7 +53,7 @@ pub(super) fn corrected(
     placed(seen, analyzed, settings)
 }
 
-/// The joints of that name, at least one.
+/// Joints with that name, at least one.
 fn joints_named(rig: &Rig, name: &str, place: &str) -> Result<Vec<JointIdx>, SettingsError> {
     let names: Vec<String> = (0..rig.joints.len()).map(|joint| joint_name(rig, joint)).collect();
     let found: Vec<JointIdx> = (0..names.len()).filter(|&joint| names[joint] == name).collect();

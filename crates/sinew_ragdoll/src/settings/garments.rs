@@ -11,12 +11,12 @@ use sinew_math::{Affine, Rotation, Vec3};
 /// Source of the garments that a character wears.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum GarmentSource {
-    /// None. Default: files do not declare garments.
+    /// No garments. Default, because files do not declare garments.
     #[default]
     None,
     /// Garments inferred from joint names ([`guess_garments`]).
     Names,
-    /// These.
+    /// The listed garments.
     Listed(Vec<GarmentSettings>),
 }
 
@@ -26,11 +26,11 @@ pub struct GarmentSettings {
     /// Names of the first joints of its chains, side by side. A name that ends in `*` stands for all joints with that
     /// prefix that do not hang on another such joint, in spatial order.
     pub chains: Vec<String>,
-    /// Mesh that it is, instead of chains.
+    /// Mesh of the garment, if it has no chains.
     pub mesh: Option<MeshSettings>,
     /// True: the last chain is sewn to the first. `None`: sewn if they form a ring.
     pub closed: Option<bool>,
-    /// Name and cloth; its columns do not matter.
+    /// Name and cloth of the garment; its columns are ignored.
     pub cloth: Garment,
 }
 
@@ -41,7 +41,7 @@ pub struct MeshSettings {
     pub name: String,
     /// Depth below its highest point down to which bodies hold it, metres, ≥ 0; `None`: a tenth of its height.
     pub held: Option<f32>,
-    /// Most particles, 4 at least: finer meshes are reduced. Default [`MOST_PARTICLES`].
+    /// Largest number of particles, at least 4: finer meshes are reduced. Default [`MOST_PARTICLES`].
     pub most_particles: usize,
 }
 

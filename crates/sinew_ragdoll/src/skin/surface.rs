@@ -13,11 +13,11 @@ const MOST_VERTICES: usize = 8192;
 /// Largest number of triangle sides measured, of those that a pose can stretch.
 const MOST_SIDES: usize = 4096;
 
-/// A joint that moves vertices, and where they were when they were bound to it.
+/// A joint that moves vertices, and their bind positions.
 #[derive(Clone, Copy, Debug)]
 struct Slot {
     joint: JointIdx,
-    /// From mesh space to the joint's.
+    /// Transform from mesh space to the joint's space.
     inverse_bind: Affine,
 }
 
@@ -62,7 +62,7 @@ impl Surface {
         Self { slots: raw.slots, vertices: raw.vertices, owners, sample, sides, stretchable }
     }
 
-    /// Only these vertices, with the slots that move them; no sides.
+    /// Returns a surface of only these vertices, with the slots that move them; no sides.
     pub fn part(&self, vertices: &[usize]) -> Self {
         let mut part = Self {
             slots: Vec::new(),
