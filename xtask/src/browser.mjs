@@ -42,7 +42,7 @@ async function serve() {
   return server;
 }
 
-// A browser with one page, and what its console said.
+// A browser with one page, and the messages of its console.
 class Browser {
   static async start(flags) {
     const browser = new Browser();

@@ -290,7 +290,7 @@ impl Site {
     /// Converts text to HTML: pictures of scenes become buttons, links to guide pages become links to output files.
     ///
     /// # Errors
-    /// If a picture is not a scene's, or a link has no target here.
+    /// If a picture belongs to no scene, or a link has no target in the site.
     fn html(&mut self, events: Vec<Event<'_>>) -> Result<String> {
         let mut out: Vec<Event<'_>> = Vec::with_capacity(events.len());
         let mut in_picture = false;

@@ -124,7 +124,7 @@ impl Soak {
     /// If a body is lost, a joint opens, a speed explodes or memory grows.
     pub fn run(&self) -> Result<()> {
         if !(self.hours > 0.0 && self.hours.is_finite()) {
-            bail!("--hours is a positive number, not {}", self.hours);
+            bail!("--hours must be a positive number, not {}", self.hours);
         }
         let mut run =
             command::cargo(&["run", "--release", "--package", "sinew_scenes", "--example", "soak", "--"]);

@@ -59,7 +59,7 @@ async function watched(browser, name, seconds) {
   }
 }
 
-// Push: by the button, by a click on the figure, by a key; a ball; a camera that stands still.
+// Checks pushes by the button, by a click on the figure and by a key, a thrown ball, and that the camera does not move.
 async function pushed(browser, url) {
   await opened(browser, url);
   await clicked(browser, button('push'));

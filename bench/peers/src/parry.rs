@@ -1,4 +1,4 @@
-//! Shapes and poses for Parry: Rapier's collision library, and the judge of penetration for every engine.
+//! Shapes and poses for Parry: Rapier's collision library, which also measures the penetration of every engine.
 
 use crate::engine::Unsupported;
 use parry3d::math::{Pose, Rotation as ParryRotation, Vector};
@@ -77,7 +77,7 @@ pub fn shape(shape: &Shape) -> Result<SharedShape, Unsupported> {
         Shape::Mesh(_) | Shape::HeightField(_) => {
             let (vertices, triangles) = triangles(shape).expect("it has triangles");
             let vertices = vertices.into_iter().map(vector).collect();
-            SharedShape::trimesh(vertices, triangles).expect("Parry takes the mesh")
+            SharedShape::trimesh(vertices, triangles).expect("Parry accepts the mesh")
         }
     })
 }

@@ -106,7 +106,10 @@ pub unsafe extern "C" fn sinew_world_overlap(
         let world = unsafe { shared(world, "world") }?.world.get()?;
         let shape = shape.read()?;
         if shape == Shape::HalfSpace {
-            return Err(error(SinewStatus::BadArgument, "a probe is bounded: no half-space"));
+            return Err(error(
+                SinewStatus::BadArgument,
+                "the shape of a query must be bounded: not a half-space",
+            ));
         }
         let mut bodies: Vec<BodyId> = Vec::new();
         world.query().bodies(&OverlapWith(Probe::new(shape, pose.read("the pose")?)), &mut bodies);

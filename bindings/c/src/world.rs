@@ -119,7 +119,7 @@ impl SinewWorldDef {
         let sleeping = match self.sleeping {
             0 => Sleeping::Off,
             1 => Sleeping::On,
-            other => return Err(bad(format!("sleeping is 0 or 1, not {other}"))),
+            other => return Err(bad(format!("sleeping must be 0 or 1, not {other}"))),
         };
         let def = WorldDef {
             gravity: self.gravity.read("gravity")?,
@@ -169,7 +169,7 @@ impl SinewBodyDef {
         if !(self.mass > 0.0 && self.mass < f32::INFINITY) {
             return Err(error(
                 SinewStatus::BadArgument,
-                format!("a mass is positive and finite, not {} kg", self.mass),
+                format!("the mass must be positive and finite, not {} kg", self.mass),
             ));
         }
         let by_density = refused(|| {

@@ -69,7 +69,7 @@ impl Corrections {
         }
         let positive = |number: Option<f32>, what: &str| match number {
             Some(number) if !(number > 0.0 && number < f32::INFINITY) => {
-                Err(Failure::argument(format!("a {what} is positive and finite, not {number}")))
+                Err(Failure::argument(format!("the {what} must be positive and finite, not {number}")))
             }
             other => Ok(other),
         };

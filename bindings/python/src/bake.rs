@@ -86,7 +86,7 @@ impl Actor {
         if let Some(wrong) =
             [limp_at, return_at, Some(phase)].into_iter().flatten().find(|time| !time.is_finite())
         {
-            return Err(bad(format!("times are finite, not {wrong}")));
+            return Err(bad(format!("times must be finite, not {wrong}")));
         }
         if !(0.0..f32::INFINITY).contains(&return_seconds) {
             return Err(bad(format!("return_seconds must not be negative, not {return_seconds}")));
@@ -320,7 +320,7 @@ impl Character {
     fn random_fall(&self, py: Python<'_>, seed: u64, seconds: f32, fps: f32, impulse: f32) -> PyResult<Bake> {
         check_length(seconds, fps)?;
         if !(0.0..f32::INFINITY).contains(&impulse) {
-            return Err(bad("an impulse is not negative, and finite"));
+            return Err(bad("the impulse must be finite and at least 0"));
         }
         let options = FallOptions { seconds, fps, impulse };
         let fall = py.detach(|| guarded(|| random_fall(&self.def, seed, &options)))?;
@@ -341,7 +341,7 @@ impl Character {
     fn hit(&self, (time, name, impulse): &Hit<'_>) -> PyResult<BakeHit> {
         let body = body_named(&self.def, name)?;
         if !time.is_finite() {
-            return Err(bad(format!("the time of a hit is finite, not {time}")));
+            return Err(bad(format!("the time of a hit must be finite, not {time}")));
         }
         Ok(BakeHit { time: *time, body, impulse: vec3(impulse, "the impulse of a hit")? })
     }

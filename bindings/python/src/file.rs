@@ -204,7 +204,7 @@ impl CharacterFile {
             },
         };
         if height.is_some_and(|height| !(height > 0.0 && height < f32::INFINITY)) {
-            return Err(bad("a height is positive and finite"));
+            return Err(bad("the height must be positive and finite"));
         }
         let wishes = Wishes { mass, height, options };
         let (def, report) = py.detach(|| guarded(|| self.file.build(&wishes)))?.map_err(failed)?;

@@ -110,7 +110,7 @@ impl Edit {
         let body = &mut def.bodies[index];
         let positive = |number: Option<f32>, what: &str| match number {
             Some(number) if !(number > 0.0 && number < f32::INFINITY) => {
-                Err(bad(format!("{what} is positive and finite, not {number}")))
+                Err(bad(format!("{what} must be positive and finite, not {number}")))
             }
             other => Ok(other),
         };

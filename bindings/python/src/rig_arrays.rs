@@ -129,7 +129,7 @@ fn mesh(given: &Bound<'_, PyDict>, index: usize, joint_count: usize) -> PyResult
     }
     let weights = floats(&need("weights")?, &[Some(vertices), Some(INFLUENCES)], &of("weights"))?;
     if weights.iter().any(|weight| *weight < 0.0) {
-        return Err(bad(format!("{} are not negative", of("weights"))));
+        return Err(bad(format!("{} must be at least 0", of("weights"))));
     }
     let even = |w: &[f32]| {
         let sum: f32 = w.iter().sum();
@@ -160,7 +160,7 @@ fn one_clip(rig: &Rig, name: String, given: &Bound<'_, PyDict>) -> PyResult<Clip
     let times = floats(&times, &[None], &of("times"))?;
     let ascend = times.windows(2).all(|pair| pair[0] < pair[1]);
     if times.is_empty() || times[0] < 0.0 || !ascend {
-        return Err(bad(format!("{} are not negative and ascend", of("times"))));
+        return Err(bad(format!("{} must be at least 0 and ascend", of("times"))));
     }
     let joints = rig.joints.len();
     let mut channels = Vec::new();

@@ -122,7 +122,7 @@ pub fn probe_shape(value: &JsValue) -> Outcome<Shape> {
         shape.check().map_err(failed)?;
         return Ok(shape);
     }
-    Err(Failure::new("a shape to ask with is convex and bounded"))
+    Err(Failure::new("the shape of a query must be convex and bounded"))
 }
 
 /// Surface and filter of a shape; missing fields are taken from `default`.

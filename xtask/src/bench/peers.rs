@@ -132,7 +132,7 @@ fn cargo_build(features: &str) -> Command {
     build
 }
 
-/// Optimised for this machine, without what the older compiler cannot build.
+/// Build command of ozz: optimised for this machine, without the parts that its older compiler cannot build.
 fn ozz_build() -> Command {
     let mut build = Command::new("rustup");
     build.current_dir(command::root()).args(["run", OZZ_TOOLCHAIN, "cargo"]).args(BUILD);

@@ -326,7 +326,7 @@ impl Bar {
         }
     }
 
-    /// The goal, without the sign.
+    /// Text of the goal, without the comparison sign.
     pub fn goal(&self) -> String {
         match self {
             Self::Factor { goal, .. } => format!("{goal}×"),

@@ -366,7 +366,7 @@ class Drive:
         pin_force: float = 400.0,
         pin_torque: float = 100.0,
     ) -> Drive:
-        """`keyed`: the clip has it; `powered`: muscles of a `strength` up to 1 draw it to the clip as springs of so many `hertz`; `pinned`: springs from the world besides, N and N·m at most; `limp`: it hangs. Half of the change is made within `half_life` seconds."""
+        """`keyed`: the body follows the clip; `powered`: muscles of a `strength` up to 1 move it toward the clip as springs of this frequency; `pinned`: as `powered`, with a spring from the world too, limited in N and N·m; `limp`: only joint friction acts. Half of the change is made within `half_life` seconds."""
 
     @property
     def mode(self) -> str:

@@ -246,7 +246,7 @@ def run(
     product = [(file, seed, one) for file in names for seed in seed_list for one in settings_list]
     tasks = [Task(index, file, seed, one) for index, (file, seed, one) in enumerate(product)]
     if chunk < 1 or deaths < 0:
-        raise ValueError("a chunk has at least one task, and deaths are not negative")
+        raise ValueError("a chunk must have at least one task, and deaths must be at least 0")
     spec = _spec(function, tasks, chunk)
     for name in ("parts", "glb"):
         (folder / name).mkdir(parents=True, exist_ok=True)

@@ -104,14 +104,14 @@ impl TrackDef {
     pub(super) fn check(&self) {
         check_weight(self.weight);
         check_speed(self.speed);
-        assert!(self.start.is_finite(), "the start of a track is finite, not {}", self.start);
+        assert!(self.start.is_finite(), "the start of a track must be finite, not {}", self.start);
         let loops = self.loop_mode == LoopMode::Loop;
         assert!(loops || self.sync_group.is_none(), "a track of a sync group loops");
     }
 }
 
 pub(super) fn check_speed(speed: f32) {
-    assert!(is_speed(speed), "a speed is finite and at most {MAX_SPEED}, not {speed}");
+    assert!(is_speed(speed), "the speed must be finite and at most {MAX_SPEED}, not {speed}");
 }
 
 pub(super) fn is_speed(speed: f32) -> bool {
@@ -119,7 +119,7 @@ pub(super) fn is_speed(speed: f32) -> bool {
 }
 
 pub(super) fn check_weight(weight: f32) {
-    assert!(weight >= 0.0 && weight.is_finite(), "a weight is 0 or above, not {weight}");
+    assert!(weight >= 0.0 && weight.is_finite(), "the weight must be at least 0, not {weight}");
 }
 
 /// A weight ramp.

@@ -22,8 +22,8 @@ pub struct Footstep {
 
 /// Merges a clip's footsteps and physical contacts into one list of steps.
 ///
-/// Everything within the window after a step of the same foot is that step: the contact of an event, the event of a
-/// contact, and a bouncing foot.
+/// Events and contacts within the window after a step of the same foot belong to that step: the contact of an event,
+/// the event of a contact, and contacts of a bouncing foot.
 #[derive(Clone, Debug)]
 pub struct FootstepMerger {
     window: f64,

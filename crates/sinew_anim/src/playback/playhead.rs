@@ -42,7 +42,7 @@ impl Playhead {
     /// # Panics
     /// If `length` is negative, or a number is not finite.
     pub fn new(mode: LoopMode, length: f32, start: f64) -> Self {
-        assert!(length >= 0.0 && length.is_finite(), "a clip's length is 0 or above, not {length}");
+        assert!(length >= 0.0 && length.is_finite(), "the length of a clip must be at least 0, not {length}");
         let at = Place { lap: 0, time: 0.0 };
         let mode = if length > 0.0 { mode } else { LoopMode::Once };
         let mut playhead = Self { mode, length: f64::from(length), at, is_fresh: true };
@@ -95,7 +95,7 @@ impl Playhead {
     /// # Panics
     /// If `time` is not finite.
     pub fn seek(&mut self, time: f64) {
-        assert!(time.is_finite(), "a time is finite, not {time}");
+        assert!(time.is_finite(), "the time must be finite, not {time}");
         self.at = self.moved(Place { lap: 0, time: 0.0 }, time);
         self.is_fresh = true;
     }
@@ -105,7 +105,7 @@ impl Playhead {
     /// # Panics
     /// If `seconds` is not finite.
     pub fn advance(&mut self, seconds: f64) -> Passage {
-        assert!(seconds.is_finite(), "a time is finite, not {seconds}");
+        assert!(seconds.is_finite(), "the time must be finite, not {seconds}");
         self.move_to(self.moved(self.at, seconds), seconds < 0.0)
     }
 

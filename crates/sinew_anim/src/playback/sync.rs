@@ -10,7 +10,7 @@ pub struct Markers {
 }
 
 impl Default for Markers {
-    /// The start only: whole laps match.
+    /// Only the start of the clip is a marker, so whole laps match.
     fn default() -> Self {
         Self { times: vec![0.0] }
     }

@@ -56,7 +56,7 @@ impl Mask {
 impl FromIterator<f32> for Mask {
     fn from_iter<I: IntoIterator<Item = f32>>(shares: I) -> Self {
         let shares = shares.into_iter().map(|share| {
-            assert!((0.0..=1.0).contains(&share), "a mask's share is in 0..=1, not {share}");
+            assert!((0.0..=1.0).contains(&share), "a share of a mask must be in 0..=1, not {share}");
             [share]
         });
         let records: Blocks<1> = shares.collect();
@@ -143,7 +143,10 @@ impl Blender {
     /// If `fill_below` is negative or not finite.
     pub fn new(options: BlendOptions) -> Self {
         let fill_below = options.fill_below;
-        assert!(fill_below >= 0.0 && fill_below.is_finite(), "`fill_below` is 0 or above, not {fill_below}");
+        assert!(
+            fill_below >= 0.0 && fill_below.is_finite(),
+            "`fill_below` must be at least 0, not {fill_below}"
+        );
         Self { options, order: Vec::new() }
     }
 

@@ -12,7 +12,7 @@ pub(super) struct Pair {
     pub from: JointIdx,
     /// The character's.
     pub to: JointIdx,
-    /// Rotation after the actor's that gives the character's, each in its body's axes.
+    /// Correction of the rotation: `character = actor · correction`, each in its own body's axes.
     pub correction: Rotation,
 }
 

@@ -194,7 +194,10 @@ impl RigAnalysis {
     /// If `unit_scale` (metres) is not above 0 and finite.
     #[must_use]
     pub fn with_unit_scale(self, unit_scale: f32) -> Self {
-        assert!(unit_scale > 0.0 && unit_scale.is_finite(), "a unit has a length, not {unit_scale}");
+        assert!(
+            unit_scale > 0.0 && unit_scale.is_finite(),
+            "the unit must be positive and finite, not {unit_scale}"
+        );
         let factor = unit_scale / self.unit_scale;
         let (floor, height) = (self.floor * factor, self.height * factor);
         Self { unit_scale, floor, height, unit_guess: None, ..self }

@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(of("skirt_front_1"), Some("skirt"));
         assert_eq!(of("breast.R"), Some("breast"));
         assert_eq!(of("リボン_左"), Some("ribbon"));
-        // Names that only contain the letters, and mere markers.
+        // Names that contain the letters by chance, and names that are only markers.
         for name in ["LeftForeArm", "Rear_Leg", "Ear4.L_end", "mixamorig:Head", "tailor", "IK_hair"] {
             assert_eq!(of(name), None, "{name}");
         }

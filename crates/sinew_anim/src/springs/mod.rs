@@ -32,7 +32,7 @@ pub struct SpringLink {
     pub joints: [JointIdx; 2],
     /// Share of the distance error corrected per 1/60 s, 0..=1.
     pub share: f32,
-    /// False: it only keeps them from moving further apart, as cloth does. True: also from coming nearer.
+    /// False: the link limits only the largest distance of the tips, as cloth does. True: also the smallest.
     pub holds_apart: bool,
 }
 

@@ -482,7 +482,7 @@ fn nested_crossfades_are_continuous() {
 }
 
 #[test]
-#[should_panic = "a weight is 0 or above"]
+#[should_panic = "the weight must be at least 0"]
 fn negative_or_non_finite_weights_panic() {
     let set = stage::set(13);
     Animator::new(&set).play(&set, &TrackDef { weight: f32::NAN, ..TrackDef::new(ids(&set)[0]) });

@@ -155,7 +155,7 @@ fn state_with_too_many_cycles_is_rejected() {
 }
 
 #[test]
-#[should_panic(expected = "a speed is finite and at most 1000")]
+#[should_panic(expected = "the speed must be finite and at most 1000")]
 fn track_with_excessive_speed_panics() {
     let set = set();
     let clip = set.clips().next().expect("a clip");

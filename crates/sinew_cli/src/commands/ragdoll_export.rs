@@ -89,7 +89,7 @@ impl RagdollExport {
     fn khr(&self) -> Result<(RagdollDef, Vec<u8>, Vec<String>)> {
         if !is_character(&read_bytes(&self.file)?) {
             let what =
-                "khr puts physics into the character's own file: name that, and this one with --ragdoll";
+                "khr adds physics to the character's own file: give that file, and this one with --ragdoll";
             return Err(Failure::of_file(name(&self.file), what));
         }
         let (character, def, mut told) = self.character()?;

@@ -69,7 +69,7 @@ impl Replay {
         }
         let hash = format!("{:016x}", player.instance().world().hash());
         let outcome = match diverged {
-            Some(step) => format!("differs from what was recorded from step {step} on"),
+            Some(step) => format!("differs from the recording from step {step} on"),
             None => "every state is as recorded".to_owned(),
         };
         let text =

@@ -119,7 +119,7 @@ impl Carried {
                 let missing = fitted.unmatched.len();
                 let rest = match missing {
                     0 => String::new(),
-                    _ => format!(", {missing} of the character go along with their parents"),
+                    _ => format!(", {missing} of the character move with their parents"),
                 };
                 format!(
                     "{name}: {} joints matched by role{rest}; legs {:.2} times as long; feet slide {:.1} cm/s",

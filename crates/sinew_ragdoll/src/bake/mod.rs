@@ -234,7 +234,7 @@ impl BakeInput<'_> {
     fn check(&self) {
         assert!(
             self.seconds.is_finite() && self.fps >= 1.0,
-            "a bake has a length and a frame rate, not {} s and {} frames a second",
+            "a bake must have a length and a frame rate, not {} s and {} frames a second",
             self.seconds,
             self.fps
         );

@@ -101,8 +101,8 @@ impl Drives {
         pin.map_or(Reaction::default(), |pin| world.reaction(pin))
     }
 
-    /// Sums of the sizes of the forces (N) and of the torques (N·m) of all pins in the last step, which no real body
-    /// exerts.
+    /// Sums of the sizes of all pins' forces (N) and torques (N·m) in the last step: the help from outside, which no
+    /// real body gets.
     pub fn pin_effort(&self, world: &World) -> (f32, f32) {
         (0..self.drives.len()).fold((0.0, 0.0), |(force, torque), body| {
             let reaction = self.pin_force(world, body);

@@ -156,7 +156,7 @@ impl Drives {
         assert_eq!(torques.len(), def.bodies.len(), "each body has a torque");
         assert!(
             torques.iter().all(|t| (0.0..f32::INFINITY).contains(t)),
-            "torques are not negative, and finite: {torques:?}"
+            "torques must be finite and at least 0: {torques:?}"
         );
         Self { drives: vec![Drive::default(); def.bodies.len()], torques, ground: None, recovery: 0.45 }
     }
@@ -178,7 +178,10 @@ impl Drives {
     /// If the body does not exist, or a number is negative or not finite, or a strength exceeds 1.
     pub fn set(&mut self, body: usize, mode: DriveMode, half_life: f32) {
         let sound = |x: f32| (0.0..f32::INFINITY).contains(&x);
-        assert!(sound(half_life), "a half-life is not negative, and finite, not {half_life} s (body {body})");
+        assert!(
+            sound(half_life),
+            "the half-life must be finite and at least 0, not {half_life} s (body {body})"
+        );
         let (muscle, pin) = match mode {
             DriveMode::Limp | DriveMode::Keyed => (None, None),
             DriveMode::Powered(muscle) => (Some(muscle), None),
@@ -188,11 +191,11 @@ impl Drives {
             muscle.is_none_or(|m| sound(m.hertz)
                 && sound(m.damping_ratio)
                 && (0.0..=1.0).contains(&m.strength)),
-            "a muscle's numbers are not negative, and finite: {mode:?} (body {body})"
+            "the numbers of a muscle must be finite and at least 0: {mode:?} (body {body})"
         );
         assert!(
             pin.is_none_or(|p| [p.hertz, p.damping_ratio, p.max_force, p.max_torque].into_iter().all(sound)),
-            "a pin's numbers are not negative, and finite: {mode:?} (body {body})"
+            "the numbers of a pin must be finite and at least 0: {mode:?} (body {body})"
         );
         let drive = &mut self.drives[body];
         if drive.mode != mode {

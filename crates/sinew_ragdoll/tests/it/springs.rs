@@ -619,7 +619,7 @@ fn spring_links_limit_the_distance_of_strands() {
     };
     let (_, free) = range(&parted(false, false, 0.5, 60.0));
     let (_, held) = range(&parted(true, false, 0.5, 60.0));
-    println!("blown apart: {free} of their distance, linked {held}");
+    println!("distance in wind over distance at rest: {free} without links, {held} with links");
     assert!(free > 1.4 && held < 1.0 + 0.2 * (free - 1.0), "{free} {held}");
     let (close, _) = range(&parted(false, false, -0.5, 60.0));
     let (still_close, _) = range(&parted(true, false, -0.5, 60.0));

@@ -35,7 +35,7 @@ pub fn skeleton(scene: &CrowdScene) -> Vec<u8> {
 /// Returns a clip of a crowd, version 7 of the format: each key of the clip is one, and constant tracks have two.
 ///
 /// # Panics
-/// If a channel is not of the clip's key times: nothing else is needed here.
+/// If a channel has other key times than the clip's first channel.
 pub fn animation(scene: &CrowdScene, clip: &Clip) -> Vec<u8> {
     let times = &clip.channels[0].times;
     let rest = filled(rest_pose(&scene.rig));

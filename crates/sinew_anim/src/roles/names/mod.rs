@@ -233,7 +233,7 @@ fn read(tokens: &[Token]) -> (Reading, Option<Sense>) {
         for word in said {
             match word {
                 Word::Noise => {}
-                // Of two sides the last counts (Blender's ".L"); the other is some letter.
+                // If a name has two sides, the last one counts (Blender's ".L"), because the other is just a letter.
                 Word::Side(side) => unknown |= reading.side.replace(*side).is_some(),
                 _ => words.push(*word),
             }

@@ -222,7 +222,7 @@ fn place(rig: &Rig, joints: &[usize]) -> Vec3 {
 fn touching(random: &mut Random, root: Vec3, place: Vec3, thick: f32) -> ColliderShape {
     let out = random.direction();
     let radius = random.range(0.02, 0.1);
-    // At a depth where the tip rests on it, or at the same distance outside.
+    // The tip is up to 1 cm inside of the collider, or up to 3 cm outside.
     let middle = place - out * (radius + thick - random.range(-0.01, 0.03));
     match random.index(5) {
         0 => ColliderShape::Sphere { offset: middle, radius, keeps: Side::Outside },
