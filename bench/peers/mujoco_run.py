@@ -37,7 +37,7 @@ def model_text(scene):
     """A MuJoCo model with all figures, walls and friction of the scene."""
     root = ET.fromstring(scene["mjcf"])
     default = ET.SubElement(root, "default")
-    # Sliding friction; the others act only if a contact asks for more directions than MuJoCo's default.
+    # Sliding friction; the other coefficients act only if a contact has more directions than MuJoCo's default.
     ET.SubElement(default, "geom", friction=numbers([scene["friction"], 0.005, 0.0001]))
     world = root.find("worldbody")
     figure = world.find("body")

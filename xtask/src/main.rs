@@ -75,7 +75,7 @@ enum Task {
     Lives(searches::Lives),
     /// An hour of game, checked after each step
     Soak(searches::Soak),
-    /// Random comments, messages, names and page lines, for a reader who judges their words
+    /// Random comments, messages, names and page lines, to be checked by a reader
     Sample(sample::Sample),
 }
 

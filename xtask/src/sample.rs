@@ -1,4 +1,4 @@
-//! A random sample of comments, pages, messages and test names, for a reader who judges their words.
+//! A random sample of comments, pages, messages and test names, to be checked by a reader.
 
 use crate::tidy::{File, Repo};
 use anyhow::Result;

@@ -154,7 +154,7 @@ async function accessible(browser) {
   demand(!held, 'Tab does not leave the picture');
 }
 
-// Those who want no motion start it themselves.
+// With reduced motion the user starts it.
 async function still(browser, url) {
   await browser.send('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-reduced-motion', value: 'reduce' }] });
   await browser.send('Page.navigate', { url });

@@ -209,7 +209,7 @@ impl Stage {
 }
 
 /// Least wall time between two calls of the user's function, seconds.
-const TELLS_EVERY: f32 = 0.05;
+const REPORT_INTERVAL: f32 = 0.05;
 
 /// Reports a bake's progress to Python, and checks whether to continue.
 struct Watch {
@@ -221,7 +221,7 @@ struct Watch {
 
 impl Watch {
     fn see(&mut self, time: f32) -> ControlFlow<()> {
-        if self.told.elapsed().as_secs_f32() < TELLS_EVERY {
+        if self.told.elapsed().as_secs_f32() < REPORT_INTERVAL {
             return ControlFlow::Continue(());
         }
         let share = if self.seconds > 0.0 { (time / self.seconds).min(1.0) } else { 1.0 };

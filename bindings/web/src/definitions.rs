@@ -365,7 +365,7 @@ pub fn motor(value: &JsValue) -> Outcome<Motor> {
     Ok(Motor { max_force: force, max_torque: torque, ..toward })
 }
 
-/// Mass and its distribution as JavaScript sees it.
+/// Mass and its distribution as a JavaScript object.
 pub fn mass(properties: MassProperties) -> JsValue {
     object([("mass", properties.mass.into()), ("center", crate::values::vector(properties.center))])
 }

@@ -15,9 +15,9 @@ pub(crate) const FILL_BELOW: f32 = 0.1;
 
 /// Longest extrapolation of a pose from outside, seconds.
 ///
-/// Larger: a character without new poses swings out. Smaller: an animator that looks several steps ahead sees limbs
+/// Larger: a character without new poses swings out. Smaller: an animator that predicts several steps has limbs that
 /// stop. Shown by the tests of `feeding`.
-pub(crate) const GOES_ON: f32 = 0.1;
+pub(crate) const LONGEST_EXTRAPOLATION: f32 = 0.1;
 
 // animator/track.rs
 

@@ -22,7 +22,7 @@ use std::sync::Arc;
 const MANNEQUIN: f32 = 1.8;
 const FITTING: core::ops::RangeInclusive<f32> = 1.3..=2.3;
 /// Way from the place behind the door to the start, metres: the wall hides a character behind it.
-const OUT_OF_THE_DOOR: f32 = 0.45;
+const START_DISTANCE: f32 = 0.45;
 /// Speed of the walk of a character of the mannequin's height, m/s.
 const WALK: f32 = 1.3;
 /// Distance before the edge of the porch at which the push comes, and time until it on flat ground, metres and seconds.
@@ -78,7 +78,7 @@ pub fn staged(def: CharacterDef) -> Instance {
     let site = if FITTING.contains(&height) { Site::CabinWithStairs } else { Site::Flat };
     let mut world = World::new(WorldDef::default());
     let colors = site.props().iter().map(|prop| (world.add_body(&prop.body), prop.color)).collect();
-    let start = site.spawn().world_from_character * Transform::from_translation(Vec3::Z * OUT_OF_THE_DOOR);
+    let start = site.spawn().world_from_character * Transform::from_translation(Vec3::Z * START_DISTANCE);
     let character = Character::spawn(&mut world, &def, start);
     let mut stage =
         Staged { def, site, start, colors, character, since: 0, was: None, led: None, model: Vec::new() };

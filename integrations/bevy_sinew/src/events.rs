@@ -16,7 +16,7 @@ pub struct TouchBegan {
     pub b: Entity,
 }
 
-/// Two bodies stopped touching; one of them may be gone.
+/// Two bodies stopped touching; one of them may be removed.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TouchEnded {
     /// One of them.
@@ -34,7 +34,7 @@ pub struct SensorEntered {
     pub b: Entity,
 }
 
-/// A body left a sensor of another body; one of them may be gone.
+/// A body left a sensor of another body; one of them may be removed.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SensorLeft {
     /// One of them.

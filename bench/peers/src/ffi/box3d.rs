@@ -395,7 +395,7 @@ impl BoxPair {
             useRadii: false,
         };
         let mut cache = b3SimplexCache::default();
-        // SAFETY: both clouds have the 8 points they are said to have and live through the call, as do `input` and
+        // SAFETY: both clouds have their stated 8 points and live through the call, as do `input` and
         // `cache`; null and 0 ask for no record of simplexes.
         unsafe { b3ShapeDistance(&raw const input, &raw mut cache, ptr::null_mut(), 0).distance }
     }

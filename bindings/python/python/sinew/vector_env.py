@@ -1,7 +1,7 @@
 """Gymnasium environments of a humanoid that has to stay up: `pip install sinew[gym]`.
 
     import gymnasium
-    import sinew.vector_env  # Gymnasium knows its environments from here on.
+    import sinew.vector_env  # Registers its environments with Gymnasium.
 
     env = gymnasium.make("sinew/HumanoidStand-v0", render_mode="rgb_array")
     many = gymnasium.make_vec("sinew/HumanoidStand-v0", num_envs=64, vectorization_mode="vector_entry_point")

@@ -180,7 +180,7 @@ export class SinewCharacter extends EventDispatcher {
     return this.#kind.def.bones;
   }
 
-  /** Names of the clips that `play` knows. */
+  /** Names of the clips that `play` accepts. */
   get clips() {
     return this.#kind.def.clips;
   }

@@ -184,7 +184,7 @@ impl<'a> Meter<'a> {
         clip
     }
 
-    /// Error of a channel's value that uses up the bound by itself: its own units, or radians.
+    /// Error of a channel's value that alone equals the bound: its own units, or radians.
     fn tolerance(&self, property: Property, joint: JointIdx, bound: KeyBound) -> f32 {
         match property {
             Property::Translation => bound.distance / max(self.scale[joint], 1e-12),

@@ -94,7 +94,7 @@ impl Ground {
 
 /// Tilt of each sole while it stands, radians, positive for toes up, and the feet with soles flattened by it.
 ///
-/// A reference pose hardly tells how a shoe was worn; the heights of heel and ball on the ground do. Tilts over 0.2 rad
+/// A reference pose hardly shows how a shoe was worn; the heights of heel and ball on the ground do. Tilts over 0.2 rad
 /// belong to a body on its toes and are ignored.
 pub fn flatten_soles(feet: &[Foot; 2], points: &[[[Vec3; 2]; 2]]) -> ([f32; 2], [Foot; 2]) {
     let (mut tilts, mut flat) = ([0.0; 2], *feet);

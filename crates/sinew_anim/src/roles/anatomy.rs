@@ -299,7 +299,7 @@ impl<'a> Scene<'a> {
         let steps = if named == 0.0 && feet != 0.0 { 0.0 } else { self.walks_toward(up) };
         let walk = if steps.abs() > STEP_CORRELATION { steps.signum() } else { 0.0 };
         if named != 0.0 {
-            // The feet contradict the names. A heel, a claw or a boot may cause that by itself.
+            // The feet contradict the names. A single heel, claw or boot may cause that.
             let shape = [feet, walk, bent, self.toes_lead(up, forward)];
             let against: f32 = shape.into_iter().map(|sign| -named * sign).sum();
             if against <= 0.0 {
@@ -627,7 +627,7 @@ enum Trust {
     /// Both of a pair have one name except for numbers ("Leg.1", "Leg.2"): only words of the midline and of appendices
     /// count.
     Words,
-    /// Names do not match: so many of all pairs do.
+    /// The names do not match: number of matching pairs, and of all pairs.
     Nothing { agreeing: usize, pairs: usize },
 }
 

@@ -314,7 +314,7 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
         let joint = skin.joints[slot];
         (carried[joint], core::cmp::Reverse(ancestors(rig, joint).count()))
     };
-    // A handle above the body may be bound in another scale, so it says nothing.
+    // A handle above the body may be bound in another scale, so it is no evidence.
     let size = |place: &Affine| place.linear.x_axis.length();
     let mut sizes: Vec<f32> = said.iter().map(size).collect();
     sizes.sort_by(f32::total_cmp);

@@ -102,7 +102,7 @@ fn longest(graph: &Graph, node: usize) -> Option<usize> {
     graph.nodes[node].children.iter().copied().reduce(|a, b| if way(b) > way(a) { b } else { a })
 }
 
-/// The direction opposite to which most mirrored chains end; the file's own up (+Y) if nothing tells.
+/// The direction opposite to which most mirrored chains end; the file's own up (+Y) without such chains.
 pub(super) fn up_by_feet(graph: &Graph, bound: &Bound, symmetry: &Symmetry) -> Vec3 {
     let feet: Vec<Vec3> = (0..graph.nodes.len())
         .filter(|&i| graph.nodes[i].children.is_empty() && symmetry.other(i).is_some())

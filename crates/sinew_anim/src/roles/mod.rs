@@ -66,7 +66,7 @@ pub enum Basis {
     Stated,
     /// Shape and name agree.
     ShapeAndName,
-    /// The shape alone; the name says nothing.
+    /// The shape alone; the name has no meaning.
     Shape,
     /// The shape, against its name.
     ShapeAgainstName,

@@ -238,7 +238,7 @@ fn rigid_mesh_gets_a_skin_and_errors_change_nothing() {
     assert_eq!(lay(&mut flat, 400, None), Err(SheetError::Empty));
 }
 
-/// The cloth as separate strips of so many cells.
+/// The cloth as separate strips of this number of cells.
 fn strips(cells: usize, across: usize) -> Rig {
     let mut it = rig(cells);
     let primitive = &mut it.meshes[0].primitives[0];

@@ -5,7 +5,7 @@ use super::geometry::{depth, full_size, longest, scaled};
 use super::limits::{head_of_rig, is_narrow, turning_inertia};
 use super::{Code, Finding, Repair, anatomy, masses, mirror, missing_bodies, shapes};
 use crate::def::{RagdollDef, RagdollJointDef};
-use crate::doctor::tuning::{CHAIN_RATIO, MENDED_ROOM, NEIGHBOUR_RATIO, STRAIN, THIN};
+use crate::doctor::tuning::{CHAIN_RATIO, NEIGHBOUR_RATIO, STRAIN, THIN, WIDENED_MARGIN};
 use crate::ragdoll::fitted;
 use core::f32::consts::PI;
 use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min};
@@ -162,7 +162,8 @@ fn holding_bind(exam: &Exam<'_>, index: usize) -> RagdollJointDef {
     let joint = exam.def.joints[index];
     let pose = |body: usize| exam.def.bodies[body].character_from_body;
     let mut new = fitted(&joint, pose(joint.parent), pose(joint.child));
-    let wider = |range: Range| Range::new(max(range.lo - MENDED_ROOM, -PI), min(range.hi + MENDED_ROOM, PI));
+    let wider =
+        |range: Range| Range::new(max(range.lo - WIDENED_MARGIN, -PI), min(range.hi + WIDENED_MARGIN, PI));
     let cone = |limit: SwingTwistLimit, old: SwingTwistLimit| {
         let side = |new: Range, old: Range| if new == old { new } else { wider(new) };
         SwingTwistLimit {

@@ -72,7 +72,7 @@ pub(crate) const MOMENT_RATIO: f32 = 60.0;
 /// Margin between the bind pose and a limit that a cure widens, radians (2°).
 ///
 /// Larger: limits wider than needed. Smaller: the joint overshoots at once. Shown by the tests of `doctor`.
-pub(crate) const MENDED_ROOM: f32 = 0.034_907;
+pub(crate) const WIDENED_MARGIN: f32 = 0.034_907;
 
 /// Angle by which a joint may exceed its limits without moving anything, radians (0.1°).
 ///

@@ -395,7 +395,7 @@ fn without_body(
     (joint != def.bodies[body].joint).then(|| rig.joints[joint].name.clone())
 }
 
-/// Writes the share of the skin near its body and who moves most of the rest. Returns the rest: the body and the joint
+/// Writes the share of the skin near its body and the body that moves most of the rest. Returns the rest: the body and the joint
 /// that move each vertex.
 fn cover(
     skin: &mut SkinQuality,

@@ -6,7 +6,7 @@ use sinew_ragdoll::{Character, CharacterDef};
 use std::sync::Arc;
 
 /// Half a second, in steps.
-const SOON: usize = 30;
+const HALF_SECOND: usize = 30;
 
 fn deepest(world: &World, character: &Character) -> f32 {
     let statics: Vec<BodyId> = world.body_ids().filter(|&id| world.kind(id) == BodyKind::Static).collect();
@@ -58,7 +58,7 @@ fn limp_character_leaves_the_floor_within_half_a_second() {
         let turn = Rotation::from_axis_angle(Vec3::Y, Random::new(seed).range(0.0, 6.0));
         let mut character = limp_at(&mut world, &def, Transform::new(Vec3::Y * -depth, turn));
         let (step, speed) = out_of_it(&mut world, &mut character).expect("it comes out");
-        assert!(step < SOON && speed <= 2.5, "{depth} m: after {step} steps, {speed} m/s");
+        assert!(step < HALF_SECOND && speed <= 2.5, "{depth} m: after {step} steps, {speed} m/s");
     }
 }
 
@@ -74,7 +74,7 @@ fn limp_character_leaves_a_wall_on_the_nearer_side() {
         character.update(&mut world);
         character.go_limp(&mut world);
         let (step, speed) = out_of_it(&mut world, &mut character).expect("it comes out");
-        assert!(step < SOON && speed <= 2.5, "seed {seed}: after {step} steps, {speed} m/s");
+        assert!(step < HALF_SECOND && speed <= 2.5, "seed {seed}: after {step} steps, {speed} m/s");
         let at = character.bodies().iter().map(|&body| world.transform(body).translation.z);
         let (low, high) =
             at.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), z| (min(low, z), max(high, z)));
@@ -101,7 +101,7 @@ fn moving_character_leaves_a_wall_on_its_entry_side() {
         assert!(character.clear(&mut world) && !character.clear(&mut world));
         let (step, _) = out_of_it(&mut world, &mut character).expect("it comes out");
         let chest = world.transform(character.bodies()[0]).translation.z;
-        assert!(step < SOON && chest * speed < 0.0, "{speed} m/s: after {step} steps at {chest}");
+        assert!(step < HALF_SECOND && chest * speed < 0.0, "{speed} m/s: after {step} steps at {chest}");
     }
 }
 

@@ -457,7 +457,7 @@ fn non_finite_numbers_are_reported_without_panics() {
     assert_eq!(codes(&doctor(&heavy)), [Code::MassNotPositive]);
 }
 
-/// A head cannot be added without the rig; the report says so.
+/// A head cannot be added without the rig; the report has a note on it.
 #[test]
 fn irreparable_defect_is_reported() {
     let mut repair = healthy();

@@ -36,7 +36,7 @@ fn moving(half_extents: Vec3, position: Vec3) -> BodyDef {
     BodyDef { kind: BodyKind::Kinematic, ..fixed(half_extents, position, Rotation::IDENTITY) }
 }
 
-/// A plane that rises toward +Z by so many degrees, starting at the origin.
+/// A plane that rises toward +Z by this angle, degrees, starting at the origin.
 fn ramp(degrees: f32) -> Vec<BodyDef> {
     let turn = Rotation::from_axis_angle(Vec3::X, -degrees.to_radians());
     vec![fixed(Vec3::new(20.0, 1.0, 20.0), turn * Vec3::NEG_Y, turn)]

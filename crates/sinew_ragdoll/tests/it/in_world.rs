@@ -583,7 +583,7 @@ fn low_crates_are_not_kicked_away() {
     }
 }
 
-/// Small objects under its feet: an object that does not move by itself is no hit, however hard an animated foot
+/// Small objects under its feet: an object that only the foot moves is no hit, however hard an animated foot
 /// presses it to the floor.
 #[test]
 fn object_under_a_foot_is_no_hit() {

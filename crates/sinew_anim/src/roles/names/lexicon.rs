@@ -46,7 +46,7 @@ pub(super) enum Word {
     Twist,
     /// Animator's control, not a body part: an appendix too, as long as it has little skin.
     Control,
-    /// Makes the joint an appendix whatever else its name says.
+    /// Makes the joint an appendix whatever the rest of its name.
     Appendix,
 }
 

@@ -119,7 +119,7 @@ fn name_ball(readings: &mut [Reading], parents: &[Option<usize>]) {
 
 /// Resolves parts that several skinned joints of one side claim; they have a `depth`, the number of joints above them.
 /// If the rig names all four long limb parts, one joint is the part and the others continue it (Rigify's
-/// "upper_arm.L.001"); else the name says nothing (CesiumMan calls all of its arm "arm").
+/// "upper_arm.L.001"); else the name has no meaning (CesiumMan calls all of its arm "arm").
 pub(super) fn settle_duplicates(
     readings: &mut [Reading],
     names: &[&str],
@@ -205,7 +205,7 @@ fn meant(mut same: Vec<usize>, names: &[&str], depth: &impl Fn(usize) -> Option<
     same.get((same.len() - 1) / 2).copied()
 }
 
-/// Meaning of a name by itself; some words depend on the rest of the rig.
+/// Meaning of a name without the others; some words depend on the rest of the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sense {
     Part(Part),
@@ -316,7 +316,7 @@ fn sense(words: &[Word]) -> Option<Sense> {
     if has(Twist) && !trunk { Some(Sense::Part(Part::Appendix)) } else { Some(found) }
 }
 
-/// Meaning of a word by itself.
+/// Meaning of a single word.
 fn plain(word: Word) -> Option<Sense> {
     Some(match word {
         Word::Pelvis => Sense::Pelvis,

@@ -177,7 +177,7 @@ pub fn strands(rig: &mut Rig) -> Vec<Vec<usize>> {
     strands
 }
 
-/// How fast springs come to rest.
+/// Rate at which springs come to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Calming {
     /// Usual drag and stiffness of avatars.

@@ -34,14 +34,14 @@ const TAUT: f32 = 0.9;
 const KNOT: f32 = 0.05;
 const KNOT_RADIUS: f32 = 0.02;
 /// Depth at which a box is released, metres: less than its rest depth.
-const LET_GO: f32 = 0.12;
+const RELEASE_DEPTH: f32 = 0.12;
 
 fn trampoline(setup: &Setup<'_>) -> Instance {
     // With sleep they would stop within the few millimetres that count as rest.
     let mut world = setup.sleepless_world();
     let mass = setup.number("mass");
     let boxes = [(false, -0.8), (true, 0.8)].map(|(is_net, z)| {
-        let mut falling = cuboid(BOX, Vec3::new(0.0, KNOT_RADIUS + BOX.y - LET_GO, z));
+        let mut falling = cuboid(BOX, Vec3::new(0.0, KNOT_RADIUS + BOX.y - RELEASE_DEPTH, z));
         falling.shapes[0].density = mass / (8.0 * BOX.x * BOX.y * BOX.z);
         world.add_particles(&mat(mass, is_net, Vec3::Z * z));
         world.add_body(&falling)
@@ -59,7 +59,7 @@ fn mat(mass: f32, is_net: bool, center: Vec3) -> GroupDef {
         let place = |k: u32| (k as f32 - 0.5 * (SIDE - 1) as f32) * SPACING;
         let at = center + Vec3::new(place(k % SIDE), 0.0, place(k / SIDE));
         let [knot, left, right] = [0, 1, 2].map(|end| 3 * k + end);
-        for position in [at - Vec3::Y * LET_GO, at - Vec3::X * SPAN, at + Vec3::X * SPAN] {
+        for position in [at - Vec3::Y * RELEASE_DEPTH, at - Vec3::X * SPAN, at + Vec3::X * SPAN] {
             group.particles.push(ParticleDef {
                 position,
                 velocity: Vec3::ZERO,
