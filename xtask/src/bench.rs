@@ -214,7 +214,7 @@ impl Bench {
         let (rounds, steps) = if self.quick { (1, Some(QUICK_STEPS)) } else { (whole, self.steps) };
         for round in 1..=rounds {
             for (engine, result) in engines.iter().zip(&mut results) {
-                if result.why_not().is_some() {
+                if result.missing_reason().is_some() {
                     continue;
                 }
                 eprint!("{:<26} round {round} of {rounds}  {:<14}", scene.name, engine.name);

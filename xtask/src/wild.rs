@@ -64,7 +64,7 @@ impl Wild {
         for folder in FOLDERS {
             files.extend(ragdolls::rigs_in(&data.join(folder))?);
         }
-        files.retain(|file| self.wants(&file.to_string_lossy()));
+        files.retain(|file| self.is_selected(&file.to_string_lossy()));
         let rows = measure_all(&binary, &data, &out, &files)?;
         sheet::write(&rows, &out)?;
         if self.only.is_empty() {
@@ -74,7 +74,7 @@ impl Wild {
         Ok(())
     }
 
-    fn wants(&self, file: &str) -> bool {
+    fn is_selected(&self, file: &str) -> bool {
         self.only.is_empty() || self.only.iter().any(|word| file.contains(word.as_str()))
     }
 }

@@ -214,7 +214,7 @@ impl Plugin for SinewPlugin {
         );
         app.add_systems(FixedPostUpdate, prepare.chain().in_set(PhysicsSystems::Prepare));
         app.add_systems(FixedPostUpdate, events::step.in_set(PhysicsSystems::Step));
-        let tell = (bodies::write_velocities, movers::tell_movers, events::tell);
+        let tell = (bodies::write_velocities, movers::write_mover_states, events::tell);
         app.add_systems(FixedPostUpdate, tell.chain().in_set(PhysicsSystems::Tell));
         let write = (pose::write_transforms, movers::write_movers);
         app.add_systems(RunFixedMainLoop, write.chain().in_set(PhysicsSystems::Write));
@@ -233,7 +233,7 @@ fn add_characters(app: &mut App) {
     app.add_systems(FixedPostUpdate, prepare.in_set(PhysicsSystems::Prepare).after(particles::add_particles));
     // Runs before the world's events are reported, while bodies released by a character are still known.
     let update = characters::update_characters.in_set(PhysicsSystems::Tell);
-    app.add_systems(FixedPostUpdate, update.after(movers::tell_movers).before(events::tell));
+    app.add_systems(FixedPostUpdate, update.after(movers::write_mover_states).before(events::tell));
     let write = (characters::find_joints, characters::write_characters).chain();
     app.add_systems(RunFixedMainLoop, write.in_set(PhysicsSystems::Write).after(movers::write_movers));
     app.add_systems(PostUpdate, animation::give_back.before(AnimationSystems));

@@ -186,7 +186,7 @@ fn factor(speed: Option<f64>) -> String {
 
 /// Reason why there is no figure.
 fn absence(engine: &EngineResult) -> String {
-    if engine.is_failed() { engine.why_not().unwrap_or(NONE).to_owned() } else { NONE.to_owned() }
+    if engine.is_failed() { engine.missing_reason().unwrap_or(NONE).to_owned() } else { NONE.to_owned() }
 }
 
 /// Returns the table of requirements, with Sinew's figure and the best peer's.
@@ -195,7 +195,7 @@ pub fn holds<'a>(results: &Results, rows: impl IntoIterator<Item = &'a Hold>) ->
     for hold in rows {
         let verdict = hold.judge(results);
         let Some(scene) = results.scene(hold.scene).filter(|_| verdict != Verdict::NotRun) else { continue };
-        let ours = scene.sinew().map_or(NONE.to_owned(), |ours| match ours.why_not() {
+        let ours = scene.sinew().map_or(NONE.to_owned(), |ours| match ours.missing_reason() {
             Some(_) => absence(ours),
             None => cell(hold.figure, ours),
         });
@@ -241,7 +241,8 @@ fn details(scene: &SceneResult) -> String {
         let figures = figures.iter().map(|figure| cell(figure, engine));
         table.row(times.into_iter().chain(figures));
     }
-    let absent = scene.engines.iter().filter_map(|engine| Some((title(&engine.name), engine.why_not()?)));
+    let absent =
+        scene.engines.iter().filter_map(|engine| Some((title(&engine.name), engine.missing_reason()?)));
     let absent: String = absent.map(|(name, why)| format!("\n{name}: {why}.\n")).collect();
     format!("{}: {}. Measured at {}.\n\n{table}{absent}", scene.about, sizes.join(", "), scene.revision)
 }

@@ -174,7 +174,7 @@ impl Measure {
 fn raced<'a>(results: &'a Results, scene: &str) -> Result<(&'a SceneResult, &'a EngineResult), Verdict> {
     let scene = results.scene(scene).ok_or(Verdict::NotRun)?;
     let ours = scene.sinew().ok_or(Verdict::NotRun)?;
-    match ours.why_not() {
+    match ours.missing_reason() {
         None => Ok((scene, ours)),
         Some(_) if ours.is_failed() => Err(Verdict::Missed),
         Some(why) => Err(Verdict::Open(why.to_owned())),

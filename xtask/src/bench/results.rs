@@ -202,7 +202,7 @@ impl EngineResult {
     }
 
     /// Reason for missing figures.
-    pub fn why_not(&self) -> Option<&str> {
+    pub fn missing_reason(&self) -> Option<&str> {
         let report = self.reports.last()?;
         report["unsupported"].as_str().or_else(|| report["failed"].as_str())
     }
@@ -280,7 +280,7 @@ pub mod tests {
             Times { mean: 2.0, best: 1.0, median: 1.0, p99: 4.0, worst: None, last_third: 2.0 }
         );
         let failed = EngineResult { name: "x".into(), reports: vec![json!({ "failed": "stopped" })] };
-        assert_eq!((failed.times(), failed.why_not()), (None, Some("stopped")));
+        assert_eq!((failed.times(), failed.missing_reason()), (None, Some("stopped")));
     }
 
     #[test]

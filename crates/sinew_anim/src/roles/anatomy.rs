@@ -60,7 +60,7 @@ impl Anatomy {
         Ok(draft.finish(scene, notes))
     }
 
-    /// Sizes of the body that tell the unit of its file.
+    /// Sizes of the body from which the unit of its file follows.
     pub fn measured(&self, bound: &Bound, species: Option<Species>) -> Measured {
         let stance = Stance::new(bound, self.up);
         let is_head = |guess: &Option<RoleGuess>| guess.is_some_and(|guess| guess.role == Role::Head);

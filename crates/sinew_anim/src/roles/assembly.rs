@@ -111,7 +111,7 @@ impl<'a> Carriers<'a> {
         Self { readings, is_human: sides_agree(readings, bound), spine, chest, is_part }
     }
 
-    /// The parent of a joint by name; `None` if names do not tell.
+    /// The parent of a joint by name; `None` if the names do not contain it.
     pub fn of_joint(&self, joint: JointIdx) -> Option<JointIdx> {
         use Part::{
             Clavicle, Foot, Hand, Head, Hips, LowerArm, LowerLeg, Neck, Spine, Toes, UpperArm, UpperLeg,

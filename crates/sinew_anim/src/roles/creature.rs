@@ -10,7 +10,7 @@ use super::symmetry::Symmetry;
 use sinew_math::Vec3;
 
 /// A role per node: the midline chain with the most skin is the trunk, the first other midline chain the tail, every
-/// other chain a limb. If names tell a head or a tail (`parts`, per node), the trunk leads to the head and not to the
+/// other chain a limb. If names contain a head or a tail (`parts`, per node), the trunk leads to the head and not to the
 /// tail.
 pub(super) fn generic_roles(
     graph: &Graph,

@@ -3,7 +3,7 @@
 //! Roles stated by the file (VRM) come first; then geometry (mirrored chains of the bind pose) decides and names
 //! support it: they settle how a limb is divided, and raise or lower the confidence. Names whose left and right are not
 //! mirrored are ignored. If the shape shows no human (an asymmetric bind pose, feet beside the body), names alone
-//! decide, if their parts stand like one. Names are read by words, not from a list of names. Clips ([`Hints`]) tell
+//! decide, if their parts stand like one. Names are read by words, not from a list of names. Clips ([`Hints`]) show
 //! legs from other hanging parts: legs swing alternately.
 
 mod anatomy;

@@ -45,7 +45,7 @@ pub(super) enum Species {
     Animal(&'static str, f32),
 }
 
-/// The kind of body that file names tell: an animal before a human (snowman, wolfman).
+/// The kind of body according to file names: an animal before a human (snowman, wolfman).
 pub(super) fn named<'a>(rig: &'a Rig, file: &'a str) -> Option<Species> {
     let is_root = |joint: &&crate::rig::Joint| joint.parent.is_none();
     let names = core::iter::once(file)

@@ -8,7 +8,7 @@ use crate::roles::tuning::{
 use core::fmt::Write as _;
 use sinew_math::{clamp, max, trig};
 
-/// Sizes of a body that tell the unit of its file.
+/// Sizes of a body from which the unit of its file follows.
 pub(super) struct Measured {
     pub humanoid: bool,
     /// From floor to crown, file units.

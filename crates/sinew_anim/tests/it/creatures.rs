@@ -109,7 +109,7 @@ fn birds_insects_snakes_and_carts_get_their_limbs() {
     assert_eq!(limbs("cart", &cart.analyzed()), [1; 4], "each wheel is its own limb");
 }
 
-/// Numbered pairs do not tell left from right; head and tail are still recognised by name.
+/// Numbers of a pair do not distinguish left from right; head and tail are still recognised by name.
 #[test]
 fn numbered_pairs_keep_the_named_head_and_tail() {
     let mut raptor = Body::default();

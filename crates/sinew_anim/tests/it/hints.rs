@@ -37,7 +37,7 @@ fn walk(seconds: f32, toward: f32) -> Clip {
 }
 
 /// The toy body without names, with coat tails beside its legs that have more skin than the legs.
-fn in_a_coat() -> (Rig, Vec<usize>) {
+fn toy_in_a_coat() -> (Rig, Vec<usize>) {
     let mut rig = toy::body(|_| String::new());
     let mut tails = Vec::new();
     for x in [0.2, -0.2] {
@@ -66,7 +66,7 @@ fn in_a_coat() -> (Rig, Vec<usize>) {
 
 #[test]
 fn alternately_swinging_chains_are_the_legs() {
-    let (rig, tails) = in_a_coat();
+    let (rig, tails) = toy_in_a_coat();
     let thigh = |found: &RigAnalysis| found.joint_with(Role::UpperLeg(Side::Left)).expect("a thigh");
     // Without clips the larger hanging chains count as legs.
     let still = analyze(&rig).expect("a skin");

@@ -24,17 +24,17 @@ fn sides(text: &str) -> [String; 2] {
     parts.unwrap_or_else(|| [text.to_owned(), text.to_owned()])
 }
 
-fn truths() -> Vec<Truth> {
-    let mut truths: Vec<Truth> = Vec::new();
+fn expected_roles() -> Vec<Truth> {
+    let mut conventions: Vec<Truth> = Vec::new();
     for line in
         include_str!("../data/truth.txt").lines().filter(|line| !line.is_empty() && !line.starts_with('#'))
     {
         let (word, rest) = line.split_once(' ').expect("two words a line");
         if word == "convention" {
-            truths.push(Truth { convention: rest.into(), files: vec![], roles: BTreeMap::new() });
+            conventions.push(Truth { convention: rest.into(), files: vec![], roles: BTreeMap::new() });
             continue;
         }
-        let truth = truths.last_mut().expect("a convention first");
+        let truth = conventions.last_mut().expect("a convention first");
         let [left, right] = sides(rest);
         if word == "files" {
             truth.files = rest.split(' ').map(str::to_owned).collect();
@@ -44,7 +44,7 @@ fn truths() -> Vec<Truth> {
             truth.roles.insert(word.into(), rest.into());
         }
     }
-    truths
+    conventions
 }
 
 /// Files under ../shared/data that match a pattern with at most one star.
@@ -229,7 +229,7 @@ fn measure(file: &str, truth: &Truth, unstated: &Truth) -> (Scores, String) {
 }
 
 /// Writes the table as JSON where `cargo xtask wild` expects it.
-fn tell(table: &[(String, Scores)]) {
+fn write_table(table: &[(String, Scores)]) {
     let Some(path) = std::env::var_os("SINEW_WILD_ROLES") else { return };
     let pair = |(right, all): (usize, usize)| serde_json::json!([right, all]);
     let rows: serde_json::Map<String, serde_json::Value> = table
@@ -250,11 +250,11 @@ fn tell(table: &[(String, Scores)]) {
 #[test]
 fn roles_of_public_rigs_reach_the_required_share() {
     let (mut rows, mut table) = (String::new(), Vec::new());
-    let truths = truths();
-    for truth in &truths {
+    let expected_roles = expected_roles();
+    for truth in &expected_roles {
         // `Mixamo, stated as VRM` without the statement is Mixamo.
         let plain = truth.convention.split(", stated").next().expect("at least one part");
-        let unstated = truths.iter().find(|other| other.convention == plain).unwrap_or(truth);
+        let unstated = expected_roles.iter().find(|other| other.convention == plain).unwrap_or(truth);
         for file in truth.files.iter().flat_map(|pattern| files(pattern)) {
             let (scores, complaints) = measure(&file, truth, unstated);
             let Scores { plain, by_names, by_shape } = scores;
@@ -263,7 +263,7 @@ fn roles_of_public_rigs_reach_the_required_share() {
             table.push((file, scores));
         }
     }
-    tell(&table);
+    write_table(&table);
     let sum = |of: fn(&Scores) -> Option<(usize, usize)>| {
         let all = table.iter().filter_map(|(_, scores)| of(scores));
         all.fold((0, 0), |sum, score| (sum.0 + score.0, sum.1 + score.1))

@@ -9,7 +9,7 @@ use crate::input::picture_file::{PictureFile, longest, rate};
 use crate::input::settings_arg::unit;
 use crate::input::skeleton::{bones_only, frame_rate, lost_meshes, transform};
 use crate::input::source::{load_gltf, name};
-use crate::render::bones::flesh_out;
+use crate::render::bones::add_bone_models;
 use crate::render::show::Show;
 use crate::report::Report;
 use crate::report::table::shown;
@@ -270,7 +270,7 @@ impl Convert {
         let (clips, events): (Vec<_>, Vec<_>) =
             file.clips.into_iter().zip(file.events).filter_map(moving).unzip();
         if !self.bare && file.rig.meshes.is_empty() {
-            flesh_out(&mut file.rig, analysis.as_ref());
+            add_bone_models(&mut file.rig, analysis.as_ref());
             file.notes.push("there is no mesh: bones are drawn (--bare leaves them out)".into());
         }
         let bytes = write_motion(&file.rig, &clips, &events).map_err(|error| error.with_file(&name))?;

@@ -23,12 +23,12 @@ impl Motion {
     pub fn load(path: &Path, options: &MotionOptions<'_>) -> Result<Self> {
         let file = load_motion(path, options).map_err(helped)?;
         let mut motion = Self::new(name(path), file);
-        motion.look_beside(path);
+        motion.read_neighbours(path);
         Ok(motion)
     }
 
     /// Resolves a doubtful unit by the files next to a glTF, as for its fall.
-    fn look_beside(&mut self, path: &Path) {
+    fn read_neighbours(&mut self, path: &Path) {
         let Some(analysis) = &self.analysis else { return };
         let in_doubt = analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only);
         let is_gltf = matches!(self.file.format, MotionFormat::Glb | MotionFormat::Gltf);

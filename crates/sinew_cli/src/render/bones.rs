@@ -14,7 +14,7 @@ const COLOR: [f32; 4] = [0.60, 0.55, 0.45, 1.0];
 
 /// Adds a skin over all joints, and a mesh with a bone from each joint to each child, bound in the body's upright pose,
 /// because many captures have an unusable rest pose.
-pub fn flesh_out(rig: &mut Rig, analysis: Option<&RigAnalysis>) {
+pub fn add_bone_models(rig: &mut Rig, analysis: Option<&RigAnalysis>) {
     let mut model = Vec::new();
     match analysis {
         Some(analysis) => model.clone_from(&analysis.bind_model),

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Result};
 use crate::input::motion::Motion;
-use crate::render::bones::flesh_out;
+use crate::render::bones::add_bone_models;
 use crate::render::framing::Framing;
 use crate::render::skin;
 use crate::report::progress::Progress;
@@ -45,7 +45,7 @@ impl Show {
         let mut rig = file.rig;
         // A mesh beside a body without skin does not show the body.
         if rig.meshes.is_empty() || rig.skins.is_empty() && analysis.is_some() {
-            flesh_out(&mut rig, analysis.as_ref());
+            add_bone_models(&mut rig, analysis.as_ref());
         }
         let drawn = rig.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|part| !part.indices.is_empty());
         if !drawn {

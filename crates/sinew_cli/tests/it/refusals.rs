@@ -10,7 +10,7 @@ use std::process::Command;
 const MEMORY_KIB: u32 = 40 * 1024;
 
 /// Runs `sinew` with that memory limit, if the system supports it.
-fn frugal(arguments: &[&str]) -> Run {
+fn run_with_little_memory(arguments: &[&str]) -> Run {
     if !cfg!(target_os = "linux") {
         return sinew(arguments);
     }
@@ -25,7 +25,7 @@ fn check_refused(folder: &Folder, file: &str, reason: &str) {
     let before = folder.names();
     let (out, def) = (folder.path("out.glb"), folder.path("out.json"));
     for arguments in [["bake", file, "-o", &out].as_slice(), &["ragdoll", "build", file, "-o", &def]] {
-        let run = frugal(arguments);
+        let run = run_with_little_memory(arguments);
         let line = run.refusal(1);
         assert!(line.starts_with(&format!("error: {file}: ")) && line.contains(reason), "{line}");
         assert_eq!(run.stdout, "");
@@ -88,7 +88,7 @@ fn files_without_a_character_are_rejected() {
     assert!(!files.is_empty());
     for file in files {
         check_refused(&folder, &file, "no skin: nothing to build a ragdoll from");
-        let inspected = frugal(&["inspect", &file, "--json"]).json();
+        let inspected = run_with_little_memory(&["inspect", &file, "--json"]).json();
         assert_eq!(inspected["skins"], 0, "{file}");
     }
 }

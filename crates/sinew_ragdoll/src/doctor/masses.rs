@@ -182,7 +182,7 @@ pub(super) fn scale_all(def: &mut RagdollDef, factor: f32) {
 }
 
 /// Makes the lighter of two bodies heavy enough for the ratio `most`, and keeps the total.
-pub(super) fn relieve(def: &mut RagdollDef, [a, b]: [usize; 2], most: f32) {
+pub(super) fn limit_mass_ratio(def: &mut RagdollDef, [a, b]: [usize; 2], most: f32) {
     let (light, heavy) = if def.bodies[a].mass.mass < def.bodies[b].mass.mass { (a, b) } else { (b, a) };
     let total = def.total_mass;
     let body = &mut def.bodies[light].mass;

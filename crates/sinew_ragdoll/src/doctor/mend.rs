@@ -72,7 +72,7 @@ fn remedied(exam: &Exam<'_>, finding: &Finding, body: usize, other: usize) -> Op
         Code::MassRatio => {
             let is_neighbour = exam.bones.list[body].parent == Some(other);
             let most = if is_neighbour { NEIGHBOUR_RATIO } else { CHAIN_RATIO };
-            masses::relieve(&mut def, [body, other], 0.9 * most);
+            masses::limit_mass_ratio(&mut def, [body, other], 0.9 * most);
         }
         Code::MassImplausible => {
             let sum: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();

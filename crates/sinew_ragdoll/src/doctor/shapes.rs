@@ -25,7 +25,7 @@ pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
         .filter(|&(a, b)| !overlaps.iter().any(|f| f.bodies.contains(&a) && f.bodies.contains(&b)))
         .collect();
     findings.extend(overlaps);
-    findings.extend(fights(exam, &apart));
+    findings.extend(colliding_neighbours(exam, &apart));
     findings.extend(no_self_collision(exam));
     findings
 }
@@ -122,7 +122,7 @@ pub(super) fn limbs_and_trunk(exam: &Exam<'_>) -> Vec<(usize, usize)> {
 }
 
 /// Pairs with one body between them that collide over most of the range of the joint between them.
-fn fights(exam: &Exam<'_>, pairs: &[(usize, usize)]) -> Vec<Finding> {
+fn colliding_neighbours(exam: &Exam<'_>, pairs: &[(usize, usize)]) -> Vec<Finding> {
     let mut findings = Vec::new();
     for &(a, b) in pairs {
         if exam.bones.distance(a, b) != 2 {

@@ -65,14 +65,14 @@ pub fn learned(
             RagdollJointDef { kind: JointKind::Hinge { limit: Some(range) }, ..*joint }
         }
         JointKind::Ball { limit: Some(limit) } => {
-            let learned = learn_limit(joint.child, Vec3::X, &turns).filter(shows_enough)?;
+            let learned = learn_limit(joint.child, Vec3::X, &turns).filter(is_wide_enough)?;
             match learned.hinge.filter(|_| anatomy == Anatomy::Creature) {
                 Some(hinge) => hinged(joint, &learned, hinge, bind),
                 None => Cone { joint, anatomical: limit, twisting: Twist::Free }.def(&learned, &turns, bind),
             }
         }
         JointKind::Universal { limit: Some(limit) } => {
-            let learned = learn_limit(joint.child, Vec3::X, &turns).filter(shows_enough)?;
+            let learned = learn_limit(joint.child, Vec3::X, &turns).filter(is_wide_enough)?;
             Cone { joint, anatomical: limit, twisting: Twist::Locked }.def(&learned, &turns, bind)
         }
         _ => return None,
@@ -94,7 +94,7 @@ fn mirrored(kind: JointKind, turn: Rotation) -> Rotation {
     }
 }
 
-fn shows_enough(limit: &LearnedLimit) -> bool {
+fn is_wide_enough(limit: &LearnedLimit) -> bool {
     let [y, z] = limit.swing;
     limit.hinge.is_some() || max(y, z) >= LEAST_RANGE || limit.twist.hi - limit.twist.lo >= 2.0 * LEAST_RANGE
 }

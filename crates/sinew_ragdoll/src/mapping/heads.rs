@@ -35,7 +35,7 @@ fn chain(rig: &Rig, joint: JointIdx, local: impl Fn(JointIdx) -> LocalTransform)
 }
 
 /// True for each joint that moves skin, is among `others`, or has such a descendant.
-fn with_what_is_below(rig: &Rig, others: impl Iterator<Item = JointIdx>) -> Vec<bool> {
+fn with_descendants(rig: &Rig, others: impl Iterator<Item = JointIdx>) -> Vec<bool> {
     let mut counts = vec![false; rig.joints.len()];
     let skinned = rig.skins.iter().flat_map(|skin| skin.joints.iter().copied());
     skinned.chain(others).for_each(|joint| counts[joint] = true);
@@ -51,7 +51,7 @@ fn with_what_is_below(rig: &Rig, others: impl Iterator<Item = JointIdx>) -> Vec<
 /// file.
 pub(crate) fn carries_character(rig: &Rig, def: &RagdollDef) -> Vec<bool> {
     let merged = def.bodies.iter().flat_map(|body| body.merged.iter().copied().chain([body.joint]));
-    with_what_is_below(rig, merged)
+    with_descendants(rig, merged)
 }
 
 /// The pelvis, or its highest ancestor that moves skin with a body, and every other child of a node above it with skin
@@ -66,7 +66,7 @@ pub(super) fn find(rig: &Rig, def: &RagdollDef) -> Vec<Head> {
         above_pelvis[joint] = true;
         at = rig.joints[joint].parent;
     }
-    let counts = with_what_is_below(rig, def.bodies.iter().map(|body| body.joint));
+    let counts = with_descendants(rig, def.bodies.iter().map(|body| body.joint));
     let is_head = |&joint: &JointIdx| {
         let hangs = rig.joints[joint].parent.is_none_or(|parent| above_pelvis[parent]);
         joint != pelvis && counts[joint] && !above_pelvis[joint] && hangs

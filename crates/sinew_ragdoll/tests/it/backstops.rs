@@ -30,7 +30,7 @@ fn thinner(shape: &Shape, factor: f32) -> Shape {
 }
 
 /// A character whose bodies are half as thick as its mesh.
-fn gaunt(backstop: Option<Backstop>) -> CharacterDef {
+fn character_with_thin_bodies(backstop: Option<Backstop>) -> CharacterDef {
     let full = worn(&SKIRT, backstop);
     let mut ragdoll = full.ragdoll.clone();
     ragdoll.bodies.iter_mut().for_each(|body| body.shape = thinner(&body.shape, 0.5));
@@ -62,7 +62,11 @@ fn cloth_stays_out_of_the_mesh_where_no_body_is() {
     let drawn = worn(&SKIRT, None);
     let pressed = |backstop: Option<Backstop>| {
         let mut world = ground(Vec3::new(0.0, -9.81, -12.0));
-        let mut character = Character::spawn(&mut world, &Arc::new(gaunt(backstop)), Transform::IDENTITY);
+        let mut character = Character::spawn(
+            &mut world,
+            &Arc::new(character_with_thin_bodies(backstop)),
+            Transform::IDENTITY,
+        );
         let rest = deepest(&world, &character, &drawn);
         let mut most: f32 = 0.0;
         for _ in 0..120 {

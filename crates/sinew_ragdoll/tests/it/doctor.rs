@@ -17,7 +17,7 @@ fn healthy() -> Repair {
 }
 
 /// The healthy ragdoll of a rig from another author, if the data are present.
-fn healthy_stranger() -> Repair {
+fn healthy_other_ragdoll() -> Repair {
     let rig = crate::data::rig("mannequiny.glb");
     let analysis = sinew_anim::analyze(&rig).expect("a skin");
     let (def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
@@ -275,7 +275,7 @@ fn each_defect_is_reported_alone() {
 #[needs_data]
 #[test]
 fn defects_of_a_foreign_rig_are_reported() {
-    let stranger = healthy_stranger();
+    let stranger = healthy_other_ragdoll();
     assert_eq!(doctor(&stranger), []);
     let mut wrong = Vec::new();
     for (what, code, plant) in DEFECTS {

@@ -11,7 +11,7 @@ use sinew_scenes::mannequin::WALK_SPEED;
 use std::sync::Arc;
 
 /// A standing character whose walk has footstep events.
-fn walker_that_tells() -> CharacterDef {
+fn walker_with_footsteps() -> CharacterDef {
     let mut def = walker();
     let motions = def.motions().clone();
     let half = 0.5 * motions.clips[0].duration;
@@ -31,7 +31,7 @@ fn joints(character: &Character) -> Vec<Vec3> {
 
 #[test]
 fn each_footstep_is_reported_once() {
-    let def = shared(walker_that_tells());
+    let def = shared(walker_with_footsteps());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     let events = run(&mut world, &mut character, 600);
@@ -53,7 +53,7 @@ fn each_footstep_is_reported_once() {
 
 #[test]
 fn events_of_a_call_are_reported_once_by_the_next_update() {
-    let def = shared(walker_that_tells());
+    let def = shared(walker_with_footsteps());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     run(&mut world, &mut character, 20);
@@ -75,7 +75,7 @@ fn events_of_a_call_are_reported_once_by_the_next_update() {
 
 #[test]
 fn contacts_are_reported_by_bone_on_request() {
-    let mut def = walker_that_tells();
+    let mut def = walker_with_footsteps();
     def.in_world.tells_contacts = true;
     let def = shared(def);
     let head = def.body_named("head").expect("it has a head");
@@ -113,7 +113,7 @@ fn apart(
 
 #[test]
 fn held_sword_stays_in_the_hand_until_released() {
-    let def = shared(walker_that_tells());
+    let def = shared(walker_with_footsteps());
     let hand = def.body_named("rightHand").expect("it has hands");
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -151,7 +151,7 @@ fn held_sword_stays_in_the_hand_until_released() {
 
 #[test]
 fn lost_or_dropped_sword_is_reported() {
-    let def = shared(walker_that_tells());
+    let def = shared(walker_with_footsteps());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     let blade = Shape::Box { half_extents: Vec3::new(0.02, 0.02, 0.3) };
@@ -181,7 +181,7 @@ fn lost_or_dropped_sword_is_reported() {
 
 #[test]
 fn scaled_characters_walk_fall_and_get_up() {
-    let def = walker_that_tells();
+    let def = walker_with_footsteps();
     for factor in [0.6, 1.0, 1.5] {
         let sized = def.scaled(factor);
         assert!((sized.ragdoll.height - factor * def.ragdoll.height).abs() < 1e-4);
@@ -208,7 +208,7 @@ fn scaled_characters_walk_fall_and_get_up() {
 
 #[test]
 fn level_of_detail_changes_without_a_pop() {
-    let def = shared(walker_that_tells());
+    let def = shared(walker_with_footsteps());
     let (mut world, mut twins) = (level(), level());
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     let mut twin = Character::spawn(&mut twins, &def, Transform::IDENTITY);
@@ -228,7 +228,7 @@ fn level_of_detail_changes_without_a_pop() {
 
 #[test]
 fn lower_detail_waits_until_the_character_is_up() {
-    let def = shared(walker_that_tells());
+    let def = shared(walker_with_footsteps());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     run(&mut world, &mut character, 20);
@@ -254,7 +254,7 @@ fn distant_character_freezes_and_resumes_its_pose() {
     let distances = Distances::default();
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
-    let def = shared(walker_that_tells());
+    let def = shared(walker_with_footsteps());
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     run(&mut world, &mut character, 30);
     let look = |world: &mut World, character: &mut Character, distance: f32| {
@@ -284,7 +284,7 @@ fn distant_character_freezes_and_resumes_its_pose() {
 
 #[test]
 fn no_level_of_detail_adds_disabled_hit_bodies() {
-    let mut def = walker_that_tells();
+    let mut def = walker_with_footsteps();
     def.in_world.hit_bodies = HitBodies::Absent;
     let mut world = level();
     let mut character = Character::spawn(&mut world, &shared(def), Transform::IDENTITY);
@@ -332,7 +332,7 @@ fn slide(def: &Arc<CharacterDef>, velocity: Vec3) -> f32 {
 
 #[test]
 fn code_driven_feet_do_not_slide() {
-    let def = shared(walker_that_tells());
+    let def = shared(walker_with_footsteps());
     for (speed, way) in
         [(0.6, Vec3::Z), (0.9, Vec3::X), (WALK_SPEED, Vec3::Z), (1.5, -Vec3::X), (2.0, Vec3::Z)]
     {

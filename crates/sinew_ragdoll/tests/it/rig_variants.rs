@@ -34,7 +34,7 @@ fn check_same(what: &str, plain: &RagdollDef, other: &RagdollDef, place: &[usize
     assert_eq!(named(plain), named(other), "{what}: pairs that do not collide");
 }
 
-fn plain_and(rig: &Rig, what: &str, other: &Rig, place: &[usize]) -> [RagdollDef; 2] {
+fn check_variant(rig: &Rig, what: &str, other: &Rig, place: &[usize]) -> [RagdollDef; 2] {
     let [plain, other] = [rig, other].map(|rig| built(rig, &BuildOptions::default()).0);
     check_sound(what, &other);
     check_same(what, &plain, &other, place);
@@ -55,7 +55,7 @@ fn joint_order_does_not_change_the_ragdoll() {
     for (name, rig) in rigs() {
         for seed in 0..3 {
             let (other, place) = shuffled(&rig, seed);
-            plain_and(&rig, &format!("{name}, order {seed}"), &other, &place);
+            check_variant(&rig, &format!("{name}, order {seed}"), &other, &place);
         }
     }
 }
@@ -84,7 +84,7 @@ fn units_and_axes_do_not_change_the_ragdoll() {
         let same: Vec<usize> = (0..rig.joints.len()).collect();
         for (scale, turn) in [(0.01, Rotation::IDENTITY), (100.0, z_up()), (1.0, z_up())] {
             let what = format!("{name}, {scale} times, {turn:?}");
-            plain_and(&rig, &what, &transformed(&rig, scale, turn), &same);
+            check_variant(&rig, &what, &transformed(&rig, scale, turn), &same);
         }
     }
 }
@@ -94,7 +94,7 @@ fn units_and_axes_do_not_change_the_ragdoll() {
 fn mirroring_parent_node_does_not_change_the_ragdoll() {
     for (name, rig) in rigs() {
         let place: Vec<usize> = (1..=rig.joints.len()).collect();
-        plain_and(&rig, name, &under_a_mirror(&rig), &place);
+        check_variant(&rig, name, &under_a_mirror(&rig), &place);
     }
 }
 
@@ -115,7 +115,7 @@ fn names_do_not_matter_where_the_shape_is_clear() {
                 let (m, n) = (plain.total_mass, other.total_mass);
                 assert!((m - n).abs() < 0.01 * m, "{what}: {m} and {n} kg");
             } else {
-                plain_and(&rig, &what, &other, &same);
+                check_variant(&rig, &what, &other, &same);
             }
         }
     }
@@ -169,7 +169,7 @@ impl Falls {
 fn disguised_rig_falls_no_worse() {
     for (name, rig) in rigs() {
         let (other, place) = shuffled(&transformed(&rig, 100.0, z_up()), 5);
-        let [plain, other] = plain_and(&rig, name, &other, &place);
+        let [plain, other] = check_variant(&rig, name, &other, &place);
         check_falls(name, &plain, &other);
     }
 }

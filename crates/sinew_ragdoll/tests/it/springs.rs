@@ -230,7 +230,7 @@ fn resting_hair_stays_still_for_a_minute() {
 
 /// Largest displacement of each tip from frame to frame at rest, and from its first position within a minute, metres;
 /// after a second of motion and five to settle.
-fn unrest(def: &CharacterDef, rate: f32, settling: f32) -> Vec<[f32; 2]> {
+fn motion_after_settling(def: &CharacterDef, rate: f32, settling: f32) -> Vec<[f32; 2]> {
     let pose = rest_pose(&def.rig);
     let mut swing = SpringSwing::new();
     let (moving, settling) = (rate as u32, (settling * rate) as u32);
@@ -278,7 +278,7 @@ fn avatar_tips_stay_still_for_a_minute() {
         let springs = def.springs().source();
         assert_eq!(springs.bone_count(), if format == SpringFormat::Vrm0 { 66 } else { 54 });
         for rate in [30.0, 60.0, 240.0] {
-            let most = unrest(&def, rate, settling);
+            let most = motion_after_settling(&def, rate, settling);
             let bones =
                 springs.chains.iter().flat_map(|chain| chain.bones.iter().map(move |bone| (chain, bone)));
             for ((chain, bone), [step, way]) in bones.zip(most) {

@@ -64,7 +64,7 @@ fn limbs(analysis: &RigAnalysis) -> Vec<JointIdx> {
 }
 
 /// Thighs or upper arms, each with its parent.
-fn beginnings(analysis: &RigAnalysis, random: &mut Random) -> Vec<(JointIdx, JointIdx)> {
+fn limb_roots(analysis: &RigAnalysis, random: &mut Random) -> Vec<(JointIdx, JointIdx)> {
     let [thigh, arm] = [|side| Role::UpperLeg(side), |side| Role::UpperArm(side)] as [fn(Side) -> Role; 2];
     let upper = [thigh, arm][random.index(2)];
     let carried = |side: Side| {
@@ -197,7 +197,7 @@ impl Subject {
             rig = made_roots(&renamed(&rig, analysis, &CONVENTIONS[convention]), &limbs(analysis));
         } else if analysis.humanoid && chance(random, "beginnings of limbs without skin") {
             let named = renamed(&rig, analysis, &CONVENTIONS[convention]);
-            rig = unweighted(&named, &beginnings(analysis, random));
+            rig = unweighted(&named, &limb_roots(analysis, random));
         }
         rig
     }

@@ -107,7 +107,11 @@ fn scene_has_the_same_bits_as_in_the_library() {
         assert_eq!(physics(&app).hash(), world.hash(), "step {step}");
     }
     for (entity, id) in entities.into_iter().zip(world.body_ids()) {
-        assert_eq!(at(&app, entity), world.transform(id).translation, "the drawn position differs from the body's");
+        assert_eq!(
+            at(&app, entity),
+            world.transform(id).translation,
+            "the drawn position differs from the body's"
+        );
     }
 }
 

@@ -95,7 +95,10 @@ fn check(
         let Some(color) = camera.world_to_viewport(eye, place).ok().and_then(color) else { continue };
         // Sky and ground are shades of grey and blue; moving bodies are orange or wooden.
         let is_seen = color[0] > color[2].saturating_add(SEEN);
-        println!("{entity} at {place:.2}: {color:?}{}", if is_seen { "" } else { ", the colour of the background" });
+        println!(
+            "{entity} at {place:.2}: {color:?}{}",
+            if is_seen { "" } else { ", the colour of the background" }
+        );
         if is_seen { seen += 1 } else { missed += 1 }
     }
     println!("{seen} seen, {missed} hidden");

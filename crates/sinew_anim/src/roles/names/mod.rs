@@ -42,7 +42,7 @@ pub(super) struct Reading {
     pub part: Option<Part>,
     /// True if the name speaks of a wing.
     pub is_wing: bool,
-    /// True if the name is "root" and nothing else: of a rig that calls nothing hips, they are meant where it moves skin.
+    /// True if the name is only "root": if no joint of the rig is named hips, a root that moves skin is the hips.
     pub is_root: bool,
     /// True if it is an appendix only because the name speaks of a control, such as "IK".
     pub is_control: bool,
@@ -146,8 +146,8 @@ pub(super) fn settle_duplicates(
         if same.len() == 1 {
             continue;
         }
-        let meant = meant(same.clone(), names, &depth).filter(|_| names_all);
-        for joint in same.into_iter().filter(|&joint| Some(joint) != meant) {
+        let chosen = chosen_index(same.clone(), names, &depth).filter(|_| names_all);
+        for joint in same.into_iter().filter(|&joint| Some(joint) != chosen) {
             readings[joint].part = names_all.then_some(Part::Appendix);
         }
     }
@@ -196,9 +196,13 @@ pub(super) fn settle_trunk(
     readings[hips].part = Some(Part::Hips);
 }
 
-/// The joint meant among several of one name, independent of the file order: the nearest to the root; of siblings the
+/// The joint to use among several of one name, independent of the file order: the nearest to the root; of siblings the
 /// middle one by name (of three palms the second, of two the first).
-fn meant(mut same: Vec<usize>, names: &[&str], depth: &impl Fn(usize) -> Option<usize>) -> Option<usize> {
+fn chosen_index(
+    mut same: Vec<usize>,
+    names: &[&str],
+    depth: &impl Fn(usize) -> Option<usize>,
+) -> Option<usize> {
     let least = same.iter().filter_map(|&joint| depth(joint)).min()?;
     same.retain(|&joint| depth(joint) == Some(least));
     same.sort_by_key(|&joint| names[joint]);
