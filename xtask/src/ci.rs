@@ -340,7 +340,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn gates_hold_and_miss() {
+    fn gates_are_met_or_missed() {
         assert_eq!(miss("nan", Gate::Is(0.0), &json!(0)), None);
         assert_eq!(miss("nan", Gate::Is(0.0), &json!(2)), Some("nan is 2, must be 0".to_owned()));
         assert_eq!(miss("gap", Gate::Below(0.005), &json!(0.004)), None);

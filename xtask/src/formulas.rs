@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn roots_indices_and_functions() {
+    fn roots_indices_and_functions_are_converted() {
         let html = mathml("T = 2π √(a³/μ)", false).expect("a formula");
         assert_eq!(
             html,

@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn limits_have_no_share() {
+    fn rows_of_limits_have_no_share() {
         let table = table(&parse(OUTPUT).expect("well formed"));
         assert!(table.contains("| Sse2 | *Mul* | 2000 | | |\n"), "{table}");
         assert!(table.contains("| Avx2 | `obb_obb_15_axes` | 60 | 120 | 0.50 |\n"), "{table}");

@@ -60,7 +60,7 @@ fn bvh_to_glb_and_back() {
 }
 
 #[test]
-fn options_of_a_bvh() {
+fn bvh_options_are_applied() {
     let folder = Folder::new("convert-options");
     let bvh = folder.file("kick.bvh", BVH);
     let out = folder.path("out.bvh");

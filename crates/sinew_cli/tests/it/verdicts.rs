@@ -26,7 +26,7 @@ fn joint(rig: &Rig, name: &str) -> usize {
 }
 
 #[test]
-fn mannequin_is_good_in_both() {
+fn mannequin_is_good_in_test_and_bake() {
     let folder = Folder::new("verdict-good");
     for (verdict, reasons) in both(&folder, &folder.mannequin(), &[]) {
         assert_eq!(verdict, "good", "{reasons}");
@@ -76,7 +76,7 @@ fn floor_is_at_the_feet_of_the_clip() {
 
 /// Skin of the chest that stays behind tears in both, badly enough for the worst verdict.
 #[test]
-fn torn_skin_is_bad_in_both() {
+fn torn_skin_is_bad_in_test_and_bake() {
     let folder = Folder::new("verdict-torn");
     let mut rig = mannequin().rig;
     let (chest, foot) = (joint(&rig, "chest"), joint(&rig, "leftFoot"));

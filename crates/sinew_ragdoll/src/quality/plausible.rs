@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_too_heavy_is_judged_at_a_size_that_there_is() {
+    fn heavy_ragdoll_is_judged_at_a_plausible_size() {
         let calm = FallQuality {
             asleep_s: Some(6.2),
             calm_to_asleep_s: Some(0.7),

@@ -246,7 +246,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn samples_are_even_and_within() {
+    fn samples_are_even_and_in_range() {
         assert_eq!(strided(3, 8), [0, 1, 2]);
         assert_eq!(strided(10, 4), [0, 2, 5, 7]);
         assert!(strided(0, 4).is_empty());

@@ -116,7 +116,7 @@ fn walks_in_clutter() {
 
 /// The mover walks out of the door, down the stairs, and back up, at 1 to 6 m/s.
 #[test]
-fn the_cabins_stairs_down_and_up_without_leaving_the_ground() {
+fn mover_walks_the_cabins_stairs_down_and_up_on_the_ground() {
     for speed in [1.0, 2.0, 3.5, 6.0] {
         let mut world = cabin();
         let start = Site::CabinWithStairs.spawn().world_from_character.translation;
@@ -143,7 +143,7 @@ fn the_cabins_stairs_down_and_up_without_leaving_the_ground() {
 /// The steps of the dungeon are triangles.
 #[needs_data]
 #[test]
-fn the_dungeons_stairs_are_climbed() {
+fn mover_climbs_the_dungeons_stairs() {
     let stairs = level("kaykit_dungeon/stairs.obj", 1.0);
     let size = bounds(&stairs);
     let mut highest = 0.0_f32;
