@@ -115,7 +115,7 @@ fn null(name: &str) -> CallError {
 /// Reference to a pointer's target.
 ///
 /// # Safety
-/// The pointer is null or points to a `T` that nobody changes meanwhile.
+/// The pointer is null or points to a `T` that no other thread changes meanwhile.
 pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Outcome<&'a T> {
     // SAFETY: as the caller promises.
     unsafe { pointer.as_ref() }.ok_or_else(|| null(name))
@@ -124,7 +124,7 @@ pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Outcome<&'a
 /// Mutable reference to a pointer's target.
 ///
 /// # Safety
-/// The pointer is null or points to a `T` that nobody else uses meanwhile.
+/// The pointer is null or points to a `T` that no other thread uses meanwhile.
 pub(crate) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &str) -> Outcome<&'a mut T> {
     // SAFETY: as the caller promises.
     unsafe { pointer.as_mut() }.ok_or_else(|| null(name))
@@ -133,7 +133,7 @@ pub(crate) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &str) -> Outcome<&'
 /// Slice of a pointer's elements; it may be null if there are none.
 ///
 /// # Safety
-/// The pointer is null or points to `count` elements that nobody changes meanwhile.
+/// The pointer is null or points to `count` elements that no other thread changes meanwhile.
 pub(crate) unsafe fn elements<'a, T>(pointer: *const T, count: usize, name: &str) -> Outcome<&'a [T]> {
     if count == 0 {
         return Ok(&[]);
@@ -222,7 +222,7 @@ pub(crate) unsafe fn give_handle<T>(pointer: *mut *mut T, name: &str, value: T) 
 /// Frees a handle; null is fine.
 ///
 /// # Safety
-/// The pointer is null or came from [`give_handle`], and nobody uses it any more.
+/// The pointer is null or came from [`give_handle`], and is not used any more.
 pub(crate) unsafe fn free<T>(pointer: *mut T) {
     if !pointer.is_null() {
         guard(|| {

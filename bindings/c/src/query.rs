@@ -63,7 +63,7 @@ pub enum SinewEventKind {
 /// Casts a ray from `origin` along `way`, which also sets its length. If it hits a body, `found` is 1 and `hit` is filled, else `found` is 0.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes; `hit` and `found` are null or have room.
+/// `world` is null or a world that no other thread changes; `hit` and `found` are null or have room.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_ray(
     world: *const SinewWorld,
@@ -91,7 +91,7 @@ pub unsafe extern "C" fn sinew_world_ray(
 /// Bodies that a shape at a pose would overlap, ascending.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes; `ids` has room for `capacity`, `count` is null or points to a number.
+/// `world` is null or a world that no other thread changes; `ids` has room for `capacity`, `count` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_overlap(
     world: *const SinewWorld,
@@ -123,7 +123,7 @@ pub unsafe extern "C" fn sinew_world_overlap(
 /// Returns the points of all contacts, including those with a gap, in the order of pairs.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes; `contacts` has room for `capacity`, `count` is null or points to a number.
+/// `world` is null or a world that no other thread changes; `contacts` has room for `capacity`, `count` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_contacts(
     world: *const SinewWorld,
@@ -153,7 +153,7 @@ pub unsafe extern "C" fn sinew_world_contacts(
 /// Events of the last step, of a kind (one of `SinewEventKind`), in the order of pairs.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes; `pairs` has room for `capacity`, `count` is null or points to a number.
+/// `world` is null or a world that no other thread changes; `pairs` has room for `capacity`, `count` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_events(
     world: *const SinewWorld,

@@ -229,7 +229,7 @@ pub unsafe extern "C" fn sinew_world_free(world: *mut SinewWorld) {
 /// Takes steps on the given number of threads; the result does not depend on it. 0 and 1 use the calling thread only.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses.
+/// `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_step(world: *mut SinewWorld, steps: u32, threads: u32) -> SinewStatus {
     guard(|| {
@@ -255,7 +255,7 @@ pub unsafe extern "C" fn sinew_world_step(world: *mut SinewWorld, steps: u32, th
 /// Number of steps since the beginning.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes, `steps` is null or points to a number.
+/// `world` is null or a world that no other thread changes, `steps` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_step_count(world: *const SinewWorld, steps: *mut u64) -> SinewStatus {
     // SAFETY: as the caller promises.
@@ -265,7 +265,7 @@ pub unsafe extern "C" fn sinew_world_step_count(world: *const SinewWorld, steps:
 /// Adds a body.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses, `def` null or a definition whose shapes are there, `id` null or room for one.
+/// `world` is null or a world that no other thread uses, `def` null or a definition whose shapes are there, `id` null or room for one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_add_body(
     world: *mut SinewWorld,
@@ -285,7 +285,7 @@ pub unsafe extern "C" fn sinew_world_add_body(
 /// Removes a body with its joints.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses.
+/// `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_remove_body(world: *mut SinewWorld, id: SinewBodyId) -> SinewStatus {
     // SAFETY: as the caller promises.
@@ -300,7 +300,7 @@ pub unsafe extern "C" fn sinew_world_remove_body(world: *mut SinewWorld, id: Sin
 /// Ids of all bodies, ascending by index.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes, `ids` has room for `capacity`, `count` is null or points to a number.
+/// `world` is null or a world that no other thread changes, `ids` has room for `capacity`, `count` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_bodies(
     world: *const SinewWorld,
@@ -320,7 +320,7 @@ pub unsafe extern "C" fn sinew_world_bodies(
 /// Poses of bodies in the world, one for each id.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes; `ids` and `poses` have `count` elements.
+/// `world` is null or a world that no other thread changes; `ids` and `poses` have `count` elements.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_poses(
     world: *const SinewWorld,
@@ -362,7 +362,7 @@ pub unsafe extern "C" fn sinew_world_velocities(
 /// Moves a body to a pose without passing through the space between.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses.
+/// `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_set_pose(
     world: *mut SinewWorld,
@@ -383,7 +383,7 @@ pub unsafe extern "C" fn sinew_world_set_pose(
 /// Sets the velocity of a body; ignored for static ones.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses.
+/// `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_set_velocity(
     world: *mut SinewWorld,
@@ -404,7 +404,7 @@ pub unsafe extern "C" fn sinew_world_set_velocity(
 /// Applies an impulse, N·s, world axes, to a dynamic body at a point in the world, or at its centre of mass if `point` is null.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses, `point` is null or points to one.
+/// `world` is null or a world that no other thread uses, `point` is null or points to one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_push(
     world: *mut SinewWorld,

@@ -83,7 +83,7 @@ fn shape(options: &Options<'_>) -> Outcome<Shape> {
         "mesh" => {
             let indices = options.indices("indices")?;
             if indices.len() % 3 != 0 {
-                return Err(Failure::new("a mesh has three indices a triangle"));
+                return Err(Failure::new("a mesh must have three indices for each triangle"));
             }
             let triangles: Vec<[u32; 3]> = indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
             Shape::mesh(&options.points("vertices")?, &triangles).map_err(failed)?

@@ -59,7 +59,7 @@ pub fn page(rows: &[Row], roles: &Value) -> String {
         bakes(rows)
     );
     let _ = write!(page, "## Roles, right of all\n\n{}\n", recognised(roles));
-    let _ = write!(page, "## What is said of them\n\n{}", reasons(rows));
+    let _ = write!(page, "## Reasons\n\n{}", reasons(rows));
     page
 }
 

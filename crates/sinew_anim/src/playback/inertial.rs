@@ -104,7 +104,10 @@ impl Inertia {
     /// # Panics
     /// If the poses differ in length, or `seconds` is negative or not finite.
     pub fn start(&mut self, from: Motion<'_>, to: Motion<'_>, seconds: f32) {
-        assert!(seconds >= 0.0 && seconds.is_finite(), "a transition takes 0 s or longer, not {seconds}");
+        assert!(
+            seconds >= 0.0 && seconds.is_finite(),
+            "the duration of a transition must be at least 0 s, not {seconds}"
+        );
         let joints = from.now.len();
         for pose in [from.other, to.now, to.other] {
             assert_eq!(pose.len(), joints, "four poses of one rig");

@@ -84,9 +84,9 @@ struct Sizes {
     /// The body and its measure, for a sentence.
     words: [&'static str; 2],
     fits: core::ops::Range<f32>,
-    /// In centimetres, the certain ones.
+    /// Sizes in metres that prove a unit of one centimetre.
     surely: core::ops::Range<f32>,
-    /// Size of most, metres.
+    /// Usual size, metres.
     usual: f32,
     /// Narrowness of the spread of sizes against those of creatures.
     focus: f32,

@@ -13,7 +13,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// For `steps` steps of `what`.
+    /// Creates the display of `steps` steps of `what`.
     pub fn new(what: &'static str, steps: usize) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::hidden());
         let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}");

@@ -11,7 +11,7 @@ use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew_scenes::mannequin::mannequin;
 
 /// Verdict and reasons of `ragdoll build` and of `bake` with these options.
-fn both(folder: &Folder, file: &str, extra: &[&str]) -> [(String, String); 2] {
+fn build_and_bake(folder: &Folder, file: &str, extra: &[&str]) -> [(String, String); 2] {
     let out = folder.path("out.glb");
     let built = sinew(&[&["ragdoll", "build", file, "--json"], extra].concat()).json();
     let baked = sinew(&[&["bake", file, "-o", &out, "--json"], extra].concat()).json();
@@ -26,9 +26,9 @@ fn joint(rig: &Rig, name: &str) -> usize {
 }
 
 #[test]
-fn mannequin_is_good_in_test_and_bake() {
+fn mannequin_is_good_in_build_and_bake() {
     let folder = Folder::new("verdict-good");
-    for (verdict, reasons) in both(&folder, &folder.mannequin(), &[]) {
+    for (verdict, reasons) in build_and_bake(&folder, &folder.mannequin(), &[]) {
         assert_eq!(verdict, "good", "{reasons}");
     }
 }
@@ -76,7 +76,7 @@ fn floor_is_at_the_feet_of_the_clip() {
 
 /// Skin of the chest that stays behind tears in both, badly enough for the worst verdict.
 #[test]
-fn torn_skin_is_bad_in_test_and_bake() {
+fn torn_skin_is_bad_in_build_and_bake() {
     let folder = Folder::new("verdict-torn");
     let mut rig = mannequin().rig;
     let (chest, foot) = (joint(&rig, "chest"), joint(&rig, "leftFoot"));
@@ -96,7 +96,7 @@ fn torn_skin_is_bad_in_test_and_bake() {
         }
     }
     let file = folder.file("torn.glb", glb(&rig, &[]));
-    for (verdict, reasons) in both(&folder, &file, &[]) {
+    for (verdict, reasons) in build_and_bake(&folder, &file, &[]) {
         assert_eq!(verdict, "bad", "{reasons}");
         assert!(reasons.contains("stretches one side"), "{reasons}");
     }
@@ -118,7 +118,7 @@ fn adult_of_half_a_metre_is_not_good() {
         primitive.positions.iter_mut().for_each(|place| *place *= share);
     }
     let file = folder.file("small.glb", glb(&rig, &[]));
-    for (verdict, reasons) in both(&folder, &file, &[]) {
+    for (verdict, reasons) in build_and_bake(&folder, &file, &[]) {
         let is_taken_larger = verdict == "good" && !reasons.contains("0.57");
         assert!(verdict != "good" || is_taken_larger, "{verdict}: {reasons}");
     }

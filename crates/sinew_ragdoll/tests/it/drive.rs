@@ -577,8 +577,8 @@ fn random_drive_changes_stay_stable() {
             assert!(q.joint_gap_p99_m < 1e-4, "{seed}, {jumps:?}: {}", q.joint_gap_p99_m);
             // Pins to a pose that jumps within a step act like impacts, and their work is counted inaccurately: there,
             // speeds must stay bounded, and a joint may open for a step. Of 60 such seeds the median of the largest
-            // gaps is 1.3 µm, the largest 1.2 mm (1.1 with the build before); the median of the largest speeds is 24
-            // m/s, the largest 63, the next 46 (23, 43 and 39 with the build before, 54 with one before that).
+            // gaps is 1.3 µm, the largest 1.2 mm (1.1 in the previous build); the median of the largest speeds is 24
+            // m/s, the largest 63, the second 46 (previous builds: median 23, largest 43 to 54).
             // For a pose without jumps, added energy is the work of motors (at most 3e-5 of the measure, of 24 seeds;
             // 0.30 while saturated motors pushed before the forces). The median of the largest speeds is 24 m/s, the
             // largest 57.

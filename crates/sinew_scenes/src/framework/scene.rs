@@ -20,7 +20,7 @@ pub enum Chapter {
     Piles,
     /// Limp and driven figures.
     Ragdolls,
-    /// Clips, movers, characters that live.
+    /// Clips, movers, simulated characters.
     Characters,
     /// Worlds to look around in.
     Shows,
