@@ -274,7 +274,7 @@ enum Gate {
     Is(f64),
     /// Strictly below.
     Below(f64),
-    /// Not null: the event happened.
+    /// The value is not null: the event happened.
     Happened,
 }
 

@@ -59,7 +59,7 @@ impl Ragdolls {
                 Measured::Built(report) => {
                     rows.row(row(name, report));
                     let said = report["quality"]["reasons"].as_array().into_iter().flatten();
-                    // That no clip is played is stated once on the page.
+                    // Skip the note that no clip is played: the page states it once.
                     for reason in
                         said.filter_map(Value::as_str).filter(|reason| !reason.starts_with("hand-over"))
                     {

@@ -123,7 +123,7 @@ impl fmt::Display for Finding {
 
 /// A text file of the repository.
 pub struct File {
-    /// From the root, with `/` on every system.
+    /// Path from the root, with `/` on every system.
     pub path: String,
     /// Contents.
     pub text: String,

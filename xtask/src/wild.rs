@@ -44,7 +44,7 @@ struct Row {
     file: String,
     /// `{"build","bake","build_s","bake_s"}`, or `{"refused"}`.
     report: Value,
-    /// Its picture after the fall.
+    /// Picture of the character after the fall.
     picture: PathBuf,
 }
 

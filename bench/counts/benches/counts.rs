@@ -40,7 +40,7 @@ fn landing() -> Instance {
     ragdoll(60)
 }
 
-/// At rest on the floor, awake.
+/// A ragdoll at rest on the floor, awake.
 fn lying() -> Instance {
     ragdoll(95)
 }
@@ -386,7 +386,7 @@ fn strands() -> CharacterDef {
     CharacterDef::new(rig, ragdoll, &analysis.bind_model)
 }
 
-/// After a second of swinging, then this many steps of easing.
+/// Hair after a second of swinging and this many steps of easing.
 fn maned(eased: u32) -> Maned {
     let mut maned = Maned { def: strands(), swings: vec![SpringSwing::new(); 100], frame: 0 };
     assert_eq!(maned.def.springs().joints().len(), 40);

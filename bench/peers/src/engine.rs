@@ -115,7 +115,7 @@ pub struct CharacterPose {
 pub struct BodyState {
     /// World position and orientation of the body's **origin** (not of its centre of mass).
     pub world_from_body: Transform,
-    /// Of the **centre of mass**, m/s.
+    /// Velocity of the **centre of mass**, m/s.
     pub linear_velocity: Vec3,
     /// rad/s, world axes.
     pub angular_velocity: Vec3,

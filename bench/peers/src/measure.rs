@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 /// Processor time of the steps of a run, milliseconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepTimes {
-    /// Of each step, in order.
+    /// Time of each step, in order.
     milliseconds: Vec<f64>,
 }
 

@@ -82,7 +82,7 @@ impl Trace<'_> {
         Ok(self.report(clock, warm_up, &records))
     }
 
-    /// With several threads: wall time of whole steps.
+    /// Measures the wall time of whole steps with several threads.
     fn threaded(&self, run: &mut Run, warm_up: u32, steps: u32) -> Value {
         let threads = Threads::new(self.threads);
         (0..warm_up).for_each(|_| run.step(&threads, &NoProfiler));

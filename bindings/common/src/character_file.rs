@@ -24,7 +24,7 @@ use std::path::Path;
 pub struct CharacterFile {
     /// Name given by the user.
     pub name: String,
-    /// Its rig, clips and bytes. The rig may have added ankles and sheet joints that the file lacks.
+    /// Rig, clips and bytes of the file. The rig may have added ankles and sheet joints that the file lacks.
     pub document: Document,
     /// Analysis of its joints.
     pub analysis: RigAnalysis,

@@ -80,7 +80,7 @@ class Sinew:
         self.model = sinew.load_model(path)
         self.batch = sinew.BatchWorlds(self.model, len(turns), floor=False, sleeping=False, threads=threads)
         first = self.batch.poses()[0]
-        # About the position of the first body, where MuJoCo rotates its root.
+        # Rotate about the position of the first body, as MuJoCo rotates its root.
         turn, root = y_up(turns), first[0, :3]
         motions = np.zeros((len(turns), 7), np.float32)
         motions[:, 3:] = turn

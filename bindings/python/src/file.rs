@@ -137,7 +137,7 @@ pub fn mannequin(py: Python<'_>) -> PyResult<CharacterFile> {
 
 #[pymethods]
 impl CharacterFile {
-    /// As it was named.
+    /// Name of the file.
     #[getter]
     fn name(&self) -> &str {
         &self.file.name

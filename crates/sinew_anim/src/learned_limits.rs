@@ -26,13 +26,14 @@ pub struct LearnedLimit {
     pub joint: JointIdx,
     /// The joint's local rotation in the middle of its range.
     pub center: Rotation,
-    /// From the axes of the limit to the joint's own: x along the bone, y and z along the axes of the swing's ellipse.
+    /// Rotation from the axes of the limit to the joint's own: x along the bone, y and z along the axes of the swing's
+    /// ellipse.
     pub frame: Rotation,
     /// Half-angles of the ellipse: swing about y, swing about z, radians.
     pub swing: [f32; 2],
     /// Rotation about the bone, radians from the centre.
     pub twist: Range,
-    /// Set for joints that rotate about one axis.
+    /// Range of a joint that rotates about only one axis; else `None`.
     pub hinge: Option<LearnedHinge>,
     /// Frames learned from.
     pub samples: usize,

@@ -32,9 +32,9 @@ struct Rider {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Riders {
-    /// By joint, ascending.
+    /// Riders by joint, ascending.
     list: Vec<Rider>,
-    /// Per joint of the rig: it has a body.
+    /// For each joint of the rig, true if it has a body.
     has_body: Vec<bool>,
 }
 

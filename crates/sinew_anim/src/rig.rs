@@ -14,7 +14,7 @@ pub struct LocalTransform {
     pub translation: Vec3,
     /// Unit.
     pub rotation: Rotation,
-    /// Per axis, 1 by default.
+    /// Scale along each axis, 1 by default.
     pub scale: Vec3,
 }
 

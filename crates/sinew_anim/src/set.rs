@@ -49,7 +49,7 @@ pub struct AnimationSet {
 }
 
 impl AnimationSet {
-    /// Without clips.
+    /// Creates a set without clips.
     pub fn new(skeleton: Skeleton) -> Self {
         Self { skeleton, clips: Vec::new(), masks: Vec::new() }
     }

@@ -27,7 +27,7 @@ pub(crate) fn join(linear: Vec3, angular: Vec3) -> Vec6 {
     [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z, 0.0, 0.0]
 }
 
-/// Impulse on a body by one at `arm` from its centre of mass.
+/// Spatial impulse of a linear impulse at `arm` from the centre of mass.
 #[inline(always)]
 pub(crate) fn wrench(arm: Vec3, impulse: Vec3) -> Vec6 {
     join(impulse, arm.cross(impulse))

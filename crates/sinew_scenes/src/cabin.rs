@@ -241,7 +241,7 @@ fn roof(props: &mut Vec<Prop>) {
     let (sin, cos) = trig::sin_cos(ROOF_PITCH);
     let (half_depth, middle) = (0.5 * (FRONT - BACK), 0.5 * (FRONT + BACK));
     let thickness = 0.08;
-    // From the tip of the overhang to a little past the ridge, so that the slabs' upper faces meet.
+    // A slab reaches from the tip of the overhang to a little past the ridge, so that the upper faces meet.
     let past_ridge = 2.0 * thickness * sin / cos;
     let length = half_depth / cos + 0.5 + past_ridge;
     let ridge = EAVES + half_depth * sin / cos;

@@ -19,7 +19,7 @@ use sinew_physics::{BodyDef, BodyId, BodyKind, MassUpdate, Shape, ShapeDef, Shap
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 #[require(Transform, Collider)]
 pub enum RigidBody {
-    /// Never moves.
+    /// The body never moves.
     Static,
     /// Moves at its [`Velocity`]; nothing pushes it.
     Kinematic,

@@ -52,7 +52,7 @@ pub struct HitTold {
     pub b: Entity,
     /// Point of the hit, world, metres.
     pub point: Vec3,
-    /// From A to B, unit length, world axes.
+    /// Normal from A to B, unit length, world axes.
     pub normal: Vec3,
     /// Speed along the normal, m/s.
     pub approach: f32,

@@ -39,7 +39,7 @@ pub struct GizmoColors {
     pub awake: Color,
     /// Outlines of sleeping ones. Default dark green.
     pub asleep: Color,
-    /// From centres of bodies to anchors of their joints. Default yellow.
+    /// Colour of lines from centres of bodies to anchors of their joints. Default yellow.
     pub joint: Color,
     /// Springs between particles. Default white.
     pub spring: Color,

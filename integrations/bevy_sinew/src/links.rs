@@ -45,9 +45,9 @@ pub struct Joint {
     pub b: Entity,
     /// Anchor of both bodies at creation, world, metres.
     pub anchor: Vec3,
-    /// Its x axis at creation, world, any length but 0: that of a hinge or a slider.
+    /// Direction of the joint's x axis at creation, world, any length but 0: the axis of a hinge or a slider.
     pub axis: Vec3,
-    /// Its free motions.
+    /// Kind of the joint: its free motions.
     pub kind: JointKind,
 }
 

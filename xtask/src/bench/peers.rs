@@ -41,11 +41,11 @@ pub struct Engine {
     /// Name in the binary and the reports.
     pub name: String,
     binary: PathBuf,
-    /// Binary with it.
+    /// Binary that contains the engine.
     peers: PathBuf,
     /// Arguments before the scene.
     arguments: Vec<String>,
-    /// Its field.
+    /// Fields of work that the engine supports.
     fields: Vec<String>,
 }
 
@@ -56,7 +56,7 @@ pub struct Scene {
     pub name: String,
     /// One-line description.
     pub about: String,
-    /// Its field.
+    /// Field of work of the scene.
     field: String,
     /// True if a small change of the start changes the run.
     pub is_chaotic: bool,

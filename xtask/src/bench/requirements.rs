@@ -13,19 +13,19 @@ pub enum Verdict {
     Goal,
     /// The requirement is met.
     Met,
-    /// Missed.
+    /// The requirement is missed.
     Missed,
-    /// Not measurable yet, with the reason.
+    /// The requirement is not measurable yet, with the reason.
     Open(String),
-    /// Not requested.
+    /// The measurement was not requested.
     NotRun,
 }
 
 /// A row of the specification's table of speeds.
 pub struct Speed {
-    /// Its wording in the specification.
+    /// Wording of the requirement in the specification.
     pub work: &'static str,
-    /// Its bar.
+    /// Bar of the requirement.
     pub bar: Bar,
 }
 
@@ -33,7 +33,7 @@ pub struct Speed {
 pub enum Bar {
     /// A factor with a required minimum and a goal.
     Factor { must: f64, goal: f64, measure: Measure },
-    /// Not measured here.
+    /// The requirement is measured elsewhere.
     Elsewhere { must: &'static str, goal: &'static str, why: &'static str },
 }
 
@@ -205,7 +205,7 @@ pub struct Hold {
     pub scene: &'static str,
     /// Checked figure.
     pub figure: &'static Figure,
-    /// Its bound.
+    /// Bound of the requirement.
     pub most: Most,
 }
 

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// All scenes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Results {
-    /// In the order of the peers' list.
+    /// Scenes in the order of the peers' list.
     pub scenes: Vec<SceneResult>,
     /// Simulated seconds per processor second of a bake on one thread, if measured.
     pub bake: Option<f64>,
@@ -15,7 +15,7 @@ pub struct Results {
     /// Simulated seconds per processor second of limp characters until they sleep: `median` of all rigs and `slowest_humanoid`,
     /// if measured.
     pub limp: BTreeMap<String, f64>,
-    /// By scene: wall time on one thread over that on two, if measured.
+    /// Wall time on one thread over that on two, by scene, if measured.
     pub threads: BTreeMap<String, f64>,
     /// Machine of the last measurement as text; `None` in older files.
     pub machine: Option<String>,

@@ -66,16 +66,16 @@ pub fn houses(repo: &Repo) -> Vec<House<'_>> {
 /// The modules of one crate, tests left out.
 struct Source<'a> {
     modules: Vec<Module<'a>>,
-    /// By path from the root.
+    /// Numbers of modules by their paths from the root.
     places: BTreeMap<Vec<&'a str>, usize>,
 }
 
 /// A file as a module.
 struct Module<'a> {
-    /// Its file, from `src/`.
+    /// File of the module, from `src/`.
     inside: &'a str,
     path: Vec<&'a str>,
-    /// Its code without imports.
+    /// Code of the module without imports.
     code: Vec<Token<'a>>,
     /// Names that it defines.
     items: BTreeSet<&'a str>,
@@ -87,7 +87,7 @@ struct Module<'a> {
 pub struct Import<'a> {
     /// `*` for all of them.
     pub name: &'a str,
-    /// As written.
+    /// Path as written.
     pub path: Vec<&'a str>,
     /// True if it is `pub` to some extent.
     pub is_public: bool,
@@ -105,7 +105,7 @@ impl<'a> Source<'a> {
         Self { modules, places }
     }
 
-    /// By module: those that it names.
+    /// Modules that each module names.
     fn arrows(&self) -> Vec<BTreeSet<usize>> {
         let of = |at: usize| {
             let module = &self.modules[at];

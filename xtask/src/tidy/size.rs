@@ -24,7 +24,7 @@ struct Exception {
     path: String,
     name: String,
     lines: usize,
-    /// Its line in the list of exceptions.
+    /// Line of the exception in the list.
     line: usize,
 }
 

@@ -88,7 +88,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
                 let explained = file.text.lines().take(line - 1).collect::<Vec<_>>();
                 let docs = explained.iter().rev().take_while(|line| line.starts_with("///"));
                 let text: String = docs.copied().collect();
-                // Its own scene or test, or the constant that it follows.
+                // A constant needs its own scene or test, or the constant that it follows.
                 if !["hown by", "No scene", "[`"].iter().any(|told| text.contains(told)) {
                     let message = format!("`{name}` does not name the scene or test that shows it");
                     findings.push(Finding::new(&file.path, line, message));

@@ -1,6 +1,6 @@
 //! Safe interface to Box3D.
 //!
-//! Why it is safe: ids never leave their [`World`], so none outlives it or is used with another; definitions come
+//! Safety: ids never leave their [`World`], so none outlives it or is used with another; definitions come
 //! from Box3D's own defaults and are lent for the length of a call, which copies them.
 
 #![allow(unsafe_code)]

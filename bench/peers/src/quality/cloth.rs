@@ -12,7 +12,7 @@ pub struct ClothMeter<'a> {
     scene: &'a ClothScene,
 }
 
-/// At the end of a run.
+/// Quality of cloth at the end of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClothQuality {
     /// Mean over the structural links of the deviation of their length from the rest length, as a share of that.

@@ -138,7 +138,7 @@ fn depth_of_shapes(pose_a: &Pose, a: &SharedShape, pose_b: &Pose, b: &SharedShap
         return depth_of_boxes(pose_a, a, pose_b, b);
     }
     let contact = parry3d::query::contact(pose_a, &**a, pose_b, &**b, 0.0);
-    let contact = contact.expect("Parry knows every pair of our shapes")?;
+    let contact = contact.expect("Parry supports every pair of our shapes")?;
     (contact.dist < 0.0).then_some(-contact.dist)
 }
 

@@ -37,7 +37,7 @@ pub enum EndAction {
 /// Easing of a weight from one value to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Easing {
-    /// At constant speed.
+    /// Interpolation at constant speed.
     Linear,
     /// `3x² − 2x³`: no jump of speed at either end.
     #[default]
@@ -157,7 +157,7 @@ pub struct Track {
 }
 
 impl Track {
-    /// Its id.
+    /// Id of the track.
     pub fn id(&self) -> TrackId {
         self.id
     }

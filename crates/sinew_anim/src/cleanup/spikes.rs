@@ -18,7 +18,7 @@ pub struct SpikeSettings {
 }
 
 impl Default for SpikeSettings {
-    /// From 5° or 2 cm (of a rig in metres) on, 6 times the usual step, up to 50 ms.
+    /// Removes spikes from 5° or 2 cm (of a rig in metres) on, of 6 times the usual step, up to 50 ms.
     fn default() -> Self {
         Self { least_turn: 0.0873, least_shift: 0.02, times_usual: 6.0, longest: 0.05 }
     }

@@ -117,8 +117,8 @@ struct Meter<'a> {
     /// before.
     model: Vec<Affine>,
     moved: Vec<bool>,
-    /// Per joint: the largest distance of a descendant at any time, and the scale from its parent's axes to the space
-    /// of the bound.
+    /// For each joint: the largest distance of a descendant at any time, and the scale from its parent's axes to the
+    /// space of the bound.
     reach: Vec<f32>,
     scale: Vec<f32>,
 }
@@ -215,7 +215,7 @@ impl<'a> Meter<'a> {
 
 /// Poses of a clip at ascending times. Parts that do not change cost almost nothing.
 struct Poses {
-    /// Per channel: its last key not after the time, and the time until which its value is constant.
+    /// For each channel: its last key not after the time, and the time until which its value is constant.
     keys: Vec<usize>,
     stays: Vec<f32>,
     is_first: bool,

@@ -24,7 +24,7 @@ pub enum AxisExtraction {
 pub struct RootMotionOptions {
     /// The joint that carries the body: the hips, or a joint above them.
     pub joint: JointIdx,
-    /// Along x, y, z of model space.
+    /// Translation along x, y, z of model space.
     pub axes: [AxisExtraction; 3],
     /// Rotation about `up`.
     pub turn: AxisExtraction,
@@ -33,7 +33,7 @@ pub struct RootMotionOptions {
 }
 
 impl RootMotionOptions {
-    /// Over the ground and about y: all of x, z and the rotation, nothing of y.
+    /// Extracts the motion over the ground and about y: all of x, z and the rotation, nothing of y.
     pub fn on_ground(joint: JointIdx) -> Self {
         let (none, full) = (AxisExtraction::None, AxisExtraction::Full);
         Self { joint, axes: [full, none, full], turn: full, up: Vec3::Y }

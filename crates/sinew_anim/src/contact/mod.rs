@@ -208,7 +208,7 @@ pub struct FootSlide {
     pub mean: f32,
     /// Largest distance of a foot from its landing place within one contact, metres.
     pub farthest: f32,
-    /// Time stood, both feet, seconds.
+    /// Total standing time of both feet, seconds.
     pub time: f32,
 }
 

@@ -47,12 +47,12 @@ pub struct ClipEvent {
     pub name: String,
     /// Data for the user, or `""`.
     pub payload: String,
-    /// When it is fired.
+    /// Condition for firing it.
     pub policy: EventPolicy,
 }
 
 impl ClipEvent {
-    /// With the usual policy and no payload.
+    /// Creates an event with the default policy and no payload.
     pub fn new(time: f32, name: &str) -> Self {
         Self { time, name: name.to_owned(), ..Self::default() }
     }

@@ -9,9 +9,9 @@ use sinew_math::{Affine, Rotation, Transform, Vec3, clamp, direction, max, min};
 /// Ground below a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootGround {
-    /// Along up, from the origin of the space.
+    /// Height along the up axis, from the origin of the space.
     pub height: f32,
-    /// Unit.
+    /// Unit normal of the ground.
     pub normal: Vec3,
 }
 

@@ -23,7 +23,7 @@ pub struct TwoBone {
 pub enum Pole {
     /// The current side. A straight limb bends toward this direction, of any length.
     Keep(Vec3),
-    /// Toward this direction, of any length.
+    /// The joint bends toward this direction, of any length.
     Toward(Vec3),
 }
 

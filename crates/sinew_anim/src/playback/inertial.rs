@@ -14,7 +14,7 @@ use sinew_math::{ReadError, Reader, Rotation, Vec3, Writer, max, min, trig};
 pub struct Decay {
     /// Offset at the start, any unit.
     pub offset: Vec3,
-    /// Its velocity at the start, per second.
+    /// Velocity of the offset at the start, per second.
     pub velocity: Vec3,
 }
 
@@ -54,7 +54,7 @@ fn quintic(x0: f32, v0: f32, t1: f32, time: f32) -> f32 {
     if t1.is_nan() || t1 <= 0.0 || time >= t1 {
         return 0.0;
     }
-    // In units of t₁: nothing is divided by its powers.
+    // Compute in units of t₁, so that nothing is divided by its powers.
     let (t, v) = (time / t1, v0 * t1);
     let swings_through = -v > 5.001 * x0;
     let a = if swings_through { 0.0 } else { max(0.0, -8.0 * v - 20.0 * x0) };
@@ -87,7 +87,7 @@ pub struct Motion<'a> {
     pub now: &'a Pose,
     /// Another pose of the same rig: `seconds` earlier for the old motion, `seconds` later for the new one.
     pub other: &'a Pose,
-    /// Above 0; otherwise there is no velocity.
+    /// Time between both poses; if it is not above 0 there is no velocity.
     pub seconds: f32,
 }
 

@@ -24,7 +24,7 @@ pub struct Playhead {
     mode: LoopMode,
     length: f64,
     at: Place,
-    /// Nothing has been passed yet: an event exactly here is still to come.
+    /// True before any event was passed: an event exactly here is still to come.
     is_fresh: bool,
 }
 
@@ -36,8 +36,8 @@ pub(crate) struct Place {
 }
 
 impl Playhead {
-    /// At `start`, clip seconds: beyond the clip's ends in another lap, or clamped if it plays once. A clip without
-    /// length, a pose, plays once.
+    /// Creates a playhead at `start`, clip seconds: beyond the clip's ends in another lap, or clamped if it plays once.
+    /// A clip without length, a pose, plays once.
     ///
     /// # Panics
     /// If `length` is negative, or a number is not finite.
@@ -156,8 +156,8 @@ impl Playhead {
     }
 }
 
-/// From one position to another: forward it passes everything after the first up to the second, backward everything
-/// before the first down to the second.
+/// Passes from one position to another: forward everything after the first up to the second, backward everything before
+/// the first down to the second.
 ///
 /// Several steps therefore pass the same events as one step over the same distance.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -49,7 +49,7 @@ impl Mask {
     }
 }
 
-/// From a share per joint.
+/// Creates a mask from a share per joint.
 ///
 /// # Panics
 /// If one is not in 0..=1.

@@ -71,7 +71,7 @@ impl<L: Lanes> Quaternions<L> {
         Self::select(away, Self { v: -self.v, w: -self.w }, self)
     }
 
-    /// At length 1; `square` is the squared length, above zero.
+    /// Scales to length 1; `square` is the squared length, above zero.
     #[inline(always)]
     pub(crate) fn unit(self, square: L) -> Self {
         self.times(L::splat(1.0) / square.sqrt())

@@ -18,7 +18,7 @@ pub(super) struct Pair {
 
 /// Correspondence of the joints of two bodies.
 pub(super) struct Alignment {
-    /// By the character's joint.
+    /// Pairs in the order of the character's joints.
     pub pairs: Vec<Pair>,
     /// Roles that only the character has.
     pub unmatched: Vec<Role>,

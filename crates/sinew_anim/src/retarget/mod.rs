@@ -31,7 +31,7 @@ use sinew_math::{Affine, Rotation, Vec3, max};
 pub struct Body<'a> {
     /// Joints.
     pub rig: &'a Rig,
-    /// Its roles; the bind pose is the reference pose. See [`stand`] for a skeleton without skin.
+    /// Roles of the rig; the bind pose is the reference pose. See [`stand`] for a skeleton without skin.
     pub analysis: &'a RigAnalysis,
 }
 
@@ -43,7 +43,7 @@ pub enum Pace {
     Actor,
     /// Longer by the square root of the ratio of leg lengths (Froude: like walks at equal v²/(g l)): giants seem large.
     Froude,
-    /// That many times longer, above 0.
+    /// Longer by this factor, above 0.
     Times(f32),
 }
 
@@ -76,7 +76,7 @@ impl Default for RetargetOptions {
     }
 }
 
-/// Why a motion cannot be carried over.
+/// Reason why a motion cannot be retargeted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RetargetError {
     /// Roles could only be guessed as those of some creature.
@@ -221,15 +221,15 @@ struct Transfer<'a> {
     actor: Body<'a>,
     character: Body<'a>,
     alignment: Alignment,
-    /// From the files' spaces to the bodies' own.
+    /// Transforms from the files' spaces to the bodies' own.
     actor_root: Affine,
     character_root: Affine,
     actor_feet: [Foot; 2],
-    /// The character's.
+    /// Legs of the character.
     legs: Legs,
-    /// From there to the middle of its hip joints, in the pelvis' own axes without scale, metres.
+    /// Vector from the pelvis to the middle of its hip joints, in the pelvis' own axes without scale, metres.
     hips_to_legs: Vec3,
-    /// Character's legs over actor's.
+    /// Length of the character's legs over that of the actor's.
     scale: f32,
 }
 
@@ -237,7 +237,7 @@ struct Transfer<'a> {
 struct Steps {
     ground: Ground,
     contacts: Vec<FootContact>,
-    /// Per frame the height of the lowest sole over the ground, metres; 0 while a foot stands.
+    /// Height of the lowest sole over the ground in each frame, metres; 0 while a foot stands.
     heights: Vec<f32>,
     slide: FootSlide,
 }

@@ -42,7 +42,7 @@ pub(super) struct Scene<'a> {
     hints: &'a Hints,
     graph: Graph,
     symmetry: Symmetry,
-    /// Per joint; empty readings where names are not trusted.
+    /// Reading of each joint's name; empty readings where names are not trusted.
     readings: Vec<Reading>,
 }
 
@@ -143,7 +143,7 @@ impl<'a> Scene<'a> {
         Some((Self { rig, bound, hints, graph, symmetry, readings }, notes))
     }
 
-    /// By the file, else by shape, else by names, else generic.
+    /// Drafts the roles by the file, else by shape, else by names, else generic ones.
     fn draft(&self, notes: &mut Vec<String>) -> Draft {
         if let Some(stated) = self.stated_draft() {
             notes.push("roles are those that the file states".into());
@@ -322,7 +322,7 @@ impl<'a> Scene<'a> {
             notes.push("the feet hardly show the front of the body: it is taken from the elbows".into());
             return lateral * bent;
         }
-        // Half a per cent of the height and more is a foot, less is noise.
+        // A lead of half a per cent of the height or more is that of a foot; less is noise.
         if lead.abs() > LEAST_FOOT {
             return lateral * lead.signum();
         }
@@ -449,7 +449,7 @@ impl<'a> Scene<'a> {
                     if side.is_some() { reading.side == side } else { self.on_side_of(joint, on) };
                 reading.part == Some(part) && roles[joint].is_none() && (part == Part::Neck || same_side)
             };
-            // Of several, the one in line with its parent: controls have the names of bones, too.
+            // Among several, take the one in line with its parent: controls have the names of bones, too.
             let is_above =
                 |above: JointIdx, joint: JointIdx| ancestors(self.rig, joint).any(|at| at == above);
             let all: Vec<JointIdx> = (0..roles.len()).filter(named).collect();
@@ -511,7 +511,7 @@ impl<'a> Scene<'a> {
             let joint = draft.roles.iter().position(|r| r.is_some_and(|guess| guess.role == role));
             joint.map(|joint| stance.level(self.bound.model[joint].translation))
         };
-        // In the lowest third of the leg.
+        // The hands are in the lowest third of the leg.
         let low = |side: Side| {
             let foot = level(Role::Foot(side)).unwrap_or(0.0);
             let leg = level(Role::UpperLeg(side)).map_or(0.0, |hip| hip - foot);
@@ -624,8 +624,8 @@ impl<'a> Scene<'a> {
 enum Trust {
     /// Names are mirrored.
     All,
-    /// Both of a pair have one name except for numbers ("Leg.1", "Leg.2"): only words of the midline and of appendices
-    /// count.
+    /// Both joints of a pair have one name except for numbers ("Leg.1", "Leg.2"): only words of the midline and of
+    /// appendices count.
     Words,
     /// The names do not match: number of matching pairs, and of all pairs.
     Nothing { agreeing: usize, pairs: usize },

@@ -95,7 +95,7 @@ impl<'a> Carriers<'a> {
         };
         let mut spine: Vec<JointIdx> = named(Part::Spine).collect();
         let mut chest = None;
-        // From the hips upward to the arms.
+        // Follow the spine from the hips upward to the arms.
         if let Some(low) = named(Part::Hips).next().map(place).or_else(|| mean(Part::UpperLeg)) {
             spine.sort_by(|&a, &b| (place(a) - low).length().total_cmp(&(place(b) - low).length()));
             // Without a neck or head by name, the spine continues to the crown.

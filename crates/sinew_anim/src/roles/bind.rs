@@ -18,7 +18,7 @@ pub(crate) struct Bound {
     pub area: Vec<f32>,
     /// All skinned vertices.
     pub vertices: Vec<Vec3>,
-    /// Per vertex the joint that moves it most; of a skeleton without skin the joint itself.
+    /// The joint that moves each vertex most; in a skeleton without skin the joint itself.
     pub movers: Vec<JointIdx>,
     /// Number of triangle edges that run from one joint's vertices to another's, the smaller joint first.
     pub links: BTreeMap<(JointIdx, JointIdx), u32>,
@@ -267,7 +267,7 @@ pub(crate) fn bind_pose(rig: &Rig) -> Vec<Affine> {
     model
 }
 
-/// Per slot of its skin true if it moves a vertex of the mesh.
+/// For each slot of the mesh's skin, true if it moves a vertex of the mesh.
 pub(super) fn moving_slots(rig: &Rig, mesh: &RigMesh) -> Vec<bool> {
     let mut moves = vec![false; mesh.skin.map_or(0, |skin| rig.skins[skin].joints.len())];
     for primitive in &mesh.primitives {
@@ -309,7 +309,7 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     if votes(&rest[mesh.joint]) > 0 {
         return rest[mesh.joint];
     }
-    // Of a line of joints that carry as much the first.
+    // Take the first of a line of joints that carry as much.
     let carries = |slot: usize| {
         let joint = skin.joints[slot];
         (carried[joint], core::cmp::Reverse(ancestors(rig, joint).count()))

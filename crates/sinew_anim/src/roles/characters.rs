@@ -142,7 +142,7 @@ pub(super) fn skeletons(rig: &Rig) -> Vec<Vec<usize>> {
             stems
         })
         .collect();
-    // Per group its stems and its meshes.
+    // Stems and meshes of each group.
     let mut groups: Vec<(Vec<JointIdx>, Vec<usize>)> = Vec::new();
     for (m, mesh) in rig.meshes.iter().enumerate() {
         let Some(skin) = mesh.skin else { continue };

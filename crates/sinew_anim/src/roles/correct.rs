@@ -16,7 +16,7 @@ pub struct Correction {
     pub ignored: Vec<JointIdx>,
 }
 
-/// Why a correction cannot be followed.
+/// Reason why a correction cannot be applied.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CorrectionError {
     /// True if there is nothing to correct.

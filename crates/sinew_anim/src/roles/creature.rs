@@ -20,8 +20,8 @@ pub(super) fn generic_roles(
 ) -> Vec<Role> {
     let mut roles: Vec<Option<Role>> = vec![None; graph.nodes.len()];
     let [to_head, to_tail] = [Part::Head, Part::Tail].map(|part| leads_to(graph, parts, part));
-    // Of several continuations: one toward the wanted part, then those not toward the unwanted, then the one with the
-    // most skin.
+    // Among several continuations, prefer one toward the wanted part, then those not toward the unwanted, then the one
+    // with the most skin.
     let better = |a: usize, b: usize, wanted: &[bool], unwanted: Option<&[bool]>| {
         let rank = |i: usize| (wanted[i], unwanted.is_none_or(|unwanted| !unwanted[i]));
         let skin = |i: usize| graph.nodes[i].subtree_area;

@@ -26,7 +26,7 @@ pub struct Gait {
 struct Poses {
     /// Seconds from frame to frame.
     frame_time: f32,
-    /// Per frame the model transform of every joint, file units.
+    /// Model transforms of all joints in each frame, file units.
     frames: Vec<Vec<Affine>>,
 }
 

@@ -105,7 +105,7 @@ impl Basis {
 pub struct KeptBone {
     /// The joint, whose origin is the pivot against the parent body.
     pub joint: JointIdx,
-    /// Its role.
+    /// Role of the joint.
     pub role: Role,
     /// 0..=1.
     pub confidence: f32,
@@ -132,7 +132,7 @@ pub struct RigAnalysis {
     pub character_from_model: Transform,
     /// Height of the lowest skin in the bind pose, metres, character axes.
     pub floor: f32,
-    /// From the lowest to the highest skin in the bind pose, metres.
+    /// Distance from the lowest to the highest skin in the bind pose, metres.
     pub height: f32,
     /// True if the roles are those of the VRM humanoid, else generic.
     pub humanoid: bool,
@@ -140,7 +140,7 @@ pub struct RigAnalysis {
     pub roles: Vec<Option<RoleGuess>>,
     /// Joints that deserve a body, parents before children, the pelvis (or a creature's root) first.
     pub kept: Vec<KeptBone>,
-    /// Per joint the kept joint that it follows; `None` for kept joints, for those above them in the rig, and for
+    /// Kept joint that each joint follows; `None` for kept joints, for those above them in the rig, and for
     /// joints without skin outside of every body (IK targets).
     pub merge_into: Vec<Option<JointIdx>>,
     /// Transform of every joint in the bind pose, model space, file units: from the inverse bind matrices, and from

@@ -11,11 +11,11 @@ use sinew_math::{clamp, max, trig};
 /// Sizes of a body from which the unit of its file follows.
 pub(super) struct Measured {
     pub humanoid: bool,
-    /// From floor to crown, file units.
+    /// Height from floor to crown, file units.
     pub height: f32,
     /// Longest side of the skin's box, file units.
     pub size: f32,
-    /// From the head joint to the crown, share of the height; `None` without a head.
+    /// Distance from the head joint to the crown, as a share of the height; `None` without a head.
     pub head: Option<f32>,
     /// Stride time, seconds, and the height of the legs' start over the floor, file units.
     pub stride: Option<(f32, f32)>,
@@ -70,7 +70,7 @@ const EXPORTERS: [(&str, f32); 16] = [
     ("source engine", 0.0254),
 ];
 
-/// From a human's head joint to the crown, metres, nearly independent of height.
+/// Distance from a human's head joint to the crown, metres, nearly independent of height.
 const HEAD: f32 = 0.23;
 /// Heights that a head may imply, metres.
 const BY_HEAD: [f32; 2] = [0.7, 1.8];
@@ -273,7 +273,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
         .collect();
     let is_only = others.is_empty();
     let is_sure = is_only && body.humanoid && unit.metres == 1.0;
-    // Without a choice there is no evidence to weigh.
+    // With a single candidate there is nothing to compare.
     let (others, words) = if is_only {
         ("no other unit fits".to_owned(), "")
     } else {

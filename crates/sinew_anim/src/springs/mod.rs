@@ -37,7 +37,7 @@ pub struct SpringLink {
 }
 
 impl Default for SpringLink {
-    /// Half of the error at a time, only against moving apart; between no two joints.
+    /// Corrects half of the error at a time, only against moving apart; between no two joints.
     fn default() -> Self {
         Self { joints: [0; 2], share: SPRING_LINK_SHARE, holds_apart: false }
     }
@@ -135,17 +135,17 @@ pub struct SpringLimit {
 /// Shape of a limit, angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitKind {
-    /// Within this angle of +Y.
+    /// The direction is within this angle of +Y.
     Cone {
         /// 0..=π.
         angle: f32,
     },
-    /// Within this angle of +Y in the plane perpendicular to X.
+    /// The direction is within this angle of +Y in the plane perpendicular to X.
     Hinge {
         /// 0..=π.
         angle: f32,
     },
-    /// Within a rotation about X, and an elevation out of the plane perpendicular to X.
+    /// The direction is within a rotation about X, and an elevation out of the plane perpendicular to X.
     Spherical {
         /// Largest rotation about X, 0..=π.
         phi: f32,
@@ -198,9 +198,9 @@ pub enum ColliderShape {
 /// Side of a collider's surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
-    /// Outside. Default.
+    /// Tips stay outside of the surface. Default.
     #[default]
     Outside,
-    /// Within it.
+    /// Tips stay inside of the surface.
     Inside,
 }

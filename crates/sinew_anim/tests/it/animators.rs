@@ -191,7 +191,7 @@ fn event_times_are_independent_of_the_steps() {
         animator.play(&set, &def);
         fired(&mut animator, &set, &[4.0])
     };
-    // At 0, and then in each cycle of half a second: end and start of a loop are one time.
+    // Events at 0, and then in each cycle of half a second: end and start of a loop are one time.
     assert_eq!(whole.len(), 1 + 8 + 16);
     for (i, &(seconds, number, _)) in whole.iter().enumerate().filter(|(_, event)| event.1 == 1) {
         let lap = ((seconds - 0.125) / 0.5).round();
@@ -386,7 +386,7 @@ fn footstep_is_reported_once_for_any_leading_clip() {
     let mut random = Random::new(3);
     for run in 0..200 {
         let mut animator = Animator::new(&set);
-        // Between two footsteps.
+        // The point is between two footsteps.
         let backward = if run % 2 == 0 { 1.0 } else { -1.0 };
         let tracks = [0, 1].map(|i| {
             let def =

@@ -655,7 +655,7 @@ fn head_parented_to_the_armature_joins_the_neck() {
 #[test]
 fn eyes_with_their_own_skeleton_join_the_head() {
     let mut rig = toy::body(mixamo);
-    // On both sides of a wide head whose centre is nearest to the nape.
+    // The eyes are on both sides of a wide head whose centre is nearest to the nape.
     let head = Vec3::from_array(toy::BODY[part("head")].2);
     for corner in 4 * part("head")..4 * part("head") + 4 {
         let at = &mut rig.meshes[0].primitives[0].positions[corner];

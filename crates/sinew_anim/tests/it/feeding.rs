@@ -52,7 +52,7 @@ fn fed_clip_shows_the_given_pose() {
 #[test]
 fn prediction_extrapolates_the_fed_pose() {
     let (set, clips) = set();
-    // Between two keys, where speeds before and after are equal.
+    // The time is between two keys, where speeds before and after are equal.
     let [player, fed] = twins(&set, clips, 22);
     let mut ahead = [player.clone(), fed.clone()];
     ahead[1].copy_from(&fed);

@@ -144,7 +144,7 @@ fn state_with_too_many_cycles_is_rejected() {
         bytes[place..place + 4].copy_from_slice(&1e30_f32.to_le_bytes());
     };
     assert!(load(&faster, &alone).is_err_and(|error| error.contains("a track is too fast")));
-    // After the speed: start, three kinds, no mask, a group, and then the cycles.
+    // The bytes after the speed are the start, three kinds, no mask, a group, and the cycles.
     let farther = |bytes: &mut Vec<u8>, speed: &[u8]| {
         let place = place_of(bytes, speed) + 4 + 4 + 3 + 1 + 2;
         bytes[place + 4] = 1;

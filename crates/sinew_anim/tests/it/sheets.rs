@@ -338,8 +338,8 @@ fn degenerate_triangles_give_finite_weights() {
     let mut it = rig(10);
     let primitive = &mut it.meshes[0].primitives[0];
     let first = primitive.positions.len() as u32;
-    // So close to a cloth vertex that the difference vanishes after rotation, and a loose vertex in front of the
-    // triangle's centre.
+    // A point so close to a cloth vertex that the difference vanishes after rotation, and a loose vertex in front of
+    // the triangle's centre.
     for place in [
         Vec3::new(1.0, 0.5, 1e-30),
         Vec3::new(2.0, 0.5, 0.1),

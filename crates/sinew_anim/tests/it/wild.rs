@@ -193,11 +193,11 @@ fn numbered(rig: &Rig) -> Rig {
 /// Correct roles of a file, each as (correct, all).
 #[derive(Clone, Copy, Default)]
 struct Scores {
-    /// With names and shape.
+    /// Scores with names and shape.
     plain: (usize, usize),
-    /// With every joint displaced, so that only names decide; for skeletons.
+    /// Scores with every joint displaced, so that only names decide; for skeletons.
     by_names: Option<(usize, usize)>,
-    /// With numbers for names, so that only the shape decides; for files with a mesh, because other shapes are
+    /// Scores with numbers for names, so that only the shape decides; for files with a mesh, because other shapes are
     /// synthetic.
     by_shape: Option<(usize, usize)>,
 }
@@ -379,7 +379,7 @@ fn fingers_on_a_forearm_replace_the_hand() {
             let (on, from) = if on_hand { (hand, places[hand]) } else { (arm, places[hand]) };
             let out = Vec3::X * places[hand].x.signum();
             if !on_hand {
-                // Without skin.
+                // The hand has no skin.
                 lines[hand].3 = false;
             }
             for finger in 0..4 {

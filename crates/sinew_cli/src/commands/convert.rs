@@ -343,7 +343,7 @@ impl Convert {
     }
 }
 
-/// The movie of the output: of the first of its last `new` clips.
+/// The movie of the output shows the first of its last `new` clips.
 fn draw(outputs: &Outputs, new: usize, picture: &PictureFile) -> Result<Vec<u8>> {
     let (path, bytes) = outputs.first().expect("something is written");
     let name = path.display().to_string();

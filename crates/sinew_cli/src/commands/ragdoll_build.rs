@@ -129,7 +129,7 @@ impl RagdollBuild {
         report
     }
 
-    /// From the file to the definition, with notes.
+    /// Builds the definition from the file, with notes.
     fn build(&self) -> Result<(CharacterFile, LoadedSettings, RagdollDef, BuildReport)> {
         let (character, mut loaded) = self.settings.load_character(&self.file, Textures::Skip)?;
         self.say(&mut loaded.settings);

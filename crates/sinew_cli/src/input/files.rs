@@ -30,7 +30,7 @@ pub enum WeightSource {
 pub struct CharacterFile {
     /// As the user named it.
     pub name: String,
-    /// Its rig, clips and JSON.
+    /// Rig, clips and JSON of the file.
     pub document: Document,
     /// Analysis of its joints.
     pub analysis: RigAnalysis,

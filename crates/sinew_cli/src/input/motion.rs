@@ -12,7 +12,7 @@ use std::path::Path;
 pub struct Motion {
     /// As the user named it.
     pub name: String,
-    /// Its rig and its clips.
+    /// Rig and clips of the file.
     pub file: MotionFile,
     /// Analysis of its joints; `None` without a skin or a humanoid skeleton.
     pub analysis: Option<RigAnalysis>,

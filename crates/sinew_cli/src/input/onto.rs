@@ -10,7 +10,7 @@ use sinew::anim::{Channel, Clip, ClipEvent, JointIdx, LocalTransform, Rig, RigAn
 pub struct Carried {
     /// Clip of the character's joints.
     pub clip: Clip,
-    /// Its events, at its pace.
+    /// Events of the clip, at its pace.
     pub events: Vec<ClipEvent>,
     /// Criterion by which its joints were matched.
     pub by: By,

@@ -27,7 +27,7 @@ const DIRECTION: Vec3 = Vec3::new(0.75, 0.4, 0.75);
 pub struct Show {
     rig: Rig,
     clip: Option<Clip>,
-    /// From the file's space to the picture's: metres, +Y up, facing +Z.
+    /// Transform from the file's space to the picture's: metres, +Y up, facing +Z.
     root: Affine,
     /// Height of the ground, if the body's soles define it.
     floor: Option<f32>,

@@ -14,9 +14,9 @@ use serde_json::Value;
 /// The result of a command, as JSON and as text.
 #[derive(Debug)]
 pub struct Report {
-    /// For `--json`: an object with the keys of `docs/contract.md`.
+    /// Report for `--json`: an object with the keys of `docs/contract.md`.
     pub json: Value,
-    /// For a person, with a line feed at the end.
+    /// Report for a person, with a line feed at the end.
     pub text: String,
 }
 

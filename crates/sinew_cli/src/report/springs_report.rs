@@ -244,7 +244,7 @@ fn span(values: impl Iterator<Item = f32>) -> String {
     if low == high { low } else { format!("{low} to {high}") }
 }
 
-/// Its magnitude, and its direction unless that is down.
+/// Magnitude of the gravity, and its direction unless that is down.
 fn gravity(chain: &SpringChain) -> String {
     let size = span(chain.bones.iter().map(|bone| bone.gravity.length()));
     let way = |bone: &SpringBone| direction(bone.gravity).map(vector);

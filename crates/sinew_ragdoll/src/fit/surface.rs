@@ -67,7 +67,7 @@ pub struct BindPose<'a> {
     pub model: &'a [Affine],
     /// Metres per file unit.
     pub unit_scale: f32,
-    /// From model space in metres to character space.
+    /// Transform from model space in metres to character space.
     pub character_from_model: Transform,
 }
 

@@ -248,7 +248,7 @@ impl Weave<'_> {
         }
     }
 
-    /// Both diagonals of each cell.
+    /// Adds springs along both diagonals of each cell.
     fn brace(&self, group: &mut GroupDef) {
         for line in 0..self.grid.lines.len() {
             let after = self.grid.beside(line)[1];

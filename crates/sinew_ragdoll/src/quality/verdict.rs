@@ -1,4 +1,4 @@
-//! From figures to a verdict, by the limits of the specification (section 4).
+//! Derives a verdict from figures, by the limits of the specification (section 4).
 
 use super::FallQuality;
 use super::drop_test::worse;

@@ -61,7 +61,7 @@ pub struct Flaw {
     pub remedy: String,
     /// Bodies to look at, by index in the definition.
     pub bodies: Vec<usize>,
-    /// Their bones.
+    /// Bones of these bodies.
     pub bones: Vec<String>,
     /// The best verdict on a ragdoll that has it.
     pub at_most: Verdict,

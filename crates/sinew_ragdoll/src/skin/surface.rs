@@ -231,7 +231,7 @@ fn strided(count: usize, most: usize) -> Vec<usize> {
     (0..used).map(|k| (k as u64 * count as u64 / used as u64) as usize).collect()
 }
 
-/// Per body, true if a character may stand on its skin: false for a human's hands and forearms and what they hold.
+/// For each body, true if a character may stand on its skin: false for a human's hands and forearms and what they hold.
 pub(crate) fn may_stand(def: &RagdollDef) -> Vec<bool> {
     let is_human = def.bodies[0].role == "hips";
     let may = |role: &str| {

@@ -28,7 +28,7 @@ fn carried_bodies(def: &CharacterDef, at: Transform, time: f32) -> Vec<Transform
 /// Momentum of rigid bodies that follow the walk.
 struct Carried {
     linear: Vec3,
-    /// About the common centre of mass.
+    /// Angular momentum about the common centre of mass.
     angular: Vec3,
     /// Sum of the magnitudes of the bodies' shares: limbs that swing against each other would cancel.
     swing: f32,
@@ -76,7 +76,7 @@ fn momentum_of_motion(
 #[test]
 fn ragdoll_inherits_the_momentum_of_the_walk() {
     let def = shared(walker());
-    // Between keys (30 a second): at a key the clip's velocity is discontinuous.
+    // The time is between keys (30 a second): at a key the clip's velocity is discontinuous.
     const PHASE: f32 = 0.01;
     for frame in 0..32 {
         let steps = 2 * frame;

@@ -552,7 +552,7 @@ fn upper_of_two_fallen_characters_gets_up_first() {
         assert!(up.iter().all(Option::is_some), "seed {seed}: {:?}", both.map(|one| one.state()));
         struck += u32::from(fastest > 10.0);
     }
-    // Without waiting for each other: 8 of 12.
+    // Without waiting for each other, 8 of 12 are hit.
     assert!(struck <= 3, "{struck} of 12 are hit at more than 10 m/s");
 }
 
@@ -606,7 +606,7 @@ fn object_under_a_foot_is_no_hit() {
     }
 }
 
-/// From standing to walking and back: clips are cross-faded gradually, so that hit bodies do not kick.
+/// The walker goes from standing to walking and back: clips are cross-faded gradually, so that hit bodies do not kick.
 #[test]
 fn walk_starts_and_stops_smoothly() {
     let mut def = walker();

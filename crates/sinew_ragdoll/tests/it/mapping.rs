@@ -24,7 +24,7 @@ fn distance(def: &CharacterDef, a: &[LocalTransform], b: &[LocalTransform]) -> f
     let (a, b) = (model_of(def, a), model_of(def, b));
     let mut worst = 0.0_f32;
     for (a, b) in a.iter().zip(&b) {
-        // In the joint's own file units, so that its scale cancels.
+        // The reach is in the joint's own file units, so that its scale cancels.
         let reach = 0.1 / (to_metres.linear * a.linear).x_axis.length();
         for p in [Vec3::ZERO, Vec3::X * reach, Vec3::Y * reach, Vec3::Z * reach] {
             let gap = to_metres.vector(a.point(p) - b.point(p)).length();

@@ -184,7 +184,7 @@ impl Pops {
             let old = rates(before[joint], now[joint]);
             Budget([0, 1].map(|i| {
                 let velocity = if heads.contains(&joint) {
-                    // In another frame: at most as fast as both together.
+                    // In another frame the velocity is at most the sum of both.
                     Vec3::X * (old[i].length() + rate[0][i].length())
                 } else {
                     old[i] - rate[0][i]

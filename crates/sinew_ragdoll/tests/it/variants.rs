@@ -42,7 +42,7 @@ fn feet(rig: &Rig, analysis: &RigAnalysis) -> Vec<JointIdx> {
     if analysis.humanoid {
         return [Side::Left, Side::Right].into_iter().filter_map(of).collect();
     }
-    // For a creature: bodies that end a limb, unless feet are children of the root already.
+    // Bodies of a creature that end a limb, unless feet are children of the root already.
     let is_end = |bone: usize| analysis.kept.iter().all(|other| other.parent != Some(bone));
     let holds = |joint: JointIdx, below: JointIdx| {
         std::iter::successors(Some(below), |&at| rig.joints[at].parent).any(|at| at == joint)
@@ -124,7 +124,7 @@ impl Subject {
         if chance(&mut random, "twist bones") {
             rig = with_twists(&rig, analysis);
         }
-        // Only if there is a head: attachments of a creature may be parts of its body.
+        // Only a rig with a head gets them: attachments of a creature may be parts of its body.
         let head = analysis.joint_with(Role::Head);
         if let Some(head) = head.filter(|_| chance(&mut random, "hair")) {
             rig = with_hair(&rig, analysis, head, &mut random);

@@ -91,7 +91,7 @@ fn worm(names: [&str; 3]) -> Rig {
 #[needs_data]
 #[test]
 fn creature_mass_follows_the_enclosed_volume() {
-    // From -0.2 to 1.4 m long, 0.6 m wide and high: 576 litres; the links' volumes sum to 864.
+    // The worm is from -0.2 to 1.4 m long, 0.6 m wide and high: 576 litres; the volumes of its links sum to 864.
     let (def, report) = built(&worm(["a", "b", "c"]), &BuildOptions::default());
     assert!((def.total_mass / 576.0 - 1.0).abs() < 0.03, "{} kg", def.total_mass);
     let note = report.notes.iter().find(|note| note.contains("of flesh, which the skin encloses"));

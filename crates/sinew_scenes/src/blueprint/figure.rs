@@ -28,7 +28,7 @@ pub fn ragdoll_pile() -> Blueprint {
     scene
 }
 
-/// `count` figures in a column are thrown down onto each other: soon a small heap.
+/// `count` figures in a column are thrown down onto each other and form a small heap.
 pub fn ragdoll_column(count: usize) -> Blueprint {
     /// Initial downward speed, m/s.
     const DOWN: f32 = 8.0;

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// A character as drawn in a picture, by its skin.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure<'a> {
-    /// Its joints and meshes.
+    /// Joints and meshes of the character.
     pub rig: &'a Rig,
     /// Transform of each joint from its own space to the world, metres.
     pub world_from_joint: &'a [Affine],

@@ -22,7 +22,7 @@ pub struct Recording {
     pub made_by: String,
     /// Name of the scene.
     pub scene: String,
-    /// Its settings that were not at their defaults, `key=value`.
+    /// Settings that were not at their defaults, `key=value`.
     pub settings: Vec<String>,
     /// Length of a step, seconds.
     pub dt: f32,

@@ -259,7 +259,7 @@ fn known_misses_belong_to_existing_scenes() {
 
 /// Closed forms of rotations hold for all settings, not only the defaults.
 #[test]
-fn turns_with_other_settings() {
+fn closed_forms_of_rotations_hold_with_other_settings() {
     let assignments = [
         ("gimbal", ["margin=1", "margin=60"]),
         ("matrix_drift", ["spin=0.1", "spin=5"]),

@@ -19,14 +19,14 @@ pub struct MeshPart {
     pub name: String,
     /// Index into [`Rig::meshes`].
     pub mesh: usize,
-    /// Its primitives, ascending.
+    /// Primitives of the mesh, ascending.
     pub primitives: Vec<usize>,
 }
 
 /// Reason why a part of a rig cannot be cloth.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SheetError {
-    /// Nothing has the name.
+    /// No mesh or material has the name.
     #[error("no mesh or material has that name")]
     Unknown,
     /// Several meshes have it: their nodes.

@@ -11,9 +11,9 @@ pub(super) enum Word {
     /// The part nearer to the trunk, or higher in it.
     Upper,
     Lower,
-    /// Between upper and lower: another part of the spine; in a limb a part that humans lack.
+    /// The part between upper and lower: another part of the spine; in a limb a part that humans lack.
     Mid,
-    /// Before "arm" the lower one, before "leg" one of a beast.
+    /// The lower part before "arm", and a part of a beast before "leg".
     Fore,
     /// Front of a quadruped; `Back` is its hind part.
     Front,

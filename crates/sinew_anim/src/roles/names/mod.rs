@@ -27,7 +27,7 @@ pub(super) enum Part {
     Tail,
     /// A limb of a body on four legs, which is no human's.
     Beast,
-    /// Never a body: twist and IK joints, ends, sockets, fingers, face.
+    /// The joint is never a body: twist and IK joints, ends, sockets, fingers, face.
     Appendix,
 }
 
@@ -57,7 +57,7 @@ pub(super) fn read_names(names: &[&str], parents: &[Option<usize>]) -> Vec<Readi
     let upper_arm = has(&[Sense::Arm, Sense::Part(Part::UpperArm)]);
     let thigh = has(&[Sense::Part(Part::UpperLeg)]);
     let shank = has(&[Sense::Part(Part::LowerLeg)]);
-    // Of the same side: a mesh beside the skeleton may be called a wrist, too.
+    // The parts must be of the same side: a mesh beside the skeleton may be called a wrist, too.
     let sides_with = |wanted: Sense| {
         [Side::Left, Side::Right].map(|side| {
             (0..senses.len()).any(|i| senses[i] == Some(wanted) && readings[i].side == Some(side))

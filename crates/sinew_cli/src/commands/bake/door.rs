@@ -79,7 +79,7 @@ impl Rays {
             .collect()
     }
 
-    /// From the ground up: free rays up to a lintel, then one wall up to the ceiling.
+    /// A door has free rays from the ground up to a lintel, then one wall up to the ceiling.
     fn door(&self, ground: Vec3, toward: Vec3, room: f32) -> Option<f32> {
         let levels: Vec<f32> = (1..LEVELS).map(|level| room * f32::from(level) / f32::from(LEVELS)).collect();
         let see = |&level: &f32| self.way(ground + Vec3::Y * level, toward * (FARTHEST * room));

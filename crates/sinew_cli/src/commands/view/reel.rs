@@ -138,7 +138,7 @@ impl Take {
     fn turn_to_see(&mut self) {
         let Vec3 { x, y, z } = self.hint.direction;
         let sides = [Vec3::new(x, y, z), Vec3::new(z, y, -x), Vec3::new(-z, y, x), Vec3::new(-x, y, -z)];
-        // Of equal directions the first, which is the requested one.
+        // Among equal directions take the first, which is the requested one.
         self.hint.direction = sides.into_iter().min_by_key(|&side| self.hidden(side)).unwrap_or(sides[0]);
     }
 

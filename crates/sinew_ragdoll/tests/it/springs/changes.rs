@@ -538,7 +538,7 @@ fn tip_speed_is_bounded_in_slow_motion() {
 #[test]
 fn tip_speed_is_bounded_on_changes_of_size() {
     let def = maned(&HAIR);
-    // Instantly to twice the size and back, with hair keeping its shape; and slowly.
+    // The size doubles and halves at once, with hair that keeps its shape, and then changes slowly.
     let size = |seconds: f32| match seconds {
         0.0..1.0 => 1.0,
         1.0..2.0 => 2.0,

@@ -9,7 +9,7 @@ use sinew_math::{Rotation, Transform, Vec3};
 pub struct Reference {
     joints: Vec<(Option<usize>, DVec3, DQuat)>,
     springs: Springs,
-    /// Per bone, in the order of the chains: current and previous tail, in the centre's space.
+    /// For each bone, in the order of the chains: current and previous tail, in the centre's space.
     tails: Vec<(DVec3, DVec3)>,
     /// World position and rotation of every joint.
     world: Vec<(DVec3, DQuat)>,

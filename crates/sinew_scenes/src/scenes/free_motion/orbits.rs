@@ -35,7 +35,7 @@ const ECCENTRICITY: f32 = 0.5;
 
 fn kepler(setup: &Setup<'_>) -> Instance {
     let mut world = weightless_world();
-    // At the nearest point: r = 1 − e, v = √((1 + e)/(1 − e)).
+    // Distance and speed at the nearest point: r = 1 − e, v = √((1 + e)/(1 − e)).
     let near = 1.0 - ECCENTRICITY;
     let fast = ((1.0 + ECCENTRICITY) / near).sqrt();
     let planet = world.add_body(&star(2.0, 0.05, Vec3::X * near, Vec3::Y * fast));

@@ -64,7 +64,7 @@ impl Script for Held {
         let cloth = world.particles(self.cloth);
         let substep = world.def().dt() / world.def().substeps as f32;
         let carried: f32 = cloth.attachment_impulses().iter().map(|p| -p.y / substep).sum();
-        // Along the threads only: the diagonals are soft.
+        // Measure along the threads only: the diagonals are soft.
         let threads = cloth.springs().iter().enumerate().filter(|(_, s)| s.stiffness > 500.0);
         let mut stretches: Vec<f32> = threads.map(|(i, s)| cloth.stretch(i).abs() / s.rest_length).collect();
         stretches.sort_unstable_by(f32::total_cmp);
