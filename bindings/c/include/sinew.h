@@ -33,27 +33,27 @@ typedef enum SinewStatus {
 
 // State of a character, which determines the source of its pose.
 typedef enum SinewCharacterState {
-  // Clips.
+  // The pose is that of the clips.
   SINEW_CHARACTER_STATE_ANIMATED = 0,
-  // Its bodies: it falls or lies.
+  // The pose is that of the bodies, which fall or lie.
   SINEW_CHARACTER_STATE_LIMP = 1,
-  // Its bodies, which move to the start of a get-up clip.
+  // The pose is that of the bodies, which move to the start of a get-up clip.
   SINEW_CHARACTER_STATE_PREPARING = 2,
-  // A get-up clip.
+  // The pose is that of a get-up clip.
   SINEW_CHARACTER_STATE_GETTING_UP = 3,
-  // Clips, except for a limb that was hit.
+  // The pose is that of the clips, except for a limb that was hit.
   SINEW_CHARACTER_STATE_FLINCHING = 4,
-  // Its bodies, pulled toward its clips by muscles.
+  // The pose is that of the bodies, which muscles pull toward the clips.
   SINEW_CHARACTER_STATE_POWERED = 5,
 } SinewCharacterState;
 
 // Kind of a body.
 typedef enum SinewBodyKind {
-  // Moved by forces.
+  // Forces move the body.
   SINEW_BODY_KIND_DYNAMIC = 0,
-  // Never moves.
+  // The body never moves.
   SINEW_BODY_KIND_STATIC = 1,
-  // Moves at its velocity; nothing pushes it.
+  // The body moves at its velocity; nothing pushes it.
   SINEW_BODY_KIND_KINEMATIC = 2,
 } SinewBodyKind;
 
@@ -81,17 +81,17 @@ typedef enum SinewJointKind {
   SINEW_JOINT_KIND_DISTANCE = 4,
 } SinewJointKind;
 
-// Kind of a shape; which sizes of [`SinewShape`] it takes.
+// Kind of a shape, with the meaning of `size` in [`SinewShape`].
 typedef enum SinewShapeKind {
-  // `size`: half of each side.
+  // Box. `size`: half of each side.
   SINEW_SHAPE_KIND_BOX = 0,
-  // `size.x`: radius.
+  // Ball. `size.x`: radius.
   SINEW_SHAPE_KIND_SPHERE = 1,
-  // Along y. `size.x`: radius; `size.y`: half the length without the caps.
+  // Capsule along y. `size.x`: radius; `size.y`: half the length without the caps.
   SINEW_SHAPE_KIND_CAPSULE = 2,
-  // Along y. `size.x`: radius; `size.y`: half the length.
+  // Cylinder along y. `size.x`: radius; `size.y`: half the length.
   SINEW_SHAPE_KIND_CYLINDER = 3,
-  // Along y, the apex up. `size.x`: radius of the base; `size.y`: half the height.
+  // Cone along y, the apex up. `size.x`: radius of the base; `size.y`: half the height.
   SINEW_SHAPE_KIND_CONE = 4,
   // Everything below y = 0 of its frame, for static bodies. No sizes.
   SINEW_SHAPE_KIND_HALF_SPACE = 5,
@@ -111,11 +111,11 @@ typedef struct SinewWorld SinewWorld;
 
 // Three numbers.
 typedef struct SinewVec3 {
-  // Along x.
+  // Coordinate along x.
   float x;
-  // Along y, which is up.
+  // Coordinate along y, which is up.
   float y;
-  // Along z.
+  // Coordinate along z.
   float z;
 } SinewVec3;
 
@@ -197,7 +197,7 @@ typedef struct SinewRayHit {
 typedef struct SinewShape {
   // One of `SinewShapeKind`.
   uint32_t kind;
-  // Metres, as the kind says.
+  // Sizes in metres, by the kind.
   struct SinewVec3 size;
 } SinewShape;
 
@@ -205,11 +205,11 @@ typedef struct SinewShape {
 typedef struct SinewContact {
   // The body with the smaller index.
   struct SinewBodyId a;
-  // The other.
+  // The other body.
   struct SinewBodyId b;
-  // Between the surfaces, world, metres.
+  // Position between the surfaces, world, metres.
   struct SinewVec3 position;
-  // From A to B, unit length.
+  // Normal from A to B, unit length.
   struct SinewVec3 normal;
   // Gap, metres; negative if they overlap.
   float separation;
@@ -221,7 +221,7 @@ typedef struct SinewContact {
 typedef struct SinewPair {
   // The body with the smaller index.
   struct SinewBodyId a;
-  // The other.
+  // The other body.
   struct SinewBodyId b;
 } SinewPair;
 
@@ -251,9 +251,9 @@ typedef struct SinewVelocity {
 typedef struct SinewBodyDef {
   // One of `SinewBodyKind`. Default dynamic.
   uint32_t kind;
-  // In the world.
+  // Pose in the world.
   struct SinewPose pose;
-  // m/s and rad/s.
+  // Velocity, m/s and rad/s.
   struct SinewVelocity velocity;
   // Shapes, all of them around the body's origin.
   const struct SinewShape *shapes;
@@ -271,7 +271,7 @@ typedef struct SinewBodyDef {
   uint32_t layers;
   // Bits of the layers that they collide with. Default all.
   uint32_t mask;
-  // For the user.
+  // Data of the user.
   uint64_t user_data;
 } SinewBodyDef;
 

@@ -28,17 +28,17 @@ pub struct SinewCharacter {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SinewCharacterState {
-    /// Clips.
+    /// The pose is that of the clips.
     Animated = 0,
-    /// Its bodies: it falls or lies.
+    /// The pose is that of the bodies, which fall or lie.
     Limp = 1,
-    /// Its bodies, which move to the start of a get-up clip.
+    /// The pose is that of the bodies, which move to the start of a get-up clip.
     Preparing = 2,
-    /// A get-up clip.
+    /// The pose is that of a get-up clip.
     GettingUp = 3,
-    /// Clips, except for a limb that was hit.
+    /// The pose is that of the clips, except for a limb that was hit.
     Flinching = 4,
-    /// Its bodies, pulled toward its clips by muscles.
+    /// The pose is that of the bodies, which muscles pull toward the clips.
     Powered = 5,
 }
 

@@ -26,11 +26,11 @@ pub struct SinewRayHit {
 pub struct SinewContact {
     /// The body with the smaller index.
     pub a: SinewBodyId,
-    /// The other.
+    /// The other body.
     pub b: SinewBodyId,
-    /// Between the surfaces, world, metres.
+    /// Position between the surfaces, world, metres.
     pub position: SinewVec3,
-    /// From A to B, unit length.
+    /// Normal from A to B, unit length.
     pub normal: SinewVec3,
     /// Gap, metres; negative if they overlap.
     pub separation: f32,
@@ -44,7 +44,7 @@ pub struct SinewContact {
 pub struct SinewPair {
     /// The body with the smaller index.
     pub a: SinewBodyId,
-    /// The other.
+    /// The other body.
     pub b: SinewBodyId,
 }
 

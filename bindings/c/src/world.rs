@@ -40,9 +40,9 @@ pub struct SinewWorldDef {
 pub struct SinewBodyDef {
     /// One of `SinewBodyKind`. Default dynamic.
     pub kind: u32,
-    /// In the world.
+    /// Pose in the world.
     pub pose: SinewPose,
-    /// m/s and rad/s.
+    /// Velocity, m/s and rad/s.
     pub velocity: SinewVelocity,
     /// Shapes, all of them around the body's origin.
     pub shapes: *const SinewShape,
@@ -60,7 +60,7 @@ pub struct SinewBodyDef {
     pub layers: u32,
     /// Bits of the layers that they collide with. Default all.
     pub mask: u32,
-    /// For the user.
+    /// Data of the user.
     pub user_data: u64,
 }
 
