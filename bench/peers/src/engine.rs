@@ -117,7 +117,7 @@ pub struct BodyState {
     pub world_from_body: Transform,
     /// Velocity of the **centre of mass**, m/s.
     pub linear_velocity: Vec3,
-    /// rad/s, world axes.
+    /// Angular velocity, rad/s, world axes.
     pub angular_velocity: Vec3,
 }
 
@@ -131,9 +131,9 @@ impl BodyState {
 /// Place and velocity of a particle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ParticleState {
-    /// World, metres.
+    /// Position, world, metres.
     pub position: Vec3,
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: Vec3,
 }
 

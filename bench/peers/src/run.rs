@@ -17,7 +17,7 @@ const CHARACTERS_EVERY: usize = 37;
 /// True if the run is repeated to measure its quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judging {
-    /// Time only.
+    /// Only time is measured.
     Off,
     /// Another run, which is not timed, and is measured after every step.
     On,

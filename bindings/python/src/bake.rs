@@ -249,7 +249,7 @@ impl Watch {
 
 #[pymethods]
 impl Character {
-    /// Roles of its bodies.
+    /// Roles of the character's bodies.
     #[getter]
     fn roles(&self) -> Vec<&str> {
         self.def.ragdoll.bodies.iter().map(|body| body.role.as_str()).collect()

@@ -183,7 +183,7 @@ impl Ragdoll {
         self.repair.def.bodies.iter().map(|body| body.role.as_str()).collect()
     }
 
-    /// kg, body by body.
+    /// Masses, kg, body by body.
     #[getter]
     fn masses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         PyArray1::from_vec(py, self.repair.def.bodies.iter().map(|body| body.mass.mass).collect())
@@ -220,13 +220,13 @@ impl Ragdoll {
         array(py, numbers, &[joints.len(), 7])
     }
 
-    /// kg.
+    /// Total mass, kg.
     #[getter]
     fn total_mass(&self) -> f32 {
         self.repair.def.total_mass
     }
 
-    /// Metres.
+    /// Height, metres.
     #[getter]
     fn height(&self) -> f32 {
         self.repair.def.height

@@ -178,7 +178,7 @@ impl<'a> Options<'a> {
         self.read(key, |value, name| number(value, name).map(|_| value.as_f64().unwrap_or_default()))
     }
 
-    /// Infinity is allowed.
+    /// Reads a number that may be infinite.
     pub fn bound(&self, key: &str) -> Outcome<Option<f32>> {
         self.read(key, |value, name| match value.as_f64() {
             Some(number) if !number.is_nan() => Ok(number as f32),

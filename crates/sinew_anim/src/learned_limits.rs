@@ -22,7 +22,7 @@ pub struct LearnedHinge {
 /// Limit that a joint kept in nearly all frames of all takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LearnedLimit {
-    /// The joint.
+    /// Joint of the limit.
     pub joint: JointIdx,
     /// The joint's local rotation in the middle of its range.
     pub center: Rotation,
@@ -35,7 +35,7 @@ pub struct LearnedLimit {
     pub twist: Range,
     /// Range of a joint that rotates about only one axis; else `None`.
     pub hinge: Option<LearnedHinge>,
-    /// Frames learned from.
+    /// Number of frames that were used.
     pub samples: usize,
 }
 

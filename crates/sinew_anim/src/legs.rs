@@ -9,9 +9,9 @@ use sinew_math::{Affine, Rotation, Vec3};
 /// A leg with two sole points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foot {
-    /// The foot's side.
+    /// Side of the foot.
     pub side: Side,
-    /// Hip, knee and ankle.
+    /// Joints of hip, knee and ankle.
     pub leg: TwoBone,
     /// Points of the sole under the ankle and under the ball (where the toes begin), relative to the ankle in the axes
     /// of its joint without scale, metres.
@@ -63,7 +63,7 @@ impl Foot {
 pub struct Legs {
     /// The joint that carries the body.
     pub pelvis: JointIdx,
-    /// Left, right.
+    /// The left and the right foot.
     pub feet: [Foot; 2],
     /// Joints with another parent in anatomy than in the rig. Rigs baked from inverse kinematics parent feet to the
     /// root.

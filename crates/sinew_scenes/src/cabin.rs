@@ -23,7 +23,7 @@ pub struct Prop {
     pub name: &'static str,
     /// One shape at the body's origin: a box, or for the ground a half-space.
     pub body: BodyDef,
-    /// Linear RGB, 0..=1.
+    /// Linear RGB colour, 0..=1.
     pub color: [f32; 3],
 }
 

@@ -21,7 +21,7 @@ pub struct Chains {
     pub closed: bool,
     /// Position in the bind pose at fractions of the way across and down, 0..=1, metres.
     pub place: fn(f32, f32) -> Vec3,
-    /// Linear RGBA.
+    /// Linear RGBA colour.
     pub color: [f32; 4],
 }
 

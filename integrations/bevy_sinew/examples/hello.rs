@@ -31,7 +31,7 @@ fn height(app: &mut App) -> f32 {
     place.translation.y
 }
 
-/// Lets it fall.
+/// Shows a falling box.
 pub fn main() {
     let mut app = App::new();
     app.add_plugins((TimePlugin, SinewPlugin::default(), plugin)); // in a game `DefaultPlugins` bring the first

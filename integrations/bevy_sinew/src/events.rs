@@ -10,7 +10,7 @@ use sinew_physics::stage::NoProfiler;
 /// Two bodies began to touch.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TouchBegan {
-    /// One of them.
+    /// One of the two bodies.
     pub a: Entity,
     /// The other.
     pub b: Entity,
@@ -19,7 +19,7 @@ pub struct TouchBegan {
 /// Two bodies stopped touching; one of them may be removed.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TouchEnded {
-    /// One of them.
+    /// One of the two bodies.
     pub a: Entity,
     /// The other.
     pub b: Entity,
@@ -28,7 +28,7 @@ pub struct TouchEnded {
 /// A body entered a sensor of another body.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SensorEntered {
-    /// One of them.
+    /// One of the two bodies.
     pub a: Entity,
     /// The other.
     pub b: Entity,
@@ -37,7 +37,7 @@ pub struct SensorEntered {
 /// A body left a sensor of another body; one of them may be removed.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SensorLeft {
-    /// One of them.
+    /// One of the two bodies.
     pub a: Entity,
     /// The other.
     pub b: Entity,
@@ -46,7 +46,7 @@ pub struct SensorLeft {
 /// Two bodies hit each other fast ([`WorldDef::hit_speed`](crate::WorldDef::hit_speed)).
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq)]
 pub struct HitTold {
-    /// One of them.
+    /// One of the two bodies.
     pub a: Entity,
     /// The other.
     pub b: Entity,

@@ -56,10 +56,10 @@ pub enum CharacterFileError {
     /// The bytes cannot be read.
     #[error(transparent)]
     Io(#[from] std::io::Error),
-    /// It is not a valid GLB.
+    /// The file is not a valid GLB.
     #[error(transparent)]
     Format(#[from] sinew::formats::Error),
-    /// It has no skin.
+    /// The file has no skin.
     #[error(transparent)]
     Analysis(#[from] NoSkin),
     /// No ragdoll can be built from its joints.

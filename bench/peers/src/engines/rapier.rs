@@ -17,7 +17,7 @@ use sinew_scenes::walks::{Terrain, Walker, capsule};
 /// Name of this build.
 pub const NAME: &str = if cfg!(feature = "simd8") { "rapier_simd8" } else { "rapier" };
 
-/// This engine.
+/// Rapier.
 pub struct Rapier;
 
 impl Engine for Rapier {

@@ -83,7 +83,7 @@ struct LimitedJoint {
     bodies: [usize; 2],
     frames: [Rotation; 2],
     limit: Limit,
-    /// Largest so far.
+    /// The largest excess so far.
     run: Excess,
 }
 

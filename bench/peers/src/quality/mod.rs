@@ -40,9 +40,9 @@ pub struct QualityMeter {
 /// Result of a run.
 #[derive(Clone, Debug)]
 pub struct Quality {
-    /// `None` without joints.
+    /// Quality of joints; `None` without joints.
     pub joints: Option<JointQuality>,
-    /// `None` without limits.
+    /// Quality of limits; `None` without limits.
     pub limits: Option<LimitQuality>,
     /// `None` if nothing can collide.
     pub penetration: Option<PenetrationQuality>,

@@ -14,7 +14,7 @@ use sinew_scenes::blueprint::Blueprint;
 /// Depths of the pairs of shapes that may collide, metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PenetrationQuality {
-    /// Deepest at the end.
+    /// The largest depth at the end.
     pub end_max: f32,
     /// 99th percentile of the overlaps at the end.
     pub end_p99: f32,

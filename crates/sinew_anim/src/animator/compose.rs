@@ -13,7 +13,7 @@ use sinew_math::{Rotation, Transform, Vec3};
 pub(super) struct WeightedMotion {
     weight: f32,
     way: Vec3,
-    /// Scaled axis.
+    /// Rotation as a scaled axis.
     turn: Vec3,
 }
 

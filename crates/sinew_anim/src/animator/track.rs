@@ -26,9 +26,9 @@ pub enum EndAction {
     /// Continues: with its new weight, or holding its last pose.
     #[default]
     Hold,
-    /// It is removed.
+    /// The track is removed.
     Stop,
-    /// Pauses.
+    /// The track pauses.
     Pause,
     /// Starts again at [`TrackDef::start`]. A track of a sync group keeps the group's time.
     Restart,
@@ -172,7 +172,7 @@ impl Track {
         &self.playhead
     }
 
-    /// True if it is paused.
+    /// True if the track is paused.
     pub fn is_paused(&self) -> bool {
         self.is_paused
     }

@@ -60,7 +60,7 @@ pub enum ClipBuildError {
         /// Number of joints of the rig.
         joints: usize,
     },
-    /// A channel without keys.
+    /// A channel has no keys.
     #[error("channel {channel} has no keys")]
     NoKeys {
         /// Index of the channel in the clip.

@@ -8,7 +8,7 @@ use sinew_math::max;
 /// Excess of a joint beyond its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointExcess {
-    /// The joint.
+    /// Joint that exceeded its limit.
     pub joint: JointIdx,
     /// Number of frames.
     pub frames: usize,

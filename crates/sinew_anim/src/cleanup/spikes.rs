@@ -27,7 +27,7 @@ impl Default for SpikeSettings {
 /// A removed spike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spike {
-    /// The joint.
+    /// Joint with the spike.
     pub joint: JointIdx,
     /// First frame of the spike.
     pub frame: usize,

@@ -15,7 +15,7 @@ pub enum AxisExtraction {
     None,
     /// The straight line from the first pose to the last; oscillation about it stays in the pose.
     Linear,
-    /// Everything.
+    /// All of the motion.
     Full,
 }
 

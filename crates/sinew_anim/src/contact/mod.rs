@@ -15,7 +15,7 @@ use sinew_math::{Affine, Rotation, Vec3, clamp, max, min, trig};
 /// A foot on the ground for a while.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootContact {
-    /// The foot's side.
+    /// Side of the foot.
     pub foot: Side,
     /// Seconds from the start of the take: the footfall.
     pub start: f32,
@@ -46,7 +46,7 @@ pub fn floor_under(points: &[[[Vec3; 2]; 2]]) -> f32 {
 /// The ground that a motion stands on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ground {
-    /// Metres.
+    /// Height of the ground, metres.
     pub height: f32,
     /// Velocity of the ground under a body that walks in place, m/s; zero under a body that moves forward. Its y is 0.
     pub velocity: Vec3,

@@ -63,7 +63,7 @@ impl ClipEvent {
 pub struct FiredEvent {
     /// Time, seconds from the start of the update, 0 to its length.
     pub seconds: f64,
-    /// The clip it is in.
+    /// Clip of the event.
     pub clip: ClipId,
     /// Index in the clip's events.
     pub event: usize,

@@ -83,7 +83,7 @@ struct JointDecay {
 /// Two poses of one motion, and the time between them.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<'a> {
-    /// The pose now.
+    /// The present pose.
     pub now: &'a Pose,
     /// Another pose of the same rig: `seconds` earlier for the old motion, `seconds` later for the new one.
     pub other: &'a Pose,

@@ -162,7 +162,7 @@ impl Playhead {
 /// Several steps therefore pass the same events as one step over the same distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
-    /// The position before.
+    /// The previous position.
     playhead: Playhead,
     to: Place,
     is_backward: bool,
@@ -187,7 +187,7 @@ impl Crossing {
 #[derive(Clone, Copy)]
 struct Recurring {
     at: Place,
-    /// 0: it does not recur.
+    /// Number of laps per period; 0: the moment does not recur.
     period: i64,
 }
 

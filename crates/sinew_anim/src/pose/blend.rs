@@ -35,7 +35,7 @@ impl Mask {
         self.joints == 0
     }
 
-    /// Share of `joint`.
+    /// Share of a joint.
     ///
     /// # Panics
     /// If the number of shares is not that of the joints.
@@ -52,7 +52,7 @@ impl Mask {
 /// Creates a mask from a share per joint.
 ///
 /// # Panics
-/// If one is not in 0..=1.
+/// If a share is not in 0..=1.
 impl FromIterator<f32> for Mask {
     fn from_iter<I: IntoIterator<Item = f32>>(shares: I) -> Self {
         let shares = shares.into_iter().map(|share| {
@@ -76,7 +76,7 @@ pub struct BlendLayer<'a> {
 }
 
 impl<'a> BlendLayer<'a> {
-    /// The whole body.
+    /// Creates a layer of the whole body.
     pub fn new(pose: &'a Pose, weight: f32) -> Self {
         Self { pose, weight, mask: None }
     }

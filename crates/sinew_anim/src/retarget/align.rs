@@ -8,9 +8,9 @@ use sinew_math::{Mat3, Rotation, Transform, Vec3, direction};
 /// Joints of one role.
 pub(super) struct Pair {
     pub role: Role,
-    /// The actor's.
+    /// Joint of the actor.
     pub from: JointIdx,
-    /// The character's.
+    /// Joint of the character.
     pub to: JointIdx,
     /// Correction of the rotation: `character = actor · correction`, each in its own body's axes.
     pub correction: Rotation,

@@ -29,7 +29,7 @@ use sinew_math::{Affine, Rotation, Vec3, max};
 /// A body: its rig and analysis.
 #[derive(Clone, Copy, Debug)]
 pub struct Body<'a> {
-    /// Joints.
+    /// Joints of the body.
     pub rig: &'a Rig,
     /// Roles of the rig; the bind pose is the reference pose. See [`stand`] for a skeleton without skin.
     pub analysis: &'a RigAnalysis,
@@ -64,7 +64,7 @@ pub struct RetargetOptions {
     pub frame_time: f64,
     /// Default: the actor's duration.
     pub pace: Pace,
-    /// Default: locked.
+    /// Treatment of the feet. Default: locked.
     pub feet: Feet,
     /// Height of the actor's floor, metres along its up axis from the origin of its file. Default: found from the feet.
     pub floor: Option<f32>,
@@ -96,7 +96,7 @@ pub enum RetargetError {
 /// A retargeted motion, and its quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Retargeted {
-    /// One pose a frame.
+    /// The retargeted motion, one pose a frame.
     pub take: Take,
     /// Foot contacts, seconds of the new motion.
     pub contacts: Vec<FootContact>,

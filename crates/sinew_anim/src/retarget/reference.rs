@@ -13,7 +13,7 @@ use sinew_math::{Vec3, direction};
 pub enum Reference {
     /// It was given: the rest pose that a file puts before its motion.
     Stated,
-    /// The rig's rest pose.
+    /// The rest pose of the rig.
     Rest,
     /// The clip at that time (seconds): the rig's rest pose is not a standing pose.
     Clip(f32),

@@ -26,7 +26,7 @@ pub(super) struct Anatomy {
     pub graph: Graph,
     pub roles: Vec<Option<RoleGuess>>,
     pub humanoid: bool,
-    /// Unit, model space.
+    /// Up axis, a unit vector in model space.
     pub up: Vec3,
     /// Unit, model space, at right angles to `up`.
     pub left: Vec3,
@@ -622,7 +622,7 @@ impl<'a> Scene<'a> {
 
 /// Trust in the names of a rig, by what mirrored pairs have in common.
 enum Trust {
-    /// Names are mirrored.
+    /// The names are mirrored.
     All,
     /// Both joints of a pair have one name except for numbers ("Leg.1", "Leg.2"): only words of the midline and of
     /// appendices count.

@@ -51,7 +51,7 @@ fn listed(roles: &[Role]) -> String {
     if names.is_empty() { "the other roles".to_owned() } else { names.join(", ") }
 }
 
-/// Required for a human.
+/// Roles that a human needs.
 pub(super) fn needed() -> impl Iterator<Item = Role> {
     let is_needed = |role: &Role| {
         matches!(

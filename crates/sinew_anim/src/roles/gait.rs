@@ -49,7 +49,7 @@ pub(super) struct Pair {
     pub carrier: JointIdx,
     pub bind: Affine,
     pub ends: [JointIdx; 2],
-    /// Units, model space.
+    /// Walking direction, a unit vector in model space.
     pub forward: Vec3,
     pub up: Vec3,
     /// Height of the body, file units.

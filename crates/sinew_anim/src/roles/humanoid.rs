@@ -10,7 +10,7 @@ use sinew_math::{Vec3, clamp, max, min, trig};
 
 /// Directions and measures of the bind pose under the assumption that `up` is up.
 pub(super) struct Stance {
-    /// Unit, model space.
+    /// Up axis, a unit vector in model space.
     pub up: Vec3,
     /// Lowest height of the skin, file units along `up`.
     pub floor: f32,

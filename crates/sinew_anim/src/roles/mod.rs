@@ -45,7 +45,7 @@ use sinew_math::{Affine, Transform, Vec3};
 /// A role and how sure it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoleGuess {
-    /// The role.
+    /// Role of the joint.
     pub role: Role,
     /// 0..=1; 1 where the file itself states the role.
     pub confidence: f32,
@@ -107,7 +107,7 @@ pub struct KeptBone {
     pub joint: JointIdx,
     /// Role of the joint.
     pub role: Role,
-    /// 0..=1.
+    /// Confidence of the role, 0..=1.
     pub confidence: f32,
     /// Index into [`RigAnalysis::kept`], smaller than the bone's own; `None` for the first. By anatomy, not the rig's
     /// hierarchy: a shank carries the foot even if the rig parents it elsewhere.

@@ -10,7 +10,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The other side.
+    /// Role of the other side.
     pub fn mirror(self) -> Self {
         match self {
             Self::Left => Self::Right,

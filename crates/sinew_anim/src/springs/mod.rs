@@ -137,12 +137,12 @@ pub struct SpringLimit {
 pub enum LimitKind {
     /// The direction is within this angle of +Y.
     Cone {
-        /// 0..=π.
+        /// Angle, 0..=π.
         angle: f32,
     },
     /// The direction is within this angle of +Y in the plane perpendicular to X.
     Hinge {
-        /// 0..=π.
+        /// Angle, 0..=π.
         angle: f32,
     },
     /// The direction is within a rotation about X, and an elevation out of the plane perpendicular to X.
@@ -157,7 +157,7 @@ pub enum LimitKind {
 /// Shape that keeps tips out, or in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringCollider {
-    /// Joint that carries it.
+    /// Joint that carries the collider.
     pub joint: JointIdx,
     /// Shape, in the joint's own space.
     pub shape: ColliderShape,
@@ -168,9 +168,9 @@ pub struct SpringCollider {
 pub enum ColliderShape {
     /// A ball.
     Sphere {
-        /// Middle.
+        /// Centre of the ball.
         offset: Vec3,
-        /// ≥ 0.
+        /// Radius, ≥ 0.
         radius: f32,
         /// Side on which tips stay.
         keeps: Side,
@@ -181,16 +181,16 @@ pub enum ColliderShape {
         offset: Vec3,
         /// Centre of the cap at the other end.
         tail: Vec3,
-        /// ≥ 0.
+        /// Radius, ≥ 0.
         radius: f32,
         /// Side on which tips stay.
         keeps: Side,
     },
     /// An infinite plane; tips stay on the side of its normal.
     Plane {
-        /// Point of it.
+        /// A point of the plane.
         offset: Vec3,
-        /// Unit.
+        /// Unit normal of the plane.
         normal: Vec3,
     },
 }

@@ -19,7 +19,7 @@ pub struct RagdollReport<'a> {
     pub file: &'a str,
     /// The ragdoll.
     pub def: &'a RagdollDef,
-    /// Report of its build.
+    /// Report of the ragdoll's build.
     pub build: &'a BuildReport,
     /// Processor time from the file to the definition, milliseconds.
     pub build_ms: f64,

@@ -13,7 +13,7 @@ const SEEN: u8 = 25;
 #[derive(Resource)]
 pub struct Picture {
     path: PathBuf,
-    /// Seconds of the world.
+    /// Time of the world, seconds.
     at: f32,
     taken: bool,
 }

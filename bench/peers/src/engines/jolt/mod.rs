@@ -35,7 +35,7 @@ const MAX_CONTACTS: u32 = 65_536;
 /// Scratch memory of a step, bytes; only the used part is touched.
 const SCRATCH: u32 = 256 << 20;
 
-/// This engine.
+/// Jolt.
 pub struct Jolt;
 
 impl Engine for Jolt {

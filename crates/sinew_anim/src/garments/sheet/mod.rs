@@ -35,13 +35,13 @@ pub enum SheetError {
     /// It has no weights, but another part of its mesh has.
     #[error("that part of the mesh has no weights, and others have: give it some")]
     NoSkin,
-    /// It is cloth already.
+    /// The mesh is cloth already.
     #[error("that mesh is a garment already")]
     Twice,
     /// There are no triangles, or all of them lie in a point.
     #[error("that mesh has no triangles with an area")]
     Empty,
-    /// All of it is held.
+    /// The whole mesh is held.
     #[error("all of that mesh is held: no part can move")]
     AllHeld,
     /// Most of it is not connected to the held part.

@@ -6,11 +6,11 @@ use std::str::FromStr;
 /// A push as given by the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HitArg {
-    /// Joint name or role.
+    /// Joint name or role of the body.
     pub bone: String,
-    /// N·s, world axes.
+    /// Impulse, N·s, world axes.
     pub impulse: Vec3,
-    /// Seconds.
+    /// Time, seconds.
     pub time: f32,
 }
 

@@ -14,7 +14,7 @@ const WALKABLE: f32 = 0.766;
 struct Demand {
     /// Free distance on each side: to fall, or to stand.
     room: f32,
-    /// Free height.
+    /// Free height over the position.
     over: f32,
     /// Least cosine of the ground's slope.
     level: f32,
@@ -39,7 +39,7 @@ const OVER: f32 = 0.06;
 
 /// A position and a facing, given or found.
 pub struct Place {
-    /// World from character.
+    /// Transform from the character to the world.
     pub stands: Transform,
     /// True if the position was searched.
     pub found: bool,

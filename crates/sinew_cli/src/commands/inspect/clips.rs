@@ -22,7 +22,7 @@ pub struct ClipFacts<'a> {
 
 /// Displacement of a body by a clip: its end relative to its start.
 struct Way {
-    /// Metres, character axes.
+    /// Translation in metres, character axes.
     shift: Vec3,
     /// Radians about the vertical.
     turn: f32,
