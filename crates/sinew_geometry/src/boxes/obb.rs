@@ -28,7 +28,7 @@ impl Obb {
         Self { center, rotation, half_extents }
     }
 
-    /// Around the origin of a frame, along its axes.
+    /// Creates a box around the origin of a frame, along its axes.
     ///
     /// # Panics
     /// As [`new`](Self::new).
