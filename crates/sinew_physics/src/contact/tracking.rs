@@ -109,7 +109,7 @@ pub(crate) struct Touches {
     /// Start in `seen` of the current two bodies' pairs, and if any of them changed.
     first: usize,
     changes: bool,
-    /// Starts and ends of touches in order, for reports.
+    /// Pairs of `gone` and `seen`, merged for reports.
     noted: Vec<Noted>,
 }
 
