@@ -13,7 +13,7 @@ use sinew_math::Rotation;
 pub enum Interpolation {
     /// The earlier key holds until the next one.
     Step,
-    /// Straight line; slerp for rotations.
+    /// Linear interpolation; slerp for rotations.
     Linear,
     /// Cubic Hermite: each key has in-tangent, value, out-tangent; tangents are per second.
     CubicSpline,

@@ -113,9 +113,9 @@ struct Meter<'a> {
     root: &'a Affine,
     /// All times of keys.
     times: Vec<f32>,
-    /// Transforms of the joints at these times, times the root: time by time; and whether a joint is elsewhere than the time
-    /// before.
+    /// Model transforms of the joints at these times, including the root; one time after the other.
     model: Vec<Affine>,
+    /// True where a joint moved since the previous time.
     moved: Vec<bool>,
     /// For each joint: the largest distance of a descendant at any time, and the scale from its parent's axes to the
     /// space of the bound.

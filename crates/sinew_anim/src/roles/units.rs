@@ -24,7 +24,7 @@ pub(super) struct Measured {
 }
 
 impl Measured {
-    /// True if its size is that of a human: it is one, or is called one.
+    /// True for a body of human size: a human, or a figure with the name of one.
     fn is_human(&self) -> bool {
         self.humanoid || self.species == Some(Species::Human)
     }

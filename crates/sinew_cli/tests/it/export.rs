@@ -299,7 +299,7 @@ fn physics_added_to_the_users_file_reads_back() {
     let definition = folder.path("m.sinew.json");
     assert_eq!(sinew(&["ragdoll", "build", &file, "-o", &definition]).code, Some(0));
     let run = sinew(&["ragdoll", "export", &definition, "--as", "khr"]);
-    assert!(run.refusal(1).contains("name that, and this one with --ragdoll"), "{run:?}");
+    assert!(run.refusal(1).contains("give that file, and this one with --ragdoll"), "{run:?}");
     let run = sinew(&["ragdoll", "export", &file, "--ragdoll", &definition, "--as", "khr", "-o", &out]);
     assert_eq!(run.code, Some(0), "{run:?}");
     assert_eq!(std::fs::read(&out).expect("written"), bytes);

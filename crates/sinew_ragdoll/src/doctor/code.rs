@@ -200,6 +200,6 @@ codes! {
         "Give `unit_scale` or `height` in settings (`--unit`, `--height`) if it is another.";
     /// The role of a bone is little more than a guess.
     RoleUncertain "role-uncertain" Note
-        "name and shape of the rig do not tell for sure which part of the body a bone is"
-        "Look whether the role is right, and edit the definition if it is not.";
+        "name and shape of the rig do not show clearly which part of the body a bone is"
+        "Check whether the role is right, and edit the definition if it is not.";
 }

@@ -269,7 +269,7 @@ fn mirror_joint(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     def.joints[wrong - 1] = if max(out.limit, out.locked) > 0.01 { at_bind(exam, joint) } else { joint };
 }
 
-/// Sum of the distances between the ends of two limits, radians; a lot for different kinds.
+/// Sum of the distances between the ends of two limits, radians; a large value for different kinds.
 fn span(a: &JointKind, b: &JointKind) -> f32 {
     let apart = |a: Range, b: Range| (a.lo - b.lo).abs() + (a.hi - b.hi).abs();
     match (a, b) {

@@ -268,7 +268,7 @@ pub fn random_avatar(rig: &Rig, strands: &[Vec<usize>], calming: Calming, random
         };
         let mut bones: Vec<SpringBone> = joints.windows(2).map(bone).collect();
         if softer {
-            // Softer toward the end, as modellers do it.
+            // The springs are softer toward the end, as modellers make them.
             bones.iter_mut().enumerate().for_each(|(index, bone)| bone.stiffness /= 1.0 + index as f32);
         }
         let center = [None, None, Some(head), Some(0)][random.index(4)];
