@@ -197,7 +197,7 @@ impl Clock {
     }
 }
 
-/// Started at the beginning of a step.
+/// Clock that starts at the beginning of a step.
 #[derive(Clone, Copy)]
 enum Watch {
     Processor(ProcessTime),

@@ -259,9 +259,9 @@ typedef struct SinewBodyDef {
   const struct SinewShape *shapes;
   // Number of shapes.
   size_t shape_count;
-  // kg, distributed over the shapes; 0, the default: computed from `density`.
+  // Mass, kg, distributed over the shapes; 0, the default: computed from `density`.
   float mass;
-  // kg/m³. Default 1,000.
+  // Density, kg/m³. Default 1,000.
   float density;
   // Coulomb's coefficient, at least 0. Default 0.6.
   float friction;

@@ -48,9 +48,9 @@ pub struct SinewBodyDef {
     pub shapes: *const SinewShape,
     /// Number of shapes.
     pub shape_count: usize,
-    /// kg, distributed over the shapes; 0, the default: computed from `density`.
+    /// Mass, kg, distributed over the shapes; 0, the default: computed from `density`.
     pub mass: f32,
-    /// kg/m³. Default 1,000.
+    /// Density, kg/m³. Default 1,000.
     pub density: f32,
     /// Coulomb's coefficient, at least 0. Default 0.6.
     pub friction: f32,

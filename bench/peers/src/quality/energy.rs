@@ -12,7 +12,7 @@ pub struct EnergyQuality {
     pub kinetic_end: f64,
     /// Kinetic and potential energy before the first step.
     pub total_start: f64,
-    /// The same at the end.
+    /// Kinetic and potential energy at the end.
     pub total_end: f64,
     /// The largest total energy, including the start: an excess over the start is an error.
     pub total_peak: f64,

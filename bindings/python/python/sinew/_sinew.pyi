@@ -164,7 +164,7 @@ class CharacterFile:
         gets_up: bool = True,
         falling: Drive | None = None,
     ) -> Character:
-        """The character with its motions; `clip` plays until it falls: `exact`ly where the file has it, whatever ground is there, else on the ground. `falling` drives the bodies while it falls."""
+        """The character with its motions; `clip` plays until it falls: with `exact` at the height of the file, whatever the ground, else on the ground. `falling` drives the bodies during the fall."""
 
     def glb(self) -> bytes:
         """The file as a GLB that contains its companion files; for arrays, the file built from them."""
@@ -319,7 +319,7 @@ class Character:
         name: str = "sinew",
         progress: Callable[[float], bool | None] | None = None,
     ) -> Bake:
-        """Simulates it: as `Actor` and `bake` of one. Without any action, it goes limp after half a second."""
+        """Simulates the character alone, as `bake` with one `Actor`. Without any action, it goes limp after half a second."""
 
     def random_fall(
         self, seed: int, *, seconds: float = 3.0, fps: float = 30.0, impulse: float = 120.0

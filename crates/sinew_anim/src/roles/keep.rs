@@ -298,7 +298,7 @@ impl Selection<'_> {
         self.hung_on_armature(joint).is_some()
     }
 
-    /// The node directly below the skeleton's node above a node, or that node itself; `None` if a bone is in between.
+    /// The ancestor of a joint (or the joint itself) directly below the skeleton's node; `None` if a bone is in between.
     /// In converted files a mesh may be a node below its object.
     fn hung_on_armature(&self, joint: JointIdx) -> Option<JointIdx> {
         let first = self.graph.nodes[self.graph.root].joint;
