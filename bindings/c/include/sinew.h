@@ -133,7 +133,7 @@ typedef struct SinewRotation {
 
 // Rigid pose: rotation, then translation.
 typedef struct SinewPose {
-  // Metres.
+  // Position, metres.
   struct SinewVec3 position;
   // Rotation.
   struct SinewRotation rotation;
@@ -227,7 +227,7 @@ typedef struct SinewPair {
 
 // Settings of a world; `sinew_world_def_default` fills it.
 typedef struct SinewWorldDef {
-  // m/s². Default (0, -9.81, 0).
+  // Gravitational acceleration, m/s². Default (0, -9.81, 0).
   struct SinewVec3 gravity;
   // Length of a step, nanoseconds. Default 16,666,667, a sixtieth of a second.
   uint64_t step_nanoseconds;
@@ -241,9 +241,9 @@ typedef struct SinewWorldDef {
 
 // Velocity of a centre of mass, m/s, and angular velocity, rad/s; world axes.
 typedef struct SinewVelocity {
-  // m/s.
+  // Linear velocity, m/s.
   struct SinewVec3 linear;
-  // rad/s.
+  // Angular velocity, rad/s.
   struct SinewVec3 angular;
 } SinewVelocity;
 

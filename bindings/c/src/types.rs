@@ -34,7 +34,7 @@ pub struct SinewRotation {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SinewPose {
-    /// Metres.
+    /// Position, metres.
     pub position: SinewVec3,
     /// Rotation.
     pub rotation: SinewRotation,
@@ -44,9 +44,9 @@ pub struct SinewPose {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SinewVelocity {
-    /// m/s.
+    /// Linear velocity, m/s.
     pub linear: SinewVec3,
-    /// rad/s.
+    /// Angular velocity, rad/s.
     pub angular: SinewVec3,
 }
 

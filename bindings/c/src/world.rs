@@ -22,7 +22,7 @@ pub struct SinewWorld {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct SinewWorldDef {
-    /// m/s². Default (0, -9.81, 0).
+    /// Gravitational acceleration, m/s². Default (0, -9.81, 0).
     pub gravity: SinewVec3,
     /// Length of a step, nanoseconds. Default 16,666,667, a sixtieth of a second.
     pub step_nanoseconds: u64,
