@@ -9,7 +9,7 @@ use sinew_math::clamp;
 pub struct TrackId(pub(crate) u64);
 
 impl TrackId {
-    /// As a number, for saving an animator and its users.
+    /// Converts to a number, for saving an animator and its users.
     pub fn to_bits(self) -> u64 {
         self.0
     }

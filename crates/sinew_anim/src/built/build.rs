@@ -47,7 +47,7 @@ pub enum ClipBuildError {
     /// The clip's length is negative or not finite. A length of 0 is that of a pose.
     #[error("the clip lasts {duration} s; it has to last 0 or longer")]
     Duration {
-        /// As the clip has it, seconds.
+        /// Duration in the clip, seconds.
         duration: f32,
     },
     /// A channel moves a joint that the rig does not have.
@@ -85,7 +85,7 @@ pub enum ClipBuildError {
         channel: usize,
         /// Index of the key in the channel.
         key: usize,
-        /// As the clip has it, seconds.
+        /// Time in the clip, seconds.
         time: f32,
     },
     /// A key's value, or tangent, is not finite, or so large that differences overflow (above 1e18).

@@ -28,7 +28,7 @@ pub enum WeightSource {
 
 /// A character file: its content and the analysis of its joints.
 pub struct CharacterFile {
-    /// As the user named it.
+    /// Name of the file as the user gave it.
     pub name: String,
     /// Rig, clips and JSON of the file.
     pub document: Document,

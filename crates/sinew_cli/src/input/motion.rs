@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// A file with clips: its content and the analysis of its joints.
 pub struct Motion {
-    /// As the user named it.
+    /// Name of the file as the user gave it.
     pub name: String,
     /// Rig and clips of the file.
     pub file: MotionFile,

@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// A ragdoll with its source.
 pub struct RagdollFile {
-    /// As the user named it.
+    /// Name of the file as the user gave it.
     pub name: String,
     /// The ragdoll, its springs, and data of its rig.
     pub repair: Repair,

@@ -137,7 +137,7 @@ impl Pairing<'_> {
         &self.features[of as usize]
     }
 
-    /// From that solid to the other.
+    /// Normal from that solid to the other.
     fn outward(&self, of: Of) -> Vec3 {
         if of == Of::A { self.gap.normal } else { -self.gap.normal }
     }
