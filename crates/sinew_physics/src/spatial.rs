@@ -85,7 +85,7 @@ pub(crate) fn spd_inverse(m: &Mat6, n: usize) -> Option<Mat6> {
     }
 }
 
-/// With constant loop bounds, which the compiler unrolls.
+/// Inverts with constant loop bounds, which the compiler unrolls.
 #[inline(always)]
 fn inverse_of<const N: usize>(m: &Mat6) -> Option<Mat6> {
     // L below the diagonal, 1/D on it.

@@ -20,7 +20,7 @@ pub(crate) struct ContactTracking {
     pub hits: OpenHits,
     /// Bodies changed since the last step: their contacts are tested again even if nothing moves.
     pub changed: Vec<u32>,
-    /// Not part of the snapshot.
+    /// Contact modifiers; not part of the snapshot.
     pub modifiers: Modifiers,
 }
 
