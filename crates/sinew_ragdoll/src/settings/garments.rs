@@ -37,7 +37,7 @@ pub struct GarmentSettings {
 /// Mesh of the character that is a garment, as settings describe it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshSettings {
-    /// Name of its node, its own, or that of a material of it.
+    /// Name of the mesh, of its node, or of one of its materials.
     pub name: String,
     /// Depth below its highest point down to which bodies hold it, metres, ≥ 0; `None`: a tenth of its height.
     pub held: Option<f32>,
