@@ -159,10 +159,10 @@ fn packages() -> Result<()> {
     package.args(not);
     let out =
         package.args(["--allow-dirty", "--target-dir"]).arg(command::target().join("packages")).output()?;
-    let told = String::from_utf8_lossy(&out.stderr);
+    let errors_text = String::from_utf8_lossy(&out.stderr);
     // A package without a description or a licence is a warning only.
-    if !out.status.success() || told.contains("warning") {
-        bail!("{told}");
+    if !out.status.success() || errors_text.contains("warning") {
+        bail!("{errors_text}");
     }
     Ok(())
 }

@@ -211,14 +211,14 @@ fn gallery(root: &Path, folder: &Path) -> Result<String> {
     let mut html = String::new();
     fs::create_dir_all(folder.join("gallery"))?;
     for (scene, _, title, about) in GALLERY {
-        let told = chapters::about(root, scene)?;
+        let about_scene = chapters::about(root, scene)?;
         let from = root.join(PAGE).join(format!("gallery/{scene}.jpg"));
         fs::copy(&from, folder.join(format!("gallery/{scene}.jpg")))
             .with_context(|| from.display().to_string())?;
         html += &format!(
             "    <li><a class=\"scene\" data-scene=\"{scene}\" href=\"viewer.html?scene={scene}\"><img src=\"gallery/{scene}.jpg\" \
              width=\"480\" height=\"270\" loading=\"lazy\" alt=\"{}\"><div><b>{title}</b><p>{about}</p></div></a></li>\n",
-            chapters::escaped(&told)
+            chapters::escaped(&about_scene)
         );
     }
     Ok(html)

@@ -166,7 +166,7 @@ fn run_tests(script: &str, out: &Path, tarball: &Path, native: &Value) -> Result
     if !rigs().is_dir() {
         eprintln!("skipped: {} is missing: only the mannequin falls", ragdolls::SHARED);
     }
-    let told = json!({
+    let input = json!({
         "tarball": tarball,
         "out": out,
         "root": command::root(),
@@ -174,7 +174,7 @@ fn run_tests(script: &str, out: &Path, tarball: &Path, native: &Value) -> Result
         "native": native,
     });
     let mut node = Command::new("node");
-    node.arg(folder.join(script)).arg(told.to_string()).current_dir(&folder).stdout(Stdio::inherit());
+    node.arg(folder.join(script)).arg(input.to_string()).current_dir(&folder).stdout(Stdio::inherit());
     if !node.status().context("node")?.success() {
         bail!("{script} failed");
     }

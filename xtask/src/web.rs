@@ -150,8 +150,8 @@ pub fn binder() -> Result<PathBuf> {
     let version = after.split('"').next().unwrap_or_default();
     let root = command::target().join("tools");
     let program = root.join("bin/wasm-bindgen");
-    let told = Command::new(&program).arg("--version").output().map(|out| out.stdout).unwrap_or_default();
-    if !String::from_utf8_lossy(&told).contains(version) {
+    let answer = Command::new(&program).arg("--version").output().map(|out| out.stdout).unwrap_or_default();
+    if !String::from_utf8_lossy(&answer).contains(version) {
         let mut install = cargo(&["install", "wasm-bindgen-cli", "--version", version, "--root"]);
         command::run(install.arg(&root))?;
     }
@@ -199,17 +199,17 @@ fn tried(folder: &Path) -> Result<()> {
     if drop.is_empty() {
         eprintln!("skipped: {DROPPED} is missing");
     }
-    let told = browser("check", folder, &pictures, &json!({"scenes": scenes, "drop": drop}))?;
-    eprintln!("{told:#}\npictures in {}", pictures.display());
-    for (way, told) in told.as_object().context("no outcome")? {
+    let answer = browser("check", folder, &pictures, &json!({"scenes": scenes, "drop": drop}))?;
+    eprintln!("{answer:#}\npictures in {}", pictures.display());
+    for (way, answer) in answer.as_object().context("no outcome")? {
         for (scene, (steps, hash)) in SCENES.iter().zip(&expected) {
-            let found = &told["hashes"][scene];
+            let found = &answer["hashes"][scene];
             if found != hash {
                 bail!("{way}: {scene} has {found} after {steps} steps, elsewhere {hash}");
             }
         }
         // A single attempt, regardless of other load: the limit is for an idle machine.
-        if told["ready_again_ms"].as_u64().is_none_or(|ms| ms > MOST_MS) {
+        if answer["ready_again_ms"].as_u64().is_none_or(|ms| ms > MOST_MS) {
             eprintln!("{way}: more than {MOST_MS} ms to the first picture");
         }
     }

@@ -63,7 +63,7 @@ impl<'a> Fall<'a> {
     /// Text of the events, the quality and the position.
     pub fn to_text(&self, outputs: &[&Path]) -> String {
         let mut text = String::new();
-        for (time, what) in story::told(self.input, &self.baked.events) {
+        for (time, what) in story::moments(self.input, &self.baked.events) {
             let _ = writeln!(text, "  {time:5.2} s  {what}");
         }
         text += "\nQuality\n";

@@ -49,7 +49,7 @@ fn main() -> ExitCode {
     let arguments = with_negative_numbers(Sinew::command()).try_get_matches();
     let Sinew { json, command } = match arguments.and_then(|arguments| Sinew::from_arg_matches(&arguments)) {
         Ok(arguments) => arguments,
-        Err(told) => return help_or_usage(&told),
+        Err(problem) => return help_or_usage(&problem),
     };
     match command.run() {
         Ok(report) => print(&report.shown(json), ExitCode::SUCCESS),
@@ -78,9 +78,9 @@ fn with_negative_numbers(command: clap::Command) -> clap::Command {
 }
 
 /// Prints help or the version to stdout, argument errors to stderr.
-fn help_or_usage(told: &clap::Error) -> ExitCode {
-    let code = ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2));
-    written(told.print().and_then(|()| io::stdout().flush()), code)
+fn help_or_usage(problem: &clap::Error) -> ExitCode {
+    let code = ExitCode::from(u8::try_from(problem.exit_code()).unwrap_or(2));
+    written(problem.print().and_then(|()| io::stdout().flush()), code)
 }
 
 /// Writes text to stdout; returns the process's exit code if all of it is written.

@@ -131,8 +131,8 @@ fn memory() -> f64 {
 
 /// CPU time of this thread, seconds, so that other processes do not count. 0 if it is unknown.
 fn processor_seconds() -> f64 {
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = told.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
+    let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let nanoseconds = statistics.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
     1e-9 * nanoseconds.unwrap_or(0.0)
 }
 

@@ -97,14 +97,14 @@ fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
     let (mut across, up) = (decades(gaps), decades(dots.iter().map(|dot| dot.time)));
     across[0] = across[0].max(LEAST_GAP.log10());
     let (xs, ys) = ([left, width - right], [height - below, above]);
-    let told: Vec<String> = dots
+    let legend: Vec<String> = dots
         .iter()
         .map(|dot| format!("{} {} ms and {} mm", dot.engine, rounded(dot.time), rounded(dot.gap)))
         .collect();
     let mut out = format!(
         "<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}: {}\">\n",
         scene.name,
-        told.join("; ")
+        legend.join("; ")
     );
     axes(&mut out, (across, xs), (up, ys));
     let mut labels: Vec<[f64; 2]> = Vec::new();

@@ -170,8 +170,8 @@ fn reasons(rows: &[Row]) -> String {
         let of_drops = &row.report["build"]["quality"]["reasons"];
         let of_bake = &row.report["bake"]["notes"];
         // Every file lacks clips in its drops: that reason is left out.
-        let said = of_drops.as_array().into_iter().flatten().filter_map(Value::as_str);
-        for reason in said.filter(|reason| !reason.starts_with("hand-over")) {
+        let reason_texts = of_drops.as_array().into_iter().flatten().filter_map(Value::as_str);
+        for reason in reason_texts.filter(|reason| !reason.starts_with("hand-over")) {
             let _ = writeln!(text, "- {}: {reason}", row.file);
         }
         // The command requested to stay down, so its note is left out.

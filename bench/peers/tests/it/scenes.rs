@@ -53,11 +53,11 @@ fn mujoco_gets_every_figure_and_wall() {
     let Work::Bodies(scene) = (scenes::find("humanoid_pile_10").expect("a scene").work)() else {
         panic!("no bodies")
     };
-    let told = mjcf(&scene);
-    assert_eq!(told["figures"].as_array().map(Vec::len), Some(10));
-    assert_eq!(told["walls"].as_array().map(Vec::len), Some(4));
-    assert!(told["friction"].as_f64().is_some_and(|friction| (friction - 0.7).abs() < 1e-6));
-    let text = told["mjcf"].as_str().expect("a model");
+    let exported = mjcf(&scene);
+    assert_eq!(exported["figures"].as_array().map(Vec::len), Some(10));
+    assert_eq!(exported["walls"].as_array().map(Vec::len), Some(4));
+    assert!(exported["friction"].as_f64().is_some_and(|friction| (friction - 0.7).abs() < 1e-6));
+    let text = exported["mjcf"].as_str().expect("a model");
     assert_eq!(text.matches("<freejoint").count(), 1);
     assert_eq!(text.matches("<inertial").count(), 19);
 }

@@ -36,7 +36,7 @@ Example:
   sinew convert walk.bvh --onto character.glb walking.glb --picture walking.gif
 
 Reads glTF, GLB, VRM, VRMA, BVH, DeepMimic and FBX; writes GLB and BVH, by the name of OUT. What the new format cannot hold
-is told in a line each.")]
+is reported in a line each.")]
 pub struct Convert {
     /// The file to read
     input: PathBuf,

@@ -100,13 +100,13 @@ impl Replay {
             });
             return Ok(Report { json, text });
         };
-        let (what, place) = told(&difference);
+        let (what, place) = described(&difference);
         Err(Failure::at(name, format!("{what} {}", other.display()), place))
     }
 }
 
 /// Describes a difference: the text before the other file's name, and the place.
-fn told(difference: &Difference) -> (String, String) {
+fn described(difference: &Difference) -> (String, String) {
     match difference {
         Difference::Scene => ("has another scene or other settings than".to_owned(), String::new()),
         Difference::Length { common } => {

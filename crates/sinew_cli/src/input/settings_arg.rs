@@ -121,7 +121,7 @@ pub struct LoadedSettings {
     /// The settings themselves.
     pub settings: Settings,
     /// Keys of the settings set by the command line, with the option as typed.
-    said: Vec<(String, String)>,
+    typed_keys: Vec<(String, String)>,
 }
 
 impl SettingsArg {
@@ -207,7 +207,7 @@ impl SettingsArg {
 
     /// Overrides the file's settings by the command line.
     fn say(&self, loaded: &mut LoadedSettings) -> Result<()> {
-        let LoadedSettings { settings, said, .. } = loaded;
+        let LoadedSettings { settings, typed_keys, .. } = loaded;
         for (index, RoleArg { role, bone }) in self.roles.iter().enumerate() {
             if self.roles[..index].iter().any(|other| other.role == *role || other.bone == *bone) {
                 let what = "is given twice: a role has one bone, and a bone one role";
@@ -216,14 +216,14 @@ impl SettingsArg {
             settings
                 .bones
                 .push((bone.clone(), BoneSettings { role: Some(*role), ..BoneSettings::default() }));
-            said.push((format!("bones.{bone}.role"), format!("--role {}={bone}", role.name())));
+            typed_keys.push((format!("bones.{bone}.role"), format!("--role {}={bone}", role.name())));
         }
         for bone in &self.ignore {
-            said.push((format!("ignore[{}]", settings.ignore.len()), format!("--ignore {bone}")));
+            typed_keys.push((format!("ignore[{}]", settings.ignore.len()), format!("--ignore {bone}")));
             settings.ignore.push(bone.clone());
         }
         if !self.ignore.is_empty() {
-            said.push(("ignore".into(), "--ignore".into()));
+            typed_keys.push(("ignore".into(), "--ignore".into()));
         }
         for (bones, body, option) in
             [(&self.body, BodyWish::Keep, "--body"), (&self.no_body, BodyWish::Drop, "--no-body")]
@@ -232,16 +232,16 @@ impl SettingsArg {
                 settings
                     .bones
                     .push((bone.clone(), BoneSettings { body: Some(body), ..BoneSettings::default() }));
-                said.push((format!("bones.{bone}"), format!("{option} {bone}")));
+                typed_keys.push((format!("bones.{bone}"), format!("{option} {bone}")));
             }
         }
         if let Some(unit) = self.height.map(Unit::Height).or_else(|| self.unit.map(Unit::Scale)) {
             settings.unit = Some(unit);
-            said.push(("height".into(), "--height".into()));
+            typed_keys.push(("height".into(), "--height".into()));
         }
         if let Some(mass) = self.mass {
             settings.mass = Some(mass);
-            said.push((MASS.into(), "--mass".into()));
+            typed_keys.push((MASS.into(), "--mass".into()));
         }
         Ok(())
     }
@@ -333,13 +333,13 @@ impl LoadedSettings {
     fn failure(&self, character: &str, error: SettingsError) -> Failure {
         match error {
             SettingsError::Build(error @ BuildError::Mass(_)) => {
-                let is_said = self.said.iter().any(|(key, _)| key == MASS);
-                let place = if is_said { "--mass" } else { "" };
+                let is_typed = self.typed_keys.iter().any(|(key, _)| key == MASS);
+                let place = if is_typed { "--mass" } else { "" };
                 Failure::at(character, error, place)
             }
             SettingsError::Build(error) => Failure::of_file(character, error),
             SettingsError::Setting { what, place } => {
-                match self.said.iter().rev().find(|(key, _)| *key == place) {
+                match self.typed_keys.iter().rev().find(|(key, _)| *key == place) {
                     Some((_, option)) => Failure::at(character, what, option),
                     None => Failure::at(&self.file, what, place),
                 }

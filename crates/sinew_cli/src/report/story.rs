@@ -66,9 +66,9 @@ fn upright(def: &CharacterDef) -> String {
 }
 
 /// The events of a bake as sentences, in order of time.
-pub fn told(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(f32, String)> {
+pub fn moments(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(f32, String)> {
     let def = &input.character;
-    let mut told = vec![(0.0, at_first(def))];
+    let mut moments = vec![(0.0, at_first(def))];
     for &(time, event) in events {
         let sentence = match event {
             CharacterEvent::Hit { body } => hit_sentence(input, time, body),
@@ -91,7 +91,7 @@ pub fn told(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(f32
             CharacterEvent::Caught { steps } => format!("has caught itself after {steps} steps"),
             CharacterEvent::WentLimp => "goes limp".to_owned(),
             CharacterEvent::Settled { since } => {
-                told.push((since, "lies still".to_owned()));
+                moments.push((since, "lies still".to_owned()));
                 continue;
             }
             CharacterEvent::NeverSettled => "does not come to rest".to_owned(),
@@ -104,9 +104,9 @@ pub fn told(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(f32
             CharacterEvent::Up if def.motions().opening == Opening::Rest => upright(def),
             CharacterEvent::Up => format!("{} again", upright(def)),
         };
-        told.push((time, sentence));
+        moments.push((time, sentence));
     }
-    told
+    moments
 }
 
 fn is_hit_at(&(time, event): &(f32, CharacterEvent), when: f32) -> bool {

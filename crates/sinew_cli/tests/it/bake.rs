@@ -487,8 +487,8 @@ fn bake_is_judged_by_the_bars_of_a_drop() {
     assert!(baked["energy_gain_max"].as_f64().expect("a number") < 0.01, "{baked:#}");
     // In a drop it sits upright for a second before it tips over, and falls asleep late; no other reason is reported.
     let reasons = baked["reasons"].as_array().expect("reasons").iter();
-    let told: Vec<&str> = reasons.map(|reason| reason.as_str().expect("a sentence")).collect();
-    assert!(told.iter().all(|reason| reason.starts_with("time from calm")), "{baked:#}");
+    let reason_list: Vec<&str> = reasons.map(|reason| reason.as_str().expect("a sentence")).collect();
+    assert!(reason_list.iter().all(|reason| reason.starts_with("time from calm")), "{baked:#}");
     assert!(baked["up_s"].is_number() && baked["verdict"] != "bad", "{baked:#}");
     // Its skin rests above the floor, although its bodies touch it.
     let skull = data.join("rigs_wild/platformer_game_Skull.glb").display().to_string();
@@ -521,8 +521,8 @@ fn upright_limp_character_is_pushed_over_by_default() {
         sinew(&[&arguments[..], extra].concat()).json()
     };
     let is_said = |object: &serde_json::Value, key: &str, what: &str| {
-        let said = object[key].as_array().expect("sentences");
-        said.iter().any(|said| said.as_str().is_some_and(|said| said.contains(what)))
+        let texts = object[key].as_array().expect("sentences");
+        texts.iter().any(|texts| texts.as_str().is_some_and(|texts| texts.contains(what)))
     };
     let object = baked(&[]);
     assert!(is_said(&object, "notes", "it is pushed over at 0.5 s"), "{object:#}");

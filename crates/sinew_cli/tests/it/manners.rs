@@ -127,19 +127,20 @@ fn steps_that_do_not_happen_are_reported() {
     let folder = Folder::new("said");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));
     let bake = |extra: &[&str]| sinew(&[&["bake", file.as_str(), "-o", &out], extra].concat());
-    let said = |extra: &[&str], what: &str| {
+    let check_output = |extra: &[&str], what: &str| {
         let object = bake(&[extra, &["--json"]].concat()).json();
         let all = notes(&object);
         assert_eq!(all.iter().filter(|note| note.contains(what)).count(), 1, "{what}: {all:?}");
         assert!(bake(extra).stdout.contains("note: "), "the text output has no note");
         all
     };
-    let late = said(&["--seconds", "1", "--limp-at", "2"], "--limp-at 2 s is not before the end, at 1 s");
+    let late =
+        check_output(&["--seconds", "1", "--limp-at", "2"], "--limp-at 2 s is not before the end, at 1 s");
     assert!(
         late.iter().all(|note| !note.contains("does not get up")),
         "a note about getting up without a fall: {late:?}"
     );
-    said(
+    check_output(
         &["--seconds", "6", "--no-builtin-motions"],
         "it does not get up: it has no get-up clip, and --no-builtin-motions leaves out the built-in ones",
     );
@@ -148,7 +149,7 @@ fn steps_that_do_not_happen_are_reported() {
     assert!(nowhere.refusal(1).contains("no ground to stand on; --at X,Y,Z sets its place"), "{nowhere:?}");
     let nowhere = bake(&["--seconds", "1", "--world", &empty, "--at", "0,0,0"]);
     assert!(nowhere.refusal(1).contains("no ground under the character at 0,0,0; --floor"), "{nowhere:?}");
-    let all = said(&["--seconds", "1", "--at", "0,9,0"], "it does not get up: it touches nothing");
+    let all = check_output(&["--seconds", "1", "--at", "0,9,0"], "it does not get up: it touches nothing");
     assert!(!all.iter().any(|note| note.contains("it stands at")), "{all:?}");
     let half_extents = Vec3::new(9.0, 0.5, 9.0);
     let low = BodyDef {
@@ -158,8 +159,11 @@ fn steps_that_do_not_happen_are_reported() {
         ..BodyDef::default()
     };
     let low = folder.file("low.json", write_world(&[low]));
-    said(&["--seconds", "1", "--world", &low, "--at", "0,0,0"], "low.json is 2.50 m below the character");
-    said(&["--seconds", "1", "--world", &low], "it stands at 0.00,-2.50,0.00, the free place");
+    check_output(
+        &["--seconds", "1", "--world", &low, "--at", "0,0,0"],
+        "low.json is 2.50 m below the character",
+    );
+    check_output(&["--seconds", "1", "--world", &low], "it stands at 0.00,-2.50,0.00, the free place");
 }
 
 /// The nodes of a file may be in any order; the list is a tree.

@@ -38,8 +38,8 @@ fn recording_verifies_and_diff_finds_the_step() {
     let refused = sinew(&["replay", &tampered, "--verify"]);
     let line = refused.refusal(1);
     assert!(line.contains("version 9.1.0, and this is 0.1.0 (step 50)"), "{line}");
-    let told = sinew(&["replay", &tampered]);
-    assert!(told.stdout.contains("from step 50 on"), "{told:?}");
+    let run_again = sinew(&["replay", &tampered]);
+    assert!(run_again.stdout.contains("from step 50 on"), "{run_again:?}");
     let diff = sinew(&["replay", &mine, "--diff", &tampered]);
     assert!(diff.refusal(1).contains("but not in the pose of a body"), "{diff:?}");
 }

@@ -112,8 +112,8 @@ fn settings_link_braids() {
         settings(springs);
         let error = sinew(&["bake", &file, "-o", &out]).stderr;
         println!("{error}");
-        let told = error.contains(place) && error.contains(what) && error.contains("avatar.ragdoll.json");
-        assert!(told, "{springs}: {error}");
+        let is_found = error.contains(place) && error.contains(what) && error.contains("avatar.ragdoll.json");
+        assert!(is_found, "{springs}: {error}");
         let warned = sinew(&["inspect", &file]).stdout;
         assert!(warned.contains(what), "{springs}: {warned}");
     }
@@ -243,9 +243,9 @@ fn inspect_reports_springs_of_both_versions() {
         let object = sinew(&["inspect", &file, "--json"]).json();
         check_keys("inspect", &object);
         assert_eq!(object["spring_format"], format.name());
-        let told = object["springs"].as_array().expect("chains").iter();
-        let told: usize = told.map(|chain| chain["bones"].as_array().map_or(0, Vec::len)).sum();
-        assert_eq!((told, object["springs"].as_array().map(Vec::len)), (bones, Some(12)));
+        let bone_count = object["springs"].as_array().expect("chains").iter();
+        let bone_count: usize = bone_count.map(|chain| chain["bones"].as_array().map_or(0, Vec::len)).sum();
+        assert_eq!((bone_count, object["springs"].as_array().map(Vec::len)), (bones, Some(12)));
         assert!(sinew(&["inspect", &file]).stdout.contains(&format!("Springs ({})", format.name())));
     }
     rig.springs = Springs::default();

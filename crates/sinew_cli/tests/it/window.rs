@@ -80,10 +80,10 @@ impl Viewer {
             .spawn()
             .expect("the binary starts");
         let stderr = BufReader::new(process.stderr.take().expect("stderr is piped"));
-        let (told, lines) = channel();
+        let (sender, lines) = channel();
         std::thread::spawn(move || {
             for line in stderr.lines().map_while(Result::ok) {
-                if told.send(line).is_err() {
+                if sender.send(line).is_err() {
                     return;
                 }
             }
@@ -93,14 +93,14 @@ impl Viewer {
 
     /// Waits for the next line that contains these words.
     fn wait_for(&self, words: &str) -> String {
-        let mut heard = Vec::new();
+        let mut lines_read = Vec::new();
         loop {
             let line = self.lines.recv_timeout(PATIENCE);
-            let line = line.unwrap_or_else(|_| panic!("no line has `{words}`, but {heard:#?}"));
+            let line = line.unwrap_or_else(|_| panic!("no line has `{words}`, but {lines_read:#?}"));
             if line.contains(words) {
                 return line;
             }
-            heard.push(line);
+            lines_read.push(line);
         }
     }
 }
@@ -186,16 +186,16 @@ fn edited_limit_is_saved() {
         viewer.wait_for("chose ").starts_with("chose leftUpperArm ")
     });
     assert!(chosen, "it has a left upper arm");
-    let mut told = String::new();
+    let mut output_text = String::new();
     for _ in 0..4 {
         display.xdotool(&["key", "minus"]);
-        told = viewer.wait_for("limits of leftUpperArm: ");
+        output_text = viewer.wait_for("limits of leftUpperArm: ");
     }
     display.xdotool(&["key", "ctrl+s"]);
     let line = viewer.wait_for(".sinew.json");
     let name = line.strip_prefix("wrote ").expect("the name follows").to_owned();
     let (before, after) = (swing(&built), swing(&folder.path(&name)));
-    assert!((before - after - 20.0).abs() < 0.1, "{before}° became {after}°; the log said {told}");
+    assert!((before - after - 20.0).abs() < 0.1, "{before}° became {after}°; the log said {output_text}");
     display.xdotool(&["key", "F12"]);
     assert_eq!(viewer.wait_for("wrote sinew-"), first, "the test restarts at step 0");
     // It falls with the new limits, and the written file can be opened.
@@ -221,8 +221,8 @@ fn one_command_writes_a_picture_of_the_window() {
         Run::of(command.env("DISPLAY", &display.name).env("XDG_CONFIG_HOME", folder.path("config")))
     };
     let out = folder.path("window.png");
-    let told = run(&out);
-    assert_eq!(told.code, Some(0), "{told:?}");
+    let output_text = run(&out);
+    assert_eq!(output_text.code, Some(0), "{output_text:?}");
     assert!(std::fs::read(&out).expect("it is there").starts_with(b"\x89PNG"));
     let refused = run(&folder.path("nowhere/window.png"));
     // Libraries of the system may print lines before.

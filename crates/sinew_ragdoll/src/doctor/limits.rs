@@ -68,18 +68,19 @@ fn frames(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let (gap, turn) = ((on_parent - on_child).length(), exam.turned(index, Rotation::IDENTITY));
     let angle = turn.angle_to(Rotation::IDENTITY);
     let both = |test: &dyn Fn(Transform) -> bool| test(joint.frame_parent) && test(joint.frame_child);
-    let mut said = Vec::new();
+    let mut clauses = Vec::new();
     // A hinge may be bent in the bind pose: frames are wrong if they break a locked direction.
     let Beyond { limit, locked } = beyond(&joint.kind, turn);
     if both(&is_identity) && angle > OTHER_ZERO && max(limit, locked) > BEYOND_AT_BIND {
-        said.push(format!("its zero is {:.0}° from the bind pose", angle.to_degrees()));
+        clauses.push(format!("its zero is {:.0}° from the bind pose", angle.to_degrees()));
     }
     if both(&at_origin) && gap > 0.01 * exam.size {
-        said.push(format!("both anchors are at the origins of the bodies, {:.0} mm apart", 1000.0 * gap));
+        clauses.push(format!("both anchors are at the origins of the bodies, {:.0} mm apart", 1000.0 * gap));
     }
     let names = exam.between(index);
-    if !said.is_empty() {
-        let evidence = format!("the joint between {names} has frames without rotation: {}", said.join("; "));
+    if !clauses.is_empty() {
+        let evidence =
+            format!("the joint between {names} has frames without rotation: {}", clauses.join("; "));
         return Some(exam.finding(Code::IdentityFrames, &bodies, evidence));
     }
     (gap > 0.003 * exam.size).then(|| {
@@ -165,8 +166,8 @@ fn missing(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     };
     let known = ranges(&joint.kind);
     let wide: Vec<String> = known.iter().filter(|(_, range)| width(*range) > NO_LIMIT).map(shown).collect();
-    let said = if wide.is_empty() { "no limits".to_owned() } else { wide.join(", ") };
-    let evidence = format!("the joint between {} has {said}", exam.between(index));
+    let clauses = if wide.is_empty() { "no limits".to_owned() } else { wide.join(", ") };
+    let evidence = format!("the joint between {} has {clauses}", exam.between(index));
     Some(exam.finding(Code::LimitsMissing, &[joint.child, joint.parent], evidence))
 }
 

@@ -46,8 +46,8 @@ pub(super) fn corrected(
                 return SettingsError::at("ignore", error.to_string());
             }
         };
-        let said = settings.bones.iter().rev().find(|(_, bone)| bone.role == Some(role));
-        let place = said.map_or_else(|| "bones".to_owned(), |(name, _)| place_of_role(name));
+        let stated = settings.bones.iter().rev().find(|(_, bone)| bone.role == Some(role));
+        let place = stated.map_or_else(|| "bones".to_owned(), |(name, _)| place_of_role(name));
         SettingsError::at(place, error.to_string())
     })?;
     placed(seen, analyzed, settings)

@@ -82,8 +82,8 @@ impl GarmentSource {
         // New joints have no bind pose yet, and none of them moves the remaining meshes.
         for (index, garment) in listed.iter().enumerate() {
             let Some(mesh) = &garment.mesh else { continue };
-            let said = |error: SheetError| mesh.error(rig, index, &error);
-            let part = MeshPart::named(rig, &mesh.name).map_err(said)?;
+            let located = |error: SheetError| mesh.error(rig, index, &error);
+            let part = MeshPart::named(rig, &mesh.name).map_err(located)?;
             let options = SheetOptions {
                 bind_model: &analysis.bind_model,
                 metres_from_model: metres_from_model(analysis),

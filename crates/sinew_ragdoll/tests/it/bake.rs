@@ -372,10 +372,10 @@ fn joint_bake_shares_one_world_and_can_be_cancelled() {
         bake_together(&[one.clone(), two], go_on).expect("nothing stops it"),
         "a second bake is identical"
     );
-    let mut told = 0;
+    let mut event_count = 0;
     let stopped = bake_together(&[one], &mut |time| {
-        told += 1;
+        event_count += 1;
         if time > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    assert!(stopped.is_none() && told == 31, "{told} steps");
+    assert!(stopped.is_none() && event_count == 31, "{event_count} steps");
 }

@@ -27,7 +27,7 @@ fn standing(def: &Arc<CharacterDef>) -> (World, Character) {
 fn blast(world: &mut World, character: &mut Character, momentum: f32) -> Vec<CharacterEvent> {
     let center = pelvis(world, character) - Vec3::X;
     let unit = Explosion::new(center, 3.0, 1.0);
-    let told = {
+    let unit_impulse = {
         let (mut trial_world, mut trial) = (world.clone(), character.clone());
         trial_world.explode(&unit);
         trial_world.step();
@@ -37,8 +37,8 @@ fn blast(world: &mut World, character: &mut Character, momentum: f32) -> Vec<Cha
         trial.update(&mut trial_world);
         sum.length()
     };
-    assert!(told > 0.1, "a blast of 1 Pa·s gives it {told} N·s");
-    world.explode(&Explosion { impulse: momentum / told, ..unit });
+    assert!(unit_impulse > 0.1, "a blast of 1 Pa·s gives it {unit_impulse} N·s");
+    world.explode(&Explosion { impulse: momentum / unit_impulse, ..unit });
     run(world, character, 1)
 }
 

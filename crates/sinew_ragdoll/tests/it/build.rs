@@ -48,16 +48,16 @@ pub fn check_sound(name: &str, def: &RagdollDef) {
         assert!(joint.friction_torque > 0.0 && joint.friction_torque.is_finite(), "{name} joint {i}");
     }
     for body in &def.bodies {
-        let who = format!("{name} {}", body.role);
-        assert_eq!(body.shape.check(), Ok(()), "{who}");
-        assert!(body.shape.smallest_extent() >= 0.0149, "{who}: {:?}", body.shape);
-        assert!(body.character_from_body.is_finite(), "{who}");
-        assert!(body.mass.mass > 0.0 && body.mass.mass.is_finite(), "{who}");
+        let label = format!("{name} {}", body.role);
+        assert_eq!(body.shape.check(), Ok(()), "{label}");
+        assert!(body.shape.smallest_extent() >= 0.0149, "{label}: {:?}", body.shape);
+        assert!(body.character_from_body.is_finite(), "{label}");
+        assert!(body.mass.mass > 0.0 && body.mass.mass.is_finite(), "{label}");
         let (distance, _) = body.shape.signed_distance(&sinew_math::Transform::IDENTITY, body.mass.center);
-        assert!(distance < 0.0, "{who}: centre of mass {distance} m outside");
+        assert!(distance < 0.0, "{label}: centre of mass {distance} m outside");
         let (moments, _) = body.mass.inertia.eigen();
-        assert!(moments.z > 0.0 && moments.x <= 8.01 * moments.z, "{who}: {moments}");
-        assert!(moments.x <= 1.001 * (moments.y + moments.z), "{who}: {moments}");
+        assert!(moments.z > 0.0 && moments.x <= 8.01 * moments.z, "{label}: {moments}");
+        assert!(moments.x <= 1.001 * (moments.y + moments.z), "{label}: {moments}");
     }
     let sum: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
     assert!((sum - def.total_mass).abs() <= 1e-5 * def.total_mass, "{name}: {sum} of {}", def.total_mass);

@@ -72,20 +72,26 @@ fn removing_an_owned_body_names_the_character_and_the_call() {
     let (mut world, character) = in_state(&def, State::Limp);
     let arm = character.bodies()[def.body_named("leftUpperArm").expect("it has arms")];
     let joints: Vec<JointId> = world.joints_of(arm).collect();
-    let said = message(|| world.remove_joint(joints[0]));
-    assert!(said.contains("character's leftUpperArm") && said.contains("`Character::detach`"), "{said}");
-    let said = message(|| world.remove_body(arm));
-    assert!(said.contains("character's leftUpperArm") && said.contains("`Character::despawn`"), "{said}");
+    let panic_text = message(|| world.remove_joint(joints[0]));
+    assert!(
+        panic_text.contains("character's leftUpperArm") && panic_text.contains("`Character::detach`"),
+        "{panic_text}"
+    );
+    let panic_text = message(|| world.remove_body(arm));
+    assert!(
+        panic_text.contains("character's leftUpperArm") && panic_text.contains("`Character::despawn`"),
+        "{panic_text}"
+    );
     // The same in a world loaded from a snapshot, and for hit bodies.
     let mut w = Writer::new();
     world.save(&mut w);
     let mut other = World::new(world.def().clone());
     other.load(&mut Reader::new(w.as_bytes())).expect("it is a snapshot");
-    let said = message(|| other.remove_body(arm));
-    assert!(said.contains("character's leftUpperArm"), "{said}");
+    let panic_text = message(|| other.remove_body(arm));
+    assert!(panic_text.contains("character's leftUpperArm"), "{panic_text}");
     let (mut world, character) = in_state(&def, State::Animated);
-    let said = message(|| world.remove_body(character.bodies()[0]));
-    assert!(said.contains("character's hips"), "{said}");
+    let panic_text = message(|| world.remove_body(character.bodies()[0]));
+    assert!(panic_text.contains("character's hips"), "{panic_text}");
     character.despawn(&mut world);
     assert_eq!(world.body_ids().count(), 1);
     // Bodies without an owner can be removed.

@@ -282,9 +282,12 @@ fn defects_of_a_foreign_rig_are_reported() {
         let mut repair = stranger.clone();
         plant(&mut repair);
         let findings = doctor(&repair);
-        let (cured, told) = cure(&repair);
+        let (cured, findings_after) = cure(&repair);
         let left = doctor(&cured);
-        if codes(&findings) != [code] || !left.is_empty() || told.iter().any(|finding| !finding.fixed) {
+        if codes(&findings) != [code]
+            || !left.is_empty()
+            || findings_after.iter().any(|finding| !finding.fixed)
+        {
             wrong.push(format!("{what}: {findings:#?} left: {left:#?}"));
         }
     }
@@ -440,8 +443,8 @@ fn self_motion_is_found_by_simulation() {
     let repair = Repair::new(strained());
     let findings = doctor(&repair);
     assert_eq!(codes(&findings), [Code::MovesByItself], "{findings:#?}");
-    let (cured, told) = cure(&repair);
-    assert!(told[0].fixed && doctor(&cured).is_empty(), "{told:#?}");
+    let (cured, findings_after) = cure(&repair);
+    assert!(findings_after[0].fixed && doctor(&cured).is_empty(), "{findings_after:#?}");
 }
 
 #[test]

@@ -327,8 +327,8 @@ fn death_of_one_character_leaves_the_others() {
             pair[0].set_after_settling(AfterSettling::StayDown);
             died = true;
         }
-        let told = pair[0].events().iter();
-        assert!(!(died && told.clone().any(|event| matches!(event, CharacterEvent::GettingUp { .. }))));
+        let reported = pair[0].events().iter();
+        assert!(!(died && reported.clone().any(|event| matches!(event, CharacterEvent::GettingUp { .. }))));
     }
     assert!(!died || pair[0].state() == State::Limp);
 }

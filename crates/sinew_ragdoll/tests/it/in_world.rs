@@ -156,8 +156,8 @@ fn ball_bounces_off_and_the_contact_is_reported() {
     for _ in 0..12 {
         events.extend(run(&mut world, &mut character, 1));
         let chest = character.bodies()[def.body_named("chest").expect("it has one")];
-        let told = |hit: &sinew_physics::Hit| [hit.a.body, hit.b.body] == [chest, thrown];
-        met |= world.events().hits.iter().any(told);
+        let is_this_hit = |hit: &sinew_physics::Hit| [hit.a.body, hit.b.body] == [chest, thrown];
+        met |= world.events().hits.iter().any(is_this_hit);
     }
     assert!(met, "the contact event names the bone");
     let speed = world.velocity(thrown).linear.z;

@@ -62,7 +62,7 @@ fn check(name: &str, rig: &Rig, takes: &[Take]) {
     let mut random = Random::new(1);
     let mut changed = 0;
     for (old, new) in table.joints.iter().zip(&learned.joints) {
-        let who = format!("{name}, {}", table.bodies[old.child].role);
+        let label = format!("{name}, {}", table.bodies[old.child].role);
         let turns = |joint: &RagdollJointDef| -> Vec<Rotation> {
             let of = |pose: &Vec<Transform>| {
                 joint_turn(joint, pose[joint.parent].rotation, pose[joint.child].rotation)
@@ -76,12 +76,12 @@ fn check(name: &str, rig: &Rig, takes: &[Take]) {
         let mut outside: Vec<f32> = turns(new).into_iter().map(|turn| beyond(new, turn)).collect();
         outside.sort_by(f32::total_cmp);
         let most = outside[(outside.len() - 1) * 98 / 100].to_degrees();
-        assert!(most < 1.0, "{who}: the clips exceed their learned limits by {most}°");
+        assert!(most < 1.0, "{label}: the clips exceed their learned limits by {most}°");
         let bind = |body: usize| table.bodies[body].character_from_body.rotation;
         let bound = beyond(new, joint_turn(new, bind(new.parent), bind(new.child)));
         assert!(
             bound.to_degrees() < 0.1,
-            "{who}: the bind pose exceeds the limits by {}°",
+            "{label}: the bind pose exceeds the limits by {}°",
             bound.to_degrees()
         );
         // Motion of the other side counts as well.
@@ -98,7 +98,7 @@ fn check(name: &str, rig: &Rig, takes: &[Take]) {
             // The relative rotation of the bodies in the old frames.
             let child = new.frame_parent.rotation * turn * new.frame_child.rotation.inverse();
             let excess = beyond(old, joint_turn(old, Rotation::IDENTITY, child)) - shown;
-            assert!(excess.to_degrees() < 6.0, "{who}: {}° wider than the clips", excess.to_degrees());
+            assert!(excess.to_degrees() < 6.0, "{label}: {}° wider than the clips", excess.to_degrees());
         }
     }
     assert!(changed * 2 > table.joints.len(), "{name}: {changed} of {} joints", table.joints.len());

@@ -86,11 +86,11 @@ fn contacts_are_reported_by_bone_on_request() {
     let above = world.center_of_mass(character.bodies()[head]) + Vec3::new(0.0, 0.5, 0.0);
     let ball = world.add_body(&BodyDef::dynamic(Shape::Sphere { radius: 0.05 }).at(above));
     let events = run(&mut world, &mut character, 90);
-    let told = |begins: bool| {
+    let contact_count = |begins: bool| {
         let wanted = CharacterEvent::Contact { body: head, other: ball, begins };
         events.iter().filter(|event| **event == wanted).count()
     };
-    assert!(told(true) >= 1 && told(true) - told(false) <= 1, "{events:?}");
+    assert!(contact_count(true) >= 1 && contact_count(true) - contact_count(false) <= 1, "{events:?}");
 }
 
 /// Largest distance, over some steps, of the held body from its place at the bone, metres.

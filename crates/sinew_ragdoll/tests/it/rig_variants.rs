@@ -157,9 +157,9 @@ impl Falls {
         let more_bad = after_all[2].saturating_sub(before_all[2]);
         let falls_worse =
             fewer_good > spread(before_all[0]).max(3) || more_bad > spread(before_all[2]).max(1);
-        let said =
+        let described =
             format!("{:?}, not {:?}; {after_all:?}, not {before_all:?}", after.reasons, before.reasons);
-        (after.verdict == Verdict::Bad || falls_worse).then_some(said)
+        (after.verdict == Verdict::Bad || falls_worse).then_some(described)
     }
 }
 

@@ -82,7 +82,7 @@ struct Variant {
     /// New index of each joint of the plain rig.
     place: Vec<usize>,
     /// Description of the variant, for messages.
-    said: String,
+    changes_made: String,
 }
 
 /// A character to vary.
@@ -113,12 +113,12 @@ impl Subject {
 
     fn variant(&self, analysis: &RigAnalysis, seed: u64) -> Variant {
         let mut random = Random::new(1000 + seed);
-        let mut said = Vec::new();
+        let mut changes_made = Vec::new();
         let mut rig = self.rig.clone();
         let mut hints = Hints::default();
         let mut chance = |random: &mut Random, what: &str| {
             let does = random.unit() < 0.5;
-            does.then(|| said.push(what.to_owned()));
+            does.then(|| changes_made.push(what.to_owned()));
             does
         };
         if chance(&mut random, "twist bones") {
@@ -169,7 +169,7 @@ impl Subject {
         let (prefix, suffix) =
             (PREFIXES[random.index(PREFIXES.len())], SUFFIXES[random.index(SUFFIXES.len())]);
         rig = affixed(&rig, prefix, suffix);
-        said.push(format!("convention {convention}, '{prefix}' and '{suffix}'"));
+        changes_made.push(format!("convention {convention}, '{prefix}' and '{suffix}'"));
         let (rig, place) = if has_clips {
             let same = (0..rig.joints.len()).collect();
             (rig, same)
@@ -177,7 +177,7 @@ impl Subject {
             shuffled(&rig, seed)
         };
         let first = usize::from(is_mirrored);
-        Variant { rig, hints, place: place[first..].to_vec(), said: said.join(", ") }
+        Variant { rig, hints, place: place[first..].to_vec(), changes_made: changes_made.join(", ") }
     }
 
     /// Feet as children of the root, limbs as roots, beginnings of limbs without skin.
@@ -250,8 +250,8 @@ fn flaws(number: u64, subject: &Subject, count: u64) -> Vec<String> {
     // Different seeds for each rig, so that together they cover more.
     let first = number * count % ALL;
     for seed in (first..first + count).map(|seed| seed % ALL) {
-        let Variant { rig, hints, place, said } = subject.variant(&analysis, seed);
-        let what = format!("{name}, variant {seed} ({said})");
+        let Variant { rig, hints, place, changes_made } = subject.variant(&analysis, seed);
+        let what = format!("{name}, variant {seed} ({changes_made})");
         let seen = analyze_hinted(&rig, &hints).expect("a skin");
         let (def, _) = build(&rig, &seen, &BuildOptions::default()).expect("a ragdoll");
         check_sound(&what, &def);

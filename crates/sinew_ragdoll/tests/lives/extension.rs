@@ -132,8 +132,8 @@ impl Extension {
 
     /// Events of the last step.
     pub fn events(&self) -> String {
-        let told = self.cast.iter().filter(|member| !member.character.events().is_empty());
-        told.map(|member| format!("{} {:?} ", member.number, member.character.events())).collect()
+        let with_events = self.cast.iter().filter(|member| !member.character.events().is_empty());
+        with_events.map(|member| format!("{} {:?} ", member.number, member.character.events())).collect()
     }
 
     /// True if it adds energy that is not accounted for.
@@ -235,7 +235,7 @@ pub fn own(character: &Character) -> impl Iterator<Item = BodyId> {
 }
 
 /// Index of one of the characters, if there are any.
-pub fn who(a: &Actor, n: &mut Numbers) -> Option<usize> {
+pub fn chosen(a: &Actor, n: &mut Numbers) -> Option<usize> {
     let names: Vec<(u64, usize)> =
         a.more.cast.iter().enumerate().map(|(i, member)| (member.name, i)).collect();
     pick(&names, n.bits(), |_| true)

@@ -255,8 +255,8 @@ const PAIRS: &[(&str, [Word; 2])] =
 
 /// Meaning of a whole word.
 pub(super) fn meaning(word: &str) -> Option<Word> {
-    let said = |&&(_, words): &&(Word, &str)| words.split(' ').any(|known| known == word);
-    WORDS.iter().find(said).map(|&(meaning, _)| meaning)
+    let has_word = |&&(_, words): &&(Word, &str)| words.split(' ').any(|known| known == word);
+    WORDS.iter().find(has_word).map(|&(meaning, _)| meaning)
 }
 
 /// Meanings of a word, whole or as known words joined together ("lefttoebase", "lthigh", "左足首"); `None` if a part of it
