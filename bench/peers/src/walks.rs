@@ -1,4 +1,4 @@
-//! The same random walks by our mover and by Rapier's controller: depth, blocked steps, climbed steps, time.
+//! Equal random walks by our mover and by Rapier's controller: depth, blocked steps, climbed steps, time.
 
 use crate::measure::quantile;
 use cpu_time::ProcessTime;

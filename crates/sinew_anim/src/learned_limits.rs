@@ -65,7 +65,8 @@ impl LearnedLimit {
         (self.center * self.frame * kept * self.frame.inverse()).normalize()
     }
 
-    /// The same limit for a joint whose frames are `center * frame` on the parent and `frame` on the joint itself.
+    /// Converts to the limit of a joint whose frames are `center * frame` on the parent and `frame` on the joint
+    /// itself.
     pub fn swing_twist(&self) -> SwingTwistLimit {
         let [y, z] = self.swing.map(Range::symmetric);
         SwingTwistLimit { swing_y: y, swing_z: z, twist: self.twist }

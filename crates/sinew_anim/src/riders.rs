@@ -72,8 +72,8 @@ impl Riders {
         Self { list, has_body }
     }
 
-    /// The same with the transforms that a clip gives at its start: an author who moves a hat by the clip alone may
-    /// have left it anywhere in the bind pose.
+    /// Creates riders with the transforms that a clip gives at its start: an author who moves a hat by the clip alone
+    /// may have left it anywhere in the bind pose.
     ///
     /// # Panics
     /// If the clip or the riders are not of the rig.

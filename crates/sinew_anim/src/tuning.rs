@@ -35,7 +35,8 @@ pub const MAX_SPEED: f32 = 1_000.0;
 /// `retarget` and by `loaded` of `sinew`.
 pub(crate) const WALK_STANDS: usize = 3;
 
-/// The same for a run, which is mostly in the air.
+/// Least share of a clip's frames in which a foot is low, for a run: one in this number, because a run is mostly in the
+/// air.
 ///
 /// Larger: a kick counts as a run. Smaller: cartoon runs count as jumps. Shown by `loaded` of `sinew`.
 pub(crate) const RUN_STANDS: usize = 8;
@@ -138,7 +139,7 @@ pub(crate) const ANKLE_HEIGHT: f32 = 0.04;
 
 /// Confidence of the role of an added joint.
 ///
-/// It is reported and decides nothing. Shown by the tests of `retarget`.
+/// It affects only a report. Shown by the tests of `retarget`.
 pub(crate) const MADE_UP: f32 = 0.5;
 
 // playback/inertial.rs

@@ -12,7 +12,7 @@ use sinew::physics::shape::{Shape, ShapeDef};
 pub enum Site {
     /// The cabin on its posts, with porch and stairs.
     CabinWithStairs,
-    /// The same meadow without the cabin: flat ground at y = 0 where the stairs were.
+    /// The meadow without the cabin: flat ground at y = 0 where the stairs were.
     Flat,
 }
 

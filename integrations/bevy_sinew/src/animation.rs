@@ -32,7 +32,7 @@ pub struct BevyAnimation {
 pub(crate) struct Given {
     /// Poses of the joints, in the order of the rig; empty before the first frame.
     joints: Vec<Place>,
-    /// The same pose, with everything above the pelvis at rest.
+    /// Pose with everything above the pelvis at rest.
     pose: Option<Pose>,
 }
 

@@ -68,7 +68,7 @@ pub enum CharacterFileError {
     /// One of its clips cannot be played.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// It is not a humanoid, or one of its clips cannot be played.
+    /// The character is not a humanoid, or one of its clips cannot be played.
     #[error(transparent)]
     Builtin(#[from] BuiltinError),
     /// The settings name a missing clip.

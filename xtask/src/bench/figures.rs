@@ -48,7 +48,7 @@ pub const LIMITS: Figure = Figure {
 /// Deepest overlap of two bodies after any checked step.
 pub const DEPTH: Figure =
     Figure { heading: "depth", unit: Unit::Length, of: |e| number(e, "penetration_run_max_m") };
-/// The same after the last step.
+/// Deepest overlap of two bodies after the last step.
 pub const DEPTH_END: Figure =
     Figure { heading: "depth at the end", unit: Unit::Length, of: |e| number(e, "penetration_end_max_m") };
 /// 99th percentile of the overlaps after the last step.

@@ -152,12 +152,12 @@ pub fn glance(results: &Results) -> Table {
     times_and_figures(&physics(results))
 }
 
-/// The same for animation scenes.
+/// One line per animation scene: time and main figure of each engine.
 pub fn animation(results: &Results) -> Table {
     times_and_figures(&results.scenes.iter().filter(|scene| is_animation(scene)).collect::<Vec<_>>())
 }
 
-/// The same for ragdolls beside MuJoCo.
+/// One line per scene of ragdolls beside MuJoCo: time and main figure of each engine.
 pub fn ragdolls(results: &Results) -> Table {
     times_and_figures(&results.scenes.iter().filter(|scene| is_of_ragdolls(scene)).collect::<Vec<_>>())
 }

@@ -42,7 +42,7 @@ pub enum Bar {
 pub enum Measure {
     /// A scene: the fastest peer's mean step over Sinew's.
     Peers(&'static str),
-    /// The same for the 99th percentile.
+    /// A scene: the fastest peer's 99th percentile over Sinew's.
     PeersP99(&'static str),
     /// Like `Peers`, but without peers whose joints came apart; if none is left, there is no bar.
     PeersTogether(&'static str),

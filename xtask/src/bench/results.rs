@@ -48,7 +48,7 @@ pub struct EngineResult {
 pub struct Times {
     /// Mean step: the time of the whole run over its steps, impacts and sleep included.
     pub mean: f64,
-    /// The same in the best round.
+    /// Mean step of the best round.
     pub best: f64,
     /// Median step.
     pub median: f64,
@@ -165,7 +165,7 @@ impl SceneResult {
         self.ratio_against(engine, |times| times.mean)
     }
 
-    /// The same for the 99th percentile.
+    /// Sinew's speed by the 99th percentile: that of an engine over ours, if both ran.
     pub fn p99_speed_against(&self, engine: &EngineResult) -> Option<f64> {
         self.ratio_against(engine, |times| times.p99)
     }
@@ -179,7 +179,7 @@ impl SceneResult {
         self.peers().filter_map(|peer| self.speed_against(peer)).min_by(f64::total_cmp)
     }
 
-    /// The same by the 99th percentile, against the peer with the smallest.
+    /// Sinew's speed by the 99th percentile, against the peer with the smallest.
     pub fn p99_speed(&self) -> Option<f64> {
         self.peers().filter_map(|peer| self.p99_speed_against(peer)).min_by(f64::total_cmp)
     }

@@ -429,10 +429,10 @@ class Collider:
         """All bodies of a world file (.json) or a mesh (.glb, .obj)."""
 
     def dynamic(self, *, density: float = 1000.0) -> Collider:
-        """The same body moved by forces; density in kg/m³."""
+        """A copy moved by forces; density in kg/m³."""
 
     def keyed(self, times: ArrayLike, poses: ArrayLike) -> Collider:
-        """The same body, moved to poses (n, 7) at times (n,) in seconds, regardless of obstacles."""
+        """A copy moved to poses (n, 7) at times (n,) in seconds, regardless of obstacles."""
 
 @final
 class Bake:

@@ -28,7 +28,7 @@ pub struct ClipBuildOptions {
     /// Largest error of straight lines against arcs and splines, radians; more keys are inserted where it would be
     /// exceeded.
     pub rotation_tolerance: f32,
-    /// The same for translations and scales, as a share of the diagonal of the channel's bounding box.
+    /// Largest error of translations and scales, as a share of the diagonal of the channel's bounding box.
     pub relative_tolerance: f32,
 }
 

@@ -244,7 +244,7 @@ fn last_not_after(keys: &[Key], time: f32, time_of: impl Fn(&Key) -> f32) -> u32
 }
 
 impl<const N: usize> Span<N> {
-    /// The same value from `start` to `end`.
+    /// Sets one value from `start` to `end`.
     fn hold(&mut self, lane: usize, value: [f32; N], start: f32, end: f32) {
         self.set_left(lane, value);
         self.set_right(lane, value);

@@ -108,7 +108,7 @@ fn moves_twice(rig: &Rig, clip: &Clip) -> bool {
 /// A clip with the data to choose its keys and to measure the error.
 struct Meter<'a> {
     rig: &'a Rig,
-    /// The same motion without repeated keys: of equal consecutive keys only the first and last remain.
+    /// The motion without repeated keys: of equal consecutive keys only the first and last remain.
     clip: Clip,
     root: &'a Affine,
     /// All times of keys.

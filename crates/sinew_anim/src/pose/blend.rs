@@ -17,7 +17,7 @@ pub struct Mask {
 }
 
 impl Mask {
-    /// The same share for all joints.
+    /// Creates a mask with the same share for all joints.
     ///
     /// # Panics
     /// If `share` is not in 0..=1.

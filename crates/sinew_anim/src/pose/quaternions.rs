@@ -64,7 +64,7 @@ impl<L: Lanes> Quaternions<L> {
         Self { v, w: L::select(mask, a.w, b.w) }
     }
 
-    /// The same rotation on the hemisphere of `reference`.
+    /// Chooses the sign on the hemisphere of `reference`.
     #[inline(always)]
     pub(crate) fn toward(self, reference: Self) -> Self {
         let away = L::lt(self.dot(reference), L::splat(0.0));

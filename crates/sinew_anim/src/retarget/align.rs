@@ -135,7 +135,8 @@ fn chain_turns(
     [(upper, first), (lower, second), (end, second)]
 }
 
-/// The same for a leg; feet that stand in both reference poses stay flat, and only their headings are matched.
+/// Rotations of a leg, as of an arm; feet that stand in both reference poses stay flat, and only their headings are
+/// matched.
 fn leg_turns(from: &Stance<'_>, to: &Stance<'_>, trunk: Rotation, roles: [Role; 4]) -> Vec<(Role, Rotation)> {
     let [upper, lower, foot, toes] = roles;
     let [thigh, shank, (_, along)] = chain_turns(from, to, trunk, [upper, lower, foot]);

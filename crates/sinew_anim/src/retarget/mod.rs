@@ -53,7 +53,7 @@ pub enum Feet {
     /// Feet are held where the actor's stand, and lie flat on the floor meanwhile.
     #[default]
     Locked,
-    /// They go where the rotations carry them, and are tilted as the actor's.
+    /// The feet go where the rotations carry them, and are tilted as the actor's.
     Free,
 }
 

@@ -11,7 +11,7 @@ use sinew_math::{Vec3, direction};
 /// Source of a reference pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reference {
-    /// It was given: the rest pose that a file puts before its motion.
+    /// A given pose: the rest pose that a file puts before its motion.
     Stated,
     /// The rest pose of the rig.
     Rest,

@@ -97,8 +97,8 @@ impl Bound {
         (self.lo, self.hi) = (min3(self.lo, position), max3(self.hi, position));
     }
 
-    /// The same for a skeleton without skin: bones weigh by their length, and joints act as vertices. `None` if no bone
-    /// has a finite length.
+    /// Collects the bind pose of a skeleton without skin: bones weigh by their length, and joints act as vertices.
+    /// `None` if no bone has a finite length.
     pub fn of_bones(rig: &Rig, pose: &[LocalTransform]) -> Option<Self> {
         let mut model = Vec::new();
         local_to_model(rig, pose, &Affine::IDENTITY, &mut model);

@@ -188,7 +188,7 @@ impl RigAnalysis {
 }
 
 impl RigAnalysis {
-    /// The same analysis with another file unit, for instance for a giant.
+    /// Returns the analysis with another file unit, for instance for a giant.
     ///
     /// # Panics
     /// If `unit_scale` (metres) is not above 0 and finite.

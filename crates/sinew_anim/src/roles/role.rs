@@ -163,7 +163,7 @@ impl Role {
         self.side() == Some(Side::Right)
     }
 
-    /// The same part of the other side; roles without a side are their own mirror image.
+    /// Returns the part of the other side; roles without a side are their own mirror image.
     pub fn mirror(self) -> Self {
         match self {
             Self::Shoulder(side) => Self::Shoulder(side.mirror()),

@@ -255,7 +255,7 @@ pub(crate) const PROP_SHARE: f32 = 0.1;
 
 /// Confidence of a prop, 0 to 1.
 ///
-/// It is reported and decides nothing. No scene shows it.
+/// It affects only a report. No scene shows it.
 pub(crate) const PROP_CONFIDENCE: f32 = 0.5;
 
 // roles/symmetry.rs

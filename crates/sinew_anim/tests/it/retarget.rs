@@ -18,7 +18,7 @@ fn onto(actor: &Actor, rig: &Rig, analysis: &RigAnalysis, options: &RetargetOpti
     retarget(body, &actor.clip, Body { rig, analysis }, options).unwrap()
 }
 
-/// The same character scaled by `times`.
+/// Scales a character by `times`.
 fn scaled(rig: &Rig, analysis: &RigAnalysis, times: f32) -> (Rig, RigAnalysis) {
     let mut rig = rig.clone();
     for joint in rig.joints.iter_mut().filter(|joint| joint.parent.is_none()) {

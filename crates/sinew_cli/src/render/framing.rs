@@ -47,7 +47,7 @@ impl Framing {
         Self { centers, half: half + Vec3::splat(least), direction }
     }
 
-    /// The same framing from another direction (any length).
+    /// Returns the framing from another direction (any length).
     pub fn seen_from(&self, direction: Vec3) -> Self {
         Self { direction, ..self.clone() }
     }

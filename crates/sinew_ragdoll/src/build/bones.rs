@@ -128,7 +128,7 @@ impl Bones {
         self.list.iter().position(|bone| bone.part == part && bone.side == side)
     }
 
-    /// The same bone of the other side; `None` for bones without a side.
+    /// Returns the bone of the other side; `None` for bones without a side.
     pub fn twin(&self, bone: usize) -> Option<usize> {
         let role = self.list[bone].role;
         role.side()?;

@@ -104,7 +104,7 @@ fn heights(def: &RagdollDef) -> core::ops::RangeInclusive<f32> {
     if bones_of(def).anatomy == Anatomy::Human { HEIGHTS } else { CREATURES }
 }
 
-/// The same ragdoll in metres; its rig too, if that was read in the same unit.
+/// Converts the ragdoll to metres; its rig too, if that was read in the same unit.
 pub(super) fn repair_in_metres(repair: &Repair) -> Repair {
     let def = in_metres(&repair.def);
     let is_same = |rig: &RagdollDef| (0.5..2.0).contains(&(rig.height / repair.def.height));

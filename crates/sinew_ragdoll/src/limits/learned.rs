@@ -86,7 +86,7 @@ fn turn(joint: &RagdollJointDef, pose: &dyn Fn(usize) -> Transform) -> Rotation 
     (parent.inverse() * (pose(joint.child).rotation * joint.frame_child.rotation)).normalize()
 }
 
-/// The same rotation on the other side: swing about z and twist change sign, and a hinge bends in the same direction.
+/// Mirrors a rotation to the other side: swing about z and twist change sign, and a hinge bends in the same direction.
 fn mirrored(kind: JointKind, turn: Rotation) -> Rotation {
     match kind {
         JointKind::Hinge { .. } => turn,

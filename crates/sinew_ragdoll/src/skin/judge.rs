@@ -46,7 +46,7 @@ pub enum FlawKind {
     Resized,
     /// The skin lies in the floor, or above it.
     OffFloor,
-    /// It lies still without touching anything.
+    /// The character lies still without touching anything.
     Airborne,
 }
 

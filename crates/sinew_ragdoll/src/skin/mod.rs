@@ -46,7 +46,7 @@ pub struct SkinQuality {
     pub edge_stretch_p999: f32,
     /// The largest growth, as a share of the size.
     pub edge_stretch_max: f32,
-    /// The same over the file's clips; `None` without clips.
+    /// 99.9th percentile of the growth over the file's clips; `None` without clips.
     pub clips_stretch_p999: Option<f32>,
     /// The largest growth over the file's clips.
     pub clips_stretch_max: Option<f32>,
@@ -64,9 +64,9 @@ pub struct SkinQuality {
     /// Lowest height of the drawn skin above the floor while the character stands before its fall. Negative inside the
     /// floor; `None` if not measured.
     pub standing_height_m: Option<f32>,
-    /// The same during a get-up.
+    /// Lowest height of the drawn skin above the floor during a get-up.
     pub rising_height_m: Option<f32>,
-    /// The same once it is up again.
+    /// Lowest height of the drawn skin above the floor once it is up again.
     pub up_height_m: Option<f32>,
     /// Longest time in a drop without a body near the floor after the ragdoll had become calm, seconds; `None` if not
     /// measured.

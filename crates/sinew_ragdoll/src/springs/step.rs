@@ -55,8 +55,8 @@ pub struct SpringSwing {
     pub(super) ways: Vec<Vec3>,
     /// Nodes that do not swing at the end of the last step, in the world.
     pub(super) before: Vec<Affine>,
-    /// The same one step earlier, and the length of that step, seconds: gives the curvature of the path between two
-    /// poses.
+    /// Non-swinging nodes one step earlier, and the length of that step, seconds: gives the curvature of the path
+    /// between two poses.
     pub(super) earlier: Vec<Affine>,
     pub(super) stride: f32,
     /// Local rotation of every bone, as shown.

@@ -14,7 +14,7 @@ fn worn(chains: &Chains, backstop: Option<Backstop>) -> CharacterDef {
     dressed(&[chains], |garment| garment.backstop = backstop)
 }
 
-/// The same shape, with its width scaled by `factor`.
+/// Scales the width of a shape by `factor`.
 fn thinner(shape: &Shape, factor: f32) -> Shape {
     match *shape {
         Shape::Capsule { half_height, radius } => Shape::Capsule { half_height, radius: radius * factor },

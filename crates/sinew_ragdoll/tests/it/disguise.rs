@@ -110,7 +110,7 @@ pub const CONVENTIONS: [Convention; 15] = [
             "mixamorig:[Left|Right]ToeBase",
         ],
     },
-    // The same with its colon stripped.
+    // Mixamo with its colon stripped.
     Convention {
         trunk: [
             "mixamorigHips",

@@ -271,7 +271,7 @@ fn each_defect_is_reported_alone() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The same on a body of other proportions, in another pose, with collar bones.
+/// The defects are also found on a body of other proportions, in another pose, with collar bones.
 #[needs_data]
 #[test]
 fn defects_of_a_foreign_rig_are_reported() {

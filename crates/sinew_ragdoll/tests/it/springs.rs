@@ -86,7 +86,7 @@ fn random_hair(random: &mut Random) -> SpringBone {
     }
 }
 
-/// The same hair with random colliders, centres and limits of every kind.
+/// Hair as that of `maned`, with random colliders, centres and limits of every kind.
 fn random_springs(base: &Rig, random: &mut Random) -> Springs {
     let settings = random_hair(random);
     let mut springs = base.springs.clone();

@@ -32,7 +32,7 @@ pub enum SheetError {
     /// Several meshes have it: their nodes.
     #[error("{} meshes have that name or material, and a garment is of one: {}", .0.len(), .0.join(", "))]
     Several(Vec<String>),
-    /// It has no weights, but another part of its mesh has.
+    /// The part has no weights, but another part of its mesh has.
     #[error("that part of the mesh has no weights, and others have: give it some")]
     NoSkin,
     /// The mesh is cloth already.

@@ -122,7 +122,7 @@ impl Host {
         }
     }
 
-    /// The same structure with a load.
+    /// A copy of the structure with a load.
     fn laden(&self, setup: &Setup<'_>, load: &Load) -> Blueprint {
         let mut plan = self.plan.clone();
         (load.add)(setup, self, &mut plan);

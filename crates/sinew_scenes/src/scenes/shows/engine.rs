@@ -71,7 +71,7 @@ enum Frames {
     Uneven(Random),
 }
 
-/// The same world at another frame rate.
+/// A copy of the world at another frame rate.
 struct Other {
     /// Name of its figure.
     name: &'static str,
