@@ -330,7 +330,7 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     }
 }
 
-/// Transform whose axes agree most with all others, of the allowed ones.
+/// Allowed transform whose axes agree most with all others.
 fn most_alike(all: &[Affine], passes: impl Fn(&Affine) -> bool) -> Option<Affine> {
     let axes =
         |place: &Affine| [place.linear.x_axis, place.linear.y_axis, place.linear.z_axis].map(Vec3::normalize);

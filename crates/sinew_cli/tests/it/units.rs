@@ -227,7 +227,7 @@ fn implausible_mass_is_not_good() {
         };
         let baked = bake(&[]);
         assert!(in_notes(&baked));
-        // Judged like its drop tests: even a flawless fall of an implausible body is not good.
+        // A bake is judged like the drop tests: even a flawless fall of an implausible body is not good.
         assert_ne!(baked["verdict"], "good", "{length}: {kg} kg");
         let first = baked["reasons"][0].as_str().expect("a reason");
         assert!(first.contains(mass) && first.contains("--mass the mass"), "{length}: {first}");
