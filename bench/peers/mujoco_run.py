@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A scene of our own ragdolls on MuJoCo: prints what `peers run` prints.
+"""Runs a scene of our own ragdolls on MuJoCo and prints the same report as `peers run`.
 
 Needs `pip install mujoco`. The figures come from `peers mjcf`, so that both engines run the same bodies, masses, joints,
 limits, friction and pairs that do not collide. MuJoCo runs at its own default step of 2 ms, single-threaded. Its times are
@@ -14,9 +14,9 @@ import time
 import xml.etree.ElementTree as ET
 
 STEP = 1.0 / 60.0
-# Steps of MuJoCo that are timed at once: 50 ms of the scene, three steps of the others.
+# Steps of MuJoCo in one timed batch: 50 ms of the scene, three steps of the others.
 BATCH_SECONDS = 3 * STEP
-# Batches between two looks at depths, as often as the others are looked at.
+# Batches between two measurements of depth, as often as for the other engines.
 LOOK_EVERY = 5
 EXCEEDED = 0.1
 
@@ -34,10 +34,10 @@ def renamed(element, suffix):
 
 
 def model_text(scene):
-    """The figure's model with as many figures as the scene has, its walls and its friction."""
+    """A MuJoCo model with all figures, walls and friction of the scene."""
     root = ET.fromstring(scene["mjcf"])
     default = ET.SubElement(root, "default")
-    # Sliding; the others act only where a contact asks for more directions than MuJoCo's default.
+    # Sliding friction; the other coefficients act only if a contact has more directions than MuJoCo's default.
     ET.SubElement(default, "geom", friction=numbers([scene["friction"], 0.005, 0.0001]))
     world = root.find("worldbody")
     figure = world.find("body")
@@ -65,7 +65,7 @@ def quantile(values, share):
 
 
 class Meter:
-    """Depths that MuJoCo itself finds, and how far hinges are past their ranges."""
+    """Penetration depths reported by MuJoCo, and overshoots of hinge ranges."""
 
     def __init__(self, mujoco, model):
         self.np = __import__("numpy")
@@ -109,7 +109,7 @@ class Meter:
 
 def run(mujoco, scene, steps, quality):
     model = mujoco.MjModel.from_xml_string(model_text(scene))
-    # Room for a heap; only what is used of it is touched.
+    # Memory for a heap; only the used part is touched.
     data = mujoco.MjData(model)
     batch = round(BATCH_SECONDS / model.opt.timestep)
     per_step = STEP / (batch * model.opt.timestep)
@@ -168,7 +168,7 @@ def main():
     if arguments.start is not None:
         command += ["--start", arguments.start]
     scene = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-    # By the name that it was asked for.
+    # The name in the command.
     scene["scene"] = arguments.scene
     print(json.dumps(run(mujoco, scene, arguments.steps or scene["steps"], arguments.quality)))
     return 0

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The whole benchmark on one large machine: scenes side by side, each on a core of its own, engines in turns on it.
+"""Runs the whole benchmark on one large machine: scenes in parallel, each on its own core, on which the engines alternate.
 
 Takes minutes where `cargo xtask bench` takes hours. Scenes share memory and the last cache, so times are larger than those
 of an idle machine, for all engines; compare engines, not runs. Build the binaries as `cargo xtask bench` does, then
@@ -20,10 +20,10 @@ import time
 from pathlib import Path
 
 ROUNDS = 3
-# Starts of a scene that is chaotic.
+# Starts of a chaotic scene.
 STARTS = 5
 MUJOCO = Path(__file__).with_name("mujoco_run.py")
-# What takes longest comes first, so that no core is left with it at the end.
+# The longest scenes come first, so that no core is left with one at the end.
 LONG = ["humanoid_pile_100", "rain", "crowd_pile", "ragdoll_pile", "boxes_10000", "joint_grid", "cloth", "box_rain",
         "large_pyramid", "humanoid_pile_10"]
 
@@ -33,7 +33,7 @@ def listed(binary):
 
 
 def commands(options, mujoco):
-    """Of each kind of scene, the engines that are for it, as (name, command)."""
+    """Engines for each kind of scene, as (name, command)."""
     by_field = {}
     for binary in filter(None, [options.peers, options.wide]):
         for engine in listed(binary)["engines"]:
@@ -53,7 +53,7 @@ def processor():
 
 
 def reported(command, core, seconds):
-    """What a run printed; `None` if there was no time for it."""
+    """Output of a run; `None` after a timeout."""
     if seconds < 1.0:
         return None
     try:

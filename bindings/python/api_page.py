@@ -15,7 +15,7 @@ choices and defaults; their types are in the stubs, where editors and type check
 """
 
 
-# Private names of the stubs, as a reader knows them.
+# Public names for private ones of the stubs.
 ALIASES = {
     "_Floats": "NDArray[np.float32]",
     "_Ids": "NDArray[np.uint64]",

@@ -6,7 +6,7 @@ import zipfile
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parent / "sinew_blender"
-# Tags of wheels, and Blender's names of the platforms they are for.
+# Wheel tags, and Blender's names of their platforms.
 PLATFORMS = (
     (r"manylinux.*x86_64|linux_x86_64", "linux-x64"),
     (r"manylinux.*aarch64|linux_aarch64", "linux-arm64"),
@@ -15,7 +15,7 @@ PLATFORMS = (
     (r"win_amd64", "windows-x64"),
     (r"win_arm64", "windows-arm64"),
 )
-# Zips know no earlier moment.
+# The earliest time that zips can store.
 MOMENT = (1980, 1, 1, 0, 0, 0)
 
 

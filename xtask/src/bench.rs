@@ -35,7 +35,7 @@ const PAGE: &str = "docs/benchmarks.md";
 /// Number of rounds in which the engines alternate.
 const ROUNDS: u32 = 3;
 
-/// Number of starts of a heap, between which the engines alternate: a single run of a chaotic scene says little.
+/// Number of starts of a heap, between which the engines alternate: a single run of a chaotic scene has little meaning.
 const STARTS: u32 = 5;
 
 /// Steps of a scene in a quick run.
@@ -44,19 +44,19 @@ const QUICK_STEPS: u32 = 60;
 /// Time limit of a run: some scenes diverge on some engines.
 const LIMIT: Duration = Duration::from_secs(900);
 
-/// Not a scene of the peers: a character from rig to baked clip, whose speed is compared to real time.
+/// A measurement outside of the peers' scenes: a character from rig to baked clip, compared to real time.
 const BAKE: &str = "bake";
 
 /// Extensions of files that hold characters.
 const RIGS: &[&str] = &["glb", "gltf", "vrm", "fbx"];
 
-/// Not a scene of the peers: characters of files that fall limp until they sleep.
+/// A measurement outside of the peers' scenes: characters of files that fall limp until they sleep.
 const LIMP: &str = "limp";
 
-/// Not a scene of the peers: some scenes on one thread and on two, by wall time.
+/// A measurement outside of the peers' scenes: some scenes on one thread and on two, by wall time.
 const THREADS: &str = "threads";
 
-/// Its scenes, and the steps of each, which suffice for a heap.
+/// The threaded scenes, and the steps of each.
 const THREADED: &[(&str, u32)] = &[("box_rain", 120), ("ragdoll_pile", 300)];
 
 /// `cargo xtask bench`: writes docs/benchmarks.md and bench/benchmarks.json.
@@ -205,7 +205,7 @@ impl Bench {
         if self.quick { Ok(()) } else { write(results.clone(), &names) }
     }
 
-    /// Runs a scene on all engines that support it, alternating, so that other load affects all equally.
+    /// Runs a scene on all engines that support it, alternating, so that other load affects them equally.
     fn race(&self, engines: &[Engine], scene: &Scene) -> Result<Vec<EngineResult>> {
         let result = |engine: &Engine| EngineResult { name: engine.name.clone(), reports: Vec::new() };
         let engines: Vec<&Engine> = engines.iter().filter(|engine| engine.is_for(scene)).collect();
@@ -214,7 +214,7 @@ impl Bench {
         let (rounds, steps) = if self.quick { (1, Some(QUICK_STEPS)) } else { (whole, self.steps) };
         for round in 1..=rounds {
             for (engine, result) in engines.iter().zip(&mut results) {
-                if result.why_not().is_some() {
+                if result.missing_reason().is_some() {
                     continue;
                 }
                 eprint!("{:<26} round {round} of {rounds}  {:<14}", scene.name, engine.name);
@@ -321,7 +321,7 @@ fn kept() -> Results {
     Results::from_json(&earlier.unwrap_or(Value::Null))
 }
 
-/// Charts of the landing page, and the machine of the last measurement, in words.
+/// Charts of the landing page, and the machine of the last measurement as text.
 ///
 /// # Errors
 /// If a scene of the charts was not measured.
@@ -349,7 +349,7 @@ fn take(file: &Path) -> Result<()> {
     write(taken, &names.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
-/// Merges the figures of the scenes `names` with those of earlier runs, and writes the page.
+/// Merges new figures of the scenes `names` with earlier ones, and writes the page.
 fn write(results: Results, names: &[&str]) -> Result<()> {
     let mut all = kept();
     all.update(results, names);

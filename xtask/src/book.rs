@@ -15,7 +15,7 @@ const SIZE: [&str; 2] = ["560", "315"];
 /// Largest total size of the pictures, bytes, to keep clones small.
 const MOST_BYTES: u64 = 2_000_000;
 
-/// Times of pictures for scenes whose end shows little, seconds; used when a link is created.
+/// Times of pictures for scenes whose last state is uninformative, seconds; used when a link is created.
 const MOMENTS: &[(&str, &str)] = &[
     ("aabb_vs_obb", "0.75"),
     ("block_overhang", "2.2"),
@@ -40,8 +40,8 @@ const MOMENTS: &[(&str, &str)] = &[
 
 /// `cargo xtask book`: draws the pictures.
 ///
-/// The page shows the picture of a scene as `![NAME](book/NAME.png)`, or `![NAME](book/NAME.png "at 1.5 s")` to say
-/// A scene that the page tells to `sinew run` without a picture gets a link after that paragraph.
+/// The page shows the picture of a scene as `![NAME](book/NAME.png)`, or `![NAME](book/NAME.png "at 1.5 s")` for
+/// another time. If the page runs a scene with `sinew run` without a picture, a link is added after that paragraph.
 #[derive(clap::Args)]
 pub struct Book {}
 
@@ -162,7 +162,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scene_that_is_run_gets_its_picture_once() {
+    fn scene_with_a_command_gets_one_picture() {
         let page = "# Book\n\nA planet: `sinew run kepler`.\n\nAgain: `sinew run kepler --steps 3`.\n\n\
                     `sinew run wind`\n\n![wind](book/wind.png \"at 2.5 s\")\n";
         let linked = with_links(page);
@@ -177,17 +177,17 @@ mod tests {
     }
 
     #[test]
-    fn a_new_link_says_when_the_scene_is_worth_a_picture() {
+    fn new_link_has_the_scenes_picture_time() {
         assert!(with_links("`sinew run bounce`\n").ends_with("![bounce](book/bounce.png \"at 2 s\")\n"));
     }
 
     #[test]
-    fn a_link_at_the_end_of_the_page() {
+    fn link_is_added_at_the_end_of_the_page() {
         assert_eq!(with_links("`sinew run spring`\n"), "`sinew run spring`\n\n![spring](book/spring.png)\n");
     }
 
     #[test]
-    fn two_pictures_of_a_scene_are_refused() {
+    fn two_pictures_of_a_scene_are_rejected() {
         assert!(pictures("![a](book/a.png)\n\n![a](book/a.png \"at 1 s\")\n").is_err());
     }
 }

@@ -42,7 +42,7 @@ async function serve() {
   return server;
 }
 
-// A browser with one page, and what its console said.
+// A browser with one page, and the messages of its console.
 class Browser {
   static async start(flags) {
     const browser = new Browser();
@@ -85,7 +85,7 @@ class Browser {
     return new Promise((done, failed) => this.pending.set(id, { done, failed }));
   }
 
-  // What the canvas says of itself.
+  // State that the canvas reports.
   async said() {
     const expression = "JSON.stringify({...document.getElementById('viewer')?.dataset})";
     const { result } = await this.send('Runtime.evaluate', { expression });

@@ -1,6 +1,7 @@
-//! Pages of the book beside the viewer's: the chapters of `docs/guide/src/book.md`, with each of their scenes to be run in place.
+//! Writes pages of the book beside the viewer's: the chapters of `docs/guide/src/book.md`, with scenes that run in
+//! place.
 //!
-//! The text is the guide's own; pictures of scenes become what runs at a click, and pages that a chapter links to lie beside it.
+//! The text is the guide's; pictures of scenes become buttons that run them, and linked pages are written beside it.
 
 use crate::formulas;
 use anyhow::{Context, Result, bail, ensure};
@@ -12,16 +13,16 @@ use std::path::Path;
 const BOOK: &str = "docs/guide/src/book.md";
 /// Folder of the scenes.
 const SCENES: &str = "crates/sinew_scenes/src/scenes";
-/// Folder of the book, of the pages that it links to, and of its pictures.
+/// Folder of the book, its linked pages and its pictures.
 const GUIDE: &str = "docs/guide/src";
 
-/// A chapter: its title, and its text.
+/// A chapter: title and text.
 struct Chapter<'a> {
     title: Vec<Event<'a>>,
     text: Vec<Event<'a>>,
 }
 
-/// Contents of pages as they are made: what they show and lead to.
+/// State while pages are written: their scenes and links.
 #[derive(Default)]
 struct Site {
     /// Sources of all scenes; none in tests.
@@ -30,10 +31,11 @@ struct Site {
     scenes: Vec<String>,
 }
 
-/// Writes a page for each chapter and one with their titles into the folder of the viewer's page; returns the titles of the chapters as HTML, and the number of scenes.
+/// Writes a page per chapter and a table of contents into the viewer's folder. Returns the chapters' titles as HTML,
+/// and the number of scenes.
 ///
 /// # Errors
-/// If the book is not there or has no chapters, or if one of its pictures, links or chapters would be lost.
+/// If the book is missing or has no chapters, or if a picture, link or chapter would be lost.
 pub fn write(root: &Path, folder: &Path) -> Result<(Vec<String>, usize)> {
     let book = fs::read_to_string(root.join(BOOK)).context(BOOK)?;
     let chapters = chapters(&book);
@@ -65,7 +67,7 @@ pub fn write(root: &Path, folder: &Path) -> Result<(Vec<String>, usize)> {
     Ok((titles, scenes))
 }
 
-/// Text of a page of the guide, with what it includes.
+/// Text of a page of the guide, with its included files.
 ///
 /// # Errors
 /// If it or what it includes cannot be read.
@@ -84,7 +86,7 @@ fn file(number: usize) -> String {
     format!("chapter-{}.html", number + 1)
 }
 
-/// Links to all chapters, but for the one that is shown, with one to the start.
+/// Links to all other chapters, and one to the start.
 fn links(titles: &[String], shown: Option<usize>) -> String {
     format!(
         "<a href=\"index.html\">Start</a> · <a href=\"viewer.html\">Viewer</a><ol>{}</ol>",
@@ -92,7 +94,7 @@ fn links(titles: &[String], shown: Option<usize>) -> String {
     )
 }
 
-/// Chapters as items of a list, with links but for the one that is shown.
+/// Chapters as list items, with links except for the current one.
 pub fn list(titles: &[String], shown: Option<usize>) -> String {
     let link = |(number, title): (usize, &String)| {
         if shown == Some(number) {
@@ -104,7 +106,7 @@ pub fn list(titles: &[String], shown: Option<usize>) -> String {
     titles.iter().enumerate().map(link).collect()
 }
 
-/// Sources of the scenes, one after the other.
+/// Sources of all scenes in one text.
 ///
 /// # Errors
 /// If they cannot be read.
@@ -121,7 +123,7 @@ pub fn sources(root: &Path) -> Result<String> {
     Ok(text)
 }
 
-/// The line that a scene has for people.
+/// The one-line description of a scene.
 ///
 /// # Errors
 /// If there is no such scene.
@@ -135,7 +137,7 @@ fn about_in(sources: &str, scene: &str) -> Result<String> {
     Ok(line.with_context(|| format!("the scene {scene} has no line for people"))?.0.to_owned())
 }
 
-/// Text within HTML.
+/// Escapes text for HTML.
 pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
@@ -144,7 +146,7 @@ fn events(text: &str) -> Vec<Event<'_>> {
     Parser::new_ext(text, Options::ENABLE_TABLES).collect()
 }
 
-/// Parts of the book below its headings of the second level.
+/// Splits the book at headings of the second level.
 fn chapters(book: &str) -> Vec<Chapter<'_>> {
     let mut chapters: Vec<Chapter<'_>> = Vec::new();
     let mut in_title = false;
@@ -171,12 +173,12 @@ fn html(events: Vec<Event<'_>>) -> String {
     out
 }
 
-/// Text of HTML without its tags.
+/// Removes the tags from HTML.
 fn plain(html: &str) -> String {
     html.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text)).collect()
 }
 
-/// Formulas among the code as MathML.
+/// Converts formulas in inline code to MathML.
 fn typeset(events: Vec<Event<'_>>) -> Vec<Event<'_>> {
     let mut out: Vec<Event<'_>> = Vec::with_capacity(events.len());
     let mut events = events.into_iter().peekable();
@@ -195,7 +197,7 @@ fn typeset(events: Vec<Event<'_>>) -> Vec<Event<'_>> {
                     out.push(event);
                     continue;
                 };
-                // The text and the end of the block.
+                // Skips the text and the end of the block.
                 events.by_ref().take(2).for_each(drop);
                 out.push(Event::Html(format!("{math}\n").into()));
             }
@@ -205,18 +207,18 @@ fn typeset(events: Vec<Event<'_>>) -> Vec<Event<'_>> {
     out
 }
 
-/// Files of texts by the names of their sources, for links between them.
+/// Output files by the names of their sources, for links between them.
 #[derive(Default)]
 pub struct Pages(Vec<(String, String)>);
 
 impl Pages {
-    /// The text of a source's name has a page in that file.
+    /// Registers the output file of a source.
     pub fn add(&mut self, source: &str, file: &str) {
         self.0.push((source.to_owned(), file.to_owned()));
     }
 
-    /// Text from a folder of the repository as HTML. Links to other pages lead there, others into the repository become words; pictures
-    /// are copied.
+    /// Converts text from a folder of the repository to HTML. Links to other pages point to them, links to other files
+    /// become plain text, and pictures are copied.
     ///
     /// # Errors
     /// If a picture is missing.
@@ -253,7 +255,7 @@ impl Pages {
         Ok(html(kept))
     }
 
-    /// Address of a page that a link of a text means.
+    /// The page that a link of a text refers to.
     fn link(&self, address: &str) -> Option<String> {
         if address.starts_with("https://") || address.starts_with('#') {
             return Some(address.to_owned());
@@ -266,7 +268,7 @@ impl Pages {
     }
 }
 
-/// Text without the lines of Rust that only its tests need.
+/// Removes lines of Rust that only tests need.
 fn without_hidden(text: &str) -> String {
     let mut is_rust = false;
     let mut is_code = false;
@@ -285,10 +287,10 @@ fn without_hidden(text: &str) -> String {
 }
 
 impl Site {
-    /// Text as HTML: pictures of scenes as buttons, links to pages of the guide as links to files beside this one.
+    /// Converts text to HTML: pictures of scenes become buttons, links to guide pages become links to output files.
     ///
     /// # Errors
-    /// On a picture that is no scene's, and a link that leads nowhere here.
+    /// If a picture belongs to no scene, or a link has no target in the site.
     fn html(&mut self, events: Vec<Event<'_>>) -> Result<String> {
         let mut out: Vec<Event<'_>> = Vec::with_capacity(events.len());
         let mut in_picture = false;
@@ -296,10 +298,10 @@ impl Site {
             match event {
                 Event::Start(Tag::Image { dest_url, .. }) => {
                     let scene = dest_url.strip_prefix("book/").and_then(|file| file.strip_suffix(".png"));
-                    let scene = scene.with_context(|| format!("the picture {dest_url} is no scene's"))?;
-                    // A picture is a figure of its own, in no paragraph.
+                    let scene = scene.with_context(|| format!("the picture {dest_url} is not of a scene"))?;
+                    // A picture is a figure of its own, outside paragraphs.
                     let begins = matches!(out.last(), Some(Event::Start(Tag::Paragraph)));
-                    ensure!(begins, "the picture {dest_url} stands within a paragraph");
+                    ensure!(begins, "the picture {dest_url} is inside a paragraph");
                     out.pop();
                     let about = about_in(&self.sources, scene).unwrap_or_default();
                     ensure!(self.sources.is_empty() || !about.is_empty(), "there is no scene {scene}");
@@ -320,20 +322,20 @@ impl Site {
         Ok(html(out))
     }
 
-    /// Address of what a link of the guide leads to.
+    /// Output address of a link of the guide.
     fn link(&self, address: &str) -> Result<String> {
         if address.starts_with("https://") {
             return Ok(address.to_owned());
         }
         let (file, anchor) = address.split_once('#').unwrap_or((address, ""));
         let Some(name) = file.strip_suffix(".md").filter(|name| !name.contains('/')) else {
-            bail!("the link to {address} leads nowhere in the pages of the book");
+            bail!("the link to {address} has no target in the pages of the book");
         };
         Ok(if anchor.is_empty() { format!("{name}.html") } else { format!("{name}.html#{anchor}") })
     }
 }
 
-/// Picture of a scene that runs at a click, with the scene's line for people.
+/// A picture that runs its scene on a click, with the scene's description.
 fn figure(scene: &str, about: &str) -> String {
     let about = escaped(about);
     format!(
@@ -377,7 +379,7 @@ mod tests {
                         | a | b |\n|---|---|\n| 1 | 2 |\n\n## 2. Words\n\nNo scene.\n";
 
     #[test]
-    fn a_chapter_is_a_page() {
+    fn chapter_becomes_a_page() {
         let chapters = chapters(TEXT);
         assert_eq!(chapters.len(), 2);
         assert_eq!(html(chapters[0].title.clone()), "1. Forces");
@@ -397,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn what_would_be_lost_is_refused() {
+    fn unconvertible_text_is_rejected() {
         for text in ["![x](other/x.png)\n", "See [here](../code.rs).\n", "A ![x](book/x.png) in a line.\n"] {
             assert!(Site::default().html(events(text)).is_err(), "{text}");
         }
@@ -412,7 +414,7 @@ mod tests {
     }
 
     #[test]
-    fn links_of_a_guide_lead_to_its_pages() {
+    fn guide_links_point_to_output_pages() {
         let mut pages = super::Pages::default();
         pages.add("joints.md", "joints.html");
         let text = "See [joints](../guide/src/joints.md#limits), [code](../src/lib.rs).\n\n```rust\n# hidden\nlet x = 1;\n```\n";
@@ -422,9 +424,9 @@ mod tests {
         assert!(html.contains("let x = 1;") && !html.contains("hidden"), "{html}");
     }
 
-    /// Nothing of the book itself is lost: every heading is a chapter, every picture a button.
+    /// The whole book is converted: every heading is a chapter, every picture a button.
     #[test]
-    fn the_whole_book_is_written() {
+    fn whole_book_is_converted() {
         let folder = command::target().join("tmp/chapters");
         std::fs::create_dir_all(&folder).expect("a folder");
         let (written, scenes) = super::write(&command::root(), &folder).expect("the book");

@@ -112,7 +112,7 @@ fn window() -> Result<()> {
     Ok(())
 }
 
-/// Compiler of the examples in a window: the full Bevy needs a newer one than the plugin, which the pinned one builds.
+/// Compiler of the windowed examples: the full Bevy needs a newer one than the plugin.
 const WINDOW_TOOLCHAIN: &str = "1.97.1";
 
 /// Compiles the plugin for Bevy without features and tests it with all; then tests the whole of Bevy with files loaded by Bevy, and two
@@ -153,16 +153,16 @@ fn bevy_window(example: &str, at: &str) -> Result<()> {
 
 /// Checks that crates can be published: metadata, licences, versions of internal crates. Other checks cover compilation.
 fn packages() -> Result<()> {
-    // Neither is published.
+    // These two are not published.
     let not = ["--exclude", "xtask", "--exclude", "needs_data"];
     let mut package = command::cargo(&["package", "--workspace", "--no-verify"]);
     package.args(not);
     let out =
         package.args(["--allow-dirty", "--target-dir"]).arg(command::target().join("packages")).output()?;
-    let told = String::from_utf8_lossy(&out.stderr);
+    let errors_text = String::from_utf8_lossy(&out.stderr);
     // A package without a description or a licence is a warning only.
-    if !out.status.success() || told.contains("warning") {
-        bail!("{told}");
+    if !out.status.success() || errors_text.contains("warning") {
+        bail!("{errors_text}");
     }
     Ok(())
 }
@@ -274,7 +274,7 @@ enum Gate {
     Is(f64),
     /// Strictly below.
     Below(f64),
-    /// Not null: the event happened.
+    /// The value is not null: the event happened.
     Happened,
 }
 
@@ -340,7 +340,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn gates_hold_and_miss() {
+    fn gates_are_met_or_missed() {
         assert_eq!(miss("nan", Gate::Is(0.0), &json!(0)), None);
         assert_eq!(miss("nan", Gate::Is(0.0), &json!(2)), Some("nan is 2, must be 0".to_owned()));
         assert_eq!(miss("gap", Gate::Below(0.005), &json!(0.004)), None);

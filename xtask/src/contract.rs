@@ -1,4 +1,4 @@
-//! `docs/contract.md`, the lists of the command line's JSON keys, as data. The tests of `sinew_cli` read it with this too.
+//! Parses `docs/contract.md`, the lists of the command line's JSON keys. The tests of `sinew_cli` use it as well.
 
 use serde_json::Value;
 

@@ -1,7 +1,7 @@
-//! Formulas of the book, which are written in its text as inline code, as MathML.
+//! Converts formulas of the book, written as inline code, to MathML.
 //!
-//! A formula is what reads as one: letters, numbers, operators and functions, and at least one sign that code does not have. All else
-//! stays code.
+//! Code is a formula if it consists of letters, numbers, operators and functions and contains at least one sign that
+//! code does not have. Other code is unchanged.
 
 use std::iter::Peekable;
 use std::vec::IntoIter;
@@ -14,7 +14,7 @@ const UNITS: [&str; 4] = ["m", "cm", "mm", "s"];
 const RELATIONS: &str = "=≤≥<>≈";
 const SUMS: &str = "+−±-";
 const PRODUCTS: &str = "·×∗";
-/// Signs that no code of the book has.
+/// Signs that occur in formulas only.
 const SIGNS: &str = "=≤≥≈+−·×√π½¼⅓Σ∑μθωαρτφΩΔ²³⁻¹ⁿ‖°₀₁₂₃₄₅₆₇₈₉ₖ′⌊∠/";
 const SUBSCRIPTS: &str = "₀₁₂₃₄₅₆₇₈₉ₖₙ";
 const PLAIN_SUBSCRIPTS: &str = "0123456789kn";
@@ -23,12 +23,12 @@ const PLAIN_SUPERSCRIPTS: &str = "0123456789−nT";
 
 const SUM: &str = "<mo>∑</mo>";
 
-/// A part of a formula's text.
+/// A token of a formula.
 #[derive(Clone, Debug, PartialEq)]
 enum Token {
     /// A number, name, function or unit, as MathML.
     Atom(String),
-    /// Indices of what stands before: below, above.
+    /// Index marks: subscript, superscript.
     Below(String),
     Above(String),
     Function(String),
@@ -38,13 +38,13 @@ enum Token {
     /// `|` or `‖`, which opens and closes.
     Bar(char),
     Operator(char),
-    /// A fraction line; true where spaces stand around it, so that it takes the whole product after it.
+    /// A fraction slash; true if spaces surround it, so that the whole following product is the denominator.
     Over(bool),
     Space,
     Comma,
 }
 
-/// A formula as MathML; `None` for code.
+/// Converts a formula to MathML; `None` for code.
 pub fn mathml(code: &str, is_display: bool) -> Option<String> {
     let is_code = ["::", "--", "sinew", "(axis", "_from", "()", "{", "\"", "motion"]
         .iter()
@@ -120,7 +120,7 @@ fn translated(text: &str, from: &str, to: &str) -> String {
     text.chars().filter_map(|c| to.chars().nth(from.chars().position(|it| it == c)?)).collect()
 }
 
-/// An index: a number with its sign, or a name.
+/// Reads an index: a number with its sign, or a name.
 fn leaf(text: &str) -> String {
     let one = |c: char| match c {
         '−' => "<mo>−</mo>".to_owned(),
@@ -130,7 +130,7 @@ fn leaf(text: &str) -> String {
     format!("<mrow>{}</mrow>", text.chars().map(one).collect::<String>())
 }
 
-/// A function, a unit, a differential, or names side by side; `None` for a word of text.
+/// Converts a function, a unit, a differential, or adjacent names; `None` for a word of text.
 fn word(text: &str) -> Option<Token> {
     if FUNCTIONS.contains(&text) {
         return Some(Token::Function(text.to_owned()));
@@ -156,7 +156,7 @@ impl Formula {
         while self.tokens.next_if_eq(&Token::Space).is_some() {}
     }
 
-    /// Formulas with commas between them.
+    /// Reads formulas separated by commas.
     fn list(&mut self) -> Option<String> {
         let mut out = self.chain()?;
         while self.tokens.next_if_eq(&Token::Comma).is_some() {
@@ -165,7 +165,7 @@ impl Formula {
         Some(out)
     }
 
-    /// Products between signs.
+    /// Reads products separated by operators.
     fn chain(&mut self) -> Option<String> {
         let mut out = String::new();
         loop {
@@ -196,18 +196,18 @@ impl Formula {
         }
     }
 
-    /// Factors side by side, over others.
+    /// Reads adjacent factors, with an optional denominator.
     fn product(&mut self) -> Option<String> {
         let mut out = self.factors(true)?;
         while let Some(&Token::Over(takes_all)) = self.tokens.peek() {
             self.tokens.next();
             let below = self.factors(takes_all)?;
-            // A narrow fraction is what is summed; a wide one has the sum above.
+            // After a sum, a narrow fraction is its term; a wide one contains the sum in its numerator.
             let after_sum = out.rfind(SUM).map_or(0, |at| if takes_all { 0 } else { at + SUM.len() });
             let above = out.split_off(after_sum);
             out += &format!("<mfrac>{}{}</mfrac>", row(&above), row(&below));
             self.skip();
-            // What comes after a fraction is a factor beside it.
+            // A product continues with factors after a fraction.
             if matches!(
                 self.tokens.peek(),
                 Some(Token::Atom(_) | Token::Function(_) | Token::Root | Token::Open(_))
@@ -222,7 +222,7 @@ impl Formula {
         Some(out)
     }
 
-    /// Factors; up to a space only, unless it takes all.
+    /// Reads factors, up to a space unless `takes_all`.
     fn factors(&mut self, takes_all: bool) -> Option<String> {
         self.skip();
         let mut out = String::new();
@@ -241,7 +241,7 @@ impl Formula {
         }
     }
 
-    /// True if a bar opens: something other than an end follows. Within bars the first bar closes.
+    /// True if a bar opens, because no end follows. Inside bars the first bar closes.
     fn opens(&self) -> bool {
         let mut ahead = self.tokens.clone();
         ahead.next();
@@ -282,7 +282,7 @@ impl Formula {
         self.indexed(base)
     }
 
-    /// What stands between bars, up to the closing one.
+    /// Reads the content between bars.
     fn inside(&mut self) -> Option<String> {
         let mut depth = 0;
         let mut inner = Vec::new();
@@ -306,7 +306,7 @@ impl Formula {
         Some(content)
     }
 
-    /// Adds the indices that follow.
+    /// Adds the following indices to `base`.
     fn indexed(&mut self, base: String) -> Option<String> {
         let mut below = None;
         let mut above = None;
@@ -329,11 +329,11 @@ impl Formula {
     }
 }
 
-/// One part of a fraction, without the brackets around all of it.
+/// One part of a fraction, without enclosing brackets.
 fn row(content: &str) -> String {
     let bare =
         content.strip_prefix("<mrow><mo>(</mo>").and_then(|rest| rest.strip_suffix("<mo>)</mo></mrow>"));
-    // The brackets belong together where no other closes before the end.
+    // The outer brackets match if no other bracket closes before the end.
     let bare = bare.filter(|inner| !inner.contains("<mo>)</mo>"));
     format!("<mrow>{}</mrow>", bare.unwrap_or(content))
 }
@@ -342,7 +342,7 @@ fn row(content: &str) -> String {
 mod tests {
     use super::mathml;
 
-    /// The text of a formula without its tags, fractions as `{a|b}`.
+    /// Text of a formula without tags, with fractions as `{a|b}`.
     fn read(code: &str) -> String {
         let html = mathml(code, false).unwrap_or_else(|| panic!("{code} is a formula"));
         let html = html.replace("<mfrac>", "{").replace("</mfrac>", "}").replace("</mrow><mrow>", "|");
@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn fractions_take_what_they_divide() {
+    fn fractions_contain_their_numerator_and_denominator() {
         assert_eq!(read("a = F/m"), "a={F|m}");
         assert_eq!(read("m g/c"), "{mg|c}");
         assert_eq!(read("2v / 7μg"), "{2v|7μg}");
@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn roots_indices_and_functions() {
+    fn roots_indices_and_functions_are_converted() {
         let html = mathml("T = 2π √(a³/μ)", false).expect("a formula");
         assert_eq!(
             html,

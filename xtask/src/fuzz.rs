@@ -46,7 +46,6 @@ const TARGETS: &[Target] = &[
 
 impl Fuzz {
     /// If a target fails, with its name; or if there is no such target, or no `cargo fuzz`.
-    /// If a target breaks, with its name; or if there is no such target, or no `cargo fuzz`.
     pub fn run(&self) -> Result<()> {
         if let Some(name) =
             self.targets.iter().find(|name| TARGETS.iter().all(|target| target.name != **name))

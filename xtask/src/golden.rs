@@ -15,7 +15,7 @@ const STEPS_DEFAULT: u32 = 600;
 /// A build and a number of threads.
 type Variant = (Profile, u32);
 
-/// Both differences combined: enough to detect a difference.
+/// The variant with both differences: enough to detect a difference.
 const DIAGONAL: &[Variant] = &[(Profile::Debug, 1), (Profile::Release, 2)];
 
 /// Every combination: identifies the difference.

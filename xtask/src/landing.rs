@@ -26,9 +26,9 @@ pub const GALLERY: [(&str, u32, &str, &str); 12] = [
     ("street", 300, "A street", "Movers push crates, flinch and fall when hit, ride a lift and jump."),
     ("rope_bridge", 150, "Ropes", "Two limp figures fall on planks that hang on two ropes."),
     ("skirt", 100, "Skirts and capes of bones", "Chains of bones swing by springs and keep off the legs."),
-    ("arch", 60, "Stones without mortar", "An arch stands under its blocks as the line of thrust says."),
+    ("arch", 60, "Stones without mortar", "An arch of loose blocks stands, as the line of thrust predicts."),
     ("dominoes", 150, "Dominoes", "A ball on a rod strikes the first one."),
-    ("curtain", 55, "Cloth", "A ball flies through a curtain, which hangs on as before."),
+    ("curtain", 55, "Cloth", "A ball flies through a curtain, which stays attached."),
     ("retarget", 90, "Any size", "One walk on a child of 0.8 m and on a giant of 14 m."),
 ];
 
@@ -67,7 +67,7 @@ const WAYS: [(&str, &str, &str, &str); 6] = [
     ),
 ];
 
-/// Pages about the calls of each language.
+/// Pages about the API of each language.
 const API: [(&str, &str); 6] = [
     ("Rust", "api/sinew/index.html"),
     ("JavaScript", "npm.html"),
@@ -93,9 +93,9 @@ const CONTENTS: &str = "docs/guide/src/SUMMARY.md";
 /// Folder of the start page, and of the gallery's pictures.
 const PAGE: &str = "crates/sinew_viewer/page";
 
-/// What a build knows of itself.
+/// Facts about a build.
 pub struct Facts<'a> {
-    /// Address at which the folder will stand, with a slash at its end, or nothing.
+    /// Address at which the folder will be published, with a slash at its end, or nothing.
     pub address: &'a str,
     /// Bytes of the program, uncompressed.
     pub bytes: u64,
@@ -175,7 +175,7 @@ fn pages(root: &Path, folder: &Path, guide: &[(String, String)]) -> Result<()> {
     for (_, file) in guide {
         let name = file.strip_suffix(".html").unwrap_or(file);
         known.add(&format!("{name}.md"), file);
-        // What a page includes is called as it is in the repository.
+        // Included files are named as in the repository.
         let text = fs::read_to_string(root.join(format!("docs/guide/src/{name}.md")))?;
         if let Some((path, _)) = text.split_once("{{#include ").and_then(|(_, rest)| rest.split_once("}}")) {
             known.add(&last(path), file);
@@ -211,14 +211,14 @@ fn gallery(root: &Path, folder: &Path) -> Result<String> {
     let mut html = String::new();
     fs::create_dir_all(folder.join("gallery"))?;
     for (scene, _, title, about) in GALLERY {
-        let told = chapters::about(root, scene)?;
+        let about_scene = chapters::about(root, scene)?;
         let from = root.join(PAGE).join(format!("gallery/{scene}.jpg"));
         fs::copy(&from, folder.join(format!("gallery/{scene}.jpg")))
             .with_context(|| from.display().to_string())?;
         html += &format!(
             "    <li><a class=\"scene\" data-scene=\"{scene}\" href=\"viewer.html?scene={scene}\"><img src=\"gallery/{scene}.jpg\" \
              width=\"480\" height=\"270\" loading=\"lazy\" alt=\"{}\"><div><b>{title}</b><p>{about}</p></div></a></li>\n",
-            chapters::escaped(&told)
+            chapters::escaped(&about_scene)
         );
     }
     Ok(html)
@@ -242,7 +242,7 @@ fn ways(source: Option<&str>) -> String {
     html
 }
 
-/// Number of scenes that the committed hashes name.
+/// Number of scenes with committed hashes.
 fn scene_count(root: &Path) -> Result<usize> {
     Ok(chapters::sources(root)?.matches("    chapter: Chapter::").count())
 }
@@ -252,9 +252,9 @@ mod tests {
     use super::*;
     use crate::command;
 
-    /// Every page that the start page links to is written, and every link of the written pages leads somewhere.
+    /// Every linked page of the start page is written, and every link has a target.
     #[test]
-    fn links_lead_to_pages() {
+    fn every_link_has_a_target() {
         let folder = command::target().join("tmp/landing");
         _ = fs::remove_dir_all(&folder);
         fs::create_dir_all(&folder).expect("a folder");
@@ -269,7 +269,7 @@ mod tests {
                 continue;
             }
             let html = fs::read_to_string(&path).expect("text");
-            // Blocks of code are text.
+            // Skips blocks of code.
             let code = |part: &str| part.split_once("</pre>").map(|(_, after)| after.to_owned());
             let html: String = html
                 .split("<pre>")

@@ -75,12 +75,12 @@ enum Task {
     Lives(searches::Lives),
     /// An hour of game, checked after each step
     Soak(searches::Soak),
-    /// Random comments, messages, names and page lines, for a reader who judges their words
+    /// Random comments, messages, names and page lines, to be checked by a reader
     Sample(sample::Sample),
 }
 
 fn main() -> ExitCode {
-    // Without the backtrace that anyhow adds with RUST_BACKTRACE: the findings must stay visible.
+    // No backtrace from anyhow with RUST_BACKTRACE: it would hide the findings.
     run().unwrap_or_else(|error| {
         eprintln!("Error: {error:#}");
         ExitCode::FAILURE

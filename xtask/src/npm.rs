@@ -15,28 +15,29 @@ const MANIFEST: &str = "bindings/Cargo.toml";
 const PACKAGE: &str = "bindings/web/package";
 /// Tools with their versions, and the tests.
 const TESTS: &str = "bindings/web/tests";
-/// Most bytes of the program after gzip. The goal is 1.3 MB; docs/guide/src/three.md says what keeps it from that.
+/// Size limit of the program after gzip, bytes. The goal is 1.3 MB; docs/guide/src/three.md explains the difference.
 const MOST_BYTES: u64 = 2_000_000;
-/// Rigs that fall in the browser where the shared data is there.
+/// Rigs for the browser test, if the shared data exist.
 const RIGS: [&str; 3] = ["CesiumMan.glb", "kaykit_Knight.glb", "CoolLoops_mixamorig_vrm0.vrm"];
 
-/// `cargo xtask npm`: builds the package and packs it, and says how large it is.
+/// `cargo xtask npm`: builds and packs the package, and prints its size.
 #[derive(clap::Args)]
 pub struct Npm {
     /// Folder to write
     #[arg(long, default_value = "out/npm")]
     out: PathBuf,
-    /// Tries it as well: what its README prints, in Node, in a Vite project in headless Chromium, hashes beside native ones
+    /// Also test it: the program of its README, in Node, in a Vite project in headless Chromium, with hashes against
+    /// the native library
     #[arg(long)]
     check: bool,
-    /// Measures it as well, beside the native library in the same run
+    /// Also measure it, against the native library in the same run
     #[arg(long)]
     measure: bool,
 }
 
 impl Npm {
     /// # Errors
-    /// If the package does not build, its types are wrong, it is too large, or it fails its trial.
+    /// If the package does not build, its types are wrong, it is too large, or a test fails.
     pub fn run(&self) -> Result<()> {
         let out = command::root().join(&self.out);
         let tarball = build(&out)?;
@@ -47,7 +48,7 @@ impl Npm {
     }
 }
 
-/// Builds the package and tries it, for `cargo xtask ci --full`.
+/// Builds and tests the package, for `cargo xtask ci --full`.
 ///
 /// # Errors
 /// As [`Npm::run`].
@@ -89,12 +90,12 @@ fn tools() -> Result<PathBuf> {
 fn build(out: &Path) -> Result<PathBuf> {
     targets::add(targets::BROWSER)?;
     let (binder, tools) = (web::binder()?, tools()?);
-    // Every browser with WebGL2 has vectors, and the bits are the same with them. An additional Rust library would prevent the linker from
-    // optimising across crates.
+    // Every browser with WebGL2 has vector instructions, and results have the same bits with them. An additional Rust
+    // library would prevent the linker from optimising across crates.
     let mut build = cargo(&["rustc", "--lib", "--crate-type", "cdylib", "--profile", "web"]);
     build.args(["--target", targets::BROWSER]);
     command::run(build.env("RUSTFLAGS", "-C target-feature=+simd128"))?;
-    // The package is below the tools, so that their compiler finds three's types.
+    // The package is below the tools' folder, so that the compiler finds three's types.
     let package = tools.join("package");
     if package.exists() {
         fs::remove_dir_all(&package).with_context(|| package.display().to_string())?;
@@ -120,7 +121,7 @@ fn build(out: &Path) -> Result<PathBuf> {
     Ok(tarball)
 }
 
-/// Checks the package's JavaScript, and writes its types beside it.
+/// Checks the package's JavaScript, and writes its types.
 fn types(package: &Path, tools: &Path) -> Result<()> {
     fs::copy(command::root().join(TESTS).join("tsconfig.json"), tools.join("tsconfig.json"))?;
     let mut compiler = Command::new(tools.join("node_modules/.bin/tsc"));
@@ -150,7 +151,7 @@ fn tried(out: &Path, tarball: &Path) -> Result<()> {
     run_tests("check.mjs", out, tarball, &native("", &[])?)
 }
 
-/// Times beside those of the native library, as it is and without registers of 256 bits.
+/// Times of the native library for comparison, as it is and without 256-bit registers.
 fn measured(out: &Path, tarball: &Path) -> Result<()> {
     let mut times = native("", &["--measure"])?;
     times["narrow"] = native("--cfg sinew_narrow", &["--measure"])?["times"].take();
@@ -163,9 +164,9 @@ fn run_tests(script: &str, out: &Path, tarball: &Path, native: &Value) -> Result
     let folder = tools()?;
     copy(&command::root().join(TESTS), &folder)?;
     if !rigs().is_dir() {
-        eprintln!("skipped: {} is not there, the mannequin alone falls", ragdolls::SHARED);
+        eprintln!("skipped: {} is missing: only the mannequin falls", ragdolls::SHARED);
     }
-    let told = json!({
+    let input = json!({
         "tarball": tarball,
         "out": out,
         "root": command::root(),
@@ -173,7 +174,7 @@ fn run_tests(script: &str, out: &Path, tarball: &Path, native: &Value) -> Result
         "native": native,
     });
     let mut node = Command::new("node");
-    node.arg(folder.join(script)).arg(told.to_string()).current_dir(&folder).stdout(Stdio::inherit());
+    node.arg(folder.join(script)).arg(input.to_string()).current_dir(&folder).stdout(Stdio::inherit());
     if !node.status().context("node")?.success() {
         bail!("{script} failed");
     }

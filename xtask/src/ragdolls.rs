@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const PAGE: &str = "docs/ragdoll-quality.md";
-/// Rigs that lie beside the repository.
+/// Folder of rigs beside the repository.
 pub const SHARED: &str = "../shared/data/rigs";
 /// Files that may hold a rig.
 const RIGS: [&str; 3] = ["glb", "gltf", "vrm"];
@@ -22,7 +22,7 @@ pub struct Ragdolls {
     /// Folder with rigs, or with folders of rigs
     #[arg(long, default_value = SHARED)]
     rigs: PathBuf,
-    /// Random falls of each
+    /// Number of random falls of each rig
     #[arg(long, default_value_t = 100)]
     gate: u32,
 }
@@ -58,10 +58,11 @@ impl Ragdolls {
             match report {
                 Measured::Built(report) => {
                     rows.row(row(name, report));
-                    let said = report["quality"]["reasons"].as_array().into_iter().flatten();
-                    // The page says once that no clip is played.
-                    for reason in
-                        said.filter_map(Value::as_str).filter(|reason| !reason.starts_with("hand-over"))
+                    let reasons_text = report["quality"]["reasons"].as_array().into_iter().flatten();
+                    // Skip the note that no clip is played: the page states it once.
+                    for reason in reasons_text
+                        .filter_map(Value::as_str)
+                        .filter(|reason| !reason.starts_with("hand-over"))
                     {
                         let _ = writeln!(reasons, "- {name}: {reason}");
                     }
@@ -101,10 +102,10 @@ pub fn measure(binary: &Path, file: &Path, gate: u32) -> Result<Measured> {
     if output.status.success() {
         return Ok(Measured::Built(serde_json::from_slice(&output.stdout)?));
     }
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let reasons_text = String::from_utf8_lossy(&output.stderr).into_owned();
     // A refusal is one line; a panic is a bug.
-    ensure!(output.status.code() == Some(1), "{}: {}\n{said}", file.display(), output.status);
-    Ok(Measured::Refused(said.trim().rsplit(": ").next().unwrap_or_default().to_owned()))
+    ensure!(output.status.code() == Some(1), "{}: {}\n{reasons_text}", file.display(), output.status);
+    Ok(Measured::Refused(reasons_text.trim().rsplit(": ").next().unwrap_or_default().to_owned()))
 }
 
 const LEGEND: &str = "Each rig is dropped eight times from 1 m, thrown at a wall at 15 m/s (second figure of a cell), and falls at random: pose, speed and ground. A rig is *good* with

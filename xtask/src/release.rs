@@ -19,7 +19,7 @@ const VERSIONED: [(&str, &str); 5] = [
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask release --dry-run")]
 pub struct Release {
-    /// Publishes nothing; there is no other mode yet, so that no release happens by accident
+    /// Publish nothing; there is no other mode yet, so that no release happens by accident
     #[arg(long, required = true)]
     dry_run: bool,
     /// Leave out the wheel, the npm package and the extension for Blender, which need Python, Node and a network

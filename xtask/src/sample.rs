@@ -1,4 +1,4 @@
-//! A random sample of comments, pages, messages and test names, for a reader who judges their words.
+//! A random sample of comments, pages, messages and test names, to be checked by a reader.
 
 use crate::tidy::{File, Repo};
 use anyhow::Result;
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_are_comments_messages_names_and_pages() {
+    fn words_are_taken_from_comments_messages_names_and_pages() {
         let of = |path, line| words(path, line);
         assert_eq!(of("a.rs", "/// Returns the sum."), Some("Returns the sum."));
         assert_eq!(of("a.rs", "let x = \"is not finite\";"), Some("is not finite"));

@@ -17,13 +17,13 @@ const CHUNK: f64 = 5.0;
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask lives --of characters --minutes 60")]
 pub struct Lives {
-    /// What lives
+    /// What to run
     #[arg(long, value_enum, default_value_t = Of::Worlds)]
     of: Of,
     /// Seed to begin at; by default where the last run ended
     #[arg(long, value_name = "SEED")]
     from: Option<u64>,
-    /// How long
+    /// Duration, minutes
     #[arg(long, value_name = "M", default_value_t = 20.0)]
     minutes: f64,
     /// Folder for the progress of each search; by default that of the user's state
@@ -124,7 +124,7 @@ impl Soak {
     /// If a body is lost, a joint opens, a speed explodes or memory grows.
     pub fn run(&self) -> Result<()> {
         if !(self.hours > 0.0 && self.hours.is_finite()) {
-            bail!("--hours is a positive number, not {}", self.hours);
+            bail!("--hours must be a positive number, not {}", self.hours);
         }
         let mut run =
             command::cargo(&["run", "--release", "--package", "sinew_scenes", "--example", "soak", "--"]);

@@ -35,7 +35,7 @@ pub extern "C" fn step() -> f32 {
 }
 "#;
 
-/// A program that steps a character from the bytes of a GLB, with the built-in motions where the file has none.
+/// A program that steps a character from the bytes of a GLB, with built-in motions if the file has none.
 const CHARACTER: &str = r#"use sinew::formats::{ReadOptions, no_files, read_gltf};
 use sinew::prelude::*;
 use std::cell::RefCell;
@@ -71,7 +71,7 @@ pub extern "C" fn step() -> f32 {
 }
 "#;
 
-/// Measured crates, each with a program of what a page needs.
+/// Measured crates, each with a typical program of a page.
 const PROGRAMS: &[(&str, &str)] = &[("sinew_physics", PHYSICS), ("sinew", CHARACTER)];
 
 impl Sizes {

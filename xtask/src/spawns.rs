@@ -1,4 +1,4 @@
-//! Random falls of every available rig, and the bars of each.
+//! Random falls of every available rig, and the bars of each rig.
 
 use crate::command::{self, Profile};
 use crate::ragdolls::{self, Measured};
@@ -12,8 +12,7 @@ use std::process::Command;
 pub const SOME: u32 = 100;
 pub const ALL: u32 = 10_000;
 
-/// Runs falls of the mannequin and of each rig beside the repository: no NaN, no energy from nothing, no
-/// open joint.
+/// Runs falls of the mannequin and of each rig beside the repository: no NaN, no added energy, no open joint.
 ///
 /// # Errors
 /// With the numbers of the falls that miss a bar.
@@ -55,14 +54,14 @@ fn check_in(binary: &Path, folder: &Path, spawns: u32) -> Result<()> {
         }
     }
     if !failed.is_empty() {
-        bail!("falls that break what must hold in each:\n{}", failed.join("\n"));
+        bail!("falls that violate a hard requirement:\n{}", failed.join("\n"));
     }
     Ok(())
 }
 
 /// Returns the number of falls that miss a bar. A report without it, or of another number of falls, is an error.
 fn broken(gate: &Value, spawns: u32) -> Result<u64> {
-    ensure!(gate["spawns"] == spawns, "{spawns} falls were asked for, not {}", gate["spawns"]);
+    ensure!(gate["spawns"] == spawns, "the report has {} falls, not {spawns}", gate["spawns"]);
     gate["failed"].as_u64().context("`quality.gate.failed` is missing")
 }
 

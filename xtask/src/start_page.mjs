@@ -3,8 +3,8 @@ import { basename } from 'node:path';
 
 // Width and height: a phone, a tablet, a laptop, a large screen, a small window.
 const SIZES = [[390, 844], [768, 1024], [1280, 800], [1920, 1080], [800, 600]];
-// Seconds of the demo for which its subject is watched: all of it on a phone, whose picture software draws fast, the fall elsewhere. And
-// those at which pictures are taken.
+// Seconds of the demo for which its subject is watched: all of it on a phone, whose small picture is drawn fast, and the fall on other
+// screens. Then the seconds at which pictures are taken.
 const WATCHED_S = 15;
 const FALL_S = 3.2;
 const MOMENTS_S = [0.6, 1.8, 3, 5, 8, 11, 14];
@@ -59,7 +59,7 @@ async function watched(browser, name, seconds) {
   }
 }
 
-// Push: by the button, by a click on the figure, by a key; a ball; a camera that stands still.
+// Checks pushes by the button, by a click on the figure and by a key, a thrown ball, and that the camera does not move.
 async function pushed(browser, url) {
   await opened(browser, url);
   await clicked(browser, button('push'));
@@ -154,7 +154,7 @@ async function accessible(browser) {
   demand(!held, 'Tab does not leave the picture');
 }
 
-// Those who want no motion start it themselves.
+// With reduced motion the user starts it.
 async function still(browser, url) {
   await browser.send('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-reduced-motion', value: 'reduce' }] });
   await browser.send('Page.navigate', { url });

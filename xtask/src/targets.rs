@@ -16,7 +16,7 @@ const ARM: &str = "aarch64-unknown-linux-gnu";
 /// Runs such a program in Node.
 const RUNNER: &str = "xtask/src/wasi.mjs";
 
-/// Tests that compare the eight lanes and their kernels with hashes of all processors. Nothing else is run here.
+/// Tests that compare the eight lanes and their kernels with hashes of all processors. Only these are run here.
 const SOUP: &str = "golden_soup";
 
 /// Compiles the library for the browser.
@@ -27,7 +27,7 @@ pub fn browser() -> Result<()> {
     build_for(BROWSER, &["build", "--package", "sinew"])
 }
 
-/// Compiles the registers of aarch64; nothing is run.
+/// Compiles for aarch64, without running.
 ///
 /// # Errors
 /// If that fails.

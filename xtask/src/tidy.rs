@@ -123,7 +123,7 @@ impl fmt::Display for Finding {
 
 /// A text file of the repository.
 pub struct File {
-    /// From the root, with `/` on every system.
+    /// Path from the root, with `/` on every system.
     pub path: String,
     /// Contents.
     pub text: String,
@@ -238,14 +238,14 @@ mod tests {
     }
 
     #[test]
-    fn the_repository_is_tidy() {
+    fn repository_has_no_findings() {
         let findings = check(&Repo::read().expect("the repository can be read"));
         let text: Vec<String> = findings.iter().map(ToString::to_string).collect();
         assert!(findings.is_empty(), "{} findings:\n{}", text.len(), text.join("\n"));
     }
 
     #[test]
-    fn a_finding_reads_like_a_compiler_message() {
+    fn finding_is_formatted_like_a_compiler_message() {
         assert_eq!(Finding::new("a/b.rs", 7, "too long").to_string(), "a/b.rs:7: too long");
     }
 }

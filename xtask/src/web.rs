@@ -1,4 +1,4 @@
-//! The viewer as a page: a folder of static files, and its trial in a browser.
+//! The viewer as a page: a folder of static files, and its test in a browser.
 
 use crate::command::{self, cargo};
 use crate::landing::{self, Facts};
@@ -9,13 +9,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Folder of the files around the program.
+/// Folder of the page's other files.
 const PAGE: &str = "crates/sinew_viewer/page";
-/// Files of the start page that are copied as they are.
+/// Files of the start page that are copied unchanged.
 const COPIED: [&str; 4] = ["page.js", "page.css", "chapter.js", "poster.jpg"];
-/// What the start page loads with its first picture.
+/// Files that the start page loads before its first picture.
 const LOADED: [&str; 6] = ["index.html", "page.js", "page.css", "poster.jpg", "sinew.js", "sinew_bg.wasm"];
-/// Crates whose calls have a reference on the page.
+/// Crates whose API reference is on the page.
 const API: [&str; 7] = [
     "sinew",
     "sinew_math",
@@ -25,35 +25,36 @@ const API: [&str; 7] = [
     "sinew_ragdoll",
     "sinew_formats",
 ];
-/// Most bytes of what the start page loads, compressed as servers do.
+/// Size limit of the start page's loaded files, bytes, compressed as by servers.
 const MOST_BYTES: u64 = 6_000_000;
-/// Most milliseconds to the first picture on the loopback, once the browser has compiled it before.
+/// Time limit to the first picture on the loopback, milliseconds, after the browser has compiled it once.
 const MOST_MS: u64 = 1_500;
 /// Scenes whose hashes are compared: bodies on a floor, joints and a character's skin, a rope.
 const SCENES: [&str; 3] = ["stack", "stairs", "rope_on_box"];
-/// Dropped on the page where the shared rigs are there.
+/// Rig dropped on the page, if the shared rigs exist.
 const DROPPED: &str = "CesiumMan.glb";
 
-/// `cargo xtask web`: builds the page, and says how large it is.
+/// `cargo xtask web`: builds the page, and prints its size.
 #[derive(clap::Args)]
 pub struct Web {
     /// Folder to write
     #[arg(long, default_value = "out/web")]
     out: PathBuf,
-    /// Address at which it will stand, `https://…/`, for previews of the page
+    /// Address at which it will be published, `https://…/`, for previews of the page
     #[arg(long, default_value = "")]
     address: String,
-    /// Tries it in headless Chromium as well: hashes of three scenes, a drag, a dropped character, the demo in five sizes, the time that it takes
+    /// Also test it in headless Chromium: hashes of three scenes, a drag, a dropped character, the demo in five sizes,
+    /// its loading time
     #[arg(long)]
     check: bool,
-    /// Draws the start page's pictures anew, into its sources
+    /// Redraw the start page's pictures in its sources
     #[arg(long)]
     pictures: bool,
 }
 
 impl Web {
     /// # Errors
-    /// If the page does not compile, is too large, or fails its trial.
+    /// If the page does not compile, is too large, or fails its test.
     pub fn run(&self) -> Result<()> {
         let folder = command::root().join(&self.out);
         build(&folder, &self.address)?;
@@ -64,7 +65,7 @@ impl Web {
     }
 }
 
-/// Builds the page and tries it, for `cargo xtask ci --full`.
+/// Builds and tests the page, for `cargo xtask ci --full`.
 ///
 /// # Errors
 /// As [`Web::run`].
@@ -77,7 +78,7 @@ fn build(folder: &Path, address: &str) -> Result<()> {
     let binder = binder()?;
     let mut rustc = cargo(&["rustc", "--package", "sinew_viewer", "--lib", "--crate-type", "cdylib"]);
     rustc.args(["--release", "--target", targets::BROWSER]);
-    // Every browser that has WebGL2 has vectors, and the bits are the same with them.
+    // Every browser with WebGL2 has vector instructions, and results have the same bits with them.
     command::run(rustc.env("RUSTFLAGS", "-C target-feature=+simd128"))?;
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| folder.display().to_string())?;
@@ -107,30 +108,30 @@ fn build(folder: &Path, address: &str) -> Result<()> {
     Ok(())
 }
 
-/// Address of the source, where the repository has one that all can read.
+/// Public address of the source, if the repository has one.
 fn source() -> Option<String> {
     let mut git = Command::new("git");
     let address =
         command::output(git.args(["config", "--get", "remote.origin.url"]).current_dir(command::root()))
             .ok()?;
     let address = address.trim().trim_end_matches(".git");
-    // An address with a name or a secret in it is nobody else's.
+    // An address with a user name or a secret is private.
     (address.starts_with("https://") && !address.contains('@')).then(|| address.to_owned())
 }
 
-/// The reference of the libraries, by rustdoc.
+/// Writes the API reference of the libraries by rustdoc.
 fn reference(folder: &Path) -> Result<()> {
     let mut doc = cargo(&["doc", "--no-deps", "--lib"]);
     for name in API {
         doc.args(["--package", name]);
     }
-    // Other documentation lies in the usual folder.
+    // Uses a separate target folder: the usual one has other documentation.
     let target = command::target().join("web-doc");
     command::run(doc.arg("--target-dir").arg(&target))?;
     copy(&target.join("doc"), &folder.join("api"))
 }
 
-/// Copies a folder with all in it.
+/// Copies a folder recursively.
 pub fn copy(from: &Path, to: &Path) -> Result<()> {
     fs::create_dir_all(to).with_context(|| to.display().to_string())?;
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
@@ -141,7 +142,7 @@ pub fn copy(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The program that writes the JavaScript around a WebAssembly program, of the version that the lock file has.
+/// `wasm-bindgen`, in the version of the lock file.
 pub fn binder() -> Result<PathBuf> {
     let lock = fs::read_to_string(command::root().join("Cargo.lock")).context("Cargo.lock")?;
     let after =
@@ -149,8 +150,8 @@ pub fn binder() -> Result<PathBuf> {
     let version = after.split('"').next().unwrap_or_default();
     let root = command::target().join("tools");
     let program = root.join("bin/wasm-bindgen");
-    let told = Command::new(&program).arg("--version").output().map(|out| out.stdout).unwrap_or_default();
-    if !String::from_utf8_lossy(&told).contains(version) {
+    let answer = Command::new(&program).arg("--version").output().map(|out| out.stdout).unwrap_or_default();
+    if !String::from_utf8_lossy(&answer).contains(version) {
         let mut install = cargo(&["install", "wasm-bindgen-cli", "--version", version, "--root"]);
         command::run(install.arg(&root))?;
     }
@@ -164,7 +165,7 @@ pub fn gzipped(path: &Path) -> Result<u64> {
     Ok(out.stdout.len() as u64)
 }
 
-/// Draws the pictures of the start page anew: the demo's first frame, and the scenes of the gallery.
+/// Redraws the pictures of the start page: the demo's first frame, and the scenes of the gallery.
 fn draw(folder: &Path) -> Result<()> {
     let gallery: Vec<Value> =
         landing::GALLERY.iter().map(|(scene, steps, ..)| json!([scene, steps])).collect();
@@ -175,7 +176,7 @@ fn draw(folder: &Path) -> Result<()> {
     copy(&pictures.join("gallery"), &folder.join("gallery"))
 }
 
-/// Runs the script in a browser; returns what it tells.
+/// Runs the script in a browser and returns its output.
 fn browser(task: &str, folder: &Path, pictures: &Path, cases: &Value) -> Result<Value> {
     command::provide("chromium", "chromium")?;
     command::provide("node", "nodejs")?;
@@ -193,22 +194,22 @@ fn tried(folder: &Path) -> Result<()> {
     let scenes: Vec<Value> =
         SCENES.iter().zip(&expected).map(|(scene, (steps, _))| json!([scene, steps])).collect();
     let dropped = command::root().join(ragdolls::SHARED).join(DROPPED);
-    // Chromium reads no file by a path with `..` in it.
+    // Chromium reads no file by a path with `..`.
     let drop: Vec<PathBuf> = dropped.canonicalize().into_iter().collect();
     if drop.is_empty() {
-        eprintln!("skipped: {DROPPED} is not there to be dropped");
+        eprintln!("skipped: {DROPPED} is missing");
     }
-    let told = browser("check", folder, &pictures, &json!({"scenes": scenes, "drop": drop}))?;
-    eprintln!("{told:#}\npictures in {}", pictures.display());
-    for (way, told) in told.as_object().context("no outcome")? {
+    let answer = browser("check", folder, &pictures, &json!({"scenes": scenes, "drop": drop}))?;
+    eprintln!("{answer:#}\npictures in {}", pictures.display());
+    for (way, answer) in answer.as_object().context("no outcome")? {
         for (scene, (steps, hash)) in SCENES.iter().zip(&expected) {
-            let found = &told["hashes"][scene];
+            let found = &answer["hashes"][scene];
             if found != hash {
                 bail!("{way}: {scene} has {found} after {steps} steps, elsewhere {hash}");
             }
         }
-        // One attempt, regardless of other load: the bar is that of an idle machine.
-        if told["ready_again_ms"].as_u64().is_none_or(|ms| ms > MOST_MS) {
+        // A single attempt, regardless of other load: the limit is for an idle machine.
+        if answer["ready_again_ms"].as_u64().is_none_or(|ms| ms > MOST_MS) {
             eprintln!("{way}: more than {MOST_MS} ms to the first picture");
         }
     }

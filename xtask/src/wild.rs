@@ -1,4 +1,4 @@
-//! Characters from elsewhere: recognised roles, falls, and pictures of them lying.
+//! Public characters: recognised roles, falls, and pictures of them after the fall.
 
 mod page;
 mod sheet;
@@ -15,7 +15,7 @@ use std::time::Instant;
 
 /// Folder beside the repository.
 const DATA: &str = "../shared/data";
-/// Folders of files with meshes, which fall.
+/// Folders of mesh files to simulate.
 const FOLDERS: [&str; 2] = ["rigs", "rigs_wild"];
 const PAGE: &str = "out/wild/tables.md";
 /// Folder for reports and pictures, which git ignores.
@@ -23,8 +23,8 @@ const OUT: &str = "out/wild";
 /// Length of a bake, seconds: a character that falls at 0.5 s lies by then.
 const SECONDS: &str = "6";
 
-/// `cargo xtask wild`: builds, drops and bakes every rig beside the repository, recognises every skeleton, and writes their figures and
-/// sheets of pictures of them fallen.
+/// `cargo xtask wild`: builds, drops and bakes every rig beside the repository, recognises every skeleton, and writes
+/// their figures and sheets of pictures after the fall.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -44,7 +44,7 @@ struct Row {
     file: String,
     /// `{"build","bake","build_s","bake_s"}`, or `{"refused"}`.
     report: Value,
-    /// Its picture after the fall.
+    /// Picture of the character after the fall.
     picture: PathBuf,
 }
 
@@ -64,7 +64,7 @@ impl Wild {
         for folder in FOLDERS {
             files.extend(ragdolls::rigs_in(&data.join(folder))?);
         }
-        files.retain(|file| self.wants(&file.to_string_lossy()));
+        files.retain(|file| self.is_selected(&file.to_string_lossy()));
         let rows = measure_all(&binary, &data, &out, &files)?;
         sheet::write(&rows, &out)?;
         if self.only.is_empty() {
@@ -74,17 +74,24 @@ impl Wild {
         Ok(())
     }
 
-    fn wants(&self, file: &str) -> bool {
+    fn is_selected(&self, file: &str) -> bool {
         self.only.is_empty() || self.only.iter().any(|word| file.contains(word.as_str()))
     }
 }
 
-/// Correct roles of all, per file in the table of the tests of `sinew_anim`, which has the right answers. Built with the program's profile, so
-/// that nothing is compiled twice.
+/// Correct and total roles per file, from the tests of `sinew_anim`, which have the expected roles. Built with the
+/// program's profile, so that nothing is compiled twice.
 fn roles(out: &Path) -> Result<Value> {
     let path = out.join("roles.json");
-    let test =
-        ["test", "--release", "--package", "sinew_anim", "--test", "it", "wild::roles_of_rigs_from_the_wild"];
+    let test = [
+        "test",
+        "--release",
+        "--package",
+        "sinew_anim",
+        "--test",
+        "it",
+        "wild::roles_of_public_rigs_reach_the_required_share",
+    ];
     command::run(command::cargo(&test).env("SINEW_WILD_ROLES", &path))?;
     let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
     serde_json::from_str(&text).with_context(|| path.display().to_string())

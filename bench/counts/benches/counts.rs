@@ -26,11 +26,11 @@ fn ragdoll(steps: u32) -> Instance {
         drop.world_mut().step();
     }
     let world = drop.world();
-    assert!(world.body_ids().any(|id| world.is_awake(id)), "it is not yet asleep");
+    assert!(world.body_ids().any(|id| world.is_awake(id)), "the scene is asleep already");
     drop
 }
 
-/// In the air, 0.2 s after release.
+/// The mannequin in the air, 0.2 s after release.
 fn falling() -> Instance {
     ragdoll(12)
 }
@@ -40,7 +40,7 @@ fn landing() -> Instance {
     ragdoll(60)
 }
 
-/// At rest on the floor, awake.
+/// A ragdoll at rest on the floor, awake.
 fn lying() -> Instance {
     ragdoll(95)
 }
@@ -200,7 +200,7 @@ fn collide_64(pairs: Vec<(Placed, Placed)>) -> usize {
     points
 }
 
-/// Steps after which nothing is searched or allocated any more.
+/// Steps after which no search or allocation happens any more.
 const WARM: usize = 4;
 
 /// A hundred characters that each blend two clips of 50 joints, warm.
@@ -386,7 +386,7 @@ fn strands() -> CharacterDef {
     CharacterDef::new(rig, ragdoll, &analysis.bind_model)
 }
 
-/// After a second of swinging, then this many steps of easing.
+/// Hair after a second of swinging and this many steps of easing.
 fn maned(eased: u32) -> Maned {
     let mut maned = Maned { def: strands(), swings: vec![SpringSwing::new(); 100], frame: 0 };
     assert_eq!(maned.def.springs().joints().len(), 40);

@@ -8,13 +8,13 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 /// Number of operations on eight lanes. Loads and stores are not counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Operations {
-    /// Multiplications.
+    /// Number of multiplications.
     pub mul: u64,
     /// Additions, subtractions, comparisons, minima and maxima: operations of an adder.
     pub add: u64,
-    /// Divisions.
+    /// Number of divisions.
     pub div: u64,
-    /// Square roots.
+    /// Number of square roots.
     pub sqrt: u64,
     /// Signs, masks and selections.
     pub logic: u64,
@@ -41,11 +41,11 @@ pub fn count<K: Kernel>(kernel: K) -> Operations {
     COUNT.get()
 }
 
-/// One number for all eight, since only the operations count.
+/// One number for all eight lanes, since only the operations count.
 #[derive(Clone, Copy)]
 pub struct Counted(f32);
 
-/// The same.
+/// A mask for all eight lanes.
 #[derive(Clone, Copy)]
 pub struct CountedMask(bool);
 

@@ -1,5 +1,5 @@
-//! Limit of the machine's arithmetic: additions, multiplications, both in turn, divisions and roots of eight
-//! lanes per second when nothing waits.
+//! Limit of the machine's arithmetic: additions, multiplications, both alternately, divisions and roots of eight lanes
+//! per second without dependencies.
 
 use crate::counted::Operations;
 use crate::seconds;
@@ -37,7 +37,7 @@ impl<const N: usize> Kernel for Chains<N> {
             *chain = L::splat(black_box(1.5));
         }
         let by = L::splat(black_box(1.000_000_1));
-        // One loop for each, or the branch would be in the loop.
+        // One loop per operation, otherwise the branch would be inside the loop.
         match self.0 {
             Operation::Mul => {
                 for _ in 0..LENGTH {
@@ -121,7 +121,7 @@ impl Limits {
         bounds.into_iter().fold(0.0, f64::max)
     }
 
-    /// In operations on eight lanes per second.
+    /// Prints operations on eight lanes per second.
     pub fn print(&self, level: Level) {
         for (operation, time) in OPERATIONS.iter().zip(self.0) {
             println!("{level:?} limit.{operation:?} {:.4e} {:.4e}", 1.0 / time, 1.0 / time);

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 /// Short samples, so that some run while the processor is free.
 const SAMPLE: Duration = Duration::from_micros(400);
 
-/// Samples of each figure. They are taken in turns, so that a change of the clock rate affects all.
+/// Samples of each figure. They are interleaved, so that a change of the clock rate affects all.
 const ROUNDS: usize = 200;
 
 fn main() {

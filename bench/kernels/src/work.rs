@@ -1,4 +1,4 @@
-//! The kernels, with data.
+//! The kernels and their data.
 
 use crate::counted::{self, Operations};
 use sinew_geometry::boxes::Obb;

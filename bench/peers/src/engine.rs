@@ -15,7 +15,7 @@ pub trait Engine: Sync {
     /// Name, version and settings.
     fn describe(&self) -> Description;
 
-    /// Its field. Scenes of other fields are not for it.
+    /// Fields of the engine; other scenes are skipped.
     fn fields(&self) -> &'static [Field] {
         &[Field::Physics]
     }
@@ -64,7 +64,7 @@ pub trait Simulation {
     /// One step of 1/60 s on the calling thread.
     fn step(&mut self);
 
-    /// Replaces `out` by the state of every body, static ones too, in the blueprint's order.
+    /// Replaces `out` by the state of every body, including static ones, in the blueprint's order.
     fn states(&self, out: &mut Vec<BodyState>);
 
     /// True if a dynamic body is awake.
@@ -115,14 +115,14 @@ pub struct CharacterPose {
 pub struct BodyState {
     /// World position and orientation of the body's **origin** (not of its centre of mass).
     pub world_from_body: Transform,
-    /// Of the **centre of mass**, m/s.
+    /// Velocity of the **centre of mass**, m/s.
     pub linear_velocity: Vec3,
-    /// rad/s, world axes.
+    /// Angular velocity, rad/s, world axes.
     pub angular_velocity: Vec3,
 }
 
 impl BodyState {
-    /// At rest.
+    /// State of a body at rest.
     pub fn at(position: Vec3, rotation: Rotation) -> Self {
         Self { world_from_body: Transform::new(position, rotation), ..Self::default() }
     }
@@ -131,9 +131,9 @@ impl BodyState {
 /// Place and velocity of a particle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ParticleState {
-    /// World, metres.
+    /// Position, world, metres.
     pub position: Vec3,
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: Vec3,
 }
 
@@ -151,7 +151,7 @@ pub struct Description {
 }
 
 impl Description {
-    /// As part of a report.
+    /// The description as part of a report.
     pub fn to_json(&self) -> Value {
         json!({
             "engine": self.name,
@@ -168,7 +168,7 @@ impl Description {
 pub struct Unsupported(String);
 
 impl Unsupported {
-    /// In words, lower case, without a full stop.
+    /// Takes the reason in words, lower case, without a full stop.
     pub fn new(why: impl Into<String>) -> Self {
         Self(why.into())
     }

@@ -1,4 +1,4 @@
-//! The same scenes on Sinew and on other engines, measured by one tool: time, and the quality beside it.
+//! Runs the same scenes on Sinew and on other engines, and measures time and quality with one tool.
 #![deny(unsafe_code)] // `ffi` alone allows it
 // ozz-animation-rs returns vectors of `std::simd`.
 #![cfg_attr(feature = "ozz", feature(portable_simd))]

@@ -1,4 +1,4 @@
-//! The command `peers`: one engine, one scene, one JSON object.
+//! The command `peers`: runs one scene on one engine and prints one JSON object.
 #![deny(unsafe_code)]
 
 use clap::{Parser, Subcommand};
@@ -13,7 +13,7 @@ use sinew_peers::{limp, walks};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// The same scenes on Sinew and on other engines.
+/// Runs the same scenes on Sinew and on other engines.
 #[derive(Parser)]
 #[command(version)]
 struct Peers {

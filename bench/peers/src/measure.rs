@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 /// Processor time of the steps of a run, milliseconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepTimes {
-    /// Of each step, in order.
+    /// Time of each step, in order.
     milliseconds: Vec<f64>,
 }
 
@@ -69,7 +69,7 @@ impl Memory {
         Self { resident_kib: status("VmRSS:") }
     }
 
-    /// Returns by how much the peak of resident memory exceeds the start, MiB.
+    /// Returns the increase of peak resident memory since the start, MiB.
     pub fn peak_above_mib(&self) -> Option<f64> {
         let peak = status("VmHWM:")?;
         Some(peak.saturating_sub(self.resident_kib?) as f64 / 1024.0)

@@ -1,4 +1,4 @@
-//! Shapes and poses for Parry: Rapier's collision library, and the judge of penetration for every engine.
+//! Shapes and poses for Parry: Rapier's collision library, which also measures the penetration of every engine.
 
 use crate::engine::Unsupported;
 use parry3d::math::{Pose, Rotation as ParryRotation, Vector};
@@ -6,29 +6,29 @@ use parry3d::shape::SharedShape;
 use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::Shape;
 
-/// The same point or direction.
+/// Converts a point or direction to Parry's.
 pub fn vector(v: Vec3) -> Vector {
     Vector::new(v.x, v.y, v.z)
 }
 
 #[cfg(feature = "rapier")]
-/// The same point or direction.
+/// Converts a point or direction from Parry's.
 pub fn from_vector(v: Vector) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)
 }
 
-/// The same rotation.
+/// Converts a rotation.
 pub fn rotation(q: Rotation) -> ParryRotation {
     ParryRotation::from_xyzw(q.x, q.y, q.z, q.w)
 }
 
-/// The same motion.
+/// Converts a transform to a pose.
 pub fn pose(t: Transform) -> Pose {
     Pose::from_parts(vector(t.translation), rotation(t.rotation))
 }
 
 #[cfg(feature = "rapier")]
-/// The same motion.
+/// Converts a pose to a transform.
 pub fn from_pose(pose: &Pose) -> Transform {
     let q = pose.rotation;
     Transform::new(from_vector(pose.translation), Rotation::from_xyzw(q.x, q.y, q.z, q.w))
@@ -57,7 +57,7 @@ pub fn triangles(shape: &Shape) -> Option<(Vec<Vec3>, Vec<[u32; 3]>)> {
     }
 }
 
-/// The same shape.
+/// Converts a shape.
 ///
 /// # Errors
 /// If Parry lacks its kind.
@@ -77,7 +77,7 @@ pub fn shape(shape: &Shape) -> Result<SharedShape, Unsupported> {
         Shape::Mesh(_) | Shape::HeightField(_) => {
             let (vertices, triangles) = triangles(shape).expect("it has triangles");
             let vertices = vertices.into_iter().map(vector).collect();
-            SharedShape::trimesh(vertices, triangles).expect("Parry takes the mesh")
+            SharedShape::trimesh(vertices, triangles).expect("Parry accepts the mesh")
         }
     })
 }

@@ -12,7 +12,7 @@ use std::path::Path;
 /// Writes the state of a scene after this many steps to a file.
 ///
 /// # Errors
-/// In words, if the scene is no world of bodies, or the file cannot be written.
+/// If the scene has no bodies, or the file cannot be written; as text.
 pub fn save(scene: &Scene, start: Start, steps: u32, to: &Path) -> Result<Value, String> {
     let Work::Bodies(blueprint) = start.of((scene.work)()) else {
         return Err(format!("{} is not a scene of bodies", scene.name));
@@ -28,7 +28,7 @@ pub fn save(scene: &Scene, start: Start, steps: u32, to: &Path) -> Result<Value,
 /// Continues from a saved state for this many steps.
 ///
 /// # Errors
-/// In words, if the file cannot be read or is no state of this version.
+/// If the file cannot be read or is not a state of this version; as text.
 pub fn resume(from: &Path, steps: u32) -> Result<Value, String> {
     let named = |error: &dyn core::fmt::Display| format!("{}: {error}", from.display());
     let state = fs::read(from).map_err(|error| named(&error))?;

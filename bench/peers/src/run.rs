@@ -17,7 +17,7 @@ const CHARACTERS_EVERY: usize = 37;
 /// True if the run is repeated to measure its quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judging {
-    /// Time only.
+    /// Only time is measured.
     Off,
     /// Another run, which is not timed, and is measured after every step.
     On,
@@ -47,7 +47,7 @@ impl Start {
 
 /// Returns the result as one JSON object; `"unsupported"` gives the reason for missing figures.
 ///
-/// `steps`: the scene's own number if `None`.
+/// `steps`: number of steps; the scene's own if `None`.
 pub fn run(
     engine: &dyn Engine,
     scene: &Scene,

@@ -82,7 +82,7 @@ impl Trace<'_> {
         Ok(self.report(clock, warm_up, &records))
     }
 
-    /// With several threads: wall time of whole steps.
+    /// Measures the wall time of whole steps with several threads.
     fn threaded(&self, run: &mut Run, warm_up: u32, steps: u32) -> Value {
         let threads = Threads::new(self.threads);
         (0..warm_up).for_each(|_| run.step(&threads, &NoProfiler));
@@ -197,7 +197,7 @@ impl Clock {
     }
 }
 
-/// Started at the beginning of a step.
+/// Clock that starts at the beginning of a step.
 #[derive(Clone, Copy)]
 enum Watch {
     Processor(ProcessTime),
@@ -241,7 +241,7 @@ struct StageTime {
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
     sum: u64,
-    /// In one call.
+    /// Largest number in one call.
     most: u64,
     calls: u64,
 }
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_are_those_of_the_scene() {
+    fn counts_match_the_scene() {
         let counts = &trace("chain_100_links", 0, 2)["counts"];
         assert_eq!(counts["islands"], 10.0, "{counts}");
         assert_eq!(counts["largest_island"], 101.0, "{counts}");
@@ -321,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stack_has_stages_and_sweeps() {
+    fn stack_has_stages_and_sweeps() {
         let trace = trace("stack_ratio", 5, 5);
         let stages = trace["stages_us"].as_object().expect("stages");
         assert!(stages.contains_key("integrate_velocity") && stages.contains_key("pairs"), "{trace:#}");

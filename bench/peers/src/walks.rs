@@ -1,4 +1,4 @@
-//! The same random walks by our mover and by Rapier's controller: depth, sticks, climbed steps, time.
+//! Equal random walks by our mover and by Rapier's controller: depth, blocked steps, climbed steps, time.
 
 use crate::measure::quantile;
 use cpu_time::ProcessTime;
@@ -10,7 +10,8 @@ use std::path::Path;
 
 /// Number of walks that share a seed and a clutter.
 const SHARE: usize = 20;
-/// Space around a capsule that counts as room, metres: more than the 18 mm that Rapier's controller keeps by default.
+/// Clearance around a capsule that counts as free space, metres: more than the 18 mm that Rapier's controller keeps by
+/// default.
 const MARGIN: f32 = 0.025;
 /// Heights of treads, metres, all below what a capsule climbs, and speeds at which they are walked onto, m/s.
 const TREADS: [f32; 6] = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3];

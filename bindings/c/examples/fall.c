@@ -106,8 +106,8 @@ int main(int argc, char **argv) {
     printf("back in the middle of the fall: %s\n", same ? "the same state" : "ANOTHER STATE");
 
     /* A mistake is told of, and nothing breaks. */
-    SinewBodyId nobody = {UINT64_MAX};
-    if (sinew_world_poses(world, &nobody, 1, &at) != SINEW_STATUS_STALE_ID || strlen(sinew_last_error()) == 0) {
+    SinewBodyId unknown = {UINT64_MAX};
+    if (sinew_world_poses(world, &unknown, 1, &at) != SINEW_STATUS_STALE_ID || strlen(sinew_last_error()) == 0) {
         return 1;
     }
 

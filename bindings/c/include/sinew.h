@@ -33,27 +33,27 @@ typedef enum SinewStatus {
 
 // State of a character, which determines the source of its pose.
 typedef enum SinewCharacterState {
-  // Clips.
+  // The pose is that of the clips.
   SINEW_CHARACTER_STATE_ANIMATED = 0,
-  // Its bodies: it falls or lies.
+  // The pose is that of the bodies, which fall or lie.
   SINEW_CHARACTER_STATE_LIMP = 1,
-  // Its bodies, which move to the start of a get-up clip.
+  // The pose is that of the bodies, which move to the start of a get-up clip.
   SINEW_CHARACTER_STATE_PREPARING = 2,
-  // A get-up clip.
+  // The pose is that of a get-up clip.
   SINEW_CHARACTER_STATE_GETTING_UP = 3,
-  // Clips, except for a limb that was hit.
+  // The pose is that of the clips, except for a limb that was hit.
   SINEW_CHARACTER_STATE_FLINCHING = 4,
-  // Its bodies, pulled toward its clips by muscles.
+  // The pose is that of the bodies, which muscles pull toward the clips.
   SINEW_CHARACTER_STATE_POWERED = 5,
 } SinewCharacterState;
 
 // Kind of a body.
 typedef enum SinewBodyKind {
-  // Moved by forces.
+  // Forces move the body.
   SINEW_BODY_KIND_DYNAMIC = 0,
-  // Never moves.
+  // The body never moves.
   SINEW_BODY_KIND_STATIC = 1,
-  // Moves at its velocity; nothing pushes it.
+  // The body moves at its velocity; nothing pushes it.
   SINEW_BODY_KIND_KINEMATIC = 2,
 } SinewBodyKind;
 
@@ -81,17 +81,17 @@ typedef enum SinewJointKind {
   SINEW_JOINT_KIND_DISTANCE = 4,
 } SinewJointKind;
 
-// Kind of a shape; which sizes of [`SinewShape`] it takes.
+// Kind of a shape, with the meaning of `size` in [`SinewShape`].
 typedef enum SinewShapeKind {
-  // `size`: half of each side.
+  // Box. `size`: half of each side.
   SINEW_SHAPE_KIND_BOX = 0,
-  // `size.x`: radius.
+  // Ball. `size.x`: radius.
   SINEW_SHAPE_KIND_SPHERE = 1,
-  // Along y. `size.x`: radius; `size.y`: half the length without the caps.
+  // Capsule along y. `size.x`: radius; `size.y`: half the length without the caps.
   SINEW_SHAPE_KIND_CAPSULE = 2,
-  // Along y. `size.x`: radius; `size.y`: half the length.
+  // Cylinder along y. `size.x`: radius; `size.y`: half the length.
   SINEW_SHAPE_KIND_CYLINDER = 3,
-  // Along y, the apex up. `size.x`: radius of the base; `size.y`: half the height.
+  // Cone along y, the apex up. `size.x`: radius of the base; `size.y`: half the height.
   SINEW_SHAPE_KIND_CONE = 4,
   // Everything below y = 0 of its frame, for static bodies. No sizes.
   SINEW_SHAPE_KIND_HALF_SPACE = 5,
@@ -111,11 +111,11 @@ typedef struct SinewWorld SinewWorld;
 
 // Three numbers.
 typedef struct SinewVec3 {
-  // Along x.
+  // Coordinate along x.
   float x;
-  // Along y, which is up.
+  // Coordinate along y, which is up.
   float y;
-  // Along z.
+  // Coordinate along z.
   float z;
 } SinewVec3;
 
@@ -133,7 +133,7 @@ typedef struct SinewRotation {
 
 // Rigid pose: rotation, then translation.
 typedef struct SinewPose {
-  // Metres.
+  // Position, metres.
   struct SinewVec3 position;
   // Rotation.
   struct SinewRotation rotation;
@@ -197,7 +197,7 @@ typedef struct SinewRayHit {
 typedef struct SinewShape {
   // One of `SinewShapeKind`.
   uint32_t kind;
-  // Metres, as the kind says.
+  // Sizes in metres, by the kind.
   struct SinewVec3 size;
 } SinewShape;
 
@@ -205,11 +205,11 @@ typedef struct SinewShape {
 typedef struct SinewContact {
   // The body with the smaller index.
   struct SinewBodyId a;
-  // The other.
+  // The other body.
   struct SinewBodyId b;
-  // Between the surfaces, world, metres.
+  // Position between the surfaces, world, metres.
   struct SinewVec3 position;
-  // From A to B, unit length.
+  // Normal from A to B, unit length.
   struct SinewVec3 normal;
   // Gap, metres; negative if they overlap.
   float separation;
@@ -221,13 +221,13 @@ typedef struct SinewContact {
 typedef struct SinewPair {
   // The body with the smaller index.
   struct SinewBodyId a;
-  // The other.
+  // The other body.
   struct SinewBodyId b;
 } SinewPair;
 
 // Settings of a world; `sinew_world_def_default` fills it.
 typedef struct SinewWorldDef {
-  // m/s². Default (0, -9.81, 0).
+  // Gravitational acceleration, m/s². Default (0, -9.81, 0).
   struct SinewVec3 gravity;
   // Length of a step, nanoseconds. Default 16,666,667, a sixtieth of a second.
   uint64_t step_nanoseconds;
@@ -241,9 +241,9 @@ typedef struct SinewWorldDef {
 
 // Velocity of a centre of mass, m/s, and angular velocity, rad/s; world axes.
 typedef struct SinewVelocity {
-  // m/s.
+  // Linear velocity, m/s.
   struct SinewVec3 linear;
-  // rad/s.
+  // Angular velocity, rad/s.
   struct SinewVec3 angular;
 } SinewVelocity;
 
@@ -251,17 +251,17 @@ typedef struct SinewVelocity {
 typedef struct SinewBodyDef {
   // One of `SinewBodyKind`. Default dynamic.
   uint32_t kind;
-  // In the world.
+  // Pose in the world.
   struct SinewPose pose;
-  // m/s and rad/s.
+  // Velocity, m/s and rad/s.
   struct SinewVelocity velocity;
   // Shapes, all of them around the body's origin.
   const struct SinewShape *shapes;
   // Number of shapes.
   size_t shape_count;
-  // kg, distributed over the shapes; 0, the default: computed from `density`.
+  // Mass, kg, distributed over the shapes; 0, the default: computed from `density`.
   float mass;
-  // kg/m³. Default 1,000.
+  // Density, kg/m³. Default 1,000.
   float density;
   // Coulomb's coefficient, at least 0. Default 0.6.
   float friction;
@@ -271,7 +271,7 @@ typedef struct SinewBodyDef {
   uint32_t layers;
   // Bits of the layers that they collide with. Default all.
   uint32_t mask;
-  // For the user.
+  // Data of the user.
   uint64_t user_data;
 } SinewBodyDef;
 
@@ -318,7 +318,7 @@ enum SinewStatus sinew_character_def_joint_name(const struct SinewCharacterDef *
 // Adds an animated character to a world, with bodies that rays can hit, standing at a pose (+Y up, facing +Z).
 //
 // The caller promises:
-// `def` is null or a kind of character, `world` is null or a world that nobody else uses, `character` is null or room for a pointer.
+// `def` is null or a kind of character, `world` is null or a world that no other thread uses, `character` is null or room for a pointer.
 enum SinewStatus sinew_character_spawn(const struct SinewCharacterDef *def,
                                        struct SinewWorld *world,
                                        struct SinewPose pose,
@@ -328,7 +328,7 @@ enum SinewStatus sinew_character_spawn(const struct SinewCharacterDef *def,
 // and the status says so.
 //
 // The caller promises:
-// `character` came from `sinew_character_spawn` and is not used any more; `world` is null or a world that nobody else uses.
+// `character` came from `sinew_character_spawn` and is not used any more; `world` is null or a world that no other thread uses.
 enum SinewStatus sinew_character_despawn(struct SinewCharacter *character,
                                          struct SinewWorld *world);
 
@@ -341,13 +341,13 @@ void sinew_character_free(struct SinewCharacter *character);
 // Updates the character after a step of its world.
 //
 // The caller promises:
-// `character` and `world` are null or nobody else's.
+// `character` and `world` are null or used by no other thread.
 enum SinewStatus sinew_character_update(struct SinewCharacter *character, struct SinewWorld *world);
 
 // Hits a body, by its role ("chest") or its joint's name, with an impulse, N·s, world axes. It falls, or flinches if the hit is weak.
 //
 // The caller promises:
-// `character` and `world` are null or nobody else's, `body` is null or text.
+// `character` and `world` are null or used by no other thread, `body` is null or text.
 enum SinewStatus sinew_character_hit(struct SinewCharacter *character,
                                      struct SinewWorld *world,
                                      const char *body,
@@ -356,21 +356,21 @@ enum SinewStatus sinew_character_hit(struct SinewCharacter *character,
 // Makes it limp at its present velocity.
 //
 // The caller promises:
-// `character` and `world` are null or nobody else's.
+// `character` and `world` are null or used by no other thread.
 enum SinewStatus sinew_character_go_limp(struct SinewCharacter *character,
                                          struct SinewWorld *world);
 
 // State of the character.
 //
 // The caller promises:
-// `character` is null or one that nobody changes, `state` is null or points to room.
+// `character` is null or one that no other thread changes, `state` is null or points to room.
 enum SinewStatus sinew_character_state(const struct SinewCharacter *character,
                                        enum SinewCharacterState *state);
 
 // Returns the ids of its bodies in the world, in the order of its ragdoll.
 //
 // The caller promises:
-// `character` is null or one that nobody changes; `ids` has room for `capacity`, `count` is null or points to a number.
+// `character` is null or one that no other thread changes; `ids` has room for `capacity`, `count` is null or points to a number.
 enum SinewStatus sinew_character_bodies(const struct SinewCharacter *character,
                                         struct SinewBodyId *ids,
                                         size_t capacity,
@@ -379,7 +379,7 @@ enum SinewStatus sinew_character_bodies(const struct SinewCharacter *character,
 // Returns the transforms of all joints relative to their parents, in the order of the file.
 //
 // The caller promises:
-// `character` is null or one that nobody changes; `pose` has room for `capacity`, `count` is null or points to a number.
+// `character` is null or one that no other thread changes; `pose` has room for `capacity`, `count` is null or points to a number.
 enum SinewStatus sinew_character_pose(const struct SinewCharacter *character,
                                       struct SinewLocalTransform *pose,
                                       size_t capacity,
@@ -388,14 +388,14 @@ enum SinewStatus sinew_character_pose(const struct SinewCharacter *character,
 // Returns the matrix from the file's model space to the world, the parent of the pose: 3 rows of 4.
 //
 // The caller promises:
-// `character` is null or one that nobody changes, `matrix` is null or has room for 12 numbers.
+// `character` is null or one that no other thread changes, `matrix` is null or has room for 12 numbers.
 enum SinewStatus sinew_character_world_from_model(const struct SinewCharacter *character,
                                                   float *matrix);
 
 // Saves a character to a buffer, to accompany the snapshot of its world; see `sinew_world_save`.
 //
 // The caller promises:
-// `character` is null or one that nobody changes; `bytes` has room for `capacity`, `size` is null or points to a number.
+// `character` is null or one that no other thread changes; `bytes` has room for `capacity`, `size` is null or points to a number.
 enum SinewStatus sinew_character_save(const struct SinewCharacter *character,
                                       uint8_t *bytes,
                                       size_t capacity,
@@ -404,7 +404,7 @@ enum SinewStatus sinew_character_save(const struct SinewCharacter *character,
 // Restores a saved character of the same kind. If the bytes are invalid, it is unchanged.
 //
 // The caller promises:
-// `character` is null or nobody else's, `bytes` has `size` of them.
+// `character` is null or used by no other thread, `bytes` has `size` of them.
 enum SinewStatus sinew_character_load(struct SinewCharacter *character,
                                       const uint8_t *bytes,
                                       size_t size);
@@ -412,7 +412,7 @@ enum SinewStatus sinew_character_load(struct SinewCharacter *character,
 // Adds a joint at the present poses of its bodies.
 //
 // The caller promises:
-// `world` is null or a world that nobody else uses, `def` null or a definition, `id` null or room for one.
+// `world` is null or a world that no other thread uses, `def` null or a definition, `id` null or room for one.
 enum SinewStatus sinew_world_add_joint(struct SinewWorld *world,
                                        const struct SinewJointDef *def,
                                        struct SinewJointId *id);
@@ -420,14 +420,14 @@ enum SinewStatus sinew_world_add_joint(struct SinewWorld *world,
 // Removes a joint.
 //
 // The caller promises:
-// `world` is null or a world that nobody else uses.
+// `world` is null or a world that no other thread uses.
 enum SinewStatus sinew_world_remove_joint(struct SinewWorld *world, struct SinewJointId id);
 
-// Drives a joint toward a rotation of B in A (a hinge: about its axis, x), as a spring of so many Hz and damping ratio, with no more
+// Drives a joint toward a rotation of B in A (a hinge: about its axis, x), as a spring with a frequency in Hz and a damping ratio, with no more
 // than a torque, N·m. 0 Hz: no motor.
 //
 // The caller promises:
-// `world` is null or a world that nobody else uses.
+// `world` is null or a world that no other thread uses.
 enum SinewStatus sinew_world_drive_joint(struct SinewWorld *world,
                                          struct SinewJointId id,
                                          struct SinewVec3 target,
@@ -438,7 +438,7 @@ enum SinewStatus sinew_world_drive_joint(struct SinewWorld *world,
 // Returns the distance of the joint's two anchors, metres.
 //
 // The caller promises:
-// `world` is null or a world that nobody changes, `gap` is null or points to a number.
+// `world` is null or a world that no other thread changes, `gap` is null or points to a number.
 enum SinewStatus sinew_world_joint_gap(const struct SinewWorld *world,
                                        struct SinewJointId id,
                                        float *gap);
@@ -454,7 +454,7 @@ enum SinewStatus sinew_world_joint_pose(const struct SinewWorld *world,
 // Casts a ray from `origin` along `way`, which also sets its length. If it hits a body, `found` is 1 and `hit` is filled, else `found` is 0.
 //
 // The caller promises:
-// `world` is null or a world that nobody changes; `hit` and `found` are null or have room.
+// `world` is null or a world that no other thread changes; `hit` and `found` are null or have room.
 enum SinewStatus sinew_world_ray(const struct SinewWorld *world,
                                  struct SinewVec3 origin,
                                  struct SinewVec3 way,
@@ -464,7 +464,7 @@ enum SinewStatus sinew_world_ray(const struct SinewWorld *world,
 // Bodies that a shape at a pose would overlap, ascending.
 //
 // The caller promises:
-// `world` is null or a world that nobody changes; `ids` has room for `capacity`, `count` is null or points to a number.
+// `world` is null or a world that no other thread changes; `ids` has room for `capacity`, `count` is null or points to a number.
 enum SinewStatus sinew_world_overlap(const struct SinewWorld *world,
                                      struct SinewShape shape,
                                      struct SinewPose pose,
@@ -475,7 +475,7 @@ enum SinewStatus sinew_world_overlap(const struct SinewWorld *world,
 // Returns the points of all contacts, including those with a gap, in the order of pairs.
 //
 // The caller promises:
-// `world` is null or a world that nobody changes; `contacts` has room for `capacity`, `count` is null or points to a number.
+// `world` is null or a world that no other thread changes; `contacts` has room for `capacity`, `count` is null or points to a number.
 enum SinewStatus sinew_world_contacts(const struct SinewWorld *world,
                                       struct SinewContact *contacts,
                                       size_t capacity,
@@ -484,7 +484,7 @@ enum SinewStatus sinew_world_contacts(const struct SinewWorld *world,
 // Events of the last step, of a kind (one of `SinewEventKind`), in the order of pairs.
 //
 // The caller promises:
-// `world` is null or a world that nobody changes; `pairs` has room for `capacity`, `count` is null or points to a number.
+// `world` is null or a world that no other thread changes; `pairs` has room for `capacity`, `count` is null or points to a number.
 enum SinewStatus sinew_world_events(const struct SinewWorld *world,
                                     uint32_t kind,
                                     struct SinewPair *pairs,
@@ -523,7 +523,7 @@ enum SinewStatus sinew_ragdoll_role(const struct SinewRagdoll *ragdoll,
 // of the definition; with too little room for them nothing is put into the world.
 //
 // The caller promises:
-// `world` is null or a world that nobody else uses, `ragdoll` is null or a ragdoll; `ids` has room for `capacity`, `count` is null or
+// `world` is null or a world that no other thread uses, `ragdoll` is null or a ragdoll; `ids` has room for `capacity`, `count` is null or
 // points to a number.
 enum SinewStatus sinew_ragdoll_spawn(const struct SinewRagdoll *ragdoll,
                                      struct SinewWorld *world,
@@ -535,13 +535,13 @@ enum SinewStatus sinew_ragdoll_spawn(const struct SinewRagdoll *ragdoll,
 // Hash of the complete state: the same on every machine, for every number of threads.
 //
 // The caller promises:
-// `world` is null or a world that nobody changes, `hash` is null or points to a number.
+// `world` is null or a world that no other thread changes, `hash` is null or points to a number.
 enum SinewStatus sinew_world_hash(const struct SinewWorld *world, uint64_t *hash);
 
 // Saves a world to a buffer; `size` is the number of bytes, also if the capacity is too small.
 //
 // The caller promises:
-// `world` is null or a world that nobody changes; `bytes` has room for `capacity`, `size` is null or points to a number.
+// `world` is null or a world that no other thread changes; `bytes` has room for `capacity`, `size` is null or points to a number.
 enum SinewStatus sinew_world_save(const struct SinewWorld *world,
                                   uint8_t *bytes,
                                   size_t capacity,
@@ -550,7 +550,7 @@ enum SinewStatus sinew_world_save(const struct SinewWorld *world,
 // Restores a saved world. If the bytes are invalid, the world is unchanged.
 //
 // The caller promises:
-// `world` is null or a world that nobody else uses, `bytes` has `size` of them.
+// `world` is null or a world that no other thread uses, `bytes` has `size` of them.
 enum SinewStatus sinew_world_load(struct SinewWorld *world, const uint8_t *bytes, size_t size);
 
 // Fills in the default settings of a world.
@@ -580,7 +580,7 @@ void sinew_world_free(struct SinewWorld *world);
 // Takes steps on the given number of threads; the result does not depend on it. 0 and 1 use the calling thread only.
 //
 // The caller promises:
-// `world` is null or a world that nobody else uses.
+// `world` is null or a world that no other thread uses.
 enum SinewStatus sinew_world_step(struct SinewWorld *world,
                                   uint32_t steps,
                                   uint32_t threads);
@@ -588,13 +588,13 @@ enum SinewStatus sinew_world_step(struct SinewWorld *world,
 // Number of steps since the beginning.
 //
 // The caller promises:
-// `world` is null or a world that nobody changes, `steps` is null or points to a number.
+// `world` is null or a world that no other thread changes, `steps` is null or points to a number.
 enum SinewStatus sinew_world_step_count(const struct SinewWorld *world, uint64_t *steps);
 
 // Adds a body.
 //
 // The caller promises:
-// `world` is null or a world that nobody else uses, `def` null or a definition whose shapes are there, `id` null or room for one.
+// `world` is null or a world that no other thread uses, `def` null or a definition whose shapes are there, `id` null or room for one.
 enum SinewStatus sinew_world_add_body(struct SinewWorld *world,
                                       const struct SinewBodyDef *def,
                                       struct SinewBodyId *id);
@@ -602,13 +602,13 @@ enum SinewStatus sinew_world_add_body(struct SinewWorld *world,
 // Removes a body with its joints.
 //
 // The caller promises:
-// `world` is null or a world that nobody else uses.
+// `world` is null or a world that no other thread uses.
 enum SinewStatus sinew_world_remove_body(struct SinewWorld *world, struct SinewBodyId id);
 
 // Ids of all bodies, ascending by index.
 //
 // The caller promises:
-// `world` is null or a world that nobody changes, `ids` has room for `capacity`, `count` is null or points to a number.
+// `world` is null or a world that no other thread changes, `ids` has room for `capacity`, `count` is null or points to a number.
 enum SinewStatus sinew_world_bodies(const struct SinewWorld *world,
                                     struct SinewBodyId *ids,
                                     size_t capacity,
@@ -617,7 +617,7 @@ enum SinewStatus sinew_world_bodies(const struct SinewWorld *world,
 // Poses of bodies in the world, one for each id.
 //
 // The caller promises:
-// `world` is null or a world that nobody changes; `ids` and `poses` have `count` elements.
+// `world` is null or a world that no other thread changes; `ids` and `poses` have `count` elements.
 enum SinewStatus sinew_world_poses(const struct SinewWorld *world,
                                    const struct SinewBodyId *ids,
                                    size_t count,
@@ -635,7 +635,7 @@ enum SinewStatus sinew_world_velocities(const struct SinewWorld *world,
 // Moves a body to a pose without passing through the space between.
 //
 // The caller promises:
-// `world` is null or a world that nobody else uses.
+// `world` is null or a world that no other thread uses.
 enum SinewStatus sinew_world_set_pose(struct SinewWorld *world,
                                       struct SinewBodyId id,
                                       struct SinewPose pose);
@@ -643,7 +643,7 @@ enum SinewStatus sinew_world_set_pose(struct SinewWorld *world,
 // Sets the velocity of a body; ignored for static ones.
 //
 // The caller promises:
-// `world` is null or a world that nobody else uses.
+// `world` is null or a world that no other thread uses.
 enum SinewStatus sinew_world_set_velocity(struct SinewWorld *world,
                                           struct SinewBodyId id,
                                           struct SinewVelocity velocity);
@@ -651,7 +651,7 @@ enum SinewStatus sinew_world_set_velocity(struct SinewWorld *world,
 // Applies an impulse, N·s, world axes, to a dynamic body at a point in the world, or at its centre of mass if `point` is null.
 //
 // The caller promises:
-// `world` is null or a world that nobody else uses, `point` is null or points to one.
+// `world` is null or a world that no other thread uses, `point` is null or points to one.
 enum SinewStatus sinew_world_push(struct SinewWorld *world,
                                   struct SinewBodyId id,
                                   struct SinewVec3 impulse,

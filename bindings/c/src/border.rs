@@ -52,14 +52,14 @@ thread_local! {
     static LAST: RefCell<CString> = RefCell::default();
 }
 
-/// Runs the body of a call; a panic becomes an error, and nothing is printed.
+/// Runs the body of a call; a panic becomes an error without printed output.
 pub(crate) fn guard(call: impl FnOnce() -> Outcome) -> SinewStatus {
     let (status, what) = match caught(call) {
         Ok(()) => (SinewStatus::Ok, String::new()),
         Err(CallError { status, what }) => (status, what),
     };
     let what = CString::new(what.replace('\0', "?")).unwrap_or_default();
-    // A thread that ends may have no sentence left.
+    // An ending thread may have lost its error text.
     let _ = LAST.try_with(|last| last.replace(what));
     status
 }
@@ -69,12 +69,12 @@ fn caught<T>(call: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
     sinew_bindings::caught(call).unwrap_or_else(|what| Err(error(SinewStatus::Panic, what)))
 }
 
-/// Runs a call of the library that panics about its argument before it changes anything: that is the caller's mistake.
+/// Runs a library call that panics about its arguments before it changes anything: the panic is the caller's mistake.
 pub(crate) fn refused<T>(call: impl FnOnce() -> T) -> Outcome<T> {
     caught(|| Ok(call())).map_err(|panic| error(SinewStatus::BadArgument, panic.what))
 }
 
-/// Something that a panic leaves in a state of no use.
+/// An object that a panic during a change makes unusable.
 pub(crate) struct Handle<T> {
     it: T,
     is_broken: bool,
@@ -85,13 +85,13 @@ impl<T> Handle<T> {
         Self { it, is_broken: false }
     }
 
-    /// The thing, to be looked at.
+    /// The object, for reading.
     pub(crate) fn get(&self) -> Outcome<&T> {
         self.check()?;
         Ok(&self.it)
     }
 
-    /// Changes the thing.
+    /// Changes the object.
     pub(crate) fn change<R>(&mut self, call: impl FnOnce(&mut T) -> Outcome<R>) -> Outcome<R> {
         self.check()?;
         self.is_broken = true;
@@ -112,28 +112,28 @@ fn null(name: &str) -> CallError {
     error(SinewStatus::NullPointer, format!("{name} is null"))
 }
 
-/// Target of a pointer.
+/// Reference to a pointer's target.
 ///
 /// # Safety
-/// It is null or points to a `T` that nobody changes meanwhile.
+/// The pointer is null or points to a `T` that no other thread changes meanwhile.
 pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Outcome<&'a T> {
     // SAFETY: as the caller promises.
     unsafe { pointer.as_ref() }.ok_or_else(|| null(name))
 }
 
-/// Target of a pointer, to be changed.
+/// Mutable reference to a pointer's target.
 ///
 /// # Safety
-/// It is null or points to a `T` that nobody else uses meanwhile.
+/// The pointer is null or points to a `T` that no other thread uses meanwhile.
 pub(crate) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &str) -> Outcome<&'a mut T> {
     // SAFETY: as the caller promises.
     unsafe { pointer.as_mut() }.ok_or_else(|| null(name))
 }
 
-/// Elements that a pointer points to; it may be null where there are none.
+/// Slice of a pointer's elements; it may be null if there are none.
 ///
 /// # Safety
-/// It is null or points to `count` elements that nobody changes meanwhile.
+/// The pointer is null or points to `count` elements that no other thread changes meanwhile.
 pub(crate) unsafe fn elements<'a, T>(pointer: *const T, count: usize, name: &str) -> Outcome<&'a [T]> {
     if count == 0 {
         return Ok(&[]);
@@ -142,7 +142,7 @@ pub(crate) unsafe fn elements<'a, T>(pointer: *const T, count: usize, name: &str
     if pointer.is_null() {
         return Err(null(name));
     }
-    // SAFETY: as the caller promises, and no longer than memory can be.
+    // SAFETY: as the caller promises, and not larger than memory.
     Ok(unsafe { core::slice::from_raw_parts(pointer, count) })
 }
 
@@ -155,12 +155,12 @@ fn check_count<T>(count: usize, name: &str) -> Outcome {
     }
 }
 
-/// Checks that there is room for a value, before anything is changed.
+/// Checks that there is memory for a value, before anything is changed.
 pub(crate) fn room<T>(pointer: *mut T, name: &str) -> Outcome {
     if pointer.is_null() { Err(null(name)) } else { Ok(()) }
 }
 
-/// Writes a value where the caller wants it.
+/// Writes a value to the caller's memory.
 ///
 /// # Safety
 /// The pointer is null or points to room for a `T`.
@@ -171,7 +171,7 @@ pub(crate) unsafe fn give<T>(pointer: *mut T, name: &str, value: T) -> Outcome {
     Ok(())
 }
 
-/// Writes values into a buffer, and their number; nothing but the number where there is too little room.
+/// Writes values into a buffer, and their number. If the buffer is too small, writes only the number.
 ///
 /// # Safety
 /// `buffer` is null or has room for `capacity` elements, `count` is null or points to a number.
@@ -191,12 +191,12 @@ pub(crate) unsafe fn fill<T: Copy>(
         return Ok(());
     }
     room(buffer, "the buffer")?;
-    // SAFETY: as the caller promises; it is the caller's, so it does not overlap ours.
+    // SAFETY: as the caller promises; the buffer is the caller's, so it does not overlap ours.
     unsafe { core::ptr::copy_nonoverlapping(values.as_ptr(), buffer, values.len()) };
     Ok(())
 }
 
-/// Text of the caller, UTF-8.
+/// UTF-8 text of the caller.
 ///
 /// # Safety
 /// The pointer is null or points to text that ends with a zero.
@@ -222,7 +222,7 @@ pub(crate) unsafe fn give_handle<T>(pointer: *mut *mut T, name: &str, value: T) 
 /// Frees a handle; null is fine.
 ///
 /// # Safety
-/// The pointer is null or came from [`give_handle`], and nobody uses it any more.
+/// The pointer is null or came from [`give_handle`], and is not used any more.
 pub(crate) unsafe fn free<T>(pointer: *mut T) {
     if !pointer.is_null() {
         guard(|| {

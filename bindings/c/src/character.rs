@@ -28,17 +28,17 @@ pub struct SinewCharacter {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SinewCharacterState {
-    /// Clips.
+    /// The pose is that of the clips.
     Animated = 0,
-    /// Its bodies: it falls or lies.
+    /// The pose is that of the bodies, which fall or lie.
     Limp = 1,
-    /// Its bodies, which move to the start of a get-up clip.
+    /// The pose is that of the bodies, which move to the start of a get-up clip.
     Preparing = 2,
-    /// A get-up clip.
+    /// The pose is that of a get-up clip.
     GettingUp = 3,
-    /// Clips, except for a limb that was hit.
+    /// The pose is that of the clips, except for a limb that was hit.
     Flinching = 4,
-    /// Its bodies, pulled toward its clips by muscles.
+    /// The pose is that of the bodies, which muscles pull toward the clips.
     Powered = 5,
 }
 
@@ -129,7 +129,7 @@ pub unsafe extern "C" fn sinew_character_def_joint_name(
 /// Adds an animated character to a world, with bodies that rays can hit, standing at a pose (+Y up, facing +Z).
 ///
 /// # Safety
-/// `def` is null or a kind of character, `world` is null or a world that nobody else uses, `character` is null or room for a pointer.
+/// `def` is null or a kind of character, `world` is null or a world that no other thread uses, `character` is null or room for a pointer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_spawn(
     def: *const SinewCharacterDef,
@@ -152,7 +152,7 @@ pub unsafe extern "C" fn sinew_character_spawn(
 /// and the status says so.
 ///
 /// # Safety
-/// `character` came from `sinew_character_spawn` and is not used any more; `world` is null or a world that nobody else uses.
+/// `character` came from `sinew_character_spawn` and is not used any more; `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_despawn(
     character: *mut SinewCharacter,
@@ -198,7 +198,7 @@ fn is_here(character: &Character, world: &sinew::physics::World) -> Outcome {
 /// Changes character and world together.
 ///
 /// # Safety
-/// Both are null or nobody else's.
+/// Both are null or used by no other thread.
 unsafe fn together<R>(
     character: *mut SinewCharacter,
     world: *mut SinewWorld,
@@ -213,7 +213,7 @@ unsafe fn together<R>(
 /// Updates the character after a step of its world.
 ///
 /// # Safety
-/// `character` and `world` are null or nobody else's.
+/// `character` and `world` are null or used by no other thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_update(
     character: *mut SinewCharacter,
@@ -232,7 +232,7 @@ pub unsafe extern "C" fn sinew_character_update(
 /// Hits a body, by its role ("chest") or its joint's name, with an impulse, N·s, world axes. It falls, or flinches if the hit is weak.
 ///
 /// # Safety
-/// `character` and `world` are null or nobody else's, `body` is null or text.
+/// `character` and `world` are null or used by no other thread, `body` is null or text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_hit(
     character: *mut SinewCharacter,
@@ -262,7 +262,7 @@ fn no_body(def: &CharacterDef, name: &str) -> CallError {
 /// Makes it limp at its present velocity.
 ///
 /// # Safety
-/// `character` and `world` are null or nobody else's.
+/// `character` and `world` are null or used by no other thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_go_limp(
     character: *mut SinewCharacter,
@@ -281,7 +281,7 @@ pub unsafe extern "C" fn sinew_character_go_limp(
 /// State of the character.
 ///
 /// # Safety
-/// `character` is null or one that nobody changes, `state` is null or points to room.
+/// `character` is null or one that no other thread changes, `state` is null or points to room.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_state(
     character: *const SinewCharacter,
@@ -305,7 +305,7 @@ pub unsafe extern "C" fn sinew_character_state(
 /// Returns the ids of its bodies in the world, in the order of its ragdoll.
 ///
 /// # Safety
-/// `character` is null or one that nobody changes; `ids` has room for `capacity`, `count` is null or points to a number.
+/// `character` is null or one that no other thread changes; `ids` has room for `capacity`, `count` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_bodies(
     character: *const SinewCharacter,
@@ -325,7 +325,7 @@ pub unsafe extern "C" fn sinew_character_bodies(
 /// Returns the transforms of all joints relative to their parents, in the order of the file.
 ///
 /// # Safety
-/// `character` is null or one that nobody changes; `pose` has room for `capacity`, `count` is null or points to a number.
+/// `character` is null or one that no other thread changes; `pose` has room for `capacity`, `count` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_pose(
     character: *const SinewCharacter,
@@ -349,7 +349,7 @@ pub unsafe extern "C" fn sinew_character_pose(
 /// Returns the matrix from the file's model space to the world, the parent of the pose: 3 rows of 4.
 ///
 /// # Safety
-/// `character` is null or one that nobody changes, `matrix` is null or has room for 12 numbers.
+/// `character` is null or one that no other thread changes, `matrix` is null or has room for 12 numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_world_from_model(
     character: *const SinewCharacter,
@@ -372,7 +372,7 @@ pub unsafe extern "C" fn sinew_character_world_from_model(
 /// Saves a character to a buffer, to accompany the snapshot of its world; see `sinew_world_save`.
 ///
 /// # Safety
-/// `character` is null or one that nobody changes; `bytes` has room for `capacity`, `size` is null or points to a number.
+/// `character` is null or one that no other thread changes; `bytes` has room for `capacity`, `size` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_save(
     character: *const SinewCharacter,
@@ -392,7 +392,7 @@ pub unsafe extern "C" fn sinew_character_save(
 /// Restores a saved character of the same kind. If the bytes are invalid, it is unchanged.
 ///
 /// # Safety
-/// `character` is null or nobody else's, `bytes` has `size` of them.
+/// `character` is null or used by no other thread, `bytes` has `size` of them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_load(
     character: *mut SinewCharacter,

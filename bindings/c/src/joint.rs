@@ -87,7 +87,7 @@ fn joint(world: &World, id: SinewJointId) -> Outcome<JointId> {
 /// Adds a joint at the present poses of its bodies.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses, `def` null or a definition, `id` null or room for one.
+/// `world` is null or a world that no other thread uses, `def` null or a definition, `id` null or room for one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_add_joint(
     world: *mut SinewWorld,
@@ -110,7 +110,7 @@ pub unsafe extern "C" fn sinew_world_add_joint(
 /// Removes a joint.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses.
+/// `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_remove_joint(world: *mut SinewWorld, id: SinewJointId) -> SinewStatus {
     // SAFETY: as the caller promises.
@@ -123,11 +123,11 @@ pub unsafe extern "C" fn sinew_world_remove_joint(world: *mut SinewWorld, id: Si
     })
 }
 
-/// Drives a joint toward a rotation of B in A (a hinge: about its axis, x), as a spring of so many Hz and damping ratio, with no more
+/// Drives a joint toward a rotation of B in A (a hinge: about its axis, x), as a spring with a frequency in Hz and a damping ratio, with no more
 /// than a torque, N·m. 0 Hz: no motor.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses.
+/// `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_drive_joint(
     world: *mut SinewWorld,
@@ -153,7 +153,7 @@ pub unsafe extern "C" fn sinew_world_drive_joint(
 /// Returns the distance of the joint's two anchors, metres.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes, `gap` is null or points to a number.
+/// `world` is null or a world that no other thread changes, `gap` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_joint_gap(
     world: *const SinewWorld,

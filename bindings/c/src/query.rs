@@ -26,11 +26,11 @@ pub struct SinewRayHit {
 pub struct SinewContact {
     /// The body with the smaller index.
     pub a: SinewBodyId,
-    /// The other.
+    /// The other body.
     pub b: SinewBodyId,
-    /// Between the surfaces, world, metres.
+    /// Position between the surfaces, world, metres.
     pub position: SinewVec3,
-    /// From A to B, unit length.
+    /// Normal from A to B, unit length.
     pub normal: SinewVec3,
     /// Gap, metres; negative if they overlap.
     pub separation: f32,
@@ -44,7 +44,7 @@ pub struct SinewContact {
 pub struct SinewPair {
     /// The body with the smaller index.
     pub a: SinewBodyId,
-    /// The other.
+    /// The other body.
     pub b: SinewBodyId,
 }
 
@@ -63,7 +63,7 @@ pub enum SinewEventKind {
 /// Casts a ray from `origin` along `way`, which also sets its length. If it hits a body, `found` is 1 and `hit` is filled, else `found` is 0.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes; `hit` and `found` are null or have room.
+/// `world` is null or a world that no other thread changes; `hit` and `found` are null or have room.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_ray(
     world: *const SinewWorld,
@@ -91,7 +91,7 @@ pub unsafe extern "C" fn sinew_world_ray(
 /// Bodies that a shape at a pose would overlap, ascending.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes; `ids` has room for `capacity`, `count` is null or points to a number.
+/// `world` is null or a world that no other thread changes; `ids` has room for `capacity`, `count` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_overlap(
     world: *const SinewWorld,
@@ -106,7 +106,10 @@ pub unsafe extern "C" fn sinew_world_overlap(
         let world = unsafe { shared(world, "world") }?.world.get()?;
         let shape = shape.read()?;
         if shape == Shape::HalfSpace {
-            return Err(error(SinewStatus::BadArgument, "a probe is bounded: no half-space"));
+            return Err(error(
+                SinewStatus::BadArgument,
+                "the shape of a query must be bounded: not a half-space",
+            ));
         }
         let mut bodies: Vec<BodyId> = Vec::new();
         world.query().bodies(&OverlapWith(Probe::new(shape, pose.read("the pose")?)), &mut bodies);
@@ -120,7 +123,7 @@ pub unsafe extern "C" fn sinew_world_overlap(
 /// Returns the points of all contacts, including those with a gap, in the order of pairs.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes; `contacts` has room for `capacity`, `count` is null or points to a number.
+/// `world` is null or a world that no other thread changes; `contacts` has room for `capacity`, `count` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_contacts(
     world: *const SinewWorld,
@@ -150,7 +153,7 @@ pub unsafe extern "C" fn sinew_world_contacts(
 /// Events of the last step, of a kind (one of `SinewEventKind`), in the order of pairs.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes; `pairs` has room for `capacity`, `count` is null or points to a number.
+/// `world` is null or a world that no other thread changes; `pairs` has room for `capacity`, `count` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_events(
     world: *const SinewWorld,

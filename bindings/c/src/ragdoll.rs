@@ -93,7 +93,7 @@ pub unsafe extern "C" fn sinew_ragdoll_role(
 /// of the definition; with too little room for them nothing is put into the world.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses, `ragdoll` is null or a ragdoll; `ids` has room for `capacity`, `count` is null or
+/// `world` is null or a world that no other thread uses, `ragdoll` is null or a ragdoll; `ids` has room for `capacity`, `count` is null or
 /// points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_ragdoll_spawn(

@@ -7,7 +7,7 @@ use sinew::math::{Reader, Writer};
 /// Hash of the complete state: the same on every machine, for every number of threads.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes, `hash` is null or points to a number.
+/// `world` is null or a world that no other thread changes, `hash` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_hash(world: *const SinewWorld, hash: *mut u64) -> SinewStatus {
     // SAFETY: as the caller promises.
@@ -17,7 +17,7 @@ pub unsafe extern "C" fn sinew_world_hash(world: *const SinewWorld, hash: *mut u
 /// Saves a world to a buffer; `size` is the number of bytes, also if the capacity is too small.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes; `bytes` has room for `capacity`, `size` is null or points to a number.
+/// `world` is null or a world that no other thread changes; `bytes` has room for `capacity`, `size` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_save(
     world: *const SinewWorld,
@@ -37,7 +37,7 @@ pub unsafe extern "C" fn sinew_world_save(
 /// Restores a saved world. If the bytes are invalid, the world is unchanged.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses, `bytes` has `size` of them.
+/// `world` is null or a world that no other thread uses, `bytes` has `size` of them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_load(
     world: *mut SinewWorld,

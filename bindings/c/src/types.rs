@@ -8,11 +8,11 @@ use sinew::physics::{BodyId, BodyKind, JointId, Shape, Velocity};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SinewVec3 {
-    /// Along x.
+    /// Coordinate along x.
     pub x: f32,
-    /// Along y, which is up.
+    /// Coordinate along y, which is up.
     pub y: f32,
-    /// Along z.
+    /// Coordinate along z.
     pub z: f32,
 }
 
@@ -34,7 +34,7 @@ pub struct SinewRotation {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SinewPose {
-    /// Metres.
+    /// Position, metres.
     pub position: SinewVec3,
     /// Rotation.
     pub rotation: SinewRotation,
@@ -44,9 +44,9 @@ pub struct SinewPose {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SinewVelocity {
-    /// m/s.
+    /// Linear velocity, m/s.
     pub linear: SinewVec3,
-    /// rad/s.
+    /// Angular velocity, rad/s.
     pub angular: SinewVec3,
 }
 
@@ -70,27 +70,27 @@ pub struct SinewJointId {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SinewBodyKind {
-    /// Moved by forces.
+    /// Forces move the body.
     Dynamic = 0,
-    /// Never moves.
+    /// The body never moves.
     Static = 1,
-    /// Moves at its velocity; nothing pushes it.
+    /// The body moves at its velocity; nothing pushes it.
     Kinematic = 2,
 }
 
-/// Kind of a shape; which sizes of [`SinewShape`] it takes.
+/// Kind of a shape, with the meaning of `size` in [`SinewShape`].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SinewShapeKind {
-    /// `size`: half of each side.
+    /// Box. `size`: half of each side.
     Box = 0,
-    /// `size.x`: radius.
+    /// Ball. `size.x`: radius.
     Sphere = 1,
-    /// Along y. `size.x`: radius; `size.y`: half the length without the caps.
+    /// Capsule along y. `size.x`: radius; `size.y`: half the length without the caps.
     Capsule = 2,
-    /// Along y. `size.x`: radius; `size.y`: half the length.
+    /// Cylinder along y. `size.x`: radius; `size.y`: half the length.
     Cylinder = 3,
-    /// Along y, the apex up. `size.x`: radius of the base; `size.y`: half the height.
+    /// Cone along y, the apex up. `size.x`: radius of the base; `size.y`: half the height.
     Cone = 4,
     /// Everything below y = 0 of its frame, for static bodies. No sizes.
     HalfSpace = 5,
@@ -102,7 +102,7 @@ pub enum SinewShapeKind {
 pub struct SinewShape {
     /// One of `SinewShapeKind`.
     pub kind: u32,
-    /// Metres, as the kind says.
+    /// Sizes in metres, by the kind.
     pub size: SinewVec3,
 }
 

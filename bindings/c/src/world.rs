@@ -22,7 +22,7 @@ pub struct SinewWorld {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct SinewWorldDef {
-    /// m/s². Default (0, -9.81, 0).
+    /// Gravitational acceleration, m/s². Default (0, -9.81, 0).
     pub gravity: SinewVec3,
     /// Length of a step, nanoseconds. Default 16,666,667, a sixtieth of a second.
     pub step_nanoseconds: u64,
@@ -40,17 +40,17 @@ pub struct SinewWorldDef {
 pub struct SinewBodyDef {
     /// One of `SinewBodyKind`. Default dynamic.
     pub kind: u32,
-    /// In the world.
+    /// Pose in the world.
     pub pose: SinewPose,
-    /// m/s and rad/s.
+    /// Velocity, m/s and rad/s.
     pub velocity: SinewVelocity,
     /// Shapes, all of them around the body's origin.
     pub shapes: *const SinewShape,
     /// Number of shapes.
     pub shape_count: usize,
-    /// kg, distributed over the shapes; 0, the default: computed from `density`.
+    /// Mass, kg, distributed over the shapes; 0, the default: computed from `density`.
     pub mass: f32,
-    /// kg/m³. Default 1,000.
+    /// Density, kg/m³. Default 1,000.
     pub density: f32,
     /// Coulomb's coefficient, at least 0. Default 0.6.
     pub friction: f32,
@@ -60,7 +60,7 @@ pub struct SinewBodyDef {
     pub layers: u32,
     /// Bits of the layers that they collide with. Default all.
     pub mask: u32,
-    /// For the user.
+    /// Data of the user.
     pub user_data: u64,
 }
 
@@ -119,7 +119,7 @@ impl SinewWorldDef {
         let sleeping = match self.sleeping {
             0 => Sleeping::Off,
             1 => Sleeping::On,
-            other => return Err(bad(format!("sleeping is 0 or 1, not {other}"))),
+            other => return Err(bad(format!("sleeping must be 0 or 1, not {other}"))),
         };
         let def = WorldDef {
             gravity: self.gravity.read("gravity")?,
@@ -169,7 +169,7 @@ impl SinewBodyDef {
         if !(self.mass > 0.0 && self.mass < f32::INFINITY) {
             return Err(error(
                 SinewStatus::BadArgument,
-                format!("a mass is positive and finite, not {} kg", self.mass),
+                format!("the mass must be positive and finite, not {} kg", self.mass),
             ));
         }
         let by_density = refused(|| {
@@ -229,7 +229,7 @@ pub unsafe extern "C" fn sinew_world_free(world: *mut SinewWorld) {
 /// Takes steps on the given number of threads; the result does not depend on it. 0 and 1 use the calling thread only.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses.
+/// `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_step(world: *mut SinewWorld, steps: u32, threads: u32) -> SinewStatus {
     guard(|| {
@@ -255,7 +255,7 @@ pub unsafe extern "C" fn sinew_world_step(world: *mut SinewWorld, steps: u32, th
 /// Number of steps since the beginning.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes, `steps` is null or points to a number.
+/// `world` is null or a world that no other thread changes, `steps` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_step_count(world: *const SinewWorld, steps: *mut u64) -> SinewStatus {
     // SAFETY: as the caller promises.
@@ -265,7 +265,7 @@ pub unsafe extern "C" fn sinew_world_step_count(world: *const SinewWorld, steps:
 /// Adds a body.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses, `def` null or a definition whose shapes are there, `id` null or room for one.
+/// `world` is null or a world that no other thread uses, `def` null or a definition whose shapes are there, `id` null or room for one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_add_body(
     world: *mut SinewWorld,
@@ -285,7 +285,7 @@ pub unsafe extern "C" fn sinew_world_add_body(
 /// Removes a body with its joints.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses.
+/// `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_remove_body(world: *mut SinewWorld, id: SinewBodyId) -> SinewStatus {
     // SAFETY: as the caller promises.
@@ -300,7 +300,7 @@ pub unsafe extern "C" fn sinew_world_remove_body(world: *mut SinewWorld, id: Sin
 /// Ids of all bodies, ascending by index.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes, `ids` has room for `capacity`, `count` is null or points to a number.
+/// `world` is null or a world that no other thread changes, `ids` has room for `capacity`, `count` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_bodies(
     world: *const SinewWorld,
@@ -320,7 +320,7 @@ pub unsafe extern "C" fn sinew_world_bodies(
 /// Poses of bodies in the world, one for each id.
 ///
 /// # Safety
-/// `world` is null or a world that nobody changes; `ids` and `poses` have `count` elements.
+/// `world` is null or a world that no other thread changes; `ids` and `poses` have `count` elements.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_poses(
     world: *const SinewWorld,
@@ -362,7 +362,7 @@ pub unsafe extern "C" fn sinew_world_velocities(
 /// Moves a body to a pose without passing through the space between.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses.
+/// `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_set_pose(
     world: *mut SinewWorld,
@@ -383,7 +383,7 @@ pub unsafe extern "C" fn sinew_world_set_pose(
 /// Sets the velocity of a body; ignored for static ones.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses.
+/// `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_set_velocity(
     world: *mut SinewWorld,
@@ -404,7 +404,7 @@ pub unsafe extern "C" fn sinew_world_set_velocity(
 /// Applies an impulse, N·s, world axes, to a dynamic body at a point in the world, or at its centre of mass if `point` is null.
 ///
 /// # Safety
-/// `world` is null or a world that nobody else uses, `point` is null or points to one.
+/// `world` is null or a world that no other thread uses, `point` is null or points to one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_push(
     world: *mut SinewWorld,

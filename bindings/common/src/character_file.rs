@@ -24,7 +24,7 @@ use std::path::Path;
 pub struct CharacterFile {
     /// Name given by the user.
     pub name: String,
-    /// Its rig, clips and bytes. The rig may have added ankles and sheet joints that the file lacks.
+    /// Rig, clips and bytes of the file. The rig may have added ankles and sheet joints that the file lacks.
     pub document: Document,
     /// Analysis of its joints.
     pub analysis: RigAnalysis,
@@ -69,7 +69,7 @@ impl Corrections {
         }
         let positive = |number: Option<f32>, what: &str| match number {
             Some(number) if !(number > 0.0 && number < f32::INFINITY) => {
-                Err(Failure::argument(format!("a {what} is positive and finite, not {number}")))
+                Err(Failure::argument(format!("the {what} must be positive and finite, not {number}")))
             }
             other => Ok(other),
         };
@@ -83,7 +83,7 @@ impl Corrections {
     }
 }
 
-/// Build options that override file and settings; `None` keeps theirs.
+/// Build options that override file and settings; `None` keeps the file's and the settings' values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wishes {
     /// Mass of the whole, kg.
@@ -126,7 +126,7 @@ impl CharacterFile {
     /// neighbouring files to find an uncertain unit.
     ///
     /// # Errors
-    /// Names the file, what is wrong with it, and where.
+    /// If the file is invalid; the error names the file, the problem and its place.
     pub fn load(path: &Path, corrections: &Corrections) -> Result<Self, Failure> {
         let name = path.display().to_string();
         let is_fbx = matches!(MotionFormat::of(&read_bytes(path)?), Ok(MotionFormat::Fbx));
@@ -209,7 +209,7 @@ impl CharacterFile {
     /// The ragdoll of the character, and the notes of the build.
     ///
     /// # Errors
-    /// Names the file and the problem of the file or the options.
+    /// If the file or an option is invalid; the error names the file and the problem.
     pub fn build(&self, wishes: &Wishes) -> Result<(RagdollDef, BuildReport), Failure> {
         let rig = &self.document.rig;
         let mut settings = self.settings.clone();
@@ -313,7 +313,7 @@ pub fn embedded() -> CharacterFile {
 /// is built.
 ///
 /// # Errors
-/// Names the file, what is wrong with it, and where.
+/// If the file is invalid; the error names the file, the problem and its place.
 pub fn load_ragdoll(path: &Path) -> Result<Repair, Failure> {
     let name = path.display().to_string();
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());

@@ -1,4 +1,4 @@
-//! Layer that the bindings to C and to Python share: files by name, characters with motions, random falls.
+//! Code shared by the bindings to C and to Python: files by name, characters with motions, random falls.
 #![forbid(unsafe_code)]
 
 mod character_file;

@@ -1,4 +1,4 @@
-//! Panics that must not pass a border.
+//! Catches panics that must not cross a language border.
 
 use std::any::Any;
 use std::cell::Cell;
@@ -10,10 +10,10 @@ thread_local! {
     static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Runs `call`; a panic becomes its message, and nothing is printed.
+/// Runs `call`; a panic becomes its message, without printed output.
 ///
 /// # Errors
-/// The message of the panic.
+/// If `call` panics: its message.
 pub fn caught<T>(call: impl FnOnce() -> T) -> Result<T, String> {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| {

@@ -65,7 +65,7 @@ pub fn random_fall(character: &CharacterDef, seed: u64, options: &FallOptions) -
     let mut posed = character.clone();
     posed.after_settling = AfterSettling::StayDown;
     let clips = vec![still(character, &bodies)];
-    // The pose is where it is: its lowest point stands on nothing yet.
+    // The pose is used exactly as given, without ground contact.
     let locomotion = Locomotion::Exact;
     let motions = MotionSet { clips, looped: Some(0), locomotion, ..MotionSet::default() };
     posed.set_motions(motions).expect("a pose can be played");
@@ -83,7 +83,7 @@ pub fn random_fall(character: &CharacterDef, seed: u64, options: &FallOptions) -
     RandomFall { hit, ground, baked, verdict, reasons }
 }
 
-/// A clip that holds still, with bodies at these poses in character space.
+/// A constant clip, with bodies at these poses in character space.
 fn still(character: &CharacterDef, bodies: &[Transform]) -> Clip {
     let rig: &Rig = &character.rig;
     let mut pose: Vec<LocalTransform> = character.rest().to_vec();
@@ -114,7 +114,7 @@ mod tests {
     use crate::embedded;
 
     #[test]
-    fn falls_begin_in_their_pose_lie_on_their_ground_and_depend_on_the_seed_alone() {
+    fn falls_start_in_their_pose_end_on_their_ground_and_depend_only_on_the_seed() {
         let file = embedded();
         let (ragdoll, _) = file.build(&crate::Wishes::default()).expect("it is built");
         let character = file.character(&ragdoll, &crate::Motions::default()).expect("it moves");
@@ -131,7 +131,7 @@ mod tests {
             assert!(mapping.bodies_from_pose(first, Transform::IDENTITY, &mut Vec::new(), &mut due));
             for (body, (due, at)) in due.iter().zip(&pose).enumerate() {
                 let off = (due.translation - at.translation).length();
-                assert!(off < 2e-3, "fall {seed}: body {body} begins {off} m from its pose");
+                assert!(off < 2e-3, "fall {seed}: body {body} starts {off} m from its pose");
             }
             assert_eq!(fall.baked.quality.nan, 0);
             assert!(fall.baked.quality.first_contact_s.is_some(), "fall {seed} met nothing");

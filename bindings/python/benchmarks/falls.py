@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A data set of falls of the mannequin, made on workers of Ray: throughput beside one process, files read again, hashes beside single runs.
+"""Makes a data set of falls of the mannequin on Ray workers. Compares the throughput with one process, checks the files, and compares hashes with single runs.
 
     python falls.py --out falls --count 10000 --workers 2
 
@@ -20,7 +20,7 @@ from sinew import distributed
 
 
 def is_valid(path: Path) -> bool:
-    """A GLB whose parts are as long as they say, with one animation of the frames that it should have."""
+    """Checks that a GLB has valid chunk lengths and one animation with the expected frames."""
     data = path.read_bytes()
     magic, version, length, size, kind = struct.unpack_from("<4sIII4s", data)
     if (magic, version, kind, length) != (b"glTF", 2, b"JSON", len(data)):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A thousand humanoids in batch: Sinew's `BatchWorlds` beside MuJoCo's `mujoco.rollout`, the same model, the same start, the same run.
+"""A thousand humanoids in batch: Sinew's `BatchWorlds` against MuJoCo's `mujoco.rollout`, with the same model, start and length.
 
     pip install sinew mujoco
     python mujoco_rollout.py humanoid.xml
@@ -24,14 +24,14 @@ import sinew
 
 
 def starts(count: int, height: float, seed: int):
-    """Turns (z up, w x y z of MuJoCo) and places of the roots."""
+    """Rotations (z up, w x y z as in MuJoCo) and positions of the roots."""
     rng = np.random.default_rng(seed)
     turns = rng.normal(size=(count, 4))
     return turns / np.linalg.norm(turns, axis=1, keepdims=True), height
 
 
 def y_up(quat):
-    """A turn of MuJoCo's axes, w x y z, in ours, x y z w: its z is our y, its y our -z."""
+    """Converts a rotation from MuJoCo's axes (w x y z) to ours (x y z w): its z is our y, its y our -z."""
     w, x, y, z = np.moveaxis(quat, -1, 0)
     return np.stack([x, z, -y, w], -1)
 
@@ -80,7 +80,7 @@ class Sinew:
         self.model = sinew.load_model(path)
         self.batch = sinew.BatchWorlds(self.model, len(turns), floor=False, sleeping=False, threads=threads)
         first = self.batch.poses()[0]
-        # About the first body's place, as MuJoCo turns its root.
+        # Rotate about the position of the first body, as MuJoCo rotates its root.
         turn, root = y_up(turns), first[0, :3]
         motions = np.zeros((len(turns), 7), np.float32)
         motions[:, 3:] = turn
@@ -137,7 +137,7 @@ def main():
             "simulated_s_per_s_of_the_clock": simulated / min(pair[1] for pair in times[name]),
             **engine.quality(given.seconds, min(given.looked_at, given.count)),
         }
-    # Where they lie in the end: that both did the same.
+    # Final positions, to check that both did the same.
     engines["sinew"].run(given.seconds)
     report["sinew"]["root_height_end_m"] = float(np.median(engines["sinew"].batch.poses()[:, 0, 1]))
     report["mujoco"]["root_height_end_m"] = float(np.median(engines["mujoco"].end[:, 3]))

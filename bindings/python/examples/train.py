@@ -1,4 +1,4 @@
-"""The loop of learning to stay up under pushes, with numpy alone: augmented random search (Mania et al. 2018) on a linear policy.
+"""Learns to stay up under pushes with numpy alone: augmented random search (Mania et al. 2018) on a linear policy.
 
 It is not tuned: 20 rounds do not make it better than standing still.
 """
@@ -20,7 +20,7 @@ rng = np.random.default_rng(0)
 policy = np.zeros((env.single_action_space.shape[0], env.single_observation_space.shape[0]), np.float32)
 
 for number in range(ROUNDS + 1):
-    # Half of the worlds try the policy with a change, the other half with its opposite.
+    # Half of the worlds run the policy with a change, the other half with its opposite.
     changes = rng.standard_normal((WORLDS // 2, *policy.shape)).astype(np.float32)
     tried = policy + NOISE * np.concatenate([changes, -changes])
     observations, _ = env.reset(seed=number)

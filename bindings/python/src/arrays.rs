@@ -1,4 +1,4 @@
-//! Arrays of numpy in and out.
+//! Converts numpy arrays.
 
 use crate::errors::bad;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods, dtype};
@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::Velocity;
 
-/// An array of that shape, with these elements.
+/// An array of that shape with these elements.
 pub fn array<'py, T: numpy::Element>(
     py: Python<'py>,
     elements: Vec<T>,
@@ -16,7 +16,7 @@ pub fn array<'py, T: numpy::Element>(
     PyArray1::from_vec(py, elements).reshape(shape.to_vec())
 }
 
-/// Elements of anything that numpy makes an array of, of this shape: `None` for a length that is free.
+/// Elements of a value that numpy converts to an array of this shape; `None` is a free length.
 pub fn elements<T: numpy::Element + Copy>(
     given: &Bound<'_, PyAny>,
     shape: &[Option<usize>],
@@ -56,7 +56,7 @@ pub fn vectors(numbers: &[f32]) -> Vec<Vec3> {
     numbers.chunks_exact(3).map(|v| Vec3::new(v[0], v[1], v[2])).collect()
 }
 
-/// Poses from rows of seven: place, and quaternion x, y, z, w, which is made a unit.
+/// Poses from rows of seven: position, and quaternion x, y, z, w, which is normalised.
 pub fn poses(numbers: &[f32], name: &str) -> PyResult<Vec<Transform>> {
     let pose = |p: &[f32]| {
         let rotation = Rotation { x: p[3], y: p[4], z: p[5], w: p[6] };
@@ -64,7 +64,7 @@ pub fn poses(numbers: &[f32], name: &str) -> PyResult<Vec<Transform>> {
         if length.is_nan() || length < 1e-6 {
             return Err(bad(format!("{name}: a quaternion must not be zero")));
         }
-        // A unit keeps its bits, so that poses that were asked for can be set again.
+        // A unit quaternion keeps its bits, so that poses that were read can be set again.
         let rotation = if (length - 1.0).abs() < 1e-6 { rotation } else { rotation.normalize() };
         Ok(Transform::new(Vec3::new(p[0], p[1], p[2]), rotation))
     };

@@ -64,7 +64,7 @@ type Hit<'py> = (f32, String, Bound<'py, PyAny>);
 
 #[pymethods]
 impl Actor {
-    /// Actions on a character in a bake.
+    /// Creates the actor from Python's arguments.
     #[new]
     #[pyo3(signature = (character, *, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, pose=None, phase=0.0, name="sinew"))]
     fn new(
@@ -86,7 +86,7 @@ impl Actor {
         if let Some(wrong) =
             [limp_at, return_at, Some(phase)].into_iter().flatten().find(|time| !time.is_finite())
         {
-            return Err(bad(format!("times are finite, not {wrong}")));
+            return Err(bad(format!("times must be finite, not {wrong}")));
         }
         if !(0.0..f32::INFINITY).contains(&return_seconds) {
             return Err(bad(format!("return_seconds must not be negative, not {return_seconds}")));
@@ -208,8 +208,8 @@ impl Stage {
     }
 }
 
-/// Wall time between two calls of the user's function, seconds.
-const TELLS_EVERY: f32 = 0.05;
+/// Least wall time between two calls of the user's function, seconds.
+const REPORT_INTERVAL: f32 = 0.05;
 
 /// Reports a bake's progress to Python, and checks whether to continue.
 struct Watch {
@@ -221,7 +221,7 @@ struct Watch {
 
 impl Watch {
     fn see(&mut self, time: f32) -> ControlFlow<()> {
-        if self.told.elapsed().as_secs_f32() < TELLS_EVERY {
+        if self.told.elapsed().as_secs_f32() < REPORT_INTERVAL {
             return ControlFlow::Continue(());
         }
         let share = if self.seconds > 0.0 { (time / self.seconds).min(1.0) } else { 1.0 };
@@ -249,7 +249,7 @@ impl Watch {
 
 #[pymethods]
 impl Character {
-    /// Roles of its bodies.
+    /// Roles of the character's bodies.
     #[getter]
     fn roles(&self) -> Vec<&str> {
         self.def.ragdoll.bodies.iter().map(|body| body.role.as_str()).collect()
@@ -320,7 +320,7 @@ impl Character {
     fn random_fall(&self, py: Python<'_>, seed: u64, seconds: f32, fps: f32, impulse: f32) -> PyResult<Bake> {
         check_length(seconds, fps)?;
         if !(0.0..f32::INFINITY).contains(&impulse) {
-            return Err(bad("an impulse is not negative, and finite"));
+            return Err(bad("the impulse must be finite and at least 0"));
         }
         let options = FallOptions { seconds, fps, impulse };
         let fall = py.detach(|| guarded(|| random_fall(&self.def, seed, &options)))?;
@@ -341,7 +341,7 @@ impl Character {
     fn hit(&self, (time, name, impulse): &Hit<'_>) -> PyResult<BakeHit> {
         let body = body_named(&self.def, name)?;
         if !time.is_finite() {
-            return Err(bad(format!("the time of a hit is finite, not {time}")));
+            return Err(bad(format!("the time of a hit must be finite, not {time}")));
         }
         Ok(BakeHit { time: *time, body, impulse: vec3(impulse, "the impulse of a hit")? })
     }

@@ -1,4 +1,4 @@
-//! Many worlds of the same figure, stepped side by side.
+//! Many worlds with the same figure, stepped together.
 
 use crate::arrays::{array, elements, floats, poses, push_pose, push_velocity, vectors, velocities};
 use crate::errors::{bad, guarded, refused};
@@ -19,7 +19,7 @@ use std::sync::{Mutex, PoisonError};
 #[pyclass(module = "sinew")]
 pub struct BatchWorlds {
     worlds: Vec<Mutex<World>>,
-    /// The same in each world: they were made alike.
+    /// Body ids, equal in all worlds because they were created alike.
     bodies: Vec<BodyId>,
     joints: Vec<JointId>,
     names: Vec<String>,

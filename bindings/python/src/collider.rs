@@ -110,7 +110,7 @@ impl Collider {
         Ok(bodies.into_iter().map(|def| Self { def, keys: None }).collect())
     }
 
-    /// The same body moved by forces; density in kg/m³.
+    /// A copy moved by forces; density in kg/m³.
     #[pyo3(signature = (*, density=1000.0))]
     fn dynamic(&self, density: f32) -> PyResult<Self> {
         let mut def = BodyDef { kind: BodyKind::Dynamic, ..self.def.clone() };
@@ -121,7 +121,7 @@ impl Collider {
         Ok(Self { def, keys: None })
     }
 
-    /// The same body, moved to poses (n, 7) at times (n,) in seconds, regardless of obstacles.
+    /// A copy moved to poses (n, 7) at times (n,) in seconds, regardless of obstacles.
     fn keyed(&self, times: &Bound<'_, PyAny>, poses: &Bound<'_, PyAny>) -> PyResult<Self> {
         let times = floats(times, &[None], "times")?;
         let keys = crate::arrays::poses(&floats(poses, &[Some(times.len()), Some(7)], "poses")?, "poses")?;

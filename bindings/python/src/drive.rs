@@ -39,12 +39,10 @@ impl Drive {
     ) -> PyResult<Self> {
         let numbers = [half_life, hertz, damping_ratio, strength, pin_hertz, pin_force, pin_torque];
         if numbers.iter().any(|number| !(0.0..f32::INFINITY).contains(number)) || strength > 1.0 {
-            return Err(bad(
-                "numbers of a drive are not negative, and finite, and its strength is at most 1",
-            ));
+            return Err(bad("the numbers of a drive must be finite and at least 0, its strength at most 1"));
         }
         if !time.is_finite() {
-            return Err(bad(format!("the time of a drive is finite, not {time}")));
+            return Err(bad(format!("the time of a drive must be finite, not {time}")));
         }
         let muscle = Muscle { hertz, damping_ratio, strength };
         let pin = Pin { hertz: pin_hertz, damping_ratio: 1.0, max_force: pin_force, max_torque: pin_torque };

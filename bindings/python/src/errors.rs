@@ -1,4 +1,4 @@
-//! Errors as Python's exceptions.
+//! Converts errors to Python exceptions.
 
 use pyo3::exceptions::{PyException, PyValueError};
 use pyo3::prelude::*;
@@ -24,17 +24,17 @@ pub fn of_file(error: sinew::formats::Error) -> PyErr {
     failed(Failure::from(error))
 }
 
-/// An argument that cannot be.
+/// The exception for an invalid argument.
 pub fn bad(what: impl Into<String>) -> PyErr {
     PyValueError::new_err(what.into())
 }
 
-/// Runs a call that panics about its arguments before it changes anything: a `ValueError` with its sentence.
+/// Runs a call that panics about its arguments before it changes anything: the panic becomes a `ValueError`.
 pub fn refused<T>(call: impl FnOnce() -> T) -> PyResult<T> {
     caught(call).map_err(bad)
 }
 
-/// Runs a call that must not panic: a bug is a `SinewError`, not the end of the interpreter.
+/// Runs a call that must not panic: a bug becomes a `SinewError` instead of ending the interpreter.
 pub fn guarded<T>(call: impl FnOnce() -> T) -> PyResult<T> {
     caught(call).map_err(SinewError::new_err)
 }

@@ -37,7 +37,7 @@ fn corrections(
         let text: String = py.import("json")?.call_method1("dumps", (whole,))?.extract()?;
         read_ragdoll_settings(text.as_bytes()).map_err(|error| bad(format!("settings: {error}")))
     });
-    // A dictionary has no order that counts here: sorted, the same arguments give the same bits.
+    // The order of a dictionary has no meaning here: sorted, the same arguments give the same bits.
     let sorted = |map: Option<HashMap<String, String>>| {
         let mut list: Vec<_> = map.unwrap_or_default().into_iter().collect();
         list.sort();
@@ -137,7 +137,7 @@ pub fn mannequin(py: Python<'_>) -> PyResult<CharacterFile> {
 
 #[pymethods]
 impl CharacterFile {
-    /// As it was named.
+    /// Name of the file.
     #[getter]
     fn name(&self) -> &str {
         &self.file.name
@@ -204,7 +204,7 @@ impl CharacterFile {
             },
         };
         if height.is_some_and(|height| !(height > 0.0 && height < f32::INFINITY)) {
-            return Err(bad("a height is positive and finite"));
+            return Err(bad("the height must be positive and finite"));
         }
         let wishes = Wishes { mass, height, options };
         let (def, report) = py.detach(|| guarded(|| self.file.build(&wishes)))?.map_err(failed)?;

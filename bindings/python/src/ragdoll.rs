@@ -77,7 +77,7 @@ pub fn quality_dict<'py>(py: Python<'py>, q: &FallQuality) -> PyResult<Bound<'py
     Ok(dict)
 }
 
-/// A shape in another size.
+/// Returns a shape scaled by a factor.
 fn scaled_shape(shape: &Shape, factor: f32) -> PyResult<Shape> {
     Ok(match *shape {
         Shape::Box { half_extents } => Shape::Box { half_extents: half_extents * factor },
@@ -94,7 +94,7 @@ fn scaled_shape(shape: &Shape, factor: f32) -> PyResult<Shape> {
     })
 }
 
-/// Wishes for one body and the joint above it.
+/// Requested changes of one body and the joint above it.
 struct Edit {
     mass: Option<f32>,
     shape: Option<Shape>,
@@ -110,7 +110,7 @@ impl Edit {
         let body = &mut def.bodies[index];
         let positive = |number: Option<f32>, what: &str| match number {
             Some(number) if !(number > 0.0 && number < f32::INFINITY) => {
-                Err(bad(format!("{what} is positive and finite, not {number}")))
+                Err(bad(format!("{what} must be positive and finite, not {number}")))
             }
             other => Ok(other),
         };
@@ -183,7 +183,7 @@ impl Ragdoll {
         self.repair.def.bodies.iter().map(|body| body.role.as_str()).collect()
     }
 
-    /// kg, body by body.
+    /// Masses, kg, body by body.
     #[getter]
     fn masses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         PyArray1::from_vec(py, self.repair.def.bodies.iter().map(|body| body.mass.mass).collect())
@@ -220,13 +220,13 @@ impl Ragdoll {
         array(py, numbers, &[joints.len(), 7])
     }
 
-    /// kg.
+    /// Total mass, kg.
     #[getter]
     fn total_mass(&self) -> f32 {
         self.repair.def.total_mass
     }
 
-    /// Metres.
+    /// Height, metres.
     #[getter]
     fn height(&self) -> f32 {
         self.repair.def.height

@@ -1,4 +1,4 @@
-//! Rigs and clips out of arrays.
+//! Creates rigs and clips from arrays.
 
 use crate::arrays::{elements, floats, vectors};
 use crate::errors::bad;
@@ -9,7 +9,7 @@ use sinew::anim::{
 };
 use sinew::math::{Affine, Mat3, Rotation, Vec3};
 
-/// Most influences of a vertex.
+/// Largest number of influences of a vertex.
 const INFLUENCES: usize = 4;
 
 /// A rig without skin: names, parents (-1 for a root), and the rest pose.
@@ -129,7 +129,7 @@ fn mesh(given: &Bound<'_, PyDict>, index: usize, joint_count: usize) -> PyResult
     }
     let weights = floats(&need("weights")?, &[Some(vertices), Some(INFLUENCES)], &of("weights"))?;
     if weights.iter().any(|weight| *weight < 0.0) {
-        return Err(bad(format!("{} are not negative", of("weights"))));
+        return Err(bad(format!("{} must be at least 0", of("weights"))));
     }
     let even = |w: &[f32]| {
         let sum: f32 = w.iter().sum();
@@ -160,7 +160,7 @@ fn one_clip(rig: &Rig, name: String, given: &Bound<'_, PyDict>) -> PyResult<Clip
     let times = floats(&times, &[None], &of("times"))?;
     let ascend = times.windows(2).all(|pair| pair[0] < pair[1]);
     if times.is_empty() || times[0] < 0.0 || !ascend {
-        return Err(bad(format!("{} are not negative and ascend", of("times"))));
+        return Err(bad(format!("{} must be at least 0 and ascend", of("times"))));
     }
     let joints = rig.joints.len();
     let mut channels = Vec::new();
@@ -194,7 +194,7 @@ fn one_clip(rig: &Rig, name: String, given: &Bound<'_, PyDict>) -> PyResult<Clip
     Ok(Clip { duration: times[times.len() - 1], name, channels })
 }
 
-/// Unit quaternions, each on the side of the one before.
+/// Unit quaternions, each with the sign nearest to the previous one.
 fn near<'a>(rows: impl Iterator<Item = &'a [f32]>, name: &str) -> PyResult<Vec<f32>> {
     let mut values = Vec::new();
     let mut last: Option<Rotation> = None;

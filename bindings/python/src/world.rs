@@ -35,7 +35,7 @@ pub struct World {
 type Ids<'py> = Bound<'py, PyArray1<u64>>;
 
 /// Body id of a ray without a hit.
-const NOBODY: u64 = u64::MAX;
+const NO_BODY: u64 = u64::MAX;
 
 /// Settings of a world, from Python's arguments.
 pub fn world_def(
@@ -131,7 +131,7 @@ impl World {
         }
     }
 
-    /// World, then characters.
+    /// State of the world, followed by that of its characters.
     fn state(&self) -> Writer {
         let mut w = Writer::new();
         self.world.save(&mut w);
@@ -474,7 +474,7 @@ impl World {
         guarded(|| self.world.query().first_each(&rays, &mut hits))?;
         let (mut bodies, mut fractions, mut points, mut normals) = (vec![], vec![], vec![], vec![]);
         for (ray, hit) in rays.iter().zip(&hits) {
-            bodies.push(hit.map_or(NOBODY, |hit| hit.body.to_bits()));
+            bodies.push(hit.map_or(NO_BODY, |hit| hit.body.to_bits()));
             fractions.push(hit.map_or(1.0, |hit| hit.fraction));
             points.extend(hit.map_or(ray.origin + ray.direction, |hit| hit.point).to_array());
             normals.extend(hit.map_or(Vec3::ZERO, |hit| hit.normal).to_array());

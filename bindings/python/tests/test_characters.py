@@ -62,7 +62,7 @@ def figure(scale: float = 1.0) -> dict[str, object]:
 
 
 def wave(parts: dict[str, object], frames: int = 60) -> ClipArrays:
-    """A clip that goes along +X and raises an arm."""
+    """A clip that moves along +X and raises an arm."""
     names, local = parts["joints"], np.asarray(parts["translations"])
     assert isinstance(names, list)
     translations = np.tile(local, (frames, 1, 1))
@@ -306,7 +306,7 @@ class TestLive:
             world.load(state[:-40])
 
     def test_a_live_fall_has_the_bits_of_the_bake(self, character):
-        """The bake puts nothing into the world while it animates; nor does a character without detail."""
+        """While animated, a bake adds no bodies to the world; a character without detail adds none either."""
         world = self.world()
         hero = world.add_character(character)
         hero.set_level_of_detail("keyed")

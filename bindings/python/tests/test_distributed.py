@@ -18,7 +18,7 @@ from sinew import distributed  # noqa: E402
 @pytest.fixture(scope="module", autouse=True)
 def two_workers():
     ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
-    # Functions of this file are known here only.
+    # Functions of this file exist only in this process.
     import cloudpickle  # noqa: F401
 
     ray.cloudpickle.register_pickle_by_value(sys.modules[__name__])

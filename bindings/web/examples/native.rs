@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// N·s toward +Z: a hard shove.
+/// Impulse of a hard shove toward +Z, N·s.
 const SHOVE: f32 = 120.0;
 
 fn ground() -> World {
@@ -30,7 +30,7 @@ fn step(world: &mut World, characters: &mut [Character], count: u32) {
     }
 }
 
-/// Two copies, one of them shoved after a second: the hash after ten seconds.
+/// Two copies of a character, one shoved after a second: the hash after ten seconds.
 fn fall(def: &Arc<CharacterDef>) -> u64 {
     let mut world = ground();
     let place = |x: f32| Transform::from_translation(Vec3::new(x, 0.0, 0.0));
@@ -66,7 +66,8 @@ fn boxes() -> u64 {
     world.hash()
 }
 
-/// Milliseconds of a step of a limp character, and of 30 walking and 10 falling ones: the best of several rounds, because others use the machine.
+/// Milliseconds per step of a limp character, and of 30 walking and 10 falling ones: the best of several rounds,
+/// because of other load.
 fn times(def: &Arc<CharacterDef>) -> [f64; 2] {
     let mut limp = Vec::new();
     for _ in 0..9 {

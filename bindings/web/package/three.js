@@ -38,7 +38,7 @@ const FAR = 1000;
 /**
  * Physics of a scene of three.js. Metres and seconds; +Y is up.
  *
- * Events are those of `PhysicsEvent`; `event.a` and `event.b` are ids, `event.targets` what they belong to.
+ * Events are those of `PhysicsEvent`; `event.a` and `event.b` are ids, `event.targets` the objects that they belong to.
  * @extends {EventDispatcher<Record<string, any>>}
  */
 export class Sinew extends EventDispatcher {
@@ -232,7 +232,7 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * First body on a ray: of a raycaster that was set from the pointer, for example.
+   * First body on a ray, for example on that of a raycaster set from the pointer.
    * @param {Ray | Raycaster} ray
    * @param {QueryOptions & { far?: number }} [options] `far`: metres, 1000 by default.
    * @returns {Picked | undefined}
@@ -269,7 +269,7 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * Removes something from this world, and frees it.
+   * Removes an object from this world, and frees it.
    * @param {SinewBody | SinewInstances | SinewCharacter | SinewGeometry | SinewDrag} member
    */
   remove(member) {

@@ -1,5 +1,5 @@
-// Calls back into the program and returns what was thrown on the way, `undefined` if nothing was. A trap of WebAssembly
-// unwinds no frame of Rust, so JavaScript is where a panic can be caught.
+// Calls back into the program and returns the thrown value, or `undefined`. A WebAssembly trap unwinds no Rust frame,
+// so only JavaScript can catch a panic.
 export function attempt(call) {
   try {
     call();

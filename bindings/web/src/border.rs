@@ -1,4 +1,4 @@
-//! Border to JavaScript: errors, panics, and handles shared by several objects.
+//! Border to JavaScript: errors, panics, and shared handles.
 
 use std::cell::{Cell, RefCell};
 use std::panic::{PanicHookInfo, set_hook};
@@ -113,9 +113,9 @@ impl<T> Shared<T> {
         self.check()?;
         let mut value = self.0.value.try_borrow_mut().map_err(|_| in_use())?;
         caught(|| call(&mut value)).unwrap_or_else(|(what, place)| {
-            let told = format!("{what} ({place})");
-            *self.0.broken.borrow_mut() = Some(told.clone());
-            Err(Failure(told))
+            let report_text = format!("{what} ({place})");
+            *self.0.broken.borrow_mut() = Some(report_text.clone());
+            Err(Failure(report_text))
         })
     }
 }

@@ -159,13 +159,13 @@ impl CharacterDef {
         names(self.def.motions().clips.iter().map(|clip| clip.name.clone()))
     }
 
-    /// Metres.
+    /// Height, metres.
     #[wasm_bindgen(getter)]
     pub fn height(&self) -> f32 {
         self.def.ragdoll.height
     }
 
-    /// kg.
+    /// Mass, kg.
     #[wasm_bindgen(getter)]
     pub fn mass(&self) -> f32 {
         self.def.ragdoll.total_mass

@@ -83,7 +83,7 @@ fn shape(options: &Options<'_>) -> Outcome<Shape> {
         "mesh" => {
             let indices = options.indices("indices")?;
             if indices.len() % 3 != 0 {
-                return Err(Failure::new("a mesh has three indices a triangle"));
+                return Err(Failure::new("a mesh must have three indices for each triangle"));
             }
             let triangles: Vec<[u32; 3]> = indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
             Shape::mesh(&options.points("vertices")?, &triangles).map_err(failed)?
@@ -122,7 +122,7 @@ pub fn probe_shape(value: &JsValue) -> Outcome<Shape> {
         shape.check().map_err(failed)?;
         return Ok(shape);
     }
-    Err(Failure::new("a shape to ask with is convex and bounded"))
+    Err(Failure::new("the shape of a query must be convex and bounded"))
 }
 
 /// Surface and filter of a shape; missing fields are taken from `default`.
@@ -365,7 +365,7 @@ pub fn motor(value: &JsValue) -> Outcome<Motor> {
     Ok(Motor { max_force: force, max_torque: torque, ..toward })
 }
 
-/// Mass and its distribution as JavaScript sees it.
+/// Mass and its distribution as a JavaScript object.
 pub fn mass(properties: MassProperties) -> JsValue {
     object([("mass", properties.mass.into()), ("center", crate::values::vector(properties.center))])
 }

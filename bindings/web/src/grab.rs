@@ -51,7 +51,7 @@ impl GrabPoint {
         self.inner.read(|inner| Ok(inner.grab_place(self.serial).is_some()))
     }
 
-    /// Lets go.
+    /// Releases the held body.
     pub fn release(&self) -> Outcome {
         self.inner.change(|inner| {
             if let Some(grab) = inner.grab_place(self.serial).and_then(|place| inner.grabs[place].take()) {

@@ -231,7 +231,7 @@ export type PinOptions = 'soft' | 'firm' | { hertz: number; dampingRatio?: numbe
 export type DriveMode = 'limp' | 'keyed' | { muscle: MuscleOptions; pin?: PinOptions };
 
 export interface CharacterOptions {
-  /** Name of the file, for messages; its words help to tell what the character is. */
+  /** Name of the file, for messages; its words are hints on the character's kind. */
   name?: string;
   /** Ragdoll settings, as `NAME.ragdoll.json` has them. */
   settings?: string | object;
@@ -253,7 +253,7 @@ export interface CharacterOptions {
   falling?: DriveMode;
   /** N·s of a blow that fells it; 0: every blow does. Default 0.6 m/s times its mass. */
   toughness?: number;
-  /** True if events tell what its bodies touch. Default false. */
+  /** True if events report what its bodies touch. Default false. */
   tellsContacts?: boolean;
 }
 

@@ -121,13 +121,13 @@ pub fn pose(pose: Transform) -> JsValue {
 pub fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsValue {
     let object = Object::new();
     for (key, value) in fields {
-        // Fails only for objects that are frozen or proxies.
+        // Fails only for frozen objects and proxies.
         _ = Reflect::set(&object, &JsValue::from_str(key), &value);
     }
     object.into()
 }
 
-/// An object of options that a user passes: reads its fields, and refuses those that it does not know.
+/// An object of options from the user: reads its fields, and rejects unknown ones.
 pub struct Options<'a> {
     object: &'a JsValue,
     what: &'a str,
@@ -155,7 +155,7 @@ impl<'a> Options<'a> {
         format!("{}.{key}", self.what)
     }
 
-    /// A field that is there, neither `undefined` nor `null`.
+    /// A field that is neither `undefined` nor `null`.
     pub fn get(&self, key: &str) -> Option<JsValue> {
         let value = Reflect::get(self.object, &JsValue::from_str(key)).ok()?;
         (!value.is_undefined() && !value.is_null()).then_some(value)
@@ -178,7 +178,7 @@ impl<'a> Options<'a> {
         self.read(key, |value, name| number(value, name).map(|_| value.as_f64().unwrap_or_default()))
     }
 
-    /// Infinity is allowed.
+    /// Reads a number that may be infinite.
     pub fn bound(&self, key: &str) -> Outcome<Option<f32>> {
         self.read(key, |value, name| match value.as_f64() {
             Some(number) if !number.is_nan() => Ok(number as f32),
@@ -248,7 +248,7 @@ impl<'a> Options<'a> {
         self.must(key, found)
     }
 
-    /// One of some words, by its place among them.
+    /// The index of one of some words.
     pub fn word(&self, key: &str, words: &[&str]) -> Outcome<Option<usize>> {
         self.read(key, |value, name| {
             let found = value.as_string().and_then(|text| words.iter().position(|word| *word == text));

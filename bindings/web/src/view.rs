@@ -4,12 +4,12 @@ use js_sys::{Float32Array, Object, WebAssembly};
 use std::cell::RefCell;
 use wasm_bindgen::JsCast;
 
-/// Array that shows numbers in memory. It is made anew only where the numbers or the memory have moved.
+/// An array view of numbers in memory. It is recreated only if the numbers or the memory have moved.
 #[derive(Default)]
 pub struct View(RefCell<Option<Float32Array>>);
 
 impl View {
-    /// The array over `numbers`, which is right until the next call that may need memory.
+    /// The array over `numbers`, valid until the next call that may allocate.
     pub fn of(&self, numbers: &[f32]) -> Float32Array {
         let memory: WebAssembly::Memory = wasm_bindgen::memory().unchecked_into();
         let buffer = memory.buffer();

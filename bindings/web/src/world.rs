@@ -29,8 +29,8 @@ impl World {
         Ok(World { inner: Shared::new(Inner::new(sinew::physics::World::new(def))) })
     }
 
-    /// Lets `seconds` pass: takes the whole steps in them and the rest of earlier calls, then shows a pose between the last two.
-    /// Returns the number of steps. Call it once a frame with the time since the last.
+    /// Advances by `seconds`: takes all whole steps, including the remainder of earlier calls, then interpolates the
+    /// shown pose between the last two. Returns the number of steps. Call it once per frame with the elapsed time.
     pub fn update(&self, seconds: f64) -> Outcome<u32> {
         let time = Duration::try_from_secs_f64(seconds)
             .map_err(|_| Failure(format!("seconds must be finite and not negative, not {seconds}")))?;
@@ -45,7 +45,7 @@ impl World {
         })
     }
 
-    /// Share of a step that is left over, 0 to 1: the place of the shown pose between the last two steps.
+    /// Remaining time as a share of a step, 0 to 1: the position of the shown pose between the last two steps.
     #[wasm_bindgen(getter)]
     pub fn alpha(&self) -> Outcome<f32> {
         self.inner.read(|inner| Ok(inner.alpha()))
@@ -94,7 +94,7 @@ impl World {
         self.inner.change(|inner| Ok(inner.world.add_body(&def).to_bits()))
     }
 
-    /// Takes a body out, with its joints.
+    /// Removes a body with its joints.
     #[wasm_bindgen(js_name = removeBody)]
     pub fn remove_body(&self, id: u64) -> Outcome {
         self.inner.change(|inner| {
@@ -104,19 +104,19 @@ impl World {
         })
     }
 
-    /// True if there is a body of that id.
+    /// True if a body with that id exists.
     #[wasm_bindgen(js_name = hasBody)]
     pub fn has_body(&self, id: u64) -> Outcome<bool> {
         self.inner.read(|inner| Ok(body(&inner.world, id).is_ok()))
     }
 
-    /// Ids of all bodies, those of characters among them.
+    /// Ids of all bodies, including those of characters.
     pub fn bodies(&self) -> Outcome<Vec<u64>> {
         self.inner.read(|inner| Ok(inner.world.body_ids().map(|id| id.to_bits()).collect()))
     }
 
-    /// Shows the pose of a body in `poses` from now on, and returns its place there: `poses` holds seven numbers for each place, the
-    /// position and the rotation x, y, z, w, interpolated between steps.
+    /// Adds a body's pose to `poses` and returns its index there: `poses` has seven numbers per index, the position and
+    /// the rotation x, y, z, w, interpolated between steps.
     pub fn track(&self, id: u64) -> Outcome<usize> {
         self.inner.change(|inner| {
             let body = body(&inner.world, id)?;
@@ -124,7 +124,7 @@ impl World {
         })
     }
 
-    /// Shows the pose at a place of `poses` no longer; the place is free for another.
+    /// Removes a pose from `poses`; its index can be reused.
     pub fn untrack(&self, place: usize) -> Outcome {
         self.inner.change(|inner| {
             inner.untrack(place);
@@ -132,7 +132,7 @@ impl World {
         })
     }
 
-    /// Poses of tracked bodies: a view of memory. Ask for it anew in each frame, since memory may have moved.
+    /// Poses of tracked bodies: a view of memory. Request it again in each frame, since memory may have moved.
     #[wasm_bindgen(getter)]
     pub fn poses(&self) -> Outcome<Float32Array> {
         self.inner.read(|inner| Ok(inner.poses()))
@@ -178,7 +178,7 @@ impl World {
         })
     }
 
-    /// Puts a body elsewhere at once. Without a rotation it keeps its own.
+    /// Teleports a body. Without a rotation it keeps its own.
     #[wasm_bindgen(js_name = setPose)]
     pub fn set_pose(&self, id: u64, position: Vec3Like, turn: Option<QuatLike>) -> Outcome {
         let (position, turn) = read_pose(&position, turn)?;
@@ -190,7 +190,7 @@ impl World {
         })
     }
 
-    /// Moves a kinematic body to a pose within `seconds` (one step by default), pushing what is in its way.
+    /// Moves a kinematic body to a pose within `seconds` (one step by default), pushing bodies in its way.
     #[wasm_bindgen(js_name = moveTo)]
     pub fn move_to(
         &self,
@@ -224,7 +224,7 @@ impl World {
         })
     }
 
-    /// Pushes a dynamic body with an impulse, N·s, at a point in the world; at its centre of mass if none is given.
+    /// Applies an impulse to a dynamic body, N·s, at a point in the world; by default at its centre of mass.
     #[wasm_bindgen(js_name = applyImpulse)]
     pub fn apply_impulse(&self, id: u64, impulse: Vec3Like, point: Option<Vec3Like>) -> Outcome {
         let impulse = vec3(&impulse, "impulse")?;
@@ -237,7 +237,8 @@ impl World {
         })
     }
 
-    /// Pulls a dynamic body with a force, N, through the next step, at a point in the world; at its centre of mass if none is given.
+    /// Applies a force to a dynamic body during the next step, N, at a point in the world; by default at its centre of
+    /// mass.
     #[wasm_bindgen(js_name = applyForce)]
     pub fn apply_force(&self, id: u64, force: Vec3Like, point: Option<Vec3Like>) -> Outcome {
         let force = vec3(&force, "force")?;
@@ -250,7 +251,7 @@ impl World {
         })
     }
 
-    /// Turns a dynamic body with a torque, N·m, through the next step.
+    /// Applies a torque to a dynamic body during the next step, N·m.
     #[wasm_bindgen(js_name = applyTorque)]
     pub fn apply_torque(&self, id: u64, torque: Vec3Like) -> Outcome {
         let torque = vec3(&torque, "torque")?;
@@ -278,7 +279,7 @@ impl World {
 
     // Joints
 
-    /// Adds a joint between two bodies where they are now, and returns its id.
+    /// Adds a joint between two bodies at their present poses, and returns its id.
     #[wasm_bindgen(js_name = addJoint)]
     pub fn add_joint(&self, options: JointOptions) -> Outcome<u64> {
         self.inner.change(|inner| {
@@ -287,7 +288,7 @@ impl World {
         })
     }
 
-    /// Takes a joint out.
+    /// Removes a joint.
     #[wasm_bindgen(js_name = removeJoint)]
     pub fn remove_joint(&self, id: u64) -> Outcome {
         self.inner.change(|inner| {
@@ -297,12 +298,12 @@ impl World {
         })
     }
 
-    /// Ids of all joints, those of characters among them.
+    /// Ids of all joints, including those of characters.
     pub fn joints(&self) -> Outcome<Vec<u64>> {
         self.inner.read(|inner| Ok(inner.world.joint_ids().map(|id| id.to_bits()).collect()))
     }
 
-    /// Drives a joint, or no longer if there is no motor.
+    /// Sets the motor of a joint, or removes it.
     #[wasm_bindgen(js_name = setMotor)]
     pub fn set_motor(&self, id: u64, options: Option<MotorOptions>) -> Outcome {
         let motor = options.map(|options| motor(&options)).transpose()?;
@@ -313,7 +314,7 @@ impl World {
         })
     }
 
-    /// Switches a joint on or off. One that broke is off.
+    /// Enables or disables a joint. A broken joint is disabled.
     #[wasm_bindgen(js_name = setJointEnabled)]
     pub fn set_joint_enabled(&self, id: u64, enabled: bool) -> Outcome {
         self.inner.change(|inner| {
@@ -324,7 +325,7 @@ impl World {
         })
     }
 
-    /// Pose of body B seen from body A in the joint's frame: a hinge turns about x, a slider moves along x.
+    /// Pose of body B relative to body A in the joint's frame: a hinge turns about x, a slider moves along x.
     #[wasm_bindgen(js_name = jointPose)]
     pub fn joint_pose(&self, id: u64) -> Outcome<PoseOut> {
         self.inner
@@ -344,18 +345,18 @@ impl World {
         self.inner.read(|inner| Ok(format!("{:016x}", inner.world.hash())))
     }
 
-    /// State of the world, with its characters and points that grab, as bytes.
+    /// State of the world as bytes, with its characters and grab points.
     pub fn save(&self) -> Outcome<Vec<u8>> {
         self.inner.read(|inner| Ok(inner.save()))
     }
 
-    /// Brings a saved state back; the world must have the same characters as when it was saved.
+    /// Restores a saved state; the world must have the same characters as at the time of saving.
     pub fn load(&self, state: &[u8]) -> Outcome {
         self.inner.run(|inner| inner.load(state))
     }
 
-    /// Draws shapes, joints and contacts as lines: views of memory, six numbers of positions and six of colours for each line. Ask for
-    /// them anew in each frame.
+    /// Draws shapes, joints and contacts as lines: views of memory, six numbers of positions and six of colours per
+    /// line. Request them again in each frame.
     #[wasm_bindgen(js_name = debugLines)]
     pub fn debug_lines(&self) -> Outcome<crate::types::LinesOut> {
         self.inner.change(|inner| {
@@ -368,7 +369,7 @@ impl World {
         })
     }
 
-    /// Velocity of the centre of mass of all moving bodies, weighted by mass, N·s.
+    /// Velocity of the common centre of mass of all moving bodies, m/s.
     pub fn momentum(&self) -> Outcome<Vec3Out> {
         self.inner.read(|inner| Ok(vector(inner.world.momentum().linear).unchecked_into()))
     }

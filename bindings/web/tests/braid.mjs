@@ -1,4 +1,4 @@
-// A VRM 1.0 with a braid that swings: no model of the tests has one.
+// Creates a VRM 1.0 with a swinging braid: no model of the tests has one.
 import { CharacterDef } from 'sinew-physics';
 
 const JSON_CHUNK = 0x4e4f534a;

@@ -15,7 +15,7 @@ function lines(text) {
   return text.trim().split('\n').map((line) => line.replace(/\s+#.*$/, '').replace('sinew-physics', told.tarball));
 }
 
-// The commands and files of the README, typed in order in an empty folder; `npx vite` is left to run.
+// Runs the commands and writes the files of the README in order in an empty folder; `npx vite` keeps running.
 async function typed() {
   const folder = await emptyFolder('readme');
   const page = await readFile(join(told.root, 'bindings/web/package/README.md'), 'utf8');

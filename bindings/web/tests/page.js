@@ -50,7 +50,7 @@ export const tests = {
     });
   },
 
-  // A rig falls over a crate, and is drawn.
+  // A rig falls over a crate and is drawn.
   async falls(name) {
     const physics = await Sinew.create();
     const { scene, camera } = stage();
@@ -95,7 +95,7 @@ export const tests = {
     return [480 * (1 + bone.x), 300 * (1 - bone.y)];
   },
 
-  // The hair of a VRM swings while the character is moved to and fro; three-vrm moves the face alone.
+  // The hair of a VRM swings while the character is moved back and forth; three-vrm moves only the face.
   async hair() {
     const physics = await Sinew.create();
     const { scene, camera } = stage();
@@ -127,7 +127,8 @@ export const tests = {
     return { chains: hero.def.springs, swing, isSound, vrm: Boolean(gltf.userData.vrm) };
   },
 
-  // Characters, bodies, instances and cloth come and go: bytes of the program's memory, and of the page's heap, after each round.
+  // Adds and removes characters, bodies, instances and cloth; returns the bytes of the program's memory and of the
+  // page's heap after each round.
   async memory(rounds, each) {
     const physics = await Sinew.create();
     const { scene } = stage();

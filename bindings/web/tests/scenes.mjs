@@ -9,7 +9,7 @@ export function ground() {
   return world;
 }
 
-// Two copies, one of them shoved after a second: the hash after ten seconds.
+// Two copies of a character, one shoved after a second: the hash after ten seconds.
 export function fall(def) {
   const world = ground();
   const both = [0, 1.5].map((x) => world.spawn(def, [x, 0, 0]));
@@ -42,7 +42,8 @@ export function boxes() {
   return hash;
 }
 
-// Milliseconds of a step of a limp character, and of 30 that walk and 10 that fall, the best of some rounds; and of the first two falls.
+// Milliseconds per step of a limp character, and of 30 walking and 10 falling ones, the best of several rounds; and of
+// the first two falls.
 export function times(def) {
   const limp = [];
   for (let round = 0; round < 9; round++) {

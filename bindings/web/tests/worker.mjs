@@ -1,4 +1,4 @@
-// Plays a scene in a worker, where no import map reaches.
+// Plays a scene in a worker, without an import map.
 import { World, init } from '/sinew-physics/index.js';
 
 await init();

@@ -22,19 +22,20 @@ pub struct LearnedHinge {
 /// Limit that a joint kept in nearly all frames of all takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LearnedLimit {
-    /// The joint.
+    /// Joint of the limit.
     pub joint: JointIdx,
     /// The joint's local rotation in the middle of its range.
     pub center: Rotation,
-    /// From the axes of the limit to the joint's own: x along the bone, y and z along the axes of the swing's ellipse.
+    /// Rotation from the axes of the limit to the joint's own: x along the bone, y and z along the axes of the swing's
+    /// ellipse.
     pub frame: Rotation,
     /// Half-angles of the ellipse: swing about y, swing about z, radians.
     pub swing: [f32; 2],
     /// Rotation about the bone, radians from the centre.
     pub twist: Range,
-    /// Set for joints that rotate about one axis.
+    /// Range of a joint that rotates about only one axis; else `None`.
     pub hinge: Option<LearnedHinge>,
-    /// Frames learned from.
+    /// Number of frames that were used.
     pub samples: usize,
 }
 
@@ -64,7 +65,8 @@ impl LearnedLimit {
         (self.center * self.frame * kept * self.frame.inverse()).normalize()
     }
 
-    /// The same limit for a joint whose frames are `center * frame` on the parent and `frame` on the joint itself.
+    /// Converts to the limit of a joint whose frames are `center * frame` on the parent and `frame` on the joint
+    /// itself.
     pub fn swing_twist(&self) -> SwingTwistLimit {
         let [y, z] = self.swing.map(Range::symmetric);
         SwingTwistLimit { swing_y: y, swing_z: z, twist: self.twist }

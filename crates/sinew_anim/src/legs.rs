@@ -9,16 +9,16 @@ use sinew_math::{Affine, Rotation, Vec3};
 /// A leg with two sole points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foot {
-    /// Whose.
+    /// Side of the foot.
     pub side: Side,
-    /// Hip, knee and ankle.
+    /// Joints of hip, knee and ankle.
     pub leg: TwoBone,
-    /// Under the ankle, and under the ball (where the toes begin): from the ankle in the axes of its joint without
-    /// scale, metres.
+    /// Points of the sole under the ankle and under the ball (where the toes begin), relative to the ankle in the axes
+    /// of its joint without scale, metres.
     pub sole: [Vec3; 2],
-    /// From hip to knee to ankle to the floor, metres.
+    /// Length from hip to knee to ankle to the floor, metres.
     pub length: f32,
-    /// From the axes of the ankle's joint to the body's own, in the standing pose.
+    /// Rotation from the axes of the ankle's joint to the body's own, in the standing pose.
     pub stance: Rotation,
     /// Forward in the axes of the thigh's joint: where a straight knee bends to. Unit.
     pub forward: Vec3,
@@ -63,7 +63,7 @@ impl Foot {
 pub struct Legs {
     /// The joint that carries the body.
     pub pelvis: JointIdx,
-    /// Left, right.
+    /// The left and the right foot.
     pub feet: [Foot; 2],
     /// Joints with another parent in anatomy than in the rig. Rigs baked from inverse kinematics parent feet to the
     /// root.

@@ -1,6 +1,6 @@
 //! Animation as plain data and stateless jobs: rig, clips, poses, roles, captured motion.
 //!
-//! This crate knows no physics, files or renderer. Rotations are [`sinew_math::Rotation`], times are seconds, lengths
+//! This crate depends on no physics, files or renderer. Rotations are [`sinew_math::Rotation`], times are seconds, lengths
 //! are **file units** until [`roles`] gives metres per unit.
 #![forbid(unsafe_code)]
 

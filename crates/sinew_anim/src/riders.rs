@@ -19,7 +19,7 @@ struct Rider {
 /// The joints of a rig that move skin of a part of the body without being below it: a second bone of the trunk above
 /// the hips, halves of a pelvis, the root of a coat, eyes with their own skeleton, a hat beside the skeleton.
 ///
-/// The file's clips move them as authored. Motions from other bodies do not know them: [`carry`](Self::carry) moves
+/// The file's clips move them as authored. Motions from other bodies do not include them: [`carry`](Self::carry) moves
 /// them with their part, as a ragdoll does.
 ///
 /// ```
@@ -32,9 +32,9 @@ struct Rider {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Riders {
-    /// By joint, ascending.
+    /// Riders by joint, ascending.
     list: Vec<Rider>,
-    /// Per joint of the rig: it has a body.
+    /// For each joint of the rig, true if it has a body.
     has_body: Vec<bool>,
 }
 
@@ -72,8 +72,8 @@ impl Riders {
         Self { list, has_body }
     }
 
-    /// The same with the transforms that a clip gives at its start: an author who moves a hat by the clip alone may
-    /// have left it anywhere in the bind pose.
+    /// Creates riders with the transforms that a clip gives at its start: an author who moves a hat by the clip alone
+    /// may have left it anywhere in the bind pose.
     ///
     /// # Panics
     /// If the clip or the riders are not of the rig.

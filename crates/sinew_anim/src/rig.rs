@@ -12,9 +12,9 @@ pub type JointIdx = usize;
 pub struct LocalTransform {
     /// File units, parent's axes.
     pub translation: Vec3,
-    /// Unit.
+    /// Rotation, of unit length.
     pub rotation: Rotation,
-    /// Per axis, 1 by default.
+    /// Scale along each axis, 1 by default.
     pub scale: Vec3,
 }
 
@@ -58,7 +58,7 @@ pub struct Skin {
 /// Part of a mesh with one material. All vertex arrays have the length of `positions` or are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Primitive {
-    /// Mesh space, file units.
+    /// Positions in mesh space, file units.
     pub positions: Vec<Vec3>,
     /// Unit, or empty: then flat.
     pub normals: Vec<Vec3>,
@@ -89,16 +89,16 @@ pub struct RigMesh {
     pub joint: JointIdx,
     /// Index into [`Rig::skins`]; `None` for a mesh that moves rigidly with `joint`.
     pub skin: Option<usize>,
-    /// Parts.
+    /// Parts of the mesh.
     pub primitives: Vec<Primitive>,
 }
 
 /// A picture on a surface: 8-bit sRGB with alpha, rows from the top.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TextureImage {
-    /// Pixels across.
+    /// Width, pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height, pixels.
     pub height: u32,
     /// `width × height × 4` bytes, RGBA.
     pub rgba: Vec<u8>,
@@ -109,9 +109,9 @@ pub struct TextureImage {
 pub struct Rig {
     /// All nodes of the scene, parent before child.
     pub joints: Vec<Joint>,
-    /// Skins.
+    /// Skins of the meshes.
     pub skins: Vec<Skin>,
-    /// Meshes.
+    /// Meshes of the file.
     pub meshes: Vec<RigMesh>,
     /// Decoded base colour textures; empty if pictures were not requested.
     pub textures: Vec<TextureImage>,

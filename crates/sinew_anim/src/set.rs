@@ -49,12 +49,12 @@ pub struct AnimationSet {
 }
 
 impl AnimationSet {
-    /// Without clips.
+    /// Creates a set without clips.
     pub fn new(skeleton: Skeleton) -> Self {
         Self { skeleton, clips: Vec::new(), masks: Vec::new() }
     }
 
-    /// The joints.
+    /// Skeleton of the set.
     pub fn skeleton(&self) -> &Skeleton {
         &self.skeleton
     }
@@ -88,7 +88,7 @@ impl AnimationSet {
         MaskId(u32::try_from(self.masks.len() - 1).expect("fewer than 2^32 masks"))
     }
 
-    /// A clip.
+    /// Returns a clip.
     ///
     /// # Panics
     /// If the id is from another set and this one has fewer clips.
@@ -96,7 +96,7 @@ impl AnimationSet {
         &self.clips[id.0 as usize]
     }
 
-    /// A mask.
+    /// Returns a mask.
     ///
     /// # Panics
     /// If the id is from another set and this one has fewer masks.

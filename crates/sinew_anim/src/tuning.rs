@@ -15,9 +15,9 @@ pub(crate) const FILL_BELOW: f32 = 0.1;
 
 /// Longest extrapolation of a pose from outside, seconds.
 ///
-/// Larger: a character without new poses swings out. Smaller: an animator that looks several steps ahead sees limbs
+/// Larger: a character without new poses swings out. Smaller: an animator that predicts several steps has limbs that
 /// stop. Shown by the tests of `feeding`.
-pub(crate) const GOES_ON: f32 = 0.1;
+pub(crate) const LONGEST_EXTRAPOLATION: f32 = 0.1;
 
 // animator/track.rs
 
@@ -35,7 +35,8 @@ pub const MAX_SPEED: f32 = 1_000.0;
 /// `retarget` and by `loaded` of `sinew`.
 pub(crate) const WALK_STANDS: usize = 3;
 
-/// The same for a run, which is mostly in the air.
+/// Least share of a clip's frames in which a foot is low, for a run: one in this number, because a run is mostly in the
+/// air.
 ///
 /// Larger: a kick counts as a run. Smaller: cartoon runs count as jumps. Shown by `loaded` of `sinew`.
 pub(crate) const RUN_STANDS: usize = 8;
@@ -138,7 +139,7 @@ pub(crate) const ANKLE_HEIGHT: f32 = 0.04;
 
 /// Confidence of the role of an added joint.
 ///
-/// It is reported and decides nothing. Shown by the tests of `retarget`.
+/// It affects only a report. Shown by the tests of `retarget`.
 pub(crate) const MADE_UP: f32 = 0.5;
 
 // playback/inertial.rs
@@ -249,7 +250,7 @@ pub(crate) const SPRING_RADIUS: f32 = 0.15;
 /// Default share of a link's error corrected per 1/60 s.
 ///
 /// Larger: a skirt is one stiff sheet. Smaller: its strands separate where a leg pulls. Shown by
-/// `links_hold_strands_together`.
+/// `spring_links_limit_the_distance_of_strands`.
 pub(crate) const SPRING_LINK_SHARE: f32 = 0.5;
 
 // weights.rs

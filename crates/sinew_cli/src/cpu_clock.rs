@@ -1,4 +1,4 @@
-//! Cost of work in processor time, independent of other programs on the machine.
+//! Measures work in processor time, independent of other programs on the machine.
 
 use cpu_time::ProcessTime;
 

@@ -1,4 +1,4 @@
-//! Why a command did not do its work.
+//! Errors of commands.
 
 use crate::report::Report;
 use serde_json::{Value, json};
@@ -8,10 +8,10 @@ use std::process::ExitCode;
 /// Shorthand of this crate.
 pub type Result<T, E = Failure> = std::result::Result<T, E>;
 
-/// Why a command did not do its work; displays as one line.
+/// Error of a command; displays as one line.
 #[derive(Debug)]
 pub enum Failure {
-    /// A file, or the work on it. Exit code 1.
+    /// An error in a file or in processing it. Exit code 1.
     File(sinew::formats::Error),
     /// Invalid use of the program. Exit code 2.
     Usage(String),
@@ -25,7 +25,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The work on a file failed at no particular place.
+    /// An error in a file without a particular place.
     pub fn of_file(file: impl Into<String>, what: impl fmt::Display) -> Self {
         Self::File(sinew::formats::Error::unsupported(what.to_string(), "").with_file(file))
     }

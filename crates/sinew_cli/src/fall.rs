@@ -18,14 +18,14 @@ pub struct Fall<'a> {
     pub baked: Baked,
     /// Simulated seconds per second of processor time.
     pub realtime_factor: f64,
-    /// Verdict on its fitness for use.
+    /// Verdict on the fall.
     pub verdict: Verdict,
     /// Reasons for the verdict: figures outside their bars, one sentence each.
     pub reasons: Vec<String>,
 }
 
 impl<'a> Fall<'a> {
-    /// Simulates and judges it, taking doubt about the mass into account.
+    /// Simulates and judges the fall, with doubts about the mass.
     pub fn simulate(input: &'a BakeInput<'a>, doubt: Option<&Doubt>) -> Self {
         let (baked, cpu_seconds) = timed(|| bake(input));
         let seconds = baked.steps as f64 * input.world.step_nanoseconds as f64 * 1e-9;
@@ -63,7 +63,7 @@ impl<'a> Fall<'a> {
     /// Text of the events, the quality and the position.
     pub fn to_text(&self, outputs: &[&Path]) -> String {
         let mut text = String::new();
-        for (time, what) in story::told(self.input, &self.baked.events) {
+        for (time, what) in story::moments(self.input, &self.baked.events) {
             let _ = writeln!(text, "  {time:5.2} s  {what}");
         }
         text += "\nQuality\n";

@@ -1,4 +1,4 @@
-//! Judge shared by `ragdoll build` and `bake`: the drops, the baked life, and the skin in both.
+//! Judges a character for `ragdoll build` and `bake`: its drops, a baked run, and the skin in both.
 
 use crate::commands::bake::{Motions, actor, as_in_file};
 use crate::failure::Result;
@@ -17,7 +17,7 @@ pub const LIMP_AT: f32 = 0.5;
 /// Default length of a bake, seconds.
 pub const SECONDS: f32 = 8.0;
 
-/// Findings of the judge.
+/// Result of the judge.
 pub struct Judgement {
     pub verdict: Verdict,
     /// Figures outside their bars, one sentence each.
@@ -25,7 +25,7 @@ pub struct Judgement {
     pub skin: SkinReport,
 }
 
-/// Judges drops and life of a character, taking doubt about its mass into account.
+/// Judges drops and a baked run of a character, with doubts about its mass.
 pub fn judge_life(
     character: &CharacterFile,
     tested: &DropReport,
@@ -35,7 +35,7 @@ pub fn judge_life(
     let def = &life.fall.input.character.ragdoll;
     let of_drops = |[drop, wall]: &[_; 2]| {
         let (verdict, mut reasons) = judge(drop, wall);
-        // Unmeasured figures.
+        // Removes the entry for unmeasured figures.
         reasons.pop();
         (verdict, reasons)
     };
@@ -60,7 +60,7 @@ pub fn judge_life(
     Judgement { verdict, reasons, skin }
 }
 
-/// Bakes a character with the defaults of `bake` and returns it: on a floor, with its own clips or the built-in ones.
+/// Bakes a character with the defaults of `bake`: on a floor, with its own clips or the built-in ones.
 ///
 /// # Errors
 /// A clip that cannot be played.

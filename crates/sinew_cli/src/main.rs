@@ -1,4 +1,4 @@
-//! The `sinew` command line: arguments in, report out. Each command is a struct in a file of its own.
+//! The `sinew` command line. Each command is a struct in a file of its own.
 #![forbid(unsafe_code)]
 
 mod commands;
@@ -34,7 +34,7 @@ Start here:
 
 A file that is read may be -, which is standard input.";
 
-/// Physics for characters: give it a rigged file, and it falls, collides, is hit, gets up and walks on.
+/// Physics for characters: simulates how a rigged character falls, collides, reacts to hits, gets up and walks on.
 #[derive(Parser)]
 #[command(name = "sinew", version, after_help = AFTER_HELP, styles = STYLES, max_term_width = 100)]
 struct Sinew {
@@ -49,7 +49,7 @@ fn main() -> ExitCode {
     let arguments = with_negative_numbers(Sinew::command()).try_get_matches();
     let Sinew { json, command } = match arguments.and_then(|arguments| Sinew::from_arg_matches(&arguments)) {
         Ok(arguments) => arguments,
-        Err(told) => return help_or_usage(&told),
+        Err(problem) => return help_or_usage(&problem),
     };
     match command.run() {
         Ok(report) => print(&report.shown(json), ExitCode::SUCCESS),
@@ -68,8 +68,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The command, with `-1` after an option accepted as its value everywhere, so that the code that reads the value
-/// reports errors.
+/// The command, with `-1` accepted as a value after every option, so that the parser of that value reports the error.
 fn with_negative_numbers(command: clap::Command) -> clap::Command {
     let accept = |arg: clap::Arg| {
         let takes = arg.get_action().takes_values();
@@ -79,9 +78,9 @@ fn with_negative_numbers(command: clap::Command) -> clap::Command {
 }
 
 /// Prints help or the version to stdout, argument errors to stderr.
-fn help_or_usage(told: &clap::Error) -> ExitCode {
-    let code = ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2));
-    written(told.print().and_then(|()| io::stdout().flush()), code)
+fn help_or_usage(problem: &clap::Error) -> ExitCode {
+    let code = ExitCode::from(u8::try_from(problem.exit_code()).unwrap_or(2));
+    written(problem.print().and_then(|()| io::stdout().flush()), code)
 }
 
 /// Writes text to stdout; returns the process's exit code if all of it is written.

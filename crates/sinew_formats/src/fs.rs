@@ -54,7 +54,7 @@ fn reason(path: &Path, error: &io::Error) -> String {
         io::ErrorKind::IsADirectory => "is a folder".into(),
         io::ErrorKind::PermissionDenied => "permission denied".into(),
         io::ErrorKind::StorageFull => "no space left".into(),
-        // Without the number, which differs between systems.
+        // Remove the number, which differs between systems.
         _ => error.to_string().split(" (os error ").next().unwrap_or_default().to_owned(),
     }
 }
@@ -90,7 +90,7 @@ fn cannot_write(path: &Path, error: &io::Error) -> Error {
 
 /// Target path of an output: symbolic links are resolved, and anything but a regular file is refused.
 fn place_of(path: &Path) -> io::Result<PathBuf> {
-    // As many as Linux follows.
+    // Limit of links, the same as Linux has.
     const MOST_LINKS: usize = 40;
     let mut place = path.to_path_buf();
     for _ in 0..MOST_LINKS {
@@ -112,7 +112,7 @@ fn place_of(path: &Path) -> io::Result<PathBuf> {
 
 /// A file's bytes under a temporary name next to the target; deleted on drop if not renamed.
 struct Staged<'a> {
-    /// As the user named it.
+    /// Path as the user named it.
     path: &'a Path,
     place: PathBuf,
     temporary: PathBuf,

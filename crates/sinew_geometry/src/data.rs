@@ -17,7 +17,7 @@ pub enum DataKind {
     HeightField,
 }
 
-/// In the order of their tags in bytes, the first of which is [`FIRST_TAG`].
+/// Kinds in the order of their tags in bytes, the first of which is [`FIRST_TAG`].
 const KINDS: [DataKind; 3] = [DataKind::Hull, DataKind::Mesh, DataKind::HeightField];
 /// Lower tags are those of shapes that are sizes only.
 const FIRST_TAG: u8 = 16;

@@ -8,7 +8,7 @@ pub struct DefError {
 }
 
 impl DefError {
-    /// From the reason, in lower case: "a radius must be positive and finite".
+    /// Creates an error from the reason, in lower case: "a radius must be positive and finite".
     pub const fn new(what: &'static str) -> Self {
         Self { what }
     }

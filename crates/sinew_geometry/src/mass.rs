@@ -56,7 +56,7 @@ impl Shape {
     }
 }
 
-/// About its centre and along its axes.
+/// Inertia of a box about its centre and along its axes.
 pub(crate) fn box_inertia(h: Vec3, mass: f32) -> Vec3 {
     Vec3::new(h.y * h.y + h.z * h.z, h.x * h.x + h.z * h.z, h.x * h.x + h.y * h.y) * (mass / 3.0)
 }
@@ -87,7 +87,7 @@ impl MassProperties {
         if mass <= 0.0 {
             return Self { mass, center: self.center, inertia: self.inertia + other.inertia };
         }
-        // From this centre, not from the origin: a sum of large coordinates would lose the difference.
+        // Measure from this centre, not from the origin: a sum of large coordinates would lose the difference.
         let apart = other.center - self.center;
         let reduced = self.mass * other.mass / mass;
         Self {

@@ -16,7 +16,7 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// From one point to another.
+    /// Creates a ray from one point to another.
     #[inline]
     pub fn between(from: Vec3, to: Vec3) -> Self {
         Self { origin: from, direction: to - from }
@@ -46,7 +46,7 @@ const SHORTENED: f32 = f32::from_bits((127 - 96) << 23);
 pub struct RayHit {
     /// Share of the ray before the hit, 0..=1; for a half-line lengths of its direction, ≥ 0.
     pub fraction: f32,
-    /// In the world, metres.
+    /// Point in the world, metres.
     pub point: Vec3,
     /// Unit, out of the shape, in the world.
     pub normal: Vec3,

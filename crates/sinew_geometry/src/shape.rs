@@ -161,7 +161,7 @@ impl Shape {
             Self::Sphere { radius } | Self::Capsule { radius, .. } => radius,
             Self::TaperedCapsule { radius_bottom, radius_top, .. } => max(radius_bottom, radius_top),
             Self::Cylinder { half_height, radius } => min(half_height, radius),
-            // For the generating triangle of a cone: twice its area over its perimeter.
+            // Radius for the generating triangle of a cone: twice its area over its perimeter.
             Self::Cone { half_height, radius } => {
                 let slant = (radius * radius + 4.0 * half_height * half_height).sqrt();
                 2.0 * half_height * (radius / (radius + slant))
@@ -205,7 +205,7 @@ impl Shape {
     }
 }
 
-/// From the origin to the farthest corner, metres.
+/// Distance from the origin to the farthest corner, metres.
 fn reach(bounds: &Aabb) -> f32 {
     max3(abs3(bounds.min), abs3(bounds.max)).length()
 }
@@ -223,7 +223,7 @@ pub struct MassProperties {
 }
 
 impl Shape {
-    /// Its surface, if it consists of triangles.
+    /// Surface of the shape, if it consists of triangles.
     #[inline]
     pub fn surface(&self) -> Option<Surface<'_>> {
         match self {

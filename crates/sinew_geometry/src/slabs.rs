@@ -43,7 +43,7 @@ impl<R: Real> Slabs<R> {
         R::le(self.enter, self.leave) & R::ge(self.enter, R::splat(0.0)) & !self.beside
     }
 
-    /// Out of the entry face, unit, in the box's frame; of several the first.
+    /// Normal of the entry face, unit, in the box's frame; the first of several.
     #[inline(always)]
     pub fn normal(&self) -> Vector3<R> {
         let zero = R::splat(0.0);

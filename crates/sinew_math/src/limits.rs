@@ -13,15 +13,15 @@ pub struct Range {
 }
 
 impl Range {
-    /// From both ends.
+    /// Creates a range from both ends.
     pub const fn new(lo: f32, hi: f32) -> Self {
         Self { lo, hi }
     }
-    /// From −`half` to `half`.
+    /// Creates a range from −`half` to `half`.
     pub const fn symmetric(half: f32) -> Self {
         Self { lo: -half, hi: half }
     }
-    /// From both ends in degrees.
+    /// Creates a range from both ends in degrees.
     pub fn degrees(lo: f32, hi: f32) -> Self {
         Self { lo: lo.to_radians(), hi: hi.to_radians() }
     }

@@ -63,7 +63,7 @@ impl Sym3 {
         }
     }
 
-    /// As a full matrix.
+    /// Converts to a full matrix.
     pub fn to_mat3(self) -> Mat3 {
         let (d, o) = (self.diagonal, self.off);
         Mat3::from_cols(Vec3::new(d.x, o.z, o.y), Vec3::new(o.z, d.y, o.x), Vec3::new(o.y, o.x, d.z))

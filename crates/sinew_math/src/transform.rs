@@ -15,7 +15,7 @@ impl Transform {
     /// No motion.
     pub const IDENTITY: Self = Self { translation: Vec3::ZERO, rotation: Rotation::IDENTITY };
 
-    /// From rotation and translation.
+    /// Creates a transform from rotation and translation.
     #[inline(always)]
     pub const fn new(translation: Vec3, rotation: Rotation) -> Self {
         Self { translation, rotation }

@@ -13,7 +13,7 @@ pub enum DrawKind {
     Awake,
     /// Outline of a sleeping one.
     Asleep,
-    /// From a body's centre to a joint's anchor; of a pin, from the anchor to where it is pulled.
+    /// Line from a body's centre to a joint's anchor; of a pin, from the anchor to where it is pulled.
     Joint,
     /// A spring between two particles.
     Spring,

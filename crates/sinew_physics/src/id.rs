@@ -53,7 +53,7 @@ macro_rules! id {
             }
         }
 
-        /// As its [bits](Self::to_bits).
+        /// Serialises an id as its [bits](Self::to_bits).
         #[cfg(feature = "serde")]
         impl serde::Serialize for $name {
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

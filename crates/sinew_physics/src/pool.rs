@@ -16,7 +16,7 @@ use std::thread::{self, JoinHandle};
 /// stage and is about the cost of waking.
 const SPINS: u32 = 1_000;
 
-/// In the gate: workers inside.
+/// Bits of the gate for the number of workers inside.
 const INSIDE: u64 = (1 << 30) - 1;
 /// Gate flag: the caller sleeps until the last worker has left.
 const AWAITED: u64 = 1 << 30;
@@ -181,7 +181,7 @@ pub(crate) struct Pool {
 }
 
 impl Pool {
-    /// With this many threads in addition to the caller's, or as many as the system allows.
+    /// Creates a pool with this many threads in addition to the caller's, or as many as the system allows.
     pub fn new(workers: usize) -> Self {
         let shared = Arc::new(Shared::default());
         let start = |number: usize| {

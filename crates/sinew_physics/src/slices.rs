@@ -160,8 +160,8 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
         if taken.load(Ordering::Relaxed).count_ones() as usize == count {
             return;
         }
-        // The caller is first, because the others must be notified; two start at the ends of halves, four at those of
-        // quarters.
+        // Threads start far from each other: the second in the middle, the next two at the quarters. The caller is the
+        // first, because the others start later.
         let number = entered.fetch_add(1, Ordering::Relaxed);
         let share = (u64::from(number.reverse_bits()) * count as u64) >> u32::BITS;
         let start = share as usize;

@@ -27,7 +27,7 @@ pub(crate) fn join(linear: Vec3, angular: Vec3) -> Vec6 {
     [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z, 0.0, 0.0]
 }
 
-/// Impulse on a body by one at `arm` from its centre of mass.
+/// Spatial impulse of a linear impulse at `arm` from the centre of mass.
 #[inline(always)]
 pub(crate) fn wrench(arm: Vec3, impulse: Vec3) -> Vec6 {
     join(impulse, arm.cross(impulse))
@@ -85,7 +85,7 @@ pub(crate) fn spd_inverse(m: &Mat6, n: usize) -> Option<Mat6> {
     }
 }
 
-/// With constant loop bounds, which the compiler unrolls.
+/// Inverts with constant loop bounds, which the compiler unrolls.
 #[inline(always)]
 fn inverse_of<const N: usize>(m: &Mat6) -> Option<Mat6> {
     // L below the diagonal, 1/D on it.

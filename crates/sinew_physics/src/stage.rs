@@ -13,11 +13,11 @@ pub enum Stage {
     Touch,
     /// Islands: connected bodies.
     Islands,
-    /// In which order an island's contacts are solved.
+    /// Determines the order in which an island's contacts are solved.
     Color,
     /// Bodies that nothing touches or holds.
     Flight,
-    /// From bodies, joints and contacts to the solver's own arrays.
+    /// Converts bodies, joints and contacts to the solver's own arrays.
     Prepare,
     /// Forces to velocities.
     IntegrateVelocity,

@@ -50,7 +50,7 @@ impl Camera {
 /// Axes of a camera's picture, unit length, world space, and its half extents at a distance of 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureAxes {
-    /// To the right.
+    /// Direction to the right.
     pub right: Vec3,
     /// Up.
     pub up: Vec3,
@@ -83,9 +83,9 @@ fn framing_distance(radius: f32, fov_y: f32) -> f32 {
 /// glides after it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FollowCamera {
-    /// From the subject to the camera, unit, world space.
+    /// Direction from the subject to the camera, unit, world space.
     pub direction: Vec3,
-    /// From the point it looks at to the camera, metres.
+    /// Distance from the point that it looks at to the camera, metres.
     pub distance: f32,
     /// As [`Camera::fov_y`].
     pub fov_y: f32,

@@ -284,7 +284,7 @@ fn frustum_edges(ends: [(f32, f32); 2], segments: &mut Vec<[Vec3; 2]>) {
     segments.extend((0..AROUND).step_by(AROUND / 4).map(|i| ends.map(|end| at(end, i))));
 }
 
-/// Its side, and the arcs of the balls beyond it in two planes.
+/// Edges of the side, and the arcs of the balls beyond it in two planes.
 fn tapered_edges(half_height: f32, bottom: f32, top: f32, segments: &mut Vec<[Vec3; 2]>) {
     let lean = side_latitude(half_height, bottom, top);
     let at = |center: f32, radius: f32, latitude: f32| {

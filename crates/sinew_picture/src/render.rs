@@ -82,7 +82,7 @@ struct Footprints {
 
 impl Renderer {
     /// # Panics
-    /// Where a size lies outside the range that [`RenderSettings`] gives.
+    /// If a size lies outside the range that [`RenderSettings`] gives.
     pub fn new(settings: RenderSettings) -> Self {
         let RenderSettings { width, height, antialiasing, shadow_texels, threads } = settings;
         assert!((1..=8192).contains(&width) && (1..=8192).contains(&height), "picture of {width} × {height}");

@@ -75,7 +75,8 @@ pub enum Faces {
     /// Both; the normal is turned to the viewer. Right for cloth, hair and meshes of unknown winding.
     #[default]
     Both,
-    /// Only where the corners run counter-clockwise: lets the viewer look into a room from outside.
+    /// The face is visible only where its corners run counter-clockwise, so that a viewer can look into a room from
+    /// outside.
     Outside,
 }
 
@@ -108,7 +109,7 @@ pub enum LineDepth {
     /// Hidden behind surfaces.
     #[default]
     Tested,
-    /// Always seen.
+    /// The lines are always visible.
     OnTop,
 }
 
@@ -130,8 +131,8 @@ pub struct Caption {
 /// A light infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
-    /// From the world toward the sun, any length above 0. Default high, over the left shoulder of a viewer who looks
-    /// along −z.
+    /// Direction from the world toward the sun, any length above 0. Default high, over the left shoulder of a viewer
+    /// who looks along −z.
     pub direction: Vec3,
     /// Linear light on a surface that faces it. Default a warm white.
     pub color: [f32; 3],

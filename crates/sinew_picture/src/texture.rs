@@ -31,7 +31,7 @@ pub struct TextureError {
 }
 
 impl Texture {
-    /// From 8-bit sRGB with alpha, `width × height × 4` bytes, rows from the top.
+    /// Creates a texture from 8-bit sRGB with alpha, `width × height × 4` bytes, rows from the top.
     ///
     /// # Errors
     /// A side of 0, or a number of bytes that does not fit the sides.

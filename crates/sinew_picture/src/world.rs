@@ -26,9 +26,9 @@ pub struct Frame<'a> {
 /// Way in which kinematic bodies are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kinematic {
-    /// As others are.
+    /// The bodies are drawn as others are.
     Solid,
-    /// By their edges, so that they do not hide the figure that leads them.
+    /// The bodies are drawn by their edges, so that they do not hide the figure that leads them.
     Wire,
 }
 
@@ -91,14 +91,14 @@ fn is_solid(shape: &Shape) -> bool {
     !matches!(shape, Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_))
 }
 
-/// Around the centre of mass and all solid shapes.
+/// Bounds of the centre of mass and all solid shapes.
 fn body_bounds(world: &World, id: BodyId) -> Aabb {
     let center = world.center_of_mass(id);
     let shapes = world.shapes(id).filter(|(shape, _)| is_solid(shape));
     shapes.fold(Aabb { min: center, max: center }, |all, (shape, place)| all.merge(&shape.aabb(&place)))
 }
 
-/// Around the particles of a group that has any.
+/// Bounds of the particles of a group that has any.
 fn particle_bounds(group: &ParticleGroup) -> Aabb {
     let ball = |i: usize| Aabb::around(group.positions()[i], Vec3::splat(group.radii()[i]));
     (1..group.positions().len()).fold(ball(0), |all, i| all.merge(&ball(i)))
@@ -288,12 +288,12 @@ fn paint_group(group: &ParticleGroup, frame: &Frame<'_>, canvas: &mut dyn Canvas
 /// Lines of [`World::draw`], or of other drawings, that no surface shows.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
-    /// In the order in which they were drawn.
+    /// Lines in the order in which they were drawn.
     pub list: Vec<Line>,
 }
 
 impl Lines {
-    /// Around all of them; `None` where there is none.
+    /// Bounds of all lines; `None` without lines.
     pub fn bounds(&self) -> Option<Aabb> {
         let ends = self.list.iter().flat_map(|line| [line.from, line.to]);
         ends.map(|point| Aabb { min: point, max: point }).reduce(|a, b| a.merge(&b))

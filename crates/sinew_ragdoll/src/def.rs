@@ -33,7 +33,7 @@ pub struct RagdollBodyDef {
     /// Body frame in character space at the bind pose: metres, +Y up, facing +Z, feet at y = 0. The shape sits at the
     /// body's origin, along its axes.
     pub character_from_body: Transform,
-    /// kg, centre in the body's frame, inertia about it.
+    /// Mass, kg; centre in the body's frame, and inertia about it.
     pub mass: MassProperties,
 }
 
@@ -50,7 +50,7 @@ pub struct RagdollJointDef {
     pub frame_child: Transform,
     /// Kind of the joint, with its limits: a ball, hinge, universal or fixed joint.
     pub kind: JointKind,
-    /// N·m.
+    /// Friction torque, N·m.
     pub friction_torque: f32,
 }
 
@@ -65,11 +65,11 @@ pub struct RagdollDef {
     pub disabled_pairs: Vec<(usize, usize)>,
     /// Rig joints that no body carries, by name.
     pub dropped_bones: Vec<String>,
-    /// kg.
+    /// Total mass, kg.
     pub total_mass: f32,
-    /// Metres, at the bind pose.
+    /// Height in the bind pose, metres.
     pub height: f32,
-    /// Metres per file unit.
+    /// Scale, metres per file unit.
     pub unit_scale: f32,
     /// The file's up axis, derived from the skeleton: unit, along an axis.
     pub up_axis: Vec3,

@@ -1,4 +1,4 @@
-//! From animated to physical at the speed of the animation.
+//! Turns an animated character into a physical one at the speed of the animation.
 //!
 //! ```
 //! use sinew_math::{Transform, Vec3};
@@ -16,12 +16,12 @@ use crate::def::RagdollDef;
 use sinew_math::{Transform, Vec3};
 use sinew_physics::Velocity;
 
-/// The fastest that a body may be when it is handed over; motion capture glitches exceed it, people do not.
+/// Largest speeds of a body at its hand-over; motion capture glitches exceed them, people do not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedBound {
-    /// m/s. Default 30.
+    /// Largest linear speed, m/s. Default 30.
     pub linear: f32,
-    /// rad/s. Default 40.
+    /// Largest angular speed, rad/s. Default 40.
     pub angular: f32,
 }
 
@@ -50,9 +50,9 @@ pub fn body_velocity(
     }
 }
 
-/// [`body_velocity`] of all bodies of a ragdoll; `velocities` is cleared and filled. Whatever produced the two poses
-/// (clips, blends, transitions), bodies handed over with these velocities have the momentum of the animated pose:
-/// linear, and angular about any point.
+/// [`body_velocity`] of all bodies of a ragdoll; `velocities` is cleared and filled. Bodies with these velocities have
+/// the momentum of the animated pose, linear and angular about any point, whatever produced the two poses (clips,
+/// blends, transitions).
 ///
 /// # Panics
 /// If `dt` is not positive, or there is not one pose per body.
@@ -72,7 +72,7 @@ pub fn body_velocities(
     );
 }
 
-/// `v`, shortened to `longest`; zero if it is not finite.
+/// Shortens `v` to `longest`; zero if it is not finite.
 fn shortened(v: Vec3, longest: f32) -> Vec3 {
     let length = v.length();
     if !v.is_finite() {

@@ -26,7 +26,7 @@ pub enum RigMismatch {
     /// The rig has no joint of this name, or several and none at the old index.
     #[error("the ragdoll's bone `{bone}` is not in this rig")]
     NoBone {
-        /// Its name in the definition.
+        /// Name of the bone in the definition.
         bone: String,
         /// Index of the body.
         body: usize,
@@ -34,7 +34,7 @@ pub enum RigMismatch {
     /// Two bodies name one joint.
     #[error("two bodies of the ragdoll have the bone `{bone}`")]
     Twice {
-        /// Its name.
+        /// Name of the joint.
         bone: String,
         /// Index of the later body.
         body: usize,
@@ -52,7 +52,7 @@ pub enum RigMismatch {
 }
 
 impl RigMismatch {
-    /// Index of the body that it is about.
+    /// Index of the body concerned.
     pub fn body(&self) -> usize {
         match *self {
             Self::NoBone { body, .. } | Self::Twice { body, .. } | Self::NoJoint { body, .. } => body,
@@ -91,7 +91,7 @@ impl RagdollDef {
                     return Err(RigMismatch::NoJoint { joint, bone: body.bone.clone(), body: index });
                 }
             } else {
-                // Indices of a reordered rig mean nothing; joints below the bone follow it anyway.
+                // Indices of a reordered rig are meaningless; joints below the bone follow it anyway.
                 self.bodies[index].merged.clear();
             }
         }

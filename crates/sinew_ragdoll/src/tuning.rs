@@ -340,7 +340,7 @@ pub(crate) const BIND_MARGIN: f32 = 0.034_906_585;
 /// A larger bend: knees of A-poses bend askew. A smaller one: noise is an axis. Shown by the tests of `build_limits`.
 pub(crate) const BENT: f32 = 0.984_8;
 
-/// Cosine of the angle, 50°, from the anatomical axis within which the axis that a bend shows is believed.
+/// Cosine of the angle, 50°, from the anatomical axis up to which the axis of a bend is used.
 ///
 /// Larger: knees that bend sideways. Smaller: turned-out legs bend askew. Shown by the tests of `build_limits`.
 pub(crate) const BELIEVED: f32 = 0.642_8;
@@ -459,7 +459,7 @@ pub(crate) const ON_A_SIDE: f32 = 0.01;
 
 /// Least share of the height from the joint of the head up that is not an adult's: a two-year-old has 0.2, an adult 0.12.
 ///
-/// Larger: doubts toys and children. Smaller: believes adults in another unit. Shown by the tests of `faults`.
+/// Larger: doubts toys and children. Smaller: accepts adults in another unit. Shown by the tests of `faults`.
 pub(crate) const BIG_HEAD: f32 = 0.17;
 
 // ragdoll.rs

@@ -14,7 +14,7 @@ struct Part {
     scene: &'static str,
     settings: &'static [&'static str],
     round: Option<u64>,
-    /// Speed caused by the scene's blows to single limbs, m/s.
+    /// Speed that the scene's blows give a single limb, m/s.
     blows: f32,
 }
 
@@ -99,7 +99,7 @@ impl Seen {
         }
         if self.speed > max(FAST, part.blows) {
             faults.push(format!(
-                "something flies at {:.1} m/s at {:.2} s",
+                "the fastest body moves at {:.1} m/s at {:.2} s",
                 self.speed,
                 self.speed_at as f32 / 60.0
             ));
@@ -131,8 +131,8 @@ fn memory() -> f64 {
 
 /// CPU time of this thread, seconds, so that other processes do not count. 0 if it is unknown.
 fn processor_seconds() -> f64 {
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = told.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
+    let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let nanoseconds = statistics.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
     1e-9 * nanoseconds.unwrap_or(0.0)
 }
 
@@ -140,7 +140,7 @@ fn started(part: &Part, round: u64) -> Instance {
     let scene = find(part.scene).expect("the registry has it");
     let mut settings = scene.settings();
     for setting in part.settings {
-        // Skip round numbers that the setting does not allow.
+        // Skip the round numbers that the setting does not allow.
         let number = if part.scene == "crowd" { 50 + round % 40 } else { round };
         settings.assign(&setting.replace('#', &number.to_string())).expect("it is in range");
     }

@@ -12,18 +12,18 @@ use sinew::physics::shape::{Shape, ShapeDef};
 pub enum Site {
     /// The cabin on its posts, with porch and stairs.
     CabinWithStairs,
-    /// The same meadow without the cabin: flat ground at y = 0 where the stairs were.
+    /// The meadow without the cabin: flat ground at y = 0 where the stairs were.
     Flat,
 }
 
 /// A static body to collide with and to draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prop {
-    /// Name of the thing; not unique.
+    /// Name of the prop; not unique.
     pub name: &'static str,
     /// One shape at the body's origin: a box, or for the ground a half-space.
     pub body: BodyDef,
-    /// Linear RGB, 0..=1.
+    /// Linear RGB colour, 0..=1.
     pub color: [f32; 3],
 }
 
@@ -161,7 +161,7 @@ fn railing(props: &mut Vec<Prop>) {
     }
 }
 
-/// Solid steps down to the ground, so that nothing slips in between, and a stringer on each side.
+/// Solid steps down to the ground, so that nothing slips between them, and a stringer on each side.
 fn stairs(props: &mut Vec<Prop>) {
     let half_width = 0.5 * STAIRS_WIDTH;
     for step in 1..STEPS {
@@ -241,7 +241,7 @@ fn roof(props: &mut Vec<Prop>) {
     let (sin, cos) = trig::sin_cos(ROOF_PITCH);
     let (half_depth, middle) = (0.5 * (FRONT - BACK), 0.5 * (FRONT + BACK));
     let thickness = 0.08;
-    // From the tip of the overhang to a little past the ridge, so that the slabs' upper faces meet.
+    // A slab reaches from the tip of the overhang to a little past the ridge, so that the upper faces meet.
     let past_ridge = 2.0 * thickness * sin / cos;
     let length = half_depth / cos + 0.5 + past_ridge;
     let ridge = EAVES + half_depth * sin / cos;

@@ -21,7 +21,7 @@ pub struct Chains {
     pub closed: bool,
     /// Position in the bind pose at fractions of the way across and down, 0..=1, metres.
     pub place: fn(f32, f32) -> Vec3,
-    /// Linear RGBA.
+    /// Linear RGBA colour.
     pub color: [f32; 4],
 }
 
@@ -163,7 +163,7 @@ impl Chains {
 /// detected by joint names, each changed by `adjust`.
 ///
 /// # Panics
-/// Never: the character is valid.
+/// Never panics, because the character is valid.
 pub fn dressed(garments: &[&Chains], adjust: impl Fn(&mut Garment)) -> CharacterDef {
     let bare = crate::mannequin::mannequin().rig;
     let (ragdoll, _) =

@@ -56,7 +56,7 @@ const THIN: f32 = 0.02;
 /// Rig of the mannequin with hair, its springs with these `settings`, and a ball for the head as their collider.
 ///
 /// # Panics
-/// Never: the mannequin has a head.
+/// Never panics, because the mannequin has a head.
 pub fn maned_rig(settings: &SpringBone) -> Rig {
     let mut rig = crate::mannequin::mannequin().rig;
     let head = rig.joints.iter().position(|joint| joint.name == "head").expect("it has a head");
@@ -109,7 +109,7 @@ fn spindle(way: Vec3) -> Primitive {
 /// The mannequin with hair as a character: the motions of [`mannequin::character`](crate::mannequin::character).
 ///
 /// # Panics
-/// Never: it can be built.
+/// Never panics, because the character can be built.
 pub fn maned(settings: &SpringBone) -> CharacterDef {
     let rig = maned_rig(settings);
     let analysis = analyze(&rig).expect("the mannequin has a skin");

@@ -1,4 +1,4 @@
-//! Parts that scenes are put together from.
+//! Parts from which scenes are built.
 
 use sinew::math::{Rotation, Sym3, Transform, Vec3};
 use sinew::physics::{
@@ -63,7 +63,7 @@ pub(crate) fn level_rod(start: f32, length: f32, radius: f32) -> BodyDef {
 /// A thin rod from x = `start` over `length` along x, with `m l²/12` about its middle, that collides with nothing.
 pub(crate) fn thin_rod(start: f32, length: f32, mass: f32) -> BodyDef {
     let moment = mass * length * length / 12.0;
-    // Its own axis is y.
+    // The axis of the rod's own frame is y.
     let inertia = Sym3::from_diagonal(Vec3::new(moment, 0.02 * moment, moment));
     let mass = Some(MassProperties { mass, center: Vec3::ZERO, inertia });
     BodyDef { mass, ..level_rod(start, length, 0.03 * length) }

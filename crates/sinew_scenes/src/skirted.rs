@@ -1,4 +1,5 @@
-//! The mannequin in a mesh skirt: skinned to hips and thighs as artists do, with a seam at the back and a buckle in front.
+//! The mannequin in a mesh skirt: skinned to hips and thighs as artists do, with a seam at the back and a buckle in
+//! front.
 
 use crate::dressed::SKIRT;
 use sinew::anim::garments::{MOST_PARTICLES, MeshPart, SheetError, SheetOptions, lay_sheet};
@@ -6,19 +7,19 @@ use sinew::anim::{Garment, Joint, JointIdx, LocalTransform, Primitive, Rig, RigM
 use sinew::math::{Affine, Vec3, clamp};
 use sinew::ragdoll::{BuildOptions, CharacterDef, build};
 
-/// Name of the mesh of the skirt, and of its node.
+/// Name of the skirt's mesh and of its node.
 pub const NAME: &str = "Skirt";
 /// Name of its material.
 pub const MATERIAL: &str = "Tartan";
-/// Cells of the skirt around and down, as it comes from an artist.
+/// Number of cells of the skirt around and down in the artist's mesh.
 pub const CELLS: [usize; 2] = [72, 20];
 /// Height of the buckle, below the waistband, and half of its side, metres.
 const BUCKLE: [f32; 2] = [0.93, 0.012];
 
-/// Rig of the mannequin with a mesh of a skirt of so many cells around and down.
+/// Rig of the mannequin with a skirt mesh of that many cells around and down.
 ///
 /// # Panics
-/// Never: the mannequin has the joints.
+/// Never panics, because the mannequin has the joints.
 pub fn skirted_rig(cells: [usize; 2]) -> Rig {
     let mut rig = crate::mannequin::mannequin().rig;
     let joint_of =
@@ -31,7 +32,7 @@ pub fn skirted_rig(cells: [usize; 2]) -> Rig {
     let mut primitive =
         Primitive { base_color: SKIRT.color, material: MATERIAL.to_owned(), ..Primitive::default() };
     let mut add = |place: Vec3| {
-        // Toward the hem, the weight moves to the leg of its side.
+        // Toward the hem, the leg of its side gets more weight.
         let down = clamp((1.0 - place.y) / 0.45, 0.0, 1.0);
         let (leg, side) = (0.7 * down, clamp(0.5 + 3.0 * place.x, 0.0, 1.0));
         primitive.joints.push([hips, left, right, 0]);
@@ -99,7 +100,7 @@ pub fn lay_skirt(rig: &mut Rig, most_particles: usize, spacing: f32) -> Result<u
 /// The mannequin in that skirt as a character: the motions of [`mannequin::character`](crate::mannequin::character), and the garment changed by `adjust`.
 ///
 /// # Panics
-/// Never: the character is valid.
+/// Never panics, because the character is valid.
 pub fn skirted(adjust: impl Fn(&mut Garment)) -> CharacterDef {
     let bare = crate::mannequin::mannequin().rig;
     let (ragdoll, _) =
@@ -120,7 +121,7 @@ pub fn skirted(adjust: impl Fn(&mut Garment)) -> CharacterDef {
 /// Joint of the rig of that name.
 ///
 /// # Panics
-/// If there is none.
+/// If the rig has none.
 pub fn joint(rig: &Rig, name: &str) -> JointIdx {
     rig.joints.iter().position(|joint| joint.name == name).expect("it has that joint")
 }

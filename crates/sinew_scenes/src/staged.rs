@@ -1,6 +1,7 @@
-//! A character on the stage of the demo: it walks out of the cabin, is pushed down the stairs, gets up, walks on, and begins again.
+//! A character on the stage of the demo: it walks out of the cabin, is pushed down the stairs, gets up, walks on, and
+//! begins again.
 //!
-//! Unlike the film of [`demo`](crate::demo) it runs, so that users can push and pull the character at any time.
+//! Unlike the film of [`demo`](crate::demo) it is simulated, so that users can push and pull the character at any time.
 
 use crate::cabin::Site;
 use crate::dressed::{CAPE, dressed};
@@ -16,11 +17,12 @@ use sinew::physics::{BodyId, BodyKind, World, WorldDef};
 use sinew::ragdoll::{Character, CharacterDef, State};
 use std::sync::Arc;
 
-/// Height of the mannequin, for which the cabin is built, and heights of characters that fit its door and stairs, metres.
+/// Height of the mannequin, for which the cabin is built, and heights of characters that fit its door and stairs,
+/// metres.
 const MANNEQUIN: f32 = 1.8;
 const FITTING: core::ops::RangeInclusive<f32> = 1.3..=2.3;
 /// Way from the place behind the door to the start, metres: the wall hides a character behind it.
-const OUT_OF_THE_DOOR: f32 = 0.45;
+const START_DISTANCE: f32 = 0.45;
 /// Speed of the walk of a character of the mannequin's height, m/s.
 const WALK: f32 = 1.3;
 /// Distance before the edge of the porch at which the push comes, and time until it on flat ground, metres and seconds.
@@ -28,10 +30,11 @@ const PUSH_BEFORE_EDGE: f32 = 0.45;
 const PUSH_AFTER: f32 = 2.5;
 /// Speed that the push gives to the mass of the whole character, m/s: a shove with both hands.
 const SHOVE: f32 = 1.45;
-/// Times after which it begins again: walking on its feet, and down without getting up, seconds.
+/// Times after which it begins again: on its feet, and down without getting up, seconds.
 const WALKS_ON: f32 = 4.0;
 const STAYS_DOWN: f32 = 12.0;
-/// Half of the box that a camera keeps in the picture, in heights of the character: it fits lying, and so do raised arms.
+/// Half of the box that a camera keeps in the picture, in heights of the character: enough for a lying body and for
+/// raised arms.
 const ROOM: Vec3 = Vec3::new(0.5, 0.56, 0.5);
 
 /// Built-in characters.
@@ -46,10 +49,10 @@ pub enum Sample {
 }
 
 impl Sample {
-    /// All of them.
+    /// All samples.
     pub const ALL: [Self; 3] = [Self::Mannequin, Self::Braids, Self::Cape];
 
-    /// Name of it.
+    /// Name of the sample.
     pub fn name(self) -> &'static str {
         match self {
             Self::Mannequin => "mannequin",
@@ -75,7 +78,7 @@ pub fn staged(def: CharacterDef) -> Instance {
     let site = if FITTING.contains(&height) { Site::CabinWithStairs } else { Site::Flat };
     let mut world = World::new(WorldDef::default());
     let colors = site.props().iter().map(|prop| (world.add_body(&prop.body), prop.color)).collect();
-    let start = site.spawn().world_from_character * Transform::from_translation(Vec3::Z * OUT_OF_THE_DOOR);
+    let start = site.spawn().world_from_character * Transform::from_translation(Vec3::Z * START_DISTANCE);
     let character = Character::spawn(&mut world, &def, start);
     let mut stage =
         Staged { def, site, start, colors, character, since: 0, was: None, led: None, model: Vec::new() };
@@ -91,11 +94,11 @@ struct Staged {
     start: Transform,
     colors: Vec<(BodyId, [f32; 3])>,
     character: Character,
-    /// Steps since it last began to stand or to lie.
+    /// Number of steps since it last stood up or fell.
     since: u32,
-    /// State of the run; `None` until the push.
+    /// Part of the run; `None` until the push.
     was: Option<Part>,
-    /// Velocity that a user gave it, m/s.
+    /// Velocity set by a user, m/s.
     led: Option<Vec3>,
     /// World from joint.
     model: Vec<Affine>,
@@ -204,7 +207,7 @@ impl Script for Staged {
         Vec::new()
     }
 
-    /// From the right of the stairs, a little from the front; the box moves along with the character.
+    /// View from the right of the stairs, a little from the front; the box moves along with the character.
     fn camera_hint(&self) -> CameraHint {
         let half = ROOM * self.def.ragdoll.height;
         let bounds = Aabb::around(self.middle(), half);
@@ -261,7 +264,7 @@ mod tests {
             }
             println!("{}: begins again after {begins:?} s", sample.name());
             assert!(begins.len() >= 2, "{}: {begins:?}", sample.name());
-            assert!(lowest < start.y - 1.0, "{} stays on the porch", sample.name());
+            assert!(lowest < start.y - 1.0, "{} does not leave the porch", sample.name());
         }
     }
 }

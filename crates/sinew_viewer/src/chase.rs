@@ -13,7 +13,7 @@ const REACH: f32 = 0.16;
 pub struct Chase(Vec3);
 
 impl Chase {
-    /// On the subject.
+    /// Creates a camera on the subject.
     pub fn at(subject: Vec3) -> Self {
         Self(subject)
     }

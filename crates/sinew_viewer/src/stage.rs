@@ -28,7 +28,7 @@ impl Stage<'_> {
 pub(crate) struct Solid {
     pub form: Form,
     pub place: Transform,
-    /// Along the axes of `place`.
+    /// Scale along the axes of `place`.
     pub scale: Vec3,
     /// Linear.
     pub color: [f32; 3],

@@ -61,11 +61,11 @@ pub(crate) fn with_ground(bounds: &Aabb, world: &World) -> Aabb {
 pub struct Orbit {
     /// The point, metres, world space.
     pub target: Vec3,
-    /// From +z toward +x, radians.
+    /// Angle from +z toward +x, radians.
     pub yaw: f32,
     /// Up, radians.
     pub pitch: f32,
-    /// From the point to the camera, metres.
+    /// Distance from the point to the camera, metres.
     pub distance: f32,
 }
 
@@ -92,7 +92,7 @@ impl Orbit {
         Camera { position: self.target + self.back() * self.distance, target: self.target, fov_y: FOV }
     }
 
-    /// From the point to the camera, unit.
+    /// Direction from the point to the camera, unit.
     fn back(&self) -> Vec3 {
         let (sin_yaw, cos_yaw) = trig::sin_cos(self.yaw);
         let (sin, cos) = trig::sin_cos(self.pitch);

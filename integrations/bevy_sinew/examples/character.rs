@@ -67,7 +67,7 @@ pub fn plugin(app: &mut App) {
     app.add_systems(Startup, setup).add_systems(FixedUpdate, hit);
 }
 
-/// Lets it walk and fall.
+/// Shows a character that walks and falls.
 pub fn main() {
     let mut app = App::new();
     app.add_plugins((TimePlugin, SinewPlugin::default(), plugin)); // in a game `DefaultPlugins` bring the first

@@ -31,7 +31,7 @@ fn height(app: &mut App) -> f32 {
     place.translation.y
 }
 
-/// Lets it fall.
+/// Shows a falling box.
 pub fn main() {
     let mut app = App::new();
     app.add_plugins((TimePlugin, SinewPlugin::default(), plugin)); // in a game `DefaultPlugins` bring the first
@@ -42,5 +42,5 @@ pub fn main() {
             println!("frame {frame}: {:.3} m", height(&mut app));
         }
     }
-    assert!((height(&mut app) - 0.5).abs() < 0.01, "it lies on the ground");
+    assert!((height(&mut app) - 0.5).abs() < 0.01, "it is not on the ground");
 }

@@ -43,7 +43,7 @@ fn shoot(
             let aim = physics.center_of_mass(target.bodies()[body]);
             let shot = Ray { origin: aim + Vec3::Z * 20.0, direction: Vec3::Z * -40.0 };
             let Some(hit) = physics.query().first(&shot) else { continue };
-            assert_eq!(physics.entity(hit.body), Some(entity), "a limb is its character's");
+            assert_eq!(physics.entity(hit.body), Some(entity), "a limb belongs to its character");
             target.hit_at(&mut physics, &hit, Vec3::Z * -impulse);
             println!("{limb}: {impulse} N·s, {:?}", target.state());
         }

@@ -32,14 +32,14 @@ pub struct BevyAnimation {
 pub(crate) struct Given {
     /// Poses of the joints, in the order of the rig; empty before the first frame.
     joints: Vec<Place>,
-    /// The same pose, with everything above the pelvis at rest.
+    /// Pose with everything above the pelvis at rest.
     pose: Option<Pose>,
 }
 
 /// Kinds of characters with clips played by Bevy, each with the kind that it was derived from.
 pub(crate) type LedKinds = Vec<(Weak<CharacterDef>, Weak<CharacterDef>)>;
 
-/// Returns a kind of character whose looped clip comes from outside.
+/// Returns a kind of character whose looped clip is supplied from outside.
 pub(crate) fn led(kinds: &mut LedKinds, def: &Arc<CharacterDef>) -> Arc<CharacterDef> {
     kinds.retain(|(_, led)| led.strong_count() > 0);
     let known = kinds.iter().find(|(of, _)| core::ptr::eq(of.as_ptr(), Arc::as_ptr(def)));
@@ -58,7 +58,7 @@ pub(crate) fn led(kinds: &mut LedKinds, def: &Arc<CharacterDef>) -> Arc<Characte
     led
 }
 
-/// Runs before each step.
+/// Feeds the poses before each step.
 pub(crate) fn feed_characters(mut characters: Query<(&mut CharacterHandle, &Given)>) {
     for (mut handle, given) in &mut characters {
         let Some(pose) = &given.pose else { continue };

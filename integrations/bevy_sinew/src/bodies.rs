@@ -19,7 +19,7 @@ use sinew_physics::{BodyDef, BodyId, BodyKind, MassUpdate, Shape, ShapeDef, Shap
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 #[require(Transform, Collider)]
 pub enum RigidBody {
-    /// Never moves.
+    /// The body never moves.
     Static,
     /// Moves at its [`Velocity`]; nothing pushes it.
     Kinematic,
@@ -65,9 +65,9 @@ impl From<ShapeDef> for Collider {
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 pub struct Velocity {
-    /// m/s.
+    /// Linear velocity, m/s.
     pub linear: Vec3,
-    /// rad/s.
+    /// Angular velocity, rad/s.
     pub angular: Vec3,
 }
 

@@ -172,7 +172,7 @@ fn joints_below(
 ) -> Vec<Option<Entity>> {
     let mut found: Vec<Option<Entity>> = Vec::with_capacity(rig.joints.len());
     for joint in &rig.joints {
-        // Bevy's loader gives these names to nodes without one.
+        // Bevy's loader gives these names to nameless nodes.
         let unnamed = format!("GltfNode{}", joint.source);
         let wanted = if joint.name.is_empty() { &unnamed } else { &joint.name };
         let from = joint.parent.map_or(Some(root), |parent| found[parent]);
@@ -214,7 +214,7 @@ pub(crate) fn write_characters(
         let place = handle.character.interpolated(alpha, &mut pose);
         let world_from_model = affine(&handle.def().mapping().world_from_model(place));
         if let Ok(mut transform) = transforms.get_mut(entity)
-            // Changes by the user since the last step are still to be read.
+            // Changes by the user since the last step have yet to be read.
             && *transform == handle.transform
         {
             let new = Transform::from_matrix(world_from_model.into());

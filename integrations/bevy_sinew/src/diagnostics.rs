@@ -6,8 +6,8 @@ use bevy_diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnosti
 use bevy_ecs::prelude::*;
 use bevy_platform::time::Instant;
 
-/// Measures each step: its time, how many bodies are awake, how many contacts there are. Needs Bevy's `DiagnosticsPlugin`, which
-/// `DefaultPlugins` bring; its `LogDiagnosticsPlugin` prints them.
+/// Measures each step: its time, the number of awake bodies, and the number of contacts. Needs Bevy's
+/// `DiagnosticsPlugin`, included in `DefaultPlugins`; its `LogDiagnosticsPlugin` prints them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SinewDiagnosticsPlugin;
 
@@ -16,7 +16,7 @@ impl SinewDiagnosticsPlugin {
     pub const STEP: DiagnosticPath = DiagnosticPath::const_new("sinew/step");
     /// Number of dynamic bodies that are awake.
     pub const AWAKE: DiagnosticPath = DiagnosticPath::const_new("sinew/awake");
-    /// Number of contacts, near ones that do not touch among them.
+    /// Number of contacts, including near ones without touch.
     pub const CONTACTS: DiagnosticPath = DiagnosticPath::const_new("sinew/contacts");
 }
 
@@ -32,7 +32,7 @@ impl Plugin for SinewDiagnosticsPlugin {
     }
 }
 
-/// Moment at which the step began.
+/// Start time of the step.
 #[derive(Resource)]
 struct Began(Instant);
 

@@ -10,16 +10,16 @@ use sinew_physics::stage::NoProfiler;
 /// Two bodies began to touch.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TouchBegan {
-    /// One of them.
+    /// One of the two bodies.
     pub a: Entity,
     /// The other.
     pub b: Entity,
 }
 
-/// Two bodies stopped touching; one of them may be gone.
+/// Two bodies stopped touching; one of them may be removed.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TouchEnded {
-    /// One of them.
+    /// One of the two bodies.
     pub a: Entity,
     /// The other.
     pub b: Entity,
@@ -28,16 +28,16 @@ pub struct TouchEnded {
 /// A body entered a sensor of another body.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SensorEntered {
-    /// One of them.
+    /// One of the two bodies.
     pub a: Entity,
     /// The other.
     pub b: Entity,
 }
 
-/// A body left a sensor of another body; one of them may be gone.
+/// A body left a sensor of another body; one of them may be removed.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SensorLeft {
-    /// One of them.
+    /// One of the two bodies.
     pub a: Entity,
     /// The other.
     pub b: Entity,
@@ -46,13 +46,13 @@ pub struct SensorLeft {
 /// Two bodies hit each other fast ([`WorldDef::hit_speed`](crate::WorldDef::hit_speed)).
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq)]
 pub struct HitTold {
-    /// One of them.
+    /// One of the two bodies.
     pub a: Entity,
     /// The other.
     pub b: Entity,
     /// Point of the hit, world, metres.
     pub point: Vec3,
-    /// From A to B, unit length, world axes.
+    /// Normal from A to B, unit length, world axes.
     pub normal: Vec3,
     /// Speed along the normal, m/s.
     pub approach: f32,

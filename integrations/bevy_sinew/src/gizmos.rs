@@ -37,9 +37,9 @@ pub struct GizmoColors {
     pub kinematic: Color,
     /// Outlines of awake dynamic shapes. Default orange.
     pub awake: Color,
-    /// Outlines of sleeping ones. Default dark green.
+    /// Outlines of sleeping dynamic shapes. Default dark green.
     pub asleep: Color,
-    /// From centres of bodies to anchors of their joints. Default yellow.
+    /// Colour of lines from centres of bodies to anchors of their joints. Default yellow.
     pub joint: Color,
     /// Springs between particles. Default white.
     pub spring: Color,

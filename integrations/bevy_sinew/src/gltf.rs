@@ -56,10 +56,10 @@ pub enum CharacterFileError {
     /// The bytes cannot be read.
     #[error(transparent)]
     Io(#[from] std::io::Error),
-    /// It is not a valid GLB.
+    /// The file is not a valid GLB.
     #[error(transparent)]
     Format(#[from] sinew::formats::Error),
-    /// It has no skin.
+    /// The file has no skin.
     #[error(transparent)]
     Analysis(#[from] NoSkin),
     /// No ragdoll can be built from its joints.
@@ -68,7 +68,7 @@ pub enum CharacterFileError {
     /// One of its clips cannot be played.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// It is not a humanoid, or one of its clips cannot be played.
+    /// The character is not a humanoid, or one of its clips cannot be played.
     #[error(transparent)]
     Builtin(#[from] BuiltinError),
     /// The settings name a missing clip.

@@ -23,26 +23,26 @@
 //!
 //! | component | read | written |
 //! |---|---|---|
-//! | [`RigidBody`], [`Collider`] | when they come or change | never |
-//! | `Transform` | when a body comes, and when it is changed by anyone else | each frame, of bodies that moved: between the last two steps |
-//! | [`Velocity`], if it is there | when it comes or changes | after each step |
-//! | [`Joint`], [`Field`] | when they come or change | never |
-//! | [`Mover`], [`Walk`] | before each step; its height and filter may change | a jump is taken back once it was told |
+//! | [`RigidBody`], [`Collider`] | when added or changed | never |
+//! | `Transform` | when a body is added, and when another system changes it | each frame, of bodies that moved: between the last two steps |
+//! | [`Velocity`], if present | when added or changed | after each step |
+//! | [`Joint`], [`Field`] | when added or changed | never |
+//! | [`Mover`], [`Walk`] | before each step; its height and filter may change | a jump is reset after it was applied |
 //! | [`MoverState`] | never | after each step |
-//! | [`Particles`] | when they come | never |
-//! | [`CharacterBody`] | when it comes | never |
+//! | [`Particles`] | when added | never |
+//! | [`CharacterBody`] | when added | never |
 //! | [`CharacterHandle`] | before and after each step | each step |
-//! | [`BevyAnimation`] | when its character comes | never |
+//! | [`BevyAnimation`] | when its character is added | never |
 //!
 //! # Features
 //!
-//! | feature | brings | default |
+//! | feature | adds | default |
 //! |---|---|---|
 //! | `characters` | [`CharacterBody`]: walks, is hit, falls, gets up, on the joints of a scene | yes |
 //! | `diagnostics` | `SinewDiagnosticsPlugin`: time of steps, bodies awake, contacts | no |
 //! | `gltf` | `CharacterScene`: characters from GLB files | no |
-//! | `gizmos` | `SinewGizmosPlugin`: what the world looks like to itself | no |
-//! | `picking` | `SinewPickingPlugin`: pointers find bodies | no |
+//! | `gizmos` | `SinewGizmosPlugin`: debug drawing of the world | no |
+//! | `picking` | `SinewPickingPlugin`: pointers hit bodies | no |
 //! | `reflect` | components in the type registry, for scenes and inspectors | no |
 //!
 //! A body moves in world space, not with its parent: if an ancestor or the parent changes, the body stays and its `Transform` is adjusted.
@@ -168,7 +168,7 @@ impl DerefMut for Physics {
     }
 }
 
-/// Order in which entities are added to the world: that of their creation.
+/// Order in which entities are added to the world: by creation.
 pub(crate) fn order(entity: Entity) -> (u32, u64) {
     (entity.index_u32(), entity.to_bits())
 }
@@ -214,7 +214,7 @@ impl Plugin for SinewPlugin {
         );
         app.add_systems(FixedPostUpdate, prepare.chain().in_set(PhysicsSystems::Prepare));
         app.add_systems(FixedPostUpdate, events::step.in_set(PhysicsSystems::Step));
-        let tell = (bodies::write_velocities, movers::tell_movers, events::tell);
+        let tell = (bodies::write_velocities, movers::write_mover_states, events::tell);
         app.add_systems(FixedPostUpdate, tell.chain().in_set(PhysicsSystems::Tell));
         let write = (pose::write_transforms, movers::write_movers);
         app.add_systems(RunFixedMainLoop, write.chain().in_set(PhysicsSystems::Write));
@@ -233,7 +233,7 @@ fn add_characters(app: &mut App) {
     app.add_systems(FixedPostUpdate, prepare.in_set(PhysicsSystems::Prepare).after(particles::add_particles));
     // Runs before the world's events are reported, while bodies released by a character are still known.
     let update = characters::update_characters.in_set(PhysicsSystems::Tell);
-    app.add_systems(FixedPostUpdate, update.after(movers::tell_movers).before(events::tell));
+    app.add_systems(FixedPostUpdate, update.after(movers::write_mover_states).before(events::tell));
     let write = (characters::find_joints, characters::write_characters).chain();
     app.add_systems(RunFixedMainLoop, write.in_set(PhysicsSystems::Write).after(movers::write_movers));
     app.add_systems(PostUpdate, animation::give_back.before(AnimationSystems));

@@ -9,7 +9,7 @@ use bevy_math::Vec3;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use sinew_physics::{FieldDef, FieldId, JointDef, JointId, JointKind};
 
-/// Entities as bits: Bevy serialises entities only with a feature of its scenes.
+/// Stores entities as bits, because Bevy serialises entities only with a feature of its scenes.
 #[cfg(feature = "reflect")]
 pub(crate) mod bits {
     use bevy_ecs::entity::Entity;
@@ -45,9 +45,9 @@ pub struct Joint {
     pub b: Entity,
     /// Anchor of both bodies at creation, world, metres.
     pub anchor: Vec3,
-    /// Its x axis at creation, world, any length but 0: that of a hinge or a slider.
+    /// Direction of the joint's x axis at creation, world, any length but 0: the axis of a hinge or a slider.
     pub axis: Vec3,
-    /// Its free motions.
+    /// Kind of the joint: its free motions.
     pub kind: JointKind,
 }
 

@@ -118,7 +118,7 @@ pub(crate) fn lead_movers(
     }
 }
 
-pub(crate) fn tell_movers(physics: Res<Physics>, mut movers: Query<(&MoverHandle, &mut MoverState)>) {
+pub(crate) fn write_mover_states(physics: Res<Physics>, mut movers: Query<(&MoverHandle, &mut MoverState)>) {
     for (handle, mut state) in &mut movers {
         let mover = physics.mover(handle.id);
         let now = MoverState { velocity: mover.velocity(), grounded: mover.is_grounded() };

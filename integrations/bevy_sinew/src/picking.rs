@@ -10,8 +10,9 @@ use bevy_picking::{Pickable, PickingSystems};
 use sinew_physics::BodyHit;
 use sinew_physics::ray::Ray;
 
-/// A backend of `bevy_picking` by rays at bodies: pointers find entities with a [`RigidBody`](crate::RigidBody), and characters by their
-/// limbs. Needs Bevy's `PickingPlugin`, which `DefaultPlugins` bring.
+/// A backend of `bevy_picking` that casts rays at bodies: pointers find entities with a
+/// [`RigidBody`](crate::RigidBody), and characters by their limbs. Needs Bevy's `PickingPlugin`, included in
+/// `DefaultPlugins`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SinewPickingPlugin;
 

@@ -11,7 +11,7 @@ use sinew_physics::{Serial, TaskRunner};
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Resource, Default, Debug, PartialEq))]
 pub enum StepThreads {
-    /// Threads of Bevy's `ComputeTaskPool`, or one where there is no pool: an app without `TaskPoolPlugin`. Default.
+    /// Threads of Bevy's `ComputeTaskPool`, or one thread without a pool (an app without `TaskPoolPlugin`). Default.
     #[default]
     Bevy,
     /// The thread that the step's system runs on.

@@ -1,4 +1,4 @@
-"""F-curves of Actions, as Blender 3.4 to 5 have them."""
+"""Accesses F-curves of Actions in Blender 3.4 to 5."""
 
 import bpy
 
@@ -70,7 +70,7 @@ def write(fcurve, frames, values, way="LINEAR"):
 
 
 def insert(fcurve, frames, values, value_before):
-    """Keys, one a frame, from the first of them to the last; before and after the curve is as it was.
+    """Keys, one per frame from first to last; the curve before and after is unchanged.
 
     A curve's shape between two keys depends on both: the span that the new keys cut is filled with a key a frame. `value_before` is the
     value of a curve that had no keys.

@@ -1,4 +1,4 @@
-"""The definition on the armature, and the values of bones that it shows."""
+"""The definition stored on the armature, and the bone panels that show it."""
 
 import json
 import math

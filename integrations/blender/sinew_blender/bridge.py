@@ -10,9 +10,9 @@ from . import skeleton as sk
 from .skeleton import TO_Y, SinewError
 
 CLIP = "user"
-# Relative difference up to which two scales count as equal.
+# Largest relative difference of two equal scales.
 SAME_SCALE = 1e-3
-# Range of character sizes that need no guess of the unit, metres.
+# Sizes of characters for which the unit is not guessed, metres.
 SIZES = (0.3, 10.0)
 
 
@@ -51,7 +51,7 @@ class Loaded:
 
 
 def build(arm):
-    """The ragdoll of an armature. A mesh that hangs on a bone has no body of its own: nothing could be keyed for it."""
+    """The ragdoll of an armature. A mesh parented to a bone gets no body of its own, because it has no bone to key."""
     loaded = load(arm)
     ragdoll = asked(loaded.file.build)
     others = [name for name in ragdoll.bones if name not in arm.data.bones]
@@ -120,14 +120,14 @@ def _extent(arm, skeleton):
 
 
 def definition(arm):
-    """The definition that is stored on the armature."""
+    """The definition stored on the armature."""
     if not arm.sinew.definition:
         raise SinewError("Build the ragdoll first")
     return json.loads(arm.sinew.definition)
 
 
 def ragdoll(arm):
-    """The ragdoll that is stored on the armature, with the user's changes."""
+    """The ragdoll stored on the armature, with the user's changes."""
     if not arm.sinew.definition:
         raise SinewError("Build the ragdoll first")
     return asked(engine().Ragdoll.from_json, arm.sinew.definition)

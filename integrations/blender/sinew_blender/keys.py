@@ -84,7 +84,7 @@ def turns(quaternions, mode):
 
 
 def new_action(arm):
-    """A copy of the user's Action under a new name; the original is not changed."""
+    """A copy of the user's Action under a new name; the original stays unchanged."""
     old = arm.animation_data.action if arm.animation_data else None
     name = f"{PROXY}{arm.name}"
     if old is None:
@@ -93,14 +93,14 @@ def new_action(arm):
         action = old.copy()
         action.name = name
     if old is not None:
-        # Nothing else may use it while the copy is assigned.
+        # No other object may use it while the copy is assigned.
         old.use_fake_user = True
     arm.sinew.own_action, arm.sinew.made_action = old, action
     return action
 
 
 def keep_pose(arm, names):
-    """Remembers the values of the bones' channels: those that no curve of the user's has stay as they are now."""
+    """Stores the values of the bones' channels, so that channels without a user's curve can be restored."""
     kept = {}
     for n in names:
         bone = arm.pose.bones[n]
@@ -116,7 +116,7 @@ def restore_pose(arm):
 
 
 def put_back(arm):
-    """Assigns the user's own Action, or none where he had none; channels without curves are as they were."""
+    """Restores the user's own Action, or none if there was none; channels without curves get their stored values."""
     restore_pose(arm)
     data = arm.animation_data
     if arm.sinew.own_action is None:
@@ -145,7 +145,7 @@ def clear(arm):
 
 
 def as_action(arm, names, fall):
-    """A copy of the user's Action with a key a frame while the bodies have the pose."""
+    """A copy of the user's Action with one key per frame while bodies determine the pose."""
     keep_pose(arm, names)
     action = new_action(arm)
     actions.assign(arm, action)
@@ -154,7 +154,7 @@ def as_action(arm, names, fall):
 
 
 def as_strip(arm, names, fall):
-    """A strip on a new track over the user's animation, which goes on before and after."""
+    """A strip on a new track over the user's animation, which continues before and after it."""
     keep_pose(arm, names)
     data = arm.animation_data_create() if arm.animation_data is None else arm.animation_data
     old, slot = data.action, getattr(data, "action_slot", None)
@@ -186,7 +186,7 @@ def proxy_name(arm):
 
 
 def as_proxy(arm, skeleton, fall):
-    """An armature of the deform bones alone, which the rig follows by constraints from the hand-over on (and until the return)."""
+    """An armature of the deform bones only; the rig follows it by constraints from the hand-over until the return."""
     remove_proxy(arm)
     names, parent = skeleton.names, skeleton.parent
     data = bpy.data.armatures.new(proxy_name(arm))

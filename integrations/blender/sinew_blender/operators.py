@@ -1,4 +1,4 @@
-"""Operators: what the buttons do."""
+"""Operators behind the buttons."""
 
 import json
 import time
@@ -66,7 +66,7 @@ class SINEW_OT_build(Sinew, bpy.types.Operator):
 
 
 class SINEW_OT_forget(Sinew, bpy.types.Operator):
-    """Take ragdoll, keys and settings of Sinew off the armature; your animation is as it was"""
+    """Remove Sinew's ragdoll, keys and settings from the armature; your animation is restored"""
 
     bl_idname, bl_label = "sinew.forget", "Remove Sinew"
 
@@ -91,7 +91,7 @@ def examine(arm, ragdoll):
 
 
 class SINEW_OT_doctor(Sinew, bpy.types.Operator):
-    """Look for what is wrong with the ragdoll"""
+    """Examine the ragdoll for problems"""
 
     bl_idname, bl_label = "sinew.doctor", "Examine"
 
@@ -129,7 +129,7 @@ def select(arm, bone, chosen):
 
 
 class SINEW_OT_cure(Sinew, bpy.types.Operator):
-    """Mend what the doctor can mend"""
+    """Repair what the doctor can repair"""
 
     bl_idname, bl_label = "sinew.cure", "Fix"
 
@@ -144,7 +144,7 @@ class SINEW_OT_cure(Sinew, bpy.types.Operator):
 
 
 class SINEW_OT_simulate(Sinew, bpy.types.Operator):
-    """Play your animation until the hand-over, simulate from there, and key the outcome. Esc cancels"""
+    """Play your animation until the hand-over, simulate from there, and key the result. Esc cancels"""
 
     bl_idname, bl_label = "sinew.simulate", "Simulate"
 
@@ -227,7 +227,7 @@ class SINEW_OT_simulate(Sinew, bpy.types.Operator):
 
 
 class SINEW_OT_clear(Sinew, bpy.types.Operator):
-    """Take away the keys of the last simulation; your animation is as it was"""
+    """Remove the keys of the last simulation; your animation is restored"""
 
     bl_idname, bl_label = "sinew.clear", "Clear keys"
 
@@ -238,7 +238,7 @@ class SINEW_OT_clear(Sinew, bpy.types.Operator):
 
 
 class SINEW_OT_add_hit(Sinew, bpy.types.Operator):
-    """Add an arrow that hits the active bone at the present frame"""
+    """Add an arrow that hits the active bone at the current frame"""
 
     bl_idname, bl_label = "sinew.add_hit", "Add hit"
     impulse: FloatProperty(name="Impulse", default=100, min=0)
@@ -260,7 +260,7 @@ class SINEW_OT_add_hit(Sinew, bpy.types.Operator):
 
 
 class SINEW_OT_collide(bpy.types.Operator):
-    """Have simulated characters collide with the selected meshes, or not"""
+    """Make simulated characters collide with the selected meshes, or stop it"""
 
     bl_idname, bl_label, bl_options = "sinew.collide", "Collide with selected", {"REGISTER", "UNDO"}
     collides: BoolProperty(default=True)
@@ -276,7 +276,7 @@ class SINEW_OT_collide(bpy.types.Operator):
 
 
 class SINEW_OT_bake_fk(Sinew, bpy.types.Operator):
-    """Bring the fall from the proxy to the FK controls of a Rigify rig, and take the proxy away"""
+    """Transfer the fall from the proxy to the FK controls of a Rigify rig, and remove the proxy"""
 
     bl_idname, bl_label = "sinew.bake_fk", "Bake to FK controls"
 
@@ -288,7 +288,7 @@ class SINEW_OT_bake_fk(Sinew, bpy.types.Operator):
 
 
 class SINEW_OT_export(Sinew, bpy.types.Operator):
-    """Write the ragdoll's definition, for Sinew's commands and for engines"""
+    """Write the ragdoll's definition for Sinew's commands and for engines"""
 
     bl_idname, bl_label, bl_options = "sinew.export", "Export ragdoll", {"REGISTER"}
     filepath: StringProperty(subtype="FILE_PATH")

@@ -1,4 +1,4 @@
-"""Bodies, limits and masses in the viewport."""
+"""Draws bodies, limits and masses in the viewport."""
 
 import json
 import math
@@ -18,7 +18,7 @@ STEPS = 24
 REACH = 0.5
 
 _handles = []
-# By name of the armature: its definition, and lines by bone.
+# By the armature's name: its definition, and lines by bone.
 _made = {}
 
 
@@ -76,7 +76,7 @@ def _frame(pose):
 
 
 def pieces(arm):
-    """By bone: lines of body, swing and twist in the bone's own space at rest, place of the mass and kg."""
+    """By bone: lines of body, swing and twist in the bone's rest space, and position (rest space) and size (kg) of its mass."""
     text = arm.sinew.definition
     kept = _made.get(arm.name)
     key = (text, arm.sinew.place)
@@ -115,7 +115,7 @@ def pieces(arm):
 
 
 def lines_of(arm, chosen):
-    """Colour and line segments in the world, of the armature as it is posed now."""
+    """Colours and line segments in the world, for the current pose of the armature."""
     settings, out = arm.sinew, {BODY: [], CHOSEN: [], LIMIT: [], TWIST: []}
     for name, (body, carrier, swing, twist, _, _) in pieces(arm).items():
         bone = arm.pose.bones[name]

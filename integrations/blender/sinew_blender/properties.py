@@ -21,7 +21,7 @@ MODES = (
     ("POWERED", "Powered", "Muscles draw it to your animation; it gives way to what it meets"),
     ("LIMP", "Limp", "It hangs"),
 )
-# True while the add-on itself sets values, which then do not count as edits.
+# True while the add-on itself sets values, which do not count as edits.
 _filling = [False]
 
 
@@ -39,7 +39,7 @@ def _edited(bone_settings, context):
     if _filling[0]:
         return
     arm = bone_settings.id_data
-    # Blender offers no path from such a value to its bone.
+    # Blender gives no path from such a value to its bone.
     here = bone_settings.as_pointer()
     name = next(bone.name for bone in arm.pose.bones if bone.sinew.as_pointer() == here)
     from . import bodies
@@ -64,7 +64,7 @@ class BoneSettings(bpy.types.PropertyGroup):
 class ArmatureSettings(bpy.types.PropertyGroup):
     definition: StringProperty()
     fitted: StringProperty()
-    # Where the armature stood when it was built: 16 numbers.
+    # World matrix of the armature at the time of the build: 16 numbers.
     place: StringProperty()
     report: StringProperty()
     keyed: StringProperty()

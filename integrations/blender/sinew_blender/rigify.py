@@ -8,7 +8,7 @@ from . import actions, keys
 from . import skeleton as sk
 from .skeleton import SinewError
 
-# Passes over all controls at a frame; each uses the present pose of the controls above it.
+# Passes over all controls at a frame; each uses the current pose of its parents.
 PASSES = 2
 
 
@@ -42,7 +42,7 @@ def switches(arm):
 
 
 def bake(context, arm):
-    """Keys the FK controls so that the deform bones are where the proxy has them; returns the largest distance, Blender's length."""
+    """Keys the FK controls so that the deform bones match the proxy; returns the largest distance, in Blender's unit."""
     proxy = bpy.data.objects.get(keys.proxy_name(arm))
     if proxy is None or arm.sinew.keyed != "PROXY":
         raise SinewError("Simulate with a proxy first")
@@ -59,7 +59,7 @@ def bake(context, arm):
         context.scene.frame_set(frame)
         evaluated = proxy.evaluated_get(context.evaluated_depsgraph_get())
         goals[frame] = {n: evaluated.matrix_world @ evaluated.pose.bones[n].matrix for n in skeleton.names}
-    # The Action with the influences is a copy of the user's: the controls' keys go into it, the influences out.
+    # The Action with the influences is a copy of the user's: controls' keys are added to it, and influences removed.
     action = arm.animation_data.action
     made, own = arm.sinew.made_action, arm.sinew.own_action
     keys.keep_pose(arm, [c for c, _ in pairs] + switches(arm))

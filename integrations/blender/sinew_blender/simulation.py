@@ -1,4 +1,4 @@
-"""From the user's animation to keys: sample, simulate, key."""
+"""Samples the user's animation, simulates, and writes keys."""
 
 import json
 import threading
@@ -28,7 +28,7 @@ class Fall:
 
 @dataclass
 class Job:
-    """A simulation that is prepared on Blender's main thread and runs on any thread."""
+    """A simulation, prepared on Blender's main thread and run on any thread."""
 
     arms: list
     loaded: list
@@ -127,7 +127,7 @@ def gravity(scene):
 
 
 class own_animation:
-    """The user's animation without what an earlier simulation left over it: for the time of a sample."""
+    """Temporarily restores the user's animation without the results of an earlier simulation, for sampling."""
 
     def __init__(self, arm):
         self.arm, self.muted, self.tracks, self.action = arm, [], [], None

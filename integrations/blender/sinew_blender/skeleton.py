@@ -9,15 +9,15 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-# Blender's Z up to Sinew's Y up.
+# Rotation from Blender's Z up to Sinew's Y up.
 TO_Y = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
-# Influences of a vertex that a skin keeps.
+# Largest number of influences of a vertex.
 INFLUENCES = 4
-# Half width of the tube that stands for the skin of a bone without any, as a share of the bone's length.
+# Half width of the tube that replaces the skin of a bone without any, as a share of the bone's length.
 TUBE = 0.18
-# Ends of chains are written as joints of this name: they tell which way a bone points.
+# Name of joints that mark the ends of chains, for the direction of the last bone.
 END = "_end"
-# Constraints by which a deform bone follows a bone of the rig's mechanism.
+# Constraints that make a deform bone follow a bone of the rig's mechanism.
 FOLLOWS = {"COPY_TRANSFORMS", "COPY_ROTATION", "ARMATURE", "DAMPED_TRACK", "COPY_LOCATION"}
 
 
@@ -58,7 +58,7 @@ def check(arm):
 
 
 def skins(arm):
-    """Meshes that the armature moves, by a modifier or by a bone that they are parented to."""
+    """Meshes moved by the armature, by a modifier or by a parent bone."""
     found = []
     for ob in bpy.context.scene.objects:
         if ob.type != "MESH" or len(ob.data.vertices) == 0:
@@ -89,7 +89,7 @@ def skeleton_of(arm):
 
 
 def _carriers(bones, deform):
-    """Deform bones without skin that lie between two that have some: their motion is part of the chain."""
+    """Deform bones without skin between two with skin: their motion is part of the chain."""
     kept, more = set(deform), []
     for name in deform:
         chain, at = [], bones[name].parent
@@ -122,7 +122,7 @@ def _parents(arm, deform):
         return name == top
 
     def above(name):
-        # Up from the ORG bone of the same name, as Rigify names them, else from the bone's own parent.
+        # Upward from the ORG bone of the same name, as in Rigify, else from the bone's own parent.
         org = bones.get("ORG-" + plain(name))
         starts = [org.parent] if org is not None and org.parent is not None else []
         for at in (*starts, bones[name].parent):
@@ -153,7 +153,7 @@ def _ordered(deform, parent):
 
 
 def unscaled(matrix):
-    """Place and turn of a matrix, without its scale and shear."""
+    """Position and rotation of a matrix, without scale and shear."""
     return Matrix.Translation(matrix.translation) @ matrix.to_quaternion().to_matrix().to_4x4()
 
 
@@ -176,7 +176,7 @@ def is_driven(arm, names):
 
 
 def carriers(arm, names):
-    """Bones that carry one of these and are none of them: what moves them stays the user's."""
+    """Ancestors of these bones that are not among them: they keep the user's animation."""
     kept = set(names)
     parents = {arm.data.bones[n].parent.name for n in names if arm.data.bones[n].parent is not None}
     return sorted(parents - kept)
@@ -191,7 +191,7 @@ def _driver_paths(arm, names):
 
 
 def place_of(arm):
-    """Place of the armature at rest, by which Sinew knows it: that of the build, wherever the armature went since."""
+    """Rest placement of the armature in Sinew: that of the build, wherever the armature moved since."""
     return matrix_from(arm.sinew.place) if arm.sinew.place else straight(arm.matrix_world)
 
 
@@ -222,7 +222,7 @@ def rest_matrices(arm, skeleton):
 
 
 def joint_list(arm, skeleton):
-    """Names of joints, with those of the ends of chains behind them, their parents, and the rest pose in Sinew's axes."""
+    """Names of joints, followed by those of chain ends; their parents; and the rest pose in Sinew's axes."""
     names, rest = list(skeleton.names), rest_matrices(arm, skeleton)
     parents = dict(skeleton.parent)
     carries = {p for p in parents.values() if p}
@@ -238,7 +238,7 @@ def joint_list(arm, skeleton):
 
 
 def local_arrays(names, parents, of):
-    """Translations and rotations of joints in their parents."""
+    """Translations and rotations of joints relative to their parents."""
     translations, rotations = np.empty((len(names), 3)), np.empty((len(names), 4))
     for i, n in enumerate(names):
         local = of[n] if parents[n] is None else of[parents[n]].inverted() @ of[n]
@@ -249,7 +249,7 @@ def local_arrays(names, parents, of):
 
 
 def mesh_arrays(arm, skeleton, names):
-    """Skin of all meshes, in Blender's length and Sinew's axes; without any a tube for each bone."""
+    """Skin of all meshes, in Blender's unit and Sinew's axes; without meshes a tube per bone."""
     index = {n: i for i, n in enumerate(names)}
     to_sinew_space = TO_Y @ place_of(arm) @ arm.matrix_world.inverted()
     made = [m for m in (_mesh(ob, index, to_sinew_space) for ob in skeleton.meshes) if m is not None]
@@ -329,7 +329,7 @@ class Take:
 
     def __init__(self, first):
         self.first = first
-        # By frame: matrix of each bone in Sinew's axes; of the armature in the world; of carriers in the armature; modes.
+        # Per frame: matrix of each bone in Sinew's axes; of the armature in the world; of carriers in the armature; modes.
         self.frames, self.worlds, self.carriers, self.modes = [], [], [], []
 
     def at(self, frame):
@@ -358,7 +358,7 @@ def sampling(arm, skeleton, first, last):
 
 
 def whole(steps):
-    """Runs a generator to its end; returns what it returns."""
+    """Runs a generator to its end and returns its result."""
     while True:
         try:
             next(steps)

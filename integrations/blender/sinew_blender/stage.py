@@ -9,7 +9,7 @@ from .skeleton import TO_Y, SinewError
 
 # Largest number of triangles of one collider.
 MOST_TRIANGLES = 500_000
-# Smallest change of a matrix for which an object counts as moving, in units of Blender.
+# Smallest change of a matrix of a moving object, in Blender's unit.
 MOVES = 1e-6
 
 
@@ -44,7 +44,7 @@ def _triangles(ob, to_local):
 
 
 def _is_moving(scene, obs, first, last):
-    """Matrices of the objects at every frame, and which of them move."""
+    """Matrices of the objects at every frame, and the moving objects."""
     at, sub = scene.frame_current, scene.frame_subframe
     tracks = {ob: [] for ob in obs}
     animated = [ob for ob in obs if _may_move(ob)]

@@ -15,7 +15,7 @@ def install():
     assert any(name.endswith(".sinew_blender") for name in bpy.context.preferences.addons.keys()), "it is enabled"
     import sinew
 
-    # The wheel of the zip, not one that lies about.
+    # Uses the wheel of the zip, not another one on the path.
     assert "extensions" in sinew.__file__, sinew.__file__
 
 

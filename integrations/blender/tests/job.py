@@ -1,4 +1,4 @@
-"""The whole job on one rig: `python job.py RIG`. The extension is installed by then (install.py)."""
+"""Runs the whole workflow on one rig: `python job.py RIG`. The extension is installed by then (install.py)."""
 
 import json
 import sys
@@ -33,7 +33,7 @@ def off(a, b, names):
 
 
 def counts():
-    """What there is in the file: for an undo."""
+    """Contents of the file, to compare after an undo."""
     kinds = ("objects", "actions", "armatures", "meshes", "collections")
     return {kind: sorted(x.name for x in getattr(bpy.data, kind)) for kind in kinds}
 
@@ -50,7 +50,7 @@ def check(holds, what):
 
 
 def joint_gap(frames, arm, skeleton, unit, first):
-    """Largest change of the distance of a bone's head from its parent's, metres, below the first body: what tears a skin."""
+    """Largest change of the distance between a bone's head and its parent's below the first body, metres: such changes tear the skin."""
     worst, below = 0.0, {first}
     for n in skeleton.names:
         p = skeleton.parent[n]
@@ -103,7 +103,7 @@ def main(name):
     was = max((own[i][n].translation - own[i - 1][n].translation).length for n in names) * unit
     check(jump < was + POP, f"a bone jumps by {jump} m at the hand-over, {was} m in the user's own")
 
-    # The same again gives the same keys.
+    # A second run gives the same keys.
     check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated again")
     again = posed(arm, names)
     check(json.loads(arm.sinew.report)["hash"] == report["hash"], "two runs end in one state")
@@ -124,7 +124,7 @@ def main(name):
         pop_speed = max(pop_speed, ((step(back, r + 1) - step(own, r + 1)) * fps).length, ((step(back, r) - step(own, r)) * fps).length)
     check(pop < POP and pop_speed < POP_SPEED, f"the return pops by {pop} m and {pop_speed} m/s")
 
-    # Nothing is left of it.
+    # Everything is removed.
     check(bpy.ops.sinew.clear() == {"FINISHED"}, "keys are cleared")
     cleared = posed(arm, names)
     error = max(off(a, b, names) for a, b in zip(cleared, own)) * unit

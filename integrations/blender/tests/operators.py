@@ -1,4 +1,4 @@
-"""Every operator, on one rig or another: `python operators.py`."""
+"""Runs every operator on some rig: `python operators.py`."""
 
 import json
 import os

@@ -5,7 +5,7 @@ import os
 
 import bpy
 
-# Blender's own modules are there once bpy is.
+# Blender's own modules exist only after bpy is imported.
 import addon_utils  # isort: skip
 import bmesh  # isort: skip
 from mathutils import Matrix, Vector
@@ -15,7 +15,7 @@ FPS, FIRST, LAST = 30, 1, 150
 
 
 def empty_scene():
-    # Not the preferences: the extension stays enabled.
+    # Not the preferences, so that the extension stays enabled.
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     scene = bpy.context.scene
     scene.render.fps, scene.render.fps_base = FPS, 1.0
@@ -57,7 +57,7 @@ def fox():
 
 
 def scale_100():
-    """The man a hundred times as large, by the scale of the armature's parent, turned and moved: nothing of it applied."""
+    """The man scaled by a hundred through the armature's parent, rotated and moved, without applying the transforms."""
     arm = cesium_man()
     top = arm
     while top.parent is not None:
@@ -69,7 +69,7 @@ def scale_100():
 
 
 def rigify_human():
-    """A human of Rigify with IK controls in use, and skin made of a box along each deform bone."""
+    """A Rigify human with active IK controls, and skin made of a box along each deform bone."""
     addon_utils.enable("rigify", default_set=True)
     bpy.ops.object.armature_basic_human_metarig_add()
     meta = bpy.context.object

@@ -6,9 +6,9 @@ use super::results::{Results, SceneResult};
 use anyhow::{Context, Result, ensure};
 use std::fmt::Write;
 
-/// Scenes that have a chart: characters in heaps, heavy chains, nets.
+/// Scenes with a chart: characters in heaps, heavy chains, nets.
 pub const SCENES: [&str; 4] = ["ragdoll_pile", "crowd_pile", "chain_100_links", "net"];
-/// Engines with the colour of their dots; Sinew's is the page's own.
+/// Engines with the colours of their dots; Sinew has the page's own colour.
 const ENGINES: [(&str, &str); 5] = [
     ("sinew", "#ff8a50"),
     ("rapier", "#7db8ff"),
@@ -21,10 +21,10 @@ const SIZE: [f64; 2] = [420.0, 290.0];
 const MARGINS: [f64; 4] = [58.0, 16.0, 14.0, 46.0];
 /// Height of a line of text.
 const LINE: f64 = 17.0;
-/// Smallest gap that has a place of its own, millimetres: smaller ones stand at the left edge.
+/// Smallest gap on the axis, millimetres: smaller ones are drawn at the left edge.
 const LEAST_GAP: f64 = 1e-3;
 
-/// A dot: an engine, and where it stands.
+/// A dot of a chart: an engine's gap and time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dot {
     engine: &'static str,
@@ -36,7 +36,7 @@ pub struct Dot {
     came_apart: bool,
 }
 
-/// The engines of a scene.
+/// Dots of a scene's engines.
 fn dots(scene: &SceneResult) -> Vec<Dot> {
     let dot = |(name, color): &(&'static str, &'static str)| {
         let engine = of(scene, name)?;
@@ -46,7 +46,7 @@ fn dots(scene: &SceneResult) -> Vec<Dot> {
     ENGINES.iter().filter_map(dot).collect()
 }
 
-/// Whole powers of ten around values.
+/// Range in whole powers of ten that contains values.
 fn decades(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
     let least = values.clone().fold(f64::INFINITY, f64::min).log10();
     let most = values.fold(f64::NEG_INFINITY, f64::max).log10();
@@ -58,7 +58,7 @@ fn place(value: f64, [low, high]: [f64; 2], [from, to]: [f64; 2]) -> f64 {
     from + (value.log10() - low) / (high - low) * (to - from)
 }
 
-/// The charts of [`SCENES`] as figures of HTML.
+/// The charts of [`SCENES`] as HTML figures.
 ///
 /// # Errors
 /// If one of them was not measured, or has fewer than two engines.
@@ -97,14 +97,14 @@ fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
     let (mut across, up) = (decades(gaps), decades(dots.iter().map(|dot| dot.time)));
     across[0] = across[0].max(LEAST_GAP.log10());
     let (xs, ys) = ([left, width - right], [height - below, above]);
-    let told: Vec<String> = dots
+    let legend: Vec<String> = dots
         .iter()
         .map(|dot| format!("{} {} ms and {} mm", dot.engine, rounded(dot.time), rounded(dot.gap)))
         .collect();
     let mut out = format!(
         "<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}: {}\">\n",
         scene.name,
-        told.join("; ")
+        legend.join("; ")
     );
     axes(&mut out, (across, xs), (up, ys));
     let mut labels: Vec<[f64; 2]> = Vec::new();
@@ -112,7 +112,7 @@ fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
         let [x, y] = [place(dot.gap.max(LEAST_GAP), across, xs), place(dot.time, up, ys)];
         let radius = if dot.engine == "Sinew" { 8.0 } else { 6.0 };
         _ = writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{}\"/>", dot.color);
-        // Where names would lie on each other, one moves down.
+        // Where names would overlap, one moves down.
         let is_right = x > 0.5 * width;
         let mut at = y + 4.0;
         while labels.iter().any(|[side, other]| (side - x).abs() < 130.0 && (other - at).abs() < LINE) {
@@ -180,9 +180,9 @@ mod tests {
     use crate::command;
     use std::fs;
 
-    /// The charts show what the committed page of figures says.
+    /// The charts agree with the committed page of figures.
     #[test]
-    fn charts_are_those_of_the_page() {
+    fn charts_agree_with_the_page() {
         let page = fs::read_to_string(command::root().join("docs/benchmarks.md")).expect("the page");
         let results = super::super::kept();
         charts(&results).expect("all scenes were measured");
@@ -196,14 +196,14 @@ mod tests {
         }
     }
 
-    /// Every dot lies within its axes, and a larger gap lies further right.
+    /// Every dot is within its axes, and a larger gap is further right.
     #[test]
-    fn dots_stand_where_their_figures_say() {
+    fn dots_are_placed_by_their_figures() {
         let [low, high] = decades([0.003, 193.0].into_iter());
         assert_eq!([low, high], [-3.0, 3.0]);
         assert_eq!(place(1.0, [-3.0, 3.0], [0.0, 600.0]), 300.0);
         assert!(place(193.0, [low, high], [0.0, 1.0]) > place(0.003, [low, high], [0.0, 1.0]));
-        // A value at a power of ten has room on both sides.
+        // A value at a power of ten has space on both sides.
         assert_eq!(decades([1.0, 10.0].into_iter()), [-1.0, 2.0]);
     }
 }

@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn digits_stand_in_threes() {
+    fn digits_are_grouped_in_threes() {
         assert_eq!([1, 100, 1000, 1234567].map(grouped), ["1", "100", "1,000", "1,234,567"]);
     }
 }

@@ -6,13 +6,13 @@ use serde_json::Value;
 /// Unit of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
-    /// In metres, written in millimetres up to a metre.
+    /// A length in metres, written in millimetres up to a metre.
     Length,
-    /// Of a whole, written in per cent.
+    /// A share of a whole, written in per cent.
     Share,
-    /// In joules.
+    /// An energy in joules.
     Energy,
-    /// In radians, written in degrees.
+    /// An angle in radians, written in degrees.
     Angle,
     /// A count.
     Count,
@@ -22,7 +22,7 @@ pub enum Unit {
 pub struct Figure {
     /// Heading in tables.
     pub heading: &'static str,
-    /// Its unit.
+    /// Unit of the figure.
     pub unit: Unit,
     /// The figure, if measured.
     pub of: fn(&EngineResult) -> Option<f64>,
@@ -30,10 +30,10 @@ pub struct Figure {
 
 /// Largest distance between the two anchors of a joint after any step.
 pub const GAP: Figure = Figure { heading: "gap", unit: Unit::Length, of: |e| number(e, "joint_gap_peak_m") };
-/// For a chain: the sum of its gaps over its length, after any step.
+/// Sum of a chain's gaps over its length, after any step.
 pub const STRETCH: Figure =
     Figure { heading: "stretch", unit: Unit::Share, of: |e| number(e, "stretch_peak") };
-/// For a chain: the same after the last step.
+/// Sum of a chain's gaps over its length, after the last step.
 pub const STRETCH_END: Figure =
     Figure { heading: "stretch at the end", unit: Unit::Share, of: |e| number(e, "stretch_end") };
 /// Mean gap of the joints of a rope at its worst.
@@ -48,7 +48,7 @@ pub const LIMITS: Figure = Figure {
 /// Deepest overlap of two bodies after any checked step.
 pub const DEPTH: Figure =
     Figure { heading: "depth", unit: Unit::Length, of: |e| number(e, "penetration_run_max_m") };
-/// The same after the last step.
+/// Deepest overlap of two bodies after the last step.
 pub const DEPTH_END: Figure =
     Figure { heading: "depth at the end", unit: Unit::Length, of: |e| number(e, "penetration_end_max_m") };
 /// 99th percentile of the overlaps after the last step.

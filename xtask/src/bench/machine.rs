@@ -47,7 +47,7 @@ impl fmt::Display for Machine {
 /// The commit in the working tree.
 pub fn revision() -> String {
     let commit = printed("git", &["show", "--no-patch", "--format=%h of %cs", "HEAD"]);
-    // The page being written does not count as a change.
+    // The page that is being written does not count as a change.
     let but_the_page = format!(":(exclude){}", super::PAGE);
     let changes =
         printed("git", &["status", "--porcelain", "--untracked-files=no", "--", ".", &but_the_page]);

@@ -28,7 +28,7 @@ pub fn page(results: &Results, missing: &[&str]) -> String {
     page
 }
 
-/// Everything about each scene.
+/// Writes all figures of each scene.
 pub fn scenes(results: &Results) -> String {
     let mut page = format!("# Benchmarks, scene by scene\n\n{SCENES}");
     for scene in &results.scenes {
@@ -152,12 +152,12 @@ pub fn glance(results: &Results) -> Table {
     times_and_figures(&physics(results))
 }
 
-/// The same for animation scenes.
+/// One line per animation scene: time and main figure of each engine.
 pub fn animation(results: &Results) -> Table {
     times_and_figures(&results.scenes.iter().filter(|scene| is_animation(scene)).collect::<Vec<_>>())
 }
 
-/// The same for ragdolls beside MuJoCo.
+/// One line per scene of ragdolls beside MuJoCo: time and main figure of each engine.
 pub fn ragdolls(results: &Results) -> Table {
     times_and_figures(&results.scenes.iter().filter(|scene| is_of_ragdolls(scene)).collect::<Vec<_>>())
 }
@@ -186,7 +186,7 @@ fn factor(speed: Option<f64>) -> String {
 
 /// Reason why there is no figure.
 fn absence(engine: &EngineResult) -> String {
-    if engine.is_failed() { engine.why_not().unwrap_or(NONE).to_owned() } else { NONE.to_owned() }
+    if engine.is_failed() { engine.missing_reason().unwrap_or(NONE).to_owned() } else { NONE.to_owned() }
 }
 
 /// Returns the table of requirements, with Sinew's figure and the best peer's.
@@ -195,7 +195,7 @@ pub fn holds<'a>(results: &Results, rows: impl IntoIterator<Item = &'a Hold>) ->
     for hold in rows {
         let verdict = hold.judge(results);
         let Some(scene) = results.scene(hold.scene).filter(|_| verdict != Verdict::NotRun) else { continue };
-        let ours = scene.sinew().map_or(NONE.to_owned(), |ours| match ours.why_not() {
+        let ours = scene.sinew().map_or(NONE.to_owned(), |ours| match ours.missing_reason() {
             Some(_) => absence(ours),
             None => cell(hold.figure, ours),
         });
@@ -228,7 +228,7 @@ pub fn speeds(results: &Results) -> Table {
     table
 }
 
-/// Everything about one scene.
+/// Writes the figures of one scene.
 fn details(scene: &SceneResult) -> String {
     let sizes = ["bodies", "particles", "characters", "joints", "steps"].into_iter();
     let sizes = sizes.filter_map(|key| Some((scene.size(key).filter(|&size| size > 0)?, key)));
@@ -241,7 +241,8 @@ fn details(scene: &SceneResult) -> String {
         let figures = figures.iter().map(|figure| cell(figure, engine));
         table.row(times.into_iter().chain(figures));
     }
-    let absent = scene.engines.iter().filter_map(|engine| Some((title(&engine.name), engine.why_not()?)));
+    let absent =
+        scene.engines.iter().filter_map(|engine| Some((title(&engine.name), engine.missing_reason()?)));
     let absent: String = absent.map(|(name, why)| format!("\n{name}: {why}.\n")).collect();
     format!("{}: {}. Measured at {}.\n\n{table}{absent}", scene.about, sizes.join(", "), scene.revision)
 }
@@ -328,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn the_page_has_all_parts() {
+    fn page_has_all_parts() {
         let page = page(&results(), &["net", "bake"]);
         for part in ["At a glance", "yet: net, bake.", "-O3"] {
             assert!(page.contains(part), "{part} is missing:\n{page}");

@@ -20,13 +20,13 @@ const MUJOCO_SCRIPT: &str = "bench/peers/mujoco_run.py";
 /// Field of its scenes.
 const FIGURES: &str = "figures";
 
-/// Rapier with eight lanes.
+/// Rapier built with eight lanes.
 const WIDE: &str = "rapier_simd8";
 
-/// Animation.
+/// ozz-animation-rs.
 const OZZ: &str = "ozz";
 
-/// It calls functions of `std::simd` that were renamed in Rust 1.95.
+/// Toolchain for ozz-animation-rs, which calls functions of `std::simd` that were renamed in Rust 1.95.
 const OZZ_TOOLCHAIN: &str = "1.94.0";
 
 /// Flags for AVX2, where the machine has it.
@@ -41,11 +41,11 @@ pub struct Engine {
     /// Name in the binary and the reports.
     pub name: String,
     binary: PathBuf,
-    /// Binary with it.
+    /// Binary that contains the engine.
     peers: PathBuf,
     /// Arguments before the scene.
     arguments: Vec<String>,
-    /// Its field.
+    /// Fields of work that the engine supports.
     fields: Vec<String>,
 }
 
@@ -54,11 +54,11 @@ pub struct Engine {
 pub struct Scene {
     /// Name in the binary.
     pub name: String,
-    /// In one line.
+    /// One-line description.
     pub about: String,
-    /// Its field.
+    /// Field of work of the scene.
     field: String,
-    /// True if its run changes with a small change of its start.
+    /// True if a small change of the start changes the run.
     pub is_chaotic: bool,
 }
 
@@ -132,7 +132,7 @@ fn cargo_build(features: &str) -> Command {
     build
 }
 
-/// Optimised for this machine, without what the older compiler cannot build.
+/// Build command of ozz: optimised for this machine, without the parts that its older compiler cannot build.
 fn ozz_build() -> Command {
     let mut build = Command::new("rustup");
     build.current_dir(command::root()).args(["run", OZZ_TOOLCHAIN, "cargo"]).args(BUILD);
@@ -157,7 +157,7 @@ fn has_mujoco() -> bool {
     import.is_ok_and(|status| status.success())
 }
 
-/// The program that lists the scenes.
+/// MuJoCo's engine, whose scenes this program lists.
 fn mujoco(peers: &Path) -> Engine {
     let script = command::root().join(MUJOCO_SCRIPT);
     let arguments = [&script, Path::new("--peers"), peers].map(|part| part.to_string_lossy().into_owned());
@@ -210,7 +210,7 @@ pub fn scenes(engine: &Engine) -> Result<Vec<Scene>> {
 }
 
 impl Engine {
-    /// True if it is for such scenes.
+    /// True if the engine runs this kind of scene.
     pub fn is_for(&self, scene: &Scene) -> bool {
         self.fields.contains(&scene.field)
     }

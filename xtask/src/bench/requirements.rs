@@ -13,19 +13,19 @@ pub enum Verdict {
     Goal,
     /// The requirement is met.
     Met,
-    /// Missed.
+    /// The requirement is missed.
     Missed,
-    /// Not measurable yet, with the reason.
+    /// The requirement is not measurable yet, with the reason.
     Open(String),
-    /// Not requested.
+    /// The measurement was not requested.
     NotRun,
 }
 
 /// A row of the specification's table of speeds.
 pub struct Speed {
-    /// Its wording in the specification.
+    /// Wording of the requirement in the specification.
     pub work: &'static str,
-    /// Its bar.
+    /// Bar of the requirement.
     pub bar: Bar,
 }
 
@@ -33,7 +33,7 @@ pub struct Speed {
 pub enum Bar {
     /// A factor with a required minimum and a goal.
     Factor { must: f64, goal: f64, measure: Measure },
-    /// Not measured here.
+    /// The requirement is measured elsewhere.
     Elsewhere { must: &'static str, goal: &'static str, why: &'static str },
 }
 
@@ -42,7 +42,7 @@ pub enum Bar {
 pub enum Measure {
     /// A scene: the fastest peer's mean step over Sinew's.
     Peers(&'static str),
-    /// The same for the 99th percentile.
+    /// A scene: the fastest peer's 99th percentile over Sinew's.
     PeersP99(&'static str),
     /// Like `Peers`, but without peers whose joints came apart; if none is left, there is no bar.
     PeersTogether(&'static str),
@@ -174,7 +174,7 @@ impl Measure {
 fn raced<'a>(results: &'a Results, scene: &str) -> Result<(&'a SceneResult, &'a EngineResult), Verdict> {
     let scene = results.scene(scene).ok_or(Verdict::NotRun)?;
     let ours = scene.sinew().ok_or(Verdict::NotRun)?;
-    match ours.why_not() {
+    match ours.missing_reason() {
         None => Ok((scene, ours)),
         Some(_) if ours.is_failed() => Err(Verdict::Missed),
         Some(why) => Err(Verdict::Open(why.to_owned())),
@@ -205,7 +205,7 @@ pub struct Hold {
     pub scene: &'static str,
     /// Checked figure.
     pub figure: &'static Figure,
-    /// Its bound.
+    /// Bound of the requirement.
     pub most: Most,
 }
 
@@ -326,7 +326,7 @@ impl Bar {
         }
     }
 
-    /// The goal, without the sign.
+    /// Text of the goal, without the comparison sign.
     pub fn goal(&self) -> String {
         match self {
             Self::Factor { goal, .. } => format!("{goal}×"),

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// All scenes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Results {
-    /// In the order of the peers' list.
+    /// Scenes in the order of the peers' list.
     pub scenes: Vec<SceneResult>,
     /// Simulated seconds per processor second of a bake on one thread, if measured.
     pub bake: Option<f64>,
@@ -15,9 +15,9 @@ pub struct Results {
     /// Simulated seconds per processor second of limp characters until they sleep: `median` of all rigs and `slowest_humanoid`,
     /// if measured.
     pub limp: BTreeMap<String, f64>,
-    /// By scene: wall time on one thread over that on two, if measured.
+    /// Wall time on one thread over that on two, by scene, if measured.
     pub threads: BTreeMap<String, f64>,
-    /// Machine of the last measurement, in words; `None` in older files.
+    /// Machine of the last measurement as text; `None` in older files.
     pub machine: Option<String>,
 }
 
@@ -26,7 +26,7 @@ pub struct Results {
 pub struct SceneResult {
     /// Name in the peers' list.
     pub name: String,
-    /// In one line.
+    /// One-line description.
     pub about: String,
     /// Commit that was measured.
     pub revision: String,
@@ -48,7 +48,7 @@ pub struct EngineResult {
 pub struct Times {
     /// Mean step: the time of the whole run over its steps, impacts and sleep included.
     pub mean: f64,
-    /// The same in the best round.
+    /// Mean step of the best round.
     pub best: f64,
     /// Median step.
     pub median: f64,
@@ -165,7 +165,7 @@ impl SceneResult {
         self.ratio_against(engine, |times| times.mean)
     }
 
-    /// The same for the 99th percentile.
+    /// Sinew's speed by the 99th percentile: that of an engine over ours, if both ran.
     pub fn p99_speed_against(&self, engine: &EngineResult) -> Option<f64> {
         self.ratio_against(engine, |times| times.p99)
     }
@@ -179,7 +179,7 @@ impl SceneResult {
         self.peers().filter_map(|peer| self.speed_against(peer)).min_by(f64::total_cmp)
     }
 
-    /// The same by the 99th percentile, against the peer with the smallest.
+    /// Sinew's speed by the 99th percentile, against the peer with the smallest.
     pub fn p99_speed(&self) -> Option<f64> {
         self.peers().filter_map(|peer| self.p99_speed_against(peer)).min_by(f64::total_cmp)
     }
@@ -202,7 +202,7 @@ impl EngineResult {
     }
 
     /// Reason for missing figures.
-    pub fn why_not(&self) -> Option<&str> {
+    pub fn missing_reason(&self) -> Option<&str> {
         let report = self.reports.last()?;
         report["unsupported"].as_str().or_else(|| report["failed"].as_str())
     }
@@ -280,7 +280,7 @@ pub mod tests {
             Times { mean: 2.0, best: 1.0, median: 1.0, p99: 4.0, worst: None, last_third: 2.0 }
         );
         let failed = EngineResult { name: "x".into(), reports: vec![json!({ "failed": "stopped" })] };
-        assert_eq!((failed.times(), failed.why_not()), (None, Some("stopped")));
+        assert_eq!((failed.times(), failed.missing_reason()), (None, Some("stopped")));
     }
 
     #[test]

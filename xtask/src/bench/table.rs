@@ -25,7 +25,7 @@ impl Table {
         self.rows.push(row);
     }
 
-    fn holds_words(&self, column: usize) -> bool {
+    fn is_text(&self, column: usize) -> bool {
         column < self.words
     }
 }
@@ -37,7 +37,7 @@ impl fmt::Display for Table {
         let widths: Vec<usize> = (0..self.rows[0].len()).map(width).collect();
         for (number, row) in self.rows.iter().enumerate() {
             for (column, (cell, width)) in row.iter().zip(&widths).enumerate() {
-                match self.holds_words(column) {
+                match self.is_text(column) {
                     true => write!(f, "| {cell:<width$} ")?,
                     false => write!(f, "| {cell:>width$} ")?,
                 }
@@ -45,7 +45,7 @@ impl fmt::Display for Table {
             writeln!(f, "|")?;
             if number == 0 {
                 for (column, width) in widths.iter().enumerate() {
-                    let end = if self.holds_words(column) { '-' } else { ':' };
+                    let end = if self.is_text(column) { '-' } else { ':' };
                     write!(f, "|{}{end}", "-".repeat(width + 1))?;
                 }
                 writeln!(f, "|")?;

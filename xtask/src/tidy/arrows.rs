@@ -27,9 +27,9 @@ const ARROWS: &[(&str, &[&str])] = &[
 
 /// External crates (by the start of their name) that only some crates may use.
 const RESERVED: &[(&str, &[&str], &str)] = &[
-    ("wgpu", &["sinew_viewer", "sinew_web"], "only viewer and web know a GPU"),
-    ("winit", &["sinew_viewer", "sinew_web"], "only viewer and web know a window"),
-    ("egui", &["sinew_viewer", "sinew_web"], "only viewer and web know a window"),
+    ("wgpu", &["sinew_viewer", "sinew_web"], "only viewer and web use a GPU"),
+    ("winit", &["sinew_viewer", "sinew_web"], "only viewer and web use a window"),
+    ("egui", &["sinew_viewer", "sinew_web"], "only viewer and web use a window"),
     ("anyhow", &["sinew_cli", "xtask"], "libraries have typed errors"),
     ("rayon", &[], "threads come from a TaskRunner"),
 ];
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_planted_arrow_is_found() {
+    fn forbidden_dependency_is_found() {
         let findings = check_edge("sinew_physics", "sinew_anim", &Value::Null);
         assert_eq!(
             findings,
@@ -107,21 +107,21 @@ mod tests {
     }
 
     #[test]
-    fn arrows_of_the_design_and_of_tests_are_free() {
+    fn allowed_dependencies_and_those_of_tests_pass() {
         assert!(check_edge("sinew_ragdoll", "sinew_anim", &Value::Null).is_empty());
         assert!(check_edge("sinew_cli", "sinew_math", &Value::Null).is_empty());
         assert!(check_edge("sinew_physics", "sinew_anim", &json!("dev")).is_empty());
     }
 
     #[test]
-    fn a_gpu_or_an_untyped_error_in_a_library_is_found() {
+    fn gpu_or_untyped_errors_in_a_library_are_found() {
         assert_eq!(check_edge("sinew_picture", "wgpu", &Value::Null).len(), 1);
         assert_eq!(check_edge("sinew_formats", "anyhow", &Value::Null).len(), 1);
         assert!(check_edge("sinew_viewer", "wgpu", &Value::Null).is_empty());
     }
 
     #[test]
-    fn a_crate_without_a_row_is_found() {
+    fn crate_without_a_row_is_found() {
         assert_eq!(check_edge("sinew_helpers", "sinew", &Value::Null).len(), 1);
     }
 }

@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_arithmetic_is_free() {
+    fn exact_arithmetic_passes() {
         check_lines(check, FILE, "let (sin, cos) = trig::sin_cos(a); let x = sinew_math::max(a, b);", &[]);
         check_lines(
             check,

@@ -1,4 +1,5 @@
-//! Files of a crate that name each other in a circle, which a reader has to know together; and the number of files in one folder.
+//! Files of a crate that name each other in a circle, which a reader must understand together; and the number of files
+//! in one folder.
 //!
 //! A file names another if one of its paths leads to something that the other defines, through any re-exports; a
 //! re-export alone names nothing. Methods are not seen, because tokens do not show their types.
@@ -65,16 +66,16 @@ pub fn houses(repo: &Repo) -> Vec<House<'_>> {
 /// The modules of one crate, tests left out.
 struct Source<'a> {
     modules: Vec<Module<'a>>,
-    /// By path from the root.
+    /// Numbers of modules by their paths from the root.
     places: BTreeMap<Vec<&'a str>, usize>,
 }
 
 /// A file as a module.
 struct Module<'a> {
-    /// Its file, from `src/`.
+    /// File of the module, from `src/`.
     inside: &'a str,
     path: Vec<&'a str>,
-    /// Its code without imports.
+    /// Code of the module without imports.
     code: Vec<Token<'a>>,
     /// Names that it defines.
     items: BTreeSet<&'a str>,
@@ -86,7 +87,7 @@ struct Module<'a> {
 pub struct Import<'a> {
     /// `*` for all of them.
     pub name: &'a str,
-    /// As written.
+    /// Path as written.
     pub path: Vec<&'a str>,
     /// True if it is `pub` to some extent.
     pub is_public: bool,
@@ -104,7 +105,7 @@ impl<'a> Source<'a> {
         Self { modules, places }
     }
 
-    /// By module: those that it names.
+    /// Modules that each module names.
     fn arrows(&self) -> Vec<BTreeSet<usize>> {
         let of = |at: usize| {
             let module = &self.modules[at];
@@ -120,7 +121,7 @@ impl<'a> Source<'a> {
 
     /// Returns the module that defines the end of a path from the module `at`.
     fn resolve(&self, at: usize, path: &[&'a str], depth: usize) -> Found {
-        // A circular import, through a name that two macros define, ends here.
+        // Stops at a circular import through a name that two macros define.
         if depth > 16 {
             return None;
         }

@@ -73,7 +73,7 @@ mod tests {
 
     const TOML: &str = "[workspace.dependencies]\nsinew = { path = \"x\" }\n# note = 1\nglam = \"0.32\"\n[profile.dev]\na = 1\n";
 
-    /// With a crate `sinew` that uses `dependencies`.
+    /// Checks a record with a crate `sinew` that uses `dependencies`.
     fn check_record(record: &str, dependencies: &[&str]) -> Vec<String> {
         let mut dependencies: Vec<_> = dependencies.iter().map(|name| json!({ "name": name })).collect();
         dependencies.push(json!({ "name": "sinew_math", "path": "crates/sinew_math" }));

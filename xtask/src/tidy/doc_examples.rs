@@ -5,14 +5,14 @@ use super::{File, Finding, Repo};
 /// Crates of which every public module has an example in its documentation.
 const CRATES: &[&str] = &["sinew_formats", "sinew_ragdoll"];
 
-/// Folders of programs that can be read in a minute.
+/// Folder of short programs.
 const EXAMPLES: &str = "crates/sinew/examples/";
 
-/// Limit on the lines of one.
+/// Limit on the lines of a program.
 const MOST_LINES: usize = 60;
 
-/// Examples that may be longer, since each is a whole part of a game: custom kinds of bodies with their state, all queries of a world,
-/// a fight over a network, a character with all its accessories.
+/// Longer examples, each a whole part of a game: custom kinds of bodies with their state, all queries of a world, a
+/// fight over a network, a character with all its accessories.
 const LONGER: &[&str] = &["door_and_cape", "flock", "pendulum_clock", "probes", "rollback_fight"];
 
 /// Finds public modules of those crates without an example that is compiled and run, and examples that are too long, or use names that the

@@ -2,7 +2,7 @@
 
 use super::{File, Finding, Repo};
 
-/// Words that cannot start a first line: "Of the moving bodies, kg" says nothing without the name of the item.
+/// Words that cannot start a first line: "Of the moving bodies, kg" has no meaning without the name of the item.
 const FRAGMENTS: &[&str] = &["What", "How", "Of", "Where", "Whether", "Which", "Likewise", "Those"];
 
 /// Finds each first line in a crate that is a fragment.

@@ -29,13 +29,13 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
             findings.push(Finding::new(&page.path, 1, message));
         }
         for (index, line) in page.text.lines().enumerate() {
-            for link in links(line).filter(|link| !leads_somewhere(repo, link)) {
+            for link in links(line).filter(|link| !has_target(repo, link)) {
                 findings.push(Finding::new(&page.path, index + 1, format!("`{link}` is not there")));
             }
             if name.starts_with("from_") && line.starts_with('|') {
                 let known = known.get_or_insert_with(|| names(repo));
                 for word in words(ours(line)).filter(|word| !known.contains(word)) {
-                    let message = format!("`{word}` is no name of Sinew's");
+                    let message = format!("`{word}` is not a name in Sinew");
                     findings.push(Finding::new(&page.path, index + 1, message));
                 }
             }
@@ -50,8 +50,8 @@ fn links(line: &str) -> impl Iterator<Item = &str> {
     targets.filter(|target| !target.is_empty() && !target.contains("://"))
 }
 
-/// True if a link from a page of the guide is that of a file.
-fn leads_somewhere(repo: &Repo, link: &str) -> bool {
+/// True if a link from a page of the guide has a file as its target.
+fn has_target(repo: &Repo, link: &str) -> bool {
     let mut path: Vec<&str> = PAGES.trim_end_matches('/').split('/').collect();
     for part in link.split('/') {
         match part {
@@ -125,6 +125,6 @@ mod tests {
         let code = ("crates/sinew/src/world.rs", "/// `invented`\npub fn add_body(def: &Def) {}");
         let table = "| A | Sinew |\n|---|---|\n| `any` | `add_body(&def)`; `x` |\n| `b` | `invented` |\n";
         let found = found(&[("docs/guide/src/from_a.md", table), contents, code]);
-        assert_eq!(found, ["docs/guide/src/from_a.md:4: `invented` is no name of Sinew's"]);
+        assert_eq!(found, ["docs/guide/src/from_a.md:4: `invented` is not a name in Sinew"]);
     }
 }

@@ -17,7 +17,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
                 findings.push(Finding::new(
                     &file.path,
                     index + 1,
-                    format!("`{path}` is on one machine only"),
+                    format!("`{path}` exists on one machine only"),
                 ));
             }
         }
@@ -26,7 +26,11 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
         let tokens = file.tokens();
         for pattern in MACROS {
             for at in lexer::find(&tokens, pattern) {
-                findings.push(Finding::new(&file.path, tokens[at].line, format!("`{pattern}` is left over")));
+                findings.push(Finding::new(
+                    &file.path,
+                    tokens[at].line,
+                    format!("`{pattern}`: unfinished code"),
+                ));
             }
         }
     }

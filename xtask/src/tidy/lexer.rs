@@ -18,9 +18,9 @@ pub enum Kind {
 /// A piece of code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token<'a> {
-    /// Its kind.
+    /// Kind of the token.
     pub kind: Kind,
-    /// As written.
+    /// Text as written.
     pub text: &'a str,
     /// Line it starts on, from 1.
     pub line: usize,

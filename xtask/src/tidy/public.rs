@@ -1,4 +1,4 @@
-//! Names at the roots of the libraries: a list that changes on purpose only, in which no name has two meanings.
+//! Names at the roots of the libraries: a list that changes only on purpose, in which no name has two meanings.
 
 use super::circles::{self, Import};
 use super::lexer;
@@ -43,7 +43,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
         }
     }
     let message = |what: &str, line: &str| {
-        format!("`{line}` {what}: the list is what the libraries offer at their roots")
+        format!("`{line}` {what}: the list names everything at the roots of the libraries")
     };
     findings.extend(
         offered

@@ -134,7 +134,7 @@ fn exports(lib: &File) -> Vec<(&str, &str)> {
 
 /// Returns the names right below `crate` that a file uses, with the lines.
 fn named(file: &File) -> Vec<(&str, usize)> {
-    // As many `super` as lead to the top.
+    // Remove as many `super` as lead to the top.
     let inside = file.path.splitn(4, '/').nth(3).unwrap_or_default();
     let depth = inside.trim_end_matches("/mod.rs").matches('/').count() + 1;
     let tokens = file.tokens_without_tests();

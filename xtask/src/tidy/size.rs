@@ -24,7 +24,7 @@ struct Exception {
     path: String,
     name: String,
     lines: usize,
-    /// Its line in the list of exceptions.
+    /// Line of the exception in the list.
     line: usize,
 }
 
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn exceptions_excuse_and_may_only_shrink() {
+    fn exceptions_are_accepted_and_may_only_shrink() {
         assert!(check_with("crates/sinew/src/lib.rs long 80 # why\n", 80).is_empty());
         assert_eq!(check_with("crates/sinew/src/lib.rs long 80", 81).len(), 1, "it may not grow");
         assert_eq!(

@@ -88,9 +88,9 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
                 let explained = file.text.lines().take(line - 1).collect::<Vec<_>>();
                 let docs = explained.iter().rev().take_while(|line| line.starts_with("///"));
                 let text: String = docs.copied().collect();
-                // Its own scene or test, or the constant that it belongs to.
+                // A constant needs its own scene or test, or the constant that it follows.
                 if !["hown by", "No scene", "[`"].iter().any(|told| text.contains(told)) {
-                    let message = format!("`{name}` does not say where it is to be seen");
+                    let message = format!("`{name}` does not name the scene or test that shows it");
                     findings.push(Finding::new(&file.path, line, message));
                 }
                 continue;
@@ -104,7 +104,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
                 Some(other) => needed[other] = true,
                 None => {
                     let message = format!(
-                        "`{name}` belongs into a `tuning.rs`, with unit, reason and consequences; or it is none of behaviour: see xtask/src/tidy/tuning.rs"
+                        "`{name}` belongs into a `tuning.rs`, with unit, reason and consequences; or lists it as another kind of number: see xtask/src/tidy/tuning.rs"
                     );
                     findings.push(Finding::new(&file.path, line, message));
                 }
@@ -117,7 +117,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
         Finding::new(
             "xtask/src/tidy/tuning.rs",
             1,
-            format!("`{name}` of {file} is gone: remove it from the list"),
+            format!("`{name}` of {file} no longer exists: remove it from the list"),
         )
     }));
     findings

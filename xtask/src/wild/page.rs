@@ -59,7 +59,7 @@ pub fn page(rows: &[Row], roles: &Value) -> String {
         bakes(rows)
     );
     let _ = write!(page, "## Roles, right of all\n\n{}\n", recognised(roles));
-    let _ = write!(page, "## What is said of them\n\n{}", reasons(rows));
+    let _ = write!(page, "## Reasons\n\n{}", reasons(rows));
     page
 }
 
@@ -169,12 +169,12 @@ fn reasons(rows: &[Row]) -> String {
         }
         let of_drops = &row.report["build"]["quality"]["reasons"];
         let of_bake = &row.report["bake"]["notes"];
-        // That no clip is played in a drop holds for every file.
-        let said = of_drops.as_array().into_iter().flatten().filter_map(Value::as_str);
-        for reason in said.filter(|reason| !reason.starts_with("hand-over")) {
+        // Every file lacks clips in its drops: that reason is left out.
+        let reason_texts = of_drops.as_array().into_iter().flatten().filter_map(Value::as_str);
+        for reason in reason_texts.filter(|reason| !reason.starts_with("hand-over")) {
             let _ = writeln!(text, "- {}: {reason}", row.file);
         }
-        // The command asked for staying down.
+        // The command requested to stay down, so its note is left out.
         let noted = of_bake.as_array().into_iter().flatten().filter_map(Value::as_str);
         for note in noted.filter(|note| !note.starts_with("it does not get up")) {
             let _ = writeln!(text, "- {}, baked: {note}", row.file);
@@ -199,7 +199,7 @@ mod tests {
     use std::path::PathBuf;
 
     #[test]
-    fn a_refused_file_is_counted_and_listed() {
+    fn rejected_file_is_counted_and_listed() {
         let row = Row {
             file: "rigs/odd.glb".into(),
             report: json!({ "refused": "no skin" }),

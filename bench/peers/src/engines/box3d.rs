@@ -31,7 +31,7 @@ const SIDES: usize = 24;
 /// x of our joint frames becomes z of Box3D's, whose hinges, cones and twists are about z.
 const Z_TO_X: Rotation = Rotation { x: 0.5, y: 0.5, z: 0.5, w: 0.5 };
 
-/// This engine.
+/// Box3D.
 pub struct Box3d;
 
 impl Engine for Box3d {

@@ -17,7 +17,7 @@ use sinew_scenes::walks::{Terrain, Walker, capsule};
 /// Name of this build.
 pub const NAME: &str = if cfg!(feature = "simd8") { "rapier_simd8" } else { "rapier" };
 
-/// This engine.
+/// Rapier.
 pub struct Rapier;
 
 impl Engine for Rapier {
@@ -68,7 +68,7 @@ impl Engine for Rapier {
             let ball = ColliderBuilder::ball(radius).translation(vector(center));
             world.insert_collider(ball.friction(scene.friction), None);
         }
-        // Its grid varies fastest along its first direction; ours along rows, which are x.
+        // Rapier's grid varies fastest along its first direction; ours along rows, which are x.
         let [along_rows, to_next_row] = [Vec3::X, Vec3::Z].map(|axis| vector(axis * scene.spacing));
         let surface = ColliderBuilder::ball(0.1).friction(scene.friction);
         let cloth =
@@ -325,7 +325,7 @@ impl Walker for RapierWalker {
         let change = if !self.is_grounded && wish == Vec3::ZERO { Vec3::ZERO } else { wish - level };
         let length = change.length();
         self.velocity += if length > most { change * (most / length) } else { change };
-        // As in its examples: it falls from rest where the ground carried it.
+        // As in Rapier's examples, the walker falls from rest where the ground carried it.
         self.velocity.y = if self.is_grounded { 0.0 } else { self.velocity.y } - 9.81 * DT;
         let queries = self.world.query_pipeline();
         let wanted = vector(self.velocity * DT);

@@ -18,7 +18,7 @@ use sinew::physics::{
 use sinew_scenes::blueprint::Blueprint;
 use sinew_scenes::crowd::CrowdScene;
 
-/// This engine.
+/// Sinew.
 pub struct Sinew;
 
 impl Engine for Sinew {

@@ -1,6 +1,6 @@
 //! Safe interface to Box3D.
 //!
-//! Why it is safe: ids never leave their [`World`], so none outlives it or is used with another; definitions come
+//! Safety: ids never leave their [`World`], so none outlives it or is used with another; definitions come
 //! from Box3D's own defaults and are lent for the length of a call, which copies them.
 
 #![allow(unsafe_code)]
@@ -35,13 +35,13 @@ pub fn version() -> String {
 pub struct World {
     id: b3WorldId,
     bodies: Vec<b3BodyId>,
-    /// Which the shapes of the world refer to.
+    /// Meshes referenced by shapes of the world.
     meshes: Vec<*mut b3MeshData>,
-    /// Box3D does not promise that queries of one world from several threads are safe.
+    /// Marks the world as not thread-safe: Box3D does not guarantee concurrent queries.
     not_shared: PhantomData<*const ()>,
 }
 
-/// How a body moves; the library's own numbers.
+/// Kind of motion, with the library's own numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Motion {
@@ -94,7 +94,7 @@ pub enum Joint {
 }
 
 impl World {
-    /// Empty, with default settings: continuous collision on, 30 Hz contacts, one worker.
+    /// An empty world with default settings: continuous collision on, 30 Hz contacts, one worker.
     ///
     /// # Panics
     /// If Box3D has no room for another world (it has 128).
@@ -332,7 +332,7 @@ impl Drop for World {
 /// Returns the hull of points; the caller destroys it.
 fn hull(points: &[Vec3]) -> Result<*mut b3HullData, Unsupported> {
     let points: Vec<_> = points.iter().map(|&point| vector(point)).collect();
-    // Box3D would simplify a hull of more: another scene.
+    // Box3D would simplify a larger hull, which would be another scene.
     let count = i32::try_from(points.len()).ok().filter(|&count| count <= MOST_HULL_CORNERS);
     let count = count.ok_or_else(|| Unsupported::new("no hulls of more than 128 corners"))?;
     // SAFETY: the count is that of the points, and they live through the call.
@@ -373,7 +373,7 @@ pub struct BoxPair {
 }
 
 impl BoxPair {
-    /// Of these half extents and poses.
+    /// A pair with these half extents and poses.
     pub fn new(half_extents: [Vec3; 2], world_from_box: [Transform; 2]) -> Self {
         let corners = half_extents.map(|half| {
             core::array::from_fn(|i| {
@@ -395,7 +395,7 @@ impl BoxPair {
             useRadii: false,
         };
         let mut cache = b3SimplexCache::default();
-        // SAFETY: both clouds have the 8 points they are said to have and live through the call, as do `input` and
+        // SAFETY: both clouds have their stated 8 points and live through the call, as do `input` and
         // `cache`; null and 0 ask for no record of simplexes.
         unsafe { b3ShapeDistance(&raw const input, &raw mut cache, ptr::null_mut(), 0).distance }
     }

@@ -1,4 +1,4 @@
-//! Bodies in a row.
+//! Finds chains: bodies in a row.
 
 use super::worse;
 use sinew::physics::BodyKind;

@@ -12,14 +12,14 @@ pub struct ClothMeter<'a> {
     scene: &'a ClothScene,
 }
 
-/// At the end of a run.
+/// Quality of cloth at the end of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClothQuality {
     /// Mean over the structural links of the deviation of their length from the rest length, as a share of that.
     pub stretch_mean: f32,
     /// The largest of these.
     pub stretch_max: f32,
-    /// Of all particles, J.
+    /// Kinetic energy of all particles, J.
     pub kinetic_energy: f64,
     /// Deepest centre of a particle in an obstacle, metres; 0 if none is inside.
     pub depth_max: f32,
@@ -31,7 +31,7 @@ impl<'a> ClothMeter<'a> {
         Self { scene }
     }
 
-    /// After the last step.
+    /// Returns the quality after the last step.
     ///
     /// # Panics
     /// If there is not one state for each particle.
@@ -67,7 +67,7 @@ impl<'a> ClothMeter<'a> {
 }
 
 impl ClothQuality {
-    /// As part of a report.
+    /// The quality as part of a report.
     pub fn to_json(&self) -> Value {
         json!({
             "stretch_mean": self.stretch_mean,

@@ -75,7 +75,7 @@ impl<'a> CrowdMeter<'a> {
 }
 
 impl CrowdQuality {
-    /// As part of a report.
+    /// The quality as part of a report.
     pub fn to_json(&self) -> Value {
         json!({
             "rotation_error_max_rad": self.rotation_error_max,
@@ -84,7 +84,7 @@ impl CrowdQuality {
     }
 }
 
-/// Radians, from the chord in `f64`: an angle from a cosine would be less exact than the errors.
+/// Angle in radians, from the chord in `f64`: from the cosine it would be less exact than the errors.
 fn angle(a: Rotation, b: Rotation) -> f32 {
     let pairs = [(a.x, b.x), (a.y, b.y), (a.z, b.z), (a.w, b.w)].map(|(a, b)| (f64::from(a), f64::from(b)));
     let sign = if pairs.iter().map(|(a, b)| a * b).sum::<f64>() < 0.0 { -1.0 } else { 1.0 };

@@ -5,22 +5,22 @@ use sinew::math::Vec3;
 use sinew::physics::MassProperties;
 use sinew_scenes::blueprint::Blueprint;
 
-/// Joules; height counts from y = 0.
+/// Energies in joules; height counts from y = 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnergyQuality {
-    /// Of motion and spin, at the end.
+    /// Linear and angular kinetic energy at the end.
     pub kinetic_end: f64,
-    /// Of motion, spin and height before the first step.
+    /// Kinetic and potential energy before the first step.
     pub total_start: f64,
-    /// The same at the end.
+    /// Kinetic and potential energy at the end.
     pub total_end: f64,
-    /// The largest one, the start included: more than at the start is a gain from nothing.
+    /// The largest total energy, including the start: an excess over the start is an error.
     pub total_peak: f64,
 }
 
 pub(super) struct EnergyMeter {
     gravity: Vec3,
-    /// Of dynamic bodies, with their places.
+    /// Masses of dynamic bodies, with their indices.
     masses: Vec<(usize, MassProperties)>,
     total_start: f64,
     total_peak: f64,

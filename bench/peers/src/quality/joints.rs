@@ -20,7 +20,7 @@ pub struct JointQuality {
     pub gap_per_link: Option<f32>,
     /// Largest over all steps of the sum of a chain's gaps, as a share of its length. `None` without chains.
     pub stretch_peak: Option<f32>,
-    /// The same at the end.
+    /// The sum of a chain's gaps at the end, as a share of its length.
     pub stretch_end: Option<f32>,
 }
 

@@ -40,7 +40,7 @@ pub struct LimitTally {
 }
 
 impl LimitQuality {
-    /// As part of a report.
+    /// The tally as part of a report.
     pub fn to_json(&self) -> Value {
         let tally = |tally: &LimitTally| {
             json!({
@@ -83,7 +83,7 @@ struct LimitedJoint {
     bodies: [usize; 2],
     frames: [Rotation; 2],
     limit: Limit,
-    /// Largest so far.
+    /// The largest excess so far.
     run: Excess,
 }
 

@@ -40,20 +40,21 @@ pub struct QualityMeter {
 /// Result of a run.
 #[derive(Clone, Debug)]
 pub struct Quality {
-    /// `None` without joints.
+    /// Quality of joints; `None` without joints.
     pub joints: Option<JointQuality>,
-    /// `None` without limits.
+    /// Quality of limits; `None` without limits.
     pub limits: Option<LimitQuality>,
     /// `None` if nothing can collide.
     pub penetration: Option<PenetrationQuality>,
-    /// Of dynamic bodies.
+    /// Energy of the dynamic bodies.
     pub energy: EnergyQuality,
-    /// Of dynamic bodies.
+    /// Final places of the dynamic bodies.
     pub place: PlaceQuality,
 }
 
 impl QualityMeter {
-    /// Starts before the first step. Penetration, which costs the most, is measured every `penetration_every` steps.
+    /// Starts the measurement before the first step. Penetration, the most expensive figure, is measured every
+    /// `penetration_every` steps.
     pub fn new(scene: &Blueprint, penetration_every: usize) -> Self {
         Self {
             steps: 0,
@@ -65,7 +66,7 @@ impl QualityMeter {
         }
     }
 
-    /// After each step.
+    /// Observes the states after a step.
     ///
     /// # Panics
     /// If there is not one state for each body.
@@ -77,7 +78,7 @@ impl QualityMeter {
         self.energy.observe(states);
     }
 
-    /// After the last step.
+    /// Returns the quality after the last step.
     pub fn finish(mut self, states: &[BodyState]) -> Quality {
         Quality {
             joints: self.joints.finish(states),
@@ -123,7 +124,7 @@ fn collides(shape: &ShapeDef) -> bool {
     shape.sensing == Sensing::Solid && shape.filter.mask != 0 && shape.filter.layers != 0
 }
 
-/// Returns the larger of two; NaN wins, so that it shows.
+/// Returns the larger of two; NaN has priority, so that it shows.
 fn worse(a: f32, b: f32) -> f32 {
     if b.is_nan() || b > a { b } else { a }
 }

@@ -14,7 +14,7 @@ use sinew_scenes::blueprint::Blueprint;
 /// Depths of the pairs of shapes that may collide, metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PenetrationQuality {
-    /// Deepest at the end.
+    /// The largest depth at the end.
     pub end_max: f32,
     /// 99th percentile of the overlaps at the end.
     pub end_p99: f32,
@@ -119,7 +119,7 @@ struct PlacedShape<'a> {
 }
 
 impl PlacedShape<'_> {
-    /// Bodies with NaN count as lost, not as deep.
+    /// Bodies with NaN count as lost, not as penetrating.
     fn is_finite(&self) -> bool {
         self.pose.is_finite()
     }
@@ -138,7 +138,7 @@ fn depth_of_shapes(pose_a: &Pose, a: &SharedShape, pose_b: &Pose, b: &SharedShap
         return depth_of_boxes(pose_a, a, pose_b, b);
     }
     let contact = parry3d::query::contact(pose_a, &**a, pose_b, &**b, 0.0);
-    let contact = contact.expect("Parry knows every pair of our shapes")?;
+    let contact = contact.expect("Parry supports every pair of our shapes")?;
     (contact.dist < 0.0).then_some(-contact.dist)
 }
 

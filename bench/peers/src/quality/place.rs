@@ -10,7 +10,7 @@ use sinew_scenes::blueprint::Blueprint;
 /// Depth below all static shapes from which on a body is lost, metres.
 const LOST_BELOW: f32 = 1.0;
 
-/// Of dynamic bodies.
+/// Final places of dynamic bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceQuality {
     /// Bodies that fell through everything static, or whose numbers are not finite.
@@ -71,7 +71,7 @@ fn bottom(shape: &Shape, world_from_shape: Transform) -> f32 {
     }
     match parry::shape(shape) {
         Ok(shape) => shape.compute_aabb(&parry::pose(world_from_shape)).mins.y,
-        // A bound below its true lowest point.
+        // A lower bound of the lowest point.
         Err(_) => world_from_shape.translation.y - shape.bounding_radius(),
     }
 }

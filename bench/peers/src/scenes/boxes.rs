@@ -7,9 +7,9 @@ use sinew_scenes::blueprint::{in_box, rotation};
 /// Two boxes, the first around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxPair {
-    /// Around the origin.
+    /// A box around the origin.
     pub a: PlacedBox,
-    /// Up to 1.6 m away on each axis.
+    /// The other box, up to 1.6 m away on each axis.
     pub b: PlacedBox,
 }
 

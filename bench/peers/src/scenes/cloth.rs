@@ -16,11 +16,11 @@ pub struct ClothScene {
     pub spacing: f32,
     /// World position of the first particle; rows run along +x, the next row is at +z.
     pub corner: Vec3,
-    /// Of one particle, kg.
+    /// Mass of one particle, kg.
     pub particle_mass: f32,
-    /// Of one particle, metres.
+    /// Radius of one particle, metres.
     pub particle_radius: f32,
-    /// 1/s.
+    /// Damping, 1/s.
     pub damping: f32,
     /// Coulomb coefficient of cloth and obstacles.
     pub friction: f32,

@@ -17,11 +17,11 @@ pub const DT: f32 = 1.0 / 60.0;
 /// A scene by its name.
 #[derive(Clone, Copy)]
 pub struct Scene {
-    /// On the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// In one line.
+    /// One-line description.
     pub about: &'static str,
-    /// Field that it is for.
+    /// Field of the scene.
     pub field: Field,
     /// Sensitivity of the scene to its start.
     pub course: Course,

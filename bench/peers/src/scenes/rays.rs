@@ -13,7 +13,7 @@ const RAYS_PER_STEP: usize = 1_000;
 pub struct PlacedBox {
     /// Half of each side, metres.
     pub half_extents: Vec3,
-    /// Its centre and orientation.
+    /// Centre and orientation of the box.
     pub world_from_box: Transform,
 }
 
@@ -39,7 +39,7 @@ pub struct RayScene {
 }
 
 impl RayScene {
-    /// Always the same.
+    /// Builds the scene, always the same one.
     pub fn new() -> Self {
         let mut random = Random::new(7);
         let boxes = (0..10_000)

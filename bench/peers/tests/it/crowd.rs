@@ -6,13 +6,13 @@ use sinew_peers::scenes::Field;
 use sinew_scenes::crowd::CrowdScene;
 
 #[test]
-fn poses_are_those_of_the_raw_clips() {
+fn poses_match_the_raw_clips() {
     let scene = CrowdScene::new(3);
     for engine in engines_of(Field::Animation) {
         let name = engine.describe().name;
         let mut crowd = engine.build_crowd(&scene).expect("an engine for animation plays clips");
         let mut meter = CrowdMeter::new(&scene);
-        // More than a whole loop.
+        // More than one whole loop.
         for step in 0..130 {
             crowd.step(step);
             for character in 0..3 {
@@ -27,7 +27,7 @@ fn poses_are_those_of_the_raw_clips() {
 }
 
 #[test]
-fn a_wrong_pose_is_seen() {
+fn wrong_pose_is_detected() {
     let scene = CrowdScene::new(1);
     for engine in engines_of(Field::Animation) {
         let name = engine.describe().name;

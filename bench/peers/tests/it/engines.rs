@@ -92,7 +92,7 @@ fn falling_bodies_match_free_fall_and_keep_spin() {
 
 /// Shapes that only some engines have rest at their own height, too, or are refused.
 #[test]
-fn round_shapes_and_hulls_have_their_sizes_or_are_refused() {
+fn round_shapes_and_hulls_have_their_sizes_or_are_unsupported() {
     let corners = [Vec3::new(0.3, -0.2, 0.3), Vec3::new(-0.3, -0.2, 0.3), Vec3::new(0.0, -0.2, -0.3)];
     let top = corners.map(|corner| corner + Vec3::Y * 0.5);
     let wedge = Hull::new(&[corners, top].concat()).expect("a prism is convex");

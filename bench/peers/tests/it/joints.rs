@@ -57,7 +57,7 @@ fn hung(arm: Vec3, axes: Rotation, kind: JointKind) -> Blueprint {
 }
 
 #[test]
-fn a_box_rests_at_its_half_height() {
+fn box_rests_at_its_half_height() {
     for floor in [cuboid(Vec3::new(10.0, 0.5, 10.0), Vec3::NEG_Y * 0.5), body(Shape::HalfSpace, Vec3::ZERO)] {
         let scene = scene(vec![fixed(floor), cuboid(Vec3::new(0.5, 0.25, 0.5), Vec3::Y * 0.5)], vec![]);
         for engine in engines() {
@@ -131,7 +131,7 @@ fn jointed_bodies_overlap_and_others_do_not() {
 }
 
 #[test]
-fn mass_and_inertia_are_those_given() {
+fn mass_and_inertia_equal_the_given_ones() {
     // A fixed joint between a light and a heavy rotating body: their common centre moves straight.
     let spinning = |mass: f32, x: f32| BodyDef {
         linear_velocity: Vec3::Y * x,

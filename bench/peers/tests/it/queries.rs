@@ -18,7 +18,7 @@ fn offered<T>(result: Result<T, Unsupported>, name: &str) -> Option<T> {
 }
 
 #[test]
-fn rays_find_what_brute_force_finds() {
+fn rays_match_brute_force() {
     let scene = RayScene::new();
     const RAYS: usize = 2_000;
     let hits = |ray: &Ray| {

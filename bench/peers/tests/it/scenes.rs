@@ -21,7 +21,7 @@ fn names_are_found_once() {
 }
 
 #[test]
-fn bodies_and_joints_are_as_many_as_published() {
+fn numbers_of_bodies_and_joints_match_the_documentation() {
     let counts = |name: &str| {
         let Work::Bodies(scene) = (scenes::find(name).expect("a scene").work)() else { panic!("no bodies") };
         (scene.bodies.len(), scene.dynamic().count(), scene.joints.len())
@@ -53,17 +53,17 @@ fn mujoco_gets_every_figure_and_wall() {
     let Work::Bodies(scene) = (scenes::find("humanoid_pile_10").expect("a scene").work)() else {
         panic!("no bodies")
     };
-    let told = mjcf(&scene);
-    assert_eq!(told["figures"].as_array().map(Vec::len), Some(10));
-    assert_eq!(told["walls"].as_array().map(Vec::len), Some(4));
-    assert!(told["friction"].as_f64().is_some_and(|friction| (friction - 0.7).abs() < 1e-6));
-    let text = told["mjcf"].as_str().expect("a model");
+    let exported = mjcf(&scene);
+    assert_eq!(exported["figures"].as_array().map(Vec::len), Some(10));
+    assert_eq!(exported["walls"].as_array().map(Vec::len), Some(4));
+    assert!(exported["friction"].as_f64().is_some_and(|friction| (friction - 0.7).abs() < 1e-6));
+    let text = exported["mjcf"].as_str().expect("a model");
     assert_eq!(text.matches("<freejoint").count(), 1);
     assert_eq!(text.matches("<inertial").count(), 19);
 }
 
 #[test]
-fn every_step_has_its_share_of_rays_and_pairs() {
+fn every_step_gets_its_rays_and_pairs() {
     let scene = RayScene::new();
     assert_eq!(scene.rays_of_step(0), 0..1_000);
     assert_eq!(scene.rays_of_step(100), 0..1_000);
@@ -94,7 +94,7 @@ fn unsupported_scenes_are_reported() {
 }
 
 #[test]
-fn a_report_has_what_its_readers_need() {
+fn report_has_all_keys() {
     let chain = scenes::find("chain_hang_100").expect("a scene");
     let report = run(sinew(), chain, Start::Own, Some(12), Judging::On);
     assert_eq!((&report["engine"], &report["steps"]), (&"sinew".into(), &12.into()));

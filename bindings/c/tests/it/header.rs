@@ -4,13 +4,13 @@ use std::fs;
 use std::path::Path;
 
 #[test]
-fn the_header_is_up_to_date() {
+fn header_is_up_to_date() {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(here.join("cbindgen.toml")).expect("cbindgen.toml is one");
     let made = cbindgen::Builder::new().with_crate(here).with_config(config).generate().expect("it is made");
     let mut text = Vec::new();
     made.write(&mut text);
-    // A heading of Rust's docs, which has this meaning in C.
+    // Removes rustdoc headings that C documentation does not need.
     let text = String::from_utf8(text).expect("it is text").replace("// # Safety", "// The caller promises:");
     let path = here.join("include/sinew.h");
     if std::env::var_os("SINEW_BLESS").is_some() {

@@ -1,12 +1,12 @@
-//! Mistakes of callers give a status and a sentence, never a crash, and leave the world unchanged.
+//! Mistakes of callers return a status and an error text, never crash, and leave the world unchanged.
 
 use sinew_c::*;
 use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};
 
-/// Returns the sentence of the last error.
+/// Text of the last error.
 fn sentence() -> String {
-    // SAFETY: it is always a valid string.
+    // SAFETY: the pointer is always a valid string.
     unsafe { CStr::from_ptr(sinew_last_error()) }.to_str().expect("UTF-8").to_owned()
 }
 
@@ -65,7 +65,7 @@ fn null_pointers_are_named() {
         assert_eq!(sinew_world_add_body(world.0, &def(&shapes), null_mut()), SinewStatus::NullPointer);
         let mut count = 7;
         assert_eq!(sinew_world_bodies(world.0, null_mut(), 0, &mut count), SinewStatus::Ok);
-        assert_eq!(count, 0, "a body whose id had no room is none");
+        assert_eq!(count, 0, "a body without space for its id was added");
         let torn = SinewBodyDef { shapes: null(), shape_count: 3, ..def(&shapes) };
         let mut id = SinewBodyId::default();
         assert_eq!(sinew_world_add_body(world.0, &torn, &mut id), SinewStatus::NullPointer);
@@ -79,7 +79,7 @@ fn null_pointers_are_named() {
         sinew_character_def_free(null_mut());
         sinew_ragdoll_free(null_mut());
         assert_eq!(sinew_world_step(world.0, 1, 1), SinewStatus::Ok);
-        assert_eq!(sentence(), "", "what went well says nothing");
+        assert_eq!(sentence(), "", "a successful call leaves an error text");
     }
 }
 
@@ -94,7 +94,7 @@ fn removed_and_unknown_ids_are_stale() {
         assert_eq!(sinew_world_remove_body(world.0, id), SinewStatus::Ok);
         assert_eq!(sinew_world_remove_body(world.0, id), SinewStatus::StaleId);
         let next = add(&world);
-        assert_ne!(next, id, "the place is used again, the id is not");
+        assert_ne!(next, id, "the id is used again");
         assert_eq!(sinew_world_push(world.0, id, SinewVec3::default(), null()), SinewStatus::StaleId);
         assert_eq!(sinew_world_set_pose(world.0, id, pose), SinewStatus::StaleId);
         assert_eq!(sinew_world_joint_gap(world.0, SinewJointId { bits: 3 }, &mut gap), SinewStatus::StaleId);
@@ -241,7 +241,7 @@ fn a_character_in_a_world_that_is_not_its_own_is_an_error() {
         assert_eq!(sinew_character_despawn(character, here.0), SinewStatus::Ok, "{}", sentence());
         let mut count = 7;
         assert_eq!(sinew_world_bodies(here.0, null_mut(), 0, &mut count), SinewStatus::Ok);
-        assert_eq!(count, 0, "nothing of it is left");
+        assert_eq!(count, 0, "bodies remain");
         sinew_character_def_free(def);
     }
 }

@@ -75,7 +75,7 @@ def load_bytes(
     height: float | None = None,
     mass: float | None = None,
 ) -> CharacterFile:
-    """Reads a character from the bytes of a GLB, VRM or FBX, or of a glTF that holds its buffers; `name` stands in errors. All else as `load`."""
+    """Reads a character from the bytes of a GLB, VRM or FBX, or of a glTF that holds its buffers; `name` is used in errors. Other arguments as in `load`."""
 
 def load_arrays(
     joints: Sequence[str],
@@ -96,7 +96,7 @@ def load_arrays(
     height: float | None = None,
     mass: float | None = None,
 ) -> CharacterFile:
-    """Makes a character of arrays, +Y up: names of joints, their parents (n,), -1 for a root and else before them, and their rest pose in their parents: translations (n, 3), rotations (n, 4) x y z w, scales (n, 3). `inverse_bind` (n, 4, 4) is from a mesh to each joint; without it meshes are where the rest pose has them. All else as `load`."""
+    """Creates a character from arrays, +Y up: names of joints, their parents (n,), -1 for a root and else before them, and their rest pose in their parents: translations (n, 3), rotations (n, 4) x y z w, scales (n, 3). `inverse_bind` (n, 4, 4) is from a mesh to each joint; without it meshes are where the rest pose has them. All else as `load`."""
 
 def bake(
     actors: Sequence[Actor],
@@ -111,7 +111,7 @@ def bake(
     """Simulates several characters in one world, where they meet each other. `world` is the name of a file or a list of colliders, by default a floor; `wind` and `gravity` are m/s and m/s². `progress` is called with the share that is done; if it returns False the bake ends with `Cancelled`."""
 
 def mannequin() -> CharacterFile:
-    """The mannequin that comes with Sinew, 1.75 m, with a walk and two ways to get up."""
+    """The built-in mannequin, 1.75 m, with a walk and two ways to get up."""
 
 def load_ragdoll(path: _Path) -> Ragdoll:
     """Reads a ragdoll: a definition (.json), an MJCF or URDF model (.xml, .urdf), or a character, from which it is built."""
@@ -164,7 +164,7 @@ class CharacterFile:
         gets_up: bool = True,
         falling: Drive | None = None,
     ) -> Character:
-        """The character with its motions; `clip` plays until it falls: `exact`ly where the file has it, whatever ground is there, else on the ground. `falling` drives the bodies while it falls."""
+        """The character with its motions; `clip` plays until it falls: with `exact` at the height of the file, whatever the ground, else on the ground. `falling` drives the bodies during the fall."""
 
     def glb(self) -> bytes:
         """The file as a GLB that contains its companion files; for arrays, the file built from them."""
@@ -293,7 +293,7 @@ class Character:
 
     @property
     def place_in_file(self) -> _Floats:
-        """Pose at which it stands where its file has it: (7,). Places of the file times its unit are then places of the world."""
+        """Pose at which the character stands as in its file: (7,). Positions of the file times its unit are then world positions."""
 
     @property
     def raised(self) -> float:
@@ -319,7 +319,7 @@ class Character:
         name: str = "sinew",
         progress: Callable[[float], bool | None] | None = None,
     ) -> Bake:
-        """Simulates it: as `Actor` and `bake` of one. Without any action, it goes limp after half a second."""
+        """Simulates the character alone, as `bake` with one `Actor`. Without any action, it goes limp after half a second."""
 
     def random_fall(
         self, seed: int, *, seconds: float = 3.0, fps: float = 30.0, impulse: float = 120.0
@@ -366,7 +366,7 @@ class Drive:
         pin_force: float = 400.0,
         pin_torque: float = 100.0,
     ) -> Drive:
-        """`keyed`: the clip has it; `powered`: muscles of a `strength` up to 1 draw it to the clip as springs of so many `hertz`; `pinned`: springs from the world besides, N and N·m at most; `limp`: it hangs. Half of the change is made within `half_life` seconds."""
+        """`keyed`: the body follows the clip; `powered`: muscles of a `strength` up to 1 move it toward the clip as springs of this frequency; `pinned`: as `powered`, with a spring from the world too, limited in N and N·m; `limp`: only joint friction acts. Half of the change is made within `half_life` seconds."""
 
     @property
     def mode(self) -> str:
@@ -429,10 +429,10 @@ class Collider:
         """All bodies of a world file (.json) or a mesh (.glb, .obj)."""
 
     def dynamic(self, *, density: float = 1000.0) -> Collider:
-        """The same body moved by forces; density in kg/m³."""
+        """A copy moved by forces; density in kg/m³."""
 
     def keyed(self, times: ArrayLike, poses: ArrayLike) -> Collider:
-        """The same body, moved to poses (n, 7) at times (n,) in seconds, regardless of obstacles."""
+        """A copy moved to poses (n, 7) at times (n,) in seconds, regardless of obstacles."""
 
 @final
 class Bake:

@@ -1,4 +1,4 @@
-"""A function over files × seeds × settings on many machines, by Ray: `pip install sinew[ray]`.
+"""Maps a function over files × seeds × settings on many machines, by Ray: `pip install sinew[ray]`.
 
 `run` cuts the tasks into chunks. A worker does a chunk, writes the GLBs of its tasks, and then their rows as one Parquet file, each under another
 name first and renamed when it is whole. So a chunk is there or it is not: a worker that dies leaves nothing that counts, its chunk is done
@@ -48,7 +48,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Progress:
-    """State of a run: tasks that are done, all of them, those that failed, and workers that died."""
+    """State of a run: numbers of finished, total and failed tasks, and of dead workers."""
 
     done: int
     total: int
@@ -136,7 +136,7 @@ def _row(function: Function, task: Task) -> Row:
 
 
 def _write(path: Path, data: bytes) -> None:
-    """Whole or not at all; of two who write the same, one wins and both are right."""
+    """Writes atomically. If two processes write the same file, either result is correct."""
     whole = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     with open(whole, "wb") as file:
         file.write(data)
@@ -146,7 +146,7 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def _rows(function: Function, tasks: Sequence[Task], out: Path) -> list[Row]:
-    """Does tasks and writes their GLBs; gives their rows."""
+    """Runs tasks, writes their GLBs, and returns their rows."""
     rows = []
     for task in tasks:
         row = _row(function, task)
@@ -184,7 +184,7 @@ def _alone(function: Function, task: Task, out: Path) -> list[Row]:
 
 
 def _survivors(function: Function, tasks: Sequence[Task], out: Path, chunk: int) -> int:
-    """A chunk whose workers die again and again, task by task: the one that kills becomes a row."""
+    """Runs a chunk whose workers die repeatedly task by task: a task that kills its worker becomes a row."""
     rows: list[Row] = []
     for task in tasks:
         try:
@@ -200,7 +200,7 @@ def _survivors(function: Function, tasks: Sequence[Task], out: Path, chunk: int)
 
 
 def _spec(function: Function, tasks: Sequence[Task], chunk: int) -> Row:
-    """Contents of a folder; a run goes on only with the same."""
+    """Parameters of a run in a folder; a run continues only with equal ones."""
     named = f"{function.__module__}.{function.__qualname__}"
     listed = json.dumps([(task.file, task.seed, dict(task.settings)) for task in tasks], sort_keys=True)
     return {
@@ -246,7 +246,7 @@ def run(
     product = [(file, seed, one) for file in names for seed in seed_list for one in settings_list]
     tasks = [Task(index, file, seed, one) for index, (file, seed, one) in enumerate(product)]
     if chunk < 1 or deaths < 0:
-        raise ValueError("a chunk has at least one task, and deaths are not negative")
+        raise ValueError("a chunk must have at least one task, and deaths must be at least 0")
     spec = _spec(function, tasks, chunk)
     for name in ("parts", "glb"):
         (folder / name).mkdir(parents=True, exist_ok=True)
@@ -271,7 +271,7 @@ def _drive(
     deaths: int,
     tell: Callable[[Progress], None] | None,
 ) -> Progress:
-    """Keeps all workers busy until every chunk is there."""
+    """Keeps all workers busy until every chunk is done."""
     chunks = [tasks[at : at + size] for at in range(0, len(tasks), size)]
     done = failed = died = 0
     todo: list[int] = []
@@ -294,7 +294,7 @@ def _drive(
     def state() -> Progress:
         return Progress(done, len(tasks), failed, died)
 
-    # Two chunks for each core: one is done, one waits.
+    # Two chunks per core: one runs, one waits.
     resources: dict[str, float] = ray.cluster_resources()  # type: ignore[no-untyped-call]
     for number in itertools.islice(waiting, max(2, 2 * int(resources.get("CPU", 1)))):
         start(number)
@@ -325,7 +325,7 @@ def _drive(
 
 
 def read(out: str | os.PathLike[str]) -> pa.Table:
-    """All rows of a folder, in the order of the tasks."""
+    """Returns all rows of a folder, in the order of the tasks."""
     parts = sorted((Path(out) / "parts").glob("*.parquet"))
     tables = [pq.read_table(part) for part in parts]
     table = pa.concat_tables(tables, promote_options="permissive")

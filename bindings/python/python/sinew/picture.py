@@ -1,4 +1,4 @@
-"""A plain picture of figures as capsules from body to body, drawn with numpy alone."""
+"""Draws figures as capsules between bodies, with numpy alone."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _NEAR, _FAR = np.array([38.0, 92.0, 160.0]), np.array([138.0, 170.0, 206.0])
 def draw(
     poses: Floats, parents: NDArray[np.int64], height: float = 1.75, size: tuple[int, int] = (320, 240)
 ) -> NDArray[np.uint8]:
-    """A figure seen from its left and a little from in front: an array (height, width, 3).
+    """Draws a figure from its left and slightly from the front: an array (height, width, 3).
 
     `poses` (bodies, 7) are places and quaternions in metres, `parents` the body that each hangs on (-1: none), `height` that of the standing figure, `size` the width and
     height in pixels. The camera follows the first body along the ground.

@@ -1,4 +1,4 @@
-"""Dicts that the package gives."""
+"""Types of returned dicts."""
 
 from typing import TypedDict
 
@@ -10,7 +10,7 @@ _Ids = NDArray[np.uint64]
 
 
 class FallQuality(TypedDict):
-    """Figures of a fall: metres, degrees, joules, seconds; docs/contract.md of the repository tells of each."""
+    """Figures of a fall: metres, degrees, joules, seconds; docs/contract.md of the repository describes each."""
 
     energy_gain_max: float
     work_in_j: float
@@ -38,7 +38,7 @@ class BuildReport(TypedDict):
 
 
 class Finding(TypedDict):
-    """Finding of the doctor: what is wrong with a ragdoll, why, and the cure."""
+    """Finding of the doctor: a problem of a ragdoll, its cause, and its repair."""
 
     code: str
     severity: str

@@ -1,7 +1,7 @@
-"""A humanoid that is to stay up, as environments of Gymnasium: `pip install sinew[gym]`.
+"""Gymnasium environments of a humanoid that has to stay up: `pip install sinew[gym]`.
 
     import gymnasium
-    import sinew.vector_env  # Gymnasium knows its environments from here on.
+    import sinew.vector_env  # Registers its environments with Gymnasium.
 
     env = gymnasium.make("sinew/HumanoidStand-v0", render_mode="rgb_array")
     many = gymnasium.make_vec("sinew/HumanoidStand-v0", num_envs=64, vectorization_mode="vector_entry_point")
@@ -32,19 +32,19 @@ __all__ = ["HumanoidEnv", "HumanoidVectorEnv", "pd_baseline"]
 
 Floats = NDArray[np.float32]
 
-# Seconds of an action: two steps of 1/60 s.
+# Duration of an action, seconds: two steps of 1/60 s.
 _STEPS = 2
-# Most that an action of 1 turns a joint away from where it stands, radians.
+# Largest rotation of a joint by an action of 1 from the standing pose, radians.
 _REACH = 1.0
-# Stiffness of the drives for each N·m that the muscles can do, 1/rad: an eighth of a radian takes all of it, and both ankles hold a body upright
-# (weight × height of its centre, some 690 N·m/rad). Seconds by which the damping is that of the stiffness.
+# Stiffness of the drives per N·m of muscle torque, 1/rad: an eighth of a radian takes the whole torque, and both ankles
+# hold a body upright (weight × height of its centre, about 690 N·m/rad). Ratio of damping to stiffness, seconds.
 _STIFFNESS, _DAMPING = 8.0, 0.1
-# Least height of the pelvis, as a share of where it stands, and least cosine of its lean.
+# Smallest height of the pelvis, as a share of its standing height, and smallest cosine of its lean.
 _LOW, _LEAN = 0.6, 0.5
 
 
 def _turned(rotation: Floats, vector: Floats) -> Floats:
-    """Vectors turned by quaternions x y z w."""
+    """Rotates vectors by quaternions x y z w."""
     axis, real = rotation[..., :3], rotation[..., 3:]
     across = 2.0 * np.cross(axis, vector)
     turned: Floats = (vector + real * across + np.cross(axis, across)).astype(np.float32)
@@ -52,7 +52,7 @@ def _turned(rotation: Floats, vector: Floats) -> Floats:
 
 
 class HumanoidVectorEnv(gymnasium.vector.VectorEnv[Floats, Floats, NDArray[Any]]):
-    """Humanoids that stand, each in a world of its own, and are pushed.
+    """Standing humanoids, each in its own world, that are pushed.
 
     An action (joints × 3, in -1..1) is where the drives draw each joint, as a turn away from standing in the joint's own axes: a scaled axis, 1 is
     one radian. The torques are a person's (`Ragdoll.torques`). An observation is the height of the pelvis as a share of that at the beginning, its
@@ -99,7 +99,7 @@ class HumanoidVectorEnv(gymnasium.vector.VectorEnv[Floats, Floats, NDArray[Any]]
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Floats, dict[str, Any]]:
-        """All of them stand again; the seed decides the pushes."""
+        """Resets all humanoids to standing; the seed determines the pushes."""
         super().reset(seed=seed if not isinstance(seed, list) else seed[0], options=options)
         self.batch.reset()
         self._age[:] = 0
@@ -110,7 +110,7 @@ class HumanoidVectorEnv(gymnasium.vector.VectorEnv[Floats, Floats, NDArray[Any]]
     def step(
         self, actions: Floats
     ) -> tuple[Floats, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
-        """Two steps of 1/60 s."""
+        """Takes two steps of 1/60 s."""
         begins = self._ended.copy()
         if begins.any():
             self.batch.reset(np.flatnonzero(begins))
@@ -134,14 +134,14 @@ class HumanoidVectorEnv(gymnasium.vector.VectorEnv[Floats, Floats, NDArray[Any]]
         return observed, rewards, fallen, truncated, {}
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """A picture (240, 320, 3) of each of them under `rgb_array`, else `None`."""
+        """A picture (240, 320, 3) of each humanoid with `rgb_array`, else `None`."""
         if self.render_mode is None:
             return None
         parents, height = self.ragdoll.parents, self.ragdoll.height
         return tuple(draw(poses, parents, height) for poses in self.batch.poses())
 
     def _pushes(self) -> Floats:
-        """Each second, at a random moment, from a random side."""
+        """Pushes once a second, at a random time, from a random side."""
         hit = self.np_random.random(self.num_envs) < _STEPS / 60
         angle = self.np_random.random(self.num_envs) * 2 * np.pi
         size = self.np_random.random(self.num_envs) * self._push * hit
@@ -160,7 +160,7 @@ class HumanoidVectorEnv(gymnasium.vector.VectorEnv[Floats, Floats, NDArray[Any]]
 
 
 def pd_baseline(env: HumanoidVectorEnv, observations: Floats) -> Floats:
-    """Actions of a plain controller: every joint is drawn to where it stands, by the drives' springs and dampers. It stands for as long as nothing
+    """Actions of a simple controller: springs and dampers pull every joint to its standing pose. It stands for as long as nothing
     pushes it much, and has no idea of catching itself: that is for a learner to find."""
     return np.zeros((len(observations), 3 * env.joints), np.float32)
 
@@ -179,18 +179,18 @@ class HumanoidEnv(gymnasium.Env[Floats, Floats]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Floats, dict[str, Any]]:
-        """It stands again; the seed decides the pushes."""
+        """Resets to standing; the seed determines the pushes."""
         super().reset(seed=seed)
         observations, info = self.env.reset(seed=seed, options=options)
         return observations[0], info
 
     def step(self, action: Floats) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
-        """Two steps of 1/60 s."""
+        """Takes two steps of 1/60 s."""
         observations, rewards, terminated, truncated, info = self.env.step(np.asarray(action)[None])
         return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
 
     def render(self) -> NDArray[np.uint8] | None:
-        """A picture (240, 320, 3) under `rgb_array`, else `None`."""
+        """A picture (240, 320, 3) with `rgb_array`, else `None`."""
         pictures = self.env.render()
         return None if pictures is None else pictures[0]
 

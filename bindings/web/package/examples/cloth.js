@@ -29,7 +29,7 @@ const bob = physics.body(weight, { mass: 2 });
 const rope = new THREE.Line(physics.rope({ from: [1.4, 2.2, 1], to: [2.4, 2.2, 1], holdFrom: 'world', holdTo: bob.id }), new THREE.LineBasicMaterial({ color: 'black' }));
 rope.frustumCulled = false;
 scene.add(rope);
-// There and back, so that it goes through the curtain again and again.
+// Back and forth, so that it passes through the curtain repeatedly.
 let way = 1;
 run(() => {
   const { z } = walker.core.place.position;

@@ -5,7 +5,7 @@ import { hero, stage } from './stage.js';
 
 // Seconds between automatic pushes.
 const EVERY = 7;
-// N·s for each kg: 1.6 m/s for the whole character.
+// Impulse per mass, N·s/kg: 1.6 m/s for the whole character.
 const PUSH = 1.6;
 
 const say = (text) => { document.getElementById('state').textContent = text; };
@@ -28,7 +28,7 @@ function show({ gltf, bytes, name = 'the mannequin' }) {
 }
 
 function push() {
-  // Away from the camera and forward.
+  // Direction away from the camera and forward.
   const way = camera.getWorldDirection(new THREE.Vector3()).setY(0).normalize().multiplyScalar(PUSH * walker.mass);
   walker.hit(walker.bones.includes('chest') ? 'chest' : walker.bones[0], way);
   since = 0;
@@ -81,7 +81,7 @@ for (const type of ['dragover', 'dragleave', 'drop']) {
     if (type === 'drop' && event.dataTransfer.files[0]) take(event.dataTransfer.files[0]);
   });
 }
-// A click that does not drag pushes what is under the pointer.
+// A click without a drag pushes the object under the pointer.
 let down = [0, 0];
 const raycaster = new THREE.Raycaster();
 addEventListener('pointerdown', (event) => { down = [event.clientX, event.clientY]; }, { capture: true });
@@ -108,7 +108,7 @@ run(() => {
   if (!still && walker.state === 'animated' && since > EVERY) push();
   if (since >= 0) say(WORDS[walker.state]);
   if (!follows) return;
-  // The camera keeps its place beside the character; what is small or large is seen whole.
+  // The camera keeps its position relative to the character; characters of any size are fully visible.
   const goal = walker.position.clone().setY(Math.max(0.35, 0.45 * walker.height));
   const moved = goal.sub(controls.target).multiplyScalar(0.12);
   controls.target.add(moved);

@@ -57,7 +57,7 @@ export class SinewBody extends EventDispatcher {
   }
 
   /**
-   * Moves the object to where the body is.
+   * Moves the object to the body's pose.
    * @param {Float32Array} poses
    */
   write(poses) {
@@ -78,7 +78,7 @@ export class SinewBody extends EventDispatcher {
   }
 
   /**
-   * Moves body and object to another place at once.
+   * Teleports body and object.
    * @param {Vec3Like} to
    * @param {Quaternion} [turn]
    */
@@ -97,7 +97,7 @@ export class SinewBody extends EventDispatcher {
 }
 
 /**
- * Puts an object at a pose in the world, whatever its parents are.
+ * Sets an object's world pose, whatever its parents are.
  * @param {Object3D} object
  * @param {Vector3} at
  * @param {Quaternion} turn
@@ -144,12 +144,12 @@ export class SinewInstances {
       this.#places.push(world.track(id));
       this.#scales.push(size);
     }
-    // Instances go where no bounds foresee.
+    // Instances move freely, so their bounds are unknown.
     object.frustumCulled = false;
   }
 
   /**
-   * Moves the instances to where the bodies are.
+   * Moves the instances to the bodies' poses.
    * @param {Float32Array} poses
    */
   write(poses) {

@@ -13,7 +13,7 @@ const matrix = new Matrix4();
 const parentFromWorld = new Matrix4();
 
 /**
- * A kind of character: the definition that all copies share, and which object of the loaded scene each joint is.
+ * A kind of character: the shared definition, and the scene object of each joint.
  */
 class Kind {
   /** @type {Set<Object3D>} Scenes that characters move. */
@@ -68,7 +68,7 @@ function kindOf(gltf, bytes, options) {
   let kind = known.get(key);
   if (!kind) {
     kind = new Kind(gltf, bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes), options);
-    // A scene that another definition's characters use is in use all the same.
+    // A scene used by characters of another definition counts as in use.
     for (const other of known.values()) kind.inUse = other.inUse;
     known.set(key, kind);
   }
@@ -76,7 +76,7 @@ function kindOf(gltf, bytes, options) {
 }
 
 /**
- * Options of a character: where it stands, and how its definition is built.
+ * Options of a character: its pose, and how its definition is built.
  * @typedef {CharacterOptions & { position?: Vec3Like, rotation?: QuatLike }} SinewCharacterOptions
  */
 
@@ -112,21 +112,21 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Makes the model its own: the matrix of the root comes from the physics, what others would animate stands still.
+   * Takes control of the model: physics sets the root's matrix, and other animation is disabled.
    * @param {GLTF} gltf
    */
   #take(gltf) {
     this.object.matrixAutoUpdate = false;
     this.object.traverse((part) => {
       if (/** @type {{ isSkinnedMesh?: boolean }} */ (part).isSkinnedMesh) {
-        // Its bounds are those of the pose in which it was first drawn.
+        // Its bounds were computed for its first pose only, so culling is off.
         this.#wasCulled.set(part, part.frustumCulled);
         part.frustumCulled = false;
       }
     });
     const vrm = gltf.userData?.vrm;
     if (vrm && gltf.scene === this.object) {
-      // `vrm.update` then moves faces and eyes alone: bones and hair are physics'.
+      // `vrm.update` then moves only faces and eyes: physics moves bones and hair.
       if (vrm.humanoid) vrm.humanoid.autoUpdateHumanBones = false;
       vrm.springBoneManager = undefined;
     }
@@ -180,7 +180,7 @@ export class SinewCharacter extends EventDispatcher {
     return this.#kind.def.bones;
   }
 
-  /** Names of the clips that `play` knows. */
+  /** Names of the clips that `play` accepts. */
   get clips() {
     return this.#kind.def.clips;
   }
@@ -196,7 +196,7 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Hits a body, by role or bone, with an impulse, N·s: it falls, or flinches if it stands that.
+   * Hits a body, by role or bone, with an impulse, N·s: it falls, or flinches if the hit is weak.
    * @param {string} bone
    * @param {Vec3Like} impulse
    */
@@ -210,7 +210,7 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Has it go at a velocity over the ground, m/s, and face that way.
+   * Makes it move at a velocity over the ground, m/s, and face that way.
    * @param {Vec3Like} velocity
    */
   move(velocity) {
@@ -243,7 +243,7 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Moves all of it by clips, by muscles toward its clips, or not at all.
+   * Drives all of it by clips, by muscles toward its clips, or not at all.
    * @param {CharacterPreset} preset
    */
   setPreset(preset) {
@@ -251,7 +251,7 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Has a body, or with `below` all that hangs on it, moved in another way.
+   * Changes the drive of a body, or with `below` of all its descendants.
    * @param {string | undefined} bone
    * @param {DriveMode} mode
    * @param {{ below?: boolean, halfLife?: number }} [options]
@@ -261,7 +261,7 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Has a hand, or any body by role or bone, hold a body of the world, which is put there.
+   * Makes a hand, or any body by role or bone, hold a body of the world, which is moved there.
    * @param {string} bone
    * @param {{ id: bigint } | bigint} held
    * @param {HoldOptions} [options]
@@ -271,7 +271,7 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Lets go of what it holds.
+   * Releases a held body.
    * @param {{ id: bigint } | bigint} held
    */
   release(held) {
@@ -279,7 +279,7 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Puts it elsewhere at once.
+   * Teleports it.
    * @param {Vec3Like} position
    * @param {QuatLike} [rotation]
    */
@@ -288,7 +288,7 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Gives it less to do in the distance.
+   * Lowers its level of detail in the distance.
    * @param {CharacterDetail} detail
    */
   setDetail(detail) {
@@ -304,7 +304,7 @@ export class SinewCharacter extends EventDispatcher {
     this.object.matrixAutoUpdate = true;
     this.object.removeFromParent();
     if (this.object !== this.#kind.gltf.scene) {
-      // A copy shares geometry and materials, but has skeletons of its own.
+      // A copy shares geometry and materials, but has its own skeletons.
       this.object.traverse((part) => /** @type {any} */ (part).skeleton?.dispose());
     }
   }

@@ -1,4 +1,4 @@
-// Shapes, joints and contacts as lines.
+// Draws shapes, joints and contacts as lines.
 import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from 'three';
 
 /** @import { World } from '../index.js' */
@@ -20,7 +20,7 @@ export class SinewDebug extends LineSegments {
     for (const [name, numbers] of /** @type {const} */ ([['position', positions], ['color', colors]])) {
       let attribute = /** @type {BufferAttribute | undefined} */ (this.geometry.getAttribute(name));
       if (!attribute || attribute.array.length < numbers.length) {
-        // Room for a half more, so that a few more bodies need no other buffer.
+        // Reserves half more, so that a few more bodies need no new buffer.
         attribute = new BufferAttribute(new Float32Array(3 * Math.ceil(numbers.length / 2)), 3);
         this.geometry.setAttribute(name, attribute);
       }

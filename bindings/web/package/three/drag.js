@@ -11,9 +11,9 @@ const REACH = 0.5;
 /** @import { Picked, Sinew } from '../three.js' */
 
 /**
- * Lets the pointer drag bodies and limbs by a spring with a bounded force. A character that clips move goes limp when it is taken hold of, which
- * is once the pointer moves: a click takes hold of nothing. From where it was pressed on a body the pointer's events reach no other listener of the
- * element, so that controls of the camera rest; `click` still does.
+ * Lets the pointer drag bodies and limbs by a spring with a bounded force. A character that clips move goes limp when
+ * grabbed, which happens once the pointer moves: a click grabs nothing. After a press on a body, the pointer's events
+ * do not reach other listeners of the element, so that camera controls stay idle; `click` still does.
  */
 export class SinewDrag {
   #raycaster = new Raycaster();
@@ -79,7 +79,7 @@ export class SinewDrag {
     if (!this.#pressed) return;
     const { hit } = this.#pressed;
     if (hit.character && ['animated', 'flinching', 'gettingUp'].includes(hit.character.state)) hit.character.goLimp();
-    // A character that went limp has other bodies, and has moved since it was pressed.
+    // A character that went limp has other bodies, and has moved since the press.
     const body = hit.character && hit.bone ? hit.character.core.body(hit.bone) : hit.body;
     if (body === undefined || !this.physics.world.hasBody(body)) return;
     this.#grab = this.physics.world.grab(body, hit.point, { reach: REACH, ...this.options });

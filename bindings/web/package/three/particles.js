@@ -1,4 +1,4 @@
-// Cloth, soft balls and ropes as three's geometries.
+// Cloth, soft balls and ropes as geometries of three.
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage } from 'three';
 
 /** @import { Particles } from '../index.js' */

@@ -5,8 +5,8 @@ import { Matrix4, Quaternion, Vector3 } from 'three';
 /** @import { Geometry, ShapeOptions } from '../index.js' */
 
 /**
- * Name of a shape that is fitted to an object: `auto` is a box, a sphere, a capsule, a cylinder or a cone where the geometry is one of three's own
- * of that kind, else a hull, or of a static body a mesh.
+ * Name of a shape fitted to an object: `auto` is a box, sphere, capsule, cylinder or cone for three's geometry of that
+ * kind, else a hull, or for a static body a mesh.
  * @typedef {'auto' | 'box' | 'sphere' | 'capsule' | 'cylinder' | 'cone' | 'hull' | 'mesh'} FittedShape
  */
 
@@ -34,7 +34,7 @@ export function worldPose(object) {
 }
 
 /**
- * Shapes of an object and of all that hangs on it, in the frame of a body that lies at the object's pose without its scale.
+ * Shapes of an object and all its descendants, in the frame of a body at the object's pose without scale.
  * @param {Object3D} object
  * @param {FittedShape} fitted
  * @param {boolean} isStatic
@@ -78,7 +78,7 @@ function shapeOf(mesh, bodyFromMesh, fitted, isStatic) {
 /** @typedef {{ shape: Geometry, center: Vector3 }} Fitted */
 
 /**
- * The shape that one of three's own geometries is, if scaling leaves it one.
+ * The shape of one of three's own geometries, if scaling keeps its kind.
  * @param {BufferGeometry} geometry
  * @param {Vector3} scale
  * @returns {Fitted | undefined}
@@ -143,7 +143,7 @@ function transformed(geometry, matrix) {
 }
 
 /**
- * Triangles; those of a mirrored mesh are turned over.
+ * Triangles; those of a mirrored mesh are reversed.
  * @param {BufferGeometry} geometry
  * @param {boolean} isMirrored
  */

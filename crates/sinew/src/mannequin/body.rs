@@ -206,7 +206,7 @@ fn knee() -> (Loft, Chain) {
     (loft, Chain::rigid(Bone::LeftLowerLeg))
 }
 
-/// Along the shoe: z, half-width, height of the top of the sole's curve, height above that.
+/// Sections along the shoe: z, half-width, height of the top of the sole's curve, height above that.
 fn shoe() -> (Loft, Chain) {
     const TABLE: [[f32; 4]; 9] = [
         [-0.066, 0.027, 0.030, 0.036],

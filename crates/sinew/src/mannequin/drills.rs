@@ -15,7 +15,7 @@ pub struct Cycle {
     pub clip: Clip,
     /// Path along which the clip moves the character.
     pub path: Path,
-    /// Along the path, m/s.
+    /// Speed along the path, m/s.
     pub speed: f32,
     /// Times of the left and right heel strike, clip seconds.
     pub strikes: [f32; 2],
@@ -53,10 +53,10 @@ fn carried(mut clip: Clip, path: Path, gait: &Gait) -> Cycle {
     Cycle { clip, path, speed: gait.speed, strikes, ball_down, sole_down: gait.flat }
 }
 
-/// When the fist of [`punch`] arrives, clip seconds.
+/// Time at which the fist of [`punch`] arrives, clip seconds.
 pub const PUNCH_ARRIVES: f32 = 0.4;
 
-/// From a boxer's guard a straight right, and back: 1 s.
+/// A straight right from a boxer's guard, and back: 1 s.
 pub fn punch() -> Clip {
     let postures = [
         (0.0, guard()),

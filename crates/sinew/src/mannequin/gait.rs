@@ -9,7 +9,7 @@ use crate::math::{Rotation, Transform, Vec3};
 /// Path of a gait, relative to the character at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Path {
-    /// Along +Z.
+    /// A straight path along +Z.
     Straight,
     /// A circle to the left with this radius, metres: its centre is on +X.
     Circle(f32),
@@ -61,7 +61,7 @@ pub(super) struct Swing {
     pub toes: [f32; 3],
 }
 
-/// From the ankle to the heel's contact point in the bind pose.
+/// Vector from the ankle to the heel's contact point in the bind pose.
 const HEEL: Vec3 = Vec3::new(0.0, -ANKLE_HEIGHT, -0.055);
 
 impl Gait {
@@ -98,7 +98,7 @@ impl Gait {
         Foot { ankle, turn: turn_now, toes: if pitch > 0.0 { pitch } else { 0.0 }, knee_out: 4.0 }
     }
 
-    /// From toe-off to heel strike: interpolates smoothly between the ends of the stances.
+    /// Motion from toe-off to heel strike: interpolates smoothly between the ends of the stances.
     fn swinging(&self, side: Side, phase: f32) -> Foot {
         let (leave, land) = (self.planted(side, self.stance), self.planted(side, 0.0));
         let before = self.planted(side, self.stance - 0.03);

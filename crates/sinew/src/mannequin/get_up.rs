@@ -69,7 +69,7 @@ fn lifted(ankle: Vec3, pitch: f32, knee_out: f32) -> Foot {
     Foot { ankle, turn: lean(pitch), toes: 0.0, knee_out }
 }
 
-/// From the back: sit up on both hands, draw the feet in, rock forward into a squat, stand.
+/// Gets up from the back: sits up on both hands, draws the feet in, rocks forward into a squat, stands.
 pub(super) fn from_back() -> Clip {
     let [lying, curling, sitting] = sitting_up();
     let [pushing, squatting, rising, nearly] = standing_up(sitting);
@@ -173,7 +173,7 @@ fn standing_up(sitting: Posture) -> [Posture; 4] {
     [pushing, squatting, rising, nearly]
 }
 
-/// From the face: press the chest up, rise onto the knees, plant the left foot, rise over it.
+/// Gets up from the face: presses the chest up, rises onto the knees, plants the left foot, rises over it.
 pub(super) fn from_face() -> Clip {
     let [lying, pressing, drawing_in, on_all_fours] = pressing_up();
     let [stepping, half_kneeling, rising, nearly] = stepping_up(on_all_fours);

@@ -1,4 +1,4 @@
-//! From postures at times to a clip.
+//! Converts postures at times to a clip.
 
 use super::posture::Posture;
 use super::skeleton::Bone;

@@ -107,11 +107,11 @@ impl Chain {
 
 /// A closed surface: a tube through sections, with a dome at each end.
 pub(super) struct Loft {
-    /// At least two, in order along the tube.
+    /// At least two sections, in order along the tube.
     pub(super) sections: Vec<Section>,
-    /// From the first section's centre to the top of its dome.
+    /// Vector from the first section's centre to the top of its dome.
     pub(super) start_tip: Vec3,
-    /// From the last section's centre to the top of its dome.
+    /// Vector from the last section's centre to the top of its dome.
     pub(super) end_tip: Vec3,
     /// Vertices round a ring.
     pub(super) sides: usize,

@@ -43,9 +43,9 @@ pub struct Motions {
     pub walk_speed: f32,
     /// Standing and breathing, a cycle.
     pub idle: usize,
-    /// From lying on the back, feet along +Z, to the first pose of `idle`, facing +Z.
+    /// Gets up from lying on the back, feet along +Z, to the first pose of `idle`, facing +Z.
     pub get_up_supine: usize,
-    /// From lying on the face, head along +Z, to the first pose of `idle`, facing +Z.
+    /// Gets up from lying on the face, head along +Z, to the first pose of `idle`, facing +Z.
     pub get_up_prone: usize,
 }
 

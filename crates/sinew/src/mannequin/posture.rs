@@ -4,7 +4,7 @@ use super::skeleton::{ANKLE_HEIGHT, Bone, HIPS_ABOVE_HIP, Side, bind_offset, bin
 use crate::anim::LocalTransform;
 use crate::math::{Mat3, Rotation, Vec3, clamp, normalize_or, trig};
 
-/// From the middle of the knee to its skin in front, metres.
+/// Distance from the middle of the knee to its skin in front, metres.
 const KNEE_RADIUS: f32 = 0.056;
 
 /// A rotation in degrees: x leans forward, y turns left, z tips right. Applied in the order z, x, y.

@@ -33,7 +33,7 @@ pub struct BuiltinMotions {
     pub fits: [Retargeted; 4],
 }
 
-/// Why a character has not been given the built-in motions.
+/// Reason why a character was not given the built-in motions.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BuiltinError {
     /// They are a human's, and the character is not human.
@@ -214,7 +214,7 @@ const RATE: f64 = 30.0;
 /// Number of repetitions of a cycle, so that the middle one has both neighbours.
 const PLAYED: usize = 3;
 
-/// At the pace of the character, in the actor's own frames.
+/// Options at the pace of the character, in the actor's own frames.
 fn options(actor: Body<'_>, body: Body<'_>) -> RetargetOptions {
     let legs = |body: Body<'_>| {
         Legs::of(body.rig, body.analysis).map(|legs| legs.feet[0].length + legs.feet[1].length)

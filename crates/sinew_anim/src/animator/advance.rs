@@ -42,7 +42,7 @@ impl Animator {
             }
         }
         self.fire(set);
-        self.end_what_ends(set, seconds);
+        self.end_finished_tracks(set, seconds);
         let order = |event: &FiredEvent| (event.track, event.event, event.lap);
         self.events.sort_by(|a, b| a.seconds.total_cmp(&b.seconds).then(order(a).cmp(&order(b))));
     }
@@ -113,7 +113,7 @@ impl Animator {
     }
 
     /// Advances ramps; tracks whose ramp or clip ends within the update perform their end action.
-    fn end_what_ends(&mut self, set: &AnimationSet, seconds: f64) {
+    fn end_finished_tracks(&mut self, set: &AnimationSet, seconds: f64) {
         self.room.ended.clear();
         for (i, slot) in self.slots.iter_mut().enumerate() {
             let track = &mut slot.track;
@@ -223,7 +223,7 @@ fn within(moment: f64, seconds: f64) -> f64 {
     if inside < seconds { inside } else { seconds }
 }
 
-/// Never against the direction of play: phases are rounded.
+/// Clamps a step to the direction of play, because phases are rounded.
 fn onward(from: Place, to: Place, speed: f64) -> Place {
     let is_back = if speed < 0.0 { to > from } else { to < from };
     if is_back { from } else { to }

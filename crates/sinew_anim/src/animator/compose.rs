@@ -1,4 +1,4 @@
-//! From tracks to one pose and one step of the root.
+//! Combines tracks into one pose and one root motion.
 
 use super::root_inertia::{RootInertia, RootVelocity};
 use super::{Animator, FILL_BELOW, Slot, crossfade};
@@ -13,7 +13,7 @@ use sinew_math::{Rotation, Transform, Vec3};
 pub(super) struct WeightedMotion {
     weight: f32,
     way: Vec3,
-    /// Scaled axis.
+    /// Rotation as a scaled axis.
     turn: Vec3,
 }
 

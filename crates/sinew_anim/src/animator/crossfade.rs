@@ -14,8 +14,8 @@ use sinew_math::{ReadError, Reader, Rotation, Vec3, Writer};
 /// Rotations from a track's pose to the pose that it replaces, joint by joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Crossfade {
-    /// From the track's pose to the other one, each with the sign closest to that of the update before; empty before
-    /// both have been seen.
+    /// Rotations from the track's pose to the other one, each with the sign closest to that of the update before; empty
+    /// before both have been seen.
     turns: Vec<Rotation>,
 }
 
@@ -99,7 +99,7 @@ impl Crossfade {
     }
 }
 
-/// From `a` to `b` by a share, exact at both ends; `turn` leads from `b` to `a`.
+/// Interpolates from `a` to `b` by a share, exact at both ends; `turn` leads from `b` to `a`.
 fn toward(a: &LocalTransform, b: &LocalTransform, turn: Rotation, share: f32) -> LocalTransform {
     if share >= 1.0 || a == b {
         return *b;

@@ -5,7 +5,7 @@ use super::advance::SHORTEST;
 use crate::pose::Pose;
 use crate::rig::LocalTransform;
 use crate::set::{AnimationSet, ClipId};
-use crate::tuning::GOES_ON;
+use crate::tuning::LONGEST_EXTRAPOLATION;
 use sinew_math::{Rotation, min};
 
 /// The clip, and the last two poses that it was given.
@@ -73,7 +73,7 @@ impl Fed {
     }
 
     pub fn sample(&self, pose: &mut Pose) {
-        let ahead = min(self.age, GOES_ON);
+        let ahead = min(self.age, LONGEST_EXTRAPOLATION);
         if self.is_new || ahead == 0.0 || self.seconds < SHORTEST as f32 {
             return pose.copy_from(if self.is_new { &self.before } else { &self.now });
         }

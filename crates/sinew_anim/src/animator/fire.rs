@@ -57,7 +57,7 @@ impl Animator {
         let slots = &self.slots;
         let is_there = |group: u8| slots.iter().any(|slot| slot.track.def.sync_group == Some(group));
         self.last_fired.retain(|last| is_there(last.group));
-        // In the order of time; of those at one moment the leader's first.
+        // Sort by time; at the same moment the events of the leader come first.
         let key = |crossing: &TrackCrossing| {
             let moment = (crossing.seconds / MOMENT) as i64;
             let follows = leader_of(set, slots, crossing) != Some(crossing.slot);

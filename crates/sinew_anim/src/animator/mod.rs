@@ -206,7 +206,10 @@ impl Animator {
     /// As [`play`](Self::play), and if the transition's time is negative or not finite.
     pub fn transition(&mut self, set: &AnimationSet, def: &TrackDef, transition: Transition) -> TrackId {
         let (Transition::Crossfade { seconds, .. } | Transition::Inertial { seconds }) = transition;
-        assert!(seconds >= 0.0 && seconds.is_finite(), "a transition takes 0 s or longer, not {seconds}");
+        assert!(
+            seconds >= 0.0 && seconds.is_finite(),
+            "the duration of a transition must be finite and at least 0, not {seconds}"
+        );
         let is_replaced =
             |slot: &Slot| slot.track.def.layer == def.layer && !set.clip(slot.track.def.clip).is_difference();
         match transition {
@@ -315,7 +318,10 @@ impl Animator {
     /// If a pose is of another rig, or a time is negative or not finite.
     pub fn take_over(&mut self, earlier: &Pose, now: &Pose, seconds: f32, transition: f32) {
         for time in [seconds, transition] {
-            assert!(time >= 0.0 && time.is_finite(), "a transition takes 0 s or longer, not {time}");
+            assert!(
+                time >= 0.0 && time.is_finite(),
+                "the duration of a transition must be finite and at least 0, not {time}"
+            );
         }
         self.previous.copy_from(earlier);
         self.pose.copy_from(now);
@@ -334,7 +340,10 @@ impl Animator {
     /// # Panics
     /// If `seconds` is negative or not finite.
     pub fn update(&mut self, set: &AnimationSet, seconds: f32) {
-        assert!(seconds >= 0.0 && seconds.is_finite(), "an update takes 0 s or longer, not {seconds}");
+        assert!(
+            seconds >= 0.0 && seconds.is_finite(),
+            "seconds must be finite and at least 0, not {seconds}"
+        );
         self.events.clear();
         self.events.append(&mut self.interrupted);
         if seconds == 0.0 && self.awaits_transition.is_some() {
@@ -391,7 +400,10 @@ impl Slot {
 impl Track {
     fn fade(&mut self, to: f32, seconds: f32, easing: Easing, then: EndAction) {
         check_weight(to);
-        assert!(seconds >= 0.0 && seconds.is_finite(), "a ramp takes 0 s or longer, not {seconds}");
+        assert!(
+            seconds >= 0.0 && seconds.is_finite(),
+            "the duration of a ramp must be finite and at least 0, not {seconds}"
+        );
         let (from, seconds) = (self.def.weight, f64::from(seconds));
         self.ramp = Some(Ramp { from, to, seconds, elapsed: 0.0, easing, then });
     }

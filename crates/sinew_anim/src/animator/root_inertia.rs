@@ -5,9 +5,9 @@ use sinew_math::{ReadError, Reader, Vec3, Writer};
 /// A velocity of the root: model axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct RootVelocity {
-    /// File units per second.
+    /// Linear velocity, file units per second.
     pub linear: Vec3,
-    /// Radians per second.
+    /// Angular velocity, radians per second.
     pub angular: Vec3,
 }
 

@@ -89,7 +89,7 @@ impl Animator {
         animator.root_velocity = RootVelocity::load(bytes)?;
         let has = bytes.u8()?;
         if has > 3 {
-            return Err(bytes.error("a kind that there is not"));
+            return Err(bytes.error("an unknown kind"));
         }
         animator.has_pose = has & 1 != 0;
         animator.previous_seconds = at_least_zero(bytes, Reader::f32)?;
@@ -174,7 +174,7 @@ fn read_track(set: &AnimationSet, bytes: &mut Reader<'_>) -> Result<Track, ReadE
     let layer = bytes.u8()?;
     let mask = read_option(bytes, |bytes| {
         let mask = bytes.u32()?;
-        set.has_mask(mask).ok_or_else(|| bytes.error("a mask that the set does not have"))
+        set.has_mask(mask).ok_or_else(|| bytes.error("an unknown mask"))
     })?;
     let sync_group = read_option(bytes, Reader::u8)?;
     if sync_group.is_some() && loop_mode != LoopMode::Loop {
@@ -238,7 +238,7 @@ fn read_last_fired(set: &AnimationSet, bytes: &mut Reader<'_>) -> Result<LastFir
 fn read_event_of(set: &AnimationSet, clip: ClipId, bytes: &mut Reader<'_>) -> Result<usize, ReadError> {
     let event = bytes.u32()? as usize;
     let is_there = event < set.clip(clip).events.len();
-    if is_there { Ok(event) } else { Err(bytes.error("an event that its clip does not have")) }
+    if is_there { Ok(event) } else { Err(bytes.error("an unknown event")) }
 }
 
 fn write_pose(pose: &Pose, out: &mut Writer) {
@@ -265,12 +265,12 @@ const END_ACTIONS: [EndAction; 4] = [EndAction::Hold, EndAction::Stop, EndAction
 
 fn one_of<T: Copy, const N: usize>(bytes: &mut Reader<'_>, all: [T; N]) -> Result<T, ReadError> {
     let number = usize::from(bytes.u8()?);
-    all.get(number).copied().ok_or_else(|| bytes.error("a kind that there is not"))
+    all.get(number).copied().ok_or_else(|| bytes.error("an unknown kind"))
 }
 
 fn read_clip(set: &AnimationSet, bytes: &mut Reader<'_>) -> Result<ClipId, ReadError> {
     let clip = bytes.u32()?;
-    set.has_clip(clip).ok_or_else(|| bytes.error("a clip that the set does not have"))
+    set.has_clip(clip).ok_or_else(|| bytes.error("an unknown clip"))
 }
 
 fn read_f64(bytes: &mut Reader<'_>) -> Result<f64, ReadError> {

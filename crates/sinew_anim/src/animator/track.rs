@@ -9,12 +9,12 @@ use sinew_math::clamp;
 pub struct TrackId(pub(crate) u64);
 
 impl TrackId {
-    /// As a number, for saving an animator and its users.
+    /// Converts to a number, for saving an animator and its users.
     pub fn to_bits(self) -> u64 {
         self.0
     }
 
-    /// From that number; it names no track of an animator that does not have it.
+    /// Restores an id from that number; it refers to no track if the animator lacks it.
     pub fn from_bits(bits: u64) -> Self {
         Self(bits)
     }
@@ -26,9 +26,9 @@ pub enum EndAction {
     /// Continues: with its new weight, or holding its last pose.
     #[default]
     Hold,
-    /// It is removed.
+    /// The track is removed.
     Stop,
-    /// Pauses.
+    /// The track pauses.
     Pause,
     /// Starts again at [`TrackDef::start`]. A track of a sync group keeps the group's time.
     Restart,
@@ -37,14 +37,14 @@ pub enum EndAction {
 /// Easing of a weight from one value to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Easing {
-    /// At constant speed.
+    /// Interpolation at constant speed.
     Linear,
     /// `3x² − 2x³`: no jump of speed at either end.
     #[default]
     Smooth,
     /// `x²`: slow at first.
     In,
-    /// `x (2 − x)`: slow at last.
+    /// `x (2 − x)`: slow at the end.
     Out,
 }
 
@@ -86,7 +86,7 @@ pub struct TrackDef {
 }
 
 impl TrackDef {
-    /// Looped from its start, at its own speed, on the whole body, alone.
+    /// A track that loops its clip from the start at its own speed, with weight 1, on all joints.
     pub fn new(clip: ClipId) -> Self {
         Self {
             clip,
@@ -104,14 +104,14 @@ impl TrackDef {
     pub(super) fn check(&self) {
         check_weight(self.weight);
         check_speed(self.speed);
-        assert!(self.start.is_finite(), "the start of a track is finite, not {}", self.start);
+        assert!(self.start.is_finite(), "the start of a track must be finite, not {}", self.start);
         let loops = self.loop_mode == LoopMode::Loop;
         assert!(loops || self.sync_group.is_none(), "a track of a sync group loops");
     }
 }
 
 pub(super) fn check_speed(speed: f32) {
-    assert!(is_speed(speed), "a speed is finite and at most {MAX_SPEED}, not {speed}");
+    assert!(is_speed(speed), "the speed must be finite and at most {MAX_SPEED}, not {speed}");
 }
 
 pub(super) fn is_speed(speed: f32) -> bool {
@@ -119,7 +119,7 @@ pub(super) fn is_speed(speed: f32) -> bool {
 }
 
 pub(super) fn check_weight(weight: f32) {
-    assert!(weight >= 0.0 && weight.is_finite(), "a weight is 0 or above, not {weight}");
+    assert!(weight >= 0.0 && weight.is_finite(), "the weight must be at least 0, not {weight}");
 }
 
 /// A weight ramp.
@@ -157,7 +157,7 @@ pub struct Track {
 }
 
 impl Track {
-    /// Its id.
+    /// Id of the track.
     pub fn id(&self) -> TrackId {
         self.id
     }
@@ -172,7 +172,7 @@ impl Track {
         &self.playhead
     }
 
-    /// True if it is paused.
+    /// True if the track is paused.
     pub fn is_paused(&self) -> bool {
         self.is_paused
     }

@@ -1,4 +1,4 @@
-//! From a raw clip to a built one.
+//! Builds a playable clip from a raw one.
 
 use super::code::{Bounds, Key, ROTATION_BOUND, SmallestThree};
 use super::curve::Curve;
@@ -28,7 +28,7 @@ pub struct ClipBuildOptions {
     /// Largest error of straight lines against arcs and splines, radians; more keys are inserted where it would be
     /// exceeded.
     pub rotation_tolerance: f32,
-    /// The same for translations and scales, as a share of the diagonal of the channel's bounding box.
+    /// Largest error of translations and scales, as a share of the diagonal of the channel's bounding box.
     pub relative_tolerance: f32,
 }
 
@@ -38,7 +38,7 @@ impl Default for ClipBuildOptions {
     }
 }
 
-/// Why a clip cannot be built. Channels and keys are counted from 0, as in [`Clip::channels`].
+/// Reason why a clip cannot be built. Channels and keys are counted from 0, as in [`Clip::channels`].
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ClipBuildError {
     /// The rig has no joints.
@@ -47,7 +47,7 @@ pub enum ClipBuildError {
     /// The clip's length is negative or not finite. A length of 0 is that of a pose.
     #[error("the clip lasts {duration} s; it has to last 0 or longer")]
     Duration {
-        /// As the clip has it, seconds.
+        /// Duration in the clip, seconds.
         duration: f32,
     },
     /// A channel moves a joint that the rig does not have.
@@ -60,7 +60,7 @@ pub enum ClipBuildError {
         /// Number of joints of the rig.
         joints: usize,
     },
-    /// A channel without keys.
+    /// A channel has no keys.
     #[error("channel {channel} has no keys")]
     NoKeys {
         /// Index of the channel in the clip.
@@ -85,7 +85,7 @@ pub enum ClipBuildError {
         channel: usize,
         /// Index of the key in the channel.
         key: usize,
-        /// As the clip has it, seconds.
+        /// Time in the clip, seconds.
         time: f32,
     },
     /// A key's value, or tangent, is not finite, or so large that differences overflow (above 1e18).
@@ -272,7 +272,7 @@ fn bound_of(channel: &Channel, options: &ClipBuildOptions) -> ClipError {
     let diagonal = 65_535.0 * Vec3::from_array(bounds.step).length();
     let curved = channel.interpolation == Interpolation::CubicSpline;
     let lines = if curved { options.relative_tolerance * diagonal } else { 0.0 };
-    // Half a step on each axis, plus a few roundings of numbers of the value's size.
+    // The error is half a step on each axis, plus a few roundings of numbers of the value's size.
     let error = 0.5 * Vec3::from_array(bounds.step).length() + lines + 1e-6 * size;
     match channel.property {
         Property::Translation => ClipError { translation: error, ..ClipError::default() },
@@ -280,7 +280,7 @@ fn bound_of(channel: &Channel, options: &ClipBuildOptions) -> ClipError {
     }
 }
 
-/// Checks the promises of [`Clip`] and [`Channel`].
+/// Checks the invariants of [`Clip`] and [`Channel`].
 fn check(clip: &Clip, rig: &Rig) -> Result<(), ClipBuildError> {
     let joints = rig.joints.len();
     if joints == 0 {
@@ -315,7 +315,7 @@ fn check_channel(index: usize, channel: &Channel, joints: usize) -> Result<(), C
         if !value.iter().all(|x| x.abs() < 1e18) {
             return Err(ClipBuildError::Value { channel: index, key });
         }
-        // Of a spline's three, the value is in the middle.
+        // A key of a spline has three values; the middle one is its value.
         let value = if per_key == width { value } else { &value[width..2 * width] };
         if channel.property == Property::Rotation && value.iter().all(|x| x.abs() < 1e-6) {
             return Err(ClipBuildError::ZeroRotation { channel: index, key });

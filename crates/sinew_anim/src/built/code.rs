@@ -1,4 +1,4 @@
-//! Numbers of keys in 48 bits.
+//! Encodes key values in 48 bits.
 
 use sinew_math::{Rotation, clamp, max, min};
 
@@ -25,7 +25,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// The least that hold all values.
+    /// The smallest bounds that contain all values.
     pub fn around(values: &[[f32; 3]]) -> Self {
         let fold = |i: usize, pick: fn(f32, f32) -> f32| values.iter().map(|v| v[i]).fold(values[0][i], pick);
         let low = core::array::from_fn(|i| fold(i, min));
@@ -59,9 +59,9 @@ pub(super) struct SmallestThree;
 
 /// Half the number of steps from −√½ to √½.
 const HALF: f32 = 16_383.0;
-/// √½ over that.
+/// √½ divided by [`HALF`].
 const STEP: f32 = core::f32::consts::FRAC_1_SQRT_2 / HALF;
-/// The bit above the fifteen.
+/// The highest of the 16 bits.
 const FLAG: u16 = 0x8000;
 
 /// Largest angle, radians, between a unit quaternion and its quantized form: each of the three numbers is off by at

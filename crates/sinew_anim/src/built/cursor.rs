@@ -1,4 +1,4 @@
-//! Sampling with cached keys around the time.
+//! Samples a clip with cached keys around the time.
 
 use super::code::{Code, Key};
 use super::{BuiltClip, TrackBlock, Tracks};
@@ -7,12 +7,12 @@ use sinew_math::clamp;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
-/// No key yet; every key follows it.
+/// Index before any key is loaded: every key counts as later.
 const UNSET: u32 = u32::MAX / 2;
 /// The left key is before the first, so that the first follows it.
 const BEFORE: u32 = u32::MAX;
 
-/// Earlier than any time, or later with the other sign; finite, so that shares of it are finite.
+/// Beyond all times, in either sign. Finite, so that interpolation with it stays finite.
 const FOREVER: f32 = 1e30;
 
 /// The two keys around a time, of eight tracks side by side.
@@ -185,7 +185,7 @@ fn refill<C: Code<N>, const N: usize>(
     span: &mut Span<N>,
     lane: usize,
 ) {
-    // Tells the compiler the bound.
+    // Shows the bound to the compiler.
     let lane = lane % WIDTH;
     let track = &tracks.tracks[lane];
     let keys = &all.keys[track.first as usize..][..track.count as usize];
@@ -244,7 +244,7 @@ fn last_not_after(keys: &[Key], time: f32, time_of: impl Fn(&Key) -> f32) -> u32
 }
 
 impl<const N: usize> Span<N> {
-    /// The same value from `start` to `end`.
+    /// Sets one value from `start` to `end`.
     fn hold(&mut self, lane: usize, value: [f32; N], start: f32, end: f32) {
         self.set_left(lane, value);
         self.set_right(lane, value);

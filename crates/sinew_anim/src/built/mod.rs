@@ -94,7 +94,7 @@ impl BuiltClip {
         self.bound
     }
 
-    /// Value for joints without a channel: tells whether the clip is blended or added.
+    /// Value for joints without a channel; it differs between blended and added clips.
     pub fn fill(&self) -> Fill {
         self.fill
     }

@@ -8,9 +8,9 @@ use sinew_math::max;
 /// Excess of a joint beyond its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointExcess {
-    /// The joint.
+    /// Joint that exceeded its limit.
     pub joint: JointIdx,
-    /// In how many frames.
+    /// Number of frames.
     pub frames: usize,
     /// Largest excess, radians.
     pub largest: f32,
@@ -20,7 +20,7 @@ pub struct JointExcess {
 /// report.
 ///
 /// # Panics
-/// If a limit is of a joint that the take has not.
+/// If the take lacks the joint of a limit.
 pub fn project_limits(take: &mut Take, limits: &[LearnedLimit]) -> Vec<JointExcess> {
     let mut report = Vec::new();
     for limit in limits {

@@ -2,7 +2,7 @@
 //! returns a report; none keeps state. Rotations are local, radians; joint lengths are in the unit of the rig, those of
 //! feet and floors in metres of the space of `root`, y up.
 //!
-//! In good order: [`despike`], [`smooth`], [`project_limits`], [`remove_penetration`], [`remove_foot_slide`].
+//! Recommended order: [`despike`], [`smooth`], [`project_limits`], [`remove_penetration`], [`remove_foot_slide`].
 
 mod foot_slide;
 mod limits;

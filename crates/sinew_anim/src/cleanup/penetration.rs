@@ -11,7 +11,7 @@ use sinew_math::{Affine, Vec3, max, min};
 /// Result of raising a body out of the floor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PenetrationReport {
-    /// In how many frames.
+    /// Number of frames.
     pub frames: usize,
     /// Largest depth below the floor, metres.
     pub deepest: f32,

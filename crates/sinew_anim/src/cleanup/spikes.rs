@@ -1,4 +1,4 @@
-//! Frames in which a joint jumps away and back.
+//! Removes spikes: frames in which a joint jumps away and back.
 
 use crate::clip::take::Take;
 use crate::rig::{JointIdx, LocalTransform};
@@ -18,7 +18,7 @@ pub struct SpikeSettings {
 }
 
 impl Default for SpikeSettings {
-    /// From 5° or 2 cm (of a rig in metres) on, 6 times the usual step, up to 50 ms.
+    /// Removes spikes from 5° or 2 cm (of a rig in metres) on, of 6 times the usual step, up to 50 ms.
     fn default() -> Self {
         Self { least_turn: 0.0873, least_shift: 0.02, times_usual: 6.0, longest: 0.05 }
     }
@@ -27,9 +27,9 @@ impl Default for SpikeSettings {
 /// A removed spike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spike {
-    /// Whose.
+    /// Joint with the spike.
     pub joint: JointIdx,
-    /// First frame of it.
+    /// First frame of the spike.
     pub frame: usize,
     /// Number of frames.
     pub frames: usize,

@@ -1,4 +1,4 @@
-//! Keyframed motion as the file holds it.
+//! Keyframed motion as stored in a file.
 
 pub mod reduce;
 pub mod root_motion;
@@ -11,9 +11,9 @@ use sinew_math::Rotation;
 /// Interpolation of values between two keys (glTF 2.0 §3.11).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
-    /// The earlier key holds.
+    /// The earlier key holds until the next one.
     Step,
-    /// Straight line; slerp for rotations.
+    /// Linear interpolation; slerp for rotations.
     Linear,
     /// Cubic Hermite: each key has in-tangent, value, out-tangent; tangents are per second.
     CubicSpline,
@@ -26,7 +26,7 @@ pub enum Property {
     Translation,
     /// Four numbers a key, x y z w.
     Rotation,
-    /// Three numbers a key.
+    /// Scale, three numbers a key.
     Scale,
 }
 
@@ -40,7 +40,7 @@ impl Property {
 /// Keys of one property of one joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// The joint it moves.
+    /// Joint that the channel moves.
     pub joint: JointIdx,
     /// The property that it moves.
     pub property: Property,

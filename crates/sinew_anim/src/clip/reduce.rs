@@ -36,7 +36,7 @@ pub struct KeyError {
 }
 
 impl KeyError {
-    /// As a share of the bound: above 1 it is broken.
+    /// Ratio to the bound; above 1 the bound is violated.
     fn over(self, bound: KeyBound) -> f32 {
         max(self.distance / bound.distance, self.angle / bound.angle)
     }
@@ -63,7 +63,7 @@ const ROUNDS: usize = 4;
 /// As [`sample`](crate::clip::sample::sample()), and if the bound is negative or not finite.
 pub fn reduce_keys(rig: &Rig, clip: &Clip, root: &Affine, bound: KeyBound) -> Reduced {
     let sound = |x: f32| (0.0..f32::INFINITY).contains(&x);
-    assert!(sound(bound.distance) && sound(bound.angle), "a bound is not negative, and finite: {bound:?}");
+    assert!(sound(bound.distance) && sound(bound.angle), "a bound must be finite and at least 0: {bound:?}");
     let before = count(clip);
     let all = || Reduced { clip: clip.clone(), error: KeyError::default(), keys: [before, before] };
     if bound.distance <= 0.0 || bound.angle <= 0.0 || rig.joints.is_empty() || moves_twice(rig, clip) {
@@ -108,17 +108,17 @@ fn moves_twice(rig: &Rig, clip: &Clip) -> bool {
 /// A clip with the data to choose its keys and to measure the error.
 struct Meter<'a> {
     rig: &'a Rig,
-    /// The same motion without repeated keys: of equal consecutive keys only the first and last remain.
+    /// The motion without repeated keys: of equal consecutive keys only the first and last remain.
     clip: Clip,
     root: &'a Affine,
     /// All times of keys.
     times: Vec<f32>,
-    /// Transforms of the joints at these times, times the root: time by time; and whether a joint is elsewhere than the time
-    /// before.
+    /// Model transforms of the joints at these times, including the root; one time after the other.
     model: Vec<Affine>,
+    /// True where a joint moved since the previous time.
     moved: Vec<bool>,
-    /// Per joint: the largest distance of a descendant at any time, and the scale from its parent's axes to the space
-    /// of the bound.
+    /// For each joint: the largest distance of a descendant at any time, and the scale from its parent's axes to the
+    /// space of the bound.
     reach: Vec<f32>,
     scale: Vec<f32>,
 }
@@ -184,7 +184,7 @@ impl<'a> Meter<'a> {
         clip
     }
 
-    /// Error of a channel's value that uses up the bound by itself: its own units, or radians.
+    /// Error of a channel's value that alone equals the bound: its own units, or radians.
     fn tolerance(&self, property: Property, joint: JointIdx, bound: KeyBound) -> f32 {
         match property {
             Property::Translation => bound.distance / max(self.scale[joint], 1e-12),
@@ -215,7 +215,7 @@ impl<'a> Meter<'a> {
 
 /// Poses of a clip at ascending times. Parts that do not change cost almost nothing.
 struct Poses {
-    /// Per channel: its last key not after the time, and the time until which its value is constant.
+    /// For each channel: its last key not after the time, and the time until which its value is constant.
     keys: Vec<usize>,
     stays: Vec<f32>,
     is_first: bool,
@@ -287,7 +287,7 @@ fn longest_squared(map: &Affine) -> f32 {
 fn turned_squared(a: &Affine, b: &Affine) -> f32 {
     let (a, b) = (&a.linear, &b.linear);
     let axes = [(a.x_axis, b.x_axis), (a.y_axis, b.y_axis), (a.z_axis, b.z_axis)];
-    // By differences: the cosine of a small angle has lost it.
+    // Uses differences, because the cosine of a small angle loses precision.
     let moved = |(a, b): (Vec3, Vec3)| {
         let [la, lb] = [a, b].map(Vec3::length);
         if min(la, lb) > 0.0 { (a * (1.0 / la) - b * (1.0 / lb)).length_squared() } else { 0.0 }

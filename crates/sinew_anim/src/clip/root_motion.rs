@@ -15,7 +15,7 @@ pub enum AxisExtraction {
     None,
     /// The straight line from the first pose to the last; oscillation about it stays in the pose.
     Linear,
-    /// Everything.
+    /// All of the motion.
     Full,
 }
 
@@ -24,7 +24,7 @@ pub enum AxisExtraction {
 pub struct RootMotionOptions {
     /// The joint that carries the body: the hips, or a joint above them.
     pub joint: JointIdx,
-    /// Along x, y, z of model space.
+    /// Translation along x, y, z of model space.
     pub axes: [AxisExtraction; 3],
     /// Rotation about `up`.
     pub turn: AxisExtraction,
@@ -33,7 +33,7 @@ pub struct RootMotionOptions {
 }
 
 impl RootMotionOptions {
-    /// Over the ground and about y: all of x, z and the rotation, nothing of y.
+    /// Extracts the motion over the ground and about y: all of x, z and the rotation, nothing of y.
     pub fn on_ground(joint: JointIdx) -> Self {
         let (none, full) = (AxisExtraction::None, AxisExtraction::Full);
         Self { joint, axes: [full, none, full], turn: full, up: Vec3::Y }
@@ -98,7 +98,7 @@ struct ChainPose {
     parent: Affine,
 }
 
-/// From 0 to the clip's end, evenly.
+/// Evenly spaced times from 0 to the clip's end.
 fn sample_times(clip: &Clip) -> Vec<f32> {
     let steps = (clip.duration / ROOT_SAMPLING).ceil();
     let steps = if steps >= 1.0 { steps as u32 } else { 1 };
@@ -131,7 +131,10 @@ impl MotionTrack {
     /// # Panics
     /// If `duration` is negative or not finite.
     pub fn straight(velocity: Vec3, duration: f32, up: Vec3) -> Self {
-        assert!(duration >= 0.0 && duration.is_finite(), "a motion takes 0 s or longer, not {duration}");
+        assert!(
+            duration >= 0.0 && duration.is_finite(),
+            "duration must be finite and at least 0, not {duration}"
+        );
         if duration == 0.0 {
             return Self { times: vec![0.0], positions: vec![Vec3::ZERO], turns: vec![0.0], up };
         }
@@ -149,12 +152,12 @@ impl MotionTrack {
         let count = times.len();
         assert!(
             count > 0 && [positions.len(), turns.len()] == [count; 2],
-            "each time has a place and a turn"
+            "positions and rotations must be as many as times"
         );
         assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "times increase");
         let finite =
             times.iter().chain(&turns).all(|x| x.is_finite()) && positions.iter().all(|p| p.is_finite());
-        assert!(finite, "times, places and turns are finite");
+        assert!(finite, "times, positions and rotations must be finite");
         Self { times, positions, turns, up }
     }
 

@@ -1,4 +1,4 @@
-//! A clip at a time: the glTF 2.0 interpolations (Appendix C).
+//! Samples a clip at a time by the glTF 2.0 interpolations (Appendix C).
 
 use crate::clip::{Channel, Clip, Interpolation, Property};
 use crate::rig::{LocalTransform, Rig};

@@ -1,4 +1,4 @@
-//! A motion as one pose a frame, for capture and clean-up.
+//! A motion as one pose per frame, for capture and clean-up.
 
 use crate::clip::sample::{SampleCache, Wrap, sample_cached};
 use crate::clip::{Channel, Clip, Interpolation, Property};
@@ -17,7 +17,7 @@ pub struct Take {
 }
 
 impl Take {
-    /// Most frames of a take (hours), a bound on what a file may claim.
+    /// Largest number of frames of a take (hours): bounds the memory that a file can request.
     pub const MOST_FRAMES: usize = 1 << 20;
 
     /// A clip sampled every `frame_time` seconds, from its start to its end: the last frame is the whole one nearest to
@@ -27,11 +27,11 @@ impl Take {
     /// If `frame_time` is not above 0, the rig has no joints, the take would have more than
     /// [`MOST_FRAMES`](Self::MOST_FRAMES), and as [`sample`](crate::clip::sample::sample()).
     pub fn of(rig: &Rig, clip: &Clip, frame_time: f64) -> Self {
-        assert!(frame_time > 0.0, "frames are some time apart, not {frame_time} s");
-        assert!(!rig.joints.is_empty(), "a rig without joints does not move");
+        assert!(frame_time > 0.0, "frame_time must be positive, not {frame_time} s");
+        assert!(!rig.joints.is_empty(), "the rig must have joints");
         let joints = rig.joints.len();
         let frames = frames_of(clip.duration, frame_time);
-        assert!(frames <= Self::MOST_FRAMES, "{frames} frames are more than a take may have");
+        assert!(frames <= Self::MOST_FRAMES, "{frames} frames exceed the limit of a take");
         let mut poses = vec![LocalTransform::default(); frames * joints];
         let mut cache = SampleCache::default();
         for (frame, pose) in poses.chunks_exact_mut(joints).enumerate() {
@@ -51,7 +51,7 @@ impl Take {
         self.frames().saturating_sub(1) as f64 * self.frame_time
     }
 
-    /// When a frame is, seconds.
+    /// Time of a frame, seconds.
     pub fn time(&self, frame: usize) -> f32 {
         (frame as f64 * self.frame_time) as f32
     }
@@ -82,7 +82,7 @@ impl Take {
         self.poses.iter().skip(joint).step_by(self.joints).copied()
     }
 
-    /// The take as a clip with a key a frame. Joints in the rest pose get no channel, constant others one key.
+    /// The take as a clip with one key per frame. Joints in the rest pose get no channel, constant others one key.
     ///
     /// # Panics
     /// If the take does not fit the rig.

@@ -1,4 +1,4 @@
-//! Contacts of the feet with the ground, and the slide of the feet during these.
+//! Contacts of the feet with the ground, and the slide of the feet during contacts.
 
 mod footsteps;
 
@@ -15,7 +15,7 @@ use sinew_math::{Affine, Rotation, Vec3, clamp, max, min, trig};
 /// A foot on the ground for a while.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootContact {
-    /// Whose.
+    /// Side of the foot.
     pub foot: Side,
     /// Seconds from the start of the take: the footfall.
     pub start: f32,
@@ -46,9 +46,9 @@ pub fn floor_under(points: &[[[Vec3; 2]; 2]]) -> f32 {
 /// The ground that a motion stands on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ground {
-    /// Metres.
+    /// Height of the ground, metres.
     pub height: f32,
-    /// Velocity of the ground under a body that walks on the spot, m/s; zero under one that gets on. Its y is 0.
+    /// Velocity of the ground under a body that walks in place, m/s; zero under a body that moves forward. Its y is 0.
     pub velocity: Vec3,
 }
 
@@ -94,7 +94,7 @@ impl Ground {
 
 /// Tilt of each sole while it stands, radians, positive for toes up, and the feet with soles flattened by it.
 ///
-/// A reference pose hardly tells how a shoe was worn; the heights of heel and ball on the ground do. Tilts over 0.2 rad
+/// A reference pose hardly shows how a shoe was worn; the heights of heel and ball on the ground do. Tilts over 0.2 rad
 /// belong to a body on its toes and are ignored.
 pub fn flatten_soles(feet: &[Foot; 2], points: &[[[Vec3; 2]; 2]]) -> ([f32; 2], [Foot; 2]) {
     let (mut tilts, mut flat) = ([0.0; 2], *feet);
@@ -117,7 +117,7 @@ pub(crate) fn toes_up(angle: f32) -> Rotation {
     Rotation::from_axis_angle(Vec3::NEG_X, angle)
 }
 
-/// The number that nine of ten are not below.
+/// The tenth percentile.
 fn tenth(mut numbers: Vec<f32>) -> f32 {
     numbers.sort_by(f32::total_cmp);
     numbers.get(numbers.len() / 10).copied().unwrap_or(0.0)
@@ -133,7 +133,7 @@ pub fn lowest(points: &[[Vec3; 2]; 2]) -> f32 {
 pub struct ContactSettings {
     /// Speed thresholds of the ball of a foot, m/s: it lands below the first and leaves above the second.
     pub speed: [f32; 2],
-    /// Highest that it is above the floor, metres.
+    /// Largest height of the ball above the floor, metres.
     pub height: f32,
     /// Speed over the ground from which a body runs, m/s.
     pub run: f32,
@@ -142,7 +142,7 @@ pub struct ContactSettings {
 }
 
 impl ContactSettings {
-    /// For a body with legs so long (metres, hip to floor): those of an adult, by Froude's law of like motions.
+    /// Settings for legs of this length (metres, hip to floor): those of an adult, scaled by Froude's law.
     pub fn for_leg(length: f32) -> Self {
         let size = length / 0.9;
         let time = size.sqrt();
@@ -206,9 +206,9 @@ fn speed(take: &Take, points: &[Vec3], frame: usize) -> f32 {
 pub struct FootSlide {
     /// Mean speed over the ground, m/s: distance slid over time stood.
     pub mean: f32,
-    /// Farthest that a foot gets in one contact from where it landed, metres.
+    /// Largest distance of a foot from its landing place within one contact, metres.
     pub farthest: f32,
-    /// Time stood, both feet, seconds.
+    /// Total standing time of both feet, seconds.
     pub time: f32,
 }
 

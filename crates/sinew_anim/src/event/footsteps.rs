@@ -1,6 +1,6 @@
 use std::collections::VecDeque;
 
-/// Source that saw a footstep first.
+/// Source that reported a footstep first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FootstepSource {
     /// An event of a clip.
@@ -14,7 +14,7 @@ pub enum FootstepSource {
 pub struct Footstep {
     /// The foot, by a number of the user's.
     pub foot: u32,
-    /// When, seconds on the user's clock.
+    /// Time, seconds on the user's clock.
     pub time: f64,
     /// Source of the first report.
     pub source: FootstepSource,
@@ -22,8 +22,8 @@ pub struct Footstep {
 
 /// Merges a clip's footsteps and physical contacts into one list of steps.
 ///
-/// Everything within the window after a step of the same foot is that step: the contact of an event, the event of a
-/// contact, and a bouncing foot.
+/// Events and contacts within the window after a step of the same foot belong to that step: the contact of an event,
+/// the event of a contact, and contacts of a bouncing foot.
 #[derive(Clone, Debug)]
 pub struct FootstepMerger {
     window: f64,
@@ -37,7 +37,10 @@ impl FootstepMerger {
     /// # Panics
     /// If `window` is negative or not finite.
     pub fn new(window: f64) -> Self {
-        assert!(window >= 0.0 && window.is_finite(), "a window is 0 or longer, not {window}");
+        assert!(
+            window >= 0.0 && window.is_finite(),
+            "the window must be finite and at least 0, not {window}"
+        );
         Self { window, last: VecDeque::new() }
     }
 

@@ -38,21 +38,21 @@ impl Default for EventPolicy {
     }
 }
 
-/// Something that happens in a clip: a foot comes down, a fist arrives.
+/// A named time in a clip, such as a foot landing or a fist hitting.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClipEvent {
-    /// When, seconds from the clip's start, 0 to its length.
+    /// Time, seconds from the clip's start, 0 to its length.
     pub time: f32,
-    /// Name of what happens; several events may have one name.
+    /// Name of the event; several events may share it.
     pub name: String,
     /// Data for the user, or `""`.
     pub payload: String,
-    /// When it is fired.
+    /// Condition for firing it.
     pub policy: EventPolicy,
 }
 
 impl ClipEvent {
-    /// With the usual policy and no payload.
+    /// Creates an event with the default policy and no payload.
     pub fn new(time: f32, name: &str) -> Self {
         Self { time, name: name.to_owned(), ..Self::default() }
     }
@@ -61,9 +61,9 @@ impl ClipEvent {
 /// An event of an update. Name and payload: [`AnimationSet::event`](crate::AnimationSet::event).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiredEvent {
-    /// When, seconds from the start of the update, 0 to its length.
+    /// Time, seconds from the start of the update, 0 to its length.
     pub seconds: f64,
-    /// The clip it is in.
+    /// Clip of the event.
     pub clip: ClipId,
     /// Index in the clip's events.
     pub event: usize,

@@ -1,4 +1,4 @@
-//! Columns of garments: chains of joints, and which lie side by side.
+//! Columns of garments: chains of joints and their order side by side.
 
 use super::GarmentColumn;
 use crate::rig::{JointIdx, Rig};

@@ -1,4 +1,4 @@
-//! Garments by the names of joints.
+//! Guesses garments from joint names.
 
 use super::{Garment, GarmentColumn, is_ring, side_by_side};
 use crate::rig::{JointIdx, Rig};
@@ -47,7 +47,7 @@ fn tops(rig: &Rig, of_kind: impl Fn(JointIdx) -> bool) -> Vec<JointIdx> {
     tops
 }
 
-/// Index of the kind that a name tells; none for control joints.
+/// Index of the kind implied by a name; `None` for control joints.
 fn kind(name: &str) -> Option<usize> {
     let words = words(name);
     if words.iter().any(|word| matches!(word.as_str(), "ik" | "ctrl" | "control" | "target")) {

@@ -47,7 +47,7 @@ use sinew_math::Vec3;
 pub struct Garment {
     /// Name of it for people, or `""`.
     pub name: String,
-    /// Its chains of joints, side by side; no joint is in two. Empty for a sheet.
+    /// Chains of joints, side by side; no joint is in two. Empty for a sheet.
     pub columns: Vec<GarmentColumn>,
     /// Mesh that it is, if not chains.
     pub sheet: Option<MeshSheet>,

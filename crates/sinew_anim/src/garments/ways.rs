@@ -13,7 +13,7 @@ pub struct Ways {
 }
 
 impl Ways {
-    /// No starts yet, for this many vertices.
+    /// Starts without sources, for this many vertices.
     pub fn new(count: usize) -> Self {
         Self { length: vec![f32::INFINITY; count], from: vec![usize::MAX; count] }
     }
@@ -25,7 +25,7 @@ impl Ways {
             (self.length[start], self.from[start]) = (0.0, start);
             open.push((Reverse(0), Reverse(start)));
         }
-        // Lengths are not negative, so their bits are in their order.
+        // Lengths are not negative, so the order of their bits is their order.
         while let Some((Reverse(bits), Reverse(at))) = open.pop() {
             let length = f32::from_bits(bits);
             if length > self.length[at] {

@@ -1,4 +1,4 @@
-//! Feet on ground other than the animation's flat floor.
+//! Places feet on ground that differs from the animation's flat floor.
 
 use super::two_bone::{Pole, TwoBone, TwoBoneGoal, two_bone_ik};
 use super::{set_rotation, shift};
@@ -9,9 +9,9 @@ use sinew_math::{Affine, Rotation, Transform, Vec3, clamp, direction, max, min};
 /// Ground below a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootGround {
-    /// Along up, from the origin of the space.
+    /// Height along the up axis, from the origin of the space.
     pub height: f32,
-    /// Unit.
+    /// Unit normal of the ground.
     pub normal: Vec3,
 }
 
@@ -41,7 +41,7 @@ pub struct PlacedFoot {
     pub raised: f32,
     /// Angle by which it was tilted.
     pub tilted: f32,
-    /// Distance of its ankle from where it should be.
+    /// Distance of its ankle from its goal.
     pub miss: f32,
 }
 
@@ -137,7 +137,7 @@ fn highest_pelvis(model: &[Affine], leg: &TwoBone, target: Vec3, up: Vec3) -> f3
 struct Step {
     raise: f32,
     target: Vec3,
-    /// Rotation of the foot before.
+    /// Rotation of the foot before placement.
     rotation: Rotation,
     tilt: Rotation,
 }

@@ -21,9 +21,9 @@ pub struct TwoBone {
 /// Side to which the middle joint bends. The target leaves only this rotation free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pole {
-    /// The side on which it is. A limb that is straight bends toward this direction, any length.
+    /// The current side. A straight limb bends toward this direction, of any length.
     Keep(Vec3),
-    /// Toward this direction, any length.
+    /// The joint bends toward this direction, of any length.
     Toward(Vec3),
 }
 
@@ -44,7 +44,7 @@ pub struct TwoBoneGoal {
 }
 
 impl TwoBoneGoal {
-    /// Full weight, not soft, without stretch.
+    /// A goal with full weight, no softness and no stretch.
     pub fn at(target: Vec3, pole: Pole) -> Self {
         Self { target, pole, softness: 0.0, stretch: 1.0, weight: 1.0 }
     }

@@ -14,7 +14,7 @@ use sinew_math::{ReadError, Reader, Rotation, Vec3, Writer, max, min, trig};
 pub struct Decay {
     /// Offset at the start, any unit.
     pub offset: Vec3,
-    /// Its velocity at the start, per second.
+    /// Velocity of the offset at the start, per second.
     pub velocity: Vec3,
 }
 
@@ -54,7 +54,7 @@ fn quintic(x0: f32, v0: f32, t1: f32, time: f32) -> f32 {
     if t1.is_nan() || t1 <= 0.0 || time >= t1 {
         return 0.0;
     }
-    // In units of t₁: nothing is divided by its powers.
+    // Compute in units of t₁, so that nothing is divided by its powers.
     let (t, v) = (time / t1, v0 * t1);
     let swings_through = -v > 5.001 * x0;
     let a = if swings_through { 0.0 } else { max(0.0, -8.0 * v - 20.0 * x0) };
@@ -83,11 +83,11 @@ struct JointDecay {
 /// Two poses of one motion, and the time between them.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<'a> {
-    /// The pose now.
+    /// The present pose.
     pub now: &'a Pose,
     /// Another pose of the same rig: `seconds` earlier for the old motion, `seconds` later for the new one.
     pub other: &'a Pose,
-    /// Above 0; otherwise there is no velocity.
+    /// Time between both poses; if it is not above 0 there is no velocity.
     pub seconds: f32,
 }
 
@@ -104,7 +104,10 @@ impl Inertia {
     /// # Panics
     /// If the poses differ in length, or `seconds` is negative or not finite.
     pub fn start(&mut self, from: Motion<'_>, to: Motion<'_>, seconds: f32) {
-        assert!(seconds >= 0.0 && seconds.is_finite(), "a transition takes 0 s or longer, not {seconds}");
+        assert!(
+            seconds >= 0.0 && seconds.is_finite(),
+            "the duration of a transition must be at least 0 s, not {seconds}"
+        );
         let joints = from.now.len();
         for pose in [from.other, to.now, to.other] {
             assert_eq!(pose.len(), joints, "four poses of one rig");

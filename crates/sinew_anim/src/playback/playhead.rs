@@ -6,12 +6,12 @@ const MOST_LAPS: u64 = 1 << 53;
 /// Continuation after the end of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LoopMode {
-    /// The start: its end and its start are one moment.
+    /// Continues at the start; end and start are one time.
     #[default]
     Loop,
     /// Backward, then forward again.
     PingPong,
-    /// Nothing: the last pose holds, and played backward the first.
+    /// Stops: the last pose holds, and played backward the first.
     Once,
 }
 
@@ -24,7 +24,7 @@ pub struct Playhead {
     mode: LoopMode,
     length: f64,
     at: Place,
-    /// Nothing has been passed yet: an event exactly here is still to come.
+    /// True before any event was passed: an event exactly here is still to come.
     is_fresh: bool,
 }
 
@@ -36,13 +36,13 @@ pub(crate) struct Place {
 }
 
 impl Playhead {
-    /// At `start`, clip seconds: beyond the clip's ends in another lap, or clamped if it plays once. A clip without
-    /// length, a pose, plays once.
+    /// Creates a playhead at `start`, clip seconds: beyond the clip's ends in another lap, or clamped if it plays once.
+    /// A clip without length, a pose, plays once.
     ///
     /// # Panics
     /// If `length` is negative, or a number is not finite.
     pub fn new(mode: LoopMode, length: f32, start: f64) -> Self {
-        assert!(length >= 0.0 && length.is_finite(), "a clip's length is 0 or above, not {length}");
+        assert!(length >= 0.0 && length.is_finite(), "the length of a clip must be at least 0, not {length}");
         let at = Place { lap: 0, time: 0.0 };
         let mode = if length > 0.0 { mode } else { LoopMode::Once };
         let mut playhead = Self { mode, length: f64::from(length), at, is_fresh: true };
@@ -95,7 +95,7 @@ impl Playhead {
     /// # Panics
     /// If `time` is not finite.
     pub fn seek(&mut self, time: f64) {
-        assert!(time.is_finite(), "a time is finite, not {time}");
+        assert!(time.is_finite(), "the time must be finite, not {time}");
         self.at = self.moved(Place { lap: 0, time: 0.0 }, time);
         self.is_fresh = true;
     }
@@ -105,7 +105,7 @@ impl Playhead {
     /// # Panics
     /// If `seconds` is not finite.
     pub fn advance(&mut self, seconds: f64) -> Passage {
-        assert!(seconds.is_finite(), "a time is finite, not {seconds}");
+        assert!(seconds.is_finite(), "the time must be finite, not {seconds}");
         self.move_to(self.moved(self.at, seconds), seconds < 0.0)
     }
 
@@ -156,13 +156,13 @@ impl Playhead {
     }
 }
 
-/// From one position to another: forward it passes everything after the first up to the second, backward everything
-/// before the first down to the second.
+/// Passes from one position to another: forward everything after the first up to the second, backward everything before
+/// the first down to the second.
 ///
-/// So several steps pass what one step from the first position to the last does.
+/// Several steps therefore pass the same events as one step over the same distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
-    /// The position before.
+    /// The previous position.
     playhead: Playhead,
     to: Place,
     is_backward: bool,
@@ -187,7 +187,7 @@ impl Crossing {
 #[derive(Clone, Copy)]
 struct Recurring {
     at: Place,
-    /// 0: it does not recur.
+    /// Number of laps per period; 0: the moment does not recur.
     period: i64,
 }
 

@@ -10,7 +10,7 @@ pub struct Markers {
 }
 
 impl Default for Markers {
-    /// The start only: whole laps match.
+    /// Only the start of the clip is a marker, so whole laps match.
     fn default() -> Self {
         Self { times: vec![0.0] }
     }
@@ -26,7 +26,7 @@ pub struct Phase {
 }
 
 impl Markers {
-    /// At `times`, clip seconds.
+    /// Creates markers at `times`, clip seconds.
     ///
     /// # Panics
     /// If there are no markers, or they are not strictly increasing from 0 or later.
@@ -66,7 +66,7 @@ impl Markers {
         let (lap, marker) = (phase.marker.div_euclid(self.len()), phase.marker.rem_euclid(self.len()));
         let (start, end) = (self.time(marker, length), self.time(marker + 1, length));
         let time = start + phase.share * (end - start);
-        // After the last marker, and before the first of the next lap.
+        // The place is after the last marker, and before the first of the next lap.
         if time >= length { Place { lap: lap + 1, time: time - length } } else { Place { lap, time } }
     }
 }

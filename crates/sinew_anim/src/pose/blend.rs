@@ -1,4 +1,4 @@
-//! Any number of poses into one, in an order of their own.
+//! Blends any number of poses into one, independently of their order.
 
 use super::add::Add;
 use super::parts::Parts;
@@ -17,7 +17,7 @@ pub struct Mask {
 }
 
 impl Mask {
-    /// The same share for all joints.
+    /// Creates a mask with the same share for all joints.
     ///
     /// # Panics
     /// If `share` is not in 0..=1.
@@ -35,7 +35,7 @@ impl Mask {
         self.joints == 0
     }
 
-    /// Share of `joint`.
+    /// Share of a joint.
     ///
     /// # Panics
     /// If the number of shares is not that of the joints.
@@ -49,14 +49,14 @@ impl Mask {
     }
 }
 
-/// From a share per joint.
+/// Creates a mask from a share per joint.
 ///
 /// # Panics
-/// If one is not in 0..=1.
+/// If a share is not in 0..=1.
 impl FromIterator<f32> for Mask {
     fn from_iter<I: IntoIterator<Item = f32>>(shares: I) -> Self {
         let shares = shares.into_iter().map(|share| {
-            assert!((0.0..=1.0).contains(&share), "a mask's share is in 0..=1, not {share}");
+            assert!((0.0..=1.0).contains(&share), "a share of a mask must be in 0..=1, not {share}");
             [share]
         });
         let records: Blocks<1> = shares.collect();
@@ -76,7 +76,7 @@ pub struct BlendLayer<'a> {
 }
 
 impl<'a> BlendLayer<'a> {
-    /// The whole body.
+    /// Creates a layer of the whole body.
     pub fn new(pose: &'a Pose, weight: f32) -> Self {
         Self { pose, weight, mask: None }
     }
@@ -143,7 +143,10 @@ impl Blender {
     /// If `fill_below` is negative or not finite.
     pub fn new(options: BlendOptions) -> Self {
         let fill_below = options.fill_below;
-        assert!(fill_below >= 0.0 && fill_below.is_finite(), "`fill_below` is 0 or above, not {fill_below}");
+        assert!(
+            fill_below >= 0.0 && fill_below.is_finite(),
+            "`fill_below` must be at least 0, not {fill_below}"
+        );
         Self { options, order: Vec::new() }
     }
 

@@ -27,7 +27,7 @@ fn same_on_all(start: &Pose, run: impl Fn(Level, &mut Pose)) {
         out
     };
     let scalar = result(Level::Scalar);
-    assert_ne!(scalar, *start, "it does something");
+    assert_ne!(scalar, *start, "the operation changes the pose");
     for level in Level::available() {
         assert_eq!(result(level), scalar, "{level:?}");
     }

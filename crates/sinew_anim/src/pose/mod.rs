@@ -48,7 +48,7 @@ pub fn local_to_model(rig: &Rig, local: &[LocalTransform], root: &Affine, model:
 pub struct JointVelocity {
     /// Velocity of the joint's origin, the pose's unit of length per second.
     pub linear: Vec3,
-    /// Radians per second.
+    /// Angular velocity, radians per second.
     pub angular: Vec3,
 }
 

@@ -18,7 +18,7 @@ pub struct Skeleton {
 }
 
 impl Skeleton {
-    /// Skeleton of a rig.
+    /// Creates the skeleton of a rig.
     ///
     /// # Panics
     /// If a joint's parent does not come before it.

@@ -64,14 +64,14 @@ impl<L: Lanes> Quaternions<L> {
         Self { v, w: L::select(mask, a.w, b.w) }
     }
 
-    /// The same rotation on the hemisphere of `reference`.
+    /// Chooses the sign on the hemisphere of `reference`.
     #[inline(always)]
     pub(crate) fn toward(self, reference: Self) -> Self {
         let away = L::lt(self.dot(reference), L::splat(0.0));
         Self::select(away, Self { v: -self.v, w: -self.w }, self)
     }
 
-    /// At length 1; `square` is the squared length, above zero.
+    /// Scales to length 1; `square` is the squared length, above zero.
     #[inline(always)]
     pub(crate) fn unit(self, square: L) -> Self {
         self.times(L::splat(1.0) / square.sqrt())

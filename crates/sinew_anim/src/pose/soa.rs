@@ -23,7 +23,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Identities.
+    /// Creates identities.
     pub fn new(joints: usize) -> Self {
         let identity = Block::splat(record(&LocalTransform::default()));
         Self { blocks: vec![identity; joints.div_ceil(WIDTH)], joints }

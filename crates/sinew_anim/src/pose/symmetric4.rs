@@ -19,7 +19,7 @@ pub(super) struct Symmetric4<L> {
 }
 
 impl<L: Lanes> Symmetric4<L> {
-    /// `weight q qᵀ`.
+    /// Computes `weight q qᵀ`.
     #[inline(always)]
     pub(super) fn outer(q: Quaternions<L>, weight: L) -> Self {
         let (Vector3 { x, y, z }, w) = (q.v, q.w);

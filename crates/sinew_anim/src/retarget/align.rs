@@ -8,17 +8,17 @@ use sinew_math::{Mat3, Rotation, Transform, Vec3, direction};
 /// Joints of one role.
 pub(super) struct Pair {
     pub role: Role,
-    /// The actor's.
+    /// Joint of the actor.
     pub from: JointIdx,
-    /// The character's.
+    /// Joint of the character.
     pub to: JointIdx,
-    /// Rotation after the actor's that gives the character's, each in its body's axes.
+    /// Correction of the rotation: `character = actor · correction`, each in its own body's axes.
     pub correction: Rotation,
 }
 
 /// Correspondence of the joints of two bodies.
 pub(super) struct Alignment {
-    /// By the character's joint.
+    /// Pairs in the order of the character's joints.
     pub pairs: Vec<Pair>,
     /// Roles that only the character has.
     pub unmatched: Vec<Role>,
@@ -135,7 +135,8 @@ fn chain_turns(
     [(upper, first), (lower, second), (end, second)]
 }
 
-/// The same for a leg; feet that stand in both reference poses stay flat, and only their headings are matched.
+/// Rotations of a leg, as of an arm; feet that stand in both reference poses stay flat, and only their headings are
+/// matched.
 fn leg_turns(from: &Stance<'_>, to: &Stance<'_>, trunk: Rotation, roles: [Role; 4]) -> Vec<(Role, Rotation)> {
     let [upper, lower, foot, toes] = roles;
     let [thigh, shank, (_, along)] = chain_turns(from, to, trunk, [upper, lower, foot]);

@@ -29,9 +29,9 @@ use sinew_math::{Affine, Rotation, Vec3, max};
 /// A body: its rig and analysis.
 #[derive(Clone, Copy, Debug)]
 pub struct Body<'a> {
-    /// Joints.
+    /// Joints of the body.
     pub rig: &'a Rig,
-    /// Its roles; the bind pose is the reference pose. See [`stand`] for a skeleton without skin.
+    /// Roles of the rig; the bind pose is the reference pose. See [`stand`] for a skeleton without skin.
     pub analysis: &'a RigAnalysis,
 }
 
@@ -43,7 +43,7 @@ pub enum Pace {
     Actor,
     /// Longer by the square root of the ratio of leg lengths (Froude: like walks at equal v²/(g l)): giants seem large.
     Froude,
-    /// That many times longer, above 0.
+    /// Longer by this factor, above 0.
     Times(f32),
 }
 
@@ -53,7 +53,7 @@ pub enum Feet {
     /// Feet are held where the actor's stand, and lie flat on the floor meanwhile.
     #[default]
     Locked,
-    /// They go where the rotations carry them, and are tilted as the actor's.
+    /// The feet go where the rotations carry them, and are tilted as the actor's.
     Free,
 }
 
@@ -64,7 +64,7 @@ pub struct RetargetOptions {
     pub frame_time: f64,
     /// Default: the actor's duration.
     pub pace: Pace,
-    /// Default: locked.
+    /// Treatment of the feet. Default: locked.
     pub feet: Feet,
     /// Height of the actor's floor, metres along its up axis from the origin of its file. Default: found from the feet.
     pub floor: Option<f32>,
@@ -76,7 +76,7 @@ impl Default for RetargetOptions {
     }
 }
 
-/// Why a motion cannot be carried over.
+/// Reason why a motion cannot be retargeted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RetargetError {
     /// Roles could only be guessed as those of some creature.
@@ -89,20 +89,20 @@ pub enum RetargetError {
     #[error("{0} must be above 0 and finite")]
     NotPositive(&'static str),
     /// The clip lasts longer than [`Take::MOST_FRAMES`] frames.
-    #[error("the clip lasts {0} frames, which is more than can be")]
+    #[error("the clip lasts {0} frames, which exceeds the limit")]
     TooLong(usize),
 }
 
 /// A retargeted motion, and its quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Retargeted {
-    /// One pose a frame.
+    /// The retargeted motion, one pose a frame.
     pub take: Take,
     /// Foot contacts, seconds of the new motion.
     pub contacts: Vec<FootContact>,
     /// Roles that both bodies have: actor's joint, character's joint.
     pub pairs: Vec<(Role, JointIdx, JointIdx)>,
-    /// Roles of the character that the actor has not: these joints go along with their parents.
+    /// Roles of the character that the actor lacks: these joints follow their parents.
     pub unmatched: Vec<Role>,
     /// Length of the character's legs over that of the actor's.
     pub scale: f32,
@@ -221,15 +221,15 @@ struct Transfer<'a> {
     actor: Body<'a>,
     character: Body<'a>,
     alignment: Alignment,
-    /// From the files' spaces to the bodies' own.
+    /// Transforms from the files' spaces to the bodies' own.
     actor_root: Affine,
     character_root: Affine,
     actor_feet: [Foot; 2],
-    /// The character's.
+    /// Legs of the character.
     legs: Legs,
-    /// From there to the middle of its hip joints, in the pelvis' own axes without scale, metres.
+    /// Vector from the pelvis to the middle of its hip joints, in the pelvis' own axes without scale, metres.
     hips_to_legs: Vec3,
-    /// Character's legs over actor's.
+    /// Length of the character's legs over that of the actor's.
     scale: f32,
 }
 
@@ -237,7 +237,7 @@ struct Transfer<'a> {
 struct Steps {
     ground: Ground,
     contacts: Vec<FootContact>,
-    /// Per frame the height of the lowest sole over the ground, metres; 0 while a foot stands.
+    /// Height of the lowest sole over the ground in each frame, metres; 0 while a foot stands.
     heights: Vec<f32>,
     slide: FootSlide,
 }

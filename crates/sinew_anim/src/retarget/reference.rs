@@ -11,9 +11,9 @@ use sinew_math::{Vec3, direction};
 /// Source of a reference pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reference {
-    /// It was given: the rest pose that a file puts before its motion.
+    /// A given pose: the rest pose that a file puts before its motion.
     Stated,
-    /// The rig's rest pose.
+    /// The rest pose of the rig.
     Rest,
     /// The clip at that time (seconds): the rig's rest pose is not a standing pose.
     Clip(f32),

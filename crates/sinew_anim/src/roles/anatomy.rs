@@ -26,7 +26,7 @@ pub(super) struct Anatomy {
     pub graph: Graph,
     pub roles: Vec<Option<RoleGuess>>,
     pub humanoid: bool,
-    /// Unit, model space.
+    /// Up axis, a unit vector in model space.
     pub up: Vec3,
     /// Unit, model space, at right angles to `up`.
     pub left: Vec3,
@@ -42,7 +42,7 @@ pub(super) struct Scene<'a> {
     hints: &'a Hints,
     graph: Graph,
     symmetry: Symmetry,
-    /// Per joint; empty readings where names are not trusted.
+    /// Reading of each joint's name; empty readings where names are not trusted.
     readings: Vec<Reading>,
 }
 
@@ -60,7 +60,7 @@ impl Anatomy {
         Ok(draft.finish(scene, notes))
     }
 
-    /// Sizes of the body that tell the unit of its file.
+    /// Sizes of the body from which the unit of its file follows.
     pub fn measured(&self, bound: &Bound, species: Option<Species>) -> Measured {
         let stance = Stance::new(bound, self.up);
         let is_head = |guess: &Option<RoleGuess>| guess.is_some_and(|guess| guess.role == Role::Head);
@@ -144,7 +144,7 @@ impl<'a> Scene<'a> {
         Some((Self { rig, bound, hints, graph, symmetry, readings }, notes))
     }
 
-    /// By the file, else by shape, else by names, else generic.
+    /// Drafts the roles by the file, else by shape, else by names, else generic ones.
     fn draft(&self, notes: &mut Vec<String>) -> Draft {
         if let Some(stated) = self.stated_draft() {
             notes.push("roles are those that the file states".into());
@@ -300,7 +300,7 @@ impl<'a> Scene<'a> {
         let steps = if named == 0.0 && feet != 0.0 { 0.0 } else { self.walks_toward(up) };
         let walk = if steps.abs() > STEP_CORRELATION { steps.signum() } else { 0.0 };
         if named != 0.0 {
-            // The feet contradict the names. A heel, a claw or a boot may cause that by itself.
+            // The feet contradict the names. A single heel, claw or boot may cause that.
             let shape = [feet, walk, bent, self.toes_lead(up, forward)];
             let against: f32 = shape.into_iter().map(|sign| -named * sign).sum();
             if against <= 0.0 {
@@ -309,23 +309,25 @@ impl<'a> Scene<'a> {
             let (left, which) =
                 if against >= 2.0 { (-named, "the shape counts") } else { (named, "the names count") };
             notes.push(format!(
-                "the feet point the other way than left and right are named: {which}, and which way the body faces is in doubt"
+                "the feet point opposite to the front that the names of left and right imply: {which}, and the front of the body is in doubt"
             ));
             return lateral * left;
         }
         if feet == 0.0 && walk != 0.0 {
-            notes.push("the feet hardly tell which way the body faces: the way they walk does".into());
+            notes.push(
+                "the feet hardly show the front of the body: it is taken from the walking direction".into(),
+            );
             return lateral * walk;
         }
         if feet == 0.0 && bent != 0.0 {
-            notes.push("the feet hardly tell which way the body faces: the elbows do".into());
+            notes.push("the feet hardly show the front of the body: it is taken from the elbows".into());
             return lateral * bent;
         }
-        // Half a per cent of the height and more is a foot, less is noise.
+        // A lead of half a per cent of the height or more is that of a foot; less is noise.
         if lead.abs() > LEAST_FOOT {
             return lateral * lead.signum();
         }
-        notes.push("the feet do not tell which way the body faces".into());
+        notes.push("the feet do not show the front of the body".into());
         let ahead = if up.y.abs() > 0.5 { Vec3::Z } else { -Vec3::Y };
         lateral * if forward.dot(ahead) < 0.0 { -1.0 } else { 1.0 }
     }
@@ -448,7 +450,7 @@ impl<'a> Scene<'a> {
                     if side.is_some() { reading.side == side } else { self.on_side_of(joint, on) };
                 reading.part == Some(part) && roles[joint].is_none() && (part == Part::Neck || same_side)
             };
-            // Of several, the one in line with its parent: controls have the names of bones, too.
+            // Among several, take the one in line with its parent: controls have the names of bones, too.
             let is_above =
                 |above: JointIdx, joint: JointIdx| ancestors(self.rig, joint).any(|at| at == above);
             let all: Vec<JointIdx> = (0..roles.len()).filter(named).collect();
@@ -510,7 +512,7 @@ impl<'a> Scene<'a> {
             let joint = draft.roles.iter().position(|r| r.is_some_and(|guess| guess.role == role));
             joint.map(|joint| stance.level(self.bound.model[joint].translation))
         };
-        // In the lowest third of the leg.
+        // The hands are in the lowest third of the leg.
         let low = |side: Side| {
             let foot = level(Role::Foot(side)).unwrap_or(0.0);
             let leg = level(Role::UpperLeg(side)).map_or(0.0, |hip| hip - foot);
@@ -621,12 +623,12 @@ impl<'a> Scene<'a> {
 
 /// Trust in the names of a rig, by what mirrored pairs have in common.
 enum Trust {
-    /// Names are mirrored.
+    /// The names are mirrored.
     All,
-    /// Both of a pair have one name except for numbers ("Leg.1", "Leg.2"): only words of the midline and of appendices
-    /// count.
+    /// Both joints of a pair have one name except for numbers ("Leg.1", "Leg.2"): only words of the midline and of
+    /// appendices count.
     Words,
-    /// Names do not match: so many of all pairs do.
+    /// The names do not match: number of matching pairs, and of all pairs.
     Nothing { agreeing: usize, pairs: usize },
 }
 

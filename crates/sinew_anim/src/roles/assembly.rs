@@ -41,7 +41,7 @@ pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<
             }
         }
     }
-    // And whose twin moves skin: a mirrored figure has both.
+    // The twin of the bone has skin: a mirrored figure has both.
     for (joint, reading) in readings.iter().enumerate().filter(|&(joint, _)| !moves(joint)) {
         let Some(part) = reading.part.filter(|part| LONG.contains(part)) else { continue };
         let Some(side) = reading.side else { continue };
@@ -95,7 +95,7 @@ impl<'a> Carriers<'a> {
         };
         let mut spine: Vec<JointIdx> = named(Part::Spine).collect();
         let mut chest = None;
-        // From the hips upward to the arms.
+        // Follow the spine from the hips upward to the arms.
         if let Some(low) = named(Part::Hips).next().map(place).or_else(|| mean(Part::UpperLeg)) {
             spine.sort_by(|&a, &b| (place(a) - low).length().total_cmp(&(place(b) - low).length()));
             // Without a neck or head by name, the spine continues to the crown.
@@ -111,7 +111,7 @@ impl<'a> Carriers<'a> {
         Self { readings, is_human: sides_agree(readings, bound), spine, chest, is_part }
     }
 
-    /// The parent of a joint by name; `None` if names do not tell.
+    /// The parent of a joint by name; `None` if the names do not contain it.
     pub fn of_joint(&self, joint: JointIdx) -> Option<JointIdx> {
         use Part::{
             Clavicle, Foot, Hand, Head, Hips, LowerArm, LowerLeg, Neck, Spine, Toes, UpperArm, UpperLeg,

@@ -64,7 +64,7 @@ pub(super) fn beside_the_bones(rig: &Rig, rest: &[Affine], bound: &[Option<Affin
         ancestors(rig, bone).for_each(|above| bears[above] = true);
     });
     let mut beside = vec![None; rig.joints.len()];
-    // For each such mesh the highest node below those that carry bones; its first mesh gives the position.
+    // Take the highest node below those that carry bones for each such mesh; its first mesh gives the position.
     for mesh in rig.meshes.iter().filter(|mesh| mesh.skin.is_none()) {
         let line = core::iter::once(mesh.joint).chain(ancestors(rig, mesh.joint));
         let own: Vec<JointIdx> = line.take_while(|&at| !bears[at]).collect();

@@ -18,7 +18,7 @@ pub(crate) struct Bound {
     pub area: Vec<f32>,
     /// All skinned vertices.
     pub vertices: Vec<Vec3>,
-    /// Per vertex the joint that moves it most; of a skeleton without skin the joint itself.
+    /// The joint that moves each vertex most; in a skeleton without skin the joint itself.
     pub movers: Vec<JointIdx>,
     /// Number of triangle edges that run from one joint's vertices to another's, the smaller joint first.
     pub links: BTreeMap<(JointIdx, JointIdx), u32>,
@@ -97,8 +97,8 @@ impl Bound {
         (self.lo, self.hi) = (min3(self.lo, position), max3(self.hi, position));
     }
 
-    /// The same for a skeleton without skin: bones weigh by their length, and joints act as vertices. `None` if no bone
-    /// has a finite length.
+    /// Collects the bind pose of a skeleton without skin: bones weigh by their length, and joints act as vertices.
+    /// `None` if no bone has a finite length.
     pub fn of_bones(rig: &Rig, pose: &[LocalTransform]) -> Option<Self> {
         let mut model = Vec::new();
         local_to_model(rig, pose, &Affine::IDENTITY, &mut model);
@@ -290,7 +290,7 @@ fn by_weight(rig: &Rig) -> Vec<&RigMesh> {
     meshes
 }
 
-/// Per slot of its skin true if it moves a vertex of the mesh.
+/// For each slot of the mesh's skin, true if it moves a vertex of the mesh.
 pub(super) fn moving_slots(rig: &Rig, mesh: &RigMesh) -> Vec<bool> {
     let mut moves = vec![false; mesh.skin.map_or(0, |skin| rig.skins[skin].joints.len())];
     for primitive in &mesh.primitives {
@@ -332,12 +332,12 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     if votes(&rest[mesh.joint]) > 0 {
         return rest[mesh.joint];
     }
-    // Of a line of joints that carry as much the first.
+    // Take the first of a line of joints that carry as much.
     let carries = |slot: usize| {
         let joint = skin.joints[slot];
         (carried[joint], core::cmp::Reverse(ancestors(rig, joint).count()))
     };
-    // A handle above the body may be bound in another scale, so it says nothing.
+    // A handle above the body may be bound in another scale, so it is no evidence.
     let size = |place: &Affine| place.linear.x_axis.length();
     let mut sizes: Vec<f32> = said.iter().map(size).collect();
     sizes.sort_by(f32::total_cmp);
@@ -353,7 +353,7 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     }
 }
 
-/// Transform whose axes agree most with all others, of the allowed ones.
+/// Allowed transform whose axes agree most with all others.
 fn most_alike(all: &[Affine], passes: impl Fn(&Affine) -> bool) -> Option<Affine> {
     let axes =
         |place: &Affine| [place.linear.x_axis, place.linear.y_axis, place.linear.z_axis].map(Vec3::normalize);

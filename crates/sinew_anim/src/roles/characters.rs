@@ -82,7 +82,7 @@ impl Extent {
         max(sides.x, max(sides.y, sides.z))
     }
 
-    /// Share of it within the other along the axis with the least; below 0 if they are apart.
+    /// Share of its box within the other box, along the axis with the smallest share; below 0 if the boxes are apart.
     fn common(&self, main: &Self) -> f32 {
         let common = min3(self.hi, main.hi) - max3(self.lo, main.lo);
         let share = |k: usize| {
@@ -142,7 +142,7 @@ pub(super) fn skeletons(rig: &Rig) -> Vec<Vec<usize>> {
             stems
         })
         .collect();
-    // Per group its stems and its meshes.
+    // Stems and meshes of each group.
     let mut groups: Vec<(Vec<JointIdx>, Vec<usize>)> = Vec::new();
     for (m, mesh) in rig.meshes.iter().enumerate() {
         let Some(skin) = mesh.skin else { continue };

@@ -16,7 +16,7 @@ pub struct Correction {
     pub ignored: Vec<JointIdx>,
 }
 
-/// Why a correction cannot be followed.
+/// Reason why a correction cannot be applied.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CorrectionError {
     /// True if there is nothing to correct.
@@ -26,7 +26,7 @@ pub enum CorrectionError {
     #[error("nothing that moves skin is left")]
     NothingLeft,
     /// A role, or a joint, is given twice.
-    #[error("`{}` is said twice: a role has one bone, and a bone one role", .0.name())]
+    #[error("`{}` is given twice: a role has one bone, and a bone one role", .0.name())]
     Twice(Role),
     /// A human role for a rig that is not read as human; these roles are missing.
     #[error(
@@ -51,7 +51,7 @@ fn listed(roles: &[Role]) -> String {
     if names.is_empty() { "the other roles".to_owned() } else { names.join(", ") }
 }
 
-/// Required for a human.
+/// Roles that a human needs.
 pub(super) fn needed() -> impl Iterator<Item = Role> {
     let is_needed = |role: &Role| {
         matches!(

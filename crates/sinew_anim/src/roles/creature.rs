@@ -10,7 +10,7 @@ use super::symmetry::Symmetry;
 use sinew_math::Vec3;
 
 /// A role per node: the midline chain with the most skin is the trunk, the first other midline chain the tail, every
-/// other chain a limb. If names tell a head or a tail (`parts`, per node), the trunk leads to the head and not to the
+/// other chain a limb. If names contain a head or a tail (`parts`, per node), the trunk leads to the head and not to the
 /// tail.
 pub(super) fn generic_roles(
     graph: &Graph,
@@ -20,8 +20,8 @@ pub(super) fn generic_roles(
 ) -> Vec<Role> {
     let mut roles: Vec<Option<Role>> = vec![None; graph.nodes.len()];
     let [to_head, to_tail] = [Part::Head, Part::Tail].map(|part| leads_to(graph, parts, part));
-    // Of several continuations: one toward the wanted part, then those not toward the unwanted, then the one with the
-    // most skin.
+    // Among several continuations, prefer one toward the wanted part, then those not toward the unwanted, then the one
+    // with the most skin.
     let better = |a: usize, b: usize, wanted: &[bool], unwanted: Option<&[bool]>| {
         let rank = |i: usize| (wanted[i], unwanted.is_none_or(|unwanted| !unwanted[i]));
         let skin = |i: usize| graph.nodes[i].subtree_area;
@@ -102,7 +102,7 @@ fn longest(graph: &Graph, node: usize) -> Option<usize> {
     graph.nodes[node].children.iter().copied().reduce(|a, b| if way(b) > way(a) { b } else { a })
 }
 
-/// The direction opposite to which most mirrored chains end; the file's own up (+Y) if nothing tells.
+/// The direction opposite to which most mirrored chains end; the file's own up (+Y) without such chains.
 pub(super) fn up_by_feet(graph: &Graph, bound: &Bound, symmetry: &Symmetry) -> Vec3 {
     let feet: Vec<Vec3> = (0..graph.nodes.len())
         .filter(|&i| graph.nodes[i].children.is_empty() && symmetry.other(i).is_some())

@@ -26,7 +26,7 @@ pub struct Gait {
 struct Poses {
     /// Seconds from frame to frame.
     frame_time: f32,
-    /// Per frame the model transform of every joint, file units.
+    /// Model transforms of all joints in each frame, file units.
     frames: Vec<Vec<Affine>>,
 }
 
@@ -49,7 +49,7 @@ pub(super) struct Pair {
     pub carrier: JointIdx,
     pub bind: Affine,
     pub ends: [JointIdx; 2],
-    /// Units, model space.
+    /// Walking direction, a unit vector in model space.
     pub forward: Vec3,
     pub up: Vec3,
     /// Height of the body, file units.

@@ -72,7 +72,7 @@ impl Graph {
         Some(graph)
     }
 
-    /// Attaches trees to the parent that their names tell.
+    /// Attaches trees to the parent that their names contain.
     fn hang_named(&mut self, carrier: impl Fn(JointIdx) -> Option<usize>) {
         let roots: Vec<usize> = (0..self.nodes.len()).filter(|&i| self.nodes[i].parent.is_none()).collect();
         for root in roots {

@@ -8,7 +8,7 @@ use sinew_math::Vec3;
 /// Evidence from around a rig: its clips, the exporter, other files, the target world. The default is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Hints {
-    /// Motion in its clips.
+    /// Motion of the clips.
     pub gait: Gait,
     /// File name without folder and extension; empty if there is none.
     pub name: String,

@@ -10,11 +10,11 @@ use sinew_math::{Vec3, clamp, max, min, trig};
 
 /// Directions and measures of the bind pose under the assumption that `up` is up.
 pub(super) struct Stance {
-    /// Unit, model space.
+    /// Up axis, a unit vector in model space.
     pub up: Vec3,
-    /// Least height of the skin, file units along `up`.
+    /// Lowest height of the skin, file units along `up`.
     pub floor: f32,
-    /// From floor to crown, file units.
+    /// Height from floor to crown, file units.
     pub height: f32,
 }
 
@@ -40,7 +40,7 @@ pub(super) type Split = (usize, usize, Option<usize>);
 /// An arm or a leg with its mirror image. Index 0 is the side toward [`Symmetry::lateral`].
 #[derive(Clone, Debug)]
 pub(super) struct Limb {
-    /// From the trunk outward, as far as both sides agree.
+    /// Joints from the trunk outward, as far as both sides agree.
     pub chain: [Vec<usize>; 2],
     pub split: Split,
 }
@@ -49,9 +49,9 @@ pub(super) struct Limb {
 #[derive(Clone, Debug)]
 pub(super) struct Humanoid {
     pub pelvis: usize,
-    /// From above the pelvis to where the arms attach.
+    /// Joints from above the pelvis to where the arms attach.
     pub spine: Vec<usize>,
-    /// From above the chest to below the head.
+    /// Joints from above the chest to below the head.
     pub neck: Vec<usize>,
     pub head: usize,
     pub arms: Limb,
@@ -262,8 +262,8 @@ impl Evidence<'_> {
         }
         let most = near.iter().map(|&i| self.graph.nodes[i].area).fold(0.0, max);
         let fair = near.iter().copied().filter(|&i| self.graph.nodes[i].area >= 0.2 * most);
-        // Of two in a chain the lower one: the other is a handle for the body. Of two at one height, the one that moves
-        // less than half as much skin is a handle too.
+        // In a chain of two, take the lower one: the other is a handle for the body. Of two at one height, the one that
+        // moves less than half as much skin is a handle too.
         let leads = |handle: usize, body: usize| {
             let (above, areas) =
                 (self.level(handle) - self.level(body), [handle, body].map(|i| self.graph.nodes[i].area));
@@ -334,7 +334,7 @@ impl Evidence<'_> {
         }
     }
 
-    /// In a chain of four or more: the two consecutive segments whose lengths are most like those of an upper arm and a
+    /// In a chain of four or more joints, take the two consecutive segments whose lengths are most like those of an upper arm and a
     /// forearm, or a thigh and a shank (0.9 : 1), that cover at least half of the length. A joint with hardly any bone
     /// after it (a clavicle's end, a wrist before the hand) begins neither.
     fn split_by_length(&self, chain: &[usize]) -> Split {

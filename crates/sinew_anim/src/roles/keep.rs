@@ -20,7 +20,7 @@ pub(super) struct Selection<'a> {
     pub graph: &'a Graph,
     /// Role per joint.
     pub roles: &'a [Option<RoleGuess>],
-    /// From floor to crown, file units.
+    /// Height from floor to crown, file units.
     pub height: f32,
     /// Parent of each joint, by geometry if the rig's own is not suitable.
     pub carrier: Vec<Option<JointIdx>>,
@@ -107,7 +107,7 @@ impl Selection<'_> {
     pub fn creature(&self) -> Kept {
         let total: f32 = self.bound.area.iter().sum();
         let nodes = &self.graph.nodes;
-        // From the tips inward, so that a small toe merges into its foot and counts there.
+        // Go from the tips inward, so that a small toe merges into its foot and counts there.
         let mut area: Vec<f32> = nodes.iter().map(|node| node.area).collect();
         for &i in self.graph.order.iter().rev() {
             let Some(parent) = nodes[i].parent else { continue };
@@ -147,7 +147,7 @@ impl Selection<'_> {
         *joints = sorted;
     }
 
-    /// Per joint its index among the kept ones.
+    /// Index of each joint among the kept ones.
     fn places(&self, kept: &[JointIdx]) -> Vec<Option<usize>> {
         let mut place = vec![None; self.rig.joints.len()];
         kept.iter().enumerate().for_each(|(i, &joint)| place[joint] = Some(i));
@@ -243,7 +243,7 @@ impl Selection<'_> {
         }
     }
 
-    /// Per joint the kept index that it follows: its parent, else the one its skin runs into, else that of the joint above
+    /// Kept index that each joint follows: its parent, else the one its skin runs into, else that of the joint above
     /// it, else the nearest. Joints without skin and parent keep their own motion.
     fn owners(&self, joints: &[JointIdx], place: &[Option<usize>]) -> Vec<Option<usize>> {
         let mut owner = place.to_vec();
@@ -326,7 +326,7 @@ impl Selection<'_> {
         self.hung_on_armature(joint).is_some()
     }
 
-    /// The node directly below the skeleton's node above a node, or that node itself; `None` if a bone is in between.
+    /// The ancestor of a joint (or the joint itself) directly below the skeleton's node; `None` if a bone is in between.
     /// In converted files a mesh may be a node below its object.
     fn hung_on_armature(&self, joint: JointIdx) -> Option<JointIdx> {
         let first = self.graph.nodes[self.graph.root].joint;

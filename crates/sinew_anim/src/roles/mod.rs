@@ -3,7 +3,7 @@
 //! Roles stated by the file (VRM) come first; then geometry (mirrored chains of the bind pose) decides and names
 //! support it: they settle how a limb is divided, and raise or lower the confidence. Names whose left and right are not
 //! mirrored are ignored. If the shape shows no human (an asymmetric bind pose, feet beside the body), names alone
-//! decide, if their parts stand like one. Names are read by words, not from a list of names. Clips ([`Hints`]) tell
+//! decide, if their parts stand like one. Names are read by words, not from a list of names. Clips ([`Hints`]) show
 //! legs from other hanging parts: legs swing alternately.
 
 mod anatomy;
@@ -45,7 +45,7 @@ use sinew_math::{Affine, Transform, Vec3};
 /// A role and how sure it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoleGuess {
-    /// The role.
+    /// Role of the joint.
     pub role: Role,
     /// 0..=1; 1 where the file itself states the role.
     pub confidence: f32,
@@ -66,7 +66,7 @@ pub enum Basis {
     Stated,
     /// Shape and name agree.
     ShapeAndName,
-    /// The shape alone; the name says nothing.
+    /// The shape alone; the name has no meaning.
     Shape,
     /// The shape, against its name.
     ShapeAgainstName,
@@ -105,9 +105,9 @@ impl Basis {
 pub struct KeptBone {
     /// The joint, whose origin is the pivot against the parent body.
     pub joint: JointIdx,
-    /// Its role.
+    /// Role of the joint.
     pub role: Role,
-    /// 0..=1.
+    /// Confidence of the role, 0..=1.
     pub confidence: f32,
     /// Index into [`RigAnalysis::kept`], smaller than the bone's own; `None` for the first. By anatomy, not the rig's
     /// hierarchy: a shank carries the foot even if the rig parents it elsewhere.
@@ -132,7 +132,7 @@ pub struct RigAnalysis {
     pub character_from_model: Transform,
     /// Height of the lowest skin in the bind pose, metres, character axes.
     pub floor: f32,
-    /// From the lowest to the highest skin in the bind pose, metres.
+    /// Distance from the lowest to the highest skin in the bind pose, metres.
     pub height: f32,
     /// True if the roles are those of the VRM humanoid, else generic.
     pub humanoid: bool,
@@ -140,7 +140,7 @@ pub struct RigAnalysis {
     pub roles: Vec<Option<RoleGuess>>,
     /// Joints that deserve a body, parents before children, the pelvis (or a creature's root) first.
     pub kept: Vec<KeptBone>,
-    /// Per joint the kept joint that it follows; `None` for kept joints, for those above them in the rig, and for
+    /// Kept joint that each joint follows; `None` for kept joints, for those above them in the rig, and for
     /// joints without skin outside of every body (IK targets).
     pub merge_into: Vec<Option<JointIdx>>,
     /// Transform of every joint in the bind pose, model space, file units: from the inverse bind matrices, and from
@@ -188,13 +188,16 @@ impl RigAnalysis {
 }
 
 impl RigAnalysis {
-    /// The same analysis with another file unit, for instance for a giant.
+    /// Returns the analysis with another file unit, for instance for a giant.
     ///
     /// # Panics
     /// If `unit_scale` (metres) is not above 0 and finite.
     #[must_use]
     pub fn with_unit_scale(self, unit_scale: f32) -> Self {
-        assert!(unit_scale > 0.0 && unit_scale.is_finite(), "a unit has a length, not {unit_scale}");
+        assert!(
+            unit_scale > 0.0 && unit_scale.is_finite(),
+            "the unit must be positive and finite, not {unit_scale}"
+        );
         let factor = unit_scale / self.unit_scale;
         let (floor, height) = (self.floor * factor, self.height * factor);
         Self { unit_scale, floor, height, unit_guess: None, ..self }
@@ -296,7 +299,7 @@ fn analyze_bound(
     let named = axes::name;
     match hints.up {
         Some(of_file) if up.dot(of_file) < 0.9 => notes.push(format!(
-            "it lies in its file: from hips to head it goes along {}, and up is {}; --up {} stands it up",
+            "the character lies in its file: from hips to head it points along {}, but up is {}; --up {} stands it up",
             named(up),
             named(of_file),
             named(up)

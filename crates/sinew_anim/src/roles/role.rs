@@ -10,7 +10,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The other side.
+    /// Role of the other side.
     pub fn mirror(self) -> Self {
         match self {
             Self::Left => Self::Right,
@@ -163,7 +163,7 @@ impl Role {
         self.side() == Some(Side::Right)
     }
 
-    /// The same part of the other side; roles without a side are their own mirror image.
+    /// Returns the part of the other side; roles without a side are their own mirror image.
     pub fn mirror(self) -> Self {
         match self {
             Self::Shoulder(side) => Self::Shoulder(side.mirror()),

@@ -45,23 +45,23 @@ pub(super) enum Species {
     Animal(&'static str, f32),
 }
 
-/// The kind of body that file names tell: an animal before a human (snowman, wolfman).
+/// The kind of body according to file names: an animal before a human (snowman, wolfman).
 pub(super) fn named<'a>(rig: &'a Rig, file: &'a str) -> Option<Species> {
     let is_root = |joint: &&crate::rig::Joint| joint.parent.is_none();
     let names = core::iter::once(file)
         .chain(rig.meshes.iter().map(|mesh| mesh.name.as_str()))
         .chain(rig.skins.iter().map(|skin| skin.name.as_str()))
         .chain(rig.joints.iter().filter(is_root).map(|joint| joint.name.as_str()));
-    let said: Vec<String> = names.flat_map(words).collect();
+    let spoken: Vec<String> = names.flat_map(words).collect();
     let is_in = |list: &str, word: &str| list.split(' ').any(|known| known == word);
-    if said.iter().any(|word| is_in(MACHINES, word)) {
+    if spoken.iter().any(|word| is_in(MACHINES, word)) {
         return None;
     }
-    let animal = said.iter().find_map(|word| {
+    let animal = spoken.iter().find_map(|word| {
         let (list, length) = LENGTHS.iter().find(|(list, _)| is_in(list, word))?;
         let known = list.split(' ').find(|known| known == word)?;
         Some(Species::Animal(known, *length))
     });
-    let human = || said.iter().any(|word| is_in(HUMANS, word)).then_some(Species::Human);
+    let human = || spoken.iter().any(|word| is_in(HUMANS, word)).then_some(Species::Human);
     animal.or_else(human)
 }

@@ -10,7 +10,7 @@ pub(super) struct Symmetry {
     pub lateral: Vec3,
     /// Position of the plane along `lateral`, file units.
     pub centre: f32,
-    /// Per node its mirror image: itself on the midline, `None` without one.
+    /// Mirror image of each node: itself on the midline, `None` without one.
     pub partner: Vec<Option<usize>>,
     /// Nodes with a partner on the other side, minus half of those without.
     score: f32,

@@ -43,12 +43,12 @@ pub(crate) const STEP_CORRELATION: f32 = 0.25;
 
 /// Least number of limb pairs with consistent left and right names to trust them without a mirror.
 ///
-/// Larger: low-poly figures with few bones are not believed. Smaller: two names by chance are. Shown by the tests of `assembly`.
+/// Larger: rejects low-poly figures with few bones. Smaller: accepts two names by chance. Shown by the tests of `assembly`.
 pub(crate) const LEAST_NAMED_PAIRS: usize = 3;
 
 /// Least cosine between a pair's right-to-left direction and the mean of all pairs.
 ///
-/// Larger: legs in a stride are not believed. Smaller: names that are shuffled are. Shown by the tests of `assembly`.
+/// Larger: rejects legs in a stride. Smaller: accepts shuffled names. Shown by the tests of `assembly`.
 pub(crate) const NAMED_ALIKE: f32 = 0.3;
 
 // roles/bind.rs
@@ -262,7 +262,7 @@ pub(crate) const PROP_SHARE: f32 = 0.1;
 
 /// Confidence of a prop, 0 to 1.
 ///
-/// It is reported and decides nothing. No scene shows it.
+/// It affects only a report. No scene shows it.
 pub(crate) const PROP_CONFIDENCE: f32 = 0.5;
 
 // roles/symmetry.rs
@@ -277,7 +277,7 @@ pub(crate) const MIRROR_TOLERANCE: f32 = 0.025;
 
 /// Weight of the unit in which the program that wrote the file writes, in the measure of a unit's rarity.
 ///
-/// Larger: giants of a program that writes metres are believed. Smaller: its habit counts for nothing. Shown by the tests of `hints`.
+/// Larger: accepts giants of a program that writes metres. Smaller: ignores the program. Shown by the tests of `hints`.
 pub(crate) const UNIT_BY_EXPORTER: f32 = 1.0;
 
 /// Weight of a unit that all neighbouring files have, in the measure of [`UNIT_BY_EXPORTER`].

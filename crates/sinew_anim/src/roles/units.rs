@@ -8,14 +8,14 @@ use crate::roles::tuning::{
 use core::fmt::Write as _;
 use sinew_math::{clamp, max, trig};
 
-/// Sizes of a body that tell the unit of its file.
+/// Sizes of a body from which the unit of its file follows.
 pub(super) struct Measured {
     pub humanoid: bool,
-    /// From floor to crown, file units.
+    /// Height from floor to crown, file units.
     pub height: f32,
     /// Longest side of the skin's box, file units.
     pub size: f32,
-    /// From the head joint to the crown, share of the height; `None` without a head.
+    /// Distance from the head joint to the crown, as a share of the height; `None` without a head.
     pub head: Option<f32>,
     /// Stride time, seconds, and the height of the legs' start over the floor, file units.
     pub stride: Option<(f32, f32)>,
@@ -24,7 +24,7 @@ pub(super) struct Measured {
 }
 
 impl Measured {
-    /// True if its size is that of a human: it is one, or is called one.
+    /// True for a body of human size: a human, or a figure with the name of one.
     fn is_human(&self) -> bool {
         self.humanoid || self.species == Some(Species::Human)
     }
@@ -70,7 +70,7 @@ const EXPORTERS: [(&str, f32); 16] = [
     ("source engine", 0.0254),
 ];
 
-/// From a human's head joint to the crown, metres, nearly independent of height.
+/// Distance from a human's head joint to the crown, metres, nearly independent of height.
 const HEAD: f32 = 0.23;
 /// Heights that a head may imply, metres.
 const BY_HEAD: [f32; 2] = [0.7, 1.8];
@@ -84,9 +84,9 @@ struct Sizes {
     /// The body and its measure, for a sentence.
     words: [&'static str; 2],
     fits: core::ops::Range<f32>,
-    /// In centimetres, the certain ones.
+    /// Sizes in metres that prove a unit of one centimetre.
     surely: core::ops::Range<f32>,
-    /// Size of most, metres.
+    /// Usual size, metres.
     usual: f32,
     /// Narrowness of the spread of sizes against those of creatures.
     focus: f32,
@@ -273,9 +273,9 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
         .collect();
     let is_only = others.is_empty();
     let is_sure = is_only && body.humanoid && unit.metres == 1.0;
-    // Without a choice there is no evidence to weigh.
+    // With a single candidate there is nothing to compare.
     let (others, words) = if is_only {
-        ("no other unit makes it so".to_owned(), "")
+        ("no other unit fits".to_owned(), "")
     } else {
         (format!("it may also be {}", others.join(", ")), witnesses.words.as_str())
     };
@@ -290,7 +290,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
 fn assumed(body: &Measured, sizes: &Sizes, witnesses: &Witnesses) -> (f32, &'static str) {
     match witnesses.legs {
         Some((leg, metres)) if !body.humanoid && body.species.is_none() => {
-            (clamp(body.size * metres / leg, sizes.fits.start, sizes.fits.end), ", as its stride tells")
+            (clamp(body.size * metres / leg, sizes.fits.start, sizes.fits.end), ", by its stride")
         }
         _ => (sizes.assumed, ""),
     }

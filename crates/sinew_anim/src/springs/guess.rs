@@ -153,7 +153,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_tell_what_swings() {
+    fn names_identify_springs() {
         let of = |name: &str| material_of(name).map(|kind| MATERIALS[kind].words[0]);
         assert_eq!(of("J_Sec_Hair1_01"), Some("hair"));
         assert_eq!(of("Ear2.L"), Some("ear"));
@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(of("skirt_front_1"), Some("skirt"));
         assert_eq!(of("breast.R"), Some("breast"));
         assert_eq!(of("リボン_左"), Some("ribbon"));
-        // Names that only contain the letters, and mere markers.
+        // Names that contain the letters by chance, and names that are only markers.
         for name in ["LeftForeArm", "Rear_Leg", "Ear4.L_end", "mixamorig:Head", "tailor", "IK_hair"] {
             assert_eq!(of(name), None, "{name}");
         }

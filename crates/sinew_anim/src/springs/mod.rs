@@ -32,12 +32,12 @@ pub struct SpringLink {
     pub joints: [JointIdx; 2],
     /// Share of the distance error corrected per 1/60 s, 0..=1.
     pub share: f32,
-    /// False: it only keeps them from moving further apart, as cloth does. True: also from coming nearer.
+    /// False: the link limits only the largest distance of the tips, as cloth does. True: also the smallest.
     pub holds_apart: bool,
 }
 
 impl Default for SpringLink {
-    /// Half of the error at a time, only against moving apart; between no two joints.
+    /// Corrects half of the error at a time, only against moving apart; between no two joints.
     fn default() -> Self {
         Self { joints: [0; 2], share: SPRING_LINK_SHARE, holds_apart: false }
     }
@@ -135,17 +135,17 @@ pub struct SpringLimit {
 /// Shape of a limit, angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitKind {
-    /// Within this angle of +Y.
+    /// The direction is within this angle of +Y.
     Cone {
-        /// 0..=π.
+        /// Angle, 0..=π.
         angle: f32,
     },
-    /// Within this angle of +Y in the plane perpendicular to X.
+    /// The direction is within this angle of +Y in the plane perpendicular to X.
     Hinge {
-        /// 0..=π.
+        /// Angle, 0..=π.
         angle: f32,
     },
-    /// Within a rotation about X, and an elevation out of the plane perpendicular to X.
+    /// The direction is within a rotation about X, and an elevation out of the plane perpendicular to X.
     Spherical {
         /// Largest rotation about X, 0..=π.
         phi: f32,
@@ -157,7 +157,7 @@ pub enum LimitKind {
 /// Shape that keeps tips out, or in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringCollider {
-    /// Joint that carries it.
+    /// Joint that carries the collider.
     pub joint: JointIdx,
     /// Shape, in the joint's own space.
     pub shape: ColliderShape,
@@ -168,9 +168,9 @@ pub struct SpringCollider {
 pub enum ColliderShape {
     /// A ball.
     Sphere {
-        /// Middle.
+        /// Centre of the ball.
         offset: Vec3,
-        /// ≥ 0.
+        /// Radius, ≥ 0.
         radius: f32,
         /// Side on which tips stay.
         keeps: Side,
@@ -181,16 +181,16 @@ pub enum ColliderShape {
         offset: Vec3,
         /// Centre of the cap at the other end.
         tail: Vec3,
-        /// ≥ 0.
+        /// Radius, ≥ 0.
         radius: f32,
         /// Side on which tips stay.
         keeps: Side,
     },
     /// An infinite plane; tips stay on the side of its normal.
     Plane {
-        /// Point of it.
+        /// A point of the plane.
         offset: Vec3,
-        /// Unit.
+        /// Unit normal of the plane.
         normal: Vec3,
     },
 }
@@ -198,9 +198,9 @@ pub enum ColliderShape {
 /// Side of a collider's surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
-    /// Outside. Default.
+    /// Tips stay outside of the surface. Default.
     #[default]
     Outside,
-    /// Within it.
+    /// Tips stay inside of the surface.
     Inside,
 }

@@ -1,4 +1,4 @@
-//! Once warm, playing a character allocates nothing.
+//! After warm-up, playing a character does not allocate.
 
 use crate::{stage, toy};
 use sinew_anim::ik::{
@@ -11,7 +11,7 @@ use sinew_anim::{
 use sinew_math::{Affine, Random, Vec3};
 
 #[test]
-fn a_warm_update_allocates_nothing() {
+fn animator_update_does_not_allocate_after_warm_up() {
     let mut set = AnimationSet::new(Skeleton::new(&stage::rig()));
     let mut random = Random::new(1);
     for duration in [1.0, 0.75, 1.5] {
@@ -51,7 +51,7 @@ fn a_warm_update_allocates_nothing() {
 }
 
 #[test]
-fn an_animator_sent_ahead_gets_where_the_other_will_be() {
+fn animator_predicts_the_future_pose_of_a_twin() {
     let mut set = AnimationSet::new(Skeleton::new(&stage::rig()));
     let mut random = Random::new(2);
     for duration in [1.0, 0.75, 1.5] {
@@ -77,7 +77,7 @@ fn an_animator_sent_ahead_gets_where_the_other_will_be() {
             ahead.copy_from(&animator);
             ahead.update(&set, 1.0 / 60.0);
         });
-        // The first lap has seen all there is.
+        // The first cycle warms up all buffers.
         allocations += if i >= 120 { counted.count_total } else { 0 };
         animator.update(&set, 1.0 / 60.0);
         assert_eq!(ahead.pose(), animator.pose(), "update {i}");
@@ -88,7 +88,7 @@ fn an_animator_sent_ahead_gets_where_the_other_will_be() {
 }
 
 #[test]
-fn inverse_kinematics_allocates_nothing() {
+fn inverse_kinematics_does_not_allocate() {
     let rig = toy::body(Role::name);
     let joint =
         |name: &str| rig.joints.iter().position(|joint| joint.name == name).expect("a joint of that name");

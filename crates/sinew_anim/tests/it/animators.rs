@@ -24,7 +24,7 @@ fn eventful(duration: f32, events: Vec<ClipEvent>) -> AnimationSet {
 }
 
 #[test]
-fn one_track_is_its_clip() {
+fn single_track_shows_its_clip() {
     let set = stage::set(1);
     let clip = ids(&set)[0];
     let mut animator = Animator::new(&set);
@@ -38,9 +38,9 @@ fn one_track_is_its_clip() {
     }
 }
 
-/// The book's exercise: one clip in two tracks, with weights and speeds of their own.
+/// One clip in two tracks, with different weights and speeds.
 #[test]
-fn the_same_clip_in_two_tracks_is_between_both() {
+fn one_clip_in_two_tracks_blends_both_times() {
     let set = stage::set(2);
     let clip = ids(&set)[0];
     let mut both = Animator::new(&set);
@@ -59,14 +59,14 @@ fn the_same_clip_in_two_tracks_is_between_both() {
         let [fast, late] = [0, 1].map(|i| alone[i].pose());
         for joint in 0..stage::JOINTS {
             let [a, b, mean] = [fast, late, both.pose()].map(|pose| pose.get(joint).rotation);
-            // Of two, the mean lies on the arc between them.
+            // The mean of two rotations lies on the arc between them.
             let expected = a.nlerp(b, 0.3);
             assert!(mean.angle_to(expected) < 1e-3, "step {step}, joint {joint}");
         }
         apart = sinew_math::max(apart, angle(fast, late));
     }
     assert!(apart > 0.3, "they drift apart: {apart}");
-    // With the same speed and place, both are one: to the bit.
+    // With equal speed and time, both tracks give the same bits.
     both.set_speed(slow, 1.0);
     let time = both.tracks().next().expect("two play").playhead().clip_time();
     both.seek(slow, time);
@@ -82,7 +82,7 @@ fn the_same_clip_in_two_tracks_is_between_both() {
 }
 
 #[test]
-fn the_order_of_tracks_does_not_change_a_bit() {
+fn track_order_does_not_change_the_pose() {
     let set = stage::set(3);
     let mut random = Random::new(4);
     for _ in 0..20 {
@@ -111,7 +111,7 @@ fn the_order_of_tracks_does_not_change_a_bit() {
 }
 
 #[test]
-fn ramps_end_on_time_and_do_what_they_are_told() {
+fn ramps_end_on_time_with_their_action() {
     let set = stage::set(5);
     let clip = ids(&set)[0];
     for then in [EndAction::Hold, EndAction::Stop, EndAction::Pause, EndAction::Restart] {
@@ -137,7 +137,7 @@ fn ramps_end_on_time_and_do_what_they_are_told() {
             assert_eq!(track.is_paused(), then == EndAction::Pause);
         }
     }
-    // Half of the time is half of the way, the eased way.
+    // At half of the time the eased weight is a half.
     let mut animator = Animator::new(&set);
     let track = animator.play(&set, &TrackDef { weight: 0.0, ..TrackDef::new(clip) });
     animator.fade(track, 1.0, 1.0, Easing::In, EndAction::Hold);
@@ -146,7 +146,7 @@ fn ramps_end_on_time_and_do_what_they_are_told() {
 }
 
 #[test]
-fn a_clip_that_plays_once_does_what_it_is_told_at_its_end() {
+fn one_shot_clip_takes_its_end_action() {
     let set = stage::set(6);
     let def = TrackDef { loop_mode: LoopMode::Once, ..TrackDef::new(ids(&set)[0]) };
     let after = |at_end, seconds: f32, steps: u32| {
@@ -164,7 +164,7 @@ fn a_clip_that_plays_once_does_what_it_is_told_at_its_end() {
     }
 }
 
-/// Events of an update sequence: seconds since the first update began, track, event.
+/// Events of a sequence of updates: seconds since the start, event number, and whether it was interrupted.
 fn fired(animator: &mut Animator, set: &AnimationSet, steps: &[f32]) -> Vec<(f64, u32, bool)> {
     let (mut out, mut now) = (Vec::new(), 0.0);
     for &step in steps {
@@ -182,7 +182,7 @@ fn numbered(time: f32, number: u32) -> ClipEvent {
 }
 
 #[test]
-fn events_have_their_own_time_and_do_not_depend_on_the_steps() {
+fn event_times_are_independent_of_the_steps() {
     let set = eventful(1.0, vec![numbered(0.0, 0), numbered(0.25, 1), numbered(1.0, 2)]);
     let def = TrackDef { speed: 2.0, ..TrackDef::new(ids(&set)[0]) };
     let mut random = Random::new(7);
@@ -191,7 +191,7 @@ fn events_have_their_own_time_and_do_not_depend_on_the_steps() {
         animator.play(&set, &def);
         fired(&mut animator, &set, &[4.0])
     };
-    // At 0, and then in each lap of half a second: the end and the start are one moment.
+    // Events at 0, and then in each cycle of half a second: end and start of a loop are one time.
     assert_eq!(whole.len(), 1 + 8 + 16);
     for (i, &(seconds, number, _)) in whole.iter().enumerate().filter(|(_, event)| event.1 == 1) {
         let lap = ((seconds - 0.125) / 0.5).round();
@@ -216,7 +216,7 @@ fn events_have_their_own_time_and_do_not_depend_on_the_steps() {
 }
 
 #[test]
-fn a_track_that_is_too_light_fires_nothing() {
+fn track_below_the_weight_threshold_fires_no_events() {
     let policy = EventPolicy { min_weight: 0.5, ..EventPolicy::default() };
     let events = (0..10).map(|i| ClipEvent { policy, ..numbered(0.1 * i as f32, i) }).collect();
     let set = eventful(1.0, events);
@@ -224,7 +224,7 @@ fn a_track_that_is_too_light_fires_nothing() {
         let mut animator = Animator::new(&set);
         let track = animator.play(&set, &TrackDef { weight: 0.0, ..TrackDef::new(ids(&set)[0]) });
         animator.fade(track, 1.0, 1.0, Easing::Linear, EndAction::Hold);
-        // The weight passes a half at 0.5 s, whatever the steps: the sixth event is the first, up to rounding.
+        // The weight exceeds a half at 0.5 s for any steps: the sixth event is the first, up to rounding.
         let numbers: Vec<u32> = fired(&mut animator, &set, &vec![0.98 / steps as f32; steps])
             .iter()
             .map(|event| event.1)
@@ -234,7 +234,7 @@ fn a_track_that_is_too_light_fires_nothing() {
 }
 
 #[test]
-fn an_interrupted_motion_is_put_right() {
+fn interrupted_track_fires_its_remaining_events() {
     let on_interrupt = EventPolicy { on_interrupt: true, ..EventPolicy::default() };
     let put_right = |time, number| ClipEvent { policy: on_interrupt, ..numbered(time, number) };
     let set = eventful(1.0, vec![put_right(0.2, 0), numbered(0.6, 1), put_right(0.8, 2)]);
@@ -245,7 +245,7 @@ fn an_interrupted_motion_is_put_right() {
     animator.stop(&set, track);
     all.extend(fired(&mut animator, &set, &[0.5]));
     assert_eq!(all.iter().map(|e| (e.1, e.2)).collect::<Vec<_>>(), [(0, false), (2, true)]);
-    // A fade that stops it does the same, in time; a clip that is over has nothing left.
+    // A fade-out that stops it ends on time as well; a clip that has ended fires nothing more.
     let track = animator.play(&set, &def);
     animator.fade(track, 0.0, 0.5, Easing::Linear, EndAction::Stop);
     let all = fired(&mut animator, &set, &[2.0]);
@@ -260,7 +260,7 @@ fn an_interrupted_motion_is_put_right() {
     assert!(fired(&mut animator, &set, &[0.1]).is_empty());
 }
 
-/// Walk and run: 1 s and 0.6 s, left foot and right foot at places of their own.
+/// Walk and run: 1 s and 0.6 s, with left and right footsteps at different times.
 fn gaits(policy: EventPolicy) -> AnimationSet {
     let mut set = AnimationSet::new(Skeleton::new(&stage::rig()));
     for (duration, left, right) in [(1.0, 0.1, 0.6), (0.6, 0.2, 0.55)] {
@@ -275,7 +275,7 @@ fn gaits(policy: EventPolicy) -> AnimationSet {
 }
 
 #[test]
-fn a_sync_group_keeps_its_feet_together() {
+fn sync_group_aligns_footsteps() {
     let policy = EventPolicy { min_weight: 0.0, fired_by: FiredBy::OnePerGroup, ..EventPolicy::default() };
     let set = gaits(policy);
     let mut animator = Animator::new(&set);
@@ -288,7 +288,7 @@ fn a_sync_group_keeps_its_feet_together() {
     for _ in 0..600 {
         animator.update_with(&set, 0.01, |fired, event| steps.push((fired.track, event.payload.clone())));
         let time = |id| f64::from(animator.track(id).expect("it plays").playhead().clip_time());
-        // Between the same feet, the same share of the way.
+        // Between the same two footsteps, both clips are at the same fraction.
         let share = |time: f64, left: f64, right: f64, length: f64| {
             let since_left = (time - left).rem_euclid(length);
             let half = right - left;
@@ -298,29 +298,29 @@ fn a_sync_group_keeps_its_feet_together() {
         let apart = (a - b).abs();
         assert!(apart.min(2.0 - apart) < 1e-4, "{a} and {b}");
     }
-    // Left and right by turns, none twice though both clips have them, and at last by the run.
+    // Left and right alternate, none is repeated although both clips have them, and the last come from the run.
     assert!(steps.windows(2).all(|pair| pair[0].1 != pair[1].1), "{steps:?}");
     assert!(steps[0].0 == walk && steps[steps.len() - 1].0 == run);
-    // Steps a second go from two to 2 / 0.6.
+    // The step frequency rises from 2 to 2 / 0.6 per second.
     let mean = 0.5 * (2.0 + 2.0 / 0.6) * 6.0;
     assert!((steps.len() as f64 - mean).abs() < 2.0, "{} steps", steps.len());
 }
 
 #[test]
-fn a_track_that_joins_a_group_takes_its_phase() {
+fn track_that_joins_a_group_takes_its_phase() {
     let set = gaits(EventPolicy::default());
     let mut animator = Animator::new(&set);
     let [walk, run] = [0, 1].map(|i| TrackDef { sync_group: Some(3), ..TrackDef::new(ids(&set)[i]) });
     animator.play(&set, &walk);
     animator.update(&set, 0.35);
     let run = animator.play(&set, &TrackDef { weight: 0.1, ..run });
-    // Half of the way from left to right in both.
+    // Halfway from left to right in both clips.
     let time = animator.track(run).expect("it plays").playhead().clip_time();
     assert!((time - 0.375).abs() < 1e-4, "{time}");
 }
 
 #[test]
-fn masks_and_layers_cover_what_they_are_for() {
+fn masks_and_layers_affect_only_their_joints() {
     let mut set = stage::set(9);
     let upper =
         set.add_mask((0..stage::JOINTS).map(|joint| if joint < 4 { 0.0 } else { 1.0 }).collect::<Mask>());
@@ -340,7 +340,7 @@ fn masks_and_layers_cover_what_they_are_for() {
 }
 
 #[test]
-fn differences_are_added_in_the_joints_own_axes() {
+fn additive_clips_apply_in_joint_space() {
     let rig = stage::rig();
     let mut random = Random::new(10);
     let (base, lean) = (stage::swaying(&mut random, 1.0), stage::swaying(&mut random, 1.0));
@@ -370,9 +370,10 @@ fn differences_are_added_in_the_joints_own_axes() {
     }
 }
 
-/// Walk and run whose footfalls are on either side of their markers, and who leads changes all the time.
+/// Walk and run whose footstep events lie on either side of their sync markers, while the leading clip changes
+/// constantly.
 #[test]
-fn a_footfall_is_one_whoever_leads_when() {
+fn footstep_is_reported_once_for_any_leading_clip() {
     let policy = EventPolicy { min_weight: 0.0, fired_by: FiredBy::OnePerGroup, ..EventPolicy::default() };
     let mut set = AnimationSet::new(Skeleton::new(&stage::rig()));
     for (duration, left, right, late) in [(1.0, 0.02, 0.5, 0.03), (0.6, 0.04, 0.3, -0.03)] {
@@ -385,7 +386,7 @@ fn a_footfall_is_one_whoever_leads_when() {
     let mut random = Random::new(3);
     for run in 0..200 {
         let mut animator = Animator::new(&set);
-        // Between two footfalls.
+        // The point is between two footsteps.
         let backward = if run % 2 == 0 { 1.0 } else { -1.0 };
         let tracks = [0, 1].map(|i| {
             let def =
@@ -400,7 +401,7 @@ fn a_footfall_is_one_whoever_leads_when() {
             animator.update_with(&set, seconds, |_, event| steps.push(event.payload.clone()));
         }
         assert!(steps.windows(2).all(|pair| pair[0] != pair[1]), "left and right by turns: {steps:?}");
-        // Markers passed, give or take one that is just being passed.
+        // The number of passed markers, with a tolerance of one at the current time.
         let place = animator.track(tracks[0]).expect("it plays").playhead();
         let laps = place.lap() as f32 + place.clip_time() - 0.25;
         assert!((steps.len() as f32 - 2.0 * laps.abs()).abs() < 1.2, "{} steps in {laps} laps", steps.len());
@@ -408,7 +409,7 @@ fn a_footfall_is_one_whoever_leads_when() {
 }
 
 #[test]
-fn a_crossfade_ends_with_one_track() {
+fn crossfade_leaves_one_track() {
     let set = stage::set(12);
     let mut animator = Animator::new(&set);
     animator.play(&set, &TrackDef::new(ids(&set)[0]));
@@ -424,7 +425,7 @@ fn a_crossfade_ends_with_one_track() {
     );
 }
 
-/// Joints that hold still, as a clip of 1 s.
+/// A clip of 1 s in which joints do not move.
 fn held(rotation: impl Fn(usize) -> Rotation) -> AnimatedClip {
     let channel = |joint: usize| {
         let Rotation { x, y, z, w } = rotation(joint);
@@ -436,7 +437,7 @@ fn held(rotation: impl Fn(usize) -> Rotation) -> AnimatedClip {
 }
 
 #[test]
-fn a_crossfade_turns_about_one_axis_at_the_speed_of_its_easing() {
+fn crossfade_rotates_about_one_axis_with_its_easing() {
     // Up to 175° apart, on either side of half a turn from the rest pose.
     let axis = Vec3::new(1.0, 2.0, 2.0) / 3.0;
     let apart = |joint: usize| 0.3 * joint as f32;
@@ -461,7 +462,7 @@ fn a_crossfade_turns_about_one_axis_at_the_speed_of_its_easing() {
 }
 
 #[test]
-fn crossfades_within_crossfades_do_not_jump() {
+fn nested_crossfades_are_continuous() {
     let set = stage::set(21);
     let mut animator = Animator::new(&set);
     animator.play(&set, &TrackDef::new(ids(&set)[0]));
@@ -481,15 +482,15 @@ fn crossfades_within_crossfades_do_not_jump() {
 }
 
 #[test]
-#[should_panic = "a weight is 0 or above"]
-fn weights_are_numbers() {
+#[should_panic = "the weight must be at least 0"]
+fn negative_or_non_finite_weights_panic() {
     let set = stage::set(13);
     Animator::new(&set).play(&set, &TrackDef { weight: f32::NAN, ..TrackDef::new(ids(&set)[0]) });
 }
 
 #[test]
-#[should_panic = "an update takes 0 s or longer"]
-fn time_does_not_go_back() {
+#[should_panic = "seconds must be finite and at least 0"]
+fn negative_time_step_panics() {
     let set = stage::set(13);
     Animator::new(&set).update(&set, -0.1);
 }

@@ -1,4 +1,4 @@
-//! Humans whose names are plain and whose hierarchy or skin leaves something out.
+//! Humans with unambiguous names whose hierarchy or skin is incomplete.
 
 use crate::toy;
 use sinew_anim::riders::Riders;
@@ -9,7 +9,7 @@ use sinew_anim::{
 };
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
-/// Names of Mixamo for the parts of the toy.
+/// Mixamo names for the parts of the toy body.
 fn mixamo(role: Role) -> String {
     let side = |side: Side| if side == Side::Left { "Left" } else { "Right" };
     let name = match role {
@@ -33,7 +33,7 @@ fn part(role: &str) -> usize {
     toy::BODY.iter().position(|(name, ..)| *name == role).expect("a part of the toy")
 }
 
-/// Gives the skin of one joint to another.
+/// Moves the skin of one joint to another.
 fn give_skin(rig: &mut Rig, from: usize, to: usize) {
     let slot = |joint: usize| u16::try_from(joint).expect("few");
     for slots in &mut rig.meshes[0].primitives[0].joints {
@@ -43,7 +43,7 @@ fn give_skin(rig: &mut Rig, from: usize, to: usize) {
     }
 }
 
-/// Every part of the toy that is there has its role, and a body that hangs on what anatomy says.
+/// Checks that every present part of the toy body has its role, and a body attached to its anatomical parent.
 fn is_whole(rig: &Rig, missing: &[&str]) -> RigAnalysis {
     let found = analyze(rig).expect("a skin");
     assert!(found.humanoid, "{:?}", found.notes);
@@ -54,14 +54,14 @@ fn is_whole(rig: &Rig, missing: &[&str]) -> RigAnalysis {
         let bone = found.kept_with(role).unwrap_or_else(|| panic!("{name}: no body"));
         if !parent.is_empty() && !missing.contains(parent) {
             let above = found.kept[bone].parent.map(|above| found.kept[above].role.name());
-            assert_eq!(above.as_deref(), Some(*parent), "{name} hangs on something else");
+            assert_eq!(above.as_deref(), Some(*parent), "{name} has another parent");
         }
     }
     found
 }
 
 #[test]
-fn limb_bones_without_skin_keep_their_role_and_a_body() {
+fn limb_bones_without_skin_keep_role_and_body() {
     for bare in [
         vec![("leftUpperLeg", "hips")],
         vec![("leftUpperLeg", "hips"), ("rightUpperLeg", "hips")],
@@ -78,7 +78,7 @@ fn limb_bones_without_skin_keep_their_role_and_a_body() {
 }
 
 #[test]
-fn parts_that_are_roots_of_their_own_are_put_together_by_name() {
+fn separate_root_parts_are_connected_by_name() {
     let strays: [&[&str]; 3] = [
         &["leftUpperLeg", "rightUpperLeg", "leftUpperArm", "rightUpperArm"],
         &["spine", "neck", "head", "leftFoot", "rightHand"],
@@ -113,7 +113,7 @@ fn parts_that_are_roots_of_their_own_are_put_together_by_name() {
 }
 
 #[test]
-fn rigid_meshes_are_the_skin_of_parts_that_have_none() {
+fn rigid_meshes_serve_as_skin_of_parts_without_any() {
     let mut rig = toy::body(mixamo);
     let rigid = ["leftUpperArm", "rightUpperArm", "leftUpperLeg", "rightUpperLeg", "chest", "head"];
     for joint in rigid.map(part) {
@@ -132,7 +132,7 @@ fn rigid_meshes_are_the_skin_of_parts_that_have_none() {
 }
 
 #[test]
-fn limbs_of_one_bone_are_a_humans() {
+fn human_with_one_bone_limbs_is_recognised() {
     let mut rig = toy::body(mixamo);
     let gone = ["leftLowerLeg", "leftFoot", "rightLowerLeg", "rightFoot"];
     for (from, to) in gone.map(part).into_iter().zip([11, 11, 14, 14]) {
@@ -147,7 +147,7 @@ fn limbs_of_one_bone_are_a_humans() {
     assert_eq!(found.joint_with(Role::Head), Some(part("head")));
 }
 
-/// One arm is raised, one leg kicks: every joint below is elsewhere.
+/// Raises one arm and bends one leg; descendants keep their rest positions.
 fn kick(rig: &mut Rig) {
     for (name, by) in [
         ("leftLowerArm", Vec3::new(-0.2, 0.25, 0.0)),
@@ -164,13 +164,13 @@ fn kick(rig: &mut Rig) {
 }
 
 #[test]
-fn plain_names_count_where_a_pose_has_no_mirror() {
+fn names_decide_where_the_pose_is_asymmetric() {
     let mut rig = toy::body(mixamo);
     kick(&mut rig);
     is_whole(&rig, &[]);
 }
 
-/// A second skeleton of one joint that moves a tetrahedron of that size at a place.
+/// Adds a second skeleton: one joint that moves a tetrahedron of that size at a place.
 fn add_skeleton(rig: &mut Rig, name: &str, place: Vec3, size: f32) -> usize {
     let joint = rig.joints.len();
     let rest = LocalTransform { translation: place, ..LocalTransform::default() };
@@ -191,7 +191,7 @@ fn add_skeleton(rig: &mut Rig, name: &str, place: Vec3, size: f32) -> usize {
 }
 
 #[test]
-fn a_hat_with_a_skeleton_of_its_own_goes_with_the_head() {
+fn hat_with_its_own_skeleton_joins_the_head() {
     let mut rig = toy::body(mixamo);
     let head = Vec3::from_array(toy::BODY[part("head")].2);
     let hat = add_skeleton(&mut rig, "Bone", head + Vec3::Y * 0.15, 0.2);
@@ -200,9 +200,9 @@ fn a_hat_with_a_skeleton_of_its_own_goes_with_the_head() {
     assert_eq!(found.merge_into[hat], Some(part("head")));
 }
 
-/// A cape with a skeleton of its own hangs behind the back, half of it outside the body's box.
+/// A cape with its own skeleton hangs behind the back, half of it outside the body's bounding box.
 #[test]
-fn a_cape_with_a_skeleton_of_its_own_goes_with_the_body() {
+fn cape_with_its_own_skeleton_joins_the_body() {
     let mut rig = toy::body(mixamo);
     let chest = Vec3::from_array(toy::BODY[part("chest")].2);
     let place = chest - Vec3::new(0.02, 0.4, 0.41);
@@ -214,9 +214,9 @@ fn a_cape_with_a_skeleton_of_its_own_goes_with_the_body() {
     assert!(found.merge_into[cape].is_some(), "{:?}", found.notes);
 }
 
-/// Long hair with a skeleton of its own goes with the head as a whole, although its end is nearest to the chest.
+/// Long hair with its own skeleton is attached to the head as a whole, although its end is nearest to the chest.
 #[test]
-fn hair_with_a_skeleton_of_its_own_goes_with_the_head_from_root_to_tip() {
+fn hair_with_its_own_skeleton_joins_the_head_as_a_whole() {
     let mut rig = toy::body(mixamo);
     let head = Vec3::from_array(toy::BODY[part("head")].2);
     let root = add_skeleton(&mut rig, "hairjnt", head + Vec3::new(0.0, 0.12, -0.06), 0.05);
@@ -229,9 +229,9 @@ fn hair_with_a_skeleton_of_its_own_goes_with_the_head_from_root_to_tip() {
     assert_eq!(found.merge_into[tip], Some(part("head")));
 }
 
-/// Hair with a skeleton of its own is placed at the head of a figure that rests bent: it is bound there, too.
+/// The rest pose is bent, and the hair is placed and bound at the head.
 #[test]
-fn hair_beside_a_figure_that_rests_otherwise_than_it_was_bound_is_on_its_head() {
+fn separate_hair_joins_the_head_of_a_bent_rest_pose() {
     let mut rig = toy::body(mixamo);
     rig.joints[part("neck")].rest.rotation = Rotation::from_axis_angle(Vec3::X, 1.2);
     let rest: Vec<LocalTransform> = rig.joints.iter().map(|joint| joint.rest).collect();
@@ -246,11 +246,11 @@ fn hair_beside_a_figure_that_rests_otherwise_than_it_was_bound_is_on_its_head() 
 }
 
 #[test]
-fn who_stands_beside_is_another_character() {
+fn second_figure_is_not_merged() {
     let mut rig = toy::body(mixamo);
     let other = add_skeleton(&mut rig, "Bone", Vec3::new(2.0, 0.0, 0.0), 1.2);
     assert_eq!(characters(&rig), vec![vec![0], vec![1]]);
-    // As some exporters do, each within nodes of its own below one root.
+    // As some exporters do, each skeleton has its own nodes below one root.
     for joint in &mut rig.joints {
         joint.parent = Some(joint.parent.map_or(1, |parent| parent + 3));
     }
@@ -265,7 +265,7 @@ fn who_stands_beside_is_another_character() {
 }
 
 #[test]
-fn a_mesh_within_the_body_that_hangs_on_no_bone_goes_with_the_nearest() {
+fn unattached_mesh_inside_the_body_joins_the_nearest_bone() {
     let mut rig = toy::body(mixamo);
     let place = Vec3::from_array(toy::BODY[part("head")].2) + Vec3::Y * 0.14;
     let hat = add_skeleton(&mut rig, "hat", place, 0.02);
@@ -286,9 +286,9 @@ fn a_mesh_within_the_body_that_hangs_on_no_bone_goes_with_the_nearest() {
 }
 
 #[test]
-fn skinned_joints_outside_the_chain_go_with_what_their_skin_runs_into() {
+fn outside_skinned_joint_joins_the_adjacent_skin() {
     let mut rig = toy::body(mixamo);
-    // The root of a coat beside the body, sewn to the chest.
+    // The root of a coat outside the body, whose skin borders on the chest's.
     let coat = rig.joints.len();
     let place = Vec3::new(0.0, 1.2, -0.1);
     let rest = LocalTransform { translation: place, ..LocalTransform::default() };
@@ -307,7 +307,7 @@ fn skinned_joints_outside_the_chain_go_with_what_their_skin_runs_into() {
 }
 
 #[test]
-fn clavicles_that_begin_on_the_midline_are_arms_all_the_same() {
+fn clavicles_on_the_midline_belong_to_the_arms() {
     let mut number = 0;
     let mut rig = toy::body(|_| String::new());
     for joint in &mut rig.joints {
@@ -317,7 +317,7 @@ fn clavicles_that_begin_on_the_midline_are_arms_all_the_same() {
     let place = Vec3::new(0.0, 1.45, 0.0);
     for (before, arm) in ["leftUpperArm", "rightUpperArm"].map(part).into_iter().enumerate() {
         let arm = arm + before;
-        // In place of the neck's own joint, so that parents come first.
+        // Replaces the neck's joint, so that parents come first.
         let clavicle = part("chest");
         let twin =
             Joint { name: format!("Bone.1{arm:02}"), parent: Some(clavicle), ..rig.joints[arm].clone() };
@@ -345,7 +345,7 @@ fn clavicles_that_begin_on_the_midline_are_arms_all_the_same() {
 }
 
 #[test]
-fn who_has_wings_for_arms_is_no_human() {
+fn figure_with_wings_is_not_human() {
     let rig = toy::body(|role| match role {
         Role::UpperArm(_) => "WING_BASE".into(),
         Role::LowerArm(_) => "WING_END".into(),
@@ -357,7 +357,7 @@ fn who_has_wings_for_arms_is_no_human() {
 }
 
 #[test]
-fn a_skin_whose_weights_were_lost_is_known() {
+fn skin_with_lost_weights_is_detected() {
     let mut rig = toy::body(mixamo);
     assert_eq!(lost_weights(&rig), None);
     for slots in &mut rig.meshes[0].primitives[0].joints {
@@ -366,7 +366,7 @@ fn a_skin_whose_weights_were_lost_is_known() {
     assert_eq!(lost_weights(&rig), Some(5));
 }
 
-/// Turns a limb, all skin and joints from one on, about that joint.
+/// Rotates a limb (skin and joints from `from` on) about its first joint.
 fn bend(rig: &mut Rig, from: usize, turn: Rotation) {
     let is_below =
         |joint: usize| core::iter::successors(Some(joint), |&at| rig.joints[at].parent).any(|at| at == from);
@@ -386,7 +386,7 @@ fn bend(rig: &mut Rig, from: usize, turn: Rotation) {
 }
 
 #[test]
-fn a_human_without_names_is_one_with_its_arms_bent_unlike() {
+fn nameless_human_with_unequally_bent_arms_is_recognised() {
     let mut rig = toy::body(|_| String::new());
     for (number, joint) in rig.joints.iter_mut().enumerate() {
         joint.name = format!("Bone.{number:03}");
@@ -407,9 +407,9 @@ fn a_human_without_names_is_one_with_its_arms_bent_unlike() {
     }
 }
 
-/// A joint of skin of its own between the trunk and a limb, on the midline.
+/// Adds a joint with skin between trunk and limb, on the midline.
 fn insert_inner_end(rig: &mut Rig, limb: usize) {
-    let parent = rig.joints[limb].parent.expect("a limb hangs on something");
+    let parent = rig.joints[limb].parent.expect("a limb has a parent");
     let at = -rig.skins[0].inverse_bind[parent].translation;
     let joint = rig.joints.len();
     rig.joints.push(Joint {
@@ -431,7 +431,7 @@ fn insert_inner_end(rig: &mut Rig, limb: usize) {
 }
 
 #[test]
-fn limbs_with_inner_ends_and_without_hands_and_feet_are_a_humans() {
+fn human_with_inner_limb_joints_and_no_hands_or_feet_is_recognised() {
     let mut rig = toy::body(|_| "part".into());
     for side in ["left", "right"] {
         for (end, onto) in [("Foot", "LowerLeg"), ("Hand", "LowerArm")] {
@@ -441,7 +441,7 @@ fn limbs_with_inner_ends_and_without_hands_and_feet_are_a_humans() {
         insert_inner_end(&mut rig, part(&format!("{side}UpperLeg")));
         insert_inner_end(&mut rig, part(&format!("{side}UpperArm")));
     }
-    // Parents come before children: the new joints go to the front of what hangs on them.
+    // Parents come before children: the new joints move in front of their descendants.
     let rig = in_order(&rig);
     let found = analyze(&rig).expect("a skin");
     assert!(found.humanoid, "{:?}", found.notes);
@@ -476,8 +476,8 @@ fn in_order(rig: &Rig) -> Rig {
 }
 
 #[test]
-fn a_beast_whose_limbs_are_named_as_a_humans_stays_on_all_fours() {
-    // A trunk along z at the height of the hips, arms and legs straight down from it.
+fn quadruped_with_human_names_is_not_human() {
+    // A trunk along z at hip height, with arms and legs straight down from it.
     let place = |role: &str, at: [f32; 3]| match role {
         "hips" => [0.0, 1.0, -0.6],
         "spine" => [0.0, 1.0, -0.3],
@@ -517,21 +517,21 @@ fn a_beast_whose_limbs_are_named_as_a_humans_stays_on_all_fours() {
     assert!((found.up_axis - Vec3::Y).length() < 1e-6);
 }
 
-/// Adds a joint that moves no skin, at a place.
+/// Adds a joint without skin at a place.
 fn add_bare(rig: &mut Rig, name: &str, parent: Option<usize>, place: Vec3, under: Vec3) -> usize {
     let rest = LocalTransform { translation: place - under, ..LocalTransform::default() };
     rig.joints.push(Joint { name: name.into(), parent, rest, source: rig.joints.len() });
     rig.joints.len() - 1
 }
 
-/// Hangs a joint of the toy on another, where it is.
+/// Reparents a joint of the toy body without moving it.
 fn hang(rig: &mut Rig, joint: usize, parent: usize, place: Vec3) {
     rig.joints[joint].parent = Some(parent);
     rig.joints[joint].rest.translation = Vec3::from_array(toy::BODY[joint].2) - place;
 }
 
 #[test]
-fn a_trunk_whose_bones_are_a_branch_of_their_own_is_found() {
+fn trunk_on_a_separate_branch_is_found() {
     let rigify = |role: Role| {
         let side = |side: Side| if side == Side::Left { "L" } else { "R" };
         match role {
@@ -551,7 +551,8 @@ fn a_trunk_whose_bones_are_a_branch_of_their_own_is_found() {
     };
     let mut rig = toy::body(rigify);
     let [low, high] = ["hips", "chest"].map(|name| Vec3::from_array(toy::BODY[part(name)].2));
-    // Limbs and neck hang on controls without skin, and constraints, which no file has, moved the bones of the trunk.
+    // Limbs and neck are children of controls without skin. The trunk's bones were moved by constraints, which files do
+    // not contain.
     let torso = add_bare(&mut rig, "MCH-torso.parent", None, low, Vec3::ZERO);
     let chest = add_bare(&mut rig, "ORG-spine.002", Some(torso), high, low);
     ["leftUpperLeg", "rightUpperLeg"].into_iter().for_each(|thigh| hang(&mut rig, part(thigh), torso, low));
@@ -571,7 +572,7 @@ fn a_trunk_whose_bones_are_a_branch_of_their_own_is_found() {
         let role = Role::from_name(name).expect("a VRM name");
         let joint = found.joint_with(role).map(|joint| in_order(&rig).joints[joint].name.clone());
         let expected = rigify(role);
-        // Parts of the spine may be counted otherwise.
+        // The spine's parts may be numbered differently.
         assert!(
             joint.as_deref() == Some(&expected) || expected.contains("spine.00"),
             "{name} is {joint:?}, not {expected}"
@@ -579,7 +580,7 @@ fn a_trunk_whose_bones_are_a_branch_of_their_own_is_found() {
     }
 }
 
-/// Makes the skin of a joint of the toy a mesh of its own on `carrier`, which stands at `at`.
+/// Turns the skin of a toy joint into a rigid mesh of `carrier`, which is at `at`.
 fn make_rigid(rig: &mut Rig, joint: usize, carrier: usize, at: Vec3) {
     let skinned = &mut rig.meshes[0].primitives[0];
     let own = skinned.positions[4 * joint..4 * joint + 4].iter().map(|&corner| corner - at).collect();
@@ -596,8 +597,8 @@ fn make_rigid(rig: &mut Rig, joint: usize, carrier: usize, at: Vec3) {
 }
 
 #[test]
-fn a_rigid_trunk_on_the_bone_that_carries_the_legs_is_the_hips() {
-    // A toy whose trunk is one rigid mesh on a nameless bone, on which the thighs hang, too.
+fn rigid_trunk_above_the_legs_is_the_hips() {
+    // A toy body whose trunk is one rigid mesh of a nameless bone that is also the parent of the thighs.
     let mut rig = toy::body(mixamo);
     let low = Vec3::from_array(toy::BODY[part("hips")].2);
     let bone = add_bare(&mut rig, "Bone", None, low, Vec3::ZERO);
@@ -610,7 +611,7 @@ fn a_rigid_trunk_on_the_bone_that_carries_the_legs_is_the_hips() {
     for bare in ["chest", "spine", "hips", "neck"] {
         make_rigid(&mut rig, part(bare), trunk, low);
     }
-    // The head is bent aside, so that names alone tell.
+    // An arm is bent, so that names alone decide.
     bend(&mut rig, part("leftUpperArm"), Rotation::from_axis_angle(Vec3::Z, 0.9));
     let sorted = in_order(&rig);
     let found = analyze(&sorted).expect("a skin");
@@ -622,10 +623,10 @@ fn a_rigid_trunk_on_the_bone_that_carries_the_legs_is_the_hips() {
 }
 
 #[test]
-fn a_head_that_hangs_on_the_armature_goes_with_what_it_sits_on() {
+fn head_parented_to_the_armature_joins_the_neck() {
     let mut rig = toy::body(mixamo);
     let [head, neck] = ["head", "neck"].map(part);
-    // Nobody has a head of half a metre otherwise.
+    // Makes the head half a metre high, larger than any human's.
     let armature = add_bare(&mut rig, "Armature", None, Vec3::ZERO, Vec3::ZERO);
     rig.joints[part("hips")].parent = Some(armature);
     let place = Vec3::from_array(toy::BODY[head].2);
@@ -635,7 +636,7 @@ fn a_head_that_hangs_on_the_armature_goes_with_what_it_sits_on() {
     make_rigid(&mut rig, head, mesh, Vec3::ZERO);
     make_rigid(&mut rig, part("leftHand"), beside, Vec3::from_array(toy::BODY[part("leftHand")].2));
     let own = rig.meshes.iter_mut().find(|other| other.joint == mesh).expect("just added");
-    // One corner of four touches the neck.
+    // One of four corners touches the neck.
     let corners = own.primitives[0].positions.iter_mut().enumerate();
     corners.for_each(|(k, corner)| {
         *corner = place + (*corner - place) * 6.0 + Vec3::Y * if k == 0 { -0.1 } else { 0.6 };
@@ -643,7 +644,7 @@ fn a_head_that_hangs_on_the_armature_goes_with_what_it_sits_on() {
     let sorted = in_order(&rig);
     let at = |name: &str| sorted.joints.iter().position(|joint| joint.name == name).expect("it is there");
     let found = analyze(&sorted).expect("a skin");
-    // It sticks out so far that it has a body of its own.
+    // It protrudes enough to get its own body.
     let body = |name: &str| found.kept.iter().find(|bone| bone.joint == at(name));
     let carrier = body("Goblin_head").and_then(|head| found.kept[head.parent?].joint.into());
     assert_eq!(carrier, Some(at(&rig.joints[neck].name)), "{:?}", found.notes);
@@ -652,9 +653,9 @@ fn a_head_that_hangs_on_the_armature_goes_with_what_it_sits_on() {
 }
 
 #[test]
-fn eyes_with_a_skeleton_of_their_own_go_with_the_head() {
+fn eyes_with_their_own_skeleton_join_the_head() {
     let mut rig = toy::body(mixamo);
-    // On both sides of a broad head whose middle is nearest to the nape.
+    // The eyes are on both sides of a wide head whose centre is nearest to the nape.
     let head = Vec3::from_array(toy::BODY[part("head")].2);
     for corner in 4 * part("head")..4 * part("head") + 4 {
         let at = &mut rig.meshes[0].primitives[0].positions[corner];
@@ -668,7 +669,7 @@ fn eyes_with_a_skeleton_of_their_own_go_with_the_head() {
     both.joints.extend(other.joints);
     both.weights.extend(other.weights);
     both.indices.extend(other.indices.iter().map(|index| index + first));
-    // The neck is thick enough to be nearer to the middle of both than any corner of the head.
+    // The neck is so thick that it is nearer to the centre of both eyes than any corner of the head.
     let neck = Vec3::from_array(toy::BODY[part("neck")].2);
     rig.meshes[0].primitives[0].positions[4 * part("neck") + 3] = neck + Vec3::Y * 0.11;
     let found = is_whole(&rig, &[]);
@@ -676,7 +677,7 @@ fn eyes_with_a_skeleton_of_their_own_go_with_the_head() {
 }
 
 #[test]
-fn of_two_hands_without_skin_the_one_on_the_forearm_counts() {
+fn skinless_hand_on_the_forearm_is_preferred() {
     let mut rig = toy::body(mixamo);
     let [hand, forearm] = ["leftHand", "leftLowerArm"].map(part);
     give_skin(&mut rig, hand, forearm);
@@ -688,7 +689,7 @@ fn of_two_hands_without_skin_the_one_on_the_forearm_counts() {
 }
 
 #[test]
-fn a_figure_that_squats_in_its_rest_pose_and_has_no_root_stands_as_bound() {
+fn rootless_figure_with_squatting_rest_pose_stands_in_the_bind_pose() {
     let mut rig = toy::body(mixamo);
     let [low, high] = ["hips", "chest"].map(|name| Vec3::from_array(toy::BODY[part(name)].2));
     let torso = add_bare(&mut rig, "MCH-torso", None, low, Vec3::ZERO);
@@ -700,7 +701,7 @@ fn a_figure_that_squats_in_its_rest_pose_and_has_no_root_stands_as_bound() {
         hang(&mut rig, part(limb), chest, high);
     }
     give_skin(&mut rig, part("spine"), part("hips"));
-    // Every joint but the trunk's is turned since it was bound, thighs the most; the trunk leans.
+    // Every joint except the trunk's is rotated relative to its bind pose, the thighs most; the trunk leans.
     let turn = |rig: &mut Rig, name: &str, about: Vec3, by: f32| {
         rig.joints[part(name)].rest.rotation = Rotation::from_axis_angle(about, by);
     };
@@ -719,12 +720,12 @@ fn a_figure_that_squats_in_its_rest_pose_and_has_no_root_stands_as_bound() {
     let found = analyze(&in_order(&rig)).expect("a skin");
     let place = |role: Role| found.bind_model[found.joint_with(role).expect("a joint")].translation;
     let up = (place(Role::Head) - place(Role::Hips)).normalize();
-    assert!(up.y > 0.9, "from hips to head it goes along {up}; {:?}", found.notes);
+    assert!(up.y > 0.9, "from hips to head the direction is {up}; {:?}", found.notes);
 }
 
-/// As converted files have it: a mesh is a node below its object.
+/// In some converted files a mesh is a node below its object.
 #[test]
-fn a_head_whose_mesh_is_a_node_below_an_object_on_the_armature_goes_with_its_hair() {
+fn head_object_on_the_armature_keeps_its_mesh_and_hair() {
     let mut rig = toy::body(mixamo);
     let [head, neck] = ["head", "neck"].map(part);
     let armature = add_bare(&mut rig, "Armature", None, Vec3::ZERO, Vec3::ZERO);
@@ -738,14 +739,14 @@ fn a_head_whose_mesh_is_a_node_below_an_object_on_the_armature_goes_with_its_hai
     corners.for_each(|(k, corner)| {
         *corner = place + (*corner - place) * 6.0 + Vec3::Y * if k == 0 { -0.1 } else { 0.6 };
     });
-    // Hair hangs on the object, and touches the head alone.
+    // Hair is a child of the object, and touches only the head.
     let hair = add_bare(&mut rig, "Hair", Some(object), place + Vec3::Y * 0.9, Vec3::ZERO);
     let strands = add_bare(&mut rig, "Circle", Some(hair), place + Vec3::Y * 0.9, place + Vec3::Y * 0.9);
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * 0.2).to_vec();
     let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
     let primitive = Primitive { positions, indices, ..Primitive::default() };
     rig.meshes.push(RigMesh { name: String::new(), joint: strands, skin: None, primitives: vec![primitive] });
-    // Eyes within the head, far from all skin.
+    // Eyes inside the head, far from all skin.
     let eyes = add_bare(&mut rig, "Goblin_eyes", Some(armature), place + Vec3::Y * 0.5, Vec3::ZERO);
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * 0.05).to_vec();
     let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
@@ -762,12 +763,12 @@ fn a_head_whose_mesh_is_a_node_below_an_object_on_the_armature_goes_with_its_hai
     }
     let goes = found.merge_into[at("Goblin_eyes")].is_some()
         || found.kept.iter().any(|b| b.joint == at("Goblin_eyes"));
-    assert!(goes, "the eyes go with the body that carries the head");
+    assert!(goes, "the eyes are merged into the head's parent");
 }
 
-/// A hat beside the skeleton of a figure that rests bent is where it sits on the bent head, and was bound there on the upright one.
+/// The hat is a separate skeleton. In the bent rest pose it is on the head, and it was bound there in the upright pose.
 #[test]
-fn a_hat_beside_a_figure_that_rests_otherwise_than_it_was_bound_is_on_its_head() {
+fn separate_hat_is_bound_on_the_head_of_a_bent_rest_pose() {
     let mut rig = toy::body(mixamo);
     let place = Vec3::from_array(toy::BODY[part("head")].2);
     rig.joints[part("neck")].rest.rotation = Rotation::from_axis_angle(Vec3::X, 0.8);
@@ -793,9 +794,9 @@ fn a_hat_beside_a_figure_that_rests_otherwise_than_it_was_bound_is_on_its_head()
     assert_eq!(found.merge_into[hat], Some(part("head")));
 }
 
-/// A hat beside the skeleton that sticks out so far that it has a body of its own is on the head in a motion of another body, too.
+/// A large hat outside the skeleton gets its own body. It stays on the head in another body's motion as well.
 #[test]
-fn a_prop_beside_the_skeleton_rides_on_what_carries_it() {
+fn separate_prop_follows_its_carrier() {
     let mut rig = toy::body(mixamo);
     let head = Vec3::from_array(toy::BODY[part("head")].2);
     let armature = add_bare(&mut rig, "Armature", None, Vec3::ZERO, Vec3::ZERO);
@@ -822,13 +823,13 @@ fn a_prop_beside_the_skeleton_rides_on_what_carries_it() {
     assert!(model[hat].linear.y_axis.y < 0.5, "it leans with the head");
 }
 
-/// A hat that a clip alone brings to the head is on it in a motion of another body, too.
+/// A hat that only a clip moves to the head stays on it in another body's motion as well.
 #[test]
-fn a_hat_that_follows_the_head_by_a_clip_rides_where_the_clip_has_it() {
+fn hat_moved_by_a_clip_keeps_the_clips_place_on_the_head() {
     let mut rig = toy::body(mixamo);
     let head = Vec3::from_array(toy::BODY[part("head")].2);
     let hat = rig.joints.len();
-    // Bound at the nape, and a little too low.
+    // Bound at the nape, slightly too low.
     let rest = LocalTransform { translation: head - Vec3::Y * 0.1, ..LocalTransform::default() };
     rig.joints.push(Joint { name: "hat".into(), parent: None, rest, source: hat });
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * 0.1).to_vec();
@@ -857,7 +858,7 @@ fn a_hat_that_follows_the_head_by_a_clip_rides_where_the_clip_has_it() {
     assert!((height(&held) - Vec3::Y * 0.15).length() < 1e-4, "{}", height(&held));
 }
 
-/// Auto-Rig Pro's names for the parts of the toy.
+/// Auto-Rig Pro names for the parts of the toy body.
 fn auto_rig_pro(role: Role) -> String {
     let side = |side: Side| if side == Side::Left { "l" } else { "r" };
     match role {
@@ -876,9 +877,9 @@ fn auto_rig_pro(role: Role) -> String {
     }
 }
 
-/// Auto-Rig Pro calls the pelvis `root`; it carries nothing, and thighs and trunk hang on controls.
+/// In Auto-Rig Pro the pelvis is called `root` and has no children: thighs and trunk are children of controls.
 #[test]
-fn a_pelvis_called_root_that_carries_nothing_is_the_hips() {
+fn childless_pelvis_called_root_is_the_hips() {
     let mut rig = toy::body(auto_rig_pro);
     let hips = Vec3::from_array(toy::BODY[part("hips")].2);
     let floor = add_bare(&mut rig, "c_traj", None, Vec3::ZERO, Vec3::ZERO);
@@ -897,9 +898,10 @@ fn a_pelvis_called_root_that_carries_nothing_is_the_hips() {
     assert_eq!(sorted.joints[spine].name, "spine_01.x");
 }
 
-/// A gun of many vertices in the hand of a figure that rests otherwise than it was bound: the body says how it was bound.
+/// A gun with many vertices in the hand of a figure whose rest pose differs from its bind pose: the body determines the
+/// bind pose.
 #[test]
-fn a_gun_with_more_vertices_than_the_body_says_nothing_of_the_bind_pose() {
+fn gun_with_many_vertices_does_not_change_the_bind_pose() {
     let mut rig = toy::body(mixamo);
     for (name, turn) in [("rightUpperArm", 1.2), ("leftUpperArm", -1.2), ("rightLowerArm", -0.9)] {
         rig.joints[part(name)].rest.rotation = Rotation::from_axis_angle(Vec3::new(0.6, 0.8, 0.0), turn);

@@ -17,7 +17,7 @@ fn shuffle<T>(random: &mut Random, list: &mut [T]) {
 }
 
 #[test]
-fn the_order_of_layers_does_not_change_a_bit() {
+fn layer_order_does_not_change_the_pose() {
     let mut random = Random::new(1);
     for round in 0..200 {
         let rest = random_pose(&mut random);
@@ -26,7 +26,7 @@ fn the_order_of_layers_does_not_change_a_bit() {
         let mut layers: Vec<BlendLayer<'_>> = (0..8)
             .map(|_| BlendLayer {
                 pose: &poses[random.index(6)],
-                // Equal weights are common.
+                // Equal weights are frequent.
                 weight: random.index(4) as f32 * 0.3,
                 mask: [None, Some(&masks[0]), Some(&masks[1])][random.index(3)],
             })
@@ -44,7 +44,7 @@ fn the_order_of_layers_does_not_change_a_bit() {
 }
 
 #[test]
-fn a_blend_is_the_weighted_mean() {
+fn blend_equals_the_weighted_mean() {
     let mut random = Random::new(2);
     for _ in 0..100 {
         let rest = random_pose(&mut random);
@@ -72,7 +72,7 @@ fn a_blend_is_the_weighted_mean() {
 }
 
 #[test]
-fn a_pose_blended_with_itself_is_that_pose_to_the_bit() {
+fn pose_blended_with_itself_keeps_its_bits() {
     let mut random = Random::new(3);
     for mean in [RotationMean::Sum, RotationMean::Exact] {
         let (rest, pose) = (random_pose(&mut random), random_pose(&mut random));
@@ -87,7 +87,7 @@ fn a_pose_blended_with_itself_is_that_pose_to_the_bit() {
 }
 
 #[test]
-fn no_weight_is_the_rest_pose_to_the_bit() {
+fn zero_weight_gives_exactly_the_rest_pose() {
     let mut random = Random::new(4);
     let (rest, pose) = (random_pose(&mut random), random_pose(&mut random));
     let mut out = Pose::new(JOINTS);
@@ -99,7 +99,7 @@ fn no_weight_is_the_rest_pose_to_the_bit() {
         blender.blend(&rest, layers, &mut out);
         assert_eq!(out, rest);
     }
-    // Half of the body: each joint as if it were alone.
+    // Mask on half of the body: each joint is blended as if alone.
     let half: Mask = (0..JOINTS).map(|joint| if joint < 6 { 0.0 } else { 1.0 }).collect();
     blender.blend(&rest, &[BlendLayer { mask: Some(&half), ..BlendLayer::new(&pose, 0.2) }], &mut out);
     for joint in 0..JOINTS {
@@ -108,7 +108,7 @@ fn no_weight_is_the_rest_pose_to_the_bit() {
 }
 
 #[test]
-fn a_ramp_from_nothing_leaves_the_rest_pose_without_a_jump() {
+fn weight_ramp_leaves_the_rest_pose_continuously() {
     let mut random = Random::new(5);
     let (rest, pose) = (random_pose(&mut random), random_pose(&mut random));
     let mut blender = Blender::new(BlendOptions { fill_below: 0.1, ..BlendOptions::default() });
@@ -123,7 +123,7 @@ fn a_ramp_from_nothing_leaves_the_rest_pose_without_a_jump() {
         before.copy_from(&out);
     }
     for joint in 0..JOINTS {
-        assert_eq!(out.get(joint), pose.get(joint), "from 0.1 on it is the pose alone");
+        assert_eq!(out.get(joint), pose.get(joint), "from 0.1 on only the pose counts");
     }
 }
 
@@ -158,7 +158,7 @@ fn the_exact_mean_minimises_the_squared_chords() {
 }
 
 #[test]
-fn opposite_rotations_give_the_rest_pose_and_lengths_are_one() {
+fn opposite_rotations_give_unit_quaternions_at_the_rest_pose() {
     let mut random = Random::new(7);
     let rest: Pose = toy::random_pose(&mut random, JOINTS).into_iter().collect();
     let mut poses = [rest.clone(), rest.clone()];
@@ -166,7 +166,7 @@ fn opposite_rotations_give_the_rest_pose_and_lengths_are_one() {
         let mut local = rest.get(joint);
         let side = random.direction();
         let q = local.rotation;
-        // Half a turn this way and half a turn that way, as quaternions opposite and at right angles to the rest pose.
+        // Half a turn in each direction: opposite quaternions, perpendicular to the rest pose.
         local.rotation = q * Rotation::from_xyzw(side.x, side.y, side.z, 0.0);
         poses[0].set(joint, &local);
         local.rotation = q * Rotation::from_xyzw(-side.x, -side.y, -side.z, 0.0);

@@ -1,4 +1,4 @@
-//! Built clips against the raw ones, and against `f64`.
+//! Built clips compared with raw clips and with `f64`.
 
 use crate::{precise, rigs, toy};
 use needs_data::needs_data;
@@ -30,7 +30,7 @@ fn random_clip(random: &mut Random, joints: usize) -> Clip {
             let mut values = Vec::new();
             for part in 0..keys * parts {
                 let q = random.rotation();
-                // Of a spline's rotations, tangents are small against what lies between the keys.
+                // For rotations of a spline, tangents are small compared with the values between keys.
                 let scale = if parts == 3 && part % 3 != 1 { 0.5 } else { 1.0 };
                 let numbers = [q.x * scale, q.y * scale, q.z * scale, q.w * scale];
                 values.extend_from_slice(&numbers[..property.width()]);
@@ -64,7 +64,7 @@ fn built_clips_are_within_their_bound_on_all_open_clips() {
 
 #[needs_data]
 #[test]
-fn raw_clips_sampled_at_every_key_equal_the_file() {
+fn raw_clips_equal_the_file_at_every_key() {
     for file in rigs::WITH_CLIPS {
         let (rig, clips) = rigs::load(&format!("rigs/{file}"));
         let (mut cache, mut out) =
@@ -120,7 +120,7 @@ fn steps_splines_and_wide_arcs_are_within_the_bound() {
 }
 
 #[test]
-fn a_step_is_as_sharp_as_in_the_file() {
+fn built_steps_stay_sharp() {
     let rig = toy::chain(1, Vec3::ZERO);
     let values = vec![1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 4.0, 0.0, 0.0];
     let (property, interpolation) = (Property::Translation, Interpolation::Step);
@@ -135,14 +135,14 @@ fn a_step_is_as_sharp_as_in_the_file() {
 }
 
 #[test]
-fn a_cursor_never_changes_a_bit() {
+fn cursor_does_not_change_the_pose() {
     let mut random = Random::new(8);
     let rig = toy::chain(19, Vec3::X);
     let clips: Vec<BuiltClip> = (0..3).map(|_| build(&random_clip(&mut random, 19), &rig)).collect();
     let (mut cursor, mut warm, mut cold) = (Cursor::new(), Pose::new(19), Pose::new(19));
     let mut time = 0.0_f32;
     for i in 0..4_000 {
-        // Runs forward and backward at all speeds, jumps, and changes of clip.
+        // Forward and backward at all speeds, jumps, and changes of clip.
         time = match i % 37 {
             0 => random.range(-0.5, 3.5),
             k if k < 20 => time + 0.013 * k as f32,
@@ -159,7 +159,7 @@ fn a_cursor_never_changes_a_bit() {
 }
 
 #[test]
-fn what_does_not_move_has_no_keys() {
+fn constant_channels_have_no_keys() {
     let rig = toy::chain(9, Vec3::X);
     let still = [0.6, 0.0, 0.0, 0.8, 0.6, 0.0, 0.0, 0.8];
     let channel = |joint, values: &[f32]| Channel {
@@ -175,18 +175,18 @@ fn what_does_not_move_has_no_keys() {
     let mut out = Pose::new(9);
     built.sample(0.5, &mut Cursor::new(), &mut out);
     assert_eq!(out.get(8).rotation, Rotation::from_xyzw(0.6, 0.0, 0.0, 0.8).normalize());
-    assert_eq!(out.get(8).translation, Vec3::X, "without a channel it is the rest pose");
-    // Both signs of one rotation are no motion either.
+    assert_eq!(out.get(8).translation, Vec3::X, "a joint without a channel has the rest pose");
+    // Opposite signs of one quaternion are no motion either.
     let signs = [0.6, 0.0, 0.0, 0.8, -0.6, 0.0, 0.0, -0.8];
     assert_eq!(build(&clip(vec![channel(8, &signs)]), &rig).keys(), 0);
-    // The later of two channels counts.
+    // Of two channels the later one is used.
     let moving = [0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0];
     assert_eq!(build(&clip(vec![channel(8, &moving), channel(8, &still)]), &rig).keys(), 0);
     assert!(build(&clip(vec![channel(8, &still), channel(8, &moving)]), &rig).keys() > 0);
 }
 
 #[test]
-fn bad_clips_are_refused_with_their_place() {
+fn invalid_clips_are_rejected_with_their_place() {
     let rig = toy::chain(2, Vec3::X);
     let channel = Channel {
         joint: 1,
@@ -199,7 +199,7 @@ fn bad_clips_are_refused_with_their_place() {
     let error = |change: &dyn Fn(&mut Clip)| {
         let mut clip = good.clone();
         change(&mut clip);
-        BuiltClip::build(&clip, &rig, &ClipBuildOptions::default()).expect_err("it is not good")
+        BuiltClip::build(&clip, &rig, &ClipBuildOptions::default()).expect_err("the clip is invalid")
     };
     assert!(BuiltClip::build(&good, &rig, &ClipBuildOptions::default()).is_ok());
     let none = Rig::default();
@@ -235,18 +235,18 @@ fn bad_clips_are_refused_with_their_place() {
 }
 
 #[test]
-fn differences_on_top_of_their_reference_are_the_clip() {
+fn additive_clip_on_its_reference_equals_the_clip() {
     let mut random = Random::new(9);
     let rig = toy::chain(6, Vec3::X);
     let reference = toy::random_pose(&mut random, 6);
     let mut clip = random_clip(&mut random, 6);
-    // A spline of quaternions is that of their products with the reference, before both are brought to length 1.
+    // A spline of quaternions equals the spline of their products with the reference before both are normalised.
     clip.channels.retain(|channel| channel.property != Property::Scale);
     let difference = clip.difference_from(&reference);
     let fill = Fill::Identity;
     let built =
         BuiltClip::build(&difference, &rig, &ClipBuildOptions { fill, ..ClipBuildOptions::default() });
-    let built = built.expect("it is as good as the clip");
+    let built = built.expect("the difference is valid like the clip");
     let (mut out, mut expected) = (Pose::new(6), reference.clone());
     for i in 0..30 {
         let time = 0.1 * i as f32;
@@ -268,7 +268,7 @@ fn differences_on_top_of_their_reference_are_the_clip() {
 }
 
 #[test]
-fn model_space_has_the_bits_of_the_slices_and_the_values_of_f64() {
+fn model_space_matches_the_slices_exactly_and_f64_closely() {
     let mut random = Random::new(10);
     for joints in [1, 7, 8, 9, 50] {
         let mut rig = toy::chain(joints, Vec3::X);

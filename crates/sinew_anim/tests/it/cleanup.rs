@@ -1,4 +1,4 @@
-//! Clean-up: what was put in is found and taken out, and nothing else.
+//! Clean-up of captures: inserted defects are found and removed, and nothing else changes.
 
 use crate::mocap::{actor, character};
 use crate::toy;
@@ -37,7 +37,7 @@ fn farthest(a: &Take, b: &Take) -> f32 {
 }
 
 #[test]
-fn spikes_are_cut_off_and_nothing_else() {
+fn only_spikes_are_removed() {
     let clean = swinging();
     let mut take = clean.clone();
     assert_eq!(despike(&mut take, &SpikeSettings::default()), []);
@@ -63,9 +63,9 @@ fn spikes_are_cut_off_and_nothing_else() {
     assert!(farthest(&take, &clean) < 0.01, "{}", farthest(&take, &clean));
 }
 
-/// A jump of the place alone is a spike too; one that stays is a cut, not a spike.
+/// A displacement for one frame is a spike as well; a lasting one is a cut.
 #[test]
-fn places_jump_too_and_cuts_stay() {
+fn position_spikes_are_removed_and_cuts_stay() {
     let clean = swinging();
     let mut take = clean.clone();
     take.pose_mut(50)[0].translation += Vec3::new(0.0, 0.3, 0.0);
@@ -82,9 +82,9 @@ fn places_jump_too_and_cuts_stay() {
     assert_eq!(despike(&mut take, &SpikeSettings::default()), []);
 }
 
-/// A sine keeps `exp(−2 (π f σ)²)` of its size.
+/// Smoothing scales a sine by `exp(−2 (π f σ)²)`.
 #[test]
-fn smoothing_damps_as_its_formula_says() {
+fn smoothing_follows_its_formula() {
     for (hz, sigma) in [(2.0_f32, 0.03_f32), (8.0, 0.02), (20.0, 0.02)] {
         let angle = |frame: usize| 0.1 * trig::sin(TAU * hz * frame as f32 / 120.0);
         let local = |frame: usize| LocalTransform {
@@ -109,12 +109,12 @@ fn smoothing_damps_as_its_formula_says() {
 }
 
 #[test]
-fn joints_come_back_into_their_limits() {
+fn joints_are_projected_into_their_limits() {
     let rig = toy::chain(2, Vec3::Y);
     let clean = swinging();
     let limits = learn_limits(&rig, &[&clean]);
     let mut take = clean.clone();
-    // One frame in two hundred may be beyond what was learned, by little.
+    // One frame in two hundred may slightly exceed the learned limits.
     let report = project_limits(&mut take, &limits);
     assert!(report.iter().all(|excess| excess.frames < 12 && excess.largest < 0.01), "{report:?}");
     for frame in 100..120 {
@@ -129,7 +129,7 @@ fn joints_come_back_into_their_limits() {
 
 #[needs_data]
 #[test]
-fn a_body_is_lifted_out_of_the_floor() {
+fn body_is_lifted_out_of_the_floor() {
     let (walk, (rig, analysis)) = (actor("cmu_12_01_walk.bvh"), character("mannequiny.glb"));
     let (actor, body) =
         (Body { rig: &walk.rig, analysis: &walk.analysis }, Body { rig: &rig, analysis: &analysis });
@@ -149,10 +149,10 @@ fn a_body_is_lifted_out_of_the_floor() {
     assert!(low(&take) > floor + 0.05 - 1e-4, "{}", low(&take) - floor);
 }
 
-/// Real captures: what is cut off is little, and after that there is nothing more to do.
+/// Real captures: little is cut off, and a second pass changes nothing.
 #[needs_data]
 #[test]
-fn captures_are_cleaned_once_and_for_all() {
+fn second_cleanup_of_a_capture_changes_nothing() {
     for name in ["cmu_12_01_walk.bvh", "cmu_01_01_jumps.bvh", "cmu_02_03_run_iclone.bvh"] {
         let found = actor(name);
         let clean = Take::of(&found.rig, &found.clip, FRAME);

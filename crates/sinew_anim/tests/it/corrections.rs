@@ -1,4 +1,4 @@
-//! Roles that a person gives go before those that the analysis sees.
+//! Roles given by the user take precedence over those of the analysis.
 
 use crate::roles::sound;
 use crate::{rigs, toy};
@@ -8,12 +8,12 @@ use sinew_anim::{
 };
 use sinew_math::{Affine, Random, Vec3};
 
-/// Analysis of a rig of which nothing else is known.
+/// Analysis of a rig with corrections and without hints.
 fn analyze_corrected(rig: &Rig, correction: &Correction) -> Result<RigAnalysis, CorrectionError> {
     sinew_anim::analyze_corrected(rig, &Hints::default(), correction)
 }
 
-/// A body whose joints have numbers for names.
+/// A body whose joint names are numbers.
 fn numbered() -> Rig {
     let mut rig = toy::body(Role::name);
     rig.joints.iter_mut().enumerate().for_each(|(i, joint)| joint.name = format!("Bone_{i}"));
@@ -25,7 +25,7 @@ fn of_roles(roles: &[(Role, usize)]) -> Correction {
 }
 
 #[test]
-fn nothing_said_changes_nothing() {
+fn empty_correction_changes_nothing() {
     let rig = numbered();
     assert_eq!(analyze_corrected(&rig, &Correction::default()).ok(), analyze(&rig).ok());
     let same = of_roles(&[(Role::Hips, 0)]);
@@ -38,13 +38,13 @@ fn nothing_said_changes_nothing() {
 }
 
 #[test]
-fn a_role_has_the_joint_that_was_said() {
+fn corrected_role_has_the_given_joint() {
     let rig = numbered();
     let found = analyze_corrected(&rig, &of_roles(&[(Role::UpperChest, 2)])).expect("a body");
     sound(&rig, &found);
     assert_eq!(found.joint_with(Role::UpperChest), Some(2));
     assert_eq!(found.joint_with(Role::Chest), None, "one joint, one role");
-    // The two sides change places where one of them is said to be the other, and then the body faces the other way.
+    // If one side is declared to be the other, both swap, and the body faces the other way.
     let forward = |found: &sinew_anim::RigAnalysis| found.character_from_model.rotation.inverse() * Vec3::Z;
     let before = analyze(&rig).expect("a skin");
     let left = before.joint_with(Role::UpperLeg(Side::Left)).expect("a leg");
@@ -57,7 +57,7 @@ fn a_role_has_the_joint_that_was_said() {
 }
 
 #[test]
-fn what_cannot_be_is_refused() {
+fn impossible_correction_is_rejected() {
     let rig = numbered();
     let error =
         |roles: &[(Role, usize)]| analyze_corrected(&rig, &of_roles(roles)).expect_err("no such body");
@@ -69,7 +69,7 @@ fn what_cannot_be_is_refused() {
     assert_eq!(analyze_corrected(&rig, &all), Err(CorrectionError::NothingLeft));
     let bare = Rig { skins: Vec::new(), meshes: Vec::new(), ..rig.clone() };
     assert_eq!(analyze_corrected(&bare, &Correction::default()), Err(CorrectionError::NoSkin(NoSkin)));
-    // Without arms nobody is seen as a human; roles say what is missing for one.
+    // Without arms no figure is recognised as human; the error names the missing roles.
     let mut stump = rig.clone();
     let arms: Vec<u16> = (5..11).collect();
     for primitive in &mut stump.meshes[0].primitives {
@@ -97,7 +97,7 @@ fn what_cannot_be_is_refused() {
     assert_eq!(legless, Err(CorrectionError::NoPart(Role::SpineSegment(0))));
 }
 
-/// A pole on the chest with a flag far above the head.
+/// Adds a pole on the chest with a flag far above the head.
 fn with_flag(rig: &Rig, chest: usize) -> Rig {
     let mut rig = rig.clone();
     let place = analyze(&rig).expect("a skin").bind_model[chest].translation;
@@ -120,7 +120,7 @@ fn with_flag(rig: &Rig, chest: usize) -> Rig {
 }
 
 #[test]
-fn what_is_ignored_goes_along_and_shapes_nothing() {
+fn ignored_joints_are_merged_and_do_not_affect_shapes() {
     let plain = numbered();
     let rig = with_flag(&plain, 2);
     let (before, flagged) = (analyze(&plain).expect("a skin"), analyze(&rig).expect("a skin"));
@@ -137,10 +137,10 @@ fn what_is_ignored_goes_along_and_shapes_nothing() {
     assert_eq!(correction.seen(&rig).meshes, plain.meshes);
 }
 
-/// Whatever is said, the result is a body or a refusal.
+/// Any correction gives a body or an error.
 #[needs_data]
 #[test]
-fn any_correction_of_any_rig_is_answered() {
+fn any_correction_gives_a_body_or_an_error() {
     let mut all = vec![numbered(), toy::body(Role::name)];
     for file in ["Fox.glb", "quaternius_Spider.glb", "kaykit_Knight.glb", "RiggedSimple.glb"] {
         all.push(rigs::load(&format!("rigs/{file}")).0);

@@ -1,15 +1,15 @@
-//! Bodies that are no human's, with numbers for names: each limb is one, on one side, and hangs on the trunk.
+//! Non-human bodies with numbers for names: each limb is one chain, on one side, attached to the trunk.
 
 use crate::wild::rig_of;
 use sinew_anim::{RigAnalysis, Role, analyze};
 use sinew_math::Vec3;
 
-/// Joints of a body: what each hangs on, and where it is, metres.
+/// Joints of a body: parent and position (metres).
 #[derive(Default)]
 struct Body(Vec<(Option<usize>, Vec3)>);
 
 impl Body {
-    /// Adds a line of joints, and gives the last.
+    /// Adds a line of joints and returns the last.
     fn line(&mut self, on: Option<usize>, places: &[[f32; 3]]) -> usize {
         let mut parent = on;
         for &place in places {
@@ -19,7 +19,7 @@ impl Body {
         self.0.len() - 1
     }
 
-    /// Adds a line on the left and its mirror image.
+    /// Adds a line on the left and its mirror image on the right.
     fn pair(&mut self, on: usize, places: &[[f32; 3]]) {
         for side in [1.0, -1.0] {
             let places: Vec<_> = places.iter().map(|&[x, y, z]| [side * x, y, z]).collect();
@@ -44,7 +44,7 @@ impl Body {
     }
 }
 
-/// Segments of each limb, after making sure that it is one.
+/// Numbers of segments of the limbs; checks that each limb is a single chain.
 fn limbs(name: &str, found: &RigAnalysis) -> Vec<usize> {
     assert!(!found.humanoid, "{name}");
     let side = |joint: usize| {
@@ -59,7 +59,7 @@ fn limbs(name: &str, found: &RigAnalysis) -> Vec<usize> {
         };
         counts.resize(counts.len().max(usize::from(limb) + 1), 0);
         counts[usize::from(limb)] += 1;
-        let on = &found.kept[bone.parent.expect("a limb hangs on something")];
+        let on = &found.kept[bone.parent.expect("a limb has a parent")];
         match on.role {
             Role::LimbSegment { limb: other, .. } => assert_eq!(limb, other, "{name}: a limb on a limb"),
             _ => assert_eq!(side(on.joint), 0.0, "{name}"),
@@ -74,7 +74,7 @@ fn limbs(name: &str, found: &RigAnalysis) -> Vec<usize> {
 }
 
 #[test]
-fn birds_insects_snakes_and_carts_are_what_they_are() {
+fn birds_insects_snakes_and_carts_get_their_limbs() {
     let mut bird = Body::default();
     let hips = bird.line(None, &[[0.0, 0.3, 0.0]]);
     bird.line(Some(hips), &[[0.0, 0.32, 0.1], [0.0, 0.36, 0.2], [0.0, 0.44, 0.3], [0.0, 0.46, 0.36]]);
@@ -106,12 +106,12 @@ fn birds_insects_snakes_and_carts_are_what_they_are() {
     for z in [0.8, -0.8] {
         cart.pair(chassis, &[[0.6, 0.3, z]]);
     }
-    assert_eq!(limbs("cart", &cart.analyzed()), [1; 4], "each wheel by itself");
+    assert_eq!(limbs("cart", &cart.analyzed()), [1; 4], "each wheel is its own limb");
 }
 
-/// Pairs that a number tells apart say nothing of left and right; head and tail are called so all the same.
+/// Numbers of a pair do not distinguish left from right; head and tail are still recognised by name.
 #[test]
-fn numbered_pairs_leave_head_and_tail_their_names() {
+fn numbered_pairs_keep_the_named_head_and_tail() {
     let mut raptor = Body::default();
     let body = raptor.line(None, &[[0.0, 0.5, 0.0]]);
     raptor.line(Some(body), &[[0.0, 0.52, 0.15], [0.0, 0.62, 0.35], [0.0, 0.7, 0.55]]);
@@ -144,6 +144,6 @@ fn numbered_pairs_leave_head_and_tail_their_names() {
             role(&found, 8)
         );
     }
-    // By shape alone the long end is the trunk: it is the names that tell.
+    // By shape alone the longer end would be the trunk; names decide otherwise.
     assert!(matches!(role(&raptor.analyzed(), 5), Some(Role::SpineSegment(_))));
 }

@@ -1,4 +1,4 @@
-//! A clip whose pose comes from outside: as good as one that is played.
+//! A clip whose pose is supplied by the caller behaves like a played clip.
 
 use crate::stage;
 use sinew_anim::{AnimationSet, Animator, Clip, ClipId, Fill, Pose, Skeleton, TrackDef, Transition};
@@ -6,7 +6,7 @@ use sinew_math::{Random, Reader, Writer};
 
 const DT: f32 = 1.0 / 60.0;
 
-/// A motion, another one, and a clip without channels.
+/// A motion, another motion, and a clip without channels.
 fn set() -> (AnimationSet, [ClipId; 3]) {
     let (mut set, mut random) = (AnimationSet::new(Skeleton::new(&stage::rig())), Random::new(5));
     let sways = [1.0, 0.8].map(|duration| stage::swaying(&mut random, duration));
@@ -21,7 +21,7 @@ fn apart(a: &Pose, b: &Pose) -> f32 {
     a.iter().zip(b.iter()).map(|(a, b)| a.rotation.angle_to(b.rotation)).fold(0.0, sinew_math::max)
 }
 
-/// One that plays the motion, and one that is fed what the first shows, `steps` later.
+/// Two animators: one plays the motion, the other is fed the first one's pose, `steps` updates later.
 fn twins(set: &AnimationSet, [played, _, empty]: [ClipId; 3], steps: usize) -> [Animator; 2] {
     let mut twins = [Animator::new(set), Animator::new(set)];
     twins[0].play(set, &TrackDef::new(played));
@@ -39,7 +39,7 @@ fn go_on(set: &AnimationSet, empty: ClipId, [player, fed]: &mut [Animator; 2]) {
 }
 
 #[test]
-fn a_fed_clip_shows_what_it_is_given() {
+fn fed_clip_shows_the_given_pose() {
     let (set, clips) = set();
     let mut twins = twins(&set, clips, 0);
     for step in 0..90 {
@@ -50,16 +50,16 @@ fn a_fed_clip_shows_what_it_is_given() {
 }
 
 #[test]
-fn who_is_sent_ahead_sees_joints_go_on() {
+fn prediction_extrapolates_the_fed_pose() {
     let (set, clips) = set();
-    // Between two keys, where the motion is as fast before as after.
+    // The time is between two keys, where speeds before and after are equal.
     let [player, fed] = twins(&set, clips, 22);
     let mut ahead = [player.clone(), fed.clone()];
     ahead[1].copy_from(&fed);
     ahead.iter_mut().for_each(|animator| animator.update(&set, DT));
     let (moved, off) = (apart(player.pose(), ahead[0].pose()), apart(ahead[0].pose(), ahead[1].pose()));
     assert!(off < 0.2 * moved, "{off} rad off after {moved} rad");
-    // Not for ever.
+    // The extrapolation is limited in time.
     let mut alone = fed;
     (0..12).for_each(|_| alone.update(&set, DT));
     let last = alone.pose().clone();
@@ -68,10 +68,10 @@ fn who_is_sent_ahead_sees_joints_go_on() {
 }
 
 #[test]
-fn a_transition_takes_over_the_speed_of_what_is_fed() {
+fn transition_inherits_the_speed_of_the_fed_pose() {
     let (set, [played, other, empty]) = set();
     let mut twins = twins(&set, [other, played, empty], 0);
-    // The fed one plays the other motion by itself at first.
+    // At first the fed animator plays the other motion itself.
     twins[1] = twins[0].clone();
     let mut outside = Animator::new(&set);
     outside.play(&set, &TrackDef::new(played));
@@ -92,7 +92,7 @@ fn a_transition_takes_over_the_speed_of_what_is_fed() {
 }
 
 #[test]
-fn what_is_loaded_is_fed_on() {
+fn loaded_animator_can_be_fed() {
     let (set, clips) = set();
     let [_, fed] = twins(&set, clips, 20);
     let mut out = Writer::new();

@@ -1,4 +1,4 @@
-//! Clips, programs, other files and doors tell of a rig that its skin and its names do not.
+//! Clips, exporters, neighbouring files and doors give hints about a rig that skin and names lack.
 
 use crate::toy;
 use sinew_anim::{
@@ -22,7 +22,7 @@ fn joint(role: &str) -> usize {
     toy::BODY.iter().position(|(name, ..)| *name == role).expect("a part of the toy")
 }
 
-/// Legs that walk in turns toward +Z, or toward -Z: the knee bends while its leg swings ahead.
+/// Legs that walk toward +Z or -Z: each knee bends while its leg swings forward.
 fn walk(seconds: f32, toward: f32) -> Clip {
     let mut channels = Vec::new();
     for (side, phase) in [("left", 0.0), ("right", 0.5 * TAU)] {
@@ -36,8 +36,8 @@ fn walk(seconds: f32, toward: f32) -> Clip {
     Clip { name: String::new(), duration: seconds, channels }
 }
 
-/// The toy with the tails of a coat beside its legs, which move more skin than they, and no names.
-fn in_a_coat() -> (Rig, Vec<usize>) {
+/// The toy body without names, with coat tails beside its legs that have more skin than the legs.
+fn toy_in_a_coat() -> (Rig, Vec<usize>) {
     let mut rig = toy::body(|_| String::new());
     let mut tails = Vec::new();
     for x in [0.2, -0.2] {
@@ -65,16 +65,16 @@ fn in_a_coat() -> (Rig, Vec<usize>) {
 }
 
 #[test]
-fn legs_are_what_swings_in_turns() {
-    let (rig, tails) = in_a_coat();
+fn alternately_swinging_chains_are_the_legs() {
+    let (rig, tails) = toy_in_a_coat();
     let thigh = |found: &RigAnalysis| found.joint_with(Role::UpperLeg(Side::Left)).expect("a thigh");
-    // Without clips the larger hangs down as legs do.
+    // Without clips the larger hanging chains count as legs.
     let still = analyze(&rig).expect("a skin");
     assert!(still.humanoid && tails.contains(&thigh(&still)), "{}", thigh(&still));
     let mut walks = walk(1.1, 1.0);
-    // The tails go along, both at once.
+    // The tails swing as well, but both at once.
     walks.channels.extend(tails.iter().map(|&tail| turns(tail, 1.1, |t| 0.3 * trig::sin(2.0 * t))));
-    // Nor is it a leg that swings while the other stands, or both of them at once.
+    // Chains that swing while the other is still, or both at once, are no legs either.
     let kick = Clip { duration: 1.0, channels: vec![turns(tails[0], 1.0, trig::sin)], ..Clip::default() };
     let hop = Clip {
         duration: 1.0,
@@ -94,9 +94,9 @@ fn legs_are_what_swings_in_turns() {
 }
 
 #[test]
-fn who_walks_faces_where_the_feet_go_through_the_air() {
+fn walking_direction_gives_the_front() {
     let mut rig = toy::body(|_| String::new());
-    // Feet without toes point nowhere.
+    // Feet without toes give no direction.
     for foot in ["leftFoot", "rightFoot"].map(joint) {
         let place = Vec3::from_array(toy::BODY[foot].2);
         rig.meshes[0].primitives[0].positions[4 * foot + 3] = place - Vec3::Y * 0.1;
@@ -108,9 +108,13 @@ fn who_walks_faces_where_the_feet_go_through_the_air() {
         assert!((ahead - Vec3::Z * toward).length() < 1e-5, "{ahead}");
         let left = found.joint_with(Role::Hand(Side::Left)).expect("a left hand");
         assert_eq!(toy::BODY[left].0, if toward > 0.0 { "leftHand" } else { "rightHand" });
-        assert!(found.notes.iter().any(|note| note.contains("the way they walk does")), "{:?}", found.notes);
+        assert!(
+            found.notes.iter().any(|note| note.contains("from the walking direction")),
+            "{:?}",
+            found.notes
+        );
     }
-    // Names say it better.
+    // Names have priority over the walk.
     let mut named = toy::body(Role::name);
     named.meshes.clone_from(&rig.meshes);
     let backward = Hints::of_clips(&named, &[walk(1.1, -1.0)]);
@@ -119,7 +123,7 @@ fn who_walks_faces_where_the_feet_go_through_the_air() {
     assert_eq!(toy::BODY[left].0, "leftHand");
 }
 
-/// The toy `units` tall, with a head so many times as high.
+/// The toy body `units` tall, with a head `head` times as high.
 fn tall(units: f32, head: f32) -> Rig {
     let mut rig = toy::body(Role::name);
     let crown = 4 * joint("head") + 3;
@@ -142,7 +146,7 @@ fn unit(rig: &Rig, hints: &Hints) -> (f32, String) {
 
 /// 66 units tall: a man in inches, or a dwarf in centimetres.
 #[test]
-fn a_unit_in_doubt_is_told_by_what_is_around() {
+fn ambiguous_unit_is_decided_by_neighbouring_files_and_doors() {
     let rig = tall(66.0, 1.0);
     let (scale, note) = unit(&rig, &Hints::default());
     assert!(scale == 0.0254 && note.contains("may also be centimetres"), "{note}");
@@ -153,7 +157,8 @@ fn a_unit_in_doubt_is_told_by_what_is_around() {
         let (scale, note) = unit(&rig, &hints);
         assert!(scale == 0.01 && note.contains(reason) && note.contains("may also be inches"), "{note}");
     }
-    // Whom nobody knows, the habit of an exporter for a dwarf, one other file, and files that differ tell nothing; doors of men are for men.
+    // An unknown exporter, an exporter's habit for a dwarf, a single other file, and inconsistent files give no hint;
+    // normal doors indicate a human.
     for hints in [
         Hints { exporter: "nobody".into(), ..Hints::default() },
         Hints { exporter: "Character Creator 4.2".into(), ..Hints::default() },
@@ -163,19 +168,19 @@ fn a_unit_in_doubt_is_told_by_what_is_around() {
     ] {
         assert_eq!(unit(&rig, &hints).0, 0.0254, "{hints:?}");
     }
-    // A human in metres stays one whatever is said.
+    // A human in metres is unaffected by hints.
     let hints = Hints { exporter: "DAZ".into(), kin: vec![0.01; 3], door: Some(0.8), ..Hints::default() };
     assert_eq!(unit(&tall(1.75, 1.0), &hints).0, 1.0);
 }
 
 #[test]
-fn a_unit_in_doubt_is_told_by_the_head_and_by_the_stride() {
-    // Heads are about as large in all: of whom it is two fifths is a dwarf.
+fn ambiguous_unit_is_decided_by_head_size_and_stride() {
+    // Heads have similar sizes: a figure whose head is two fifths of its height is a dwarf.
     let [(plain, _), (dwarf, note)] = [1.0, 7.0].map(|head| unit(&tall(115.0, head), &Hints::default()));
     assert!(plain == 0.01 && dwarf == 0.01 && note.contains("its head is 4"), "{note}");
     let rig = tall(75.0, 5.0);
     assert_eq!(unit(&rig, &Hints::default()).0, 0.0254);
-    // Legs of 0.38 m take a step in less time than those of 0.97.
+    // Legs of 0.38 m take faster steps than legs of 0.97 m.
     let (scale, note) = unit(&rig, &Hints::of_clips(&rig, &[walk(0.5, 1.0)]));
     assert!(scale == 0.01 && note.contains("a stride of 0.50 s is that of legs of"), "{note}");
     let (scale, note) = unit(&rig, &Hints::of_clips(&rig, &[walk(1.1, 1.0)]));
@@ -183,7 +188,7 @@ fn a_unit_in_doubt_is_told_by_the_head_and_by_the_stride() {
 }
 
 #[test]
-fn a_human_of_no_size_that_humans_have_is_scaled_and_can_be_brought_back() {
+fn human_of_implausible_size_is_scaled() {
     for (units, scaled) in [(0.57, true), (5.75, true), (1.2, false), (2.3, false)] {
         let rig = tall(units, 1.0);
         let found = analyze_hinted(&rig, &Hints::default()).expect("a skin");
@@ -192,7 +197,7 @@ fn a_human_of_no_size_that_humans_have_is_scaled_and_can_be_brought_back() {
         let height = if scaled { 1.75 } else { units };
         assert!((found.height - height).abs() < 0.01, "{units}: {} m", found.height);
     }
-    // Who walks with short steps and has a large head is short; with a small one it is in a hurry.
+    // A figure with short steps is short if its head is large, and in a hurry if it is small.
     for (head, is_short) in [(5.0, true), (1.0, false)] {
         let rig = tall(0.57, head);
         let scale = unit(&rig, &Hints::of_clips(&rig, &[walk(0.5, 1.0)])).0;
@@ -200,11 +205,11 @@ fn a_human_of_no_size_that_humans_have_is_scaled_and_can_be_brought_back() {
     }
 }
 
-/// A creature of a chain of joints, that long.
+/// A creature that is a chain of joints of that length.
 fn worm(length: f32, name: &str) -> Rig {
     let mut rig = toy::body(|_| String::new());
     for (joint, (_, parent, place)) in toy::BODY.iter().enumerate() {
-        // All in one line: no human.
+        // All joints on one line, so that it is no human.
         let at = Vec3::new(0.0, 0.0, length * (joint as f32 - 8.0) / 18.0);
         let by = at - Vec3::from_array(*place);
         rig.skins[0].inverse_bind[joint].translation = -at;
@@ -220,7 +225,7 @@ fn worm(length: f32, name: &str) -> Rig {
 }
 
 #[test]
-fn an_animal_that_the_file_names_is_of_the_size_of_such_animals() {
+fn named_animal_gets_the_size_of_its_species() {
     let length = |name: &str, units: f32| {
         let found = analyze_hinted(&worm(units, name), &Hints::default()).expect("a skin");
         assert!(!found.humanoid, "{:?}", found.notes);

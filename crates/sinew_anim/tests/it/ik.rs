@@ -1,4 +1,4 @@
-//! Inverse kinematics against its closed forms.
+//! Inverse kinematics compared with closed forms.
 
 use crate::toy;
 use sinew_anim::ik::{
@@ -16,7 +16,7 @@ fn model(rig: &Rig, local: &[LocalTransform]) -> Vec<Affine> {
     out
 }
 
-/// Ends of a limb after its turns.
+/// Middle and end of a limb after the solution.
 fn bent(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -> [Vec3; 2] {
     let found = solve_two_bone(root, middle, end, goal);
     let knee = root + found.upper * (middle - root) * found.stretch;
@@ -24,7 +24,7 @@ fn bent(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -> [Vec3; 2] {
 }
 
 #[test]
-fn what_is_in_reach_is_reached() {
+fn target_within_reach_is_reached() {
     let mut random = Random::new(1);
     for case in 0..20_000 {
         let [root, middle, end] = [random.in_cube(), random.in_cube(), random.in_cube()];
@@ -39,7 +39,7 @@ fn what_is_in_reach_is_reached() {
 }
 
 #[test]
-fn the_middle_joint_goes_to_the_side_of_the_pole() {
+fn middle_joint_bends_toward_the_pole() {
     let mut random = Random::new(2);
     for _ in 0..5000 {
         let [root, middle, end, pole] =
@@ -61,11 +61,11 @@ fn the_middle_joint_goes_to_the_side_of_the_pole() {
 }
 
 #[test]
-fn a_limb_where_it_should_be_does_not_turn() {
+fn limb_already_at_its_target_does_not_turn() {
     let mut random = Random::new(3);
     for _ in 0..2000 {
         let [root, middle, end] = [random.in_cube(), random.in_cube(), random.in_cube()];
-        // Bent by less than five degrees, the pole has a say.
+        // If the limb is bent by less than five degrees, the pole may turn it.
         if (middle - root).cross(end - root).length() < 0.1 * (middle - root).length() * (end - root).length()
         {
             continue;
@@ -77,23 +77,23 @@ fn a_limb_where_it_should_be_does_not_turn() {
 }
 
 #[test]
-fn out_of_reach_it_points_there() {
+fn limb_points_at_a_target_out_of_reach() {
     let (root, middle, end) = (Vec3::ZERO, Vec3::new(0.1, -0.5, 0.0), Vec3::new(0.0, -0.9, 0.0));
     let full = middle.length() + (end - middle).length();
     let far = TwoBoneGoal::at(Vec3::new(3.0, 0.0, 4.0), Pole::Keep(Vec3::Z));
     let [_, tip] = bent(root, middle, end, &far);
     assert!((tip - Vec3::new(0.6, 0.0, 0.8) * full).length() < 1e-5);
     assert!((solve_two_bone(root, middle, end, &far).miss - (5.0 - full)).abs() < 1e-5);
-    // Stretched as far as allowed, or as needed.
+    // Stretched as far as allowed, or as far as needed.
     let [_, tip] = bent(root, middle, end, &TwoBoneGoal { stretch: 1.5, ..far });
     assert!((tip.length() - 1.5 * full).abs() < 1e-5);
     let [_, tip] = bent(root, middle, end, &TwoBoneGoal { stretch: 9.0, ..far });
     assert!((tip - far.target).length() < 1e-4);
 }
 
-/// The reach of a soft limb grows without a jump in place or speed, and never gets to the whole length.
+/// The reach of a soft limb grows smoothly in position and speed, and never becomes its full length.
 #[test]
-fn a_soft_limb_never_snaps_straight() {
+fn soft_limb_straightens_smoothly() {
     let (root, middle, end) = (Vec3::ZERO, Vec3::new(0.2, -0.5, 0.0), Vec3::new(0.0, -1.0, 0.0));
     let full = 2.0 * middle.length();
     let reach = |far: f32| {
@@ -112,7 +112,7 @@ fn a_soft_limb_never_snaps_straight() {
 }
 
 #[test]
-fn nothing_makes_it_nan() {
+fn degenerate_input_gives_finite_rotations() {
     let places = [Vec3::ZERO, Vec3::X, Vec3::X * 2.0, -Vec3::X, Vec3::splat(1e-20), Vec3::splat(1e18)];
     let mut cases = 0;
     for root in places {
@@ -139,7 +139,7 @@ fn nothing_makes_it_nan() {
 }
 
 #[test]
-fn the_job_keeps_both_slices_together() {
+fn solver_updates_local_and_model_poses_consistently() {
     let mut random = Random::new(4);
     for _ in 0..200 {
         let rig = toy::chain(5, Vec3::new(0.0, 0.4, 0.1));
@@ -156,7 +156,7 @@ fn the_job_keeps_both_slices_together() {
         for (x, y) in model(&rig, &local).iter().zip(&after) {
             assert!((x.translation - y.translation).length() < 1e-5);
         }
-        // Nothing is left to do, and half a weight of nothing is nothing.
+        // The goal is met already, and a partial weight changes nothing.
         let before = local.clone();
         let half = TwoBoneGoal { weight: 0.5, ..TwoBoneGoal::at(target, Pole::Keep(Vec3::X)) };
         two_bone_ik(&rig, limb, &half, &mut local, &mut after);
@@ -169,7 +169,7 @@ fn the_job_keeps_both_slices_together() {
 }
 
 #[test]
-fn eyes_turn_to_what_they_look_at_as_far_as_they_may() {
+fn gaze_is_limited_to_its_largest_angle() {
     let rig = toy::chain(3, Vec3::Y);
     let with = |target: Vec3, max_yaw: f32, max_pitch: f32| {
         let mut local = rest_pose(&rig);
@@ -194,9 +194,9 @@ fn eyes_turn_to_what_they_look_at_as_far_as_they_may() {
     }
 }
 
-/// A body on a ramp and on a stair: both ankles at the height over the ground that they had over the floor.
+/// A body on a ramp and on a step: both ankles keep the height above the ground that they had above the floor.
 #[test]
-fn feet_stand_on_uneven_ground() {
+fn feet_are_placed_on_uneven_ground() {
     let rig = toy::body(Role::name);
     let joint = |name: &str| rig.joints.iter().position(|joint| joint.name == name).unwrap();
     let leg = |side: &str| TwoBone {
@@ -227,7 +227,7 @@ fn feet_stand_on_uneven_ground() {
     let (placed, after) = place(&stair);
     assert!((after[legs[0].end].translation - Vec3::new(0.1, 0.3, 0.0)).length() < 1e-3, "{placed:?}");
     assert!((after[legs[1].end].translation - Vec3::new(-0.1, 0.1, 0.0)).length() < 1e-3, "{placed:?}");
-    // The bent knee goes forward, and the pelvis stays up.
+    // The bent knee moves forward, and the pelvis keeps its height.
     assert!(after[legs[0].lower].translation.z > 0.1 && placed.pelvis.abs() < 1e-2, "{placed:?}");
     let (placed, after) = place(&ramp);
     for (leg, foot) in legs.iter().zip(placed.feet) {
@@ -243,12 +243,12 @@ fn feet_stand_on_uneven_ground() {
 }
 
 #[test]
-fn a_limb_of_the_chain_is_a_limb() {
+fn limb_within_a_chain_is_solved() {
     let rig = toy::chain(3, Vec3::Y);
     let mut local = rest_pose(&rig);
     let mut after = model(&rig, &local);
     let goal = TwoBoneGoal::at(Vec3::new(1.0, 2.0, 0.0), Pole::Toward(Vec3::X));
     let found = two_bone_ik(&rig, LIMB, &goal, &mut local, &mut after);
-    // The equilateral half of a rhombus: root at (0, 1, 0), bones of length 1, target √2 away.
+    // Half a rhombus: root at (0, 1, 0), bones of length 1, target √2 away.
     assert!(found.miss < 1e-6 && (after[1].translation - Vec3::new(1.0, 1.0, 0.0)).length() < 1e-5);
 }

@@ -1,4 +1,4 @@
-//! Limits learned from motions: known motions give known limits, and captured knees are hinges.
+//! Limits learned from motions: synthetic motions give their known limits, and captured knees are hinges.
 
 use crate::mocap::actor;
 use crate::toy;
@@ -12,13 +12,13 @@ fn learn(turns: impl Iterator<Item = Rotation>) -> LearnedLimit {
         |rotation| [LocalTransform { rotation, ..LocalTransform::default() }, LocalTransform::default()];
     let take = Take { frame_time: 0.01, joints: 2, poses: turns.flat_map(local).collect() };
     let found = learn_limits(&toy::chain(2, Vec3::Y), &[&take]);
-    assert_eq!(found.len(), 1, "a joint that rests has no limit");
+    assert_eq!(found.len(), 1, "a joint without motion has no limit");
     found[0]
 }
 
-/// Swings uniform in an ellipse, twists uniform in a range, about a bone along y that rests turned away.
+/// Swings uniform in an ellipse and twists uniform in a range, about a bone along y with a rotated rest pose.
 #[test]
-fn an_ellipse_is_found_again() {
+fn swing_ellipse_is_recovered() {
     let mut random = Random::new(5);
     let rest = Rotation::from_scaled_axis(Vec3::new(0.3, -0.7, 0.4));
     let main = 0.5;
@@ -41,7 +41,7 @@ fn an_ellipse_is_found_again() {
     let long = found.frame * Vec3::Y;
     assert!(long.dot(frame * Vec3::Y).abs() > 0.99, "{long}");
     assert!((found.frame * Vec3::X - Vec3::Y).length() < 1e-4);
-    // As a limit of a joint: what was seen is within, but for one in two hundred.
+    // As a joint limit it contains the motion, except for one sample in two hundred.
     let (limit, mut random) = (found.swing_twist(), Random::new(5));
     let _ = &mut random;
     let beyond = |turn: Rotation| {
@@ -59,7 +59,7 @@ fn an_ellipse_is_found_again() {
     assert_eq!(outside, 0);
     let far = rest * frame * Rotation::from_scaled_axis(Vec3::new(0.0, 1.2, 0.0)) * frame.inverse();
     assert!(beyond(far));
-    // Projection lands on the limit, and what is within stays as it is.
+    // Projection ends on the limit, and rotations inside stay unchanged.
     let back = found.project(far);
     let (swing, _) = SwingTwistLimit::angles((found.center * found.frame).inverse() * back * found.frame);
     let radius = (swing.y / found.swing[0]).abs() + (swing.z / found.swing[1]).abs();
@@ -68,7 +68,7 @@ fn an_ellipse_is_found_again() {
 }
 
 #[test]
-fn a_hinge_is_found_with_its_axis_and_range() {
+fn hinge_axis_and_range_are_recovered() {
     let mut random = Random::new(7);
     for _ in 0..20 {
         let (axis, rest) = (random.direction(), random.rotation());
@@ -80,12 +80,12 @@ fn a_hinge_is_found_with_its_axis_and_range() {
         let over = found.center * Rotation::from_axis_angle(axis, 0.9);
         assert!((found.project(over).angle_to(over) - 0.3).abs() < 0.02);
     }
-    // A turn about one axis that is too small to tell is none.
+    // A rotation about one axis that is too small to classify is no hinge.
     let turn = |i: usize| Rotation::from_axis_angle(Vec3::X, 0.15 * i as f32 / 999.0);
     assert!(learn((0..1000).map(turn)).hinge.is_none());
 }
 
-/// The lab's skeleton has one degree of freedom in knees and elbows; hips and shoulders have three.
+/// The capture's skeleton has one degree of freedom in knees and elbows, and three in hips and shoulders.
 #[needs_data]
 #[test]
 fn captured_knees_and_elbows_are_hinges() {

@@ -33,7 +33,7 @@ mod transitions;
 mod weights;
 mod wild;
 
-/// Number of `all` random cases to try: a hundredth, but all with `SINEW_FULL` set.
+/// Number of random cases: all with `SINEW_FULL` set, otherwise a hundredth.
 fn cases(all: u32) -> u32 {
     if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
 }

@@ -1,11 +1,11 @@
-//! Captured motions of ../shared/data, for the tests of what is made of them.
+//! Captured motions of ../shared/data and their characters.
 
 use sinew_anim::retarget::{Reference, stand};
 use sinew_anim::{Clip, Rig, RigAnalysis, analyze};
 use sinew_formats::bvh::{BvhDocument, BvhOptions, read_bvh};
 use sinew_formats::{read_deepmimic, read_deepmimic_character};
 
-/// A captured actor: rig, clip, what is known of the body.
+/// A captured actor: rig, clip, analysis.
 pub struct Actor {
     pub rig: Rig,
     pub clip: Clip,

@@ -1,10 +1,10 @@
-//! Moments that are passed, against the closed formula: exactly once, whatever the steps.
+//! Passed events compared with a closed formula: each exactly once, for any step lengths.
 
 use crate::cases;
 use sinew_anim::{LoopMode, Passage, Playhead};
 use sinew_math::Random;
 
-/// All numbers are whole multiples of 1/1024 s, so that the formula can be told in integers and no step is rounded.
+/// All times are integer multiples of 1/1024 s, so that the formula works with integers and no step is rounded.
 const UNIT: f64 = 1.0 / 1024.0;
 
 /// Time since lap 0 began, in units, in the direction of the laps.
@@ -17,18 +17,18 @@ fn unfolded(playhead: &Playhead, length: i64) -> i64 {
     playhead.lap() * length + in_lap
 }
 
-/// Number of times that `e + n · period` for whole `n` lies in (from, to] going forward, in [to, from) going backward; with `from`
-/// itself if that counts.
+/// Counts the integers n with `e + n · period` in (from, to] going forward, in [to, from) going backward, and including
+/// `from` if `counts_start`.
 fn times(from: i64, to: i64, e: i64, period: i64, counts_start: bool) -> i64 {
     let up_to = |t: i64| (t - e).div_euclid(period);
     let start = i64::from(counts_start && (from - e).rem_euclid(period) == 0);
     start + if to >= from { up_to(to) - up_to(from) } else { up_to(from - 1) - up_to(to - 1) }
 }
 
-/// The closed formula for one way from `from` to `to`.
+/// The closed formula for one motion from `from` to `to`.
 fn expected(mode: LoopMode, length: i64, e: i64, from: i64, to: i64, is_fresh: bool) -> i64 {
     match mode {
-        // The end of a loop is no start of it.
+        // The end of a loop does not count as its start.
         LoopMode::Loop => times(from, to, e, length, is_fresh && e != length),
         LoopMode::PingPong if e == 0 || e == length => times(from, to, e, 2 * length, is_fresh),
         LoopMode::PingPong => {
@@ -41,7 +41,7 @@ fn expected(mode: LoopMode, length: i64, e: i64, from: i64, to: i64, is_fresh: b
     }
 }
 
-/// Crossings of a step: their number, each held against where the moment lies.
+/// Counts the crossings of a step and checks each one's position.
 fn count(passage: Passage, mode: LoopMode, length: i64, e: i64, from: i64, way: i64) -> i64 {
     let mut last: Option<f64> = None;
     let mut number = 0;
@@ -69,7 +69,7 @@ fn count(passage: Passage, mode: LoopMode, length: i64, e: i64, from: i64, way: 
 }
 
 #[test]
-fn every_event_is_passed_exactly_once_whatever_the_steps() {
+fn every_event_is_passed_exactly_once_for_any_steps() {
     let mut random = Random::new(11);
     let modes = [LoopMode::Loop, LoopMode::PingPong, LoopMode::Once];
     for playback in 0..cases(1_000_000) {
@@ -80,7 +80,7 @@ fn every_event_is_passed_exactly_once_whatever_the_steps() {
         let mut playhead = Playhead::new(mode, (length as f64 * UNIT) as f32, start as f64 * UNIT);
         let mut is_fresh = true;
         for _ in 0..3 {
-            // A leg: one direction, cut into steps at random; pauses are steps of no length.
+            // One direction, split into random steps; pauses are steps of length zero.
             let direction = if random.index(2) == 0 { 1 } else { -1 };
             let from = unfolded(&playhead, length);
             let (mut way, mut fired) = (0, 0);
@@ -107,10 +107,10 @@ fn every_event_is_passed_exactly_once_whatever_the_steps() {
 }
 
 #[test]
-fn a_long_run_does_not_drift() {
+fn long_playback_does_not_drift() {
     let mut playhead = Playhead::new(LoopMode::Loop, 0.7, 0.0);
     let mut passed = 0_usize;
-    // A day at 60 Hz, in steps of a second.
+    // A day in steps of a second.
     for _ in 0..86_400 {
         passed += playhead.advance(1.0).crossings(0.3).count();
     }
@@ -121,7 +121,7 @@ fn a_long_run_does_not_drift() {
 }
 
 #[test]
-fn a_step_over_many_laps_is_counted_without_going_through_them() {
+fn step_over_many_cycles_counts_events_in_constant_time() {
     let mut playhead = Playhead::new(LoopMode::Loop, 0.5, 0.0);
     let crossings = playhead.advance(1e9).crossings(0.25);
     assert_eq!(crossings.take(3).map(|crossing| crossing.distance).collect::<Vec<_>>(), [0.25, 0.75, 1.25]);
@@ -129,7 +129,7 @@ fn a_step_over_many_laps_is_counted_without_going_through_them() {
 }
 
 #[test]
-fn a_pose_has_no_time() {
+fn clip_of_zero_length_has_time_zero() {
     let mut playhead = Playhead::new(LoopMode::Loop, 0.0, 3.0);
     assert_eq!(playhead.advance(1.0).crossings(0.0).count(), 1);
     assert_eq!(playhead.advance(1.0).crossings(0.0).count(), 0);
@@ -138,6 +138,6 @@ fn a_pose_has_no_time() {
 
 #[test]
 #[should_panic = "finite"]
-fn time_is_finite() {
+fn non_finite_time_panics() {
     Playhead::new(LoopMode::Loop, 1.0, 0.0).advance(f64::NAN);
 }

@@ -14,7 +14,7 @@ fn distance(a: &[LocalTransform], b: &[LocalTransform]) -> f32 {
 }
 
 #[test]
-fn a_bent_chain_lies_where_trigonometry_says() {
+fn bent_chain_matches_trigonometry() {
     let rig = toy::chain(4, Vec3::X);
     let angle = 0.3;
     let bend = Rotation::from_axis_angle(Vec3::Z, angle);
@@ -22,7 +22,7 @@ fn a_bent_chain_lies_where_trigonometry_says() {
     let root = Affine::from_scale_rotation_translation(Vec3::splat(2.0), Rotation::IDENTITY, Vec3::Y);
     let mut model = Vec::new();
     local_to_model(&rig, &local, &root, &mut model);
-    // Joint k sits at the sum of unit steps turned by 0, a, 2a, …, doubled and lifted by the root.
+    // Joint k is at the sum of unit steps rotated by 0, a, 2a, …, doubled and lifted by the root.
     let mut expected = Vec3::ZERO;
     for (k, joint) in model.iter().enumerate() {
         let (sin, cos) = trig::sin_cos(angle * k as f32);
@@ -49,7 +49,7 @@ fn velocities_of_a_spinning_scaled_frame_are_exact() {
 }
 
 #[test]
-fn a_blend_does_not_depend_on_the_order_of_its_layers() {
+fn pose_blend_is_independent_of_layer_order() {
     let mut random = Random::new(1);
     for _ in 0..50 {
         let rest = toy::random_pose(&mut random, 3);
@@ -66,7 +66,7 @@ fn a_blend_does_not_depend_on_the_order_of_its_layers() {
 }
 
 #[test]
-fn a_pose_in_two_tracks_is_that_pose_whatever_the_sign_of_its_quaternions() {
+fn equal_poses_blend_to_themselves_for_any_quaternion_signs() {
     let mut random = Random::new(2);
     let rest = toy::random_pose(&mut random, 5);
     let pose = toy::random_pose(&mut random, 5);
@@ -85,7 +85,7 @@ fn a_pose_in_two_tracks_is_that_pose_whatever_the_sign_of_its_quaternions() {
 }
 
 #[test]
-fn no_weight_is_the_rest_pose_and_bad_weights_count_as_none() {
+fn zero_or_invalid_weights_give_the_rest_pose() {
     let mut random = Random::new(3);
     let rest = toy::random_pose(&mut random, 2);
     let pose = toy::random_pose(&mut random, 2);
@@ -104,7 +104,7 @@ fn no_weight_is_the_rest_pose_and_bad_weights_count_as_none() {
 }
 
 #[test]
-fn a_crossfade_starts_at_one_pose_and_ends_at_the_other() {
+fn crossfade_starts_and_ends_at_its_poses() {
     let mut random = Random::new(4);
     let rest = toy::random_pose(&mut random, 3);
     let (from, to) = (toy::random_pose(&mut random, 3), toy::random_pose(&mut random, 3));

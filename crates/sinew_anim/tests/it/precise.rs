@@ -1,4 +1,4 @@
-//! Oracles in `f64`.
+//! Reference computations in `f64`.
 
 use sinew_anim::{LocalTransform, Rig};
 use sinew_math::Rotation;
@@ -38,7 +38,7 @@ pub fn mean(rest: Rotation, layers: &[(Rotation, f32)]) -> [f64; 4] {
     unit(sum)
 }
 
-/// A 3×4 matrix, rows.
+/// A 3×4 matrix by rows.
 pub type Matrix = [[f64; 4]; 3];
 
 fn local_matrix(local: &LocalTransform) -> Matrix {

@@ -1,4 +1,4 @@
-//! Fewer keys, and how far that takes joints from where they were.
+//! Key reduction and the resulting error of joints.
 
 use crate::toy;
 use sinew_anim::{
@@ -22,7 +22,7 @@ fn frames(count: u16, rate: f32) -> Vec<f32> {
     (0..count).map(|frame| f32::from(frame) / rate).collect()
 }
 
-/// Largest distance and angle between the joints of two clips, at so many times between keys, measured by themselves.
+/// Largest distance and angle between the joints of two clips at many times, computed independently.
 fn apart(rig: &Rig, a: &Clip, b: &Clip, root: &Affine, times: &[f32]) -> [f32; 2] {
     let mut worst = [0.0, 0.0];
     for &time in times {
@@ -43,7 +43,7 @@ fn apart(rig: &Rig, a: &Clip, b: &Clip, root: &Affine, times: &[f32]) -> [f32; 2
 }
 
 #[test]
-fn what_goes_straight_needs_two_keys_and_what_stays_one() {
+fn linear_motion_needs_two_keys_and_rest_one() {
     let rig = toy::chain(3, Vec3::Y);
     let times = frames(101, 50.0);
     let clip = Clip {
@@ -59,14 +59,14 @@ fn what_goes_straight_needs_two_keys_and_what_stays_one() {
     let keys: Vec<usize> = reduced.clip.channels.iter().map(|channel| channel.times.len()).collect();
     assert_eq!((keys, reduced.keys), (vec![2, 2, 1], [303, 5]));
     assert!((reduced.clip.duration - 2.0).abs() < 1e-6 && reduced.clip.name == "straight");
-    // Nothing moves at all: still as long.
+    // Without any motion the duration is kept.
     let still = Clip { channels: vec![clip.channels[2].clone()], ..clip };
     let reduced = reduce_keys(&rig, &still, &Affine::IDENTITY, BOUND);
     assert_eq!(reduced.clip.channels[0].times, [0.0, 2.0]);
 }
 
 #[test]
-fn a_corner_keeps_its_key() {
+fn corner_keeps_its_key() {
     let rig = toy::chain(1, Vec3::Y);
     let times = frames(41, 20.0);
     let fold = |time: f32| vec![(time - 1.0).abs(), 0.0, 0.0];
@@ -94,7 +94,7 @@ fn swaying(random: &mut Random, times: &[f32]) -> Clip {
 }
 
 #[test]
-fn the_whole_chain_stays_within_the_bound() {
+fn error_of_a_whole_chain_stays_within_the_bound() {
     let mut random = Random::new(7);
     let times = frames(241, 60.0);
     let between: Vec<f32> = (0..1200_u16).map(|i| f32::from(i) / 300.0).collect();
@@ -112,17 +112,17 @@ fn the_whole_chain_stays_within_the_bound() {
         assert!(distance <= bound.distance && angle <= bound.angle, "{distance} {angle}, {bound:?}");
         assert!((distance - reduced.error.distance).abs() < 2e-6 + 0.01 * distance, "{:?}", reduced.error);
         assert!((angle - reduced.error.angle).abs() < 2e-6 + 0.01 * angle, "{:?}", reduced.error);
-        // The bound is used up, and many keys are gone.
+        // The bound is nearly used up, and many keys are removed.
         assert!(distance > 0.5 * bound.distance || angle > 0.5 * bound.angle, "{distance} {angle}");
         assert!(4 * reduced.keys[1] < 3 * reduced.keys[0], "{:?}", reduced.keys);
-        // Between the times of keys lines are lines: it cannot be much worse there.
+        // Between keys the error is only slightly larger, because motion there is linear.
         let [distance, _] = apart(&rig, &clip, &reduced.clip, &root, &between);
         assert!(distance <= 1.1 * bound.distance, "{distance} between keys");
     }
 }
 
 #[test]
-fn no_bound_keeps_every_key_and_a_tighter_one_more() {
+fn zero_bound_keeps_all_keys_and_tighter_bounds_keep_more() {
     let mut random = Random::new(8);
     let rig = toy::chain(8, Vec3::Y * 0.3);
     let clip = swaying(&mut random, &frames(121, 30.0));
@@ -135,7 +135,7 @@ fn no_bound_keeps_every_key_and_a_tighter_one_more() {
 
 #[test]
 fn random_walks_stay_within_the_bound() {
-    // Nothing can be left out of noise, and nothing is broken by trying.
+    // In noise no key can be removed, and trying changes nothing.
     let mut random = Random::new(9);
     let rig = toy::chain(5, Vec3::Y);
     let times = frames(60, 30.0);
@@ -159,7 +159,7 @@ fn random_walks_stay_within_the_bound() {
     for channel in &reduced.clip.channels {
         for pair in channel.values.chunks_exact(4).collect::<Vec<_>>().windows(2) {
             let dot: f32 = pair[0].iter().zip(pair[1]).map(|(a, b)| a * b).sum();
-            assert!(dot >= 0.0, "keys take the short way");
+            assert!(dot >= 0.0, "consecutive keys are in one hemisphere");
         }
     }
 }

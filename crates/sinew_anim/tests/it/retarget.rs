@@ -1,4 +1,4 @@
-//! A captured walk on bodies of other sizes and builds.
+//! Captured motions retargeted to bodies of other sizes and builds.
 
 use crate::mocap::{Actor, actor, character, imitation};
 use needs_data::needs_data;
@@ -18,7 +18,7 @@ fn onto(actor: &Actor, rig: &Rig, analysis: &RigAnalysis, options: &RetargetOpti
     retarget(body, &actor.clip, Body { rig, analysis }, options).unwrap()
 }
 
-/// The same character scaled by a factor.
+/// Scales a character by `times`.
 fn scaled(rig: &Rig, analysis: &RigAnalysis, times: f32) -> (Rig, RigAnalysis) {
     let mut rig = rig.clone();
     for joint in rig.joints.iter_mut().filter(|joint| joint.parent.is_none()) {
@@ -29,7 +29,7 @@ fn scaled(rig: &Rig, analysis: &RigAnalysis, times: f32) -> (Rig, RigAnalysis) {
         for (&joint, inverse) in skin.joints.iter().zip(&mut skin.inverse_bind) {
             let bind = analysis.bind_model[joint];
             let grown = Affine { linear: bind.linear * times, translation: bind.translation * times };
-            // Vertices are as they were: the skin is what grows.
+            // Vertices are unchanged: the skin's bind matrices grow.
             let before = bind * *inverse;
             *inverse = grown.inverse()
                 * Affine { linear: before.linear * times, translation: before.translation * times };
@@ -39,7 +39,7 @@ fn scaled(rig: &Rig, analysis: &RigAnalysis, times: f32) -> (Rig, RigAnalysis) {
     (rig, found)
 }
 
-/// Angle between where a bone points in two bodies' own axes, frame by frame, at most; degrees.
+/// Largest angle between the directions of a bone in the two bodies' own axes over all frames, degrees.
 fn bone_error(
     actor: &Actor,
     from: &Take,
@@ -63,7 +63,7 @@ fn bone_error(
 
 #[needs_data]
 #[test]
-fn a_captured_walk_is_understood() {
+fn captured_walk_is_analysed_correctly() {
     let walk = actor(WALK);
     assert_eq!(walk.reference, Reference::Stated);
     let name = |role: Role| walk.analysis.joint_with(role).map(|joint| walk.rig.joints[joint].name.as_str());
@@ -87,7 +87,7 @@ fn a_captured_walk_is_understood() {
     let floor = floor_under(&points);
     let found = contacts(&take, &feet, &points, floor, &ContactSettings::for_leg(feet[0].length));
     println!("floor {floor}, {found:?}");
-    // Feet take turns, and a walking foot is on the ground for about six tenths of the time.
+    // Feet alternate, and each is on the ground for about six tenths of the time.
     let inner = &found[1..found.len() - 1];
     assert!(found.len() >= 6, "{found:?}");
     assert!(inner.windows(2).all(|pair| pair[0].foot != pair[1].foot), "{found:?}");
@@ -97,7 +97,7 @@ fn a_captured_walk_is_understood() {
 
 #[needs_data]
 #[test]
-fn every_capture_finds_its_body() {
+fn every_capture_is_recognised_as_human() {
     for (name, reference) in
         [("cmu_01_01_jumps.bvh", Some(Reference::Stated)), ("cmu_02_03_run_iclone.bvh", None)]
     {
@@ -114,7 +114,7 @@ fn every_capture_finds_its_body() {
 
 #[needs_data]
 #[test]
-fn a_walk_fits_every_body() {
+fn walk_fits_every_body() {
     let (walk, man, mannequin) = (actor(WALK), character("CesiumMan.glb"), character("mannequiny.glb"));
     let child = scaled(&mannequin.0, &mannequin.1, 0.8 / mannequin.1.height);
     let giant = scaled(&mannequin.0, &mannequin.1, 14.0 / mannequin.1.height);
@@ -144,7 +144,7 @@ fn a_walk_fits_every_body() {
         assert!(
             found.take.poses.iter().all(|local| local.rotation.is_finite() && local.translation.is_finite())
         );
-        // The same holds of the contacts that the new motion itself shows, which no one told it of.
+        // The same holds for contacts detected in the new motion independently.
         let legs = Legs::of(rig, analysis).unwrap();
         let points = sole_points(rig, &analysis.character_from_file(), &legs.feet, &found.take);
         let settings = ContactSettings::for_leg(legs.feet[0].length);
@@ -153,14 +153,14 @@ fn a_walk_fits_every_body() {
         let own = 100.0 * own.mean / analysis.height;
         println!("{name}: {own:.2} cm/s per m in {} contacts of its own", seen.len());
         assert!(own < 1.0 && seen.len() == found.contacts.len(), "{name}: {own} cm/s per metre of height");
-        // Soles are on or over the floor, and one of them always near it.
+        // Soles are on or above the floor, and one of them is always near it.
         let heights: Vec<f32> =
             points.iter().map(|frame| (lowest(frame) - analysis.floor) / analysis.height).collect();
         assert!(heights.iter().all(|&h| h > -1e-3 && h < 0.02), "{name}: {heights:?}");
     }
 }
 
-/// Every humanoid of the data takes the walk, feet that the rig hangs beside the body included.
+/// Every humanoid of the data takes the walk, including rigs with feet outside the leg hierarchy.
 #[needs_data]
 #[test]
 fn every_humanoid_walks() {
@@ -180,7 +180,7 @@ fn every_humanoid_walks() {
             found.scale, found.feet.miss
         );
         assert!(slide < 1.0, "{name}: {slide} cm/s per metre of height");
-        // Bones keep their lengths, whatever the rig hangs where.
+        // Bones keep their lengths in any hierarchy.
         let (mut model, place) = (Vec::new(), |role: Role| analysis.joint_with(role).unwrap());
         let length = |model: &[Affine], side: Side| {
             let at = |role: Role| model[place(role)].translation;
@@ -204,10 +204,11 @@ fn every_humanoid_walks() {
     }
 }
 
-/// The walk with joints named as other tools do, and with every second name lost, and with none: the same body, the same walk.
+/// The walk with joints named by other conventions, with every second name removed, and without names: the result is
+/// the same.
 #[needs_data]
 #[test]
-fn a_walk_by_other_names_is_a_walk() {
+fn walk_is_the_same_for_other_joint_names() {
     let (walk, (rig, analysis)) = (actor(WALK), character("mannequiny.glb"));
     let parts = [
         ("UpLeg", "UpperLeg"),
@@ -248,7 +249,7 @@ fn a_walk_by_other_names_is_a_walk() {
         ] {
             assert_eq!(found.joint_with(role), walk.analysis.joint_with(role), "{what}: {role:?}");
         }
-        // Where they have lost their names, a finger may stand for the hand and the crown for the head.
+        // Without names, a finger may serve as the hand and the crown as the head.
         for role in [Role::Hand(Side::Right), Role::Head] {
             let [told, own] = [&found, &walk.analysis].map(|of| of.joint_with(role).expect("a human's"));
             let mut up = std::iter::successors(Some(told), |&joint| walk.rig.joints[joint].parent);
@@ -261,7 +262,7 @@ fn a_walk_by_other_names_is_a_walk() {
     }
 }
 
-/// Height of the lowest point of both soles over where it is lowest of all, at most, metres.
+/// Largest height of the lowest point of both soles above its minimum, metres.
 fn in_the_air(rig: &Rig, analysis: &RigAnalysis, take: &Take) -> f32 {
     let legs = Legs::of(rig, analysis).unwrap();
     let mut model = Vec::new();
@@ -274,10 +275,10 @@ fn in_the_air(rig: &Rig, analysis: &RigAnalysis, take: &Take) -> f32 {
     heights.iter().copied().fold(0.0, f32::max) - heights.iter().copied().fold(f32::INFINITY, f32::min)
 }
 
-/// Hops, a run whose skeleton rests in no pose at all, motion imitation's run and get-up: all of them fit.
+/// Hops, a run whose skeleton has no natural rest pose, and a run and get-up in DeepMimic format can be retargeted.
 #[needs_data]
 #[test]
-fn every_captured_body_moves_a_character() {
+fn every_capture_moves_a_character() {
     let (rig, analysis) = character("mannequiny.glb");
     let files = ["cmu_01_01_jumps.bvh", "cmu_02_03_run_iclone.bvh", "mixed_rotation_orders.bvh"];
     let [hops, run, mixed] = files.map(actor);
@@ -312,17 +313,17 @@ fn every_captured_body_moves_a_character() {
             assert!(jumped > 0.1, "{jumped} m");
             assert!((hopped / (jumped * found.scale) - 1.0).abs() < 0.3, "{hopped} m for {jumped} m");
         }
-        // The head is where the actor's is, over the hips or beside them.
+        // The head is where the actor's is relative to the hips.
         let source = Take::of(&actor.rig, &actor.clip, 1.0 / 60.0);
         let off = bone_error(actor, &source, &rig, &analysis, &found.take, [Role::Hips, Role::Head]);
         assert!(off < 30.0, "{name}: {off}°");
     }
 }
 
-/// The walk with its way taken out: the ground is found to move, and the feet stand as long as they did.
+/// The walk without root motion: the moving ground is detected, and feet stand as long as before.
 #[needs_data]
 #[test]
-fn a_walk_on_the_spot_is_a_walk() {
+fn walk_in_place_is_recognised_as_a_walk() {
     let (walk, (rig, analysis)) = (actor(WALK), character("mannequiny.glb"));
     let mut on_the_spot = Actor { clip: walk.clip.clone(), rig: walk.rig.clone(), ..walk };
     let shifts = on_the_spot.clip.channels.iter_mut().find(|c| c.property == Property::Translation).unwrap();
@@ -350,10 +351,10 @@ fn a_walk_on_the_spot_is_a_walk() {
     assert!(100.0 * near.feet.slide[1].mean < analysis.height);
 }
 
-/// Clips that were drawn for one character move another; a file of clips without a skin does too.
+/// Clips made for one character move another; so does a file of clips without a skin.
 #[needs_data]
 #[test]
-fn drawn_clips_move_other_characters() {
+fn authored_clips_move_other_characters() {
     let (man, man_analysis) = character("CesiumMan.glb");
     let to = Body { rig: &man, analysis: &man_analysis };
     for name in ["mannequiny.glb", "kaykit_mannequin/Med_Simulation.glb"] {
@@ -381,10 +382,10 @@ fn drawn_clips_move_other_characters() {
     }
 }
 
-/// Bones that are not mended at the ground point where the actor's point.
+/// Bones that ground contact does not correct point in the actor's directions.
 #[needs_data]
 #[test]
-fn bones_point_where_the_actors_do() {
+fn bones_point_in_the_actors_directions() {
     let (walk, man, mannequin) = (actor(WALK), character("CesiumMan.glb"), character("mannequiny.glb"));
     let source = Take::of(&walk.rig, &walk.clip, 1.0 / 60.0);
     for (rig, analysis) in [&man, &mannequin] {
@@ -405,7 +406,7 @@ fn bones_point_where_the_actors_do() {
     }
 }
 
-/// Knees bend forward and elbows too, whichever way a rig's joints are turned.
+/// Knees and elbows bend forward for any joint axes of a rig.
 #[needs_data]
 #[test]
 fn knees_bend_forward() {
@@ -429,11 +430,11 @@ fn knees_bend_forward() {
     }
 }
 
-/// Holding the feet makes no joint jerk: the largest change of any leg joint's speed from frame to frame stays near what it
-/// is when the feet are free.
+/// Foot contact causes no jerk: the largest change of a leg joint's speed between frames stays near that with free
+/// feet.
 #[needs_data]
 #[test]
-fn held_legs_do_not_pop() {
+fn foot_contact_does_not_pop() {
     let (walk, (rig, analysis)) = (actor(WALK), character("mannequiny.glb"));
     let jerk = |feet: Feet| {
         let found = onto(&walk, &rig, &analysis, &RetargetOptions { feet, ..RetargetOptions::default() });
@@ -458,7 +459,7 @@ fn held_legs_do_not_pop() {
 
 #[needs_data]
 #[test]
-fn a_body_on_itself_is_itself() {
+fn retargeting_to_the_same_body_changes_nothing() {
     let walk = actor(WALK);
     let free = RetargetOptions { feet: Feet::Free, ..RetargetOptions::default() };
     let found = onto(&walk, &walk.rig, &walk.analysis, &free);
@@ -470,7 +471,7 @@ fn a_body_on_itself_is_itself() {
             .of_joint(joint)
             .zip(found.take.of_joint(joint))
             .map(|(a, b)| a.rotation.angle_to(b.rotation));
-        // A joint over one that has no role takes over that one's turn.
+        // A joint above one without a role takes over that joint's rotation.
         let above = walk.rig.joints[joint].parent;
         if above.is_none_or(|above| found.pairs.iter().any(|pair| pair.1 == above)) {
             let worst = worst.fold(0.0, sinew_math::max);
@@ -481,7 +482,7 @@ fn a_body_on_itself_is_itself() {
 
 #[needs_data]
 #[test]
-fn the_clip_is_the_take() {
+fn clip_and_take_are_the_same_motion() {
     let (walk, (rig, analysis)) = (actor(WALK), character("mannequiny.glb"));
     let found = onto(
         &walk,
@@ -503,7 +504,7 @@ fn the_clip_is_the_take() {
 
 #[needs_data]
 #[test]
-fn what_has_no_roles_is_refused() {
+fn rig_without_roles_is_rejected() {
     let (walk, (rig, analysis)) = (actor(WALK), character("Fox.glb"));
     let body = Body { rig: &walk.rig, analysis: &walk.analysis };
     let fox = Body { rig: &rig, analysis: &analysis };
@@ -517,10 +518,10 @@ fn what_has_no_roles_is_refused() {
     assert_eq!(refused(body, body, frozen).to_string(), "the frame time must be above 0 and finite");
 }
 
-/// Files with random bytes changed: whatever can be read can be looked at and carried over, or is refused.
+/// Files with random bytes changed: any file that can be read can be analysed and retargeted, or gives an error.
 #[needs_data]
 #[test]
-fn captures_made_to_be_bad_do_no_harm() {
+fn corrupted_captures_give_results_or_errors() {
     let whole = crate::rigs::bytes("mocap/cmu_12_01_walk.bvh");
     let (rig, analysis) = character("mannequiny.glb");
     // The skeleton and forty rows.
@@ -532,7 +533,7 @@ fn captures_made_to_be_bad_do_no_harm() {
     for _ in 0..cases {
         let mut bytes = whole.clone();
         for _ in 0..=random.index(12) {
-            // Half of the changes where the skeleton is.
+            // Half of the changes are in the skeleton.
             let within = [5000, bytes.len()][random.index(2)];
             let at = random.index(within);
             bytes[at] = *b"0123456789eE.- {}X\n".get(random.index(40)).unwrap_or(&bytes[at]);
@@ -555,10 +556,10 @@ fn captures_made_to_be_bad_do_no_harm() {
     assert!(matches!(refused, RetargetError::TooLong(_)), "{refused}");
 }
 
-/// Slide of two feet made by hand: the one stands, the other is dragged at 0.3 m/s for a second.
+/// Slide of two synthetic feet: one stands, the other is dragged at 0.3 m/s for a second.
 #[needs_data]
 #[test]
-fn slide_is_what_it_says() {
+fn slide_of_synthetic_feet_is_measured_correctly() {
     let walk = actor(WALK);
     let feet = Legs::of(&walk.rig, &walk.analysis).unwrap().feet;
     let take = Take { frame_time: 0.1, joints: 1, poses: vec![sinew_anim::LocalTransform::default(); 21] };

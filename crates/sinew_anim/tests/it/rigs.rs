@@ -1,10 +1,10 @@
-//! Rigs of ../shared/data.
+//! Rigs of the shared test data.
 
 use sinew_anim::{Clip, Rig};
 
 pub const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/");
 
-/// All files of ../shared/data/rigs that hold clips.
+/// All rig files that contain clips.
 pub const WITH_CLIPS: [&str; 16] = [
     "CesiumMan.glb",
     "Fox.glb",
@@ -24,12 +24,12 @@ pub const WITH_CLIPS: [&str; 16] = [
     "vrma_test.vrma",
 ];
 
-/// The bytes of a file under ../shared/data, for tests with `needs_data`.
+/// The bytes of a shared file, for tests with `needs_data`.
 pub fn bytes(path: &str) -> Vec<u8> {
     std::fs::read(format!("{DATA}{path}")).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// Rig and clips of a file under ../shared/data, likewise.
+/// Rig and clips of a shared file, for tests with `needs_data`.
 pub fn load(path: &str) -> (Rig, Vec<Clip>) {
     let document = sinew_formats::load_gltf(format!("{DATA}{path}"), sinew_formats::ReadOptions::default());
     let document = document.unwrap_or_else(|error| panic!("{path}: {error}"));

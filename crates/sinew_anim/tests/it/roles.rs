@@ -4,7 +4,7 @@ use needs_data::needs_data;
 use sinew_anim::{Basis, LocalTransform, NoSkin, Rig, RigAnalysis, Role, Side, analyze};
 use sinew_math::{Affine, Random, Rotation, Vec3};
 
-/// Bodies as lines of role, parent role, confidence and joint name, before them what the body as a whole is like.
+/// Bodies as lines of role, parent role, confidence and joint name, after a header line about the whole body.
 fn table(rig: &Rig, found: &RigAnalysis) -> String {
     let forward = found.character_from_model.rotation.inverse() * Vec3::Z;
     let kind = if found.humanoid { "humanoid" } else { "creature" };
@@ -19,7 +19,7 @@ fn table(rig: &Rig, found: &RigAnalysis) -> String {
     out
 }
 
-/// The signed axis that a direction is close to.
+/// The signed axis nearest to a direction.
 fn axis(v: Vec3) -> String {
     let axes = [("x", v.x), ("y", v.y), ("z", v.z)];
     let (name, value) = axes.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).expect("three axes");
@@ -33,7 +33,7 @@ fn analyzed(file: &str) -> (Rig, RigAnalysis) {
     (rig, found)
 }
 
-/// Checks that hold for every analysis, whatever the rig.
+/// Checks invariants that hold for every analysis.
 pub fn sound(rig: &Rig, found: &RigAnalysis) {
     let mut carried = vec![0; rig.joints.len()];
     for (i, bone) in found.kept.iter().enumerate() {
@@ -53,7 +53,7 @@ pub fn sound(rig: &Rig, found: &RigAnalysis) {
     assert!(found.unit_scale > 0.0 && found.height > 0.0);
 }
 
-/// Joints with any weight, and its sum.
+/// Joints with weights, and the sum of their weights.
 fn skinned_joints(rig: &Rig) -> Vec<(usize, f32)> {
     let mut weight = vec![0.0; rig.joints.len()];
     for mesh in &rig.meshes {
@@ -69,7 +69,7 @@ fn skinned_joints(rig: &Rig) -> Vec<(usize, f32)> {
     weight.into_iter().enumerate().filter(|&(_, w)| w > 0.0).collect()
 }
 
-/// A human body: all parts there, each on its own side and at its own height.
+/// Checks a human body: all parts exist, on their sides and at their heights.
 fn check_humanoid(file: &str, bodies: usize) {
     let (_, found) = analyzed(file);
     assert!(found.humanoid, "{file}");
@@ -116,7 +116,7 @@ fn human_shapes_are_recognised_with_both_sides_right() {
 
 #[needs_data]
 #[test]
-fn files_face_where_their_toes_point() {
+fn forward_axis_follows_the_toes() {
     for (file, forward) in [
         ("CesiumMan.glb", "+z"),
         ("RiggedFigure.glb", "+z"),
@@ -136,7 +136,7 @@ fn check(file: &str, expected: &Expect) {
 
 #[needs_data]
 #[test]
-fn a_rig_with_misleading_names() {
+fn misleading_names_are_overruled_by_the_shape() {
     check(
         "CesiumMan.glb",
         &expect![[r#"
@@ -164,7 +164,7 @@ fn a_rig_with_misleading_names() {
 
 #[needs_data]
 #[test]
-fn feet_beside_the_body_and_a_joint_above_the_hips() {
+fn separate_feet_and_a_joint_above_the_hips_are_handled() {
     check(
         "quaternius_cyberpunk_Character.glb",
         &expect![[r#"
@@ -191,7 +191,7 @@ fn feet_beside_the_body_and_a_joint_above_the_hips() {
 
 #[needs_data]
 #[test]
-fn a_fox_is_no_human_whatever_its_joints_are_called() {
+fn fox_with_human_names_is_not_human() {
     check(
         "Fox.glb",
         &expect![[r#"
@@ -222,10 +222,10 @@ fn a_fox_is_no_human_whatever_its_joints_are_called() {
     );
 }
 
-/// Parts that stick out of the knight are held by what they hang on; the helmet goes with the head.
+/// Protruding parts of the knight get their own bodies attached to their parents; the helmet is merged into the head.
 #[needs_data]
 #[test]
-fn a_knight_holds_what_it_carries() {
+fn props_of_the_knight_are_attached_to_their_carriers() {
     let (rig, found) = analyzed("kaykit_Knight.glb");
     let name = |joint: usize| rig.joints[joint].name.as_str();
     let props = found.kept.iter().filter(|bone| bone.is_prop);
@@ -239,7 +239,7 @@ fn a_knight_holds_what_it_carries() {
 
 #[needs_data]
 #[test]
-fn a_spider_gets_its_feet_back() {
+fn separate_feet_of_a_spider_join_its_legs() {
     check(
         "quaternius_Spider.glb",
         &expect![[r#"
@@ -277,7 +277,7 @@ fn a_spider_gets_its_feet_back() {
 
 #[needs_data]
 #[test]
-fn chains_without_limbs() {
+fn chain_without_limbs_is_all_trunk() {
     check(
         "quaternius_MandarinFish.glb",
         &expect![[r#"
@@ -310,12 +310,12 @@ fn chains_without_limbs() {
 
 #[needs_data]
 #[test]
-fn many_skeletons_in_one_file_are_analysed_without_complaint() {
+fn many_skeletons_in_one_file_are_analysed() {
     let (_, found) = analyzed("RecursiveSkeletons.glb");
     assert!(!found.humanoid);
 }
 
-/// The rig with its scene put into another frame: every root moved by `turn` and `scale`.
+/// The rig in another frame: every root rotated and scaled.
 fn placed(rig: &Rig, turn: Rotation, scale: f32) -> Rig {
     let mut rig = rig.clone();
     for joint in rig.joints.iter_mut().filter(|joint| joint.parent.is_none()) {
@@ -368,7 +368,7 @@ fn names_size_and_axes_of_the_file_do_not_change_the_roles() {
 
 #[needs_data]
 #[test]
-fn a_character_turned_around_keeps_its_left_hand() {
+fn rotated_character_keeps_its_left_hand() {
     let (rig, _) = analyzed("mannequiny.glb");
     let about = placed(&rig, Rotation::from_axis_angle(Vec3::Y, std::f32::consts::PI), 1.0);
     let found = analyze(&about).expect("a skin");
@@ -386,7 +386,7 @@ fn a_body_without_names_is_recognised() {
     for (name, parent, _) in toy::BODY {
         expected += &format!("{name} < {} 0.80\n", if parent.is_empty() { "-" } else { parent });
     }
-    // Bodies come in the order of the roles, the toy's joints too.
+    // Bodies are in the order of roles, which is also the order of the toy's joints.
     assert_eq!(table(&rig, &found), expected);
     assert!(found.roles.iter().flatten().all(|guess| guess.basis == Basis::Shape));
     let named = analyze(&toy::body(Role::name)).expect("a skin");
@@ -394,10 +394,10 @@ fn a_body_without_names_is_recognised() {
 }
 
 #[test]
-fn names_stand_in_where_the_shape_is_not_symmetric() {
+fn names_decide_where_the_shape_is_asymmetric() {
     let mut rig = toy::body(Role::name);
     for (joint, (name, ..)) in toy::BODY.iter().enumerate() {
-        // The right arm is bound straight up and twice as long, so that no mirror finds it.
+        // The right arm is bound straight up and twice as long, so that mirror symmetry does not find it.
         if name.starts_with("rightLowerArm") || name.starts_with("rightHand") {
             rig.skins[0].inverse_bind[joint].translation += Vec3::new(-0.3, -0.6, 0.0);
         }
@@ -412,7 +412,7 @@ fn names_stand_in_where_the_shape_is_not_symmetric() {
 }
 
 #[test]
-fn names_that_agree_win_over_the_feet_and_a_note_says_so() {
+fn consistent_names_override_the_feet_with_a_note() {
     let rig = toy::body(|role| role.mirror().name());
     let found = analyze(&rig).expect("a skin");
     for (joint, guess) in found.roles.iter().enumerate() {
@@ -422,7 +422,7 @@ fn names_that_agree_win_over_the_feet_and_a_note_says_so() {
 }
 
 #[test]
-fn roles_that_the_file_states_are_taken_at_their_word() {
+fn roles_stated_by_the_file_are_used() {
     let mut rig = toy::body(|_| "x".into());
     rig.stated_roles =
         toy::BODY.iter().enumerate().map(|(joint, (name, ..))| ((*name).into(), joint)).collect();
@@ -434,7 +434,7 @@ fn roles_that_the_file_states_are_taken_at_their_word() {
 
 #[needs_data]
 #[test]
-fn a_rig_without_skin_is_refused() {
+fn rig_without_skin_is_rejected_by_the_analysis() {
     assert_eq!(analyze(&Rig::default()), Err(NoSkin));
     let (rig, _) = rigs::load("negative/kenney_character_unskinned.glb");
     assert_eq!(analyze(&rig), Err(NoSkin));
@@ -443,9 +443,9 @@ fn a_rig_without_skin_is_refused() {
 
 #[needs_data]
 #[test]
-fn the_bind_pose_is_that_of_the_skin_not_of_the_rest_pose() {
+fn bind_pose_comes_from_the_skin() {
     let (rig, plain) = analyzed("mannequiny.glb");
-    // Bend the arms of the rest pose: the skin still says where they were.
+    // The arms of the rest pose are bent; the skin still gives the bind pose.
     let mut bent = rig.clone();
     for joint in bent.joints.iter_mut().filter(|joint| joint.name.starts_with("upperarm")) {
         joint.rest.rotation = (joint.rest.rotation * Rotation::from_axis_angle(Vec3::X, 1.0)).normalize();
@@ -470,7 +470,7 @@ fn role_names_round_trip() {
     }
 }
 
-/// Limbs of a wild creature, each from the trunk outward: the joints' names.
+/// Joint names of the limbs (each from the trunk outward) and of the trunk of a creature.
 fn limbs_of(file: &str) -> (Vec<Vec<String>>, Vec<String>) {
     let options = sinew_formats::ReadOptions::default();
     let rig = sinew_formats::load_gltf(format!("{}{file}", rigs::DATA), options).expect("a rig").rig;
@@ -492,10 +492,10 @@ fn limbs_of(file: &str) -> (Vec<Vec<String>>, Vec<String>) {
     (limbs, trunk)
 }
 
-/// Frogs, rats, dinosaurs: feet beside the body, hips and back beside the shoulders, bodies whose root moves nothing.
+/// Frogs, rats, dinosaurs: feet outside the leg hierarchy, hips and back beside the shoulders, roots without skin.
 #[needs_data]
 #[test]
-fn wild_beasts_have_their_limbs_and_their_trunk() {
+fn limbs_and_trunk_of_animals_are_found() {
     let side = |part: &str, side: &str| format!("{part}.{side}");
     for (file, legs, trunk) in [
         (
@@ -555,10 +555,10 @@ fn wild_beasts_have_their_limbs_and_their_trunk() {
     }
 }
 
-/// Monsters of a head and a body on one line: nothing of them is a limb, whatever lies above and below the root.
+/// Monsters with head and body on one line: no joint above or below the root is a limb.
 #[needs_data]
 #[test]
-fn what_stands_on_the_midline_has_no_twin_below() {
+fn joints_on_the_midline_are_no_limbs() {
     for file in ["rigs_wild/platformer_game_Enemy.glb", "rigs_wild/platformer_game_Crab.glb"] {
         let (limbs, trunk) = limbs_of(file);
         assert!(limbs.is_empty() && trunk.len() == 4, "{file}: {limbs:?} {trunk:?}");

@@ -1,4 +1,4 @@
-//! Root motion: taken out, put together again, blended as deltas.
+//! Root motion: extraction, recombination, and blending as deltas.
 
 use crate::stage;
 use sinew_anim::{
@@ -8,7 +8,8 @@ use sinew_anim::{
 };
 use sinew_math::{Affine, Rotation, Transform, Vec3, trig};
 
-/// Goes round a circle of `radius` once in `duration`, bobbing up and down; joint 1 hangs on a turned and scaled joint 0.
+/// Moves around a circle of `radius` once in `duration`, with vertical oscillation; joint 1 is a child of a rotated and
+/// scaled joint 0.
 fn circling(duration: f32, radius: f32, share: f32) -> (Rig, Clip) {
     let mut rig = stage::rig();
     let turned = Rotation::from_axis_angle(Vec3::X, -core::f32::consts::FRAC_PI_2);
@@ -22,7 +23,7 @@ fn circling(duration: f32, radius: f32, share: f32) -> (Rig, Clip) {
         let height = 1.0 + 0.05 * trig::sin(4.0 * angle);
         let place = Vec3::new(radius * sin, height, radius * (1.0 - cos));
         places.extend(above.inverse().point(place).to_array());
-        // Faces where it goes, and leans.
+        // Faces its direction of motion, and leans.
         let q = turned.inverse()
             * Rotation::from_axis_angle(Vec3::Y, -angle)
             * Rotation::from_axis_angle(Vec3::X, 0.2);
@@ -47,7 +48,7 @@ fn model(clip: &Clip, rig: &Rig, time: f32) -> Affine {
 }
 
 #[test]
-fn what_is_taken_out_and_what_stays_are_the_clip() {
+fn root_motion_and_remainder_recombine_to_the_clip() {
     let (rig, clip) = circling(2.0, 1.5, 0.7);
     for options in [
         RootMotionOptions::on_ground(1),
@@ -69,7 +70,7 @@ fn what_is_taken_out_and_what_stays_are_the_clip() {
 }
 
 #[test]
-fn on_the_ground_what_stays_is_in_its_place_and_closes_its_loop() {
+fn remainder_of_ground_motion_stays_in_place_and_loops() {
     let (rig, clip) = circling(2.0, 1.5, 0.7);
     let (still, motion) = extract_root_motion(&clip, &rig, &RootMotionOptions::on_ground(1));
     let start = model(&still, &rig, 0.0);
@@ -96,7 +97,7 @@ fn walker(share: f32, speed: f32, loop_mode: LoopMode) -> (AnimationSet, Animato
 }
 
 #[test]
-fn steps_of_any_length_go_the_same_way() {
+fn root_motion_is_independent_of_step_length() {
     for speed in [1.0, -0.7] {
         for (steps, dt) in [(1, 6.0), (6, 1.0), (100, 0.06), (1_000, 0.006)] {
             let (set, mut animator) = walker(0.25, speed, LoopMode::Loop);
@@ -105,7 +106,7 @@ fn steps_of_any_length_go_the_same_way() {
                 animator.update(&set, dt);
                 place = place * animator.root_motion();
             }
-            // A quarter of the circle in each lap of 2 s.
+            // A quarter of the circle in each cycle of 2 s.
             let angle = core::f32::consts::FRAC_PI_2 * 3.0 * speed;
             let (sin, cos) = trig::sin_cos(angle);
             let expected = Vec3::new(1.5 * sin, 0.0, 1.5 * (1.0 - cos));
@@ -117,7 +118,7 @@ fn steps_of_any_length_go_the_same_way() {
 }
 
 #[test]
-fn there_and_back_is_where_it_began() {
+fn forward_and_backward_playback_cancel() {
     let (set, mut animator) = walker(0.25, 1.0, LoopMode::PingPong);
     let mut place = Transform::IDENTITY;
     for _ in 0..16 {
@@ -141,7 +142,7 @@ fn two_speeds_blend_as_deltas() {
 }
 
 #[test]
-fn a_root_that_sets_out_by_an_inertial_transition_gains_speed_smoothly() {
+fn inertial_transition_accelerates_the_root_smoothly() {
     const DT: f32 = 1.0 / 120.0;
     const TIME: f32 = 0.5;
     let (rig, clip) = circling(2.0, 1.5, 0.25);
@@ -162,7 +163,7 @@ fn a_root_that_sets_out_by_an_inertial_transition_gains_speed_smoothly() {
         (speed, way) = (step / DT, way + step);
     }
     let pace = 1.5 * core::f32::consts::FRAC_PI_2 / 2.0;
-    // The quintic's steepest slope is 15/8 of the mean, and it goes half of the way.
+    // The quintic's maximum slope is 15/8 of its mean, and it covers half of the distance.
     assert!(steepest < 1.02 * 1.875 * pace / TIME, "{steepest}");
     assert!((speed - pace).abs() < 1e-3 && (way - 0.5 * pace * TIME).abs() < 5e-3, "{speed} m/s, {way} m");
 }

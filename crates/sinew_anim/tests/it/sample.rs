@@ -34,14 +34,14 @@ fn linear_is_a_straight_line_and_clamps_before_the_first_key() {
     for (time, x) in [(-1.0, 1.0), (0.25, 1.0), (0.75, 1.5), (1.25, 2.5), (2.0, 4.0), (5.0, 4.0)] {
         assert!((at(&clip, time, Wrap::Clamp).scale.x - x).abs() < 1e-6, "at {time}");
     }
-    // What the clip does not move stays as the rig has it.
+    // Properties without a channel keep the rig's values.
     assert_eq!(at(&clip, 1.0, Wrap::Clamp).translation, Vec3::new(7.0, 8.0, 9.0));
 }
 
 #[test]
 fn linear_rotation_turns_at_constant_speed_and_the_short_way() {
     let (a, b) = (Rotation::from_axis_angle(Vec3::Y, 0.2), Rotation::from_axis_angle(Vec3::Y, 1.8));
-    // The second key carries the other sign of the same rotation.
+    // The second key has the opposite sign of the same rotation.
     let values = [a.x, a.y, a.z, a.w, -b.x, -b.y, -b.z, -b.w];
     let clip = clip(Property::Rotation, Interpolation::Linear, &[0.0, 2.0], &values);
     for i in 0..=20 {
@@ -80,7 +80,7 @@ fn a_cubic_rotation_is_normalised() {
 }
 
 #[test]
-fn a_loop_starts_over_in_both_directions() {
+fn loop_wraps_in_both_directions() {
     let times = [0.0, 1.0, 2.0];
     let clip = clip(Property::Translation, Interpolation::Linear, &times, &STEPS);
     for (time, x) in [(0.5, 1.5), (2.5, 1.5), (200.5, 1.5), (-0.5, 3.0), (-1.5, 1.5)] {
@@ -89,7 +89,7 @@ fn a_loop_starts_over_in_both_directions() {
 }
 
 #[test]
-fn bad_numbers_do_not_spread() {
+fn non_finite_keys_affect_only_their_joint() {
     let mut clip = clip(Property::Translation, Interpolation::Linear, &[0.0, 1.0, 2.0], &STEPS);
     for wrap in [Wrap::Clamp, Wrap::Loop] {
         assert_eq!(at(&clip, f32::NAN, wrap).translation.x, 1.0);
@@ -102,7 +102,7 @@ fn bad_numbers_do_not_spread() {
 }
 
 #[test]
-fn a_cache_never_changes_the_pose() {
+fn sampling_cache_does_not_change_the_pose() {
     let mut random = Random::new(5);
     let times: Vec<f32> = (0..40).map(|i| i as f32 * 0.1 + random.range(0.0, 0.09)).collect();
     let values: Vec<f32> = (0..120).map(|_| random.range(-1.0, 1.0)).collect();
@@ -112,7 +112,7 @@ fn a_cache_never_changes_the_pose() {
     let mut cache = SampleCache::default();
     let (mut cached, mut plain) = ([LocalTransform::default()], [LocalTransform::default()]);
     for i in 0..2_000 {
-        // Mostly forward, with jumps, backward play and a change of clip.
+        // Mostly forward, with jumps, backward play and changes of clip.
         let time = if i % 7 == 0 { random.range(-1.0, 9.0) } else { i as f32 * 0.013 };
         let clip = if i % 11 == 0 { &short } else { &long };
         sample_cached(clip, &rig, time, Wrap::Loop, &mut cache, &mut cached);
@@ -123,7 +123,7 @@ fn a_cache_never_changes_the_pose() {
 
 #[needs_data]
 #[test]
-fn the_interpolation_sample_moves_as_its_titles_say() {
+fn interpolation_test_file_is_sampled_correctly() {
     let (rig, clips) = rigs::load("negative/InterpolationTest/InterpolationTest.gltf");
     assert_eq!(clips.len(), 9);
     let mut out: Vec<LocalTransform> = rig.joints.iter().map(|joint| joint.rest).collect();
@@ -132,7 +132,7 @@ fn the_interpolation_sample_moves_as_its_titles_say() {
         let (width, cubic) = (channel.property.width(), channel.interpolation == Interpolation::CubicSpline);
         for (key, &time) in channel.times.iter().enumerate() {
             sample(clip, &rig, time, Wrap::Clamp, &mut out);
-            // At a key every interpolation gives the key; a cubic one holds it between its two tangents.
+            // At a key every interpolation gives the key; a cubic key is stored between its two tangents.
             let start = if cubic { (3 * key + 1) * width } else { key * width };
             let expected = &channel.values[start..start + width];
             let local = out[channel.joint];
@@ -146,7 +146,7 @@ fn the_interpolation_sample_moves_as_its_titles_say() {
             };
             assert!(error < 1e-3, "{} at key {key}: off by {error}", clip.name);
         }
-        // Halfway between the first two keys a step still holds, the others have left.
+        // Halfway between the first two keys, step interpolation still gives the first key, and the others do not.
         let (a, b) = (channel.times[0], channel.times[1]);
         sample(clip, &rig, a, Wrap::Clamp, &mut out);
         let at_key = out[channel.joint];

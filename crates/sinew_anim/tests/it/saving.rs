@@ -1,4 +1,4 @@
-//! State as bytes: exact, and whatever else the bytes are, an error.
+//! Saved animator state: exact when loaded, and an error for any other bytes.
 
 use crate::stage;
 use sinew_anim::{
@@ -21,7 +21,7 @@ fn set() -> AnimationSet {
     set
 }
 
-/// One of everything that an animator can be in the midst of.
+/// An animator with one of every kind of ongoing action.
 fn busy(set: &AnimationSet, random: &mut Random) -> Animator {
     let clips: Vec<_> = set.clips().collect();
     let mut animator = Animator::new(set);
@@ -65,7 +65,7 @@ fn saved(animator: &Animator, set: &AnimationSet) -> Vec<u8> {
 }
 
 #[test]
-fn what_is_loaded_goes_on_with_the_same_bits() {
+fn loaded_animator_continues_identically() {
     let (set, mut random) = (set(), Random::new(2));
     for round in 0..40 {
         let mut animator = busy(&set, &mut random);
@@ -90,7 +90,7 @@ fn what_is_loaded_goes_on_with_the_same_bits() {
 }
 
 #[test]
-fn bytes_that_lie_are_errors_or_states_that_run() {
+fn corrupted_bytes_give_an_error_or_a_valid_state() {
     let (set, mut random) = (set(), Random::new(3));
     let bytes = saved(&busy(&set, &mut random), &set);
     for end in 0..bytes.len() {
@@ -115,7 +115,7 @@ fn bytes_that_lie_are_errors_or_states_that_run() {
 }
 
 #[test]
-fn the_state_of_another_set_is_refused() {
+fn state_of_another_set_is_rejected() {
     let (set, other) = (set(), stage::set(9));
     let bytes = saved(&Animator::new(&set), &set);
     let error = Animator::load(&other, &mut Reader::new(&bytes)).expect_err("another set");
@@ -123,7 +123,7 @@ fn the_state_of_another_set_is_refused() {
 }
 
 #[test]
-fn a_state_that_would_pass_endless_laps_is_refused() {
+fn state_with_too_many_cycles_is_rejected() {
     let (set, clip) = (set(), 0);
     let clip = set.clips().nth(clip).expect("a clip");
     let load = |change: &dyn Fn(&mut Vec<u8>, &[u8]), def: &TrackDef| {
@@ -144,7 +144,7 @@ fn a_state_that_would_pass_endless_laps_is_refused() {
         bytes[place..place + 4].copy_from_slice(&1e30_f32.to_le_bytes());
     };
     assert!(load(&faster, &alone).is_err_and(|error| error.contains("a track is too fast")));
-    // Behind the speed: start, three kinds, no mask, a group, and then the laps.
+    // The bytes after the speed are the start, three kinds, no mask, a group, and the cycles.
     let farther = |bytes: &mut Vec<u8>, speed: &[u8]| {
         let place = place_of(bytes, speed) + 4 + 4 + 3 + 1 + 2;
         bytes[place + 4] = 1;
@@ -155,8 +155,8 @@ fn a_state_that_would_pass_endless_laps_is_refused() {
 }
 
 #[test]
-#[should_panic(expected = "a speed is finite and at most 1000")]
-fn a_track_that_is_too_fast_is_refused() {
+#[should_panic(expected = "the speed must be finite and at most 1000")]
+fn track_with_excessive_speed_panics() {
     let set = set();
     let clip = set.clips().next().expect("a clip");
     Animator::new(&set).play(&set, &TrackDef { speed: 2e3, ..TrackDef::new(clip) });

@@ -1,4 +1,4 @@
-//! Meshes as sheets of cloth: welded, reduced, held, hung on joints.
+//! Meshes as cloth sheets: welded, reduced, held at the top, and attached to joints.
 
 use sinew_anim::garments::{MOST_PARTICLES, MeshPart, SheetError, SheetOptions, lay_sheet};
 use sinew_anim::{
@@ -8,10 +8,11 @@ use sinew_anim::{
 use sinew_math::{Affine, Rotation, Vec3};
 
 const SPACING: f32 = 0.05;
-/// Spacing at which ten cells across stay as they are.
+/// Spacing at which ten cells across are kept.
 const COARSE: f32 = 0.11;
 
-/// A cloth of a metre by a metre that hangs from y = 1 in the plane of x and y, of so many cells along each side, on two joints: one above the other.
+/// A cloth of 1 m × 1 m that hangs from y = 1 in the xy plane, with `cells` cells along each side, weighted to two
+/// joints, an upper and a lower one.
 fn rig(cells: usize) -> Rig {
     let turned = Rotation::from_axis_angle(Vec3::Z, 0.3);
     let joint =
@@ -97,13 +98,14 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
 }
 
 #[test]
-fn a_fine_mesh_is_reduced_to_its_spacing_and_drawn_as_it_was() {
+fn fine_mesh_is_reduced_and_drawn_unchanged() {
     let mut it = rig(80);
     let before = drawn(&it, &rest_pose(&it));
     let sheet = lay(&mut it, 2000, None).expect("it can be cloth");
     let sheet = &it.sheets[sheet];
     assert_eq!(sheet.vertices, 81 * 81);
-    // Particles that cover a square metre so that none of it is farther than 25 mm from one; of a hexagonal grid it takes 616, of a square one 800.
+    // Particles such that no point of a square metre is farther than 25 mm from one: 616 in a hexagonal grid, 800 in a
+    // square grid.
     assert!((616..1400).contains(&sheet.joints.len()), "{}", sheet.joints.len());
     let place = bind(&it);
     let at = |particle: u32| place[sheet.joints[particle as usize]].translation;
@@ -111,14 +113,14 @@ fn a_fine_mesh_is_reduced_to_its_spacing_and_drawn_as_it_was() {
     assert!(longest <= SPACING + 2.0 / 80.0, "{longest}");
     let area: f32 =
         sheet.faces.iter().map(|f| (at(f[1]) - at(f[0])).cross(at(f[2]) - at(f[0])).length() / 2.0).sum();
-    assert!((0.97..1.01).contains(&area), "its borders stay where they are: {area} m²");
+    assert!((0.97..1.01).contains(&area), "the borders moved: {area} m²");
     assert!(farthest(&before, &drawn(&it, &rest_pose(&it))) < 1e-5);
-    // Nothing moves its joints, and it goes along with the old ones.
+    // Its joints have no motion of their own, and it follows the original joints.
     let mut pose = rest_pose(&it);
     pose[0].translation += Vec3::X * 3.0;
     let moved: Vec<Vec3> = before.iter().map(|&place| place + Vec3::X * 3.0).collect();
     assert!(farthest(&moved, &drawn(&it, &pose)) < 1e-5);
-    // A particle takes its own vertex along, and none a metre away.
+    // A particle moves its own vertex, and none a metre away.
     let mut pose = rest_pose(&it);
     pose[sheet.joints[0]].translation += Vec3::Z;
     let bulge: Vec<f32> = drawn(&it, &pose).iter().map(|place| place.z.abs()).collect();
@@ -127,7 +129,7 @@ fn a_fine_mesh_is_reduced_to_its_spacing_and_drawn_as_it_was() {
 }
 
 #[test]
-fn there_are_never_more_particles_than_were_asked_for() {
+fn particle_count_stays_below_its_limit() {
     for most in [4, 30, MOST_PARTICLES] {
         let mut it = rig(60);
         let sheet = lay(&mut it, most, None).expect("it can be cloth");
@@ -137,24 +139,24 @@ fn there_are_never_more_particles_than_were_asked_for() {
 }
 
 #[test]
-fn a_coarse_mesh_has_a_particle_for_each_vertex_and_is_held_as_deep_as_was_said() {
+fn coarse_mesh_gets_a_particle_per_vertex_and_the_given_held_depth() {
     for (held, rows) in [(None, 2), (Some(0.35), 4), (Some(0.0), 1)] {
         let mut it = rig(10);
         let sheet = lay_at(&mut it, 400, held, COARSE).expect("it can be cloth");
         let sheet = &it.sheets[sheet];
         assert_eq!((sheet.joints.len(), sheet.faces.len(), sheet.links.len()), (121, 200, 320));
         assert_eq!(sheet.held.iter().filter(|held| **held).count(), 11 * rows, "{held:?}");
-        // Each hangs from the joint that moved its vertex most.
+        // Each particle's parent is the joint with the largest weight at its vertex.
         let parents: Vec<_> = sheet.joints.iter().map(|&joint| it.joints[joint].parent).collect();
         assert_eq!((parents[0], parents[120]), (Some(0), Some(1)));
         assert_eq!(it.joints[sheet.joints[7]].source, 3 + 7);
     }
 }
 
-/// Cells wider than the spacing are halved until they are not, with square cells left square; vertices of the mesh have their own particles, and nothing
-/// is drawn otherwise.
+/// Cells wider than the spacing are halved until they fit; square cells stay square. Mesh vertices keep their own
+/// particles, and the drawing is unchanged.
 #[test]
-fn a_mesh_coarser_than_its_spacing_is_split() {
+fn mesh_coarser_than_its_spacing_is_split() {
     let mut it = rig(4);
     let before = drawn(&it, &rest_pose(&it));
     let sheet = lay_at(&mut it, 400, None, 0.07).expect("it can be cloth");
@@ -169,19 +171,22 @@ fn a_mesh_coarser_than_its_spacing_is_split() {
     assert!(lengths.iter().all(|l| (l - cell).abs() < 1e-5 || (l - across).abs() < 1e-5), "square cells");
     for face in &sheet.faces {
         let normal = (at(face[1]) - at(face[0])).cross(at(face[2]) - at(face[0]));
-        assert!(normal.z > 0.0 && (normal.length() - cell * cell).abs() < 1e-5, "wound as it was: {normal}");
+        assert!(
+            normal.z > 0.0 && (normal.length() - cell * cell).abs() < 1e-5,
+            "the winding changed: {normal}"
+        );
     }
     let sum: f32 = sheet.areas.iter().sum();
     assert!((sum - 1.0).abs() < 1e-4, "{sum} m²");
     assert!(farthest(&before, &drawn(&it, &rest_pose(&it))) < 1e-5);
-    // A vertex moves with its own particle alone, and those between vertices move none.
+    // A vertex moves only with its own particle; particles between vertices move none.
     for (particle, moves) in [(12, 1), (25, 0), (100, 0)] {
         let mut pose = rest_pose(&it);
         pose[sheet.joints[particle]].translation += Vec3::Z;
         let moved = drawn(&it, &pose).iter().filter(|place| place.z.abs() > 1e-4).count();
         assert_eq!(moved, moves, "particle {particle}");
     }
-    // No further than there may be particles, and nothing of what no cloth holds.
+    // Splitting stops at the particle limit, and parts without cloth are not split.
     let mut it = rig(4);
     let sheet = lay_at(&mut it, 60, None, 0.07).expect("it can be cloth");
     assert_eq!(it.sheets[sheet].joints.len(), 60);
@@ -212,9 +217,9 @@ fn meshes_are_named_by_node_mesh_or_material() {
     assert!(MeshPart::named(&it, "other").is_ok());
 }
 
-/// A cape that hangs on a bone as a whole; what cannot be cloth leaves the rig as it was.
+/// A cape that is rigidly attached to a bone. Meshes that cannot be cloth leave the rig unchanged.
 #[test]
-fn a_mesh_without_a_skin_gets_one_and_errors_change_nothing() {
+fn rigid_mesh_gets_a_skin_and_errors_change_nothing() {
     let mut it = rig(10);
     it.meshes[0].skin = None;
     it.joints[2].parent = Some(0);
@@ -233,7 +238,7 @@ fn a_mesh_without_a_skin_gets_one_and_errors_change_nothing() {
     assert_eq!(lay(&mut flat, 400, None), Err(SheetError::Empty));
 }
 
-/// The cloth as one that hangs in strips of so many cells, each a piece by itself.
+/// The cloth as separate strips of this number of cells.
 fn strips(cells: usize, across: usize) -> Rig {
     let mut it = rig(cells);
     let primitive = &mut it.meshes[0].primitives[0];
@@ -245,7 +250,7 @@ fn strips(cells: usize, across: usize) -> Rig {
 }
 
 #[test]
-fn pieces_have_a_particle_each_or_there_are_too_many() {
+fn each_piece_gets_a_particle_or_an_error() {
     let mut it = strips(10, 2);
     let untouched = it.clone();
     assert_eq!(lay(&mut it, 4, None), Err(SheetError::TooManyPieces(5)));
@@ -255,7 +260,7 @@ fn pieces_have_a_particle_each_or_there_are_too_many() {
 }
 
 #[test]
-fn a_spacing_of_nearly_nothing_is_no_endless_loop() {
+fn tiny_spacing_terminates() {
     let mut it = rig(20);
     let bind_model = bind(&it);
     let part = MeshPart::named(&it, "Flag").expect("it is there");
@@ -272,12 +277,12 @@ fn a_spacing_of_nearly_nothing_is_no_endless_loop() {
     assert!((50..=100).contains(&it.sheets[sheet].joints.len()));
 }
 
-/// Each piece of a reduced sheet is held, though nothing but the highest vertices is.
+/// Each piece of a reduced sheet is held, even if only the highest vertices are.
 #[test]
-fn reduced_sheets_are_held() {
+fn every_piece_of_a_reduced_sheet_is_held() {
     for most in [4, 20, 100] {
         let mut it = rig(80);
-        // A corner is lifted a little, so that one vertex is held: of those on the border not the first.
+        // One corner is lifted slightly, so that one vertex is held, which is not the first on the border.
         it.meshes[0].primitives[0].positions[37].y += 1e-3;
         let sheet = lay(&mut it, most, Some(0.0)).expect("it can be cloth");
         assert_eq!(it.sheets[sheet].held.iter().filter(|held| **held).count(), 1, "{most}");
@@ -287,9 +292,9 @@ fn reduced_sheets_are_held() {
     assert!(it.sheets[sheet].held.iter().filter(|held| **held).count() >= 8);
 }
 
-/// A ribbon of which nothing is left but a row of particles weighs what it did.
+/// A ribbon reduced to one row of particles keeps its mass.
 #[test]
-fn areas_are_those_of_the_mesh() {
+fn sheet_area_equals_the_mesh_area() {
     for (across, most, area) in [(1, 2000, 1.0), (1, 30, 1.0), (80, 40, 1.0 / 80.0)] {
         let mut it = strips(80, across);
         let sheet = lay(&mut it, most, None).expect("it can be cloth");
@@ -302,9 +307,9 @@ fn areas_are_those_of_the_mesh() {
     }
 }
 
-/// A brooch above a cape is not what the cape is.
+/// A brooch above a cape is a separate piece.
 #[test]
-fn what_lies_above_the_cloth_does_not_take_the_hold_from_it() {
+fn piece_above_the_cloth_does_not_take_its_held_vertices() {
     let mut it = rig(10);
     let primitive = &mut it.meshes[0].primitives[0];
     let first = primitive.positions.len() as u32;
@@ -319,20 +324,22 @@ fn what_lies_above_the_cloth_does_not_take_the_hold_from_it() {
     assert_eq!(lay(&mut it, 400, None), Err(SheetError::MostlyLoose));
     assert_eq!(it, untouched);
     assert!(lay_at(&mut it, 400, Some(0.6), COARSE).is_ok());
-    // Where it has no area, it is not there.
+    // Triangles without area do not count.
     let mut it = untouched;
     it.meshes[0].primitives[0].positions[first as usize + 2] = Vec3::new(0.5, 1.3, 0.0);
     let sheet = lay_at(&mut it, 400, None, COARSE).expect("it can be cloth");
     assert_eq!(it.sheets[sheet].held.iter().filter(|held| **held).count(), 22 + 3);
 }
 
-/// Vertices of a triangle without an area, two corners of which lie in one place once they are bound, beside loose parts that look for the nearest one.
+/// A degenerate triangle, two corners of which coincide when bound, next to loose parts that look for the nearest
+/// triangle.
 #[test]
-fn weights_are_numbers_where_triangles_are_none() {
+fn degenerate_triangles_give_finite_weights() {
     let mut it = rig(10);
     let primitive = &mut it.meshes[0].primitives[0];
     let first = primitive.positions.len() as u32;
-    // So near to a vertex of the cloth that their difference is nothing once it is turned, and a loose one before the middle of the triangle.
+    // A point so close to a cloth vertex that the difference vanishes after rotation, and a loose vertex in front of
+    // the triangle's centre.
     for place in [
         Vec3::new(1.0, 0.5, 1e-30),
         Vec3::new(2.0, 0.5, 0.1),
@@ -352,7 +359,7 @@ fn weights_are_numbers_where_triangles_are_none() {
 }
 
 #[test]
-fn the_rigid_part_of_a_skinned_mesh_is_no_sheet() {
+fn rigid_part_of_a_skinned_mesh_is_rejected() {
     let mut it = rig(4);
     let mut rigid = it.meshes[0].clone();
     rigid.skin = None;
@@ -373,9 +380,9 @@ fn the_rigid_part_of_a_skinned_mesh_is_no_sheet() {
     assert_eq!(it, untouched);
 }
 
-/// A strand of springs, or of a garment of chains, on the bones that bear a sheet is what it is without.
+/// A strand of springs or of a chain garment on the bones above a sheet is the same as without the sheet.
 #[test]
-fn joints_of_a_sheet_are_no_bones_of_a_strand() {
+fn sheet_joints_do_not_count_as_strand_bones() {
     let mut it = rig(10);
     it.joints[0].name = "cape_1".into();
     it.joints[1].name = "cape_2".into();
@@ -383,8 +390,8 @@ fn joints_of_a_sheet_are_no_bones_of_a_strand() {
     assert_eq!((springs.bone_count(), column.joints.as_slice()), (1, &[0, 1][..]));
     let sheet = lay(&mut it, 400, None).expect("it can be cloth");
     let borne = it.sheets[sheet].joints.iter().filter(|&&joint| it.joints[joint].parent == Some(1));
-    assert!(borne.count() > 0, "the last bone bears some of it");
+    assert!(borne.count() > 0, "some particles are children of the last bone");
     assert_eq!(guess_springs(&it, Vec3::Y), springs);
-    // What is cloth now is no skin of its last bone.
+    // Vertices that are cloth no longer count as skin of its last bone.
     assert_eq!(GarmentColumn::below(&it, 0).joints, column.joints);
 }

@@ -3,7 +3,7 @@ use sinew_anim::{LocalTransform, Primitive, Rig, RigMesh, Skin, local_to_model, 
 use sinew_math::{Affine, Rotation, Vec3};
 use std::f32::consts::FRAC_PI_2;
 
-/// Two joints along x with four vertices, weighted 1:0, 1:1 (two of them) and 0:1; and a rigid copy on the tip.
+/// Two joints along x and four vertices weighted 1:0, 1:1 (two of them) and 0:1; and a rigid copy on the second joint.
 fn bar() -> Rig {
     let mut rig = toy::chain(2, Vec3::X);
     let positions = vec![Vec3::new(1.0, 0.1, 0.0), Vec3::new(2.0, 0.1, 0.0), Vec3::new(3.0, 0.1, 0.0)];
@@ -33,7 +33,7 @@ fn posed(rig: &Rig, local: &[LocalTransform], mesh: usize) -> (Vec<Vec3>, Vec<Ve
 }
 
 #[test]
-fn the_bind_pose_leaves_a_skinned_mesh_where_it_is() {
+fn bind_pose_leaves_a_skinned_mesh_unchanged() {
     let rig = bar();
     let (positions, normals) = posed(&rig, &rest_pose(&rig), 0);
     for (got, expected) in positions.iter().zip(&rig.meshes[0].primitives[0].positions) {
@@ -43,12 +43,12 @@ fn the_bind_pose_leaves_a_skinned_mesh_where_it_is() {
 }
 
 #[test]
-fn a_bent_joint_takes_its_share_of_each_vertex() {
+fn bent_joint_moves_vertices_by_their_weights() {
     let rig = bar();
     let mut local = rest_pose(&rig);
     local[1].rotation = Rotation::from_axis_angle(Vec3::Z, FRAC_PI_2);
     let (positions, normals) = posed(&rig, &local, 0);
-    // The joint at (2, 0, 0) turns by a quarter: (3, 0.1) goes to (2 − 0.1, 1), (2, 0.1) to (1.9, 0).
+    // The joint at (2, 0, 0) rotates by a quarter turn: (3, 0.1) moves to (2 − 0.1, 1), (2, 0.1) to (1.9, 0).
     let expected = [Vec3::new(1.0, 0.1, 0.0), Vec3::new(1.95, 0.05, 0.0), Vec3::new(1.9, 1.0, 0.0)];
     for (got, expected) in positions.iter().zip(expected) {
         assert!((*got - expected).length() < 1e-6, "{got} for {expected}");
@@ -60,13 +60,13 @@ fn a_bent_joint_takes_its_share_of_each_vertex() {
 }
 
 #[test]
-fn a_rigid_mesh_follows_its_joint_and_squeezed_normals_stay_upright() {
+fn rigid_mesh_follows_its_joint_with_correct_normals() {
     let rig = bar();
     let mut local = rest_pose(&rig);
     local[1].rotation = Rotation::from_axis_angle(Vec3::Z, FRAC_PI_2);
     local[1].scale = Vec3::new(1.0, -0.5, 1.0);
     let (positions, normals) = posed(&rig, &local, 1);
-    // Point (1, 0.1) of the joint's space, squeezed and mirrored to (1, −0.05), turned to (0.05, 1), moved by 2.
+    // Point (1, 0.1) in the joint's space, scaled and mirrored to (1, −0.05), rotated to (0.05, 1), translated by 2.
     assert!((positions[0] - Vec3::new(2.05, 1.0, 0.0)).length() < 1e-6, "{}", positions[0]);
     assert!((normals[0] - Vec3::X).length() < 1e-6, "{}", normals[0]);
 }

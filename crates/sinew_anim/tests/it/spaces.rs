@@ -1,10 +1,10 @@
-//! Blend spaces and footsteps.
+//! Blend spaces and footstep merging.
 
 use sinew_anim::{Footstep, FootstepMerger, FootstepSource, weights_on_line, weights_on_plane};
 use sinew_math::{Random, Vec2};
 
 #[test]
-fn on_a_line_the_neighbours_share() {
+fn one_dimensional_space_blends_the_two_neighbours() {
     let places = [0.0, 1.5, 4.0];
     let mut weights = [0.0; 3];
     for (at, expected) in [
@@ -24,7 +24,7 @@ fn on_a_line_the_neighbours_share() {
 }
 
 #[test]
-fn on_a_plane_weights_are_shares_continuous_and_whole_at_their_place() {
+fn planar_weights_are_continuous_and_one_at_their_clip() {
     let mut random = Random::new(1);
     for _ in 0..300 {
         let places: Vec<Vec2> = (0..2 + random.index(7))
@@ -51,7 +51,7 @@ fn on_a_plane_weights_are_shares_continuous_and_whole_at_their_place() {
             assert!(jump < 0.05 + 0.02 / closest, "{jump} at {at}, {closest} apart");
         }
     }
-    // Four directions and standing: halfway between forward and right each has a half.
+    // Four directions and standing: halfway between forward and right, each has weight a half.
     let cross = [Vec2::ZERO, Vec2::X, Vec2::Y, -Vec2::X, -Vec2::Y];
     let mut weights = [0.0; 5];
     weights_on_plane(&cross, Vec2::new(0.5, 0.5), &mut weights);
@@ -61,11 +61,11 @@ fn on_a_plane_weights_are_shares_continuous_and_whole_at_their_place() {
 }
 
 #[test]
-fn a_step_that_both_see_is_one_step() {
+fn contact_and_event_of_one_step_are_merged() {
     let mut merger = FootstepMerger::new(0.15);
     let mut steps = Vec::new();
     merger.merge(&[(0, 1.0)], &[(0, 1.05), (1, 1.02)], &mut steps);
-    // The contact before its event, in an update before it; and a foot that bounces.
+    // The contact comes one update before its event; and a foot that bounces.
     merger.merge(&[], &[(1, 1.5), (1, 1.55)], &mut steps);
     merger.merge(&[(1, 1.6), (0, 1.61)], &[(0, f64::NAN)], &mut steps);
     let step = |foot, time, source| Footstep { foot, time, source };

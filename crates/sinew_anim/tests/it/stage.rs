@@ -1,4 +1,4 @@
-//! Sets of clips made by code.
+//! Animation sets built in code.
 
 use crate::toy;
 use sinew_anim::{
@@ -13,7 +13,7 @@ pub fn rig() -> Rig {
     toy::chain(JOINTS, Vec3::X)
 }
 
-/// A looped clip: rotations of all joints that sway at random, first key and last alike.
+/// A looped clip with random rotations of all joints; first and last key are equal.
 pub fn swaying(random: &mut Random, duration: f32) -> Clip {
     let keys = 13;
     let times: Vec<f32> = (0..keys).map(|i| duration * (i as f32 / (keys - 1) as f32)).collect();

@@ -1,4 +1,4 @@
-//! Takes, and bodies told from bones alone; no file is needed.
+//! Takes, and bodies recognised from bones alone; without files.
 
 use crate::toy;
 use core::f32::consts::TAU;
@@ -16,14 +16,14 @@ fn skeleton(name: impl Fn(Role) -> String) -> Rig {
 }
 
 #[test]
-fn a_take_and_its_clip_are_the_same_motion() {
+fn take_and_its_clip_are_the_same_motion() {
     let mut random = Random::new(8);
     let rig = toy::chain(4, Vec3::Y);
     let rest = rest_pose(&rig);
     let mut poses = Vec::new();
     for frame in 0..30 {
         let mut pose = toy::random_pose(&mut random, 4);
-        // One joint rests, another stays elsewhere.
+        // One joint has the rest pose, another has a constant other pose.
         pose[1] = rest[1];
         pose[2] = if frame == 0 { pose[2] } else { poses[2] };
         poses.extend(pose);
@@ -48,13 +48,13 @@ fn a_take_and_its_clip_are_the_same_motion() {
 }
 
 #[test]
-fn bones_alone_tell_the_roles() {
+fn roles_are_found_from_bones_alone() {
     let rig = skeleton(Role::name);
     let found = analyze_skeleton(&rig, &rest_pose(&rig)).unwrap();
     assert!(found.humanoid, "{:?}", found.notes);
     for (i, (role, ..)) in toy::BODY.iter().enumerate() {
         let expected = Role::from_name(role);
-        // Of three joints of the spine, which is which is a matter of taste.
+        // The roles of the three spine joints are interchangeable.
         let found = found.roles[i].map(|guess| guess.role);
         let in_trunk = matches!(expected, Some(Role::Spine | Role::Chest | Role::UpperChest));
         assert!(found == expected || in_trunk, "{role}: {found:?}");
@@ -64,7 +64,7 @@ fn bones_alone_tell_the_roles() {
     assert!(analyze_skeleton(&bare, &rest_pose(&bare)).is_err());
 }
 
-/// A clip of that body that walks on the spot: thighs and knees swing.
+/// A clip of that body that steps in place: thighs and knees swing.
 fn stepping(rig: &Rig) -> Clip {
     let joint = |name: &str| rig.joints.iter().position(|joint| joint.name == name).unwrap();
     let times: Vec<f32> = (0..61).map(|i| i as f32 / 60.0).collect();
@@ -93,9 +93,9 @@ fn stepping(rig: &Rig) -> Clip {
     Clip { name: "step".into(), duration: 1.0, channels }
 }
 
-/// Scaled, turned, and with joints whose axes point anywhere: the motion of the bones is the same.
+/// The bodies are scaled and rotated, and have arbitrary joint axes: the motion of the bones is the same.
 #[test]
-fn a_motion_fits_a_body_drawn_otherwise() {
+fn motion_transfers_between_different_joint_axes() {
     let actor = skeleton(Role::name);
     let clip = stepping(&actor);
     let (analysis, reference) = stand(&actor, &clip, None).unwrap();
@@ -128,9 +128,9 @@ fn a_motion_fits_a_body_drawn_otherwise() {
     }
 }
 
-/// A foot that the rig hangs on the root is carried by the shank all the same.
+/// A foot that is a child of the root still follows the shin.
 #[test]
-fn a_stray_foot_goes_along() {
+fn foot_on_the_root_follows_the_shin() {
     let mut rig = skeleton(Role::name);
     let joint = |rig: &Rig, name: &str| rig.joints.iter().position(|joint| joint.name == name).unwrap();
     let (shank, foot) = (joint(&rig, "leftLowerLeg"), joint(&rig, "leftFoot"));
@@ -150,9 +150,9 @@ fn a_stray_foot_goes_along() {
     assert!((bone - hanging).length() < 1e-5, "{bone}");
 }
 
-/// Cameras with targets stand far away from a captured skeleton, and are no part of it.
+/// Camera targets far away from a captured skeleton are not part of it.
 #[test]
-fn cameras_of_a_capture_are_no_part_of_the_body() {
+fn cameras_of_a_capture_are_ignored() {
     let plain = skeleton(Role::name);
     let expected = analyze_skeleton(&plain, &rest_pose(&plain)).unwrap();
     let mut rig = plain.clone();
@@ -169,9 +169,9 @@ fn cameras_of_a_capture_are_no_part_of_the_body() {
     }
 }
 
-/// A skeleton that stands along Y and a capture in which it walks along Z: what moves is put upright.
+/// The skeleton stands along Y, but the capture walks along Z: the result is upright.
 #[test]
-fn a_capture_along_another_axis_is_put_upright() {
+fn capture_along_another_axis_is_made_upright() {
     let actor = skeleton(Role::name);
     let mut clip = stepping(&actor);
     let tilt = Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_2);
@@ -202,7 +202,7 @@ fn a_capture_along_another_axis_is_put_upright() {
     }
 }
 
-/// A low-poly figure whose legs end with the shank gets ankles, and walks as one with feet does.
+/// A low-poly figure whose legs end with the shin gets ankles, and walks like one with feet.
 #[test]
 fn legs_without_feet_get_ankles() {
     let whole = toy::body(|_| String::new());

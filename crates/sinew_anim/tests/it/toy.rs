@@ -1,9 +1,9 @@
-//! Small rigs made by hand.
+//! Small rigs made in code.
 
 use sinew_anim::{Joint, LocalTransform, Primitive, Rig, RigMesh, Role, Skin};
 use sinew_math::{Affine, Random, Rotation, Vec3};
 
-/// A chain of `n` joints, each `offset` from its parent.
+/// A chain of `n` joints, each at `offset` from its parent.
 pub fn chain(n: usize, offset: Vec3) -> Rig {
     let joint = |i: usize| Joint {
         name: format!("joint{i}"),
@@ -14,7 +14,7 @@ pub fn chain(n: usize, offset: Vec3) -> Rig {
     Rig { joints: (0..n).map(joint).collect(), ..Rig::default() }
 }
 
-/// A pose of `n` joints at random.
+/// A random pose of `n` joints.
 pub fn random_pose(random: &mut Random, n: usize) -> Vec<LocalTransform> {
     let local = |_| LocalTransform {
         translation: random.in_cube(),
@@ -24,7 +24,7 @@ pub fn random_pose(random: &mut Random, n: usize) -> Vec<LocalTransform> {
     (0..n).map(local).collect()
 }
 
-/// A standing body: role, its parent's role, place of its joint in metres.
+/// A standing body: role, parent's role, joint position in metres.
 pub const BODY: [(&str, &str, [f32; 3]); 17] = [
     ("hips", "", [0.0, 0.95, 0.0]),
     ("spine", "hips", [0.0, 1.1, 0.0]),

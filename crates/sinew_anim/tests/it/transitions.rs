@@ -1,4 +1,4 @@
-//! Transitions: no pop, that is no jump of velocity, and no more acceleration than offset and time ask for.
+//! Transitions have no pops: velocity does not jump, and acceleration stays below a budget of offset and time.
 
 use crate::{rigs, stage};
 use needs_data::needs_data;
@@ -10,11 +10,11 @@ use sinew_math::{Random, Rotation, Vec3};
 
 const DT: f32 = 1.0 / 60.0;
 const BLEND: f32 = 0.3;
-/// Updates of a transition, and two more.
+/// Updates of a transition, plus two.
 const WINDOW: usize = 20;
 
 #[test]
-fn a_decay_starts_as_it_is_told_and_ends_at_rest() {
+fn decay_starts_with_its_velocity_and_ends_at_rest() {
     let mut random = Random::new(1);
     let mut longest: f32 = 0.0;
     for _ in 0..2_000 {
@@ -29,7 +29,7 @@ fn a_decay_starts_as_it_is_told_and_ends_at_rest() {
         assert!((start - velocity).length() < h * budget + 1e-3, "velocity {velocity}, got {start}");
         assert_eq!(decay.at(seconds, seconds), Vec3::ZERO);
         assert!(decay.at(seconds - h, seconds).length() < 1e-5);
-        // Second differences over a hundredth of the time: what the acceleration is, up to its own change.
+        // Second differences over a hundredth of the time approximate the acceleration.
         let h = 0.01 * seconds;
         for i in 1..100 {
             let at = |k: usize| decay.at(h * k as f32, seconds);
@@ -38,11 +38,11 @@ fn a_decay_starts_as_it_is_told_and_ends_at_rest() {
             longest = sinew_math::max(longest, peak / budget);
         }
     }
-    assert!(longest > 0.8, "the bound is wide: {longest}");
+    assert!(longest > 0.8, "the bound is loose: {longest}");
 }
 
 #[test]
-fn an_offset_that_comes_back_by_itself_does_not_overshoot() {
+fn returning_offset_does_not_overshoot() {
     for (size, speed) in [(0.5, 0.0), (0.5, -2.0), (0.5, -8.0), (0.3, -4.9)] {
         let decay = Decay { offset: Vec3::X * size, velocity: Vec3::X * speed };
         assert!((0..=300).all(|i| decay.at(0.001 * i as f32, 0.3).x > -1e-6), "{decay:?}");
@@ -50,7 +50,7 @@ fn an_offset_that_comes_back_by_itself_does_not_overshoot() {
     assert!(Decay { offset: Vec3::X * 0.5, velocity: Vec3::X * -9.0 }.shortened(0.3) < 0.28);
 }
 
-/// A set of looped clips of a rig, by their names.
+/// The looped clips of a rig.
 fn set_of(file: &str) -> AnimationSet {
     let (rig, clips) = rigs::load(&format!("rigs/{file}"));
     let mut set = AnimationSet::new(Skeleton::new(&rig));
@@ -65,7 +65,7 @@ fn turn(from: Rotation, to: Rotation) -> Vec3 {
     (to * from.inverse()).to_scaled_axis()
 }
 
-/// Turning and moving of one joint, per second or per second squared.
+/// Angular and linear rate of a joint, per second or per second squared.
 #[derive(Clone, Copy, Default)]
 struct Rates {
     turn: Vec3,
@@ -80,13 +80,13 @@ fn change(a: Rates, b: Rates) -> [f32; 2] {
     [(b.turn - a.turn).length() / DT, (b.way - a.way).length() / DT]
 }
 
-/// Accelerations of a joint over a row of poses: one less than two for each.
+/// Accelerations of a joint over a sequence of poses (two fewer than poses).
 fn accelerations(poses: &[Pose], joint: usize) -> Vec<[f32; 2]> {
     let rates: Vec<Rates> = poses.windows(2).map(|w| velocity(&w[0].get(joint), &w[1].get(joint))).collect();
     rates.windows(2).map(|w| change(w[0], w[1])).collect()
 }
 
-/// A clip played once by itself, and what its joints do in it: the 99th percentile of their accelerations.
+/// A clip played alone, with the 99th percentile of its joints' accelerations.
 struct Alone {
     poses: Vec<Pose>,
     p99: Vec<[f32; 2]>,
@@ -115,7 +115,7 @@ impl Alone {
         Self { p99: (0..built.joints()).map(p99).collect(), poses }
     }
 
-    /// Largest acceleration of a joint around the poses from `first` on.
+    /// Largest acceleration of a joint near the poses from `first` on.
     fn peak(&self, joint: usize, first: usize) -> [f32; 2] {
         let window = &self.poses[first.saturating_sub(2)..(first + WINDOW + 2).min(self.poses.len())];
         accelerations(window, joint)
@@ -124,7 +124,7 @@ impl Alone {
     }
 }
 
-/// Distance of a pair of clips from popping: the largest acceleration over what it may be.
+/// Largest ratio of acceleration to budget for a pair of clips.
 fn worst_of_pair(
     set: &AnimationSet,
     alone: &[Alone],
@@ -165,8 +165,8 @@ fn worst_of_pair(
     (worst, where_)
 }
 
-/// `6 |x₀|/t₁² + 4 |v₀|/t₁`, of turning and of moving: of the offset where the transition begins, and for a crossfade, whose
-/// clips go on apart from each other, of the largest while it lasts.
+/// Budget `6 |x₀|/t₁² + 4 |v₀|/t₁` for rotation and translation, from the offset at the start of the transition. For a
+/// crossfade, whose clips diverge, the largest offset during it counts.
 fn budget([a, b]: [&Alone; 2], joint: usize, first: usize, transition: Transition) -> [f32; 2] {
     let is_inertial = matches!(transition, Transition::Inertial { .. });
     let lasting = if is_inertial { 1 } else { WINDOW };
@@ -195,7 +195,7 @@ fn no_pops(file: &str, transition: Transition, allowed: f32) {
     let stride = if alone.len() < 20 || std::env::var_os("SINEW_FULL").is_some() { 1 } else { 7 };
     let names: Vec<&str> = set.clips().map(|clip| set.clip(clip).clip.name()).collect();
     for from in 0..alone.len() {
-        // Of many clips, a part, but every pair with `SINEW_FULL` set.
+        // With many clips only some pairs are tested; all with `SINEW_FULL` set.
         for to in (0..alone.len()).filter(|&to| to != from && (from + to) % stride == 0) {
             let (ratio, joint) = worst_of_pair(&set, &alone, [from, to], transition);
             pairs += 1;
@@ -227,7 +227,7 @@ fn no_pair_of_the_knight_pops() {
 }
 
 #[test]
-fn a_transition_within_a_transition_does_not_pop_either() {
+fn nested_transitions_do_not_pop() {
     let set = stage::set(4);
     let clips: Vec<ClipId> = set.clips().collect();
     let mut animator = Animator::new(&set);
@@ -251,5 +251,5 @@ fn a_transition_within_a_transition_does_not_pop_either() {
     }
     let last = animator.pose().clone();
     animator.update(&set, 0.0);
-    assert_eq!(*animator.pose(), last, "without time nothing changes");
+    assert_eq!(*animator.pose(), last, "an update of zero length changes the pose");
 }

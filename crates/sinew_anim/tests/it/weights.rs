@@ -1,4 +1,4 @@
-//! Vertices that no bone moves, and skins whose weights were lost.
+//! Vertices without weights, and skins whose weights are lost.
 
 use crate::toy;
 use sinew_anim::weights::{SkinPart, lost_weights, weigh_by_nearness, weigh_loose_vertices};
@@ -13,7 +13,7 @@ fn body() -> Rig {
     toy::body(Role::name)
 }
 
-/// Adds a triangle around a place, on a joint of the skin.
+/// Adds a triangle around a point, weighted to a joint of the skin.
 fn add_triangle(rig: &mut Rig, joint: usize, at: Vec3) -> [usize; 3] {
     let primitive = &mut rig.meshes[0].primitives[0];
     let first = primitive.positions.len();
@@ -25,7 +25,7 @@ fn add_triangle(rig: &mut Rig, joint: usize, at: Vec3) -> [usize; 3] {
     corners
 }
 
-/// The bone on which Blender hangs vertices without weights, as the last of the skin.
+/// Adds Blender's bone for unweighted vertices, as the last joint of the skin.
 fn add_neutral_bone(rig: &mut Rig) -> usize {
     let joint = rig.joints.len();
     let rest = LocalTransform::default();
@@ -36,7 +36,7 @@ fn add_neutral_bone(rig: &mut Rig) -> usize {
 }
 
 #[test]
-fn a_hat_on_the_neutral_bone_follows_the_head() {
+fn hat_on_the_neutral_bone_follows_the_head() {
     let mut rig = body();
     let neutral = add_neutral_bone(&mut rig);
     let hat = add_triangle(&mut rig, neutral, Vec3::new(0.0, 1.85, 0.0));
@@ -58,11 +58,11 @@ fn a_hat_on_the_neutral_bone_follows_the_head() {
 }
 
 #[test]
-fn a_vertex_without_weights_follows_the_rest_of_its_piece() {
+fn vertex_without_weights_follows_its_piece() {
     let mut rig = body();
     let hand = joint_named("leftHand");
     let primitive = &mut rig.meshes[0].primitives[0];
-    // One corner of the hand's own tetrahedron, which a reader left on slot 0.
+    // One corner of the hand's own tetrahedron, which a reader assigned to slot 0.
     let corner = 4 * hand + 3;
     primitive.joints[corner] = [0; 4];
     let without = SkinPart { mesh: 0, primitive: 0, vertices: vec![corner] };
@@ -71,7 +71,7 @@ fn a_vertex_without_weights_follows_the_rest_of_its_piece() {
 }
 
 #[test]
-fn a_skin_that_is_loose_as_a_whole_stays_as_it_is() {
+fn fully_unweighted_skin_is_unchanged() {
     let mut rig = body();
     let neutral = u16::try_from(add_neutral_bone(&mut rig)).expect("few");
     rig.meshes[0].primitives[0].joints.fill([neutral, 0, 0, 0]);
@@ -81,7 +81,7 @@ fn a_skin_that_is_loose_as_a_whole_stays_as_it_is() {
 }
 
 #[test]
-fn lost_weights_come_back_by_nearness() {
+fn lost_weights_are_restored_by_distance() {
     let mut rig = body();
     rig.meshes[0].primitives[0].joints.fill([3, 0, 0, 0]);
     assert_eq!(lost_weights(&rig), Some(3));
@@ -91,7 +91,7 @@ fn lost_weights_come_back_by_nearness() {
     let primitive = &rig.meshes[0].primitives[0];
     for (vertex, (slots, weights)) in primitive.joints.iter().zip(&primitive.weights).enumerate() {
         assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-6, "vertex {vertex}: {weights:?}");
-        // A vertex lies around its own joint, where the bone above ends and its own begins.
+        // A vertex is near its own joint, where the parent bone ends and its own begins.
         let own = vertex / 4;
         let near = [Some(own), rig.joints[own].parent];
         let most = slots.iter().zip(weights).max_by(|a, b| a.1.total_cmp(b.1)).expect("four");
@@ -99,14 +99,17 @@ fn lost_weights_come_back_by_nearness() {
             || rig.joints[usize::from(*most.0)].parent == Some(own);
         assert!(
             is_near,
-            "vertex {vertex} of {} hangs on {}",
+            "vertex {vertex} of {} is weighted to {}",
             toy::BODY[own].0,
             toy::BODY[usize::from(*most.0)].0
         );
         for (&slot, _) in slots.iter().zip(weights).filter(|(_, weight)| **weight > 0.05) {
             let is_left = |joint: usize| toy::BODY[joint].0.starts_with("left");
             let is_right = |joint: usize| toy::BODY[joint].0.starts_with("right");
-            assert!(!(is_left(own) && is_right(usize::from(slot))), "vertex {vertex} hangs across the body");
+            assert!(
+                !(is_left(own) && is_right(usize::from(slot))),
+                "vertex {vertex} is weighted to the other side"
+            );
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Roles of rigs from the wild against a table that was written before the recogniser first ran on them.
+//! Roles of public rigs compared with a table that was written before the recogniser first ran on them.
 
 use crate::rigs;
 use needs_data::needs_data;
@@ -14,7 +14,7 @@ struct Truth {
     roles: BTreeMap<String, String>,
 }
 
-/// `[a|b]` as a for the left, b for the right; both the same where there is none.
+/// Expands `[a|b]` to a for left and b for right; both are equal without brackets.
 fn sides(text: &str) -> [String; 2] {
     let parts = text.split_once('[').and_then(|(before, rest)| {
         let (choice, after) = rest.split_once(']')?;
@@ -24,17 +24,17 @@ fn sides(text: &str) -> [String; 2] {
     parts.unwrap_or_else(|| [text.to_owned(), text.to_owned()])
 }
 
-fn truths() -> Vec<Truth> {
-    let mut truths: Vec<Truth> = Vec::new();
+fn expected_roles() -> Vec<Truth> {
+    let mut conventions: Vec<Truth> = Vec::new();
     for line in
         include_str!("../data/truth.txt").lines().filter(|line| !line.is_empty() && !line.starts_with('#'))
     {
         let (word, rest) = line.split_once(' ').expect("two words a line");
         if word == "convention" {
-            truths.push(Truth { convention: rest.into(), files: vec![], roles: BTreeMap::new() });
+            conventions.push(Truth { convention: rest.into(), files: vec![], roles: BTreeMap::new() });
             continue;
         }
-        let truth = truths.last_mut().expect("a convention first");
+        let truth = conventions.last_mut().expect("a convention first");
         let [left, right] = sides(rest);
         if word == "files" {
             truth.files = rest.split(' ').map(str::to_owned).collect();
@@ -44,10 +44,10 @@ fn truths() -> Vec<Truth> {
             truth.roles.insert(word.into(), rest.into());
         }
     }
-    truths
+    conventions
 }
 
-/// Files under ../shared/data that a pattern with at most one star, at its end or not, names.
+/// Files under ../shared/data that match a pattern with at most one star.
 fn files(pattern: &str) -> Vec<String> {
     let Some((before, after)) = pattern.split_once('*') else { return vec![pattern.into()] };
     let (folder, start) = before.split_once('/').expect("a folder");
@@ -61,7 +61,7 @@ fn files(pattern: &str) -> Vec<String> {
     found
 }
 
-/// A rig of a skeleton's joints at their places, each with skin around its bone if it moves any in the file.
+/// A rig from a skeleton's joints, with skin around each bone that moves skin in the file.
 fn of_skeleton(json: &serde_json::Value) -> Rig {
     let nodes = json["nodes"].as_array().expect("nodes");
     let number = |value: &serde_json::Value| value.as_f64().expect("a number") as f32;
@@ -71,7 +71,7 @@ fn of_skeleton(json: &serde_json::Value) -> Rig {
     };
     let parent = |i: usize| usize::try_from(nodes[i]["parent"].as_i64().expect("an index")).ok();
     let vertices = |i: usize| nodes[i]["vertices"].as_u64().unwrap_or(0);
-    // Compressed meshes were not counted: then every joint of the skin counts, but for those that never move any.
+    // Compressed meshes have no counts: then every joint of the skin counts, except those that never move any.
     let counted = (0..nodes.len()).any(|i| vertices(i) > 0);
     let bare = |i: usize| {
         let name = nodes[i]["name"].as_str().expect("a name");
@@ -84,7 +84,7 @@ fn of_skeleton(json: &serde_json::Value) -> Rig {
         let children: Vec<usize> = (0..nodes.len()).filter(|&k| parent(k) == Some(i)).collect();
         let length = |k: &usize| (place(*k) - place(i)).length();
         let longest = children.into_iter().max_by(|a, b| length(a).total_cmp(&length(b)));
-        // Where a chain ends nothing says which way it points: straight up tells nothing of forward.
+        // The direction of the last bone of a chain is unknown: straight up implies no forward direction.
         let end = Vec3::Y * parent(i).map_or(0.1, |p| 0.4 * (place(i) - place(p)).length());
         bones.push((i, place(i), longest.map_or(place(i) + end, place)));
     }
@@ -126,13 +126,13 @@ pub fn rig_of<'a>(
     rig
 }
 
-/// Number of roles that are right, of all that the rig has or was given.
+/// Number of correct roles, out of all that are expected or found.
 fn score(rig: &Rig, truth: &BTreeMap<String, String>, complaints: &mut Vec<String>) -> (usize, usize) {
     let names: Vec<String> = rig.joints.iter().map(|joint| joint.name.clone()).collect();
     score_of(rig, &names, truth, complaints)
 }
 
-/// As [`score`], of a rig whose joints the truth knows by other names.
+/// Like [`score`], for a rig whose joints have other names in the table.
 fn score_of(
     rig: &Rig,
     names: &[String],
@@ -146,7 +146,7 @@ fn score_of(
         .iter()
         .enumerate()
         .filter_map(|(joint, guess)| Some((guess.as_ref()?.role, names[joint].clone())))
-        // A generic role is none of the humanoid: where one is due, it is missing.
+        // Generic roles do not count: if a human role is expected, it is missing.
         .filter(|(role, _)| HUMANOID_ROLES.contains(role))
         .map(|(role, name)| (role.name(), name))
         .collect();
@@ -167,7 +167,7 @@ fn score_of(
     (right, roles.len())
 }
 
-/// The rig with every joint moved aside at random, so that no mirror finds a limb and only names tell.
+/// The rig with every joint displaced at random, so that symmetry finds no limb and only names decide.
 fn blurred(rig: &Rig, seed: u64) -> Rig {
     let mut rig = rig.clone();
     let mut random = Random::new(seed);
@@ -180,7 +180,7 @@ fn blurred(rig: &Rig, seed: u64) -> Rig {
     rig
 }
 
-/// The rig with numbers for names, and without roles that the file states.
+/// The rig with numbers for names and without roles stated by the file.
 fn numbered(rig: &Rig) -> Rig {
     let mut rig = rig.clone();
     rig.stated_roles.clear();
@@ -190,14 +190,15 @@ fn numbered(rig: &Rig) -> Rig {
     rig
 }
 
-/// Roles found in a file, each as (right, all).
+/// Correct roles of a file, each as (correct, all).
 #[derive(Clone, Copy, Default)]
 struct Scores {
-    /// With names and shape.
+    /// Scores with names and shape.
     plain: (usize, usize),
-    /// With every joint moved aside, so that only names tell; of skeletons.
+    /// Scores with every joint displaced, so that only names decide; for skeletons.
     by_names: Option<(usize, usize)>,
-    /// With numbers for names, so that only the shape tells; of files with a mesh, for the shape of others is made up here.
+    /// Scores with numbers for names, so that only the shape decides; for files with a mesh, because other shapes are
+    /// synthetic.
     by_shape: Option<(usize, usize)>,
 }
 
@@ -211,7 +212,7 @@ fn load(file: &str) -> Rig {
     sinew_formats::load_gltf(path, sinew_formats::ReadOptions::default()).expect("a rig").rig
 }
 
-/// The scores of a file, and what is wrong in words. `unstated` is the truth where the file says nothing itself.
+/// The scores of a file, and its errors in words. `unstated` is the table without roles stated by the file.
 fn measure(file: &str, truth: &Truth, unstated: &Truth) -> (Scores, String) {
     let rig = load(file);
     let mut complaints = Vec::new();
@@ -227,8 +228,8 @@ fn measure(file: &str, truth: &Truth, unstated: &Truth) -> (Scores, String) {
     (scores, complaints.join(" "))
 }
 
-/// Leaves the table where `cargo xtask wild` asks for it, as JSON.
-fn tell(table: &[(String, Scores)]) {
+/// Writes the table as JSON where `cargo xtask wild` expects it.
+fn write_table(table: &[(String, Scores)]) {
     let Some(path) = std::env::var_os("SINEW_WILD_ROLES") else { return };
     let pair = |(right, all): (usize, usize)| serde_json::json!([right, all]);
     let rows: serde_json::Map<String, serde_json::Value> = table
@@ -247,13 +248,13 @@ fn tell(table: &[(String, Scores)]) {
 
 #[needs_data]
 #[test]
-fn roles_of_rigs_from_the_wild() {
+fn roles_of_public_rigs_reach_the_required_share() {
     let (mut rows, mut table) = (String::new(), Vec::new());
-    let truths = truths();
-    for truth in &truths {
+    let expected_roles = expected_roles();
+    for truth in &expected_roles {
         // `Mixamo, stated as VRM` without the statement is Mixamo.
         let plain = truth.convention.split(", stated").next().expect("at least one part");
-        let unstated = truths.iter().find(|other| other.convention == plain).unwrap_or(truth);
+        let unstated = expected_roles.iter().find(|other| other.convention == plain).unwrap_or(truth);
         for file in truth.files.iter().flat_map(|pattern| files(pattern)) {
             let (scores, complaints) = measure(&file, truth, unstated);
             let Scores { plain, by_names, by_shape } = scores;
@@ -262,7 +263,7 @@ fn roles_of_rigs_from_the_wild() {
             table.push((file, scores));
         }
     }
-    tell(&table);
+    write_table(&table);
     let sum = |of: fn(&Scores) -> Option<(usize, usize)>| {
         let all = table.iter().filter_map(|(_, scores)| of(scores));
         all.fold((0, 0), |sum, score| (sum.0 + score.0, sum.1 + score.1))
@@ -278,7 +279,7 @@ fn roles_of_rigs_from_the_wild() {
     }
 }
 
-/// Animals, machines and fish, by their files' beginnings; some have arms, hips and a head by name.
+/// Animals, machines and fish, by the prefixes of their files; some have arms, hips and a head by name.
 const BEASTS: [&str; 14] = [
     "quaternius_animals_",
     "quaternius_dinosaurs_",
@@ -298,7 +299,7 @@ const BEASTS: [&str; 14] = [
 
 #[needs_data]
 #[test]
-fn no_beast_is_a_human_whatever_its_joints_are_called() {
+fn animals_and_machines_are_not_human() {
     let mut seen = 0;
     for file in BEASTS.iter().flat_map(|start| files(&format!("skeletons/{start}*"))) {
         let json = serde_json::from_slice(&rigs::bytes(&file)).expect("JSON");
@@ -312,20 +313,20 @@ fn no_beast_is_a_human_whatever_its_joints_are_called() {
 }
 
 #[test]
-fn a_dog_with_a_humans_names_is_none() {
+fn dog_with_human_names_is_not_human() {
     let dog = |role: &str| {
         let at = human(role);
         let trunk = !role.starts_with("left") && !role.starts_with("right");
         let arm = ["Arm", "Hand", "Shoulder"].iter().any(|part| role.contains(part));
         match (trunk, arm) {
-            // Upright is ahead, and arms hang down under the chest.
+            // The upright direction becomes forward, and arms hang down below the chest.
             (true, _) => Vec3::new(0.0, 0.6, at.y - 0.95),
             (_, true) => Vec3::new(0.12 * at.x.signum(), 0.65 - 0.8 * (at.x.abs() - 0.04), 0.4),
             _ => Vec3::new(at.x, 0.6 * at.y, 0.05 + at.z),
         }
     };
     let (_, mut lines) = conventions().into_iter().find(|(name, _)| name == "Unreal").expect("a convention");
-    // Paws have no name here, or they would walk on hands.
+    // Paws have no role, otherwise it would walk on hands.
     let gone = |line: &Line| line.2.as_deref().is_some_and(|role| role.ends_with("Hand"));
     for line in lines.iter_mut().filter(|line| gone(line)) {
         line.0 = "dewclaw".into();
@@ -337,7 +338,7 @@ fn a_dog_with_a_humans_names_is_none() {
     }
 }
 
-/// Side that is told of the arm on the +X of a human with numbers for names.
+/// Role of the arm at +X of a human with numbers for names.
 fn side_of_plus_x(human: &dyn Fn(&str) -> Vec3) -> String {
     let (_, lines) = conventions().into_iter().find(|(name, _)| name == "Unreal").expect("a convention");
     let found = analyze(&numbered(&dressed_as(&lines, human))).expect("a skin");
@@ -346,7 +347,7 @@ fn side_of_plus_x(human: &dyn Fn(&str) -> Vec3) -> String {
 }
 
 #[test]
-fn elbows_tell_the_front_where_feet_do_not() {
+fn elbow_bend_gives_the_front_without_feet() {
     for ahead in [1.0, -1.0] {
         let bent = |role: &str| {
             let at = human(role);
@@ -358,8 +359,8 @@ fn elbows_tell_the_front_where_feet_do_not() {
 }
 
 #[test]
-fn fingers_on_a_forearm_leave_no_hand() {
-    // On each forearm four fingers that begin at the wrist, or fan out of a palm's end; of a hand they are fingers only.
+fn fingers_on_a_forearm_replace_the_hand() {
+    // Each forearm has four fingers that start at the wrist or at the end of a palm; on a hand they are only fingers.
     let rig = |spread: f32, on_hand: bool| {
         let (_, mut lines) =
             conventions().into_iter().find(|(name, _)| name == "Unreal").expect("a convention");
@@ -378,7 +379,7 @@ fn fingers_on_a_forearm_leave_no_hand() {
             let (on, from) = if on_hand { (hand, places[hand]) } else { (arm, places[hand]) };
             let out = Vec3::X * places[hand].x.signum();
             if !on_hand {
-                // Gone: it moves no skin.
+                // The hand has no skin.
                 lines[hand].3 = false;
             }
             for finger in 0..4 {
@@ -417,7 +418,7 @@ fn fingers_on_a_forearm_leave_no_hand() {
     }
 }
 
-/// A skeleton of conventions.txt: name, parent, role if any, whether it moves skin.
+/// A joint of a skeleton of conventions.txt: name, parent, role if any, whether it has skin.
 type Line = (String, Option<usize>, Option<String>, bool);
 
 fn conventions() -> Vec<(String, Vec<Line>)> {
@@ -433,7 +434,7 @@ fn conventions() -> Vec<(String, Vec<Line>)> {
     blocks.map(read).collect()
 }
 
-/// Adds the joints of lines that are all of one depth or below it, each side of a pair with all under it.
+/// Adds the joints of lines at one depth or below; for a pair, each side with all its descendants.
 fn add_lines(lines: &[&str], parent: Option<usize>, side: Option<usize>, out: &mut Vec<Line>) {
     let depth = |line: &str| line.len() - line.trim_start_matches(' ').len();
     let mut at = 0;
@@ -457,7 +458,7 @@ fn add_lines(lines: &[&str], parent: Option<usize>, side: Option<usize>, out: &m
     }
 }
 
-/// Place of a human's joint of that role, metres; its toes point forward (+Z).
+/// Position of a human joint by role, metres; its toes point forward (+Z).
 fn human(role: &str) -> Vec3 {
     let (x, role) = match (role.strip_prefix("left"), role.strip_prefix("right")) {
         (Some(part), _) => (1.0, part),
@@ -484,19 +485,19 @@ fn human(role: &str) -> Vec3 {
     Vec3::new(x * across, up, ahead)
 }
 
-/// A human with the joints of a convention; those without a role sit between what carries them and what they carry.
+/// A human with the joints of a convention; joints without a role are between their parent and child.
 fn dressed(lines: &[Line]) -> Rig {
     dressed_as(lines, &human)
 }
 
-/// As [`dressed`], with the joints of roles elsewhere.
+/// Like [`dressed`], with other joint positions.
 fn dressed_as(lines: &[Line], human: &dyn Fn(&str) -> Vec3) -> Rig {
     let mut places: Vec<Vec3> = Vec::new();
     for (i, (name, parent, role, _)) in lines.iter().enumerate() {
         let carried =
             (i + 1..lines.len()).find(|&k| lines[k].1 == Some(i)).and_then(|k| lines[k].2.as_deref());
         let from = parent.map_or(Vec3::Y * 0.9, |parent| places[parent]);
-        // Off the line a little, by the name, so that no two joints are in one place.
+        // Displaced slightly by the length of the name, so that no two joints coincide.
         let aside = Vec3::new(0.0, 0.004, 0.004) * (1.0 + name.len() as f32 * 0.1);
         places.push(match (role, carried) {
             (Some(role), _) => human(role),
@@ -515,7 +516,7 @@ fn dressed_as(lines: &[Line], human: &dyn Fn(&str) -> Vec3) -> Rig {
 }
 
 #[test]
-fn names_of_the_worlds_conventions_tell_the_roles() {
+fn names_of_all_conventions_give_the_roles() {
     let mut wrong = String::new();
     for (convention, lines) in conventions() {
         let truth: BTreeMap<String, String> =

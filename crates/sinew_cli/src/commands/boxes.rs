@@ -28,7 +28,7 @@ Example:
 pub struct Boxes {
     /// A glTF, GLB or OBJ file
     mesh: PathBuf,
-    /// Most boxes
+    /// Largest number of boxes
     #[arg(long, value_name = "N", default_value = "150", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     max: u16,
     /// Factor for all lengths of the mesh, as 0.01 for one in centimetres
@@ -77,7 +77,7 @@ impl Boxes {
         cooked.map_err(|error| Failure::at(name, error, error.place()))
     }
 
-    /// The mesh itself is never the output.
+    /// Rejects the mesh itself as an output.
     fn check_outputs(&self) -> Result<()> {
         let real = |path: &Path| std::fs::canonicalize(path).ok();
         let input = real(&self.mesh);
@@ -142,7 +142,7 @@ impl Boxes {
     }
 }
 
-/// From the lowest vertex to the highest, metres.
+/// Height from the lowest to the highest vertex, metres.
 fn height(mesh: &TriangleMesh) -> f32 {
     let used = || mesh.triangles.iter().flatten().map(|&i| mesh.positions[i as usize].y);
     used().fold(f32::MIN, f32::max) - used().fold(f32::MAX, f32::min)
@@ -158,7 +158,7 @@ fn warnings(mesh: &TriangleMesh, cooked: &Cooked) -> Vec<String> {
         }
     };
     count(repairs.degenerate, "triangles without area left out");
-    count(repairs.repeated, "triangles left out that were there already");
+    count(repairs.repeated, "duplicate triangles left out");
     count(
         repairs.open_edges,
         "open edges: holes were taken as closed where the mesh winds around them, sheets as plates",
@@ -175,7 +175,7 @@ fn draw(
     let (low, high) = bounds(&mesh.positions);
     let (center, radius) = ((low + high) * 0.5, 0.5 * (high - low).length());
     let toward_camera = Vec3::new(0.6, 0.45, 0.75);
-    // Along the picture's lower edge.
+    // Placed along the picture's lower edge.
     let right = Vec3::Y.cross(toward_camera).normalize();
     let apart = right * (1.02 * radius);
     let mut models = vec![Model {

@@ -1,4 +1,4 @@
-//! Choice of those of a file's clips that the user means.
+//! Selects clips of a file by the user's words.
 
 use crate::failure::{Failure, Result};
 use crate::input::motion::Motion;
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn names_count_before_numbers_case_and_words() {
+    fn exact_names_precede_numbers_case_and_words() {
         let names = ["Walk", "walk", "1", "Armature|Idle_Loop", "Run_Fast", "Run_Slow", "WalkBack", "RUN"];
         let wanted = [
             ("walk", 1),
@@ -124,14 +124,14 @@ mod tests {
         }
         let two = "'run' may be 2 clips: Run_Fast, Run_Slow";
         assert_eq!(found(&["Run_Fast", "Run_Slow"], "run"), Err(two.into()));
-        // A word common to all clips distinguishes nothing, and a word may be a prefix.
+        // A word common to all clips does not distinguish them; a word may be a prefix.
         assert_eq!(found(&["Rig|Walk", "Rig|Walk_Gun", "Rig|Idle"], "walk"), Ok(0));
         assert_eq!(found(&["Walking_A", "Running_A"], "walk"), Ok(0));
         assert!(found(&["Robot_Walking", "Robot_WalkJump"], "walk").is_err());
     }
 
     #[test]
-    fn what_is_not_there_is_told_with_the_nearest() {
+    fn unknown_clip_is_reported_with_the_nearest() {
         let names = ["Walk", "Run", "Jump", "Idle", "WalkBack"];
         let line = "no clip 'wakl'; the nearest of 5 are Walk, WalkBack, Run; 'sinew inspect' lists all";
         assert_eq!(found(&names, "wakl"), Err(line.into()));

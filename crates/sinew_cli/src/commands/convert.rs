@@ -9,7 +9,7 @@ use crate::input::picture_file::{PictureFile, longest, rate};
 use crate::input::settings_arg::unit;
 use crate::input::skeleton::{bones_only, frame_rate, lost_meshes, transform};
 use crate::input::source::{load_gltf, name};
-use crate::render::bones::flesh_out;
+use crate::render::bones::add_bone_models;
 use crate::render::show::Show;
 use crate::report::Report;
 use crate::report::table::shown;
@@ -36,7 +36,7 @@ Example:
   sinew convert walk.bvh --onto character.glb walking.glb --picture walking.gif
 
 Reads glTF, GLB, VRM, VRMA, BVH, DeepMimic and FBX; writes GLB and BVH, by the name of OUT. What the new format cannot hold
-is told in a line each.")]
+is reported in a line each.")]
 pub struct Convert {
     /// The file to read
     input: PathBuf,
@@ -111,7 +111,7 @@ enum Order {
 enum PaceArg {
     /// The file's duration
     Same,
-    /// Longer by the root of the ratio of leg lengths, as giants walk
+    /// Scaled by the root of the ratio of leg lengths (Froude's law): large bodies move slowly
     Froude,
 }
 
@@ -128,7 +128,7 @@ struct Content {
     rig: Rig,
     clips: Vec<Clip>,
     events: Vec<Vec<ClipEvent>>,
-    /// Frames a second, where the source has some.
+    /// Frames per second, if the source has a rate.
     rate: Option<f64>,
     /// Notes on losses and assumptions, one sentence each.
     notes: Vec<String>,
@@ -224,7 +224,7 @@ impl Convert {
         };
         let carried = carry(motion, &document.rig, Some(&analysis), &options)?;
         if carried.is_empty() {
-            return Err(Failure::of_file(&motion.name, "there is no clip to carry over"));
+            return Err(Failure::of_file(&motion.name, "there is no clip to retarget"));
         }
         let lines: Vec<String> = carried.iter().map(Carried::to_text).collect();
         let mut notes = motion.file.notes.clone();
@@ -270,7 +270,7 @@ impl Convert {
         let (clips, events): (Vec<_>, Vec<_>) =
             file.clips.into_iter().zip(file.events).filter_map(moving).unzip();
         if !self.bare && file.rig.meshes.is_empty() {
-            flesh_out(&mut file.rig, analysis.as_ref());
+            add_bone_models(&mut file.rig, analysis.as_ref());
             file.notes.push("there is no mesh: bones are drawn (--bare leaves them out)".into());
         }
         let bytes = write_motion(&file.rig, &clips, &events).map_err(|error| error.with_file(&name))?;
@@ -343,7 +343,7 @@ impl Convert {
     }
 }
 
-/// The movie of the output: of the first of its last `new` clips.
+/// The movie of the output shows the first of its last `new` clips.
 fn draw(outputs: &Outputs, new: usize, picture: &PictureFile) -> Result<Vec<u8>> {
     let (path, bytes) = outputs.first().expect("something is written");
     let name = path.display().to_string();
@@ -360,14 +360,14 @@ fn draw(outputs: &Outputs, new: usize, picture: &PictureFile) -> Result<Vec<u8>>
         .map_err(|error| Failure::of_file(picture.path().display().to_string(), error))
 }
 
-/// A line per clip, and the notes.
+/// One line per clip, and the notes.
 type Told = (Vec<String>, Vec<String>);
 
 fn line_of(clip: &Clip) -> String {
     format!("{}: {:.2} s", shown(&clip.name), clip.duration)
 }
 
-/// A clip as one pose a frame.
+/// Samples a clip as one pose per frame.
 fn take(rig: &Rig, clip: &Clip, rate: f64, file: &str) -> Result<Take> {
     if rig.joints.is_empty() {
         return Err(Failure::of_file(file, "there are no joints"));

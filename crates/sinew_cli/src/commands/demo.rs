@@ -1,4 +1,4 @@
-//! `sinew demo`: the main job on the embedded character and world.
+//! `sinew demo`: the full workflow on the embedded character and world.
 
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 const FILM_FROM: f32 = 0.6;
 /// Half size of the meadow in the file, metres per side; the picture shows it up to the haze.
 const MEADOW_HALF_SIZE: f32 = 12.0;
-/// Every second square of the meadow.
+/// Colour of every second square of the meadow.
 const MOWN: [f32; 3] = [0.19, 0.30, 0.11];
 
 /// Show all features at once: a mannequin walks, is hit, falls down the stairs of a cabin, gets up and walks on
@@ -32,10 +32,10 @@ pub struct Demo {
     /// Folder to write into; created if it does not exist
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-    /// Pixels of the picture across
+    /// Width of the picture, pixels
     #[arg(long, value_name = "N", default_value_t = FILM_SIZE[0], value_parser = clap::value_parser!(u32).range(16..=4096))]
     width: u32,
-    /// Pixels of the picture down
+    /// Height of the picture, pixels
     #[arg(long, value_name = "N", default_value_t = FILM_SIZE[1], value_parser = clap::value_parser!(u32).range(16..=4096))]
     height: u32,
 }
@@ -66,7 +66,7 @@ impl Demo {
     }
 }
 
-/// The character's rig with the props, so that other programs show the stairs.
+/// The character's rig with the props, so that other programs can show the stairs.
 fn staged(fall: &Fall<'_>, props: &[Prop]) -> Rig {
     let mut rig = fall.input.character.rig.clone();
     let model_from_world = fall.baked.world_from_model.inverse();

@@ -20,7 +20,7 @@ pub enum Events {
 }
 
 impl Events {
-    /// Does it.
+    /// Runs the command.
     pub fn run(&self) -> Result<Report> {
         match self {
             Self::Detect(command) => command.run(),
@@ -119,7 +119,7 @@ impl Detect {
     }
 }
 
-/// The steps without an existing event, each once.
+/// The steps without an existing event, without repeats.
 fn new_steps(there: &[ClipEvent], steps: Vec<ClipEvent>) -> Vec<ClipEvent> {
     let mut known: Vec<(String, f32)> = there
         .iter()

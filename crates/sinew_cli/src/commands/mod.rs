@@ -50,7 +50,7 @@ pub enum Ragdoll {
 }
 
 impl Command {
-    /// Does it.
+    /// Runs the command.
     pub fn run(&self) -> Result<Report> {
         match self {
             Self::Demo(command) => command.run(),

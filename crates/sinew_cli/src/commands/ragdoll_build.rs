@@ -45,7 +45,7 @@ pub struct RagdollBuild {
     /// Also simulate this many random falls: pose, speed and ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     gate: Option<u32>,
-    /// Number of the first of these falls: the report names those that went wrong
+    /// Number of the first of these falls, to repeat falls that the report lists
     #[arg(long, value_name = "K", default_value_t = 0, requires = "gate")]
     gate_from: u32,
     /// Threads for the falls; the report does not depend on the number
@@ -80,7 +80,7 @@ enum SexArg {
 }
 
 impl RagdollBuild {
-    /// Builds, drops it, reports, writes.
+    /// Builds, drops and reports the ragdoll, and writes it.
     pub fn run(&self) -> Result<Report> {
         let settings = self.settings.path_for(&self.file);
         never_over([self.file.as_path(), &settings], self.output.as_deref())?;
@@ -93,7 +93,7 @@ impl RagdollBuild {
             with_default_life(&character, &def, doubt.as_ref(), |life| {
                 judge_life(&character, &tested, life, doubt.as_ref())
             })?;
-        // Unmeasured figures are last.
+        // The entry for unmeasured figures is last.
         let not_measured = tested.reasons.pop();
         (tested.verdict, tested.reasons) = (verdict, reasons);
         tested.reasons.extend(not_measured);
@@ -129,7 +129,7 @@ impl RagdollBuild {
         report
     }
 
-    /// From the file to the definition, with notes.
+    /// Builds the definition from the file, with notes.
     fn build(&self) -> Result<(CharacterFile, LoadedSettings, RagdollDef, BuildReport)> {
         let (character, mut loaded) = self.settings.load_character(&self.file, Textures::Skip)?;
         self.say(&mut loaded.settings);
@@ -137,7 +137,7 @@ impl RagdollBuild {
         Ok((character, loaded, def, report))
     }
 
-    /// Applies the command line over the settings.
+    /// Overrides the settings by the command line.
     fn say(&self, settings: &mut Settings) {
         if let Some(shapes) = self.shapes {
             settings.shapes = Some(match shapes {

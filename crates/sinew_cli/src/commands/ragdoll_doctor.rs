@@ -155,7 +155,7 @@ impl RagdollDoctor {
             text += &table.to_text();
         }
         if findings.iter().all(|finding| finding.severity == Severity::Note) {
-            text += "nothing is wrong with it\n";
+            text += "no findings\n";
         }
         for note in notes {
             text += &format!("note: {}\n", shown(note));

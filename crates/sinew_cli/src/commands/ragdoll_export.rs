@@ -43,7 +43,7 @@ enum Format {
 }
 
 impl Format {
-    /// Extensions that a file of it may have.
+    /// Extensions allowed for the format.
     fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Khr => &["glb", "vrm"],
@@ -89,15 +89,15 @@ impl RagdollExport {
     fn khr(&self) -> Result<(RagdollDef, Vec<u8>, Vec<String>)> {
         if !is_character(&read_bytes(&self.file)?) {
             let what =
-                "khr puts physics into the character's own file: name that, and this one with --ragdoll";
+                "khr adds physics to the character's own file: give that file, and this one with --ragdoll";
             return Err(Failure::of_file(name(&self.file), what));
         }
-        let (character, def, mut told) = self.character()?;
+        let (character, def, mut all_notes) = self.character()?;
         let CharacterFile { name, document, analysis, .. } = &character;
         let KhrFile { bytes, notes } =
             write_khr(document, &analysis.bind_model, &def).map_err(|error| error.with_file(name))?;
-        told.extend(notes);
-        Ok((def, bytes, told))
+        all_notes.extend(notes);
+        Ok((def, bytes, all_notes))
     }
 
     fn mjcf(&self) -> Result<(RagdollDef, Vec<u8>, Vec<String>)> {

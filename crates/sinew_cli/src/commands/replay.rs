@@ -36,7 +36,7 @@ fn load(path: &Path) -> Result<Recording> {
 }
 
 impl Replay {
-    /// Plays it.
+    /// Replays the recording.
     pub fn run(&self) -> Result<Report> {
         let name = name(&self.file);
         let recording = load(&self.file)?;
@@ -54,7 +54,7 @@ impl Replay {
             && let Some(step) = player.step()
         {
             progress.step();
-            // A state that has its hash and not its poses was not recorded so.
+            // A state with the recorded hash but other poses was not recorded that way.
             let differs = step.found != step.recorded || player.misplaced().is_some();
             diverged = differs.then_some(step.step);
         }
@@ -64,12 +64,12 @@ impl Replay {
             } else {
                 format!("version {made_by}, and this is {}", env!("CARGO_PKG_VERSION"))
             };
-            let what = format!("comes to another state than was recorded by {why}");
+            let what = format!("reaches another state than recorded by {why}");
             return Err(Failure::at(name, what, format!("step {step}")));
         }
         let hash = format!("{:016x}", player.instance().world().hash());
         let outcome = match diverged {
-            Some(step) => format!("differs from what was recorded from step {step} on"),
+            Some(step) => format!("differs from the recording from step {step} on"),
             None => "every state is as recorded".to_owned(),
         };
         let text =
@@ -100,20 +100,20 @@ impl Replay {
             });
             return Ok(Report { json, text });
         };
-        let (what, place) = told(&difference);
+        let (what, place) = described(&difference);
         Err(Failure::at(name, format!("{what} {}", other.display()), place))
     }
 }
 
-/// A difference as a line, up to the other's name, and its place.
-fn told(difference: &Difference) -> (String, String) {
+/// Describes a difference: the text before the other file's name, and the place.
+fn described(difference: &Difference) -> (String, String) {
     match difference {
         Difference::Scene => ("has another scene or other settings than".to_owned(), String::new()),
         Difference::Length { common } => {
             ("is equal as far as both go, but not as long as".to_owned(), format!("step {common}"))
         }
         Difference::State { step, body: None } => {
-            ("differs, though in the pose of no body, from".to_owned(), format!("step {step}"))
+            ("differs, but not in the pose of a body, from".to_owned(), format!("step {step}"))
         }
         Difference::State { step, body: Some((id, [mine, theirs])) } => {
             let apart = (mine.translation - theirs.translation).length();

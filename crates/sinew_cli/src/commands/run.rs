@@ -48,7 +48,7 @@ pub struct Run {
 enum QualityName {
     /// Half of the substeps and sweeps
     Fast,
-    /// As the content requests
+    /// The content's own settings
     #[default]
     Balanced,
     /// Twice the substeps and sweeps
@@ -87,11 +87,11 @@ impl Run {
         if missed.is_empty() {
             return Ok(report);
         }
-        let what = format!("{} misses what is expected of it: {}", scene.name, missed.join(", "));
+        let what = format!("{} misses its expectations: {}", scene.name, missed.join(", "));
         Err(Failure::Missed { report: Box::new(report), what })
     }
 
-    /// True if the scene runs with its defaults: its expectations apply only then.
+    /// True if the scene runs with its defaults; expectations apply only then.
     fn is_by_default(&self) -> bool {
         self.settings.is_empty() && self.steps.is_none() && matches!(self.quality, QualityName::Balanced)
     }
@@ -115,7 +115,7 @@ struct StepTimes {
 struct Cost {
     name: &'static str,
     seconds: f64,
-    /// Count of those that it was spent on, summed over all steps.
+    /// Number of processed items, summed over all steps.
     count: u64,
 }
 
@@ -162,7 +162,7 @@ struct Outcome<'a> {
     times: StepTimes,
     hash: u64,
     metrics: Vec<Metric>,
-    /// Compares its figures with the scene's expectations.
+    /// True if figures are compared with the scene's expectations.
     has_bars: bool,
 }
 

@@ -22,15 +22,15 @@ pub enum WeightSource {
     /// The file's own
     #[default]
     File,
-    /// New ones, by the nearness of vertices to bones
+    /// New ones, by the distance of vertices from bones
     Nearest,
 }
 
 /// A character file: its content and the analysis of its joints.
 pub struct CharacterFile {
-    /// As the user named it.
+    /// Name of the file as the user gave it.
     pub name: String,
-    /// Its rig, clips and JSON.
+    /// Rig, clips and JSON of the file.
     pub document: Document,
     /// Analysis of its joints.
     pub analysis: RigAnalysis,
@@ -150,7 +150,7 @@ fn is_fbx(path: &Path) -> Result<bool> {
     Ok(matches!(MotionFormat::of(&bytes), Ok(MotionFormat::Fbx)))
 }
 
-/// Refuses an output that is one of the user's own files.
+/// Rejects an output that is one of the user's own files.
 pub fn never_over<'a>(
     inputs: impl IntoIterator<Item = &'a Path>,
     outputs: impl IntoIterator<Item = &'a Path>,
@@ -183,12 +183,12 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// One more file, of these bytes.
+    /// Adds a file with these bytes.
     pub fn add(&mut self, path: &Path, bytes: Vec<u8>) {
         self.files.push((path.to_path_buf(), bytes));
     }
 
-    /// The first of them.
+    /// The first file.
     pub fn first(&self) -> Option<(&Path, &[u8])> {
         self.files.first().map(|(path, bytes)| (path.as_path(), bytes.as_slice()))
     }
@@ -204,9 +204,7 @@ impl Outputs {
         paths.sort_unstable();
         if let Some(twice) = paths.windows(2).find(|pair| pair[0] == pair[1]) {
             let name = twice[0].display();
-            return Err(Failure::Usage(format!(
-                "{name} is asked for twice: give each output a name of its own"
-            )));
+            return Err(Failure::Usage(format!("{name} is given twice: each output needs its own name")));
         }
         Ok(write_all_atomic(&self.files)?)
     }

@@ -1,4 +1,4 @@
-//! Input of commands: files, scenes and settings, as arguments name them.
+//! Input of commands: files, scenes and settings given as arguments.
 
 pub(crate) mod files;
 pub(crate) mod kin;

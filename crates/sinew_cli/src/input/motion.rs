@@ -1,4 +1,4 @@
-//! Files with clips, of any format.
+//! Reads files with clips in any format.
 
 use crate::failure::Result;
 use crate::input::kin::units_beside;
@@ -10,9 +10,9 @@ use std::path::Path;
 
 /// A file with clips: its content and the analysis of its joints.
 pub struct Motion {
-    /// As the user named it.
+    /// Name of the file as the user gave it.
     pub name: String,
-    /// Its rig and its clips.
+    /// Rig and clips of the file.
     pub file: MotionFile,
     /// Analysis of its joints; `None` without a skin or a humanoid skeleton.
     pub analysis: Option<RigAnalysis>,
@@ -23,12 +23,12 @@ impl Motion {
     pub fn load(path: &Path, options: &MotionOptions<'_>) -> Result<Self> {
         let file = load_motion(path, options).map_err(helped)?;
         let mut motion = Self::new(name(path), file);
-        motion.look_beside(path);
+        motion.read_neighbours(path);
         Ok(motion)
     }
 
     /// Resolves a doubtful unit by the files next to a glTF, as for its fall.
-    fn look_beside(&mut self, path: &Path) {
+    fn read_neighbours(&mut self, path: &Path) {
         let Some(analysis) = &self.analysis else { return };
         let in_doubt = analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only);
         let is_gltf = matches!(self.file.format, MotionFormat::Glb | MotionFormat::Gltf);
@@ -55,16 +55,16 @@ impl Motion {
     }
 }
 
-/// An error with the option that avoids it, if any.
+/// Adds the option that avoids the error to its text, if there is one.
 fn helped(mut error: Error) -> Error {
     if error.what.starts_with("declares ") && error.what.contains(" frames, has ") {
-        error.what += "; 'sinew convert --any-rows' takes those that are there";
+        error.what += "; 'sinew convert --any-rows' accepts the existing ones";
     }
     error
 }
 
-/// From the skin, else as a skeleton in its most upright pose: any few nodes resemble some creature, so the latter
-/// accepts humans only.
+/// Analyses the skin, or without one the skeleton in its most upright pose. The latter accepts only humans, because any
+/// few nodes resemble some creature.
 fn analyze_any(file: &MotionFile) -> Option<RigAnalysis> {
     let hints = Hints { exporter: file.generator.clone(), ..Hints::of_clips(&file.rig, &file.clips) };
     if let Ok(analysis) = analyze_hinted(&file.rig, &hints) {

@@ -10,7 +10,7 @@ use sinew::anim::{Channel, Clip, ClipEvent, JointIdx, LocalTransform, Rig, RigAn
 pub struct Carried {
     /// Clip of the character's joints.
     pub clip: Clip,
-    /// Its events, at its pace.
+    /// Events of the clip, at its pace.
     pub events: Vec<ClipEvent>,
     /// Criterion by which its joints were matched.
     pub by: By,
@@ -27,7 +27,7 @@ pub enum By {
     Role(Box<Retargeted>),
 }
 
-/// Retargets all clips of a file: by joint names if both have the same skeleton or are not human; else by roles.
+/// Retargets all clips of a file: by joint names if the skeletons are equal or not human, else by roles.
 pub fn carry(
     motion: &Motion,
     rig: &Rig,
@@ -59,14 +59,14 @@ pub fn carry(
     clips.map(by_role).collect()
 }
 
-/// Largest angle between the rest poses of matching joints of two files, radians.
+/// Largest angle between equal rest poses of matching joints, radians.
 const SAME_TURN: f32 = 0.02;
 /// Largest difference of their rest positions, as a share of their distance from the parent.
 const SAME_PLACE: f32 = 0.05;
 
 /// Joints of a rig matched to those of another by name.
 struct Namesakes {
-    /// For each joint of the other rig.
+    /// For each joint of the other rig, the matching joint.
     joints: Vec<Option<JointIdx>>,
     /// True if most moving joints have the same rest pose in both: keys of one fit the other.
     rest_alike: bool,
@@ -119,7 +119,7 @@ impl Carried {
                 let missing = fitted.unmatched.len();
                 let rest = match missing {
                     0 => String::new(),
-                    _ => format!(", {missing} of the character go along with their parents"),
+                    _ => format!(", {missing} of the character move with their parents"),
                 };
                 format!(
                     "{name}: {} joints matched by role{rest}; legs {:.2} times as long; feet slide {:.1} cm/s",

@@ -33,7 +33,7 @@ impl FromStr for PictureFile {
     }
 }
 
-/// A time from the start.
+/// Parses a time from the start, seconds.
 pub fn seconds(text: &str) -> Result<f32, String> {
     let time: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
     if (0.0..=LONGEST).contains(&time) {
@@ -43,12 +43,12 @@ pub fn seconds(text: &str) -> Result<f32, String> {
     }
 }
 
-/// A length that a movie may have: of a clip of this many seconds.
+/// Limits the length of a movie to the longest allowed.
 pub fn longest(seconds: f32) -> f32 {
     if seconds < LONGEST { seconds } else { LONGEST }
 }
 
-/// Pictures or keys a second.
+/// Parses a number of pictures or keys per second.
 pub fn rate(text: &str) -> Result<f32, String> {
     const MOST: f32 = 240.0;
     let rate: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
@@ -59,7 +59,7 @@ pub fn rate(text: &str) -> Result<f32, String> {
     }
 }
 
-/// A positive duration.
+/// Parses a positive duration.
 pub fn length(text: &str) -> Result<f32, String> {
     let time = seconds(text)?;
     if time > 0.0 { Ok(time) } else { Err("must be above 0".to_owned()) }

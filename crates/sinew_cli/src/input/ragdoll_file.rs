@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// A ragdoll with its source.
 pub struct RagdollFile {
-    /// As the user named it.
+    /// Name of the file as the user gave it.
     pub name: String,
     /// The ragdoll, its springs, and data of its rig.
     pub repair: Repair,
@@ -24,7 +24,7 @@ pub struct RagdollFile {
 }
 
 impl RagdollFile {
-    /// Settings change a build; a finished ragdoll has nothing to change.
+    /// Rejects settings for a finished ragdoll: they only affect a build.
     pub fn check_settings(&self, settings: &SettingsArg) -> Result<()> {
         if let Some(option) = settings.given().filter(|_| self.repair.reference.is_none()) {
             let what = "changes how a ragdoll is built: name a character, not a definition or a model";
@@ -33,7 +33,7 @@ impl RagdollFile {
         Ok(())
     }
 
-    /// Reads a file of any of the three kinds; of a character the ragdoll is built.
+    /// Reads a file of any of the three kinds; for a character it builds the ragdoll.
     pub fn load(path: &Path, textures: Textures, settings: &SettingsArg) -> Result<Self> {
         let name = name(path);
         let bytes = read_bytes(path)?;
@@ -64,7 +64,7 @@ impl RagdollFile {
     }
 }
 
-/// True if these are the bytes of a character, and not of a definition or a model.
+/// True if the bytes are a character, not a definition or a model.
 pub fn is_character(bytes: &[u8]) -> bool {
     matches!(kind_of(bytes), Kind::Character)
 }
@@ -86,7 +86,7 @@ enum Kind {
     Character,
 }
 
-/// A glTF is JSON too, but has an `asset` at its top, and nothing of us.
+/// Detects the kind: a glTF is JSON too, but has an `asset` at its top and no key of ours.
 fn kind_of(bytes: &[u8]) -> Kind {
     let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
     match text.first() {

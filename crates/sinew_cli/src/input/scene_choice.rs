@@ -8,7 +8,7 @@ use sinew_scenes::scenes::{Scene, SettingError, Settings, find, registry};
 pub fn choose(name: &str, assignments: &[String]) -> Result<(&'static Scene, Settings)> {
     let unknown = || {
         let instead = instead(name, registry().iter().map(|scene| scene.name));
-        Failure::Usage(format!("no scene '{name}'; {instead}; 'sinew scenes' lists what there is"))
+        Failure::Usage(format!("no scene '{name}'; {instead}; 'sinew scenes' lists all"))
     };
     let scene = find(name).ok_or_else(unknown)?;
     let mut settings = scene.settings();

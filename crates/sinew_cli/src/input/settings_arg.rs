@@ -14,7 +14,7 @@ use sinew::ragdoll::{BuildError, BuildOptions, RagdollDef, Settings, SettingsErr
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// Under which the help lists these options.
+/// Heading of these options in the help.
 const HEADING: &str = "Correcting what is read from the file";
 
 /// Options by which a user corrects the build of a ragdoll.
@@ -68,7 +68,7 @@ impl FromStr for RoleArg {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        // No role has a `=` in its name, but a bone may.
+        // Role names contain no `=`, but bone names may.
         let (role, bone) = text.split_once('=').ok_or("must be ROLE=BONE, as in hips=Bone_12")?;
         if bone.is_empty() {
             return Err("BONE is missing, as in hips=Bone_12".to_owned());
@@ -113,7 +113,7 @@ fn axis(text: &str) -> Result<Vec3, String> {
     known.map(|&(_, axis)| axis).ok_or_else(|| "must be x, y, z, -x, -y or -z".to_owned())
 }
 
-/// Settings and where they are from.
+/// Settings and their source.
 #[derive(Debug, Default)]
 pub struct LoadedSettings {
     /// The file as the user named it, or `""`.
@@ -121,7 +121,7 @@ pub struct LoadedSettings {
     /// The settings themselves.
     pub settings: Settings,
     /// Keys of the settings set by the command line, with the option as typed.
-    said: Vec<(String, String)>,
+    typed_keys: Vec<(String, String)>,
 }
 
 impl SettingsArg {
@@ -148,7 +148,7 @@ impl SettingsArg {
         self.settings.clone().unwrap_or_else(|| settings_path(character))
     }
 
-    /// Reads those for a character's file.
+    /// Reads the settings for a character's file.
     pub fn load(&self, character: &Path) -> Result<LoadedSettings> {
         let path = &self.path_for(character);
         let mut loaded = LoadedSettings::default();
@@ -184,7 +184,7 @@ impl SettingsArg {
         if character.is_in_doubt()
             && let Some(door) = door()
         {
-            // The note of the choice of a character does not belong to the analysis.
+            // The note on the choice of a character is not part of the analysis.
             let notes = character.analysis.notes.clone();
             let hints = Hints { door: Some(door), ..character.analysis.hints.clone() };
             character.hint(&hints)?;
@@ -205,25 +205,25 @@ impl SettingsArg {
         Ok((character, loaded))
     }
 
-    /// Applies the command line over the file's settings.
+    /// Overrides the file's settings by the command line.
     fn say(&self, loaded: &mut LoadedSettings) -> Result<()> {
-        let LoadedSettings { settings, said, .. } = loaded;
+        let LoadedSettings { settings, typed_keys, .. } = loaded;
         for (index, RoleArg { role, bone }) in self.roles.iter().enumerate() {
             if self.roles[..index].iter().any(|other| other.role == *role || other.bone == *bone) {
-                let what = "is said twice: a role has one bone, and a bone one role";
+                let what = "is given twice: a role has one bone, and a bone one role";
                 return Err(Failure::Usage(format!("--role {}={bone} {what}", role.name())));
             }
             settings
                 .bones
                 .push((bone.clone(), BoneSettings { role: Some(*role), ..BoneSettings::default() }));
-            said.push((format!("bones.{bone}.role"), format!("--role {}={bone}", role.name())));
+            typed_keys.push((format!("bones.{bone}.role"), format!("--role {}={bone}", role.name())));
         }
         for bone in &self.ignore {
-            said.push((format!("ignore[{}]", settings.ignore.len()), format!("--ignore {bone}")));
+            typed_keys.push((format!("ignore[{}]", settings.ignore.len()), format!("--ignore {bone}")));
             settings.ignore.push(bone.clone());
         }
         if !self.ignore.is_empty() {
-            said.push(("ignore".into(), "--ignore".into()));
+            typed_keys.push(("ignore".into(), "--ignore".into()));
         }
         for (bones, body, option) in
             [(&self.body, BodyWish::Keep, "--body"), (&self.no_body, BodyWish::Drop, "--no-body")]
@@ -232,22 +232,22 @@ impl SettingsArg {
                 settings
                     .bones
                     .push((bone.clone(), BoneSettings { body: Some(body), ..BoneSettings::default() }));
-                said.push((format!("bones.{bone}"), format!("{option} {bone}")));
+                typed_keys.push((format!("bones.{bone}"), format!("{option} {bone}")));
             }
         }
         if let Some(unit) = self.height.map(Unit::Height).or_else(|| self.unit.map(Unit::Scale)) {
             settings.unit = Some(unit);
-            said.push(("height".into(), "--height".into()));
+            typed_keys.push(("height".into(), "--height".into()));
         }
         if let Some(mass) = self.mass {
             settings.mass = Some(mass);
-            said.push((MASS.into(), "--mass".into()));
+            typed_keys.push((MASS.into(), "--mass".into()));
         }
         Ok(())
     }
 }
 
-/// A guess of the unit with the options that set it.
+/// A note on the guessed unit, with the options that change it.
 pub fn unit_note(guess: &UnitGuess) -> String {
     let flags = if guess.is_scaled {
         "--unit m keeps the file's size, --height sets another"
@@ -309,13 +309,13 @@ impl LoadedSettings {
         Ok((def, report))
     }
 
-    /// Springs that the character shall wear, of that source.
+    /// Springs of the character from that source.
     pub fn springs(&self, source: SpringSource, character: &CharacterFile) -> Result<Springs> {
         let springs = self.settings.springs_of(source, &character.document.rig, character.analysis.up_axis);
         springs.map_err(|error| self.failure(&character.name, error))
     }
 
-    /// Garments that the character shall wear.
+    /// Garments of the character.
     pub fn garments(&self, character: &CharacterFile) -> Result<Vec<Garment>> {
         let garments = self.settings.garments.garments(&character.document.rig);
         garments.map_err(|error| self.failure(&character.name, error))
@@ -329,17 +329,17 @@ impl LoadedSettings {
         Some(doubt)
     }
 
-    /// Names the settings file, or the option with the invalid value.
+    /// Adds the settings file, or the option with the invalid value, to an error.
     fn failure(&self, character: &str, error: SettingsError) -> Failure {
         match error {
             SettingsError::Build(error @ BuildError::Mass(_)) => {
-                let is_said = self.said.iter().any(|(key, _)| key == MASS);
-                let place = if is_said { "--mass" } else { "" };
+                let is_typed = self.typed_keys.iter().any(|(key, _)| key == MASS);
+                let place = if is_typed { "--mass" } else { "" };
                 Failure::at(character, error, place)
             }
             SettingsError::Build(error) => Failure::of_file(character, error),
             SettingsError::Setting { what, place } => {
-                match self.said.iter().rev().find(|(key, _)| *key == place) {
+                match self.typed_keys.iter().rev().find(|(key, _)| *key == place) {
                     Some((_, option)) => Failure::at(character, what, option),
                     None => Failure::at(&self.file, what, place),
                 }

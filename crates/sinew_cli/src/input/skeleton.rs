@@ -1,4 +1,4 @@
-//! Prepares a rig's skeleton for other programs: in metres, with their up axis, without non-bone nodes.
+//! Prepares a rig's skeleton for other programs: metres, their up axis, and only bone nodes.
 
 use crate::report::table::{counted, shown};
 use sinew::anim::{Channel, Clip, Interpolation, Joint, JointIdx, Property, Rig};
@@ -43,7 +43,7 @@ pub fn bones_only(rig: &Rig, clip: &Clip) -> (Rig, Clip, Vec<String>) {
     (bones, clip, dropped.collect())
 }
 
-/// True if a channel of scales only repeats the rest pose, as exporters like to.
+/// True if a scale channel only repeats the rest pose, as some exporters write it.
 fn keeps_its_size(channel: &Channel, rig: &Rig) -> bool {
     let rest = rig.joints[channel.joint].rest.scale;
     let near = |value: &[f32]| (Vec3::from_slice(value) - rest).length() < 1e-4 * rest.length();
@@ -57,7 +57,7 @@ pub fn lost_meshes(rig: &Rig, dropped: &[String], notes: &mut Vec<String>) {
     if !rig.meshes.is_empty() {
         let (meshes, skins) =
             (counted(rig.meshes.len(), "mesh", "meshes"), counted(rig.skins.len(), "skin", "skins"));
-        notes.push(format!("left out: {meshes} and {skins}, which the format has not"));
+        notes.push(format!("left out: {meshes} and {skins}, which the format lacks"));
     }
     if !dropped.is_empty() {
         let names: Vec<String> = dropped.iter().take(8).map(|name| shown(name)).collect();

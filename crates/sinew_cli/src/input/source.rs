@@ -1,4 +1,4 @@
-//! Files as arguments name them; `-` is standard input.
+//! Files given as arguments; `-` is standard input.
 
 use sinew::formats::{
     Document, Error, MotionFile, MotionOptions, ReadOptions, Result, TriangleMesh, no_files, read_gltf,
@@ -18,7 +18,7 @@ pub fn name(path: &Path) -> String {
     if is_stdin(path) { "standard input".to_owned() } else { path.display().to_string() }
 }
 
-/// Bytes of standard input, read once and kept.
+/// Bytes of standard input, read once and cached.
 fn stdin() -> Result<&'static [u8]> {
     static BYTES: OnceLock<std::result::Result<Vec<u8>, String>> = OnceLock::new();
     let read = BYTES.get_or_init(|| {
@@ -36,7 +36,7 @@ pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     if is_stdin(path) { stdin().map(<[u8]>::to_vec) } else { sinew::formats::read_bytes(path) }
 }
 
-/// A character; standard input has no neighbouring files.
+/// Reads a character; standard input has no neighbouring files.
 pub fn load_gltf(path: &Path, options: ReadOptions) -> Result<Document> {
     if !is_stdin(path) {
         return sinew::formats::load_gltf(path, options);
@@ -44,7 +44,7 @@ pub fn load_gltf(path: &Path, options: ReadOptions) -> Result<Document> {
     read_gltf(stdin()?, options, &mut no_files).map_err(|error| error.with_file(name(path)))
 }
 
-/// A file with clips, in the same way.
+/// Reads a file with clips, in the same way.
 pub fn load_motion(path: &Path, options: &MotionOptions<'_>) -> Result<MotionFile> {
     if !is_stdin(path) {
         return sinew::formats::load_motion(path, options);
@@ -52,7 +52,7 @@ pub fn load_motion(path: &Path, options: &MotionOptions<'_>) -> Result<MotionFil
     read_motion(stdin()?, options, &mut no_files).map_err(|error| error.with_file(name(path)))
 }
 
-/// A mesh in a GLB or glTF, in the same way.
+/// Reads a mesh from a GLB or glTF, in the same way.
 pub fn load_mesh(path: &Path) -> Result<TriangleMesh> {
     if !is_stdin(path) {
         return sinew::formats::load_mesh(path);

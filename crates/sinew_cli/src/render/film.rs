@@ -25,7 +25,7 @@ const FPS: u32 = 20;
 const ARROW_SECONDS: f32 = 0.35;
 const ARROW_COLOR: [f32; 3] = [0.85, 0.06, 0.03];
 
-/// Subject of a film, and the side from which it is filmed.
+/// Subject of a film, and its camera side.
 pub struct Film<'a> {
     /// The fall.
     pub fall: &'a Fall<'a>,
@@ -33,7 +33,7 @@ pub struct Film<'a> {
     pub from: f32,
     /// Models of the static surroundings.
     pub set: Vec<Model>,
-    /// From the character to the camera.
+    /// Direction from the character to the camera.
     pub direction: Vec3,
     /// View of the camera.
     pub view: View,
@@ -85,7 +85,7 @@ struct Shots<'a> {
     phases: Vec<story::Phase>,
     camera: Shooting,
     direction: Vec3,
-    /// The character at the time: joints and bodies, in the world.
+    /// Joint and body transforms at the time, in the world.
     model: Vec<Affine>,
     bodies: Vec<Transform>,
 }
@@ -155,7 +155,7 @@ impl<'a> Shots<'a> {
         }
     }
 
-    /// Around all bodies, in the world.
+    /// Bounds of all bodies, in the world.
     fn around(&self) -> Aabb {
         let bodies = &self.fall.input.character.ragdoll.bodies;
         let boxes = bodies.iter().zip(&self.bodies).map(|(body, place)| body.shape.aabb(place));
@@ -178,7 +178,7 @@ impl<'a> Shots<'a> {
     }
 }
 
-/// Camera side with the least occlusion of a moving subject: the first best one among directions by eighths of a turn,
+/// Camera side with the least occlusion of a moving subject: the first of the best directions in eighths of a turn,
 /// then from higher up.
 fn clear_side(bodies: &[BodyDef], framing: &Framing, boxes: &[Aabb], wanted: Vec3) -> Vec3 {
     let mut world = World::new(WorldDef::default());
@@ -207,7 +207,7 @@ fn clear_side(bodies: &[BodyDef], framing: &Framing, boxes: &[Aabb], wanted: Vec
 /// Number of pictures between two occlusion tests.
 const LOOK_EVERY: usize = 4;
 
-/// A shaft and a head that end at `tip`, along the unit vector `along`.
+/// An arrow (shaft and head) that ends at `tip`, along the unit vector `along`.
 fn arrow(tip: Vec3, along: Vec3) -> [Model; 2] {
     let turn = Rotation::from_arc(Vec3::Y, along);
     let part = |behind: f32, shape: Shape| {
@@ -244,7 +244,7 @@ mod tests {
     use sinew_picture::Antialiasing;
     use sinew_scenes::cabin::Site;
 
-    /// The caption of a picture names the character's state at its time.
+    /// Captions name the character's state at their time.
     #[test]
     fn captions_follow_the_state() {
         let demo = sinew_scenes::demo::Demo::new(Site::CabinWithStairs);
@@ -252,7 +252,7 @@ mod tests {
         let fall = Fall::simulate(&input, None);
         let events = &fall.baked.events;
         let at = |what: fn(&CharacterEvent) -> bool| {
-            events.iter().find(|(_, event)| what(event)).expect("it comes to that").0
+            events.iter().find(|(_, event)| what(event)).expect("the event occurs").0
         };
         let hit = at(|event| matches!(event, CharacterEvent::Hit { .. }));
         let settled = events.iter().find_map(|(_, event)| match event {
@@ -261,7 +261,7 @@ mod tests {
         });
         let rises = at(|event| matches!(event, CharacterEvent::GettingUp { .. }));
         let up = at(|event| matches!(event, CharacterEvent::Up));
-        let settled = settled.expect("it lies still");
+        let settled = settled.expect("it settles");
         let frames = (fall.input.seconds * FPS as f32) as u32 + 1;
         let film = Film {
             fall: &fall,
@@ -279,7 +279,7 @@ mod tests {
             shadow_texels: 16,
             threads: 1,
         });
-        // A picture between two events, and its expected caption.
+        // Times of two events; a picture between them has the expected caption.
         for (from, to, expected) in [
             (0.0, hit, "walks"),
             (hit, hit + story::HIT_SECONDS, "is hit"),
@@ -296,9 +296,9 @@ mod tests {
         }
     }
 
-    /// The camera avoids a wall: the subject is visible all the time.
+    /// The camera avoids a wall, so that the subject is always visible.
     #[test]
-    fn a_wall_before_the_camera_is_gone_round() {
+    fn camera_avoids_a_wall() {
         let block = |center: Vec3, half_extents: Vec3| BodyDef {
             kind: BodyKind::Static,
             position: center,

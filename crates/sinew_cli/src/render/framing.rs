@@ -16,7 +16,7 @@ const STILL: f32 = 1.7;
 pub struct Framing {
     centers: Vec<Vec3>,
     half: Vec3,
-    /// From the subject to the camera, any length.
+    /// Direction from the subject to the camera, of any length.
     direction: Vec3,
 }
 
@@ -47,7 +47,7 @@ impl Framing {
         Self { centers, half: half + Vec3::splat(least), direction }
     }
 
-    /// The same from another side: any length.
+    /// Returns the framing from another direction (any length).
     pub fn seen_from(&self, direction: Vec3) -> Self {
         Self { direction, ..self.clone() }
     }
@@ -57,7 +57,7 @@ impl Framing {
         self.half.length()
     }
 
-    /// The camera of a picture; after the last one it does not move.
+    /// The camera of a picture; it does not move after the last one.
     pub fn camera(&self, frame: usize, aspect: f32) -> Camera {
         let center = self.centers[frame.min(self.centers.len() - 1)];
         let shown = Aabb { min: center - self.half, max: center + self.half };
@@ -69,7 +69,7 @@ impl Framing {
 mod tests {
     use super::*;
 
-    /// A box of a body that walks 12 m and lies down on its path.
+    /// Bounds of a body that walks 12 m and lies down.
     fn walk(frame: usize) -> Aabb {
         let height = if frame % 100 > 60 { 0.3 } else { 1.8 };
         let at = Vec3::X * (0.06 * frame as f32);
@@ -95,21 +95,21 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_ever_cut_off() {
+    fn subject_is_always_inside_the_picture() {
         let boxes: Vec<Aabb> = (0..200).map(walk).collect();
         for direction in [Vec3::new(0.75, 0.4, 0.75), Vec3::new(-1.0, 0.1, 0.2), Vec3::new(0.1, 3.0, 0.3)] {
             let framing = Framing::new(&boxes, 20.0, direction);
             for (frame, bounds) in boxes.iter().enumerate() {
                 let camera = framing.camera(frame, 1.6);
                 assert!(shows(&camera, bounds, 1.6), "frame {frame} from {direction}");
-                // Close enough to see: it follows.
+                // The camera follows closely enough for the subject to be visible.
                 assert!((camera.position - bounds.center()).length() < 8.0, "frame {frame} from {direction}");
             }
         }
     }
 
     #[test]
-    fn the_camera_stands_still_where_all_is_in_one_place() {
+    fn camera_does_not_move_for_a_stationary_subject() {
         let boxes: Vec<Aabb> = (0..20).map(walk).collect();
         let framing = Framing::new(&boxes, 20.0, Vec3::ONE);
         assert_eq!(framing.camera(0, 1.6), framing.camera(19, 1.6));

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Result};
 use crate::input::motion::Motion;
-use crate::render::bones::flesh_out;
+use crate::render::bones::add_bone_models;
 use crate::render::framing::Framing;
 use crate::render::skin;
 use crate::report::progress::Progress;
@@ -20,14 +20,14 @@ const FPS: u32 = 20;
 /// Half-width of the drawn ground, in radii of the subject.
 const GROUND: f32 = 30.0;
 const GROUND_COLORS: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
-/// From the subject to the camera: from its front left.
+/// Direction from the subject to the camera: front left.
 const DIRECTION: Vec3 = Vec3::new(0.75, 0.4, 0.75);
 
 /// A rig and its motion.
 pub struct Show {
     rig: Rig,
     clip: Option<Clip>,
-    /// From the file's space to the picture's: metres, +Y up, facing +Z.
+    /// Transform from the file's space to the picture's: metres, +Y up, facing +Z.
     root: Affine,
     /// Height of the ground, if the body's soles define it.
     floor: Option<f32>,
@@ -43,9 +43,9 @@ impl Show {
     pub fn new(motion: Motion, clip: Option<usize>) -> Result<Self> {
         let Motion { name, file, analysis } = motion;
         let mut rig = file.rig;
-        // A mesh next to a body without skin does not show the body.
+        // A mesh beside a body without skin does not show the body.
         if rig.meshes.is_empty() || rig.skins.is_empty() && analysis.is_some() {
-            flesh_out(&mut rig, analysis.as_ref());
+            add_bone_models(&mut rig, analysis.as_ref());
         }
         let drawn = rig.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|part| !part.indices.is_empty());
         if !drawn {
@@ -127,7 +127,7 @@ impl Show {
         let radius = framing.radius();
         let lowest = self.floor.filter(|floor| *floor <= whole.min.y + 0.5 * radius).unwrap_or(whole.min.y);
         let ground = Transform::from_translation(Vec3::Y * lowest);
-        // A metre if that is visible, else the subject's own scale.
+        // Tiles of a metre if that is visible, else of the subject's own scale.
         let tile = if (0.2..10.0).contains(&radius) { 1.0 } else { radius };
         let mut scene = Scene {
             sun: Sun { shadow_radius: 1.3 * radius, ..Sun::default() },
@@ -147,7 +147,7 @@ impl Show {
     }
 }
 
-/// A rig ready to draw, with the parts that do not change.
+/// A rig ready to be drawn, with its constant parts.
 struct Stage<'a> {
     show: &'a Show,
     framing: Framing,
@@ -156,13 +156,13 @@ struct Stage<'a> {
 }
 
 impl<'a> Stage<'a> {
-    /// For pictures within `whole`.
+    /// Prepares pictures within `whole`.
     fn new(show: &'a Show, framing: Framing, whole: Aabb, settings: RenderSettings) -> Self {
         let scene = show.scene(&framing, &whole);
         Self { show, framing, scene, renderer: Renderer::new(settings) }
     }
 
-    /// The picture at a time; the framing finds its frame by index.
+    /// Draws the picture at a time; `frame` is its index in the framing.
     fn draw(&mut self, time: f32, frame: usize) -> sinew_picture::Image {
         skin::pose(&self.show.rig, &self.show.pose(time), &mut self.scene.models);
         self.scene.captions = vec![Caption::new(self.show.caption(time))];
@@ -172,7 +172,7 @@ impl<'a> Stage<'a> {
     }
 }
 
-/// Around all finite vertices of an outline; a cubic metre if there are none.
+/// Bounds of all finite vertices of an outline; a cubic metre without any.
 fn around(outline: &Rig, pose: &[Affine]) -> Aabb {
     let (mut bounds, mut positions, mut normals): (Option<Aabb>, _, _) = (None, Vec::new(), Vec::new());
     for (mesh, of) in outline.meshes.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Characters as models: their meshes, posed.
+//! Characters as posed models.
 
 use sinew::anim::{Primitive, Rig, skin_vertices};
 use sinew::math::{Affine, Vec2, Vec3};
@@ -94,7 +94,7 @@ fn surface(part: &Primitive, positions: Vec<Vec3>, normals: Vec<Vec3>, material:
 
 /// One material per primitive, in the order of the meshes.
 pub fn looks(rig: &Rig) -> Vec<RenderMaterial> {
-    // An undecodable picture leaves its surface in its plain colour.
+    // A texture that cannot be decoded leaves its surface in its plain colour.
     let picture = |texture: &sinew::anim::TextureImage| {
         Texture::new(texture.width, texture.height, texture.rgba.clone()).ok().map(Arc::new)
     };

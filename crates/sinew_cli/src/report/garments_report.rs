@@ -47,7 +47,7 @@ impl GarmentsReport {
         if self.bones > 0 {
             let bones = counted(self.bones, "bone moves", "bones move");
             notes.push(format!(
-                "{bones} with {}, of {} particles; --no-garments leaves them",
+                "{bones} with {}, of {} particles; --no-garments turns them off",
                 counted(self.names.len(), "garment", "garments"),
                 self.particles
             ));
@@ -142,8 +142,8 @@ fn worn_note(index: usize, garment: &Garment) -> Vec<String> {
     let coarse = garment.sheet.iter().filter(|sheet| sheet.longest_edge > DRAWN_COARSER * garment.spacing);
     let coarse = coarse.map(|sheet| {
         format!(
-            "{name} is drawn in triangles of up to {} m: cloth that gives way between its vertices is not seen to, so that what presses on it there shows through; a finer mesh \
-             in the file ends that",
+            "{name} is drawn in triangles of up to {} m: movement of the cloth between its vertices is not drawn, so bodies that press on it there show through; use a finer mesh \
+             in the file",
             number(sheet.longest_edge)
         )
     });
@@ -161,6 +161,6 @@ pub fn proposal(rig: &Rig, ragdoll: &RagdollDef) -> Option<String> {
     let could = garments.iter().filter(|garment| !garment.joints().any(has_body));
     let names: Vec<String> = could.map(|garment| garment.name.clone()).collect();
     (!names.is_empty()).then(|| {
-        format!("{} could be worn as cloth, by the names of bones: \"garments\": \"names\" in the settings does it", listed(&names))
+        format!("{} could be worn as cloth, by the names of bones: \"garments\": \"names\" in the settings enables them", listed(&names))
     })
 }

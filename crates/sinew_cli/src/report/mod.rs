@@ -14,9 +14,9 @@ use serde_json::Value;
 /// The result of a command, as JSON and as text.
 #[derive(Debug)]
 pub struct Report {
-    /// For `--json`: an object with the keys of `docs/contract.md`.
+    /// Report for `--json`: an object with the keys of `docs/contract.md`.
     pub json: Value,
-    /// For a person, with a line feed at the end.
+    /// Report for a person, with a line feed at the end.
     pub text: String,
 }
 
@@ -32,9 +32,9 @@ pub fn one_object(value: &Value) -> String {
     format!("{value:#}\n")
 }
 
-/// The shortest decimal that identifies a number; null if it is not finite.
+/// The shortest decimal that identifies a number; null for non-finite numbers.
 pub fn number(x: f32) -> Value {
-    // The decimal digits of the f32, not those of the f64 nearest to it.
+    // Uses the decimal digits of the f32, not those of its f64 value.
     x.to_string().parse::<f64>().map_or(Value::Null, Value::from)
 }
 

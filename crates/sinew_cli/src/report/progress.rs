@@ -1,9 +1,9 @@
-//! A bar on stderr for work that a person waits for.
+//! A progress bar on stderr for long work.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 
-/// Shorter work shows no bar.
+/// Minimum duration of work that shows a bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A progress bar that appears once the work takes over a second, on a terminal only.
@@ -13,7 +13,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// For `steps` steps of `what`.
+    /// Creates the display of `steps` steps of `what`.
     pub fn new(what: &'static str, steps: usize) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::hidden());
         let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}");
@@ -22,19 +22,19 @@ impl Progress {
         Self { bar, start: Instant::now() }
     }
 
-    /// One step is done.
+    /// Reports that one step is done.
     pub fn step(&self) {
         self.bar.inc(1);
         self.show();
     }
 
-    /// So many steps are done.
+    /// Reports that `steps` steps are done.
     pub fn reach(&self, steps: usize) {
         self.bar.set_position(steps as u64);
         self.show();
     }
 
-    /// Shows the bar when due; it stays hidden if stderr is no terminal.
+    /// Shows the bar when due; it stays hidden if stderr is not a terminal.
     fn show(&self) {
         if self.bar.is_hidden() && self.start.elapsed() > PATIENCE {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());

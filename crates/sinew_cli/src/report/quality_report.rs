@@ -1,4 +1,4 @@
-//! Figures of falls, as the contract names them and as a person reads them.
+//! Figures of falls, as JSON by the contract and as text.
 
 use crate::report::number;
 use serde_json::{Map, Value};

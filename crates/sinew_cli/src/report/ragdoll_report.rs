@@ -19,7 +19,7 @@ pub struct RagdollReport<'a> {
     pub file: &'a str,
     /// The ragdoll.
     pub def: &'a RagdollDef,
-    /// Report of its build.
+    /// Report of the ragdoll's build.
     pub build: &'a BuildReport,
     /// Processor time from the file to the definition, milliseconds.
     pub build_ms: f64,
@@ -32,7 +32,7 @@ pub struct RagdollReport<'a> {
 }
 
 impl RagdollReport<'_> {
-    /// Both forms of the report.
+    /// Builds both forms of the report.
     pub fn finish(&self) -> Report {
         Report { json: self.to_json(), text: self.to_text() }
     }
@@ -239,10 +239,10 @@ fn gate_json(gated: &GateReport) -> Value {
     })
 }
 
-/// No list of falls is longer.
+/// Largest number of listed falls.
 const LISTED: usize = 100;
 
-/// Falls that violate a hard requirement.
+/// Number of falls that violate a hard requirement.
 fn failed(gated: &GateReport) -> usize {
     let mut spawns: Vec<u64> = gated.misses.iter().map(|miss| miss.spawn).collect();
     spawns.dedup();
@@ -255,22 +255,22 @@ fn gate_text(gated: &GateReport) -> String {
         "{spawns} random falls: {good} good, {usable} usable, {bad} bad (worst is fall {worst_spawn})\n"
     );
     text += &quality_text(worst);
-    let _ = writeln!(text, "  {} of them beyond what must hold in every fall", failed(gated));
+    let _ = writeln!(text, "  {} of them violate a hard requirement", failed(gated));
     for miss in gated.misses.iter().take(LISTED) {
         let _ = writeln!(text, "  fall {}: {} {}", miss.spawn, miss.bar.key(), miss.value);
     }
     text
 }
 
-/// No rotation at all.
+/// A range without rotation.
 const NONE: Range = Range { lo: 0.0, hi: 0.0 };
-/// Every rotation.
+/// An unlimited rotation.
 const FREE: SwingTwistLimit = {
     const ALL: Range = Range { lo: -core::f32::consts::PI, hi: core::f32::consts::PI };
     SwingTwistLimit { swing_y: ALL, swing_z: ALL, twist: ALL }
 };
 
-/// A tenth of a degree is as exact as a limit can be meant.
+/// Rounds to a tenth of a degree: limits are not meant more precisely.
 fn degrees(range: Range) -> [f64; 2] {
     // Adding zero turns −0 into 0.
     [range.lo, range.hi].map(|angle| (f64::from(angle).to_degrees() * 10.0).round() / 10.0 + 0.0)
@@ -311,7 +311,7 @@ fn shape_cell(shape: &Shape) -> String {
     }
 }
 
-/// `+Y` and the like: the axis that a unit vector is nearest to.
+/// Name of the axis nearest to a unit vector, such as `+Y`.
 pub fn axis_name(axis: Vec3) -> &'static str {
     let [x, y, z] = axis.to_array();
     let (ax, ay, az) = (x.abs(), y.abs(), z.abs());

@@ -1,4 +1,4 @@
-//! The drawn skin: measured, and its figures as the contract names them and as a person reads them.
+//! The drawn skin: its measurement, and its figures as JSON by the contract and as text.
 
 use crate::fall::Fall;
 use crate::input::files::CharacterFile;
@@ -21,7 +21,7 @@ pub struct SkinReport {
     pub rising: RisingQuality,
 }
 
-/// A character's baked life.
+/// A character's baked run.
 #[derive(Clone, Copy)]
 pub struct Life<'a> {
     pub fall: &'a Fall<'a>,
@@ -32,7 +32,7 @@ pub struct Life<'a> {
 }
 
 impl SkinReport {
-    /// Draws a character in the poses of its drops and over its whole life.
+    /// Measures the skin of a character in the poses of its drops and over its whole run.
     pub fn of(
         character: &CharacterFile,
         def: &RagdollDef,
@@ -57,7 +57,7 @@ impl SkinReport {
 }
 
 impl Life<'_> {
-    /// Measures all of it: fall and preparation, clips before and after, standing and lying.
+    /// Measures the whole run: fall and preparation, clips before and after, standing and lying.
     fn show(&self, meter: &mut SkinMeter<'_>) {
         let frames = &self.fall.baked.frames;
         let is_body = |frame: &&Frame| matches!(frame.state, State::Limp | State::Preparing);
@@ -93,11 +93,11 @@ impl Life<'_> {
         }
     }
 
-    /// Pose at rest; only on a level floor.
+    /// Measures the pose at rest; only on a level floor.
     fn lay(&self, meter: &mut SkinMeter<'_>) {
         let (Some(floor), baked) = (self.floor, &self.fall.baked) else { return };
         let Some(settled) = baked.quality.settled_s else { return };
-        // It may be hit again later.
+        // The last limp state, because a character may be hit again later.
         let mut limp = baked.frames.iter().filter(|frame| frame.state == State::Limp);
         if let Some(frame) = limp.find(|frame| settled <= frame.time) {
             let down = Affine { translation: Vec3::Y * -floor, ..Affine::IDENTITY };
@@ -158,9 +158,9 @@ pub fn skin_text(report: &SkinReport) -> String {
         cm(skin.tolerance()),
         cm(skin.symmetry_error_m),
         if skin.contiguous {
-            "every part hangs on what it grows from"
+            "every part is attached where it should be"
         } else {
-            "parts hang elsewhere than they grow"
+            "parts are attached to the wrong body"
         },
         stretch(skin.edge_stretch_p999),
         stretch(skin.edge_stretch_max),

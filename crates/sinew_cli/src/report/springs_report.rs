@@ -10,7 +10,7 @@ use sinew::anim::{JointIdx, Rig};
 use sinew::math::{Vec3, direction, max, min};
 use sinew::ragdoll::{CharacterDef, RagdollDef};
 
-/// Most names of joints in a note.
+/// Largest number of joint names in a note.
 const MOST_NAMES: usize = 6;
 
 /// Springs that a character wears in a bake.
@@ -18,7 +18,7 @@ pub struct SpringsReport {
     chains: usize,
     bones: usize,
     links: usize,
-    /// Names of joints that were to swing and do not.
+    /// Names of requested joints that do not swing.
     left_out: Vec<String>,
 }
 
@@ -35,7 +35,7 @@ impl SpringsReport {
         }
     }
 
-    /// Keys of a report.
+    /// JSON object of the report.
     pub fn to_json(&self) -> Value {
         json!({ "chains": self.chains, "bones": self.bones, "links": self.links, "left_out": self.left_out })
     }
@@ -50,7 +50,7 @@ impl SpringsReport {
                 links => format!(" with {} across", counted(links, "link", "links")),
             };
             notes.push(format!(
-                "{bones}, in {}{linked}; --no-springs leaves them",
+                "{bones}, in {}{linked}; --no-springs turns them off",
                 counted(self.chains, "chain", "chains")
             ));
         }
@@ -236,7 +236,7 @@ fn vector(v: Vec3) -> String {
     format!("({})", v.to_array().map(short).join(", "))
 }
 
-/// One number, or the least and the most.
+/// One number, or the smallest and the largest.
 fn span(values: impl Iterator<Item = f32>) -> String {
     let none = (f32::INFINITY, f32::NEG_INFINITY);
     let (low, high) = values.fold(none, |(low, high), x| (min(low, x), max(high, x)));
@@ -244,7 +244,7 @@ fn span(values: impl Iterator<Item = f32>) -> String {
     if low == high { low } else { format!("{low} to {high}") }
 }
 
-/// Its size, and its direction unless that is down.
+/// Magnitude of the gravity, and its direction unless that is down.
 fn gravity(chain: &SpringChain) -> String {
     let size = span(chain.bones.iter().map(|bone| bone.gravity.length()));
     let way = |bone: &SpringBone| direction(bone.gravity).map(vector);
@@ -254,11 +254,11 @@ fn gravity(chain: &SpringChain) -> String {
         [] => size,
         [one] if *one == vector(Vec3::NEG_Y) => size,
         [one] => format!("{size} along {one}"),
-        _ => format!("{size}, not one way"),
+        _ => format!("{size}, various directions"),
     }
 }
 
-/// Kinds of limits with their angles in degrees, and how many bones have one where not all do.
+/// Kinds of limits with their angles in degrees, and the number of limited bones if not all are.
 fn limits(chain: &SpringChain) -> String {
     let kinds: Vec<LimitKind> =
         chain.bones.iter().filter_map(|bone| bone.limit.map(|limit| limit.kind)).collect();
@@ -281,7 +281,7 @@ fn limits(chain: &SpringChain) -> String {
     text
 }
 
-/// Numbers of colliders, runs of them by their ends.
+/// Collider numbers, with consecutive runs as ranges.
 fn indices(list: &[usize]) -> String {
     let mut sorted = list.to_vec();
     sorted.sort_unstable();
@@ -305,7 +305,7 @@ pub fn proposal(rig: &Rig, springs: &Springs, ragdoll: &RagdollDef) -> Option<St
         springs.chains.iter().filter(swings).map(|chain| name(&chain.bones[0])).collect();
     (!roots.is_empty()).then(|| {
         format!(
-            "{} could swing, by their names: --guess-springs of 'sinew bake', or \"springs\": \"names\" in the settings, lets them",
+            "{} could swing, by their names: --guess-springs of 'sinew bake', or \"springs\": \"names\" in the settings, enables them",
             listed(&roots)
         )
     })
@@ -327,7 +327,7 @@ fn angles(kind: LimitKind) -> Vec<f32> {
     }
 }
 
-/// Collider in fields that only some shapes have.
+/// Fields of a collider, some of which only some shapes have.
 struct Described {
     name: &'static str,
     offset: Vec3,

@@ -1,12 +1,12 @@
-//! Story of a character in words.
+//! Describes the run of a character in words.
 
 use crate::report::table::shown;
 use sinew::ragdoll::{BakeInput, CharacterDef, CharacterEvent, Locomotion, Opening};
 
-/// Phase of a character from some time on, s: its name is a word or two for the corner of a picture.
+/// Start time (s) and name of a phase: one or two words for the corner of a picture.
 pub type Phase = (f32, String);
 
-/// Seconds for which a hit is called one.
+/// Seconds for which the caption names a hit.
 pub const HIT_SECONDS: f32 = 0.4;
 
 const RESTS: &str = "stands in its rest pose";
@@ -42,12 +42,12 @@ pub fn phases(def: &CharacterDef, events: &[(f32, CharacterEvent)]) -> Vec<Phase
             | CharacterEvent::LetGo { .. } => {}
         }
     }
-    // Stable: of two events at one time the later entry counts.
+    // Stable sort: of two events at one time the later entry is used.
     phases.sort_by(|a, b| a.0.total_cmp(&b.0));
     phases
 }
 
-/// Before anything has happened to it.
+/// The phase before any event.
 fn at_first(def: &CharacterDef) -> String {
     match def.motions().opening {
         Opening::Looped => upright(def),
@@ -66,13 +66,13 @@ fn upright(def: &CharacterDef) -> String {
 }
 
 /// The events of a bake as sentences, in order of time.
-pub fn told(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(f32, String)> {
+pub fn moments(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(f32, String)> {
     let def = &input.character;
-    let mut told = vec![(0.0, at_first(def))];
+    let mut moments = vec![(0.0, at_first(def))];
     for &(time, event) in events {
         let sentence = match event {
             CharacterEvent::Hit { body } => hit_sentence(input, time, body),
-            // A hit describes it better, and a character that goes limp on its feet touches the ground immediately.
+            // A hit describes the fall better, and a character that goes limp on its feet touches the ground at once.
             CharacterEvent::WentLimp if events.iter().any(|other| is_hit_at(other, time)) => continue,
             CharacterEvent::Touched
             | CharacterEvent::Struck { .. }
@@ -91,7 +91,7 @@ pub fn told(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(f32
             CharacterEvent::Caught { steps } => format!("has caught itself after {steps} steps"),
             CharacterEvent::WentLimp => "goes limp".to_owned(),
             CharacterEvent::Settled { since } => {
-                told.push((since, "lies still".to_owned()));
+                moments.push((since, "lies still".to_owned()));
                 continue;
             }
             CharacterEvent::NeverSettled => "does not come to rest".to_owned(),
@@ -104,9 +104,9 @@ pub fn told(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(f32
             CharacterEvent::Up if def.motions().opening == Opening::Rest => upright(def),
             CharacterEvent::Up => format!("{} again", upright(def)),
         };
-        told.push((time, sentence));
+        moments.push((time, sentence));
     }
-    told
+    moments
 }
 
 fn is_hit_at(&(time, event): &(f32, CharacterEvent), when: f32) -> bool {

@@ -1,6 +1,6 @@
-//! Columns of text for people.
+//! Text tables for people.
 
-/// Rows of cells, lined up.
+/// Rows of aligned cells.
 #[derive(Debug, Default)]
 pub struct Table {
     rows: Vec<Vec<String>>,

@@ -1,4 +1,4 @@
-//! `sinew bake` on a file of its own making.
+//! `sinew bake` on generated files.
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, glb, shared_data, sinew};
@@ -13,7 +13,7 @@ use sinew_scenes::mannequin::mannequin;
 use std::fs;
 
 #[test]
-fn the_fall_is_a_clip_in_a_copy_of_the_file() {
+fn bake_adds_the_fall_to_a_copy_of_the_file() {
     let folder = Folder::new("bake");
     let (file, out) = (folder.mannequin(), folder.path("fall.glb"));
     let picture = folder.path("fall.png");
@@ -49,7 +49,7 @@ fn the_fall_is_a_clip_in_a_copy_of_the_file() {
 }
 
 #[test]
-fn keys_that_are_not_needed_are_left_out() {
+fn key_error_bound_removes_keys() {
     let folder = Folder::new("keys");
     let file = folder.mannequin();
     let baked = |error: &[&str]| {
@@ -79,7 +79,8 @@ fn keys_that_are_not_needed_are_left_out() {
     assert!((clip.duration - 3.0).abs() < 1e-6);
 }
 
-/// Farthest that a joint of a BVH is from that of the same name in the last clip of a file, whose unit is so many metres.
+/// Largest distance of a joint in a BVH from the joint of the same name in the last clip of a file with the given unit
+/// (metres).
 fn between(document: &Document, bvh: &BvhDocument, unit: f32) -> f32 {
     let clip = document.clips.last().expect("a clip");
     let named = |(_, joint): &(usize, &Joint)| !joint.name.is_empty();
@@ -110,7 +111,7 @@ fn between(document: &Document, bvh: &BvhDocument, unit: f32) -> f32 {
 }
 
 #[test]
-fn a_bvh_has_the_bones_and_every_frame() {
+fn bvh_output_has_the_bones_and_every_frame() {
     let folder = Folder::new("bvh");
     let file = folder.mannequin();
     for (fps, frames) in [("24", 49), ("25", 51), ("120", 241)] {
@@ -131,7 +132,7 @@ fn a_bvh_has_the_bones_and_every_frame() {
             (frames, fps.parse().expect("a number"))
         );
         let worst = between(&load_gltf(&glb, ReadOptions::default()).expect("it can be read"), &read, 1.0);
-        // Six digits behind the point, of degrees and centimetres.
+        // Tolerance: six decimals, of degrees and centimetres.
         assert!(worst < 2e-5, "{fps}: {worst} m off");
     }
     let run = sinew(&["bake", &file, "-o", &folder.path("x.bvh"), "--key-error", "1"]);
@@ -141,7 +142,7 @@ fn a_bvh_has_the_bones_and_every_frame() {
 }
 
 #[test]
-fn the_same_command_gives_the_same_bytes() {
+fn equal_commands_write_equal_bytes() {
     let folder = Folder::new("twice");
     let file = folder.mannequin();
     let baked = |name: &str| {
@@ -153,7 +154,7 @@ fn the_same_command_gives_the_same_bytes() {
 }
 
 #[test]
-fn without_a_hit_it_goes_limp_at_half_a_second_on_a_floor() {
+fn character_goes_limp_at_half_a_second_by_default() {
     let folder = Folder::new("limp");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));
     let object = sinew(&["bake", &file, "--seconds", "5", "-o", &out, "--json"]).json();
@@ -167,7 +168,7 @@ fn without_a_hit_it_goes_limp_at_half_a_second_on_a_floor() {
 }
 
 #[test]
-fn a_world_file_is_fallen_into() {
+fn character_falls_into_a_world_file() {
     let folder = Folder::new("world");
     let file = folder.mannequin();
     let bodies: Vec<_> = Site::CabinWithStairs.props().into_iter().map(|prop| prop.body).collect();
@@ -185,18 +186,18 @@ fn a_world_file_is_fallen_into() {
 }
 
 #[test]
-fn triangles_that_a_level_has_for_nothing_are_counted() {
+fn degenerate_and_duplicate_triangles_are_counted() {
     let folder = Folder::new("left_out");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));
     let triangles = "v -9 0 -9\nv -9 0 9\nv 9 0 9\nf 1 2 3\nf 1 2 3\nf 1 1 2\nf 1 2 2\n";
     let level = folder.file("level.obj", triangles);
     let run = sinew(&["bake", &file, "--world", &level, "--limp-at", "0", "--seconds", "0.1", "-o", &out]);
-    let line = "  left out of the world: 2 triangles without area, 1 that are there twice\n";
+    let line = "  left out of the world: 2 triangles without area, 1 that are duplicates\n";
     assert!(run.stdout.contains(line), "{run:?}");
 }
 
 #[test]
-fn what_does_not_exist_is_told_with_what_does() {
+fn unknown_names_are_reported_with_the_known_ones() {
     let folder = Folder::new("names");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));
     let line = |extra: &[&str]| {
@@ -210,7 +211,7 @@ fn what_does_not_exist_is_told_with_what_does() {
 }
 
 #[test]
-fn outputs_come_together_or_not_at_all_and_never_over_an_input() {
+fn outputs_are_written_all_or_none_and_never_over_an_input() {
     let folder = Folder::new("outputs");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));
     let picture = folder.path("missing/out.gif");
@@ -226,7 +227,7 @@ fn outputs_come_together_or_not_at_all_and_never_over_an_input() {
             &["ragdoll", "doctor", &file, "--fix", "-o", input],
             &["ragdoll", "export", &file, "--as", "mjcf", "-o", input],
         ] {
-            // A bake's file has an extension of its own.
+            // `bake` writes another extension.
             if command[0] != "bake" || input == &file {
                 let run = sinew(command);
                 assert_eq!(run.refusal(2), format!("error: {input} is an input: write to another file"));
@@ -237,7 +238,7 @@ fn outputs_come_together_or_not_at_all_and_never_over_an_input() {
 }
 
 #[test]
-fn what_would_never_happen_is_refused() {
+fn options_that_cannot_take_effect_are_rejected() {
     let folder = Folder::new("late");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));
     let line = |extra: &[&str]| {
@@ -259,7 +260,7 @@ fn what_would_never_happen_is_refused() {
 
 #[needs_data]
 #[test]
-fn strangers_are_baked() {
+fn foreign_rigs_are_baked() {
     let data = shared_data();
     let folder = Folder::new("strangers");
     for name in [
@@ -279,7 +280,7 @@ fn strangers_are_baked() {
 
 #[needs_data]
 #[test]
-fn strangers_become_a_bvh() {
+fn foreign_rigs_are_written_as_bvh() {
     let data = shared_data();
     let folder = Folder::new("strangers-bvh");
     for name in ["CesiumMan.glb", "kaykit_Knight.glb", "Fox.glb", "quaternius_cyberpunk_Character.glb"] {
@@ -302,7 +303,7 @@ fn strangers_become_a_bvh() {
 
 #[needs_data]
 #[test]
-fn a_human_without_clips_gets_up_and_walks_on() {
+fn human_without_clips_gets_up_by_builtin_motions() {
     let folder = Folder::new("builtin");
     let bare = folder.file("bare.glb", glb(&mannequin().rig, &[]));
     let out = folder.path("out.glb");
@@ -315,7 +316,7 @@ fn a_human_without_clips_gets_up_and_walks_on() {
     };
     let object = baked(&bare, &[]);
     let up = object["up_s"].as_f64().expect("it is up") as f32;
-    says(&object, "gets up by motions that come with Sinew");
+    says(&object, "gets up by built-in motions");
     let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
     let hips = |time: f32| {
         let (rig, clip) = (&document.rig, document.clips.last().expect("a clip"));
@@ -327,18 +328,18 @@ fn a_human_without_clips_gets_up_and_walks_on() {
         let turned = local.iter().zip(&rest).map(|(a, b)| a.rotation.angle_to(b.rotation));
         (model[joint].translation, turned.fold(0.0, f32::max))
     };
-    assert!(hips(0.0).1 < 1e-3, "it begins in its rest pose");
-    assert!((hips(0.0).0.y - hips(up + 1.0).0.y).abs() < 0.1, "it stands again");
+    assert!(hips(0.0).1 < 1e-3, "it does not begin in its rest pose");
+    assert!((hips(0.0).0.y - hips(up + 1.0).0.y).abs() < 0.1, "it does not stand again");
     let way = (hips(up + 1.5).0 - hips(up + 0.5).0) * Vec3::new(1.0, 0.0, 1.0);
-    assert!((way.length() - 1.25).abs() < 0.1, "it walks: {way}");
+    assert!((way.length() - 1.25).abs() < 0.1, "it does not walk: {way}");
 
     let object = baked(&bare, &["--no-builtin-motions"]);
     assert!(object["up_s"].is_null());
-    says(&object, "--no-builtin-motions leaves out Sinew's");
+    says(&object, "--no-builtin-motions leaves out the built-in ones");
     let data = shared_data();
     let object = baked(&data.join("rigs/Fox.glb").display().to_string(), &[]);
     assert!(object["up_s"].is_null());
-    says(&object, "it does not get up: Sinew's own motions are a human's, and this is none");
+    says(&object, "it does not get up: the built-in motions are for humans, and this character is not human");
 }
 
 fn block(min: [f32; 3], max: [f32; 3]) -> BodyDef {
@@ -352,9 +353,9 @@ fn block(min: [f32; 3], max: [f32; 3]) -> BodyDef {
     }
 }
 
-/// The middle of this world is a pillar; beside it a roof hangs too low, and all around is a ramp. Only on the terrace is there room.
+/// The centre of this world is a pillar; beside it is a low roof, and around it a ramp. Only the terrace has room.
 #[test]
-fn a_character_stands_where_there_is_room() {
+fn character_is_placed_where_there_is_room() {
     let folder = Folder::new("place");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));
     let mut ramp = block([-30.0, -1.0, -30.0], [30.0, 0.0, 30.0]);
@@ -372,11 +373,11 @@ fn a_character_stands_where_there_is_room() {
         sinew(&[&arguments[..], extra].concat())
     };
     let notes = bake(&[]).json()["notes"].to_string();
-    let (_, stands) = notes.split_once("it stands at ").expect("it is said where");
-    let (place, _) = stands.split_once(", the place").expect("and why");
+    let (_, stands) = notes.split_once("it stands at ").expect("the note names a place");
+    let (place, _) = stands.split_once(", the free place").expect("the note gives the reason");
     let at: Vec<f32> = place.split(',').map(|number| number.parse().expect("a number")).collect();
     assert!((12.0..20.0).contains(&at[0]) && at[1] == 7.0 && at[2].abs() < 4.0, "{at:?}");
-    // With 1.7 m to the roof there is no room to fall; what is said is done all the same, and nothing is found.
+    // Below the roof there is 1.7 m, too little for a fall. An explicit place is used anyway, without a search.
     let under = bake(&["--at", "2,2,2"]).json();
     assert!(!under["notes"].to_string().contains("it stands at"), "{under:#}");
     assert!(under["penetration_max_m"].as_f64().expect("a number") < 0.05, "{under:#}");
@@ -387,7 +388,7 @@ fn a_character_stands_where_there_is_room() {
 }
 
 #[test]
-fn it_falls_the_way_that_it_faces() {
+fn fall_depends_on_facing_and_not_on_height() {
     let folder = Folder::new("facing");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));
     let notes = |extra: &[&str]| {
@@ -399,7 +400,7 @@ fn it_falls_the_way_that_it_faces() {
         let [a, b] = [&plain, &raised].map(|object| object[key].as_f64().expect("a number"));
         assert!((a - b).abs() < 0.02, "{key}: {a} and {b}");
     }
-    // A push along the world's x throws one that faces it on its back or its face, not on its side: other bodies fall.
+    // With other facings the push throws it on its back or face, not on its side, so the fall differs.
     assert_ne!(
         notes(&["--hit", "chest=60,0,0@0.2"])["hash"],
         notes(&["--hit", "chest=60,0,0@0.2", "--facing", "90"])["hash"]
@@ -408,10 +409,10 @@ fn it_falls_the_way_that_it_faces() {
     assert!(run.code == Some(2) && run.stderr.contains("must be three numbers"), "{run:?}");
 }
 
-/// Feet that the hierarchy hangs on the root, as rigs for inverse kinematics do, fall with their legs and are written back where the file
-/// has them.
+/// Feet that are children of the root, as in rigs for inverse kinematics, fall with their legs and are written back to
+/// their place in the hierarchy.
 #[test]
-fn feet_on_the_root_fall_with_their_legs_and_stay_on_the_root() {
+fn feet_on_the_root_follow_their_legs_and_keep_their_parent() {
     let folder = Folder::new("feet-on-root");
     let mut rig = mannequin().rig;
     let mut model = Vec::new();
@@ -420,7 +421,7 @@ fn feet_on_the_root_fall_with_their_legs_and_stay_on_the_root() {
     let feet = ["leftFoot", "rightFoot"].map(|name| named(&rig, name));
     let shanks = feet.map(|foot| rig.joints[foot].parent.expect("a shank"));
     for foot in feet {
-        // The mannequin's joints rest without a turn.
+        // The mannequin's joints have no rest rotation.
         rig.joints[foot].rest.translation = model[foot].translation;
         rig.joints[foot].parent = None;
     }
@@ -447,7 +448,7 @@ fn feet_on_the_root_fall_with_their_legs_and_stay_on_the_root() {
         }
         lowest = sinew::math::min(lowest, now[named(&written, "hips")].translation.y);
     }
-    assert!(lowest < 0.4, "it fell: {lowest} m");
+    assert!(lowest < 0.4, "it did not fall: {lowest} m");
     for foot in feet {
         let foot = named(&written, &rig.joints[foot].name);
         let above = written.joints[foot].parent.map(|joint| written.joints[joint].name.as_str());
@@ -455,10 +456,10 @@ fn feet_on_the_root_fall_with_their_legs_and_stay_on_the_root() {
     }
 }
 
-/// A hit, a travelling clip and a world are held to the bars of a drop, and what is beyond them is said.
+/// A bake with a hit, a travelling clip and a world is judged by the same bars as a drop test, and reports violations.
 #[needs_data]
 #[test]
-fn a_bake_is_judged_like_a_drop() {
+fn bake_is_judged_by_the_bars_of_a_drop() {
     let folder = Folder::new("bake-judged");
     let (character, out) = (folder.mannequin(), folder.path("fall.glb"));
     let bodies: Vec<_> = Site::CabinWithStairs.props().into_iter().map(|prop| prop.body).collect();
@@ -480,16 +481,16 @@ fn a_bake_is_judged_like_a_drop() {
     assert_eq!(baked["verdict"], "good", "{baked:#}");
     assert_eq!(baked["reasons"], serde_json::json!([]));
     let data = shared_data();
-    // While motors roll it over, energy comes from nowhere but them: it was 0.15 of it in a step.
+    // While motors roll it over, only they add energy: the gain was once 0.15 in a step.
     let ogre = data.join("rigs_wild/ultimate_space_Enemy_Large-transformed.glb").display().to_string();
     let baked = sinew(&["bake", &ogre, "--seconds", "6", "-o", &out, "--json"]).json();
     assert!(baked["energy_gain_max"].as_f64().expect("a number") < 0.01, "{baked:#}");
-    // A drop of it sits upright for a second before it tips over, and sleeps late; nothing else is said of it.
+    // In a drop it sits upright for a second before it tips over, and falls asleep late; no other reason is reported.
     let reasons = baked["reasons"].as_array().expect("reasons").iter();
-    let told: Vec<&str> = reasons.map(|reason| reason.as_str().expect("a sentence")).collect();
-    assert!(told.iter().all(|reason| reason.starts_with("time from calm")), "{baked:#}");
+    let reason_list: Vec<&str> = reasons.map(|reason| reason.as_str().expect("a sentence")).collect();
+    assert!(reason_list.iter().all(|reason| reason.starts_with("time from calm")), "{baked:#}");
     assert!(baked["up_s"].is_number() && baked["verdict"] != "bad", "{baked:#}");
-    // Its skin rests above the floor, although its bodies lie on it.
+    // Its skin rests above the floor, although its bodies touch it.
     let skull = data.join("rigs_wild/platformer_game_Skull.glb").display().to_string();
     let baked =
         sinew(&["bake", &skull, "--no-builtin-motions", "--seconds", "4", "-o", &out, "--json"]).json();
@@ -501,9 +502,10 @@ fn a_bake_is_judged_like_a_drop() {
     );
 }
 
-/// A mannequin whose joints are rusted stands limp: it is pushed over, unless a time to go limp or a hit is given.
+/// A mannequin with very stiff joints stays upright when limp: it is pushed over, unless a time to go limp or a hit is
+/// given.
 #[test]
-fn who_stays_upright_is_pushed_over_unless_told_otherwise() {
+fn upright_limp_character_is_pushed_over_by_default() {
     let folder = Folder::new("pushed");
     let file = folder.file("rusted.glb", glb(&mannequin().rig, &[]));
     let bones: Vec<String> = ["spine", "chest", "neck", "head", "upperLeg", "lowerLeg", "foot"]
@@ -519,8 +521,8 @@ fn who_stays_upright_is_pushed_over_unless_told_otherwise() {
         sinew(&[&arguments[..], extra].concat()).json()
     };
     let is_said = |object: &serde_json::Value, key: &str, what: &str| {
-        let said = object[key].as_array().expect("sentences");
-        said.iter().any(|said| said.as_str().is_some_and(|said| said.contains(what)))
+        let texts = object[key].as_array().expect("sentences");
+        texts.iter().any(|texts| texts.as_str().is_some_and(|texts| texts.contains(what)))
     };
     let object = baked(&[]);
     assert!(is_said(&object, "notes", "it is pushed over at 0.5 s"), "{object:#}");
@@ -532,9 +534,10 @@ fn who_stays_upright_is_pushed_over_unless_told_otherwise() {
     assert!(is_said(&baked(&["--limp-at", "0.5"]), "reasons", "stays upright"));
 }
 
-/// A character that lies in its file, and sinks in its clip before it falls, lies on the floor at its lowest.
+/// A character that lies in its file, and sinks during its clip before the fall, is placed so that its lowest point
+/// touches the floor.
 #[test]
-fn who_lies_in_its_file_lies_on_the_floor_at_its_lowest() {
+fn lying_character_is_placed_with_its_lowest_point_on_the_floor() {
     let folder = Folder::new("lies");
     let mut rig = mannequin().rig;
     let root = rig.joints.iter().position(|joint| joint.parent.is_none()).expect("a root");
@@ -550,7 +553,7 @@ fn who_lies_in_its_file_lies_on_the_floor_at_its_lowest() {
         part.positions.iter_mut().for_each(turned);
         part.normals.iter_mut().for_each(turned);
     });
-    // Down and up again along the file's own up, which is the back of the body.
+    // Down and up along the file's up axis, which is the direction of the body's back.
     let at = rig.joints[hips].rest.translation;
     let sunk = at - turn.inverse() * Vec3::Y * 0.25;
     let channel = sinew::anim::Channel {

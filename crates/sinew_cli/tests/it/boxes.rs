@@ -1,4 +1,4 @@
-//! `sinew boxes` on meshes of its own making, on the house of the shared data, and on bad files.
+//! `sinew boxes` on generated meshes, on the house of the shared data, and on invalid files.
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, gltf_files, shared_data, sinew};
@@ -10,7 +10,7 @@ use sinew::physics::{BodyDef, BodyId, BodyKind, Material, Shape, ShapeDef, World
 use std::fmt::Write;
 use std::fs;
 
-/// An OBJ of boxes, each with its lowest and highest corner.
+/// An OBJ of boxes, given by lowest and highest corner.
 fn obj_of_boxes(boxes: &[[[f32; 3]; 2]]) -> String {
     let mut text = String::new();
     for (index, [low, high]) in boxes.iter().enumerate() {
@@ -35,7 +35,7 @@ fn number(object: &Value, key: &str) -> f64 {
 }
 
 #[test]
-fn boxes_come_back_as_they_were() {
+fn mesh_of_boxes_gives_the_same_boxes() {
     let folder = Folder::new("boxes");
     let table = [[[-1.0, 0.7, -0.5], [1.0, 0.8, 0.5]], [[-0.9, 0.0, -0.4], [-0.8, 0.7, -0.3]]];
     let (file, out) = (folder.file("table.obj", obj_of_boxes(&table)), folder.path("table.json"));
@@ -60,7 +60,7 @@ fn boxes_come_back_as_they_were() {
 
 #[needs_data]
 #[test]
-fn a_house_keeps_its_stairs_and_bakes() {
+fn house_keeps_its_stairs_and_serves_as_a_world() {
     let data = shared_data();
     let folder = Folder::new("house");
     let file = data.join("worlds/house_2story_stairs.glb").display().to_string();
@@ -81,11 +81,11 @@ fn a_house_keeps_its_stairs_and_bakes() {
     assert_eq!(baked["nan"], 0);
 }
 
-/// Tops of the house's three steps as drawn, from the door down, metres.
+/// Heights of the house's three steps as drawn, from the door down, metres.
 const STEPS: [f32; 3] = [0.177, 0.128, 0.080];
 const BALL: f32 = 0.04;
 
-/// A rubber ball dropped on the top step meets one step after the other, each at its height, and then the ground.
+/// A rubber ball dropped on the top step touches each step in turn at its height, and then the ground.
 fn bounce_down(house: &[BodyDef]) {
     let mut world = World::new(WorldDef::default());
     let ids: Vec<BodyId> = house.iter().map(|body| world.add_body(body)).collect();
@@ -100,7 +100,7 @@ fn bounce_down(house: &[BodyDef]) {
         shapes: vec![ball],
         ..BodyDef::default()
     });
-    // Each body that it meets, in the order of first meetings.
+    // Each body that it touches, in the order of first contacts.
     let mut met: Vec<BodyId> = Vec::new();
     for _ in 0..240 {
         world.step();
@@ -128,15 +128,15 @@ fn bounce_down(house: &[BodyDef]) {
     for (top, step) in tops.iter().zip(STEPS) {
         assert!((top - step).abs() < 0.005, "{tops:?}");
     }
-    assert_eq!(met.last(), Some(&ground), "it ends on the ground");
+    assert_eq!(met.last(), Some(&ground), "the ball does not end on the ground");
 }
 
 #[needs_data]
 #[test]
-fn pieces_of_a_dungeon() {
+fn dungeon_pieces_give_few_accurate_boxes() {
     let data = shared_data();
     let folder = Folder::new("dungeon");
-    // Of the floor tile the missing underside is all that is off.
+    // For the floor tile the only error is its missing underside.
     for (piece, share) in [("stairs", 0.05), ("wall", 0.05), ("floor_tile_large", 1.01)] {
         let file = data.join(format!("worlds/kaykit_dungeon/{piece}.obj")).display().to_string();
         let object = sinew(&["boxes", &file, "-o", &folder.path("out.json"), "--json"]).json();
@@ -146,7 +146,7 @@ fn pieces_of_a_dungeon() {
     }
 }
 
-/// A line that names the file, and no output.
+/// Checks that the command fails with a line that names the file, and writes no output.
 fn check_refused(folder: &Folder, file: &str, reason: &str) {
     let before = folder.names();
     let run = sinew(&["boxes", file, "-o", &folder.path("out.json")]);
@@ -156,7 +156,7 @@ fn check_refused(folder: &Folder, file: &str, reason: &str) {
 }
 
 #[test]
-fn lying_objs_are_refused() {
+fn invalid_objs_are_rejected() {
     let folder = Folder::new("lies");
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
     for (name, text, reason) in [
@@ -187,7 +187,7 @@ fn lying_objs_are_refused() {
 
 #[needs_data]
 #[test]
-fn bad_input_becomes_boxes_or_is_refused() {
+fn bad_input_gives_boxes_or_an_error() {
     let data = shared_data();
     let folder = Folder::new("bad-boxes");
     for file in gltf_files(&data.join("bad_input")) {

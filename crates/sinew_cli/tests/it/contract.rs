@@ -1,4 +1,4 @@
-//! Output of the commands under `--json`, against `docs/contract.md`.
+//! Output of the commands with `--json`, compared with `docs/contract.md`.
 
 use crate::contract_table::{Row, parse, violations};
 use crate::sinew::{Folder, sinew};
@@ -13,7 +13,7 @@ fn rows() -> Vec<Row> {
 pub fn check_keys(command: &str, output: &Value) {
     let violations = violations(&rows(), command, output);
     assert!(violations.is_empty(), "{}\n{output:#}", violations.join("\n"));
-    // A command without rows would pass with anything.
+    // A command without rows would accept any output.
     assert_ne!(
         crate::contract_table::violations(&rows(), command, &Value::Object(Default::default())).len(),
         0

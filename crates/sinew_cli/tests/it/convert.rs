@@ -1,4 +1,4 @@
-//! Clips between formats and characters, and footsteps in them.
+//! `sinew convert` and `sinew events`: clips between formats and characters, and their footsteps.
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, shared_data, sinew};
@@ -10,7 +10,7 @@ fn load(path: &str) -> MotionFile {
     load_motion(path, &MotionOptions::default()).expect("what was written can be read")
 }
 
-/// Largest difference of the poses of joints with the same names, radians and metres, at times of the first.
+/// Largest difference between poses of joints with equal names, radians and metres, at key times of the first file.
 fn difference(a: &MotionFile, b: &MotionFile) -> (f32, f32) {
     let (mut from, mut to) = (rest_pose(&a.rig), rest_pose(&b.rig));
     let (mut turn, mut shift) = (0.0_f32, 0.0_f32);
@@ -60,7 +60,7 @@ fn bvh_to_glb_and_back() {
 }
 
 #[test]
-fn options_of_a_bvh() {
+fn bvh_options_are_applied() {
     let folder = Folder::new("convert-options");
     let bvh = folder.file("kick.bvh", BVH);
     let out = folder.path("out.bvh");
@@ -85,7 +85,7 @@ fn options_of_a_bvh() {
     assert!(text.contains("Frame Time: 0.025000000") && text.contains("Frames: 6\n"), "{text}");
     assert!(text.contains("Xrotation Yrotation Zrotation") && text.contains("End Site"), "{text}");
     let row = text.lines().nth_back(4).expect("the first frame of the motion");
-    // 90 cm above the ground, which is along z now, in metres.
+    // 90 cm above the ground, now along z and in metres.
     assert!(
         row.starts_with("0.000000 -0.000000 0.900000") || row.starts_with("0.000000 0.000000 0.900000"),
         "{row}"
@@ -93,24 +93,24 @@ fn options_of_a_bvh() {
 }
 
 #[test]
-fn clips_go_onto_another_body() {
+fn clips_are_retargeted_to_another_body() {
     let folder = Folder::new("convert-onto");
     let mannequin = folder.mannequin();
     let (bvh, out) = (folder.path("walk.bvh"), folder.path("out.glb"));
     assert_eq!(sinew(&["convert", &mannequin, &bvh]).code, Some(0));
-    // A giant of the same build.
+    // A giant with the same proportions.
     let run = sinew(&["convert", &bvh, "--unit-in", "0.02", "--onto", &mannequin, &out]);
     assert!(run.code == Some(0) && run.stdout.contains("matched by role"), "{run:?}");
     assert!(run.stdout.contains("legs 0.50 times as long"), "{run:?}");
     let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
     let names: Vec<&str> = document.clips.iter().map(|clip| clip.name.as_str()).collect();
     assert_eq!(names, ["Walk", "walk"]);
-    // Other commands take clips in the same way.
+    // Other commands accept clips in the same way.
     let baked = folder.path("baked.glb");
     let run =
         sinew(&["bake", &mannequin, "--clips", &bvh, "--clip", "walk", "--seconds", "0.1", "-o", &baked]);
     assert!(run.code == Some(0) && run.stdout.contains("plays clip walk"), "{run:?}");
-    // The same skeleton takes the keys as they are.
+    // The same skeleton keeps the keys unchanged.
     let same = sinew(&["convert", &out, "--clip", "Walk", "--onto", &mannequin, &folder.path("same.glb")]);
     assert!(same.stdout.contains("taken as it is"), "{same:?}");
 }
@@ -133,7 +133,7 @@ fn fbx_to_glb() {
     let run = sinew(&["convert", &fbx, &folder.path("leg.bvh")]);
     assert!(run.code == Some(0) && run.stdout.contains("1 mesh and 1 skin"), "{run:?}");
     assert!(!run.stdout.contains("scale channels"), "no scale changes: {run:?}");
-    // A rigged FBX is a character like any other.
+    // A rigged FBX is accepted wherever a character is.
     assert_eq!(sinew(&["bake", &fbx, "-o", &folder.path("fall.glb"), "--seconds", "0.1"]).code, Some(0));
     let cut = folder.file("cut.fbx", &crate::fbx_file::leg()[..900]);
     assert!(sinew(&["inspect", &cut]).refusal(1).starts_with(&format!("error: {cut}: ")));
@@ -141,7 +141,7 @@ fn fbx_to_glb() {
 
 #[needs_data]
 #[test]
-fn a_vrm_animation_moves_what_it_says() {
+fn vrm_animation_moves_only_its_joints() {
     let data = shared_data();
     let folder = Folder::new("convert-vrma");
     let file = |name: &str| data.join("rigs").join(name).display().to_string();
@@ -168,7 +168,7 @@ fn a_vrm_animation_moves_what_it_says() {
 }
 
 #[test]
-fn what_cannot_be_converted() {
+fn impossible_conversions_are_rejected() {
     let folder = Folder::new("convert-refused");
     let mannequin = folder.mannequin();
     let bvh = folder.file("kick.bvh", BVH);
@@ -200,7 +200,7 @@ fn footsteps_of_the_mannequin() {
     let events = object["clips"][0]["events"].as_array().expect("events");
     let of = |side: &str| events.iter().filter(|event| event["payload"] == side).count();
     assert!(of("left") >= 1 && of("left").abs_diff(of("right")) <= 1, "{object:#}");
-    // They are found beside the file from now on, and not proposed again.
+    // The written events are found beside the file and not proposed again.
     let inspected = sinew(&["inspect", &mannequin, "--json"]).json();
     assert_eq!(inspected["clips"][0]["events"].as_array().map(Vec::len), Some(events.len()));
     let again = sinew(&["events", "detect", &mannequin, "--json"]).json();

@@ -1,4 +1,4 @@
-//! Corrections by the user: roles, what is ignored, which bones get bodies; names that nearly fit.
+//! User corrections: roles, ignored bones, bones with or without bodies, and inexact names.
 
 use crate::sinew::{Folder, glb, shared_data, sinew};
 use needs_data::needs_data;
@@ -6,7 +6,7 @@ use serde_json::Value;
 use sinew::anim::{Clip, Rig};
 use sinew_scenes::mannequin::mannequin;
 
-/// The mannequin with numbers for names, and its walk.
+/// The mannequin with numbers for joint names, and its walk.
 fn numbered(folder: &Folder) -> (String, Rig) {
     let mannequin = mannequin();
     let mut rig = mannequin.rig;
@@ -27,13 +27,13 @@ fn bone_of(bodies: &[(String, String)], role: &str) -> Option<String> {
 }
 
 #[test]
-fn roles_are_as_the_user_says() {
+fn given_roles_are_used() {
     let folder = Folder::new("said-roles");
     let (file, _) = numbered(&folder);
     let build = |extra: &[&str]| sinew(&[&["ragdoll", "build", &file, "--json"], extra].concat());
     let before = bodies(&build(&[]).json());
     let [chest, spine] = ["chest", "spine"].map(|role| bone_of(&before, role).expect("a part of the trunk"));
-    // The two parts of the trunk by other names: the one that is said counts, and its confidence is whole.
+    // The two parts of the trunk get each other's roles. The given roles are used with full confidence.
     let object =
         build(&["--role", &format!("upperChest={chest}"), "--role", &format!("Chest={spine}")]).json();
     let after = bodies(&object);
@@ -42,7 +42,7 @@ fn roles_are_as_the_user_says() {
     assert_eq!((bone_of(&after, "spine"), after.len()), (None, before.len()));
     let body = object["bodies"].as_array().expect("bodies").iter().find(|body| body["role"] == "chest");
     assert_eq!(body.expect("a chest")["confidence"], 1.0);
-    // The same in settings beside the file, which bake and the doctor follow, too.
+    // The same by a settings file beside the character, which `bake` and the doctor read as well.
     let settings = format!(
         r#"{{"sinew":"ragdoll-settings","version":1,"bones":{{"{chest}":{{"role":"upperChest"}},"{spine}":{{"role":"chest"}}}}}}"#
     );
@@ -56,7 +56,7 @@ fn roles_are_as_the_user_says() {
 }
 
 #[test]
-fn what_is_ignored_and_who_gets_a_body() {
+fn ignored_bones_and_body_choices_are_applied() {
     let folder = Folder::new("said-bodies");
     let (file, _) = numbered(&folder);
     let build =
@@ -69,12 +69,12 @@ fn what_is_ignored_and_who_gets_a_body() {
     let stump = build(&["--ignore", &hand]);
     assert!(stump.iter().all(|(_, bone)| *bone != hand), "{stump:?}");
     assert!(stump.iter().any(|(_, bone)| *bone == forearm), "{stump:?}");
-    // All below it goes along.
+    // Its descendants are ignored as well.
     let shorter = build(&["--ignore", &forearm]);
     assert!(shorter.iter().all(|(_, bone)| *bone != forearm && *bone != hand), "{shorter:?}");
     let arm = bone_of(&before, "leftUpperArm").expect("an arm");
     assert!(shorter.iter().any(|(_, bone)| *bone == arm), "{shorter:?}");
-    assert_eq!(build(&["--body", &forearm]), before, "it has one already");
+    assert_eq!(build(&["--body", &forearm]), before, "a bone with a body keeps it");
     for command in [["bake"].as_slice(), &["ragdoll", "doctor"], &["ragdoll", "export"]] {
         let run = sinew(&[command, &["--help"]].concat());
         for option in ["--role", "--ignore", "--body", "--no-body", "--height", "--unit", "--mass"] {
@@ -83,9 +83,9 @@ fn what_is_ignored_and_who_gets_a_body() {
     }
 }
 
-/// Every command that builds heeds every correction.
+/// Every command that builds a ragdoll applies every correction.
 #[test]
-fn every_command_that_builds_heeds_every_correction() {
+fn every_build_command_applies_every_correction() {
     let folder = Folder::new("said-everywhere");
     let (file, _) = numbered(&folder);
     let hand =
@@ -100,20 +100,20 @@ fn every_command_that_builds_heeds_every_correction() {
     for command in commands {
         let run = |extra: &[&str]| {
             let mut object = sinew(&[command, extra].concat()).json();
-            // How long it took is another every time.
+            // Timings differ from run to run.
             if let Some(object) = object.as_object_mut() {
                 object.retain(|key, _| !["realtime_factor", "build_ms"].contains(&key.as_str()));
             }
-            // A model has the figures that its report leaves out.
+            // The model file contains values that the report omits.
             (object, std::fs::read(&model).unwrap_or_default())
         };
         let plain = run(&[]);
         let measures = [["--height", "1.2"], ["--unit", "0.7"], ["--mass", "4000"]];
         let bones = [["--no-body", "hand"], ["--ignore", hand.as_str()]];
-        // The doctor has nothing to say of a body without hands.
+        // The doctor reports nothing about missing hands.
         let of_bones = if command.contains(&"doctor") { &[][..] } else { &bones[..] };
         for extra in measures.iter().chain(of_bones) {
-            assert_ne!(run(extra), plain, "{command:?} does not heed {extra:?}");
+            assert_ne!(run(extra), plain, "{command:?} ignores {extra:?}");
         }
         let odd = ["--role", "hips=Bnoe_0"];
         assert!(sinew(&[command, &odd].concat()).refusal(1).ends_with("(--role hips=Bnoe_0)"), "{command:?}");
@@ -121,12 +121,12 @@ fn every_command_that_builds_heeds_every_correction() {
 }
 
 #[test]
-fn names_that_nothing_has_are_told_with_the_nearest() {
+fn unknown_names_are_reported_with_the_nearest() {
     let folder = Folder::new("said-names");
     let (file, rig) = numbered(&folder);
     let line =
         |extra: &[&str]| sinew(&[&["ragdoll", "build", file.as_str()], extra].concat()).refusal(1).to_owned();
-    // The file has a node for the mesh, too.
+    // The file also has a node for the mesh.
     let near = format!("the nearest of {} are Bone_0, Bone_1, Bone_2", rig.joints.len() + 1);
     assert_eq!(
         line(&["--role", "hips=Bnoe_0"]),
@@ -147,13 +147,13 @@ fn names_that_nothing_has_are_told_with_the_nearest() {
         "{run:?}"
     );
     let twice = ["ragdoll", "build", &file, "--role", "hips=Bone_0", "--role", "hips=Bone_1"];
-    assert!(sinew(&twice).refusal(2).contains("--role hips=Bone_1 is said twice"));
+    assert!(sinew(&twice).refusal(2).contains("--role hips=Bone_1 is given twice"));
     let all = line(&["--ignore", "Bone_0"]);
     assert!(all.ends_with("nothing that moves skin is left (--ignore)"), "{all}");
 }
 
 #[test]
-fn clips_are_found_without_case_and_by_words() {
+fn clips_are_found_by_words_ignoring_case() {
     let folder = Folder::new("said-clips");
     let (file, _) = numbered(&folder);
     let out = folder.path("out.glb");
@@ -173,7 +173,7 @@ fn clips_are_found_without_case_and_by_words() {
 }
 
 #[test]
-fn a_hit_on_what_has_no_body_meets_the_nearest_and_says_so() {
+fn hit_on_a_bone_without_body_uses_the_nearest_with_a_note() {
     let folder = Folder::new("said-hits");
     let (file, _) = numbered(&folder);
     let out = folder.path("out.glb");
@@ -197,10 +197,10 @@ fn a_hit_on_what_has_no_body_meets_the_nearest_and_says_so() {
     assert_eq!(hits(&baked(&[], "leftToes")), 1);
 }
 
-/// A creature has a spine as well, by other names.
+/// A creature has spine roles with other names.
 #[needs_data]
 #[test]
-fn a_hit_on_the_chest_of_a_creature_meets_its_spine() {
+fn hit_on_the_chest_of_a_creature_uses_its_spine() {
     let data = shared_data();
     let folder = Folder::new("said-fox");
     let (file, out) = (data.join("rigs/Fox.glb").display().to_string(), folder.path("out.glb"));
@@ -244,7 +244,7 @@ fn couple() -> Rig {
 }
 
 #[test]
-fn one_of_several_characters_is_picked() {
+fn character_option_picks_one_of_several() {
     let folder = Folder::new("couple");
     let file = folder.file("couple.glb", glb(&couple(), &[]));
     let build = |extra: &[&str]| sinew(&[&["ragdoll", "build", &file, "--json"], extra].concat());

@@ -1,4 +1,4 @@
-//! The demo: complete, and a simulation, not a choreography.
+//! `sinew demo`: complete output from a real simulation.
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, sinew};
@@ -9,14 +9,14 @@ use sinew::ragdoll::{BakeInput, Baked, FallQuality, State, bake};
 use sinew_scenes::cabin::{PORCH_HEIGHT, Site};
 use sinew_scenes::demo::Demo;
 
-/// Enough to fall and lie still, even after hanging over the railing for a while.
+/// Enough time to fall and come to rest, even after hanging over the railing for a while.
 const SECONDS: f32 = 9.0;
 
 fn fall(demo: &Demo) -> Baked {
     bake(&BakeInput { seconds: SECONDS, ..demo.input() })
 }
 
-/// Section 4 of the specification, for a fall in which nothing is faster than 15 m/s.
+/// Checks the limits of section 4 of the specification, for a fall slower than 15 m/s.
 fn check_gates(what: &str, q: &FallQuality) {
     assert_eq!(q.nan, 0, "{what}");
     let gates = [
@@ -40,7 +40,7 @@ fn positions(demo: &Demo, baked: &Baked, pose: &[LocalTransform]) -> Vec<Vec3> {
     model.iter().map(|joint| joint.translation).collect()
 }
 
-/// Joint positions in the last frame in which it is limp.
+/// Joint positions in the last limp frame.
 fn lying(demo: &Demo, baked: &Baked) -> Vec<Vec3> {
     let limp = baked.frames.iter().rev().find(|frame| frame.state == State::Limp);
     positions(demo, baked, &limp.expect("it goes limp").pose)
@@ -55,7 +55,7 @@ fn highest(points: &[Vec3]) -> f32 {
 }
 
 #[test]
-fn another_hit_is_another_fall_as_good() {
+fn other_hits_give_other_falls_of_the_same_quality() {
     let demo = Demo::new(Site::CabinWithStairs);
     let shown = fall(&demo);
     check_gates("as shown", &shown.quality);
@@ -74,7 +74,7 @@ fn another_hit_is_another_fall_as_good() {
 }
 
 #[test]
-fn it_falls_down_the_stairs_and_without_stairs_flat() {
+fn demo_falls_down_the_stairs_and_flat_without_them() {
     let stairs = Demo::new(Site::CabinWithStairs);
     let baked = fall(&stairs);
     let limp = baked.frames.iter().find(|frame| frame.state == State::Limp).expect("it goes limp");
@@ -89,14 +89,14 @@ fn it_falls_down_the_stairs_and_without_stairs_flat() {
 }
 
 #[test]
-fn the_same_demo_is_the_same_state() {
+fn equal_demos_give_equal_states() {
     let demo = Demo::new(Site::CabinWithStairs);
     let hash = || bake(&BakeInput { seconds: 3.0, ..demo.input() }).hash;
     assert_eq!(hash(), hash());
 }
 
 #[test]
-fn it_writes_the_file_the_picture_and_the_figures() {
+fn demo_writes_file_picture_and_report() {
     let folder = Folder::new("demo");
     let out = folder.path("new/folder");
     let object = sinew(&["demo", "--out", &out, "--json"]).json();

@@ -1,4 +1,4 @@
-//! `sinew ragdoll export`: what other engines read back is what was there.
+//! `sinew ragdoll export`: exported files read back give the same ragdoll.
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, gltf_files, shared_data, sinew};
@@ -19,19 +19,19 @@ fn built(rig: &Rig) -> RagdollDef {
     build(rig, &analysis, &BuildOptions::default()).expect("bones").0
 }
 
-/// Two places are the same within 0.1 mm and 1e-4 rad.
+/// Checks that two places agree within 0.1 mm and 1e-3 rad.
 fn assert_same(a: Transform, b: Transform, what: &str) {
     let (off, turned) = ((a.translation - b.translation).length(), a.rotation.angle_to(b.rotation));
     assert!(off < 1e-4 && turned < 1e-3, "{what}: {off} m, {turned} rad");
 }
 
-/// Checks that the definition comes back from our own reader of MuJoCo models.
+/// Checks that our MuJoCo reader recovers the definition.
 fn check_mjcf(def: &RagdollDef, text: &str, what: &str) {
     let model = read_mjcf(text.as_bytes()).unwrap_or_else(|error| panic!("{what}: {error}"));
     let back = model.to_ragdoll().unwrap_or_else(|error| panic!("{what}: {error}")).def;
     assert_eq!(back.bodies.len(), def.bodies.len(), "{what}");
     let own = |name: &str| def.bodies.iter().position(|body| body.bone == name).expect("a bone of ours");
-    // It may stand higher, where shapes reach below the soles.
+    // The model may be higher if shapes reach below the soles.
     let is_in_place = |body: &&RagdollBodyDef| !is_moved(&def.bodies[own(&body.bone)].shape);
     let fixed = back.bodies.iter().find(is_in_place).expect("a body that is no hull");
     let height = |body: &RagdollBodyDef| body.character_from_body.translation.y;
@@ -59,7 +59,7 @@ fn check_mjcf(def: &RagdollDef, text: &str, what: &str) {
             def.bodies[body].character_from_body.point(frame.translation)
         };
         let off = at(&back, joint.child, joint.frame_child) - lift.point(at(def, child, was.frame_child));
-        // A weld has no pivot, and no friction.
+        // A weld has no pivot and no friction.
         if was.kind == JointKind::Fixed {
             assert_eq!(joint.kind, JointKind::Fixed, "{what}");
             continue;
@@ -69,7 +69,7 @@ fn check_mjcf(def: &RagdollDef, text: &str, what: &str) {
         if let (JointKind::Hinge { limit: Some(a) }, JointKind::Hinge { limit: Some(b) }) =
             (joint.kind, was.kind)
         {
-            // The reader takes the pose of the file for the zero.
+            // The reader treats the pose of the file as zero.
             let turn = |body: usize| def.bodies[body].character_from_body.rotation;
             let parent = turn(was.parent) * was.frame_parent.rotation;
             let bind = hinge_angle(parent.inverse() * (turn(child) * was.frame_child.rotation));
@@ -93,18 +93,18 @@ fn check_mjcf(def: &RagdollDef, text: &str, what: &str) {
     assert!(had.iter().all(|pair| kept.contains(pair)), "{what}");
 }
 
-/// Shapes whose box has its middle elsewhere: read back, the body's frame is there.
+/// True for shapes whose bounding box has another centre: the body frame read back is there.
 fn is_moved(shape: &Shape) -> bool {
     matches!(shape, Shape::Hull(_))
 }
 
-/// Shapes that the format does not have.
+/// True for shapes that the format lacks.
 fn is_changed(shape: &Shape) -> bool {
     matches!(shape, Shape::TaperedCapsule { .. } | Shape::Cone { .. } | Shape::Hull(_))
 }
 
 #[test]
-fn a_mujoco_model_reads_back() {
+fn mujoco_model_reads_back() {
     let folder = Folder::new("mjcf");
     let (file, out) = (folder.mannequin(), folder.path("mannequin.xml"));
     let object = sinew(&["ragdoll", "export", &file, "--as", "mjcf", "-o", &out, "--json"]).json();
@@ -117,7 +117,7 @@ fn a_mujoco_model_reads_back() {
 
 #[needs_data]
 #[test]
-fn rigs_of_others_read_back_from_mujoco_models() {
+fn foreign_rigs_read_back_from_mujoco_models() {
     let data = shared_data();
     for file in gltf_files(&data.join("rigs")) {
         let document = load_gltf(&file, ReadOptions::default()).expect("a file of the collection");
@@ -142,7 +142,7 @@ fn local(node: &Value) -> Transform {
     Transform::new(Vec3::from_slice(&t), Rotation::from_xyzw(r[0], r[1], r[2], r[3]))
 }
 
-/// Checks what the draft says of a joint: it holds together, and turns as far as the joint does about each axis.
+/// Checks a joint against the draft: no linear motion, and the joint's range about each axis.
 fn check_limits(kind: &JointKind, limits: &[Value], what: &str) {
     let of = |key: &str, axes: &[u64]| {
         let is = |limit: &&Value| {
@@ -176,7 +176,7 @@ fn check_limits(kind: &JointKind, limits: &[Value], what: &str) {
     }
 }
 
-/// A file with physics, beside what it was made of.
+/// A file with physics and its sources.
 struct Written<'a> {
     def: &'a RagdollDef,
     document: &'a Document,
@@ -257,7 +257,7 @@ impl Written<'_> {
     }
 }
 
-/// Checks what the file says against the definition.
+/// Checks the file against the definition.
 fn check_khr(def: &RagdollDef, document: &Document, bind_model: &[Affine], bytes: &[u8], what: &str) {
     let back = read_gltf(bytes, ReadOptions::default(), &mut no_files)
         .unwrap_or_else(|error| panic!("{what}: {error}"));
@@ -276,7 +276,7 @@ fn check_khr(def: &RagdollDef, document: &Document, bind_model: &[Affine], bytes
 }
 
 #[test]
-fn physics_in_the_users_own_file_reads_back() {
+fn physics_added_to_the_users_file_reads_back() {
     let folder = Folder::new("khr");
     let (file, out) = (folder.mannequin(), folder.path("mannequin.khr.glb"));
     let object = sinew(&["ragdoll", "export", &file, "--as", "khr", "--json"]).json();
@@ -286,20 +286,20 @@ fn physics_in_the_users_own_file_reads_back() {
     let analysis = analyze(&document.rig).expect("a skin");
     let bytes = std::fs::read(&out).expect("written");
     check_khr(&built(&document.rig), &document, &analysis.bind_model, &bytes, "mannequin");
-    // The new nodes are nobody's bones.
+    // The new nodes are not bones.
     let with_physics = load_gltf(&out, ReadOptions::default()).expect("a character still");
     let (before, after) = (built(&document.rig), built(&with_physics.rig));
     let sizes = |def: &RagdollDef| {
         def.bodies.iter().map(|body| (body.bone.clone(), body.shape.clone())).collect::<Vec<_>>()
     };
     assert_eq!(sizes(&before), sizes(&after));
-    // Twice is once too much.
+    // A second export is an error.
     let again = sinew(&["ragdoll", "export", &out, "--as", "khr", "-o", &folder.path("twice.glb")]);
     assert!(again.refusal(1).contains("the file already has physics"), "{again:?}");
     let definition = folder.path("m.sinew.json");
     assert_eq!(sinew(&["ragdoll", "build", &file, "-o", &definition]).code, Some(0));
     let run = sinew(&["ragdoll", "export", &definition, "--as", "khr"]);
-    assert!(run.refusal(1).contains("name that, and this one with --ragdoll"), "{run:?}");
+    assert!(run.refusal(1).contains("give that file, and this one with --ragdoll"), "{run:?}");
     let run = sinew(&["ragdoll", "export", &file, "--ragdoll", &definition, "--as", "khr", "-o", &out]);
     assert_eq!(run.code, Some(0), "{run:?}");
     assert_eq!(std::fs::read(&out).expect("written"), bytes);
@@ -307,7 +307,7 @@ fn physics_in_the_users_own_file_reads_back() {
 
 #[needs_data]
 #[test]
-fn rigs_of_others_read_back_with_physics() {
+fn foreign_rigs_read_back_with_physics() {
     let data = shared_data();
     for file in gltf_files(&data.join("rigs")) {
         let document = load_gltf(&file, ReadOptions::default()).expect("a file of the collection");
@@ -319,9 +319,9 @@ fn rigs_of_others_read_back_with_physics() {
     }
 }
 
-/// Shapes, joints and names that a build does not give, but a person may write.
+/// Shapes, joints and names that the build never produces, but a person may write.
 #[test]
-fn whatever_a_definition_holds_is_written() {
+fn every_shape_joint_and_name_is_written() {
     let folder = Folder::new("kinds");
     let document = load_gltf(folder.mannequin(), ReadOptions::default()).expect("a character");
     let analysis = analyze(&document.rig).expect("a skin");
@@ -354,7 +354,7 @@ fn whatever_a_definition_holds_is_written() {
     for what in ["a hull became a box", "mean radius", "a cone became a cylinder", "hinges at right angles"] {
         assert!(mjcf.notes.iter().any(|note| note.contains(what)), "{what}: {:?}", mjcf.notes);
     }
-    // A name that two bodies have is made two names.
+    // Equal names of two bodies are made distinct.
     def.bodies[4].bone = def.bodies[3].bone.clone();
     let model = read_mjcf(write_mjcf(&def, "twins").text.as_bytes()).expect("a model");
     assert_eq!(model.bodies.len(), def.bodies.len() + 1);

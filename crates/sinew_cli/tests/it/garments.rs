@@ -1,4 +1,4 @@
-//! Capes and skirts in `bake`, `inspect` and `ragdoll doctor`: of a rig with such bones, and of settings that are wrong.
+//! Capes and skirts in `bake`, `inspect` and `ragdoll doctor`: rigs with such bones, and invalid settings.
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, glb, sinew};
@@ -11,7 +11,7 @@ use sinew_scenes::dressed::{CAPE, SKIRT, dressed_rig};
 use sinew_scenes::skirted::{CELLS, skirted_rig};
 
 #[test]
-fn a_cape_moves_in_the_bake_that_settings_ask_for() {
+fn cape_of_the_settings_moves_in_the_bake() {
     let folder = Folder::new("garments");
     let rig = dressed_rig(&[&SKIRT, &CAPE]);
     let file = folder.file("dressed.glb", glb(&rig, &[]));
@@ -40,7 +40,7 @@ fn a_cape_moves_in_the_bake_that_settings_ask_for() {
         };
         (object["garments"].clone(), clip.channels.iter().filter(turns).count())
     };
-    // Not by default.
+    // Garments are off by default.
     assert_eq!(bake(&[]), (json!({"names": [], "bones": 0, "particles": 0, "left_out": []}), 0));
     let settings = |garments: &str| {
         let text = format!(r#"{{"sinew": "ragdoll-settings", "version": 1, "garments": {garments}}}"#);
@@ -57,9 +57,10 @@ fn a_cape_moves_in_the_bake_that_settings_ask_for() {
     assert!(error.contains("garments[0].chains[0]") && error.contains("cape_0_0"), "{error}");
 }
 
-/// A skirt that is a mesh becomes cloth in the file that is written: one joint more for each particle, on which its vertices hang, and nothing else changes.
+/// A skirt mesh becomes cloth in the written file: one joint per particle, with the skirt's vertices weighted to these
+/// joints; the rest is unchanged.
 #[test]
-fn a_mesh_becomes_cloth_in_the_bake_that_settings_ask_for() {
+fn mesh_garment_of_the_settings_becomes_cloth_in_the_bake() {
     let folder = Folder::new("mesh_garments");
     let rig = skirted_rig(CELLS);
     let file = folder.file("skirted.glb", glb(&rig, &[]));
@@ -91,10 +92,10 @@ fn a_mesh_becomes_cloth_in_the_bake_that_settings_ask_for() {
         let hangs = slots.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
         assert!(
             hangs.clone().count() > 0 && hangs.clone().all(|(&slot, _)| is_cloth(slot)),
-            "all of it is cloth"
+            "part of the mesh is not cloth"
         );
     }
-    // At rest it is drawn as it was.
+    // At rest it is drawn as in the input.
     let drawn = |rig: &sinew::anim::Rig| {
         let rest: Vec<_> = rig.joints.iter().map(|joint| joint.rest).collect();
         let (mut model, mut places, mut normals) = (Vec::new(), Vec::new(), Vec::new());
@@ -114,12 +115,13 @@ fn a_mesh_becomes_cloth_in_the_bake_that_settings_ask_for() {
 
     assert_eq!(bake(&["--no-garments"]).json()["garments"]["particles"], 0);
     let bare = load_gltf(&out, ReadOptions::default()).expect("it can be read").rig;
-    assert_eq!(bare.meshes, before.meshes, "the file as it was");
+    assert_eq!(bare.meshes, before.meshes, "the meshes changed");
 }
 
-/// `inspect` and the doctor tell of garments that settings ask for: of a mesh how many particles it takes, and that it is drawn coarser than it moves.
+/// `inspect` and the doctor report garments of the settings: for a mesh, its particle count, and that triangles are
+/// drawn coarser than the cloth.
 #[test]
-fn garments_of_settings_are_told() {
+fn garments_of_the_settings_are_reported() {
     let folder = Folder::new("worn_garments");
     let file = folder.file("skirted.glb", glb(&skirted_rig([10, 4]), &[]));
     assert_eq!(sinew(&["inspect", &file, "--json"]).json()["worn"], json!([]));
@@ -158,14 +160,14 @@ fn garments_of_settings_are_told() {
 }
 
 #[test]
-fn settings_of_meshes_that_are_wrong_name_file_and_place() {
+fn invalid_mesh_garment_settings_name_file_and_place() {
     let folder = Folder::new("mesh_garment_errors");
     let file = folder.file("skirted.glb", glb(&skirted_rig(CELLS), &[]));
     let out = folder.path("fall.glb");
     for (garment, place, told) in [
         (r#"{"mesh": "Skrit"}"#, "garments[0].mesh", "Skirt"),
         (r#"{"mesh": "Skirt", "chains": ["hips"]}"#, "garments[0].chains", "not both"),
-        (r#"{"mesh": "Skirt", "held": 2}"#, "garments[0].held", "nothing of it is left to hang"),
+        (r#"{"mesh": "Skirt", "held": 2}"#, "garments[0].held", "no part can move"),
         (r#"{"chains": ["hips"], "held": 0.1}"#, "garments[0].held", "only a garment with a `mesh`"),
         (r#"{"mesh": "Skirt", "most_particles": 2}"#, "garments[0].most_particles", "between 4 and 4000"),
         (r#"{"mesh": "Skirt"}, {"mesh": "Tartan"}"#, "garments[1].mesh", "a garment already"),

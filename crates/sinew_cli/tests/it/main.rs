@@ -1,4 +1,4 @@
-//! The binary as its users meet it: arguments in, exit code, stdout and stderr out.
+//! Tests of the binary from outside: arguments, exit code, stdout and stderr.
 
 mod bake;
 mod boxes;
@@ -22,7 +22,7 @@ mod verdicts;
 mod view;
 mod window;
 
-/// The reader of `docs/contract.md` that `cargo xtask` holds the demo's report against.
+/// The parser of `docs/contract.md` that `cargo xtask` uses to check the demo's report.
 #[path = "../../../../xtask/src/contract.rs"]
 #[allow(dead_code)] // xtask's tidy rule uses the rest of it
 mod contract_table;

@@ -1,4 +1,4 @@
-//! Manners of the command where something is odd: outputs, names, notes.
+//! Behaviour of the commands in unusual cases: outputs, names, notes, pipes.
 
 use crate::sinew::{Folder, Run, command, glb, shared_data, sinew};
 use needs_data::needs_data;
@@ -16,7 +16,7 @@ fn notes(object: &Value) -> Vec<String> {
 }
 
 #[test]
-fn an_output_that_says_nothing_or_something_else_is_refused_with_what_there_is() {
+fn output_with_unknown_extension_is_rejected_with_the_known_ones() {
     let folder = Folder::new("extensions");
     let file = folder.mannequin();
     let commands: [(&[&str], &str); 9] = [
@@ -40,13 +40,13 @@ fn an_output_that_says_nothing_or_something_else_is_refused_with_what_there_is()
     }
     let picture = folder.path("same.gif");
     let run = sinew(&["view", "pendulum", "--picture", &picture, "--movie", &picture, "--seconds", "0.1"]);
-    assert!(run.refusal(2).ends_with("is asked for twice: give each output a name of its own"));
+    assert!(run.refusal(2).ends_with("is given twice: each output needs its own name"));
     assert_eq!(folder.names(), ["mannequin.glb"]);
 }
 
 #[cfg(unix)]
 #[test]
-fn a_link_is_written_through_and_a_device_never_replaced() {
+fn links_are_followed_and_devices_never_replaced() {
     let folder = Folder::new("links");
     let file = folder.mannequin();
     let (target, link) = (folder.file("target.json", "old"), folder.path("link.json"));
@@ -58,7 +58,7 @@ fn a_link_is_written_through_and_a_device_never_replaced() {
     std::os::unix::fs::symlink("/dev/null", &device).expect("a link");
     let run = sinew(&["ragdoll", "build", &file, "-o", &device]);
     assert_eq!(run.refusal(1), format!("error: {device}: cannot write: exists and is not a regular file"));
-    // A link to an input is that input.
+    // A link to an input counts as that input.
     let own = folder.path("own.glb");
     std::os::unix::fs::symlink("mannequin.glb", &own).expect("a link");
     assert_eq!(sinew(&["bake", &file, "-o", &own]).code, Some(2));
@@ -71,7 +71,10 @@ fn errors_name_the_option_that_helps() {
         MOTION\nFrames: 3\nFrame Time: 0.05\n0 0 0\n1 1 1\n";
     let short = folder.file("short.bvh", bvh);
     let line = sinew(&["convert", &short, &folder.path("out.glb")]).refusal(1).to_owned();
-    assert!(line.contains("declares 3 frames, has 2; 'sinew convert --any-rows' takes those"), "{line}");
+    assert!(
+        line.contains("declares 3 frames, has 2; 'sinew convert --any-rows' accepts the existing ones"),
+        "{line}"
+    );
     assert_eq!(sinew(&["convert", &short, &folder.path("out.glb"), "--any-rows"]).code, Some(0));
     let mimic = folder.file("run.txt", r#"{"Loop":"wrap","Frames":[[0.1,0,1,0,1,0,0,0]]}"#);
     let line = sinew(&["inspect", &mimic]).refusal(1).to_owned();
@@ -106,7 +109,7 @@ fn two_bakes_give_two_clips() {
     let (_, second) = bake(&first, "second.glb", &["--clip", "Walk"]);
     let (_, third) = bake(&second, "third.glb", &["--clip", "Walk", "--name", "stumbles"]);
     assert_eq!(names(&third), ["Walk", "sinew", "sinew 2", "stumbles"]);
-    // What was baked is not what it does before the next fall.
+    // A baked clip is not chosen as the motion before the next fall.
     let still = folder.file("still.glb", glb(&mannequin().rig, &[]));
     let (_, once) = bake(&still, "once.glb", &[]);
     let (run, twice) = bake(&once, "twice.glb", &[]);
@@ -120,29 +123,33 @@ fn two_bakes_give_two_clips() {
 }
 
 #[test]
-fn what_does_not_happen_is_said() {
+fn steps_that_do_not_happen_are_reported() {
     let folder = Folder::new("said");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));
     let bake = |extra: &[&str]| sinew(&[&["bake", file.as_str(), "-o", &out], extra].concat());
-    let said = |extra: &[&str], what: &str| {
+    let check_output = |extra: &[&str], what: &str| {
         let object = bake(&[extra, &["--json"]].concat()).json();
         let all = notes(&object);
         assert_eq!(all.iter().filter(|note| note.contains(what)).count(), 1, "{what}: {all:?}");
-        assert!(bake(extra).stdout.contains("note: "), "in words, too");
+        assert!(bake(extra).stdout.contains("note: "), "the text output has no note");
         all
     };
-    let late = said(&["--seconds", "1", "--limp-at", "2"], "--limp-at 2 s is not before the end, at 1 s");
-    assert!(late.iter().all(|note| !note.contains("does not get up")), "nothing fell: {late:?}");
-    said(
+    let late =
+        check_output(&["--seconds", "1", "--limp-at", "2"], "--limp-at 2 s is not before the end, at 1 s");
+    assert!(
+        late.iter().all(|note| !note.contains("does not get up")),
+        "a note about getting up without a fall: {late:?}"
+    );
+    check_output(
         &["--seconds", "6", "--no-builtin-motions"],
-        "it does not get up: no clip of its own does it, and --no-builtin-motions leaves out Sinew's",
+        "it does not get up: it has no get-up clip, and --no-builtin-motions leaves out the built-in ones",
     );
     let empty = folder.file("empty.json", r#"{"sinew":"world","version":1,"bodies":[]}"#);
     let nowhere = bake(&["--seconds", "1", "--world", &empty]);
-    assert!(nowhere.refusal(1).contains("no ground to stand on; --at X,Y,Z says where"), "{nowhere:?}");
+    assert!(nowhere.refusal(1).contains("no ground to stand on; --at X,Y,Z sets its place"), "{nowhere:?}");
     let nowhere = bake(&["--seconds", "1", "--world", &empty, "--at", "0,0,0"]);
     assert!(nowhere.refusal(1).contains("no ground under the character at 0,0,0; --floor"), "{nowhere:?}");
-    let all = said(&["--seconds", "1", "--at", "0,9,0"], "it does not get up: it touches nothing");
+    let all = check_output(&["--seconds", "1", "--at", "0,9,0"], "it does not get up: it touches nothing");
     assert!(!all.iter().any(|note| note.contains("it stands at")), "{all:?}");
     let half_extents = Vec3::new(9.0, 0.5, 9.0);
     let low = BodyDef {
@@ -152,11 +159,14 @@ fn what_does_not_happen_is_said() {
         ..BodyDef::default()
     };
     let low = folder.file("low.json", write_world(&[low]));
-    said(&["--seconds", "1", "--world", &low, "--at", "0,0,0"], "low.json is 2.50 m below the character");
-    said(&["--seconds", "1", "--world", &low], "it stands at 0.00,-2.50,0.00, the place with room");
+    check_output(
+        &["--seconds", "1", "--world", &low, "--at", "0,0,0"],
+        "low.json is 2.50 m below the character",
+    );
+    check_output(&["--seconds", "1", "--world", &low], "it stands at 0.00,-2.50,0.00, the free place");
 }
 
-/// Nodes of a file may stand in any order; the list does not.
+/// The nodes of a file may be in any order; the list is a tree.
 #[test]
 fn joints_are_listed_as_a_tree() {
     let folder = Folder::new("tree");
@@ -177,10 +187,10 @@ fn joints_are_listed_as_a_tree() {
     assert!(text.contains("  hips\n    arm\n      hand\n    leg\n      foot\n"), "{text}");
 }
 
-/// Some formats list joints level by level; below a joint stands what hangs on it all the same.
+/// For formats that list joints level by level, the list still shows children below their parent.
 #[needs_data]
 #[test]
-fn a_list_level_by_level_is_shown_as_a_tree() {
+fn level_order_joints_are_shown_as_a_tree() {
     let data = shared_data();
     let file = data.join("mocap/deepmimic_humanoid3d.txt").display().to_string();
     let object = sinew(&["inspect", &file, "--json"]).json();
@@ -197,14 +207,14 @@ fn a_list_level_by_level_is_shown_as_a_tree() {
         .collect();
     for (index, &(indent, name)) in rows.iter().enumerate() {
         let above = rows[..index].iter().rev().find(|row| row.0 < indent).map(|row| row.1);
-        let joint = joints.iter().find(|joint| joint["name"] == name).expect("it is one of them");
+        let joint = joints.iter().find(|joint| joint["name"] == name).expect("the joint is listed");
         let parent = joint["parent"].as_u64().map(|parent| joints[parent as usize]["name"].as_str());
         assert_eq!(parent.flatten(), above, "{name}\n{list}");
     }
 }
 
 #[test]
-fn a_role_says_what_it_rests_on() {
+fn roles_state_their_evidence() {
     let folder = Folder::new("rests-on");
     let file = folder.mannequin();
     let object = sinew(&["inspect", &file, "--json"]).json();
@@ -233,9 +243,9 @@ fn every_shape_of_a_body_is_in_the_contract() {
     assert!(missing.is_empty(), "no row for {missing:?}");
 }
 
-/// A rig that is read with every kind of remark says each once.
+/// A rig with every kind of remark produces each remark once.
 #[test]
-fn notes_come_once() {
+fn notes_are_not_repeated() {
     let folder = Folder::new("once");
     let twice = |rig: Rig| folder.file("twice.glb", glb(&rig, &[]));
     let file = twice(mannequin().rig);
@@ -257,10 +267,10 @@ fn notes_come_once() {
     assert!(motion.notes.is_empty());
 }
 
-/// On a full disk nothing is written, and the command says so in a line.
+/// On a full disk the command writes nothing and reports it in one line.
 #[cfg(target_os = "linux")]
 #[test]
-fn output_that_cannot_be_written_is_a_line_and_a_failure() {
+fn unwritable_output_fails_with_one_line() {
     let folder = Folder::new("full-disk");
     let file = folder.mannequin();
     let bad = folder.file("bad.glb", "nothing");
@@ -289,10 +299,10 @@ fn output_that_cannot_be_written_is_a_line_and_a_failure() {
     }
 }
 
-/// A pipe that its reader closes early is no error.
+/// A pipe closed early by its reader is no error.
 #[cfg(unix)]
 #[test]
-fn a_reader_that_goes_is_no_failure() {
+fn closed_pipe_is_no_failure() {
     use std::process::Stdio;
     let mut child = command(&["scenes", "--json"]).stdout(Stdio::piped()).spawn().expect("it starts");
     drop(child.stdout.take());
@@ -300,7 +310,7 @@ fn a_reader_that_goes_is_no_failure() {
 }
 
 #[test]
-fn numbers_out_of_range_are_told_with_the_range() {
+fn numbers_out_of_range_are_reported_with_the_range() {
     let folder = Folder::new("ranges");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));
     let cases: [(&[&str], &str); 8] = [
@@ -321,7 +331,7 @@ fn numbers_out_of_range_are_told_with_the_range() {
 }
 
 #[test]
-fn a_rate_may_be_broken() {
+fn fractional_frame_rate_is_accepted() {
     let folder = Folder::new("rate");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));
     let object = sinew(&["bake", &file, "--fps", "29.97", "--seconds", "1", "-o", &out, "--json"]).json();
@@ -329,7 +339,7 @@ fn a_rate_may_be_broken() {
 }
 
 #[test]
-fn files_of_other_kinds_are_named() {
+fn unsupported_file_kinds_are_named() {
     let folder = Folder::new("foreign");
     fs::write(folder.path("packed.glb"), [0x1f, 0x8b, 8, 0]).expect("it is written");
     let urdf = r#"<?xml version="1.0"?><robot name="arm"><link name="base"/></robot>"#;
@@ -342,14 +352,14 @@ fn files_of_other_kinds_are_named() {
     }
     let absent = sinew(&["bake", &folder.path("no/such.glb"), "-o", "out.glb"]);
     assert!(absent.refusal(1).ends_with("such.glb: no such folder"), "{absent:?}");
-    // A folder that cannot be made, for a file has its name.
+    // A folder that cannot be created because a file has its name.
     let file = folder.file("taken", "");
     let demo = sinew(&["demo", "--out", &format!("{file}/out"), "--width", "16", "--height", "16"]);
     assert!(!demo.refusal(1).contains("os error"), "{demo:?}");
 }
 
 #[test]
-fn what_is_written_is_told_in_one_form() {
+fn written_files_are_reported_in_one_form() {
     let folder = Folder::new("wrote");
     let (file, world) = (folder.mannequin(), folder.path("w.json"));
     let (glb, picture, record) = (folder.path("a.glb"), folder.path("a.png"), folder.path("a.sinewrec"));
@@ -365,7 +375,7 @@ fn what_is_written_is_told_in_one_form() {
             assert!(run.stdout.lines().any(|line| line == format!("wrote {path}")), "{run:?}");
         }
     }
-    // The mannequin is 1.8 m high; twice as large it is 3.6 m.
+    // The mannequin is 1.8 m tall, scaled by two 3.6 m.
     let scaled = sinew(&["boxes", &file, "-o", &world, "--scale", "2", "--max", "2", "--json"]).json();
     let plain = sinew(&["boxes", &file, "-o", &world, "--max", "2", "--json"]).json();
     let height = |object: &Value| object["height_m"].as_f64().expect("a height");
@@ -373,7 +383,7 @@ fn what_is_written_is_told_in_one_form() {
 }
 
 #[test]
-fn a_file_may_come_from_standard_input() {
+fn dash_reads_standard_input() {
     let folder = Folder::new("stdin");
     let file = folder.file("man.glb", glb(&mannequin().rig, &mannequin().clips));
     let piped = |arguments: &[&str]| {

@@ -1,4 +1,4 @@
-//! `sinew ragdoll doctor`, and what definitions of ragdolls go through.
+//! `sinew ragdoll doctor`, and definitions of ragdolls read by the commands.
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, glb, gltf_files, shared_data, sinew};
@@ -24,7 +24,7 @@ fn codes(object: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn the_doctor_finds_mends_and_leaves_the_file_alone() {
+fn doctor_finds_and_repairs_without_changing_the_input() {
     let folder = Folder::new("doctor");
     let (healthy, mut def) = built(&folder);
     let object = sinew(&["ragdoll", "doctor", &healthy, "--json"]).json();
@@ -50,11 +50,11 @@ fn the_doctor_finds_mends_and_leaves_the_file_alone() {
 }
 
 #[test]
-fn a_head_that_the_rig_has_is_given_back() {
+fn missing_head_is_restored_from_the_rig() {
     let folder = Folder::new("head");
     let (_, mut def) = built(&folder);
     let head = def.bodies.iter().position(|body| body.role == "head").expect("a head");
-    // Every body behind moves up by one.
+    // Later bodies move up by one index.
     def.bodies.remove(head);
     def.joints.remove(head - 1);
     for joint in &mut def.joints {
@@ -76,10 +76,10 @@ fn a_head_that_the_rig_has_is_given_back() {
     assert!(mended.bodies.iter().any(|body| body.role == "head"));
 }
 
-/// No false alarm: what a build gives from a sound rig has no errors.
+/// No false alarms: a build from a good rig has no errors.
 #[needs_data]
 #[test]
-fn rigs_of_others_have_no_errors() {
+fn foreign_rigs_have_no_errors() {
     let data = shared_data();
     for file in gltf_files(&data.join("rigs")) {
         let run = sinew(&["ragdoll", "doctor", &file, "--json"]);
@@ -93,10 +93,10 @@ fn rigs_of_others_have_no_errors() {
     }
 }
 
-/// The fish's skin reaches far around its bodies: it lies in the floor, which is said with the bone and a remedy.
+/// The fish's skin extends far beyond its bodies and sinks into the floor: the finding names the bone and a remedy.
 #[needs_data]
 #[test]
-fn skin_in_the_floor_is_told() {
+fn skin_in_the_floor_is_reported() {
     let data = shared_data();
     let file = data.join("rigs/quaternius_MandarinFish.glb").display().to_string();
     let object = sinew(&["ragdoll", "doctor", &file, "--json"]).json();
@@ -112,7 +112,7 @@ fn skin_in_the_floor_is_told() {
 
 #[needs_data]
 #[test]
-fn models_of_others_are_examined() {
+fn foreign_models_are_examined() {
     let data = shared_data();
     for name in ["mujoco_humanoid.xml", "bullet_humanoid.urdf"] {
         let file = data.join("robots").join(name).display().to_string();
@@ -126,10 +126,10 @@ fn models_of_others_are_examined() {
     assert!(codes(&object).contains(&"limits-missing"), "{object:#}");
 }
 
-/// Failings planted into a model that others wrote.
+/// Defects put into another author's model.
 #[needs_data]
 #[test]
-fn failings_in_models_of_others_are_named() {
+fn defects_in_foreign_models_are_reported() {
     let data = shared_data();
     let folder = Folder::new("models");
     let text = std::fs::read_to_string(data.join("robots/mujoco_humanoid.xml")).expect("the model");
@@ -153,7 +153,7 @@ fn failings_in_models_of_others_are_named() {
 }
 
 #[test]
-fn files_that_are_no_ragdoll_are_refused_in_a_line() {
+fn files_without_a_ragdoll_are_rejected_with_one_line() {
     let folder = Folder::new("doctor-refusals");
     for (name, text, reason) in [
         (
@@ -182,7 +182,7 @@ fn files_that_are_no_ragdoll_are_refused_in_a_line() {
 }
 
 #[test]
-fn settings_beside_the_character_are_heeded() {
+fn settings_beside_the_character_are_applied() {
     let folder = Folder::new("settings");
     let file = folder.mannequin();
     let build = |more: &[&str]| sinew(&[&["ragdoll", "build", &file, "--json"], more].concat());
@@ -196,7 +196,7 @@ fn settings_beside_the_character_are_heeded() {
     let head = bodies.iter().find(|body| body["role"] == "head").expect("a head");
     assert_eq!(head["shape"], "sphere");
     assert!(settled["notes"][0].as_str().is_some_and(|note| note.starts_with("with the settings of ")));
-    // The command line has the last word.
+    // The command line has priority.
     assert!((mass(&build(&["--mass", "50"]).json()) - 50.0).abs() < 1e-3);
     let (settings, _) = (folder.path("mannequin.ragdoll.json"), built(&folder));
     let definition = folder.path("mannequin.sinew.json");
@@ -210,7 +210,7 @@ fn settings_beside_the_character_are_heeded() {
 }
 
 #[test]
-fn an_edited_definition_is_what_falls() {
+fn edited_definition_is_used_by_bake() {
     let folder = Folder::new("edited");
     let (path, mut def) = built(&folder);
     let (rig, out) = (folder.path("mannequin.glb"), folder.path("fall.glb"));
@@ -231,9 +231,9 @@ fn an_edited_definition_is_what_falls() {
     assert!(line.contains("bone `elsewhere` is not in this rig") && line.ends_with("(bodies[3])"), "{line}");
 }
 
-/// A definition whose numbers lie: whatever it says, a command does its work or refuses it in a line.
+/// Definitions with wrong numbers: a command either works or fails with one line.
 #[test]
-fn numbers_that_lie_do_no_harm() {
+fn wrong_numbers_give_results_or_errors() {
     let folder = Folder::new("lies");
     let (path, _) = built(&folder);
     let text = std::fs::read_to_string(&path).expect("a definition");
@@ -276,9 +276,9 @@ fn numbers_that_lie_do_no_harm() {
     }
 }
 
-/// A fall that went wrong can be looked at alone, and threads change nothing.
+/// Single falls of a gate can be repeated by number, and threads change nothing.
 #[test]
-fn falls_of_a_gate_have_numbers() {
+fn gate_falls_can_be_repeated_by_number() {
     let folder = Folder::new("gate");
     let file = folder.mannequin();
     let gate = |more: &[&str]| {
@@ -295,10 +295,10 @@ fn falls_of_a_gate_have_numbers() {
     assert_eq!(sinew(&["ragdoll", "build", &file, "--gate-from", "7"]).code, Some(2));
 }
 
-/// Limits are learned from the file's own clips, as the command line or the settings say; a file without clips is refused
-/// in one line.
+/// Limits are learned from the file's clips if the command line or the settings ask for it; a file without clips is
+/// rejected with one line.
 #[test]
-fn limits_come_from_clips() {
+fn limits_can_be_learned_from_clips() {
     let folder = Folder::new("limits");
     let file = folder.mannequin();
     let build = |more: &[&str]| sinew(&[&["ragdoll", "build", &file, "--json"], more].concat()).json();

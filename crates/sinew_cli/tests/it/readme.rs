@@ -1,4 +1,4 @@
-//! The README's own lines, one after the other, as a reader would type them.
+//! Runs the commands of the README in order, as a reader would.
 
 use crate::sinew::{Folder, Run, command, shared_data};
 use needs_data::needs_data;
@@ -6,10 +6,10 @@ use std::fs;
 
 const README: &str = include_str!("../../../../README.md");
 
-/// Words before the arguments of `sinew` there.
+/// Text before the arguments of `sinew` in the README.
 const LEAD: &str = "cargo run --release -- ";
 
-/// Arguments of the lines below the heading, without comments.
+/// Arguments of the commands below a heading, without comments.
 fn lines(heading: &str) -> Vec<Vec<&'static str>> {
     let (_, rest) = README.split_once(heading).unwrap_or_else(|| panic!("no heading {heading}"));
     let (_, block) = rest.split_once("```sh\n").expect("a block of commands");
@@ -20,7 +20,7 @@ fn lines(heading: &str) -> Vec<Vec<&'static str>> {
 
 #[needs_data]
 #[test]
-fn its_lines_run_one_after_the_other() {
+fn readme_commands_run_in_order() {
     let data = shared_data();
     for rig in ["rigs/quaternius_cyberpunk_Character.glb", "rigs_wild/platformer_game_Character.glb"] {
         let folder = Folder::new("readme");
@@ -33,7 +33,7 @@ fn its_lines_run_one_after_the_other() {
         let own = lines("## With your own character");
         let others = lines("## The experiments, and a world from a mesh");
         assert!(own.len() >= 7 && others.len() >= 4, "the README has fewer lines than it had");
-        // Windows want a display: `window.rs` opens them.
+        // Windows need a display: `window.rs` tests them.
         let opens_window = |line: &&Vec<&str>| {
             line[0] == "view" && !line.iter().any(|part| ["--picture", "--movie"].contains(part))
         };

@@ -5,14 +5,14 @@ use crate::sinew::{Folder, sinew};
 use sinew_scenes::recording::Recording;
 
 #[test]
-fn a_recording_verifies_and_differs_where_it_differs() {
+fn recording_verifies_and_diff_finds_the_step() {
     let folder = Folder::new("recordings");
     let (mine, theirs) = (folder.path("mine.sinewrec"), folder.path("theirs.sinewrec"));
     let object = sinew(&["record", "pendulum", "-o", &mine, "--steps", "50", "--json"]).json();
     check_keys("record", &object);
     assert_eq!((&object["steps"], &object["key_frames"]), (&50.into(), &3.into()));
     let ran = sinew(&["run", "pendulum", "--steps", "50", "--json"]).json();
-    assert_eq!(ran["hash"], object["hash"], "a recording is a run");
+    assert_eq!(ran["hash"], object["hash"], "recording and run differ");
     let replayed = sinew(&["replay", &mine, "--verify", "--json"]).json();
     check_keys("replay", &replayed);
     assert_eq!(replayed["hash"], object["hash"]);
@@ -24,28 +24,28 @@ fn a_recording_verifies_and_differs_where_it_differs() {
     assert!(differs.refusal(1).contains("another scene or other settings"), "{differs:?}");
     assert!(sinew(&["replay", &mine, "--diff", &mine]).stdout.contains("50 steps, all equal"));
 
-    // Of another version, and with another hash at the last step.
+    // Recorded by another version, and with another hash at the last step.
     let mut recording = Recording::read(&std::fs::read(&mine).expect("it is there")).expect("a recording");
     recording.made_by = "9.1.0".to_owned();
     let tampered = folder.file("tampered.sinewrec", recording.to_bytes());
     assert_eq!(
         sinew(&["replay", &tampered, "--verify"]).code,
         Some(0),
-        "the bits are those of this version all the same"
+        "equal bits of another version verify"
     );
     recording.steps[49].hash ^= 1;
     let tampered = folder.file("tampered.sinewrec", recording.to_bytes());
     let refused = sinew(&["replay", &tampered, "--verify"]);
     let line = refused.refusal(1);
     assert!(line.contains("version 9.1.0, and this is 0.1.0 (step 50)"), "{line}");
-    let told = sinew(&["replay", &tampered]);
-    assert!(told.stdout.contains("from step 50 on"), "{told:?}");
+    let run_again = sinew(&["replay", &tampered]);
+    assert!(run_again.stdout.contains("from step 50 on"), "{run_again:?}");
     let diff = sinew(&["replay", &mine, "--diff", &tampered]);
-    assert!(diff.refusal(1).contains("though in the pose of no body"), "{diff:?}");
+    assert!(diff.refusal(1).contains("but not in the pose of a body"), "{diff:?}");
 }
 
 #[test]
-fn a_flipped_bit_and_a_pose_that_was_never_there_are_told() {
+fn damaged_and_tampered_recordings_are_reported() {
     let folder = Folder::new("recordings-damaged");
     let mine = folder.path("mine.sinewrec");
     assert_eq!(sinew(&["record", "pendulum", "-o", &mine, "--steps", "50"]).code, Some(0));
@@ -66,7 +66,7 @@ fn a_flipped_bit_and_a_pose_that_was_never_there_are_told() {
 }
 
 #[test]
-fn what_cannot_be_recorded_or_replayed_is_a_line() {
+fn invalid_recording_commands_fail_with_one_line() {
     let folder = Folder::new("recordings-refused");
     let file = folder.file("no.sinewrec", "nothing");
     assert_eq!(sinew(&["replay", &file]).refusal(1), format!("error: {file}: is no recording (byte 0)"));

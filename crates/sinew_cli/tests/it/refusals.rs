@@ -1,4 +1,4 @@
-//! Files that must be refused: exit code 1, one line, little memory, nothing written.
+//! Files that must be rejected: exit code 1, one line, little memory, no output.
 
 use crate::sinew::{Folder, Run, command, glb, gltf_files, shared_data, sinew};
 use needs_data::needs_data;
@@ -6,11 +6,11 @@ use sinew::anim::Rig;
 use sinew_scenes::mannequin::mannequin;
 use std::process::Command;
 
-/// Most memory that a refusal may take, KiB, beside the code of the program, which is large with a window in it.
+/// Memory that a rejection may use, KiB, besides the program's code, which is large with a window.
 const MEMORY_KIB: u32 = 40 * 1024;
 
-/// Runs `sinew` where the system denies it more memory than that, if the system can.
-fn frugal(arguments: &[&str]) -> Run {
+/// Runs `sinew` with that memory limit, if the system supports it.
+fn run_with_little_memory(arguments: &[&str]) -> Run {
     if !cfg!(target_os = "linux") {
         return sinew(arguments);
     }
@@ -20,12 +20,12 @@ fn frugal(arguments: &[&str]) -> Run {
     Run::of(&mut shell)
 }
 
-/// `bake` and `ragdoll build` refuse the file with a line that holds `reason`, and write nothing.
+/// Checks that `bake` and `ragdoll build` reject the file with a line that contains `reason`, and write nothing.
 fn check_refused(folder: &Folder, file: &str, reason: &str) {
     let before = folder.names();
     let (out, def) = (folder.path("out.glb"), folder.path("out.json"));
     for arguments in [["bake", file, "-o", &out].as_slice(), &["ragdoll", "build", file, "-o", &def]] {
-        let run = frugal(arguments);
+        let run = run_with_little_memory(arguments);
         let line = run.refusal(1);
         assert!(line.starts_with(&format!("error: {file}: ")) && line.contains(reason), "{line}");
         assert_eq!(run.stdout, "");
@@ -34,7 +34,7 @@ fn check_refused(folder: &Folder, file: &str, reason: &str) {
 }
 
 #[test]
-fn broken_containers() {
+fn broken_containers_are_rejected() {
     let folder = Folder::new("containers");
     let whole = glb(&mannequin().rig, &[]);
     let truncated = folder.file("truncated.glb", &whole[..whole.len() / 2]);
@@ -51,7 +51,7 @@ fn broken_containers() {
 }
 
 #[test]
-fn a_joint_out_of_range() {
+fn joint_out_of_range_is_rejected() {
     let folder = Folder::new("joint");
     let file = folder.file(
         "joint.gltf",
@@ -65,7 +65,7 @@ fn a_joint_out_of_range() {
 }
 
 #[test]
-fn a_mesh_without_a_skin() {
+fn mesh_without_a_skin_is_rejected() {
     let folder = Folder::new("skinless");
     let mut rig = Rig { skins: Vec::new(), ..mannequin().rig };
     for mesh in &mut rig.meshes {
@@ -81,21 +81,21 @@ fn a_mesh_without_a_skin() {
 
 #[needs_data]
 #[test]
-fn valid_files_that_hold_no_character() {
+fn files_without_a_character_are_rejected() {
     let data = shared_data();
     let folder = Folder::new("negative");
     let files = gltf_files(&data.join("negative"));
     assert!(!files.is_empty());
     for file in files {
         check_refused(&folder, &file, "no skin: nothing to build a ragdoll from");
-        let inspected = frugal(&["inspect", &file, "--json"]).json();
+        let inspected = run_with_little_memory(&["inspect", &file, "--json"]).json();
         assert_eq!(inspected["skins"], 0, "{file}");
     }
 }
 
 #[needs_data]
 #[test]
-fn bad_input_is_inspected_or_refused() {
+fn bad_input_is_inspected_or_rejected() {
     let data = shared_data();
     let files = gltf_files(&data.join("bad_input"));
     assert!(!files.is_empty());

@@ -3,7 +3,7 @@
 use crate::sinew::{Folder, sinew};
 
 #[test]
-fn one_a_line_with_the_name_first_and_no_header() {
+fn scenes_are_listed_one_a_line_without_header() {
     let run = sinew(&["scenes"]);
     let object = sinew(&["scenes", "--json"]).json();
     let scenes = object["scenes"].as_array().expect("scenes");
@@ -14,7 +14,7 @@ fn one_a_line_with_the_name_first_and_no_header() {
 }
 
 #[test]
-fn the_state_is_the_same_twice_and_on_two_threads() {
+fn runs_repeat_exactly_on_any_threads() {
     let hash = |threads: &str| {
         let object =
             sinew(&["run", "zero_gravity_pile", "--steps", "60", "--threads", threads, "--json"]).json();
@@ -28,7 +28,7 @@ fn the_state_is_the_same_twice_and_on_two_threads() {
 }
 
 #[test]
-fn settings_change_the_outcome() {
+fn settings_change_the_result() {
     let angle = |set: &[&str]| {
         let arguments = [&["run", "pendulum", "--steps", "30", "--json"], set].concat();
         sinew(&arguments).json()["hash"].clone()
@@ -37,20 +37,18 @@ fn settings_change_the_outcome() {
 }
 
 #[test]
-fn what_is_not_there_is_bad_usage() {
+fn unknown_names_are_usage_errors() {
     let line = |arguments: &[&str]| sinew(arguments).refusal(2).to_owned();
     let suggested = line(&["run", "pendulm"]);
     assert!(suggested.starts_with("error: no scene 'pendulm'; the nearest of "), "{suggested}");
-    assert!(
-        suggested.contains(" are pendulum, ") && suggested.ends_with("; 'sinew scenes' lists what there is")
-    );
+    assert!(suggested.contains(" are pendulum, ") && suggested.ends_with("; 'sinew scenes' lists all"));
     assert!(line(&["view", "pendulm", "--picture", "x.png"]).contains(" are pendulum, "));
     assert!(line(&["run", "pendulum", "--set", "nix=1"]).starts_with("error: --set: no setting `nix`"));
     assert!(line(&["run", "pendulum", "--set", "amplitude"]).contains("is not key=value"));
 }
 
 #[test]
-fn a_scene_about_a_file_needs_one_and_refuses_a_bad_one() {
+fn scene_with_a_file_setting_requires_a_valid_file() {
     let run = |set: &[&str]| sinew(&[&["run", "mjcf_drop", "--steps", "2"], set].concat());
     let missing = run(&[]);
     assert_eq!(missing.refusal(2), "error: --set: `file` is not set: it takes the path of a model in MJCF");
@@ -64,7 +62,7 @@ fn a_scene_about_a_file_needs_one_and_refuses_a_bad_one() {
 }
 
 #[test]
-fn a_model_in_mjcf_is_dropped() {
+fn mjcf_model_is_dropped() {
     let folder = Folder::new("mjcf");
     let text = "<mujoco><worldbody><geom type='plane' size='0 0 1'/>
         <body pos='0 0 1'><freejoint/><geom size='.1'/></body></worldbody></mujoco>";
@@ -75,14 +73,15 @@ fn a_model_in_mjcf_is_dropped() {
 }
 
 #[test]
-fn a_scene_that_misses_its_bars_by_default_fails_with_its_report() {
+fn scene_that_misses_its_bars_fails_with_its_report() {
     let run = sinew(&["run", "arch", "--json"]);
-    assert_eq!(run.refusal(1), "error: arch misses what is expected of it: shift_max_m");
-    let object: serde_json::Value = serde_json::from_str(&run.stdout).expect("the object all the same");
+    assert_eq!(run.refusal(1), "error: arch misses its expectations: shift_max_m");
+    let object: serde_json::Value =
+        serde_json::from_str(&run.stdout).expect("a JSON object despite the failure");
     assert!(object["metrics"]["shift_max_m"].is_number());
     let run = sinew(&["run", "arch"]);
     assert!(run.code == Some(1) && run.stdout.matches("MISSED").count() == 1, "{run:?}");
-    // Of another length, nothing is expected.
+    // For another number of steps there are no bars.
     let run = sinew(&["run", "arch", "--steps", "1000"]);
     assert!(run.code == Some(0) && !run.stdout.contains("MISSED"), "{run:?}");
 }

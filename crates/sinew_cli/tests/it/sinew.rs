@@ -1,4 +1,4 @@
-//! Running the binary, and what it runs on.
+//! Runs the binary, and makes its input files.
 
 use serde_json::Value;
 use sinew::anim::{Clip, Rig};
@@ -18,20 +18,20 @@ pub struct Run {
 }
 
 impl Run {
-    /// Runs a command that is ready to be started.
+    /// Runs a prepared command.
     pub fn of(command: &mut Command) -> Self {
         let Output { status, stdout, stderr } = command.output().expect("the binary starts");
         let text = |bytes| String::from_utf8(bytes).expect("it prints UTF-8");
         Self { code: status.code(), stdout: text(stdout), stderr: text(stderr) }
     }
 
-    /// The object of a run that succeeded under `--json`.
+    /// The object of a successful run with `--json`.
     pub fn json(&self) -> Value {
         assert_eq!((self.code, self.stderr.as_str()), (Some(0), ""), "{self:?}");
         serde_json::from_str(&self.stdout).expect("stdout is one JSON object and nothing else")
     }
 
-    /// The line of a run that was refused with `code`.
+    /// The line of a run that failed with `code`.
     pub fn refusal(&self, code: i32) -> &str {
         assert_eq!(self.code, Some(code), "{self:?}");
         let line = self.stderr.strip_suffix('\n').expect("the line ends");
@@ -52,14 +52,14 @@ pub fn sinew<A: AsRef<std::ffi::OsStr>>(arguments: &[A]) -> Run {
     Run::of(&mut command(arguments))
 }
 
-/// An empty folder of one test's own, removed at its end.
+/// An empty folder for one test, removed at the end.
 pub struct Folder {
     path: PathBuf,
 }
 
 impl Folder {
     pub fn new(test: &str) -> Self {
-        // Two tests may choose one name.
+        // Two tests may use the same name.
         static FOLDERS: AtomicUsize = AtomicUsize::new(0);
         let number = FOLDERS.fetch_add(1, Ordering::Relaxed);
         let path = std::env::temp_dir().join(format!("sinew-cli-{}-{number}-{test}", std::process::id()));
@@ -72,21 +72,21 @@ impl Folder {
         self.path.join(name).display().to_string()
     }
 
-    /// A file in it.
+    /// Writes a file into it.
     pub fn file(&self, name: &str, bytes: impl AsRef<[u8]>) -> String {
         let path = self.path(name);
         fs::write(&path, bytes).expect("a file for the test");
         path
     }
 
-    /// The mannequin as a user's file, with its walk.
+    /// The mannequin with its walk as a user's file.
     pub fn mannequin(&self) -> String {
         let mannequin = mannequin();
         let walk = Clip { name: "Walk".into(), ..mannequin.clips[mannequin.motions.walk].clone() };
         self.file("mannequin.glb", glb(&mannequin.rig, &[walk]))
     }
 
-    /// Names of what is in it, sorted.
+    /// Sorted names of its entries.
     pub fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.path).expect("the folder is there");
         let name = |entry: std::io::Result<fs::DirEntry>| {

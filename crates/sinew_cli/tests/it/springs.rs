@@ -1,4 +1,4 @@
-//! Hair in `bake`, `inspect` and `ragdoll doctor`: an avatar with springs, and one whose joints are only called so.
+//! Hair in `bake`, `inspect` and `ragdoll doctor`: an avatar with springs, and one with hair by joint names only.
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, glb, gltf_files, shared_data, sinew};
@@ -17,7 +17,7 @@ mod avatar;
 
 use avatar::{Calming, random_avatar, strands, vrm};
 
-/// Largest turn of a hair's joint in a clip, radians.
+/// Largest rotation of a hair joint in a clip, radians.
 fn swings(clip: &Clip, rig: &Rig) -> f32 {
     let mut most = 0.0_f32;
     for channel in &clip.channels {
@@ -30,7 +30,7 @@ fn swings(clip: &Clip, rig: &Rig) -> f32 {
 }
 
 #[test]
-fn an_avatars_hair_moves_in_its_bake() {
+fn avatar_hair_moves_in_the_bake() {
     let folder = Folder::new("springs");
     let file = folder.file("avatar.vrm", vrm(&maned_rig(&HAIR), SpringFormat::Vrm1));
     let object = sinew(&["inspect", &file, "--json"]).json();
@@ -55,13 +55,13 @@ fn an_avatars_hair_moves_in_its_bake() {
     };
     let (springs, moved, hash) = bake(&[]);
     assert_eq!(springs, json!({"chains": 3, "bones": 13, "links": 0, "left_out": []}));
-    assert!(moved > 0.3, "the hair of one who falls turns by {moved} rad");
+    assert!(moved > 0.3, "in the fall the hair turns only {moved} rad");
     let (springs, moved, bare) = bake(&["--no-springs"]);
     assert_eq!((&springs["bones"], moved), (&json!(0), 0.0));
     assert_ne!(hash, bare);
     folder.file("avatar.ragdoll.json", r#"{"sinew":"ragdoll-settings","version":1,"springs":"none"}"#);
     assert_eq!(bake(&[]).0["bones"], 0);
-    assert_eq!(bake(&["--guess-springs"]).0["bones"], 13, "what the file states goes before names");
+    assert_eq!(bake(&["--guess-springs"]).0["bones"], 13, "springs of the file have priority over names");
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn settings_link_braids() {
     settings(r#"{"links": [{"chains": ["hair_left_0", "hair_right_0"], "share": 1}]}"#);
     let (four, tied) = bake();
     assert_eq!((none, four), (json!(0), json!(4)));
-    assert_ne!(loose, tied, "they swing otherwise");
+    assert_ne!(loose, tied, "linked and loose braids swing alike");
     let object = sinew(&["inspect", &file, "--json"]).json();
     check_keys("inspect", &object);
     let first = json!({"joints": ["hair_left_0", "hair_right_0"], "share": 1.0, "holds_apart": false});
@@ -112,14 +112,14 @@ fn settings_link_braids() {
         settings(springs);
         let error = sinew(&["bake", &file, "-o", &out]).stderr;
         println!("{error}");
-        let told = error.contains(place) && error.contains(what) && error.contains("avatar.ragdoll.json");
-        assert!(told, "{springs}: {error}");
+        let is_found = error.contains(place) && error.contains(what) && error.contains("avatar.ragdoll.json");
+        assert!(is_found, "{springs}: {error}");
         let warned = sinew(&["inspect", &file]).stdout;
         assert!(warned.contains(what), "{springs}: {warned}");
     }
 }
 
-/// Two strands with all that a file can say, and what `inspect` is to say of them.
+/// Two strands with every kind of setting in a file.
 fn stated(rig: &mut Rig) {
     let hair = strands(rig);
     let bone = |strand: usize, link: usize| SpringBone {
@@ -151,7 +151,7 @@ fn stated(rig: &mut Rig) {
     ];
     let turn = limited(LimitKind::Spherical { phi: 1.0, theta: 0.5 });
     let second = vec![SpringBone { gravity: Vec3::X * 0.3, limit: turn, ..bone(1, 0) }];
-    let head = rig.joints[hair[0][0]].parent.expect("it hangs on the head");
+    let head = rig.joints[hair[0][0]].parent.expect("the head is its parent");
     let ball = ColliderShape::Sphere { offset: Vec3::Y * 0.1, radius: 0.09, keeps: Side::Outside };
     let (offset, tail) = (Vec3::ZERO, Vec3::Y * 0.5);
     let shapes = [
@@ -173,9 +173,9 @@ fn stated(rig: &mut Rig) {
     };
 }
 
-/// Every setting of every joint is told, for people each as a number or a range.
+/// Every setting of every joint is reported, in the text as a number or a range.
 #[test]
-fn inspect_tells_all_settings_of_springs() {
+fn inspect_reports_all_settings_of_springs() {
     let folder = Folder::new("settings");
     let mut rig = mannequin().rig;
     stated(&mut rig);
@@ -229,9 +229,9 @@ fn inspect_tells_all_settings_of_springs() {
     assert_eq!(object["springs"][1]["bones"][0]["limit_deg"], json!([57.29578, 28.64789]));
 }
 
-/// `inspect` tells as many spring bones as the reader reads, of random avatars of either version.
+/// For random avatars of both versions, `inspect` reports as many spring bones as the reader finds.
 #[test]
-fn inspect_tells_springs_of_both_versions() {
+fn inspect_reports_springs_of_both_versions() {
     let folder = Folder::new("versions");
     let mut rig = mannequin().rig;
     let hair = strands(&mut rig);
@@ -243,9 +243,9 @@ fn inspect_tells_springs_of_both_versions() {
         let object = sinew(&["inspect", &file, "--json"]).json();
         check_keys("inspect", &object);
         assert_eq!(object["spring_format"], format.name());
-        let told = object["springs"].as_array().expect("chains").iter();
-        let told: usize = told.map(|chain| chain["bones"].as_array().map_or(0, Vec::len)).sum();
-        assert_eq!((told, object["springs"].as_array().map(Vec::len)), (bones, Some(12)));
+        let bone_count = object["springs"].as_array().expect("chains").iter();
+        let bone_count: usize = bone_count.map(|chain| chain["bones"].as_array().map_or(0, Vec::len)).sum();
+        assert_eq!((bone_count, object["springs"].as_array().map(Vec::len)), (bones, Some(12)));
         assert!(sinew(&["inspect", &file]).stdout.contains(&format!("Springs ({})", format.name())));
     }
     rig.springs = Springs::default();
@@ -257,7 +257,7 @@ fn inspect_tells_springs_of_both_versions() {
 }
 
 #[test]
-fn names_swing_only_when_asked() {
+fn springs_by_name_are_off_by_default() {
     let folder = Folder::new("guessed");
     let mut rig = maned_rig(&HAIR);
     rig.springs = sinew::anim::Springs::default();
@@ -270,7 +270,7 @@ fn names_swing_only_when_asked() {
         sinew(&arguments).json()["springs"].clone()
     };
     assert_eq!(springs(&[])["bones"], 0);
-    // Strands stick out and have no skin: without springs of the file they are things that are carried, with a body each.
+    // Strands protrude and have no skin: without springs of the file they count as props, each with a body.
     let guessed = springs(&["--guess-springs"]);
     assert_eq!(
         (&guessed["bones"], &guessed["left_out"]),
@@ -282,9 +282,9 @@ fn names_swing_only_when_asked() {
     assert!(both.stderr.contains("cannot be used with"), "{both:?}");
 }
 
-/// A file whose springs lie gives one line.
+/// A file with invalid springs fails with one line.
 #[test]
-fn springs_that_lie_are_one_line() {
+fn invalid_springs_fail_with_one_line() {
     let folder = Folder::new("lying");
     let json = r#"{"asset":{"version":"2.0"},"nodes":[{}],
         "extensions":{"VRMC_springBone":{"springs":[{"joints":[{"node":7}]}]}}}"#;
@@ -294,16 +294,16 @@ fn springs_that_lie_are_one_line() {
     assert!(line.contains("index 7 is out of range") && line.contains("springs[0].joints[0].node"), "{line}");
 }
 
-/// Every avatar of the shared data bakes with its springs.
+/// Every avatar of the shared data can be baked with its springs.
 #[needs_data]
 #[test]
-fn shared_avatars_bake() {
+fn shared_avatars_can_be_baked() {
     let data = shared_data();
     let folder = Folder::new("avatars");
     let out = folder.path("fall.vrm");
     for file in gltf_files(&data.join("rigs")).iter().filter(|file| file.ends_with(".vrm")) {
         if file.contains("unskinned") {
-            // Nothing to build a ragdoll from.
+            // There is no skin to build a ragdoll from.
             continue;
         }
         let object = sinew(&["bake", file, "--seconds", "1", "-o", &out, "--json"]).json();

@@ -1,4 +1,4 @@
-//! The file's unit and the body's mass, and what is said where either is hard to believe.
+//! The file's unit and the body's mass, and notes about implausible values.
 
 use crate::sinew::{Folder, glb, sinew};
 use serde_json::Value;
@@ -24,8 +24,8 @@ fn scaled(mut rig: Rig, factor: f32) -> Rig {
     rig
 }
 
-/// A worm of two joints, `length` units long and so many times as thick as the mannequin's trunk: no human, whose mass comes from
-/// its volume.
+/// A worm of two joints, `length` units long and `girth` times as thick as the mannequin's trunk. It is not human, so
+/// its mass comes from its volume.
 fn worm(length: f32, girth: f32) -> Rig {
     let mut rig = mannequin().rig;
     let keep = ["hips", "spine"];
@@ -48,7 +48,7 @@ fn worm(length: f32, girth: f32) -> Rig {
             };
             for (position, used) in primitive.positions.iter_mut().zip(used) {
                 let thick = Vec3::new(girth * position.x, position.y, girth * position.z);
-                // What no triangle uses is put inside.
+                // Vertices without triangles are moved inside.
                 *position = if used { thick } else { Vec3::Y };
             }
         }
@@ -64,7 +64,7 @@ fn notes(object: &Value) -> Vec<String> {
 }
 
 #[test]
-fn the_unit_its_reason_and_its_alternatives_are_a_note() {
+fn unit_reason_and_alternatives_are_noted() {
     let folder = Folder::new("unit-note");
     let build = |rig: &Rig, extra: &[&str]| {
         let file = folder.file("body.glb", glb(rig, &[]));
@@ -73,10 +73,7 @@ fn the_unit_its_reason_and_its_alternatives_are_a_note() {
     let rig = mannequin().rig;
     let of_unit = |object: &Value| notes(object).into_iter().find(|note| note.contains("taken as"));
     let metres = of_unit(&build(&rig, &[])).expect("a note");
-    assert!(
-        metres.contains("taken as metres: 1.") && metres.contains("no other unit makes it so"),
-        "{metres}"
-    );
+    assert!(metres.contains("taken as metres: 1.") && metres.contains("no other unit fits"), "{metres}");
     let object = build(&scaled(rig.clone(), 100.0), &[]);
     let note = of_unit(&object).expect("a note");
     assert!(note.contains("taken as centimetres: 1.") && note.contains("a human is 0.9 to 3 m"), "{note}");
@@ -96,7 +93,7 @@ fn the_unit_its_reason_and_its_alternatives_are_a_note() {
     assert!(inches["height_m"].as_f64().expect("a height") > 4.0);
 }
 
-/// The rig below a node of that scale, which makes up for lengths that are so many times smaller: drawn, it is the same.
+/// The rig below a node with a scale, with all lengths divided by it: the drawing is unchanged.
 fn below_a_node(rig: &Rig, scale: f32) -> Rig {
     let mut rig = scaled(rig.clone(), 1.0 / scale);
     for joint in &mut rig.joints {
@@ -111,7 +108,7 @@ fn below_a_node(rig: &Rig, scale: f32) -> Rig {
 }
 
 #[test]
-fn a_node_with_a_scale_above_it_all_changes_nothing() {
+fn scaled_root_node_changes_nothing() {
     let folder = Folder::new("unit-node");
     let rig = mannequin().rig;
     let build = |rig: &Rig| {
@@ -125,7 +122,7 @@ fn a_node_with_a_scale_above_it_all_changes_nothing() {
     };
     for scale in [0.01, 39.37] {
         let other = build(&below_a_node(&rig, scale));
-        // Measured as it is drawn, in metres: by the lengths below the node it would be in another unit.
+        // The size is measured as drawn, in metres; lengths below the node alone would give another unit.
         assert_eq!(of_unit(&other), of_unit(&plain), "{scale}");
         assert!(close(&plain["unit_scale"], &other["unit_scale"], 1e-3), "{scale}");
         assert!(close(&plain["height_m"], &other["height_m"], 1e-3), "{scale}: {}", other["height_m"]);
@@ -150,7 +147,7 @@ fn of_unit(object: &Value) -> String {
 }
 
 #[test]
-fn files_beside_it_tell_a_unit_that_is_in_doubt() {
+fn neighbouring_files_decide_an_ambiguous_unit() {
     let folder = Folder::new("unit-kin");
     let file = folder.file("dwarf.glb", glb(&of_66_units(), &[]));
     let build = || of_unit(&sinew(&["ragdoll", "build", &file, "--json"]).json());
@@ -174,11 +171,11 @@ fn block(low: [f32; 3], high: [f32; 3]) -> BodyDef {
 }
 
 #[test]
-fn doors_tell_a_unit_that_is_in_doubt() {
+fn doors_decide_an_ambiguous_unit() {
     let folder = Folder::new("unit-door");
     let file = folder.file("dwarf.glb", glb(&of_66_units(), &[]));
     let out = folder.path("fall.glb");
-    // Two rooms, and a door from one into the other; `size` times as large as those of dwarfs.
+    // Two rooms with a door between them, `size` times as large as a dwarf's.
     let rooms = |size: f32| {
         let walls = [
             ([-3.0, -0.1, -3.0], [3.0, 0.0, 3.0]),
@@ -205,7 +202,7 @@ fn doors_tell_a_unit_that_is_in_doubt() {
 }
 
 #[test]
-fn a_mass_that_no_body_has_is_no_good() {
+fn implausible_mass_is_not_good() {
     let folder = Folder::new("unit-mass");
     for (length, girth, mass) in [(0.15, 0.3, " g at"), (9.9, 1.0, " t at")] {
         let file = folder.file("worm.glb", glb(&worm(length, girth), &[]));
@@ -230,7 +227,7 @@ fn a_mass_that_no_body_has_is_no_good() {
         };
         let baked = bake(&[]);
         assert!(in_notes(&baked));
-        // Judged like its drops: a fall without a flaw is none of a body that there is.
+        // A bake is judged like the drop tests: even a flawless fall of an implausible body is not good.
         assert_ne!(baked["verdict"], "good", "{length}: {kg} kg");
         let first = baked["reasons"][0].as_str().expect("a reason");
         assert!(first.contains(mass) && first.contains("--mass the mass"), "{length}: {first}");
@@ -251,7 +248,7 @@ fn a_mass_that_no_body_has_is_no_good() {
 }
 
 #[test]
-fn a_unit_is_a_length() {
+fn invalid_units_and_heights_are_usage_errors() {
     for arguments in [["--unit", "0"], ["--unit", "ell"], ["--height", "-1"], ["--height", "NaN"]] {
         let run = sinew(&[&["ragdoll", "build", "a.glb"][..], &arguments].concat());
         assert!(run.code == Some(2), "{arguments:?}: {run:?}");

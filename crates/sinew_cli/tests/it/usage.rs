@@ -1,4 +1,4 @@
-//! Help, and what is refused before any work.
+//! Help, and errors reported before any work.
 
 use crate::sinew::sinew;
 
@@ -26,14 +26,14 @@ fn every_command_shows_an_example() {
 }
 
 #[test]
-fn a_typing_error_is_told() {
+fn misspelt_command_gets_a_suggestion() {
     let typing_error = sinew(&["vieww"]);
     assert_eq!(typing_error.code, Some(2));
     assert!(typing_error.stderr.contains("view"), "{typing_error:?}");
 }
 
 #[test]
-fn bad_arguments_are_bad_usage() {
+fn invalid_arguments_are_usage_errors() {
     let commands: [&[&str]; 22] = [
         &[],
         &["convert", "a.bvh"],

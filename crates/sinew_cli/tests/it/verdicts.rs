@@ -1,4 +1,4 @@
-//! The verdict of `ragdoll build` and `bake`: each fault planted into the mannequin, and both must see it.
+//! The verdict of `ragdoll build` and `bake`: each fault put into the mannequin must be reported by both.
 
 use crate::sinew::{Folder, glb, sinew};
 use serde_json::Value;
@@ -10,8 +10,8 @@ use sinew::math::{Affine, Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew_scenes::mannequin::mannequin;
 
-/// Verdict and reasons of `ragdoll build` and of `bake`, with these options.
-fn both(folder: &Folder, file: &str, extra: &[&str]) -> [(String, String); 2] {
+/// Verdict and reasons of `ragdoll build` and of `bake` with these options.
+fn build_and_bake(folder: &Folder, file: &str, extra: &[&str]) -> [(String, String); 2] {
     let out = folder.path("out.glb");
     let built = sinew(&[&["ragdoll", "build", file, "--json"], extra].concat()).json();
     let baked = sinew(&[&["bake", file, "-o", &out, "--json"], extra].concat()).json();
@@ -26,17 +26,17 @@ fn joint(rig: &Rig, name: &str) -> usize {
 }
 
 #[test]
-fn the_mannequin_is_good_in_both() {
+fn mannequin_is_good_in_build_and_bake() {
     let folder = Folder::new("verdict-good");
-    for (verdict, reasons) in both(&folder, &folder.mannequin(), &[]) {
+    for (verdict, reasons) in build_and_bake(&folder, &folder.mannequin(), &[]) {
         assert_eq!(verdict, "good", "{reasons}");
     }
 }
 
-/// A walk that stands at 0 while the rest pose stands 1 m lower: the character stands on its floor, before the fall and after it, and the
-/// baked clip stands where the walk does.
+/// A walk whose feet are at 0 while the rest pose is 1 m lower: the character stands on its floor before and after the
+/// fall, and the baked clip is placed like the walk.
 #[test]
-fn the_floor_is_where_the_clip_stands() {
+fn floor_is_at_the_feet_of_the_clip() {
     let folder = Folder::new("verdict-floor");
     let mannequin = mannequin();
     let mut rig = mannequin.rig.clone();
@@ -74,16 +74,16 @@ fn the_floor_is_where_the_clip_stands() {
     assert_eq!(object["verdict"], "good", "{object:#}");
 }
 
-/// Skin of the chest that stays behind tears in both, and by so much that it is bad.
+/// Skin of the chest that stays behind tears in both, badly enough for the worst verdict.
 #[test]
-fn torn_skin_is_bad_in_both() {
+fn torn_skin_is_bad_in_build_and_bake() {
     let folder = Folder::new("verdict-torn");
     let mut rig = mannequin().rig;
     let (chest, foot) = (joint(&rig, "chest"), joint(&rig, "leftFoot"));
     for skin in &mut rig.skins {
         let slots = [chest, foot].map(|joint| skin.joints.iter().position(|&own| own == joint));
         let [Some(chest), Some(foot)] = slots else { continue };
-        // Half of the chest goes with a foot.
+        // Half of the chest is weighted to a foot.
         for primitive in rig.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives) {
             for (index, slots) in primitive.joints.iter_mut().enumerate() {
                 if primitive.positions[index].x > 0.0 {
@@ -96,7 +96,7 @@ fn torn_skin_is_bad_in_both() {
         }
     }
     let file = folder.file("torn.glb", glb(&rig, &[]));
-    for (verdict, reasons) in both(&folder, &file, &[]) {
+    for (verdict, reasons) in build_and_bake(&folder, &file, &[]) {
         assert_eq!(verdict, "bad", "{reasons}");
         assert!(reasons.contains("stretches one side"), "{reasons}");
     }
@@ -104,7 +104,7 @@ fn torn_skin_is_bad_in_both() {
 
 /// An adult of 57 cm and 8 kg.
 #[test]
-fn an_adult_of_half_a_metre_is_no_good() {
+fn adult_of_half_a_metre_is_not_good() {
     let folder = Folder::new("verdict-small");
     let mut rig = mannequin().rig;
     let share = 0.57 / 1.8;
@@ -118,15 +118,15 @@ fn an_adult_of_half_a_metre_is_no_good() {
         primitive.positions.iter_mut().for_each(|place| *place *= share);
     }
     let file = folder.file("small.glb", glb(&rig, &[]));
-    for (verdict, reasons) in both(&folder, &file, &[]) {
+    for (verdict, reasons) in build_and_bake(&folder, &file, &[]) {
         let is_taken_larger = verdict == "good" && !reasons.contains("0.57");
         assert!(verdict != "good" || is_taken_larger, "{verdict}: {reasons}");
     }
 }
 
-/// A floor that ends before the character does not: it falls out of the world.
+/// The floor is too small, so the character falls out of the world.
 #[test]
-fn a_fall_out_of_the_world_is_bad() {
+fn fall_out_of_the_world_is_bad() {
     let folder = Folder::new("verdict-out");
     let slab = BodyDef {
         kind: BodyKind::Static,
@@ -142,9 +142,9 @@ fn a_fall_out_of_the_world_is_bad() {
     assert!(object["reasons"].to_string().contains("falls out of the world"), "{object:#}");
 }
 
-/// A pose that is held is no walk, whatever its name.
+/// A clip without motion is not a walk, whatever its name.
 #[test]
-fn a_walk_moves() {
+fn clip_without_motion_is_not_used_as_walk() {
     let folder = Folder::new("verdict-walk");
     let mannequin = mannequin();
     let walk = Clip { name: "Go walking".into(), ..mannequin.clips[mannequin.motions.walk].clone() };
@@ -158,9 +158,9 @@ fn a_walk_moves() {
     assert!(run.stdout.contains("Go walking"), "{run:?}");
 }
 
-/// A capture that was cut is played as far as it goes, with a note.
+/// A truncated capture is played to its end, with a note.
 #[test]
-fn a_bvh_with_fewer_frames_than_it_says_is_played() {
+fn bvh_with_fewer_frames_than_declared_is_played() {
     let folder = Folder::new("verdict-cut");
     let (file, bvh, out) = (folder.mannequin(), folder.path("walk.bvh"), folder.path("out.glb"));
     sinew(&["bake", &file, "--seconds", "2", "--limp-at", "9", "-o", &bvh, "--json"]).json();
@@ -170,9 +170,9 @@ fn a_bvh_with_fewer_frames_than_it_says_is_played() {
     assert!(object["notes"].to_string().contains("declares 500 frames, has 61"), "{object:#}");
 }
 
-/// A skin whose weights were lost is refused with the way out, and built by that.
+/// A skin with lost weights is rejected with a hint at the option, and built with that option.
 #[test]
-fn lost_weights_are_made_anew_where_that_is_asked_for() {
+fn lost_weights_are_rebuilt_on_request() {
     let folder = Folder::new("verdict-weights");
     let mut rig = mannequin().rig;
     for mesh in rig.meshes.iter_mut().filter(|mesh| mesh.skin.is_some()) {
@@ -199,9 +199,9 @@ fn lost_weights_are_made_anew_where_that_is_asked_for() {
     assert_eq!(lost_weights(&written.rig), None, "the baked file has the new weights");
 }
 
-/// A human that lies in its file begins its fall as it lies: nothing but `--up` stands it up.
+/// A human that lies in its file starts its fall lying, unless `--up` stands it up.
 #[test]
-fn who_lies_in_the_file_begins_lying() {
+fn character_lying_in_its_file_starts_lying() {
     let folder = Folder::new("verdict-lying");
     let mut rig = mannequin().rig;
     let back = Rotation::from_axis_angle(Vec3::X, -core::f32::consts::FRAC_PI_2);
@@ -220,7 +220,7 @@ fn who_lies_in_the_file_begins_lying() {
         primitive.normals.iter_mut().for_each(|normal| *normal = back * *normal);
     }
     let file = folder.file("lying.glb", glb(&rig, &[]));
-    // From hips to head at the start and later, in the file's own axes.
+    // Direction from hips to head at the start and later, in the file's axes.
     let trunks = |extra: &[&str], later: f32| {
         let out = folder.path("out.glb");
         let arguments = [&["bake", file.as_str(), "-o", &out, "--seconds", "2", "--json"], extra].concat();
@@ -236,13 +236,13 @@ fn who_lies_in_the_file_begins_lying() {
         ([trunk(0.0), trunk(later)], object["notes"].to_string())
     };
     let ([start, end], notes) = trunks(&[], 1.0);
-    assert!(start.y.abs() < 0.05 && start.z < -0.4, "it lies on its back: {start}");
-    assert!(end.y.abs() < 0.15 && end.z < -0.4, "and stays so until it gets up: {end}");
+    assert!(start.y.abs() < 0.05 && start.z < -0.4, "it does not start on its back: {start}");
+    assert!(end.y.abs() < 0.15 && end.z < -0.4, "it does not stay on its back: {end}");
     assert!(notes.contains("--up"), "{notes}");
-    // By another axis it stands, and falls.
+    // With another up axis it stands, and falls.
     let ([start, end], _) = trunks(&["--up", "-z"], 2.0);
     assert!(start.z < -0.4, "{start}");
-    assert!(end.z > -0.3, "it has fallen: {end}");
+    assert!(end.z > -0.3, "it has not fallen: {end}");
 }
 
 /// A human in a hoop that no get-up keeps out of the floor stays down: usable at most, with the reason.

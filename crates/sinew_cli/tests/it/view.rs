@@ -1,11 +1,11 @@
-//! `sinew view`: pictures of scenes and worlds, the same bytes everywhere.
+//! `sinew view`: pictures of scenes and worlds, with equal bytes on every machine.
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, Run, command, sinew};
 use sinew::math::hash::hash_bytes;
 
 #[test]
-fn the_same_picture_on_every_machine() {
+fn picture_has_equal_bytes_on_every_machine() {
     let folder = Folder::new("view-golden");
     let out = folder.path("pendulum.png");
     let arguments = ["view", "pendulum", "--picture", &out, "--at", "0", "--width", "160", "--height", "90"];
@@ -37,7 +37,7 @@ fn a_setting_and_the_time_change_the_picture() {
 }
 
 #[test]
-fn a_movie_has_a_picture_for_each_twentieth_of_a_second() {
+fn movie_has_twenty_pictures_per_second() {
     let folder = Folder::new("view-movie");
     let out = folder.path("bounce.gif");
     let arguments =
@@ -47,13 +47,13 @@ fn a_movie_has_a_picture_for_each_twentieth_of_a_second() {
     assert!(object["at_s"].is_null(), "{object}");
     let bytes = std::fs::read(&out).expect("the movie is there");
     assert!(bytes.starts_with(b"GIF89a"));
-    // Each picture begins with a graphic control extension of four bytes.
+    // Each picture starts with a graphic control extension of four bytes.
     let pictures = bytes.windows(3).filter(|window| *window == [0x21, 0xf9, 4]).count();
     assert_eq!(pictures, 11);
 }
 
 #[test]
-fn a_world_file_is_drawn_as_it_falls() {
+fn falling_world_file_is_drawn() {
     let folder = Folder::new("view-world");
     let text = r#"{"sinew": "world", "version": 1, "bodies": [
         {"shapes": [{"type": "half_space"}]},
@@ -74,17 +74,17 @@ fn a_world_file_is_drawn_as_it_falls() {
 }
 
 #[test]
-fn what_it_cannot_draw_is_bad_usage() {
+fn undrawable_input_is_a_usage_error() {
     let line = |arguments: &[&str]| sinew(arguments).refusal(2).to_owned();
     let of_nothing = line(&["view", "--picture", "a.png"]);
-    assert_eq!(of_nothing, "error: a picture of what? name a scene or a file");
+    assert_eq!(of_nothing, "error: nothing to draw: name a scene or a file");
     let recording = line(&["view", "run.sinewrec", "--picture", "a.png"]);
     assert!(recording.contains("'sinew replay': run.sinewrec"), "{recording}");
     let missing = sinew(&["view", "fall.glb", "--picture", "a.png"]);
     assert_eq!(missing.refusal(1), "error: fall.glb: no such file");
     let unknown = line(&["view", "nix", "--picture", "a.png"]);
     assert!(unknown.starts_with("error: no scene 'nix'; the nearest of "), "{unknown}");
-    assert!(unknown.ends_with("; 'sinew scenes' lists what there is"), "{unknown}");
+    assert!(unknown.ends_with("; 'sinew scenes' lists all"), "{unknown}");
     for wrong in [
         &["--picture", "a.bmp"][..],
         &["--picture", "a.png", "--at", "-1"],
@@ -98,7 +98,7 @@ fn what_it_cannot_draw_is_bad_usage() {
     }
 }
 
-/// Bytes of a file.
+/// Size of a file, bytes.
 fn size(path: &str) -> u64 {
     std::fs::metadata(path).expect("the picture is there").len()
 }
@@ -146,21 +146,22 @@ fn a_skeleton_without_a_mesh_is_drawn_as_bones() {
 }
 
 #[test]
-fn what_is_converted_is_drawn() {
+fn converted_motion_is_drawn() {
     let folder = Folder::new("convert-picture");
     let (file, bvh, gif) = (folder.mannequin(), folder.path("walk.bvh"), folder.path("walk.gif"));
     let object = sinew(&["convert", &file, &bvh, "--picture", &gif, "--json"]).json();
     assert_eq!(object["outputs"], serde_json::json!([bvh, gif]));
-    // The same bones as a view of what was written.
+    // The picture shows the bones like a view of the written file.
     let viewed = folder.path("viewed.gif");
     sinew(&["view", &bvh, "--movie", &viewed, "--json"]).json();
     let [a, b] = [&gif, &viewed].map(|path| size(path));
     assert!(a.abs_diff(b) * 50 < a, "{a} and {b} bytes");
 }
 
-/// Without a window system, one line says so and what to do; so it does of a scene that is not there.
+/// Without a window system, one line says so and names the alternative; an unknown scene is reported in one line as
+/// well.
 #[test]
-fn a_window_without_a_display_is_a_line() {
+fn window_without_a_display_fails_with_one_line() {
     for arguments in [&["view"][..], &["view", "pendulum"]] {
         let mut command = command(arguments);
         let run =

@@ -1,6 +1,7 @@
-//! The window under Xvfb with a software driver: it opens, shows a scene, is pulled at by a mouse, writes pictures.
+//! The window under Xvfb with a software driver: it opens, shows a scene, reacts to the mouse, writes pictures.
 //!
-//! Ignored unless asked for: `cargo xtask ci --full` runs it. Without Xvfb, xdotool or a driver it says that it skipped.
+//! Ignored by default: `cargo xtask ci --full` runs it. Without Xvfb, xdotool or a driver the test reports that it was
+//! skipped.
 #![cfg(feature = "viewer")]
 
 use crate::sinew::{Folder, Run, command, sinew};
@@ -10,17 +11,17 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-/// Patience with a software driver on a busy machine.
+/// Timeout for a software driver on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(90);
 
-/// A display of its own; killed at the end.
+/// A separate display, killed at the end.
 struct Display {
     server: Child,
     name: String,
 }
 
 impl Display {
-    /// Starts one; `None` without Xvfb or xdotool.
+    /// Starts a display; `None` without Xvfb or xdotool.
     fn start() -> Option<Self> {
         let has = |program: &str| {
             let found =
@@ -42,7 +43,7 @@ impl Display {
         };
         let mut number = String::new();
         let out = server.stdout.as_mut().expect("stdout is piped");
-        BufReader::new(out.take(16)).read_line(&mut number).expect("it tells its number");
+        BufReader::new(out.take(16)).read_line(&mut number).expect("Xvfb prints the display number");
         Some(Self { server, name: format!(":{}", number.trim()) })
     }
 
@@ -55,13 +56,13 @@ impl Display {
 
 impl Drop for Display {
     fn drop(&mut self) {
-        // It may have ended already.
+        // The server may have ended already.
         let _ = self.server.kill();
         let _ = self.server.wait();
     }
 }
 
-/// The viewer as a process, and what it says; killed at the end.
+/// The viewer process and its output, killed at the end.
 struct Viewer {
     process: Child,
     lines: Receiver<String>,
@@ -79,10 +80,10 @@ impl Viewer {
             .spawn()
             .expect("the binary starts");
         let stderr = BufReader::new(process.stderr.take().expect("stderr is piped"));
-        let (told, lines) = channel();
+        let (sender, lines) = channel();
         std::thread::spawn(move || {
             for line in stderr.lines().map_while(Result::ok) {
-                if told.send(line).is_err() {
+                if sender.send(line).is_err() {
                     return;
                 }
             }
@@ -90,16 +91,16 @@ impl Viewer {
         Self { process, lines }
     }
 
-    /// The next line with these words.
+    /// Waits for the next line that contains these words.
     fn wait_for(&self, words: &str) -> String {
-        let mut heard = Vec::new();
+        let mut lines_read = Vec::new();
         loop {
             let line = self.lines.recv_timeout(PATIENCE);
-            let line = line.unwrap_or_else(|_| panic!("nothing said `{words}`, but {heard:#?}"));
+            let line = line.unwrap_or_else(|_| panic!("no line has `{words}`, but {lines_read:#?}"));
             if line.contains(words) {
                 return line;
             }
-            heard.push(line);
+            lines_read.push(line);
         }
     }
 }
@@ -113,7 +114,7 @@ impl Drop for Viewer {
 
 #[test]
 #[ignore = "opens a window: cargo xtask ci --full"]
-fn a_window_opens_and_is_pulled_at() {
+fn window_opens_and_the_mouse_pulls_a_body() {
     let Some(display) = Display::start() else { return };
     if let Err(error) = sinew_viewer::Gpu::open() {
         return println!("skipped: {error}");
@@ -121,7 +122,7 @@ fn a_window_opens_and_is_pulled_at() {
     let folder = Folder::new("window");
     let viewer = Viewer::start(&display, &folder, &["view", "free_fall", "--paused", "--log"]);
     viewer.wait_for("drawn by");
-    // Without a window manager nobody gives it the keyboard.
+    // Without a window manager, the focus must be set explicitly.
     display.xdotool(&["search", "--name", "Sinew", "windowfocus"]);
     display.xdotool(&["mousemove", "620", "357"]);
     let picture = || {
@@ -138,7 +139,7 @@ fn a_window_opens_and_is_pulled_at() {
     display.xdotool(&["mousedown", "1"]);
     display.xdotool(&["mousemove", "632", "350"]);
     viewer.wait_for("holds body");
-    // Presses within one frame of a slow driver are one, so it takes no more steps than these.
+    // Key presses within one frame of a slow driver merge, so fewer steps may be taken.
     for i in 1..=12 {
         let (x, y) = ((620 + 14 * i).to_string(), (357 - 8 * i).to_string());
         display.xdotool(&["mousemove", &x, &y, "key", "n"]);
@@ -146,23 +147,25 @@ fn a_window_opens_and_is_pulled_at() {
     display.xdotool(&["mouseup", "1"]);
     viewer.wait_for("let go");
     let (name, after) = picture();
-    assert_ne!(name, "sinew-free_fall-0.png", "it has taken steps");
-    assert_ne!(before, after, "it was pulled");
+    assert_ne!(name, "sinew-free_fall-0.png", "no step was taken");
+    assert_ne!(before, after, "the mouse moved nothing");
 }
 
-/// The file of the ragdoll, read again; and the widest swing about z of its left upper arm, degrees.
+/// Reads the written ragdoll and returns the largest swing about z of its left upper arm, degrees.
 fn swing(path: &str) -> f32 {
     let def = read_ragdoll(&std::fs::read(path).expect("it is there")).expect("it is a ragdoll");
     let arm = def.bodies.iter().position(|body| body.role == "leftUpperArm").expect("it has one");
-    let joint = def.joints.iter().find(|joint| joint.child == arm).expect("it hangs on something");
-    let [_, Some(z), _] = sinew_viewer::limits(&joint.kind) else { panic!("it swings") };
+    let joint = def.joints.iter().find(|joint| joint.child == arm).expect("the arm has a joint");
+    let [_, Some(z), _] = sinew_viewer::limits(&joint.kind) else {
+        panic!("the arm's joint has a swing limit")
+    };
     z.hi.to_degrees()
 }
 
-/// A character is opened, one of its bones is pulled at, a limit is narrowed by keys, and what is saved has it.
+/// Opens a character, pulls a bone, narrows a limit by keys, and checks the saved file.
 #[test]
 #[ignore = "opens a window: cargo xtask ci --full"]
-fn a_limit_is_edited_and_saved() {
+fn edited_limit_is_saved() {
     let Some(display) = Display::start() else { return };
     if let Err(error) = sinew_viewer::Gpu::open() {
         return println!("skipped: {error}");
@@ -177,25 +180,25 @@ fn a_limit_is_edited_and_saved() {
     display.xdotool(&["mousemove", "620", "400"]);
     display.xdotool(&["key", "F12"]);
     let first = viewer.wait_for("wrote sinew-");
-    // Until it is the arm's turn; more than all bodies of a humanoid there are not.
+    // Presses the key until the arm is selected; a humanoid has fewer bodies than presses.
     let chosen = (0..30).any(|_| {
         display.xdotool(&["key", "bracketright"]);
         viewer.wait_for("chose ").starts_with("chose leftUpperArm ")
     });
     assert!(chosen, "it has a left upper arm");
-    let mut told = String::new();
+    let mut output_text = String::new();
     for _ in 0..4 {
         display.xdotool(&["key", "minus"]);
-        told = viewer.wait_for("limits of leftUpperArm: ");
+        output_text = viewer.wait_for("limits of leftUpperArm: ");
     }
     display.xdotool(&["key", "ctrl+s"]);
     let line = viewer.wait_for(".sinew.json");
     let name = line.strip_prefix("wrote ").expect("the name follows").to_owned();
     let (before, after) = (swing(&built), swing(&folder.path(&name)));
-    assert!((before - after - 20.0).abs() < 0.1, "{before}° became {after}°; it told {told}");
+    assert!((before - after - 20.0).abs() < 0.1, "{before}° became {after}°; the log said {output_text}");
     display.xdotool(&["key", "F12"]);
-    assert_eq!(viewer.wait_for("wrote sinew-"), first, "the test begins anew, at step 0");
-    // It falls by the new limits, and what was written opens again.
+    assert_eq!(viewer.wait_for("wrote sinew-"), first, "the test restarts at step 0");
+    // It falls with the new limits, and the written file can be opened.
     for _ in 0..5 {
         display.xdotool(&["key", "n"]);
     }
@@ -204,10 +207,10 @@ fn a_limit_is_edited_and_saved() {
     viewer.wait_for("drawn by");
 }
 
-/// One command writes a picture of the window with its panels, and ends.
+/// A single command writes a picture of the window with its panels, and exits.
 #[test]
 #[ignore = "opens a window: cargo xtask ci --full"]
-fn a_picture_of_the_window_by_one_command() {
+fn one_command_writes_a_picture_of_the_window() {
     let Some(display) = Display::start() else { return };
     if let Err(error) = sinew_viewer::Gpu::open() {
         return println!("skipped: {error}");
@@ -218,12 +221,12 @@ fn a_picture_of_the_window_by_one_command() {
         Run::of(command.env("DISPLAY", &display.name).env("XDG_CONFIG_HOME", folder.path("config")))
     };
     let out = folder.path("window.png");
-    let told = run(&out);
-    assert_eq!(told.code, Some(0), "{told:?}");
+    let output_text = run(&out);
+    assert_eq!(output_text.code, Some(0), "{output_text:?}");
     assert!(std::fs::read(&out).expect("it is there").starts_with(b"\x89PNG"));
     let refused = run(&folder.path("nowhere/window.png"));
-    // The system's libraries have their own say before it.
-    let line = refused.stderr.lines().last().expect("it says why");
+    // Libraries of the system may print lines before.
+    let line = refused.stderr.lines().last().expect("there is a line on stderr");
     assert!(
         refused.code == Some(1) && line.starts_with("error: ") && line.contains("nowhere"),
         "{refused:?}"
@@ -232,7 +235,7 @@ fn a_picture_of_the_window_by_one_command() {
 
 #[test]
 #[ignore = "opens a display: cargo xtask ci --full"]
-fn a_file_that_is_none_is_a_line() {
+fn invalid_file_is_reported_in_one_line() {
     let Some(display) = Display::start() else { return };
     let folder = Folder::new("window-file");
     let file = folder.file("no.glb", "nothing");

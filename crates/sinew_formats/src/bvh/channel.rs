@@ -5,17 +5,17 @@ use sinew_math::Vec3;
 /// One of the six degrees of freedom of a BVH joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum BvhChannel {
-    /// Along x.
+    /// Translation along x.
     Xposition,
-    /// Along y.
+    /// Translation along y.
     Yposition,
-    /// Along z.
+    /// Translation along z.
     Zposition,
-    /// About x, degrees.
+    /// Rotation about x, degrees.
     Xrotation,
-    /// About y, degrees.
+    /// Rotation about y, degrees.
     Yrotation,
-    /// About z, degrees.
+    /// Rotation about z, degrees.
     Zrotation,
 }
 

@@ -108,9 +108,9 @@ fn read_row(line: &str, number: usize, hierarchy: &Hierarchy, rows: &mut Vec<f32
 
 /// Every joint's local transforms, joint after joint.
 pub(super) struct Frames {
-    /// Per joint its rotations by frame; empty if it has no rotation channel.
+    /// Rotations of each joint by frame; empty if it has no rotation channel.
     rotations: Vec<Vec<Rotation>>,
-    /// Per joint its translations by frame, metres; empty if it has no position channel.
+    /// Translations of each joint by frame, metres; empty if it has no position channel.
     translations: Vec<Vec<Vec3>>,
 }
 
@@ -158,7 +158,7 @@ pub(super) fn frames(
 fn rotation(joint: &FileJoint, numbers: &[f32]) -> Rotation {
     let turns = joint.channels.iter().zip(numbers).filter(|(channel, _)| channel.is_rotation());
     let product = turns.fold(Rotation::IDENTITY, |outer, (channel, &degrees)| {
-        // In f64: a file may count whole turns, and a thousand degrees lose three digits.
+        // Compute in f64: a file may count whole turns, and a thousand degrees lose three digits.
         let turn = (f64::from(degrees) % 360.0).to_radians() as f32;
         outer * Rotation::from_axis_angle(channel.direction(), turn)
     });

@@ -6,10 +6,10 @@ use sinew_math::max;
 /// Length of the unit of a BVH file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum BvhUnit {
-    /// From the size of the skeleton, if it is that of a human; else centimetres.
+    /// Unit from the size of the skeleton, if it is that of a human; else centimetres.
     #[default]
     Infer,
-    /// That many metres, above 0.
+    /// This number of metres, above 0.
     ///
     /// [`read_bvh`](super::read_bvh) replaces a value that is not finite and above 0 by 1.
     Metres(f32),

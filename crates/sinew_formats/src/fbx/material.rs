@@ -39,7 +39,7 @@ impl<'a, 'r> Materials<'a, 'r> {
     }
 
     fn picture(&mut self, texture: &ufbx::Texture) -> Option<usize> {
-        // Of layers the first that is a picture.
+        // Among several layers, take the first that is a picture.
         let texture = texture.file_textures.first().map_or(texture, |file| &**file);
         let id = texture.element.typed_id;
         if self.wanted == Textures::Skip {

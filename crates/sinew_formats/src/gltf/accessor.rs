@@ -153,7 +153,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Why an element of the accessor at index `at` is refused.
+    /// Reason why an element of the accessor at index `at` is refused.
     pub(super) fn not_finite(&self, at: At<'a>, element: usize) -> Error {
         let accessor = at.index(self.accessors.len(), "accessors").map_or(at, |index| self.accessors[index]);
         accessor.malformed(format!("element {element} holds a number that is not finite"))

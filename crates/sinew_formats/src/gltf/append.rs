@@ -13,7 +13,7 @@ const FLOAT: u32 = 5126;
 /// A clip to append.
 #[derive(Clone, Debug)]
 pub struct NewClip<'a> {
-    /// Its keys.
+    /// Keys of the clip.
     pub clip: &'a Clip,
     /// Name of the animation; `""` for unnamed.
     pub name: &'a str,

@@ -55,13 +55,13 @@ fn jpeg(bytes: &[u8], budget: usize) -> Result<TextureImage, String> {
     decoder.decode_headers().map_err(|e| one_line(&e))?;
     let (width, height) = decoder.dimensions().ok_or("no size")?;
     bounded(width, height, budget)?;
-    // Not as RGBA: without intrinsics the decoder fills the fourth byte with the first.
+    // Do not decode to RGBA: without intrinsics the decoder fills the fourth byte with the first.
     decoder.set_options(options.jpeg_set_out_colorspace(ColorSpace::RGB));
     let rgba = rgb_as_rgba(&decoder.decode().map_err(|e| one_line(&e))?);
     Ok(TextureImage { width: width as u32, height: height as u32, rgba })
 }
 
-/// Before anything of the picture's size is allocated.
+/// Checks the size before anything of the picture's size is allocated.
 fn bounded(width: usize, height: usize, budget: usize) -> Result<(), String> {
     if width > MAX_SIDE || height > MAX_SIDE {
         return Err(format!("{width} x {height} pixels, more than {MAX_SIDE} a side"));

@@ -69,7 +69,7 @@ struct Reader<'a, 's> {
     scene: &'a Scene,
     /// Rest pose in model space.
     rest: Vec<Affine>,
-    /// Per joint: end of its subtree, because joints are in depth-first order.
+    /// End of each joint's subtree, because joints are in depth-first order.
     ends: Vec<JointIdx>,
     /// Joints that a chain has.
     taken: Vec<bool>,

@@ -22,7 +22,7 @@ pub struct JoltMotor {
 /// A ragdoll of Jolt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JoltRagdoll {
-    /// Its skeleton, resting where the ragdoll's parts are. It has no skin.
+    /// Skeleton, resting where the ragdoll's parts are. It has no skin.
     pub rig: Rig,
     /// Body by body as the skeleton's joints.
     pub def: RagdollDef,

@@ -14,7 +14,7 @@ const MOST: usize = 64;
 pub(super) struct Solid {
     pub shape: Shape,
     pub part_from_shape: Transform,
-    /// In the shape's frame.
+    /// Mass properties in the shape's frame.
     pub mass: MassProperties,
 }
 

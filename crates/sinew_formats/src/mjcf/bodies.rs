@@ -164,7 +164,7 @@ impl<'a> Reading<'a, '_> {
                     contents.freedom = Freedom::Free;
                 }
                 "inertial" => contents.inertial = Some(self.inertial(element)?),
-                // To look at, from and by.
+                // These elements are only for views.
                 "site" | "camera" | "light" => {}
                 _ => return Err(unsupported(element, format!("{} in a body is not read", quoted(tag)))),
             }
@@ -196,7 +196,7 @@ impl<'a> Reading<'a, '_> {
                 [xx, yy, zz, 0.0, 0.0, 0.0]
             }
         };
-        // In our axes: our y is the file's z, our z its −y.
+        // Convert to our axes: our y is the file's z, our z its −y.
         let inertia = Sym3 { diagonal: Vec3::new(xx, zz, yy), off: Vec3::new(-yz, -xy, xz) };
         Ok(MassProperties { mass, center: Vec3::ZERO, inertia }.transformed(&self.pose(element)?))
     }

@@ -39,7 +39,7 @@ pub(super) enum Limits {
 /// Source of the masses of bodies.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum InertiaFrom {
-    /// From `<inertial>` if present, otherwise from geoms.
+    /// Mass from `<inertial>` if present, otherwise from geoms.
     Either,
     Geoms,
     Inertial,
@@ -174,7 +174,8 @@ pub(super) fn direction(value: Value<'_>, vector: [f32; 3]) -> Result<Vec3> {
     Ok(vector / length)
 }
 
-/// From the file's axes (x forward, y left, z up) to ours (x forward, y up, z right): an exact quarter turn about x.
+/// Converts from the file's axes (x forward, y left, z up) to ours (x forward, y up, z right): an exact quarter turn
+/// about x.
 pub(super) fn y_up(v: Vec3) -> Vec3 {
     Vec3::new(v.x, v.z, -v.y)
 }

@@ -57,7 +57,7 @@ impl<'a> Classes<'a> {
                     "geom" => class.geom.extend(entries),
                     "joint" => class.joint.extend(entries),
                     "default" => open.push((child, self.add(child, index)?)),
-                    // Of elements that are not read.
+                    // Defaults of elements that are not read.
                     _ => {}
                 }
             }

@@ -37,7 +37,7 @@ const CONDIM: [(&str, Resists); 4] =
     [("1", Resists::Other), ("3", Resists::Sliding), ("4", Resists::Other), ("6", Resists::Rolling)];
 
 impl Geom {
-    /// From an element and the defaults of its class.
+    /// Reads a geom from an element and the defaults of its class.
     pub fn read(geom: &Merged<'_, '_>, compiler: &Compiler, notes: &mut Notes) -> Result<Self> {
         for key in UNREAD.into_iter().filter(|key| geom.get(key).is_some()) {
             notes.left_out(key);

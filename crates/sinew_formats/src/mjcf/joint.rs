@@ -1,4 +1,4 @@
-//! From the `<joint>` elements of a body to one joint.
+//! Converts the `<joint>` elements of a body to one joint.
 
 use super::compiler::{Compiler, Limits, direction, quaternion, turn_y_up, y_up};
 use super::defaults::Merged;
@@ -174,7 +174,7 @@ impl Pivot {
     }
 }
 
-/// In the unit of the file; `None`: unlimited.
+/// Reads a range in the unit of the file; `None`: unlimited.
 fn read_range(joint: &Merged<'_, '_>, limits: Limits) -> Result<Option<[f32; 2]>> {
     let Some(value) = joint.get("range") else { return Ok(None) };
     let by_range = limits == Limits::ByRange;

@@ -26,7 +26,7 @@ pub(super) fn read(root: Element<'_>, tree: &Tree<'_>, joints: &[MjcfJoint]) -> 
 }
 
 impl MjcfKeyframe {
-    /// From the coordinates of all joints: body after body, joint after joint.
+    /// Computes poses from the coordinates of all joints: body after body, joint after joint.
     fn fill(&mut self, value: Value<'_>, tree: &Tree<'_>, joints: &[MjcfJoint]) -> Result<()> {
         let coordinates = value.list()?;
         let wanted: usize = tree.links.iter().map(|link| link.freedom.coordinates()).sum();

@@ -68,7 +68,7 @@ pub struct MjcfModel {
     pub gravity: Vec3,
     /// Parents before children; the first, named `world`, is static and has the shapes that never move.
     pub bodies: Vec<MjcfBody>,
-    /// In the order of their children.
+    /// Joints in the order of their children.
     pub joints: Vec<MjcfJoint>,
     /// Pairs of bodies without a joint, by index, that do not collide.
     pub excluded_pairs: Vec<(usize, usize)>,
@@ -81,9 +81,9 @@ pub struct MjcfModel {
 /// A body of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MjcfBody {
-    /// In the file, or `""`.
+    /// Name in the file, or `""`.
     pub name: String,
-    /// In the pose of the file. A dynamic body's mass is given; `user_data` is its index.
+    /// Body in the pose of the file. A dynamic body's mass is given; `user_data` is its index.
     pub def: BodyDef,
 }
 
@@ -113,7 +113,7 @@ pub struct MjcfJoint {
 /// A named pose, as differences from the file's pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MjcfKeyframe {
-    /// In the file, or `""`.
+    /// Name in the file, or `""`.
     pub name: String,
     /// Free bodies, by index, and their world poses.
     pub placed: Vec<(usize, Transform)>,
@@ -124,9 +124,9 @@ pub struct MjcfKeyframe {
 /// A model in a world.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MjcfInstance {
-    /// In the order of the model.
+    /// Bodies in the order of the model.
     pub bodies: Vec<BodyId>,
-    /// In the order of the model.
+    /// Joints in the order of the model.
     pub joints: Vec<JointId>,
 }
 

@@ -31,7 +31,7 @@ impl MjcfModel {
     /// universal joint, whose range is an ellipse instead of a rectangle.
     ///
     /// # Errors
-    /// Nothing in the model moves; a joint slides or is a rod; a body has no name.
+    /// If nothing in the model moves, a joint slides or is a rod, or a body has no name.
     pub fn to_ragdoll(&self) -> Result<MjcfRagdoll> {
         let root = self.bodies.iter().position(|body| body.def.kind == BodyKind::Dynamic);
         let root =
@@ -198,7 +198,7 @@ fn turning(joint: &MjcfJoint, notes: &mut Vec<String>) -> Result<(JointKind, Tra
         AxisMotion::Locked => Range::symmetric(0.0),
     };
     notes.push(format!("the two hinges {} became one joint with an elliptic range", quoted(&joint.name)));
-    // Its y remains the first hinge's axis; its z becomes the last hinge's, which was x.
+    // The y axis remains the first hinge's; z becomes the last hinge's, which was x.
     let axes = Rotation::from_mat3(&Mat3::from_cols(-Vec3::Z, Vec3::Y, Vec3::X));
     let limit =
         SwingTwistLimit { swing_y: range(swing), swing_z: range(twist), twist: Range::symmetric(0.0) };

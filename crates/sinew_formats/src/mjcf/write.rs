@@ -214,7 +214,7 @@ impl Writer<'_> {
     }
 }
 
-/// From the character's axes (+Z forward) to ours of a file (+x forward).
+/// Converts from the character's axes (+Z forward) to ours of a file (+x forward).
 fn facing_x() -> Transform {
     Transform::new(Vec3::ZERO, Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_2))
 }

@@ -80,7 +80,7 @@ impl MotionFormat {
         })
     }
 
-    /// As a word: `glb`, `gltf`, `bvh`, `deepmimic`, `fbx`, `tof`.
+    /// Name as a word: `glb`, `gltf`, `bvh`, `deepmimic`, `fbx`, `tof`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Glb => "glb",

@@ -25,11 +25,11 @@ use sinew_anim::{Clip, ClipEvent, LocalTransform, Rig};
 /// Options for reading a file with clips.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MotionOptions<'a> {
-    /// For a BVH file.
+    /// Options for a BVH file.
     pub bvh: BvhOptions,
     /// Character of a DeepMimic clip, which the clip itself does not name.
     pub deepmimic: Option<&'a DeepMimicCharacter>,
-    /// For a glTF or FBX file.
+    /// Options for a glTF or FBX file.
     pub gltf: ReadOptions,
 }
 

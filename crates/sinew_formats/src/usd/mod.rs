@@ -42,7 +42,7 @@ pub struct UsdInput<'a> {
     pub clip: &'a Clip,
     /// Frames a second, at least 1.
     pub fps: f32,
-    /// From the rig's model space to the world, metres.
+    /// Transform from the rig's model space to the world, metres.
     pub world_from_model: Affine,
     /// The ragdoll; `None` writes no physics.
     pub ragdoll: Option<&'a RagdollDef>,

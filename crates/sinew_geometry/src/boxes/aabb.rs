@@ -19,7 +19,7 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// From two opposite corners, the lowest and the highest.
+    /// Creates a box from two opposite corners, the lowest and the highest.
     ///
     /// # Panics
     /// If a number is not finite, or `min` is above `max` along an axis.
@@ -32,7 +32,7 @@ impl Aabb {
         Self { min, max }
     }
 
-    /// From its centre and half of its sides.
+    /// Creates a box from its centre and half of its sides.
     ///
     /// # Panics
     /// If a number is not finite or a half extent is negative.

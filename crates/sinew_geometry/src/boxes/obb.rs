@@ -9,7 +9,7 @@ use sinew_math::{Rotation, Transform, Vec3};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct Obb {
-    /// Its middle, metres.
+    /// Centre, metres.
     pub center: Vec3,
     /// Rotation from the box's axes to those of its space.
     pub rotation: Rotation,
@@ -18,7 +18,7 @@ pub struct Obb {
 }
 
 impl Obb {
-    /// From its parts.
+    /// Creates a box from its parts.
     ///
     /// # Panics
     /// If a number is not finite or a half extent is negative.
@@ -28,7 +28,7 @@ impl Obb {
         Self { center, rotation, half_extents }
     }
 
-    /// Around the origin of a frame, along its axes.
+    /// Creates a box around the origin of a frame, along its axes.
     ///
     /// # Panics
     /// As [`new`](Self::new).

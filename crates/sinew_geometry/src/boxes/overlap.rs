@@ -14,7 +14,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// From its parts.
+    /// Creates a ball from its parts.
     ///
     /// # Panics
     /// If a number is not finite or the radius is negative.
@@ -35,7 +35,7 @@ pub struct Capsule {
 }
 
 impl Capsule {
-    /// From its parts.
+    /// Creates a capsule from its parts.
     ///
     /// # Panics
     /// If a number is not finite or the radius is negative.
@@ -61,7 +61,7 @@ pub trait Overlap<Other> {
     fn penetration(&self, other: &Other) -> Option<Penetration>;
 }
 
-/// By intervals, exactly.
+/// Compares intervals, exactly.
 impl Overlap<Aabb> for Aabb {
     #[inline]
     fn overlaps(&self, other: &Aabb) -> bool {

@@ -5,7 +5,7 @@ use sinew_math::{Transform, Vec3, max3, min, min3};
 /// A box with its axes computed, for many queries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedBox {
-    /// Its middle, metres.
+    /// Centre, metres.
     pub center: Vec3,
     /// Unit directions of its sides: the columns of the rotation's matrix.
     pub axes: [Vec3; 3],
@@ -14,7 +14,7 @@ pub struct PlacedBox {
 }
 
 impl PlacedBox {
-    /// Around the origin of a frame, along its axes. Half of the sides, metres, ≥ 0, unchecked.
+    /// Creates a box around the origin of a frame, along its axes. Half of the sides, metres, ≥ 0, unchecked.
     pub fn new(half: Vec3, frame: &Transform) -> Self {
         let m = frame.rotation.to_mat3();
         Self { center: frame.translation, axes: [m.x_axis, m.y_axis, m.z_axis], half }
@@ -30,12 +30,12 @@ impl PlacedBox {
         self.local_vector(p - self.center)
     }
 
-    /// From the box's frame to the frame of its axes.
+    /// Converts a vector from the box's frame to the frame of its axes.
     pub fn vector(&self, v: Vec3) -> Vec3 {
         self.axes[0] * v.x + self.axes[1] * v.y + self.axes[2] * v.z
     }
 
-    /// From the box's frame to the frame of its axes.
+    /// Converts a point from the box's frame to the frame of its axes.
     pub fn point(&self, p: Vec3) -> Vec3 {
         self.center + self.vector(p)
     }

@@ -6,11 +6,11 @@ use sinew_math::{Vec3, abs3, max3};
 /// Point of a box's surface that is closest to another point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
-    /// On the surface, metres.
+    /// Point on the surface, metres.
     pub point: Vec3,
     /// Unit, out of the box: from the surface to an outside point, through the nearest face for an inside one.
     pub normal: Vec3,
-    /// From the surface to the point along the normal, metres: negative inside.
+    /// Distance from the surface to the point along the normal, metres: negative inside.
     pub distance: f32,
 }
 

@@ -8,7 +8,7 @@ use sinew_math::{Vec3, any_orthonormal};
 /// A corner of the cut face.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Corner {
-    /// In the reference face's frame: its normal is z.
+    /// Position in the reference face's frame: its normal is z.
     pub local: Vec3,
     /// Feature of the reference shape.
     pub reference: u16,
@@ -58,9 +58,9 @@ pub(super) trait Reference {
     fn feature(&self) -> u16;
     /// Unit, outward.
     fn normal(&self) -> Vec3;
-    /// In the face's frame.
+    /// Converts a point to the face's frame.
     fn local(&self, p: Vec3) -> Vec3;
-    /// From the face's frame to the frame of the pair.
+    /// Converts a point from the face's frame to the frame of the pair.
     fn point(&self, local: Vec3) -> Vec3;
     fn sides(&self) -> usize;
     /// A side in the face's frame.
@@ -167,7 +167,7 @@ pub(super) struct BoxFace<'a> {
 }
 
 impl<'a> BoxFace<'a> {
-    /// By its axis and side.
+    /// Creates a face by its axis and side.
     pub fn new(of: &'a PlacedBox, axis: usize, sign: f32) -> Self {
         let normal = of.axes[axis] * sign;
         let sides = [[1, 2], [2, 0], [0, 1]][axis];
@@ -256,7 +256,7 @@ impl<'a> PolytopeFace<'a> {
         Self { of, face, axes: [u, normal.cross(u), normal], origin: of.center - normal * height }
     }
 
-    /// Its corners in order.
+    /// Corners in order.
     pub fn corners(&self) -> impl Iterator<Item = Incident> {
         let Polytope { vertices, topology, .. } = *self.of;
         topology.sides(self.face).map(move |side| {

@@ -16,7 +16,7 @@ const FACING: f32 = 0.95;
 /// by this share of the thinner solid.
 const PREFERENCE: f32 = 0.05;
 const PREFERENCE_OF_SIZE: f32 = 0.01;
-/// Normals within this of a face's are that face's.
+/// Sine of the angle up to which a normal counts as that of a face.
 const FACE_SINE: f32 = 2e-3;
 /// Edges with a smaller sine are parallel and touch along a line.
 const PARALLEL_SINE: f32 = 0.05;
@@ -137,7 +137,7 @@ impl Pairing<'_> {
         &self.features[of as usize]
     }
 
-    /// From that solid to the other.
+    /// Normal from that solid to the other.
     fn outward(&self, of: Of) -> Vec3 {
         if of == Of::A { self.gap.normal } else { -self.gap.normal }
     }

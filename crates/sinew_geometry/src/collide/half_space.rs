@@ -33,7 +33,7 @@ pub(super) fn against_hull(a: &Plane, b: &Hull, frame: &Transform, margin: f32, 
     push_deepest::<MAX_VERTICES>(corners, lowest, ROUNDING * b.bounding_radius(), margin, out);
 }
 
-/// Both ends.
+/// Tests both ends of a capsule.
 pub(super) fn against_capsule(a: &Plane, b: &PlacedCapsule, margin: f32, out: &mut Manifold) {
     out.normal = a.normal;
     for (index, point) in b.core.ends.into_iter().enumerate() {

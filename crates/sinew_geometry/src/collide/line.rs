@@ -9,7 +9,7 @@ use sinew_math::Vec3;
 pub(super) struct Line<'a> {
     pub core: &'a Segment,
     pub radius: f32,
-    /// From one parameter of the core to another.
+    /// Range of the core's parameter.
     pub stretch: (f32, f32),
     /// Unit, from the face or edge to the core.
     pub normal: Vec3,

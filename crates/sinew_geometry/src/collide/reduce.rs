@@ -1,4 +1,4 @@
-//! From many points in one plane to the few that hold as well.
+//! Reduces many points in one plane to the few that hold as well.
 
 use super::manifold::{MAX_POINTS, Manifold, ManifoldPoint};
 use sinew_math::Vec3;
@@ -22,7 +22,7 @@ pub(super) fn push_best(points: &[ManifoldPoint], tolerance: f32, out: &mut Mani
     let left = best_relative(points, area);
     let right = best_relative(points, |p| -area(p));
     let mut chosen = [deepest, furthest, left, right];
-    // In the order of the polygon, each once.
+    // Sort them in the order of the polygon, each once.
     chosen.sort_unstable();
     let smallest_area = 1e-6 * line.dot(line);
     let mut previous = usize::MAX;

@@ -48,7 +48,7 @@ impl Feature {
         Self::new(&[corner(0), corner(1)], WHOLE, Vec3::ZERO)
     }
 
-    /// From the corners, at most [`MOST_CORNERS`]; `normal` is 0 for fewer than three.
+    /// Creates a feature from its corners, at most [`MOST_CORNERS`]; `normal` is 0 for fewer than three.
     pub fn new(corners: &[Corner], name: u16, normal: Vec3) -> Self {
         let mut feature =
             Self { corners: [Corner::default(); MOST_CORNERS], count: corners.len(), name, normal };

@@ -143,7 +143,7 @@ impl Simplex {
         self.weighted(|vertex| vertex.difference)
     }
 
-    /// That point's ends on A and B.
+    /// Points on A and B that belong to that point.
     fn ends(&self) -> [DVec3; 2] {
         [self.weighted(|vertex| vertex.on_a), self.weighted(|vertex| vertex.on_b)]
     }

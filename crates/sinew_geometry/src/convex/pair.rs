@@ -13,9 +13,9 @@ pub struct Gap {
     pub distance: f32,
     /// Unit, from A to B, in the world: B moved along it by the depth no longer overlaps A.
     pub normal: Vec3,
-    /// On A's surface, world, metres.
+    /// Point on A's surface, world, metres.
     pub on_a: Vec3,
-    /// On B's surface, world, metres: `on_a + normal × distance`.
+    /// Point on B's surface, world, metres: `on_a + normal × distance`.
     pub on_b: Vec3,
 }
 
@@ -72,7 +72,7 @@ pub fn meet<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>) -> Gap {
 }
 
 impl Bridge {
-    /// Between the surfaces of the rounded cores.
+    /// Gap between the surfaces of the rounded cores.
     pub(super) fn rounded(self, a: f64, b: f64) -> Self {
         Self {
             on_a: self.on_a + self.normal * a,
@@ -98,13 +98,13 @@ impl From<Bridge> for Gap {
 }
 
 impl Gap {
-    /// Between B and A.
+    /// The same gap from B to A.
     #[must_use]
     pub fn flipped(self) -> Self {
         Self { normal: -self.normal, on_a: self.on_b, on_b: self.on_a, ..self }
     }
 
-    /// In coordinates relative to `origin`.
+    /// Converts to coordinates relative to `origin`.
     pub fn placed(self, origin: Vec3) -> Self {
         Self { on_a: self.on_a + origin, on_b: self.on_b + origin, ..self }
     }

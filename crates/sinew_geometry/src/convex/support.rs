@@ -203,7 +203,7 @@ impl<'a, S: Support> Posed<'a, S> {
     pub fn new(solid: &'a S, frame: &Transform, origin: Vec3) -> Self {
         let r = frame.rotation;
         let [x, y, z, w] = [r.x, r.y, r.z, r.w].map(f64::from);
-        // Of length 1 in `f64` too, which the rotation is in `f32` only.
+        // Normalise in `f64` too, because the rotation has length 1 in `f32` only.
         let s = 2.0 / (x * x + y * y + z * z + w * w);
         let axes = [
             DVec3::new(1.0 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)),

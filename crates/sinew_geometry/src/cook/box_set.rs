@@ -18,7 +18,7 @@ impl<'a> BoxSet<'a> {
         Self { boxes, placed, bounds: boxes.iter().map(bounds).collect() }
     }
 
-    /// To the nearest face of any box, metres, from inside as from outside. Infinite without boxes.
+    /// Distance to the nearest face of any box, metres, from inside as from outside. Infinite without boxes.
     pub fn distance_to_faces(&self, p: Vec3) -> f32 {
         let mut nearest = f32::INFINITY;
         for (placed, bounds) in self.placed.iter().zip(&self.bounds) {
@@ -41,7 +41,7 @@ impl<'a> BoxSet<'a> {
         (0..self.placed.len()).filter(holds)
     }
 
-    /// About `count` points of all faces, uniform by area, without those inside another box.
+    /// Samples about `count` points of all faces, uniform by area, without those inside another box.
     pub fn outer_surface(&self, count: usize, random: &mut Random) -> Vec<Vec3> {
         let total: f32 = self.boxes.iter().map(Cuboid::surface_area).sum();
         let (mut outer, mut own) = (Vec::new(), Vec::new());

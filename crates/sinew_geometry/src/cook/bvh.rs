@@ -16,7 +16,7 @@ pub struct MeshBvh {
     clusters: Vec<Cluster>,
     /// Corners, in leaf order.
     triangles: Vec<[Vec3; 3]>,
-    /// Their indices in the original list.
+    /// Indices of the triangles in the original list.
     numbers: Vec<u32>,
 }
 
@@ -35,7 +35,7 @@ struct Cluster {
 /// Closest point of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosestPoint {
-    /// On the surface, metres.
+    /// Point on the surface, metres.
     pub point: Vec3,
     /// Distance from the query point, metres, ≥ 0.
     pub distance: f32,
@@ -46,7 +46,7 @@ pub struct ClosestPoint {
 }
 
 impl MeshBvh {
-    /// From triangles, by their corners in metres.
+    /// Builds the tree from triangles, by their corners in metres.
     ///
     /// # Panics
     /// If there is no triangle, or a corner is not finite.

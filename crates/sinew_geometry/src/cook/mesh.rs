@@ -10,7 +10,7 @@ const WELD: f32 = 1e-5;
 /// Most triangles of a mesh.
 pub const MAX_TRIANGLES: usize = 16 << 20;
 
-/// Why a mesh cannot be cooked. Indices are those of the slices given.
+/// Reason why a mesh cannot be cooked. Indices are those of the given slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CookError {
     /// No triangle is left, or none has an area.

@@ -1,4 +1,4 @@
-//! From a triangle mesh to a few oriented boxes.
+//! Converts a triangle mesh to a few oriented boxes.
 //!
 //! Levels are drawn as triangles and collide better as boxes, which are solid, few, and have no internal edges.
 //! [`cook`] converts a mesh, [`Cooked::deviation`] measures the error.
@@ -61,7 +61,7 @@ impl Default for CookOptions {
 pub struct Cooked {
     /// The boxes, in the mesh's frame.
     pub boxes: Vec<Obb>,
-    /// Their distance from it.
+    /// Deviation of the boxes from the mesh.
     pub deviation: Deviation,
     /// Repairs of the mesh.
     pub repairs: Repairs,
@@ -72,7 +72,7 @@ pub struct Cooked {
 /// Progress of the cooking, reported during the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// So many triangles have their boxes.
+    /// Boxes of this many triangles are done.
     Triangles(usize),
     /// Number of boxes left.
     Boxes(usize),
@@ -185,7 +185,7 @@ fn scale(mesh: &SurfaceMesh, options: &CookOptions, finer: f32) -> Scale {
     }
 }
 
-/// As many boxes as the mesh needs.
+/// Builds as many boxes as the mesh needs.
 fn first_boxes(
     mesh: &SurfaceMesh,
     bvh: &MeshBvh,

@@ -23,7 +23,7 @@ pub(super) fn uncovered(mesh: &SurfaceMesh, triangles: &[u32], blocks: &[Obb], s
         let corners = mesh.corners(triangle as usize);
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         let size = (corners[1] - corners[0]).length() + (corners[2] - corners[0]).length();
-        // For small triangles the middle suffices.
+        // The middle suffices for small triangles.
         !near(middle)
             || (size > scale.tolerance
                 && corners.iter().any(|&corner| !near(corner + (middle - corner) * 0.2)))
@@ -99,7 +99,7 @@ fn neighbors(mesh: &SurfaceMesh, triangles: &[u32]) -> Vec<[u32; 3]> {
 
 fn plates_of_region(mesh: &SurfaceMesh, region: &[u32], scale: Scale) -> Vec<Obb> {
     let (rotation, low, high) = smallest_rectangle(mesh, region);
-    // Behind the face, so that objects stand on the drawn surface.
+    // The box is behind the face, so that objects stand on the drawn surface.
     let low = low - Vec3::Y * scale.thickness;
     let area: f32 = region.iter().map(|&t| 0.5 * mesh.doubled_area(t as usize).length()).sum();
     let size = high - low;
@@ -118,7 +118,7 @@ fn plates_of_region(mesh: &SurfaceMesh, region: &[u32], scale: Scale) -> Vec<Obb
     let grid = Grid::new(planes, |low, high| {
         let middle = Vec3::new(0.5 * (low[0] + high[0]), top, 0.5 * (low[2] + high[2]));
         let away = rotation.inverse() * (bvh.closest_point(rotation * middle).point) - middle;
-        // Beside the region, not above it.
+        // The point is beside the region, not above it.
         away.x * away.x + away.z * away.z < 0.05 * step * step
     });
     let boxes = grid.cover(0.01, MOST_BOXES);

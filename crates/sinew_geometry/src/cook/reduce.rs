@@ -26,7 +26,7 @@ struct Entry {
     /// Integral of squared distances of and to its surface, m⁴, and the number of boxes when it was computed.
     cost: f32,
     seen: usize,
-    /// Neither dropped nor merged so far.
+    /// True if it was neither dropped nor merged so far.
     alive: bool,
 }
 
@@ -41,7 +41,7 @@ enum Step {
 
 struct Candidate {
     step: Step,
-    /// Its addition to the integral of squared distances when last computed, m⁴.
+    /// Increase of the integral of squared distances when last computed, m⁴.
     cost: f32,
     /// Number of boxes at that time.
     seen: usize,
@@ -87,7 +87,7 @@ impl<'a> Reduction<'a> {
             let Some(index) = (0..self.candidates.len()).reduce(cheaper) else { break };
             let Candidate { step, cost, seen } = self.candidates[index];
             if seen != self.left {
-                // Its neighbourhood may have changed: recompute its cost.
+                // The neighbourhood may have changed, so recompute the cost.
                 self.candidates[index] = Candidate { step, cost: self.cost(&step), seen: self.left };
                 continue;
             }
@@ -254,7 +254,7 @@ impl<'a> Reduction<'a> {
         let around_both = around_both.unwrap_or(a.block);
         let Some(rotation) = along_faces else { return [around_both; 2] };
         let normal: Vec3 = points().map(|p| p.normal).sum();
-        // Behind the faces if they look one way; none if they look all ways.
+        // The box is behind the faces if they look one way; centred if they look all ways.
         let behind = normal * (-self.scale.thickness / points().count() as f32);
         let plate = points().flat_map(|p| [p.position, p.position + behind]);
         [around_both, around(plate, rotation, self.scale.thinnest)]

@@ -18,7 +18,7 @@ pub(crate) fn sample(
     count: usize,
     random: &mut Random,
 ) -> (Vec<MeshPoint>, f32) {
-    // In f64: a million small areas.
+    // Sum in f64, because there may be a million small areas.
     let area = |&t: &u32| f64::from(mesh.doubled_area(t as usize).length()) * 0.5;
     let total: f64 = triangles.iter().map(area).sum();
     let mut next = || f64::from(random.unit());

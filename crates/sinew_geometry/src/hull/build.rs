@@ -103,7 +103,7 @@ pub(super) fn from_faces(vertices: Vec<Vec3>, loops: &[Vec<u8>]) -> Result<Hull,
     for ring in loops {
         let (normal, area) = newell(&vertices, ring).ok_or("a face of a hull has no area")?;
         let on_face = ring.iter().map(|&i| normal.dot(vertices[usize::from(i)])).fold(f32::INFINITY, min);
-        // At the furthest corner, so that a face's plane bounds the hull up to rounding.
+        // The plane is at the furthest corner, so that it bounds the hull up to rounding.
         let offset = reach(&vertices, normal);
         if offset - on_face > CONVEX * size + ROUNDING * bounding_radius {
             return Err("a hull is not convex");

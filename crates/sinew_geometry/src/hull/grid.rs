@@ -11,7 +11,7 @@ pub(super) const SIZES: core::ops::RangeInclusive<f64> = 1e-6..=1e6;
 /// A cloud's points on a grid whose step is a power of two, at most 2⁻²² of the longest side; sorted and unique, so
 /// that the input order decides nothing.
 pub(super) struct Grid {
-    /// In steps from the lowest corner, 0..=2²³.
+    /// Coordinates in steps from the lowest corner, 0..=2²³.
     pub points: Vec<[i64; 3]>,
     lowest: [f64; 3],
     step: f64,

@@ -38,7 +38,7 @@ struct Regions<'a> {
 const NONE: u32 = u32::MAX;
 
 impl<'a> Regions<'a> {
-    /// From the largest triangle on, each absorbs its neighbours while they lie in its plane.
+    /// Start from the largest triangle; each absorbs its neighbours while they lie in its plane.
     fn grow(points: &[Point], triangles: &'a [Triangle], tolerance: f64) -> Self {
         let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
         let area = |i: u32| triangles[i as usize].plane.length;

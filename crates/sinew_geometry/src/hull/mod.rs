@@ -28,7 +28,7 @@ pub const MAX_FACES: usize = 128;
 /// Most corners of a hull: the maximum for that many faces if three meet in each.
 pub const MAX_VERTICES: usize = 2 * MAX_FACES - 4;
 
-/// Why points have no hull.
+/// Reason why points have no hull.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HullError {
     /// A coordinate is NaN or infinite.
@@ -71,7 +71,7 @@ pub struct Hull {
     volume: f32,
     /// Centre of mass, of even density.
     center: Vec3,
-    /// About the centre, of density 1.
+    /// Inertia about the centre, of density 1.
     inertia: Sym3,
     inner_radius: f32,
     bounding_radius: f32,

@@ -18,7 +18,7 @@ pub(crate) struct Polytope<'a> {
 }
 
 impl Hull {
-    /// In its own frame.
+    /// Polytope in the hull's own frame.
     pub(crate) fn polytope(&self) -> Polytope<'_> {
         Polytope {
             center: self.center,

@@ -28,7 +28,7 @@ impl<const F: usize, const H: usize> Table<F, H> {
     }
 }
 
-/// From the corners of each face, counter-clockwise from outside.
+/// Builds a table from the corners of each face, counter-clockwise from outside.
 const fn table<const F: usize, const K: usize, const H: usize>(loops: [[u8; K]; F]) -> Table<F, H> {
     let mut faces = [Loop { first: 0, count: K as u16 }; F];
     let mut half_edges = [HalfEdge { origin: 0, face: 0, twin: 0 }; H];

@@ -35,7 +35,7 @@ pub struct Submerged {
 }
 
 impl Submerged {
-    /// From volume times centre.
+    /// Computes the centre from volume times centre.
     fn of_moment(volume: f32, moment: Vec3) -> Self {
         Self { volume, moment }
     }
@@ -44,7 +44,7 @@ impl Submerged {
         Self { volume, moment: center * volume }
     }
 
-    /// Its centre of volume, in the frame of the question, metres; the origin if nothing is under water.
+    /// Centre of volume, in the frame of the question, metres; the origin if nothing is under water.
     pub fn center(&self) -> Vec3 {
         if self.volume > 0.0 { self.moment / self.volume } else { Vec3::ZERO }
     }
@@ -64,7 +64,7 @@ impl Shape {
     /// The part of the shape below the surface: volume, and its centre in the world. Exact for every shape up to
     /// rounding (about 1e-5 of the volume); zero for half-spaces, meshes and height fields.
     pub fn submerged(&self, world_from_shape: &Transform, plane: &WaterPlane) -> Submerged {
-        // In the shape's frame, where nothing is far away.
+        // Compute in the shape's frame, where nothing is far away.
         let normal = world_from_shape.rotation.inverse() * plane.normal;
         let height = -plane.above(world_from_shape.translation);
         let reach = self.bounding_radius();
@@ -197,7 +197,7 @@ fn half_ball_below(a: Vec3, n: Vec3, s: f32) -> Submerged {
     let across = a - n * cos;
     let sin = max(across.length(), 1e-6);
     let rho = max((1.0 - s * s).sqrt(), 1e-6);
-    // Where the flat side meets the cut, along `across` in units of the cut's radius.
+    // Position where the flat side meets the cut, along `across` in units of the cut's radius.
     let q = clamp(-s * cos / (sin * rho), -1.0, 1.0);
     let cut = rho * rho * segment(-q);
     let cut_moment = 2.0 / 3.0 * rho * rho * rho * (1.0 - q * q) * (1.0 - q * q).sqrt();

@@ -60,7 +60,7 @@ fn between(slice: &Slice, plane: &WaterPlane, from: f64, to: f64) -> [f64; 3] {
         let weight = weight * half * 1.5 * (1.0 - node * node);
         let squared = slice.radius_squared_at(y);
         let (radius, depth) = (squared.sqrt(), height - cos * y);
-        // Where the surface cuts the disk, in units of its radius along the upward direction.
+        // Position where the surface cuts the disk, in units of its radius along the upward direction.
         let t = if depth >= flat * radius {
             1.0
         } else if depth <= -flat * radius {

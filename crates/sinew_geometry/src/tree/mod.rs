@@ -30,7 +30,7 @@ const MOST_LEVELS: usize = 14;
 struct Place(u32);
 
 impl Place {
-    /// Not in the tree, or the root.
+    /// Index that is not in the tree; the parent of the root.
     const NOWHERE: Self = Self(u32::MAX);
 
     fn new(node: u32, slot: usize) -> Self {
@@ -247,7 +247,7 @@ impl Tree {
     }
 }
 
-/// From the root to the lowest node that has to grow least for new bounds.
+/// Descends from the root to the lowest node that has to grow least for new bounds.
 struct Descent<'a> {
     tree: &'a mut Tree,
     root: u32,

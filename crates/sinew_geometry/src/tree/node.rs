@@ -26,7 +26,7 @@ impl Child {
         Self(leaf | LEAF)
     }
 
-    /// As one number, for [`from_bits`](Self::from_bits).
+    /// Converts to one number, for [`from_bits`](Self::from_bits).
     #[inline(always)]
     pub fn bits(self) -> u32 {
         self.0

@@ -17,10 +17,10 @@ pub(super) struct Waiting {
 }
 
 impl Waiting {
-    /// Nothing waits.
+    /// An empty stack.
     pub const NONE: Self = Self { children: [0; STACK], count: 0 };
 
-    /// Only a root waits.
+    /// Creates a stack with only a root.
     #[inline(always)]
     pub fn new(root: u32) -> Self {
         let mut waiting = Self::NONE;
@@ -28,7 +28,7 @@ impl Waiting {
         waiting
     }
 
-    /// Only a root waits from now on.
+    /// Resets the stack to only a root.
     #[inline(always)]
     pub fn start(&mut self, root: u32) {
         self.children[0] = entry(0.0, Child::node(root));

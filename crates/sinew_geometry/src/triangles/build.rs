@@ -25,7 +25,7 @@ pub(super) struct Sheet {
     pub triangles: Vec<[u32; 3]>,
     /// Bit k of each: its edge from corner k on is active.
     pub active: Vec<u8>,
-    /// Their indices in the original list.
+    /// Indices of the triangles in the original list.
     pub numbers: Vec<u32>,
     pub dropped: Dropped,
 }
@@ -141,7 +141,7 @@ fn active_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
     let mut active = vec![0_u8; triangles.len()];
     for around in sides.chunk_by(|p, q| p.edge == q.edge) {
         for side in around {
-            // Of several triangles at an edge, the one that continues most nearly straight.
+            // Among several triangles at an edge, take the one that continues most nearly straight.
             let beyond = around.iter().filter(|other| other.forward != side.forward);
             let felt = beyond.map(|other| is_felt(&corners(side.triangle), &corners(other.triangle)));
             if felt.reduce(|a, b| a && b).unwrap_or(true) {
@@ -156,7 +156,7 @@ fn active_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
 pub(super) fn is_felt(triangle: &[Vec3; 3], beyond: &[Vec3; 3]) -> bool {
     let (n, m) = (triangle::normal(triangle), triangle::normal(beyond));
     let middle = |&[a, b, c]: &[Vec3; 3]| (a + b + c) * (1.0 / 3.0);
-    // From each triangle the middle of the other lies below; both are checked, so that rounding does not decide
+    // The middle of each triangle must lie below the other; both are checked, so that rounding does not decide
     // differently for the two.
     let below = (middle(beyond) - middle(triangle)).dot(n - m) < 0.0;
     // The back of the same sheet.

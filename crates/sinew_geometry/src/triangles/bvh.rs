@@ -42,7 +42,7 @@ impl Tree {
         Self { nodes }
     }
 
-    /// Around all of them.
+    /// Bounds of all triangles.
     pub fn bounds(&self) -> Aabb {
         self.bounds_below(0)
     }
@@ -57,7 +57,7 @@ impl Tree {
         self.nodes.len()
     }
 
-    /// Around the triangles below a node.
+    /// Bounds of the triangles below a node.
     pub fn bounds_below(&self, node: u32) -> Aabb {
         self.nodes[node as usize].bounds
     }

@@ -44,7 +44,7 @@ impl HeightFieldDef {
 pub enum HeightFieldError {
     /// Fewer than 2 vertices along an axis, or more than 2²⁶ cells.
     Size,
-    /// As many heights as vertices are needed.
+    /// The number of heights is not that of the vertices.
     Heights {
         /// Number that was given.
         heights: usize,
@@ -55,7 +55,7 @@ pub enum HeightFieldError {
     Spacing,
     /// A height is not finite, or beyond [`MAX_COORDINATE`].
     NotFinite {
-        /// Its index in the list.
+        /// Index of the height in the list.
         index: usize,
     },
     /// A hole where no cell is.
@@ -104,10 +104,10 @@ const HOLE: u8 = 1 << 7;
 const MAX_CELLS: usize = 1 << 26;
 
 impl HeightField {
-    /// From its numbers.
+    /// Creates the height field from its numbers.
     ///
     /// # Errors
-    /// What is wrong with them.
+    /// If the numbers are invalid.
     pub fn new(mut def: HeightFieldDef) -> Result<Self, HeightFieldError> {
         check(&def)?;
         // Sorted, so that equal fields are equal.
@@ -318,7 +318,7 @@ fn sides(def: &HeightFieldDef) -> [f32; 2] {
     [(def.columns - 1) as f32 * def.spacing[0], (def.rows - 1) as f32 * def.spacing[1]]
 }
 
-/// From a point to the corner of the bounds that is farthest.
+/// Vector from a point to the corner of the bounds that is farthest.
 fn abs_farthest(bounds: &Aabb, p: Vec3) -> Vec3 {
     sinew_math::max3(sinew_math::abs3(bounds.max - p), sinew_math::abs3(bounds.min - p))
 }

@@ -65,7 +65,7 @@ impl core::error::Error for MeshError {}
 #[derive(Clone, Debug)]
 pub struct Mesh {
     vertices: Vec<Vec3>,
-    /// In the order of the tree's leaves.
+    /// Faces in the order of the tree's leaves.
     faces: Vec<Face>,
     tree: Tree,
     dropped: Dropped,
@@ -91,13 +91,14 @@ impl Face {
 }
 
 impl Mesh {
-    /// From vertices (metres) and the indices of each triangle's corners, counter-clockwise seen from outside.
+    /// Creates a mesh from vertices (metres) and the indices of each triangle's corners, counter-clockwise seen from
+    /// outside.
     ///
     /// Vertices at the same position are merged. Triangles without area and duplicates are dropped:
     /// [`dropped`](Self::dropped) counts them.
     ///
     /// # Errors
-    /// What is wrong with them: coordinates that are not finite, indices out of range, no triangle with an area.
+    /// If coordinates are not finite, indices are out of range, or no triangle has an area.
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
         Ok(Self::of_sheet(build::sheet(vertices, triangles)?))
     }
@@ -145,7 +146,7 @@ impl Mesh {
         self.dropped
     }
 
-    /// Around all triangles, in the mesh's frame.
+    /// Bounds of all triangles, in the mesh's frame.
     pub fn bounds(&self) -> Aabb {
         self.tree.bounds()
     }

@@ -20,7 +20,7 @@ pub struct Triangle {
 /// Feature of a triangle: its face, an edge or a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// Its inside.
+    /// Inside of the triangle.
     Face,
     /// Edge from the corner with this number, 0..3, to the next one.
     Edge(usize),

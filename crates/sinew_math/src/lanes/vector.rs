@@ -16,7 +16,7 @@ pub struct Vector3<R> {
 }
 
 impl<R: Real> Vector3<R> {
-    /// From its coordinates.
+    /// Creates a vector from its coordinates.
     #[inline(always)]
     pub fn new(x: R, y: R, z: R) -> Self {
         Self { x, y, z }

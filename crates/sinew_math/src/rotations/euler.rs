@@ -10,29 +10,29 @@ use core::f32::consts::{FRAC_PI_2, PI};
 /// Euler orders (first and third axis equal, such as precession, nutation and spin).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EulerOrder {
-    /// About x, y, z.
+    /// Rotations about x, y, z.
     Xyz,
-    /// About x, z, y.
+    /// Rotations about x, z, y.
     Xzy,
-    /// About y, x, z: heading, pitch and roll of a world with +Y up, when the axes move along.
+    /// Rotations about y, x, z: heading, pitch and roll of a world with +Y up, when the axes move along.
     Yxz,
-    /// About y, z, x.
+    /// Rotations about y, z, x.
     Yzx,
-    /// About z, x, y.
+    /// Rotations about z, x, y.
     Zxy,
-    /// About z, y, x: yaw, pitch and roll of an aircraft whose z points down, with intrinsic axes.
+    /// Rotations about z, y, x: yaw, pitch and roll of an aircraft whose z points down, with intrinsic axes.
     Zyx,
-    /// About x, y, x.
+    /// Rotations about x, y, x.
     Xyx,
-    /// About x, z, x.
+    /// Rotations about x, z, x.
     Xzx,
-    /// About y, x, y.
+    /// Rotations about y, x, y.
     Yxy,
-    /// About y, z, y.
+    /// Rotations about y, z, y.
     Yzy,
-    /// About z, x, z: the classical angles of a top, when the axes move along.
+    /// Rotations about z, x, z: the classical angles of a top, when the axes move along.
     Zxz,
-    /// About z, y, z.
+    /// Rotations about z, y, z.
     Zyz,
 }
 
@@ -93,7 +93,7 @@ impl EulerOrder {
 pub enum EulerAxes {
     /// Moved by them: *intrinsic* angles, those of nested rings. The axes are the body's.
     Moving,
-    /// Not moved: *extrinsic* angles. The axes are the world's.
+    /// The axes do not move: *extrinsic* angles about the world's axes.
     Fixed,
 }
 
@@ -223,7 +223,7 @@ struct Rings {
     outer: f32,
     middle: f32,
     inner: f32,
-    /// From the middle angle to the nearer lock.
+    /// Angle from the middle angle to the nearer lock.
     margin: f32,
     /// The kind of that one.
     nearest_lock: GimbalLock,

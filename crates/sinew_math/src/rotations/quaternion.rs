@@ -43,7 +43,7 @@ impl Quaternion {
     /// One: neither rotates nor stretches.
     pub const ONE: Self = Self::new(1.0, Vec3::ZERO);
 
-    /// From its two parts.
+    /// Creates a quaternion from its two parts.
     pub const fn new(scalar: f32, vector: Vec3) -> Self {
         Self { scalar, vector }
     }

@@ -52,7 +52,8 @@ impl Rotation {
     /// No rotation.
     pub const IDENTITY: Self = Self { x: 0.0, y: 0.0, z: 0.0, w: 1.0 };
 
-    /// From four numbers as they are; call [`normalize`](Self::normalize) if their length may differ from 1.
+    /// Creates a rotation from four numbers as they are; call [`normalize`](Self::normalize) if their length may differ
+    /// from 1.
     #[inline(always)]
     pub const fn from_xyzw(x: f32, y: f32, z: f32, w: f32) -> Self {
         Self { x, y, z, w }
@@ -193,7 +194,8 @@ impl Rotation {
         self.dot(self).sqrt()
     }
 
-    /// At length 1; the zero quaternion (below 1e-12) and those that are not finite (above 1e19) give the identity.
+    /// Scales to length 1; the zero quaternion (below 1e-12) and those that are not finite (above 1e19) give the
+    /// identity.
     #[inline]
     pub fn normalize(self) -> Self {
         let length = self.length();

@@ -60,7 +60,7 @@ fn versor_times_scale() {
         let (scale, axis, angle) = (random.range(0.01, 9.0), random.direction(), random.range(0.0, PI));
         let q = Quaternion::from_scale_axis_angle(scale, axis, angle);
         let turned = Exact::about(wide(axis), f64::from(angle));
-        // Any vector, not only perpendicular ones.
+        // The vector need not be perpendicular to the axis.
         let v = random.direction();
         let expected = turned.turn(wide(v)).map(|x| x * f64::from(scale));
         largest([

@@ -32,7 +32,7 @@ pub(crate) struct Activity {
     active: SlotSet,
     /// Ascending.
     kinematic: Vec<u32>,
-    /// By slot: the next body of the same sleeping island, as a ring.
+    /// The next body of the same sleeping island, as a ring, by slot.
     next: Vec<u32>,
     aside: SleepingContacts,
     /// Contacts of bodies that woke or started moving, until the step visits them.

@@ -30,7 +30,7 @@ impl SlotSet {
         set_bit(&mut self.words[(word / BITS) as usize], word % BITS, any);
     }
 
-    /// Its members, ascending.
+    /// Members, ascending.
     pub fn iter(&self) -> impl Iterator<Item = u32> {
         let filled = self.words.iter().enumerate().flat_map(|(i, &bits)| ones(i as u32 * BITS, bits));
         filled.flat_map(|word| ones(word * BITS, self.members[word as usize]))

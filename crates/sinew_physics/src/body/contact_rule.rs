@@ -24,7 +24,7 @@ pub enum ContactRule {
     Yields(Yields),
     /// A user function decides.
     Modified {
-        /// Its number, as [registered](crate::World::register_modifier).
+        /// Number of the modifier, as [registered](crate::World::register_modifier).
         modifier: u32,
     },
 }
@@ -128,7 +128,7 @@ pub struct ContactSide {
     pub shape: ShapeId,
     /// The user data of its body.
     pub user_data: u64,
-    /// Its material.
+    /// Material of the shape.
     pub material: Material,
     /// Velocity of its body, world axes.
     pub velocity: Velocity,
@@ -141,9 +141,9 @@ pub struct ContactSide {
 pub struct FoundContact<'a> {
     /// The two sides; the one with the smaller body index is first.
     pub sides: [ContactSide; 2],
-    /// From the first to the second, unit length, world axes.
+    /// Normal from the first to the second, unit length, world axes.
     pub normal: Vec3,
-    /// At least one.
+    /// Points of the contact, at least one.
     pub points: &'a [ManifoldPoint],
     /// Number of steps taken before this one.
     pub step: u64,

@@ -197,7 +197,7 @@ pub struct BodyDef {
     pub sleeping: Sleeping,
     /// Step quality of this body and its island; `None`: that of the [world](WorldDef::quality). Default `None`.
     pub quality: Option<Quality>,
-    /// For the user.
+    /// Data of the user.
     pub user_data: u64,
 }
 
@@ -246,19 +246,19 @@ impl BodyDef {
         Self { kind: BodyKind::Static, ..Self::dynamic(shape) }
     }
 
-    /// With its origin at a position (world, metres).
+    /// Sets the position of its origin (world, metres).
     #[must_use]
     pub fn at(self, position: Vec3) -> Self {
         Self { position, ..self }
     }
 
-    /// With this orientation in the world.
+    /// Sets its orientation in the world.
     #[must_use]
     pub fn turned(self, rotation: Rotation) -> Self {
         Self { rotation, ..self }
     }
 
-    /// With one more shape.
+    /// Adds a shape.
     #[must_use]
     pub fn with(mut self, shape: impl Into<ShapeDef>) -> Self {
         self.shapes.push(shape.into());

@@ -115,7 +115,7 @@ impl BodyForces {
         place.unwrap_or_else(|_| panic!("{id:?} is not there"))
     }
 
-    /// Their sum in the given pose of the body's principal frame.
+    /// Sum of the forces in the given pose of the body's principal frame.
     pub fn sum(&self, body: &Body, world_from_principal: Transform) -> Wrench {
         let mut sum = Wrench::default();
         let world_from_body = world_from_principal.rotation * body.principal_from_body.rotation;

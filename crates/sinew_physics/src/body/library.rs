@@ -14,7 +14,7 @@ pub(crate) const MAGIC: &[u8; 8] = b"sinew-s\x01";
 /// Bytes of the smallest entry: its kind and the length of its data.
 pub(crate) const ENTRY_BYTES: usize = 5;
 
-/// Why a snapshot could not be loaded.
+/// Reason why a snapshot could not be loaded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LoadError {
     /// The bytes are not a snapshot of this version.

@@ -100,7 +100,7 @@ pub(crate) struct BodyShape {
 pub(crate) struct Body {
     pub kind: BodyKind,
     pub world_from_principal: Transform,
-    /// Before the last step: for interpolation and continuous collision.
+    /// Pose before the last step: for interpolation and continuous collision.
     pub previous: Transform,
     pub velocity: Velocity,
     /// Applied by the user for the next step, N and N·m, world axes. It does not move a kinematic body and is
@@ -129,7 +129,7 @@ pub(crate) struct Body {
     /// Pose at which its time at rest started.
     pub place: Transform,
     pub gain: Gain,
-    /// Set when its state became non-finite: it was rolled back and is no longer simulated.
+    /// True after its state became non-finite: it was rolled back and is no longer simulated.
     pub quarantined: bool,
     /// The user changed it since the last step.
     pub changed: bool,

@@ -101,7 +101,7 @@ impl ShapeDef {
         }
     }
 
-    /// At the body's origin, with defaults.
+    /// Creates a shape at the body's origin, with defaults.
     pub fn new(shape: Shape) -> Self {
         Self {
             shape,

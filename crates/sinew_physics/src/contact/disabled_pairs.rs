@@ -8,7 +8,7 @@ use crate::joint::Joint;
 /// Disabled pairs: the user's, and those of joints whose bodies do not collide.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DisabledPairs {
-    /// By the user: body indices, smaller first, ascending.
+    /// Pairs disabled by the user: body indices, smaller first, ascending.
     pub disabled: Vec<(u32, u32)>,
     /// Union of the user's and the joints' pairs: body indices, smaller first, ascending.
     all: Vec<(u32, u32)>,

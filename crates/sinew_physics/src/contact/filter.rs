@@ -17,7 +17,7 @@ pub struct PairSide {
     pub kind: BodyKind,
     /// The user data of its body.
     pub user_data: u64,
-    /// Its filter.
+    /// Filter of the shape.
     pub filter: Filter,
     /// Solid shape or sensor.
     pub sensing: Sensing,

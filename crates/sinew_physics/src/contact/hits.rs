@@ -20,7 +20,7 @@ pub struct Hit {
     /// Point of the hit, world, metres: the impulse-weighted mean of the contact points, on the surface of the static
     /// body, if there is one.
     pub point: Vec3,
-    /// From A to B, unit length, world axes.
+    /// Normal from A to B, unit length, world axes.
     pub normal: Vec3,
     /// Approach speed along the normal, m/s, at the first contact, at the start of the step.
     pub approach: f32,

@@ -110,7 +110,7 @@ pub(crate) struct ContactMemory {
     pub points: [PointImpulse; MAX_POINTS],
     /// Friction at the manifold's centre as a world vector, N·s.
     pub friction: Vec3,
-    /// About the normal, N·m·s.
+    /// Impulse of twist friction about the normal, N·m·s.
     pub twist: f32,
     /// Rolling resistance, world vector, N·m·s.
     pub rolling: Vec3,
@@ -119,7 +119,7 @@ pub(crate) struct ContactMemory {
 }
 
 impl ContactMemory {
-    /// With zero impulses.
+    /// Copies the memory with zero total impulses.
     pub fn of_new_step(&self) -> Self {
         let points = self.points.map(|point| PointImpulse { total: 0.0, ..point });
         Self { points, total_friction: Vec3::ZERO, ..*self }
@@ -208,7 +208,7 @@ pub(crate) struct Contact {
     pub one_way: bool,
     /// It or an earlier part of its pair pushed in the last step.
     pub pushed: bool,
-    /// Its pair was reported as touching, or as a sensor pair.
+    /// True if its pair was reported as touching, or as a sensor pair.
     pub touching: bool,
     pub sensed: bool,
     /// A one-way shape let the other pass at its last decision.

@@ -26,7 +26,7 @@ pub(crate) struct NearPair {
     pub left: f32,
     /// The axis that separated them then.
     axis: PackedAxis,
-    /// Their filters let them collide.
+    /// True if their filters let them collide.
     pub meets: bool,
     /// One of them is a mesh or a height field.
     pub has_surface: bool,
@@ -39,7 +39,7 @@ impl NearPair {
         Self { key, leaves, left: f32::NEG_INFINITY, axis, meets: false, has_surface: false }
     }
 
-    /// With the shapes' own filter result.
+    /// Copies the pair with the shapes' own filter result.
     fn met(&self, bodies: &Arena<Body>, filter: PairFilter<'_>) -> Self {
         let key = self.key;
         let is_surface =
@@ -186,7 +186,7 @@ pub(crate) fn insert_sorted<T: Copy, K: Ord>(list: &mut Vec<T>, new: &mut Vec<T>
     let mut left = list.len();
     list.extend_from_slice(new);
     let mut end = list.len();
-    // From the back, where there is space.
+    // Merge from the back, where there is space.
     while let Some(item) = new.pop() {
         let place = list[..left].partition_point(|other| key(other) < key(&item));
         let moved = left - place;

@@ -20,7 +20,7 @@ pub(crate) struct Parts {
     idle: Mutex<Vec<(Scratch, Vec<Owner>)>>,
 }
 
-/// Nothing in it lasts.
+/// No content of it lasts.
 impl Clone for Parts {
     fn clone(&self) -> Self {
         Self::default()

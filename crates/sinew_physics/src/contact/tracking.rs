@@ -20,7 +20,7 @@ pub(crate) struct ContactTracking {
     pub hits: OpenHits,
     /// Bodies changed since the last step: their contacts are tested again even if nothing moves.
     pub changed: Vec<u32>,
-    /// Not part of the snapshot.
+    /// Contact modifiers; not part of the snapshot.
     pub modifiers: Modifiers,
 }
 
@@ -109,7 +109,7 @@ pub(crate) struct Touches {
     /// Start in `seen` of the current two bodies' pairs, and if any of them changed.
     first: usize,
     changes: bool,
-    /// Both merged, for reporting.
+    /// Pairs of `gone` and `seen`, merged for reports.
     noted: Vec<Noted>,
 }
 

@@ -75,7 +75,7 @@ impl<'a> Fields<'a> {
         Self { arena, functions, gravity: def.gravity, step, nanoseconds, particles: false }
     }
 
-    /// With the presence of items other than bodies.
+    /// Adds the presence of items other than bodies.
     pub fn among(self, groups: &Arena<ParticleGroup>) -> Self {
         Self { particles: groups.iter().next().is_some(), ..self }
     }

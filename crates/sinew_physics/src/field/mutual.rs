@@ -58,7 +58,7 @@ impl MutualGravity {
         }
     }
 
-    /// On `a` by `b`, N; that on `b` is the opposite.
+    /// Force on `a` by `b`, N; that on `b` is the opposite.
     pub(crate) fn force(&self, a: &Attractor, b: &Attractor) -> Vec3 {
         // The heavier first, so that both sides of a pair get the same bits.
         let (heavy, light) = if a.mass > b.mass { (a.mass, b.mass) } else { (b.mass, a.mass) };

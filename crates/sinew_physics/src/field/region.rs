@@ -35,14 +35,14 @@ impl Fade {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Region {
-    /// In the whole world. Default.
+    /// The field acts in the whole world. Default.
     #[default]
     Everywhere,
     /// Inside a shape: full where it is deeper than `margin` below the surface, fading to 0 at the surface.
     Inside {
         /// The shape; a half-space, too.
         shape: Shape,
-        /// Its pose in the world.
+        /// Pose of the shape in the world.
         world_from_shape: Transform,
         /// Metres, ≥ 0. For a ball that fades from its centre outward, the ball's radius.
         margin: f32,

@@ -64,7 +64,7 @@ impl<'a> Target<'a> {
         self.velocity.at(point - self.center())
     }
 
-    /// On any of these layers. An item without shapes is on all.
+    /// True if it is on any of these layers. An item without shapes is on all.
     pub(super) fn is_on(&self, layers: u32) -> bool {
         match self.form {
             Form::Body(body) => {
@@ -83,7 +83,7 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// Its shapes with their world poses. A particle is a ball, if it has a radius.
+    /// Shapes of the item with their world poses. A particle is a ball, if it has a radius.
     pub(super) fn for_each_shape(&self, mut visit: impl FnMut(&Shape, &Transform)) {
         match self.form {
             Form::Body(body) => {

@@ -148,7 +148,7 @@ pub struct Motor {
 }
 
 impl Motor {
-    /// Toward a pose, with no cap.
+    /// Creates a motor toward a pose, with no cap.
     pub fn toward(target: Transform, softness: Softness) -> Self {
         Self {
             gains: Gains::Position(softness),
@@ -206,7 +206,7 @@ pub struct Strength {
 }
 
 impl Strength {
-    /// Never breaks.
+    /// Strength of a joint that never breaks.
     pub const UNBREAKABLE: Self = Self { force: f32::INFINITY, torque: f32::INFINITY };
 }
 
@@ -252,7 +252,7 @@ pub struct JointDef {
     pub weld: Option<Softness>,
     /// Stiffness and damping of the limits. Default `None`: hard stops without bounce.
     pub limit_softness: Option<Softness>,
-    /// In front of hard limits of rotations. Default `None`.
+    /// Zone in front of hard limits of rotations. Default `None`.
     pub soft_zone: Option<SoftZone>,
     /// Pulls the free directions. Default `None`.
     pub spring: Option<Spring>,
@@ -309,7 +309,7 @@ impl JointDef {
         }
     }
 
-    /// With a range of motion: radians of a hinge, metres of a slider.
+    /// Sets the range of motion: radians of a hinge, metres of a slider.
     ///
     /// # Panics
     /// If it is of another kind: other limits are fields of their [kinds](JointKind).

@@ -30,7 +30,7 @@ pub(crate) struct LimitImpulse {
 }
 
 impl LimitImpulse {
-    /// As those of substeps `times` as long.
+    /// Converts to the impulses of substeps `times` as long.
     pub fn of_substeps(self, times: f32) -> Self {
         Self { now: self.now * times, before: self.before * times }
     }

@@ -117,7 +117,7 @@ pub(crate) struct JointRows {
 }
 
 impl JointRows {
-    /// None yet.
+    /// No impulses.
     pub const NONE: Self = Self {
         count: 0,
         locked: 0,

@@ -94,7 +94,7 @@ impl Mover {
         }
     }
 
-    /// Its settings; position and height are the last ones set explicitly.
+    /// Settings of the mover; position and height are the last ones set explicitly.
     pub fn def(&self) -> &MoverDef {
         &self.def
     }

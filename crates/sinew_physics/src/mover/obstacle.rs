@@ -36,7 +36,7 @@ pub(super) struct Obstacle {
 #[derive(Clone, Copy, Debug)]
 enum Form {
     Solid(Transform),
-    /// In the world.
+    /// A triangle in the world.
     Triangle(Triangle),
     Capsule {
         center: Vec3,
@@ -93,7 +93,7 @@ impl<'a> Surroundings<'a> {
         self.without.is_none() || obstacle.body() != self.without
     }
 
-    /// From an obstacle to the capsule, unless a neighbour is nearer.
+    /// Gap from an obstacle to the capsule, unless a neighbour is nearer.
     pub fn gap(&self, obstacle: &Obstacle, center: Vec3) -> Option<Gap> {
         self.look(obstacle, center).filter(|(_, hidden)| !hidden).map(|(gap, _)| gap)
     }

@@ -42,7 +42,7 @@ impl Planes {
         }
     }
 
-    /// From now on nothing may approach.
+    /// Lets nothing approach from now on.
     pub fn stop(&mut self) {
         self.all[..self.count].iter_mut().for_each(|plane| plane.least = 0.0);
     }

@@ -22,9 +22,9 @@ pub(super) struct Press {
 
 #[derive(Clone, Copy, Debug)]
 enum Push {
-    /// At once, N·s.
+    /// An impulse at once, N·s.
     Impulse(Vec3),
-    /// In the course of the next step, newtons.
+    /// A force in the course of the next step, newtons.
     Force(Vec3),
 }
 

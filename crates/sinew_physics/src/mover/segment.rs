@@ -6,11 +6,11 @@ use sinew_math::{Vec3, clamp, normalize_or};
 /// Position of an axis to a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AxisGap {
-    /// From the triangle to the axis, metres; negative where the axis is through.
+    /// Distance from the triangle to the axis, metres; negative where the axis is through.
     pub distance: f32,
     /// Unit, from the triangle to the axis.
     pub normal: Vec3,
-    /// On the triangle.
+    /// Point on the triangle.
     pub point: Vec3,
     /// The nearest feature is an internal edge, so the neighbour is at least as near. The result is then relative to
     /// the face's plane.

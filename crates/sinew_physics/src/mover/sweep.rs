@@ -16,9 +16,9 @@ pub(super) struct Touch {
     /// Unit, from the obstacle to the capsule.
     pub normal: Vec3,
     pub distance: f32,
-    /// On the obstacle.
+    /// Point on the obstacle.
     pub point: Vec3,
-    /// Its number in the sight.
+    /// Number of the obstacle in the sight.
     pub obstacle: usize,
 }
 
@@ -76,7 +76,7 @@ const MOST_PUSHES: usize = 8;
 /// Result of planes on a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Course {
-    /// By the shortest change: in the air.
+    /// The motion changes as little as possible: in the air.
     Free,
     /// Up and down are cheap: on the ground.
     Level,

@@ -172,7 +172,7 @@ impl<'a> Move<'a> {
         Manner { course: Course::Level, ..self.manner }
     }
 
-    /// Along the ground, up steps, and down to where the ground is.
+    /// Walks along the ground, up steps, and down to where the ground is.
     fn walk(&self, mover: &mut Mover, start: Vec3) -> Vec3 {
         let up = mover.def.up;
         let wanted = mover.velocity * self.dt;

@@ -21,7 +21,7 @@ pub(crate) struct AddedMass {
 }
 
 impl AddedMass {
-    /// From the velocity that a body of `mass` kg gained by an impulse.
+    /// Estimates the mass from the velocity that a body of `mass` kg gained by an impulse.
     pub fn of(mass: f32, pushed: Vec3, gained: Vec3) -> Self {
         let own = gained * mass;
         let momentum = pushed - own;
@@ -69,7 +69,7 @@ impl AddedMass {
         own * (own.dot(impulse) / (self.power + own.dot(self.momentum)))
     }
 
-    /// As [`ObstacleBody::response_at`], with it.
+    /// Computes [`ObstacleBody::response_at`] with the added mass.
     pub fn response_at(&self, body: &ObstacleBody, point: Vec3) -> Sym3 {
         let whole = body.response_at(point);
         if !self.is_some() {
@@ -79,7 +79,7 @@ impl AddedMass {
         whole - Sym3::outer(own) * (1.0 / (self.power + own.dot(self.momentum)))
     }
 
-    /// As [`ObstacleBody::push`], with it.
+    /// Computes [`ObstacleBody::push`] with the added mass.
     pub fn push(&self, body: &mut ObstacleBody, point: Vec3, impulse: Vec3) {
         body.push(point, impulse);
         body.linear_velocity -= self.kept(body, impulse);

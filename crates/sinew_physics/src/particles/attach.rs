@@ -10,7 +10,7 @@ use sinew_math::{Sym3, Vec3, max};
 /// The point that holds an attached particle, in one substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Anchor {
-    /// At the end of the substep, world, metres.
+    /// Position at the end of the substep, world, metres.
     pub position: Vec3,
     /// Velocity of the anchor, m/s.
     pub velocity: Vec3,

@@ -108,7 +108,7 @@ pub struct RopeDef {
 /// A rope, not yet in a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rope {
-    /// For [`World::add_particles`](crate::World::add_particles). Particles are in order, springs too.
+    /// Definition for [`World::add_particles`](crate::World::add_particles). Particles are in order, springs too.
     pub group: GroupDef,
     /// Index of the first particle.
     pub first: u32,
@@ -146,7 +146,7 @@ impl RopeDef {
         };
         let rest_length = (self.to - self.from).length() / links;
         let spring = |k: u32| SpringDef {
-            // Of two inner particles, `m/2` of which swings.
+            // Damping of two inner particles, `m/2` of which swings.
             damping: 2.0 * ROPE_DAMPING * (0.5 * stiffness * link_mass).sqrt(),
             ..SpringDef::new([k, k + 1], rest_length, stiffness)
         };
@@ -221,7 +221,7 @@ pub struct ClothDef {
 /// Cloth, not yet in a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cloth {
-    /// For [`World::add_particles`](crate::World::add_particles); projected in two iterations per substep.
+    /// Definition for [`World::add_particles`](crate::World::add_particles); projected in two iterations per substep.
     pub group: GroupDef,
     /// Springs in a row.
     pub columns: u32,
@@ -347,7 +347,7 @@ impl ClothDef {
         cloth
     }
 
-    /// Both diagonals of each cell.
+    /// Adds springs along both diagonals of each cell.
     fn brace(&self, cloth: &mut Cloth, diagonal: f32) {
         for row in 0..self.rows {
             for column in 0..self.columns {
@@ -399,7 +399,7 @@ pub struct BlobDef {
 /// A blob, not yet in a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Blob {
-    /// For [`World::add_particles`](crate::World::add_particles); projected in four iterations per substep. All
+    /// Definition for [`World::add_particles`](crate::World::add_particles); projected in four iterations per substep. All
     /// particles belong to the skin, and `volumes[0]` is the enclosed volume.
     pub group: GroupDef,
     /// Index of the highest particle (+Y).

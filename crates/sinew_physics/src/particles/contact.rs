@@ -115,9 +115,9 @@ pub(super) enum Firmness {
 pub struct Obstacle {
     /// Geometry.
     pub shape: Shape,
-    /// Its frame at the beginning of the substep.
+    /// Frame of the shape at the beginning of the substep.
     pub previous: Transform,
-    /// Its frame at the end of the substep.
+    /// Frame of the shape at the end of the substep.
     pub world_from_shape: Transform,
     /// Index of its body in the slice given with it.
     pub body: u32,
@@ -262,16 +262,16 @@ impl Touch {
 /// Grip of a surface on a particle that touches it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Grip {
-    /// Not at all.
+    /// The surface does not hold the particle.
     #[default]
     Off,
-    /// Along the normal; friction is a force.
+    /// The surface holds it along the normal; friction is a force.
     Slide,
-    /// Along the normal; friction is a viscosity, until the iteration ends.
+    /// The surface holds it along the normal; friction is a viscosity, until the iteration ends.
     Slow,
-    /// In all directions.
+    /// The surface holds it in all directions.
     Stick,
-    /// In the corner with another surface, until the end of the iteration.
+    /// The surface holds it in the corner with another surface, until the end of the iteration.
     Wedged,
 }
 

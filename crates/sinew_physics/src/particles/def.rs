@@ -50,7 +50,7 @@ pub struct SpringDef {
 }
 
 impl SpringDef {
-    /// Without damping.
+    /// Creates a spring without damping.
     pub fn new([a, b]: [u32; 2], rest_length: f32, stiffness: f32) -> Self {
         Self { a, b, rest_length, stiffness, damping: 0.0, resists: Resists::Both }
     }
@@ -136,7 +136,7 @@ pub enum AttachmentTarget {
     Body {
         /// The body.
         body: BodyId,
-        /// In the body's frame, metres.
+        /// Point in the body's frame, metres.
         point: Vec3,
     },
 }

@@ -53,7 +53,7 @@ pub(super) struct Eights {
     pub solids: Vec<Solid>,
     /// Indices of the other obstacles.
     pub foreign: Vec<u32>,
-    /// Around these, in this iteration.
+    /// Bounds around these, in this iteration.
     pub foreign_bounds: Vec<Aabb>,
 }
 
@@ -63,7 +63,7 @@ pub(super) struct Solid {
     pub form: Form,
     /// Position of its frame, world, metres.
     pub at: Block<3>,
-    /// Its friction and static friction, and 1 if it bounces.
+    /// Friction and static friction of the surface, and 1 if it bounces.
     pub surface: Block<3>,
 }
 
@@ -147,7 +147,8 @@ fn signed<L: Lanes>(number: L, like: L) -> L {
 }
 
 impl Eights {
-    /// For particles with these radii, of which some are attached; rows that are projected one by one reach those of `outside`.
+    /// Creates lanes for particles with these radii, of which some are attached; rows that are projected one by one
+    /// reach those of `outside`.
     pub fn new(per_lane: usize, radii: &[f32], attached: &[u32], mut outside: Vec<u32>) -> Self {
         let mut strips = vec![Block::splat([0.0; STRIP]); per_lane];
         let mut present = vec![0; per_lane];

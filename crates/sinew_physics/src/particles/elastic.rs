@@ -30,7 +30,7 @@ impl ParticleGroup {
         solved.chain(projected).chain(bends).chain(volumes).sum()
     }
 
-    /// As projections move a particle, 1/kg; 0 if it is attached.
+    /// Mobility of a particle in projections, 1/kg; 0 if it is attached.
     fn weight(&self, particle: u32) -> f32 {
         let i = particle as usize;
         if self.attachment_of[i] == u32::MAX { 1.0 / self.masses[i] } else { 0.0 }

@@ -53,7 +53,7 @@ impl System {
             of.turn((found / last) as f32, self.hubs.iter().map(|hub| &hub.velocity));
             self.pass_across(forest, &of.direction, &mut of.passed);
             let taken = dot(&of.needed, &of.direction) - dot(&of.passed, &of.direction);
-            // Also for NaN.
+            // The comparison is written so that NaN ends it, too.
             let goes_on = found > most && taken > 0.0;
             if !goes_on {
                 break;

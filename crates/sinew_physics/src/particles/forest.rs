@@ -25,7 +25,7 @@ pub(super) struct Tie {
 /// The springs of a group, sorted by how they are solved.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Forest {
-    /// From the leaves to the roots.
+    /// Links from the leaves to the roots.
     links: Vec<Link>,
     roots: Vec<u32>,
     ties: Vec<Tie>,
@@ -157,7 +157,7 @@ impl Forest {
         !(self.links.is_empty() && self.ties.is_empty())
     }
 
-    /// From the leaves to the roots.
+    /// Links from the leaves to the roots.
     pub fn links(&self) -> &[Link] {
         &self.links
     }

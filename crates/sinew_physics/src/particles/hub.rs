@@ -73,7 +73,7 @@ pub(super) struct Hub {
     /// Shares from other groups, and from this one.
     pub others: Share,
     pub own: Share,
-    /// At the end of the iteration without springs and particles, and with its subtrees.
+    /// Velocity at the end of the iteration without springs and particles, and with its subtrees.
     coming: Vec6,
     free: Vec6,
     /// Velocity gained per impulse, with the particles below it.

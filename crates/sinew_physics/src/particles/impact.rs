@@ -127,7 +127,7 @@ impl ParticleGroup {
         let (speed, opposite_speed) = (body.velocity_at(at), opposite_body.velocity_at(at));
         let across = normalize_or(normal - opposite, normal);
         let most = EXIT_SPEED * h;
-        // How far it moves out of the first, and the first's share in its velocity.
+        // Distance by which it moves out of the first, and the first's share in its velocity.
         let (out, share) = match body.firmness().cmp(&opposite_body.firmness()) {
             Ordering::Greater => (-gap, 1.0),
             Ordering::Equal => (0.5 * (opposite_gap - gap), 0.5),

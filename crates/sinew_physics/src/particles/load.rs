@@ -7,7 +7,7 @@ use sinew_math::{Sym3, Vec3, max};
 /// A spring during one step: with damping, by its lengths at both ends of the step, it is again a spring.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Load {
-    /// Its length at the start of the step, at least the rest length if it resists stretch only, metres.
+    /// Length at the start of the step, at least the rest length if it resists stretch only, metres.
     begun: f32,
     /// Damping over the length of the step, N/m.
     rate: f32,
@@ -20,7 +20,7 @@ pub(super) struct Load {
 }
 
 impl Load {
-    /// At the beginning of a step of `h` seconds, B at `from_a` from A.
+    /// Creates the load at the beginning of a step of `h` seconds, B at `from_a` from A.
     pub fn new(spring: &SpringDef, from_a: Vec3, h: f32) -> Self {
         let length = from_a.length();
         let begun = match spring.resists {

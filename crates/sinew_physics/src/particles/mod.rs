@@ -163,7 +163,7 @@ pub struct ParticleGroup {
     backings: Vec<f32>,
     /// Rows of the net that hold no attached particle.
     batches: Batches,
-    /// Its particles in lanes.
+    /// Particles in lanes.
     eights: Eights,
     /// Projected springs that hold one.
     held_springs: Vec<u32>,
@@ -183,7 +183,7 @@ pub struct ParticleGroup {
     outer: Vec<Vec3>,
     /// Acceleration by gravity and external force on each particle in the last substep, m/s².
     accelerations: Vec<Vec3>,
-    /// Their lengths, m/s².
+    /// Lengths of the pulls, m/s².
     pulls: Vec<f32>,
     /// Bits of the acceleration of all, m/s², if no external force makes a difference.
     common_acceleration: Option<[u32; 3]>,
@@ -194,7 +194,7 @@ impl Item for ParticleGroup {
 }
 
 impl ParticleGroup {
-    /// From its definition.
+    /// Creates a group from its definition.
     ///
     /// # Panics
     /// If [`GroupDef::check`] rejects it.
@@ -319,7 +319,7 @@ impl ParticleGroup {
     /// Stores the current positions as the previous ones, for drawing.
     pub(crate) fn begin_step(&mut self) {
         self.drawn_from.copy_from_slice(&self.positions);
-        // Between steps shapes change as the user likes.
+        // Users may change shapes between steps.
         self.near.forget_distances();
     }
 
@@ -338,27 +338,27 @@ impl ParticleGroup {
         &self.radii
     }
 
-    /// As they were defined.
+    /// Springs as they were defined.
     pub fn springs(&self) -> &[SpringDef] {
         &self.springs
     }
 
-    /// As they were defined.
+    /// Bends as they were defined.
     pub fn bends(&self) -> &[BendDef] {
         &self.bends
     }
 
-    /// As they were defined.
+    /// Tethers as they were defined.
     pub fn tethers(&self) -> &[TetherDef] {
         &self.tethers
     }
 
-    /// As they were defined.
+    /// Volumes as they were defined.
     pub fn volumes(&self) -> &[VolumeDef] {
         &self.volumes
     }
 
-    /// As they were defined.
+    /// Faces as they were defined.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces.list
     }
@@ -373,12 +373,12 @@ impl ParticleGroup {
         self.faces.parts(&self.positions, particle)
     }
 
-    /// As they were defined; [`substep`](Self::substep) takes one [`Anchor`] for each.
+    /// Attachments as they were defined; [`substep`](Self::substep) takes one [`Anchor`] for each.
     pub fn attachments(&self) -> &[AttachmentDef] {
         &self.attachments
     }
 
-    /// As they were defined; [`substep`](Self::substep) takes one [`Obstacle`] for each.
+    /// Obstacles as they were defined; [`substep`](Self::substep) takes one [`Obstacle`] for each.
     pub fn backstops(&self) -> &[BackstopDef] {
         &self.backstops
     }
@@ -711,7 +711,7 @@ impl ParticleGroup {
 /// An iteration: a part of a substep.
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    /// From 0.
+    /// Number of the iteration, from 0.
     number: u32,
     /// Number of iterations in the substep.
     of: u32,
@@ -720,7 +720,7 @@ struct Part {
 }
 
 impl Part {
-    /// Its length, seconds.
+    /// Length of the iteration, seconds.
     fn h(self) -> f32 {
         self.whole / self.of as f32
     }

@@ -23,7 +23,7 @@ pub(crate) fn is_nipped(cosine: f32, friction: f32) -> bool {
 /// Pinched contacts of a group.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pinched {
-    /// From the last step, in the order found, without those of removed shapes.
+    /// Contacts of the last step, in the order found, without those of removed shapes.
     pub contacts: Vec<Contact>,
     /// Force that presses each particle from two sides, N.
     pub loads: Vec<f32>,

@@ -168,7 +168,7 @@ impl<'a, L: Lanes, const K: usize> Solver<'a, L, K> {
                 self.solve_free::<DAMPED, EVEN>(&mut ends.each_mut().map(|Block(numbers)| numbers));
             }
         } else if let Ok(sides) = particles.get_disjoint_mut(first.map(|block| block..block + count)) {
-            // Also in the compiled code: no index check in the loop.
+            // Slices of equal length, so that the compiled loop has no index check.
             let mut sides = sides.map(|side| &mut side[..count]);
             for row in 0..count {
                 self.solve_free::<DAMPED, EVEN>(&mut sides.each_mut().map(|side| &mut side[row].0));
@@ -423,7 +423,7 @@ struct Surface<L> {
 }
 
 impl<L: Lanes> Surface<L> {
-    /// For a pull of the end against the vector of its row, with its share in that.
+    /// Row for a pull of the end against the vector of its row, with its share in that.
     #[inline(always)]
     fn load(beneath: &Numbers<SURFACE_FIELDS>, weight: L, apart: Vector3<L>, share: f32) -> Self {
         let gain = apart.dot(vector(beneath, NORMAL)) * L::splat(-share);

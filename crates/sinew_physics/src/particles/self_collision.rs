@@ -58,7 +58,7 @@ enum Turn {
     Loose,
     /// It is in the solving order.
     Listed,
-    /// Its pairs are solved.
+    /// The pairs are solved.
     Done,
 }
 
@@ -86,7 +86,7 @@ struct Lists {
 }
 
 impl Lists {
-    /// From ascending pairs: the second of each goes into the first's list.
+    /// Fills the lists from ascending pairs: the second of each goes into the first's list.
     fn fill(&mut self, count: usize, pairs: &[[u32; 2]]) {
         self.items.clear();
         self.items.extend(pairs.iter().map(|pair| pair[1]));
@@ -109,7 +109,7 @@ impl Lists {
 }
 
 impl SelfCollision {
-    /// For this many particles with these springs at a distance of `thickness` metres.
+    /// Creates the search for this many particles with these springs at a distance of `thickness` metres.
     pub fn new(count: usize, thickness: f32, springs: &[SpringDef]) -> Self {
         let mut both: Vec<[u32; 2]> = springs.iter().map(|s| [s.a, s.b]).collect();
         both.extend(both.clone().into_iter().map(|[a, b]| [b, a]));

@@ -10,18 +10,18 @@ use sinew_math::{Vec3, abs3, max, max3, min, min3};
 /// Region of the shapes that may answer.
 #[derive(Clone, Copy, Debug)]
 pub enum Reach {
-    /// Their bounds meet a box.
+    /// Shapes whose bounds meet a box.
     Box(Aabb),
-    /// Their bounds overlap a box swept by a vector, metres.
+    /// Shapes whose bounds overlap a box swept by a vector, metres.
     Swept(Aabb, Vec3),
-    /// Their bounds are within a distance of a point, metres.
+    /// Shapes whose bounds are within a distance of a point, metres.
     Near(Vec3, f32),
 }
 
 /// Rank beyond which no answer counts; a break ends the search.
 pub(super) type Limit = ControlFlow<(), f32>;
 
-/// Nothing farther from the origin is found, metres: squares of larger numbers overflow.
+/// Largest distance from the origin at which shapes are found, metres: squares of larger numbers overflow.
 pub(super) const FARTHEST: f32 = 1e18;
 
 /// No sweep is shortened below this fraction.
@@ -31,7 +31,7 @@ const SHORTEST: f32 = 1e-30;
 pub(super) fn candidates(world: &World, reach: &Reach, mut visit: impl FnMut(Owner) -> Limit) {
     let proxies = &world.broad.proxies;
     let mut broken = false;
-    // For searches along a line and around a point: the remaining limit, below 0 after the end.
+    // The remaining limit of searches along a line and around a point, below 0 after the end.
     let mut search = |owner: Owner| {
         if !broken && let ControlFlow::Continue(limit) = visit(owner) {
             return limit;

@@ -32,7 +32,7 @@ pub struct BodyHit {
 }
 
 impl BodyHit {
-    /// From the answer of one shape; `None` if a number is not finite.
+    /// Creates a hit from the answer of one shape; `None` if a number is not finite.
     fn new(id: ShapeId, hit: RayHit, start: Option<Penetration>) -> Option<Self> {
         let RayHit { fraction, point, normal } = hit;
         // Normalises −0.
@@ -94,7 +94,7 @@ impl Ask for Ray {
 pub struct ShapeCast {
     /// Probe that is moved, where it starts.
     pub probe: Probe,
-    /// Its displacement, metres.
+    /// Displacement of the shape, metres.
     pub translation: Vec3,
 }
 

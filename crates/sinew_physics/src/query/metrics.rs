@@ -32,7 +32,7 @@ impl Energy {
 pub struct Momentum {
     /// N·s.
     pub linear: Vec3,
-    /// About the world's origin, N·m·s.
+    /// Angular momentum about the world's origin, N·m·s.
     pub angular: Vec3,
 }
 

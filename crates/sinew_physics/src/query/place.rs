@@ -114,7 +114,7 @@ impl Ask for PenetrationOf {
 /// hold the point, the deepest first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestTo {
-    /// In the world, metres.
+    /// Point in the world, metres.
     pub point: Vec3,
     /// Farthest surface that counts, metres, ≥ 0.
     pub within: f32,
@@ -127,11 +127,11 @@ pub struct BodySurface {
     pub body: BodyId,
     /// Number of the shape in its body.
     pub shape: u32,
-    /// On the surface, in the world, metres.
+    /// Point on the surface, in the world, metres.
     pub point: Vec3,
     /// Unit, outward.
     pub normal: Vec3,
-    /// From the surface along the normal to the query's point or probe, metres; negative inside.
+    /// Distance from the surface along the normal to the query's point or probe, metres; negative inside.
     pub distance: f32,
 }
 
@@ -175,7 +175,7 @@ impl Ask for NearestTo {
 /// that overlap, the deepest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearestToShape {
-    /// From where distances are measured.
+    /// Object from which distances are measured.
     pub probe: Probe,
     /// Farthest surface that counts, metres, ≥ 0.
     pub within: f32,

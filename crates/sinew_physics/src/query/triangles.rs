@@ -77,7 +77,7 @@ impl<'a> Placed<'a> {
         thick(&start.merge(&Aabb { min: start.min + moved, max: start.max + moved }))
     }
 
-    /// From a triangle to the probe moved by `way`.
+    /// Gap from a triangle to the probe moved by `way`.
     fn gap(&self, triangle: &Triangle, way: Vec3) -> Gap {
         let origin = self.probe.world_from_shape.translation;
         let flat = Flat(triangle.corners);

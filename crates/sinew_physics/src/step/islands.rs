@@ -19,13 +19,13 @@ use crate::step::tasks::{Queue, Task, Workspace, Workspaces};
 pub(crate) struct Islands {
     /// Active bodies, ascending: their positions are their numbers here.
     active: Vec<u32>,
-    /// By slot: the number of each active body.
+    /// Number of each active body, by slot.
     places: Vec<u32>,
     /// Enabled joints of active bodies, ascending.
     holding: Vec<Tie>,
     /// Contacts that push, ascending.
     touching: Vec<Tie>,
-    /// By position in the contact array, for those: true if only one of the bodies is active.
+    /// True if only one of the bodies is active, by position in the contact array.
     is_border: Vec<bool>,
     /// Memory of `color`.
     border: Vec<u32>,
@@ -36,7 +36,7 @@ pub(crate) struct Islands {
     joints: Lists,
     contacts: Lists,
     groups: Lists,
-    /// Per slot of particle groups.
+    /// Neighbours of each particle group, by slot.
     neighbors: Vec<Neighbors>,
     /// Removed from the world during the step, island after island.
     taken: Vec<TakenGroup>,
@@ -325,7 +325,7 @@ impl Islands {
         }
     }
 
-    /// After a lockstep step: strands that no object has disturbed are stepped as without objects.
+    /// Runs after a lockstep step: strands that no object has disturbed are stepped as without objects.
     pub fn fly_undisturbed(&mut self, view: &View<'_>, context: &StepContext<'_>) {
         let own = core::mem::take(&mut self.own);
         self.run_strands(view, context, |island| !own[island].solver.is_disturbed());

@@ -29,7 +29,7 @@ pub(crate) struct BroadPhase {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Asked {
     pub key: ContactKey,
-    /// Its position among the near pairs.
+    /// Position among the near pairs.
     pub pair: usize,
     pub parting: SeparationCache,
     pub manifold: Manifold,

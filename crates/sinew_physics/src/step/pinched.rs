@@ -53,7 +53,7 @@ struct Near {
 struct Between {
     key: ContactKey,
     particle: u32,
-    /// From A to B.
+    /// Normal from A to B.
     normal: Vec3,
     point: ManifoldPoint,
 }
@@ -219,7 +219,7 @@ impl Between {
 }
 
 impl Near {
-    /// Its surface as a particle faces it, if it is within `reach` metres of that.
+    /// Surface that a particle faces, if it is within `reach` metres of that.
     fn facing(&self, bodies: &Arena<Body>, group: &ParticleGroup, i: usize, reach: f32) -> Option<Facing> {
         let (position, radius) = (group.positions()[i], group.radii()[i]);
         if distance_at_least(&self.bounds, position) > radius + reach {
@@ -244,7 +244,7 @@ fn between(
     let (mut facing, mut opposite) = (facing, opposite);
     match group.holder_of(i) {
         None => {}
-        // As a ball on the body that holds it.
+        // The particle is a ball on the body that holds it.
         Some(AttachmentTarget::Body { body, .. }) if body.index == near.body => {
             facing = Facing { gap: 0.0, outward: -opposite.outward };
         }

@@ -35,7 +35,7 @@ pub(crate) struct Surroundings {
 /// A body for particles: its current pose, and where to store the impulses on it.
 #[derive(Clone, Debug)]
 struct Seen {
-    /// At the start of the substep.
+    /// Position at the start of the substep.
     start: Transform,
     pose: Transform,
     velocity: Vec6,
@@ -356,7 +356,7 @@ impl Surroundings {
             let arm = point - pose.translation;
             match *local {
                 Some(local) => add_scaled(&mut self.impulses[local], &wrench(arm, impulse), 1.0),
-                // Of a kinematic body; a static one has no velocity.
+                // The body is kinematic; a static one has no velocity.
                 None => given -= impulse.dot(linear(velocity) + angular(velocity).cross(arm)),
             }
         };

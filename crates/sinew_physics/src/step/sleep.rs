@@ -66,7 +66,7 @@ pub(crate) fn sleep(
     }
 }
 
-/// For how long a body has been calm, seconds; if it is not, less than any time.
+/// Time for which a body has been calm, seconds; if it is not, less than any time.
 fn count(body: &mut Body, calm: bool, dt: f32) -> f32 {
     match &mut body.rest {
         Rest::Awake { rest_time: time } if calm => {

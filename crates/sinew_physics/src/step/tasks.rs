@@ -20,7 +20,7 @@ pub(crate) struct Workspace {
 
 /// Workspaces in which islands are solved.
 pub(crate) enum Workspaces<'a> {
-    /// In any free workspace: nothing persists.
+    /// The task uses any free workspace: nothing persists.
     Idle(&'a mut Vec<Workspace>),
     /// Each in its own workspace, in the order of islands, with its content preserved.
     Own(&'a mut [Workspace]),

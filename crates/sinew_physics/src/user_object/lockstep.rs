@@ -53,7 +53,7 @@ impl Places {
 /// A sleeping body that was pushed: it wakes after the step, with its impulses.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Roused {
-    /// In the world.
+    /// Index in the world.
     pub index: u32,
     /// Change of velocity.
     pub change: Vec6,
@@ -111,7 +111,7 @@ impl Objects {
         }
     }
 
-    /// After the substeps: wakes the bodies that were pushed in their sleep.
+    /// Wakes the bodies that were pushed in their sleep, after the substeps.
     pub fn rouse(&mut self, bodies: &mut Arena<Body>, activity: &mut Activity) {
         for Roused { index, change } in self.roused.drain(..) {
             activity.wake(bodies, index);

@@ -52,7 +52,7 @@ impl World {
 
 /// Each method does the same as the [`World`] method with its name.
 impl<'a> BodyRef<'a> {
-    /// Its id.
+    /// Id of the body.
     pub fn id(self) -> BodyId {
         self.id
     }
@@ -128,12 +128,12 @@ impl<'a> BodyRef<'a> {
         self.world.bounds(self.id)
     }
 
-    /// Its shapes.
+    /// Shapes of the body.
     pub fn shape_ids(self) -> impl Iterator<Item = ShapeId> {
         self.world.shape_ids(self.id)
     }
 
-    /// Its joints, by index.
+    /// Joints of the body, by index.
     pub fn joints(self) -> impl Iterator<Item = JointId> + use<'a> {
         self.world.joints_of(self.id)
     }

@@ -49,7 +49,7 @@ impl Snapshot {
         self.bytes = w.into_bytes();
     }
 
-    /// From bytes written before, by a world or other code with the same format.
+    /// Creates a delta from bytes written before, by a world or other code with the same format.
     pub fn from_bytes(bytes: Vec<u8>) -> Self {
         Self { bytes }
     }

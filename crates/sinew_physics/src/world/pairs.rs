@@ -17,7 +17,7 @@ impl World {
         self.parted.functions.registered.set(number, function);
     }
 
-    /// From now on the registered function with this number decides about shape pairs that pass the other filters;
+    /// Lets the registered function with this number decide from now on about shape pairs that pass the other filters;
     /// `None`, the initial state: no function. All bodies wake.
     ///
     /// # Panics
@@ -39,7 +39,7 @@ impl World {
         self.parted.functions.chosen
     }
 
-    /// From now on two bodies do not collide; if they touch, both wake.
+    /// Disables collisions between two bodies from now on; if they touch, both wake.
     #[track_caller]
     #[doc(alias = "ignore collision")]
     pub fn disable_pair(&mut self, a: BodyId, b: BodyId) {

@@ -154,7 +154,7 @@ impl World {
         let index = id.index;
         let mut changed = self.expect(id).clone();
         change(&mut changed);
-        // Before anything is changed: it may panic.
+        // Compute the weight before anything is changed, because it may panic.
         let weight = weight(&changed, mass);
         self.mark_changed(id);
         if goes(number) {

@@ -18,7 +18,7 @@ pub struct BodyContact {
     pub a: ShapeId,
     /// The other.
     pub b: ShapeId,
-    /// From A to B, unit length, world axes.
+    /// Normal from A to B, unit length, world axes.
     pub normal: Vec3,
     /// Effect of the contact.
     pub effect: Effect,

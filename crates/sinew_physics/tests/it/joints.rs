@@ -382,7 +382,7 @@ fn a_soft_weld_bends_under_load_by_its_stiffness() {
 #[test]
 fn six_directions_are_free_or_held_as_defined() {
     use AxisMotion::{Free, Limited, Locked};
-    // Free in x and about z alone.
+    // The joint is free in x and about z only.
     let six = SixDof {
         linear: [Free, Locked, Limited(Range::new(-0.1, 0.1))],
         twist: Locked,

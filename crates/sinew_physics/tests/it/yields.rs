@@ -77,7 +77,7 @@ fn a_body_jammed_against_a_wall_is_not_crushed() {
     let mut world = level();
     let wall = Shape::Box { half_extents: Vec3::new(0.2, 1.0, 1.0) };
     world.add_body(&BodyDef::fixed(wall).at(Vec3::new(0.45, 1.0, 0.0)));
-    // Slow enough for the force to suffice.
+    // The motion is slow enough for the force to suffice.
     arm(&mut world, Vec3::new(-0.4, 0.5, 0.0), Vec3::X * 0.05);
     let mut def = box_body(Vec3::splat(0.25), Vec3::Y * 0.25);
     def.mass = Some(Shape::Box { half_extents: Vec3::splat(0.25) }.mass_properties(80.0));

@@ -59,7 +59,7 @@ fn lie(bytes: &mut Vec<u8>, random: &mut Random) {
             bytes[at..end].copy_from_slice(&number.to_le_bytes()[..end - at]);
         }
         _ => {
-            // Copies a piece of it over another piece.
+            // Copies a piece of the bytes over another piece.
             let (from, length) = (random.index(bytes.len()), 1 + random.index(32));
             let length = usize::min(length, bytes.len() - usize::max(at, from));
             bytes.copy_within(from..from + length, at);

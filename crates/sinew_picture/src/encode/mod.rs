@@ -23,7 +23,7 @@ pub enum PictureFormat {
 }
 
 impl PictureFormat {
-    /// From the end of a file name after its last dot, in upper or lower case: `gif`, `png`, `apng`, `webp`.
+    /// Format by the end of a file name after its last dot, in upper or lower case: `gif`, `png`, `apng`, `webp`.
     pub fn from_extension(extension: &str) -> Option<Self> {
         let is = |name: &str| extension.eq_ignore_ascii_case(name);
         if is("gif") {
@@ -75,13 +75,13 @@ pub enum EncodeError {
     /// A WebP movie of more than 4 GiB.
     #[error("the movie is longer than a WebP file can be")]
     TooLong,
-    /// From the GIF encoder.
+    /// An error of the GIF encoder.
     #[error("GIF: {0}")]
     Gif(#[from] ::gif::EncodingError),
-    /// From the PNG encoder.
+    /// An error of the PNG encoder.
     #[error("PNG: {0}")]
     Png(#[from] png::EncodingError),
-    /// From the WebP encoder.
+    /// An error of the WebP encoder.
     #[error("WebP: {0}")]
     WebP(#[from] image_webp::EncodingError),
 }
@@ -104,7 +104,7 @@ impl Movie {
     /// `fps` images a second, 1..=100 (GIF counts time in 1/100 s). The first image decides the size.
     ///
     /// # Panics
-    /// Where `fps` lies outside 1..=100.
+    /// If `fps` lies outside 1..=100.
     pub fn new(format: PictureFormat, fps: u32) -> Self {
         assert!((1..=100).contains(&fps), "{fps} images a second");
         Self { format, fps, size: None, writer: None }
@@ -158,7 +158,7 @@ impl FrameWriter {
 /// As [`Movie::push`] and [`Movie::finish`].
 ///
 /// # Panics
-/// Where `fps` lies outside 1..=100.
+/// If `fps` lies outside 1..=100.
 pub fn encode(format: PictureFormat, images: &[Image], fps: u32) -> Result<Vec<u8>, EncodeError> {
     let mut movie = Movie::new(format, fps);
     for image in images {

@@ -9,7 +9,7 @@ const NO_ENTRY: u8 = 255;
 pub(super) struct Palette {
     /// sRGB.
     pub(super) colors: Vec<[u8; 3]>,
-    /// Nearest entry per cell, [`NO_ENTRY`] where nobody asked yet.
+    /// Nearest entry per cell, [`NO_ENTRY`] where no colour was requested yet.
     nearest: Vec<u8>,
 }
 

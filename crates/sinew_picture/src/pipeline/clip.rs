@@ -84,7 +84,7 @@ fn cut(polygon: &Polygon, plane: usize, near: f32) -> Polygon {
             push(a);
         }
         if (da >= 0.0) != (db >= 0.0) {
-            // Always from the inner to the outer corner: both triangles at this edge get the same bits.
+            // Clip always from the inner to the outer corner, so that both triangles at this edge get the same bits.
             let (inner, outer, di, do_) = if da >= 0.0 { (a, b, da, db) } else { (b, a, db, da) };
             let t = di / (di - do_);
             push(core::array::from_fn(|k| inner[k] + (outer[k] - inner[k]) * t));

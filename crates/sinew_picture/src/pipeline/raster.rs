@@ -24,7 +24,7 @@ pub(crate) struct Samples {
     pub(crate) height: usize,
     /// Places of the samples in a pixel, 1/256 pixel from its middle: one, or four.
     offsets: &'static [[i64; 2]],
-    /// From a row to the next: whole lanes, so that none reaches into another row.
+    /// Distance from a row to the next: whole lanes, so that none reaches into another row.
     stride: usize,
     /// `1 / w`: larger is nearer, 0 where nothing is.
     depth: Vec<f32>,

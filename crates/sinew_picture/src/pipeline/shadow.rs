@@ -19,7 +19,7 @@ pub(crate) struct ShadowMap {
     casting: Vec<Footprint>,
     /// Texels that the triangles may have raised.
     raised: Texels,
-    /// Toward the sun, unit.
+    /// Direction toward the sun, unit.
     pub(crate) to_sun: Vec3,
     /// World to map: the edges of the map are at ±1.
     axes: [Vec3; 2],

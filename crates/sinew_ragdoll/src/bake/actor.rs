@@ -32,7 +32,7 @@ fn spawned(input: &BakeInput<'_>, is_alone: bool, world: &mut World) -> Characte
         return Character::new(input.character.clone(), input.world_from_character, input.phase);
     }
     let mut def = CharacterDef::clone(&input.character);
-    // It follows its clips and reacts only to the scheduled hits.
+    // The character follows its clips and reacts only to the scheduled hits.
     def.in_world = InWorld { mover: None, feels: f32::INFINITY, ..def.in_world };
     if falls {
         def.in_world.toughness = Toughness::None;
@@ -86,7 +86,7 @@ impl<'a> Actor<'a> {
     pub fn measure(&mut self, world: &World) {
         match (self.character.ragdoll(), self.character.state()) {
             (Some(ragdoll), State::Limp) => self.meter.after_step(world, ragdoll),
-            // Clips lead the bodies; their motion is not measured as physics.
+            // Clips move the bodies; their motion is not measured as physics.
             (Some(_), State::Flinching) => {}
             (Some(ragdoll), _) => self.meter.after_driven_step(world, ragdoll),
             (None, _) => {}
@@ -104,7 +104,7 @@ impl<'a> Actor<'a> {
     /// Applies all pushes that are due.
     fn push_due(&mut self, world: &mut World) {
         let noted = self.character.events().len();
-        // Half a step early is nearer than half a step late.
+        // Half a step early is closer than half a step late.
         let now = world.time() as f32 + 0.5 * world.def().dt();
         while let Some(&(time, push)) = self.pending.last().filter(|(time, _)| *time <= now) {
             debug_assert!(time <= now);

@@ -35,11 +35,11 @@ use std::sync::Arc;
 /// A push at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeHit {
-    /// Seconds from the start.
+    /// Time since the start, seconds.
     pub time: f32,
     /// Body, by index in the definition.
     pub body: usize,
-    /// N·s, world axes, at the body's centre of mass.
+    /// Impulse at the body's centre of mass, N·s, world axes.
     pub impulse: Vec3,
 }
 
@@ -47,7 +47,7 @@ pub struct BakeHit {
 /// the character stands; [`CharacterDef::falling`] sets the drive of a fallen one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeDrive<'a> {
-    /// Seconds from the start.
+    /// Time since the start, seconds.
     pub time: f32,
     /// Bodies whose drive changes.
     pub part: Part<'a>,
@@ -74,7 +74,7 @@ pub struct BakeInput<'a> {
     pub character: Arc<CharacterDef>,
     /// Pose of the character in the world at the start.
     pub world_from_character: Transform,
-    /// Seconds into its looped clip at the start. Default 0.
+    /// Time in its looped clip at the start, seconds. Default 0.
     pub phase: f32,
     /// Settings of the world. Its step is the simulation's.
     pub world: WorldDef,
@@ -94,7 +94,7 @@ pub struct BakeInput<'a> {
     pub hit_effect: HitEffect,
     /// Time at which it goes limp without a push, seconds; `None`: only hits make it limp.
     pub limp_at: Option<f32>,
-    /// Length, seconds.
+    /// Length of the bake, seconds.
     pub seconds: f32,
     /// Frames per second of the clip, at least 1.
     pub fps: f32,
@@ -148,7 +148,7 @@ impl<'a> BakeInput<'a> {
 /// A frame of a bake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// Seconds.
+    /// Time since the start, seconds.
     pub time: f32,
     /// State that decided the pose.
     pub state: State,
@@ -169,15 +169,15 @@ pub struct Baked {
     pub keys: [usize; 2],
     /// The frames of the clip.
     pub frames: Vec<Frame>,
-    /// From the model space of the file to the world, the same for all frames.
+    /// Transform from the model space of the file to the world, the same for all frames.
     pub world_from_model: Affine,
-    /// The figures.
+    /// Quality figures of the falls.
     pub quality: FallQuality,
     /// Events with their times in seconds.
     pub events: Vec<(f32, CharacterEvent)>,
     /// Number of bodies of the ragdoll.
     pub bodies: usize,
-    /// Steps that were simulated.
+    /// Number of simulated steps.
     pub steps: u64,
     /// Hash of the snapshots of world and character at the end. The world's hash alone would not cover the fall once the character has got
     /// up and its bodies are removed.
@@ -196,7 +196,8 @@ impl Baked {
 /// Simulates a character in a world. The result has the same bits on every target. The frame rate does not affect the simulation.
 ///
 /// # Panics
-/// If a number is not finite, `fps` is below 1, the key bound is negative, or a hit or drive names a body that is not there.
+/// If a number is not finite, `fps` is below 1, the key bound is negative, or a hit or drive has the index of a body
+/// that does not exist.
 pub fn bake(input: &BakeInput<'_>) -> Baked {
     let mut baked = bake_together(core::slice::from_ref(input), &mut |_| ControlFlow::Continue(()));
     baked.as_mut().and_then(Vec::pop).expect("nothing stops it, and there is one for each input")
@@ -233,7 +234,7 @@ impl BakeInput<'_> {
     fn check(&self) {
         assert!(
             self.seconds.is_finite() && self.fps >= 1.0,
-            "a bake has a length and a frame rate, not {} s and {} frames a second",
+            "a bake must have a length and a frame rate, not {} s and {} frames a second",
             self.seconds,
             self.fps
         );

@@ -50,9 +50,9 @@ pub struct Bones {
     pub list: Vec<Bone>,
     /// Indices of the children of each bone, without props.
     pub children: Vec<Vec<usize>>,
-    /// Tables that apply: those of a human, or those of a creature.
+    /// Anatomy tables that apply: those of a human, or those of a creature.
     pub anatomy: Anatomy,
-    /// Height at the bind pose, metres.
+    /// Height in the bind pose, metres.
     pub height: f32,
 }
 
@@ -66,7 +66,7 @@ pub enum Anatomy {
 }
 
 impl Bones {
-    /// Links the bones up.
+    /// Creates the tree of bones.
     ///
     /// # Panics
     /// If a parent's index is not smaller than its child's.
@@ -128,7 +128,7 @@ impl Bones {
         self.list.iter().position(|bone| bone.part == part && bone.side == side)
     }
 
-    /// The same bone of the other side; `None` for bones without a side.
+    /// Returns the bone of the other side; `None` for bones without a side.
     pub fn twin(&self, bone: usize) -> Option<usize> {
         let role = self.list[bone].role;
         role.side()?;
@@ -142,7 +142,7 @@ impl Bones {
         bone.side == Side::Middle && bone.part != Part::Limb && aside < 0.02 * self.size()
     }
 
-    /// A human's height; for a creature, whose up may be unknown, twice the distance from its first bone to the
+    /// Height of a human; for a creature, whose up axis may be unknown, twice the distance from its first bone to the
     /// furthest. Metres.
     pub fn size(&self) -> f32 {
         match self.anatomy {
@@ -154,7 +154,7 @@ impl Bones {
         }
     }
 
-    /// The x of the plane that separates left from right: the pelvis's, character space, metres.
+    /// Position along x of the plane between left and right: that of the pelvis, character space, metres.
     pub fn plane_of_symmetry(&self) -> f32 {
         self.list[0].head.x
     }
@@ -174,7 +174,7 @@ impl Bones {
 }
 
 impl Bone {
-    /// A bone from its role's name.
+    /// Creates a bone from its role.
     pub fn new(joint: JointIdx, role: Role, parent: Option<usize>, head: Vec3) -> Self {
         let (part, side) = part_of_role(role);
         Self { joint, merged: Vec::new(), role, confidence: 1.0, part, side, parent, head, is_prop: false }

@@ -51,10 +51,10 @@ pub struct BuildOptions {
 /// Reason why there is no ragdoll.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum BuildError {
-    /// The file has meshes or bones but no skin that ties them.
+    /// The file has meshes or bones but no skin that connects them.
     #[error("no skin: nothing to build a ragdoll from")]
     NoSkin,
-    /// No bone was worth keeping.
+    /// The rig has no bone that gets a body.
     #[error("no bones: nothing to build a ragdoll from")]
     NoBones,
     /// Numbers of the rig are not finite or out of proportion.
@@ -63,7 +63,7 @@ pub enum BuildError {
     /// The requested mass is not a positive number.
     #[error("a mass of {0} kg: it must be positive")]
     Mass(f32),
-    /// Limits were to be learned without any clip to learn from.
+    /// Limits should be learned, but there is no clip.
     #[error("no clip moves a joint: there are no limits to learn")]
     NoClips,
 }
@@ -89,7 +89,7 @@ pub(crate) struct Overrides<'a> {
     pub shape: &'a Refit<'a>,
     /// Pairs of bodies that shall not collide, the smaller index first.
     pub disable: Vec<(usize, usize)>,
-    /// Pairs of bodies that shall.
+    /// Pairs of bodies that shall collide, the smaller index first.
     pub enable: Vec<(usize, usize)>,
     /// Clips of the character as takes.
     pub takes: &'a [Take],
@@ -100,7 +100,7 @@ impl Overrides<'_> {
         Overrides { shape: &|_, fit, _| fit, disable: Vec::new(), enable: Vec::new(), takes: &[] }
     }
 
-    /// The pairs that do not collide after all.
+    /// Returns the pairs that do not collide.
     fn pairs(&self, disabled: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
         let mut pairs: Vec<_> = disabled.into_iter().filter(|pair| !self.enable.contains(pair)).collect();
         pairs.extend(&self.disable);
@@ -179,15 +179,15 @@ pub(crate) fn build_overridden(
 
 /// Volume that a creature's skin encloses, and its density.
 struct Enclosed {
-    /// m³.
+    /// Volume, m³.
     volume: f32,
-    /// kg/m³.
+    /// Density, kg/m³.
     density: f32,
     matter: &'static str,
 }
 
 impl Enclosed {
-    /// `None` for humans, whose mass follows their height, and if the skin is too open.
+    /// Volume of a creature's skin; `None` for humans, whose mass follows their height, and if the skin is too open.
     fn of(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Option<Self> {
         if bones.anatomy == Anatomy::Human {
             return None;
@@ -197,12 +197,12 @@ impl Enclosed {
         Some(Self { volume, density, matter })
     }
 
-    /// kg.
+    /// Mass of the enclosed volume, kg.
     fn mass(&self) -> f32 {
         self.density * self.volume
     }
 
-    /// Note on the source of the mass, if it was computed here.
+    /// Note on the source of the mass, if this build computed it.
     fn note(&self, total_mass: f32) -> Option<String> {
         let Self { volume, matter, .. } = self;
         let is_from_here = (self.mass() / total_mass - 1.0).abs() < 1e-3;

@@ -52,7 +52,7 @@ pub enum Side {
     Left,
     /// The character's own right, −X.
     Right,
-    /// Neither.
+    /// Neither side.
     Middle,
 }
 

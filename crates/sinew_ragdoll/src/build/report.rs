@@ -12,13 +12,13 @@ use sinew_anim::Rig;
 /// Report on a ragdoll.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BuildReport {
-    /// One per body, in the definition's order.
+    /// Report on each body, in the definition's order.
     pub bodies: Vec<BodyReport>,
     /// Bodies that overlap without a joint, and the remedy for each, sorted by pair.
     pub overlaps: Vec<Overlap>,
     /// Area-weighted mean distance between skin and shapes over all bodies, metres.
     pub mean_error: f32,
-    /// Sum of the shapes' volumes, m³; more than the flesh has, for shapes overlap.
+    /// Sum of the shapes' volumes, m³; more than the flesh has, because shapes overlap.
     pub shape_volume: f32,
     /// Notes for a person, one sentence each.
     pub notes: Vec<String>,

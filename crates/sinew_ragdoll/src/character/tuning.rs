@@ -336,7 +336,7 @@ pub(crate) const STRAIGHTENS: f32 = 0.6;
 /// Net load from others under which a lying body does not get up, as a share of its own weight: half of an arm.
 ///
 /// Larger: it gets up under another's limb and throws it off. Smaller: it waits for someone who only leans on it.
-/// Shown by `in_world::who_lies_on_top_gets_up_first`.
+/// Shown by `in_world::upper_of_two_fallen_characters_gets_up_first`.
 pub(crate) const BEARS: f32 = 0.02;
 
 /// Upward component of the normal toward a kinematic body above which that stands on the lying one, a cosine: 17° from

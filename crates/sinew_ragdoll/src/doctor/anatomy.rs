@@ -77,7 +77,7 @@ fn limits_are_numbers(kind: &JointKind) -> bool {
     }
 }
 
-/// A height that no character has.
+/// Finding about a height that no character has.
 pub(super) fn wrong_unit(def: &RagdollDef) -> Vec<Finding> {
     if heights(def).contains(&def.height) {
         return Vec::new();
@@ -104,7 +104,7 @@ fn heights(def: &RagdollDef) -> core::ops::RangeInclusive<f32> {
     if bones_of(def).anatomy == Anatomy::Human { HEIGHTS } else { CREATURES }
 }
 
-/// The same in metres; its rig too, if that was read in the same unit.
+/// Converts the ragdoll to metres; its rig too, if that was read in the same unit.
 pub(super) fn repair_in_metres(repair: &Repair) -> Repair {
     let def = in_metres(&repair.def);
     let is_same = |rig: &RagdollDef| (0.5..2.0).contains(&(rig.height / repair.def.height));
@@ -115,7 +115,7 @@ pub(super) fn repair_in_metres(repair: &Repair) -> Repair {
 
 /// Factor on all lengths, and the assumed unit.
 fn unit_of(def: &RagdollDef) -> (f32, String) {
-    // The unit that comes nearest to a person's height; for a creature any that gives a plausible size.
+    // Choose the unit whose height is closest to a person's; for a creature any that gives a plausible size.
     let human = bones_of(def).anatomy == Anatomy::Human;
     let heights = if human { HUMAN } else { HEIGHTS };
     let ratio = |factor: f32| max(def.height * factor / USUAL_HEIGHT, USUAL_HEIGHT / (def.height * factor));
@@ -154,7 +154,7 @@ fn in_metres(def: &RagdollDef) -> RagdollDef {
     def
 }
 
-/// Head and limbs without a body: the rig's, if it is at hand, else those of a human.
+/// Findings about a head or limbs without a body: those of the rig, if it is given, else those of a human.
 pub(super) fn missing_bodies(exam: &Exam<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (role, parent_is_there) in expected(exam) {

@@ -1,13 +1,13 @@
-//! Kinds of trouble.
+//! Kinds of findings.
 
 /// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// It jitters, explodes or falls apart.
+    /// The ragdoll jitters, explodes or falls apart.
     Error,
-    /// It behaves, but not like a body.
+    /// The ragdoll is stable, but does not move like a body.
     Warning,
-    /// Worth knowing.
+    /// A note for the user.
     Note,
 }
 
@@ -24,7 +24,7 @@ impl Severity {
 
 macro_rules! codes {
     ($($(#[$doc:meta])* $variant:ident $name:literal $severity:ident $cause:literal $fix:literal;)*) => {
-        /// Kind of trouble.
+        /// Kind of a finding.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         pub enum Code {
             $($(#[$doc])* $variant,)*
@@ -34,21 +34,21 @@ macro_rules! codes {
             /// Every code.
             pub const ALL: &'static [Self] = &[$(Self::$variant,)*];
 
-            /// Its name in reports.
+            /// Name of the code in reports.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name,)*
                 }
             }
 
-            /// Severity of findings of this kind, as a rule.
+            /// Usual severity of findings of this kind.
             pub fn severity(self) -> Severity {
                 match self {
                     $(Self::$variant => Severity::$severity,)*
                 }
             }
 
-            /// Cause and consequence, a phrase.
+            /// Cause and consequence, as a phrase.
             pub fn cause(self) -> &'static str {
                 match self {
                     $(Self::$variant => $cause,)*
@@ -66,11 +66,11 @@ macro_rules! codes {
 }
 
 codes! {
-    /// A size, pose or limit that is not a number.
+    /// A size, pose or limit is not a number.
     NotFinite "not-finite" Error
         "a number is not finite, so that nothing can be computed from it"
         "Build the definition anew from its rig.";
-    /// A mass or inertia that no body has.
+    /// A mass or inertia is not positive.
     MassNotPositive "mass-not-positive" Error
         "a body without mass cannot be moved by any force, or moves without end"
         "Give it the mass that its part has in a body of this weight.";
@@ -98,19 +98,19 @@ codes! {
     OverlapAtStart "overlap-at-start" Error
         "contacts push the bodies apart at the first step: the ragdoll explodes"
         "Leave out contacts between the two.";
-    /// It moves though nothing pushes.
+    /// The ragdoll moves although nothing pushes it.
     MovesByItself "moves-by-itself" Error
         "something in it pushes without end"
         "Widen limits that the bind pose strains, or leave out the deepest contact there.";
-    /// A joint that turns without end.
+    /// A joint can turn without end.
     LimitsMissing "limits-missing" Warning
         "without limits elbows bend backwards and heads turn round"
         "Give it the range that the joint has in a body.";
-    /// One limit for every joint.
+    /// All joints have the same limit.
     LimitsAllAlike "limits-all-alike" Warning
         "a default limit on every joint lets knees bend sideways and holds hips back"
         "Give each joint the range that it has in a body.";
-    /// A limit narrower than a solver can hold quietly.
+    /// A limit is too narrow for a solver to hold without jitter.
     LimitTooNarrow "limit-too-narrow" Warning
         "a range of a few degrees has both stops at work at once: it jitters, and is meant to be locked"
         "Lock that direction.";
@@ -122,7 +122,7 @@ codes! {
     LimitsNotMirrored "limits-not-mirrored" Warning
         "the two sides do not have the same range, as when signs were copied and not mirrored"
         "Take the mirror image of the other side's range.";
-    /// A pair whose contact keeps a joint from its range.
+    /// A contact between a pair keeps a joint from its range.
     CollisionFightsLimit "collision-fights-limit" Warning
         "the joint allows what the contact forbids, so that the two push against each other"
         "Leave out contacts between the two.";
@@ -130,11 +130,11 @@ codes! {
     NoSelfCollision "no-self-collision" Warning
         "limbs sink into the trunk, because all pairs of them are left out"
         "Let the pairs collide that do not overlap in the bind pose.";
-    /// A shape too small to have an effect.
+    /// A shape is too small to have an effect.
     TinyShape "tiny-shape" Warning
         "so thin a shape sinks into everything and falls through meshes"
         "Give it a thickness in proportion to the character.";
-    /// A shape larger than a body part can be.
+    /// A shape is larger than a body part can be.
     HugeShape "huge-shape" Warning
         "the shape holds more than its body part, and collides with everything"
         "Fit it to the length of its bone.";
@@ -146,23 +146,23 @@ codes! {
     HeadWithoutBody "head-without-body" Warning
         "the last bone of a chain got no body, so that the head falls through floors"
         "Give the head a body; with the rig at hand it is done here.";
-    /// A limb, or the end of one, has no body.
+    /// A limb, or its end, has no body.
     LimbWithoutBody "limb-without-body" Warning
         "a limb got no body, as when only the first child of a bone is looked at"
         "Give the limb its bodies; with the rig at hand it is done here.";
-    /// Neighbours of very different masses.
+    /// Neighbours have very different masses.
     MassRatio "mass-ratio" Warning
         "a light body beside a heavy one is thrown about by it in most solvers"
         "Make the lighter one heavier, the total kept.";
-    /// Too light or too heavy for its size.
+    /// The mass is too small or too large for the size.
     MassImplausible "mass-implausible" Warning
         "a character of this size does not have this mass, so that everything hits it too hard or too softly"
         "Scale all masses to those of a body of this size.";
-    /// Inertia that does not belong to the shape and mass.
+    /// An inertia does not match shape and mass.
     InertiaOutOfProportion "inertia-out-of-proportion" Warning
         "the body turns too easily or too slowly for its mass and size"
         "Take the inertia of its shape at its mass.";
-    /// A spring faster than the step.
+    /// A spring is faster than the step.
     StiffnessAboveNyquist "stiffness-above-nyquist" Warning
         "a spring that swings faster than twice per two substeps cannot be followed"
         "Lower it to half of what the substep can follow, or take more substeps.";
@@ -178,11 +178,11 @@ codes! {
     SkinLopsided "skin-lopsided" Warning
         "the two sides got bodies of different length, size or mass, so that it falls to one side"
         "Set shape, scale or mass of both by the role without its side, or give the missing part a body.";
-    /// A part hangs on a body that its skin does not grow from.
+    /// A part is attached to a body from which its skin does not grow.
     LimbApart "limb-apart" Warning
         "the rig has a part of a limb beside the body, as controls of inverse kinematics do, and it was hung elsewhere"
         "Say with `--role` which part of which limb it is.";
-    /// Drawn in another size than bound.
+    /// The drawn size differs from the bound size.
     DrawnResized "drawn-resized" Warning
         "the nodes' own transforms scale the skin otherwise than its bind matrices, so that it sinks in or floats"
         "Apply scales in the modelling tool and export the rig anew.";
@@ -190,7 +190,7 @@ codes! {
     SkinOffFloor "skin-off-floor" Warning
         "a part of the skin without a shape around it lies in the floor, or a shape outside the skin keeps it above"
         "Give that part a body (`--body`), leave it out (`--ignore`), or change the shape's `scale` in settings.";
-    /// It lies still without touching anything.
+    /// The ragdoll lies still without touching anything.
     RestsInAir "rests-in-air" Warning
         "it came to rest on nothing"
         "Report it with the file: a ragdoll that is not held must fall.";
@@ -198,8 +198,8 @@ codes! {
     UnitInferred "unit-inferred" Note
         "the file's unit is not a metre, so that its length was inferred from the size of the body"
         "Give `unit_scale` or `height` in settings (`--unit`, `--height`) if it is another.";
-    /// A bone's role is little more than a guess.
+    /// The role of a bone is little more than a guess.
     RoleUncertain "role-uncertain" Note
-        "name and shape of the rig do not tell for sure which part of the body a bone is"
-        "Look whether the role is right, and edit the definition if it is not.";
+        "name and shape of the rig do not show clearly which part of the body a bone is"
+        "Check whether the role is right, and edit the definition if it is not.";
 }

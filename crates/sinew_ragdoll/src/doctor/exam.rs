@@ -27,9 +27,9 @@ pub(super) struct Exam<'a> {
 /// Angles by which a joint exceeds its freedom, radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Beyond {
-    /// Beyond its limits.
+    /// Angle beyond its limits.
     pub limit: f32,
-    /// Rotated where it is locked.
+    /// Rotation about locked directions.
     pub locked: f32,
 }
 
@@ -60,7 +60,7 @@ impl<'a> Exam<'a> {
         }
     }
 
-    /// Role and bone of a body; the latter only if it differs.
+    /// Role and bone of a body; the bone only if its name differs.
     pub fn who(&self, body: usize) -> String {
         let body = &self.def.bodies[body];
         if body.role == body.bone { body.role.clone() } else { format!("{} ({})", body.role, body.bone) }
@@ -100,7 +100,7 @@ impl<'a> Exam<'a> {
         self.bones.list[body].part
     }
 
-    /// The anatomical joint: same pivot, axes and range from the table.
+    /// The anatomical joint: same pivot, with axes and range from the table.
     pub fn anatomical(&self, joint: usize) -> JointPlan {
         let mut plan = joints(&self.bones, &self.fits, self.def.total_mass)[joint];
         plan.def.kind = within_half_turns(plan.def.kind);
@@ -152,7 +152,7 @@ pub(super) fn swing_excess(limit: &SwingTwistLimit, seen: Rotation) -> f32 {
 }
 
 /// Angle by which the child of a joint can rotate about an axis of its own joint frame from `bind`, the joint's
-/// rotation there, before it meets a limit: radians, at most π. The twist of a universal joint is ignored: it appears
+/// rotation there, before it reaches a limit: radians, at most π. The twist of a universal joint is ignored: it appears
 /// in a swing that goes round.
 pub fn limit_reach(kind: &JointKind, bind: Rotation, axis: Vec3) -> f32 {
     const STEP: f32 = 0.02;

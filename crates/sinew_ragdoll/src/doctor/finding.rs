@@ -33,11 +33,11 @@ impl Repair {
 /// Something that is wrong with a ragdoll.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// Kind of trouble.
+    /// Kind of the finding.
     pub code: Code,
-    /// Severity of the trouble.
+    /// Severity of the finding.
     pub severity: Severity,
-    /// Indices of the bodies concerned, the first to look at first.
+    /// Indices of the bodies concerned, the most important first.
     pub bodies: Vec<usize>,
     /// Names of their bones; of a body that is missing, its role.
     pub bones: Vec<String>,

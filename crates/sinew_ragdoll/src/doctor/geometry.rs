@@ -12,13 +12,13 @@ pub(super) fn full_size(shape: &Shape) -> Vec3 {
     aabb.max - aabb.min
 }
 
-/// The longest of them.
+/// Longest side of that box, metres.
 pub(super) fn longest(shape: &Shape) -> f32 {
     let size = full_size(shape);
     max(size.x, max(size.y, size.z))
 }
 
-/// Depth by which body `a` overlaps body `b` with `a` elsewhere, metres; 0 if they do not overlap.
+/// Depth by which body `a`, moved to another pose, overlaps body `b`, metres; 0 if they do not overlap.
 pub(super) fn depth_at(exam: &Exam<'_>, (a, place): (usize, Transform), b: usize) -> f32 {
     let (one, other) = (&exam.def.bodies[a], &exam.def.bodies[b]);
     depth_of((&one.shape, &place), (&other.shape, &other.character_from_body))
@@ -29,7 +29,7 @@ pub(super) fn depth(exam: &Exam<'_>, a: usize, b: usize) -> f32 {
     depth_at(exam, (a, exam.def.bodies[a].character_from_body), b)
 }
 
-/// The shape scaled by `factor`. Surfaces, which no ragdoll has, are unchanged.
+/// Scales a shape by `factor`. Surfaces, which no ragdoll has, are unchanged.
 pub fn scaled(shape: &Shape, factor: f32) -> Shape {
     match *shape {
         Shape::Box { half_extents } => Shape::Box { half_extents: half_extents * factor },

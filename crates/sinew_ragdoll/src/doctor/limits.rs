@@ -58,7 +58,7 @@ pub(super) fn is_marked(findings: &[Finding], joint: usize) -> bool {
     })
 }
 
-/// Default frames, and anchors that differ.
+/// Finding about default frames or different anchors.
 fn frames(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let bodies = [joint.child, joint.parent];
@@ -68,18 +68,19 @@ fn frames(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let (gap, turn) = ((on_parent - on_child).length(), exam.turned(index, Rotation::IDENTITY));
     let angle = turn.angle_to(Rotation::IDENTITY);
     let both = |test: &dyn Fn(Transform) -> bool| test(joint.frame_parent) && test(joint.frame_child);
-    let mut said = Vec::new();
+    let mut clauses = Vec::new();
     // A hinge may be bent in the bind pose: frames are wrong if they break a locked direction.
     let Beyond { limit, locked } = beyond(&joint.kind, turn);
     if both(&is_identity) && angle > OTHER_ZERO && max(limit, locked) > BEYOND_AT_BIND {
-        said.push(format!("its zero is {:.0}° from the bind pose", angle.to_degrees()));
+        clauses.push(format!("its zero is {:.0}° from the bind pose", angle.to_degrees()));
     }
     if both(&at_origin) && gap > 0.01 * exam.size {
-        said.push(format!("both anchors are at the origins of the bodies, {:.0} mm apart", 1000.0 * gap));
+        clauses.push(format!("both anchors are at the origins of the bodies, {:.0} mm apart", 1000.0 * gap));
     }
     let names = exam.between(index);
-    if !said.is_empty() {
-        let evidence = format!("the joint between {names} has frames without rotation: {}", said.join("; "));
+    if !clauses.is_empty() {
+        let evidence =
+            format!("the joint between {names} has frames without rotation: {}", clauses.join("; "));
         return Some(exam.finding(Code::IdentityFrames, &bodies, evidence));
     }
     (gap > 0.003 * exam.size).then(|| {
@@ -88,7 +89,8 @@ fn frames(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     })
 }
 
-/// A pivot away from the start of its bone: far from the rig's, or at the parent's origin and outside the child.
+/// Finding about a pivot away from the start of its bone: far from the rig's, or at the parent's origin and outside the
+/// child.
 fn pivot(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let (pivot, child) = (exam.bones.list[joint.child].head, &exam.def.bodies[joint.child]);
@@ -143,7 +145,7 @@ fn width(range: Range) -> f32 {
     range.hi - range.lo
 }
 
-/// True if some direction of a joint has no limit worth the name.
+/// True if some direction of a joint has no effective limit.
 pub(super) fn is_unlimited(kind: &JointKind) -> bool {
     match kind {
         JointKind::Ball { limit: None }
@@ -164,8 +166,8 @@ fn missing(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     };
     let known = ranges(&joint.kind);
     let wide: Vec<String> = known.iter().filter(|(_, range)| width(*range) > NO_LIMIT).map(shown).collect();
-    let said = if wide.is_empty() { "no limits".to_owned() } else { wide.join(", ") };
-    let evidence = format!("the joint between {} has {said}", exam.between(index));
+    let clauses = if wide.is_empty() { "no limits".to_owned() } else { wide.join(", ") };
+    let evidence = format!("the joint between {} has {clauses}", exam.between(index));
     Some(exam.finding(Code::LimitsMissing, &[joint.child, joint.parent], evidence))
 }
 
@@ -200,7 +202,7 @@ fn too_narrow(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     Some(exam.finding(Code::LimitTooNarrow, &[joint.child, joint.parent], evidence))
 }
 
-/// Most joints of a human with one and the same range.
+/// Finding if most joints of a human have the same range.
 fn all_alike(exam: &Exam<'_>) -> Option<Finding> {
     if exam.bones.anatomy != Anatomy::Human {
         return None;
@@ -210,7 +212,7 @@ fn all_alike(exam: &Exam<'_>) -> Option<Finding> {
         .joints
         .iter()
         .filter_map(|joint| match joint.kind {
-            // Unlimited joints have their own finding.
+            // Unlimited joints have a finding of their own.
             JointKind::Ball { limit: Some(limit) } if width(limit.twist) <= NO_LIMIT => {
                 Some((joint.child, limit))
             }
@@ -244,7 +246,7 @@ fn all_alike(exam: &Exam<'_>) -> Option<Finding> {
     Some(exam.finding(Code::LimitsAllAlike, &bodies, evidence))
 }
 
-/// A knee or elbow that goes as far beyond straight as it bends.
+/// Finding about a knee or elbow that bends as far backwards as forwards.
 fn both_ways(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let parts = (exam.part(joint.parent), exam.part(joint.child));
@@ -322,7 +324,7 @@ fn too_stiff(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let hertz = hertz(exam, index, softness);
     let nyquist = 0.5 / exam.repair.substep;
-    // Written so that NaN is a finding.
+    // The comparison is written so that NaN is a finding.
     if hertz <= nyquist {
         return None;
     }
@@ -355,7 +357,7 @@ pub(super) fn turning_inertia(exam: &Exam<'_>, index: usize) -> f32 {
         *side = side.combine(&def.mass.transformed(&def.character_from_body));
     }
     let pivot = exam.bones.list[child].head;
-    // About the axis with the least inertia: bodies in line with the pivot add nothing about their own line.
+    // Use the axis with the least inertia: bodies in line with the pivot add nothing about their own line.
     let [above, below] = sides.map(|side| {
         let arm = side.center - pivot;
         let about_pivot = side.inertia.to_mat3()

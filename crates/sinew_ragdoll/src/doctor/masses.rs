@@ -10,11 +10,11 @@ use crate::masses::default_mass;
 use sinew_math::{Vec3, max, min};
 use sinew_physics::{MassProperties, Shape};
 
-/// kg/m²: body mass indices that a human may have.
+/// Body mass indices that a human may have, kg/m².
 const BODY_MASS_INDEX: core::ops::RangeInclusive<f32> = 11.0..=50.0;
-/// kg/m³ of the shapes of a creature.
+/// Densities that the shapes of a creature may have, kg/m³.
 const DENSITY: core::ops::RangeInclusive<f32> = 60.0..=4000.0;
-/// Largest moment of a body against that of its shape at its mass.
+/// Largest moment of a body relative to that of its shape at its mass.
 const INERTIA: core::ops::RangeInclusive<f32> = 0.1..=10.0;
 
 pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
@@ -46,7 +46,7 @@ fn not_positive(exam: &Exam<'_>, body: usize) -> Option<Finding> {
     (!is_positive(mass)).then(|| exam.finding(Code::MassNotPositive, &[body], evidence()))
 }
 
-/// kg that a body of this size has.
+/// Mass that a body of this size has, kg.
 pub(super) fn natural_mass(exam: &Exam<'_>) -> f32 {
     match exam.bones.anatomy {
         Anatomy::Human => default_mass(exam.size, Sex::Male),
@@ -85,7 +85,7 @@ fn ratios(exam: &Exam<'_>) -> Vec<Finding> {
     let mass = |body: usize| exam.def.bodies[body].mass.mass;
     let ratio = |a: usize, b: usize| max(mass(a) / mass(b), mass(b) / mass(a));
     let mut findings = Vec::new();
-    // Props move as one with their carrier.
+    // A prop moves as one rigid piece with its carrier.
     let is_held = |body: usize| exam.bones.list[body].is_prop;
     for joint in exam.def.joints.iter().filter(|joint| !is_held(joint.child)) {
         let found = ratio(joint.parent, joint.child);
@@ -106,7 +106,7 @@ fn ratios(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// The worst ratio along a chain, if it is too much.
+/// Finding about the largest ratio along a chain, if it is too large.
 fn chain(exam: &Exam<'_>) -> Option<Finding> {
     let mass = |body: usize| exam.def.bodies[body].mass.mass;
     let mut worst: Option<(f32, usize, usize)> = None;
@@ -172,7 +172,7 @@ pub(super) fn of_shape(shape: &Shape, mass: f32) -> MassProperties {
     MassProperties { mass, center: unit.center, inertia }
 }
 
-/// Every mass times `factor`.
+/// Multiplies every mass by `factor`.
 pub(super) fn scale_all(def: &mut RagdollDef, factor: f32) {
     for body in &mut def.bodies {
         body.mass.mass *= factor;
@@ -182,7 +182,7 @@ pub(super) fn scale_all(def: &mut RagdollDef, factor: f32) {
 }
 
 /// Makes the lighter of two bodies heavy enough for the ratio `most`, and keeps the total.
-pub(super) fn relieve(def: &mut RagdollDef, [a, b]: [usize; 2], most: f32) {
+pub(super) fn limit_mass_ratio(def: &mut RagdollDef, [a, b]: [usize; 2], most: f32) {
     let (light, heavy) = if def.bodies[a].mass.mass < def.bodies[b].mass.mass { (a, b) } else { (b, a) };
     let total = def.total_mass;
     let body = &mut def.bodies[light].mass;

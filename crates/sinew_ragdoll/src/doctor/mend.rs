@@ -5,7 +5,7 @@ use super::geometry::{depth, full_size, longest, scaled};
 use super::limits::{head_of_rig, is_narrow, turning_inertia};
 use super::{Code, Finding, Repair, anatomy, masses, mirror, missing_bodies, shapes};
 use crate::def::{RagdollDef, RagdollJointDef};
-use crate::doctor::tuning::{CHAIN_RATIO, MENDED_ROOM, NEIGHBOUR_RATIO, STRAIN, THIN};
+use crate::doctor::tuning::{CHAIN_RATIO, NEIGHBOUR_RATIO, STRAIN, THIN, WIDENED_MARGIN};
 use crate::ragdoll::fitted;
 use core::f32::consts::PI;
 use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min};
@@ -72,7 +72,7 @@ fn remedied(exam: &Exam<'_>, finding: &Finding, body: usize, other: usize) -> Op
         Code::MassRatio => {
             let is_neighbour = exam.bones.list[body].parent == Some(other);
             let most = if is_neighbour { NEIGHBOUR_RATIO } else { CHAIN_RATIO };
-            masses::relieve(&mut def, [body, other], 0.9 * most);
+            masses::limit_mass_ratio(&mut def, [body, other], 0.9 * most);
         }
         Code::MassImplausible => {
             let sum: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
@@ -101,7 +101,7 @@ fn remedied(exam: &Exam<'_>, finding: &Finding, body: usize, other: usize) -> Op
     Some(def)
 }
 
-/// Mass and inertia by the body's share of the volume of all.
+/// Mass and inertia by the body's share of the volume of all bodies.
 fn natural(exam: &Exam<'_>, body: usize) -> sinew_physics::MassProperties {
     let volume = |body: &crate::def::RagdollBodyDef| body.shape.volume();
     let all: f32 = exam.def.bodies.iter().map(volume).sum();
@@ -162,7 +162,8 @@ fn holding_bind(exam: &Exam<'_>, index: usize) -> RagdollJointDef {
     let joint = exam.def.joints[index];
     let pose = |body: usize| exam.def.bodies[body].character_from_body;
     let mut new = fitted(&joint, pose(joint.parent), pose(joint.child));
-    let wider = |range: Range| Range::new(max(range.lo - MENDED_ROOM, -PI), min(range.hi + MENDED_ROOM, PI));
+    let wider =
+        |range: Range| Range::new(max(range.lo - WIDENED_MARGIN, -PI), min(range.hi + WIDENED_MARGIN, PI));
     let cone = |limit: SwingTwistLimit, old: SwingTwistLimit| {
         let side = |new: Range, old: Range| if new == old { new } else { wider(new) };
         SwingTwistLimit {
@@ -203,7 +204,8 @@ fn locked(exam: &Exam<'_>, index: usize) -> RagdollJointDef {
             [true, true, _] => JointKind::Universal { limit: Some(SwingTwistLimit { twist: shut, ..l }) },
             [true, false, false] => return hinge_about(exam, index, turned_x_to(Vec3::Y), l.swing_y),
             [false, true, false] => return hinge_about(exam, index, turned_x_to(Vec3::Z), l.swing_z),
-            // No joint of ours swings about one axis and twists: the narrow swing is widened until it is quiet.
+            // No joint kind swings about only one axis and also twists, so the narrow swing is widened until it is
+            // stable.
             [true, false, true] => {
                 JointKind::Ball { limit: Some(SwingTwistLimit { swing_z: quiet(l.swing_z), ..l }) }
             }
@@ -228,7 +230,7 @@ fn quiet(range: Range) -> Range {
     Range::new(min(range.lo, -0.09), max(range.hi, 0.09))
 }
 
-/// The joint as a hinge about another of its axes.
+/// Turns a joint into a hinge about another of its axes.
 fn hinge_about(exam: &Exam<'_>, index: usize, axes: Rotation, range: Range) -> RagdollJointDef {
     let joint = exam.def.joints[index];
     let turned = |frame: Transform| Transform { rotation: frame.rotation * axes, ..frame };
@@ -243,13 +245,13 @@ fn hinge_about(exam: &Exam<'_>, index: usize, axes: Rotation, range: Range) -> R
     )
 }
 
-/// The joint fitted to the bind pose, so that what was locked is locked there.
+/// Fits a joint to the bind pose, so that its locked directions are locked there.
 fn at_bind(exam: &Exam<'_>, joint: RagdollJointDef) -> RagdollJointDef {
     let pose = |body: usize| exam.def.bodies[body].character_from_body;
     fitted(&joint, pose(joint.parent), pose(joint.child))
 }
 
-/// Gives one of two sides the other's range: the one further from anatomy.
+/// Gives one of two sides the range of the other: the side whose range is further from anatomy changes.
 fn mirror_joint(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     let strangeness = |body: usize| {
         let anatomical = exam.anatomical(body - 1).def.kind;
@@ -267,7 +269,7 @@ fn mirror_joint(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     def.joints[wrong - 1] = if max(out.limit, out.locked) > 0.01 { at_bind(exam, joint) } else { joint };
 }
 
-/// Sum of the distances between the ends of two limits, radians; a lot for different kinds.
+/// Sum of the distances between the ends of two limits, radians; a large value for different kinds.
 fn span(a: &JointKind, b: &JointKind) -> f32 {
     let apart = |a: Range, b: Range| (a.lo - b.lo).abs() + (a.hi - b.hi).abs();
     match (a, b) {
@@ -280,7 +282,8 @@ fn span(a: &JointKind, b: &JointKind) -> f32 {
     }
 }
 
-/// Gives one of two sides the mirror image of the other's shape: the one whose length is further from its bone's.
+/// Gives one of two sides the mirror image of the other's shape: the side whose length is further from its bone's
+/// changes.
 fn mirror_shape(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     let misfit = |body: usize| {
         let long = longest(&exam.def.bodies[body].shape);
@@ -322,8 +325,8 @@ fn min_of(a: usize, b: usize) -> usize {
     if a < b { a } else { b }
 }
 
-/// Removes what may push: limits that the bind pose slightly exceeds, each too small for a finding; without any, the
-/// deepest contact near `body`.
+/// Removes possible causes of a push: limits that the bind pose slightly exceeds, each too small for a finding; without
+/// any, the deepest contact near `body`.
 fn settle(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) -> Option<()> {
     let strained = |joint: &usize| {
         let out = beyond(&exam.def.joints[*joint].kind, exam.turned(*joint, Rotation::IDENTITY));
@@ -340,7 +343,7 @@ fn settle(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) -> Option<()> {
     Some(())
 }
 
-/// The pair that collides and touches, and has this body or a neighbour of it in it.
+/// Returns the touching pair that collides and contains this body or a neighbour of it.
 fn nearest_pair(exam: &Exam<'_>, body: usize) -> Option<(usize, usize)> {
     let pairs = crate::ragdoll::colliding_pairs(exam.def).into_iter();
     let near =
@@ -378,7 +381,7 @@ fn resize(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) {
     let factor = if long > wanted { wanted / long } else { max(wanted / long, 1.0) };
     let shape = scaled(&own.shape, factor);
     let shape = if shape.smallest_extent() < THIN * exam.size {
-        // A thread along its bone would stay thin when lengthened: it becomes a capsule.
+        // A very thin shape along its bone would stay thin when lengthened, so it becomes a capsule.
         let radius = max(0.1 * wanted, 2.0 * THIN * exam.size);
         Shape::Capsule { half_height: max(0.5 * wanted - radius, 0.0), radius }
     } else {
@@ -387,7 +390,7 @@ fn resize(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) {
     reshape(exam, def, body, shape, own.character_from_body);
 }
 
-/// Half of what the substep can follow.
+/// Lowers a spring's frequency to half of what the substep can follow.
 fn soften(repair: &mut Repair, index: usize) -> bool {
     let nyquist = 0.5 / repair.substep;
     let wanted = 0.5 * nyquist;

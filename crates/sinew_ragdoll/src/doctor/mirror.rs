@@ -9,7 +9,7 @@ use crate::doctor::tuning::{ENDS_APART, LENGTHS_APART, VOLUMES_APART, WIDTH_APAR
 use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min};
 use sinew_physics::{JointKind, Shape};
 
-/// Steps in which a reach is measured, radians (2.5°).
+/// Size of the steps by which a reach is measured, radians (2.5°).
 const STEP: f32 = 0.043_633;
 
 /// Adds findings about asymmetric sides.
@@ -32,7 +32,7 @@ pub(super) fn findings(exam: &Exam<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-/// A rotation axis mirrored in x: rotations about the mirrored line are reversed.
+/// Mirrors a rotation axis in x: rotations about the mirrored line are reversed.
 fn mirrored_axis(axis: Vec3) -> Vec3 {
     Vec3::new(axis.x, -axis.y, -axis.z)
 }
@@ -49,7 +49,7 @@ fn reach(exam: &Exam<'_>, joint: usize, axis: Vec3) -> f32 {
     let is_free = |step: &usize| {
         let turn = Rotation::from_axis_angle(axis, *step as f32 * STEP);
         let beyond = beyond(kind, exam.turned(joint, turn));
-        // A slightly wrong axis rotates a hinge slightly in a locked direction: that is no stop.
+        // A slightly wrong axis rotates a hinge slightly in a locked direction, which is not a stop.
         let locked = if matches!(kind, JointKind::Fixed) { beyond.locked } else { 0.0 };
         max(beyond.limit, locked) <= 1e-3
     };
@@ -112,7 +112,7 @@ pub(super) fn mirrored(frame: Transform, plane: f32) -> Transform {
     Transform::new(translation, Rotation::from_mat3(&axes).normalize())
 }
 
-/// The joint of a body as the mirror image of its twin's, about the pivot that it has.
+/// The joint of a body as the mirror image of its twin's, about its own pivot.
 pub(super) fn mirrored_joint(exam: &Exam<'_>, body: usize, twin: usize) -> RagdollJointDef {
     let def = exam.def;
     let (own, other) = (&def.joints[body - 1], &def.joints[twin - 1]);
@@ -122,7 +122,7 @@ pub(super) fn mirrored_joint(exam: &Exam<'_>, body: usize, twin: usize) -> Ragdo
         let seen = mirrored(def.bodies[of].character_from_body * frame, plane);
         def.bodies[onto].character_from_body.inverse() * Transform::new(pivot, seen.rotation)
     };
-    // With these axes a rotation about x keeps its sign under the mirror, one about y or z changes it.
+    // With these axes a rotation about x keeps its sign in the mirror image, one about y or z changes it.
     let turned = |range: Range| Range::new(-range.hi, -range.lo);
     let cone = |limit: SwingTwistLimit| SwingTwistLimit {
         swing_y: turned(limit.swing_y),

@@ -1,4 +1,4 @@
-//! Why a ragdoll jitters, explodes or looks wrong: causes with evidence and repairs.
+//! Finds why a ragdoll jitters, explodes or looks wrong: causes with evidence and repairs.
 //!
 //! The causes are common defaults of tools: identical limits, joints without limits, heads without bodies, frames whose
 //! zero is not the bind pose, bodies that overlap at the start.
@@ -42,7 +42,7 @@ pub use geometry::scaled;
 use crate::skin::{Flaw, FlawKind};
 use exam::Exam;
 
-/// Everything that is wrong with a ragdoll, the worst first.
+/// Finds all defects of a ragdoll, the most severe first.
 ///
 /// # Panics
 /// If the definition has no bodies, or its joints are not in the order of the bodies (`joints[i].child == i + 1`, each
@@ -72,7 +72,7 @@ pub fn doctor(repair: &Repair) -> Vec<Finding> {
     findings
 }
 
-/// A flaw of the skin as a finding. Repairs do not measure the skin again, so none counts as fixed.
+/// Turns a flaw of the skin into a finding. Repairs do not measure the skin again, so none counts as fixed.
 fn of_skin(flaw: &Flaw) -> Finding {
     let code = match flaw.kind {
         FlawKind::Uncovered => Code::SkinUncovered,
@@ -94,7 +94,7 @@ fn of_skin(flaw: &Flaw) -> Finding {
     }
 }
 
-/// Findings on a ragdoll of sound numbers and a sensible size.
+/// Findings about a ragdoll with finite numbers and a plausible size.
 fn in_proportion(exam: &Exam<'_>) -> Vec<Finding> {
     let mut findings = masses::findings(exam);
     findings.extend(anatomy::missing_bodies(exam));
@@ -102,7 +102,7 @@ fn in_proportion(exam: &Exam<'_>) -> Vec<Finding> {
     findings.extend(anatomy::inferred(exam));
     limits::findings(exam, &mut findings);
     mirror::findings(exam, &mut findings);
-    // Motion of the bodies is an effect; with a known cause it shows what that does.
+    // Motion of the bodies is an effect; with a known cause it shows the consequence.
     let jitter = motion::Jitter::of(exam);
     if let Some(evidence) = jitter.is_notable(exam) {
         let cause = findings.iter_mut().find(|f| f.severity == Severity::Error || f.code == Code::HugeShape);
@@ -114,11 +114,11 @@ fn in_proportion(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// The most rounds of repair; each repairs what the one before uncovered.
+/// Largest number of repair rounds; each repairs what the previous one uncovered.
 const ROUNDS: usize = 6;
 
-/// The ragdoll with everything repaired that can be, and the findings about the input; `fixed` tells whether each is
-/// gone.
+/// Repairs all findings that can be repaired. Returns the ragdoll and the findings about the input; `fixed` is true for
+/// those that are gone.
 ///
 /// # Panics
 /// As [`doctor`].
@@ -139,7 +139,7 @@ pub fn cure(repair: &Repair) -> (Repair, Vec<Finding>) {
     for finding in &mut findings {
         finding.fixed = !open.iter().any(|left| left.code == finding.code && left.bones == finding.bones);
     }
-    // Unrepairable effects of a repair are reported too.
+    // Effects of a repair that cannot be repaired are reported too.
     let known = |left: &Finding| findings.iter().any(|f| f.code == left.code && f.bones == left.bones);
     let new: Vec<Finding> = open.into_iter().filter(|left| !known(left)).collect();
     findings.extend(new);

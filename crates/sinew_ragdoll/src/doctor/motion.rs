@@ -1,4 +1,4 @@
-//! Motion of the ragdoll without gravity, from its bind pose at rest.
+//! Measures the motion of a ragdoll that starts at rest in its bind pose without gravity.
 
 use super::exam::Exam;
 use super::{Code, Finding};
@@ -6,25 +6,25 @@ use crate::doctor::tuning::{MOVED_LENGTH, MOVED_SHARE, TURNED};
 use sinew_math::{Vec3, max};
 use sinew_physics::{BodyDef, BodyId, JointDef, ShapeDef, Spring, World, WorldDef};
 
-/// Half a second.
+/// Number of steps in half a second.
 const STEPS: u32 = 30;
 
-/// Uncaused motion of the bodies. Positions show more than speeds: a solver that adds no energy corrects errors by
-/// moving.
+/// Motion of the bodies without a cause. Positions show more than speeds: a solver that adds no energy corrects errors
+/// by moving.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Jitter {
     /// Largest displacement of a body, metres, and the body.
     moved: (f32, usize),
     /// Largest rotation of a body, radians, and the body.
     turned: (f32, usize),
-    /// Most kinetic energy, J.
+    /// Largest kinetic energy, J.
     energy: f32,
     /// True if a state stopped being finite.
     is_lost: bool,
 }
 
 impl Jitter {
-    /// Half a second at rest. Joints are as the definition has them, not fitted to the pose.
+    /// Simulates half a second from rest. The joints are those of the definition, not fitted to the pose.
     pub fn of(exam: &Exam<'_>) -> Self {
         let def = exam.def;
         if !def.bodies.iter().all(|body| super::masses::is_positive(&body.mass)) {
@@ -96,7 +96,7 @@ impl Jitter {
         })
     }
 
-    /// The finding, where nothing else explains it.
+    /// The finding, if no other finding explains it.
     pub fn finding(&self, exam: &Exam<'_>, evidence: String) -> Finding {
         exam.finding(Code::MovesByItself, &[self.moved.1], evidence)
     }

@@ -25,7 +25,7 @@ pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
         .filter(|&(a, b)| !overlaps.iter().any(|f| f.bodies.contains(&a) && f.bodies.contains(&b)))
         .collect();
     findings.extend(overlaps);
-    findings.extend(fights(exam, &apart));
+    findings.extend(colliding_neighbours(exam, &apart));
     findings.extend(no_self_collision(exam));
     findings
 }
@@ -88,7 +88,7 @@ fn overlap(exam: &Exam<'_>, (a, b): (usize, usize)) -> Option<Finding> {
     })
 }
 
-/// All pairs of limb ends with the trunk are disabled, although they do not overlap.
+/// Finding if all pairs of limb ends with the trunk are disabled, although they do not overlap.
 fn no_self_collision(exam: &Exam<'_>) -> Option<Finding> {
     let pairs = limbs_and_trunk(exam);
     let is_disabled = |&(a, b): &(usize, usize)| {
@@ -122,13 +122,13 @@ pub(super) fn limbs_and_trunk(exam: &Exam<'_>) -> Vec<(usize, usize)> {
 }
 
 /// Pairs with one body between them that collide over most of the range of the joint between them.
-fn fights(exam: &Exam<'_>, pairs: &[(usize, usize)]) -> Vec<Finding> {
+fn colliding_neighbours(exam: &Exam<'_>, pairs: &[(usize, usize)]) -> Vec<Finding> {
     let mut findings = Vec::new();
     for &(a, b) in pairs {
         if exam.bones.distance(a, b) != 2 {
             continue;
         }
-        // The body that the joint moves: the child of the two.
+        // The joint moves the child of the two.
         let moved = [b, a].into_iter().find(|&body| body > 0 && body > other_of(exam, body, a, b));
         let Some(child) = moved else { continue };
         if is_unlimited(&exam.def.joints[child - 1].kind) {

@@ -9,7 +9,7 @@ use crate::tuning::TOLERATED;
 
 /// Usual height of a person, metres.
 ///
-/// Only reported. Shown by the tests of `doctor`.
+/// Affects only reports. Shown by the tests of `doctor`.
 pub(crate) const USUAL_HEIGHT: f32 = 1.7;
 
 /// Confidence of a role below which the doctor reports it, 0 to 1.
@@ -72,7 +72,7 @@ pub(crate) const MOMENT_RATIO: f32 = 60.0;
 /// Margin between the bind pose and a limit that a cure widens, radians (2°).
 ///
 /// Larger: limits wider than needed. Smaller: the joint overshoots at once. Shown by the tests of `doctor`.
-pub(crate) const MENDED_ROOM: f32 = 0.034_907;
+pub(crate) const WIDENED_MARGIN: f32 = 0.034_907;
 
 /// Angle by which a joint may exceed its limits without moving anything, radians (0.1°).
 ///

@@ -101,7 +101,8 @@ impl Drives {
         pin.map_or(Reaction::default(), |pin| world.reaction(pin))
     }
 
-    /// The hand of god: the sizes of the forces (N) and of the torques (N·m) of all pins in the last step, summed.
+    /// Sums of the sizes of all pins' forces (N) and torques (N·m) in the last step: the help from outside, which no
+    /// real body gets.
     pub fn pin_effort(&self, world: &World) -> (f32, f32) {
         (0..self.drives.len()).fold((0.0, 0.0), |(force, torque), body| {
             let reaction = self.pin_force(world, body);
@@ -157,7 +158,7 @@ impl Drives {
         }
     }
 
-    /// A static body without shape, at the origin.
+    /// Returns the static body without shape at the origin, to which pins attach.
     fn ground(&mut self, world: &mut World) -> BodyId {
         if let Some(ground) = self.ground.filter(|&ground| world.contains(ground)) {
             return ground;
@@ -168,7 +169,7 @@ impl Drives {
     }
 }
 
-/// The motor of a joint; `None` if it has no strength or nothing to move.
+/// Returns the motor of a joint; `None` if it has no strength or no motion to drive.
 fn muscle(
     world: &World,
     joint: JointId,
@@ -196,7 +197,7 @@ fn muscle(
 /// A motor's target is constant within a step although the pose moves. The target is therefore the pose at the mean of
 /// the substep start times, when motors are evaluated.
 struct Lag {
-    /// Before the step's end.
+    /// Time before the step's end, seconds.
     seconds: f32,
 }
 
@@ -206,7 +207,7 @@ impl Lag {
         Self { seconds: world.def().dt() * (substeps + 1.0) / (2.0 * substeps) }
     }
 
-    /// Rotation `lag` before `end` of a frame that rotates at `rate` (rad/s, fixed axes).
+    /// Returns the rotation of a frame at the time `lag` before `end`, if it rotates at `rate` (rad/s, fixed axes).
     fn back(&self, end: Rotation, rate: Vec3) -> Rotation {
         (Rotation::from_scaled_axis(rate * -self.seconds) * end).normalize()
     }

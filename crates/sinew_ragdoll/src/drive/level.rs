@@ -40,7 +40,7 @@ pub(super) struct Level {
     /// Share of the largest torque.
     pub strength: f32,
     pub pin: Spring,
-    /// N and N·m.
+    /// Largest force, N, and largest torque, N·m, of the pin.
     pub force: f32,
     pub torque: f32,
 }

@@ -55,7 +55,7 @@ pub use torque::torque_caps;
 pub struct Muscle {
     /// Natural frequency of everything the joint carries, Hz, at least 0.
     pub hertz: f32,
-    /// 1 is critical.
+    /// Damping ratio; 1 is critical.
     pub damping_ratio: f32,
     /// Share of the largest torque of the joint ([`torque_caps`]) that it may use, 0..=1.
     pub strength: f32,
@@ -81,7 +81,7 @@ impl Default for Muscle {
 pub struct Pin {
     /// Natural frequency of all bodies that are nearer to this pin than to other pins, Hz, at least 0.
     pub hertz: f32,
-    /// 1 is critical.
+    /// Damping ratio; 1 is critical.
     pub damping_ratio: f32,
     /// Largest force along each axis, N, finite.
     pub max_force: f32,
@@ -99,12 +99,12 @@ impl Pin {
 /// Mode of a drive: what moves a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum DriveMode {
-    /// Joint friction only. Default.
+    /// Only the friction of the joint acts. Default.
     #[default]
     Limp,
-    /// The joint to its parent has a muscle. The first body has no such joint, and is limp.
+    /// A muscle drives the joint to the parent. The first body has no such joint, and is limp.
     Powered(Muscle),
-    /// A muscle, and the world pulls.
+    /// A muscle drives the joint, and a pin pulls the body.
     Pinned(Muscle, Pin),
     /// Follows the animation exactly, whatever is in the way.
     Keyed,
@@ -114,16 +114,16 @@ pub enum DriveMode {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Drive {
     mode: DriveMode,
-    /// Seconds.
+    /// Half-life of the blend, seconds.
     half_life: f32,
-    /// Seconds since the mode was set.
+    /// Time since the mode was set, seconds.
     since: f32,
     level: Level,
     /// Share of its strength lost to a hit, 0..=1.
     weakness: f32,
-    /// It is kinematic.
+    /// True if the body is kinematic.
     keyed: bool,
-    /// The joint that pins it.
+    /// Joint of the body's pin.
     pin: Option<JointId>,
 }
 
@@ -131,9 +131,9 @@ struct Drive {
 /// removes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drives {
-    /// One per body.
+    /// Drive of each body.
     drives: Vec<Drive>,
-    /// Per body: most torque of the joint to its parent, N·m.
+    /// Largest torque of the joint to the parent of each body, N·m.
     torques: Vec<f32>,
     /// Body that pins attach to.
     ground: Option<BodyId>,
@@ -142,13 +142,13 @@ pub struct Drives {
 }
 
 impl Drives {
-    /// All limp, with the torques of [`torque_caps`].
+    /// All bodies are limp, with the torques of [`torque_caps`].
     pub fn new(def: &RagdollDef) -> Self {
         Self::with_torques(def, torque_caps(def))
     }
 
-    /// All limp. `torques`: largest muscle torque of the joint between a body and its parent, N·m, body by body; that
-    /// of the first means nothing.
+    /// All bodies are limp. `torques`: largest muscle torque of the joint between a body and its parent, N·m, body by
+    /// body; that of the first is ignored.
     ///
     /// # Panics
     /// If the number of entries is not the number of bodies, or one is negative or not finite.
@@ -156,7 +156,7 @@ impl Drives {
         assert_eq!(torques.len(), def.bodies.len(), "each body has a torque");
         assert!(
             torques.iter().all(|t| (0.0..f32::INFINITY).contains(t)),
-            "torques are not negative, and finite: {torques:?}"
+            "torques must be finite and at least 0: {torques:?}"
         );
         Self { drives: vec![Drive::default(); def.bodies.len()], torques, ground: None, recovery: 0.45 }
     }
@@ -178,7 +178,10 @@ impl Drives {
     /// If the body does not exist, or a number is negative or not finite, or a strength exceeds 1.
     pub fn set(&mut self, body: usize, mode: DriveMode, half_life: f32) {
         let sound = |x: f32| (0.0..f32::INFINITY).contains(&x);
-        assert!(sound(half_life), "a half-life is not negative, and finite, not {half_life} s (body {body})");
+        assert!(
+            sound(half_life),
+            "the half-life must be finite and at least 0, not {half_life} s (body {body})"
+        );
         let (muscle, pin) = match mode {
             DriveMode::Limp | DriveMode::Keyed => (None, None),
             DriveMode::Powered(muscle) => (Some(muscle), None),
@@ -188,11 +191,11 @@ impl Drives {
             muscle.is_none_or(|m| sound(m.hertz)
                 && sound(m.damping_ratio)
                 && (0.0..=1.0).contains(&m.strength)),
-            "a muscle's numbers are not negative, and finite: {mode:?} (body {body})"
+            "the numbers of a muscle must be finite and at least 0: {mode:?} (body {body})"
         );
         assert!(
             pin.is_none_or(|p| [p.hertz, p.damping_ratio, p.max_force, p.max_torque].into_iter().all(sound)),
-            "a pin's numbers are not negative, and finite: {mode:?} (body {body})"
+            "the numbers of a pin must be finite and at least 0: {mode:?} (body {body})"
         );
         let drive = &mut self.drives[body];
         if drive.mode != mode {
@@ -200,7 +203,7 @@ impl Drives {
         }
         drive.half_life = half_life;
         if half_life == 0.0 {
-            // Immediate, whether or not the drive advances: a limp body's drive does not.
+            // The change is immediate, also for limp bodies, whose drive does not advance.
             drive.level = Level::of(mode);
         }
     }
@@ -219,7 +222,7 @@ impl Drives {
         }
     }
 
-    /// True of a joint that is one of its pins.
+    /// True if the joint is one of the drives' pins.
     pub(crate) fn is_pin(&self, joint: JointId) -> bool {
         self.drives.iter().any(|drive| drive.pin == Some(joint))
     }

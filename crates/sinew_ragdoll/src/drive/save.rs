@@ -1,4 +1,4 @@
-//! Drives in a saved state, in addition to the world's snapshot.
+//! Saves drives, in addition to the world's snapshot.
 
 use super::level::{Level, Spring};
 use super::{Drive, DriveMode, Drives, Muscle, Pin};
@@ -9,7 +9,7 @@ use sinew_physics::{BodyId, JointId};
 const MAGIC: &[u8; 8] = b"sinew-d\x01";
 
 impl Drives {
-    /// Writes all future-relevant state that the world's snapshot and the definition do not hold.
+    /// Writes all state that affects the future and that neither the world's snapshot nor the definition holds.
     pub fn save(&self, w: &mut Writer) {
         w.raw(MAGIC);
         w.f32(self.recovery);
@@ -93,7 +93,7 @@ fn load_mode(r: &mut Reader<'_>) -> Result<DriveMode, ReadError> {
     })
 }
 
-/// A number that is finite and not negative.
+/// Reads a number that must be finite and not negative.
 fn sound(r: &mut Reader<'_>) -> Result<f32, ReadError> {
     let x = r.f32()?;
     if (0.0..f32::INFINITY).contains(&x) { Ok(x) } else { Err(r.error("a number of a drive makes no sense")) }

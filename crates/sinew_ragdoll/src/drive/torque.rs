@@ -22,7 +22,7 @@ const HUMAN: [(&str, f32); 12] = [
     ("neck", 50.0),
 ];
 const HEAD: f32 = 50.0;
-/// The body that the figures are of, kg m.
+/// Mass times height of the reference body, kg m.
 const REFERENCE: f32 = 75.0 * 1.75;
 
 /// Largest muscle torque of each body's joint to its parent, N·m; 0 for the first body. Human roles take it from a

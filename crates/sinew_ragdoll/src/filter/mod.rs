@@ -41,7 +41,7 @@ use sinew_physics::collide::{Manifold, collide};
 pub struct Overlap {
     /// Indices of the bodies, the smaller first.
     pub pair: (usize, usize),
-    /// Poses in which they overlap, before anything was done.
+    /// Poses in which they overlap before any remedy.
     pub seen: Seen,
     /// Remedy that was applied.
     pub remedy: Remedy,
@@ -61,9 +61,10 @@ pub struct Seen {
 /// Remedy for an overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
-    /// It is less than the solver notices, or a meeting of limbs in a few poses.
+    /// None: the overlap is below the solver's tolerance, or occurs in only a few poses.
     Tolerated,
-    /// They overlap in the bind pose and hardly anywhere else: they collide, except in a ragdoll that starts there.
+    /// They overlap in the bind pose and in hardly any other: they collide, except in a ragdoll that starts in the bind
+    /// pose.
     OnlyBound,
     /// Both shapes were thinned.
     Shrunk,
@@ -109,7 +110,7 @@ pub fn filter_pairs(bones: &Bones, fits: &mut [Fit], poses: &Poses) -> FilterRep
     report
 }
 
-/// True if a pair needs testing in every pose: most pairs are separate in the first few poses within the limits and in
+/// True if a pair must be tested in every pose. Most pairs are separate in the first few poses within the limits and in
 /// all clips.
 fn may_need_room(fits: &[Fit], poses: &Poses, (a, b): (usize, usize)) -> bool {
     let meeting = Meeting::of(fits, (a, b));
@@ -136,7 +137,7 @@ impl<'a> Meeting<'a> {
         Self { pair, shapes: [&a.shape, &b.shape], reach: reach(a) + reach(b) }
     }
 
-    /// True if they overlap by more than is tolerated.
+    /// True if they overlap by more than the tolerance.
     fn is_in(&self, pose: &[Transform]) -> bool {
         let (at, there) = (&pose[self.pair.0], &pose[self.pair.1]);
         let apart = (at.translation - there.translation).length_squared() > self.reach * self.reach;
@@ -164,7 +165,7 @@ fn reach(fit: &Fit) -> f32 {
     max(bounds.min.length(), bounds.max.length())
 }
 
-/// True if a pair overlaps where it should not.
+/// True if a pair overlaps in poses in which it should not.
 fn needs_more_room(bones: &Bones, seen: &Seen, (a, b): (usize, usize)) -> bool {
     seen.bind > TOLERATED || seen.clips.unwrap_or(0.0) > A_FEW || is_never_apart(bones, seen, (a, b))
 }
@@ -176,8 +177,7 @@ fn is_never_apart(bones: &Bones, seen: &Seen, (a, b): (usize, usize)) -> bool {
     seen.limits >= ALWAYS || seen.clips.unwrap_or(0.0) > most
 }
 
-/// Repeats on one side what was done on the other, so that a slight asymmetry of the mesh does not make the ragdoll
-/// limp.
+/// Applies a remedy of one side to the other, so that a slight asymmetry of the mesh does not make the ragdoll limp.
 fn mirror_remedies(bones: &Bones, fits: &mut [Fit], poses: &Poses, report: &mut FilterReport) {
     for body in 0..fits.len() {
         let Some(twin) = bones.twin(body) else { continue };
@@ -217,7 +217,7 @@ fn remedy(
     (seen, poses): (Seen, &Poses),
 ) -> Remedy {
     let trunk = |bone: usize| bones.list[bone].part.is_trunk() || bones.list[bone].part == Part::Neck;
-    // Neighbours but one within the trunk move over each other whatever their sizes.
+    // Second neighbours within the trunk move over each other whatever their sizes.
     if bones.distance(a, b) <= 2
         && seen.bind > 0.0
         && (trunk(a) && trunk(b) || meets_at_pivot(bones, fits, a, b))
@@ -253,7 +253,7 @@ fn is_worth_shrinking(bones: &Bones, a: usize, b: usize) -> bool {
     limb(a) && (limb(b) || b.is_trunk()) || limb(b) && a.is_trunk()
 }
 
-/// Thins both shapes until they no longer overlap where they should not. If the allowed amount does not suffice, they
+/// Thins both shapes until they overlap only in poses in which they may. If the allowed amount does not suffice, they
 /// stay unchanged and this returns false. A trunk is not thinned: its neighbours need its size.
 fn shrink_apart(
     bones: &Bones,

@@ -50,7 +50,7 @@ const SEED: u64 = 0x00F1_17E4;
 /// Poses of all bodies in character space, metres, one transform per body.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Poses {
-    /// Joints turned at random within their limits, the first body in its bind pose.
+    /// Poses with random joint rotations within the limits, the first body in its bind pose.
     pub within_limits: Vec<Vec<Transform>>,
     /// Poses of the character's clips.
     pub of_clips: Vec<Vec<Transform>>,
@@ -59,9 +59,9 @@ pub struct Poses {
 /// Selection of the frames to test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frames {
-    /// Every one.
+    /// All frames.
     All,
-    /// At most 256, the same number from each take.
+    /// At most 256 frames, the same number from each take.
     Some,
 }
 

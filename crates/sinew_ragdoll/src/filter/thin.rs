@@ -1,10 +1,10 @@
-//! Thinner shapes.
+//! Makes shapes thinner.
 
 use crate::fit::stretched;
 use sinew_math::Vec3;
 use sinew_physics::Shape;
 
-/// The shape with its cross-section scaled; its length along y does not change.
+/// Scales the cross-section of a shape; its length along y does not change.
 pub(super) fn thinner(shape: &Shape, factor: f32) -> Shape {
     match shape {
         Shape::Box { half_extents: h } => {

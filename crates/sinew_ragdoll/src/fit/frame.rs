@@ -1,4 +1,4 @@
-//! Axes of a shape, from the skin it represents.
+//! Axes of a shape, from the skin that it represents.
 //!
 //! ```
 //! use sinew_math::{Mat3, Vec3};
@@ -92,8 +92,8 @@ fn volume(patch: &Patch, frame: &Mat3) -> f32 {
     extent(frame.x_axis) * extent(frame.y_axis) * extent(frame.z_axis)
 }
 
-/// The same axes, named and signed so that y is nearest to `direction`, z points forward (+Z) as far as possible, and
-/// the three are right-handed.
+/// The same axes, permuted and signed so that y is nearest to `direction`, z points forward (+Z) as far as possible,
+/// and the three are right-handed.
 pub fn with_y(frame: Mat3, direction: Vec3) -> Mat3 {
     let axes = [frame.x_axis, frame.y_axis, frame.z_axis];
     let nearest = |to: Vec3, axes: &[Vec3]| {
@@ -103,7 +103,7 @@ pub fn with_y(frame: Mat3, direction: Vec3) -> Mat3 {
     let i = nearest(direction, &axes);
     let y = signed(axes[i], direction);
     let rest = [axes[(i + 1) % 3], axes[(i + 2) % 3]];
-    // If y itself points forward, up replaces forward.
+    // If y itself points forward, z points up.
     let forward = if y.z.abs() > 0.7 { Vec3::Y } else { Vec3::Z };
     let z = signed(rest[nearest(forward, &rest)], forward);
     Mat3::from_cols(y.cross(z), y, z)

@@ -57,7 +57,7 @@ pub struct Fit {
     pub character_from_body: Transform,
     /// Area-weighted mean distance between the bone's skin and the shape's surface, metres; 0 without skin.
     pub error: f32,
-    /// m² of that skin.
+    /// Area of that skin, m².
     pub area: f32,
     /// Selection of the skin that it was fitted to.
     pub selection: Selection,
@@ -154,7 +154,7 @@ fn protruding(bones: &Bones, bone: usize, patch: &Patch, nearest: &Fit) -> Optio
     let far = if part == Part::Tail { SPIKED } else { PROTRUDING } * bones.size();
     let frame = solid::fit_box(bones, bone, patch);
     let within = solid::within_joints(bones, bone, patch, &frame);
-    // Spikes of a tail may lie along it.
+    // The spikes of a tail may be in line with it.
     let within = |point: Vec3| if part == Part::Tail { point } else { within(point) };
     let out = |sample: &patch::Sample| {
         nearest.shape.signed_distance(&nearest.character_from_body, within(sample.point)).0
@@ -166,8 +166,8 @@ fn protruding(bones: &Bones, bone: usize, patch: &Patch, nearest: &Fit) -> Optio
     solid::fit_whole_hull(&frame, patch, within)
 }
 
-/// The hull of a part of the trunk of whose box a corner is far from all skin (a trunk with its arms): on that the character
-/// would float. `None` for other shapes.
+/// The hull of a part of the trunk if a corner of its box is far from all skin (as for a trunk with its arms): the
+/// character would float on that corner. `None` for other shapes.
 fn hollow(bones: &Bones, bone: usize, patch: &Patch, nearest: &Fit) -> Option<Fit> {
     let Shape::Box { half_extents: half } = nearest.shape else { return None };
     let far = HOLLOW * bones.size();
@@ -235,11 +235,12 @@ fn clip_at_joints(bones: &Bones, bone: usize, origin: Vec3, axis: Vec3, lo: f32,
     let (mut new_lo, mut new_hi) =
         (own.map_or(lo, |own| max(lo, own - past)), next.map_or(hi, |next| min(hi, next + past)));
     if bones.is_central(bone) && bones.list[bone].part.is_trunk() {
-        // Where weights fade from one bone to the next, neither owns the skin: the gap to the joint is closed.
+        // In the range where weights fade from one bone to the next, neither owns the skin, so the gap to the joint is
+        // closed.
         new_lo = own.map_or(new_lo, |own| min(new_lo, own));
         new_hi = next.map_or(new_hi, |next| max(new_hi, next));
     }
-    // If the rig's pivots lie outside its skin, nothing remains; then the skin is right.
+    // If the rig's pivots are outside its skin, nothing remains, and the extent of the skin is used.
     if new_hi - new_lo > 0.2 * (hi - lo) { (new_lo, new_hi) } else { (lo, hi) }
 }
 

@@ -30,16 +30,16 @@ pub enum Selection {
     Weight(f32),
     /// Triangles on which no other bone has more weight.
     Most,
-    /// None: the bone moves almost no skin.
+    /// No triangles: the bone moves almost no skin.
     Nothing,
-    /// Triangles of the same bone on the other side, without what this side carries.
+    /// Triangles of the same bone on the other side, without the object that this side carries.
     Twin,
 }
 
 /// A sample of the surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// Character space, metres.
+    /// Position in character space, metres.
     pub point: Vec3,
     /// Area it represents, m².
     pub area: f32,
@@ -54,7 +54,7 @@ pub struct Patch {
     pub center: Vec3,
     /// Area-weighted covariance of the surface, m².
     pub covariance: Sym3,
-    /// m².
+    /// Area of the piece, m².
     pub area: f32,
     /// Selection by which its triangles were chosen.
     pub selection: Selection,
@@ -63,9 +63,9 @@ pub struct Patch {
 /// Symmetry of a patch: unchanged, or made symmetric by adding its mirror image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Symmetry {
-    /// Unchanged.
+    /// The patch is unchanged.
     AsIs,
-    /// With its mirror image in the plane of this x, metres.
+    /// The patch includes its mirror image in the plane of this x, metres.
     Mirrored(f32),
 }
 
@@ -98,7 +98,7 @@ impl Patch {
         best
     }
 
-    /// True if the patch extends in three directions: only then do its axes mean anything.
+    /// True if the patch extends in three directions, without which its axes are meaningless.
     fn is_solid(&self) -> bool {
         let (value, _) = self.covariance.eigen();
         value.z > 1e-4 * value.x
@@ -158,7 +158,7 @@ impl Patch {
 /// Values below which the given shares of the weight lie. `values` (value, weight) is sorted.
 ///
 /// # Panics
-/// If it is empty.
+/// If `values` is empty.
 pub fn quantiles_of<const N: usize>(values: &mut [(f32, f32)], shares: [f32; N]) -> [f32; N] {
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f32 = values.iter().map(|v| v.1).sum();

@@ -77,7 +77,7 @@ mod tests {
     use sinew_math::trig;
 
     #[test]
-    fn finds_the_side_of_a_turned_rectangle() {
+    fn side_of_a_turned_rectangle_is_found() {
         let u = Vec2::new(trig::cos(0.4), trig::sin(0.4));
         let v = Vec2::new(-u.y, u.x);
         let mut points: Vec<_> = (0..=10)
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn of_points_on_a_line_is_x() {
+    fn points_on_a_line_give_x() {
         assert_eq!(least_rectangle(&mut vec![Vec2::ZERO; 3]), Vec2::X);
     }
 }

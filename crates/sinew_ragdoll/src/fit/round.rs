@@ -83,7 +83,7 @@ pub(super) fn taper(capsule: &Fit, patch: &Patch) -> Option<Fit> {
             .collect();
         (!radial.is_empty()).then(|| quantiles_of(&mut radial, [share])[0])
     };
-    // As for capsules: the higher quantile suits round limbs, the lower flat ones.
+    // As for capsules, the higher quantile suits round limbs, the lower one flat limbs.
     [0.8, 0.65]
         .into_iter()
         .filter_map(|share| Some(tapered([end(-1.0, share)?, end(1.0, share)?], half, frame, patch)))

@@ -19,7 +19,7 @@ pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
         direction.y = 0.0;
     }
     let axes = with_y(box_frame(bones, bone, patch), direction);
-    // Of a sword the last hundredth is its point.
+    // The last hundredth of a sword is its point.
     let shares = if bones.list[bone].is_prop { [0.0, 1.0] } else { [0.01, 0.99] };
     let extent = |axis: Vec3| patch.quantiles(shares, |p| (p - patch.center).dot(axis));
     let ([x_lo, x_hi], [z_lo, z_hi]) = (extent(axes.x_axis), extent(axes.z_axis));
@@ -46,7 +46,7 @@ pub(super) fn fit_whole_hull(cuboid: &Fit, patch: &Patch, within: impl Fn(Vec3) 
     hull_of(cuboid, patch, |point| frame.inverse_point(within(frame.point(point))))
 }
 
-/// Moves a point of the skin along the bone to the end of its part where it lies beyond one of its joints.
+/// Moves a point of the skin along the bone to the end of its part, if it is beyond one of its joints.
 pub(super) fn within_joints(
     bones: &Bones,
     bone: usize,
@@ -85,7 +85,7 @@ fn hull_of(cuboid: &Fit, patch: &Patch, within: impl Fn(Vec3) -> Vec3) -> Option
     Some(measured(Shape::Hull(Arc::new(hull)), frame, patch))
 }
 
-/// Toward the faces, edges and corners of a cube.
+/// Directions toward the faces, edges and corners of a cube.
 fn directions() -> impl Iterator<Item = Vec3> {
     let side = |k: i32| (k - 1) as f32;
     (0..27).map(move |k| Vec3::new(side(k % 3), side(k / 3 % 3), side(k / 9))).filter(|d| *d != Vec3::ZERO)

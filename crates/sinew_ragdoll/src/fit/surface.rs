@@ -67,17 +67,17 @@ pub struct BindPose<'a> {
     pub model: &'a [Affine],
     /// Metres per file unit.
     pub unit_scale: f32,
-    /// From model space in metres to character space.
+    /// Transform from model space in metres to character space.
     pub character_from_model: Transform,
 }
 
 impl BindPose<'_> {
-    /// Character space, metres, from model space, file units.
+    /// Converts a point from model space, file units, to character space, metres.
     pub fn character_point(&self, model_point: Vec3) -> Vec3 {
         self.character_from_model.point(model_point * self.unit_scale)
     }
 
-    /// Character space, metres, from model space, file units.
+    /// Transform from model space, file units, to character space, metres.
     pub fn character_from_file(&self) -> Affine {
         let turn = self.character_from_model;
         let scale = Vec3::splat(self.unit_scale);

@@ -14,14 +14,14 @@ pub(super) struct Grain {
     pub node: usize,
     pub sheet: usize,
     pub particle: usize,
-    /// Corners of the sheet's triangles, each with the next two.
+    /// Corners of the sheet's triangles at the particle, each with the next two.
     around: Vec<[u32; 3]>,
     /// Neighbour particles with their coefficients for the direction x, 1/m: `Σ coefficient (place − own)` points along
     /// x at rest.
     beside: Vec<(u32, f32)>,
     /// Rotation of the bone in the frame of the sheet about it, at rest.
     pub frame_from_bone: Rotation,
-    /// From where it is drawn at rest to where it is, in that frame, metres.
+    /// Vector from its drawn position at rest to its simulated position, in that frame, metres.
     moved_out: Vec3,
 }
 
@@ -53,7 +53,7 @@ impl Around {
 }
 
 impl Grain {
-    /// A particle of a sheet whose joint has this rotation in the bind pose.
+    /// Creates the particle whose joint has this rotation in the bind pose.
     pub fn new(
         node: usize,
         number: usize,
@@ -85,7 +85,7 @@ impl Grain {
             grain.frame_from_bone = back * bone;
             grain.moved_out = back * grain.moved_out;
         } else {
-            // Without a frame at rest the particle never has one: it moves and does not rotate.
+            // Without a frame at rest the particle moves and does not rotate.
             grain.around.clear();
             grain.moved_out = Vec3::ZERO;
         }

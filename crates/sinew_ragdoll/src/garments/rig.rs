@@ -21,11 +21,11 @@ pub(super) struct Node {
 /// Reason for which a joint moves with a garment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Moves {
-    /// Does not follow a sheet.
+    /// The joint does not follow a sheet.
     Nothing,
-    /// Follows a sheet: index of its bone.
+    /// The joint follows a sheet: index of its bone.
     Bone(usize),
-    /// It is a particle: index of the grain.
+    /// The joint is a particle: index of the grain.
     Particle(usize),
 }
 
@@ -33,7 +33,7 @@ pub(super) enum Moves {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Hanging {
     Columns(Vec<Column>),
-    /// One per particle.
+    /// Nodes of the particles, one per particle.
     Particles(Vec<usize>),
 }
 
@@ -64,9 +64,9 @@ pub(super) struct Column {
 pub struct GarmentRig {
     source: Vec<Garment>,
     pub(super) nodes: Vec<Node>,
-    /// By node, ascending.
+    /// Bones that follow sheets, by node, ascending.
     pub(super) bones: Vec<Bone>,
-    /// One per garment that has a sheet.
+    /// Sheets, one per garment that has one.
     pub(super) sheets: Vec<Sheet>,
     /// Particles that are joints, by node, ascending.
     pub(super) grains: Vec<Grain>,
@@ -292,7 +292,7 @@ impl GarmentRig {
         self.sheets.iter().map(|sheet| sheet.group.particles.len())
     }
 
-    /// True if nothing is worn.
+    /// True if there is no garment to wear.
     pub fn is_empty(&self) -> bool {
         self.sheets.is_empty()
     }

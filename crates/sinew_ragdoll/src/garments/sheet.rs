@@ -17,8 +17,8 @@ use sinew_physics::{Material, Shape};
 pub(super) struct Sheet {
     /// Lines and rows, for a sheet on columns.
     pub grid: Option<Grid>,
-    /// Particles at rest outside the bodies, character space, metres, with springs, bends and tethers; nothing holds
-    /// them yet.
+    /// Particles at rest outside the bodies, character space, metres, with springs, bends and tethers; they are not
+    /// attached yet.
     pub group: GroupDef,
     /// Offset that moved each particle out of the bodies at rest, character space, metres.
     pub moved_out: Vec<Vec3>,
@@ -248,7 +248,7 @@ impl Weave<'_> {
         }
     }
 
-    /// Both diagonals of each cell.
+    /// Adds springs along both diagonals of each cell.
     fn brace(&self, group: &mut GroupDef) {
         for line in 0..self.grid.lines.len() {
             let after = self.grid.beside(line)[1];
@@ -261,7 +261,7 @@ impl Weave<'_> {
         }
     }
 
-    /// Bends down every line, and across every row.
+    /// Adds bends down every line, and across every row.
     fn stiffen(&self, group: &mut GroupDef) {
         let (grid, bending) = (self.grid, self.garment.bending);
         let particle = |line, row| grid.particle(line, row) as u32;

@@ -38,7 +38,7 @@ impl Worn {
         there.map(lie).collect()
     }
 
-    /// Puts all particles where they were.
+    /// Restores positions and velocities of all particles.
     pub fn lay(&self, world: &mut World, was: &[(Vec<Vec3>, Vec<Vec3>)]) {
         for (&id, (positions, velocities)) in self.groups.iter().zip(was) {
             let group = world.particles_mut(id);
@@ -109,7 +109,7 @@ pub(crate) struct Wearer<'a> {
     pub world_from_model: Affine,
     /// Bodies in the world, in the order of the definition.
     pub bodies: &'a [BodyId],
-    /// Bodies that are not its own any more, by index, ascending.
+    /// Severed bodies, by index, ascending.
     pub lost: &'a [(usize, BodyId)],
 }
 
@@ -198,7 +198,7 @@ impl Wearer<'_> {
         met.map(|(_, (body, &id))| (&body.shape, world.transform(id))).collect()
     }
 
-    /// True if a body is its own.
+    /// True if a body still belongs to the wearer.
     fn has(&self, body: usize) -> bool {
         self.lost.iter().all(|&(lost, _)| lost != body)
     }
@@ -234,7 +234,7 @@ impl Wearer<'_> {
             let body = sheet.held_by[index];
             let frame = self.frame(world, body);
             if sheet.is_held[index] && self.has(body) {
-                // Its bind-pose offset, whatever the clip does: joints of bodies do not stretch.
+                // Use the bind-pose offset, whatever the clip does: joints of bodies do not stretch.
                 let point = bind(body).inverse_point(particle.position);
                 let target = AttachmentTarget::Body { body: self.bodies[body], point };
                 group.attachments.push(AttachmentDef { particle: index as u32, target });
@@ -323,7 +323,7 @@ impl Wearer<'_> {
                         local.rotation =
                             (above.inverse() * frame * grain.frame_from_bone).normalize().toward(rest);
                     }
-                    // Under a joint that a clip scales to zero no such position exists.
+                    // No such position exists under a joint that a clip scales to zero.
                     let at = above_frame.inverse().point(place);
                     if at.is_finite() {
                         local.translation = at;

@@ -18,7 +18,7 @@
 //! # let bones = Bones::new(list, Anatomy::Human, 1.75);
 //! use sinew_ragdoll::limits::anatomy::bind_from_anatomical;
 //!
-//! // A leg that hangs straight down is bound as it stands in the table.
+//! // A leg that hangs straight down has its anatomical pose.
 //! let middles = [Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.1, 0.7, 0.0), Vec3::new(0.1, 0.3, 0.0)];
 //! let turned = bind_from_anatomical(&bones, &middles);
 //! assert!(turned.iter().all(|turn| turn.to_axis_angle().1 < 1e-3));

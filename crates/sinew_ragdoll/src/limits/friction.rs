@@ -1,4 +1,4 @@
-//! Friction with which limp joints resist.
+//! Friction of limp joints.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;

@@ -34,7 +34,7 @@ const SWING_FACTORS: [f32; 4] = [1.15, 1.1, 1.05, 1.0];
 /// One copy of the bind pose per this many frames: twice the share that the coverage excludes, so that the limits
 /// contain it.
 const FRAMES_PER_BIND: usize = 100;
-/// Directions in which a cone is held against the anatomical one.
+/// Number of directions in which a cone is compared to the anatomical one.
 const DIRECTIONS: usize = 16;
 
 /// The joint with limits from the clips; `None` if they show too little of its motion. The mirrored motion of its twin
@@ -65,14 +65,14 @@ pub fn learned(
             RagdollJointDef { kind: JointKind::Hinge { limit: Some(range) }, ..*joint }
         }
         JointKind::Ball { limit: Some(limit) } => {
-            let learned = learn_limit(joint.child, Vec3::X, &turns).filter(shows_enough)?;
+            let learned = learn_limit(joint.child, Vec3::X, &turns).filter(is_wide_enough)?;
             match learned.hinge.filter(|_| anatomy == Anatomy::Creature) {
                 Some(hinge) => hinged(joint, &learned, hinge, bind),
                 None => Cone { joint, anatomical: limit, twisting: Twist::Free }.def(&learned, &turns, bind),
             }
         }
         JointKind::Universal { limit: Some(limit) } => {
-            let learned = learn_limit(joint.child, Vec3::X, &turns).filter(shows_enough)?;
+            let learned = learn_limit(joint.child, Vec3::X, &turns).filter(is_wide_enough)?;
             Cone { joint, anatomical: limit, twisting: Twist::Locked }.def(&learned, &turns, bind)
         }
         _ => return None,
@@ -80,13 +80,13 @@ pub fn learned(
     Some(JointPlan { def, widened: 0.0 })
 }
 
-/// The joint rotation in a pose of the bodies.
+/// Joint rotation in a pose of the bodies.
 fn turn(joint: &RagdollJointDef, pose: &dyn Fn(usize) -> Transform) -> Rotation {
     let parent = pose(joint.parent).rotation * joint.frame_parent.rotation;
     (parent.inverse() * (pose(joint.child).rotation * joint.frame_child.rotation)).normalize()
 }
 
-/// The same rotation on the other side: swing about z and twist change sign, and a hinge bends in the same direction.
+/// Mirrors a rotation to the other side: swing about z and twist change sign, and a hinge bends in the same direction.
 fn mirrored(kind: JointKind, turn: Rotation) -> Rotation {
     match kind {
         JointKind::Hinge { .. } => turn,
@@ -94,7 +94,7 @@ fn mirrored(kind: JointKind, turn: Rotation) -> Rotation {
     }
 }
 
-fn shows_enough(limit: &LearnedLimit) -> bool {
+fn is_wide_enough(limit: &LearnedLimit) -> bool {
     let [y, z] = limit.swing;
     limit.hinge.is_some() || max(y, z) >= LEAST_RANGE || limit.twist.hi - limit.twist.lo >= 2.0 * LEAST_RANGE
 }
@@ -130,7 +130,7 @@ fn hinged(
     turned(joint, parent * swing, child, kind)
 }
 
-/// The joint with its two frames rotated, each in its own axes.
+/// Rotates the two frames of a joint, each in its own axes.
 fn turned(joint: &RagdollJointDef, parent: Rotation, child: Rotation, kind: JointKind) -> RagdollJointDef {
     let turn =
         |frame: Transform, by: Rotation| Transform::new(frame.translation, (frame.rotation * by).normalize());
@@ -187,7 +187,7 @@ impl Cone<'_> {
         }
     }
 
-    /// The same of the farthest rotation of a cone.
+    /// Angle by which the farthest rotation of a cone exceeds the anatomical limits, radians.
     fn farthest(&self, learned: &LearnedLimit, limit: &SwingTwistLimit) -> f32 {
         let frame = learned.frame;
         let mut farthest = 0.0;

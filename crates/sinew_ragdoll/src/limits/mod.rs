@@ -36,10 +36,11 @@ use table::{Axes, Cone, Entry, Motion, entry};
 /// Source of joint limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LimitSource {
-    /// The table of ranges of motion.
+    /// Table of ranges of motion.
     #[default]
     Anatomy,
-    /// Motion of the character in its clips, within the table; of joints that the clips show too little of, the table.
+    /// Motion of the character in its clips, within the table; the table alone for joints that hardly move in the
+    /// clips.
     Clips,
 }
 
@@ -83,12 +84,12 @@ pub fn joints(bones: &Bones, fits: &[Fit], total_mass: f32) -> Vec<JointPlan> {
         .collect()
 }
 
-/// Joint as it is seen in the bind pose, in character axes: first the parent, then the child.
+/// A joint in the bind pose, in character axes: first the parent, then the child.
 struct Seen {
     side: Side,
-    /// From the anatomical pose.
+    /// Rotations from the anatomical pose to the bind pose.
     turned: [Rotation; 2],
-    /// Unit, along the bones.
+    /// Unit vectors along the bones.
     directions: [Vec3; 2],
 }
 
@@ -119,7 +120,7 @@ impl Seen {
                 let range = Range::degrees(lo, hi);
                 let limit =
                     Range::new(min(range.lo, angle - BIND_MARGIN), max(range.hi, angle + BIND_MARGIN));
-                // A straight limb at its stop is the normal standing pose: only the angle beyond the table counts.
+                // A straight limb at its stop is the normal standing pose, so only the angle beyond the table counts.
                 (frames, JointKind::Hinge { limit: Some(limit) }, range.excess(angle))
             }
         }
@@ -154,7 +155,7 @@ impl Seen {
         [self.turned[0] * basis * center, self.turned[1] * basis]
     }
 
-    /// −1 on the right: swing about z and twist change sign there.
+    /// Sign of the side: −1 on the right, because swing about z and twist change sign there.
     fn mirror(&self) -> f32 {
         if self.side == Side::Right { -1.0 } else { 1.0 }
     }
@@ -166,7 +167,7 @@ impl Seen {
         SwingTwistLimit { swing_y: y, swing_z: z, twist }
     }
 
-    /// Frames with the hinge's axis as x, whose angle is 0 where the two bones lie in line.
+    /// Frames with the hinge's axis as x and angle 0 where the two bones are in line.
     fn hinge_frames(&self, axes: Axes) -> [Rotation; 2] {
         let [along_parent, along_child] = self.directions;
         let anatomical = self.turned[0] * (self.basis(axes) * Vec3::Y);

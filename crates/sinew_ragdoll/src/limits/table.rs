@@ -25,7 +25,7 @@ use crate::build::part::{Part, Side};
 pub enum Motion {
     /// Swing within an elliptic cone, and twist. Angles about the [`Axes`] of the joint.
     Ball(Cone),
-    /// As `Ball`, without twist.
+    /// A cone as of `Ball`, without twist.
     Universal(Cone),
     /// Bends about one axis between these two angles; 0 is straight.
     Hinge(f32, f32),

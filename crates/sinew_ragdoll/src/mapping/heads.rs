@@ -9,7 +9,7 @@ use sinew_math::{Affine, Transform, Vec3};
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Head {
     pub joint: JointIdx,
-    /// Its parent's space in model space, all nodes above it at rest.
+    /// Transform from its parent's space to model space, with all nodes above it at rest.
     model_from_parent: Affine,
     parent_from_model: Affine,
 }
@@ -35,7 +35,7 @@ fn chain(rig: &Rig, joint: JointIdx, local: impl Fn(JointIdx) -> LocalTransform)
 }
 
 /// True for each joint that moves skin, is among `others`, or has such a descendant.
-fn with_what_is_below(rig: &Rig, others: impl Iterator<Item = JointIdx>) -> Vec<bool> {
+fn with_descendants(rig: &Rig, others: impl Iterator<Item = JointIdx>) -> Vec<bool> {
     let mut counts = vec![false; rig.joints.len()];
     let skinned = rig.skins.iter().flat_map(|skin| skin.joints.iter().copied());
     skinned.chain(others).for_each(|joint| counts[joint] = true);
@@ -51,7 +51,7 @@ fn with_what_is_below(rig: &Rig, others: impl Iterator<Item = JointIdx>) -> Vec<
 /// file.
 pub(crate) fn carries_character(rig: &Rig, def: &RagdollDef) -> Vec<bool> {
     let merged = def.bodies.iter().flat_map(|body| body.merged.iter().copied().chain([body.joint]));
-    with_what_is_below(rig, merged)
+    with_descendants(rig, merged)
 }
 
 /// The pelvis, or its highest ancestor that moves skin with a body, and every other child of a node above it that

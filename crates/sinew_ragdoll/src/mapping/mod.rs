@@ -1,4 +1,4 @@
-//! Poses of the rig ↔ poses of the bodies, for every joint of the file.
+//! Converts between poses of the rig and poses of the bodies, for every joint of the file.
 //!
 //! Three spaces: the **model** space of the file (file units, its own up axis), the **character** space of the ragdoll
 //! (metres, +Y up, facing +Z) and the world. A body keeps the offset to its bone that it had in the bind pose.
@@ -38,9 +38,10 @@ use sinew_math::{Affine, Rotation, Transform, Vec3};
 /// Manner in which a joint follows its body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Follow {
-    /// Rotation from the body; position from the parent, because joints do not stretch.
+    /// The rotation is that of the body; the position follows from the parent, because joints do not stretch.
     Turn,
-    /// Rotation and position from the body: the pelvis, and joints that the rig parents differently from the anatomy.
+    /// Rotation and position are those of the body: the pelvis, and joints that the rig parents differently from the
+    /// anatomy.
     Move,
 }
 
@@ -54,30 +55,30 @@ struct Driven {
 /// The fixed relations between a rig and its ragdoll.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mapping {
-    /// Model space (file units) to character space (metres).
+    /// Transform from model space (file units) to character space (metres).
     character_from_model: Affine,
     model_from_character: Affine,
     /// The rigid part of that transform, metres, and the scale in metres per file unit.
     place_of_model: Transform,
     unit_scale: f32,
-    /// Per body: its joint, and the body's frame in the bone's rigid frame, metres.
+    /// Joint of each body, and the body's frame in the bone's rigid frame, metres.
     bones: Vec<(JointIdx, Transform)>,
     /// Joints with a body and all their ancestors, ascending, each with its parent.
     bearing: Vec<(JointIdx, Option<JointIdx>)>,
-    /// Per joint of the rig.
+    /// Body of each joint of the rig.
     driven: Vec<Option<Driven>>,
-    /// The pelvis first.
+    /// Joints that carry root motion, the pelvis first.
     heads: Vec<Head>,
     /// Nodes above the heads, ascending.
     carriers: Vec<JointIdx>,
     /// Joints that no body moves and that have no driven descendant.
     free: Vec<JointIdx>,
-    /// Per joint of the rig: true if a body moves it or one of its descendants.
+    /// For each joint of the rig, true if a body moves it or one of its descendants.
     moves_bodies: Vec<bool>,
 }
 
 impl Mapping {
-    /// From a rig, its ragdoll, and the bind pose in model space (`RigAnalysis::bind_model`).
+    /// Creates the mapping of a rig, its ragdoll, and the bind pose in model space (`RigAnalysis::bind_model`).
     ///
     /// # Panics
     /// If the definition has no body or names joints that the rig does not have, or `bind_model` does not have one
@@ -109,12 +110,12 @@ impl Mapping {
         }
     }
 
-    /// From model space (file units) to character space (metres, +Y up, facing +Z).
+    /// Transform from model space (file units) to character space (metres, +Y up, facing +Z).
     pub fn character_from_model(&self) -> Affine {
         self.character_from_model
     }
 
-    /// From model space to the world, for a character that stands at `world_from_character`.
+    /// Transform from model space to the world, for a character that stands at `world_from_character`.
     pub fn world_from_model(&self, world_from_character: Transform) -> Affine {
         Affine::from(world_from_character) * self.character_from_model
     }
@@ -212,7 +213,7 @@ impl Mapping {
     }
 }
 
-/// From model space (file units) to character space (metres).
+/// Transform from model space (file units) to character space (metres).
 pub fn character_from_model(def: &RagdollDef) -> Affine {
     let turn = def.character_from_model;
     Affine::from_scale_rotation_translation(Vec3::splat(def.unit_scale), turn.rotation, turn.translation)
@@ -230,7 +231,7 @@ fn with_scale_of(like: &LocalTransform, local_affine: &Affine) -> LocalTransform
     );
     LocalTransform {
         translation: local_affine.translation,
-        // On the hemisphere of the pose it replaces, so that keys made from it do not flip sign.
+        // Choose the sign of the pose that it replaces, so that keys made from it do not change sign.
         rotation: Rotation::from_mat3_lossy(&columns).toward(like.rotation),
         scale: s,
     }

@@ -1,4 +1,4 @@
-//! From bodies back to every joint of the rig.
+//! Converts body poses to poses of every joint of the rig.
 
 use super::{Follow, Mapping, with_scale_of};
 use sinew_anim::{LocalTransform, Rig, local_to_model};
@@ -10,9 +10,9 @@ use sinew_math::{Affine, Transform, max};
 pub struct Physical {
     base: Vec<LocalTransform>,
     base_model: Vec<Affine>,
-    /// Per body: from character space to the body as the base pose has it.
+    /// For each body, transform from character space to the body in the base pose.
     body_from_character: Vec<Transform>,
-    /// Per body: how it moved since the base pose, in model space.
+    /// Motion of each body since the base pose, in model space.
     moved: Vec<Affine>,
     model: Vec<Affine>,
 }
@@ -30,7 +30,7 @@ impl Physical {
         }));
     }
 
-    /// The pose that [`rebase`](Self::rebase) was given last.
+    /// The base pose of the last [`rebase`](Self::rebase).
     pub fn base(&self) -> &[LocalTransform] {
         &self.base
     }

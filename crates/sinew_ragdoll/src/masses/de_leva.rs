@@ -13,10 +13,10 @@
 /// Choice of body proportions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sex {
-    /// 73.0 kg at 1.741 m.
+    /// Male: 73.0 kg at 1.741 m.
     #[default]
     Male,
-    /// 61.9 kg at 1.735 m.
+    /// Female: 61.9 kg at 1.735 m.
     Female,
 }
 
@@ -45,9 +45,9 @@ const fn segment(mass: f32, center: f32, sagittal: f32, transverse: f32, longitu
 pub struct Table {
     /// Mass of the reference body, kg.
     pub reference_mass: f32,
-    /// Its height, metres.
+    /// Height of the reference body, metres.
     pub reference_height: f32,
-    /// Head and neck, share of the body's mass.
+    /// Mass of head and neck, as a share of the body's mass.
     pub head: f32,
     /// Upper, middle and lower trunk: share of the body's mass, and length in millimetres.
     pub trunk: [(f32, f32); 3],
@@ -70,7 +70,7 @@ pub struct Table {
 pub const NECK_OF_HEAD: f32 = 0.17;
 /// Share of each shoulder girdle in the upper trunk, if it is a separate body.
 pub const GIRDLE_OF_UPPER_TRUNK: f32 = 0.10;
-/// Share of the toes in the foot, where they are a body of their own.
+/// Share of the toes in the foot, if they are a body of their own.
 pub const TOES_OF_FOOT: f32 = 0.2;
 
 const MALE: Table = Table {

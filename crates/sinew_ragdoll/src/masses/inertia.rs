@@ -21,7 +21,7 @@ pub fn conditioned(principal: Vec3) -> Vec3 {
     i + Vec3::new(y + z, x + z, x + y)
 }
 
-/// The point, moved to within nine tenths of the shape if it lies farther out.
+/// Moves the point to within nine tenths of the shape if it lies farther out.
 pub fn inside(shape: &Shape, p: Vec3) -> Vec3 {
     let reach = match *shape {
         Shape::Box { half_extents } => half_extents,
@@ -34,12 +34,12 @@ pub fn inside(shape: &Shape, p: Vec3) -> Vec3 {
             Vec3::new(0.6 * radius, half_height + 0.4 * radius, 0.6 * radius)
         }
         Shape::Cylinder { half_height, radius } => Vec3::new(0.7 * radius, half_height, 0.7 * radius),
-        // The box between the base and half of the height, and its mirror image.
+        // For a cone: the box between its base and half of its height, and the mirror image of that.
         Shape::Cone { half_height, radius } => {
             Vec3::new(0.35 * radius, 0.0, 0.35 * radius) + Vec3::Y * (0.5 * half_height)
         }
         Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => Vec3::ZERO,
-        // The cube in the ball inside.
+        // For a hull: the cube in the largest ball inside.
         Shape::Hull(ref hull) => Vec3::splat(0.57 * hull.inner_radius()),
     } * 0.9;
     Vec3::new(clamp(p.x, -reach.x, reach.x), clamp(p.y, -reach.y, reach.y), clamp(p.z, -reach.z, reach.z))

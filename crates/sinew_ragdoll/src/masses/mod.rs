@@ -25,12 +25,12 @@ use inertia::{conditioned, inside, of_shape};
 use sinew_math::{Rotation, Sym3, Vec3, clamp, max, min};
 use sinew_physics::{MassProperties, Shape};
 
-/// Options by which a character is weighed.
+/// Options for the masses of a character.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MassOptions {
     /// Total mass, kg; `None`: [`default_mass`].
     pub total: Option<f32>,
-    /// Whose table.
+    /// Sex whose table is used.
     pub sex: Sex,
     /// Mass of the skin's enclosed volume, kg, for creatures; if it is unknown or does not match the shapes, the shapes
     /// decide.
@@ -68,7 +68,7 @@ pub fn distribute(bones: &Bones, fits: &[Fit], options: MassOptions) -> Vec<Mass
     (0..fits.len()).map(|body| properties(bones, &fits[body], body, masses[body], options.sex)).collect()
 }
 
-/// kg of flesh in a shape.
+/// Mass of flesh in a shape, kg.
 fn flesh(shape: &Shape) -> f32 {
     let fill = if matches!(shape, Shape::Box { .. }) { BOX_FILL } else { CAPSULE_FILL };
     FLESH * fill * shape.volume()
@@ -79,7 +79,7 @@ fn human_shares(bones: &Bones, table: &Table) -> Vec<f32> {
     let mut shares = vec![0.0; bones.list.len()];
     let carrier = |chain: &[Part], side: Side| {
         chain.iter().find_map(|&part| {
-            // The trunk has no sides; of its bones the uppermost carries arms and head.
+            // The trunk has no sides; its uppermost bone carries arms and head.
             let side = if part.is_trunk() && part != Part::Clavicle { Side::Middle } else { side };
             (0..bones.list.len()).rev().find(|&b| bones.list[b].part == part && bones.list[b].side == side)
         })
@@ -155,7 +155,7 @@ fn share_trunk(bones: &Bones, shares: &mut [f32], table: &Table, girdles: f32) {
         shares[bone] += trunk_between(table, below, above);
         below = above;
     }
-    // Shoulder girdles that are bodies of their own were weighed already: they are the upper trunk's.
+    // Shoulder girdles with bodies of their own already have their part of the upper trunk's mass.
     shares[last] -= girdles;
 }
 
@@ -173,7 +173,7 @@ fn trunk_between(table: &Table, lo: f32, hi: f32) -> f32 {
     share
 }
 
-/// Bones that no human has (tails, ears, capes, fingers): a light share each.
+/// Bones that no human has (tails, ears, capes, fingers): a small share each.
 fn share_others(bones: &Bones, shares: &mut [f32]) {
     for (bone, share) in bones.list.iter().zip(shares) {
         if matches!(bone.part, Part::Tail | Part::Limb) {
@@ -215,7 +215,7 @@ fn properties(bones: &Bones, fit: &Fit, body: usize, mass: f32, sex: Sex) -> Mas
         mass * radius * radius
     });
     // Radii about the two cross axes differ by a few per cent only, and the bind pose's rotation of a limb about its
-    // axis is unknown, so both take the mean. Thick cartoon limbs get at least half their shape's inertia about the
+    // axis is unknown, so both get the mean. Thick cartoon limbs get at least half their shape's inertia about the
     // axis.
     let across = 0.5 * (sagittal + transverse);
     let principal = conditioned(Vec3::new(across, max(longitudinal, 0.5 * shape_inertia.y), across));

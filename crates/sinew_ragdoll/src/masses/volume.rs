@@ -42,7 +42,7 @@ fn along(triangles: &[[Vec3; 3]], low: Vec3, high: Vec3, axis: usize) -> Option<
     }
     let mut lines: Vec<Crossings> = vec![Vec::new(); LINES * LINES];
     for corners in triangles {
-        // In grid cells, so that lines are at integer coordinates.
+        // Convert to grid cells, so that lines are at integer coordinates.
         let flat = corners.map(|corner| {
             [
                 (corner[across] - low[across]) / step[0] - OFF_MIDDLE[0],
@@ -104,7 +104,7 @@ fn inside(line: &mut Crossings) -> Option<f32> {
     (depth == 0).then_some(length)
 }
 
-/// Words of machines.
+/// Words in names of machines.
 const MACHINES: [&str; 14] = [
     "tank",
     "robot",
@@ -122,14 +122,14 @@ const MACHINES: [&str; 14] = [
     "drone",
 ];
 
-/// Matter of a body, by the words of its joints' names: kg/m³ and a word.
+/// Density of a body's matter, kg/m³, and a word for it, from the words of its joints' names.
 pub fn density(rig: &Rig) -> (f32, &'static str) {
     let is_machine =
         rig.joints.iter().any(|joint| words(&joint.name).any(|word| MACHINES.contains(&word.as_str())));
     if is_machine { (MACHINE, "a machine") } else { (FLESH, "flesh") }
 }
 
-/// Words of a name in lower case: `TankTrack22.L` is `tank`, `track`, `l`.
+/// Splits a name into words in lower case: `TankTrack22.L` is `tank`, `track`, `l`.
 fn words(name: &str) -> impl Iterator<Item = String> {
     let mut words: Vec<String> = Vec::new();
     let mut before = ' ';

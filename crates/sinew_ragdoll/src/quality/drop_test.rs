@@ -7,9 +7,9 @@ use crate::ragdoll::{BodySettings, BodyState, Ragdoll};
 use sinew_math::{Rotation, Transform, Vec3, max, min};
 use sinew_physics::{BodyDef, BodyId, BodyKind, Shape, ShapeDef, Velocity, World, WorldDef};
 
-/// Height of a drop: from the lowest point to the floor, metres.
+/// Distance from the lowest point to the floor at the start of a drop, metres.
 const HEIGHT: f32 = 1.0;
-/// Longest that a drop is watched, seconds.
+/// Longest duration of a drop, seconds.
 const DROP_SECONDS: f32 = 10.0;
 /// Speed and duration of the wall hit, m/s and seconds.
 const WALL_SPEED: f32 = 15.0;
@@ -18,17 +18,17 @@ const WALL_SECONDS: f32 = 3.0;
 /// Result of [`drop_test`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropReport {
-    /// The worst value of each figure over the 8 drops; a time is `None` if any drop never reached it.
+    /// The worst value of each figure over the 8 drops; a time is `None` if the event is missing in any drop.
     pub drop: FallQuality,
-    /// Each drop.
+    /// Figures of each drop.
     pub drops: Vec<FallQuality>,
-    /// The wall hit.
+    /// Figures of the wall hit.
     pub wall: FallQuality,
     /// Poses of the bodies in each drop.
     pub falls: Vec<Fallen>,
     /// Verdict on the ragdoll.
     pub verdict: Verdict,
-    /// Reasons, one sentence each.
+    /// Reasons for the verdict, one sentence each.
     pub reasons: Vec<String>,
 }
 
@@ -46,7 +46,7 @@ pub struct Fallen {
 
 /// Time between two poses of a [`Fallen`], in steps of 1/60 s.
 const STEPS_A_POSE: u32 = 15;
-/// A body nearer to the floor than this is not in the air, metres.
+/// Distance from the floor below which a body is not in the air, metres.
 const IN_THE_AIR: f32 = 0.01;
 
 impl Fallen {
@@ -124,7 +124,7 @@ fn wall_hit(def: &RagdollDef) -> FallQuality {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
     let half_extents = Vec3::new(4.0, 3.0, 0.25);
-    // Half a metre in front of the farthest point, so that long creatures do not start inside the wall.
+    // Start half a metre in front of the farthest point, so that long creatures do not start inside the wall.
     let pivot = def.bodies[0].character_from_body.translation;
     let front = def
         .bodies
@@ -141,7 +141,7 @@ fn wall_hit(def: &RagdollDef) -> FallQuality {
     measure(&mut world, def, &ragdoll, WALL_SECONDS)
 }
 
-/// The ragdoll in its bind pose, turned and moving as one, [`HEIGHT`] above the floor.
+/// Adds the ragdoll in its bind pose, rotated and moving as one rigid piece, [`HEIGHT`] above the floor.
 fn released(world: &mut World, def: &RagdollDef, turn: Rotation, spin: Vec3, speed: Vec3) -> Ragdoll {
     let pivot = def.bodies[0].character_from_body.translation;
     let turned = Transform::new(-(turn * pivot), turn);
@@ -174,7 +174,7 @@ pub(super) fn carried(
         .collect()
 }
 
-/// Steps until it sleeps, or the time is over.
+/// Steps until the ragdoll sleeps, or the time is over.
 pub(super) fn measure(world: &mut World, def: &RagdollDef, ragdoll: &Ragdoll, seconds: f32) -> FallQuality {
     measure_seen(world, def, ragdoll, seconds, |_, _| ())
 }
@@ -198,7 +198,7 @@ fn measure_seen(
         see(step, world);
         let all = ragdoll.bodies.iter().all(|&body| !world.is_awake(body));
         asleep = if all { asleep + 1 } else { 0 };
-        // The figures at rest are of the first half second of it.
+        // The figures at rest are those of the first half second of rest.
         if asleep > steps_of_rest {
             break;
         }
@@ -206,7 +206,7 @@ fn measure_seen(
     meter.quality()
 }
 
-/// The worse of two, figure by figure.
+/// The worse value of each figure.
 pub(super) fn worse(a: FallQuality, b: FallQuality) -> FallQuality {
     let later = |a: Option<f32>, b: Option<f32>| Some(max(a?, b?));
     FallQuality {

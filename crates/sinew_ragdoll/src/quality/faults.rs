@@ -14,7 +14,7 @@ const MANY_JOINTS: usize = 8;
 /// Number of joints with skin up to which a single body is correct.
 const FEW_JOINTS: usize = 2;
 
-/// A fault, and the best verdict it allows.
+/// A fault, and the best verdict that it allows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
     /// The best verdict on a ragdoll that has it.
@@ -61,7 +61,7 @@ fn one_body(rig: &Rig, def: &RagdollDef) -> Option<Fault> {
     Some(Fault::new(at_most, reason))
 }
 
-/// Limb roots of a human that lie on each other's side, or both on one.
+/// Finding if limb roots of a human lie on each other's side, or both on one side.
 fn sides(def: &RagdollDef) -> Option<Fault> {
     let place = |role: &str| {
         let body = def.bodies.iter().position(|body| body.role == role)?;
@@ -95,7 +95,7 @@ fn sides(def: &RagdollDef) -> Option<Fault> {
     found.into_iter().next()
 }
 
-/// Faults of a baked character: out of the world, never still, still upright, drawn at another size while it gets up.
+/// Faults of a baked character: out of the world, never still, still upright, or drawn at another size during a get-up.
 ///
 /// # Panics
 /// If the bake does not belong to the input.
@@ -105,8 +105,8 @@ pub fn faults_of_bake(input: &BakeInput<'_>, baked: &Baked) -> Vec<Fault> {
     fault.into_iter().chain(changes_size(input, baked)).collect()
 }
 
-/// A character drawn at another size while it gets up than in the clip before: the clip scales its bones and the get-up
-/// does not.
+/// Fault if a character is drawn at another size during a get-up than in the clip before: the clip scales its bones and
+/// the get-up does not.
 fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let first = &input.character.ragdoll.bodies[0];
     let mut model = Vec::new();
@@ -200,7 +200,7 @@ pub fn toppled<'a>(input: &BakeInput<'a>, baked: &Baked) -> Option<BakeInput<'a>
     })
 }
 
-/// A body taller than wide whose highest part at rest is about as high as at release.
+/// The ragdoll has a body taller than wide whose highest part at rest is about as high as at release.
 fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let def = &input.character.ragdoll;
     let floor = input.world_from_character.translation.y;
@@ -217,7 +217,7 @@ fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let top = (0..start.len()).reduce(|a, b| if start[b].y > start[a].y { b } else { a })?;
     let [begins, ends] = [&start, &end].map(|places| places[top].y - floor);
     let flat = |a: Vec3, b: Vec3| Vec3::new(a.x - b.x, 0.0, a.z - b.z).length();
-    // Measured by its footprint: outstretched arms do not count. If no part is low, by the whole body.
+    // Measure by the footprint, so that outstretched arms do not count. If no part is low, use the whole body.
     let is_low = |at: &&Vec3| at.y - floor < 0.5 * begins;
     let low: Vec<Vec3> = end.iter().filter(is_low).copied().collect();
     let stance = if low.is_empty() { &end } else { &low };

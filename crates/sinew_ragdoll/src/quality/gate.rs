@@ -9,7 +9,7 @@ use sinew_math::{Random, Rotation, Transform, Vec3, min};
 use sinew_physics::{BodyDef, BodyKind, Serial, Shape, ShapeDef, TaskRunner, World, WorldDef};
 use std::sync::{Mutex, PoisonError};
 
-/// Longest that a fall is watched, seconds.
+/// Longest duration of a fall, seconds.
 const SECONDS: f32 = 10.0;
 /// Share of a joint's range that a random pose uses.
 const POSE_SHARE: f32 = 0.6;
@@ -19,11 +19,11 @@ const TRIES: u32 = 16;
 /// Result of [`gate`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct GateReport {
-    /// Falls.
+    /// Number of falls.
     pub spawns: usize,
-    /// Falls by verdict: good, usable, bad.
+    /// Number of falls by verdict: good, usable, bad.
     pub verdicts: [usize; 3],
-    /// The worst of all, figure by figure.
+    /// The worst value of each figure.
     pub worst: FallQuality,
     /// Number of the first fall with the worst verdict, to replay it.
     pub worst_spawn: u64,
@@ -43,7 +43,7 @@ pub struct Miss {
     pub spawn: u64,
     /// Bar that is missed.
     pub bar: Bar,
-    /// The figure.
+    /// Value of the figure.
     pub value: f32,
 }
 
@@ -59,7 +59,7 @@ pub enum Bar {
 }
 
 impl Bar {
-    /// All falls.
+    /// All bars.
     pub const ALL: [Self; 3] = [Self::Finite, Self::EnergyGain, Self::JointGap];
 
     /// The figure's key in reports.
@@ -106,7 +106,7 @@ impl Default for GateReport {
 }
 
 impl GateReport {
-    /// Merges both; `later` has the higher numbers.
+    /// Merges two reports; `later` has the higher numbers.
     pub fn and(mut self, later: Self) -> Self {
         if later.spawns == 0 {
             return self;
@@ -160,7 +160,7 @@ pub fn gate_on(def: &RagdollDef, spawns: core::ops::Range<u64>, runner: &dyn Tas
     let queue = Mutex::new(spawns);
     let fallen = Mutex::new(Vec::new());
     runner.run(count, &|| {
-        // A free thread takes the next fall: some last three times as long as others.
+        // A free thread starts the next fall: some last three times as long as others.
         loop {
             let next = queue.lock().unwrap_or_else(PoisonError::into_inner).next();
             let Some(spawn) = next else { break };
@@ -169,12 +169,12 @@ pub fn gate_on(def: &RagdollDef, spawns: core::ops::Range<u64>, runner: &dyn Tas
         }
     });
     let mut fallen = fallen.into_inner().unwrap_or_else(PoisonError::into_inner);
-    // DETERMINISM: which fall ends first depends on the threads.
+    // DETERMINISM: the order in which falls end depends on the threads.
     fallen.sort_unstable_by_key(|&(spawn, _)| spawn);
     fallen.into_iter().fold(GateReport::default(), |sum, (_, report)| sum.and(report))
 }
 
-/// One random fall: number `seed` of a [`gate`].
+/// Simulates one random fall: number `seed` of a [`gate`].
 pub fn random_fall(def: &RagdollDef, seed: u64) -> FallQuality {
     let mut random = Random::new(seed);
     let mut world = World::new(WorldDef::default());
@@ -230,7 +230,7 @@ fn posed(def: &RagdollDef, random: &mut Random) -> Vec<BodyState> {
         let turned = Transform::new(Vec3::ZERO, turn) * at;
         min(lowest, body.shape.aabb(&turned).min.y)
     });
-    // Above the highest terrain.
+    // Start above the highest terrain.
     let height = random.range(1.3, 2.5) - lowest;
     let world_from_character = Transform::new(Vec3::Y * height, turn);
     let mut states = carried(def, world_from_character, spin, speed);
@@ -258,7 +258,7 @@ pub fn random_pose(def: &RagdollDef, random: &mut Random) -> Vec<Transform> {
     pose
 }
 
-/// Body poses in character space with joints turned at random, by a share of their ranges.
+/// Body poses in character space with joints at random angles, within a share of their ranges.
 fn turned_joints(def: &RagdollDef, random: &mut Random, share: f32) -> Vec<Transform> {
     let mut pose: Vec<_> = def.bodies.iter().map(|body| body.character_from_body).collect();
     for joint in &def.joints {
@@ -277,7 +277,7 @@ fn overlaps(def: &RagdollDef, pose: &[Transform]) -> bool {
         pose.iter().map(|&world_from_body| BodyState { world_from_body, ..BodyState::default() }).collect();
     let mut world = World::new(WorldDef::default());
     let ragdoll = Ragdoll::spawn(&mut world, def, &states, &BodySettings::default());
-    // Those that overlap at the start are not among the colliding ones.
+    // Pairs that overlap at the start are not among the colliding ones.
     ragdoll.colliding.len() < colliding_pairs(def).len()
 }
 

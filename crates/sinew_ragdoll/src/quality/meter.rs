@@ -7,7 +7,7 @@ use crate::ragdoll::Ragdoll;
 use sinew_math::max;
 use sinew_physics::{BodyId, Energy, World};
 
-/// All bodies below this are calm, m/s.
+/// Speed below which a body is calm, m/s.
 pub(super) const CALM: f32 = 0.3;
 
 /// Collects the figures of [`FallQuality`] over the steps in which a character is limp.
@@ -16,14 +16,14 @@ pub struct QualityMeter {
     quality: FallQuality,
     total_mass: f32,
     before: Energy,
-    /// One entry per joint and step.
+    /// Gap of each joint in each step.
     gaps: Vec<f32>,
     overshoots: Vec<f32>,
     calm_steps: u32,
     calm_since: Option<f32>,
     /// Deepest penetration of the bodies in the world in the last step, metres.
     penetration: f32,
-    /// Nothing has moved since they slept then.
+    /// True if all bodies slept then and none has moved since.
     asleep: bool,
 }
 
@@ -53,7 +53,7 @@ impl QualityMeter {
         self.asleep = false;
     }
 
-    /// A push did this much work, J.
+    /// Adds the work of a push, J.
     pub fn pushed(&mut self, work: f32) {
         self.quality.work_in_j += work;
     }
@@ -63,7 +63,7 @@ impl QualityMeter {
         self.quality.up_s.get_or_insert(world.time() as f32);
     }
 
-    /// Before a step, after all pushes.
+    /// Call before a step, after all pushes.
     pub fn before_step(&mut self, world: &World) {
         self.before = world.energy();
     }
@@ -74,12 +74,12 @@ impl QualityMeter {
         self.measure_rest(world, ragdoll, world.time() as f32);
     }
 
-    /// After a step of bodies that were driven, and so are not at rest: all but that is measured.
+    /// Call after a step of driven bodies, which are not at rest: measures everything except rest.
     pub fn after_driven_step(&mut self, world: &World, ragdoll: &Ragdoll) {
         self.measure_motion(world, ragdoll);
     }
 
-    /// Joints, overlaps and energy. Sleeping bodies keep the values from when they fell asleep.
+    /// Measures joints, overlaps and energy. Sleeping bodies keep the values from when they fell asleep.
     fn measure_motion(&mut self, world: &World, ragdoll: &Ragdoll) {
         let slept = core::mem::replace(&mut self.asleep, all_sleep(world, ragdoll));
         if slept && self.asleep {
@@ -105,7 +105,7 @@ impl QualityMeter {
 
     fn measure_energy(&mut self, world: &World) {
         let after = world.energy();
-        // Difference per kind of energy: the sums are large and would lose digits.
+        // Compute the difference for each kind of energy: the sums are large and would lose digits.
         let work = world.work().total();
         self.quality.work_in_j += work;
         let rise = (after.kinetic - self.before.kinetic) + (after.potential - self.before.potential) - work;
@@ -154,7 +154,7 @@ fn all_sleep(world: &World, ragdoll: &Ragdoll) -> bool {
     ragdoll.bodies.iter().all(|&body| !world.is_awake(body))
 }
 
-/// 99th percentile (nearest rank) and largest; 0 of nothing.
+/// 99th percentile (nearest rank) and largest value; 0 without samples.
 fn p99_and_max(samples: &mut [f32]) -> (f32, f32) {
     samples.sort_unstable_by(f32::total_cmp);
     let Some(&largest) = samples.last() else { return (0.0, 0.0) };

@@ -61,7 +61,7 @@ pub struct FallQuality {
     pub settled_omega_max: Option<f32>,
     /// First time that all bodies slept.
     pub asleep_s: Option<f32>,
-    /// From the first moment when every body was below 0.3 m/s to sleep, seconds.
+    /// Time from the first moment when every body was below 0.3 m/s to sleep, seconds.
     pub calm_to_asleep_s: Option<f32>,
     /// Number of bodies with a non-finite state, counted once per step.
     pub nan: u32,

@@ -1,4 +1,4 @@
-//! Doubts about the size and the mass that were guessed.
+//! Doubts about a guessed size or mass.
 
 use super::{FallQuality, Verdict};
 use crate::def::RagdollDef;
@@ -15,11 +15,11 @@ const ADULT: core::ops::RangeInclusive<f32> = 0.9..=2.6;
 /// and, far more often, files drawn in another unit: a wolf of 2.5 t, a wasp of 1.6 t.
 const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=1000.0;
 
-/// Doubt about an estimated mass: hardly any body has it. If the file's unit is guessed, the unit is usually wrong, and
-/// a verdict on the ragdoll means little.
+/// Doubt about an estimated mass that hardly any body has. If the file's unit is guessed, the unit is usually wrong,
+/// and a verdict on the ragdoll means little.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
-    /// Why, a sentence.
+    /// Reason, a sentence.
     pub reason: String,
     /// Scale at which the heaviest of its kind would have this mass, at most 1.
     size: f32,
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_too_heavy_is_judged_at_a_size_that_there_is() {
+    fn heavy_ragdoll_is_judged_at_a_plausible_size() {
         let calm = FallQuality {
             asleep_s: Some(6.2),
             calm_to_asleep_s: Some(0.7),

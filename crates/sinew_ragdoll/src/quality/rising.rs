@@ -1,4 +1,4 @@
-//! Quality of getting up: feet that slide, and poses that jump where bodies hand over to clips.
+//! Quality of getting up: sliding feet, and jumps of the pose where bodies hand over to clips.
 
 use super::{Fault, Verdict};
 use crate::bake::{BakeInput, Baked, Frame};
@@ -36,7 +36,7 @@ impl RisingQuality {
         let mut faults = Vec::new();
         let help = "--clips FILE brings a clip to get up by that is made for this body";
         let mut hold = |figure: Option<f32>, bar: f32, what: &str| {
-            // NaN misses the bar.
+            // NaN does not meet the bar.
             if let Some(figure) = figure.filter(|figure| *figure > bar || figure.is_nan()) {
                 let cm = 100.0 * figure;
                 let reason =

@@ -1,4 +1,4 @@
-//! From figures to a verdict, by the limits of the specification (section 4).
+//! Derives a verdict from figures, by the limits of the specification (section 4).
 
 use super::FallQuality;
 use super::drop_test::worse;
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_bake_is_held_to_the_gates_of_a_drop() {
+    fn bake_has_the_limits_of_a_drop() {
         assert_eq!(judge_bake(&FallQuality::default()), (Verdict::Good, vec![]));
         let beyond = FallQuality { limit_overshoot_max_deg: 22.0, ..FallQuality::default() };
         let said = vec!["limit overshoot, degrees: 22.0000, limit 4".to_owned()];

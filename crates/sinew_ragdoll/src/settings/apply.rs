@@ -49,7 +49,7 @@ pub(super) fn build(
     Ok((def, report))
 }
 
-/// The settings by body.
+/// The settings of each body.
 struct Wishes<'a> {
     /// Role and bone of each body.
     names: &'a [[String; 2]],
@@ -75,7 +75,7 @@ impl<'a> Wishes<'a> {
         Ok(wishes)
     }
 
-    /// Bodies of that name.
+    /// Bodies with that name.
     fn named(&self, name: &str, place: &str) -> Result<Vec<usize>, SettingsError> {
         let is = |body: &usize| named(name, &self.names[*body][0], &self.names[*body][1]);
         let found: Vec<usize> = (0..self.names.len()).filter(is).collect();
@@ -163,7 +163,7 @@ impl<'a> Wishes<'a> {
     }
 }
 
-/// The kind of joint with the ranges that are wanted.
+/// Joint kind with the requested ranges.
 fn kind(kind: JointKind, wish: &BoneSettings) -> JointKind {
     const SHUT: Range = Range::new(0.0, 0.0);
     const OPEN: Range = Range::new(-PI, PI);

@@ -7,7 +7,7 @@ use sinew_anim::skinning::skin_vertices;
 use sinew_anim::{JointIdx, Rig};
 use sinew_math::{Rotation, Transform, Vec3, max, min};
 
-/// The analysis with the axis and the unit that are wanted.
+/// Analysis with the requested axis and unit.
 pub(super) fn placed(
     rig: &Rig,
     mut analysis: RigAnalysis,
@@ -29,7 +29,7 @@ pub(super) fn placed(
     }
 }
 
-/// The analysis with bodies for those bones that shall have one.
+/// Analysis with bodies for the requested bones.
 pub(super) fn settled(
     rig: &Rig,
     mut analysis: RigAnalysis,
@@ -50,7 +50,7 @@ pub(super) fn settled(
 fn stand_along(rig: &Rig, analysis: &mut RigAnalysis, up: Vec3) {
     let before = analysis.character_from_model.rotation;
     let seen = before * up;
-    // About its own left axis: the sides are not swapped.
+    // Turn about the character's left axis, so that the sides are not swapped.
     let turn = if seen.y < -0.9 {
         Rotation::from_axis_angle(Vec3::X, core::f32::consts::PI)
     } else {
@@ -99,7 +99,7 @@ fn drop(rig: &Rig, analysis: &mut RigAnalysis, name: &str, place: &str) -> Resul
     if found.is_empty() {
         return Err(unknown(rig, analysis, name, place));
     }
-    // From the end, so that indices stay valid.
+    // Start from the end, so that indices stay valid.
     found.reverse();
     for index in found {
         let Some(parent) = analysis.kept[index].parent else {
@@ -203,7 +203,7 @@ fn unknown(rig: &Rig, analysis: &RigAnalysis, name: &str, place: &str) -> Settin
     no_bone(name, &known, place)
 }
 
-/// No bone has that name; `known` are the existing ones.
+/// Error for a name that no bone has; `known` are the existing names.
 pub(super) fn no_bone(name: &str, known: &[String], place: &str) -> SettingsError {
     let instead = instead(name, known.iter().map(String::as_str));
     SettingsError::at(place, format!("no bone or role `{}`; {instead}", name.escape_debug()))

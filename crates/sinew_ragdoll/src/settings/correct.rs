@@ -46,14 +46,14 @@ pub(super) fn corrected(
                 return SettingsError::at("ignore", error.to_string());
             }
         };
-        let said = settings.bones.iter().rev().find(|(_, bone)| bone.role == Some(role));
-        let place = said.map_or_else(|| "bones".to_owned(), |(name, _)| place_of_role(name));
+        let stated = settings.bones.iter().rev().find(|(_, bone)| bone.role == Some(role));
+        let place = stated.map_or_else(|| "bones".to_owned(), |(name, _)| place_of_role(name));
         SettingsError::at(place, error.to_string())
     })?;
     placed(seen, analyzed, settings)
 }
 
-/// The joints of that name, at least one.
+/// Joints with that name, at least one.
 fn joints_named(rig: &Rig, name: &str, place: &str) -> Result<Vec<JointIdx>, SettingsError> {
     let names: Vec<String> = (0..rig.joints.len()).map(|joint| joint_name(rig, joint)).collect();
     let found: Vec<JointIdx> = (0..names.len()).filter(|&joint| names[joint] == name).collect();

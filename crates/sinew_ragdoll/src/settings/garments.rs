@@ -11,12 +11,12 @@ use sinew_math::{Affine, Rotation, Vec3};
 /// Source of the garments that a character wears.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum GarmentSource {
-    /// None. Default: files do not declare garments.
+    /// No garments. Default, because files do not declare garments.
     #[default]
     None,
     /// Garments inferred from joint names ([`guess_garments`]).
     Names,
-    /// These.
+    /// The listed garments.
     Listed(Vec<GarmentSettings>),
 }
 
@@ -26,22 +26,22 @@ pub struct GarmentSettings {
     /// Names of the first joints of its chains, side by side. A name that ends in `*` stands for all joints with that
     /// prefix that do not hang on another such joint, in spatial order.
     pub chains: Vec<String>,
-    /// Mesh that it is, instead of chains.
+    /// Mesh of the garment, if it has no chains.
     pub mesh: Option<MeshSettings>,
     /// True: the last chain is sewn to the first. `None`: sewn if they form a ring.
     pub closed: Option<bool>,
-    /// Name and cloth; its columns do not matter.
+    /// Name and cloth of the garment; its columns are ignored.
     pub cloth: Garment,
 }
 
 /// Mesh of the character that is a garment, as settings describe it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshSettings {
-    /// Name of its node, its own, or that of a material of it.
+    /// Name of the mesh, of its node, or of one of its materials.
     pub name: String,
     /// Depth below its highest point down to which bodies hold it, metres, ≥ 0; `None`: a tenth of its height.
     pub held: Option<f32>,
-    /// Most particles, 4 at least: finer meshes are reduced. Default [`MOST_PARTICLES`].
+    /// Largest number of particles, at least 4: finer meshes are reduced. Default [`MOST_PARTICLES`].
     pub most_particles: usize,
 }
 
@@ -82,8 +82,8 @@ impl GarmentSource {
         // New joints have no bind pose yet, and none of them moves the remaining meshes.
         for (index, garment) in listed.iter().enumerate() {
             let Some(mesh) = &garment.mesh else { continue };
-            let said = |error: SheetError| mesh.error(rig, index, &error);
-            let part = MeshPart::named(rig, &mesh.name).map_err(said)?;
+            let located = |error: SheetError| mesh.error(rig, index, &error);
+            let part = MeshPart::named(rig, &mesh.name).map_err(located)?;
             let options = SheetOptions {
                 bind_model: &analysis.bind_model,
                 metres_from_model: metres_from_model(analysis),

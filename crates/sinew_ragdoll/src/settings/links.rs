@@ -27,7 +27,7 @@ impl Settings {
     /// with the setting's key.
     pub fn springs_of(&self, source: SpringSource, rig: &Rig, up: Vec3) -> Result<Springs, SettingsError> {
         let mut springs = source.springs(rig, up);
-        // Without springs there are no links.
+        // There are no links without springs.
         let listed = self.spring_links.as_ref().filter(|_| source != SpringSource::None);
         let Some(listed) = listed else { return Ok(springs) };
         let links = listed.iter().enumerate().map(|(index, links)| links.on(rig, &springs, index));
@@ -56,7 +56,7 @@ impl LinkSettings {
         }
         let closed = self.closed.unwrap_or_else(|| is_ring(rig, &strands));
         let mut links = self.link.across(&strands, closed);
-        // The end of a strand of unknown length.
+        // The end of such a strand has an unknown length.
         links.retain(|link| link.joints.iter().all(|&joint| springs.swings(joint)));
         Ok(links)
     }

@@ -39,7 +39,7 @@ use sinew_anim::roles::{RigAnalysis, Role};
 use sinew_anim::{Rig, Springs, Take, guess_springs};
 use sinew_math::{Range, Vec3};
 
-/// Changes that are wanted to the build. The default changes nothing.
+/// Requested changes to the build. The default changes nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     /// Kind of all shapes; `None`: the option's.
@@ -80,7 +80,7 @@ pub enum SpringSource {
     File,
     /// Springs that the file declares, else springs inferred from joint names ([`guess_springs`]).
     Names,
-    /// None.
+    /// No springs.
     None,
 }
 
@@ -98,13 +98,13 @@ impl SpringSource {
 /// Length of the file's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Unit {
-    /// Metres.
+    /// Length of the unit, metres.
     Scale(f32),
     /// Scales the character to this height in its bind pose, metres.
     Height(f32),
 }
 
-/// Changes that are wanted to the build of one bone.
+/// Requested changes to the build of one bone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BoneSettings {
     /// Body part of the bone. Only for a bone selected by joint name, because this changes roles.
@@ -115,7 +115,7 @@ pub struct BoneSettings {
     pub shape: Option<ShapeWish>,
     /// Factor on the fitted shape.
     pub scale: Option<f32>,
-    /// kg. If the total mass is also given, the other bodies share the rest.
+    /// Mass, kg. If the total mass is also given, the other bodies share the rest.
     pub mass: Option<f32>,
     /// Kind of its joint to the parent.
     pub joint: Option<JointWish>,
@@ -125,7 +125,7 @@ pub struct BoneSettings {
     pub swing_z: Option<Range>,
     /// Twist, or the angle of a hinge, radians.
     pub twist: Option<Range>,
-    /// N·m.
+    /// Friction torque, N·m.
     pub friction_torque: Option<f32>,
 }
 
@@ -134,7 +134,7 @@ pub struct BoneSettings {
 pub enum BodyWish {
     /// The bone gets a body, even if the build would merge it into another.
     Keep,
-    /// It moves with its parent's body.
+    /// The bone moves with its parent's body.
     Drop,
 }
 
@@ -152,17 +152,17 @@ pub enum ShapeWish {
 /// Kind of one joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointWish {
-    /// Swings and twists.
+    /// The joint swings and twists.
     Ball,
-    /// Rotates about one axis.
+    /// The joint rotates about one axis.
     Hinge,
-    /// Swings.
+    /// The joint swings.
     Universal,
-    /// Does not rotate.
+    /// The joint does not rotate.
     Fixed,
 }
 
-/// Why settings cannot be followed.
+/// Reason why settings cannot be applied.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {
     /// The rig cannot be built.

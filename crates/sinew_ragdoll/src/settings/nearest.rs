@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn three_are_told_the_nearest_first() {
+    fn three_nearest_names_are_listed() {
         let clips = ["Block", "Idle", "Cheer", "Walking_A", "Rig|Walk", "Hit_A"];
         assert_eq!(nearest_three("wlak", clips.into_iter())[..2], ["Walking_A", "Rig|Walk"]);
         let known = ["mixamorig:Spine", "mixamorig:Hips", "Hip", "Tips", "mixamorig:Head", "Hip"];

@@ -46,7 +46,7 @@ pub enum FlawKind {
     Resized,
     /// The skin lies in the floor, or above it.
     OffFloor,
-    /// It lies still without touching anything.
+    /// The character lies still without touching anything.
     Airborne,
 }
 
@@ -61,7 +61,7 @@ pub struct Flaw {
     pub remedy: String,
     /// Bodies to look at, by index in the definition.
     pub bodies: Vec<usize>,
-    /// Their bones.
+    /// Bones of these bodies.
     pub bones: Vec<String>,
     /// The best verdict on a ragdoll that has it.
     pub at_most: Verdict,
@@ -79,18 +79,18 @@ impl SkinQuality {
     /// # Panics
     /// If the figures are of a definition with more bodies.
     pub fn flaws(&self, def: &RagdollDef) -> Vec<Flaw> {
-        let who = Who(def);
+        let names = BodyNames(def);
         [
-            self.uncovered(&who),
-            self.torn(&who),
-            self.lopsided(&who),
-            self.apart(&who),
-            self.resized(&who),
-            self.off_floor(&who),
-            self.stands_off(&who, Stage::Standing),
-            self.stands_off(&who, Stage::Rising),
-            self.stands_off(&who, Stage::Up),
-            self.airborne(&who),
+            self.uncovered(&names),
+            self.torn(&names),
+            self.lopsided(&names),
+            self.apart(&names),
+            self.resized(&names),
+            self.off_floor(&names),
+            self.stands_off(&names, Stage::Standing),
+            self.stands_off(&names, Stage::Rising),
+            self.stands_off(&names, Stage::Up),
+            self.airborne(&names),
         ]
         .into_iter()
         .flatten()
@@ -102,27 +102,27 @@ impl SkinQuality {
         flaws.iter().map(|flaw| flaw.at_most).fold(of_bodies, Verdict::min)
     }
 
-    fn uncovered(&self, who: &Who<'_>) -> Option<Flaw> {
+    fn uncovered(&self, names: &BodyNames<'_>) -> Option<Flaw> {
         // Comparisons with NaN are false: a poisoned figure is a flaw.
         if self.covered_share >= COVERED {
             return None;
         }
         let [share, asked] = [self.covered_share, COVERED].map(|share| 100.0 * share);
         let near = 100.0 * self.tolerance();
-        let mut said = format!(
+        let mut flaw_text = format!(
             "{share:.1} % of the skin's vertices are within {near:.0} cm of their body, {asked:.0} % are asked"
         );
         if let Some(body) = self.worst.uncovered {
-            said += &format!("; most of the others hang on {}", who.name(body));
+            flaw_text += &format!("; most of the others hang on {}", names.name(body));
         }
         if self.worst.adrift > 0 {
-            said += &format!("; {:.1} % hang on no body", self.worst.adrift as f32 / 10.0);
+            flaw_text += &format!("; {:.1} % hang on no body", self.worst.adrift as f32 / 10.0);
         }
-        let remedy = who.body_or_shape(self.worst.uncovered, self.worst.uncovered_joint.as_deref());
-        Some(who.flaw(FlawKind::Uncovered, said, remedy, self.worst.uncovered.as_slice()))
+        let remedy = names.body_or_shape(self.worst.uncovered, self.worst.uncovered_joint.as_deref());
+        Some(names.flaw(FlawKind::Uncovered, flaw_text, remedy, self.worst.uncovered.as_slice()))
     }
 
-    fn torn(&self, who: &Who<'_>) -> Option<Flaw> {
+    fn torn(&self, names: &BodyNames<'_>) -> Option<Flaw> {
         let clips = [self.clips_stretch_p999, self.clips_stretch_max];
         let bar = |k: usize| max(STRETCH[k], clips[k].map_or(0.0, |clip| STRETCH_OF_CLIPS[k] * clip));
         if self.edge_stretch_p999 <= bar(0) && self.edge_stretch_max <= bar(1) {
@@ -135,7 +135,7 @@ impl SkinQuality {
             Phase::Drop | Phase::Fall => "falling",
             Phase::Clip => "getting up",
         };
-        let mut said = format!(
+        let mut flaw_text = format!(
             "{what} stretches one side of its triangles in a thousand by more than {:.1} cm, {:.1} cm at worst; up to {:.1} and {:.1} cm are let pass",
             cm(self.edge_stretch_p999),
             cm(self.edge_stretch_max),
@@ -145,62 +145,66 @@ impl SkinQuality {
         let remedy =
             "--body BONE gives what stays behind a body, --role ROLE=BONE says what it is".to_owned();
         let Some((a, b)) = self.worst.torn else {
-            return Some(Flaw { at_most, ..who.flaw(FlawKind::Torn, said, remedy, &[]) });
+            return Some(Flaw { at_most, ..names.flaw(FlawKind::Torn, flaw_text, remedy, &[]) });
         };
-        let (a_name, b_name) = (who.name(a), who.name(b));
-        said += &if a == b {
+        let (a_name, b_name) = (names.name(a), names.name(b));
+        flaw_text += &if a == b {
             format!("; worst on {a_name}")
         } else {
             format!("; worst between {a_name} and {b_name}")
         };
         let bodies = [a, b];
-        let flaw = who.flaw(FlawKind::Torn, said, remedy, if a == b { &bodies[..1] } else { &bodies });
+        let flaw = names.flaw(FlawKind::Torn, flaw_text, remedy, if a == b { &bodies[..1] } else { &bodies });
         Some(Flaw { at_most, ..flaw })
     }
 
-    fn lopsided(&self, who: &Who<'_>) -> Option<Flaw> {
+    fn lopsided(&self, names: &BodyNames<'_>) -> Option<Flaw> {
         let bar = ASYMMETRY * self.size;
         if self.symmetry_error_m <= bar {
             return None;
         }
         let cm = 100.0 * self.symmetry_error_m;
-        let of = self.worst.unlike.map_or(String::new(), |body| format!("{} and ", who.name(body)));
-        let said = format!("{of}its mirror image differ by {cm:.1} cm, more than {:.1} cm", 100.0 * bar);
+        let of = self.worst.unlike.map_or(String::new(), |body| format!("{} and ", names.name(body)));
+        let flaw_text = format!("{of}its mirror image differ by {cm:.1} cm, more than {:.1} cm", 100.0 * bar);
         let remedy =
             "a role without its side in the settings (`bones`) sets shape, scale or mass of both".to_owned();
-        Some(who.flaw(FlawKind::Lopsided, said, remedy, self.worst.unlike.as_slice()))
+        Some(names.flaw(FlawKind::Lopsided, flaw_text, remedy, self.worst.unlike.as_slice()))
     }
 
-    fn apart(&self, who: &Who<'_>) -> Option<Flaw> {
+    fn apart(&self, names: &BodyNames<'_>) -> Option<Flaw> {
         if self.contiguous {
             return None;
         }
         let body = self.worst.apart;
-        let parent = body.and_then(|body| who.0.joints.iter().find(|joint| joint.child == body));
-        let said = match (body, parent) {
+        let parent = body.and_then(|body| names.0.joints.iter().find(|joint| joint.child == body));
+        let flaw_text = match (body, parent) {
             (Some(body), Some(joint)) => {
-                format!("{} hangs on {}, which it does not grow from", who.name(body), who.name(joint.parent))
+                format!(
+                    "{} hangs on {}, which it does not grow from",
+                    names.name(body),
+                    names.name(joint.parent)
+                )
             }
             _ => "a body hangs on one that it does not grow from".to_owned(),
         };
-        let bone = body.map_or("BONE", |body| who.0.bodies[body].bone.as_str());
+        let bone = body.map_or("BONE", |body| names.0.bodies[body].bone.as_str());
         let remedy = format!("--role ROLE={bone} says what it is, --no-body {bone} leaves it without a body");
-        Some(who.flaw(FlawKind::Apart, said, remedy, body.as_slice()))
+        Some(names.flaw(FlawKind::Apart, flaw_text, remedy, body.as_slice()))
     }
 
-    fn resized(&self, who: &Who<'_>) -> Option<Flaw> {
+    fn resized(&self, names: &BodyNames<'_>) -> Option<Flaw> {
         if (self.drawn_height_m - self.bind_height_m).abs() <= HEIGHT * self.size {
             return None;
         }
-        let said = format!(
+        let flaw_text = format!(
             "drawn by its nodes it is {:.3} m high, bound {:.3} m",
             self.drawn_height_m, self.bind_height_m
         );
         let remedy = "apply the nodes' scales in the modelling tool and export anew".to_owned();
-        Some(who.flaw(FlawKind::Resized, said, remedy, &[]))
+        Some(names.flaw(FlawKind::Resized, flaw_text, remedy, &[]))
     }
 
-    fn off_floor(&self, who: &Who<'_>) -> Option<Flaw> {
+    fn off_floor(&self, names: &BodyNames<'_>) -> Option<Flaw> {
         let (sunk, raised) = (max(SUNK * self.size, LEAST_OFF), max(RAISED * self.size, LEAST_OFF));
         let height = self.rest_height_m?;
         if height >= -sunk && height <= raised {
@@ -208,10 +212,10 @@ impl SkinQuality {
         }
         let cm = 100.0 * height;
         let what = match self.worst.lowest {
-            Some(body) => format!("the lowest point of its skin, on {},", who.name(body)),
+            Some(body) => format!("the lowest point of its skin, on {},", names.name(body)),
             None => "the lowest point of its skin".to_owned(),
         };
-        let said = if cm < 0.0 {
+        let flaw_text = if cm < 0.0 {
             format!("at rest {what} is {:.1} cm in the floor, more than {:.1} cm", -cm, 100.0 * sunk)
         } else {
             format!("at rest {what} is {cm:.1} cm above the floor, more than {:.1} cm", 100.0 * raised)
@@ -220,18 +224,21 @@ impl SkinQuality {
             Some(body) if cm > 0.0 => {
                 format!(
                     "a `scale` below 1 of {} in the settings makes its shape smaller",
-                    who.0.bodies[body].bone
+                    names.0.bodies[body].bone
                 )
             }
-            lowest => who.body_or_shape(lowest, self.worst.lowest_joint.as_deref()),
+            lowest => names.body_or_shape(lowest, self.worst.lowest_joint.as_deref()),
         };
         let at_most = if height > HANGS * self.size { Verdict::Bad } else { Verdict::Usable };
-        Some(Flaw { at_most, ..who.flaw(FlawKind::OffFloor, said, remedy, self.worst.lowest.as_slice()) })
+        Some(Flaw {
+            at_most,
+            ..names.flaw(FlawKind::OffFloor, flaw_text, remedy, self.worst.lowest.as_slice())
+        })
     }
 
     /// While clips move the character, the lowest point of the skin is far from the floor: in it, or, if standing,
     /// above it.
-    fn stands_off(&self, who: &Who<'_>, stage: Stage) -> Option<Flaw> {
+    fn stands_off(&self, names: &BodyNames<'_>, stage: Stage) -> Option<Flaw> {
         let (height, what) = match stage {
             Stage::Standing => (self.standing_height_m, "standing before the fall"),
             Stage::Rising => (self.rising_height_m, "getting up"),
@@ -241,14 +248,14 @@ impl SkinQuality {
         let is_rising = stage == Stage::Rising;
         let bar = max(if is_rising { SUNK_RISING } else { STANDS_OFF } * self.size, LEAST_OFF);
         // A creature that flies, swims or crawls may be above the floor.
-        let may_be_above = is_rising || who.0.bodies[0].role != "hips";
+        let may_be_above = is_rising || names.0.bodies[0].role != "hips";
         if height >= -bar && (height <= bar || may_be_above) {
             return None;
         }
         let lowest = self.worst.lowest_in[stage as usize];
-        let point = lowest.map_or(String::new(), |body| format!(", on {},", who.name(body)));
+        let point = lowest.map_or(String::new(), |body| format!(", on {},", names.name(body)));
         let side = if height > 0.0 { "above" } else { "in" };
-        let said = format!(
+        let flaw_text = format!(
             "{what} the lowest point of its skin{point} is {:.1} cm {side} the floor, more than {:.1} cm",
             100.0 * height.abs(),
             100.0 * bar
@@ -259,26 +266,26 @@ impl SkinQuality {
                 "--clips FILE brings a clip to get up by that is made for this body, --no-builtin-motions leaves it lying"
             }
         };
-        let flaw = who.flaw(FlawKind::OffFloor, said, remedy.to_owned(), lowest.as_slice());
+        let flaw = names.flaw(FlawKind::OffFloor, flaw_text, remedy.to_owned(), lowest.as_slice());
         let is_gross = height.is_nan() || height.abs() > GROSS * bar;
         Some(Flaw { at_most: if is_gross { Verdict::Bad } else { Verdict::Usable }, ..flaw })
     }
 
-    fn airborne(&self, who: &Who<'_>) -> Option<Flaw> {
+    fn airborne(&self, names: &BodyNames<'_>) -> Option<Flaw> {
         let seconds = self.airborne_s?;
         if seconds <= AIRBORNE {
             return None;
         }
-        let said = format!("it is calm and touches nothing for {seconds:.2} s, more than {AIRBORNE} s");
+        let flaw_text = format!("it is calm and touches nothing for {seconds:.2} s, more than {AIRBORNE} s");
         let remedy = "please report it with the file: what nothing holds must fall".to_owned();
-        Some(who.flaw(FlawKind::Airborne, said, remedy, &[]))
+        Some(names.flaw(FlawKind::Airborne, flaw_text, remedy, &[]))
     }
 }
 
 /// Names of bodies.
-struct Who<'a>(&'a RagdollDef);
+struct BodyNames<'a>(&'a RagdollDef);
 
-impl Who<'_> {
+impl BodyNames<'_> {
     /// Role and bone, the bone only where it differs.
     fn name(&self, body: usize) -> String {
         let body = &self.0.bodies[body];

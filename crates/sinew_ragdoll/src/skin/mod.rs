@@ -44,11 +44,11 @@ pub struct SkinQuality {
     /// Growth of triangle sides over the drops beyond their bind length: 99.9th percentile over sides and poses, as a
     /// share of [`size`](Self::size).
     pub edge_stretch_p999: f32,
-    /// The same, maximum.
+    /// The largest growth, as a share of the size.
     pub edge_stretch_max: f32,
-    /// The same over the file's clips; `None` without clips.
+    /// 99.9th percentile of the growth over the file's clips; `None` without clips.
     pub clips_stretch_p999: Option<f32>,
-    /// Maximum over the file's clips.
+    /// The largest growth over the file's clips.
     pub clips_stretch_max: Option<f32>,
     /// Largest difference between a body and its mirror image, as a length.
     pub symmetry_error_m: f32,
@@ -64,14 +64,14 @@ pub struct SkinQuality {
     /// Lowest height of the drawn skin above the floor while the character stands before its fall. Negative inside the
     /// floor; `None` if not measured.
     pub standing_height_m: Option<f32>,
-    /// The same while it gets up.
+    /// Lowest height of the drawn skin above the floor during a get-up.
     pub rising_height_m: Option<f32>,
-    /// The same once it is up again.
+    /// Lowest height of the drawn skin above the floor once it is up again.
     pub up_height_m: Option<f32>,
     /// Longest time in a drop without a body near the floor after the ragdoll had become calm, seconds; `None` if not
     /// measured.
     pub airborne_s: Option<f32>,
-    /// Length that heights and stretches are shares of: the height of a human, of a creature the longest side of its skin's box.
+    /// Reference length of heights and stretches: a human's height; for a creature the longest side of its skin's box.
     pub size: f32,
     /// Bodies to look at first.
     pub worst: Worst,
@@ -81,23 +81,23 @@ pub struct SkinQuality {
 /// responsible.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Worst {
-    /// Has the most vertices that are not covered.
+    /// The body with the most vertices that are not covered.
     pub uncovered: Option<usize>,
     /// Name of the joint that moves most of these vertices, if it has no body of its own.
     pub uncovered_joint: Option<String>,
     /// Vertices that no body moves, per thousand.
     pub adrift: u32,
-    /// Moves one end of the most stretched side; the body of the other end is second.
+    /// The body that moves one end of the most stretched side; that of the other end is second.
     pub torn: Option<(usize, usize)>,
     /// Stage in which that side is stretched most.
     pub torn_in: Phase,
-    /// Moves the lowest point while standing, while getting up and once up.
+    /// The bodies that move the lowest point while standing, while getting up and once up.
     pub lowest_in: [Option<usize>; 3],
-    /// Differs most from its mirror image.
+    /// The body that differs most from its mirror image.
     pub unlike: Option<usize>,
-    /// Is separate from its parent.
+    /// The body that is separate from its parent.
     pub apart: Option<usize>,
-    /// Moves the lowest point at rest.
+    /// The body that moves the lowest point at rest.
     pub lowest: Option<usize>,
     /// Name of the joint that moves it, if that has no body of its own.
     pub lowest_joint: Option<String>,
@@ -106,23 +106,23 @@ pub struct Worst {
 /// Phase of a life in which the skin is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phase {
-    /// It falls in one of the drops of a [`drop_test`](crate::drop_test).
+    /// The character falls in one of the drops of a [`drop_test`](crate::drop_test).
     #[default]
     Drop,
-    /// It falls, lies, or is rolled to where a clip begins.
+    /// The character falls, lies, or is rolled to where a clip begins.
     Fall,
-    /// It gets up, or moves as its clips do.
+    /// The character gets up, or moves as its clips do.
     Clip,
 }
 
-/// When the lowest point of a character's skin is held against the floor.
+/// Stage in which the lowest point of a character's skin is compared to the floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// It stands before its fall.
+    /// The character stands before its fall.
     Standing,
-    /// It gets up.
+    /// The character gets up.
     Rising,
-    /// It is up again.
+    /// The character is up again.
     Up,
 }
 
@@ -166,7 +166,7 @@ pub struct SkinMeter<'a> {
     skin: SkinQuality,
     /// Joints that have a body of their own.
     own: Vec<JointIdx>,
-    /// Per body.
+    /// For each body, true if a character may stand on its skin.
     may_stand: Vec<bool>,
     model: Vec<Affine>,
     palette: Vec<Affine>,
@@ -320,7 +320,7 @@ impl<'a> SkinMeter<'a> {
         self.surface.palette(&self.model, &mut self.palette);
     }
 
-    /// The figures so far: of the stretches, the worst of all phases.
+    /// The figures so far; stretches are the worst of all phases.
     pub fn figures(mut self) -> SkinQuality {
         let mut skin = self.skin;
         for (phase, stretch) in [Phase::Drop, Phase::Fall, Phase::Clip].into_iter().zip(&mut self.stretch) {
@@ -375,7 +375,7 @@ fn size(def: &RagdollDef, low: Vec3, high: Vec3) -> f32 {
     let is_human = def.bodies[0].role == "hips";
     let sides = high - low;
     let size = if is_human { def.height } else { max(sides.x, max(sides.y, sides.z)) };
-    // Nothing is a share of nothing.
+    // Avoids a division by zero.
     max(size, 1e-6)
 }
 
@@ -395,7 +395,7 @@ fn without_body(
     (joint != def.bodies[body].joint).then(|| rig.joints[joint].name.clone())
 }
 
-/// Writes the share of the skin near its body and who moves most of the rest. Returns the rest: the body and the joint
+/// Writes the share of the skin near its body and the body that moves most of the rest. Returns the rest: the body and the joint
 /// that move each vertex.
 fn cover(
     skin: &mut SkinQuality,

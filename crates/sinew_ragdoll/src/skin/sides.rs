@@ -9,7 +9,7 @@ use sinew_anim::roles::Role;
 use sinew_math::{Vec3, max};
 use sinew_physics::convex::gap;
 
-/// The largest difference of two sides, metres, and the body that has it.
+/// Largest difference of two sides, metres, and the body that has it.
 ///
 /// The compared lengths do not depend on the pose: pivot to body centre, the shape's bounding radius, and the mass
 /// difference as a length (a third of the relative difference, times the radius, because mass grows with the cube of a
@@ -113,7 +113,7 @@ fn neighbour(bones: &Bones, links: &[(usize, usize)], body: usize) -> Option<usi
 fn is_loose(def: &RagdollDef, joint: &RagdollJointDef, size: f32) -> bool {
     let (parent, child) = (&def.bodies[joint.parent], &def.bodies[joint.child]);
     let gap = gap(&parent.shape, &parent.character_from_body, &child.shape, &child.character_from_body);
-    // A side that cannot be measured is no bridge.
+    // A side that cannot be measured does not connect.
     !gap.is_some_and(|gap| gap.distance <= LOOSE * size)
 }
 

@@ -9,9 +9,9 @@ use sinew_math::{Affine, max};
 pub(super) struct Stretched {
     /// 99.9th percentile over the sides of all triangles and all poses.
     pub p999: f32,
-    /// The largest.
+    /// The largest growth.
     pub max: f32,
-    /// Index of the side that has it, in [`Surface::sides`].
+    /// Index of the side with the largest growth, in [`Surface::sides`].
     pub side: Option<usize>,
 }
 
@@ -19,7 +19,7 @@ pub(super) struct Stretched {
 pub(super) struct Stretch {
     /// Length of each side in the bind pose, metres.
     bound: Vec<f32>,
-    /// Per side and pose, metres.
+    /// Growth of each side in each pose, metres.
     longer: Vec<f32>,
     /// Metres per unit of the model space.
     unit_scale: f32,
@@ -27,13 +27,13 @@ pub(super) struct Stretch {
 }
 
 impl Stretch {
-    /// `palette` is that of the bind pose.
+    /// Creates the collection; `palette` is that of the bind pose.
     pub fn new(surface: &Surface, palette: &[Affine], unit_scale: f32) -> Self {
         let bound = surface.sides.iter().map(|side| length(surface, palette, side) * unit_scale).collect();
         Self { bound, longer: Vec::new(), unit_scale, worst: Stretched::default() }
     }
 
-    /// A pose by its palette, model space.
+    /// Adds a pose by its palette, model space.
     pub fn add(&mut self, surface: &Surface, palette: &[Affine]) {
         for (index, side) in surface.sides.iter().enumerate() {
             let longer = length(surface, palette, side) * self.unit_scale - self.bound[index];
@@ -46,7 +46,7 @@ impl Stretch {
         }
     }
 
-    /// The figures over all poses since the last time; zeros where no side can stretch.
+    /// The figures over all poses since the last call; zeros where no side can stretch.
     pub fn take(&mut self, surface: &Surface) -> Stretched {
         let mut longer = core::mem::take(&mut self.longer);
         let worst = core::mem::take(&mut self.worst);

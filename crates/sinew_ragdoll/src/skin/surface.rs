@@ -13,11 +13,11 @@ const MOST_VERTICES: usize = 8192;
 /// Largest number of triangle sides measured, of those that a pose can stretch.
 const MOST_SIDES: usize = 4096;
 
-/// A joint that moves vertices, and where they were when they were bound to it.
+/// A joint that moves vertices, and their bind positions.
 #[derive(Clone, Copy, Debug)]
 struct Slot {
     joint: JointIdx,
-    /// From mesh space to the joint's.
+    /// Transform from mesh space to the joint's space.
     inverse_bind: Affine,
 }
 
@@ -62,7 +62,7 @@ impl Surface {
         Self { slots: raw.slots, vertices: raw.vertices, owners, sample, sides, stretchable }
     }
 
-    /// Only these vertices, with the slots that move them; no sides.
+    /// Returns a surface of only these vertices, with the slots that move them; no sides.
     pub fn part(&self, vertices: &[usize]) -> Self {
         let mut part = Self {
             slots: Vec::new(),
@@ -231,7 +231,7 @@ fn strided(count: usize, most: usize) -> Vec<usize> {
     (0..used).map(|k| (k as u64 * count as u64 / used as u64) as usize).collect()
 }
 
-/// Per body, true if a character may stand on its skin: false for a human's hands and forearms and what they hold.
+/// For each body, true if a character may stand on its skin: false for a human's hands and forearms and what they hold.
 pub(crate) fn may_stand(def: &RagdollDef) -> Vec<bool> {
     let is_human = def.bodies[0].role == "hips";
     let may = |role: &str| {
@@ -246,7 +246,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn samples_are_even_and_within() {
+    fn samples_are_even_and_in_range() {
         assert_eq!(strided(3, 8), [0, 1, 2]);
         assert_eq!(strided(10, 4), [0, 2, 5, 7]);
         assert!(strided(0, 4).is_empty());

@@ -1,4 +1,4 @@
-//! Colliders of tips.
+//! Colliders of the tips of springs.
 
 use super::tuning::{CLOSE, MOST_LEAPS, THIN};
 use sinew_anim::springs::{ColliderShape, Side};
@@ -61,7 +61,7 @@ impl Placed {
                 if square > 0.0 {
                     from -= along * clamp(from.dot(along) / square, 0.0, 1.0);
                 }
-                // Nearly all are clear of nearly all: no root for those.
+                // Nearly all tips are separate from nearly all colliders, so the square root is avoided.
                 let square = from.length_squared();
                 let is_clear = match keeps {
                     Side::Outside => square >= (own + radius) * (own + radius),
@@ -92,7 +92,7 @@ impl Placed {
         let Self::Round { head, along, radius: own, keeps: Side::Outside } = *self else { return None };
         let way = to - from;
         let reach = own + radius;
-        // A shorter motion ends inside it, on this side.
+        // A shorter motion ends inside the collider, on this side.
         if way.length_squared() <= reach * reach {
             return None;
         }
@@ -155,7 +155,7 @@ impl Surroundings<'_> {
         if translation.length() <= max(radius, THIN) {
             return None;
         }
-        // Half of it, so that a ball that slides on a surface does not hit it.
+        // Use half of the radius, so that a ball that slides on a surface does not hit it.
         let ball = Shape::Sphere { radius: 0.5 * radius };
         let question = ShapeCast { probe: Probe::at(ball, from), translation };
         let hit = self.world.query().accept(|body, _| !self.own.contains(&body)).first(&question)?;

@@ -46,7 +46,7 @@ impl SpringSwing {
         self.turns.clear();
     }
 
-    /// True if they are the pose and nothing is computed: they have been eased for long enough.
+    /// True if the springs equal the pose and nothing is computed: they have been eased for long enough.
     pub fn is_away(&self) -> bool {
         self.mode == Mode::Away
     }

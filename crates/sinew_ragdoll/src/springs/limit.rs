@@ -1,4 +1,4 @@
-//! Limits of directions.
+//! Limits of the directions of springs.
 
 use sinew_anim::springs::{LimitKind, SpringLimit};
 use sinew_math::trig::{asin, atan2, cos, sin};
@@ -8,12 +8,12 @@ use sinew_math::{Rotation, Vec3, clamp, min, normalize_or};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limit {
     kind: LimitKind,
-    /// From the limit's frame, with +Y along the bone at rest, to the joint's.
+    /// Rotation from the limit's frame, with +Y along the bone at rest, to the joint's frame.
     joint_from_limit: Rotation,
 }
 
 impl Limit {
-    /// For a bone whose tip is in the direction `axis` from its joint, unit.
+    /// Creates the limit for a bone whose tip is in the direction `axis` from its joint, unit.
     pub fn new(limit: &SpringLimit, axis: Vec3) -> Self {
         let along = Rotation::from_arc(Vec3::Y, axis);
         Self { kind: limit.kind, joint_from_limit: (along * limit.rotation).normalize() }

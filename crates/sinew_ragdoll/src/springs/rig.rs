@@ -8,17 +8,17 @@ use sinew_anim::{JointIdx, Rig};
 use sinew_math::{Affine, Transform, Vec3, clamp, max, normalize_or};
 use sinew_physics::Shape;
 
-/// Joint that springs hang on or move with, or that carries colliders.
+/// Joint that springs are attached to or move with, or that carries colliders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Node {
     pub joint: JointIdx,
     /// Index among the nodes; smaller than its own.
     pub parent: Option<usize>,
-    /// Bone that rotates it.
+    /// Bone that rotates the joint.
     pub bone: Option<usize>,
-    /// It or one of its ancestors swings: such nodes come after all that do not.
+    /// True if the joint or one of its ancestors swings: such nodes come after all that do not.
     pub swings: bool,
-    /// Another node, a collider or a centre is attached to it.
+    /// True if another node, a collider or a centre is attached to the joint.
     pub carries: bool,
 }
 
@@ -30,14 +30,14 @@ pub(super) struct Bone {
     /// Tip in the joint's space, file units, and its direction there.
     pub tail: Vec3,
     pub axis: Vec3,
-    /// File units.
+    /// Length of the bone, file units.
     pub length: f32,
-    /// m/s toward the rest pose.
+    /// Speed toward the rest pose, m/s.
     pub stiffness: f32,
-    /// m/s, character axes: the character's facing does not rotate it.
+    /// Velocity by gravity, m/s, character axes: the character's facing does not rotate it.
     pub gravity: Vec3,
     pub drag: f32,
-    /// Metres.
+    /// Radius of the tip, metres.
     pub radius: f32,
     pub limit: Option<Limit>,
 }
@@ -63,7 +63,7 @@ pub(super) struct Collider {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Link {
     pub bones: [usize; 2],
-    /// Metres.
+    /// Distance of the tips in the bind pose, metres.
     pub length: f32,
     pub share: f32,
     pub holds_apart: bool,
@@ -76,12 +76,12 @@ pub struct SpringRig {
     pub(super) nodes: Vec<Node>,
     /// Number of nodes that do not swing; they are the first.
     pub(super) stills: usize,
-    /// By node, ascending, so that descendants of a bone come after it.
+    /// Bones that swing, by node, ascending, so that descendants of a bone come after it.
     pub(super) bones: Vec<Bone>,
     pub(super) chains: Vec<Chain>,
     pub(super) colliders: Vec<Collider>,
     pub(super) links: Vec<Link>,
-    /// A collider is attached to a swinging node.
+    /// True if a collider is attached to a swinging node.
     pub(super) swinging_colliders: bool,
     /// Shapes of the ragdoll's bodies, for chains that collide with them.
     pub(super) bodies: Vec<Shape>,
@@ -234,7 +234,7 @@ impl SpringRig {
     fn add_anchors(&mut self, mapping: &Mapping, bind_model: &[Affine]) {
         let character = mapping.character_from_model();
         let place = |node: &Node| character.point(bind_model[node.joint].translation);
-        // Per node: its anchor, and its largest distance from there.
+        // For each node, its anchor and its largest distance from the anchor.
         let mut ways: Vec<(usize, f32)> = Vec::with_capacity(self.nodes.len());
         for (k, node) in self.nodes.iter().enumerate() {
             ways.push(match node.parent.filter(|_| node.swings) {
@@ -304,7 +304,7 @@ impl SpringRig {
         !self.bodies.is_empty()
     }
 
-    /// True if nothing swings.
+    /// True if no bone swings.
     pub fn is_empty(&self) -> bool {
         self.bones.is_empty()
     }

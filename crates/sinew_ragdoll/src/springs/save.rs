@@ -5,7 +5,7 @@ use super::{SpringRig, SpringSwing};
 use sinew_math::{Affine, Mat3, ReadError, Reader, Writer};
 
 impl SpringSwing {
-    /// Writes all future-relevant state, and the shown one.
+    /// Writes all state that affects the future, and the shown state.
     pub fn save(&self, w: &mut Writer) {
         w.u8(self.mode as u8);
         match self.mode {

@@ -20,26 +20,26 @@ pub struct SpringStep<'a> {
     /// Pose at the end of the step from clips or bodies, one transform per joint of the rig: the springs swing about
     /// it.
     pub pose: &'a [LocalTransform],
-    /// From the file's model space to the world at the end of the step.
+    /// Transform from the file's model space to the world at the end of the step.
     pub world_from_model: Affine,
     /// World poses of the ragdoll's bodies at the end of the step, for chains that collide with them; else empty.
     pub bodies: &'a [Transform],
     /// The world, and the character's own bodies in it; `None`: no collisions with the world, and no wind.
     pub world: Option<(&'a World, &'a [BodyId])>,
-    /// Not stepped yet: the first step starts at rest.
+    /// Length of the step, seconds.
     pub seconds: f32,
 }
 
 /// Motion of springs about the pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Mode {
-    /// Not stepped yet: the first step starts at rest.
+    /// The springs have not been stepped yet: the first step starts at rest.
     #[default]
     Fresh,
     Swinging,
-    /// Distant: their rotation from the pose decays.
+    /// The springs are distant: their rotation from the pose decays.
     Easing,
-    /// They are the pose, and nothing is computed.
+    /// The springs equal the pose, and nothing is computed.
     Away,
 }
 
@@ -55,8 +55,8 @@ pub struct SpringSwing {
     pub(super) ways: Vec<Vec3>,
     /// Nodes that do not swing at the end of the last step, in the world.
     pub(super) before: Vec<Affine>,
-    /// The same one step earlier, and the length of that step, seconds: gives the curvature of the path between two
-    /// poses.
+    /// Non-swinging nodes one step earlier, and the length of that step, seconds: gives the curvature of the path
+    /// between two poses.
     pub(super) earlier: Vec<Affine>,
     pub(super) stride: f32,
     /// Local rotation of every bone, as shown.
@@ -113,7 +113,7 @@ impl SpringSwing {
             *node = Affine { linear, translation: larger(node.translation) };
         }
         for (index, bone) in rig.bones.iter().enumerate() {
-            // The space of a centre grows with it.
+            // The space of a centre is scaled with it.
             if rig.chains[bone.chain].center.is_none() {
                 self.tips[index] = larger(self.tips[index]);
                 self.ways[index] *= factor;
@@ -126,7 +126,8 @@ impl SpringSwing {
         &self.turns
     }
 
-    /// Follows the character by a step, from rest where they have not swung before; one of no length changes nothing. Allocates the first time only.
+    /// Follows the character by a step, from rest in the first step; a step of no length changes nothing. Allocates
+    /// only in the first step.
     ///
     /// # Panics
     /// If the pose does not have one transform per joint of the springs' rig.
@@ -138,7 +139,7 @@ impl SpringSwing {
         if self.mode != Mode::Swinging {
             return self.rest(step);
         }
-        // A pause: the motion continues where it was.
+        // In a pause the motion does not change.
         if step.seconds == 0.0 {
             return;
         }
@@ -190,7 +191,7 @@ impl SpringSwing {
         }
     }
 
-    /// Starts with every bone at rest.
+    /// Puts every bone at rest.
     fn rest(&mut self, step: &SpringStep<'_>) {
         let rig = step.rig;
         self.turns.clear();
@@ -224,7 +225,7 @@ impl SpringSwing {
         }
     }
 
-    /// Tip where its node has been placed, in the space of its chain's centre.
+    /// Position of a tip at the new place of its node, in the space of its chain's centre.
     pub(super) fn placed_tip(&self, rig: &SpringRig, index: usize) -> Vec3 {
         let bone = &rig.bones[index];
         let tip = self.at[bone.node].point(bone.tail);
@@ -268,7 +269,7 @@ impl SpringSwing {
         self.turn_all(step, meets, rho);
     }
 
-    /// Rotates all swinging nodes. Colliders that are placed are collided with.
+    /// Rotates all swinging nodes. Tips collide with the colliders that are already placed.
     fn turn_all(&mut self, step: &SpringStep<'_>, meets: Option<Surroundings<'_>>, rho: f32) {
         let rig = step.rig;
         for (k, node) in rig.nodes.iter().enumerate().skip(rig.stills) {
@@ -356,7 +357,7 @@ impl SpringSwing {
         if rig.links.is_empty() {
             return;
         }
-        // Predicted positions at first, and the displacement from them at the end.
+        // The vectors hold the predicted positions first, and the displacement from them at the end.
         for (index, bone) in rig.bones.iter().enumerate() {
             let free = self.tips[index] + self.ways[index] * (1.0 - bone.drag);
             self.pulls.push(self.center(rig, bone).map_or(free, |center| center.point(free)));
@@ -390,7 +391,7 @@ impl SpringSwing {
     }
 }
 
-/// A turn after a scale.
+/// Matrix of a rotation after a scale.
 #[inline]
 fn scaled(turn: Rotation, scale: Vec3) -> Mat3 {
     let m = turn.to_mat3();

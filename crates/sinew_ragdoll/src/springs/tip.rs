@@ -11,7 +11,7 @@ use sinew_math::{Affine, Mat3, Rotation, Vec3, normalize_or};
 /// Number of times that a tip is pushed out of the world within a tick: a corner has two sides.
 const PUSHES: usize = 2;
 
-/// A bone with all that holds its tip or pushes it.
+/// A bone with all that holds or pushes its tip.
 pub(super) struct Around<'a> {
     pub placed: &'a [Placed],
     /// Displacement of each collider since the last tick, for continuous collision.
@@ -93,7 +93,7 @@ impl Around<'_> {
     }
 }
 
-/// Hold of a joint on the tip of its bone.
+/// Relation of a joint to the tip of its bone.
 pub(super) struct Held<'a> {
     pub bone: &'a Bone,
     /// Rest rotation in the space of the joint's parent, and the tip's direction there, unit.
@@ -102,14 +102,14 @@ pub(super) struct Held<'a> {
     world_from_parent: &'a Mat3,
     /// World position of the joint.
     pub place: Vec3,
-    /// Metres.
+    /// Length of the bone, metres.
     length: f32,
-    /// Direction at rest, world, unit.
+    /// Direction of the bone at rest, world, unit.
     pub axis: Vec3,
 }
 
 impl<'a> Held<'a> {
-    /// For a joint that has moved to `place`.
+    /// Creates the relation for a joint that has moved to `place`.
     #[inline(always)]
     pub fn new(bone: &'a Bone, local: &LocalTransform, world_from_parent: &'a Mat3, place: Vec3) -> Self {
         let rest = local.rotation;
@@ -131,7 +131,7 @@ impl<'a> Held<'a> {
         self.length > 1e-12 && self.length < f32::INFINITY
     }
 
-    /// A direction of the world in the space of the joint's parent, unit.
+    /// Converts a world direction to the space of the joint's parent, unit.
     #[inline]
     fn seen(&self, v: Vec3) -> Vec3 {
         // The rows of the inverse, up to a common factor.
@@ -155,7 +155,7 @@ impl<'a> Held<'a> {
     /// The position nearest to `by` beyond a tip, at the bone's length and in a direction that its limit allows.
     #[inline]
     pub fn hold(&self, tip: Vec3, by: Vec3) -> Vec3 {
-        // The exact difference first, so that small displacements lose no digits to the world position.
+        // Subtract first, so that small displacements lose no digits to the world position.
         let mut direction = normalize_or((tip - self.place) + by, self.axis);
         if let Some(limit) = &self.bone.limit {
             let seen = self.rest.inverse() * self.seen(direction);

@@ -28,25 +28,25 @@ pub(super) const ALIKE: f32 = 4.0;
 /// Distance at which a moving tip touches a collider, metres.
 ///
 /// Larger: fast tips stop short. Smaller: more iterations to reach it. Shown by
-/// `a_fast_tip_does_not_pass_through_a_thin_collider`.
+/// `fast_tip_is_stopped_by_a_thin_collider`.
 pub(super) const CLOSE: f32 = 1e-4;
 
 /// Iterations toward a collider within a tick, each by the remaining distance: a tip that is not close by then passes.
 ///
 /// Larger: only costs time. Smaller: a tip that grazes a collider passes through. Shown by
-/// `a_fast_tip_does_not_pass_through_a_thin_collider`.
+/// `fast_tip_is_stopped_by_a_thin_collider`.
 pub(super) const MOST_LEAPS: usize = 24;
 
 /// Displacement per tick above which a tip is swept through the world, metres, if its radius is less.
 ///
 /// Larger: tips without a radius pass through thin obstacles. Smaller: every tip near the world is swept. Shown by
-/// `a_fast_tip_does_not_pass_through_a_thin_wall`.
+/// `fast_tip_is_stopped_by_a_thin_wall`.
 pub(super) const THIN: f32 = 0.002;
 
 /// Iterations over the links between strands within a tick.
 ///
 /// Larger: a pull on one strand of a skirt reaches more strands at once. Smaller: a leg tears the skirt apart. Shown by
-/// `links_hold_strands_together`.
+/// `spring_links_limit_the_distance_of_strands`.
 pub(super) const LINK_SWEEPS: usize = 4;
 
 /// Time in which the rotation of distant springs from the pose falls to 1/e, seconds.

@@ -9,13 +9,14 @@ use sinew_ragdoll::{BuildOptions, CharacterDef, Locomotion, MotionSet, build};
 use sinew_scenes::mannequin::{Mannequin, Motions, mannequin};
 use std::sync::Arc;
 
-/// Walks, and gets up by either clip.
+/// The mannequin with a walk and both get-up clips.
 pub fn walker() -> CharacterDef {
     let Mannequin { rig, clips, motions } = mannequin();
     character(rig, clips, motions)
 }
 
-/// The same with a sword in its right hand: a joint without a counterpart, which no clip moves.
+/// The walker with a sword in its right hand. The sword's joints have no counterpart in the ragdoll, and no clip moves
+/// them.
 pub fn armed_walker() -> CharacterDef {
     let Mannequin { mut rig, clips, motions } = mannequin();
     let hand = analyze(&rig).expect("a skin").joint_with(Role::Hand(Side::Right));
@@ -54,12 +55,12 @@ pub fn floor() -> BodyDef {
     BodyDef { kind: BodyKind::Static, shapes: vec![ShapeDef::new(Shape::HalfSpace)], ..BodyDef::default() }
 }
 
-/// A place away from the origin, turned.
+/// A pose away from the origin, turned about the vertical.
 pub fn somewhere() -> Transform {
     Transform::new(Vec3::new(1.5, 0.0, -2.0), Rotation::from_axis_angle(Vec3::Y, 0.7))
 }
 
-/// The walker as an exporter may write it: under an armature node that makes the file centimetres and Z-up.
+/// The walker as some exporters write it: under an armature node that scales to centimetres and rotates to Z up.
 pub fn in_centimetres_and_z_up() -> CharacterDef {
     let Mannequin { mut rig, mut clips, motions } = mannequin();
     let armature = LocalTransform {
@@ -78,8 +79,8 @@ pub fn in_centimetres_and_z_up() -> CharacterDef {
     character(rig, clips, motions)
 }
 
-/// The KayKit mannequin of the shared data: its walk, its way to stand up from its back, and the mannequin's from its face
-/// on its body. `None` where the data are not there.
+/// The KayKit mannequin of the shared data, with its own walk and its own get-up from its back; the get-up from its
+/// face is retargeted from the built-in mannequin. `None` if the data are absent.
 pub fn kaykit() -> CharacterDef {
     let of = |name: &str| data::document(&format!("kaykit_mannequin/{name}"));
     let rig = of("manny_med_mod.gltf").rig;
@@ -108,7 +109,7 @@ pub fn kaykit() -> CharacterDef {
     def
 }
 
-/// Clip by which the mannequin gets up from its face, on another body.
+/// The built-in mannequin's get-up from its face, retargeted to another rig.
 fn from_face_on(rig: &Rig, analysis: &RigAnalysis) -> Clip {
     let Mannequin { rig: actor, clips, motions } = mannequin();
     let own = analyze(&actor).expect("the mannequin has a skin");

@@ -1,4 +1,5 @@
-//! Backstops of garments: cloth does not sink into what is drawn where no body of the ragdoll is, and is left alone elsewhere.
+//! Backstops of garments: they keep cloth out of the drawn body where no ragdoll body fills it, and do not disturb
+//! cloth elsewhere.
 
 use crate::garments::{go_on, ground, mean_stretch};
 use sinew_anim::garments::Backstop;
@@ -13,7 +14,7 @@ fn worn(chains: &Chains, backstop: Option<Backstop>) -> CharacterDef {
     dressed(&[chains], |garment| garment.backstop = backstop)
 }
 
-/// The same shape with another width.
+/// Scales the width of a shape by `factor`.
 fn thinner(shape: &Shape, factor: f32) -> Shape {
     match *shape {
         Shape::Capsule { half_height, radius } => Shape::Capsule { half_height, radius: radius * factor },
@@ -28,8 +29,8 @@ fn thinner(shape: &Shape, factor: f32) -> Shape {
     }
 }
 
-/// A character whose bodies are half as thick as they are drawn.
-fn gaunt(backstop: Option<Backstop>) -> CharacterDef {
+/// A character whose bodies are half as thick as its mesh.
+fn character_with_thin_bodies(backstop: Option<Backstop>) -> CharacterDef {
     let full = worn(&SKIRT, backstop);
     let mut ragdoll = full.ragdoll.clone();
     ragdoll.bodies.iter_mut().for_each(|body| body.shape = thinner(&body.shape, 0.5));
@@ -39,7 +40,7 @@ fn gaunt(backstop: Option<Backstop>) -> CharacterDef {
     def
 }
 
-/// Largest depth of a free particle in what is drawn: the bodies of the mannequin as they fit it, metres.
+/// Largest depth of a free particle in the mannequin's fitted bodies, which stand for its mesh; metres.
 fn deepest(world: &World, character: &Character, drawn: &CharacterDef) -> f32 {
     let group = world.particles(character.garments()[0]);
     let is_free = |particle: u32| group.attachments().iter().all(|held| held.particle != particle);
@@ -55,13 +56,17 @@ fn deepest(world: &World, character: &Character, drawn: &CharacterDef) -> f32 {
     deepest
 }
 
-/// A storm from the front presses a skirt onto thighs and hips that no body fills.
+/// A strong wind from the front presses a skirt onto thighs and hips that no body fills.
 #[test]
-fn cloth_stays_out_of_what_no_body_covers() {
+fn cloth_stays_out_of_the_mesh_where_no_body_is() {
     let drawn = worn(&SKIRT, None);
     let pressed = |backstop: Option<Backstop>| {
         let mut world = ground(Vec3::new(0.0, -9.81, -12.0));
-        let mut character = Character::spawn(&mut world, &Arc::new(gaunt(backstop)), Transform::IDENTITY);
+        let mut character = Character::spawn(
+            &mut world,
+            &Arc::new(character_with_thin_bodies(backstop)),
+            Transform::IDENTITY,
+        );
         let rest = deepest(&world, &character, &drawn);
         let mut most: f32 = 0.0;
         for _ in 0..120 {
@@ -72,10 +77,10 @@ fn cloth_stays_out_of_what_no_body_covers() {
         (rest, most, fastest.fold(0.0, max))
     };
     let (rest, bare, _) = pressed(None);
-    assert!(bare > rest + 0.02, "it sinks in without: {bare} m, from {rest} m");
+    assert!(bare > rest + 0.02, "without a backstop the cloth sinks in {bare} m, from {rest} m");
     let (_, stopped, fastest) = pressed(Some(Backstop { distance: 0.005, radius: 0.2 }));
-    assert!(stopped < rest + 0.006, "{stopped} m, from {rest} m");
-    assert!(fastest < 0.3, "it lies still: {fastest} m/s");
+    assert!(stopped < rest + 0.006, "with a backstop the cloth sinks in {stopped} m, from {rest} m");
+    assert!(fastest < 0.3, "the cloth moves at {fastest} m/s");
 }
 
 /// Depth of each particle below its backstop's ball, metres; negative above it.
@@ -88,9 +93,10 @@ fn depths(world: &World, group: &ParticleGroup) -> Vec<f32> {
     group.backstops().iter().map(depth).collect()
 }
 
-/// Each free particle has one behind its place at rest, on the body that is nearest there: legs below a skirt that hips hold, and never an arm that passes it.
+/// Each free particle has a backstop behind its rest position, on the nearest body: the legs below the hips of a skirt,
+/// never an arm beside it.
 #[test]
-fn each_free_particle_has_one_on_the_nearest_body() {
+fn each_free_particle_has_a_backstop_on_the_nearest_body() {
     let backstop = Backstop { distance: 0.03, radius: 0.25 };
     let mut def = worn(&SKIRT, Some(backstop));
     def.set_motions(MotionSet::default()).expect("none");
@@ -99,7 +105,7 @@ fn each_free_particle_has_one_on_the_nearest_body() {
     let group = world.particles(character.garments()[0]);
     assert_eq!(group.backstops().len() + group.attachments().len(), group.positions().len());
     let role = |body| {
-        let index = character.bodies().iter().position(|&id| id == body).expect("of the wearer");
+        let index = character.bodies().iter().position(|&id| id == body).expect("a body of the wearer");
         character.def().ragdoll.bodies[index].role.as_str()
     };
     let mut roles: Vec<&str> = group.backstops().iter().map(|stop| role(stop.body)).collect();
@@ -112,11 +118,11 @@ fn each_free_particle_has_one_on_the_nearest_body() {
     );
     for (stop, depth) in group.backstops().iter().zip(depths(&world, group)) {
         assert_eq!(stop.radius, 0.25);
-        assert!((depth + 0.03).abs() < 1e-3, "as deep behind it as was said: {depth}");
+        assert!((depth + 0.03).abs() < 1e-3, "the particle is {depth} m from its backstop");
         let (place, center) =
             (group.positions()[stop.particle as usize], world.transform(stop.body).point(stop.center));
         let out = Vec3::new(place.x, 0.0, place.z);
-        assert!((place - center).dot(out) > 0.0, "within the skirt");
+        assert!((place - center).dot(out) > 0.0, "the backstop is inside the skirt");
     }
     let of_giant = character.def().scaled(2.0);
     let giant = Character::spawn(&mut world, &Arc::new(of_giant), Transform::IDENTITY);
@@ -126,9 +132,9 @@ fn each_free_particle_has_one_on_the_nearest_body() {
     assert!(depths.iter().all(|depth| (depth + 0.06).abs() < 2e-3), "{depths:?}");
 }
 
-/// Walking in them, cloth stays out of their balls, is not stretched more than without, and swings.
+/// While the wearer walks, the cloth stays out of its backstops, stretches no more than without them, and swings.
 #[test]
-fn who_wears_them_walks_as_ever() {
+fn backstops_do_not_disturb_a_walk() {
     for chains in [&SKIRT, &CAPE] {
         let def = worn(chains, Some(Backstop { distance: 0.02, radius: 0.2 }));
         let mut world = ground(WorldDef::default().gravity);
@@ -143,8 +149,8 @@ fn who_wears_them_walks_as_ever() {
                 stretch = max(stretch, mean_stretch(group));
             }
         }
-        assert!(depth < 0.005, "{} is {depth} m in them", chains.name);
-        // Its first steps are long: feet that are down wait for the clips to be as fast as it is.
+        assert!(depth < 0.005, "{} is {depth} m in its backstops", chains.name);
+        // The first steps are long: feet on the ground wait until the clips reach the mover's speed.
         assert!(stretch < 0.05, "{} is stretched by {stretch}", chains.name);
     }
 }

@@ -1,4 +1,4 @@
-//! A whole run, from walk to walk, as a clip.
+//! `bake`: a run of a character from walk to walk, as a clip.
 
 use crate::actor::{floor, in_centimetres_and_z_up, shared, somewhere, walker};
 use core::ops::ControlFlow;
@@ -53,12 +53,12 @@ fn figures_are_inside_the_limits() {
 }
 
 #[test]
-fn the_clip_shows_what_happened() {
+fn clip_matches_the_simulated_frames() {
     for def in [walker(), in_centimetres_and_z_up()] {
         let def = shared(def);
         let baked = baked(&def, PUSH, 25.0);
         assert_eq!(baked.frames.len(), 226);
-        // Whether it has to be rolled over first is its own affair.
+        // Whether the character has to be rolled over first depends on its fall.
         let needed = baked.frames.iter().filter(|frame| frame.state != State::Preparing);
         let mut states: Vec<_> = needed.map(|frame| frame.state).collect();
         states.dedup();
@@ -82,7 +82,7 @@ fn the_clip_shows_what_happened() {
 }
 
 #[test]
-fn only_the_pelvis_and_turns_are_keyed() {
+fn only_pelvis_translation_and_rotations_have_keys() {
     let def = shared(walker());
     let baked = baked(&def, PUSH, 30.0);
     let hips = def.ragdoll.bodies[0].joint;
@@ -91,13 +91,13 @@ fn only_the_pelvis_and_turns_are_keyed() {
         assert!(is_turn || channel.joint == hips, "joint {} has {:?}", channel.joint, channel.property);
         for pair in channel.values.chunks_exact(4).collect::<Vec<_>>().windows(2).filter(|_| is_turn) {
             let dot: f32 = pair[0].iter().zip(pair[1]).map(|(a, b)| a * b).sum();
-            assert!(dot > 0.0, "keys take the short way");
+            assert!(dot > 0.0, "consecutive keys are in one hemisphere");
         }
     }
 }
 
 #[test]
-fn starts_where_the_files_character_stands() {
+fn clip_starts_at_the_rest_place_of_the_file() {
     let def = shared(walker());
     let first = &baked(&def, PUSH, 30.0).frames[0];
     let mut walking = rest_pose(&def.rig);
@@ -106,13 +106,13 @@ fn starts_where_the_files_character_stands() {
     local_to_model(&def.rig, &walking, &Affine::IDENTITY, &mut expected);
     local_to_model(&def.rig, &first.pose, &Affine::IDENTITY, &mut model);
     for (a, b) in expected.iter().zip(&model) {
-        // Within what built clips keep: 47 bits of a rotation.
+        // Tolerance: built clips keep 47 bits of a rotation.
         assert!((a.translation - b.translation).length() < 1e-4);
     }
 }
 
 #[test]
-fn it_is_a_simulation_not_a_choreography() {
+fn equal_hits_give_equal_poses_and_other_hits_give_others() {
     let def = shared(walker());
     let limp_pose = |impulse: Vec3| {
         let baked = baked(&def, impulse, 30.0);
@@ -132,7 +132,7 @@ fn it_is_a_simulation_not_a_choreography() {
 }
 
 #[test]
-fn frame_rate_changes_nothing_but_the_frames() {
+fn frame_rate_changes_only_the_number_of_frames() {
     let def = shared(walker());
     let hashes = [24.0, 60.0, 144.0].map(|fps| {
         let baked = baked(&def, PUSH, fps);
@@ -141,7 +141,7 @@ fn frame_rate_changes_nothing_but_the_frames() {
     assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{hashes:?}");
 }
 
-/// Largest distance, metres, and angle between the joints of the clip and of the frames, at the frames.
+/// Largest distance (metres) and angle between the joints of the clip and of the frames, at the frames' times.
 fn off(def: &CharacterDef, baked: &Baked) -> [f32; 2] {
     let mut worst = [0.0, 0.0];
     let root = def.mapping().character_from_model();
@@ -161,7 +161,7 @@ fn off(def: &CharacterDef, baked: &Baked) -> [f32; 2] {
 }
 
 #[test]
-fn keys_are_those_that_the_bound_needs_at_any_rate() {
+fn key_error_stays_within_the_bound_at_any_rate() {
     for def in [walker(), in_centimetres_and_z_up()] {
         let def = shared(def);
         for fps in [24.0, 25.0, 30.0, 120.0] {
@@ -174,7 +174,7 @@ fn keys_are_those_that_the_bound_needs_at_any_rate() {
                 angle.to_degrees(),
                 baked.key_error
             );
-            // Keys of the frames themselves are as near as rounding is.
+            // Keys at the frames' own times differ from them by rounding only.
             assert!(distance <= 1.01 * KEY_BOUND.distance && angle <= 1.01 * KEY_BOUND.angle);
             assert!((distance - baked.key_error.distance).abs() < 4e-6, "{distance} {:?}", baked.key_error);
             assert!((angle - baked.key_error.angle).abs() < 4e-6, "{angle} {:?}", baked.key_error);
@@ -199,7 +199,7 @@ fn no_bound_keeps_every_key() {
 }
 
 #[test]
-fn a_hit_may_be_a_flinch() {
+fn weak_hit_bakes_a_flinch() {
     let def = shared(walker());
     let body = def.body_named("rightHand").expect("it has hands");
     let chest = def.body_named("chest").expect("it has a chest");
@@ -223,7 +223,8 @@ fn a_hit_may_be_a_flinch() {
     assert_eq!(states(&run(HitEffect::Falls))[..2], [State::Animated, State::Limp]);
 }
 
-/// The mannequin as stylised figures are: head, hands and feet nearly twice as large, with the masses of their shapes.
+/// The mannequin with stylised proportions: head, hands and feet nearly twice as large, masses computed from their
+/// shapes.
 fn stylised() -> CharacterDef {
     let Mannequin { rig, clips, motions } = mannequin();
     let analysis = analyze(&rig).expect("the mannequin has a skin");
@@ -239,7 +240,8 @@ fn stylised() -> CharacterDef {
     def
 }
 
-/// In a bake such a figure once went 22° beyond a limit, as none of its drops did: hits, out of a clip that travels, from all sides.
+/// Hits from all sides during a travelling clip. A bake of this character once exceeded a joint limit by 22°, although
+/// none of its drops did.
 #[test]
 fn a_figure_with_large_feet_and_head_keeps_its_limits_in_a_bake() {
     let def = shared(stylised());
@@ -255,13 +257,13 @@ fn a_figure_with_large_feet_and_head_keeps_its_limits_in_a_bake() {
         let bodies = [floor()];
         let input = BakeInput { bodies: &bodies, hits: &hits, seconds: 4.0, ..BakeInput::new(def.clone()) };
         let baked = bake(&input);
-        assert!(baked.quality.first_contact_s.is_some(), "{body} {impulse}: it falls");
+        assert!(baked.quality.first_contact_s.is_some(), "{body} {impulse}: no contact");
         let (verdict, reasons) = judge_bake(&baked.quality);
         assert_eq!(verdict, Verdict::Good, "{body} {impulse}: {reasons:?}");
     }
 }
 
-/// Places of all joints in the world, frame by frame.
+/// World positions of all joints, frame by frame.
 fn places(def: &CharacterDef, baked: &Baked) -> Vec<Vec<Vec3>> {
     let mut model = Vec::new();
     let of = |frame: &sinew_ragdoll::bake::Frame| {
@@ -275,7 +277,7 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
     a.iter().zip(b).fold(0.0, |most, (a, b)| max(most, (*a - *b).length()))
 }
 
-/// The walker, whose clip is played exactly where it is.
+/// The walker with `exact` playback of its clip.
 fn exact() -> Arc<CharacterDef> {
     let mut def = walker();
     let motions = MotionSet { locomotion: Locomotion::Exact, ..def.motions().clone() };
@@ -284,7 +286,7 @@ fn exact() -> Arc<CharacterDef> {
 }
 
 #[test]
-fn a_return_brings_the_clip_back_as_if_nothing_had_been() {
+fn returned_character_rejoins_its_clip() {
     let (def, bodies) = (exact(), [floor()]);
     let own = BakeInput { bodies: &bodies, seconds: 5.0, ..BakeInput::new(def.clone()) };
     let fallen = BakeInput {
@@ -294,18 +296,18 @@ fn a_return_brings_the_clip_back_as_if_nothing_had_been() {
     };
     let (own, back) = (places(&def, &bake(&own)), places(&def, &bake(&fallen)));
     let away: Vec<f32> = own.iter().zip(&back).map(|(a, b)| farthest(a, b)).collect();
-    assert!(away[..31].iter().all(|&away| away < 1e-4), "before it falls: {:?}", &away[..31]);
-    assert!(away[70] > 0.3, "it lies: {}", away[70]);
-    assert!(away[91..].iter().all(|&away| away < 2e-3), "and is back: {:?}", &away[91..]);
+    assert!(away[..31].iter().all(|&away| away < 1e-4), "before the fall: {:?}", &away[..31]);
+    assert!(away[70] > 0.3, "while down: {}", away[70]);
+    assert!(away[91..].iter().all(|&away| away < 2e-3), "after the return: {:?}", &away[91..]);
     let own_step = (1..own.len()).map(|frame| farthest(&own[frame], &own[frame - 1])).fold(0.0, max);
     for frame in 70..100 {
         let step = farthest(&back[frame], &back[frame - 1]);
-        assert!(step < own_step + 0.25, "frame {frame}: a joint goes {step} m, {own_step} m in its clip");
+        assert!(step < own_step + 0.25, "frame {frame}: a joint moves {step} m, in its clip {own_step} m");
     }
 }
 
 #[test]
-fn an_exact_clip_is_neither_raised_nor_led_by_the_ground() {
+fn exact_playback_ignores_the_ground() {
     let def = exact();
     let ground = [floor().at(Vec3::Y * -0.4)];
     let on = BakeInput { bodies: &ground, seconds: 1.0, ..BakeInput::new(def.clone()) };
@@ -315,7 +317,7 @@ fn an_exact_clip_is_neither_raised_nor_led_by_the_ground() {
 }
 
 #[test]
-fn drives_change_parts_of_a_character_over_time() {
+fn timed_drives_move_parts_and_return_them() {
     let (def, bodies) = (exact(), [floor()]);
     let drive = |time, mode| BakeDrive { time, part: Part::From("leftUpperArm"), mode, half_life: 0.05 };
     let drives = [drive(0.5, DriveMode::Limp), drive(2.0, DriveMode::Keyed)];
@@ -333,7 +335,7 @@ fn drives_change_parts_of_a_character_over_time() {
 #[test]
 fn movers_push_and_wind_blows() {
     let mut def = walker();
-    // While clips move it, a plough would pass through.
+    // With the default, clips would move the character and a plough would pass through.
     def.after_settling = AfterSettling::StayDown;
     let (def, bodies) = (shared(def), [floor()]);
     let still =
@@ -347,12 +349,15 @@ fn movers_push_and_wind_blows() {
     let end = |input: &BakeInput<'_>| places(&def, &bake(input)).pop().expect("there are frames")[1];
     let lies = end(&still);
     let shoved = end(&BakeInput { movers: &movers, ..still.clone() });
-    assert!((shoved - lies).length() > 0.3, "the plough shoves it from {lies} to {shoved}");
-    assert!(end(&BakeInput { fields: &fields, ..still.clone() }).x > lies.x + 0.1, "the wind takes it along");
+    assert!((shoved - lies).length() > 0.3, "the plough moves it from {lies} to {shoved}");
+    assert!(
+        end(&BakeInput { fields: &fields, ..still.clone() }).x > lies.x + 0.1,
+        "wind moves it by more than 0.1 m"
+    );
 }
 
 #[test]
-fn characters_of_one_bake_share_a_world_and_can_be_stopped() {
+fn joint_bake_shares_one_world_and_can_be_cancelled() {
     let (def, bodies) = (shared(walker()), [floor()]);
     let at = |x: f32| Transform::from_translation(Vec3::X * x);
     let one = BakeInput { bodies: &bodies, limp_at: Some(0.3), seconds: 2.0, ..BakeInput::new(def.clone()) };
@@ -361,12 +366,16 @@ fn characters_of_one_bake_share_a_world_and_can_be_stopped() {
     let go_on = &mut |_: f32| ControlFlow::Continue(());
     let met = bake_together(&[one.clone(), two.clone()], go_on).expect("nothing stops it");
     let apart = bake_together(&[one.clone(), far], go_on).expect("nothing stops it");
-    assert_ne!(met[0].frames, apart[0].frames, "they meet");
-    assert_eq!(met, bake_together(&[one.clone(), two], go_on).expect("nothing stops it"), "the same again");
-    let mut told = 0;
+    assert_ne!(met[0].frames, apart[0].frames, "they collide");
+    assert_eq!(
+        met,
+        bake_together(&[one.clone(), two], go_on).expect("nothing stops it"),
+        "a second bake is identical"
+    );
+    let mut event_count = 0;
     let stopped = bake_together(&[one], &mut |time| {
-        told += 1;
+        event_count += 1;
         if time > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    assert!(stopped.is_none() && told == 31, "{told} steps");
+    assert!(stopped.is_none() && event_count == 31, "{event_count} steps");
 }

@@ -1,4 +1,4 @@
-//! Blasts, bullets, wind and belts act on characters that their clips lead.
+//! Explosions, bullets, wind and conveyor belts act on animated characters.
 
 use crate::actor::{shared, walker};
 use crate::in_world::{level, run};
@@ -14,7 +14,7 @@ fn pelvis(world: &World, character: &Character) -> Vec3 {
     world.center_of_mass(character.bodies()[0])
 }
 
-/// A character that stands: no clip moves it.
+/// A standing character that no clip moves.
 fn standing(def: &Arc<CharacterDef>) -> (World, Character) {
     let mut world = level();
     let mut character = Character::spawn(&mut world, def, Transform::IDENTITY);
@@ -23,11 +23,11 @@ fn standing(def: &Arc<CharacterDef>) -> (World, Character) {
     (world, character)
 }
 
-/// Blast a metre away of which a character that stands gets this momentum, N·s; and what it told.
+/// An explosion one metre from a standing character that gives it `momentum` (N·s). Returns the character's events.
 fn blast(world: &mut World, character: &mut Character, momentum: f32) -> Vec<CharacterEvent> {
     let center = pelvis(world, character) - Vec3::X;
     let unit = Explosion::new(center, 3.0, 1.0);
-    let told = {
+    let unit_impulse = {
         let (mut trial_world, mut trial) = (world.clone(), character.clone());
         trial_world.explode(&unit);
         trial_world.step();
@@ -37,13 +37,13 @@ fn blast(world: &mut World, character: &mut Character, momentum: f32) -> Vec<Cha
         trial.update(&mut trial_world);
         sum.length()
     };
-    assert!(told > 0.1, "a blast of 1 Pa·s gives it {told} N·s");
-    world.explode(&Explosion { impulse: momentum / told, ..unit });
+    assert!(unit_impulse > 0.1, "a blast of 1 Pa·s gives it {unit_impulse} N·s");
+    world.explode(&Explosion { impulse: momentum / unit_impulse, ..unit });
     run(world, character, 1)
 }
 
 #[test]
-fn a_blast_fells_who_stands_near_it() {
+fn explosion_knocks_over_a_standing_character() {
     let def = shared(walker());
     let (mut world, mut character) = standing(&def);
     let events = blast(&mut world, &mut character, 400.0);
@@ -51,7 +51,7 @@ fn a_blast_fells_who_stands_near_it() {
         CharacterEvent::Struck { impulse, .. } => Some(impulse),
         _ => None,
     };
-    let felt = events.iter().find_map(struck).expect("it tells of the blast");
+    let felt = events.iter().find_map(struck).expect("the explosion is reported");
     assert!((felt - 400.0).abs() < 4.0, "{felt} N·s");
     assert_eq!(character.state(), State::Limp, "{events:?}");
     let mass: f32 = character.bodies().iter().map(|&body| world.mass(body).mass).sum();
@@ -61,13 +61,13 @@ fn a_blast_fells_who_stands_near_it() {
     let from = pelvis(&world, &character);
     run(&mut world, &mut character, 60);
     let way = pelvis(&world, &character) - from;
-    assert!(way.x > 1.5, "it flies {way}");
+    assert!(way.x > 1.5, "it moves {way}");
     let events = run(&mut world, &mut character, 60 * 14);
     assert!(events.contains(&CharacterEvent::Up), "{:?}, {events:?}", character.state());
 }
 
 #[test]
-fn a_weaker_blast_makes_it_flinch_and_step_aside() {
+fn weak_explosion_causes_a_flinch_and_displacement() {
     let def = shared(walker());
     let mut last = 0.0;
     for momentum in [10.0, 20.0, 30.0, 40.0] {
@@ -92,7 +92,7 @@ fn a_weaker_blast_makes_it_flinch_and_step_aside() {
 }
 
 #[test]
-fn a_bullet_and_an_impulse_on_a_led_body_are_blows() {
+fn bullet_or_impulse_on_an_animated_body_counts_as_a_hit() {
     let def = shared(walker());
     let chest = def.body_named("chest").expect("it has a chest");
     for (size, state) in [(1.0, State::Animated), (20.0, State::Flinching), (90.0, State::Limp)] {
@@ -114,7 +114,7 @@ fn pull(acceleration: Vec3) -> FieldDef {
 }
 
 #[test]
-fn a_field_is_withstood_until_feet_slip() {
+fn character_resists_a_field_until_its_feet_slip() {
     let def = shared(walker());
     let after = |acceleration: f32, steps: usize| {
         let (mut world, mut character) = standing(&def);
@@ -129,7 +129,7 @@ fn a_field_is_withstood_until_feet_slip() {
     assert!(state == State::Animated && way > 0.01, "7 m/s²: {state:?}, {way} m");
     let (state, _) = after(7.0, 60);
     assert_eq!(state, State::Limp, "7 m/s² sweeps it off its feet");
-    // In the air it is carried as a stone is.
+    // In the air it accelerates like any free body.
     let (mut world, mut character) = standing(&def);
     world.add_field(&pull(Vec3::X * 3.0));
     character.jump(&mut world);
@@ -147,13 +147,13 @@ fn a_field_is_withstood_until_feet_slip() {
         }
     }
     let (time, way) = (aloft as f32 / 60.0, (pelvis(&world, &character) - from).x);
-    assert!(high > 0.55 && off < 0.12, "the body goes with its mover: {high} m up, {off} m off");
+    assert!(high > 0.55 && off < 0.12, "the body follows its mover: {high} m up, {off} m off");
     let falls = 0.5 * 3.0 * time * time;
-    assert!(time > 0.6 && (way - falls).abs() < 0.25 * falls, "{way} m in {time} s, {falls} as a stone");
+    assert!(time > 0.6 && (way - falls).abs() < 0.25 * falls, "{way} m in {time} s; free fall: {falls}");
 }
 
 #[test]
-fn wind_and_updraft() {
+fn strong_wind_fells_and_updraft_lifts() {
     let mut def = walker();
     def.in_world.toughness = Toughness::Impulse(60.0);
     let def = shared(def);
@@ -172,9 +172,9 @@ fn wind_and_updraft() {
     let field = world.add_field(&pull(Vec3::Y * 12.0));
     run(&mut world, &mut character, 40);
     let high = pelvis(&world, &character).y;
-    assert!(high > 1.2, "more than its weight lifts it: {high} m");
+    assert!(high > 1.2, "an updraft above its weight lifts it: {high} m");
     world.remove_field(field);
-    // Fields of a region act there alone.
+    // Fields of a region act only inside it.
     let (mut world, mut character) = standing(&def);
     let room = Region::ball(Vec3::X * 9.0, 2.0, Fade::Linear);
     world.add_field(&FieldDef { region: room, ..pull(Vec3::X * 30.0) });
@@ -183,7 +183,7 @@ fn wind_and_updraft() {
 }
 
 #[test]
-fn a_belt_carries_who_stands_on_it() {
+fn conveyor_belt_carries_a_standing_character() {
     let def = shared(walker());
     let mut world = World::new(WorldDef::default());
     let material = Material { surface_velocity: Vec3::X * 1.5, ..Material::DEFAULT };

@@ -1,4 +1,4 @@
-//! Flinches, falls, and what lies between: drives of a character.
+//! Reactions to hits: flinches, falls, and partial drives of a character.
 
 use crate::actor::{shared, walker};
 use crate::in_world::{level, run};
@@ -18,7 +18,7 @@ fn walking(def: &Arc<CharacterDef>) -> (World, Character) {
     (world, character)
 }
 
-/// Places of all joints that have bodies, in the world.
+/// World positions of all joints that have bodies.
 fn places(character: &Character) -> Vec<Vec3> {
     let def = character.def();
     let mut model = Vec::new();
@@ -26,14 +26,14 @@ fn places(character: &Character) -> Vec<Vec3> {
     def.ragdoll.bodies.iter().map(|body| model[body.joint].translation).collect()
 }
 
-/// Farthest that any joint is from where the undisturbed twin has it, metres.
+/// Largest distance of a joint from its place in an undisturbed twin, metres.
 fn apart(one: &Character, twin: &Character) -> f32 {
     let far = |(a, b): (&Vec3, &Vec3)| (*a - *b).length();
     places(one).iter().zip(&places(twin)).map(far).fold(0.0, max)
 }
 
 #[test]
-fn a_hand_that_is_hit_gives_way_and_comes_back_without_a_pop() {
+fn hit_hand_yields_and_returns_smoothly() {
     let def = shared(walker());
     let hand = def.body_named("rightHand").expect("it has hands");
     let (mut world, mut character) = walking(&def);
@@ -49,7 +49,7 @@ fn a_hand_that_is_hit_gives_way_and_comes_back_without_a_pop() {
         let off = apart(&character, &twin);
         most = max(most, off);
         if step >= 60 {
-            assert!(off < 2e-3, "after {step} steps {off} m are left");
+            assert!(off < 2e-3, "after {step} steps it is still {off} m off");
         }
         seen.rotate_left(1);
         seen[2] = places(&character).iter().zip(&places(&twin)).map(|(a, b)| *a - *b).collect();
@@ -61,15 +61,15 @@ fn a_hand_that_is_hit_gives_way_and_comes_back_without_a_pop() {
         last = Some((places(&character), places(&twin)));
     }
     assert_eq!(character.state(), State::Animated);
-    assert!(most > 0.05, "the hand gives way by {most} m");
-    assert!(jump < 60.0, "coming back it is accelerated by {jump} m/s² beyond its clip");
+    assert!(most > 0.05, "the hand moves {most} m");
+    assert!(jump < 60.0, "on its way back its acceleration exceeds the clip's by {jump} m/s²");
     let way = character.world_from_character().translation - twin.world_from_character().translation;
-    assert!(way.length() < 1e-3, "it walked on: {way}");
+    assert!(way.length() < 1e-3, "the walk was interrupted: {way}");
 }
 
-/// A walker along a wall a hand's breadth from its hand, which is struck toward it.
+/// A character walks along a wall 10 cm from its hand, and the hand is hit toward the wall.
 #[test]
-fn an_arm_is_in_a_wall_no_longer_than_the_blow_takes() {
+fn arm_hit_into_a_wall_leaves_it_at_once() {
     let def = shared(walker());
     let hand = def.body_named("rightHand").expect("it has hands");
     let (mut world, mut character) = walking(&def);
@@ -97,14 +97,15 @@ fn an_arm_is_in_a_wall_no_longer_than_the_blow_takes() {
         deepest = max(deepest, beside(&character) - face);
         inside += u32::from(beside(&character) > face);
     }
-    assert!(would > 0.05, "without a wall it goes {would} m beyond it");
-    assert!(inside <= 6 && deepest < 0.02, "it is inside for {inside} steps, by {deepest} m");
+    assert!(would > 0.05, "without a wall it would go {would} m beyond it");
+    assert!(inside <= 6 && deepest < 0.02, "the hand is inside for {inside} steps, up to {deepest} m");
     assert_eq!(character.state(), State::Animated);
 }
 
-/// Who is led by code stands where a wall stops it, with hands and feet on its side. (By its clips it would walk on the spot, hands in the wall.)
+/// A code-driven character stops at a wall, with hands and feet on its own side. (Driven by its clips, it would walk on
+/// the spot with its hands in the wall.)
 #[test]
-fn limbs_stay_on_this_side_of_a_wall_that_is_walked_against() {
+fn limbs_stay_out_of_a_wall_that_stops_the_walk() {
     let mut def = walker();
     let motions = def.motions().clone();
     def.set_motions(MotionSet { idle: Some(1), ..motions }).expect("they could be played before");
@@ -120,10 +121,11 @@ fn limbs_stay_on_this_side_of_a_wall_that_is_walked_against() {
         deepest = places(&character).iter().map(|at| at.z - 2.0).fold(deepest, max);
     }
     assert!(deepest < 0.005, "{deepest} m in the wall");
-    assert!(character.world_from_character().translation.z > 1.65, "it stands at the wall");
+    assert!(character.world_from_character().translation.z > 1.65, "it reaches the wall");
 }
 
-/// Who goes as its clips do walks on the spot where a wall stops it, a hand in it as it swings ahead, unless its mover is as wide as its limbs sweep.
+/// A clip-driven character that a wall stops walks on the spot, and a hand enters the wall as it swings forward, unless
+/// the mover is as wide as the swing of the limbs.
 #[test]
 fn a_mover_as_wide_as_the_limbs_sweep_keeps_them_out_of_a_wall() {
     let deepest = |wide: bool| {
@@ -150,7 +152,7 @@ fn a_mover_as_wide_as_the_limbs_sweep_keeps_them_out_of_a_wall() {
 }
 
 #[test]
-fn thresholds_decide_between_flinch_and_fall() {
+fn impulse_thresholds_decide_between_flinch_and_fall() {
     let fells = |toughness: Toughness, size: f32| {
         let mut def = walker();
         def.in_world.toughness = toughness;
@@ -169,7 +171,7 @@ fn thresholds_decide_between_flinch_and_fall() {
 }
 
 #[test]
-fn a_shot_finds_the_limb_and_it_may_be_felled_while_it_flinches() {
+fn hit_by_a_ray_flinches_the_limb_and_a_second_hit_fells() {
     let def = shared(walker());
     let (mut world, mut character) = walking(&def);
     let at = places(&character)[def.body_named("head").expect("it has a head")] + Vec3::Y * 0.1;
@@ -181,7 +183,7 @@ fn a_shot_finds_the_limb_and_it_may_be_felled_while_it_flinches() {
     let events = run(&mut world, &mut character, 8);
     let head = hit.body;
     let flinched = CharacterEvent::Flinched { body: character.body_index(head).expect("it is its own") };
-    assert_eq!(events, [flinched], "told once, and of nothing else");
+    assert_eq!(events, [flinched], "one event, and no other");
     let floor = world.body_ids().next().expect("the floor");
     let other = sinew_physics::BodyHit { body: floor, ..hit };
     assert!(character.hit_at(&mut world, &other, Vec3::Z).is_none(), "not of this character");
@@ -193,7 +195,7 @@ fn a_shot_finds_the_limb_and_it_may_be_felled_while_it_flinches() {
 }
 
 #[test]
-fn an_active_ragdoll_takes_few_lines_and_stands_a_push() {
+fn active_ragdoll_tracks_its_clips_and_withstands_a_push() {
     let def = shared(walker());
     let (mut world, mut character) = walking(&def);
     character.set_preset(&mut world, Preset::Powered);
@@ -205,7 +207,7 @@ fn an_active_ragdoll_takes_few_lines_and_stands_a_push() {
         (world, twin)
     };
     let off = apart(&character, &twin);
-    assert!(off < 0.15, "powered it walks as its clips do, to within {off} m");
+    assert!(off < 0.15, "powered, it is {off} m off its clips");
     character.hit(&mut world, 2, Vec3::X * 25.0);
     let events = run(&mut world, &mut character, 120);
     assert_eq!(character.state(), State::Powered, "{events:?}");
@@ -217,7 +219,7 @@ fn an_active_ragdoll_takes_few_lines_and_stands_a_push() {
 }
 
 #[test]
-fn one_part_can_be_driven_otherwise() {
+fn one_part_can_have_another_drive() {
     let def = shared(walker());
     let (mut world, mut character) = walking(&def);
     let (mut twin_world, mut twin) = walking(&def);
@@ -236,14 +238,14 @@ fn one_part_can_be_driven_otherwise() {
 
 #[test]
 #[should_panic(expected = "no body is called 'tail'")]
-fn a_part_that_is_not_there_is_named() {
+fn unknown_part_is_named_in_the_panic() {
     let def = shared(walker());
     let (mut world, mut character) = walking(&def);
     character.set_drive(&mut world, Part::Named("tail"), DriveMode::Limp, 0.0);
 }
 
 #[test]
-fn a_renderer_gets_its_matrices() {
+fn skin_matrices_map_the_bind_pose_to_the_current_pose() {
     let def = shared(walker());
     let (mut world, mut character) = walking(&def);
     run(&mut world, &mut character, 7);
@@ -253,7 +255,7 @@ fn a_renderer_gets_its_matrices() {
     }
     assert_eq!(character.interpolated(1.0, &mut pose), character.world_from_character());
     assert_eq!(palettes[0].len(), def.rig.skins[0].joints.len());
-    // The bind pose's place of each joint goes to where the joint is now: rows, translation last.
+    // The joint's position in the bind pose is mapped to its current position: rows, translation last.
     let mut model = Vec::new();
     sinew_anim::local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
     let skin = &def.rig.skins[0];
@@ -270,7 +272,7 @@ fn a_renderer_gets_its_matrices() {
 }
 
 #[test]
-fn the_preset_of_a_flinch_gives_way_all_over_and_comes_back() {
+fn flinch_preset_moves_the_body_and_returns() {
     let mut def = walker();
     def.in_world.toughness = Toughness::None;
     let def = shared(def);
@@ -288,12 +290,13 @@ fn the_preset_of_a_flinch_gives_way_all_over_and_comes_back() {
     assert!(most > 0.01 && apart(&character, &twin) < 2e-3, "{most} m, then {}", apart(&character, &twin));
 }
 
-/// Speed of the fastest body, m/s.
+/// Largest speed of a body, m/s.
 fn fastest(world: &World, character: &Character) -> f32 {
     character.bodies().iter().map(|&body| world.velocity(body).linear.length()).fold(0.0, max)
 }
 
-/// Lets it fall by a blow after it flinched, up to the first moment of a state; and its fastest body since it lay.
+/// Hits it while it flinches so that it falls, then runs until `state`. Returns the largest body speed since it came to
+/// rest.
 fn until(world: &mut World, character: &mut Character, state: State) -> f32 {
     let mut most = 0.0;
     for step in 0..900 {
@@ -305,11 +308,11 @@ fn until(world: &mut World, character: &mut Character, state: State) -> f32 {
             return most;
         }
     }
-    panic!("it never came to {state:?}");
+    panic!("it never entered {state:?}");
 }
 
 #[test]
-fn who_flinched_and_fell_is_rolled_over_gently() {
+fn fallen_flinching_character_is_rolled_over_slowly() {
     let def = shared(walker());
     let chest = def.body_named("chest").expect("it has a chest");
     let (mut world, mut character) = walking(&def);
@@ -318,11 +321,11 @@ fn who_flinched_and_fell_is_rolled_over_gently() {
     assert_eq!(character.state(), State::Flinching);
     character.hit(&mut world, chest, Vec3::new(90.0, 0.0, 30.0));
     let most = until(&mut world, &mut character, State::GettingUp);
-    assert!(most < 9.0, "a body goes at {most} m/s on its way to where the clip begins");
+    assert!(most < 9.0, "a body moves at {most} m/s toward the start of the clip");
 }
 
 #[test]
-fn who_gets_up_stands_more_near_the_ground() {
+fn hit_threshold_is_higher_while_getting_up_near_the_ground() {
     let def = shared(walker());
     let chest = def.body_named("chest").expect("it has a chest");
     let (mut world, mut character) = walking(&def);
@@ -330,7 +333,7 @@ fn who_gets_up_stands_more_near_the_ground() {
     until(&mut world, &mut character, State::GettingUp);
     character.hit(&mut world, chest, Vec3::X * 60.0);
     run(&mut world, &mut character, 1);
-    assert_eq!(character.state(), State::GettingUp, "60 N·s fell who stands, not who lies");
+    assert_eq!(character.state(), State::GettingUp, "60 N·s fell a standing character, not a lying one");
     character.hit(&mut world, chest, Vec3::X * 200.0);
     assert_eq!(character.state(), State::Limp);
     until(&mut world, &mut character, State::Animated);
@@ -339,7 +342,7 @@ fn who_gets_up_stands_more_near_the_ground() {
 }
 
 #[test]
-fn who_gets_up_turns_as_it_stands() {
+fn character_turns_to_its_heading_while_getting_up() {
     let def = shared(walker());
     let chest = def.body_named("chest").expect("it has a chest");
     let mut speeds = [0.0; 2];
@@ -358,8 +361,8 @@ fn who_gets_up_turns_as_it_stands() {
         until(&mut world, &mut character, State::Animated);
         run(&mut world, &mut character, 60);
         let turned = (character.world_from_character().rotation * Vec3::Z).dot(heading);
-        assert!(!faces || turned < -0.9, "it looks there once it stands: {turned}");
+        assert!(!faces || turned < -0.9, "it faces the wanted way once it stands: {turned}");
     }
     let [free, facing] = speeds;
-    assert!(facing < 1.2 * free + 0.5, "{facing} m/s as it turns, {free} where it does not");
+    assert!(facing < 1.2 * free + 0.5, "{facing} m/s while turning, {free} without");
 }

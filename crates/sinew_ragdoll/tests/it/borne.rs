@@ -1,22 +1,22 @@
-//! A box on a cloth that heavy blocks hold sleeps and wakes with both.
+//! A box rests on a cloth that is held by two heavy blocks. It falls asleep and wakes together with them.
 
 use crate::actor::floor;
 use sinew_math::Vec3;
 use sinew_physics::particles::{AttachmentTarget, ClothDef};
 use sinew_physics::{BodyDef, BodyId, GroupId, Shape, ShapeDef, World, WorldDef};
 
-/// Half of a block that holds an edge, metres, and its mass, kg.
+/// Half extents (metres) and mass (kg) of a block that holds an edge.
 const BLOCK: Vec3 = Vec3::new(1.3, 0.3, 0.5);
 const BLOCK_MASS: f32 = 2000.0;
-/// From block to block, length and width of the cloth, metres: it hangs through.
+/// Gap between the blocks, and length and width of the cloth, metres. The cloth is longer than the gap and sags.
 const GAP: f32 = 1.0;
 const LENGTH: f32 = 2.4;
 const WIDTH: f32 = 1.2;
-/// Half of what lies on it, metres, and its mass, kg. Of 15 kg and more the blocks creep apart, and nothing sleeps.
+/// Half extents (metres) and mass (kg) of the load. From 15 kg the blocks creep apart, and nothing falls asleep.
 const LOAD: Vec3 = Vec3::new(0.7, 0.1, 0.2);
 const LOAD_MASS: f32 = 5.0;
 
-/// Two blocks on a floor, a cloth between them like a hammock, and a load on it.
+/// Two blocks on a floor, a cloth hung between them, and a load on the cloth.
 #[derive(Clone)]
 struct Hammock {
     world: World,
@@ -57,7 +57,7 @@ impl Hammock {
             let center = world.center_of_mass(body);
             for particle in cloth.row(row) {
                 let place = &mut cloth.group.particles[particle as usize].position;
-                // Over the inner edge, which it does not touch.
+                // Moved over the inner edge of the block, without contact.
                 *place = Vec3::new(place.x, top + 0.03, 0.5 * GAP * place.z.signum());
                 let point = *place - center;
                 cloth.group.hold(particle, AttachmentTarget::Body { body, point });
@@ -69,7 +69,7 @@ impl Hammock {
         Self { world, bodies: [left, right, load], cloth }
     }
 
-    /// Number of bodies and groups that are awake, of four.
+    /// Number of bodies and particle groups that are awake, out of four.
     fn awake(&self) -> usize {
         let bodies = self.bodies.iter().filter(|&&id| self.world.is_awake(id)).count();
         bodies + usize::from(self.world.particles(self.cloth).is_awake())
@@ -82,21 +82,24 @@ impl Hammock {
 }
 
 #[test]
-fn what_lies_on_a_held_cloth_sleeps_and_wakes_with_it() {
+fn load_on_a_held_cloth_sleeps_and_wakes_with_it() {
     let mut hammock = Hammock::new();
     let mut steps = 0;
     while hammock.awake() > 0 {
-        assert_eq!(hammock.awake(), 4, "together, step {steps}");
+        assert_eq!(hammock.awake(), 4, "only some are asleep, step {steps}");
         hammock.world.step();
         steps += 1;
-        assert!(steps < 1200, "it comes to rest");
+        assert!(steps < 1200, "it never comes to rest");
     }
     let places = hammock.places();
     let load = places[2];
-    assert!(load.x.abs() < 0.1 && load.z.abs() < 0.1 && load.y < 2.0 * BLOCK.y, "it lies on it, at {load}");
+    assert!(
+        load.x.abs() < 0.1 && load.z.abs() < 0.1 && load.y < 2.0 * BLOCK.y,
+        "the load is off the cloth, at {load}"
+    );
     for step in 0..600 {
         hammock.world.step();
-        assert_eq!(hammock.awake(), 0, "step {step} of their sleep");
+        assert_eq!(hammock.awake(), 0, "awake after {step} steps of sleep");
     }
     assert_eq!(hammock.places(), places);
     let wakes = |what: &str, hit: &dyn Fn(&mut Hammock)| {

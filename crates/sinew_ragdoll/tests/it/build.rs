@@ -1,4 +1,4 @@
-//! From files to definitions: bodies, masses, invariances.
+//! Ragdoll definitions built from files: bodies, masses and invariants.
 
 use crate::data::rig;
 use needs_data::needs_data;
@@ -33,7 +33,7 @@ fn body(def: &RagdollDef, role: &str) -> usize {
     def.bodies.iter().position(|body| body.role == role).unwrap_or_else(|| panic!("no {role}"))
 }
 
-/// Checks what every definition must be, whatever the rig.
+/// Checks invariants that hold for the definition of any rig.
 pub fn check_sound(name: &str, def: &RagdollDef) {
     assert!(!def.bodies.is_empty(), "{name}");
     assert_eq!(def.joints.len() + 1, def.bodies.len(), "{name}");
@@ -48,16 +48,16 @@ pub fn check_sound(name: &str, def: &RagdollDef) {
         assert!(joint.friction_torque > 0.0 && joint.friction_torque.is_finite(), "{name} joint {i}");
     }
     for body in &def.bodies {
-        let who = format!("{name} {}", body.role);
-        assert_eq!(body.shape.check(), Ok(()), "{who}");
-        assert!(body.shape.smallest_extent() >= 0.0149, "{who}: {:?}", body.shape);
-        assert!(body.character_from_body.is_finite(), "{who}");
-        assert!(body.mass.mass > 0.0 && body.mass.mass.is_finite(), "{who}");
+        let label = format!("{name} {}", body.role);
+        assert_eq!(body.shape.check(), Ok(()), "{label}");
+        assert!(body.shape.smallest_extent() >= 0.0149, "{label}: {:?}", body.shape);
+        assert!(body.character_from_body.is_finite(), "{label}");
+        assert!(body.mass.mass > 0.0 && body.mass.mass.is_finite(), "{label}");
         let (distance, _) = body.shape.signed_distance(&sinew_math::Transform::IDENTITY, body.mass.center);
-        assert!(distance < 0.0, "{who}: centre of mass {distance} m outside");
+        assert!(distance < 0.0, "{label}: centre of mass {distance} m outside");
         let (moments, _) = body.mass.inertia.eigen();
-        assert!(moments.z > 0.0 && moments.x <= 8.01 * moments.z, "{who}: {moments}");
-        assert!(moments.x <= 1.001 * (moments.y + moments.z), "{who}: {moments}");
+        assert!(moments.z > 0.0 && moments.x <= 8.01 * moments.z, "{label}: {moments}");
+        assert!(moments.x <= 1.001 * (moments.y + moments.z), "{label}: {moments}");
     }
     let sum: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
     assert!((sum - def.total_mass).abs() <= 1e-5 * def.total_mass, "{name}: {sum} of {}", def.total_mass);
@@ -68,7 +68,7 @@ pub fn check_sound(name: &str, def: &RagdollDef) {
 
 #[needs_data]
 #[test]
-fn people_have_the_bodies_of_people() {
+fn human_rigs_get_human_bodies_and_masses() {
     for name in PEOPLE {
         let rig = rig(name);
         let (def, report) = built(&rig, &BuildOptions { mass: Some(75.0), ..BuildOptions::default() });
@@ -93,7 +93,7 @@ fn people_have_the_bodies_of_people() {
 
 #[needs_data]
 #[test]
-fn odd_rigs_are_sound_too() {
+fn unusual_rigs_give_valid_definitions() {
     for name in OTHERS {
         let rig = rig(name);
         for shapes in [ShapeChoice::Auto, ShapeChoice::Box, ShapeChoice::Capsule] {
@@ -107,7 +107,7 @@ fn odd_rigs_are_sound_too() {
 
 #[needs_data]
 #[test]
-fn sex_and_mass_are_heeded() {
+fn sex_and_mass_options_are_applied() {
     let rig = rig("mannequiny.glb");
     let of = |sex, mass| built(&rig, &BuildOptions { sex, mass, ..BuildOptions::default() }).0;
     let (man, woman) = (of(Sex::Male, None), of(Sex::Female, None));
@@ -120,7 +120,7 @@ fn sex_and_mass_are_heeded() {
 
 #[needs_data]
 #[test]
-fn refuses_what_it_cannot_build() {
+fn rig_without_skin_is_rejected() {
     let rig = rig("SimpleSkin.gltf");
     let analysis = analyze(&rig).expect("a skin");
     let bare = Rig { skins: Vec::new(), ..rig.clone() };

@@ -1,4 +1,4 @@
-//! Joint limits in anatomical terms, on skeletons made by hand: which way knees bend, where cones point.
+//! Joint limits in anatomical terms, on hand-made skeletons: the direction in which knees bend and limit cones point.
 
 use sinew_anim::roles::{Role, Side};
 use sinew_math::{Range, Rotation, Transform, Vec3, limits::hinge_angle, trig};
@@ -32,7 +32,7 @@ fn person(drop: f32) -> Bones {
     Bones::new(list, Anatomy::Human, 1.75)
 }
 
-/// Bodies whose frames are turned at random: limits must not depend on them.
+/// Fitted bodies with random frame rotations: limits must not depend on them.
 fn fits(bones: &Bones) -> Vec<Fit> {
     (0..bones.list.len())
         .map(|i| {
@@ -69,7 +69,7 @@ fn at_bind(bones: &Bones, plan: &JointPlan) -> (Rotation, Rotation) {
     (parent.inverse() * child, parent)
 }
 
-/// Position of a point carried by the child when the joint rotation becomes `joint`, character space.
+/// Returns where a point attached to the child is when the joint rotation is `joint`, in character space.
 fn moved(bones: &Bones, child: usize, joint: Rotation, point: Vec3) -> Vec3 {
     let plan = &plans(bones)[child - 1];
     let (bind, parent) = at_bind(bones, plan);
@@ -107,7 +107,7 @@ fn knees_bend_backward_and_elbows_forward() {
 }
 
 #[test]
-fn hinges_keep_the_table_in_absolute_terms() {
+fn hinge_limits_equal_the_table() {
     let bones = person(0.7);
     let plans = plans(&bones);
     let knee = &plans[index(&bones, Role::LowerLeg(Side::Left)) - 1];
@@ -117,7 +117,7 @@ fn hinges_keep_the_table_in_absolute_terms() {
 }
 
 #[test]
-fn a_bent_bind_pose_is_counted_from_straight() {
+fn hinge_angle_of_a_bent_bind_pose_counts_from_straight() {
     let mut bones = person(0.7);
     // The left shank points 30° backward.
     let knee = index(&bones, Role::LowerLeg(Side::Left));
@@ -131,7 +131,7 @@ fn a_bent_bind_pose_is_counted_from_straight() {
 }
 
 #[test]
-fn hips_reach_forward_and_hardly_back() {
+fn hips_reach_farther_forward_than_back() {
     let bones = person(0.7);
     for side in [Side::Left, Side::Right] {
         let thigh = index(&bones, Role::UpperLeg(side));
@@ -195,7 +195,8 @@ fn right_is_the_mirror_image_of_left() {
             }
             other => panic!("unlike kinds {other:?}"),
         }
-        // An axis of rotation keeps its x and turns its other parts round in the mirror; so does a rotation's vector.
+        // A mirror keeps the x component of an axis of rotation and negates the others; likewise for a rotation's
+        // vector part.
         let (a, b) = (at_bind(&bones, &plans[bone - 1]).1, at_bind(&bones, &plans[twin - 1]).1);
         let along = |frame: Rotation| frame * Vec3::X;
         let mirrored = if matches!(l.kind, JointKind::Hinge { .. }) {
@@ -208,7 +209,7 @@ fn right_is_the_mirror_image_of_left() {
 }
 
 #[test]
-fn every_bind_pose_is_inside_its_limits() {
+fn every_bind_pose_is_within_the_limits() {
     for drop in [-1.5, -0.5, 0.0, 0.7, 1.5] {
         let bones = person(drop);
         for plan in plans(&bones) {
@@ -224,10 +225,10 @@ fn every_bind_pose_is_inside_its_limits() {
     }
 }
 
-/// 5 kg whose middle is 0.1 m below the joint, 3 kg 0.4 m above it: the joint need carry no more than the lesser of the two
-/// moments, and resists with a fifth of that, or with the table's torque where that is more.
+/// 5 kg centred 0.1 m below the joint and 3 kg 0.4 m above it: the joint carries at most the smaller of the two
+/// moments. Its friction is a fifth of that, or the table's torque if that is larger.
 #[test]
-fn a_creatures_joint_resists_by_what_it_carries() {
+fn creature_joint_friction_follows_the_carried_moment() {
     let list = vec![
         Bone::new(0, Role::SpineSegment(0), None, Vec3::ZERO),
         Bone::new(1, Role::SpineSegment(1), Some(0), Vec3::Y),

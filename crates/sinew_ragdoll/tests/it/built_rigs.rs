@@ -1,12 +1,12 @@
-//! Rigs of boxes, put together in code: a human, a dog, a beetle.
+//! Rigs of boxes built in code: a human, a dog, a beetle.
 
 use sinew_anim::{Joint, LocalTransform, Primitive, Rig, RigMesh, Skin};
 use sinew_math::{Affine, Vec3};
 
-/// Name, name of the parent, place of the joint, lowest and highest corner of its box, metres.
+/// Name, parent's name, joint position, lowest and highest corner of its box; metres.
 type Bone = (&'static str, &'static str, [f32; 3], [f32; 3], [f32; 3]);
 
-/// The parts of the left side, +X; each has an image on the right, whose name has `R` for the last `L`.
+/// Parts of the centre and the left side (+X). Each left part is mirrored; the mirrored name has `R` for the last `L`.
 struct Figure {
     middle: &'static [Bone],
     left: &'static [Bone],
@@ -116,7 +116,7 @@ impl Boxes {
             self.skin.joints.push([slot, 0, 0, 0]);
             self.skin.weights.push([1.0, 0.0, 0.0, 0.0]);
         }
-        // Outward, and turned over in a mirror.
+        // Outward faces; a mirror reverses their winding.
         let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         for [p, q, r, s] in faces {
             let (q, s) = if mirrored { (s, q) } else { (q, s) };

@@ -1,4 +1,4 @@
-//! The state machine.
+//! The state machine of a character.
 
 use crate::actor::{floor, in_centimetres_and_z_up, kaykit, shared, somewhere, walker};
 use needs_data::needs_data;
@@ -17,7 +17,7 @@ fn world() -> World {
     world
 }
 
-/// Steps until `done`, at most `seconds`; all events with their times.
+/// Steps until `done`, at most `seconds`. Returns all events with their times.
 fn run_until(
     world: &mut World,
     character: &mut Character,
@@ -34,7 +34,7 @@ fn run_until(
     events
 }
 
-/// Place of a joint in the world, metres.
+/// World position of a joint, metres.
 fn place_of(character: &Character, name: &str) -> Vec3 {
     let def = character.def();
     let joint = def.rig.joints.iter().position(|joint| joint.name == name).expect("the joint is there");
@@ -54,7 +54,7 @@ fn knocked_over(def: &Arc<CharacterDef>, impulse: Vec3) -> (World, Character) {
 }
 
 #[test]
-fn walks_at_its_speed() {
+fn character_walks_at_its_speed() {
     let def = shared(walker());
     let mut world = world();
     let mut character = Character::new(def, somewhere(), 0.0);
@@ -66,7 +66,7 @@ fn walks_at_its_speed() {
 }
 
 #[test]
-fn falls_lies_still_gets_up_and_walks_on() {
+fn character_falls_settles_gets_up_and_walks_on() {
     let def = shared(walker());
     let (mut world, mut character) = knocked_over(&def, Vec3::new(60.0, 0.0, 30.0));
     assert_eq!(character.state(), State::Limp);
@@ -74,7 +74,7 @@ fn falls_lies_still_gets_up_and_walks_on() {
     let events = run_until(&mut world, &mut character, 12.0, |c| c.state() == State::Animated);
     let needed = events.iter().filter(|(_, event)| !matches!(event, CharacterEvent::Preparing { .. }));
     let kinds: Vec<_> = needed.map(|(_, event)| core::mem::discriminant(event)).collect();
-    // What the hit brought about is told by the update after it.
+    // Events caused by the hit are reported by the next update.
     let expected = [
         CharacterEvent::WentLimp,
         CharacterEvent::Hit { body: 0 },
@@ -84,9 +84,9 @@ fn falls_lies_still_gets_up_and_walks_on() {
         CharacterEvent::Up,
     ];
     assert_eq!(kinds, expected.map(|event| core::mem::discriminant(&event)), "{events:?}");
-    assert_eq!(world.body_ids().count(), 1, "its bodies are gone");
+    assert_eq!(world.body_ids().count(), 1, "its bodies are removed");
     assert!(place_of(&character, "head").y > 1.3);
-    // It takes a moment to get going: no one starts to walk at full speed.
+    // It accelerates gradually: it does not start at full walking speed.
     run_until(&mut world, &mut character, 0.35, |_| false);
     let before = character.world_from_character().translation;
     run_until(&mut world, &mut character, 1.0, |_| false);
@@ -95,7 +95,7 @@ fn falls_lies_still_gets_up_and_walks_on() {
 }
 
 #[test]
-fn picks_the_clip_by_the_side_it_lies_on() {
+fn get_up_clip_matches_the_lying_side() {
     let def = shared(walker());
     let mut clear = [0, 0];
     for impulse in [-90.0, 90.0, 40.0, -40.0] {
@@ -106,20 +106,20 @@ fn picks_the_clip_by_the_side_it_lies_on() {
         let Some(&CharacterEvent::GettingUp { clip: Some(clip) }) =
             character.events().iter().find(|event| matches!(event, CharacterEvent::GettingUp { .. }))
         else {
-            panic!("it gets up by a clip: {:?}", character.events());
+            panic!("it got up without a clip: {:?}", character.events());
         };
         let name = &def.motions().clips[clip].name;
         let up = pelvis_forward(&character).y;
-        // Between the two the limbs decide.
+        // For other orientations the limbs decide.
         if up.abs() > 0.3 {
             assert_eq!(name.contains("supine"), up > 0.0, "{name}, lying {up}");
             clear[usize::from(up > 0.0)] += 1;
         }
     }
-    assert!(clear.iter().all(|&falls| falls > 0), "it falls on its back and on its face: {clear:?}");
+    assert!(clear.iter().all(|&falls| falls > 0), "it never fell on one of the two sides: {clear:?}");
 }
 
-/// The direction in which the pelvis looks.
+/// Direction in which the pelvis faces.
 fn pelvis_forward(character: &Character) -> Vec3 {
     let def = character.def();
     let mut model = Vec::new();
@@ -130,7 +130,7 @@ fn pelvis_forward(character: &Character) -> Vec3 {
 }
 
 #[test]
-fn no_joint_jumps_at_any_change_of_state() {
+fn no_joint_jumps_on_state_changes() {
     let def = shared(walker());
     let (mut world, mut character) = knocked_over(&def, Vec3::new(-20.0, 0.0, 70.0));
     let joints = ["hips", "head", "leftHand", "rightFoot", "rightLowerLeg"];
@@ -150,7 +150,7 @@ fn no_joint_jumps_at_any_change_of_state() {
 }
 
 #[test]
-fn stays_down_if_told_to() {
+fn character_set_to_stay_down_stays_down() {
     let mut def = walker();
     def.after_settling = AfterSettling::StayDown;
     let def = shared(def);
@@ -161,7 +161,7 @@ fn stays_down_if_told_to() {
 }
 
 #[test]
-fn stands_up_without_a_clip() {
+fn character_stands_up_without_a_clip() {
     let mut def = walker();
     let motions = MotionSet { get_ups: Vec::new(), ..def.motions().clone() };
     def.set_motions(motions).expect("they could be played before");
@@ -173,7 +173,7 @@ fn stands_up_without_a_clip() {
 }
 
 #[test]
-fn follows_stairs_down() {
+fn character_follows_stairs_down() {
     let def = shared(walker());
     let mut world = world();
     for step in 0..4 {
@@ -192,7 +192,7 @@ fn follows_stairs_down() {
 }
 
 #[test]
-fn a_restored_character_goes_on_as_the_original() {
+fn restored_character_continues_identically() {
     let def = shared(walker());
     for seconds in [0.3, 1.0, 3.4, 5.0] {
         let (mut world, mut character) = knocked_over(&def, Vec3::new(60.0, 0.0, 30.0));
@@ -222,7 +222,7 @@ fn a_restored_character_goes_on_as_the_original() {
 }
 
 #[test]
-fn clips_that_get_it_up_are_told_by_what_they_do() {
+fn get_up_clips_are_recognised_by_their_motion() {
     let def = walker();
     let mut clips = def.motions().clips.clone();
     let expected = def.motions().get_ups.clone();
@@ -232,12 +232,12 @@ fn clips_that_get_it_up_are_told_by_what_they_do() {
     }
     assert_eq!(def.get_ups_among(&clips), expected, "by what they do");
     clips[0].name = "Rig|Stand-Up".into();
-    assert_eq!(def.get_ups_among(&clips), [0, expected[0], expected[1]], "the user knows best");
+    assert_eq!(def.get_ups_among(&clips), [0, expected[0], expected[1]], "the user's choice has priority");
 }
 
 #[test]
-fn what_no_body_moves_goes_on_living() {
-    // A finger on a hand and a face on the head, which wave; and a toe, which does not.
+fn joints_without_bodies_keep_their_secondary_motion() {
+    // A finger on a hand that sways in all clips, and toes, which no clip moves.
     let def = waving();
     let mut world = world();
     let mut character = Character::new(def.clone(), somewhere(), 0.0);
@@ -257,18 +257,18 @@ fn what_no_body_moves_goes_on_living() {
         way += last.angle_to(now);
         last = now;
         steps += 1;
-        // What they did last has died away then.
+        // Their last motion has decayed by then.
         if character.state() == State::Limp && steps > 20 {
             let now = character.pose()[toes].rotation;
-            assert_eq!(*frozen.get_or_insert(now), now, "toes do not walk lying down");
+            assert_eq!(*frozen.get_or_insert(now), now, "toes move while it lies");
         }
     }
-    // It sways by 0.5 rad either way once a lap of about a second: 2 rad a lap, and never much faster than π rad/s.
-    assert!(way > 1.0, "the finger went {way} rad");
+    // It sways 0.5 rad to either side once per cycle of about a second: 2 rad per cycle, at most about π rad/s.
+    assert!(way > 1.0, "the finger turned {way} rad");
     assert!(step < 1.1 * core::f32::consts::PI / 60.0, "it jumped by {step} rad");
 }
 
-/// The walker with a finger that sways in all of its clips.
+/// The walker with an extra finger that sways in all of its clips.
 fn waving() -> Arc<CharacterDef> {
     let plain = walker();
     let mut rig = plain.rig.clone();
@@ -293,15 +293,15 @@ fn waving() -> Arc<CharacterDef> {
 }
 
 #[test]
-fn a_hit_on_the_way_up_knocks_it_over_again() {
+fn hit_while_getting_up_knocks_it_over_again() {
     let def = shared(walker());
     for wanted in [State::Preparing, State::GettingUp] {
-        // Onto its side.
+        // Pushed to fall onto its side.
         let side = somewhere().rotation * Vec3::X;
         let (mut world, mut character) = knocked_over(&def, side * 90.0);
         run_until(&mut world, &mut character, 9.0, |c| c.state() == wanted);
         if character.state() != wanted {
-            // It fell so that it need not be rolled over.
+            // It has fallen so that it need not be rolled over.
             assert_eq!(wanted, State::Preparing);
             continue;
         }
@@ -311,7 +311,7 @@ fn a_hit_on_the_way_up_knocks_it_over_again() {
         assert!(character.events().contains(&CharacterEvent::WentLimp), "{:?}", character.events());
         let events = run_until(&mut world, &mut character, 12.0, |c| c.state() == State::Animated);
         assert!(events.iter().any(|(_, event)| *event == CharacterEvent::Up), "{events:?}, {bodies} bodies");
-        assert_eq!(world.body_ids().count(), 1, "its bodies are gone, and what drove them");
+        assert_eq!(world.body_ids().count(), 1, "its bodies and their drives are removed");
     }
 }
 
@@ -338,7 +338,7 @@ fn a_powered_fall_keeps_more_of_its_pose() {
     assert!(powered < 0.6 * limp, "off by {powered} rad on the mean, limp by {limp}");
 }
 
-/// Joints in character space, metres, as a clip of the set has them.
+/// Character-space joint positions (metres) in a clip of the set.
 fn places(def: &CharacterDef, clip: ClipId, time: f32) -> Vec<Vec3> {
     let clip = &def.set().clip(clip).clip;
     let mut pose = Pose::new(clip.joints());
@@ -349,7 +349,7 @@ fn places(def: &CharacterDef, clip: ClipId, time: f32) -> Vec<Vec3> {
     model.iter().map(|joint| joint.translation).collect()
 }
 
-/// The name of the same joint on the other side.
+/// The name of the corresponding joint on the other side.
 fn other_side(name: &str) -> String {
     let sides = [("left", "right"), ("right", "left")];
     let ends = [(".l", ".r"), (".r", ".l")];
@@ -359,13 +359,13 @@ fn other_side(name: &str) -> String {
 }
 
 #[test]
-fn every_get_up_is_there_as_a_mirror_shows_it() {
+fn every_get_up_has_a_mirrored_clip() {
     check_mirrors("file", &in_centimetres_and_z_up());
 }
 
 #[needs_data]
 #[test]
-fn every_get_up_of_kaykit_is_there_as_a_mirror_shows_it() {
+fn every_kaykit_get_up_has_a_mirrored_clip() {
     check_mirrors("KayKit", &kaykit());
 }
 
@@ -386,7 +386,7 @@ fn check_mirrors(name: &str, def: &CharacterDef) {
             }
         }
     }
-    // Straight lines between 30 poses a second, and what built clips round.
+    // Tolerance: linear interpolation between 30 poses a second, and the rounding of built clips.
     println!("{name}: {worst} m off");
     assert!(worst < 5e-3, "{name}: {worst} m off");
 }
@@ -404,7 +404,7 @@ fn a_character_that_falls_or_lies_allocates_nothing() {
             world.step();
             count += allocation_counter::measure(|| character.update(&mut world)).count_total;
         }
-        // Its events: that it touches, that it has settled.
+        // Allowed allocations: events for a contact and for settling.
         assert!(count <= 1, "{falling:?}: {count} allocations");
     }
 }
@@ -416,7 +416,7 @@ fn a_body_that_is_rolled_over_allocates_nothing() {
     for push in [90.0, -90.0, 60.0] {
         let (mut world, mut character) = knocked_over(&def, somewhere().rotation * Vec3::X * push);
         run_until(&mut world, &mut character, 9.0, |c| c.state() == State::Preparing);
-        // Pins come in the first steps.
+        // Pins are created in the first steps.
         run_until(&mut world, &mut character, 0.2, |c| c.state() != State::Preparing);
         let mut count = 0;
         for _ in 0..20 {

@@ -5,8 +5,8 @@ use sinew_physics::{BodyDef, BodyId, BodyKind, Filter, Shape, ShapeDef, Velocity
 use sinew_ragdoll::{Character, CharacterDef};
 use std::sync::Arc;
 
-/// Half a second.
-const SOON: usize = 30;
+/// Half a second, in steps.
+const HALF_SECOND: usize = 30;
 
 fn deepest(world: &World, character: &Character) -> f32 {
     let statics: Vec<BodyId> = world.body_ids().filter(|&id| world.kind(id) == BodyKind::Static).collect();
@@ -34,7 +34,8 @@ fn limp_at(world: &mut World, def: &Arc<CharacterDef>, place: Transform) -> Char
     character
 }
 
-/// Steps until nothing is deeper than 2 cm in what stands, and the fastest body until then; `None` after two seconds.
+/// Steps until no body is deeper than 2 cm in static bodies. Returns the number of steps and the largest body speed
+/// until then; `None` after two seconds.
 fn out_of_it(world: &mut World, character: &mut Character) -> Option<(usize, f32)> {
     let mut speed = 0.0;
     for step in 0..120 {
@@ -49,7 +50,7 @@ fn out_of_it(world: &mut World, character: &mut Character) -> Option<(usize, f32
 }
 
 #[test]
-fn out_of_the_floor_within_half_a_second() {
+fn limp_character_leaves_the_floor_within_half_a_second() {
     let def = Arc::new(sinew::mannequin::character());
     for (depth, seed) in [0.15, 0.25, 0.4, 0.6, 0.8].into_iter().zip(0..) {
         let mut world = World::new(WorldDef::default());
@@ -57,12 +58,12 @@ fn out_of_the_floor_within_half_a_second() {
         let turn = Rotation::from_axis_angle(Vec3::Y, Random::new(seed).range(0.0, 6.0));
         let mut character = limp_at(&mut world, &def, Transform::new(Vec3::Y * -depth, turn));
         let (step, speed) = out_of_it(&mut world, &mut character).expect("it comes out");
-        assert!(step < SOON && speed <= 2.5, "{depth} m: after {step} steps, {speed} m/s");
+        assert!(step < HALF_SECOND && speed <= 2.5, "{depth} m: after {step} steps, {speed} m/s");
     }
 }
 
 #[test]
-fn out_of_a_wall_on_the_side_that_it_came_from() {
+fn limp_character_leaves_a_wall_on_the_nearer_side() {
     let def = Arc::new(sinew::mannequin::character());
     for seed in 0..20 {
         let mut random = Random::new(seed);
@@ -73,19 +74,19 @@ fn out_of_a_wall_on_the_side_that_it_came_from() {
         character.update(&mut world);
         character.go_limp(&mut world);
         let (step, speed) = out_of_it(&mut world, &mut character).expect("it comes out");
-        assert!(step < SOON && speed <= 2.5, "seed {seed}: after {step} steps, {speed} m/s");
+        assert!(step < HALF_SECOND && speed <= 2.5, "seed {seed}: after {step} steps, {speed} m/s");
         let at = character.bodies().iter().map(|&body| world.transform(body).translation.z);
         let (low, high) =
             at.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), z| (min(low, z), max(high, z)));
-        assert!(low > 0.1 || high < -0.1, "seed {seed}: on both sides, {low} to {high}");
-        // From the middle either side is as near.
+        assert!(low > 0.1 || high < -0.1, "seed {seed}: it is on both sides, {low} to {high}");
+        // From the middle, both sides are equally near.
         assert!(z.abs() < 0.06 || (low > 0.0) == (z > 0.0), "seed {seed}: {z} m, {low} to {high}");
     }
 }
 
-/// A limp one that moves takes the side against its motion, and keeps what of it does not lead into the wall again.
+/// A moving limp character leaves on the side it came from, and its velocity component into the wall is removed.
 #[test]
-fn what_flew_into_a_wall_comes_out_where_it_flew_in() {
+fn moving_character_leaves_a_wall_on_its_entry_side() {
     let def = Arc::new(sinew::mannequin::character());
     for speed in [-3.0f32, 3.0] {
         let mut world = world_with_wall();
@@ -100,13 +101,13 @@ fn what_flew_into_a_wall_comes_out_where_it_flew_in() {
         assert!(character.clear(&mut world) && !character.clear(&mut world));
         let (step, _) = out_of_it(&mut world, &mut character).expect("it comes out");
         let chest = world.transform(character.bodies()[0]).translation.z;
-        assert!(step < SOON && chest * speed < 0.0, "{speed} m/s: after {step} steps at {chest}");
+        assert!(step < HALF_SECOND && chest * speed < 0.0, "{speed} m/s: after {step} steps at {chest}");
     }
 }
 
-/// A character is not moved out of shapes that its filter does not meet.
+/// A character is not moved out of shapes that its filter excludes.
 #[test]
-fn what_it_passes_through_does_not_move_it() {
+fn filtered_shapes_do_not_move_the_character() {
     let def = Arc::new(sinew::mannequin::character());
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -120,9 +121,9 @@ fn what_it_passes_through_does_not_move_it() {
     assert!(character.bodies().iter().all(|&body| world.kind(body) == BodyKind::Dynamic));
 }
 
-/// A snapshot on the way out goes on the same, and so does the character when a limb is cut off there.
+/// A snapshot taken during the way out continues identically, also after a limb is detached there.
 #[test]
-fn a_snapshot_on_the_way_out_has_the_same_future() {
+fn snapshot_during_clearing_continues_identically() {
     let def = Arc::new(sinew::mannequin::character());
     let mut world = world_with_wall();
     let mut character = limp_at(&mut world, &def, Transform::from_translation(Vec3::new(0.0, -0.3, 0.02)));
@@ -137,7 +138,7 @@ fn a_snapshot_on_the_way_out_has_the_same_future() {
     let mut other = World::new(WorldDef::default());
     other.load(&mut input).expect("it was saved");
     let mut twin = Character::new(def, Transform::IDENTITY, 0.0);
-    twin.load(&mut input).expect("it was saved");
+    twin.load(&mut input).expect("the bytes are a snapshot");
     for step in 0..120 {
         for (world, character) in [(&mut world, &mut character), (&mut other, &mut twin)] {
             if step == 2 {

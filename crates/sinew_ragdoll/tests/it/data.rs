@@ -1,4 +1,4 @@
-//! Files that lie beside the repository.
+//! Shared test data beside the repository.
 
 use sinew_anim::Rig;
 use sinew_formats::{Document, ReadOptions, load_gltf};
@@ -6,7 +6,7 @@ use std::path::Path;
 
 const RIGS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/rigs");
 
-/// True where the shared data are present: for tests that also have rigs of their own.
+/// True if the shared data are present, for tests that also use rigs of the repository.
 pub fn is_there() -> bool {
     Path::new(RIGS).is_dir()
 }
@@ -16,7 +16,7 @@ pub fn rig(name: &str) -> Rig {
     document(name).rig
 }
 
-/// A file of the shared rigs, likewise.
+/// A file of the shared rigs, for tests with `needs_data`.
 pub fn document(name: &str) -> Document {
     let document = load_gltf(Path::new(RIGS).join(name), ReadOptions::default());
     document.unwrap_or_else(|error| panic!("{name}: {error}"))

@@ -1,4 +1,5 @@
-//! Limbs that are cut off: the limb goes on as it went, the rest lives on, and the world refuses to do it by its own calls.
+//! Detached limbs: a limb keeps its motion, the rest stays alive, and the world's own calls cannot remove parts of a
+//! character.
 
 use crate::actor::{shared, walker};
 use crate::in_world::{level, run};
@@ -10,11 +11,11 @@ use sinew_scenes::dressed::{CAPE, SKIRT, dressed};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-/// States in which a limb is cut off.
+/// States in which a limb is detached.
 const STATES: [State; 6] =
     [State::Animated, State::Limp, State::Preparing, State::GettingUp, State::Flinching, State::Powered];
 
-/// A character that has come to a state.
+/// A character that has reached `state`.
 fn in_state(def: &Arc<CharacterDef>, state: State) -> (World, Character) {
     let mut world = level();
     let mut character = Character::spawn(&mut world, def, Transform::IDENTITY);
@@ -40,7 +41,7 @@ fn in_state(def: &Arc<CharacterDef>, state: State) -> (World, Character) {
             character.go_limp(&mut world);
         }
     }
-    panic!("it never came to {state:?}");
+    panic!("it never entered {state:?}");
 }
 
 /// Total energy of the bodies, J.
@@ -48,13 +49,13 @@ fn energy(world: &World) -> f32 {
     world.energy().total()
 }
 
-/// Widest gap of the joints of characters and limbs, metres.
+/// Largest joint gap of characters and limbs, metres.
 fn widest_gap(world: &World) -> f32 {
     let owned = world.joint_ids().filter(|&joint| world.joint_owner(joint).is_some());
     owned.map(|joint| world.joint_gap(joint)).fold(0.0, max)
 }
 
-/// Speed of the fastest dynamic body, m/s.
+/// Largest speed of a dynamic body, m/s.
 fn fastest(world: &World) -> f32 {
     let dynamic = world.body_ids().filter(|&body| world.kind(body) == BodyKind::Dynamic);
     dynamic.map(|body| world.velocity(body).linear.length()).fold(0.0, max)
@@ -66,34 +67,40 @@ fn message(panics: impl FnOnce()) -> String {
 }
 
 #[test]
-fn the_world_names_the_character_and_the_call() {
+fn removing_an_owned_body_names_the_character_and_the_call() {
     let def = shared(walker());
     let (mut world, character) = in_state(&def, State::Limp);
     let arm = character.bodies()[def.body_named("leftUpperArm").expect("it has arms")];
     let joints: Vec<JointId> = world.joints_of(arm).collect();
-    let said = message(|| world.remove_joint(joints[0]));
-    assert!(said.contains("character's leftUpperArm") && said.contains("`Character::detach`"), "{said}");
-    let said = message(|| world.remove_body(arm));
-    assert!(said.contains("character's leftUpperArm") && said.contains("`Character::despawn`"), "{said}");
-    // The same in a world that has loaded it, and of hit bodies.
+    let panic_text = message(|| world.remove_joint(joints[0]));
+    assert!(
+        panic_text.contains("character's leftUpperArm") && panic_text.contains("`Character::detach`"),
+        "{panic_text}"
+    );
+    let panic_text = message(|| world.remove_body(arm));
+    assert!(
+        panic_text.contains("character's leftUpperArm") && panic_text.contains("`Character::despawn`"),
+        "{panic_text}"
+    );
+    // The same in a world loaded from a snapshot, and for hit bodies.
     let mut w = Writer::new();
     world.save(&mut w);
     let mut other = World::new(world.def().clone());
     other.load(&mut Reader::new(w.as_bytes())).expect("it is a snapshot");
-    let said = message(|| other.remove_body(arm));
-    assert!(said.contains("character's leftUpperArm"), "{said}");
+    let panic_text = message(|| other.remove_body(arm));
+    assert!(panic_text.contains("character's leftUpperArm"), "{panic_text}");
     let (mut world, character) = in_state(&def, State::Animated);
-    let said = message(|| world.remove_body(character.bodies()[0]));
-    assert!(said.contains("character's hips"), "{said}");
+    let panic_text = message(|| world.remove_body(character.bodies()[0]));
+    assert!(panic_text.contains("character's hips"), "{panic_text}");
     character.despawn(&mut world);
     assert_eq!(world.body_ids().count(), 1);
-    // What nobody owns comes out as ever.
+    // Bodies without an owner can be removed.
     let floor = world.body_ids().next().expect("the floor is there");
     world.remove_body(floor);
 }
 
 #[test]
-fn whatever_it_does_the_limb_goes_on_and_the_rest_lives() {
+fn detached_limb_keeps_its_motion_in_every_state() {
     let def = shared(walker());
     for state in STATES {
         for (bone, gets_up) in [
@@ -116,7 +123,7 @@ fn whatever_it_does_the_limb_goes_on_and_the_rest_lives() {
             if !is_led {
                 assert!(energy(&world) <= joules * 1.0001, "{what}: {joules} J become {} J", energy(&world));
                 for (&part, &body) in limb.parts().iter().zip(limb.bodies()) {
-                    assert_eq!(world.velocity(body), before[part], "{what}: it goes on as it went");
+                    assert_eq!(world.velocity(body), before[part], "{what}: its velocity changes");
                 }
             }
             for (&part, &body) in limb.parts().iter().zip(limb.bodies()) {
@@ -160,14 +167,14 @@ fn whatever_it_does_the_limb_goes_on_and_the_rest_lives() {
 }
 
 #[test]
-fn a_limb_of_a_limb_and_what_is_left_have_all_of_the_skin() {
+fn nested_limbs_and_the_rest_share_the_whole_skin() {
     let def = shared(walker());
     let (mut world, mut character) = in_state(&def, State::Limp);
     let mut arm = character.detach(&mut world, "leftUpperArm").expect("it has arms");
     let hand = arm.detach(&mut world, "leftHand").expect("the arm has a hand");
-    assert!(arm.detach(&mut world, "leftHand").is_none(), "it is off");
-    assert!(arm.detach(&mut world, "leftUpperArm").is_none(), "that is all of it");
-    assert!(character.detach(&mut world, "leftHand").is_none(), "it went with the arm");
+    assert!(arm.detach(&mut world, "leftHand").is_none(), "it is detached already");
+    assert!(arm.detach(&mut world, "leftUpperArm").is_none(), "a limb's root cannot be detached");
+    assert!(character.detach(&mut world, "leftHand").is_none(), "it left with the arm");
     assert_eq!(
         [arm.bodies().len(), hand.bodies().len(), arm.joints().len(), hand.joints().len()],
         [2, 1, 1, 0]
@@ -177,7 +184,7 @@ fn a_limb_of_a_limb_and_what_is_left_have_all_of_the_skin() {
     drawn.sort_unstable();
     assert_eq!(drawn, lost, "each joint of the arm is drawn by one of them");
     assert!(lost.len() >= 3 && lost.len() < def.rig.joints.len() / 2);
-    // A joint of the skin is where its body is.
+    // The skin joint of a limb is near its body.
     run(&mut world, &mut character, 120);
     let mut places = Vec::new();
     arm.world_from_joints(&world, 1.0, &mut places);
@@ -187,7 +194,7 @@ fn a_limb_of_a_limb_and_what_is_left_have_all_of_the_skin() {
         arm.skin_joints().position(|joint| joint == def.ragdoll.bodies[upper].joint).expect("its own");
     let away = (places[joint].translation - world.transform(arm.bodies()[0]).translation).length();
     assert!(away < 0.3, "the shoulder of the arm is {away} m from its middle ({:?})", bind(upper));
-    // Skins of both have a matrix for each joint, finite.
+    // The skins of both have a finite matrix for each joint.
     for skin in 0..def.rig.skins.len() {
         let mut palettes = [Vec::new(), Vec::new(), Vec::new()];
         character.skin_palette(skin, 1.0, &mut palettes[0]);
@@ -206,7 +213,7 @@ fn a_limb_of_a_limb_and_what_is_left_have_all_of_the_skin() {
 }
 
 #[test]
-fn a_character_without_limbs_is_the_same_in_a_fresh_world() {
+fn detached_character_is_identical_in_a_loaded_world() {
     let def = shared(walker());
     for state in STATES {
         let (mut world, mut character) = in_state(&def, state);
@@ -241,7 +248,7 @@ fn a_character_without_limbs_is_the_same_in_a_fresh_world() {
 }
 
 #[test]
-fn garments_hang_on_what_is_left() {
+fn garments_stay_attached_to_the_remaining_body() {
     let def = Arc::new(dressed(&[&CAPE, &SKIRT], |_| ()));
     for (bone, limp) in [("leftUpperLeg", false), ("leftUpperArm", false), ("head", true), ("spine", true)] {
         let mut world = level();
@@ -256,13 +263,16 @@ fn garments_hang_on_what_is_left() {
         };
         let before = particles(&world, &character);
         let limb = character.detach(&mut world, bone).expect("it has that");
-        assert_eq!(particles(&world, &character), before, "{bone}: cloth lies where it lay");
+        assert_eq!(particles(&world, &character), before, "{bone}: cloth positions changed");
         let attached = world.group_ids().flat_map(|id| world.particles(id).attachments().to_vec());
         let holds = |target: &AttachmentTarget| match target {
             AttachmentTarget::Body { body, .. } => limb.bodies().contains(body),
             _ => false,
         };
-        assert!(!attached.into_iter().any(|at| holds(&at.target)), "{bone}: none hangs on the limb");
+        assert!(
+            !attached.into_iter().any(|at| holds(&at.target)),
+            "{bone}: no particle is attached to the limb"
+        );
         run(&mut world, &mut character, 5);
         limb.despawn(&mut world);
         let mut w = Writer::new();

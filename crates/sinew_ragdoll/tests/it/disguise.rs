@@ -1,4 +1,4 @@
-//! Changes that a file may make to a rig without making another character of it.
+//! Changes to a rig's file that leave the character the same: units, axes, names, order, helper joints.
 
 use sinew_anim::{
     Clip, Interpolation, Joint, JointIdx, LocalTransform, Primitive, Property, Rig, RigAnalysis, RigMesh,
@@ -6,7 +6,7 @@ use sinew_anim::{
 };
 use sinew_math::{Affine, Random, Rotation, Transform, Vec3};
 
-/// The rig in other units and axes: every root and every bind matrix is told of it.
+/// The rig in other units and axes: changes every root and every bind matrix.
 pub fn transformed(rig: &Rig, scale: f32, turn: Rotation) -> Rig {
     let mut rig = rig.clone();
     for joint in rig.joints.iter_mut().filter(|joint| joint.parent.is_none()) {
@@ -30,7 +30,7 @@ pub fn transformed(rig: &Rig, scale: f32, turn: Rotation) -> Rig {
     rig
 }
 
-/// The joints in another order, parents still first, and where each of them went.
+/// The joints in random order, parents before children, and the new index of each.
 pub fn shuffled(rig: &Rig, seed: u64) -> (Rig, Vec<usize>) {
     let mut random = Random::new(seed);
     let mut place = vec![None; rig.joints.len()];
@@ -71,7 +71,7 @@ pub fn nameless(rig: &Rig) -> Rig {
     rig
 }
 
-/// Names that mean nothing, or something else.
+/// Names without meaning, or with a wrong one.
 pub fn misnamed(rig: &Rig) -> Rig {
     let mut rig = rig.clone();
     let count = rig.joints.len();
@@ -81,7 +81,7 @@ pub fn misnamed(rig: &Rig) -> Rig {
     rig
 }
 
-/// A way to call the joints of a human: hips, spine, chest, upper chest, neck, head; then shoulder, upper arm, lower arm, hand,
+/// A naming convention for the joints of a human: hips, spine, chest, upper chest, neck, head; then shoulder, upper arm, lower arm, hand,
 /// upper leg, lower leg, foot, toes, with `[a|b]` for left and right.
 pub struct Convention {
     trunk: [&'static str; 6],
@@ -110,7 +110,7 @@ pub const CONVENTIONS: [Convention; 15] = [
             "mixamorig:[Left|Right]ToeBase",
         ],
     },
-    // The same with its colon stripped.
+    // Mixamo with its colon stripped.
     Convention {
         trunk: [
             "mixamorigHips",
@@ -368,7 +368,7 @@ impl Convention {
     }
 }
 
-/// Joints with a role of a human called by a convention; the others keep their names.
+/// Renames joints with a human role by a convention; other names stay.
 pub fn renamed(rig: &Rig, analysis: &RigAnalysis, convention: &Convention) -> Rig {
     let mut rig = rig.clone();
     for (joint, guess) in rig.joints.iter_mut().zip(&analysis.roles) {
@@ -379,7 +379,7 @@ pub fn renamed(rig: &Rig, analysis: &RigAnalysis, convention: &Convention) -> Ri
     rig
 }
 
-/// Every name with the same before and after it.
+/// Adds a prefix and a suffix to every name.
 pub fn affixed(rig: &Rig, prefix: &str, suffix: &str) -> Rig {
     let mut rig = rig.clone();
     for joint in &mut rig.joints {
@@ -388,8 +388,9 @@ pub fn affixed(rig: &Rig, prefix: &str, suffix: &str) -> Rig {
     rig
 }
 
-/// Meshes bound in another unit than the joints are in, as exports through FBX have it, or turned inside out by a negative one:
-/// the skin is drawn where it was.
+/// Meshes bound in another unit than the joints, as in exports through FBX, or mirrored by a negative unit; the skin is
+/// drawn in the
+/// same place.
 pub fn bound_in(rig: &Rig, unit: f32) -> Rig {
     let mut rig = rig.clone();
     let joints_from_mesh =
@@ -405,13 +406,13 @@ pub fn bound_in(rig: &Rig, unit: f32) -> Rig {
     rig
 }
 
-/// All under a new first joint of negative scale, and every root so that it is drawn where it was.
+/// Puts a new first joint of negative scale above all roots, and adjusts the roots so that the drawing is unchanged.
 pub fn under_a_mirror(rig: &Rig) -> Rig {
     let mut rig = rig.clone();
     let mirror = Vec3::new(-1.0, 1.0, 1.0);
     for joint in &mut rig.joints {
         if joint.parent.is_none() {
-            // A mirrored rotation turns the other way about the two axes that the mirror keeps.
+            // A mirrored rotation is negated about the two axes in the mirror's plane.
             let [x, y, z, w] =
                 [joint.rest.rotation.x, joint.rest.rotation.y, joint.rest.rotation.z, joint.rest.rotation.w];
             joint.rest.rotation = Rotation::from_xyzw(x, -y, -z, w);
@@ -434,7 +435,7 @@ pub fn under_a_mirror(rig: &Rig) -> Rig {
     rig
 }
 
-/// Every skinned mesh in two, the second with a skin of its own that was bound in another unit.
+/// Every skinned mesh in two, the second with its own skin, bound in another unit.
 pub fn with_two_skins(rig: &Rig, unit: f32) -> Rig {
     let mut rig = rig.clone();
     let other = bound_in(&rig, unit);
@@ -468,20 +469,20 @@ fn rest_models(rig: &Rig) -> Vec<Affine> {
     model
 }
 
-/// A transform of uniform scale as translation, rotation, scale.
+/// A transform of uniform scale, split into translation, rotation, scale.
 fn parts(transform: &Affine) -> LocalTransform {
     let Transform { translation, rotation } = transform.to_rigid();
     LocalTransform { translation, rotation, scale: Vec3::splat(transform.linear.x_axis.length()) }
 }
 
-/// The joint that all others hang on, if there is one.
+/// The joint that is an ancestor of all others, if there is one.
 fn top(rig: &Rig) -> Option<JointIdx> {
     let mut roots = (0..rig.joints.len()).filter(|&joint| rig.joints[joint].parent.is_none());
     roots.next().filter(|_| roots.next().is_none())
 }
 
-/// Joints hung on the root, at their places: the feet of a rig for inverse kinematics.
-pub fn hung_on_root(rig: &Rig, joints: &[JointIdx]) -> Rig {
+/// Reparents joints to the root without moving them, like the feet of a rig for inverse kinematics.
+pub fn parented_to_root(rig: &Rig, joints: &[JointIdx]) -> Rig {
     let model = rest_models(rig);
     let root = top(rig);
     let mut rig = rig.clone();
@@ -493,8 +494,8 @@ pub fn hung_on_root(rig: &Rig, joints: &[JointIdx]) -> Rig {
     rig
 }
 
-/// Joints that become roots of their own, at their places, as in exports of deform bones alone.
-pub fn cut_loose(rig: &Rig, joints: &[JointIdx]) -> Rig {
+/// Makes joints roots of their own without moving them, as in exports of deform bones alone.
+pub fn made_roots(rig: &Rig, joints: &[JointIdx]) -> Rig {
     let model = rest_models(rig);
     let mut rig = rig.clone();
     for &joint in joints {
@@ -504,7 +505,7 @@ pub fn cut_loose(rig: &Rig, joints: &[JointIdx]) -> Rig {
     rig
 }
 
-/// A hat with a skeleton of its own: one bone, on no other, that moves a small mesh at the crown.
+/// Adds a hat with its own skeleton: one root bone that moves a small mesh at the crown.
 pub fn with_hat(rig: &Rig, analysis: &RigAnalysis, head: JointIdx) -> Rig {
     let mut rig = rig.clone();
     let size = analysis.height / analysis.unit_scale;
@@ -536,7 +537,7 @@ fn add_joint(rig: &mut Rig, name: &str, parent: Option<JointIdx>, place: Vec3) -
     rig.joints.len() - 1
 }
 
-/// A mesh and a skin slot by which it moves with a joint.
+/// Returns a mesh and a skin slot by which the mesh moves with a joint.
 fn skinned_by(rig: &Rig, joint: JointIdx) -> Option<(usize, usize)> {
     rig.meshes.iter().enumerate().find_map(|(m, mesh)| {
         let slot = rig.skins[mesh.skin?].joints.iter().position(|&other| other == joint)?;
@@ -544,7 +545,7 @@ fn skinned_by(rig: &Rig, joint: JointIdx) -> Option<(usize, usize)> {
     })
 }
 
-/// A slot for a joint that was bound beside `slot`'s, farther by `offset` in that joint's space.
+/// Adds a slot for a joint, bound next to `slot`'s joint at `offset` in that joint's space.
 fn add_slot(rig: &mut Rig, mesh: usize, slot: usize, joint: JointIdx, offset: Vec3) -> u16 {
     let skin = &mut rig.skins[rig.meshes[mesh].skin.expect("a skinned mesh")];
     let moved = Affine { translation: -offset, ..Affine::IDENTITY };
@@ -587,7 +588,7 @@ pub fn with_hair(rig: &Rig, analysis: &RigAnalysis, head: JointIdx, random: &mut
     rig
 }
 
-/// Controls, targets and poles without skin, some of them in the skin's list of joints all the same.
+/// Adds controls, targets and poles without skin; some of them are in the skin's list of joints.
 pub fn with_controls(rig: &Rig, analysis: &RigAnalysis, random: &mut Random) -> Rig {
     let mut rig = rig.clone();
     let model = rest_models(&rig);
@@ -608,7 +609,7 @@ pub fn with_controls(rig: &Rig, analysis: &RigAnalysis, random: &mut Random) -> 
     rig
 }
 
-/// Half of the skin of forearms and shanks moved by twist bones.
+/// Adds twist bones that move half of the skin of forearms and shanks.
 pub fn with_twists(rig: &Rig, analysis: &RigAnalysis) -> Rig {
     let mut rig = rig.clone();
     for side in [Side::Left, Side::Right] {
@@ -645,7 +646,7 @@ fn give_far_half(mesh: &mut RigMesh, joint_from_mesh: &Affine, middle: Vec3, slo
     }
 }
 
-/// The bones of a limb's beginning without skin of their own: what they moved is moved by the bone that carries them.
+/// Moves the skin of bones at the beginning of a limb to their parents.
 pub fn unweighted(rig: &Rig, bones: &[(JointIdx, JointIdx)]) -> Rig {
     let mut rig = rig.clone();
     for (mesh, skin) in rig.meshes.iter_mut().filter_map(|mesh| mesh.skin.map(|skin| (mesh, skin))) {
@@ -662,7 +663,7 @@ pub fn unweighted(rig: &Rig, bones: &[(JointIdx, JointIdx)]) -> Rig {
     rig
 }
 
-/// Eyes with a skeleton of their own: one bone, on no other, that moves two small meshes before the face.
+/// Adds eyes with their own skeleton: one root bone that moves two small meshes in front of the face.
 pub fn with_eyes(rig: &Rig, analysis: &RigAnalysis, head: JointIdx) -> Rig {
     let mut rig = rig.clone();
     let size = analysis.height / analysis.unit_scale;
@@ -689,7 +690,8 @@ pub fn with_eyes(rig: &Rig, analysis: &RigAnalysis, head: JointIdx) -> Rig {
     rig
 }
 
-/// Half of the skin of a joint moved by a bone of its own in the same place, on the same parent: the halves of a pelvis, a breast.
+/// Moves half of the skin of a joint to a new bone in the same place, with the same parent, as the halves of a pelvis
+/// or a breast.
 pub fn with_halves(rig: &Rig, joint: JointIdx, name: &str) -> Rig {
     let Some((mesh, slot)) = skinned_by(rig, joint) else { return rig.clone() };
     let mut rig = rig.clone();
@@ -705,7 +707,7 @@ pub fn with_halves(rig: &Rig, joint: JointIdx, name: &str) -> Rig {
     rig
 }
 
-/// Clips whose way is shifted to elsewhere in the file, as captures have it that were cut out of a longer one.
+/// Shifts the root motion of clips, as in captures cut out of a longer one.
 pub fn shifted(clips: &[Clip], rig: &Rig, by: Vec3) -> Vec<Clip> {
     let mut clips = clips.to_vec();
     for channel in clips.iter_mut().flat_map(|clip| &mut clip.channels) {

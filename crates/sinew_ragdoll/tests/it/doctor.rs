@@ -1,4 +1,5 @@
-//! Flaws that ragdolls of other tools suffer from, planted into a healthy one: the doctor names exactly that, and mends it.
+//! Defects known from ragdolls of other tools, put into a healthy one: the doctor reports exactly that defect and
+//! repairs it.
 
 use crate::actor::walker;
 use needs_data::needs_data;
@@ -9,14 +10,14 @@ use sinew_ragdoll::{
     BuildOptions, RagdollBodyDef, RagdollDef, RagdollJointDef, Repair, build, cure, doctor, drop_test, gate,
 };
 
-/// A healthy ragdoll whose rig is at hand.
+/// A healthy ragdoll with its rig.
 fn healthy() -> Repair {
     let def = walker().ragdoll;
     Repair { reference: Some(def.clone()), ..Repair::new(def) }
 }
 
-/// The healthy ragdoll of a rig that others made, if it is there.
-fn healthy_stranger() -> Repair {
+/// The healthy ragdoll of a rig from another author, if the data are present.
+fn healthy_other_ragdoll() -> Repair {
     let rig = crate::data::rig("mannequiny.glb");
     let analysis = sinew_anim::analyze(&rig).expect("a skin");
     let (def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
@@ -39,7 +40,7 @@ fn cone(y: f32, z: f32, twist: [f32; 2]) -> JointKind {
     JointKind::Ball { limit: Some(limit) }
 }
 
-/// The joint as other tools set it up: the bind pose is its zero.
+/// Sets the joint up as other tools do: the bind pose is its zero.
 fn zeroed(repair: &mut Repair, role: &str, kind: JointKind) {
     let def = &repair.def;
     let joint = def.joints[body(def, role) - 1];
@@ -57,7 +58,7 @@ fn every_joint(repair: &mut Repair, kind: JointKind) {
     }
 }
 
-/// Without these bodies, and what hangs on them.
+/// Removes these bodies; nothing else may be attached to them.
 fn without(repair: &mut Repair, roles: &[&str]) {
     let def = &mut repair.def;
     for role in roles {
@@ -95,8 +96,8 @@ fn thicker(repair: &mut Repair, role: &str, factor: f32) {
 
 type Plant = (&'static str, Code, fn(&mut Repair));
 
-/// Each failing of a tool, its code, and how it looks in a definition.
-const FAILINGS: [Plant; 28] = [
+/// A defect of another tool, its code, and a function that puts it into a definition.
+const DEFECTS: [Plant; 28] = [
     ("UE: every generated limit is 45°", Code::LimitsAllAlike, |p| {
         every_joint(p, cone(45.0, 45.0, [-45.0, 45.0]));
     }),
@@ -243,15 +244,15 @@ fn codes(findings: &[Finding]) -> Vec<Code> {
 }
 
 #[test]
-fn nothing_is_wrong_with_a_healthy_ragdoll() {
+fn healthy_ragdoll_has_no_findings() {
     assert_eq!(doctor(&healthy()), []);
     assert_eq!(doctor(&Repair::new(walker().ragdoll)), []);
 }
 
 #[test]
-fn every_failing_is_named_and_nothing_else() {
+fn each_defect_is_reported_alone() {
     let mut wrong = Vec::new();
-    for (what, code, plant) in FAILINGS {
+    for (what, code, plant) in DEFECTS {
         let mut repair = healthy();
         plant(&mut repair);
         let findings = doctor(&repair);
@@ -259,7 +260,7 @@ fn every_failing_is_named_and_nothing_else() {
             wrong.push(format!("{what}: {findings:#?}"));
         }
         for finding in &findings {
-            // Who it is about is named, but where it is the whole body.
+            // The finding names the affected body, unless it concerns the whole ragdoll.
             let named = finding.bodies.first().map(|&body| repair.def.bodies[body].role.as_str());
             let is_told = named.is_none_or(|role| finding.evidence.contains(role));
             let of_all = matches!(code, Code::MassImplausible | Code::LimitsAllAlike);
@@ -270,20 +271,23 @@ fn every_failing_is_named_and_nothing_else() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The same in a body of other proportions, in another pose, with collar bones.
+/// The defects are also found on a body of other proportions, in another pose, with collar bones.
 #[needs_data]
 #[test]
-fn strangers_are_read_as_well() {
-    let stranger = healthy_stranger();
+fn defects_of_a_foreign_rig_are_reported() {
+    let stranger = healthy_other_ragdoll();
     assert_eq!(doctor(&stranger), []);
     let mut wrong = Vec::new();
-    for (what, code, plant) in FAILINGS {
+    for (what, code, plant) in DEFECTS {
         let mut repair = stranger.clone();
         plant(&mut repair);
         let findings = doctor(&repair);
-        let (cured, told) = cure(&repair);
+        let (cured, findings_after) = cure(&repair);
         let left = doctor(&cured);
-        if codes(&findings) != [code] || !left.is_empty() || told.iter().any(|finding| !finding.fixed) {
+        if codes(&findings) != [code]
+            || !left.is_empty()
+            || findings_after.iter().any(|finding| !finding.fixed)
+        {
             wrong.push(format!("{what}: {findings:#?} left: {left:#?}"));
         }
     }
@@ -291,10 +295,10 @@ fn strangers_are_read_as_well() {
 }
 
 #[test]
-fn failings_are_mended_and_the_ragdoll_falls_well() {
+fn defects_are_repaired_and_the_ragdoll_falls_well() {
     let stride = if std::env::var_os("SINEW_FULL").is_some() { 1 } else { 5 };
     let mut wrong = Vec::new();
-    for (index, (what, code, plant)) in FAILINGS.into_iter().enumerate() {
+    for (index, (what, code, plant)) in DEFECTS.into_iter().enumerate() {
         let mut repair = healthy();
         plant(&mut repair);
         let (cured, findings) = cure(&repair);
@@ -313,7 +317,7 @@ fn failings_are_mended_and_the_ragdoll_falls_well() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Eight drops and a wall: nothing explodes, no joint opens, it comes to rest.
+/// Eight drops and a wall impact: energy does not grow, no joint opens, and it comes to rest.
 fn falls_well(def: &RagdollDef, what: &str) {
     let report = drop_test(def);
     assert_eq!(report.drop.nan + report.wall.nan, 0, "{what}");
@@ -323,11 +327,11 @@ fn falls_well(def: &RagdollDef, what: &str) {
     assert!(gain < 0.02, "{what}: energy gain {gain}");
 }
 
-/// Flaws that the doctor calls errors must do harm: it shows in motion, and that is told.
+/// Defects that the doctor calls errors do harm, which the simulation shows and the finding reports.
 #[test]
-fn errors_show_in_motion() {
+fn findings_of_severity_error_show_in_simulation() {
     let mut wrong = Vec::new();
-    for (what, code, plant) in FAILINGS {
+    for (what, code, plant) in DEFECTS {
         if !matches!(code, Code::OverlapAtStart | Code::AnchorsApart | Code::LimitViolatedAtBind) {
             continue;
         }
@@ -342,7 +346,8 @@ fn errors_show_in_motion() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Three upright pieces, the last folded back to 120° about the middle one; its hinge turns on by `range`.
+/// Three upright pieces; the last is folded back to 120° about the middle one, and its hinge can turn further by
+/// `range`.
 fn folding(range: Range) -> RagdollDef {
     let piece = |role: &str, x: f32, z: f32| {
         let shape = Shape::Capsule { half_height: 0.12, radius: 0.05 };
@@ -358,10 +363,10 @@ fn folding(range: Range) -> RagdollDef {
         }
     };
     let (sin, cos) = sinew_math::trig::sin_cos(120.0_f32.to_radians());
-    // On a circle of 14 cm about x = 10 cm: at 180° it would be 4 cm behind the first piece's middle.
+    // On a circle of 14 cm about x = 10 cm: at 180° it would be 4 cm behind the centre of the first piece.
     let (x, z) = (0.1 + 0.14 * cos, -0.14 * sin);
     let bodies = vec![piece("limb_0_0", 0.0, 0.0), piece("limb_0_1", 0.12, 0.0), piece("limb_0_2", x, z)];
-    // A hinge about y, at these points of both bodies.
+    // A hinge about y, at the given points of both bodies.
     let upright = sinew_math::Rotation::from_arc(Vec3::X, Vec3::Y);
     let hinge = |parent: usize, at: Vec3, range: Range| {
         let frame = |body: usize| Transform::new(bodies[body].character_from_body.inverse_point(at), upright);
@@ -392,7 +397,7 @@ fn folding(range: Range) -> RagdollDef {
 }
 
 #[test]
-fn a_contact_that_fights_a_limit() {
+fn contact_against_a_limit_is_reported() {
     let free = Repair::new(folding(Range::degrees(-60.0, 10.0)));
     assert_eq!(doctor(&free), []);
     let folded = Repair::new(folding(Range::degrees(-2.0, 60.0)));
@@ -403,7 +408,7 @@ fn a_contact_that_fights_a_limit() {
     assert_eq!(cured.def.disabled_pairs, [(0, 2)]);
 }
 
-/// A tail of hinges that each are 0.9° beyond their limit: too little to be told of one by one.
+/// A tail of hinges, each 0.9° beyond its limit: too little to be reported one by one.
 fn strained() -> RagdollDef {
     let link = |index: u8| {
         let shape = Shape::Capsule { half_height: 0.03, radius: 0.02 };
@@ -434,16 +439,16 @@ fn strained() -> RagdollDef {
 }
 
 #[test]
-fn what_moves_by_itself_is_seen_by_moving() {
+fn self_motion_is_found_by_simulation() {
     let repair = Repair::new(strained());
     let findings = doctor(&repair);
     assert_eq!(codes(&findings), [Code::MovesByItself], "{findings:#?}");
-    let (cured, told) = cure(&repair);
-    assert!(told[0].fixed && doctor(&cured).is_empty(), "{told:#?}");
+    let (cured, findings_after) = cure(&repair);
+    assert!(findings_after[0].fixed && doctor(&cured).is_empty(), "{findings_after:#?}");
 }
 
 #[test]
-fn numbers_that_are_none_are_named_and_nothing_panics() {
+fn non_finite_numbers_are_reported_without_panics() {
     let mut repair = healthy();
     repair.def.bodies[3].character_from_body.translation.x = f32::NAN;
     let findings = doctor(&repair);
@@ -455,9 +460,9 @@ fn numbers_that_are_none_are_named_and_nothing_panics() {
     assert_eq!(codes(&doctor(&heavy)), [Code::MassNotPositive]);
 }
 
-/// Without the rig a head cannot be grown; that is said.
+/// A head cannot be added without the rig; the report has a note on it.
 #[test]
-fn what_cannot_be_mended_is_said() {
+fn irreparable_defect_is_reported() {
     let mut repair = healthy();
     repair.reference = None;
     without(&mut repair, &["head"]);
@@ -467,7 +472,7 @@ fn what_cannot_be_mended_is_said() {
 }
 
 #[test]
-fn codes_have_names_of_their_own() {
+fn codes_have_distinct_names() {
     let mut names: Vec<&str> = Code::ALL.iter().map(|code| code.name()).collect();
     let kebab = |name: &str| name.chars().all(|c| c.is_ascii_lowercase() || c == '-');
     assert!(names.iter().all(|name| kebab(name)), "{names:?}");
@@ -476,7 +481,7 @@ fn codes_have_names_of_their_own() {
     assert_eq!(names.len(), Code::ALL.len());
 }
 
-/// The page that teaches the codes has each of them, as it is here.
+/// The table of codes in the docs matches the code.
 #[test]
 fn the_page_lists_every_code() {
     let page = include_str!("../../../../docs/ragdoll.md");
@@ -487,9 +492,9 @@ fn the_page_lists_every_code() {
     }
 }
 
-/// From the middle of a cone a joint reaches its ends, from elsewhere what is left.
+/// From the middle of its cone a joint reaches the cone's ends; from elsewhere, the remaining range.
 #[test]
-fn reaches_are_those_of_the_limits() {
+fn joint_reach_follows_its_limits() {
     let limit = SwingTwistLimit {
         swing_y: Range::degrees(-20.0, 50.0),
         swing_z: Range::degrees(-30.0, 10.0),

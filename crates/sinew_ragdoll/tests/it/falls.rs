@@ -1,4 +1,4 @@
-//! Falls at random: everyone stands again, and no joint jumps where bodies take over or give back.
+//! Random falls: every character stands up again, and no joint jumps at hand-over to bodies and back.
 
 use crate::actor::{floor, kaykit, shared, walker};
 use crate::pops::Pops;
@@ -9,10 +9,10 @@ use sinew_physics::{World, WorldDef};
 use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, State};
 use std::sync::Arc;
 
-/// From the hit until it is up, seconds: the most that it may take.
+/// Longest allowed time from the hit until it is up, seconds.
 const UP_WITHIN: f32 = 8.0;
 
-/// Posture of a body that lies.
+/// Lying posture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Lying {
     Supine,
@@ -23,7 +23,7 @@ enum Lying {
 
 const ALL: [Lying; 4] = [Lying::Supine, Lying::Prone, Lying::LeftSide, Lying::RightSide];
 
-/// By where the pelvis looks, and where its left is.
+/// Classifies the posture by the directions of the pelvis's front and left.
 fn lying(character: &Character, world: &World) -> Lying {
     let ragdoll = character.ragdoll().expect("it lies there by its bodies");
     let bind = character.def().ragdoll.bodies[0].character_from_body.rotation;
@@ -41,7 +41,7 @@ fn lying(character: &Character, world: &World) -> Lying {
 /// Result of one fall.
 struct Fall {
     lying: Option<Lying>,
-    /// From the hit, seconds.
+    /// Time from the hit, seconds.
     up: Option<f32>,
 }
 
@@ -53,7 +53,7 @@ fn head(character: &Character) -> f32 {
     model[def.ragdoll.bodies[body].joint].translation.y
 }
 
-/// A character somewhere in its walk, hit somewhere from somewhere.
+/// Hits a character at a random time of its walk, at a random body, from a random direction.
 fn fall(def: &Arc<CharacterDef>, random: &mut Random, pops: &mut Pops) -> Fall {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
@@ -91,11 +91,11 @@ fn fall(def: &Arc<CharacterDef>, random: &mut Random, pops: &mut Pops) -> Fall {
             fall.up = Some(step as f32 * world.def().dt());
         }
     }
-    assert!(head(&character) > 0.9 * standing, "it stands: {} of {standing} m", head(&character));
+    assert!(head(&character) > 0.9 * standing, "its head is at {} of {standing} m", head(&character));
     fall
 }
 
-fn everyone_stands_again(name: &str, def: CharacterDef) {
+fn check_all_stand_up(name: &str, def: CharacterDef) {
     let def = shared(def);
     let falls = if std::env::var_os("SINEW_FULL").is_some() { 500 } else { 20 };
     let (mut random, mut pops) = (Random::new(7), Pops::new(&def));
@@ -119,13 +119,13 @@ fn everyone_stands_again(name: &str, def: CharacterDef) {
 }
 
 #[test]
-fn the_mannequin_stands_again() {
-    everyone_stands_again("mannequin", walker());
+fn mannequin_stands_up_after_random_falls() {
+    check_all_stand_up("mannequin", walker());
 }
 
 #[needs_data]
 #[test]
-fn the_kaykit_mannequin_stands_again() {
+fn kaykit_mannequin_stands_up_after_random_falls() {
     let def = kaykit();
-    everyone_stands_again("KayKit mannequin", def);
+    check_all_stand_up("KayKit mannequin", def);
 }

@@ -1,4 +1,4 @@
-//! Faults that no single figure tells: each planted into the mannequin.
+//! Faults that no single metric shows, each put into the mannequin.
 
 use sinew_anim::analyze;
 use sinew_math::{Rotation, Vec3};
@@ -22,13 +22,13 @@ fn verdict(def: &RagdollDef) -> Option<(Verdict, String)> {
 }
 
 #[test]
-fn the_mannequin_has_none() {
+fn mannequin_has_no_faults() {
     assert_eq!(verdict(&built()), None);
     assert_eq!(Doubt::of(&built()), None);
 }
 
 #[test]
-fn limbs_on_the_wrong_side_are_told_by_their_bones() {
+fn limbs_on_the_wrong_side_are_reported() {
     let mut def = built();
     let at = |def: &RagdollDef, role: &str| {
         def.bodies.iter().position(|body| body.role == role).expect("it is there")
@@ -39,7 +39,7 @@ fn limbs_on_the_wrong_side_are_told_by_their_bones() {
     let (at_most, reason) = verdict(&def).expect("a fault");
     assert_eq!(at_most, Verdict::Usable, "{reason}");
     assert!(bones.iter().all(|bone| reason.contains(bone)), "{reason}");
-    // Both arms on the left.
+    // Both arms are labelled left.
     let mut def = built();
     def.bodies[right].character_from_body = def.bodies[left].character_from_body;
     def.joints[right - 1].frame_child = def.joints[left - 1].frame_child;
@@ -60,7 +60,7 @@ fn one_body_for_a_rig_of_many_joints_is_bad() {
 
 /// A human of 57 cm and 8 kg with an adult's head, a wolf of 2.5 t, a wasp of 1.6 t.
 #[test]
-fn masses_and_sizes_that_no_body_has_are_doubted() {
+fn implausible_masses_and_sizes_are_reported() {
     let mut small = built();
     let share = 0.57 / small.height;
     small.height = 0.57;
@@ -79,9 +79,9 @@ fn masses_and_sizes_that_no_body_has_are_doubted() {
     assert_eq!(Doubt::of(&bear), None);
 }
 
-/// A blocky figure of 625 kg at 1.75 m that nothing tells for a human.
+/// A blocky figure of 625 kg at 1.75 m that is not recognised as human.
 #[test]
-fn a_creature_too_heavy_for_its_length_is_doubted() {
+fn creature_too_heavy_for_its_length_is_reported() {
     let creature = |mass: f32| {
         let mut def = built();
         def.bodies.iter_mut().enumerate().for_each(|(i, body)| body.role = format!("spine_{i}"));
@@ -93,9 +93,9 @@ fn a_creature_too_heavy_for_its_length_is_doubted() {
     assert_eq!(creature(200.0), None);
 }
 
-/// A mannequin whose joints are rusted stands there like a statue when it goes limp.
+/// A mannequin with very stiff joints stays upright when it goes limp.
 #[test]
-fn a_tall_body_that_stays_upright_is_told() {
+fn tall_body_that_stays_upright_is_reported() {
     let faults = |rust: f32| {
         let rig = mannequin().rig;
         let analysis = analyze(&rig).expect("a skin");
@@ -118,9 +118,9 @@ fn a_tall_body_that_stays_upright_is_told() {
     assert!(found[0].reason.contains("stays upright") && found[0].at_most == Verdict::Usable, "{found:?}");
 }
 
-/// It is pushed over by the weakest push that does it, and who falls by itself by none.
+/// The weakest sufficient push is applied; a character that falls by itself is not pushed.
 #[test]
-fn who_stays_upright_is_pushed_over() {
+fn upright_body_is_pushed_over() {
     let pushed = |rust: f32| {
         let rig = mannequin().rig;
         let analysis = analyze(&rig).expect("a skin");
@@ -139,13 +139,13 @@ fn who_stays_upright_is_pushed_over() {
     };
     assert_eq!(pushed(0.0), None);
     let (topple, faults) = pushed(1e4).expect("a push fells it");
-    assert!(topple.z > 0.5 && topple.length() < 5.0, "forward, and as weak as may be: {topple}");
-    assert_eq!(faults, [], "and then it lies");
+    assert!(topple.z > 0.5 && topple.length() < 5.0, "not a weak forward push: {topple}");
+    assert_eq!(faults, [], "it has no fault after the push");
 }
 
-/// A clip that scales the hips, before a get-up that does not.
+/// A clip that scales the hips, before a get-up clip that does not.
 #[test]
-fn a_character_that_shrinks_to_get_up_is_told() {
+fn character_that_shrinks_before_get_up_is_reported() {
     let rig = mannequin().rig;
     let analysis = analyze(&rig).expect("a skin");
     let character = CharacterDef::new(rig, built(), &analysis.bind_model);
@@ -171,9 +171,9 @@ fn a_character_that_shrinks_to_get_up_is_told() {
     assert!(fault.reason.contains("0.38 times"), "{}", fault.reason);
 }
 
-/// The width of a stance is that of its feet: rusted arms that reach out wider than it is tall make it no broad body.
+/// Stance width is measured at the feet: stiff outstretched arms do not make the body count as broad.
 #[test]
-fn outstretched_arms_do_not_hide_who_stays_upright() {
+fn upright_body_with_outstretched_arms_is_reported() {
     let rig = mannequin().rig;
     let analysis = analyze(&rig).expect("a skin");
     let mut ragdoll = built();

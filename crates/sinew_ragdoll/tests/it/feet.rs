@@ -1,4 +1,5 @@
-//! Feet on the ground while a character goes: the drawn sole against what is under it, on floor, stairs, slopes, a lift, a turntable.
+//! Foot placement while a character walks: the drawn sole against the ground, on floor, stairs, slopes, a lift and a
+//! turntable.
 
 use crate::actor::{floor, shared};
 use sinew_anim::{LocalTransform, local_to_model, skin_vertices};
@@ -8,21 +9,21 @@ use sinew_physics::{BodyDef, BodyId, BodyKind, QueryFilter, Shape, ShapeDef, Vel
 use sinew_ragdoll::{Character, CharacterDef, State};
 use std::sync::Arc;
 
-/// Height over the floor of its clip and speed over the ground below which a foot of a clip stands, metres and m/s.
+/// A clip's foot stands below this height over the clip's floor (metres) and this speed over the ground (m/s).
 const STANDS: (f32, f32) = (0.02, 0.5);
 /// Distance of a drawn sole from the ground that counts as on it, metres.
 const ON: f32 = 0.02;
 
-/// A place to go about in.
+/// A scene to walk in.
 struct Ground {
     name: &'static str,
     bodies: Vec<BodyDef>,
-    /// Motion of the first body, if it moves: by time, linear and angular.
+    /// Velocity of the first body over time, if it moves.
     moves: fn(f32) -> Velocity,
     start: Vec3,
     walk: Vec3,
     seconds: f32,
-    /// Horizontal way out of the edge of a step, metres; without end where there is none.
+    /// Horizontal distance out of the edge of a step, metres; infinite without edges.
     edge: fn(Vec3) -> f32,
 }
 
@@ -35,13 +36,13 @@ fn moving(half_extents: Vec3, position: Vec3) -> BodyDef {
     BodyDef { kind: BodyKind::Kinematic, ..fixed(half_extents, position, Rotation::IDENTITY) }
 }
 
-/// A plane that rises toward +Z by so many degrees, from the origin on.
+/// A plane that rises toward +Z by this angle, degrees, starting at the origin.
 fn ramp(degrees: f32) -> Vec<BodyDef> {
     let turn = Rotation::from_axis_angle(Vec3::X, -degrees.to_radians());
     vec![fixed(Vec3::new(20.0, 1.0, 20.0), turn * Vec3::NEG_Y, turn)]
 }
 
-/// Steps of 17 by 30 cm that rise toward +Z from 1 m on.
+/// Steps of 17 by 30 cm that rise toward +Z, starting at 1 m.
 fn stairs() -> Vec<BodyDef> {
     let step = |k: i32| {
         let top = 0.17 * k as f32;
@@ -51,7 +52,7 @@ fn stairs() -> Vec<BodyDef> {
     core::iter::once(floor()).chain((1..20).map(step)).collect()
 }
 
-/// Horizontal distance behind the riser in front of which a point should be.
+/// Horizontal distance by which a point is behind the riser in front of it.
 fn riser(at: Vec3) -> f32 {
     let behind = at.z - 1.0;
     if behind < 0.0 { f32::INFINITY } else { behind - 0.3 * (behind / 0.3).floor() }
@@ -147,21 +148,21 @@ fn places(
     [0, 1].map(|foot| feet[foot].iter().map(at).collect())
 }
 
-/// Figures of a walk.
+/// Metrics of a walk.
 #[derive(Default)]
 struct Found {
-    /// Steps in which a foot of the clip stands, and those in which the drawn sole is on the ground.
+    /// Steps in which a clip's foot stands, and of these, steps in which the drawn sole is on the ground.
     stance: u32,
     on: u32,
-    /// Deepest of a drawn sole at any time, metres.
+    /// Largest depth of a drawn sole, metres.
     deepest: f32,
-    /// Way of the point on which a foot stands, in each stance, metres.
+    /// Displacement of the standing point in each stance, metres.
     slides: Vec<f32>,
     /// Largest change of velocity of a foot in a step, m/s.
     jerk: f32,
 }
 
-/// A foot in the step before.
+/// A foot in the previous step.
 struct Foot {
     shown: Vec<Vec3>,
     clip: Vec<Vec3>,
@@ -170,7 +171,7 @@ struct Foot {
     steps: u32,
 }
 
-/// A walk as it goes.
+/// A walk in progress.
 struct Walk<'a> {
     ground: &'a Ground,
     def: Arc<CharacterDef>,
@@ -188,7 +189,7 @@ fn level(v: Vec3) -> Vec3 {
 }
 
 impl Walk<'_> {
-    /// Distance of a point from the ground, negative in it.
+    /// Distance of a point from the ground, negative inside.
     fn gap(&self, at: Vec3) -> f32 {
         let ray = Ray { origin: at + Vec3::Y * 0.6, direction: Vec3::Y * -3.0 };
         let hit = self.world.query().filter(QueryFilter::without(self.character.bodies())).first(&ray);
@@ -270,7 +271,7 @@ fn walks(def: &Arc<CharacterDef>, ground: &Ground) -> Found {
     };
     for step in 0..(ground.seconds * 60.0) as u32 {
         let carried = walk.step(step as f32 / 60.0);
-        // It begins in the air, by the mover's skin, and in mid-stride.
+        // The first steps start in the air, at the mover's margin, and in mid-stride.
         if step >= 45 {
             assert!(walk.character.state() == State::Animated, "{}", ground.name);
             walk.look(carried);
@@ -300,9 +301,9 @@ fn told(def: &Arc<CharacterDef>, ground: &Ground) -> ([f32; 4], String) {
     ([on, found.deepest, median, most], text)
 }
 
-/// A sole stands on the ground, its toes go through the edge of a step for a moment as it is lifted over it.
+/// A sole stands on the ground. Toes briefly pass through the edge of a step as the foot is lifted over it.
 #[test]
-fn feet_stand_on_what_is_under_them() {
+fn feet_stand_on_the_ground_in_every_scene() {
     let def = shared(sinew::mannequin::character());
     for ground in grounds() {
         let ([on, deepest, median, most], text) = told(&def, &ground);

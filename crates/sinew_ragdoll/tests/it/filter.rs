@@ -1,4 +1,5 @@
-//! Pairs of bodies that may collide: what is seen in the bind pose, within the limits and in clips, and what is done about it.
+//! Pairs of bodies that may collide: overlaps in the bind pose, within the limits and in clips, and the remedy for
+//! each.
 
 use sinew_anim::roles::{Role, Side};
 use sinew_math::{Rotation, Transform, Vec3};
@@ -13,7 +14,7 @@ const HAND: usize = 4;
 const THIGH: usize = 5;
 const HEAD: usize = 8;
 
-/// Balls of 5 cm, far from each other: hips, spine, a left arm, a left thigh with its shank and foot, a head.
+/// Balls of 5 cm, far from each other: hips, spine, a left arm, a left thigh with shank and foot, a head.
 fn body() -> (Bones, Vec<Fit>) {
     let left = Side::Left;
     let list = [
@@ -41,7 +42,7 @@ fn body() -> (Bones, Vec<Fit>) {
     (bones, (0..list.len()).map(fit).collect())
 }
 
-/// Poses of which this share has body `b` at `distance` from body `a`.
+/// Poses in which, for this share, body `b` is at `distance` from body `a`.
 fn meeting(fits: &[Fit], share: f32, (a, b): (usize, usize), distance: f32) -> Vec<Vec<Transform>> {
     let pose = |index: usize| {
         let mut pose: Vec<_> = fits.iter().map(|fit| fit.character_from_body).collect();
@@ -77,7 +78,7 @@ fn remedy(pair: (usize, usize), distance: f32, limits: f32, clips: f32) -> Optio
 }
 
 #[test]
-fn limbs_that_meet_now_and_then_collide() {
+fn limbs_that_overlap_rarely_collide() {
     for pair in [(HIPS, HAND), (HAND, THIGH), (HAND, HEAD)] {
         assert_eq!(remedy(pair, 0.02, 0.5, 0.0), None, "{pair:?}");
         assert_eq!(remedy(pair, 0.02, 0.5, 0.3).unwrap_or(Remedy::Tolerated), Remedy::Tolerated, "{pair:?}");
@@ -85,17 +86,18 @@ fn limbs_that_meet_now_and_then_collide() {
 }
 
 #[test]
-fn what_is_never_apart_does_not_collide() {
+fn limbs_that_always_overlap_do_not_collide() {
     for pair in [(HIPS, HAND), (HAND, THIGH), (HAND, HEAD)] {
         assert_eq!(remedy(pair, 0.02, 0.95, 0.0), Some(Remedy::Disabled), "{pair:?}");
         assert_eq!(remedy(pair, 0.02, 0.0, 0.6), Some(Remedy::Disabled), "{pair:?}");
     }
-    // No fall needs the sight of a head that meets the hips.
+    // No fall needs a collision between head and hips.
     assert_eq!(remedy((HIPS, HEAD), 0.02, 0.0, 0.05), Some(Remedy::Disabled));
     assert_eq!(remedy((HIPS, HEAD), 0.02, 0.0, 0.02), None);
 }
 
-/// Two balls of 5 cm whose middles are 9 cm apart overlap by 1 cm; each a few per cent thinner, by a tolerated half of it.
+/// Two balls of 5 cm with centres 9 cm apart overlap by 1 cm. Each is made a few per cent thinner; half of the overlap
+/// is tolerated.
 #[test]
 fn limbs_that_graze_each_other_are_made_thinner() {
     let (bones, mut fits) = body();
@@ -103,16 +105,16 @@ fn limbs_that_graze_each_other_are_made_thinner() {
     let report = filter_pairs(&bones, &mut fits, &poses);
     assert_eq!(found(&report, (HAND, THIGH)), Some(Remedy::Shrunk));
     for body in [HAND, THIGH] {
-        let Shape::Sphere { radius } = fits[body].shape else { panic!("a ball stays one") };
+        let Shape::Sphere { radius } = fits[body].shape else { panic!("the shape stays a ball") };
         assert!((radius - 0.05 * report.scale[body]).abs() < 1e-6);
         assert!(2.0 * radius - 0.09 <= TOLERATED && report.scale[body] > 0.92, "{radius}");
     }
     assert!(report.scale.iter().filter(|&&scale| scale < 1.0).count() == 2);
 }
 
-/// A rig bound with its hand in its thigh: the hand gets out, and then they meet as others do.
+/// A rig bound with its hand in its thigh: the hand can leave, so the pair collides like others.
 #[test]
-fn what_only_the_bind_pose_has_is_no_reason() {
+fn overlap_in_the_bind_pose_alone_disables_no_pair() {
     let (bones, mut fits) = body();
     let apart = Poses { within_limits: meeting(&fits, 0.0, (HAND, THIGH), 0.0), of_clips: Vec::new() };
     let often = Poses { within_limits: meeting(&fits, 0.5, (HAND, THIGH), 0.02), of_clips: Vec::new() };

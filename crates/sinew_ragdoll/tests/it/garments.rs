@@ -1,4 +1,5 @@
-//! Garments: sewn from chains of bones, held by the body, turning its bones; through teleports, snapshots, falls and bakes.
+//! Garments: built from chains of bones, attached to the body, driving the bones; through teleports, snapshots, falls
+//! and bakes.
 
 use sinew_anim::{Garment, GarmentColumn, Property, guess_garments, local_to_model};
 use sinew_math::{Reader, Transform, Vec3, Writer, max, min};
@@ -18,7 +19,7 @@ fn earth() -> Vec3 {
     WorldDef::default().gravity
 }
 
-/// A character that wears these and walks.
+/// A walking character with these garments.
 fn walking(garments: &[&Chains]) -> (World, Character) {
     let mut world = ground(earth());
     let def = Arc::new(dressed(garments, |_| ()));
@@ -34,14 +35,14 @@ pub fn go_on(world: &mut World, character: &mut Character, steps: u32) {
     }
 }
 
-/// Number of springs that join two particles, over those within one line: lines of a sheet stand one after the other.
+/// True if a spring joins two particles. Particles are stored line after line.
 fn is_joined(group: &ParticleGroup, a: usize, b: usize) -> bool {
     group.springs().iter().any(|spring| {
         [spring.a, spring.b] == [a as u32, b as u32] || [spring.b, spring.a] == [a as u32, b as u32]
     })
 }
 
-/// Change of each spring's length since rest, over that.
+/// Relative change of each spring's length since rest.
 fn stretches(group: &ParticleGroup) -> impl Iterator<Item = f32> {
     let at = group.positions();
     group
@@ -59,7 +60,7 @@ fn largest_stretch(group: &ParticleGroup) -> f32 {
 }
 
 #[test]
-fn a_skirt_goes_round_and_a_cape_does_not() {
+fn skirt_is_closed_and_cape_is_open() {
     let def = dressed(&[&SKIRT, &CAPE], |_| ());
     let worn = def.garments();
     let names: Vec<(&str, usize, bool)> =
@@ -75,18 +76,18 @@ fn a_skirt_goes_round_and_a_cape_does_not() {
         let (count, lines) = (group.positions().len(), group.attachments().len());
         let rows = count / lines;
         assert_eq!(count, rows * lines, "a grid");
-        // The hems of the first line and of the last.
+        // The hem particles of the first and the last line.
         assert_eq!(is_joined(group, rows - 1, count - 1), closed);
         assert!(is_joined(group, rows - 1, 2 * rows - 1) && is_joined(group, 0, 1));
         let longest = group.springs().iter().map(|spring| spring.rest_length).fold(0.0, max);
-        assert!(longest < 1.45 * 0.05, "no gap for a limb: {longest} m");
+        assert!(longest < 1.45 * 0.05, "the gap between lines is {longest} m");
     }
 }
 
 #[test]
-fn names_tell_garments_and_their_order() {
+fn garments_are_found_by_bone_names() {
     let mut rig = dressed_rig(&[&SKIRT]);
-    // Columns stand round the waist otherwise than in the file: each is beside its neighbours all the same.
+    // Columns are listed in another order than around the waist; each still neighbours the right ones.
     let first = rig.joints.len() - SKIRT.columns * (SKIRT.bones + 1);
     let rests: Vec<_> = rig.joints.iter().map(|joint| joint.rest).collect();
     for column in 0..SKIRT.columns {
@@ -104,7 +105,7 @@ fn names_tell_garments_and_their_order() {
     let step = |pair: &[usize]| (pair[1] + SKIRT.columns - pair[0]) % SKIRT.columns;
     let steps: Vec<usize> = order.windows(2).map(step).collect();
     assert!(steps.iter().all(|&step| step == steps[0]) && [3, 7].contains(&steps[0]), "{order:?}");
-    // A chain alone is no cloth, nor is what is called something else.
+    // A single chain, or chains with another name, are not garments.
     for joint in &mut rig.joints[first + SKIRT.bones + 1..] {
         joint.name = "strand".to_owned();
     }
@@ -112,14 +113,14 @@ fn names_tell_garments_and_their_order() {
 }
 
 #[test]
-fn chains_that_cannot_be_worn_are_left_out() {
+fn invalid_garment_chains_are_skipped() {
     let mut def = dressed(&[&CAPE], |_| ());
     let joint = |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("it is there");
     let (leg, cape) = (joint("leftUpperLeg"), joint("cape_0_0"));
     let column = |top| GarmentColumn::below(&def.rig, top);
-    // Bodies move legs; one chain that is left is no sheet.
+    // Bodies move the legs, and a single remaining chain is not a sheet.
     let legs = Garment { columns: vec![column(leg), column(cape)], ..Garment::default() };
-    // A chain in two garments is in the first.
+    // A chain in two garments belongs to the first.
     let twice = Garment { columns: vec![column(cape), column(joint("cape_1_0"))], ..Garment::default() };
     def.set_garments(&[legs, twice]);
     assert!(def.garments().is_empty());
@@ -127,7 +128,7 @@ fn chains_that_cannot_be_worn_are_left_out() {
 }
 
 #[test]
-fn what_is_drawn_at_rest_is_what_the_artist_made() {
+fn garment_bones_keep_the_bind_pose_without_gravity() {
     let mut def = dressed(&[&SKIRT, &CAPE], |_| ());
     def.set_motions(sinew_ragdoll::MotionSet::default()).expect("none");
     let mut world = ground(Vec3::ZERO);
@@ -136,13 +137,13 @@ fn what_is_drawn_at_rest_is_what_the_artist_made() {
     let def = character.def().clone();
     let pairs = character.pose().iter().zip(character.pose_without_springs());
     let most = pairs.map(|(worn, rest)| worn.rotation.angle_to(rest.rotation)).fold(0.0, max);
-    assert!(most < 0.01, "without gravity nothing pulls: {most} rad");
-    // And with gravity it hangs: its hem sinks, and no bone turns much but where it is free.
+    assert!(most < 0.01, "without gravity the bones turn {most} rad");
+    // With gravity the hem sinks, and only free bones turn noticeably.
     assert!(def.garments().particles().all(|count| count > 100));
 }
 
 #[test]
-fn bones_lie_in_the_sheet() {
+fn garment_bones_follow_the_sheet() {
     let (mut world, mut character) = walking(&[&SKIRT, &CAPE]);
     let mut model = Vec::new();
     for second in 1..=4 {
@@ -151,13 +152,13 @@ fn bones_lie_in_the_sheet() {
         local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
         let moved = character.pose().iter().zip(character.pose_without_springs());
         let turned = moved.map(|(worn, rest)| worn.rotation.angle_to(rest.rotation)).fold(0.0, max);
-        assert!(turned > 0.1, "after {second} it swings: {turned} rad");
+        assert!(turned > 0.1, "after {second} s it swings by {turned} rad");
         for (garment, &id) in def.garments().source().iter().zip(character.garments()) {
             let positions = world.particles(id).positions();
             for joint in garment.joints() {
                 let place = model[joint].translation;
                 let away = positions.iter().map(|p| (*p - place).length()).fold(f32::INFINITY, min);
-                // Bones do not get shorter where the sheet waves: an eighth of the cape's length.
+                // Bones keep their length where the sheet is wavy: tolerance is an eighth of the cape's length.
                 let bar = if garment.closed { 0.045 } else { 0.12 };
                 assert!(away < bar, "{} {away} m from the sheet", def.rig.joints[joint].name);
             }
@@ -166,8 +167,8 @@ fn bones_lie_in_the_sheet() {
 }
 
 #[test]
-fn a_sheet_that_begins_within_the_body_does_not_burst() {
-    // A skirt so tight that most of it is within the hips and thighs.
+fn sheet_that_starts_inside_the_body_stays_slow() {
+    // A skirt so tight that most of it is inside hips and thighs.
     const TIGHT: Chains =
         Chains { place: |across, down| (SKIRT.place)(across, down) * Vec3::new(0.7, 1.0, 0.7), ..SKIRT };
     let mut def = dressed(&[&TIGHT], |_| ());
@@ -180,23 +181,24 @@ fn a_sheet_that_begins_within_the_body_does_not_burst() {
         let group = world.particles(character.garments()[0]);
         fastest = group.velocities().iter().map(|v| v.length()).fold(fastest, max);
     }
-    // No faster than what falls from the seam to the ground.
+    // At most the speed of a fall from the seam to the ground.
     assert!(fastest < 4.4, "{fastest} m/s");
     let group = world.particles(character.garments()[0]);
     let now = group.velocities().iter().map(|v| v.length()).fold(0.0, max);
     assert!(now < 0.2 && mean_stretch(group) < 0.03, "{now} m/s, {}", mean_stretch(group));
 }
 
-/// A skirt that is put on in mid-stride, with thighs through where its bones have it, is draped: it begins out of the legs, at its lengths.
+/// A skirt is put on in mid-stride, where the thighs intersect its bones' positions: it starts outside the legs, with
+/// its lengths kept.
 #[test]
-fn a_sheet_that_is_put_on_in_mid_stride_is_draped() {
+fn sheet_put_on_in_mid_stride_starts_outside_the_legs() {
     let (mut deepest, mut stretch): (f32, f32) = (0.0, 0.0);
     for steps in [20, 27, 34, 41, 48, 55] {
         let (mut world, mut character) = walking(&[&SKIRT]);
         character.set_level_of_detail(&mut world, Detail::Keyed);
         go_on(&mut world, &mut character, steps);
         character.set_level_of_detail(&mut world, Detail::Full);
-        assert_eq!(character.garments().len(), 1, "it is on at once");
+        assert_eq!(character.garments().len(), 1, "it is worn at once");
         let group = world.particles(character.garments()[0]);
         stretch = max(stretch, mean_stretch(group));
         let is_free = |particle: u32| group.attachments().iter().all(|held| held.particle != particle);
@@ -214,7 +216,7 @@ fn a_sheet_that_is_put_on_in_mid_stride_is_draped() {
 }
 
 #[test]
-fn a_teleport_takes_garments_along_and_a_reset_starts_them_over() {
+fn teleport_moves_garments_and_reset_restores_them() {
     let (mut world, mut character) = walking(&[&CAPE]);
     go_on(&mut world, &mut character, 50);
     let to = Transform::from_translation(Vec3::new(40.0, 0.0, -30.0));
@@ -227,8 +229,8 @@ fn a_teleport_takes_garments_along_and_a_reset_starts_them_over() {
     }
     go_on(&mut world, &mut character, 1);
     let stretch = largest_stretch(world.particles(id));
-    assert!(stretch < 0.2, "it does not lag behind: {stretch}");
-    // Lifted off, and put back to where the pose has it.
+    assert!(stretch < 0.2, "it lags behind: {stretch}");
+    // A particle is displaced; the reset puts it back to the pose.
     world.particles_mut(id).set_position(20, to.point(Vec3::new(0.0, 3.0, 0.0)));
     character.reset_garments(&mut world);
     let stretch = largest_stretch(world.particles(character.garments()[0]));
@@ -243,7 +245,7 @@ fn bytes(character: &Character) -> Vec<u8> {
 }
 
 #[test]
-fn a_snapshot_in_the_middle_of_a_swing_goes_on_alike() {
+fn snapshot_during_a_swing_continues_identically() {
     let (mut world, mut character) = walking(&[&SKIRT]);
     go_on(&mut world, &mut character, 40);
     character.go_limp(&mut world);
@@ -263,13 +265,13 @@ fn a_snapshot_in_the_middle_of_a_swing_goes_on_alike() {
         assert_eq!(copy.pose(), character.pose());
     }
     assert!(copy.load(&mut Reader::new(&saved[..saved.len() - 5])).is_err());
-    // A character without garments is another one.
+    // Loading into a character without garments fails.
     let bare = Arc::new(CharacterDef::clone(&sinew::mannequin::character()));
     assert!(Character::new(bare, Transform::IDENTITY, 0.0).load(&mut Reader::new(&saved)).is_err());
 }
 
 #[test]
-fn garments_come_and_go_with_the_bodies() {
+fn garments_exist_while_bodies_do() {
     let (mut world, mut character) = walking(&[&SKIRT, &CAPE]);
     assert_eq!(world.group_ids().count(), 2);
     character.set_level_of_detail(&mut world, Detail::Keyed);
@@ -283,9 +285,9 @@ fn garments_come_and_go_with_the_bodies() {
     assert_eq!((world.group_ids().count(), world.body_ids().count()), (0, 1));
 }
 
-/// A character that never was in the world gets its bodies with its fall, and its garments with them.
+/// A character added outside of the world gets its bodies when it falls, and its garments with them.
 #[test]
-fn who_falls_out_of_nowhere_is_dressed() {
+fn new_bodies_come_with_garments() {
     let mut world = ground(earth());
     let def = Arc::new(dressed(&[&CAPE], |_| ()));
     let mut character = Character::new(def, Transform::IDENTITY, 0.0);
@@ -297,7 +299,7 @@ fn who_falls_out_of_nowhere_is_dressed() {
 }
 
 #[test]
-fn a_bake_has_the_bones_of_garments() {
+fn bake_includes_garment_bones() {
     let def = Arc::new(dressed(&[&CAPE], |_| ()));
     let mut bare = CharacterDef::clone(&def);
     bare.set_garments(&[]);
@@ -315,11 +317,11 @@ fn a_bake_has_the_bones_of_garments() {
             .any(|c| c.joint == joint && c.property == Property::Rotation && c.times.len() > 2)
     };
     assert!(def.garments().joints().all(turns));
-    // Before it falls, too.
+    // Garment bones also move before the fall.
     let joint = def.garments().joints().next().expect("it has bones");
     let swings = worn.frames.iter().filter(|frame| frame.time < 0.5);
     let most = swings.map(|frame| frame.pose[joint].rotation.angle_to(def.rest()[joint].rotation));
-    assert!(most.fold(0.0, max) > 0.02, "it swings as it walks");
+    assert!(most.fold(0.0, max) > 0.02, "it does not swing while walking");
     let bare = baked(Arc::new(bare));
     assert!(
         !bare.clip.channels.iter().any(|channel| def.garments().joints().any(|joint| joint == channel.joint))
@@ -327,7 +329,7 @@ fn a_bake_has_the_bones_of_garments() {
 }
 
 #[test]
-fn settings_say_what_is_worn() {
+fn settings_choose_the_garments() {
     use sinew_ragdoll::settings::{GarmentSettings, GarmentSource};
     let rig = dressed_rig(&[&SKIRT, &CAPE]);
     let listed = |chains: &[&str]| {
@@ -353,7 +355,7 @@ fn settings_say_what_is_worn() {
 }
 
 #[test]
-fn bones_of_garments_are_no_part_of_the_body() {
+fn garment_bones_do_not_shape_the_body() {
     use sinew_ragdoll::settings::GarmentSource;
     use sinew_ragdoll::{BuildOptions, Settings, build_with};
     let (rig, bare) = (dressed_rig(&[&SKIRT, &CAPE]), sinew_scenes::mannequin::mannequin().rig);
@@ -366,6 +368,6 @@ fn bones_of_garments_are_no_part_of_the_body() {
     let shapes = |def: &sinew_ragdoll::RagdollDef| -> Vec<_> {
         def.bodies.iter().map(|body| (body.shape.clone(), body.mass, body.character_from_body)).collect()
     };
-    assert_eq!(shapes(&dressed), shapes(&bare), "a skirt does not make the hips wider");
-    assert_ne!(shapes(&of(&rig, &Settings::default())), shapes(&bare), "or this says nothing");
+    assert_eq!(shapes(&dressed), shapes(&bare), "a skirt changes the shapes");
+    assert_ne!(shapes(&of(&rig, &Settings::default())), shapes(&bare), "without settings the skirt counts");
 }

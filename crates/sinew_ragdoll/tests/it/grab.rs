@@ -1,4 +1,4 @@
-//! Grips: what is grabbed is dragged, lifted and let go, and nothing is thrown.
+//! Grips: a character drags, lifts and releases what it holds, and nothing is thrown.
 
 use crate::actor::{shared, walker};
 use crate::in_world::level;
@@ -7,18 +7,18 @@ use sinew_physics::{BodyDef, BodyKind, JointDef, JointId, JointKind, Shape, Shap
 use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, Grab, GrabPoint, Grip, Preset, State};
 use std::sync::Arc;
 
-/// Fastest that a limb may be, m/s.
+/// Upper bound on the speed of a limb, m/s.
 const MOST_SPEED: f32 = 10.0;
-/// Widest gap of a joint between limbs, metres.
+/// Upper bound on the gap of a joint between limbs, metres.
 const MOST_GAP: f32 = 0.01;
 
-/// Largest force of a grip over that which it may have.
+/// Upper bound on a grip's force, relative to its maximum.
 const MOST_FORCE: f32 = 1.25;
 
-/// What was seen while something was held.
+/// Extremes observed while something is held.
 #[derive(Debug, Default)]
 struct Seen {
-    /// m/s, N, metres.
+    /// Speed (m/s), force (N), gap (metres).
     speed: f32,
     force: f32,
     gap: f32,
@@ -37,7 +37,7 @@ impl Seen {
         }
     }
 
-    /// True if speed, gap and force are within so many times their bars.
+    /// True if speed, gap and force are within `times` their bounds.
     fn is_within(&self, times: f32, grab: &Grab) -> bool {
         self.speed <= times * MOST_SPEED
             && self.gap <= times * MOST_GAP
@@ -45,9 +45,9 @@ impl Seen {
     }
 
     fn expect(&self, what: &str, grab: &Grab) {
-        assert!(self.speed <= MOST_SPEED, "{what}: a limb goes at {} m/s", self.speed);
-        assert!(self.gap <= MOST_GAP, "{what}: a joint is open by {} m", self.gap);
-        // A contact or a stop may add to it within one substep.
+        assert!(self.speed <= MOST_SPEED, "{what}: a limb moves at {} m/s", self.speed);
+        assert!(self.gap <= MOST_GAP, "{what}: a joint gap is {} m", self.gap);
+        // A contact or a stop may add to the force within one substep.
         assert!(self.force <= MOST_FORCE * grab.max_force, "{what}: the grip pulls with {} N", self.force);
     }
 }
@@ -56,7 +56,7 @@ fn body(def: &CharacterDef, name: &str) -> usize {
     def.body_named(name).expect("it has that body")
 }
 
-/// A limp character that has lain for a while.
+/// A limp character at rest on the ground.
 fn lying(world: &mut World, def: &Arc<CharacterDef>, place: Transform) -> Character {
     let mut character = Character::spawn(world, def, place);
     character.go_limp(world);
@@ -68,7 +68,7 @@ fn lying(world: &mut World, def: &Arc<CharacterDef>, place: Transform) -> Charac
 }
 
 #[test]
-fn a_mouse_drags_a_limp_character_wherever_it_jumps() {
+fn mouse_grab_drags_a_limp_character() {
     let def = shared(walker());
     for limb in ["rightHand", "hips", "head", "leftFoot"] {
         let mut world = level();
@@ -85,12 +85,12 @@ fn a_mouse_drags_a_limp_character_wherever_it_jumps() {
                 3 => at + Vec3::new(0.0, 3.0, -2.0),
                 4 => at + Vec3::new(5.0, -2.0, 5.0),
                 5 => at + Vec3::new(0.0, 1.8, 0.0),
-                // To and fro.
+                // Back and forth.
                 6 | 7 => at + Vec3::new(if step % 20 < 10 { 3.0 } else { -3.0 }, 2.2, 0.0),
                 _ => at + Vec3::Y * 2.5,
             };
             mouse.set_target(target);
-            assert!(mouse.update(&mut world), "it holds on");
+            assert!(mouse.update(&mut world), "the grip opened");
             world.step();
             puppet.update(&mut world);
             seen.look(&world, &[mouse.joint()]);
@@ -104,11 +104,11 @@ fn a_mouse_drags_a_limp_character_wherever_it_jumps() {
             world.step();
             puppet.update(&mut world);
         }
-        assert_eq!(puppet.state(), State::Animated, "free, it gets up");
+        assert_eq!(puppet.state(), State::Animated, "released, it gets up");
     }
 }
 
-/// A character that stands at the limb of one who lies, turned away from the rest of it, and has grabbed that.
+/// A character that stands at a limb of a lying one, turned away from it, and has grabbed the limb.
 fn dragging(
     def: &Arc<CharacterDef>,
     limb: &str,
@@ -134,10 +134,10 @@ fn dragging(
     (world, hero, victim, joint)
 }
 
-/// Eleven of twelve starts keep to the bars, and none exceeds them twice over: a limb dragged over the ground catches and turns chaotically,
-/// and so does the peak of the force.
+/// Eleven of twelve starts stay within the bounds, and none exceeds them twofold: a limb dragged over the ground
+/// catches and turns chaotically, and so does the peak force.
 #[test]
-fn a_walker_drags_who_is_limp() {
+fn walker_drags_a_limp_character() {
     let def = shared(walker());
     let grab = Grab { reach: 1.5, ..Grab::HAND };
     let (mut all, mut beyond) = (0, 0);
@@ -145,7 +145,7 @@ fn a_walker_drags_who_is_limp() {
         let (mut dragged, mut tried) = (0, 0);
         for phase in 0..6 {
             let (mut world, mut hero, mut victim, joint) = dragging(&def, limb, phase, &grab);
-            // Who stumbled over the other before it grabbed it is no test of grips.
+            // A walker that stumbled over the other before grabbing it is skipped.
             let Some(joint) = joint.filter(|_| hero.state() == State::Animated) else { continue };
             tried += 1;
             let lay = world.center_of_mass(victim.bodies()[0]);
@@ -161,23 +161,23 @@ fn a_walker_drags_who_is_limp() {
                 victim.update(&mut world);
                 if world.contains_joint(joint) {
                     seen.look(&world, &[joint]);
-                    assert_eq!(victim.state(), State::Limp, "{limb}: who is held does not get up");
+                    assert_eq!(victim.state(), State::Limp, "{limb}: a held character does not get up");
                 }
             }
             assert!(seen.is_within(2.0, &grab), "{limb}, {phase}: {seen:?}");
             (all, beyond) = (all + 1, beyond + usize::from(!seen.is_within(1.0, &grab)));
             let gone = (hero.world_from_character().translation - from).length();
-            assert!(gone > 0.95 * 1.2 * 4.0 && hero.state() == State::Animated, "{limb}: it went {gone} m");
+            assert!(gone > 0.95 * 1.2 * 4.0 && hero.state() == State::Animated, "{limb}: it walked {gone} m");
             dragged += usize::from((world.center_of_mass(victim.bodies()[0]) - lay).length() > 3.0);
         }
         assert!(tried >= 3 && dragged + 1 >= tried, "{limb}: it dragged {dragged} of {tried}");
     }
-    assert!(12 * beyond <= all, "{beyond} of {all} are beyond the bars");
+    assert!(12 * beyond <= all, "{beyond} of {all} exceed the bounds");
 }
 
 #[test]
 #[should_panic(expected = "`Character::grab` takes hold of it")]
-fn nobody_holds_a_limb_as_a_sword() {
+fn holding_a_body_of_a_character_panics() {
     let def = shared(walker());
     let mut world = level();
     let other = lying(&mut world, &def, Transform::IDENTITY);
@@ -186,9 +186,9 @@ fn nobody_holds_a_limb_as_a_sword() {
 }
 
 #[test]
-fn a_grip_lets_go_at_its_force() {
+fn grip_releases_at_its_maximum_force() {
     let def = shared(walker());
-    // What holds the victim is as strong as the world.
+    // The victim is fixed to the world.
     let grab = Grab { reach: 1.5, ..Grab::HAND };
     let (mut world, mut hero, mut victim, joint) = dragging(&def, "leftHand", 1, &grab);
     let joint = joint.expect("it is in reach");
@@ -209,10 +209,11 @@ fn a_grip_lets_go_at_its_force() {
             let_go.get_or_insert(step);
         }
     }
-    seen.expect("nailed down", &grab);
-    assert!(let_go.is_some(), "it lets go of what is nailed down");
+    seen.expect("fixed", &grab);
+    assert!(let_go.is_some(), "it releases a fixed body");
     assert_eq!(hero.state(), State::Animated);
-    // A crate that hangs on a grip: it holds what weighs a little less than its force, and not what weighs a little more.
+    // A crate hangs on a grip: it is held if its weight is a little less than the grip's force, and dropped if a little
+    // more.
     for (share, holds) in [(0.85, true), (1.05, false)] {
         let mut world = level();
         let side = 0.5;
@@ -239,7 +240,7 @@ fn a_grip_lets_go_at_its_force() {
 }
 
 #[test]
-fn two_who_hold_each_other_stay_together() {
+fn characters_holding_each_other_stay_together() {
     let def = shared(walker());
     for powered in [[false, false], [true, false], [true, true]] {
         let mut world = level();
@@ -276,12 +277,12 @@ fn two_who_hold_each_other_stay_together() {
         seen.expect(&format!("powered {powered:?}"), &grab);
         assert!(apart < 1.0, "{apart} m apart");
         let held: usize = pair.iter().map(|character| character.held().count()).sum();
-        assert!(held == 2, "{held} of them hold on");
+        assert!(held == 2, "{held} of them still hold");
     }
 }
 
 #[test]
-fn who_is_carried_over_the_shoulder_comes_along() {
+fn character_carried_over_the_shoulder_stays_on() {
     let def = shared(walker());
     let mut world = level();
     let mut victim = lying(&mut world, &def, Transform::IDENTITY);
@@ -296,7 +297,7 @@ fn who_is_carried_over_the_shoulder_comes_along() {
     }
     let hips = victim.bodies()[0];
     let chest = hero.bodies()[body(&def, "chest")];
-    // Over its left shoulder, by the hips.
+    // The victim lies over the left shoulder, held at the hips.
     let shoulder =
         world.transform(chest).inverse_point(world.center_of_mass(chest) + Vec3::new(0.2, 0.3, 0.0));
     let grab = Grab { max_force: 3000.0, reach: 2.0, to: Some(shoulder), speed: 1.0, ..Grab::HAND };
@@ -313,11 +314,8 @@ fn who_is_carried_over_the_shoulder_comes_along() {
     }
     let at = world.center_of_mass(hips) - hero.world_from_character().translation;
     seen.expect("carried", &grab);
-    assert!(
-        at.y > 1.2 && (at - Vec3::Y * at.y).length() < 0.4,
-        "it hangs at {at} from the feet of who carries it"
-    );
-    assert!(hero.world_from_character().translation.z > lies.z + 6.0, "who carries walks on");
+    assert!(at.y > 1.2 && (at - Vec3::Y * at.y).length() < 0.4, "it hangs at {at} from the carrier's feet");
+    assert!(hero.world_from_character().translation.z > lies.z + 6.0, "the carrier stops walking");
     assert_eq!((hero.state(), victim.state()), (State::Animated, State::Limp));
     assert!(hero.release(&mut world, hips));
     for _ in 0..900 {

@@ -1,4 +1,4 @@
-//! Momentum of the animated pose and of the ragdoll that takes over.
+//! Hand-over of momentum from the animated pose to the ragdoll.
 
 use crate::actor::{floor, kaykit, shared, somewhere, walker};
 use needs_data::needs_data;
@@ -13,7 +13,7 @@ use sinew_ragdoll::{BodySettings, BodyState, Character, CharacterDef, Ragdoll};
 use sinew_scenes::mannequin::WALK_SPEED;
 use std::sync::Arc;
 
-/// World poses of the bodies as the walk has them at a time, without a `Character`.
+/// World poses of the bodies in the walk at a time, computed without a `Character`.
 fn carried_bodies(def: &CharacterDef, at: Transform, time: f32) -> Vec<Transform> {
     let mut pose = def.rest().to_vec();
     sample(&def.motions().clips[0], &def.rig, time, Wrap::Loop, &mut pose);
@@ -25,22 +25,22 @@ fn carried_bodies(def: &CharacterDef, at: Transform, time: f32) -> Vec<Transform
     bodies
 }
 
-/// Momentum of rigid bodies carried by the walk.
+/// Momentum of rigid bodies that follow the walk.
 struct Carried {
     linear: Vec3,
-    /// About the common centre of mass.
+    /// Angular momentum about the common centre of mass.
     angular: Vec3,
-    /// Sum of the bodies' shares of it without regard to direction: limbs that swing against each other cancel.
+    /// Sum of the magnitudes of the bodies' shares: limbs that swing against each other would cancel.
     swing: f32,
 }
 
-/// By central differences over `dt` on either side.
+/// Momentum by central differences over `dt` on either side.
 fn carried_momentum(def: &CharacterDef, at: Transform, time: f32, dt: f32) -> Carried {
     let [before, now, after] = [time - dt, time, time + dt].map(|time| carried_bodies(def, at, time));
     momentum_of_motion(def, &before, &now, &after, 2.0 * dt)
 }
 
-/// Momentum of bodies at `now` that go from `before` to `after` within `dt`.
+/// Momentum at `now` of bodies that move from `before` to `after` within `dt`.
 fn momentum_of_motion(
     def: &CharacterDef,
     before: &[Transform],
@@ -56,7 +56,7 @@ fn momentum_of_motion(
     let mut sum = Carried { linear: Vec3::ZERO, angular: Vec3::ZERO, swing: 0.0 };
     for (body, def) in bodies.iter().enumerate() {
         let p = (center(body, after) - center(body, before)) * (def.mass.mass / dt);
-        // The turn's matrix minus its transpose holds the axis: no logarithm, unlike the code under test.
+        // The rotation matrix minus its transpose contains the axis. Unlike the tested code this needs no logarithm.
         let turn = (after[body].rotation * before[body].rotation.inverse()).to_mat3();
         let axis = Vec3::new(
             turn.y_axis.z - turn.z_axis.y,
@@ -74,9 +74,9 @@ fn momentum_of_motion(
 }
 
 #[test]
-fn ragdoll_has_the_momentum_of_the_walk() {
+fn ragdoll_inherits_the_momentum_of_the_walk() {
     let def = shared(walker());
-    // Between the clip's keys (30 a second), at which its velocity jumps and has no one value.
+    // The time is between keys (30 a second): at a key the clip's velocity is discontinuous.
     const PHASE: f32 = 0.01;
     for frame in 0..32 {
         let steps = 2 * frame;
@@ -107,7 +107,7 @@ fn ragdoll_has_the_momentum_of_the_walk() {
 }
 
 #[test]
-fn a_turning_body_hands_over_its_spin_and_the_speed_of_its_center() {
+fn hand_over_keeps_spin_and_centre_velocity() {
     let center = Vec3::new(0.1, 0.2, -0.05);
     let spin = Vec3::new(1.0, -2.0, 0.5);
     let (dt, pivot) = (0.01, Vec3::new(3.0, 1.0, 2.0));
@@ -121,7 +121,7 @@ fn a_turning_body_hands_over_its_spin_and_the_speed_of_its_center() {
 }
 
 #[test]
-fn speeds_are_bounded() {
+fn hand_over_speeds_are_bounded() {
     let bound = SpeedBound { linear: 2.0, angular: 3.0 };
     let after = Transform::new(Vec3::X, Rotation::from_axis_angle(Vec3::Y, 1.0));
     let velocity = body_velocity(Transform::IDENTITY, after, Vec3::ZERO, 0.01, bound);
@@ -129,7 +129,7 @@ fn speeds_are_bounded() {
     assert!((velocity.angular - Vec3::Y * 3.0).length() < 1e-5);
 }
 
-/// Poses of the bodies in `seconds`, as an animator that is sent ahead by itself has them.
+/// Body poses `seconds` ahead, from an animator that is advanced separately.
 fn bodies_in(character: &Character, seconds: f32) -> Vec<Transform> {
     let def = character.def();
     let mut animator = character.animator().clone();
@@ -148,7 +148,7 @@ fn bodies_in(character: &Character, seconds: f32) -> Vec<Transform> {
 }
 
 #[test]
-fn momentum_is_that_of_any_mixture_of_clips_and_transitions() {
+fn momentum_matches_random_blends_of_clips() {
     let def = shared(walker());
     let mut random = Random::new(3);
     let mass = def.ragdoll.total_mass;
@@ -162,7 +162,7 @@ fn momentum_is_that_of_any_mixture_of_clips_and_transitions() {
                 let clip = TrackDef {
                     start: random.range(0.0, 1.0),
                     speed: random.range(0.3, 1.5),
-                    // A looped get-up clip would jump from standing back to lying, so it plays once.
+                    // A looped get-up clip would jump from standing to lying, so it plays once.
                     loop_mode: if clip < 2 { LoopMode::Loop } else { LoopMode::Once },
                     ..TrackDef::new(def.clip(clip))
                 };
@@ -176,8 +176,8 @@ fn momentum_is_that_of_any_mixture_of_clips_and_transitions() {
             world.step();
             character.update(&mut world);
         }
-        // Three points, for speeds change within a transition. At a key of a clip they jump, and there is no one value: then
-        // points twice as far apart tell another.
+        // Three points, because speeds change within a transition. At a key of a clip they are discontinuous; points at
+        // twice the distance then give another result.
         let start = |h: f32| {
             let [now, ahead, further] = [0.0, h, 2.0 * h].map(|seconds| bodies_in(&character, seconds));
             let soon = momentum_of_motion(&def, &now, &now, &ahead, h);
@@ -189,7 +189,7 @@ fn momentum_is_that_of_any_mixture_of_clips_and_transitions() {
             }
         };
         let (carried, wider) = (start(5e-4), start(1e-3));
-        // A body that hardly moves as a whole still has limbs that do.
+        // A body with little net motion still has moving limbs.
         let scale = [max(carried.linear.length(), 0.3 * mass), max(carried.swing, 0.5)];
         let apart = [carried.linear - wider.linear, carried.angular - wider.angular];
         if max(apart[0].length() / scale[0], apart[1].length() / scale[1]) > 0.004 {
@@ -213,7 +213,7 @@ fn momentum_is_that_of_any_mixture_of_clips_and_transitions() {
     assert!(worst.iter().all(|&error| error < 0.01), "{worst:?}");
 }
 
-/// The walker's clips in an animator that mixes them at random, seen as bodies.
+/// An animator that blends the walker's clips at random, evaluated as body poses.
 struct Mixer {
     def: CharacterDef,
     set: AnimationSet,
@@ -236,7 +236,7 @@ impl Mixer {
         Self { animator: Animator::new(&set), def, set, clips, place }
     }
 
-    /// Starts a track beside the others, or goes over to it.
+    /// Starts a track beside the others, or cross-fades to it.
     fn change(&mut self, random: &mut Random) {
         let track = TrackDef {
             weight: random.range(0.2, 1.0),
@@ -257,7 +257,7 @@ impl Mixer {
 
     fn step(&mut self, dt: f32, out: &mut Vec<Transform>) {
         self.animator.update(&self.set, dt);
-        // Whoever carries the character moves and turns it besides.
+        // The code that moves the character translates and rotates it as well.
         let turn = Rotation::from_scaled_axis(Vec3::Y * 0.9 * dt);
         self.place = Transform::new(
             self.place.translation + Vec3::new(1.0, 0.2, 0.5) * dt,
@@ -271,7 +271,7 @@ impl Mixer {
     }
 }
 
-/// The world's, about the common centre of mass of a ragdoll.
+/// Linear and angular momentum of a ragdoll, the latter about its common centre of mass.
 fn momentum_of_ragdoll(world: &World, ragdoll: &Ragdoll) -> (Vec3, Vec3) {
     let momentum = world.momentum();
     let (mut mass, mut moment) = (0.0, Vec3::ZERO);
@@ -283,7 +283,7 @@ fn momentum_of_ragdoll(world: &World, ragdoll: &Ragdoll) -> (Vec3, Vec3) {
 }
 
 #[test]
-fn ragdoll_has_the_momentum_of_any_blend() {
+fn ragdoll_inherits_the_momentum_of_any_blend() {
     let mut random = Random::new(21);
     let dt = 1.0 / 60.0;
     let mut least = f32::INFINITY;
@@ -317,11 +317,11 @@ fn ragdoll_has_the_momentum_of_any_blend() {
             world.step();
         }
     }
-    assert!(least > 10.0, "they move");
+    assert!(least > 10.0, "nothing moves");
 }
 
-/// Largest angular acceleration of a body in the first step after going limp, at several phases, in the air: neither floor
-/// nor push, only joints act on limbs. At the end joints have the friction of the definition.
+/// Largest angular acceleration of a body in the first step after going limp, at several phases, in the air: only
+/// joints act on limbs, no floor or push. In the last run joints have the friction of the definition.
 fn first_jolt(def: &Arc<CharacterDef>) -> f32 {
     let mut jolt = 0.0;
     for start in [0.0, 0.2, 0.45, 0.7] {
@@ -354,13 +354,13 @@ fn first_jolt(def: &Arc<CharacterDef>) -> f32 {
 }
 
 #[test]
-fn friction_stops_no_limb_at_once() {
+fn joint_friction_does_not_stop_limbs_at_once() {
     check_friction(walker());
 }
 
 #[needs_data]
 #[test]
-fn friction_stops_no_limb_of_kaykit_at_once() {
+fn joint_friction_does_not_stop_kaykit_limbs_at_once() {
     check_friction(kaykit());
 }
 
@@ -369,6 +369,6 @@ fn check_friction(def: CharacterDef) {
     smooth.ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque = 0.0);
     let [usual, without] = [def, smooth].map(|def| first_jolt(&shared(def)));
     println!("{usual} rad/s² in the first step, {without} without friction");
-    // What is left is limits that a clip goes beyond.
+    // The remaining acceleration comes from limits that a clip exceeds.
     assert!(usual <= 1.001 * without, "{usual} rad/s² in the first step, {without} without friction");
 }

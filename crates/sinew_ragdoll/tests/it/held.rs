@@ -1,4 +1,4 @@
-//! Characters that a joint, a hook, a hand or arms hold, that are carried or driven about, and that die.
+//! Characters held by a joint, a hook, a hand or arms, carried or driven around, and dying.
 
 use crate::actor::{shared, walker};
 use crate::in_world::{level, run};
@@ -6,16 +6,16 @@ use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, max};
 use sinew_physics::{BodyDef, BodyId, BodyKind, JointDef, JointId, JointKind, Shape, Velocity, World};
 use sinew_ragdoll::{AfterSettling, Character, CharacterDef, CharacterEvent, Grab, Preset, State};
 
-/// Fastest that a limb may be, m/s.
+/// Upper bound on the speed of a limb, m/s.
 const MOST_SPEED: f32 = 15.0;
-/// Widest gap of a joint, metres.
+/// Upper bound on the gap of a joint, metres.
 const MOST_GAP: f32 = 0.05;
 
 fn body(def: &CharacterDef, name: &str) -> usize {
     def.body_named(name).expect("it has that body")
 }
 
-/// A kinematic ball without contacts at a body, on a joint with it.
+/// A kinematic ball without contacts at a body, joined to it.
 fn hook(world: &mut World, held: BodyId) -> (BodyId, JointId) {
     let at = world.center_of_mass(held);
     let hook = BodyDef { kind: BodyKind::Kinematic, ..BodyDef::default() }.at(at);
@@ -25,7 +25,7 @@ fn hook(world: &mut World, held: BodyId) -> (BodyId, JointId) {
     (hook, world.add_joint(&joint))
 }
 
-/// Speeds of limbs and gaps of joints.
+/// Largest observed limb speed and joint gap.
 #[derive(Debug, Default)]
 struct Seen {
     speed: f32,
@@ -48,12 +48,12 @@ impl Seen {
 
     fn expect_within(&self, what: &str, most_gap: f32) {
         println!("{what}: {self:?}");
-        assert!(self.speed <= MOST_SPEED, "{what}: a limb goes at {} m/s", self.speed);
-        assert!(self.gap <= most_gap, "{what}: a joint is open by {} m", self.gap);
+        assert!(self.speed <= MOST_SPEED, "{what}: a limb moves at {} m/s", self.speed);
+        assert!(self.gap <= most_gap, "{what}: a joint gap is {} m", self.gap);
     }
 }
 
-/// Saves and loads world and character, as in a rollback.
+/// Saves and loads world and character, as for a rollback.
 fn reload(world: &mut World, character: &mut Character) {
     let mut w = Writer::new();
     world.save(&mut w);
@@ -66,7 +66,7 @@ fn reload(world: &mut World, character: &mut Character) {
 }
 
 #[test]
-fn a_hook_drags_who_is_limp_until_it_is_off() {
+fn hook_drags_a_limp_character_until_released() {
     let def = shared(walker());
     for speed in [1.0, 2.0, 3.0] {
         for limb in ["rightHand", "leftFoot", "chest"] {
@@ -77,7 +77,7 @@ fn a_hook_drags_who_is_limp_until_it_is_off() {
             let (hook, joint) = hook(&mut world, character.bodies()[body(&def, limb)]);
             let mut seen = Seen::default();
             for step in 0..600 {
-                // It comes to its speed within half a second, and rests now and then.
+                // The hook accelerates within half a second, and pauses now and then.
                 let pace = if step % 200 < 30 { (step % 200) as f32 / 30.0 } else { 1.0 };
                 let rests = step % 200 >= 120;
                 let linear = Vec3::X * if rests { 0.0 } else { speed * pace };
@@ -90,13 +90,13 @@ fn a_hook_drags_who_is_limp_until_it_is_off() {
             seen.expect(&format!("{limb} at {speed} m/s"));
             world.remove_joint(joint);
             let events = run(&mut world, &mut character, 900);
-            assert_eq!(character.state(), State::Animated, "{limb}: free, it gets up: {events:?}");
+            assert_eq!(character.state(), State::Animated, "{limb}: released, it gets up: {events:?}");
         }
     }
 }
 
 #[test]
-fn a_hook_pulls_who_stands_along_or_over() {
+fn hook_moves_or_fells_a_standing_character() {
     let def = shared(walker());
     for (speed, stays_up) in [(0.5, true), (1.0, true), (1.5, true), (4.0, false)] {
         let limbs = if stays_up { &["rightHand", "leftLowerArm"][..] } else { &["rightHand"] };
@@ -105,7 +105,7 @@ fn a_hook_pulls_who_stands_along_or_over() {
             let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
             character.set_move(Vec3::ZERO);
             run(&mut world, &mut character, 30);
-            // Only what gives way can be held.
+            // A limb must yield before it can be held.
             character.hit(&mut world, body(&def, limb), Vec3::ZERO);
             let (hook, joint) = hook(&mut world, character.bodies()[body(&def, limb)]);
             let mut seen = Seen::default();
@@ -121,7 +121,7 @@ fn a_hook_pulls_who_stands_along_or_over() {
             }
             let way = world.center_of_mass(character.bodies()[0]).z;
             let what = format!("{limb} at {speed} m/s: {:?}, {way} m", character.state());
-            // Until it falls, a hook as fast as that opens its own joint for three steps.
+            // Until the character falls, a hook this fast opens its own joint for three steps.
             seen.expect_within(&what, if stays_up { MOST_GAP } else { 2.0 * MOST_GAP });
             let state = if stays_up { State::Flinching } else { State::Limp };
             assert_eq!(character.state(), state, "{what}");
@@ -134,7 +134,7 @@ fn a_hook_pulls_who_stands_along_or_over() {
 }
 
 #[test]
-fn a_walker_leads_another_by_the_wrist() {
+fn walker_leads_another_character_by_the_wrist() {
     let def = shared(walker());
     let mut world = level();
     let mut led = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -176,13 +176,13 @@ fn a_walker_leads_another_by_the_wrist() {
 }
 
 #[test]
-fn who_is_carried_does_not_get_up_in_the_air() {
+fn carried_character_does_not_get_up_in_the_air() {
     let def = shared(walker());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     character.go_limp(&mut world);
     run(&mut world, &mut character, 120);
-    // Two bars under trunk and thighs lift it as arms do, carry it, and put it down.
+    // Two bars under trunk and thighs lift it like arms, carry it, and put it down.
     let trunk = world.center_of_mass(character.bodies()[body(&def, "chest")]);
     let legs = world.center_of_mass(character.bodies()[body(&def, "leftUpperLeg")]);
     let along = ((trunk - legs) * Vec3::new(1.0, 0.0, 1.0)).normalize();
@@ -213,14 +213,14 @@ fn who_is_carried_does_not_get_up_in_the_air() {
         assert_eq!(character.state(), State::Limp, "carried, step {step}");
         high = high.min(world.center_of_mass(character.bodies()[0]).y);
     }
-    assert!(high > 0.9, "the bars bear it: {high} m");
+    assert!(high > 0.9, "the bars carry it: {high} m");
     bars.into_iter().for_each(|bar| world.remove_body(bar));
     let events = run(&mut world, &mut character, 900);
     assert_eq!(character.state(), State::Animated, "put down, it gets up: {events:?}");
 }
 
 #[test]
-fn who_gets_up_and_is_taken_by_the_hand_goes_limp() {
+fn character_grabbed_while_getting_up_goes_limp() {
     let def = shared(walker());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -228,7 +228,7 @@ fn who_gets_up_and_is_taken_by_the_hand_goes_limp() {
     while character.state() != State::GettingUp {
         run(&mut world, &mut character, 1);
     }
-    // A crane's hook, which hangs on a kinematic trolley.
+    // A crane's hook on a kinematic trolley.
     let hand = character.bodies()[body(&def, "rightHand")];
     let at = world.center_of_mass(hand);
     let hook = BodyDef { mass: Some(Shape::sphere(0.1).mass_properties(1000.0)), ..BodyDef::default() };
@@ -251,14 +251,14 @@ fn who_gets_up_and_is_taken_by_the_hand_goes_limp() {
     seen.expect("on a crane");
     assert_eq!(character.state(), State::Limp);
     character.set_preset(&mut world, Preset::Animated);
-    assert_eq!(character.state(), State::Limp, "held, it does not get up when told to");
+    assert_eq!(character.state(), State::Limp, "a held character does not get up on request");
     world.remove_joint(joint);
     run(&mut world, &mut character, 900);
     assert_eq!(character.state(), State::Animated);
 }
 
 #[test]
-fn its_place_goes_with_the_body() {
+fn character_place_follows_its_body() {
     let def = shared(walker());
     let mut world = level();
     let half_extents = Vec3::new(4.0, 0.5, 4.0);
@@ -297,7 +297,7 @@ fn its_place_goes_with_the_body() {
 }
 
 #[test]
-fn death_is_each_ones_own() {
+fn death_of_one_character_leaves_the_others() {
     let def = shared(walker());
     let mut world = level();
     let mut pair =
@@ -315,7 +315,7 @@ fn death_is_each_ones_own() {
     reload(&mut world, &mut pair[0]);
     all(&mut world, &mut pair, 700);
     assert_eq!(pair.each_ref().map(Character::state), [State::Limp, State::Animated]);
-    // It may be brought back to life, and die while it is rolled over.
+    // It can be revived, and can die while it is rolled over.
     pair[0].set_after_settling(AfterSettling::GetUp);
     all(&mut world, &mut pair, 600);
     assert_eq!(pair[0].state(), State::Animated);
@@ -327,14 +327,14 @@ fn death_is_each_ones_own() {
             pair[0].set_after_settling(AfterSettling::StayDown);
             died = true;
         }
-        let told = pair[0].events().iter();
-        assert!(!(died && told.clone().any(|event| matches!(event, CharacterEvent::GettingUp { .. }))));
+        let reported = pair[0].events().iter();
+        assert!(!(died && reported.clone().any(|event| matches!(event, CharacterEvent::GettingUp { .. }))));
     }
     assert!(!died || pair[0].state() == State::Limp);
 }
 
 #[test]
-fn depth_of_led_feet_is_told() {
+fn penetration_of_animated_feet_is_reported() {
     let def = shared(walker());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);

@@ -1,4 +1,4 @@
-//! A character that its clips move is a thing of the world: walls, others, rays, balls, crates, cliffs and lifts.
+//! An animated character interacts with the world: walls, other characters, rays, balls, crates, cliffs and lifts.
 
 use crate::actor::{floor, shared, walker};
 use core::f32::consts::PI;
@@ -24,7 +24,7 @@ fn block(world: &mut World, min: Vec3, max: Vec3) -> BodyId {
     world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at((min + max) * 0.5))
 }
 
-/// Steps, and gives what the character told.
+/// Steps and returns the character's events.
 pub fn run(world: &mut World, character: &mut Character, steps: usize) -> Vec<CharacterEvent> {
     let mut events = Vec::new();
     for _ in 0..steps {
@@ -40,7 +40,7 @@ fn place(character: &Character) -> Vec3 {
 }
 
 #[test]
-fn a_wall_stops_it() {
+fn wall_stops_a_walking_character() {
     let def = shared(walker());
     let mut world = level();
     block(&mut world, Vec3::new(-3.0, 0.0, 2.0), Vec3::new(3.0, 4.0, 2.3));
@@ -50,14 +50,14 @@ fn a_wall_stops_it() {
     let z = place(&character).z;
     assert!((z - (2.0 - radius)).abs() < 0.02, "it stands at {z} m before the wall at 2 m");
     assert_eq!(character.state(), State::Animated);
-    // Without a mover it goes on.
+    // Without a mover it passes through.
     let mut ghost = Character::new(def, Transform::IDENTITY, 0.0);
     run(&mut world, &mut ghost, 300);
     assert!(place(&ghost).z > 5.0);
 }
 
 #[test]
-fn without_a_wall_it_walks_as_its_clip_does() {
+fn character_walks_as_fast_as_its_clip() {
     let def = shared(walker());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -85,7 +85,7 @@ fn two_characters_stop_each_other() {
     assert!(place(&one).z < 2.1 && place(&other).z > 1.9);
 }
 
-/// Poses of the bodies as the shown pose has them.
+/// Body poses in the drawn pose.
 fn shown_bodies(character: &Character) -> Vec<Transform> {
     let def = character.def();
     let (mut model, mut poses) = (Vec::new(), Vec::new());
@@ -94,7 +94,7 @@ fn shown_bodies(character: &Character) -> Vec<Transform> {
     poses
 }
 
-/// A ray across the character, through the middle of what is shown of a bone.
+/// A horizontal ray through the middle of a drawn bone.
 fn across(character: &Character, bone: &str) -> Ray {
     let def = character.def();
     let body = def.body_named(bone).expect("a bone");
@@ -104,7 +104,7 @@ fn across(character: &Character, bone: &str) -> Ray {
 }
 
 #[test]
-fn rays_and_shapes_find_the_bone() {
+fn rays_and_shape_casts_hit_the_drawn_bone() {
     let def = shared(walker());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -126,7 +126,7 @@ fn rays_and_shapes_find_the_bone() {
         }
     }
     let mean = sum / count;
-    // A foot that comes down at 2.5 m/s stops within a step.
+    // A foot that lands at 2.5 m/s stops within a step.
     assert!(worst < 0.05 && mean < 0.004, "bodies are {mean} m from their bones, one {worst} m");
     let ball = Probe::at(Shape::Sphere { radius: 0.05 }, place(&character) + Vec3::new(0.0, 1.2, 5.0));
     let hit = world.query().first(&ShapeCast { probe: ball, translation: Vec3::Z * -10.0 }).expect("a hit");
@@ -143,7 +143,7 @@ fn ball(world: &mut World, at: Vec3, velocity: Vec3) -> BodyId {
 }
 
 #[test]
-fn a_ball_bounces_off_and_is_told_of() {
+fn ball_bounces_off_and_the_contact_is_reported() {
     let mut def = walker();
     def.in_world.toughness = sinew_ragdoll::Toughness::Impulse(60.0);
     let def = shared(def);
@@ -156,12 +156,12 @@ fn a_ball_bounces_off_and_is_told_of() {
     for _ in 0..12 {
         events.extend(run(&mut world, &mut character, 1));
         let chest = character.bodies()[def.body_named("chest").expect("it has one")];
-        let told = |hit: &sinew_physics::Hit| [hit.a.body, hit.b.body] == [chest, thrown];
-        met |= world.events().hits.iter().any(told);
+        let is_this_hit = |hit: &sinew_physics::Hit| [hit.a.body, hit.b.body] == [chest, thrown];
+        met |= world.events().hits.iter().any(is_this_hit);
     }
-    assert!(met, "the contact is told of by bone");
+    assert!(met, "the contact event names the bone");
     let speed = world.velocity(thrown).linear.z;
-    assert!(speed > 5.0, "it comes back at {speed} m/s");
+    assert!(speed > 5.0, "it rebounds at {speed} m/s");
     assert!(events.iter().any(|event| matches!(event, CharacterEvent::Struck { .. })), "{events:?}");
     assert!(events.iter().any(|event| matches!(event, CharacterEvent::Flinched { .. })), "{events:?}");
     assert!(!events.iter().any(|event| matches!(event, CharacterEvent::WentLimp)), "17 N·s do not fell it");
@@ -180,7 +180,7 @@ fn hit_bodies_can_be_left_out() {
     assert!(character.mover().is_some());
 }
 
-/// A box of a mass.
+/// A box with a given mass.
 fn load(world: &mut World, mass: f32, half: f32, at: Vec3) -> BodyId {
     let shape = Shape::Box { half_extents: Vec3::splat(half) };
     let mut def = BodyDef::dynamic(shape.clone()).at(at);
@@ -189,7 +189,7 @@ fn load(world: &mut World, mass: f32, half: f32, at: Vec3) -> BodyId {
 }
 
 #[test]
-fn it_pushes_a_crate_as_hard_as_its_mover_may() {
+fn crate_is_pushed_with_at_most_the_movers_force() {
     let def = shared(walker());
     let pushed = |mass: f32| {
         let mut world = level();
@@ -204,21 +204,21 @@ fn it_pushes_a_crate_as_hard_as_its_mover_may() {
     };
     let (way, fastest) = pushed(40.0);
     assert!(way > 1.0 && fastest < 1.3 * WALK_SPEED, "{way} m, {fastest} m/s");
-    // 500 kg need 2.9 kN to slide: hands and feet would push them as far as those go, were there no bound.
+    // Sliding 500 kg takes 2.9 kN. Without a bound, hands and feet would push the crate by their own motion.
     let (way, fastest) = pushed(500.0);
     assert!(way.abs() < 0.02 && fastest < 0.1, "{way} m, {fastest} m/s");
 }
 
-/// 300 kg that slide into it at a walking pace take it along; a ghost would let them through.
+/// A sliding crate of 300 kg at walking speed pushes the character along; without a mover it would pass through.
 #[test]
-fn a_crate_that_comes_pushes_it() {
+fn moving_crate_pushes_the_character() {
     let mut world = level();
     let mut character = Character::spawn(&mut world, &shared(walker()), Transform::IDENTITY);
     character.set_move(Vec3::ZERO);
     let load = load(&mut world, 300.0, 0.4, Vec3::new(0.0, 0.4, -1.0));
     let mut nearest = f32::INFINITY;
     for _ in 0..180 {
-        // Somebody shoves it on.
+        // The crate is kept moving.
         world.set_velocity(load, Velocity { linear: Vec3::Z * 0.4, ..Velocity::default() });
         run(&mut world, &mut character, 1);
         nearest = sinew_math::min(nearest, place(&character).z - world.transform(load).translation.z);
@@ -230,7 +230,7 @@ fn a_crate_that_comes_pushes_it() {
 }
 
 #[test]
-fn it_falls_off_a_cliff() {
+fn character_falls_off_a_cliff() {
     let def = shared(walker());
     let mut world = level();
     block(&mut world, Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 10.0, 2.0));
@@ -239,11 +239,11 @@ fn it_falls_off_a_cliff() {
     assert!(events.contains(&CharacterEvent::WentLimp), "{events:?}");
     let pelvis = world.transform(character.bodies()[0]).translation;
     assert!(pelvis.y < 1.0 && pelvis.is_finite(), "it lies at {pelvis}");
-    assert!(character.mover().is_none(), "what lies has no mover");
+    assert!(character.mover().is_none(), "a fallen character has no mover");
 }
 
 #[test]
-fn a_short_drop_is_walked_off() {
+fn character_walks_off_a_short_drop() {
     let def = shared(walker());
     let mut world = level();
     block(&mut world, Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 1.0, 1.0));
@@ -254,17 +254,17 @@ fn a_short_drop_is_walked_off() {
 }
 
 #[test]
-fn a_fast_landing_fells_it() {
+fn fast_landing_makes_the_character_limp() {
     let def = shared(walker());
     let mut world = level();
     block(&mut world, Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 4.0, 1.0));
     let mut character = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::Y * 4.0));
     let events = run(&mut world, &mut character, 180);
-    // 4 m take 0.9 s: it is not the time in the air.
+    // A fall of 4 m takes 0.9 s, which is too short for the threshold on time in the air.
     assert!(events.contains(&CharacterEvent::WentLimp), "8.9 m/s are more than 7");
 }
 
-/// A platform that moves.
+/// A moving platform.
 fn lift(world: &mut World, at: Vec3, velocity: Velocity) -> BodyId {
     let def = BodyDef {
         kind: BodyKind::Kinematic,
@@ -286,7 +286,7 @@ fn stander() -> Arc<CharacterDef> {
 }
 
 #[test]
-fn a_lift_and_a_turntable_carry_it() {
+fn lift_and_turntable_carry_the_character() {
     let def = stander();
     let mut world = World::new(WorldDef::default());
     let velocity = Velocity { linear: Vec3::new(0.5, 1.0, 0.0), angular: Vec3::Y * 0.5 };
@@ -306,7 +306,7 @@ fn a_lift_and_a_turntable_carry_it() {
 }
 
 #[test]
-fn it_is_steered_by_code() {
+fn code_steers_the_character() {
     let def = stander();
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -315,7 +315,7 @@ fn it_is_steered_by_code() {
     run(&mut world, &mut character, 120);
     let at = character.world_from_character();
     assert!((at.translation.x - 0.9 * 2.0).abs() < 0.1 && at.translation.z.abs() < 0.05, "{at:?}");
-    assert!((at.rotation * Vec3::Z - Vec3::X).length() < 0.01, "it looks where it goes");
+    assert!((at.rotation * Vec3::Z - Vec3::X).length() < 0.01, "it faces its direction of motion");
     character.jump(&mut world);
     let mut highest = 0.0;
     for _ in 0..60 {
@@ -332,7 +332,7 @@ fn it_is_steered_by_code() {
 }
 
 #[test]
-fn nothing_is_left_of_it() {
+fn despawn_removes_bodies_joints_and_movers() {
     let def = shared(walker());
     for after in [0, 30, 90, 300, 600] {
         let mut world = level();
@@ -350,7 +350,7 @@ fn nothing_is_left_of_it() {
 }
 
 #[test]
-fn it_falls_gets_up_and_walks_on() {
+fn character_gets_up_with_the_same_bodies() {
     let def = shared(walker());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -370,7 +370,7 @@ fn it_falls_gets_up_and_walks_on() {
 }
 
 #[test]
-fn a_restored_character_goes_on_as_the_original() {
+fn restored_character_continues_identically() {
     let def = shared(walker());
     for steps in [20, 40, 60, 150, 400, 500] {
         let mut world = level();
@@ -397,7 +397,7 @@ fn a_restored_character_goes_on_as_the_original() {
 }
 
 #[test]
-fn it_can_be_sent_to_another_thread() {
+fn character_is_send_and_sync() {
     fn is_send<T: Send + Sync>(_: &T) {}
     let def = shared(walker());
     let mut world = level();
@@ -406,7 +406,7 @@ fn it_can_be_sent_to_another_thread() {
 }
 
 #[test]
-fn it_gets_up_on_a_lift_that_rises_and_on_a_crate() {
+fn character_gets_up_on_a_rising_lift_and_on_a_crate() {
     let def = stander();
     let mut world = World::new(WorldDef::default());
     let velocity = Velocity { linear: Vec3::new(0.3, 0.6, 0.0), angular: Vec3::ZERO };
@@ -417,7 +417,7 @@ fn it_gets_up_on_a_lift_that_rises_and_on_a_crate() {
     character.hit(&mut world, 2, Vec3::new(0.0, 0.0, -70.0));
     let events = run(&mut world, &mut character, 60 * 12);
     let settled = events.iter().any(|event| matches!(event, CharacterEvent::Settled { .. }));
-    assert!(settled, "it lies still on what moves: {events:?}");
+    assert!(settled, "it never settled on the platform: {events:?}");
     assert!(events.contains(&CharacterEvent::Up), "{events:?}");
     let height = place(&character).y - (world.transform(platform).translation.y + 0.1);
     assert!(height.abs() < 0.02, "it stands {height} m over the lift");
@@ -436,8 +436,8 @@ fn it_gets_up_on_a_lift_that_rises_and_on_a_crate() {
 }
 
 #[test]
-fn it_gets_up_where_nobody_stands_on_it() {
-    // Legs that reach for the floor beside it would kick who lies under them.
+fn character_waits_to_get_up_until_nobody_stands_on_it() {
+    // Without this setting, legs that reach for the floor beside the lying character would hit it.
     let mut def = walker();
     def.in_world.foot_planting = FootPlanting::AsClips;
     let def = shared(def);
@@ -447,14 +447,14 @@ fn it_gets_up_where_nobody_stands_on_it() {
     run(&mut world, &mut fallen, 30);
     fallen.go_limp(&mut world);
     run(&mut world, &mut fallen, 90);
-    // Onto it, not into it.
+    // Placed above it, without overlap.
     let over = world.center_of_mass(fallen.bodies()[0]) + Vec3::Y * 0.15;
     let mut other = Character::spawn(&mut world, &def, Transform::from_translation(over));
     let mut least = f32::INFINITY;
     let (mut up_after, mut stood) = (None, 0);
     for step in 0..900 {
         if step < 420 {
-            // It stays on it, however that rolls.
+            // The second character follows the fallen one as it rolls.
             let way = (world.center_of_mass(fallen.bodies()[0]) - place(&other)).with_y(0.0);
             other.set_move(way * 3.0);
         }
@@ -467,7 +467,7 @@ fn it_gets_up_where_nobody_stands_on_it() {
         let was = fallen.state();
         fallen.update(&mut world);
         let begins = was == State::Limp && fallen.state() == State::GettingUp;
-        assert!(!(begins && stands), "it gets up at {step} while somebody stands on it");
+        assert!(!(begins && stands), "it gets up at {step} while another character stands on it");
         stood += u32::from(stands && was == State::Limp);
         other.update(&mut world);
         if fallen.mover().is_some() {
@@ -479,11 +479,11 @@ fn it_gets_up_where_nobody_stands_on_it() {
         }
     }
     assert!(stood > 10, "the other stood on it for {stood} steps");
-    assert!(up_after.is_some(), "it gets up once the other has gone: {:?}", fallen.state());
-    assert!(least > -0.01, "they are in each other by {} m", -least);
+    assert!(up_after.is_some(), "it stays down after the other has left: {:?}", fallen.state());
+    assert!(least > -0.01, "they overlap by {} m", -least);
 }
 
-/// Impulse up that bodies gave others in the last step, less what those gave them, N·s: of dynamic ones.
+/// Upward impulse that bodies gave other dynamic bodies in the last step, minus what they received, N·s.
 fn lifts(world: &World, own: &[BodyId], others: &[BodyId]) -> f32 {
     let up = |contact: BodyContact| {
         let [a, b] = [contact.a.body, contact.b.body];
@@ -500,9 +500,10 @@ fn lifts(world: &World, own: &[BodyId], others: &[BodyId]) -> f32 {
     world.contacts().map(up).sum()
 }
 
-/// Two that fell on each other: nobody gets up under a load, and both come to stand. Few are struck hard by who gets up beside them.
+/// Two characters that fell on each other: neither gets up under a load, both finally stand, and getting up seldom hits
+/// the other hard.
 #[test]
-fn who_lies_on_top_gets_up_first() {
+fn upper_of_two_fallen_characters_gets_up_first() {
     let def = shared(walker());
     let mut struck = 0;
     for seed in 0..12 {
@@ -537,9 +538,9 @@ fn who_lies_on_top_gets_up_first() {
                     loads.push(load);
                 }
             }
-            // Where both begin, one no longer bears the other.
+            // Skipped when both begin: then neither carries the other.
             if let [load] = loads[..] {
-                assert!(load < share, "seed {seed}: it gets up under {load} N·s at {step}");
+                assert!(load < share, "seed {seed}: it gets up with a load of {load} N·s at {step}");
             }
             for (character, up) in both.iter().zip(&mut up) {
                 if character.state() == State::Animated {
@@ -551,13 +552,14 @@ fn who_lies_on_top_gets_up_first() {
         assert!(up.iter().all(Option::is_some), "seed {seed}: {:?}", both.map(|one| one.state()));
         struck += u32::from(fastest > 10.0);
     }
-    // Without waiting for each other: 8 of 12.
-    assert!(struck <= 3, "{struck} of 12 are struck at more than 10 m/s");
+    // Without waiting for each other, 8 of 12 are hit.
+    assert!(struck <= 3, "{struck} of 12 are hit at more than 10 m/s");
 }
 
-/// Crates no higher than a step, over which it walks: its mover presses them, its feet do not kick them along with it.
+/// Crates lower than a step, over which the character walks: its mover presses on them, and its feet do not kick them
+/// away.
 #[test]
-fn crates_that_it_walks_over_are_not_driven() {
+fn low_crates_are_not_kicked_away() {
     let def = stander();
     let mut random = Random::new(5);
     for case in 0..30 {
@@ -569,21 +571,22 @@ fn crates_that_it_walks_over_are_not_driven() {
         character.set_move(Vec3::Z * 1.2);
         let (mut fastest, mut highest) = (0.0, 0.0);
         for step in 0..360 {
-            // Now and then it stands on the crate for a while.
+            // It pauses on the crate at times.
             let stands = (60 + 2 * case..150 + 2 * case).contains(&step);
             character.set_move(Vec3::Z * if stands { 0.0 } else { 1.2 });
             run(&mut world, &mut character, 1);
             fastest = max(fastest, world.velocity(load).linear.length());
             highest = max(highest, place(&character).y);
         }
-        assert!(fastest < 3.0, "case {case}: a crate of {half} m was driven to {fastest} m/s");
+        assert!(fastest < 3.0, "case {case}: a crate of {half} m reached {fastest} m/s");
         assert!(highest < 2.0 * half + 0.05, "case {case}: it was thrown to {highest} m");
     }
 }
 
-/// Hands and the like under its feet: what does not come by itself is no blow, however hard a led foot presses it to the floor.
+/// Small objects under its feet: an object that only the foot moves is no hit, however hard an animated foot
+/// presses it to the floor.
 #[test]
-fn what_it_treads_on_is_no_blow() {
+fn object_under_a_foot_is_no_hit() {
     let def = shared(walker());
     for shift in [0.0, 0.004, 0.016, 0.026] {
         let mut world = level();
@@ -603,9 +606,9 @@ fn what_it_treads_on_is_no_blow() {
     }
 }
 
-/// From standing to a walk and back: the clips change places by and by, so that hit bodies do not strike out.
+/// The walker goes from standing to walking and back: clips are cross-faded gradually, so that hit bodies do not kick.
 #[test]
-fn it_sets_off_and_stops_without_a_jerk() {
+fn walk_starts_and_stops_smoothly() {
     let mut def = walker();
     let motions = def.motions().clone();
     def.set_motions(sinew_ragdoll::MotionSet { idle: Some(1), ..motions })
@@ -621,11 +624,11 @@ fn it_sets_off_and_stops_without_a_jerk() {
             fastest = speeds.fold(fastest, max);
         }
     }
-    assert!(fastest < 8.0, "a hand or a foot goes at {fastest} m/s");
+    assert!(fastest < 8.0, "a hand or foot moves at {fastest} m/s");
 }
 
 #[test]
-fn what_comes_to_be_where_it_stands_pushes_it_aside_smoothly() {
+fn body_created_inside_pushes_the_character_aside_smoothly() {
     let def = shared(walker());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -640,6 +643,6 @@ fn what_comes_to_be_where_it_stands_pushes_it_aside_smoothly() {
         last = place(&character);
     }
     let gone = (last - before).length();
-    assert!(gone > 0.2, "it went {gone} m aside");
-    assert!(most < 0.08, "it went {most} m of {gone} within a step");
+    assert!(gone > 0.2, "it moved {gone} m aside");
+    assert!(most < 0.08, "it moved {most} of {gone} m within a step");
 }

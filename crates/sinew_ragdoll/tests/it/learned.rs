@@ -1,4 +1,4 @@
-//! Limits learned from clips: they hold what the clips do, and no more than anatomy allows beside it.
+//! Limits learned from clips: they contain the clips' motion, and little of the anatomical range beyond it.
 
 use crate::data::document;
 use needs_data::needs_data;
@@ -35,7 +35,7 @@ fn poses(rig: &Rig, def: &RagdollDef, takes: &[Take]) -> Vec<Vec<Transform>> {
     poses
 }
 
-/// The joint rotation for a turn of the child against the parent.
+/// The joint rotation for a rotation of the child relative to the parent.
 fn joint_turn(joint: &RagdollJointDef, parent: Rotation, child: Rotation) -> Rotation {
     (parent * joint.frame_parent.rotation).inverse() * (child * joint.frame_child.rotation)
 }
@@ -53,8 +53,8 @@ fn beyond(joint: &RagdollJointDef, turn: Rotation) -> f32 {
     }
 }
 
-/// The clips stay inside, the bind pose too, and no turn that is allowed is further beyond the table than the clips are, but
-/// for the corners of an ellipse about them.
+/// The clips and the bind pose are within the limits. An allowed rotation exceeds the table no further than the clips
+/// do, except at the corners of an ellipse around them.
 fn check(name: &str, rig: &Rig, takes: &[Take]) {
     let table = built(rig, takes, LimitSource::Anatomy).expect("bones");
     let learned = built(rig, takes, LimitSource::Clips).expect("clips");
@@ -62,7 +62,7 @@ fn check(name: &str, rig: &Rig, takes: &[Take]) {
     let mut random = Random::new(1);
     let mut changed = 0;
     for (old, new) in table.joints.iter().zip(&learned.joints) {
-        let who = format!("{name}, {}", table.bodies[old.child].role);
+        let label = format!("{name}, {}", table.bodies[old.child].role);
         let turns = |joint: &RagdollJointDef| -> Vec<Rotation> {
             let of = |pose: &Vec<Transform>| {
                 joint_turn(joint, pose[joint.parent].rotation, pose[joint.child].rotation)
@@ -76,11 +76,15 @@ fn check(name: &str, rig: &Rig, takes: &[Take]) {
         let mut outside: Vec<f32> = turns(new).into_iter().map(|turn| beyond(new, turn)).collect();
         outside.sort_by(f32::total_cmp);
         let most = outside[(outside.len() - 1) * 98 / 100].to_degrees();
-        assert!(most < 1.0, "{who}: the clips are {most}° beyond what was learned from them");
+        assert!(most < 1.0, "{label}: the clips exceed their learned limits by {most}°");
         let bind = |body: usize| table.bodies[body].character_from_body.rotation;
         let bound = beyond(new, joint_turn(new, bind(new.parent), bind(new.child)));
-        assert!(bound.to_degrees() < 0.1, "{who}: bound {}° beyond", bound.to_degrees());
-        // The other side's motion counts too.
+        assert!(
+            bound.to_degrees() < 0.1,
+            "{label}: the bind pose exceeds the limits by {}°",
+            bound.to_degrees()
+        );
+        // Motion of the other side counts as well.
         let twin = table.bodies[old.child].role.replacen("left", "?", 1).replacen("right", "left", 1);
         let twin = twin.replacen('?', "right", 1);
         let twin = table.joints.iter().find(|joint| table.bodies[joint.child].role == twin);
@@ -91,10 +95,10 @@ fn check(name: &str, rig: &Rig, takes: &[Take]) {
         let shown = shown.fold(0.0, max);
         for _ in 0..200 {
             let turn = random_turn(new.kind, &mut random, 1.0);
-            // The bodies' turn against each other, in the old frames.
+            // The relative rotation of the bodies in the old frames.
             let child = new.frame_parent.rotation * turn * new.frame_child.rotation.inverse();
             let excess = beyond(old, joint_turn(old, Rotation::IDENTITY, child)) - shown;
-            assert!(excess.to_degrees() < 6.0, "{who}: {}° wider than seen", excess.to_degrees());
+            assert!(excess.to_degrees() < 6.0, "{label}: {}° wider than the clips", excess.to_degrees());
         }
     }
     assert!(changed * 2 > table.joints.len(), "{name}: {changed} of {} joints", table.joints.len());
@@ -102,7 +106,7 @@ fn check(name: &str, rig: &Rig, takes: &[Take]) {
 
 #[needs_data]
 #[test]
-fn limits_hold_what_the_clips_do_and_no_more() {
+fn learned_limits_contain_the_clips_and_little_more() {
     let mannequin = mannequin();
     check("mannequin", &mannequin.rig, &takes(&mannequin.rig, &mannequin.clips));
     for name in ["CesiumMan.glb", "mannequiny.glb", "mesh2motion_human_rigify.glb"] {
@@ -111,7 +115,7 @@ fn limits_hold_what_the_clips_do_and_no_more() {
     }
 }
 
-/// One take in which the left elbow goes from 20° to 70° and the left knee 20° the wrong way.
+/// One take in which the left elbow bends from 20° to 70° and the left knee 20° the wrong way.
 fn bending(rig: &Rig) -> Take {
     let def = built(rig, &[], LimitSource::Anatomy).expect("bones");
     let frames = 200;
@@ -127,7 +131,7 @@ fn bending(rig: &Rig) -> Take {
             let bind = |body: usize| def.bodies[body].character_from_body.rotation;
             let now = hinge_angle(joint_turn(joint, bind(joint.parent), bind(joint.child)));
             let axis = bind(joint.child) * (joint.frame_child.rotation * Vec3::X);
-            // Character axes are those of the mannequin's model, in which its bind pose is its rest pose.
+            // The mannequin's character axes equal its model axes, in which bind pose and rest pose are equal.
             let mut model = Vec::new();
             local_to_model(rig, &rest, &Affine::IDENTITY, &mut model);
             let own = model[child.joint].to_rigid().rotation;
@@ -140,7 +144,7 @@ fn bending(rig: &Rig) -> Take {
 }
 
 #[test]
-fn a_hinge_has_a_margin_within_its_anatomy_and_none_beyond() {
+fn learned_hinge_margin_stays_within_the_anatomy() {
     let rig = mannequin().rig;
     let def = built(&rig, &[bending(&rig)], LimitSource::Clips).expect("it moves");
     let range = |role: &str| {
@@ -151,20 +155,20 @@ fn a_hinge_has_a_margin_within_its_anatomy_and_none_beyond() {
         }
     };
     for side in ["left", "right"] {
-        // The bind pose, straight, counts as seen.
+        // The straight bind pose counts as part of the motion.
         let [lo, hi] = range(&format!("{side}LowerArm"));
         assert!(lo > -3.0 && lo < 1.0 && (hi - 80.0).abs() < 1.0, "{side} elbow {lo}..{hi}°");
         let [lo, hi] = range(&format!("{side}LowerLeg"));
         assert!((lo + 20.0).abs() < 1.0 && hi > 5.0 && hi < 20.0, "{side} knee {lo}..{hi}°");
     }
-    // What did not move keeps the table's limits.
+    // Joints that do not move keep the table's limits.
     let table = built(&rig, &[], LimitSource::Anatomy).expect("bones");
     let neck = table.bodies.iter().position(|body| body.role == "neck").expect("a neck");
     assert_eq!(def.joints[neck - 1], table.joints[neck - 1]);
 }
 
 #[test]
-fn without_motion_there_is_nothing_to_learn() {
+fn learning_without_clips_is_an_error() {
     let rig = mannequin().rig;
     let still = Take {
         frame_time: 0.1,

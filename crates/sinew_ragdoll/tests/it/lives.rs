@@ -1,4 +1,4 @@
-//! Characters tell what happens to them, hold things, come in sizes, and take no more part in the world than they need.
+//! Events, held objects, sizes and levels of detail of characters.
 
 use crate::actor::{floor, shared, walker};
 use crate::in_world::{level, run};
@@ -10,8 +10,8 @@ use sinew_ragdoll::{
 use sinew_scenes::mannequin::WALK_SPEED;
 use std::sync::Arc;
 
-/// Stands by itself, and tells of its steps.
-fn walker_that_tells() -> CharacterDef {
+/// A standing character whose walk has footstep events.
+fn walker_with_footsteps() -> CharacterDef {
     let mut def = walker();
     let motions = def.motions().clone();
     let half = 0.5 * motions.clips[0].duration;
@@ -30,8 +30,8 @@ fn joints(character: &Character) -> Vec<Vec3> {
 }
 
 #[test]
-fn each_step_of_the_clip_is_told_once() {
-    let def = shared(walker_that_tells());
+fn each_footstep_is_reported_once() {
+    let def = shared(walker_with_footsteps());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     let events = run(&mut world, &mut character, 600);
@@ -45,15 +45,15 @@ fn each_step_of_the_clip_is_told_once() {
     let expected = 2.0 * 10.0 / def.motions().clips[0].duration;
     assert!((steps.len() as f32 - expected).abs() <= 1.0, "{} steps, {expected} expected", steps.len());
     assert!(steps.windows(2).all(|pair| pair[0] != pair[1]), "left and right in turn: {steps:?}");
-    // Who lies takes no steps.
+    // A lying character takes no steps.
     character.hit(&mut world, 0, Vec3::X * 90.0);
     let events = run(&mut world, &mut character, 60);
     assert!(!events.iter().any(|event| matches!(event, CharacterEvent::Clip(_))), "{events:?}");
 }
 
 #[test]
-fn what_a_call_brought_about_is_told_once_by_the_next_update() {
-    let def = shared(walker_that_tells());
+fn events_of_a_call_are_reported_once_by_the_next_update() {
+    let def = shared(walker_with_footsteps());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     run(&mut world, &mut character, 20);
@@ -74,8 +74,8 @@ fn what_a_call_brought_about_is_told_once_by_the_next_update() {
 }
 
 #[test]
-fn contacts_are_told_by_bone_where_that_is_asked_for() {
-    let mut def = walker_that_tells();
+fn contacts_are_reported_by_bone_on_request() {
+    let mut def = walker_with_footsteps();
     def.in_world.tells_contacts = true;
     let def = shared(def);
     let head = def.body_named("head").expect("it has a head");
@@ -86,14 +86,14 @@ fn contacts_are_told_by_bone_where_that_is_asked_for() {
     let above = world.center_of_mass(character.bodies()[head]) + Vec3::new(0.0, 0.5, 0.0);
     let ball = world.add_body(&BodyDef::dynamic(Shape::Sphere { radius: 0.05 }).at(above));
     let events = run(&mut world, &mut character, 90);
-    let told = |begins: bool| {
+    let contact_count = |begins: bool| {
         let wanted = CharacterEvent::Contact { body: head, other: ball, begins };
         events.iter().filter(|event| **event == wanted).count()
     };
-    assert!(told(true) >= 1 && told(true) - told(false) <= 1, "{events:?}");
+    assert!(contact_count(true) >= 1 && contact_count(true) - contact_count(false) <= 1, "{events:?}");
 }
 
-/// Farthest that the held body was from where the bone has it, metres, over some steps.
+/// Largest distance, over some steps, of the held body from its place at the bone, metres.
 fn apart(
     world: &mut World,
     character: &mut Character,
@@ -112,8 +112,8 @@ fn apart(
 }
 
 #[test]
-fn a_sword_stays_in_the_hand_in_every_state_and_is_let_go() {
-    let def = shared(walker_that_tells());
+fn held_sword_stays_in_the_hand_until_released() {
+    let def = shared(walker_with_footsteps());
     let hand = def.body_named("rightHand").expect("it has hands");
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -124,7 +124,7 @@ fn a_sword_stays_in_the_hand_in_every_state_and_is_let_go() {
     character.hold(&mut world, "rightHand", sword, &grip);
     assert!(apart(&mut world, &mut character, hand, sword, at, 120) < 2e-3, "walking");
     let walked = character.world_from_character().translation;
-    assert!((walked.z - 2.0 * WALK_SPEED).abs() < 0.1, "it is not in its own way: {walked}");
+    assert!((walked.z - 2.0 * WALK_SPEED).abs() < 0.1, "the sword blocks its own walk: {walked}");
     character.hit(&mut world, hand, Vec3::X * 4.0);
     assert_eq!(character.state(), State::Flinching);
     assert!(apart(&mut world, &mut character, hand, sword, at, 60) < 2e-3, "flinching");
@@ -150,8 +150,8 @@ fn a_sword_stays_in_the_hand_in_every_state_and_is_let_go() {
 }
 
 #[test]
-fn a_sword_that_is_torn_off_or_dropped_is_told_of() {
-    let def = shared(walker_that_tells());
+fn lost_or_dropped_sword_is_reported() {
+    let def = shared(walker_with_footsteps());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     let blade = Shape::Box { half_extents: Vec3::new(0.02, 0.02, 0.3) };
@@ -180,8 +180,8 @@ fn a_sword_that_is_torn_off_or_dropped_is_told_of() {
 }
 
 #[test]
-fn a_child_and_a_giant_walk_fall_and_get_up() {
-    let def = walker_that_tells();
+fn scaled_characters_walk_fall_and_get_up() {
+    let def = walker_with_footsteps();
     for factor in [0.6, 1.0, 1.5] {
         let sized = def.scaled(factor);
         assert!((sized.ragdoll.height - factor * def.ragdoll.height).abs() < 1e-4);
@@ -207,8 +207,8 @@ fn a_child_and_a_giant_walk_fall_and_get_up() {
 }
 
 #[test]
-fn detail_changes_without_a_pop() {
-    let def = shared(walker_that_tells());
+fn level_of_detail_changes_without_a_pop() {
+    let def = shared(walker_with_footsteps());
     let (mut world, mut twins) = (level(), level());
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     let mut twin = Character::spawn(&mut twins, &def, Transform::IDENTITY);
@@ -227,8 +227,8 @@ fn detail_changes_without_a_pop() {
 }
 
 #[test]
-fn less_detail_waits_until_it_is_up() {
-    let def = shared(walker_that_tells());
+fn lower_detail_waits_until_the_character_is_up() {
+    let def = shared(walker_with_footsteps());
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     run(&mut world, &mut character, 20);
@@ -238,7 +238,7 @@ fn less_detail_waits_until_it_is_up() {
     assert_eq!((character.state(), character.bodies().is_empty()), (State::Limp, false));
     let events = run(&mut world, &mut character, 600);
     assert!(events.contains(&CharacterEvent::Up) && character.bodies().is_empty());
-    // A light blow does nothing, a hard one fells it all the same.
+    // A light hit does nothing; a hard one still fells it.
     character.hit(&mut world, 2, Vec3::X * 5.0);
     assert_eq!(character.state(), State::Animated);
     character.hit(&mut world, 2, Vec3::X * 90.0);
@@ -250,11 +250,11 @@ fn less_detail_waits_until_it_is_up() {
 }
 
 #[test]
-fn what_is_far_away_freezes_and_wakes_where_it_was() {
+fn distant_character_freezes_and_resumes_its_pose() {
     let distances = Distances::default();
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
-    let def = shared(walker_that_tells());
+    let def = shared(walker_with_footsteps());
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     run(&mut world, &mut character, 30);
     let look = |world: &mut World, character: &mut Character, distance: f32| {
@@ -263,28 +263,28 @@ fn what_is_far_away_freezes_and_wakes_where_it_was() {
         detail
     };
     assert_eq!(look(&mut world, &mut character, 200.0), Detail::Frozen);
-    assert_eq!((world.mover_ids().count(), world.body_ids().count()), (0, 1), "nothing of it is left");
+    assert_eq!((world.mover_ids().count(), world.body_ids().count()), (0, 1), "movers or bodies remain");
     let (place, pose) = (character.world_from_character(), character.pose().to_vec());
     run(&mut world, &mut character, 100);
     assert_eq!((character.world_from_character(), character.pose()), (place, &pose[..]));
     assert_eq!(look(&mut world, &mut character, 125.0), Detail::Frozen);
     assert_eq!(look(&mut world, &mut character, 119.0), Detail::Keyed);
-    assert_eq!(look(&mut world, &mut character, 125.0), Detail::Keyed, "it does not change to and fro");
+    assert_eq!(look(&mut world, &mut character, 125.0), Detail::Keyed, "the level of detail oscillates");
     assert_eq!(look(&mut world, &mut character, 10.0), Detail::Full);
     assert_eq!(look(&mut world, &mut character, f32::NAN), Detail::Frozen);
     assert_eq!(look(&mut world, &mut character, 10.0), Detail::Full);
     let before = joints(&character);
     run(&mut world, &mut character, 1);
     let step = joints(&character).iter().zip(&before).map(|(a, b)| (*a - *b).length()).fold(0.0, max);
-    assert!(step < 0.12, "it goes on where it was: a joint moves by {step} m");
+    assert!(step < 0.12, "it does not resume its pose: a joint moves by {step} m");
     run(&mut world, &mut character, 119);
     let way = character.world_from_character().translation.z - place.translation.z;
     assert!((way - 2.0 * WALK_SPEED).abs() < 0.1, "{way} m");
 }
 
 #[test]
-fn without_hit_bodies_no_detail_brings_them() {
-    let mut def = walker_that_tells();
+fn no_level_of_detail_adds_disabled_hit_bodies() {
+    let mut def = walker_with_footsteps();
     def.in_world.hit_bodies = HitBodies::Absent;
     let mut world = level();
     let mut character = Character::spawn(&mut world, &shared(def), Transform::IDENTITY);
@@ -293,9 +293,9 @@ fn without_hit_bodies_no_detail_brings_them() {
     assert!(character.bodies().is_empty() && character.mover().is_some());
 }
 
-/// Farthest that the ball of a foot goes over the floor while its shoe lies flat, by the clip, metres.
+/// Largest displacement over the floor of the ball of a foot while its shoe lies flat in the clip, metres.
 fn slide(def: &Arc<CharacterDef>, velocity: Vec3) -> f32 {
-    // Shares of a cycle between which the left shoe lies flat.
+    // Phases of a cycle between which the left shoe lies flat.
     const FLAT: [f32; 2] = [0.10, 0.31];
     let mut world = level();
     let mut character = Character::spawn(&mut world, def, Transform::IDENTITY);
@@ -332,7 +332,7 @@ fn slide(def: &Arc<CharacterDef>, velocity: Vec3) -> f32 {
 
 #[test]
 fn code_driven_feet_do_not_slide() {
-    let def = shared(walker_that_tells());
+    let def = shared(walker_with_footsteps());
     for (speed, way) in
         [(0.6, Vec3::Z), (0.9, Vec3::X), (WALK_SPEED, Vec3::Z), (1.5, -Vec3::X), (2.0, Vec3::Z)]
     {

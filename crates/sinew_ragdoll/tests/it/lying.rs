@@ -1,4 +1,4 @@
-//! How bodies lie after falls: on the ground, not on their heads, hands or knees, and without limbs in the air.
+//! Resting poses after falls: on the ground, not on head, hands or knees, and without raised limbs.
 
 use crate::actor::{floor, walker};
 use crate::data;
@@ -10,27 +10,27 @@ use sinew_physics::{BodyId, World, WorldDef};
 use sinew_ragdoll::{AfterSettling, BuildOptions, Character, CharacterDef, CharacterEvent, build};
 use std::sync::Arc;
 
-/// Longest that a fall is watched, seconds.
+/// Longest observed time of a fall, seconds.
 const WATCHED: f32 = 10.0;
-/// Height of the hips at rest, over that when it stands, up to which it lies.
+/// A body lies if its hips are at most this share of their standing height.
 const LIES: f32 = 0.3;
-/// Longest that a body stands on its head or hands, seconds.
+/// Longest allowed time on head or hands, seconds.
 const HEADSTAND: f32 = 0.3;
-/// Height of a hand or a foot at rest up to which it lies, metres, for a man of 1.8 m.
+/// A hand or foot lies if it is below this height, metres, for a man of 1.8 m.
 const LOW: f32 = 0.25;
 
-/// Figures of falls.
+/// Results of falls.
 #[derive(Debug, Default)]
 struct Lain {
     falls: u32,
-    /// Hips above [`LIES`] at rest, headstands, limbs in the air, and those that never came to rest.
+    /// Numbers of falls with hips above [`LIES`] at rest, with headstands, with raised limbs, and without rest.
     high: u32,
     headstands: u32,
     limbs: u32,
     restless: u32,
     /// Sum of the times to rest, seconds.
     time: f32,
-    /// What was in the air, for people.
+    /// Raised limbs, as text for the failure message.
     notes: Vec<String>,
 }
 
@@ -50,7 +50,7 @@ impl Parts {
     }
 }
 
-/// A fall by a random blow; adds to the figures.
+/// One fall after a random hit; adds to the results.
 fn fall(def: &Arc<CharacterDef>, random: &mut Random, lain: &mut Lain) {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
@@ -77,7 +77,7 @@ fn fall(def: &Arc<CharacterDef>, random: &mut Random, lain: &mut Lain) {
     for step in 0..(WATCHED / dt) as u32 {
         world.step();
         character.update(&mut world);
-        // Hips over everything that bears: the head or the hands are on the ground, and hips and feet are not.
+        // A headstand: hips and feet are above all supports, and head or hands are on the ground.
         let tops: Vec<usize> = parts.head.iter().chain(&parts.hands).copied().collect();
         let on_top = tops.iter().any(|&body| low(&world, body) < 0.02 * scale);
         let is_up = high(&world, parts.hips) > 0.5 * stands
@@ -100,14 +100,14 @@ fn fall(def: &Arc<CharacterDef>, random: &mut Random, lain: &mut Lain) {
 }
 
 impl Lain {
-    /// Looks at a body that lies still.
+    /// Evaluates a body at rest.
     fn look(&mut self, def: &CharacterDef, world: &World, bodies: &[BodyId], parts: &Parts) {
         let scale = def.ragdoll.height / 1.8;
         let stands = def.ragdoll.bodies[0].character_from_body.translation.y;
         let low = |body: usize| world.bounds(bodies[body]).min.y;
         let hips = world.transform(bodies[parts.hips]).translation.y;
         let mut note = String::new();
-        // Those of figures with short legs are higher than that when they lie.
+        // Figures with short legs exceed the share even when they lie.
         if hips > LIES * stands && low(parts.hips) > 0.1 * stands {
             self.high += 1;
             let _ = write!(note, "hips at {hips:.2} of {stands:.2} m; ");
@@ -153,7 +153,7 @@ fn measure(name: &str, mut def: CharacterDef) -> Lain {
     lain
 }
 
-/// Shares of the falls that end or pass badly, percent: as they are, above what the specification of a body asks for.
+/// Allowed shares of bad falls, percent. They are at the measured level, above the target of the specification.
 fn expect(name: &str, lain: &Lain, [high, headstands, limbs]: [u32; 3]) {
     let most = |share: u32| lain.falls * share / 100 + 2;
     assert!(lain.high <= most(high), "{name}: {lain:?}");
@@ -163,13 +163,13 @@ fn expect(name: &str, lain: &Lain, [high, headstands, limbs]: [u32; 3]) {
 }
 
 #[test]
-fn the_mannequin_lies_as_bodies_lie() {
+fn mannequin_comes_to_rest_on_the_ground() {
     expect("mannequin", &measure("mannequin", walker()), [16, 2, 8]);
 }
 
 #[needs_data]
 #[test]
-fn other_humans_lie_as_bodies_lie() {
+fn other_humans_come_to_rest_on_the_ground() {
     let rigs = [
         "CesiumMan.glb",
         "RiggedFigure.glb",

@@ -1,4 +1,4 @@
-//! From a pose to bodies and back, on rigs with the ways of real files.
+//! Mapping of poses to bodies and back, on rigs with the peculiarities of real files.
 
 use crate::actor::{in_centimetres_and_z_up, somewhere, walker};
 use sinew_anim::{
@@ -21,13 +21,13 @@ fn walking(def: &CharacterDef, time: f32) -> Vec<LocalTransform> {
     pose
 }
 
-/// Largest distance between what the two poses make of points a hand's breadth from each joint, metres.
+/// Largest distance between points 10 cm from each joint in the two poses, metres.
 fn distance(def: &CharacterDef, a: &[LocalTransform], b: &[LocalTransform]) -> f32 {
     let to_metres = def.mapping().character_from_model();
     let (a, b) = (model_of(def, a), model_of(def, b));
     let mut worst = 0.0_f32;
     for (a, b) in a.iter().zip(&b) {
-        // In file units of the joint itself, which its own scale undoes.
+        // The reach is in the joint's own file units, so that its scale cancels.
         let reach = 0.1 / (to_metres.linear * a.linear).x_axis.length();
         for p in [Vec3::ZERO, Vec3::X * reach, Vec3::Y * reach, Vec3::Z * reach] {
             let gap = to_metres.vector(a.point(p) - b.point(p)).length();
@@ -37,7 +37,7 @@ fn distance(def: &CharacterDef, a: &[LocalTransform], b: &[LocalTransform]) -> f
     worst
 }
 
-/// Bodies of one pose, mapped back on the base of another.
+/// Maps one pose to bodies and back, with another pose as the base.
 fn round_trip(
     def: &CharacterDef,
     pose: &[LocalTransform],
@@ -53,11 +53,11 @@ fn round_trip(
 }
 
 #[test]
-fn bodies_of_a_pose_give_it_back() {
+fn pose_survives_the_round_trip_through_bodies() {
     for def in [walker(), in_centimetres_and_z_up()] {
         for k in 0..8 {
             let pose = walking(&def, 0.13 * k as f32);
-            // The base is another pose, but for the joints that no body moves.
+            // The base is another pose, except for joints without a body.
             let mut base = walking(&def, 0.05);
             for (joint, local) in pose.iter().enumerate() {
                 if def.ragdoll.bodies.iter().all(|body| body.joint != joint) {
@@ -73,9 +73,9 @@ fn bodies_of_a_pose_give_it_back() {
 }
 
 #[test]
-fn joints_without_a_body_ride_along() {
+fn joints_without_a_body_keep_their_local_pose() {
     let mut def = walker();
-    // The hands lose their bodies: they must keep their local pose on forearms that turn.
+    // Hands without bodies keep their local pose on turning forearms.
     let hand = def.rig.joints.iter().position(|joint| joint.name == "leftHand").expect("it has hands");
     def.ragdoll.bodies.retain(|body| !body.role.contains("Hand"));
     let kept = def.ragdoll.bodies.len();
@@ -116,7 +116,7 @@ fn motion_of_nodes_above_the_pelvis_goes_into_the_pelvis() {
 }
 
 #[test]
-fn a_pose_seen_from_elsewhere_stays_where_it_is() {
+fn world_pose_is_independent_of_the_characters_frame() {
     for def in [walker(), in_centimetres_and_z_up()] {
         let pose = walking(&def, 0.4);
         let to = Transform::new(Vec3::new(-0.5, 0.3, 4.0), Rotation::from_axis_angle(Vec3::Y, -2.0));
@@ -132,9 +132,9 @@ fn a_pose_seen_from_elsewhere_stays_where_it_is() {
     }
 }
 
-/// Bodies straight from a pose and those from its model are the same, whatever uniform scales its joints have.
+/// Body poses computed from a pose and from its model transforms are equal for any uniform joint scales.
 #[test]
-fn bodies_of_a_pose_are_those_of_its_model() {
+fn body_poses_agree_for_pose_and_model_transforms() {
     let mut random = Random::new(11);
     for def in [walker(), in_centimetres_and_z_up()] {
         let (mut frames, mut quick, mut slow) = (Vec::new(), Vec::new(), Vec::new());

@@ -1,4 +1,5 @@
-//! Garments that are meshes of the character: reduced, held at the top, worn, drawn; through walks, falls, snapshots and other sizes.
+//! Garments made from meshes of the character: reduced, attached at the top, worn, drawn; through walks, falls,
+//! snapshots and scaling.
 
 use crate::garments::{go_on, ground, mean_stretch};
 use sinew_anim::{
@@ -12,10 +13,10 @@ use sinew_ragdoll::{Character, CharacterDef, MotionSet};
 use sinew_scenes::skirted::{CELLS, joint, lay_skirt, skirted, skirted_rig};
 use std::sync::Arc;
 
-/// Spacing that the cells of a coarse skirt keep as they are, metres.
+/// Spacing at which the cells of the coarse skirt are kept, metres.
 const COARSE: f32 = 0.1;
 
-/// Vertices of the skirt and their normals as a game draws them, world.
+/// World positions and normals of the skirt's vertices, as drawn.
 fn drawn(character: &Character) -> (Vec<Vec3>, Vec<Vec3>) {
     let rig = &character.def().rig;
     let (mut model, mut places, mut normals) = (Vec::new(), Vec::new(), Vec::new());
@@ -25,7 +26,7 @@ fn drawn(character: &Character) -> (Vec<Vec3>, Vec<Vec3>) {
     (places.iter().map(|&place| to_world.point(place)).collect(), normals)
 }
 
-/// Largest depth of a particle in a body that it meets, metres.
+/// Largest depth of a particle in a body that it collides with, metres.
 fn deepest(world: &World, character: &Character) -> f32 {
     let group = world.particles(character.garments()[0]);
     let mut deepest = 0.0;
@@ -46,7 +47,7 @@ fn deepest(world: &World, character: &Character) -> f32 {
 }
 
 #[test]
-fn it_is_put_on_where_it_is_drawn_and_held_at_the_top() {
+fn mesh_garment_starts_where_it_is_drawn_and_is_held_at_the_top() {
     let def = Arc::new(skirted(|_| ()));
     let mut world = ground(Vec3::ZERO);
     let character = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -55,7 +56,7 @@ fn it_is_put_on_where_it_is_drawn_and_held_at_the_top() {
     let held = sheet.held.iter().filter(|held| **held).count();
     assert_eq!((group.positions().len(), group.attachments().len()), (sheet.joints.len(), held));
     assert_eq!(group.faces(), sheet.faces);
-    // A ring of particles all round, four centimetres of the 45 high.
+    // A ring of particles around the waist is held: four of the 45 centimetres.
     assert!((20..120).contains(&held), "{held} of {}", sheet.joints.len());
     let mass: f32 = group.masses().iter().sum();
     let area: f32 = sheet
@@ -68,13 +69,14 @@ fn it_is_put_on_where_it_is_drawn_and_held_at_the_top() {
         .sum();
     assert!((mass / (0.4 * area) - 1.0).abs() < 0.1, "{mass} kg on {area} m²");
     let whole = 0.4 * sheet.areas.iter().sum::<f32>();
-    assert!((mass / whole - 1.0).abs() < 1e-3, "all of the mesh: {mass} of {whole} kg");
-    assert!(deepest(&world, &character) < 1e-3, "it begins outside of the body");
+    assert!((mass / whole - 1.0).abs() < 1e-3, "mass of the mesh: {mass} of {whole} kg");
+    assert!(deepest(&world, &character) < 1e-3, "particles start inside a body");
 }
 
-/// Standing as it was bound it is drawn where the artist drew it, although particles were moved out of the hips, and its normals as well.
+/// In the bind pose the skirt and its normals are drawn as the artist made them, although particles were moved out of
+/// the hips.
 #[test]
-fn what_is_drawn_at_rest_is_what_the_artist_made() {
+fn garment_bones_keep_the_bind_pose_without_gravity() {
     let moving = skirted(|_| ());
     let bind_model = sinew_anim::analyze(&moving.rig).expect("it has a skin").bind_model;
     let mut def = CharacterDef::new(moving.rig.clone(), moving.ragdoll.clone(), &bind_model);
@@ -95,7 +97,7 @@ fn what_is_drawn_at_rest_is_what_the_artist_made() {
 }
 
 #[test]
-fn it_is_worn_through_a_walk_and_a_fall() {
+fn mesh_garment_stays_on_through_a_walk_and_a_fall() {
     let def = Arc::new(skirted(|_| ()));
     let mut world = ground(WorldDef::default().gravity);
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -114,21 +116,25 @@ fn it_is_worn_through_a_walk_and_a_fall() {
         swung = max(swung, moved(CELLS[1] / 2).length());
     }
     assert!(inside < 0.01, "{inside} m in a body as it walks");
-    // Its first steps are long: feet that are down wait for the clips to be as fast as it is.
+    // The first steps are long: feet on the ground wait until the clips reach the mover's speed.
     assert!(stretch < 0.05, "threads stretched by {stretch}");
-    assert!(swung > 0.02, "it swings by {swung} m");
+    assert!(swung > 0.02, "the skirt swings by {swung} m");
     character.go_limp(&mut world);
     go_on(&mut world, &mut character, 120);
     let hips = world.center_of_mass(character.bodies()[0]);
     let (places, _) = drawn(&character);
     let far = places.iter().map(|&place| (place - hips).length()).fold(0.0, max);
-    assert!(hips.y < 0.5 && far < 0.9, "it lies in it: hips at {} m, the hem {far} m from them", hips.y);
+    assert!(
+        hips.y < 0.5 && far < 0.9,
+        "the wearer is not down in its skirt: hips at {} m, the hem {far} m from them",
+        hips.y
+    );
     let low = places.iter().map(|place| place.y).fold(1.0, sinew_math::min);
-    assert!(low > -0.03, "the floor holds it: {low}");
+    assert!(low > -0.03, "the skirt sinks into the floor: {low}");
 }
 
 #[test]
-fn a_snapshot_in_the_middle_of_a_swing_goes_on_with_the_same_bits() {
+fn snapshot_of_a_swinging_mesh_garment_continues_identically() {
     let def = Arc::new(skirted(|_| ()));
     let mut world = ground(WorldDef::default().gravity);
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -151,13 +157,13 @@ fn a_snapshot_in_the_middle_of_a_swing_goes_on_with_the_same_bits() {
     }
 }
 
-/// Coarse cells are all particles, and a diagonal across a cell is soft, as in a grid of threads.
+/// Every vertex of coarse cells is a particle, and the diagonals of cells are soft, as in a woven grid.
 #[test]
-fn a_coarse_mesh_is_its_own_sheet() {
+fn coarse_mesh_is_used_as_its_own_sheet() {
     let mut rig = skirted_rig([20, 8]);
     let sheet = lay_skirt(&mut rig, 400, COARSE).expect("it can be cloth");
     let sheet = &rig.sheets[sheet];
-    // The buckle hangs together with nothing.
+    // The buckle is not connected to the rest.
     assert_eq!((sheet.joints.len(), sheet.vertices), (20 * 9, 20 * 9 + 4));
     let bare = skirted(|_| ());
     let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
@@ -168,7 +174,7 @@ fn a_coarse_mesh_is_its_own_sheet() {
     let group = world.particles(character.garments()[0]);
     let usual = Garment::default();
     let soft = group.springs().iter().filter(|spring| spring.stiffness == 0.5 * usual.shearing).count();
-    // One cell of the 160 is a little too skew.
+    // One of the 160 cells is slightly too skewed.
     assert!((316..=320).contains(&soft), "two diagonals for each cell: {soft}");
     let others = group.springs().iter().map(|s| s.stiffness).filter(|&k| k != 0.5 * usual.shearing);
     let (low, high) = others.fold((f32::MAX, 0.0), |(low, high), k| (sinew_math::min(low, k), max(high, k)));
@@ -178,7 +184,7 @@ fn a_coarse_mesh_is_its_own_sheet() {
     assert_eq!(group.tethers().len(), free);
 }
 
-/// A coarse skirt whose hem hangs on a joint more, called `flare`, below another joint or below none.
+/// A coarse skirt whose hem is weighted to an additional joint `flare`, which has the named parent or none.
 fn flared(parent: Option<&str>) -> CharacterDef {
     let mut rig = skirted_rig([20, 8]);
     let source = rig.joints.len();
@@ -192,13 +198,13 @@ fn flared(parent: Option<&str>) -> CharacterDef {
     let skirt = rig.meshes.iter_mut().find(|mesh| mesh.name == "Skirt").expect("it is there");
     let primitive = &mut skirt.primitives[0];
     for (vertex, place) in primitive.positions.iter().enumerate().filter(|(_, place)| place.y < 0.65) {
-        assert!(place.y > 0.4, "of the skirt");
+        assert!(place.y > 0.4, "the vertex is at the skirt's height");
         primitive.joints[vertex] = [slot, 0, 0, 0];
         primitive.weights[vertex] = [1.0, 0.0, 0.0, 0.0];
     }
     let sheet = lay_skirt(&mut rig, 400, COARSE).expect("it can be cloth");
     let flare = rig.sheets[sheet].joints.iter().filter(|&&at| rig.joints[at].parent == Some(source)).count();
-    assert!(flare >= 20, "{flare} particles hang on it");
+    assert!(flare >= 20, "{flare} particles are weighted to it");
     let garment = Garment::of_sheet(&rig.sheets[sheet]);
     let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
     let mut def = CharacterDef::new(rig, skirted(|_| ()).ragdoll.clone(), &analysis.bind_model);
@@ -206,9 +212,9 @@ fn flared(parent: Option<&str>) -> CharacterDef {
     def
 }
 
-/// Clips scale to nothing what they hide.
+/// Clips scale hidden parts to zero.
 #[test]
-fn nothing_is_nowhere_under_a_joint_without_a_size() {
+fn joint_scaled_to_zero_gives_finite_positions() {
     let mut def = flared(Some("hips"));
     let hidden = Channel {
         joint: joint(&def.rig, "flare"),
@@ -224,13 +230,13 @@ fn nothing_is_nowhere_under_a_joint_without_a_size() {
     let mut character = Character::spawn(&mut world, &Arc::new(def), Transform::IDENTITY);
     go_on(&mut world, &mut character, 20);
     let flare = joint(&character.def().rig, "flare");
-    assert_eq!(character.pose()[flare].scale, Vec3::ZERO, "or this says nothing");
+    assert_eq!(character.pose()[flare].scale, Vec3::ZERO, "the scale is zero in this test");
     assert!(character.pose().iter().all(|local| local.to_affine().is_finite()));
 }
 
-/// The root of an armature moves some of the hem; the rest of the skirt is held as ever.
+/// The root of an armature moves part of the hem; the rest of the skirt is attached as before.
 #[test]
-fn what_no_body_carries_goes_with_what_it_hangs_from() {
+fn particles_without_a_body_follow_the_sheet() {
     let def = flared(None);
     assert!(def.garments().left_out().is_empty(), "{} are left out", def.garments().left_out().len());
     let mut world = ground(WorldDef::default().gravity);
@@ -240,9 +246,9 @@ fn what_no_body_carries_goes_with_what_it_hangs_from() {
     assert!(mean_stretch(world.particles(character.garments()[0])) < 0.03);
 }
 
-/// Snapshots of a character and of a world that do not belong together: its garments are put on anew.
+/// A snapshot of a character loaded beside another world's snapshot: missing garments are created again.
 #[test]
-fn garments_that_are_not_there_are_put_on_anew() {
+fn missing_garments_are_created_again() {
     let mut def = flared(Some("hips"));
     let mut world = ground(WorldDef::default().gravity);
     let mut character = Character::spawn(&mut world, &Arc::new(def.clone()), Transform::IDENTITY);
@@ -258,7 +264,7 @@ fn garments_that_are_not_there_are_put_on_anew() {
         if has_another {
             let particle = ParticleDef { position: Vec3::Y, velocity: Vec3::ZERO, mass: 1.0, radius: 0.01 };
             let id = other.add_particles(&GroupDef { particles: vec![particle], ..GroupDef::default() });
-            assert_eq!(id, character.garments()[0], "or this says nothing");
+            assert_eq!(id, character.garments()[0], "the ids are equal in this test");
         }
         let mut dressed = def.clone();
         dressed.set_garments(&garments);
@@ -271,7 +277,7 @@ fn garments_that_are_not_there_are_put_on_anew() {
     }
 }
 
-/// The skirt on a bone of its own between it and the hips, and that bone, which swings as a spring if it shall.
+/// The skirt on an intermediate bone below the hips, and that bone's index. The bone is a spring if `is_sprung`.
 fn on_a_spring(is_sprung: bool) -> (CharacterDef, usize) {
     let mut rig = skirted_rig([20, 8]);
     let (hips, bone) = (joint(&rig, "hips"), rig.joints.len());
@@ -314,11 +320,11 @@ fn on_a_spring(is_sprung: bool) -> (CharacterDef, usize) {
 
 /// Springs above its joints change neither the cloth nor where it is drawn.
 #[test]
-fn it_is_drawn_where_it_is_below_bones_that_swing() {
+fn cloth_below_spring_bones_is_drawn_at_its_particles() {
     let walk = |is_sprung| {
         let (def, bone) = on_a_spring(is_sprung);
         let borne = def.rig.sheets[0].joints.iter().filter(|&&at| def.rig.joints[at].parent == Some(bone));
-        assert!(borne.count() > 20, "the bone bears some of it");
+        assert!(borne.count() > 20, "the bone carries part of the skirt");
         let mut world = ground(WorldDef::default().gravity);
         let mut character = Character::spawn(&mut world, &Arc::new(def), Transform::IDENTITY);
         character.set_move(Vec3::Z * 1.3);
@@ -335,15 +341,16 @@ fn it_is_drawn_where_it_is_below_bones_that_swing() {
     for ((hash, turn, places), (still_hash, _, still)) in walk(true).iter().zip(walk(false)) {
         assert_eq!(*hash, still_hash, "the cloth is the same");
         let off = places.iter().zip(&still).map(|(a, b)| (*a - *b).length()).fold(0.0, max);
-        assert!(off < 1e-4, "drawn {off} m off, its bone turned by {turn}");
+        assert!(off < 1e-4, "drawn {off} m off, with its bone turned by {turn}");
         swung = max(swung, *turn);
     }
     assert!(swung > 0.1, "the bone swings: {swung}");
 }
 
-/// A skirt of ten cells around, wider than a leg: it is split for the cloth, so that no leg comes between its particles.
+/// A skirt with ten cells around, each wider than a leg: cells are split for the cloth, so that no leg passes between
+/// particles.
 #[test]
-fn legs_do_not_come_through_a_coarse_mesh() {
+fn legs_do_not_pass_through_a_coarse_mesh() {
     let deepest_face = |spacing: f32| {
         let mut rig = skirted_rig([10, 4]);
         let sheet = lay_skirt(&mut rig, 400, spacing).expect("it can be cloth");
@@ -370,11 +377,11 @@ fn legs_do_not_come_through_a_coarse_mesh() {
     let (few, coarse) = deepest_face(0.5);
     let (many, split) = deepest_face(Garment::default().spacing);
     assert!(few == 50 && (200..=400).contains(&many), "{few} and {many} particles");
-    assert!(coarse > 0.025, "or this says nothing: {coarse} m");
+    assert!(coarse > 0.025, "without the split it passes through: {coarse} m");
     assert!(split < 0.015, "{split} m, {coarse} m without");
 }
 
-/// Largest depth of the middle of a face, no corner of which is held, in a body that it meets, metres.
+/// Largest depth, in bodies that it collides with, of the centre of a face without attached corners; metres.
 fn deepest_middle(world: &World, character: &Character) -> f32 {
     let group = world.particles(character.garments()[0]);
     let held: Vec<u32> = group.attachments().iter().map(|held| held.particle).collect();

@@ -1,4 +1,4 @@
-//! A character that walks, runs, and does what lies between, as fast as it is moved.
+//! Clips of a character at walking, running and intermediate speeds.
 
 use crate::actor::{shared, walker};
 use crate::in_world::level;
@@ -9,7 +9,7 @@ use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, Locomotion, MotionS
 use sinew_scenes::mannequin::{RUN_SPEED, WALK_SPEED, drills};
 use std::sync::Arc;
 
-/// A walk on the spot and a run that covers ground, with their footfalls.
+/// A walk in place and a travelling run, with footstep events.
 fn runner() -> Arc<CharacterDef> {
     let mut def = walker();
     let MotionSet { mut clips, looped, .. } = def.motions().clone();
@@ -28,7 +28,8 @@ fn runner() -> Arc<CharacterDef> {
     shared(def)
 }
 
-/// Moves a character forward and returns the events of its clips and the mean speed of the lower ball of its feet over the ground, m/s.
+/// Moves a character forward. Returns its clip events, and the mean speed over the ground of the lower ball of its
+/// feet, m/s.
 fn moved(world: &mut World, hero: &mut Character, speed: f32, steps: usize) -> (Vec<CharacterEvent>, f32) {
     let def = hero.def().clone();
     let feet = ["leftFoot", "rightFoot"].map(|role| def.body_named(role).expect("a foot"));
@@ -62,7 +63,7 @@ fn steps_of<'a>(def: &'a CharacterDef, events: &[CharacterEvent]) -> Vec<(&'a st
 }
 
 #[test]
-fn it_walks_and_runs_as_fast_as_it_is_moved() {
+fn clips_play_at_the_movers_speed() {
     let def = runner();
     let (walk, run) = (&def.motions().clips[0].name, &def.motions().clips[def.motions().faster[0].0].name);
     let mut world = level();
@@ -80,14 +81,15 @@ fn it_walks_and_runs_as_fast_as_it_is_moved() {
             "{speed} m/s: {sides:?}"
         );
         let went = (hero.world_from_character().translation.z - from) / 2.0;
-        assert!((went - speed).abs() < 0.02 * speed, "{went} m/s instead of {speed}");
+        assert!((went - speed).abs() < 0.02 * speed, "moved at {went} m/s, not {speed}");
         assert_eq!(hero.state(), State::Animated);
     }
 }
 
-/// Between walk and run both clips are in step: sides take turns, and the lower foot moves little more than in the clips themselves.
+/// Between walk and run the clips are synchronised: sides alternate, and the lower foot slides little more than in the
+/// clips themselves.
 #[test]
-fn between_two_clips_the_feet_take_turns() {
+fn feet_alternate_between_walk_and_run() {
     let def = runner();
     let mut world = level();
     let mut hero = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -106,7 +108,7 @@ fn between_two_clips_the_feet_take_turns() {
 }
 
 #[test]
-fn a_saved_runner_runs_on_with_the_same_bits() {
+fn saved_runner_continues_identically() {
     let def = runner();
     let mut world = level();
     let mut hero = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -132,9 +134,9 @@ fn a_saved_runner_runs_on_with_the_same_bits() {
     assert_eq!(world.hash(), again.hash());
 }
 
-/// A clip that covers no ground has no speed to be played at.
+/// A clip without displacement has no known speed.
 #[test]
-fn a_run_on_the_spot_of_unknown_speed_is_left_out() {
+fn run_in_place_without_known_speed_is_ignored() {
     let mut def = walker();
     let clips: Vec<Clip> = def.motions().clips.clone();
     let faster = vec![(1, Locomotion::InPlace), (0, Locomotion::Forward { speed: 0.2 })];

@@ -1,5 +1,5 @@
-//! Pops of a character where its bodies take over or give back: accelerations of its joints over what offset
-//! and time ask for, as transitions between clips are measured.
+//! Pops at hand-over to bodies and back: accelerations of joints beyond what the offset and the time of a transition
+//! require, by the measure used for transitions between clips.
 
 use core::fmt;
 use sinew_anim::{Cursor, Decay, LocalTransform, Pose, local_to_model};
@@ -9,18 +9,18 @@ use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, RagdollBodyDef};
 use std::sync::Arc;
 
 const DT: f32 = 1.0 / 60.0;
-/// Steps after a hand-over that are watched.
+/// Observed steps after a hand-over.
 const WINDOW: usize = 24;
-/// Steps of clips before the bodies take over, and in all: a lap of a walk.
+/// Steps of clips before hand-over, and total steps: one cycle of a walk.
 const BEFORE: usize = 12;
 const LAP: usize = 72;
-/// Into a get-up clip, and into the looped one, seconds.
+/// Transition times into a get-up clip and into the looped clip, seconds.
 const INTO: [f32; 2] = [0.35, 0.3];
 
 /// Angular and linear.
 type Rates = [Vec3; 2];
 
-/// Joints as they are seen: the pelvis in the world, the others from their parents.
+/// Observed joint transforms: the pelvis in the world, others relative to their parents.
 fn seen(character: &Character) -> Vec<Transform> {
     let def = character.def();
     let mut model = Vec::new();
@@ -41,7 +41,7 @@ fn rates(a: Transform, b: Transform) -> Rates {
     [turn(a.rotation, b.rotation) / DT, (b.translation - a.translation) / DT]
 }
 
-/// Centres of mass of the bodies as the clips carry them, turned as they are.
+/// Centres of mass of the bodies, with their rotations, in the animated pose.
 fn centers(character: &Character) -> Vec<Transform> {
     let def = character.def();
     let (mut model, mut bodies) = (Vec::new(), Vec::new());
@@ -57,7 +57,7 @@ fn centers(character: &Character) -> Vec<Transform> {
 #[derive(Clone, Copy, Default)]
 struct Budget([f32; 2]);
 
-/// A window that is open.
+/// An open window.
 struct Window {
     kind: usize,
     left: usize,
@@ -77,15 +77,15 @@ impl Pops {
         Self { def: def.clone(), last: Vec::new(), window: None, worst: Default::default(), count: [0; 3] }
     }
 
-    /// Another character.
+    /// Starts with another character.
     pub fn begin(&mut self, character: &Character) {
         self.last = vec![seen(character)];
         self.window = None;
     }
 
-    /// As the character is now, without a push: how much its bodies' speeds, as they are handed over, differ from those of the
-    /// last step of the clips, over what they change by from step to step while clips move them. What joint friction, limits
-    /// and the floor then do to them is physics.
+    /// Compares body velocities at hand-over with those of the last animated step, relative to their change from step
+    /// to step while animated. The push is left out; the later effect of joint friction, limits and floor is physics
+    /// and not counted.
     pub fn go_limp(&mut self, character: &Character) {
         let mut world = World::new(WorldDef::default());
         let mut animated = character.clone();
@@ -117,7 +117,7 @@ impl Pops {
         }
     }
 
-    /// After an update.
+    /// Observes the character after an update.
     pub fn watch(&mut self, character: &Character) {
         let now = seen(character);
         if let (Some(window), [.., before, last]) = (&mut self.window, &self.last[..]) {
@@ -154,7 +154,7 @@ impl Pops {
         self.last.push(now);
     }
 
-    /// `6 |x₀|/t₁² + 4 |v₀|/t₁` and what the clip itself does.
+    /// Computes `6 |x₀|/t₁² + 4 |v₀|/t₁` plus the clip's own acceleration.
     fn budgets(&self, character: &Character, now: &[Transform], kind: usize) -> Vec<Budget> {
         let animator = character.animator();
         let track = animator.tracks().last().expect("it plays a clip");
@@ -184,7 +184,7 @@ impl Pops {
             let old = rates(before[joint], now[joint]);
             Budget([0, 1].map(|i| {
                 let velocity = if heads.contains(&joint) {
-                    // Seen from elsewhere: at most as fast as both together.
+                    // In another frame the velocity is at most the sum of both.
                     Vec3::X * (old[i].length() + rate[0][i].length())
                 } else {
                     old[i] - rate[0][i]
@@ -192,7 +192,7 @@ impl Pops {
                 let decay = Decay { offset: offsets[i], velocity };
                 let whole = INTO[kind];
                 let time = if heads.contains(&joint) {
-                    // It may come back as fast as both together; then it dies away the sooner, down to a third of the time.
+                    // It may return as fast as both together; then the decay is shorter, down to a third of the time.
                     let soonest = 5.0 * decay.offset.length() / max(velocity.length(), 1e-6);
                     max(min(whole, soonest), whole / 3.0)
                 } else {
@@ -205,7 +205,7 @@ impl Pops {
         (0..now.len()).map(of).collect()
     }
 
-    /// Above 1 there is a pop.
+    /// Worst ratio; above 1 there is a pop.
     pub fn worst(&self) -> f32 {
         self.worst.iter().fold(0.0, |worst, (ratio, _)| max(worst, *ratio))
     }
@@ -216,7 +216,7 @@ impl fmt::Display for Pops {
         for (kind, name) in ["bodies to get-up", "get-up to loop", "clip to bodies"].iter().enumerate() {
             let (ratio, place) = &self.worst[kind];
             let count = self.count[kind];
-            writeln!(f, "  {name}: {count} times, worst {ratio:.3} of what is allowed ({place})")?;
+            writeln!(f, "  {name}: {count} times, worst {ratio:.3} of the budget ({place})")?;
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! The figures, and the tests that every ragdoll is put to.
+//! Quality metrics of falls, and the standard tests of every ragdoll.
 
 use crate::actor::{floor, walker};
 use sinew_math::{Rotation, Transform, Vec3};
@@ -10,7 +10,7 @@ use sinew_ragdoll::{
 };
 
 #[test]
-fn the_mannequin_survives_drops_and_a_wall() {
+fn mannequin_passes_drops_and_a_wall_impact() {
     let report = drop_test(&walker().ragdoll);
     for (drop, quality) in report.drops.iter().chain([&report.wall]).enumerate() {
         assert_eq!(quality.nan, 0, "drop {drop}");
@@ -24,16 +24,16 @@ fn the_mannequin_survives_drops_and_a_wall() {
 }
 
 #[test]
-fn random_falls_end_well() {
+fn random_falls_get_good_verdicts() {
     let report = gate(&walker().ragdoll, 6);
     assert_eq!(report.verdicts.iter().sum::<usize>(), 6);
     assert_eq!(report.misses, []);
     assert!(report.worst.joint_gap_max_m < 5e-3, "{report:?}");
 }
 
-/// Neither threads nor how many falls are asked for at once change what a fall is.
+/// Neither the number of threads nor the split into ranges changes a fall.
 #[test]
-fn falls_are_the_same_on_any_threads_and_in_any_parts() {
+fn falls_are_independent_of_threads_and_ranges() {
     let def = walker().ragdoll;
     let whole = gate(&def, 4);
     assert_eq!(whole.spawns, 4);
@@ -44,9 +44,9 @@ fn falls_are_the_same_on_any_threads_and_in_any_parts() {
     assert_eq!(parts.into_iter().reduce(GateReport::and), Some(whole));
 }
 
-/// In free fall the meter must find what closed forms say.
+/// In free fall the meter agrees with closed forms.
 #[test]
-fn the_meter_sees_energy_from_nothing() {
+fn meter_detects_added_energy() {
     let def = walker().ragdoll;
     let measure = |kick: f32| {
         let mut world = World::new(WorldDef::default());
@@ -64,7 +64,7 @@ fn the_meter_sees_energy_from_nothing() {
             meter.before_step(&world);
             world.step();
             if step == 20 {
-                // Behind the meter's back.
+                // Velocities are changed without informing the meter.
                 for &body in &ragdoll.bodies {
                     let v = world.velocity(body);
                     world.set_velocity(body, Velocity { linear: v.linear * kick, ..v });
@@ -77,7 +77,7 @@ fn the_meter_sees_energy_from_nothing() {
     let honest = measure(1.0);
     assert!(honest.energy_gain_max < 1e-3, "{honest:?}");
     assert!(honest.joint_gap_max_m < 1e-4 && honest.limit_overshoot_max_deg < 0.5, "{honest:?}");
-    // Speeds times √1.1 is a tenth more kinetic energy.
+    // Speeds times √1.1 give a tenth more kinetic energy.
     let gain = measure(1.1_f32.sqrt()).energy_gain_max;
     assert!((gain - 0.1).abs() < 0.01, "{gain}");
 }
@@ -94,7 +94,7 @@ fn spawn(world: &mut World, body_settings: &BodySettings) -> Ragdoll {
 }
 
 #[test]
-fn despawning_leaves_nothing_behind() {
+fn despawning_removes_bodies_and_joints() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
     let ragdoll = spawn(&mut world, &BodySettings::default());
@@ -105,7 +105,7 @@ fn despawning_leaves_nothing_behind() {
 }
 
 #[test]
-fn a_ragdoll_has_its_own_quality_of_the_step() {
+fn ragdoll_sets_its_own_substep_quality() {
     let mut world = World::new(WorldDef::default());
     let ragdoll =
         spawn(&mut world, &BodySettings { quality: Some(Quality::Exact), ..BodySettings::default() });
@@ -117,9 +117,9 @@ fn a_ragdoll_has_its_own_quality_of_the_step() {
     assert!(has(&world, None));
 }
 
-/// However the bodies are placed, the joints that are fitted to them agree with them.
+/// Joints fitted to any body poses are consistent with them.
 #[test]
-fn joints_fit_any_pose() {
+fn fitted_joints_match_any_pose() {
     let def = walker().ragdoll;
     let mut random = sinew_math::Random::new(3);
     for _ in 0..50 {
@@ -144,7 +144,7 @@ fn joints_fit_any_pose() {
 }
 
 #[test]
-fn a_pose_inside_the_limits_changes_no_limit() {
+fn pose_within_the_limits_changes_no_limit() {
     let def = walker().ragdoll;
     for joint in &def.joints {
         let pose = |body: usize| def.bodies[body].character_from_body;

@@ -1,4 +1,4 @@
-//! Steps that an island in long substeps takes again in the world's.
+//! Islands that step with fewer, longer substeps and repeat a step with the world's substeps if it fails.
 
 use crate::actor::{floor, walker};
 use core::sync::atomic::{AtomicUsize, Ordering};
@@ -8,7 +8,7 @@ use sinew_physics::{PhysicsObject, Serial, Velocity, World, WorldDef};
 use sinew_ragdoll::quality::random_pose;
 use sinew_ragdoll::{BodySettings, BodyState, Ragdoll, RagdollDef};
 
-/// Counts how often islands were prepared, and islands.
+/// Counts preparations of islands, and islands.
 #[derive(Default)]
 struct Prepared {
     times: AtomicUsize,
@@ -28,14 +28,14 @@ impl Profiler for Prepared {
     }
 }
 
-/// Steps, and tells whether an island took the step twice.
+/// Steps, and returns true if an island was solved twice.
 fn step_is_retaken(world: &mut World) -> bool {
     let prepared = Prepared::default();
     world.step_with(&Serial, &prepared);
     prepared.times.into_inner() > prepared.islands.into_inner()
 }
 
-/// An object that does nothing: islands beside one take the world's substeps.
+/// An object that does nothing: islands that touch one use the world's substeps.
 struct Idle;
 
 impl PhysicsObject for Idle {
@@ -48,7 +48,7 @@ impl PhysicsObject for Idle {
     }
 }
 
-/// Thrown down at 9 m/s from just above the floor, in a random pose and spin.
+/// A ragdoll thrown down at 9 m/s from just above the floor, with random pose and spin.
 fn thrown(world: &mut World, def: &RagdollDef, seed: u64) -> Ragdoll {
     let mut random = Random::new(seed);
     let (turn, spin) = (random.rotation(), random.in_cube() * 10.0);
@@ -68,7 +68,7 @@ fn thrown(world: &mut World, def: &RagdollDef, seed: u64) -> Ragdoll {
 }
 
 #[test]
-fn a_step_that_long_substeps_overreach_is_that_of_short_ones() {
+fn repeated_step_equals_a_step_with_short_substeps() {
     let def = walker().ragdoll;
     let mut retaken = 0;
     for seed in 0..500 {
@@ -92,5 +92,5 @@ fn a_step_that_long_substeps_overreach_is_that_of_short_ones() {
             }
         }
     }
-    assert!(retaken >= 3, "{retaken} steps were taken again");
+    assert!(retaken >= 3, "{retaken} steps were repeated");
 }

@@ -1,4 +1,4 @@
-//! Changes that files make to a rig without changing the character: another order of joints, other units and axes, no names.
+//! Changes by which files vary a rig without changing the character: order of joints, units, axes, names.
 
 use crate::build::{OTHERS, PEOPLE, built, check_sound};
 use crate::data::rig;
@@ -8,7 +8,7 @@ use sinew_anim::Rig;
 use sinew_math::Rotation;
 use sinew_ragdoll::{BuildOptions, DropReport, RagdollBodyDef, RagdollDef, Verdict, drop_test, gate};
 
-/// The same bodies on the same joints, at the same places, as heavy.
+/// Checks that both have the same bodies on the same joints, at the same places, with the same masses.
 fn check_same(what: &str, plain: &RagdollDef, other: &RagdollDef, place: &[usize]) {
     assert_eq!(plain.bodies.len(), other.bodies.len(), "{what}");
     let of = |joint: usize| other.bodies.iter().find(|body| body.joint == place[joint]);
@@ -17,7 +17,7 @@ fn check_same(what: &str, plain: &RagdollDef, other: &RagdollDef, place: &[usize
         assert_eq!(a.role, b.role, "{what}, {}", a.bone);
         let (m, n) = (a.mass.mass, b.mass.mass);
         assert!((m - n).abs() < 0.01 * m, "{what}, {}: {m} and {n} kg", a.role);
-        // Of a fish nothing tells which way is up, so places are those against the first body.
+        // The up direction of a fish is unknown, so positions are relative to the first body.
         let place = |def: &RagdollDef, body: &RagdollBodyDef| {
             def.bodies[0].character_from_body.inverse_point(body.character_from_body.translation)
         };
@@ -34,14 +34,14 @@ fn check_same(what: &str, plain: &RagdollDef, other: &RagdollDef, place: &[usize
     assert_eq!(named(plain), named(other), "{what}: pairs that do not collide");
 }
 
-fn plain_and(rig: &Rig, what: &str, other: &Rig, place: &[usize]) -> [RagdollDef; 2] {
+fn check_variant(rig: &Rig, what: &str, other: &Rig, place: &[usize]) -> [RagdollDef; 2] {
     let [plain, other] = [rig, other].map(|rig| built(rig, &BuildOptions::default()).0);
     check_sound(what, &other);
     check_same(what, &plain, &other, place);
     [plain, other]
 }
 
-/// Files whose skeletons are copies of each other: nothing but their order tells which is which.
+/// A file with identical skeletons, which only their order distinguishes.
 const COPIES: &str = "RecursiveSkeletons.glb";
 
 fn rigs() -> impl Iterator<Item = (&'static str, Rig)> {
@@ -51,18 +51,18 @@ fn rigs() -> impl Iterator<Item = (&'static str, Rig)> {
 
 #[needs_data]
 #[test]
-fn the_order_of_joints_does_not_matter() {
+fn joint_order_does_not_change_the_ragdoll() {
     for (name, rig) in rigs() {
         for seed in 0..3 {
             let (other, place) = shuffled(&rig, seed);
-            plain_and(&rig, &format!("{name}, order {seed}"), &other, &place);
+            check_variant(&rig, &format!("{name}, order {seed}"), &other, &place);
         }
     }
 }
 
 #[needs_data]
 #[test]
-fn copies_are_copies_in_any_order() {
+fn identical_skeletons_stay_identical_in_any_order() {
     let rig = rig(COPIES);
     let masses = |rig: &Rig| {
         let (def, _) = built(rig, &BuildOptions::default());
@@ -79,31 +79,31 @@ fn copies_are_copies_in_any_order() {
 
 #[needs_data]
 #[test]
-fn units_and_axes_do_not_matter() {
+fn units_and_axes_do_not_change_the_ragdoll() {
     for (name, rig) in rigs() {
         let same: Vec<usize> = (0..rig.joints.len()).collect();
         for (scale, turn) in [(0.01, Rotation::IDENTITY), (100.0, z_up()), (1.0, z_up())] {
             let what = format!("{name}, {scale} times, {turn:?}");
-            plain_and(&rig, &what, &transformed(&rig, scale, turn), &same);
+            check_variant(&rig, &what, &transformed(&rig, scale, turn), &same);
         }
     }
 }
 
 #[needs_data]
 #[test]
-fn a_node_of_negative_scale_above_the_skeleton_does_not_matter() {
+fn mirroring_parent_node_does_not_change_the_ragdoll() {
     for (name, rig) in rigs() {
         let place: Vec<usize> = (1..=rig.joints.len()).collect();
-        plain_and(&rig, name, &under_a_mirror(&rig), &place);
+        check_variant(&rig, name, &under_a_mirror(&rig), &place);
     }
 }
 
-/// Their names tell what their shape does not: which of two joints in one place is the pelvis, where a shoulder ends.
+/// Rigs that need their names: to tell which of two joints in one place is the pelvis, or where a shoulder ends.
 const NAMED: [&str; 2] = ["quaternius_cyberpunk_Character.glb", "quaternius_Robot.glb"];
 
 #[needs_data]
 #[test]
-fn names_do_not_matter_where_the_shape_tells() {
+fn names_do_not_matter_where_the_shape_is_clear() {
     for (name, rig) in rigs() {
         let same: Vec<usize> = (0..rig.joints.len()).collect();
         for (what, other) in [("no names", nameless(&rig)), ("other names", misnamed(&rig))] {
@@ -115,24 +115,24 @@ fn names_do_not_matter_where_the_shape_tells() {
                 let (m, n) = (plain.total_mass, other.total_mass);
                 assert!((m - n).abs() < 0.01 * m, "{what}: {m} and {n} kg");
             } else {
-                plain_and(&rig, &what, &other, &same);
+                check_variant(&rig, &what, &other, &same);
             }
         }
     }
 }
 
-/// It falls no worse. A fall is chaotic: in three of a thousand something passes a bar of comfort, whatever the rig is called,
-/// and that may be one of the eight drops. Then a hundred random falls of each are held against each other: of as many that
-/// miss, two hundreds differ by two standard deviations at most, and by three and one where hardly any does.
+/// Checks that it falls no worse. A fall is chaotic: for any rig, three in a thousand exceed a bar of comfort, and one
+/// of these may be among the eight drops. In that case a hundred random falls of each are compared. The numbers of
+/// failures may differ by two standard deviations, or by three plus one where failures are rare.
 pub fn check_falls(what: &str, plain: &RagdollDef, other: &RagdollDef) {
     let worse = Falls::of(plain).worse(plain, other);
     assert!(worse.is_none(), "{what}: {}", worse.unwrap_or_default());
 }
 
-/// Falls of a ragdoll, to hold others against.
+/// Falls of a ragdoll, as the reference for others.
 pub struct Falls {
     drops: DropReport,
-    /// Verdicts of a hundred random falls, good to bad, once somebody asked.
+    /// Counts of verdicts of a hundred random falls, good to bad; computed on demand.
     hundred: Option<[usize; 3]>,
 }
 
@@ -141,7 +141,7 @@ impl Falls {
         Self { drops: drop_test(def), hundred: None }
     }
 
-    /// Flaws of another that falls worse than `plain`, whose falls these are; see [`check_falls`].
+    /// Describes how another ragdoll falls worse than `plain`, whose falls are `self`; see [`check_falls`].
     pub fn worse(&mut self, plain: &RagdollDef, other: &RagdollDef) -> Option<String> {
         let (before, after) = (&self.drops, drop_test(other));
         if after.verdict >= before.verdict {
@@ -157,19 +157,19 @@ impl Falls {
         let more_bad = after_all[2].saturating_sub(before_all[2]);
         let falls_worse =
             fewer_good > spread(before_all[0]).max(3) || more_bad > spread(before_all[2]).max(1);
-        let said =
+        let described =
             format!("{:?}, not {:?}; {after_all:?}, not {before_all:?}", after.reasons, before.reasons);
-        (after.verdict == Verdict::Bad || falls_worse).then_some(said)
+        (after.verdict == Verdict::Bad || falls_worse).then_some(described)
     }
 }
 
-/// All at once.
+/// All changes together.
 #[needs_data]
 #[test]
-fn a_rig_in_other_guise_falls_as_well() {
+fn disguised_rig_falls_no_worse() {
     for (name, rig) in rigs() {
         let (other, place) = shuffled(&transformed(&rig, 100.0, z_up()), 5);
-        let [plain, other] = plain_and(&rig, name, &other, &place);
+        let [plain, other] = check_variant(&rig, name, &other, &place);
         check_falls(name, &plain, &other);
     }
 }

@@ -1,4 +1,4 @@
-//! Getting up on the floor: skin that stays out of it, feet that do not slide, poses that do not jump.
+//! Getting up from a flat floor: skin stays out of the floor, feet do not slide, poses do not jump.
 
 use crate::actor::{armed_walker, floor, shared, walker};
 use sinew_anim::local_to_model;
@@ -9,7 +9,7 @@ use sinew_ragdoll::skin::Stage;
 use sinew_ragdoll::{BakeHit, BakeInput, Baked, Character, GroundContact, SkinMeter, State, Verdict, bake};
 use std::sync::Arc;
 
-/// Of the mannequin, metres.
+/// Height of the mannequin, metres.
 const HEIGHT: f32 = 1.8;
 
 const PUSHES: [Vec3; 6] = [
@@ -21,7 +21,7 @@ const PUSHES: [Vec3; 6] = [
     Vec3::new(45.0, 0.0, 60.0),
 ];
 
-/// A life, its figures, and the lowest point of its skin while it gets up.
+/// A fall and get-up, its metrics, and the lowest point of the skin while getting up, metres.
 fn lives(contact: GroundContact, push: Vec3) -> (Baked, RisingQuality, f32) {
     let mut def = walker();
     def.ground_contact = contact;
@@ -41,9 +41,9 @@ fn lives(contact: GroundContact, push: Vec3) -> (Baked, RisingQuality, f32) {
     (baked, rising, low)
 }
 
-/// The blend alone takes feet and hands through the floor.
+/// Without ground contact the blend moves feet and hands through the floor.
 #[test]
-fn enforced_contact_keeps_skin_out_of_the_floor_and_feet_from_sliding() {
+fn ground_contact_keeps_skin_above_the_floor_and_feet_in_place() {
     let (mut blended, mut slid) = (0.0, 0.0);
     for push in PUSHES {
         let (_, rising, low) = lives(GroundContact::AsBlended, push);
@@ -58,12 +58,15 @@ fn enforced_contact_keeps_skin_out_of_the_floor_and_feet_from_sliding() {
         assert!(baked.quality.up_s.is_some());
     }
     println!("as blended: {blended:.3} m, feet slide by {slid:.3} m");
-    assert!(blended < -0.02 * HEIGHT && slid > 0.03, "there is something to mend: {blended} m, {slid} m");
+    assert!(
+        blended < -0.02 * HEIGHT && slid > 0.03,
+        "the plain blend has no fault to correct: {blended} m, {slid} m"
+    );
 }
 
-/// A sword stays in its hand, whether a get-up is played as recorded or mirrored, which depends on how the character lies.
+/// A sword stays in its hand while a get-up is played as recorded or mirrored; the lying pose decides which.
 #[test]
-fn a_sword_stays_in_its_hand_in_a_mirrored_get_up() {
+fn sword_stays_in_its_hand_in_a_mirrored_get_up() {
     let def = shared(armed_walker());
     let held = |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("it is there");
     let body = def.body_named("chest").expect("it has a chest");
@@ -84,7 +87,7 @@ fn a_sword_stays_in_its_hand_in_a_mirrored_get_up() {
 }
 
 #[test]
-fn figures_beyond_their_bars_are_told() {
+fn metrics_beyond_their_bounds_are_reported() {
     let bad = RisingQuality { foot_slide_m: Some(0.2), pose_jump_m: Some(f32::NAN) };
     let faults = bad.faults(HEIGHT);
     assert_eq!(faults.len(), 2, "{faults:?}");
@@ -92,9 +95,9 @@ fn figures_beyond_their_bars_are_told() {
     assert!(faults[0].reason.starts_with("getting up a foot slides by 20.0 cm"), "{faults:?}");
 }
 
-/// The way from one pose to the other is a part of the state.
+/// The transition between the poses is part of the state.
 #[test]
-fn a_character_that_gets_up_is_saved() {
+fn rising_character_survives_a_snapshot() {
     let mut def = walker();
     def.ground_contact = GroundContact::Enforced;
     let def = shared(def);

@@ -1,4 +1,5 @@
-//! Rollback: the same inputs after going back eight frames give the same bits, with characters in every state that come and go.
+//! Rollback: repeating eight frames with the same inputs gives the same bits, with characters in every state that are
+//! added and removed.
 
 use crate::actor::{floor, shared, walker};
 use sinew_math::hash::hash_bytes;
@@ -8,7 +9,7 @@ use sinew_ragdoll::{Character, CharacterDef, Detail, Grip, Preset, State};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// A game: the world and who is in it, by name.
+/// A game: the world and its named characters.
 struct Game {
     def: Arc<CharacterDef>,
     world: World,
@@ -16,7 +17,7 @@ struct Game {
     sword: BodyId,
 }
 
-/// Who there is, beside the bytes of a frame.
+/// The characters present, and the bytes of a frame.
 struct Frame {
     names: Vec<u32>,
     bytes: Vec<u8>,
@@ -36,7 +37,7 @@ impl Game {
         Some((&mut self.world, &mut found.1))
     }
 
-    /// Acts of a frame, by its number alone.
+    /// Actions of a frame, determined by its number.
     fn act(&mut self, frame: u32) {
         if frame.is_multiple_of(60) && self.cast.len() < 6 {
             let name = frame / 60;
@@ -79,7 +80,7 @@ impl Game {
         }
     }
 
-    /// Takes the sword from whoever has it and gives it to the next who has hands.
+    /// Takes the sword from its holder and gives it to the next character with hands.
     fn hand_over(&mut self, round: u32) {
         let sword = self.sword;
         for (_, actor) in &mut self.cast {
@@ -125,7 +126,7 @@ impl Game {
 }
 
 #[test]
-fn eight_frames_back_and_forth() {
+fn repeating_eight_frames_gives_the_same_bits() {
     const BACK: u32 = 8;
     let def = shared(walker());
     let mut game = Game::new(&def);
@@ -139,7 +140,7 @@ fn eight_frames_back_and_forth() {
             held.extend((actor.held().count() > 0).then(|| format!("{:?}", actor.state())));
             stumbled += u32::from(actor.stumbles());
         }
-        // Every 11 frames the latest inputs count as mispredicted.
+        // Every 11 frames the latest inputs are treated as mispredicted.
         if frame % 11 == 10 {
             let from = frame + 1 - BACK;
             game.load(&frames[from as usize]);
@@ -153,6 +154,6 @@ fn eight_frames_back_and_forth() {
     }
     let all =
         [State::Animated, State::Limp, State::Preparing, State::GettingUp, State::Flinching, State::Powered];
-    assert_eq!(states.len(), all.len(), "each state was there: {states:?}");
+    assert_eq!(states.len(), all.len(), "not every state occurred: {states:?}");
     assert!(held.len() >= 3 && stumbled > 20, "held in {held:?}, stumbled for {stumbled} frames");
 }

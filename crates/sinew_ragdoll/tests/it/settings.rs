@@ -1,4 +1,4 @@
-//! Settings: each does what it says, and nothing else.
+//! Settings: each changes what it names, and nothing else.
 
 use needs_data::needs_data;
 use sinew_anim::{Joint, LocalTransform, Role, analyze};
@@ -33,15 +33,15 @@ fn body(def: &RagdollDef, role: &str) -> usize {
 }
 
 #[test]
-fn none_change_nothing() {
+fn default_settings_change_nothing() {
     assert_eq!(with(&Settings::default()), Ok(plain()));
-    // Nor do such as say what the build does by itself.
+    // Settings equal to the defaults change nothing either.
     let settings = Settings { shapes: Some(ShapeChoice::Auto), sex: Some(Sex::Male), ..Settings::default() };
     assert_eq!(with(&settings), Ok(plain()));
 }
 
 #[test]
-fn shapes_and_their_size() {
+fn shape_settings_change_kind_and_size() {
     let sphere = BoneSettings { shape: Some(ShapeWish::Sphere), scale: Some(1.5), ..BoneSettings::default() };
     let box_ = BoneSettings { shape: Some(ShapeWish::Box), ..BoneSettings::default() };
     let mut settings = of_bone("head", sphere);
@@ -59,7 +59,7 @@ fn shapes_and_their_size() {
 }
 
 #[test]
-fn masses() {
+fn mass_settings_change_masses() {
     let heavy = BoneSettings { mass: Some(3.0), ..BoneSettings::default() };
     let (def, before) = (with(&of_bone("leftHand", heavy)).expect("weighs"), plain());
     let hand = body(&def, "leftHand");
@@ -96,21 +96,21 @@ fn joints_of_both_sides_are_mirrored() {
 }
 
 #[test]
-fn bones_are_dropped_and_kept() {
+fn bones_can_be_dropped_and_kept() {
     let rig = mannequin().rig;
     let analysis = analyze(&rig).expect("a skin");
     let before = plain();
     let drop = BoneSettings { body: Some(BodyWish::Drop), ..BoneSettings::default() };
     let def = with(&of_bone("leftLowerArm", drop)).expect("goes");
     assert_eq!(def.bodies.len() + 1, before.bodies.len());
-    // The forearm moves with the upper arm, and the hand hangs on that.
+    // The forearm moves with the upper arm, to which the hand is connected.
     let (arm, hand) = (body(&def, "leftUpperArm"), body(&def, "leftHand"));
     assert_eq!(def.joints[hand - 1].parent, arm);
     assert!(def.bodies[arm].merged.contains(&before.bodies[body(&before, "leftLowerArm")].joint));
     assert!((def.total_mass - before.total_mass).abs() < 1e-3);
-    // It can be mapped to the rig, as any ragdoll can.
+    // The definition can be mapped to the rig.
     let _ = Mapping::new(&rig, &def, &analysis.bind_model);
-    // What was dropped and is then kept is as it was.
+    // A bone that is dropped and then kept is unchanged.
     let keep = BoneSettings { body: Some(BodyWish::Keep), ..BoneSettings::default() };
     let mut settings = of_bone("leftHand", drop);
     assert_eq!(with(&settings).expect("goes").bodies.len() + 1, before.bodies.len());
@@ -120,13 +120,13 @@ fn bones_are_dropped_and_kept() {
 
 #[needs_data]
 #[test]
-fn a_bone_that_the_build_merges_is_kept() {
+fn merged_bone_can_be_kept() {
     let rig = crate::data::rig("mesh2motion_human_rigify.glb");
     let analysis = analyze(&rig).expect("a skin");
     let options = BuildOptions::default();
     let (before, _) = build(&rig, &analysis, &options).expect("bones");
     let merged = before.bodies.iter().flat_map(|body| body.merged.iter().map(move |&joint| (body, joint)));
-    // One that moves skin of its own.
+    // A merged bone with skin of its own.
     let skinned = |joint: usize| rig.skins.iter().any(|skin| skin.joints.contains(&joint));
     let (carrier, joint) =
         merged.into_iter().find(|&(_, joint)| skinned(joint)).expect("twist or finger bones");
@@ -139,7 +139,7 @@ fn a_bone_that_the_build_merges_is_kept() {
     assert!(!def.bodies.iter().any(|body| body.merged.contains(&joint)));
 }
 
-/// A file that was exported anew has its joints elsewhere; a definition finds them by name.
+/// A re-exported file has its joints at other indices; a definition finds them by name.
 #[test]
 fn definitions_find_their_bones_by_name() {
     let mut rig = mannequin().rig;
@@ -165,7 +165,7 @@ fn definitions_find_their_bones_by_name() {
 }
 
 #[test]
-fn pairs() {
+fn pair_settings_disable_and_enable_collisions() {
     let both = |a: &str, b: &str| vec![[a.to_owned(), b.to_owned()]];
     let settings = Settings { disable: both("leftHand", "upperLeg"), ..Settings::default() };
     let (def, before) = (with(&settings).expect("parts"), plain());
@@ -181,7 +181,7 @@ fn pairs() {
 }
 
 #[test]
-fn unit_height_and_up() {
+fn unit_height_and_up_are_applied() {
     let before = plain();
     let tall = with(&Settings { unit: Some(Unit::Height(3.0)), ..Settings::default() }).expect("grows");
     assert!((tall.height - 3.0).abs() < 1e-4, "{}", tall.height);
@@ -189,14 +189,14 @@ fn unit_height_and_up() {
     let scaled = with(&scaled).expect("grows");
     assert!((scaled.height - 2.0 * before.height).abs() < 1e-4);
     let lying = with(&Settings { up_axis: Some(Vec3::Z), ..Settings::default() }).expect("lies");
-    // On its back, it is as high as it was deep.
+    // Lying on its back, its height is its former depth.
     assert!(lying.height < 0.5 * before.height, "{}", lying.height);
     let lowest = lying.bodies.iter().map(|body| body.shape.aabb(&body.character_from_body).min.y);
-    assert!(lowest.fold(f32::INFINITY, sinew_math::min).abs() < 0.06, "it lies on the floor");
+    assert!(lowest.fold(f32::INFINITY, sinew_math::min).abs() < 0.06, "it is not on the floor");
 }
 
 #[test]
-fn roles_that_are_given_and_bones_that_are_no_part_of_the_body() {
+fn roles_and_ignored_bones_are_applied() {
     let of = |name: &str| mannequin().rig.joints.iter().position(|joint| joint.name == name).expect(name);
     let chest = BoneSettings { role: Some(Role::UpperChest), ..BoneSettings::default() };
     let (def, before) = (with(&of_bone("chest", chest)).expect("a body"), plain());
@@ -207,8 +207,8 @@ fn roles_that_are_given_and_bones_that_are_no_part_of_the_body() {
     let def = with(&Settings { ignore: vec![hand.clone()], ..Settings::default() }).expect("a body");
     assert!(def.bodies.iter().all(|body| body.bone != hand && body.role != "leftHand"));
     let forearm = |def: &RagdollDef| def.bodies[body(def, "leftLowerArm")].shape.volume();
-    assert!(forearm(&def) < 1.1 * forearm(&before), "the hand's skin shapes nothing");
-    // An analysis that was corrected already is corrected to the same.
+    assert!(forearm(&def) < 1.1 * forearm(&before), "the hand's skin affects the forearm's shape");
+    // Applying settings to an analysis that already has them changes nothing.
     let rig = mannequin().rig;
     let settings = Settings { unit: Some(Unit::Height(1.2)), ..of_bone("chest", chest) };
     let once = analyze_with(&rig, &analyze(&rig).expect("a skin"), &settings).expect("a body");
@@ -219,9 +219,9 @@ fn roles_that_are_given_and_bones_that_are_no_part_of_the_body() {
     assert!((once.height - 1.2).abs() < 1e-5, "{}", once.height);
 }
 
-/// Whatever a user says of a rig, what comes of it falls, or is refused.
+/// With any roles from a user, the build gives a ragdoll that falls, or an error.
 #[test]
-fn any_roles_make_a_ragdoll_or_a_refusal() {
+fn any_roles_give_a_ragdoll_or_an_error() {
     let mut rigs = vec![mannequin().rig];
     if crate::data::is_there() {
         rigs.extend(["Fox.glb", "quaternius_Spider.glb", "RiggedSimple.glb"].map(crate::data::rig));
@@ -265,7 +265,7 @@ fn any_roles_make_a_ragdoll_or_a_refusal() {
 }
 
 #[test]
-fn what_a_rig_does_not_allow_is_told_with_its_place() {
+fn invalid_setting_is_reported_with_its_place() {
     let place = |settings: &Settings| match with(settings) {
         Err(SettingsError::Setting { what, place }) => format!("{what} ({place})"),
         other => panic!("{other:?}"),

@@ -1,4 +1,4 @@
-//! The verdict of the skin: each measure on a mannequin that has just that fault, and on rigs of others.
+//! The verdict on the skin: each measure on a mannequin with just that defect, and on other rigs.
 
 use crate::data::document;
 use needs_data::needs_data;
@@ -31,7 +31,7 @@ impl Subject {
         Self { rig, analysis, def }
     }
 
-    /// The skin over these falls.
+    /// Skin quality over these falls.
     fn over(&self, falls: &[Fallen]) -> SkinQuality {
         measure_skin(&self.rig, &self.def, &self.analysis.bind_model, &[], falls)
     }
@@ -44,7 +44,7 @@ impl Subject {
         self.def.bodies.iter().position(|body| body.role == role).unwrap_or_else(|| panic!("no {role}"))
     }
 
-    /// A fall that ends in the bind pose, `height` metres up.
+    /// A fall that ends in the bind pose, `height` metres above the floor.
     fn lifted(&self, height: f32) -> Vec<Fallen> {
         let up = Transform::from_translation(Vec3::Y * height);
         let mut fall = Fallen::default();
@@ -58,7 +58,7 @@ fn kinds(flaws: &[Flaw]) -> Vec<FlawKind> {
 }
 
 #[test]
-fn the_mannequin_has_no_flaw() {
+fn mannequin_skin_has_no_flaw() {
     let subject = Subject::mannequin();
     let tested = drop_test(&subject.def);
     assert_eq!(tested.falls.len(), 8);
@@ -67,15 +67,15 @@ fn the_mannequin_has_no_flaw() {
     assert!(skin.covered_share > 0.99 && skin.contiguous, "{skin:?}");
     assert!((skin.bind_height_m - subject.def.height).abs() < 0.01, "{skin:?}");
     assert!((skin.drawn_height_m - skin.bind_height_m).abs() < 1e-3, "{skin:?}");
-    // It does lie on the floor, and not above it.
+    // It lies on the floor, not above it.
     assert!(skin.rest_height_m.is_some_and(|height| (-0.06..0.01).contains(&height)), "{skin:?}");
     assert!(skin.edge_stretch_max > 0.0 && skin.edge_stretch_max >= skin.edge_stretch_p999, "{skin:?}");
-    assert_eq!(skin, subject.over(&tested.falls), "always the same sample");
+    assert_eq!(skin, subject.over(&tested.falls), "the sample is not deterministic");
 }
 
-/// In the bind pose nothing is stretched, and the soles stand on the floor.
+/// In the bind pose nothing is stretched, and the soles are on the floor.
 #[test]
-fn in_the_bind_pose_nothing_is_stretched() {
+fn bind_pose_has_no_stretch() {
     let subject = Subject::mannequin();
     let skin = subject.over(&subject.lifted(0.0));
     assert!(
@@ -84,9 +84,9 @@ fn in_the_bind_pose_nothing_is_stretched() {
     );
 }
 
-/// Vertices of a hand that hang on a joint beside the body stay where they were.
+/// Vertices of a hand weighted to a joint outside of the body stay behind.
 #[test]
-fn torn_skin_is_seen() {
+fn torn_skin_is_reported() {
     let mut subject = Subject::mannequin();
     let hand = subject.def.bodies[subject.body("leftHand")].joint;
     let stray = subject.rig.joints.len();
@@ -95,7 +95,7 @@ fn torn_skin_is_seen() {
     subject.analysis.bind_model.push(Affine::IDENTITY);
     for skin in &mut subject.rig.skins {
         if let Some(slot) = skin.joints.iter().position(|&joint| joint == hand) {
-            // Bound where the hand was: what it moves is where it was, as long as nothing moves.
+            // Bound at the hand: the vertices are in place until something moves.
             skin.inverse_bind[slot] = subject.analysis.bind_model[hand] * skin.inverse_bind[slot];
             skin.joints[slot] = stray;
         }
@@ -107,14 +107,14 @@ fn torn_skin_is_seen() {
     assert!(kinds(&flaws).contains(&FlawKind::Torn), "{flaws:?}");
     let torn = flaws.iter().find(|flaw| flaw.kind == FlawKind::Torn).expect("torn");
     assert!(torn.evidence.contains("leftLowerArm"), "{}", torn.evidence);
-    // The doctor tells it with a remedy, and does not claim to have mended it.
+    // The doctor reports it with a remedy, and does not claim a repair.
     let found = doctor(&Repair { skin: flaws, ..Repair::new(subject.def) });
     let finding = found.iter().find(|finding| finding.code == Code::SkinTorn).expect("a finding");
     assert!(!finding.fix.is_empty() && !finding.fixed, "{finding:?}");
 }
 
 #[test]
-fn floating_and_sunk_meshes_are_seen() {
+fn floating_and_sunk_meshes_are_reported() {
     let subject = Subject::mannequin();
     for (height, expected) in
         [(0.5, vec![FlawKind::OffFloor]), (-0.3, vec![FlawKind::OffFloor]), (0.02, vec![])]
@@ -124,10 +124,10 @@ fn floating_and_sunk_meshes_are_seen() {
         assert!(skin.rest_height_m.is_some_and(|found| (found - height).abs() < 1e-3), "{height}: {skin:?}");
         let flaws = skin.flaws(&subject.def);
         assert_eq!(kinds(&flaws), expected, "{height}");
-        // Half a metre over the floor nothing is left to use.
+        // A mesh half a metre above the floor is unusable.
         let is_bad = flaws.iter().any(|flaw| flaw.at_most == Verdict::Bad);
         assert_eq!(is_bad, height > 0.4, "{height}");
-        // Named is the setting that helps, and which way.
+        // The remedy names the setting and its direction.
         for flaw in flaws {
             let way = if height > 0.0 { "below 1 of" } else { "above 1 of" };
             assert!(flaw.remedy.contains("`scale`") && flaw.remedy.contains(way), "{flaw}");
@@ -139,20 +139,20 @@ fn floating_and_sunk_meshes_are_seen() {
 }
 
 #[test]
-fn a_lopsided_body_is_seen() {
+fn asymmetric_body_is_reported() {
     let mut subject = Subject::mannequin();
     let arm = subject.body("leftUpperArm");
     let sound = subject.over(&[]).symmetry_error_m;
     assert!(sound < 1e-3, "{sound}");
     subject.def.bodies[arm].mass.mass *= 3.0;
     let skin = subject.over(&[]);
-    // A third of the masses' relative difference, 2/3, as a length.
+    // A third of the relative difference of the masses (2/3), as a length.
     let radius = subject.def.bodies[arm].shape.bounding_radius();
     assert!((skin.symmetry_error_m - radius * 2.0 / 9.0).abs() < 1e-3, "{skin:?}");
     subject.def.bodies[arm].shape = Shape::Sphere { radius: 0.4 };
     let flaws = subject.flaws(&[]);
     assert!(kinds(&flaws).contains(&FlawKind::Lopsided), "{flaws:?}");
-    // A part that has no twin at all.
+    // A part without a counterpart.
     let mut subject = Subject::mannequin();
     let hand = subject.body("rightHand");
     subject.def.bodies[hand].role = "limb_0_0".into();
@@ -160,7 +160,7 @@ fn a_lopsided_body_is_seen() {
 }
 
 #[test]
-fn uncovered_skin_is_seen() {
+fn uncovered_skin_is_reported() {
     let mut subject = Subject::mannequin();
     let thigh = subject.body("leftUpperLeg");
     let chest = subject.body("hips");
@@ -174,7 +174,7 @@ fn uncovered_skin_is_seen() {
 }
 
 #[test]
-fn a_foot_on_the_pelvis_is_seen() {
+fn foot_attached_to_the_pelvis_is_reported() {
     let mut subject = Subject::mannequin();
     let foot = subject.body("leftFoot");
     subject.def.joints[foot - 1].parent = 0;
@@ -183,9 +183,9 @@ fn a_foot_on_the_pelvis_is_seen() {
     assert!(flaws[0].evidence.starts_with("leftFoot"), "{}", flaws[0].evidence);
 }
 
-/// Nodes that scale the skin otherwise than its bind matrices.
+/// Nodes that scale the skin differently from its bind matrices.
 #[test]
-fn a_character_drawn_in_another_size_is_seen() {
+fn character_drawn_in_another_size_is_reported() {
     let mut subject = Subject::mannequin();
     for joint in subject.rig.joints.iter_mut().filter(|joint| joint.parent.is_none()) {
         joint.rest.scale *= 1.1;
@@ -195,9 +195,9 @@ fn a_character_drawn_in_another_size_is_seen() {
     assert!(kinds(&skin.flaws(&subject.def)).contains(&FlawKind::Resized));
 }
 
-/// A fall may do to the skin what the animator does, and half as much again.
+/// A fall may stretch the skin half as much again as the animation does.
 #[test]
-fn stretch_of_the_clips_is_let_pass() {
+fn stretch_of_the_clips_is_allowed() {
     let subject = Subject::mannequin();
     let torn = SkinQuality { edge_stretch_p999: 0.14, edge_stretch_max: 0.5, ..subject.over(&[]) };
     assert_eq!(kinds(&torn.flaws(&subject.def)), [FlawKind::Torn]);
@@ -211,7 +211,7 @@ fn stretch_of_the_clips_is_let_pass() {
 }
 
 #[test]
-fn figures_that_are_no_numbers_are_flaws_and_nothing_panics() {
+fn non_finite_figures_are_flaws_without_panics() {
     let mut subject = Subject::mannequin();
     let nan = f32::NAN;
     let poisoned = SkinQuality {
@@ -239,7 +239,7 @@ fn figures_that_are_no_numbers_are_flaws_and_nothing_panics() {
     assert_eq!((skin.covered_share, skin.edge_stretch_max), (1.0, 0.0), "{skin:?}");
 }
 
-/// The verdict of the skin on a rig of others: figures over its drops.
+/// Skin quality over the drops of another rig.
 fn skin_of(name: &str) -> (SkinQuality, RagdollDef) {
     let document = document(name);
     let subject = Subject::of(document.rig);
@@ -249,10 +249,11 @@ fn skin_of(name: &str) -> (SkinQuality, RagdollDef) {
     (skin, subject.def)
 }
 
-/// Feet whose joints are named as controls, or hang on the root, fall with their legs: they tore by half a height.
+/// Feet whose joints are named like controls, or are children of the root, fall with their legs. They once tore by half
+/// a height.
 #[needs_data]
 #[test]
-fn beasts_keep_their_feet() {
+fn animal_feet_stay_on_their_legs() {
     for name in ["animals_Wolf", "animals_Cow", "dinosaurs_Stegosaurus"] {
         let (skin, def) = skin_of(&format!("../rigs_wild/{name}.glb"));
         assert!(skin.edge_stretch_p999 < 0.1 && skin.contiguous, "{name}: {skin:?}");
@@ -261,20 +262,20 @@ fn beasts_keep_their_feet() {
     }
 }
 
-/// The swords and shields of the knight lay 1.9 m in the floor.
+/// The swords and shields of the knight once sank 1.9 m into the floor.
 #[needs_data]
 #[test]
-fn the_knight_lies_on_his_sword_and_not_around_it() {
+fn knight_rests_on_top_of_his_sword() {
     let (skin, def) = skin_of("kaykit_Knight.glb");
     assert_eq!(skin.flaws(&def), [], "{skin:?}");
     let held = def.joints.iter().filter(|joint| joint.kind == sinew_physics::JointKind::Fixed).count();
-    assert_eq!(held, 3, "both hands and the cape");
+    assert_eq!(held, 3, "bodies for both hands and the cape");
 }
 
-/// The sword is skinned to the hand itself, and stood 1 m in the floor: the hand's shape goes around it.
+/// The sword is skinned to the hand and once sank 1 m into the floor: the hand's shape encloses it.
 #[needs_data]
 #[test]
-fn a_sword_that_is_skinned_to_a_hand_lies_on_the_floor() {
+fn sword_skinned_to_a_hand_rests_on_the_floor() {
     let (skin, def) = skin_of("quaternius_cyberpunk_Character.glb");
     assert_eq!(skin.flaws(&def), [], "{skin:?}");
     let radius = |role: &str| {
@@ -284,7 +285,7 @@ fn a_sword_that_is_skinned_to_a_hand_lies_on_the_floor() {
     assert!(radius("rightHand") > 2.0 * radius("leftHand"), "{} m", radius("rightHand"));
 }
 
-/// Adds a box as a mesh without a skin on a bone of its own under that of a role, its middle `off` the joint (model space, metres).
+/// Adds a box as an unskinned mesh on a new bone below a role's, with its centre `off` the joint (model space, metres).
 fn carried(rig: &mut Rig, name: &str, role: Role, off: Vec3, half: Vec3) {
     let analysis = analyze(rig).expect("a skin");
     let carrier = analysis.joint_with(role).expect("the role");
@@ -303,10 +304,10 @@ fn carried(rig: &mut Rig, name: &str, role: Role, off: Vec3, half: Vec3) {
     rig.meshes.push(RigMesh { name: name.into(), joint: source, skin: None, primitives: vec![part] });
 }
 
-/// Props get a body or join their carrier's shape, by size: a cap goes with the head, a pack on the back and a sword in a hand have
-/// bodies that are held fast, and nothing of them is in the floor.
+/// By size, props get a body or join their carrier's shape: a cap joins the head; a pack on the back and a sword in a
+/// hand get fixed bodies. No part is inside the floor.
 #[test]
-fn a_cap_goes_along_and_a_pack_and_a_sword_have_bodies() {
+fn cap_joins_the_head_and_pack_and_sword_get_bodies() {
     let plain = Subject::mannequin();
     let bones = |subject: &Subject| -> Vec<String> {
         subject.def.bodies.iter().map(|body| body.bone.clone()).collect()
@@ -322,8 +323,7 @@ fn a_cap_goes_along_and_a_pack_and_a_sword_have_bodies() {
     assert_eq!(own, ["pack", "sword"]);
     for (bone, on) in [("pack", "chest"), ("sword", "rightHand")] {
         let body = subject.def.bodies.iter().position(|body| body.bone == bone).expect("seen above");
-        let joint =
-            subject.def.joints.iter().find(|joint| joint.child == body).expect("it hangs on something");
+        let joint = subject.def.joints.iter().find(|joint| joint.child == body).expect("it has a joint");
         assert_eq!(joint.kind, sinew_physics::JointKind::Fixed, "{bone}");
         assert_eq!(subject.def.bodies[joint.parent].role, on);
     }
@@ -331,7 +331,7 @@ fn a_cap_goes_along_and_a_pack_and_a_sword_have_bodies() {
     assert!(skin.rest_height_m.is_some_and(|height| height > -0.05), "{skin:?}");
 }
 
-/// Adds a box to the skin of a role, its middle `off` the joint (model space, metres).
+/// Adds a box to the skin of a role, with its centre `off` the joint (model space, metres).
 fn grown(rig: &mut Rig, role: Role, off: Vec3, half: Vec3) {
     let analysis = analyze(rig).expect("a skin");
     let joint = analysis.joint_with(role).expect("the role");
@@ -353,9 +353,9 @@ fn grown(rig: &mut Rig, role: Role, off: Vec3, half: Vec3) {
     rig.meshes.push(RigMesh { name: "grown".into(), joint, skin: Some(0), primitives: vec![part] });
 }
 
-/// A hat with a wide brim and a pack that are the skin of head and chest: the shapes go around them.
+/// A hat with a wide brim and a pack, skinned to head and chest: the shapes enclose them.
 #[test]
-fn hats_and_packs_that_are_skinned_to_the_body_lie_on_the_floor() {
+fn skinned_hats_and_packs_rest_on_the_floor() {
     let mut rig = mannequin().rig;
     grown(&mut rig, Role::Head, Vec3::Y * 0.22, Vec3::new(0.3, 0.01, 0.3));
     grown(&mut rig, Role::Head, Vec3::Y * 0.42, Vec3::new(0.03, 0.2, 0.03));
@@ -368,9 +368,9 @@ fn hats_and_packs_that_are_skinned_to_the_body_lie_on_the_floor() {
     assert!(matches!(head, Shape::Hull(_)), "{head:?}");
 }
 
-/// A trunk of whose skin arms that hang forward are a part has no box whose empty corners it lies on.
+/// A trunk whose skin includes forward-hanging arms gets no box with empty corners to rest on.
 #[test]
-fn a_trunk_with_arms_does_not_float_on_an_empty_corner_of_its_box() {
+fn trunk_with_skinned_arms_gets_a_hull() {
     let mut rig = mannequin().rig;
     for side in [-1.0, 1.0] {
         grown(&mut rig, Role::Chest, Vec3::new(side * 0.2, 0.5, 0.4), Vec3::new(0.04, 0.04, 0.35));

@@ -1,4 +1,4 @@
-//! Getting up where the floor is not level.
+//! Getting up on ground that is not level.
 
 use crate::actor::{floor, shared, walker};
 use sinew_anim::local_to_model;
@@ -13,13 +13,13 @@ fn fixed(half_extents: Vec3, position: Vec3, rotation: Rotation) -> BodyDef {
     BodyDef { kind: BodyKind::Static, position, rotation, shapes, ..BodyDef::default() }
 }
 
-/// A plane that falls toward +Z.
+/// A plane that descends toward +Z.
 fn slope(degrees: f32) -> Vec<BodyDef> {
     let turn = Rotation::from_axis_angle(Vec3::X, degrees.to_radians());
     vec![fixed(Vec3::new(20.0, 1.0, 20.0), turn * Vec3::NEG_Y, turn)]
 }
 
-/// Steps of 17 by 30 cm that go down toward +Z.
+/// Steps of 17 by 30 cm that descend toward +Z.
 fn stairs() -> Vec<BodyDef> {
     let step = |k: i32| {
         let top = -0.17 * k as f32;
@@ -41,8 +41,8 @@ fn height(world: &World, at: Vec3) -> f32 {
     hit.map_or(f32::NEG_INFINITY, |hit| hit.point.y)
 }
 
-/// Largest depth of joints in the ground while it gets up, largest height of its lower foot over it, metres; and largest
-/// acceleration of its pelvis and feet from when the pose of the bodies has died away until it walks, m/s².
+/// Largest depth of joints in the ground and largest height of the lower foot above it while getting up, metres; and
+/// the largest acceleration of pelvis and feet after the body pose has decayed, m/s².
 fn gets_up(def: &Arc<CharacterDef>, ground: &[BodyDef], push: Vec3) -> [f32; 3] {
     let mut world = world_of(ground);
     let mut character = Character::new(def.clone(), Transform::IDENTITY, 0.2);
@@ -58,7 +58,7 @@ fn gets_up(def: &Arc<CharacterDef>, ground: &[BodyDef], push: Vec3) -> [f32; 3] 
         world.step();
         character.update(&mut world);
         rising = if character.state() == State::GettingUp { rising + 1 } else { 0 };
-        // The pose of the bodies has died away.
+        // The body pose has decayed.
         if rising > 25 {
             local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
             let over = |joint: usize| model[joint].translation.y - height(&world, model[joint].translation);
@@ -74,12 +74,12 @@ fn gets_up(def: &Arc<CharacterDef>, ground: &[BodyDef], push: Vec3) -> [f32; 3] 
             highest = max(highest, min(left, right));
         }
     }
-    assert_eq!(character.state(), State::Animated, "it is up");
+    assert_eq!(character.state(), State::Animated, "it never got up");
     [deepest, highest, hardest]
 }
 
 #[test]
-fn nobody_sinks_into_a_slope_or_floats_over_it() {
+fn rising_character_neither_sinks_nor_floats_on_a_slope() {
     let def = shared(walker());
     let grounds =
         [("floor", vec![floor()]), ("10°", slope(10.0)), ("20°", slope(20.0)), ("stairs", stairs())];
@@ -96,16 +96,16 @@ fn nobody_sinks_into_a_slope_or_floats_over_it() {
         if name == "floor" {
             on_floor = hardest;
         }
-        // What a foot does to follow an edge is no harder than what a transition between clips may do: 6 x₀/t₁² of a step of
-        // 17 cm within 0.3 s.
+        // Following an edge accelerates a foot no more than a transition between clips may: 6 x₀/t₁² for a step of 17
+        // cm within 0.3 s.
         assert!(hardest < on_floor + 12.0, "{name}: {hardest} m/s², on a floor {on_floor}");
     }
 }
 
-/// The place where it comes to lie on stairs is chance, and a clip made on a floor takes a hand or a knee through an edge now and then:
-/// 3, 4 and 6 of 32 falls of three builds, by at most 16, 20 and 19 cm.
+/// The resting place on stairs is random, and a clip recorded on a floor sometimes moves a hand or knee through an
+/// edge: in 3, 4 and 6 of 32 falls of three builds, by at most 16, 20 and 19 cm.
 #[test]
-fn few_reach_through_the_edge_of_a_step() {
+fn few_joints_pass_through_the_edge_of_a_step() {
     let def = shared(walker());
     let push = |k: usize| {
         let angle = k as f32 * core::f32::consts::TAU / 64.0;
@@ -118,7 +118,7 @@ fn few_reach_through_the_edge_of_a_step() {
     assert!(depths[63] < 0.25, "{depths:?}");
 }
 
-/// Height of heel and ball of both feet over what is under them, beyond that in the pose of the file, metres.
+/// Height of heel and ball of both feet above the ground, minus that in the rest pose, metres.
 fn soles(def: &CharacterDef, world: &World, character: &Character) -> [[f32; 2]; 2] {
     let (mut model, mut stands) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
@@ -132,12 +132,12 @@ fn soles(def: &CharacterDef, world: &World, character: &Character) -> [[f32; 2];
     })
 }
 
-/// Height of both feet, metres: across the edge of a step a foot stands on what is under its heel or under its ball.
+/// Height of both feet, metres. Across the edge of a step a foot stands on the ground under its heel or under its ball.
 fn held(def: &CharacterDef, world: &World, character: &Character) -> [f32; 2] {
     soles(def, world, character).map(|[heel, ball]| min(heel, ball))
 }
 
-/// A mannequin that stands where it got up, a second and a half later: from `start`, pushed.
+/// A pushed mannequin that has got up and stood for a second and a half.
 fn stands_again(def: &Arc<CharacterDef>, world: &mut World, start: Transform, push: Vec3) -> Character {
     let mut character = Character::new(def.clone(), start, 0.0);
     character.hit(world, def.body_named("chest").expect("it has a chest"), push);
@@ -150,10 +150,10 @@ fn stands_again(def: &Arc<CharacterDef>, world: &mut World, start: Transform, pu
             return character;
         }
     }
-    panic!("it is not up");
+    panic!("it never got up");
 }
 
-/// Without a walk: it stands.
+/// A character without a walk: it stands.
 fn stander() -> Arc<CharacterDef> {
     let mut def = walker();
     let motions = MotionSet { looped: None, locomotion: Locomotion::InPlace, ..def.motions().clone() };
@@ -170,7 +170,7 @@ fn world_of(ground: &[BodyDef]) -> World {
 }
 
 #[test]
-fn feet_lie_on_a_slope() {
+fn feet_align_with_a_slope() {
     let def = stander();
     for degrees in [5.0, 10.0, 20.0] {
         let mut worst = 0.0_f32;
@@ -186,10 +186,10 @@ fn feet_lie_on_a_slope() {
 }
 
 #[test]
-fn who_stands_across_an_edge_has_both_feet_on_the_ground() {
+fn both_feet_touch_the_ground_across_an_edge() {
     let def = stander();
     let (mut worst, mut bent) = (0.0_f32, 0);
-    // Where the edges are under it is chance.
+    // The positions of the edges below it are random.
     for k in 0..6_u8 {
         for push in PUSHES {
             let mut world = world_of(&stairs());
@@ -206,16 +206,16 @@ fn who_stands_across_an_edge_has_both_feet_on_the_ground() {
     }
     println!("{worst} m off, a leg bent {bent} times");
     assert!(worst < 0.005, "{worst} m off");
-    assert!(bent > 0, "no one got up across an edge");
+    assert!(bent > 0, "no character got up across an edge");
 }
 
 #[test]
-fn planted_feet_are_saved_and_handed_over() {
+fn planted_feet_survive_snapshots_and_hand_over() {
     let def = stander();
     let mut world = world_of(&stairs());
     let mut character = Character::new(def.clone(), Transform::IDENTITY, 0.0);
     character.hit(&mut world, def.body_named("chest").expect("it has a chest"), PUSHES[0]);
-    // Restored on the way up, and once it stands: it goes on as the original.
+    // Snapshots restored while getting up and once standing continue identically.
     let (mut rising, mut up) = (0, 0);
     while up < 90 {
         world.step();
@@ -237,7 +237,7 @@ fn planted_feet_are_saved_and_handed_over() {
             assert_eq!(other.pose(), original.pose(), "step {step} after {rising} and {up}");
         }
     }
-    // Where it stands still its bodies stand still, too, and where it is shown.
+    // Where it stands still, its bodies are still as well, and match the drawn pose.
     let (mut model, mut shown) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, character.pose(), &Affine::IDENTITY, &mut model);
     def.mapping().bodies_from_model(&model, character.world_from_character(), &mut shown);
@@ -247,6 +247,6 @@ fn planted_feet_are_saved_and_handed_over() {
         let speed = world.velocity(body).linear.length();
         assert!(speed < 0.02, "{}: {speed} m/s", def.role);
         let off = (world.transform(body).translation - shown.translation).length();
-        assert!(off < 1e-5, "{}: {off} m from where it is shown", def.role);
+        assert!(off < 1e-5, "{}: {off} m from the drawn pose", def.role);
     }
 }

@@ -1,4 +1,5 @@
-//! Springs against VRM's reference in double precision, at other frame rates, at rest, and on a character's way through its states.
+//! Spring bones: against VRM's reference in double precision, at other frame rates, at rest, and through the states of
+//! a character.
 
 use sinew_anim::springs::{ColliderShape, LimitKind, Side};
 use sinew_anim::{
@@ -22,8 +23,8 @@ mod reference;
 use avatar::{Calming, random_avatar, strands, vrm};
 use reference::Reference;
 
-/// A head that starts to walk, sways and turns: pose of the character at a time. It takes a third of a second to get going, for what starts
-/// at once has no motion between two frames.
+/// Character pose at a time: its head walks, sways and turns. It accelerates over a third of a second, because a sudden
+/// start has no defined motion between frames.
 fn place_at(time: f32) -> Transform {
     let time = time - 0.3 * (1.0 - trig::exp(-time / 0.3));
     let swing = |turns: f32| trig::sin(core::f32::consts::TAU * turns * time);
@@ -32,11 +33,11 @@ fn place_at(time: f32) -> Transform {
     Transform::new(Vec3::new(0.1 * swing(1.3), 0.03 * swing(2.0), 1.2 * time), turn * nod)
 }
 
-/// Way of all tips, sampled at every frame, at a frame rate.
+/// Positions of all tips at every frame, for a frame rate.
 fn run(def: &CharacterDef, rate: f32, seconds: f32) -> Vec<Vec<Vec3>> {
     let (rig, pose) = (def.springs(), rest_pose(&def.rig));
     let (mut swing, mut ways) = (SpringSwing::new(), Vec::new());
-    // As the reference begins: at rest where it stands at first.
+    // Like the reference, it starts at rest in the first pose.
     swing.step(&still(def, &pose, Affine::from(place_at(0.0)), 0.0));
     for frame in 1..=(seconds * rate).round() as u32 {
         let root = Affine::from(place_at(frame as f32 / rate));
@@ -56,7 +57,7 @@ fn still<'a>(
     SpringStep { rig: def.springs(), pose, world_from_model, bodies: &[], world: None, seconds }
 }
 
-/// Tips of all bones in the world, as the joints' rotations have them.
+/// World positions of the tips of all bones, computed from joint rotations.
 fn tips(
     def: &CharacterDef,
     pose: &[sinew_anim::LocalTransform],
@@ -73,7 +74,7 @@ fn tips(
     chains.iter().flat_map(|chain| &chain.bones).map(|bone| model[bone.joint].point(bone.tail)).collect()
 }
 
-/// Settings as avatars have them, and some that they do not.
+/// Random settings, typical and untypical for avatars.
 fn random_hair(random: &mut Random) -> SpringBone {
     let stiffness = random.range(0.3, 4.0);
     SpringBone {
@@ -85,7 +86,7 @@ fn random_hair(random: &mut Random) -> SpringBone {
     }
 }
 
-/// The same hair with every kind of collider, centre and limit by turns.
+/// Hair as that of `maned`, with random colliders, centres and limits of every kind.
 fn random_springs(base: &Rig, random: &mut Random) -> Springs {
     let settings = random_hair(random);
     let mut springs = base.springs.clone();
@@ -124,7 +125,7 @@ fn random_springs(base: &Rig, random: &mut Random) -> Springs {
 }
 
 #[test]
-fn at_60_frames_they_are_the_reference() {
+fn springs_match_the_reference_at_60_frames_per_second() {
     let mut def = maned(&HAIR);
     let mut random = Random::new(24);
     let mut worst = 0.0_f64;
@@ -147,7 +148,7 @@ fn at_60_frames_they_are_the_reference() {
 }
 
 #[test]
-fn the_swing_is_the_same_at_every_frame_rate() {
+fn spring_motion_is_independent_of_the_frame_rate() {
     let mut def = maned(&HAIR);
     let mut random = Random::new(7);
     let mut worst = [0.0_f32; 4];
@@ -163,21 +164,21 @@ fn the_swing_is_the_same_at_every_frame_rate() {
                     ways[(sixth as f32 * rate / 6.0).round() as usize - 1].clone()
                 };
                 for (tip, due) in at(&ways, rate).iter().zip(at(&due, 60.0)) {
-                    // The shortest bone has 63 mm.
+                    // The shortest bone is 63 mm long.
                     let apart = (*tip - due).length() / 0.063;
                     *worst = worst.max(apart);
-                    assert!(apart < 0.05, "case {case} at {rate}: {apart} of a bone's length apart");
+                    assert!(apart < 0.05, "case {case} at {rate}: {apart} bone lengths apart");
                 }
             }
         }
     }
-    println!("30, 90, 144, 240 a second: at most {worst:.4?} of a bone's length from 60");
+    println!("30, 90, 144, 240 a second: at most {worst:.4?} bone lengths from 60");
 }
 
 #[test]
-fn what_is_shown_between_ticks_has_no_steps() {
-    // At 240 frames a second three of four are parts of a tick: no frame's motion differs from the one before by a fifth of the
-    // fastest. Found: 11 % of the first bone's, 18 % of the whipping end of five.
+fn motion_between_ticks_is_smooth() {
+    // At 240 frames a second, three of four frames lie between ticks. Displacements of consecutive frames differ by
+    // less than a fifth of the largest. Measured: 11 % for the first bone, 18 % for the free end of five.
     let def = maned(&HAIR);
     let ways = run(&def, 240.0, 2.0);
     for tip in 0..ways[0].len() {
@@ -206,7 +207,7 @@ fn hair_of(character: &Character) -> Vec<Rotation> {
 }
 
 #[test]
-fn at_rest_nothing_twitches_for_a_minute() {
+fn resting_hair_stays_still_for_a_minute() {
     for (stiffness, sag, drag) in [(0.8, 0.25, 0.4), (4.0, 0.0, 0.1), (0.2, 1.0, 0.1), (1.0, 0.5, 1.0)] {
         let settings = SpringBone { stiffness, gravity: Vec3::NEG_Y * (sag * stiffness), drag, ..HAIR };
         let (mut world, mut character) = standing(&settings);
@@ -227,9 +228,9 @@ fn at_rest_nothing_twitches_for_a_minute() {
     }
 }
 
-/// Most that each tip moves from frame to frame at rest, and from where it was in the first to any time of a minute, metres: after a second on
-/// the way and five to settle.
-fn unrest(def: &CharacterDef, rate: f32, settling: f32) -> Vec<[f32; 2]> {
+/// Largest displacement of each tip from frame to frame at rest, and from its first position within a minute, metres;
+/// after a second of motion and five to settle.
+fn motion_after_settling(def: &CharacterDef, rate: f32, settling: f32) -> Vec<[f32; 2]> {
     let pose = rest_pose(&def.rig);
     let mut swing = SpringSwing::new();
     let (moving, settling) = (rate as u32, (settling * rate) as u32);
@@ -257,10 +258,11 @@ fn unrest(def: &CharacterDef, rate: f32, settling: f32) -> Vec<[f32; 2]> {
     most
 }
 
-/// Avatars as files have them: strands of three to six bones, stiff and soft, with and without gravity, with every collider and limit, which
-/// they touch at rest, in the world's space or a joint's. Of six, two have hardly any stiffness or drag, and swing for minutes before.
+/// Avatars like those in files: strands of three to six bones, stiff and soft, with and without gravity, with every
+/// collider and limit in contact at rest, in world or joint space. Two of six have almost no stiffness or drag, and are
+/// given minutes to settle.
 #[test]
-fn no_tip_of_an_avatar_twitches_or_drifts_for_a_minute() {
+fn avatar_tips_stay_still_for_a_minute() {
     let mut rig = mannequin().rig;
     let hair = strands(&mut rig);
     let analysis = analyze(&rig).expect("the mannequin has a skin");
@@ -276,7 +278,7 @@ fn no_tip_of_an_avatar_twitches_or_drifts_for_a_minute() {
         let springs = def.springs().source();
         assert_eq!(springs.bone_count(), if format == SpringFormat::Vrm0 { 66 } else { 54 });
         for rate in [30.0, 60.0, 240.0] {
-            let most = unrest(&def, rate, settling);
+            let most = motion_after_settling(&def, rate, settling);
             let bones =
                 springs.chains.iter().flat_map(|chain| chain.bones.iter().map(move |bone| (chain, bone)));
             for ((chain, bone), [step, way]) in bones.zip(most) {
@@ -296,13 +298,13 @@ fn no_tip_of_an_avatar_twitches_or_drifts_for_a_minute() {
     println!("at most {:.1e} m from frame to frame, {:.1e} m in a minute", worst[0], worst[1]);
 }
 
-/// At 240 frames a second no tip that is shown between two ticks is deeper in the head, which turns and nods, than at a tick.
+/// At 240 frames a second, tips drawn between two ticks are no deeper in the turning, nodding head than at ticks.
 #[test]
-fn between_ticks_colliders_hold_as_at_ticks() {
+fn colliders_hold_between_ticks() {
     let mut def = maned(&HAIR);
     let mut springs = def.springs().source().clone();
     let ColliderShape::Sphere { offset, .. } = springs.colliders[0].shape else { panic!("a ball") };
-    // As large as that all three strands lie on it, but for their first bones.
+    // Large enough to touch all three strands, except for their first bones.
     let radius = 0.13;
     springs.colliders[0].shape = ColliderShape::Sphere { offset, radius, keeps: Side::Outside };
     def.set_springs(&springs);
@@ -325,8 +327,8 @@ fn between_ticks_colliders_hold_as_at_ticks() {
 }
 
 #[test]
-fn a_strand_sags_by_the_closed_form() {
-    // At rest the tip lies along stiffness · r + gravity.
+fn strand_sags_by_the_closed_form() {
+    // At rest the tip points along stiffness · r + gravity.
     let settings = SpringBone { stiffness: 1.0, gravity: Vec3::new(0.5, 0.0, 0.0), radius: 0.0, ..HAIR };
     let mut def = maned(&settings);
     let mut springs = def.springs().source().clone();
@@ -346,7 +348,7 @@ fn a_strand_sags_by_the_closed_form() {
 }
 
 #[test]
-fn wind_takes_hair_along_and_teleports_do_not() {
+fn wind_moves_hair_and_teleports_do_not() {
     let (mut world, mut character) = standing(&SpringBone { drag: 0.5, ..HAIR });
     let steps = |world: &mut World, character: &mut Character, count: u32| {
         for _ in 0..count {
@@ -356,24 +358,24 @@ fn wind_takes_hair_along_and_teleports_do_not() {
     };
     steps(&mut world, &mut character, 200);
     let calm = hair_of(&character);
-    // Elsewhere at once: as it was, to the last bit that rounding leaves.
+    // After a teleport the hair is unchanged, to rounding.
     character.teleport(&mut world, Transform::from_translation(Vec3::new(50.0, 0.0, -20.0)));
     steps(&mut world, &mut character, 1);
     for (now, then) in hair_of(&character).iter().zip(&calm) {
-        assert!(now.angle_to(*then) < 0.02, "a teleport swings nothing: {}", now.angle_to(*then));
+        assert!(now.angle_to(*then) < 0.02, "the teleport swings the hair: {}", now.angle_to(*then));
     }
     steps(&mut world, &mut character, 120);
     let field = FieldKind::Wind(Wind { velocity: Vec3::new(3.0, 0.0, 0.0), ..Wind::default() });
     world.add_field(&FieldDef::new(field));
     steps(&mut world, &mut character, 200);
     let blown = hair_of(&character)[0].angle_to(calm[0]);
-    assert!(blown > 0.3, "three metres a second of wind: {blown} rad");
-    // With the tip pushed by drag · wind = 1.5 m/s beside a stiffness of 0.8 m/s.
+    assert!(blown > 0.3, "a wind of 3 m/s: {blown} rad");
+    // The wind pushes the tip by drag · wind = 1.5 m/s, against a stiffness of 0.8 m/s.
 }
 
-/// Largest turn of a bone of the hair within one step over a life: standing, struck, falling, lying, up again.
+/// Largest rotation of a hair bone within one step while standing, hit, falling, lying, and up again.
 #[test]
-fn a_fall_takes_the_hair_along_without_a_pop() {
+fn hair_follows_a_fall_without_a_pop() {
     let (mut world, mut character) = standing(&HAIR);
     let head = character.def().body_named("head").unwrap();
     let lengths: Vec<f32> = character
@@ -407,7 +409,7 @@ fn a_fall_takes_the_hair_along_without_a_pop() {
             .collect();
         for (&tip, &length) in tips.iter().zip(&lengths) {
             assert!(tip.is_finite() && length > 0.0);
-            // Lying on the floor, not in it, but for what the head pushes.
+            // The tips are on the floor, not inside it, except where the head pushes them.
             assert!(tip.y > -0.02, "step {step}: a tip at {tip}");
         }
         if let Some(before) = &before {
@@ -418,13 +420,13 @@ fn a_fall_takes_the_hair_along_without_a_pop() {
         before = Some(tips);
     }
     assert!(states.contains(&State::Limp) && states.last() == Some(&State::Animated), "{states:?}");
-    // The head hits the floor at some 5 m/s; hair whips, but does not jump.
+    // The head hits the floor at about 5 m/s; hair whips but does not jump.
     assert!(worst < 15.0, "a tip at {worst} m/s");
 }
 
 #[test]
-fn a_snapshot_in_the_middle_of_a_swing_goes_on_alike() {
-    // Steps that are no whole ticks, so that a part of one is saved.
+fn snapshot_during_a_swing_continues_identically() {
+    // Steps that are not whole ticks, so that a partial tick is saved.
     let mut world = World::new(WorldDef { step_nanoseconds: 1_000_000_000 / 144, ..WorldDef::default() });
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
     let def = Arc::new(maned(&HAIR));
@@ -457,7 +459,7 @@ fn a_snapshot_in_the_middle_of_a_swing_goes_on_alike() {
 }
 
 #[test]
-fn a_warm_step_allocates_nothing() {
+fn spring_step_does_not_allocate_after_warm_up() {
     let (mut world, mut character) = standing(&HAIR);
     let mut hairless = Character::spawn(
         &mut world,
@@ -480,7 +482,7 @@ fn a_warm_step_allocates_nothing() {
 }
 
 #[test]
-fn a_larger_kind_swings_alike() {
+fn scaled_character_has_the_same_spring_motion() {
     let def = maned(&HAIR);
     let large = def.scaled(10.0);
     let pose = rest_pose(&def.rig);
@@ -497,7 +499,7 @@ fn a_larger_kind_swings_alike() {
 }
 
 #[test]
-fn what_the_body_moves_does_not_swing() {
+fn joints_with_bodies_are_no_springs() {
     let mut rig = maned_rig(&HAIR);
     let arm = rig.joints.iter().position(|joint| joint.name == "leftLowerArm").unwrap();
     rig.springs.chains[0].bones[0].joint = arm;
@@ -510,8 +512,8 @@ fn what_the_body_moves_does_not_swing() {
     assert_eq!(def.springs().joints().len(), rig.springs.bone_count() - 1);
 }
 
-/// One bone of a ponytail that is thrown to the side: carried along by 3 cm a tick, and stopped. Gives how far the tip comes to that side of
-/// its place at rest, metres, within ten ticks.
+/// One ponytail bone thrown to the side: carried along by 3 cm a tick, then stopped. Returns how far the tip moves to
+/// that side of its rest position within ten ticks, metres.
 fn thrown(colliders: Vec<SpringCollider>, world: Option<&World>) -> f32 {
     let mut def =
         maned(&SpringBone { stiffness: 1.5, gravity: Vec3::ZERO, radius: 0.002, drag: 0.1, ..HAIR });
@@ -536,7 +538,7 @@ fn thrown(colliders: Vec<SpringCollider>, world: Option<&World>) -> f32 {
     most
 }
 
-/// Joint of the ponytail's parent, and where the ends of its first bone are at rest, in that joint's space.
+/// Joint of the ponytail's parent, and the ends of its first bone at rest in that joint's space.
 fn ponytail() -> (usize, Vec3, Vec3) {
     let rig = maned_rig(&HAIR);
     let bone = rig.springs.chains[0].bones[0];
@@ -545,10 +547,10 @@ fn ponytail() -> (usize, Vec3, Vec3) {
 }
 
 #[test]
-fn a_fast_tip_does_not_pass_through_a_thin_collider() {
+fn fast_tip_is_stopped_by_a_thin_collider() {
     let free = thrown(Vec::new(), None);
     let (joint, root, tip) = ponytail();
-    // A needle of 2 mm beside it, along the bone.
+    // A needle of 2 mm beside the bone and parallel to it.
     let out = (tip - root) * 0.5;
     let needle = |offset: Vec3, tail: Vec3| {
         let shape = ColliderShape::Capsule { offset, tail, radius: 0.001, keeps: Side::Outside };
@@ -557,14 +559,14 @@ fn a_fast_tip_does_not_pass_through_a_thin_collider() {
     let aside = Vec3::X * 0.012;
     let stopped = needle(tip + aside - out, tip + aside + out);
     println!("free {free}, stopped at {stopped}");
-    assert!(free > 0.02, "it is fast: {free}");
-    assert!(stopped < 0.013, "it came through: {stopped}");
-    // One that is not in its way is nothing to it.
+    assert!(free > 0.02, "the free tip moves only {free} m");
+    assert!(stopped < 0.013, "the tip passed through: {stopped}");
+    // A needle out of the way has no effect.
     assert_eq!(needle(tip + aside - Vec3::Y, tip + aside - Vec3::Y * 0.9), free);
 }
 
 #[test]
-fn a_fast_tip_does_not_pass_through_a_thin_wall() {
+fn fast_tip_is_stopped_by_a_thin_wall() {
     let mut world = World::new(WorldDef::default());
     let wall = |x: f32| BodyDef {
         position: Vec3::X * x,
@@ -575,11 +577,11 @@ fn a_fast_tip_does_not_pass_through_a_thin_wall() {
     world.add_body(&wall(0.012));
     let stopped = thrown(Vec::new(), Some(&world));
     println!("free {free}, stopped at {stopped}");
-    assert!(free > 0.02 && stopped < 0.012, "it came through: {stopped} of {free}");
+    assert!(free > 0.02 && stopped < 0.012, "the tip passed through: {stopped} of {free}");
 }
 
-/// Braids that are blown apart, with and without links between them: least and most distance of their ends at the times of 30 frames a second over
-/// what it is in the bind pose.
+/// Braids blown apart, with and without links: smallest and largest distance of their ends at 30 frames a second,
+/// relative to the bind pose.
 fn parted(links: bool, holds_apart: bool, push: f32, rate: f32) -> Vec<f32> {
     let mut def = maned(&HAIR);
     let mut springs = def.springs().source().clone();
@@ -608,7 +610,7 @@ fn parted(links: bool, holds_apart: bool, push: f32, rate: f32) -> Vec<f32> {
 }
 
 #[test]
-fn links_hold_strands_together() {
+fn spring_links_limit_the_distance_of_strands() {
     let range = |apart: &[f32]| {
         (
             apart.iter().copied().fold(f32::MAX, sinew_math::min),
@@ -617,7 +619,7 @@ fn links_hold_strands_together() {
     };
     let (_, free) = range(&parted(false, false, 0.5, 60.0));
     let (_, held) = range(&parted(true, false, 0.5, 60.0));
-    println!("blown apart: {free} of their distance, linked {held}");
+    println!("distance in wind over distance at rest: {free} without links, {held} with links");
     assert!(free > 1.4 && held < 1.0 + 0.2 * (free - 1.0), "{free} {held}");
     let (close, _) = range(&parted(false, false, -0.5, 60.0));
     let (still_close, _) = range(&parted(true, false, -0.5, 60.0));
@@ -628,14 +630,14 @@ fn links_hold_strands_together() {
 }
 
 #[test]
-fn names_link_the_strands_of_a_skirt() {
+fn skirt_strands_are_linked_by_name() {
     let rig = dressed_rig(&[&SKIRT]);
     let springs = guess_springs(&rig, Vec3::Y);
     let strands = |links: &[SpringLink]| {
         let strand = |joint: usize| rig.joints[joint].name.rsplit_once('_').unwrap().0.to_owned();
         links.iter().map(|link| link.joints.map(strand)).collect::<std::collections::BTreeSet<_>>()
     };
-    // Ten strands in a ring, each linked to the next as far down: the names are in the order in which they stand.
+    // Ten strands in a ring, each linked to the next at equal depth: names give the order.
     assert_eq!(springs.links.len(), SKIRT.columns * SKIRT.bones);
     for [a, b] in strands(&springs.links) {
         let number = |name: &str| name.rsplit_once('_').unwrap().1.parse::<usize>().unwrap();
@@ -643,15 +645,15 @@ fn names_link_the_strands_of_a_skirt() {
         assert!(apart == 1 || apart == SKIRT.columns - 1, "{a} {b}");
     }
     assert!(springs.links.iter().all(|link| link.joints.iter().all(|&joint| springs.swings(joint))));
-    // Open: one gap less. Two strands have one between them, closed or not.
+    // An open skirt has one column of links fewer. Two strands have one, closed or not.
     let columns: Vec<_> = guess_garments(&rig)[0].columns.clone();
     let count = |columns: &[GarmentColumn], closed| SpringLink::default().across(columns, closed).len();
     let long = columns[0].joints.len();
     assert_eq!([count(&columns, true), count(&columns, false)], [10 * long, 9 * long]);
     assert_eq!([count(&columns[..2], true), count(&columns[..1], true)], [long, 0]);
-    // Hair has none.
+    // Hair has no links.
     assert!(guess_springs(&maned_rig(&HAIR), Vec3::Y).links.is_empty());
-    // A character that wears the skirt as springs has them; as a garment it has no springs there.
+    // A skirt worn as springs has links; worn as a garment it has no springs.
     let mut def = dressed(&[&SKIRT], |_| ());
     def.set_springs(&springs);
     assert_eq!(def.springs().link_count(), springs.links.len());
@@ -660,11 +662,11 @@ fn names_link_the_strands_of_a_skirt() {
 }
 
 #[test]
-fn links_swing_alike_at_every_frame_rate() {
+fn linked_motion_is_independent_of_the_frame_rate() {
     let due = parted(true, true, 0.5, 60.0);
     for rate in [30.0, 90.0, 240.0] {
         for (frame, (now, due)) in parted(true, true, 0.5, rate).iter().zip(&due).enumerate() {
-            // The braids are 0.34 m apart, a bone 0.063 m long.
+            // The braids are 0.34 m apart, and a bone is 0.063 m long.
             assert!((now - due).abs() * 0.34 < 0.05 * 0.063, "frame {frame} at {rate}: {now} {due}");
         }
     }

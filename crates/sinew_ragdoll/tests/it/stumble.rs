@@ -1,4 +1,4 @@
-//! Powered characters that are pushed: they stand, step, or fall.
+//! Powered characters that are pushed: they stay up, step, or fall.
 
 use crate::actor::{shared, walker};
 use crate::in_world::{level, run};
@@ -9,7 +9,7 @@ use sinew_physics::{BodyId, World, WorldDef};
 use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, MotionSet, Preset, QualityMeter, State};
 use std::sync::Arc;
 
-/// Stands by itself, or walks.
+/// A character that stands by default, or walks.
 fn puppet() -> Arc<CharacterDef> {
     let mut def = walker();
     let motions = def.motions().clone();
@@ -17,7 +17,7 @@ fn puppet() -> Arc<CharacterDef> {
     shared(def)
 }
 
-/// Powered for long enough to stand as it is to; `walks`: as fast as its clip, ahead.
+/// A powered character that has settled into standing or, if `walks`, into walking at its clip's speed.
 fn powered(def: &Arc<CharacterDef>, walks: bool, phase: usize) -> (World, Character) {
     let mut world = level();
     let mut character = Character::spawn(&mut world, def, Transform::IDENTITY);
@@ -38,7 +38,7 @@ fn steps_of(events: &[CharacterEvent]) -> u32 {
 }
 
 #[test]
-fn a_push_that_would_have_it_over_is_caught_by_steps() {
+fn powered_character_steps_to_catch_a_push() {
     let def = puppet();
     let chest = def.body_named("chest").expect("it has a chest");
     for way in [Vec3::X, -Vec3::X, Vec3::Z, -Vec3::Z, Vec3::new(0.7, 0.0, 0.7)] {
@@ -56,12 +56,12 @@ fn a_push_that_would_have_it_over_is_caught_by_steps() {
         let gone = character.world_from_character().translation - before;
         assert!(gone.dot(way) > 0.15 && gone.length() < 1.5, "along {way} it stepped {gone}");
         let velocity = world.velocity(character.bodies()[0]).linear;
-        assert!(velocity.length() < 0.1, "it stands: {velocity}");
+        assert!(velocity.length() < 0.1, "it still moves: {velocity}");
     }
 }
 
 #[test]
-fn feet_that_are_down_stay_while_it_steps() {
+fn planted_foot_stays_while_the_other_steps() {
     let def = puppet();
     let (chest, feet) = (
         def.body_named("chest").expect("it has a chest"),
@@ -73,7 +73,7 @@ fn feet_that_are_down_stay_while_it_steps() {
     };
     let start = [0, 1].map(|foot| place(&world, &character, foot));
     character.hit(&mut world, chest, Vec3::Z * 60.0);
-    // Until the first step is done one foot stands.
+    // One foot stands until the first step is done.
     let mut gone = [0.0; 2];
     for _ in 0..15 {
         run(&mut world, &mut character, 1);
@@ -83,11 +83,11 @@ fn feet_that_are_down_stay_while_it_steps() {
         }
     }
     let (stands, steps) = if gone[0] < gone[1] { (gone[0], gone[1]) } else { (gone[1], gone[0]) };
-    assert!(stands < 0.05 && steps > 0.2, "one foot goes {stands} m, the other {steps} m");
+    assert!(stands < 0.05 && steps > 0.2, "one foot moves {stands} m, the other {steps} m");
 }
 
 #[test]
-fn a_light_push_needs_no_step_and_a_heavy_one_fells() {
+fn light_push_needs_no_step_and_heavy_push_fells() {
     let def = puppet();
     let chest = def.body_named("chest").expect("it has a chest");
     let (mut world, mut character) = powered(&def, false, 0);
@@ -100,7 +100,7 @@ fn a_light_push_needs_no_step_and_a_heavy_one_fells() {
 }
 
 #[test]
-fn without_steps_the_threshold_decides() {
+fn impulse_threshold_decides_without_steps() {
     let mut def = walker();
     def.in_world.most_steps = 0;
     let (mut world, mut character) = powered(&shared(def), true, 0);
@@ -109,7 +109,7 @@ fn without_steps_the_threshold_decides() {
 }
 
 #[test]
-fn a_stumble_is_part_of_the_state() {
+fn stumble_survives_a_snapshot() {
     let def = puppet();
     for steps in [2, 9, 20, 35, 50] {
         let (mut world, mut character) = powered(&def, false, 0);
@@ -151,9 +151,10 @@ impl Tally {
 /// Pushes, N·s.
 const SIZES: [f32; 5] = [20.0, 60.0, 100.0, 150.0, 200.0];
 
-/// 500 pushes where `SINEW_FULL` is set, a tenth otherwise: any of its bodies, any level direction, standing or walking, any moment.
+/// Pushes any of its bodies in any level direction at any moment, standing or walking: 500 times if `SINEW_FULL` is
+/// set, otherwise a tenth.
 #[test]
-fn pushes_at_random() {
+fn random_pushes_are_mostly_survived() {
     let def = puppet();
     let each = if std::env::var_os("SINEW_FULL").is_some() { 100 } else { 10 };
     let mut random = Random::new(60);
@@ -218,9 +219,10 @@ fn motion(world: &World, def: &CharacterDef, bodies: &[BodyId]) -> [Vec3; 3] {
     [momentum, spin, center]
 }
 
-/// Distance of a point of the floor from the support polygon of the feet that are down, metres, 0 within; `None` if none is down.
+/// Distance of a floor point from the support polygon of the planted feet, metres, 0 inside; `None` if no foot is
+/// planted.
 fn outside(character: &Character, point: Vec3) -> Option<f32> {
-    // Around the ankle and the ball: heel, toes, sides, metres; and an ankle that is up.
+    // Extents around ankle and ball (heel, toes, sides), and the height of a lifted ankle; metres.
     let [heel, toes, rim, up] = [0.06, 0.08, 0.045, 0.15];
     let def = character.def();
     let mut model = Vec::new();
@@ -249,10 +251,11 @@ fn outside(character: &Character, point: Vec3) -> Option<f32> {
     (!corners.is_empty()).then(|| ways.map(beyond).fold(0.0, max))
 }
 
-/// The force that moves all of it, less its weight, as feet would have to give it: over a tenth of a second, where it acts on the floor
-/// outside of the soles that are down, metres, and its share along the floor of the one up.
+/// The external force (net force minus weight) averaged over a tenth of a second, which the feet would have to exert:
+/// how far outside of the planted soles it acts on the floor (metres), and the ratio of its horizontal and vertical
+/// parts.
 #[test]
-fn what_holds_it_could_come_from_feet_half_of_the_time() {
+fn balance_forces_act_near_the_soles() {
     const OVER: usize = 6;
     let def = puppet();
     let chest = def.body_named("chest").expect("it has a chest");

@@ -1,4 +1,4 @@
-//! Looped clips that travel: they go on with each lap, and a fall at any frame has the speed of the walk.
+//! Looped clips with root motion: they continue over cycles, and a fall at any frame starts with the speed of the walk.
 
 use crate::actor::{floor, shared, walker};
 use sinew_math::{Transform, Vec3, max};
@@ -14,7 +14,7 @@ fn world() -> World {
     world
 }
 
-/// The mannequin with a walk that its root moves along a path.
+/// The mannequin with a walk whose root moves along a path.
 fn travelling(path: Path, locomotion: Locomotion) -> (Arc<CharacterDef>, Cycle) {
     let cycle = walking(path);
     let mut def = walker();
@@ -32,7 +32,7 @@ fn places(character: &Character) -> Vec<Vec3> {
 }
 
 #[test]
-fn a_travelling_clip_goes_on_past_its_end() {
+fn travelling_clip_continues_past_its_end() {
     for path in [Path::Straight, Path::Circle(2.0)] {
         let (def, cycle) = travelling(path, Locomotion::ByClip);
         let mut world = world();
@@ -52,7 +52,7 @@ fn a_travelling_clip_goes_on_past_its_end() {
         assert!((at - expected).length() < 0.05, "{path:?}: it is at {at} for {expected}");
         assert!(fastest < 6.0, "{path:?}: a joint moves at {fastest} m/s");
     }
-    // As it was: in its place it comes back with each lap.
+    // Played in place, it returns to the start of each cycle.
     let (def, cycle) = travelling(Path::Straight, Locomotion::InPlace);
     let mut world = world();
     let mut character = Character::new(def, Transform::IDENTITY, 0.0);
@@ -65,7 +65,7 @@ fn a_travelling_clip_goes_on_past_its_end() {
 }
 
 #[test]
-fn a_fall_around_the_seam_has_the_speed_of_the_walk() {
+fn fall_around_the_seam_keeps_the_walking_speed() {
     for locomotion in [Locomotion::ByClip, Locomotion::InPlace] {
         let (def, cycle) = travelling(Path::Straight, locomotion);
         let total = def.ragdoll.total_mass;

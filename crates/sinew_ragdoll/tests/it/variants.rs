@@ -1,10 +1,10 @@
-//! A rig in many variants, as exporters, riggers and stores make them: one ragdoll.
+//! Many variants of a rig, as exporters, riggers and stores make them, give the same ragdoll.
 
 use crate::build::{built, check_sound};
 use crate::built_rigs::{beetle, block_man, dog};
 use crate::data::{document, is_there};
 use crate::disguise::{
-    CONVENTIONS, affixed, bound_in, cut_loose, hung_on_root, renamed, shifted, shuffled, transformed,
+    CONVENTIONS, affixed, bound_in, made_roots, parented_to_root, renamed, shifted, shuffled, transformed,
     under_a_mirror, unweighted, with_controls, with_eyes, with_hair, with_halves, with_hat, with_twists,
     with_two_skins, z_up,
 };
@@ -15,7 +15,7 @@ use sinew_math::{Random, Rotation};
 use sinew_ragdoll::{BuildOptions, RagdollDef, build};
 use sinew_scenes::mannequin::mannequin;
 
-/// People, stylised ones, animals, eight legs, beside the rigs that are built in code.
+/// Humans, stylised figures, animals and eight-legged creatures, besides the rigs built in code.
 const RIGS: [&str; 10] = [
     "CesiumMan.glb",
     "RiggedFigure.glb",
@@ -29,20 +29,20 @@ const RIGS: [&str; 10] = [
     "quaternius_Spider.glb",
 ];
 
-/// Variants of each rig when all is asked for; else a few.
+/// Number of variants per rig in full runs; otherwise a few.
 const ALL: u64 = 60;
 const FEW: u64 = 3;
 
 const PREFIXES: [&str; 6] = ["", "Armature|", "chr_", "rig:", "GLB_", "Char01."];
 const SUFFIXES: [&str; 4] = ["", "_jnt", ".001", "_050"];
 
-/// Feet that may be hung on the root.
+/// Feet that may be reparented to the root.
 fn feet(rig: &Rig, analysis: &RigAnalysis) -> Vec<JointIdx> {
     let of = |side| analysis.joint_with(Role::Foot(side));
     if analysis.humanoid {
         return [Side::Left, Side::Right].into_iter().filter_map(of).collect();
     }
-    // A creature's: where a body ends a limb, unless its feet are on the root already.
+    // Bodies of a creature that end a limb, unless feet are children of the root already.
     let is_end = |bone: usize| analysis.kept.iter().all(|other| other.parent != Some(bone));
     let holds = |joint: JointIdx, below: JointIdx| {
         std::iter::successors(Some(below), |&at| rig.joints[at].parent).any(|at| at == joint)
@@ -54,7 +54,7 @@ fn feet(rig: &Rig, analysis: &RigAnalysis) -> Vec<JointIdx> {
     limbs.map(|(_, kept)| kept.joint).collect()
 }
 
-/// Thighs and upper arms, or the clavicles that carry these.
+/// Thighs and upper arms, or their parent clavicles.
 fn limbs(analysis: &RigAnalysis) -> Vec<JointIdx> {
     let of = |side: Side| {
         let arm = [Role::Shoulder(side), Role::UpperArm(side)].map(|role| analysis.joint_with(role));
@@ -63,8 +63,8 @@ fn limbs(analysis: &RigAnalysis) -> Vec<JointIdx> {
     [Side::Left, Side::Right].into_iter().flat_map(of).flatten().collect()
 }
 
-/// Thighs or upper arms, each with what carries it.
-fn beginnings(analysis: &RigAnalysis, random: &mut Random) -> Vec<(JointIdx, JointIdx)> {
+/// Thighs or upper arms, each with its parent.
+fn limb_roots(analysis: &RigAnalysis, random: &mut Random) -> Vec<(JointIdx, JointIdx)> {
     let [thigh, arm] = [|side| Role::UpperLeg(side), |side| Role::UpperArm(side)] as [fn(Side) -> Role; 2];
     let upper = [thigh, arm][random.index(2)];
     let carried = |side: Side| {
@@ -75,17 +75,17 @@ fn beginnings(analysis: &RigAnalysis, random: &mut Random) -> Vec<(JointIdx, Joi
     [Side::Left, Side::Right].into_iter().filter_map(carried).collect()
 }
 
-/// A rig that is told in another way, and what is known of it.
+/// A changed rig and its expected results.
 struct Variant {
     rig: Rig,
     hints: Hints,
-    /// Per joint of the plain rig where it went.
+    /// New index of each joint of the plain rig.
     place: Vec<usize>,
     /// Description of the variant, for messages.
-    said: String,
+    changes_made: String,
 }
 
-/// A character to disguise.
+/// A character to vary.
 struct Subject {
     name: &'static str,
     rig: Rig,
@@ -93,7 +93,7 @@ struct Subject {
 }
 
 impl Subject {
-    /// Rigs that are put together in code, then those of the shared data where these are there.
+    /// Rigs built in code, then those of the shared data if present.
     fn all() -> Vec<Self> {
         let mannequin = mannequin();
         let built = [
@@ -113,18 +113,18 @@ impl Subject {
 
     fn variant(&self, analysis: &RigAnalysis, seed: u64) -> Variant {
         let mut random = Random::new(1000 + seed);
-        let mut said = Vec::new();
+        let mut changes_made = Vec::new();
         let mut rig = self.rig.clone();
         let mut hints = Hints::default();
         let mut chance = |random: &mut Random, what: &str| {
             let does = random.unit() < 0.5;
-            does.then(|| said.push(what.to_owned()));
+            does.then(|| changes_made.push(what.to_owned()));
             does
         };
         if chance(&mut random, "twist bones") {
             rig = with_twists(&rig, analysis);
         }
-        // Only on who has a head: what grows on a creature may well be a part of it.
+        // Only a rig with a head gets them: attachments of a creature may be parts of its body.
         let head = analysis.joint_with(Role::Head);
         if let Some(head) = head.filter(|_| chance(&mut random, "hair")) {
             rig = with_hair(&rig, analysis, head, &mut random);
@@ -137,13 +137,13 @@ impl Subject {
             rig = with_controls(&rig, analysis, &mut random);
         }
         let convention = usize::try_from(seed).expect("few") % CONVENTIONS.len();
-        // A clip is of one hierarchy, unit and axes.
+        // A clip belongs to one hierarchy, unit and axes.
         if !self.clips.is_empty() && chance(&mut random, "shifted clips") {
             let size = analysis.height / analysis.unit_scale;
             let clips = shifted(&self.clips, &self.rig, random.in_cube() * (5.0 * size));
             hints = Hints::of_clips(&rig, &clips);
         } else {
-            rig = self.rehung(rig, analysis, convention, &mut random, &mut chance);
+            rig = self.reparented(rig, analysis, convention, &mut random, &mut chance);
         }
         if let Some(head) = head.filter(|_| chance(&mut random, "a hat")) {
             rig = with_hat(&rig, analysis, head);
@@ -169,7 +169,7 @@ impl Subject {
         let (prefix, suffix) =
             (PREFIXES[random.index(PREFIXES.len())], SUFFIXES[random.index(SUFFIXES.len())]);
         rig = affixed(&rig, prefix, suffix);
-        said.push(format!("convention {convention}, '{prefix}' and '{suffix}'"));
+        changes_made.push(format!("convention {convention}, '{prefix}' and '{suffix}'"));
         let (rig, place) = if has_clips {
             let same = (0..rig.joints.len()).collect();
             (rig, same)
@@ -177,11 +177,11 @@ impl Subject {
             shuffled(&rig, seed)
         };
         let first = usize::from(is_mirrored);
-        Variant { rig, hints, place: place[first..].to_vec(), said: said.join(", ") }
+        Variant { rig, hints, place: place[first..].to_vec(), changes_made: changes_made.join(", ") }
     }
 
-    /// Feet on the root, limbs that are roots, beginnings of limbs without skin.
-    fn rehung(
+    /// Feet as children of the root, limbs as roots, beginnings of limbs without skin.
+    fn reparented(
         &self,
         mut rig: Rig,
         analysis: &RigAnalysis,
@@ -190,20 +190,20 @@ impl Subject {
         chance: &mut impl FnMut(&mut Random, &str) -> bool,
     ) -> Rig {
         if chance(random, "feet on the root") {
-            rig = hung_on_root(&rig, &feet(&rig, analysis));
+            rig = parented_to_root(&rig, &feet(&rig, analysis));
         }
         if analysis.humanoid && chance(random, "limbs that are roots") {
-            // Names put them together again.
-            rig = cut_loose(&renamed(&rig, analysis, &CONVENTIONS[convention]), &limbs(analysis));
+            // Names are needed to connect these limbs again.
+            rig = made_roots(&renamed(&rig, analysis, &CONVENTIONS[convention]), &limbs(analysis));
         } else if analysis.humanoid && chance(random, "beginnings of limbs without skin") {
             let named = renamed(&rig, analysis, &CONVENTIONS[convention]);
-            rig = unweighted(&named, &beginnings(analysis, random));
+            rig = unweighted(&named, &limb_roots(analysis, random));
         }
         rig
     }
 }
 
-/// Differences between two ragdolls; empty if the bodies are those of the plain rig and as heavy.
+/// Differences between two ragdolls; empty if the bodies match those of the plain rig, with equal masses.
 fn differences(plain: &RagdollDef, other: &RagdollDef, place: &[usize]) -> Vec<String> {
     let mut found = Vec::new();
     for a in &plain.bodies {
@@ -233,25 +233,25 @@ fn differences(plain: &RagdollDef, other: &RagdollDef, place: &[usize]) -> Vec<S
                 parent(other, twin).map(|on| other.bodies[on].role.clone()),
             ];
             if on != twin_on {
-                found.push(format!("{} hangs on {twin_on:?}, not {on:?}", a.role));
+                found.push(format!("{} is attached to {twin_on:?}, not {on:?}", a.role));
             }
         }
     }
     found
 }
 
-/// Flaws of the variants of a rig, a line each.
+/// Flaws of the variants of a rig, one line each.
 fn flaws(number: u64, subject: &Subject, count: u64) -> Vec<String> {
     let name = subject.name;
     let analysis = analyze(&subject.rig).expect("a skin");
     let (plain, _) = built(&subject.rig, &BuildOptions::default());
     let mut falls = Falls::of(&plain);
     let mut wrong = Vec::new();
-    // Not the same seeds of all rigs, so that a few of each are many.
+    // Different seeds for each rig, so that together they cover more.
     let first = number * count % ALL;
     for seed in (first..first + count).map(|seed| seed % ALL) {
-        let Variant { rig, hints, place, said } = subject.variant(&analysis, seed);
-        let what = format!("{name}, variant {seed} ({said})");
+        let Variant { rig, hints, place, changes_made } = subject.variant(&analysis, seed);
+        let what = format!("{name}, variant {seed} ({changes_made})");
         let seen = analyze_hinted(&rig, &hints).expect("a skin");
         let (def, _) = build(&rig, &seen, &BuildOptions::default()).expect("a ragdoll");
         check_sound(&what, &def);
@@ -265,10 +265,10 @@ fn flaws(number: u64, subject: &Subject, count: u64) -> Vec<String> {
 }
 
 #[test]
-fn a_rig_in_many_variants_is_one_ragdoll() {
+fn variants_of_a_rig_give_the_same_ragdoll() {
     let count = if std::env::var_os("SINEW_FULL").is_some() { ALL } else { FEW };
     let subjects = Subject::all();
     let wrong: Vec<String> =
         subjects.iter().zip(0..).flat_map(|(subject, number)| flaws(number, subject, count)).collect();
-    assert!(wrong.is_empty(), "{} variants are others:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(wrong.is_empty(), "{} variants differ:\n{}", wrong.len(), wrong.join("\n"));
 }

@@ -34,7 +34,7 @@ fn triangles(center: Vec3, half: Vec3) -> Vec<[Vec3; 3]> {
 }
 
 #[test]
-fn volumes_are_those_that_are_enclosed_once() {
+fn overlapping_volumes_count_once() {
     let half = Vec3::new(0.5, 1.0, 1.5);
     let one = triangles(Vec3::ZERO, half);
     let is = |triangles: &[[Vec3; 3]], wanted: f32| {
@@ -49,19 +49,19 @@ fn volumes_are_those_that_are_enclosed_once() {
             one.iter().map(|corners| corners.map(|corner| turn * corner + Vec3::X * 9.0)).collect();
         is(&turned, 6.0);
     }
-    // Half of the second is in the first.
+    // Half of the second box is inside the first.
     let two = [one.clone(), triangles(Vec3::X * 0.5, half)].concat();
     is(&two, 9.0);
     let inside_out: Vec<_> = one.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
     is(&inside_out, 6.0);
-    // An eye within is no hole, and a hole in the bottom lets nothing out.
+    // An inner closed surface (an eye) adds nothing, and an opening in the bottom is closed.
     is(&[one.clone(), triangles(Vec3::ZERO, Vec3::splat(0.1))].concat(), 6.0);
     is(&one[2..], 6.0);
     assert_eq!(enclosed(&one[..2]), None, "a sheet");
     assert_eq!(enclosed(&[]), None);
 }
 
-/// A worm of fat links that overlap by half, with joints of these names.
+/// A worm of thick links that overlap by half, with joints of these names.
 fn worm(names: [&str; 3]) -> Rig {
     let mut rig = Rig::default();
     let mut skin = Skin { name: String::new(), joints: vec![], inverse_bind: vec![] };
@@ -90,8 +90,8 @@ fn worm(names: [&str; 3]) -> Rig {
 
 #[needs_data]
 #[test]
-fn a_creature_weighs_what_its_skin_encloses() {
-    // From -0.2 to 1.4 m along, 0.6 m wide and high: 576 litres, of which the links together have 864.
+fn creature_mass_follows_the_enclosed_volume() {
+    // The worm is from -0.2 to 1.4 m long, 0.6 m wide and high: 576 litres; the volumes of its links sum to 864.
     let (def, report) = built(&worm(["a", "b", "c"]), &BuildOptions::default());
     assert!((def.total_mass / 576.0 - 1.0).abs() < 0.03, "{} kg", def.total_mass);
     let note = report.notes.iter().find(|note| note.contains("of flesh, which the skin encloses"));

@@ -1,9 +1,9 @@
-//! Deeds to characters.
+//! Random actions on characters.
 
 use crate::actor::{Actor, say};
 use crate::code::rusty;
 use crate::deeds::Deed;
-use crate::extension::{MOST, Member, kinds, own, part, who};
+use crate::extension::{MOST, Member, chosen, kinds, own, part};
 use crate::numbers::{Numbers, Temper};
 use sinew_anim::{LocalTransform, LoopMode, TrackDef};
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer};
@@ -38,14 +38,14 @@ pub const ALL: &[Deed] = &[
 
 /// Calls a method of a character and notes it.
 macro_rules! to {
-    ($a:ident[$who:expr].$name:ident(world $(, $argument:expr)* $(,)?)) => {{
-        $crate::characters::note($a, $who, stringify!($name), concat!("Character::", stringify!($name)), &[$(&$argument),*], true);
-        let (world, character) = (&mut $a.world, &mut $a.more.cast[$who].character);
+    ($a:ident[$chosen:expr].$name:ident(world $(, $argument:expr)* $(,)?)) => {{
+        $crate::characters::note($a, $chosen, stringify!($name), concat!("Character::", stringify!($name)), &[$(&$argument),*], true);
+        let (world, character) = (&mut $a.world, &mut $a.more.cast[$chosen].character);
         character.$name(world $(, $argument)*)
     }};
-    ($a:ident[$who:expr].$name:ident($($argument:expr),* $(,)?)) => {{
-        $crate::characters::note($a, $who, stringify!($name), concat!("Character::", stringify!($name)), &[$(&$argument),*], false);
-        $a.more.cast[$who].character.$name($($argument),*)
+    ($a:ident[$chosen:expr].$name:ident($($argument:expr),* $(,)?)) => {{
+        $crate::characters::note($a, $chosen, stringify!($name), concat!("Character::", stringify!($name)), &[$(&$argument),*], false);
+        $a.more.cast[$chosen].character.$name($($argument),*)
     }};
 }
 pub(crate) use to;
@@ -53,7 +53,7 @@ pub(crate) use to;
 /// Notes a call to a character as a line of the program.
 pub fn note(
     a: &mut Actor,
-    who: usize,
+    chosen: usize,
     name: &str,
     count: &'static str,
     arguments: &[&dyn core::fmt::Debug],
@@ -64,15 +64,15 @@ pub fn note(
         let world = with_world.then(|| "&mut world".to_owned());
         let arguments = arguments.iter().map(|argument| rusty(&format!("{argument:?}")));
         let arguments: Vec<String> = world.into_iter().chain(arguments).collect();
-        let number = a.more.cast[who].number;
+        let number = a.more.cast[chosen].number;
         a.line(format!("character_{number}.{name}({});", arguments.join(", ")));
     }
 }
 
-/// Farthest that a character of a wild life stands from the origin, metres: beyond, squares of lengths are no numbers.
+/// Largest distance of a character from the origin in a wild life, metres; beyond it, squares of lengths overflow.
 const FARTHEST: f32 = 1e12;
 
-/// A place to stand: on the floor or a little over it; of a wild life anywhere.
+/// A place to stand: on the floor or slightly above it; in a wild life anywhere.
 fn place(n: &mut Numbers) -> Transform {
     let turn = n.between(-3.0, 3.0);
     let (x, z) = (n.signed(2.0).clamp(-FARTHEST, FARTHEST), n.signed(2.0).clamp(-FARTHEST, FARTHEST));
@@ -108,18 +108,18 @@ fn spawn(a: &mut Actor, n: &mut Numbers) -> Option<()> {
 }
 
 fn despawn(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    let Member { number, character, .. } = a.more.cast.remove(who);
+    let chosen = chosen(a, n)?;
+    let Member { number, character, .. } = a.more.cast.remove(chosen);
     a.count("Character::despawn");
     a.line(format!("character_{number}.despawn(&mut world);"));
     character.despawn(&mut a.world);
     Some(())
 }
 
-/// An impulse that a body of its mass takes in a game; of a wild life any.
-fn blow(a: &Actor, n: &mut Numbers, who: usize, body: usize) -> Vec3 {
+/// An impulse plausible for the body's mass; in a wild life any.
+fn blow(a: &Actor, n: &mut Numbers, chosen: usize, body: usize) -> Vec3 {
     let impulse = n.vector(60.0);
-    let mass = a.more.cast[who].character.def().ragdoll.bodies[body].mass.mass;
+    let mass = a.more.cast[chosen].character.def().ragdoll.bodies[body].mass.mass;
     let most = mass * 12.0;
     if n.temper == Temper::Wild || impulse.length() < most {
         return impulse;
@@ -127,42 +127,42 @@ fn blow(a: &Actor, n: &mut Numbers, who: usize, body: usize) -> Vec3 {
     impulse * (most / impulse.length())
 }
 
-fn any_part(a: &Actor, n: &mut Numbers, who: usize) -> usize {
-    n.index(a.more.cast[who].character.def().ragdoll.bodies.len())
+fn any_part(a: &Actor, n: &mut Numbers, chosen: usize) -> usize {
+    n.index(a.more.cast[chosen].character.def().ragdoll.bodies.len())
 }
 
 fn hit(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    let body = any_part(a, n, who);
-    let impulse = blow(a, n, who, body);
-    let work = to!(a[who].hit(world, body, impulse));
+    let chosen = chosen(a, n)?;
+    let body = any_part(a, n, chosen);
+    let impulse = blow(a, n, chosen, body);
+    let work = to!(a[chosen].hit(world, body, impulse));
     say(&mut a.said, "hit", &work);
     Some(())
 }
 
 fn hit_at(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    let part = any_part(a, n, who);
-    let body = *a.more.cast[who].character.bodies().get(part)?;
-    let impulse = blow(a, n, who, part);
+    let chosen = chosen(a, n)?;
+    let part = any_part(a, n, chosen);
+    let body = *a.more.cast[chosen].character.bodies().get(part)?;
+    let impulse = blow(a, n, chosen, part);
     if !a.world.contains(body) {
         return None;
     }
     let point = a.world.center_of_mass(body) + Vec3::Y * 0.03;
     let hit = BodyHit { body, shape: 0, fraction: 0.5, point, normal: Vec3::Y, start: None };
-    let work = to!(a[who].hit_at(world, &hit, impulse));
+    let work = to!(a[chosen].hit_at(world, &hit, impulse));
     say(&mut a.said, "hit_at", &work);
     Some(())
 }
 
 fn go_limp(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    to!(a[who].go_limp(world));
+    let chosen = chosen(a, n)?;
+    to!(a[chosen].go_limp(world));
     Some(())
 }
 
 fn set_preset(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
+    let chosen = chosen(a, n)?;
     let preset = n.one_of(&[
         Preset::Powered,
         Preset::Powered,
@@ -171,7 +171,7 @@ fn set_preset(a: &mut Actor, n: &mut Numbers) -> Option<()> {
         Preset::Flinching,
         Preset::Limp,
     ]);
-    to!(a[who].set_preset(world, preset));
+    to!(a[chosen].set_preset(world, preset));
     Some(())
 }
 
@@ -186,9 +186,9 @@ fn mode(n: &mut Numbers) -> DriveMode {
 }
 
 fn set_drive(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    let (body, mode, half_life) = (any_part(a, n, who), mode(n), n.between(0.0, 1.0));
-    let def = a.more.cast[who].character.def().clone();
+    let chosen = chosen(a, n)?;
+    let (body, mode, half_life) = (any_part(a, n, chosen), mode(n), n.between(0.0, 1.0));
+    let def = a.more.cast[chosen].character.def().clone();
     let role = def.ragdoll.bodies[body].role.as_str();
     let part = match n.index(4) {
         0 => Part::All,
@@ -196,20 +196,20 @@ fn set_drive(a: &mut Actor, n: &mut Numbers) -> Option<()> {
         2 => Part::Named(role),
         _ => Part::From(role),
     };
-    to!(a[who].set_drive(world, part, mode, half_life));
+    to!(a[chosen].set_drive(world, part, mode, half_life));
     Some(())
 }
 
 fn drives_mut(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    let (body, mode, half_life) = (any_part(a, n, who), mode(n), n.between(0.0, 1.0));
-    to!(a[who].drives_mut()).set(body, mode, half_life);
+    let chosen = chosen(a, n)?;
+    let (body, mode, half_life) = (any_part(a, n, chosen), mode(n), n.between(0.0, 1.0));
+    to!(a[chosen].drives_mut()).set(body, mode, half_life);
     Some(())
 }
 
 fn animator_mut(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    let def = a.more.cast[who].character.def().clone();
+    let chosen = chosen(a, n)?;
+    let def = a.more.cast[chosen].character.def().clone();
     let clip = def.clip(n.index(def.motions().clips.len()));
     let weight = n.between(0.0, 1.0);
     let track = TrackDef {
@@ -219,78 +219,78 @@ fn animator_mut(a: &mut Actor, n: &mut Numbers) -> Option<()> {
         layer: n.one_of(&[0, 1]),
         ..TrackDef::new(clip)
     };
-    to!(a[who].animator_mut()).play(def.set(), &track);
+    to!(a[chosen].animator_mut()).play(def.set(), &track);
     Some(())
 }
 
 fn lead(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
+    let chosen = chosen(a, n)?;
     let way = n.vector(2.5);
     match n.index(4) {
-        0 | 1 => to!(a[who].set_move(way)),
-        2 => to!(a[who].face(way)),
-        _ => to!(a[who].follow_clips()),
+        0 | 1 => to!(a[chosen].set_move(way)),
+        2 => to!(a[chosen].face(way)),
+        _ => to!(a[chosen].follow_clips()),
     }
     Some(())
 }
 
 fn jump(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    to!(a[who].jump(world));
+    let chosen = chosen(a, n)?;
+    to!(a[chosen].jump(world));
     Some(())
 }
 
 fn return_to_clip(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
+    let chosen = chosen(a, n)?;
     let (at, phase, seconds) = (place(n), n.between(0.0, 3.0), n.between(0.0, 1.2));
-    to!(a[who].return_to_clip(world, at, phase, seconds));
+    to!(a[chosen].return_to_clip(world, at, phase, seconds));
     Some(())
 }
 
 fn set_after_settling(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
+    let chosen = chosen(a, n)?;
     let after = n.one_of(&[AfterSettling::GetUp, AfterSettling::StayDown]);
-    to!(a[who].set_after_settling(after));
+    to!(a[chosen].set_after_settling(after));
     Some(())
 }
 
 fn teleport(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
+    let chosen = chosen(a, n)?;
     let at = place(n);
-    to!(a[who].teleport(world, at));
+    to!(a[chosen].teleport(world, at));
     Some(())
 }
 
 fn set_level_of_detail(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
+    let chosen = chosen(a, n)?;
     let detail = n.one_of(&[Detail::Full, Detail::Full, Detail::Keyed, Detail::HitBodies, Detail::Frozen]);
-    to!(a[who].set_level_of_detail(world, detail));
+    to!(a[chosen].set_level_of_detail(world, detail));
     Some(())
 }
 
 fn clear(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    let clears = to!(a[who].clear(world));
+    let chosen = chosen(a, n)?;
+    let clears = to!(a[chosen].clear(world));
     say(&mut a.said, "clear", &clears);
     Some(())
 }
 
 fn reset_worn(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
+    let chosen = chosen(a, n)?;
     if n.chance(0.5) {
-        to!(a[who].reset_springs());
+        to!(a[chosen].reset_springs());
     } else {
-        to!(a[who].reset_garments(world));
+        to!(a[chosen].reset_garments(world));
     }
     Some(())
 }
 
-/// A character is made anew from its bytes.
+/// Recreates a character from its bytes.
 fn reload(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
+    let chosen = chosen(a, n)?;
     let mut w = Writer::new();
     ["Character::save", "Character::load"].into_iter().for_each(|name| a.count(name));
-    let Member { kind, number, character, .. } = &mut a.more.cast[who];
+    let Member { kind, number, character, .. } = &mut a.more.cast[chosen];
     character.save(&mut w);
     let mut other = Character::new(kinds()[*kind].clone(), Transform::IDENTITY, 0.0);
     other.load(&mut Reader::new(w.as_bytes())).expect("a saved character is valid");
@@ -300,35 +300,35 @@ fn reload(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// All that a character can be asked.
+/// Calls all getters of a character.
 fn ask_character(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     macro_rules! asked {
-        ($character:ident, $said:ident, $calls:ident, $($name:ident)*) => {
+        ($character:ident, $code_text:ident, $calls:ident, $($name:ident)*) => {
             $($calls.push(concat!("Character::", stringify!($name)));
-            say(&mut $said, stringify!($name), &$character.$name());)*
+            say(&mut $code_text, stringify!($name), &$character.$name());)*
         };
     }
-    let who = who(a, n)?;
-    let (alpha, body) = (n.between(0.0, 1.0), any_part(a, n, who));
-    let character = a.more.cast[who].character.clone();
-    let (mut said, mut calls) = (String::new(), vec!["Character::clone"]);
-    asked!(character, said, calls, state level_of_detail lost_joints mover bodies stumbles garments);
-    asked!(character, said, calls, pose pose_without_springs world_from_character world_from_model ragdoll drives);
-    asked!(character, said, calls, after_settling);
+    let chosen = chosen(a, n)?;
+    let (alpha, body) = (n.between(0.0, 1.0), any_part(a, n, chosen));
+    let character = a.more.cast[chosen].character.clone();
+    let (mut code_text, mut calls) = (String::new(), vec!["Character::clone"]);
+    asked!(character, code_text, calls, state level_of_detail lost_joints mover bodies stumbles garments);
+    asked!(character, code_text, calls, pose pose_without_springs world_from_character world_from_model ragdoll drives);
+    asked!(character, code_text, calls, after_settling);
     let held: Vec<_> = character.held().collect();
-    say(&mut said, "held", &held);
-    say(&mut said, "has_body", &character.has_body(body));
+    say(&mut code_text, "held", &held);
+    say(&mut code_text, "has_body", &character.has_body(body));
     let index = own(&character).next().map(|body| character.body_index(body));
-    say(&mut said, "body_index", &index);
-    say(&mut said, "animator", &character.animator().tracks().collect::<Vec<_>>());
+    say(&mut code_text, "body_index", &index);
+    say(&mut code_text, "animator", &character.animator().tracks().collect::<Vec<_>>());
     let mut pose: Vec<LocalTransform> = Vec::new();
     let shown = character.interpolated(alpha, &mut pose);
-    say(&mut said, "interpolated", &(shown, pose));
+    say(&mut code_text, "interpolated", &(shown, pose));
     let mut palette: Vec<[f32; 12]> = Vec::new();
     if !character.def().rig.skins.is_empty() {
         character.skin_palette(0, alpha, &mut palette);
     }
-    say(&mut said, "skin_palette", &palette);
+    say(&mut code_text, "skin_palette", &palette);
     calls.extend(["Character::held", "Character::has_body", "Character::body_index", "Character::animator"]);
     calls.extend([
         "Character::interpolated",
@@ -338,11 +338,11 @@ fn ask_character(a: &mut Actor, n: &mut Numbers) -> Option<()> {
         "Character::update",
     ]);
     calls.into_iter().for_each(|call| a.count(call));
-    a.said += &said;
+    a.said += &code_text;
     Some(())
 }
 
-/// A ball flies at somebody.
+/// Throws a ball at a character.
 fn throw_at(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let target = part(a, n)?;
     let (way, speed, radius) = (n.direction(), n.between(3.0, 20.0), n.between(0.05, 0.25));
@@ -356,7 +356,7 @@ fn throw_at(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// A slab that nothing stops comes at somebody.
+/// Moves an unstoppable slab toward a character.
 fn door(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let target = part(a, n)?;
     let (side, speed) = (n.one_of(&[Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z]), n.between(0.2, 1.0));

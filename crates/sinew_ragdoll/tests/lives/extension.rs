@@ -1,4 +1,4 @@
-//! Characters beside a world, limbs that they lost, and points that hold what is there.
+//! Characters, detached limbs and grab points kept beside a world.
 
 use crate::actor::{Actor, Twin, pick};
 use crate::characters;
@@ -17,26 +17,28 @@ use std::sync::{Arc, OnceLock};
 
 /// Types whose public methods the lives call.
 pub const CALLED: &[&str] = &["Character", "Limb", "GrabPoint"];
-/// Deeds beside those to the world, and names of those that begin a life.
+/// Action tables besides those of the world, and actions that can start a life.
 pub const DEEDS: &[&[Deed]] = &[characters::ALL, grips::ALL];
 pub const MAKERS: &[&str] = &["spawn", "spawn", "spawn", "spawn"];
-/// Steps in which deeds are done.
+/// Steps in which actions happen.
 pub const BUSY: Range<u32> = 40..160;
 
-/// Most characters at a time.
+/// Largest number of characters at a time.
 pub const MOST: usize = 3;
-/// Depth of a whole body below the floor, metres, steps for which it may be pressed there, rise within a step of what is on its way out, metres, and half the width of the narrowest floor.
+/// Allowed depth of a body below the floor (metres); steps for which it may be pressed there; rise within a step that
+/// counts as leaving (metres); half the width of the narrowest floor.
 const DEPTH: f32 = 0.05;
 const PRESSED: u32 = 60;
 const RISES: f32 = 1e-3;
 const WIDTH: f32 = 6.0;
-/// Steps after a deed from which on limbs are looked at.
+/// Steps after the last action from which limbs are checked.
 const SETTLED: u32 = 20;
-/// Speed that no limb has then, m/s: slabs that nothing stops press them out at up to 35; and gap that no joint has, metres.
+/// Bounds on the speed (m/s; unstoppable slabs press limbs out at up to 35) and joint gap (metres) of limbs at that
+/// time.
 const FAST: f32 = 60.0;
 const GAP: f32 = 0.02;
 
-/// Kinds of characters: bare, with hair of springs, in a skirt of cloth.
+/// Kinds of characters: plain, with spring-bone hair, with a cloth skirt.
 pub fn kinds() -> &'static [Arc<CharacterDef>; 3] {
     static KINDS: OnceLock<[Arc<CharacterDef>; 3]> = OnceLock::new();
     KINDS.get_or_init(|| {
@@ -47,12 +49,12 @@ pub fn kinds() -> &'static [Arc<CharacterDef>; 3] {
     })
 }
 
-/// A character of a life.
+/// A character of a random life.
 #[derive(Clone)]
 pub struct Member {
-    /// What stays when deeds before are left out.
+    /// Name that is stable when earlier actions are left out.
     pub name: u64,
-    /// In the order in which they came.
+    /// Index in order of creation.
     pub number: u32,
     pub kind: usize,
     pub character: Character,
@@ -65,9 +67,9 @@ pub struct Extension {
     pub limbs: Vec<(u64, usize, Limb)>,
     pub points: Vec<(u64, GrabPoint)>,
     pub born: u32,
-    /// The game has taken bodies of characters out of their hands: what these do then is its own fault.
+    /// True if the game has changed bodies that characters own: their state is then not checked.
     pub is_meddled_with: bool,
-    /// Steps for which a body has been below the floor and has not risen, and its height.
+    /// Steps for which a body has been below the floor without rising, and its height.
     below: BTreeMap<BodyId, (u32, f32)>,
 }
 
@@ -76,7 +78,7 @@ impl Extension {
         Self::default()
     }
 
-    /// The same beside a copy of the world: of a clone a clone, of a stranger what its bytes say.
+    /// The extension for a copy of the world: cloned for a clone, loaded from bytes otherwise.
     pub fn twin(&self, twin: Twin) -> Self {
         match twin {
             Twin::Clone => self.clone(),
@@ -119,7 +121,7 @@ impl Extension {
         self.cast.iter_mut().for_each(|member| member.character.update(world));
     }
 
-    /// Bytes of its state.
+    /// Serialised state.
     pub fn state(&self) -> Vec<u8> {
         let mut w = Writer::new();
         self.cast.iter().for_each(|member| member.character.save(&mut w));
@@ -130,19 +132,19 @@ impl Extension {
 
     /// Events of the last step.
     pub fn events(&self) -> String {
-        let told = self.cast.iter().filter(|member| !member.character.events().is_empty());
-        told.map(|member| format!("{} {:?} ", member.number, member.character.events())).collect()
+        let with_events = self.cast.iter().filter(|member| !member.character.events().is_empty());
+        with_events.map(|member| format!("{} {:?} ", member.number, member.character.events())).collect()
     }
 
-    /// True if it gives energy that nobody counts.
+    /// True if it adds energy that is not accounted for.
     pub fn drives(&self) -> bool {
         !(self.cast.is_empty() && self.points.is_empty())
     }
 
-    /// Looks at it after a step; `quiet`: steps since the last deed.
+    /// Checks it after a step; `quiet`: steps since the last action.
     ///
     /// # Errors
-    /// If something is as it must not be.
+    /// If an invariant does not hold.
     pub fn look(&mut self, world: &World, temper: Temper, quiet: u32) -> Result<(), Fault> {
         for Member { number, character, .. } in &self.cast {
             let place = character.world_from_character();
@@ -162,7 +164,7 @@ impl Extension {
         Ok(())
     }
 
-    /// Bodies of characters and limbs that forces move.
+    /// Dynamic bodies of characters and limbs.
     fn loose<'a>(&'a self, world: &'a World) -> impl Iterator<Item = BodyId> + 'a {
         let own = self.cast.iter().flat_map(|member| own(&member.character));
         let lost = self.limbs.iter().flat_map(|(.., limb)| limb.bodies().iter().copied());
@@ -194,19 +196,19 @@ impl Extension {
         for body in self.loose(world) {
             let speed = world.velocity(body).linear.length();
             if speed > FAST && world.sleeping(body) == Sleeping::On {
-                return Err(Fault::Limb(format!("{body:?} of a character flies at {speed} m/s")));
+                return Err(Fault::Limb(format!("{body:?} of a character moves at {speed} m/s")));
             }
             for joint in world.joints_of(body).filter(|&joint| world.joint_owner(joint).is_some()) {
                 let gap = world.joint_gap(joint);
                 if gap > GAP {
-                    return Err(Fault::Limb(format!("{joint:?} of a character gapes by {gap} m")));
+                    return Err(Fault::Limb(format!("{joint:?} of a character has a gap of {gap} m")));
                 }
             }
         }
         Ok(())
     }
 
-    /// Takes all of it out of the world.
+    /// Removes everything from the world.
     pub fn empty(&mut self, world: &mut World) {
         self.points.drain(..).for_each(|(_, point)| point.release(world));
         self.limbs.drain(..).for_each(|(.., limb)| limb.despawn(world));
@@ -214,26 +216,26 @@ impl Extension {
         let owned = world
             .joint_ids()
             .find(|&joint| world.joint_owner(joint).is_some_and(|(of, _)| is_ours(&of.name)));
-        assert!(owned.is_none(), "a joint of a character stays: {owned:?}");
+        assert!(owned.is_none(), "a joint of a character remains: {owned:?}");
         let owned =
             world.body_ids().find(|&body| world.body_owner(body).is_some_and(|(of, _)| is_ours(&of.name)));
-        assert!(owned.is_none(), "a body of a character stays: {owned:?}");
+        assert!(owned.is_none(), "a body of a character remains: {owned:?}");
     }
 }
 
-/// True of the names of owners that no life gives.
+/// True for owner names that no other code of the lives uses.
 fn is_ours(name: &str) -> bool {
     name != "cart"
 }
 
-/// Bodies of a character that were not cut off.
+/// Bodies of a character that are not detached.
 pub fn own(character: &Character) -> impl Iterator<Item = BodyId> {
     let bodies = character.bodies().iter().enumerate();
     bodies.filter(|&(index, _)| character.has_body(index)).map(|(_, &body)| body)
 }
 
-/// One of the characters, if there are any.
-pub fn who(a: &Actor, n: &mut Numbers) -> Option<usize> {
+/// Index of one of the characters, if there are any.
+pub fn chosen(a: &Actor, n: &mut Numbers) -> Option<usize> {
     let names: Vec<(u64, usize)> =
         a.more.cast.iter().enumerate().map(|(i, member)| (member.name, i)).collect();
     pick(&names, n.bits(), |_| true)

@@ -1,10 +1,10 @@
-//! Deeds of hands: what characters hold and grab, points that hold them, and limbs that are cut off.
+//! Random actions with grips: held and grabbed bodies, grab points, and detached limbs.
 
 use crate::actor::{Actor, pick, say};
 use crate::characters::to;
 use crate::code::rusty;
 use crate::deeds::Deed;
-use crate::extension::{kinds, part, who};
+use crate::extension::{chosen, kinds, part};
 use crate::numbers::Numbers;
 use sinew_math::{Affine, Reader, Transform, Vec3, Writer};
 use sinew_physics::{BodyId, BodyKind, Strength};
@@ -24,14 +24,14 @@ pub const ALL: &[Deed] = &[
     Deed::new("despawn_limb", 2, despawn_limb),
 ];
 
-/// A body of the world or of somebody.
+/// A body of the world or of a character.
 fn thing(a: &Actor, n: &mut Numbers) -> Option<BodyId> {
     if n.chance(0.4) { a.dynamic(n) } else { part(a, n) }
 }
 
-/// A bone of a character: a hand as likely as all others.
-fn bone(a: &Actor, n: &mut Numbers, who: usize) -> String {
-    let bodies = &a.more.cast[who].character.def().ragdoll.bodies;
+/// A bone of a character; a hand in half of the cases.
+fn bone(a: &Actor, n: &mut Numbers, chosen: usize) -> String {
+    let bodies = &a.more.cast[chosen].character.def().ragdoll.bodies;
     let any = bodies[1 + n.index(bodies.len() - 1)].role.clone();
     if n.chance(0.5) { n.one_of(&["leftHand", "rightHand"]).to_owned() } else { any }
 }
@@ -48,22 +48,22 @@ fn grip(n: &mut Numbers) -> Grab {
 }
 
 fn grab(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    let (bone, held, grab) = (bone(a, n, who), thing(a, n)?, grip(n));
-    let joint = to!(a[who].grab(world, &bone, held, &grab));
+    let chosen = chosen(a, n)?;
+    let (bone, held, grab) = (bone(a, n, chosen), thing(a, n)?, grip(n));
+    let joint = to!(a[chosen].grab(world, &bone, held, &grab));
     say(&mut a.said, "grab", &joint);
     joint.map(|_| ())
 }
 
 fn hold(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    let bone = bone(a, n, who);
+    let chosen = chosen(a, n)?;
+    let bone = bone(a, n, chosen);
     let held =
         a.body(n, |world, id| world.kind(id) == BodyKind::Dynamic && world.body_owner(id).is_none())?;
     let strength = n.one_of(&[Strength::UNBREAKABLE, Strength { force: 500.0, torque: 100.0 }]);
     let at = Vec3::new(0.0, 0.0, n.between(0.0, 0.3));
     let grip = Grip { bone_from_held: Transform::from_translation(at), strength, drops: n.chance(0.5) };
-    let character = &a.more.cast[who].character;
+    let character = &a.more.cast[chosen].character;
     let body = character.def().body_named(&bone).expect("it has that bone");
     let may = character.has_body(body)
         && !character.bodies().is_empty()
@@ -71,36 +71,36 @@ fn hold(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     if !may {
         return None;
     }
-    let joint = to!(a[who].hold(world, &bone, held, &grip));
+    let joint = to!(a[chosen].hold(world, &bone, held, &grip));
     say(&mut a.said, "hold", &joint);
     Some(())
 }
 
 fn release(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    let held: Vec<BodyId> = a.more.cast[who].character.held().collect();
+    let chosen = chosen(a, n)?;
+    let held: Vec<BodyId> = a.more.cast[chosen].character.held().collect();
     if held.is_empty() {
         return None;
     }
     let held = n.one_of(&held);
-    let lets_go = to!(a[who].release(world, held));
+    let lets_go = to!(a[chosen].release(world, held));
     say(&mut a.said, "release", &lets_go);
     Some(())
 }
 
 fn detach(a: &mut Actor, n: &mut Numbers) -> Option<()> {
-    let who = who(a, n)?;
-    let (bone, kind) = (bone(a, n, who), a.more.cast[who].kind);
-    if a.more.cast[who].character.bodies().is_empty() && n.chance(0.5) {
+    let chosen = chosen(a, n)?;
+    let (bone, kind) = (bone(a, n, chosen), a.more.cast[chosen].kind);
+    if a.more.cast[chosen].character.bodies().is_empty() && n.chance(0.5) {
         return None;
     }
-    let limb = to!(a[who].detach(world, &bone))?;
+    let limb = to!(a[chosen].detach(world, &bone))?;
     let name = a.name();
     a.more.limbs.push((name, kind, limb));
     Some(())
 }
 
-/// Number of one of the limbs, if there are any.
+/// Index of one of the limbs, if there are any.
 fn limb(a: &Actor, n: &mut Numbers) -> Option<usize> {
     let names: Vec<(u64, usize)> =
         a.more.limbs.iter().enumerate().map(|(i, &(name, ..))| (name, i)).collect();
@@ -133,28 +133,28 @@ fn ask_limb(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let alpha = n.between(0.0, 1.0);
     let (_, kind, limb) = &a.more.limbs[which];
     let limb = limb.clone();
-    let mut said = String::new();
-    say(&mut said, "parts", &limb.parts());
-    say(&mut said, "bodies", &limb.bodies());
-    say(&mut said, "joints", &limb.joints());
-    say(&mut said, "skin_joints", &limb.skin_joints().collect::<Vec<_>>());
+    let mut code_text = String::new();
+    say(&mut code_text, "parts", &limb.parts());
+    say(&mut code_text, "bodies", &limb.bodies());
+    say(&mut code_text, "joints", &limb.joints());
+    say(&mut code_text, "skin_joints", &limb.skin_joints().collect::<Vec<_>>());
     let mut w = Writer::new();
     limb.save(&mut w);
     let loaded = Limb::load(&kinds()[*kind], &mut Reader::new(w.as_bytes())).expect("a saved limb is valid");
     let mut places: Vec<Affine> = Vec::new();
     loaded.world_from_joints(&a.world, alpha, &mut places);
-    say(&mut said, "world_from_joints", &places);
+    say(&mut code_text, "world_from_joints", &places);
     let mut palette: Vec<[f32; 12]> = Vec::new();
     if !loaded.def().rig.skins.is_empty() {
         loaded.skin_palette(&a.world, 0, alpha, &mut palette);
     }
-    say(&mut said, "skin_palette", &palette);
+    say(&mut code_text, "skin_palette", &palette);
     let calls =
         ["Limb::clone", "Limb::parts", "Limb::bodies", "Limb::joints", "Limb::skin_joints", "Limb::save"];
     calls.into_iter().for_each(|call| a.count(call));
     let calls = ["Limb::load", "Limb::world_from_joints", "Limb::skin_palette", "Limb::def"];
     calls.into_iter().for_each(|call| a.count(call));
-    a.said += &said;
+    a.said += &code_text;
     Some(())
 }
 
@@ -178,7 +178,7 @@ fn take(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// Number of one of the points, if there are any.
+/// Index of one of the grab points, if there are any.
 fn point(a: &Actor, n: &mut Numbers) -> Option<usize> {
     let names: Vec<(u64, usize)> =
         a.more.points.iter().enumerate().map(|(i, &(name, _))| (name, i)).collect();

@@ -1,9 +1,10 @@
-//! Random lives with characters among them: the lives of the physics crate, whose files these are, with characters beside the world
-//! (`extension.rs`) and the deeds of a game to them (`characters.rs`, `grips.rs`).
+//! Random lives with characters: the random lives of the physics crate (this test includes its files), with characters
+//! beside the world (`extension.rs`) and random actions on them (`characters.rs`, `grips.rs`).
 //!
-//! All worlds of a life are equal, and the characters in them: on one thread and on two, loaded into fresh worlds, cloned. Beside what is asked
-//! of every world (`watch.rs`), poses are finite, no body of a character sinks through the floor, no limb flies and no joint gapes where nothing was done for a
-//! while, and nothing is left of characters that were taken out.
+//! All worlds of a life stay equal, and so do their characters: on one thread and on two, loaded into fresh worlds,
+//! cloned. In addition to the checks of every world (`watch.rs`), poses are finite, no body of a character sinks
+//! through the floor, limb speeds and joint gaps are bounded some time after the last action, and removed characters
+//! leave nothing behind.
 //!
 //! A few lives, or ten minutes of them when `SINEW_FULL` is set. `SINEW_LIVES=17..1000` runs the seeds of the range:
 //! `SINEW_LIVES=0..1000 cargo test --release -p sinew_ragdoll --test lives -- --nocapture lives_hold`.
@@ -40,7 +41,7 @@ mod watch;
 
 use planted::Plant;
 
-/// Lives of a plain run of the tests.
+/// Seeds of a plain test run.
 const SOME: &[u64] = &[1, 6, 9, 13, 14];
 
 #[test]
@@ -49,7 +50,7 @@ fn lives_hold_and_make_every_call() {
 }
 
 #[test]
-#[ignore = "for people: prints, asserts nothing"]
+#[ignore = "a manual tool: prints, asserts nothing"]
 fn shorten() {
     search::shorten(SOME);
 }
@@ -63,9 +64,9 @@ fn methods_are_read_from_the_sources() {
     }
 }
 
-/// Prints which lives find each planted fault, and how soon.
+/// Prints which lives find each planted fault, and after how many steps.
 #[test]
-#[ignore = "for people: prints, asserts nothing"]
+#[ignore = "a manual tool: prints, asserts nothing"]
 fn finders() {
     for plant in Plant::ALL {
         println!("{plant:?}: {:?}", plant.found_in(0..20));

@@ -10,7 +10,7 @@ pub fn box_pyramid() -> Blueprint {
     box_pyramid_of(15)
 }
 
-/// The same with `layers` layers.
+/// A square pyramid with `layers` layers.
 pub fn box_pyramid_of(layers: usize) -> Blueprint {
     let mut scene = Blueprint::new("box_pyramid", Sleeping::Off, 300);
     scene.body(fixed(cuboid(Vec3::new(50.0, 1.0, 50.0), Vec3::NEG_Y)));
@@ -30,7 +30,7 @@ pub fn large_pyramid() -> Blueprint {
     large_pyramid_of(100)
 }
 
-/// The same with `rows` rows.
+/// A wall with `rows` rows.
 pub fn large_pyramid_of(rows: usize) -> Blueprint {
     let mut scene = Blueprint::new("large_pyramid", Sleeping::Off, 200);
     scene.body(fixed(cuboid(Vec3::new(400.0, 1.0, 400.0), Vec3::NEG_Y)));
@@ -48,7 +48,7 @@ pub fn box_rain() -> Blueprint {
     box_rain_of(4000)
 }
 
-/// The same with `count` boxes.
+/// Falling boxes, `count` of them.
 pub fn box_rain_of(count: usize) -> Blueprint {
     const SIDE: usize = 12;
     /// Half of the pit's width, metres.
@@ -78,7 +78,7 @@ pub fn boxes_10000() -> Blueprint {
     box_heap(20, 25)
 }
 
-/// The same with `side` × `side` boxes in each of `layers` layers.
+/// A heap with `side` × `side` boxes in each of `layers` layers.
 pub fn box_heap(side: usize, layers: usize) -> Blueprint {
     /// Spacing of the boxes, metres: with their limited rotation, no box reaches further than half of it along an axis.
     const APART: f32 = 0.86;

@@ -28,9 +28,9 @@ pub fn ragdoll_pile() -> Blueprint {
     scene
 }
 
-/// `count` figures in a column are thrown down onto each other: soon a small heap.
+/// `count` figures in a column are thrown down onto each other and form a small heap.
 pub fn ragdoll_column(count: usize) -> Blueprint {
-    /// m/s.
+    /// Initial downward speed, m/s.
     const DOWN: f32 = 8.0;
     let mut scene = Blueprint::new("ragdoll_column", Sleeping::Off, 60);
     scene.body(fixed(cuboid(Vec3::new(50.0, 0.5, 50.0), Vec3::NEG_Y * 0.5)));

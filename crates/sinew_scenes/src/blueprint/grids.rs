@@ -12,7 +12,7 @@ pub fn joint_grid() -> Blueprint {
     joint_grid_of(100)
 }
 
-/// The same with `side` rows of `side` balls.
+/// A net with `side` rows of `side` balls.
 pub fn joint_grid_of(side: usize) -> Blueprint {
     let mut scene = Blueprint::new("joint_grid", Sleeping::Off, 100);
     let place = |row: usize, column: usize| Vec3::new(column as f32, -(row as f32), 0.0);

@@ -26,7 +26,7 @@ pub fn humanoid() -> RagdollDef {
     let analysis = analyze(&rig).expect("the mannequin has a skin");
     let (mut def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
     for body in &mut def.bodies {
-        // Masses stay unchanged: other engines have no tapered capsules.
+        // Masses stay unchanged, because other engines have no tapered capsules.
         if let Shape::TaperedCapsule { half_height, radius_bottom, radius_top } = body.shape {
             body.shape = Shape::Capsule { half_height, radius: 0.5 * (radius_bottom + radius_top) };
         }
@@ -162,7 +162,7 @@ fn kind(joint: &RagdollJointDef, limits: Limits) -> JointKind {
         (JointKind::Ball { limit: Some(limit) }, Limits::Common) => {
             JointKind::Ball { limit: Some(rounded(&limit, from_start(limit.twist))) }
         }
-        // Its twist is locked. Other engines have a range for it, which may be small.
+        // The twist is locked. Other engines have a range for it, which may be small.
         (JointKind::Universal { limit: Some(limit) }, Limits::Common) => {
             JointKind::Ball { limit: Some(rounded(&limit, Range::symmetric(LOCKED))) }
         }

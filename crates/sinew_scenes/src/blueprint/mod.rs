@@ -36,7 +36,7 @@ use sinew::physics::{
 pub struct Blueprint {
     /// Name of the scene.
     pub name: &'static str,
-    /// m/s².
+    /// Gravitational acceleration, m/s².
     pub gravity: Vec3,
     /// Sleeping mode of the bodies.
     pub sleeping: Sleeping,
@@ -68,9 +68,9 @@ pub struct BlueprintJoint {
 /// Ids of a [`Blueprint`]'s bodies and joints in a world, in its order.
 #[derive(Clone, Debug, Default)]
 pub struct Built {
-    /// One for each body.
+    /// Ids of the bodies, in the blueprint's order.
     pub bodies: Vec<BodyId>,
-    /// One for each joint.
+    /// Ids of the joints, in the blueprint's order.
     pub joints: Vec<JointId>,
 }
 
@@ -81,7 +81,7 @@ impl Blueprint {
         Self { name, gravity, sleeping, steps, bodies: Vec::new(), joints: Vec::new(), apart: Vec::new() }
     }
 
-    /// Builds a world of its own.
+    /// Builds a new world with this scene.
     pub fn build(&self) -> (World, Vec<BodyId>, Vec<JointId>) {
         let Self { gravity, sleeping, .. } = *self;
         let mut world = World::new(WorldDef { gravity, sleeping, ..WorldDef::default() });
@@ -89,7 +89,7 @@ impl Blueprint {
         (world, bodies, joints)
     }
 
-    /// Adds its bodies and joints to a world, which keeps its own gravity and sleeping mode.
+    /// Adds the scene's bodies and joints to a world, which keeps its own gravity and sleeping mode.
     pub fn build_into(&self, world: &mut World) -> Built {
         let bodies: Vec<_> = self.bodies.iter().map(|def| world.add_body(def)).collect();
         let joint = |joint: &BlueprintJoint| {

@@ -36,7 +36,7 @@ pub fn stack_ratio(boxes: usize) -> Blueprint {
 /// A tower of blocks of 75 × 15 × 25 mm, three to a level, each level across the one below.
 pub fn jenga(levels: usize) -> Blueprint {
     const HALF: Vec3 = Vec3::new(0.0375, 0.0075, 0.0125);
-    /// Between neighbours of a level, metres.
+    /// Gap between neighbours of a level, metres.
     const GAP: f32 = 0.0002;
     let mut scene = on_floor("jenga");
     for level in 0..levels {
@@ -70,7 +70,7 @@ fn on_floor(name: &'static str) -> Blueprint {
     scene
 }
 
-// Of a card, metres.
+// Thickness of a card, metres.
 const THICKNESS: f32 = 0.002;
 const LENGTH: f32 = 0.4;
 const WIDTH: f32 = 0.2;

@@ -91,9 +91,9 @@ fn rolling(radius: f32) -> Material {
 pub(crate) struct Waves {
     /// Number of cells of 1 m along each side.
     pub cells: usize,
-    /// Height of the crests above the mean, metres.
+    /// Height of the crests above the mean height, metres.
     pub height: f32,
-    /// Along x and z, 1/m.
+    /// Spatial frequencies along x and z, 1/m.
     pub frequencies: [f32; 2],
 }
 

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// A character as drawn in a picture, by its skin.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure<'a> {
-    /// Its joints and meshes.
+    /// Joints and meshes of the character.
     pub rig: &'a Rig,
     /// Transform of each joint from its own space to the world, metres.
     pub world_from_joint: &'a [Affine],
@@ -54,7 +54,7 @@ impl Cast {
         BuiltClip::build(clip, &self.rig, &ClipBuildOptions::default()).expect("clips made by code are good")
     }
 
-    /// The joint of that name.
+    /// Index of the joint of that name.
     pub fn joint(&self, name: &str) -> usize {
         let place = self.rig.joints.iter().position(|joint| joint.name == name);
         place.expect("the rig has a joint of that name")

@@ -5,13 +5,13 @@ use crate::parts::GRAVITY;
 use sinew::math::{Vec3, trig};
 use sinew::physics::{BodyId, World};
 
-/// Measures how the momentum of some bodies changes until they hit another body: only by their weight, whatever their joints and contacts
-/// do among themselves.
+/// Measures how the momentum of some bodies changes until they hit another body. Only their weight may change it,
+/// whatever forces their joints and contacts exchange.
 pub(crate) struct Flight {
     bodies: Vec<BodyId>,
     mass: f32,
     start: Vec3,
-    /// 1/s: share of velocity lost per second.
+    /// Share of velocity lost per second, 1/s.
     damping: f32,
     fall: Option<f32>,
     landed: bool,
@@ -50,7 +50,7 @@ impl Flight {
         if c > 0.0 { (1.0 - trig::exp(-c * time)) / c } else { time }
     }
 
-    /// Mean acceleration until then, against that of gravity.
+    /// Mean acceleration until the first hit, compared to that of gravity.
     pub fn metric(&self) -> Metric {
         Metric::awaited("fall_m_s2", self.fall, Expected::near(GRAVITY, 1e-3))
     }

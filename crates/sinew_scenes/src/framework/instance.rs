@@ -52,7 +52,7 @@ pub trait Script: Send {
     /// Draws additional content of a picture, such as query results.
     fn draw(&self, _world: &World, _out: &mut dyn DebugDraw) {}
 
-    /// Curves that are compared, each in a colour of its own.
+    /// Curves that a picture compares, each in a colour of its own.
     fn curves(&self) -> Vec<Curve> {
         Vec::new()
     }
@@ -72,7 +72,8 @@ pub trait Script: Send {
         &[]
     }
 
-    /// A user pushes a kinematic body, N·s at a point, world space. The world moves none by an impulse; a character falls.
+    /// Called when a user pushes a kinematic body, N·s at a point, world space. An impulse does not move such a body,
+    /// but a character falls.
     fn strike(&mut self, _world: &mut World, _body: BodyId, _impulse: Vec3, _point: Vec3) {}
 
     /// Sets the velocity of the character that a user may control, from the next step on, m/s, world space. Most scenes have none.
@@ -129,7 +130,7 @@ impl Instance {
         self.script.draw(&self.world, out);
     }
 
-    /// Curves that are compared, each in a colour of its own.
+    /// Curves that a picture compares, each in a colour of its own.
     pub fn curves(&self) -> Vec<Curve> {
         self.script.curves()
     }
@@ -161,17 +162,17 @@ impl Instance {
         self.script.steer(way);
     }
 
-    /// Place of that character, metres, world space; `None` in scenes that have none.
+    /// Place of the character that a user may control, metres, world space; `None` in scenes that have none.
     pub fn steered(&self) -> Option<Vec3> {
         self.script.steered()
     }
 
-    /// Its world, for queries, drawing and snapshots.
+    /// World of the instance, for queries, drawing and snapshots.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// Its world, to change it or to load a snapshot of the same scene into it.
+    /// World of the instance, to change it or to load a snapshot of the same scene into it.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
@@ -222,7 +223,7 @@ impl Instance {
         world.update_with(time, |world| step(world, script.as_mut(), health, &World::step, &mut |_| {}))
     }
 
-    /// Number of figures that every scene has, at the end of its own.
+    /// Number of figures that every scene has after its own.
     pub const METRICS_OF_EVERY_SCENE: usize = 2;
 
     /// The figures so far: those of the scene, then `energy_gain_max` and `nan`, which every scene has.
@@ -244,7 +245,7 @@ fn step(
     script.before_step(world);
     let before = world.energy();
     step(world);
-    // Work that the script does by pushes, releases and restarted animations is not part of this step.
+    // Exclude the work that the script does by pushes, releases and restarted animations.
     let (after, mass) = (world.energy(), mass_of(world));
     done(Part { name: Instance::WORLD, count: world.body_ids().count() as u32 });
     script.after_step_in_parts(world, done);
@@ -269,12 +270,12 @@ struct Health {
 
 impl Health {
     fn after_step(&mut self, world: &World, [before, after]: [Energy; 2], mass: f32, work_in: f32) {
-        // Subtract each kind of energy by itself: their sums are large and lose digits.
+        // Subtract each kind of energy separately, because their sums are large and lose digits.
         let rise = (after.kinetic - before.kinetic) + (after.potential - before.potential)
             - (work_in - self.work_in);
         self.work_in = work_in;
         let most = max(before.kinetic, mass);
-        // Where nothing has a mass, nothing has energy.
+        // A world without masses has no energy.
         self.energy_gain_max = max(self.energy_gain_max, if most > 0.0 { rise / most } else { 0.0 });
         self.quarantined += world.events().quarantined.len() as u32;
     }

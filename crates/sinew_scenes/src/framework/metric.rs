@@ -3,32 +3,32 @@
 /// Expectation of a figure at the end of a scene's steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Expected {
-    /// A closed form and its tolerance.
+    /// The value of a closed form within a tolerance.
     Near {
-        /// The closed form.
+        /// Value of the closed form.
         value: f64,
-        /// Absolute, in the figure's unit.
+        /// Absolute tolerance, in the figure's unit.
         tolerance: f64,
     },
-    /// No more than this.
+    /// At most this value.
     AtMost(f64),
-    /// Printed for interest.
+    /// Any value; the figure is only printed.
     Anything,
 }
 
 impl Expected {
-    /// Within a share of the value itself.
+    /// Expects a value within a relative tolerance.
     pub(crate) fn near(value: impl Into<f64>, share: f64) -> Self {
         let value = value.into();
         Self::Near { value, tolerance: value.abs() * share }
     }
 }
 
-/// A figure of a run, computed from queries to the world alone. The unit is the end of its name: `_m`, `_s`, `_j`, `_deg` …; shares and
-/// counts have none.
+/// A figure of a run, computed from queries to the world alone. Its name ends in its unit: `_m`, `_s`, `_j`, `_deg` and
+/// so on; shares and counts have none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
-    /// Unique in its scene.
+    /// Name, unique in its scene.
     pub name: &'static str,
     /// `None` if the measured event has not happened yet.
     pub value: Option<f64>,
@@ -41,7 +41,7 @@ impl Metric {
         Self { name, value: Some(value.into()), expected }
     }
 
-    /// Figure of something that may not have happened yet.
+    /// Creates the figure of an event that may not have happened yet.
     pub(crate) fn awaited(name: &'static str, value: Option<f32>, expected: Expected) -> Self {
         Self { name, value: value.map(f64::from), expected }
     }

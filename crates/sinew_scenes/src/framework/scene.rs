@@ -20,7 +20,7 @@ pub enum Chapter {
     Piles,
     /// Limp and driven figures.
     Ragdolls,
-    /// Clips, movers, characters that live.
+    /// Clips, movers, simulated characters.
     Characters,
     /// Worlds to look around in.
     Shows,
@@ -46,11 +46,11 @@ impl Chapter {
 /// A named scenario.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
-    /// Chapter that it stands in.
+    /// Chapter that contains it.
     pub chapter: Chapter,
     /// Name of the scene for `sinew run`.
     pub name: &'static str,
-    /// One line for people.
+    /// Description of one line for people.
     pub about: &'static str,
     /// Steps of 1/60 s after which its expectations hold.
     pub steps: u32,
@@ -59,12 +59,12 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Its settings at their defaults.
+    /// The scene's settings at their defaults.
     pub fn settings(&self) -> Settings {
         Settings::new(self.settings)
     }
 
-    /// Builds it.
+    /// Builds the scene.
     ///
     /// # Panics
     /// If the settings are of another scene, or a required one is missing: see [`Settings::check`].
@@ -72,8 +72,8 @@ impl Scene {
         self.start_under(settings, 1.0)
     }
 
-    /// Builds it in a world with gravity scaled by a factor, with the expectations of the unscaled gravity. The expectations must fail
-    /// wherever gravity matters.
+    /// Builds the scene in a world with gravity scaled by a factor, with the expectations of the unscaled gravity. The
+    /// expectations must fail wherever gravity matters.
     ///
     /// # Panics
     /// If the settings are those of another scene.

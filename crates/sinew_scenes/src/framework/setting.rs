@@ -30,13 +30,13 @@ pub enum Domain {
 /// A setting of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// Its name.
+    /// Name of the setting.
     pub key: &'static str,
     /// Description, with its unit.
     pub about: &'static str,
     /// Default value; 0 for a file.
     pub default: f32,
-    /// Values that it may have.
+    /// Values that are allowed.
     pub domain: Domain,
 }
 
@@ -75,7 +75,7 @@ impl Setting {
         Self { key, about, default: 0.0, domain: Domain::Motion }
     }
 
-    /// The number that a text is; a file has none.
+    /// Parses a number; returns `None` for a setting that is a file.
     fn parse(&self, text: &str) -> Option<f32> {
         match self.domain {
             Domain::Number(lo, hi) => text.parse().ok().filter(|value| (lo..=hi).contains(value)),
@@ -91,7 +91,7 @@ impl Setting {
 /// Reason why a setting was refused, in one line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingError {
-    /// It is not `key=value`.
+    /// The text is not `key=value`.
     #[error("`{0}` is not key=value")]
     NotAnAssignment(String),
     /// The scene has no such setting.
@@ -102,20 +102,20 @@ pub enum SettingError {
         /// Existing keys.
         known: Vec<&'static str>,
     },
-    /// Its value is not one that it takes.
-    #[error("`{value}` is no value for `{key}`: it takes {domain}")]
+    /// The setting does not allow this value.
+    #[error("`{key}` does not allow `{value}`: it takes {domain}")]
     Value {
         /// The setting.
         key: &'static str,
         /// Value that was given.
         value: String,
-        /// Values that it takes.
+        /// Values that the setting allows.
         domain: String,
     },
-    /// The file that it names cannot be read.
+    /// The named file cannot be read.
     #[error(transparent)]
     File(#[from] sinew::formats::Error),
-    /// The scene cannot start without it.
+    /// The scene cannot start without this setting.
     #[error("`{key}` is not set: it takes {domain}")]
     Missing {
         /// The setting.
@@ -164,7 +164,7 @@ impl Settings {
         self.declared
     }
 
-    /// Sets one by `key=value`.
+    /// Sets one setting by `key=value`.
     ///
     /// # Errors
     /// See [`SettingError`].
@@ -234,7 +234,7 @@ impl Settings {
         }
     }
 
-    /// Number that a setting is set to.
+    /// Number value of a setting.
     ///
     /// # Panics
     /// If there is no such setting.
@@ -261,19 +261,19 @@ impl Setup<'_> {
     }
 
     /// # Panics
-    /// If it is not set: see [`Settings::check`].
+    /// If the model is not set: see [`Settings::check`].
     pub fn model(&self) -> &MjcfModel {
         self.settings.model.as_ref().expect("the model is set")
     }
 
     /// # Panics
-    /// If it is not set: see [`Settings::check`].
+    /// If the level is not set: see [`Settings::check`].
     pub fn level(&self) -> &TriangleMesh {
         self.settings.level.as_ref().expect("the level is set")
     }
 
     /// # Panics
-    /// If it is not set: see [`Settings::check`].
+    /// If the motion is not set: see [`Settings::check`].
     pub fn motion(&self) -> &Performance {
         self.settings.motion.as_ref().expect("the motion is set")
     }
@@ -296,13 +296,13 @@ impl Setup<'_> {
         World::new(WorldDef { sleeping, ..self.world_def() })
     }
 
-    /// Definition of a world that differs from the usual one in more than sleep.
+    /// Definition of a world that differs from the usual one in more than its sleeping mode.
     pub fn world_def(&self) -> WorldDef {
         WorldDef { gravity: Vec3::NEG_Y * (GRAVITY * self.gravity_factor), ..WorldDef::default() }
     }
 }
 
-/// Free space, in which nothing falls asleep.
+/// Creates a world without gravity, in which nothing falls asleep.
 pub(crate) fn weightless_world() -> World {
     World::new(WorldDef { gravity: Vec3::ZERO, sleeping: Sleeping::Off, ..WorldDef::default() })
 }

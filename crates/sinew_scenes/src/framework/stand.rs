@@ -11,17 +11,17 @@ use sinew::physics::{BodyId, World};
 /// Largest allowed motion of standing bodies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bars {
-    /// Sideways, any body, metres.
+    /// Sideways motion of any body, metres.
     pub shift: f64,
-    /// Sideways, the last body, metres.
+    /// Sideways motion of the last body, metres.
     pub top_drift: f64,
-    /// Downward, any body, metres: contacts sink by the weight above them.
+    /// Downward motion of any body, metres: contacts sink by the weight above them.
     pub sink: f64,
-    /// Turn of any body, degrees.
+    /// Rotation of any body, degrees.
     pub turn: f64,
     /// Deepest overlap of two bodies at the end, metres.
     pub depth: f64,
-    /// When the last one falls asleep, seconds from the start.
+    /// Time from the start to the sleep of the last body, seconds.
     pub asleep: Expected,
 }
 
@@ -32,13 +32,13 @@ pub(crate) struct Stand {
     /// Free fall of a body, to verify gravity.
     flight: Flight,
     bars: Bars,
-    /// Around all of them.
+    /// Bounds around all of them.
     bounds: Aabb,
     asleep: Option<f32>,
 }
 
 impl Stand {
-    /// Stand of bodies where they are now.
+    /// Creates the measurement of bodies at their present places.
     pub fn new(world: &World, bodies: &[BodyId], flight: Flight, bars: Bars) -> Self {
         let placed: Vec<_> = bodies.iter().map(|&id| (id, center(world, id))).collect();
         let centers = placed.iter().map(|(_, at)| Aabb::around(at.translation, Vec3::ZERO));
@@ -52,12 +52,12 @@ impl Stand {
     }
 }
 
-/// Its centre of mass, rotated with it.
+/// Centre of mass of a body, with the body's rotation.
 pub(crate) fn center(world: &World, id: BodyId) -> Transform {
     Transform::new(world.center_of_mass(id), world.transform(id).rotation)
 }
 
-/// Sideways, metres.
+/// Horizontal distance of two transforms, metres.
 pub(crate) fn shift(from: Transform, to: Transform) -> f32 {
     let moved = to.translation - from.translation;
     Vec3::new(moved.x, 0.0, moved.z).length()

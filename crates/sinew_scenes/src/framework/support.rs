@@ -11,7 +11,7 @@ pub(crate) struct Support {
     joints: Vec<(JointId, bool)>,
     /// Weight of the world, N.
     weight: f32,
-    /// N·s.
+    /// Momentum of the world, N·s.
     momentum: Vec3,
     /// The largest error, as a share of the weight.
     error: f32,
@@ -34,7 +34,7 @@ impl Support {
     }
 
     pub fn after_step(&mut self, world: &World) {
-        // A reaction is that on the second body.
+        // The reaction of a joint acts on its second body.
         let on_world = |&(id, static_first): &(JointId, bool)| {
             let force = world.reaction(id).force;
             if static_first { force } else { -force }

@@ -4,9 +4,9 @@
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Turn {
     last: Option<f32>,
-    /// Radians.
+    /// Sum of the motion, radians.
     sum: f64,
-    /// s.
+    /// Time in which the angle moved, s.
     time: f64,
 }
 
@@ -28,7 +28,7 @@ impl Turn {
         self.last = Some(angle);
     }
 
-    /// rad/s.
+    /// Mean rate of the angle, rad/s.
     pub fn rate(&self) -> Option<f32> {
         (self.time > 0.0).then(|| (self.sum / self.time) as f32)
     }

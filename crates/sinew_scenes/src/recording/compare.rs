@@ -8,18 +8,18 @@ use sinew::physics::{BodyId, World};
 /// First difference of two recordings.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Difference {
-    /// They are of different scenes or settings.
+    /// The recordings have different scenes or settings.
     Scene,
-    /// Their states differ after that many steps, and were equal before.
+    /// The states differ after that many steps, and were equal before.
     State {
-        /// Steps taken.
+        /// Number of steps taken.
         step: u64,
         /// First body whose pose differs, with both poses; `None` if no pose differs, or if neither recording can be replayed.
         body: Option<(BodyId, [Transform; 2])>,
     },
-    /// One has more steps; all common steps are equal.
+    /// One recording has more steps; all common steps are equal.
     Length {
-        /// Steps that both have.
+        /// Number of steps that both recordings have.
         common: u64,
     },
 }

@@ -22,7 +22,7 @@ pub struct Recording {
     pub made_by: String,
     /// Name of the scene.
     pub scene: String,
-    /// Its settings that were not at their defaults, `key=value`.
+    /// Settings that were not at their defaults, `key=value`.
     pub settings: Vec<String>,
     /// Length of a step, seconds.
     pub dt: f32,
@@ -51,7 +51,8 @@ pub struct KeyFrame {
 }
 
 impl Recording {
-    /// The bytes of the file: the head, steps by the block, and key frames by the block, each block with its checksum.
+    /// Returns the bytes of the file: the head, blocks of steps, and blocks of key frames, each block with its
+    /// checksum.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Writer::new();
         out.raw(MAGIC);
@@ -78,10 +79,10 @@ impl Recording {
         out.f32(self.dt);
     }
 
-    /// Reads a file.
+    /// Reads a recording from the bytes of a file.
     ///
     /// # Errors
-    /// Bytes that are no recording, fail their checksums, end too early, or have a later format.
+    /// If the bytes are no recording, fail their checksums, end too early, or have a later format.
     pub fn read(bytes: &[u8]) -> Result<Self, Error> {
         if bytes.get(..MAGIC.len()) != Some(MAGIC) {
             return Err(Error::malformed("is no recording", "byte 0"));
@@ -142,7 +143,7 @@ impl Recording {
         }
         recording.dt = reader.f32()?;
         if !(recording.dt > 0.0 && recording.dt < 10.0) {
-            return Err(reader.error("a step of no length"));
+            return Err(reader.error("the length of a step is 0"));
         }
         Ok(recording)
     }
@@ -156,12 +157,12 @@ fn write_checked(out: &mut Writer, write: impl FnOnce(&mut Writer)) {
     out.u64(hash_bytes(content.as_bytes()));
 }
 
-/// Reads a block and verifies the hash of its content.
+/// Reads a block and verifies the checksum of its content.
 fn checked<'a>(reader: &mut Reader<'a>) -> Result<Reader<'a>, ReadError> {
     let block = reader.block()?;
     let content = block.clone().raw(block.remaining())?;
     if reader.u64()? != hash_bytes(content) {
-        return Err(block.error("is damaged: a block has another checksum than was written"));
+        return Err(block.error("is damaged: the checksum of a block does not match its content"));
     }
     Ok(block)
 }
@@ -169,7 +170,7 @@ fn checked<'a>(reader: &mut Reader<'a>) -> Result<Reader<'a>, ReadError> {
 fn write_step(out: &mut Writer, step: &RecordedStep) {
     out.u64(step.hash);
     out.count(step.operations.len());
-    // Write each in a block, so that a reader can skip unknown kinds.
+    // Write each operation in a block, so that a reader can skip unknown kinds.
     step.operations.iter().for_each(|operation| out.block(|out| write_operation(out, operation)));
 }
 
@@ -204,7 +205,7 @@ fn transform(reader: &mut Reader<'_>) -> Result<Transform, ReadError> {
     let place = reader.transform()?;
     let rotation = place.rotation;
     let is_sound = place.translation.is_finite() && rotation.vector().is_finite() && rotation.w.is_finite();
-    if is_sound { Ok(place) } else { Err(reader.error("a pose that is not finite")) }
+    if is_sound { Ok(place) } else { Err(reader.error("a pose is not finite")) }
 }
 
 fn wrong(error: &ReadError) -> Error {
@@ -260,7 +261,7 @@ fn write_operation(out: &mut Writer, operation: &Operation) {
     }
 }
 
-/// `None` for a kind that this version does not know.
+/// Reads an operation; returns `None` for a kind that this version does not support.
 fn read_operation(reader: &mut Reader<'_>) -> Result<Option<Operation>, ReadError> {
     let body = |reader: &mut Reader<'_>| reader.u64().map(BodyId::from_bits);
     Ok(Some(match reader.u8()? {

@@ -7,7 +7,7 @@ use sinew::physics::{
     Softness, World,
 };
 
-/// User operation on a running scene, between two steps. Lengths in metres, world space.
+/// User operation on a running scene between two steps. Lengths are in metres, positions in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operation {
     /// Takes hold of a body at a point.
@@ -19,43 +19,43 @@ pub enum Operation {
     },
     /// Pulls the grabbed body toward a point.
     Lead {
-        /// The point.
+        /// Point toward which the body is pulled.
         to: Vec3,
     },
-    /// Lets go.
+    /// Releases the grabbed body.
     Release,
     /// Applies an impulse to a body, or pushes the character whose clips move it.
     Push {
         /// The body; if it does not exist or is static, nothing happens.
         body: BodyId,
-        /// N·s.
+        /// Impulse, N·s.
         impulse: Vec3,
         /// Point of application.
         point: Vec3,
     },
     /// Throws a ball.
     Throw {
-        /// Its centre.
+        /// Position of the ball's centre.
         position: Vec3,
-        /// m/s.
+        /// Velocity of the ball, m/s.
         velocity: Vec3,
-        /// Metres, above 0.
+        /// Radius of the ball, metres; above 0.
         radius: f32,
-        /// kg/m³, above 0.
+        /// Density of the ball, kg/m³; above 0.
         density: f32,
     },
     /// Sets the velocity of the character that a user may control; in scenes without one, nothing happens.
     Steer {
-        /// m/s.
+        /// Velocity, m/s.
         way: Vec3,
     },
     /// Adds a box to the world.
     Put {
-        /// Its centre.
+        /// Position of the box's centre.
         position: Vec3,
-        /// Half of each side, metres, above 0.
+        /// Half of each side, metres; above 0.
         half_extents: Vec3,
-        /// kg/m³, above 0.
+        /// Density of the box, kg/m³; above 0.
         density: f32,
     },
 }
@@ -68,7 +68,7 @@ const STRENGTH: f32 = 12.0;
 /// Weight of a kilogram, N.
 const WEIGHT: f32 = 9.81;
 
-/// Hands of a user in a world: the grabbed body. Plain data beside the world; their effects are in its snapshot.
+/// The body that a user grabbed in a world. Plain data beside the world; the effects are in the world's snapshot.
 #[derive(Clone, Debug, Default)]
 pub struct Hands {
     grip: Option<Grip>,
@@ -87,13 +87,13 @@ struct Grip {
 /// Spring of a hand with a limited force.
 #[derive(Clone, Copy, Debug)]
 struct Pull {
-    /// N.
+    /// Largest force, N.
     max_force: f32,
     softness: Softness,
 }
 
 impl Pull {
-    /// Critically damped spring for a mass, kg.
+    /// Creates a critically damped spring for a mass, kg.
     fn on(mass: f32) -> Self {
         let omega = HERTZ * core::f32::consts::TAU;
         let softness = Softness::Stiffness { stiffness: mass * omega * omega, damping: 2.0 * mass * omega };
@@ -198,7 +198,8 @@ fn mass_together(world: &World, body: BodyId) -> f32 {
 }
 
 impl Operation {
-    /// The same operation on the body with that number in any world: ids belong to one world, and a replay runs in another.
+    /// Returns the operation on the body with the same index in any world: ids belong to one world, and a replay runs
+    /// in another.
     pub(super) fn of_any_world(mut self) -> Self {
         if let Self::Grab { body, .. } | Self::Push { body, .. } = &mut self {
             *body = BodyId::from_bits(body.to_bits());
@@ -216,7 +217,7 @@ impl Operation {
         }
     }
 
-    /// Returns true if its numbers are finite and at most 10⁶ m, and its sizes above 0.
+    /// Returns true if the numbers are finite and at most 10⁶ m, and the sizes above 0.
     fn is_sound(&self) -> bool {
         let near = |v: Vec3| v.to_array().into_iter().all(|x| x.abs() < 1e6);
         let positive = |x: f32| x > 1e-4 && x < 1e6;

@@ -42,7 +42,7 @@ impl Recorder {
         Ok(Self::of(instance_of(scene, settings)?, scene, settings))
     }
 
-    /// Recorder of an instance without steps so far, made from that scene with those settings.
+    /// Creates the recorder of an instance that has taken no steps, made from that scene with those settings.
     pub fn of(instance: Instance, scene: &str, settings: &[String]) -> Self {
         let world = instance.world();
         let recording = Recording {
@@ -61,7 +61,7 @@ impl Recorder {
         &self.instance
     }
 
-    /// Hands, and the bodies that they hold.
+    /// The user's hands with the bodies that they hold.
     pub fn hands(&self) -> &Hands {
         &self.hands
     }
@@ -109,7 +109,7 @@ fn key_frame(world: &World) -> KeyFrame {
     KeyFrame { step: world.step_count(), bodies }
 }
 
-/// A recording in replay: the operations are applied again.
+/// A recording in replay: the recorded operations are applied again.
 pub struct Replay {
     instance: Instance,
     hands: Hands,
@@ -136,10 +136,10 @@ impl Mark {
     }
 }
 
-/// A replayed step.
+/// Hashes of a replayed step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReplayedStep {
-    /// Steps taken, this one included.
+    /// Number of steps taken, including this one.
     pub step: u64,
     /// Recorded hash of the state.
     pub recorded: u64,
@@ -162,7 +162,7 @@ impl Replay {
         &self.instance
     }
 
-    /// Hands, and the bodies that they hold.
+    /// The user's hands with the bodies that they hold.
     pub fn hands(&self) -> &Hands {
         &self.hands
     }

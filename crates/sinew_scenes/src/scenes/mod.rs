@@ -1,4 +1,4 @@
-//! Named scenarios: each builds a world, drives it, and says by figures whether the physics holds.
+//! Named scenarios: each builds a world, drives it, and verifies the physics by figures.
 //!
 //! ```
 //! let scene = sinew_scenes::scenes::find("pendulum").expect("it is one of the registry's");
@@ -30,7 +30,7 @@ pub use crate::framework::metric::{Expected, Metric};
 pub use crate::framework::scene::{Chapter, Scene};
 pub use crate::framework::setting::{Domain, Setting, SettingError, Settings};
 
-/// All scenes, closed forms first.
+/// All scenes, those with closed forms first.
 pub fn registry() -> &'static [Scene] {
     REGISTRY
 }
@@ -159,10 +159,10 @@ const REGISTRY: &[Scene] = &[
     characters::skirt::SKIRT_SCENE,
 ];
 
-/// Scenes that need a file of the user's, and so are in no list.
+/// Scenes that need a file of the user's, so the registry does not list them.
 const OF_FILES: &[Scene] = &[ragdolls::mjcf::DROP, ragdolls::house::HOUSE, characters::mocap::MOCAP];
 
-/// The scene of that name; of those that need a file, too, which the registry does not list.
+/// Finds the scene of that name, also among those that need a file.
 pub fn find(name: &str) -> Option<&'static Scene> {
     registry().iter().chain(OF_FILES).find(|scene| scene.name == name)
 }

@@ -14,7 +14,7 @@ use sinew::physics::{MoverDef, MoverId, World};
 /// Number of steps of a random walk, and of steps between turns.
 pub const STEPS: usize = 120;
 const TURNS: usize = 20;
-/// Steps in which it comes to rest before its surroundings are checked.
+/// Number of steps in which it comes to rest before its surroundings are checked.
 const SETTLES: usize = 60;
 /// Depth from which a capsule counts as inside a body, metres.
 pub const INSIDE: f32 = 0.005;
@@ -162,14 +162,14 @@ impl Tally {
             let is_through = (now - before).length() > LONG && on.parts(before, now);
             if is_through || now.y < -0.01 {
                 self.through += 1;
-                return Err(format!("through something from {before} to {now}"));
+                return Err(format!("went through a body from {before} to {now}"));
             }
         }
         if worst > INSIDE { Err(format!("{worst} m inside at {place}")) } else { Ok(()) }
     }
 
-    /// Lets a walker stand, and sends it to the farthest reachable place; returns where it is stuck. A walker that slides off a rim on the
-    /// way searches again from there.
+    /// Lets a walker stand still, and sends it to the farthest reachable place; returns where it is stuck. A walker
+    /// that slides off an edge on the way searches again from there.
     fn explore(&mut self, on: &Terrain, walker: &mut dyn Walker) -> Result<(), String> {
         const TRIES: usize = 3;
         let (mut places, mut stuck) = (0, None);
@@ -185,7 +185,9 @@ impl Tally {
                     stuck = None;
                     break;
                 }
-                Err([to, from]) => stuck = Some(format!("at {}, from {from} to {to}", walker.feet())),
+                Err([to, from]) => {
+                    stuck = Some(format!("stuck at {} on the way from {from} to {to}", walker.feet()))
+                }
             }
         }
         self.floods += usize::from(places > 0);

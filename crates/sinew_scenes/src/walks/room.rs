@@ -59,10 +59,10 @@ impl Room {
         self.places.len()
     }
 
-    /// Walks to the place found last.
+    /// Walks to the place that was found last.
     ///
     /// # Errors
-    /// The place that it does not reach, and the one before that.
+    /// The place that the walker does not reach, and the one before that.
     pub fn walk(&self, walker: &mut dyn Walker) -> Result<(), [Vec3; 2]> {
         let mut path = vec![self.len() - 1];
         while let Some(&at) = path.last().filter(|at| **at != 0) {
@@ -109,7 +109,7 @@ fn step(on: &Terrain, feet: Vec3, way: Vec3, margin: f32) -> Option<Vec3> {
     let hit = cast(feet + up + way, down)?;
     let place = feet + up + way + down * hit.fraction;
     let steepest = trig::cos(SHARE * def.slope_limit);
-    // Flat, or the edge of a tread that is.
+    // The floor is flat, or the edge of a flat tread.
     let inward = -(hit.normal * Vec3::new(1.0, 0.0, 1.0)).normalize_or_zero();
     let looks = Ray {
         origin: hit.point + inward * BEHIND_EDGE + Vec3::Y * OVER_EDGE,

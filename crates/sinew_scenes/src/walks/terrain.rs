@@ -94,7 +94,7 @@ impl Terrain {
         Self::new(bodies, Vec::new(), [Vec3::new(-5.5, 0.05, -5.5), Vec3::new(5.5, 2.5, 5.5)])
     }
 
-    /// A step across +x, with its edge at the origin, of a height in metres.
+    /// A step of `height` metres across +x, with its edge at the origin.
     pub fn tread(height: f32) -> Self {
         let half_extents = Vec3::new(5.0, 0.5 * height, 20.0);
         let tread = BodyDef::fixed(Shape::Box { half_extents }).at(Vec3::new(5.0, 0.5 * height, 0.0));
@@ -107,7 +107,7 @@ impl Terrain {
         build(&self.bodies)
     }
 
-    /// A random place for the feet of the capsule of [`capsule`], with room around it.
+    /// A random place for the feet of the walks' capsule, with room around it.
     pub fn free_place(&self, random: &mut Random) -> Vec3 {
         loop {
             let mut between = |axis: usize| random.range(self.within.min[axis], self.within.max[axis]);
@@ -119,7 +119,7 @@ impl Terrain {
         }
     }
 
-    /// Depth by which the capsule is inside of anything, metres; 0 if it is not.
+    /// Depth of the capsule inside of anything, metres; 0 if it is outside.
     pub fn depth(&self, feet: Vec3) -> f32 {
         let mut found = Vec::new();
         self.world.query().all(&PenetrationOf(probe(feet, 0.0)), &mut found);

@@ -14,7 +14,7 @@ fn check(scene: &Blueprint, bodies: usize, dynamic: usize, joints: usize) {
         assert!((world.transform(id).translation - def.position).length() < 1e-5, "{name}");
     }
     for &joint in &joint_ids {
-        // A few units in the last place 100 m from the origin.
+        // A few units in the last place at 100 m from the origin.
         assert!(world.joint_gap(joint) < 5e-5, "{name}: a gap of {} m", world.joint_gap(joint));
         assert!(world.joint_overshoot(joint) < 1e-3, "{name}");
     }

@@ -46,15 +46,15 @@ fn stairs_go_down_to_the_ground_in_equal_steps() {
     let treads = (0..=STEPS).map(|k| height(&props, 0.3, (k as f32 - 0.5) * STEP_RUN));
     for (k, top) in treads.enumerate() {
         let expected = PORCH_HEIGHT - k as f32 * STEP_RISE;
-        assert!((top - expected).abs() < 1e-4, "after step {k}: {top} m, not {expected}");
+        assert!((top - expected).abs() < 1e-4, "height after step {k}: {top} m, not {expected}");
     }
     let step = props.iter().find(|p| p.name == "step").and_then(half_extents).expect("a step");
     assert!((2.0 * step.x - STAIRS_WIDTH).abs() < 1e-5);
 }
 
-/// A walker's box, 0.8 m wide and 1.8 m high, meets nothing from the start to the first step.
+/// A walker's box, 0.8 m wide and 1.8 m high, touches nothing from the start to the first step.
 #[test]
-fn the_way_to_the_stairs_is_level_and_free() {
+fn path_to_the_stairs_is_level_and_free() {
     for site in [Site::CabinWithStairs, Site::Flat] {
         let (props, spawn) = (site.props(), site.spawn());
         let start = spawn.world_from_character.translation;

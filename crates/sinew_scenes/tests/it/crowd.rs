@@ -1,4 +1,4 @@
-//! The crowd: a save at any moment continues equally, and walking allocates nothing.
+//! The crowd: a saved one continues equally, and a walking one allocates nothing.
 
 use sinew::math::{Reader, Writer};
 use sinew_scenes::scenes::{Instance, find};
@@ -23,7 +23,7 @@ fn figure(run: &Instance, name: &str) -> f64 {
 }
 
 #[test]
-fn a_saved_crowd_continues_equally() {
+fn saved_crowd_continues_equally() {
     let mut run = started(&["n=6", "waves=2"]);
     let mut seen = [0.0; 4];
     for moment in [20, 60, 130, 190, 240, 300, 330, 400, 460] {
@@ -47,12 +47,12 @@ fn a_saved_crowd_continues_equally() {
             assert!(other.load(&mut Reader::new(&saved[..length])).is_err(), "{length} bytes");
         }
     }
-    assert!(seen.iter().all(|&most| most > 0.0), "someone is in every state: {seen:?}");
+    assert!(seen.iter().all(|&most| most > 0.0), "a state did not occur: {seen:?}");
 }
 
 #[test]
-fn a_walking_crowd_allocates_nothing() {
-    // Before the first hit.
+fn walking_crowd_allocates_nothing() {
+    // The run ends before the first hit.
     let mut run = started(&["n=5"]);
     (0..14).for_each(|_| run.step());
     let counted = allocation_counter::measure(|| (0..30).for_each(|_| run.step()));

@@ -103,7 +103,7 @@ fn parts(primitive: &Primitive) -> Vec<usize> {
 }
 
 #[test]
-fn every_part_encloses_volume_and_all_a_persons() {
+fn every_part_encloses_volume_and_all_parts_that_of_a_person() {
     let (mut count, mut total) = (0, 0.0);
     for primitive in primitives() {
         let label = parts(&primitive);

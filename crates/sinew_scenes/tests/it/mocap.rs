@@ -1,4 +1,4 @@
-//! A captured walk.
+//! A captured walk on several bodies.
 
 use needs_data::needs_data;
 use sinew_scenes::scenes::{SettingError, find};
@@ -7,7 +7,7 @@ const WALK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/mo
 
 #[needs_data]
 #[test]
-fn a_captured_walk_fits_three_bodies() {
+fn captured_walk_fits_three_bodies() {
     let scene = find("mocap").expect("it can be found");
     let mut settings = scene.settings();
     settings.assign(&format!("motion={WALK}")).expect("the walk can be read");

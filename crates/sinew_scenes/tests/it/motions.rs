@@ -140,7 +140,7 @@ fn skin_stays_above_the_floor_and_touches_it() {
 #[test]
 fn runners_and_boxers_are_on_the_floor_or_above_it() {
     let character = mannequin();
-    // Except in a run.
+    // A run has a phase of flight.
     for (clip, highest) in [(walking(Path::Circle(2.0)).clip, 0.02), (running().clip, 0.08), (punch(), 0.02)]
     {
         for time in times(&clip).step_by(4) {
@@ -180,9 +180,9 @@ fn getting_up_starts_lying_and_ends_upright() {
         let clip = &character.clips[index];
         let start = model_at(&character, clip, 0.0);
         assert!(start[hips].translation.y < 0.13 && start[head].translation.y < 0.2, "{} lies", clip.name);
-        assert!(start[hips].vector(Vec3::Z).y * belly_up > 0.95, "{}: which way up", clip.name);
+        assert!(start[hips].vector(Vec3::Z).y * belly_up > 0.95, "{}: lies on the wrong side", clip.name);
         let along = (start[head].translation - start[hips].translation) * -belly_up;
-        assert!(along.z > 0.5, "{}: will face +Z", clip.name);
+        assert!(along.z > 0.5, "{}: does not lie toward +Z", clip.name);
         let end = model_at(&character, clip, clip.duration);
         assert!(end[head].translation.y > 1.5 && end[hips].vector(Vec3::Z).z > 0.99);
         assert!((2.0..3.5).contains(&clip.duration));

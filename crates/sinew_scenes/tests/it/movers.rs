@@ -14,7 +14,8 @@ const WORLDS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/
 /// Number of walks per seed.
 const SHARE: usize = 20;
 
-/// Seeds of `all` random walks, `SHARE` of them each: the first, all with `SINEW_FULL=1` set, or with `SINEW_FULL=k/n` the k-th of n parts.
+/// Seeds of `all` random walks, `SHARE` walks each: the first seed, all with `SINEW_FULL=1` set, or with
+/// `SINEW_FULL=k/n` the k-th of n parts.
 fn seeds(all: usize) -> impl Iterator<Item = u64> {
     let all = (all / SHARE) as u64;
     let part = std::env::var("SINEW_FULL").ok();
@@ -63,8 +64,8 @@ fn depth(world: &World, id: MoverId) -> f32 {
     found.first().map_or(0.0, |deepest| deepest.depth)
 }
 
-/// Runs walks, `SHARE` for a seed, on the ground of that seed, never inside or through; from the end of each the mover reaches
-/// the farthest place that a flood fill finds, `places` or more on average.
+/// Runs `SHARE` walks for each seed on the ground of that seed, never inside of or through a body. From the end of each
+/// the mover reaches the farthest place that a flood fill finds, `places` or more on average.
 fn wander(name: &str, all: usize, places: usize, ground: impl Fn(u64) -> Terrain) {
     let mut tally = Tally::default();
     for seed in seeds(all) {
@@ -113,9 +114,9 @@ fn walks_in_clutter() {
     wander("clutter", 2_000, 50, Terrain::clutter);
 }
 
-/// Out of the door, down the stairs, and back up, at 1 to 6 m/s.
+/// The mover walks out of the door, down the stairs, and back up, at 1 to 6 m/s.
 #[test]
-fn the_cabins_stairs_down_and_up_without_leaving_the_ground() {
+fn mover_walks_the_cabins_stairs_down_and_up_on_the_ground() {
     for speed in [1.0, 2.0, 3.5, 6.0] {
         let mut world = cabin();
         let start = Site::CabinWithStairs.spawn().world_from_character.translation;
@@ -129,7 +130,7 @@ fn the_cabins_stairs_down_and_up_without_leaving_the_ground() {
                 world.step();
                 let mover = world.mover(id);
                 assert!(mover.is_grounded(), "{speed} m/s: off the ground at {}", mover.position());
-                assert!(world.step_count() < 2_000, "{speed} m/s: it stays at {}", mover.position());
+                assert!(world.step_count() < 2_000, "{speed} m/s: stuck at {}", mover.position());
                 assert_eq!(depth(&world, id), 0.0);
             }
             let height = world.mover(id).position().y;
@@ -139,10 +140,10 @@ fn the_cabins_stairs_down_and_up_without_leaving_the_ground() {
     }
 }
 
-/// The steps of the dungeon: triangles.
+/// The steps of the dungeon are triangles.
 #[needs_data]
 #[test]
-fn the_dungeons_stairs_are_climbed() {
+fn mover_climbs_the_dungeons_stairs() {
     let stairs = level("kaykit_dungeon/stairs.obj", 1.0);
     let size = bounds(&stairs);
     let mut highest = 0.0_f32;
@@ -165,5 +166,5 @@ fn the_dungeons_stairs_are_climbed() {
         }
     }
     // The landing is 4 m high; its walls continue above.
-    assert!((highest - 4.0).abs() < 0.02, "it came up to {highest} m");
+    assert!((highest - 4.0).abs() < 0.02, "it reached {highest} m");
 }

@@ -38,7 +38,7 @@ fn played(harder: f32) -> Recording {
 }
 
 #[test]
-fn a_recording_comes_to_the_same_states_on_any_number_of_threads() {
+fn recording_repeats_its_states_on_any_number_of_threads() {
     let recording = Recording::read(&played(1.0).to_bytes()).expect("what we write we read");
     assert_eq!(recording, played(1.0));
     assert_eq!(recording.key_frames.iter().map(|frame| frame.step).collect::<Vec<_>>(), [0, 30, 60, 90]);
@@ -50,19 +50,19 @@ fn a_recording_comes_to_the_same_states_on_any_number_of_threads() {
         assert_eq!((step.step, step.found), (steps, step.recorded));
     }
     assert_eq!(steps, 90);
-    // The operations acted: the pulled body left its place, the ball and the box exist.
+    // The operations had effects: the pulled body moved, the ball and the box exist.
     let KeyFrame { bodies, .. } = &recording.key_frames[3];
     assert_eq!(bodies.len(), recording.key_frames[0].bodies.len() + 2);
 }
 
 #[test]
-fn the_first_difference_is_found() {
+fn first_difference_is_found() {
     let (a, b) = (played(1.0), played(1.001));
     assert_eq!(compare(&a, &a), None);
     let Some(Difference::State { step, body: Some((id, [mine, theirs])) }) = compare(&a, &b) else {
         panic!("{:?}", compare(&a, &b));
     };
-    // Pushed before the 41st step, it differs after it.
+    // The state differs after the 41st step, because the push came before it.
     assert_eq!(step, 41);
     assert!(mine != theirs && (mine.translation - theirs.translation).length() < 1e-3, "{id:?}");
     let short = Recording { steps: a.steps[..50].to_vec(), ..a.clone() };
@@ -77,7 +77,7 @@ fn the_first_difference_is_found() {
 }
 
 #[test]
-fn a_tampered_hash_is_reported_at_its_step() {
+fn tampered_hash_is_reported_at_its_step() {
     let mut recording = played(1.0);
     recording.steps[17].hash ^= 1;
     let mut replay = Replay::start(recording).expect("it starts");
@@ -93,7 +93,7 @@ const KEPT: &str = "\
     0000803f 00000040 00004040 00000000 00000000 00000000 0000803f";
 
 #[test]
-fn a_stored_file_is_read() {
+fn stored_file_is_read() {
     let digits: Vec<u8> = KEPT.bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
     let byte =
         |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).expect("ASCII"), 16).expect("hexadecimal");
@@ -176,5 +176,5 @@ fn hostile_files_are_refused() {
             }
         }
     }
-    assert!(refused > 0, "some mutations are seen");
+    assert!(refused > 0, "no mutation was refused");
 }

@@ -5,15 +5,16 @@ use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, Settings, find, re
 
 /// Figures outside their bars, by scene. One that is met must be removed, or its test fails.
 const NOT_YET: &[(&str, &[&str])] = &[
-    // 2.07 mm instead of 2; its line of thrust is nearer to the middle than when it met this.
+    // 2.07 mm instead of 2; its line of thrust is nearer to the middle than when it met this bar.
     ("arch", &["shift_max_m"]),
-    // A character that has just got up is lifted by half a metre if it stands on another; walks put feet into stairs and toes into the floor; lying
-    // still, rolling over and getting up takes 4.3 s.
+    // A character that has just got up is lifted by half a metre if it stands on another; walks put feet into stairs
+    // and toes into the floor; rest, roll and get-up take 4.3 s.
     ("brawl", &["animated_ms", "depth_m", "up_after_s"]),
     // Heaps are chaotic: from starts that differ by 1 mm the sticks sleep after 212 to 226 steps.
     ("mesh_drop", &["asleep_steps"]),
-    // A get-up clip puts a foot on the cape for a frame with 2 mm to spare, its middle 17 mm inside; and the shin stretches the skirt to three times
-    // its length, whose energy its rows overestimate (ADR 0027): limbs do 2.3 J of work in a step in which the skirt gains 3.3 J.
+    // A get-up clip puts a foot on the cape for a frame with 2 mm of free space, so its middle is 17 mm inside. The
+    // shin stretches the skirt to three times its length, whose energy its rows overestimate (ADR 0027): limbs do 2.3 J
+    // of work in a step in which the skirt gains 3.3 J.
     ("skirt", &["deepest_in_wearer_m", "energy_gain_max"]),
 ];
 
@@ -114,7 +115,7 @@ macro_rules! scenes {
         )*
 
         #[test]
-        fn all_are_checked() {
+        fn every_scene_has_a_test() {
             let mut names: Vec<_> = registry().iter().map(|scene| scene.name).collect();
             let mut checked = vec![$(stringify!($name)),*, $(stringify!($large)),*];
             names.sort_unstable();
@@ -245,7 +246,7 @@ scenes!(
 );
 
 #[test]
-fn known_misses_are_expected() {
+fn known_misses_belong_to_existing_scenes() {
     for &(name, figures) in NOT_YET {
         let metrics = scene(name).start(&scene(name).settings()).metrics();
         for figure in figures {
@@ -258,7 +259,7 @@ fn known_misses_are_expected() {
 
 /// Closed forms of rotations hold for all settings, not only the defaults.
 #[test]
-fn turns_with_other_settings() {
+fn closed_forms_of_rotations_hold_with_other_settings() {
     let assignments = [
         ("gimbal", ["margin=1", "margin=60"]),
         ("matrix_drift", ["spin=0.1", "spin=5"]),
@@ -274,7 +275,7 @@ fn turns_with_other_settings() {
     }
 }
 
-/// 10,000 boxes rain.
+/// 10,000 boxes fall into a pit.
 #[test]
 #[ignore = "an hour in a debug build: cargo test --release --package sinew_scenes -- --ignored"]
 fn ten_thousand_boxes() {
@@ -284,11 +285,11 @@ fn ten_thousand_boxes() {
     assert_eq!(unmet(&metrics), [""; 0], "{metrics:#?}");
 }
 
-/// 5,050 cubes for 1,000 steps.
+/// A wall of 5,050 cubes stands for 1,000 steps.
 #[test]
 #[ignore = "an hour in a debug build: cargo test --release --package sinew_scenes -- --ignored"]
-fn a_pyramid_of_a_hundred_rows() {
-    // Leans by 63 mm instead of 5 (ADR 0015).
+fn pyramid_of_a_hundred_rows_stands() {
+    // The wall leans by 63 mm instead of 5 (ADR 0015).
     const UNMET: &[&str] = &["shift_max_m", "top_drift_m"];
     let mut settings = scene("large_pyramid").settings();
     settings.assign("base=100").expect("it is in range");
@@ -296,11 +297,11 @@ fn a_pyramid_of_a_hundred_rows() {
     assert_eq!(unmet(&metrics), UNMET, "{metrics:#?}");
 }
 
-/// 100 falls; the default run has a few of them.
+/// 100 falls in random poses; the default run has a few of them.
 #[test]
 #[ignore = "minutes in a debug build: cargo test --release --package sinew_scenes -- --ignored"]
-fn a_hundred_poses() {
-    // 5.5 mm instead of 5, 26 mm instead of 10: hands under a falling thigh.
+fn falls_in_a_hundred_poses() {
+    // The depth is 5.5 mm instead of 5, and 26 mm instead of 10: hands under a falling thigh.
     const UNMET: &[&str] = &["penetration_rest_max_m", "nonadjacent_overlap_max_m"];
     let mut settings = scene("ragdoll_poses").settings();
     settings.assign("poses=100").expect("it is in range");

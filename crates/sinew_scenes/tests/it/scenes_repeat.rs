@@ -36,7 +36,7 @@ fn poses(world: &World) -> Vec<Transform> {
 }
 
 #[test]
-fn twice_and_with_threads() {
+fn bits_repeat_on_a_second_run_and_with_threads() {
     for scene in registry() {
         let hash = stepped(scene).world().hash();
         assert_eq!(stepped(scene).world().hash(), hash, "{} again", scene.name);
@@ -49,7 +49,7 @@ fn twice_and_with_threads() {
 }
 
 #[test]
-fn at_any_frame_rate() {
+fn bits_are_equal_at_any_frame_rate() {
     for scene in registry() {
         let expected = poses(stepped(scene).world());
         for rate in [24, 60, 144] {
@@ -69,7 +69,7 @@ fn at_any_frame_rate() {
 }
 
 #[test]
-fn restored_in_the_middle() {
+fn restored_run_continues_equally() {
     for scene in registry() {
         let mut run = started(scene);
         let (middle, end) = (steps(scene).div_ceil(20), steps(scene));
@@ -88,10 +88,10 @@ fn restored_in_the_middle() {
     }
 }
 
-/// Like [`restored_in_the_middle`], in a new world and on two threads. Scenes with their own functions or objects are left
-/// out, because a new world does not have them.
+/// Like [`restored_run_continues_equally`], in a new world and on two threads. Scenes with their own functions or
+/// objects are left out, because a new world does not have them.
 #[test]
-fn loaded_into_unrelated_worlds() {
+fn snapshot_loaded_into_an_unrelated_world_continues_equally() {
     let mut met = 0;
     for (number, scene) in registry().iter().enumerate() {
         let mut run = started(scene);
@@ -114,12 +114,12 @@ fn loaded_into_unrelated_worlds() {
             assert_eq!(stranger.world().hash(), run.world().hash(), "{}, step {step}", scene.name);
         }
     }
-    assert!(met * 10 > registry().len() * 9, "{met} scenes of {} were met", registry().len());
+    assert!(met * 10 > registry().len() * 9, "{met} of {} scenes could be loaded", registry().len());
 }
 
-/// A brawl saved at any moment, with characters in every state, continues in a new world as in its own.
+/// A brawl saved at any step, with characters in every state, continues in a new world as in its own.
 #[test]
-fn a_brawl_continues_in_an_unrelated_world() {
+fn saved_brawl_continues_in_an_unrelated_world() {
     let scene = find("brawl").expect("the registry has it");
     for powered in 0..2 {
         let mut settings = scene.settings();
@@ -153,16 +153,16 @@ fn settings_are_checked() {
     let scene = find("mass_ratio").expect("the registry has it");
     let mut settings = scene.settings();
     settings.assign("links=3").expect("a whole number in range");
-    // Two trees, one of which hangs on a hook.
+    // The scene has two trees, one of which hangs on a hook.
     assert_eq!(scene.start(&settings).world().joint_ids().count(), 2 + 3);
     assert_eq!(scene.start(&scene.settings()).world().joint_ids().count(), 39 + 40);
 
-    let mut refused = |assignment: &str| settings.assign(assignment).expect_err("it is wrong").to_string();
+    let mut refused = |assignment: &str| settings.assign(assignment).expect_err("invalid").to_string();
     assert_eq!(refused("links"), "`links` is not key=value");
     assert_eq!(refused("lnks=3"), "no setting `lnks`; there is ratio, links");
-    let links = "no value for `links`: it takes a whole number from 2 to 200";
+    let domain = "it takes a whole number from 2 to 200";
     for value in ["1", "201", "2.5", "", "many"] {
-        assert_eq!(refused(&format!("links={value}")), format!("`{value}` is {links}"));
+        assert_eq!(refused(&format!("links={value}")), format!("`links` does not allow `{value}`: {domain}"));
     }
     for value in ["NaN", "inf", "0.5", "1e9"] {
         assert!(refused(&format!("ratio={value}")).contains("a number from 1 to 1000000"), "{value}");

@@ -28,7 +28,7 @@ const CHOSEN: [f32; 3] = [1.0, 0.35, 0.05];
 pub(super) struct Bench {
     /// Selected body, by its index in the definition.
     pub chosen: Option<usize>,
-    /// Its changes in progress.
+    /// Changes in progress.
     pub draft: BoneSettings,
     /// Grabbed handle.
     held: Option<Handle>,

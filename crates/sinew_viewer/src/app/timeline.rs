@@ -74,7 +74,7 @@ pub(super) fn told(difference: Option<&Difference>) -> String {
         Some(Difference::Scene) => "of another scene".to_owned(),
         Some(Difference::Length { common }) => format!("equal for {common} steps; one has more"),
         Some(Difference::State { step, body: None }) => {
-            format!("differs from step {step} on, though in the pose of no body")
+            format!("differs from step {step} on, but not in the pose of a body")
         }
         Some(Difference::State { step, body: Some((id, [a, b])) }) => {
             let apart = (a.translation - b.translation).length();

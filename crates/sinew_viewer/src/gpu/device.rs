@@ -20,7 +20,7 @@ pub enum GpuError {
     /// The driver lacks a needed feature.
     #[error("the driver '{name}' is not enough: {what}; `sinew view SCENE --picture OUT.png` needs none")]
     Driver {
-        /// Its name.
+        /// Name of the device.
         name: String,
         /// Reason.
         what: String,

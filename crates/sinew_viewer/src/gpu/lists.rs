@@ -31,7 +31,7 @@ pub(crate) struct Lists {
 /// A model used in one picture.
 #[derive(Debug)]
 pub(crate) struct ModelDraw {
-    /// In the scene.
+    /// Index of the model in the scene.
     pub model: usize,
     pub indices: Range<u32>,
     pub instance: u32,

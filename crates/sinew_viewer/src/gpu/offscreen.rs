@@ -21,7 +21,7 @@ pub struct Offscreen {
 }
 
 impl Offscreen {
-    /// For pictures of a size in pixels.
+    /// Creates the target for pictures of a size in pixels.
     pub fn new(gpu: Gpu, size: [u32; 2]) -> Self {
         let target = Target::new(&gpu, FORMAT, size);
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;

@@ -27,7 +27,7 @@ pub struct StageRenderer {
     solids: Solids,
     rigs: HashMap<usize, RigMeshes>,
     white: Arc<wgpu::BindGroup>,
-    /// By address of the image, which is kept alive so that no other gets it.
+    /// Textures by address of the image, which is kept alive so that no other gets it.
     textures: HashMap<usize, (Arc<Texture>, Arc<wgpu::BindGroup>)>,
     view: wgpu::Buffer,
     /// The frame, as the sun and as the eye sees it: the same data.

@@ -18,7 +18,7 @@ pub struct Target {
 }
 
 impl Target {
-    /// For pictures of a size in pixels, each side at least 1.
+    /// Creates the samples for pictures of a size in pixels, each side at least 1.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, size: [u32; 2]) -> Self {
         let size = size.map(|side| side.max(1));
         let view = |format: wgpu::TextureFormat| {

@@ -17,7 +17,7 @@ use sinew_scenes::scenes::Figure;
 pub enum Layer {
     /// Outlines of all shapes.
     Shapes,
-    /// From bodies to their joints.
+    /// Lines from bodies to their joints.
     Joints,
     /// Contact normals, scaled by their load.
     Contacts,
@@ -199,7 +199,7 @@ impl DebugDraw for Chosen<'_> {
         let layer = match kind {
             DrawKind::Static | DrawKind::Kinematic | DrawKind::Awake | DrawKind::Asleep => Layer::Shapes,
             DrawKind::Joint => Layer::Joints,
-            // Always drawn, or drawn with their forces.
+            // These are always drawn, or drawn with their forces.
             DrawKind::Spring | DrawKind::Object | DrawKind::Contact => return,
         };
         if self.layers.contains(&layer) {

@@ -190,7 +190,7 @@ impl Session {
         }
     }
 
-    /// Its world.
+    /// World of the session.
     pub fn world(&self) -> &World {
         self.instance().world()
     }

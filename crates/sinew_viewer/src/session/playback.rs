@@ -15,10 +15,10 @@ const MARK_BYTES: usize = 128 << 20;
 /// A recording in playback. Steps played before are restored with all their measurements.
 pub(super) struct Playback {
     pub replay: Replay,
-    /// By the number of steps taken, in order.
+    /// Marks by the number of steps taken, in order.
     marks: Vec<Mark>,
     mark_steps: u64,
-    /// After each number of steps that has been reached.
+    /// Figures after each number of steps that has been reached.
     metrics: Vec<Vec<Metric>>,
     /// Hash of the state after each step, when it was first played.
     hashes: Vec<u64>,
@@ -149,7 +149,7 @@ impl Ghost {
         self.difference.as_ref()
     }
 
-    /// Its world.
+    /// World of the replay.
     pub fn world(&self) -> &sinew::physics::World {
         self.playback.replay.instance().world()
     }

@@ -27,7 +27,7 @@ pub enum Subject {
 /// A file without a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedFile {
-    /// Its name, with its extension.
+    /// Name of the file, with its extension.
     pub name: String,
     /// Content.
     pub bytes: Vec<u8>,

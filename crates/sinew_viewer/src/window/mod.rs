@@ -26,7 +26,7 @@ use web::Host;
 /// Wait between frames where nothing moves by itself.
 const IDLE: Duration = Duration::from_millis(200);
 
-/// Why the viewer could not be shown. One line.
+/// Reason why the viewer could not be shown. One line.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewerError {
     /// The card or the window system.
@@ -248,7 +248,7 @@ impl Screen {
         let texture = match self.surface.get_current_texture() {
             Success(texture) | Suboptimal(texture) => texture,
             Outdated | Lost => return self.surface.configure(device, &self.config),
-            // Nothing is seen of it now.
+            // The window is not visible now.
             _ => return,
         };
         let mut encoder = device.create_command_encoder(&Default::default());

@@ -96,7 +96,7 @@ pub fn camera() -> Camera {
 }
 
 #[test]
-fn the_card_draws_what_the_processor_draws() {
+fn graphics_card_and_processor_draw_the_same_picture() {
     let Some(gpu) = gpu() else { return };
     let sun = Sun { shadow_radius: 4.0, ..Sun::default() };
     let mut scene = Scene { sun, ..Scene::default() };

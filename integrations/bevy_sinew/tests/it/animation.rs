@@ -69,7 +69,7 @@ impl Walker {
         let time = self.given.len() as f32 * DT % walk.duration;
         sample(walk, &def.rig, time, Wrap::Loop, &mut pose);
         def.mapping().flatten(&def.rig, &mut pose);
-        // Nothing goes over the ground.
+        // The pelvis has no horizontal motion.
         let pelvis = def.ragdoll.bodies[0].joint;
         pose[pelvis].translation = def.rest()[pelvis].translation;
         let mut player = self.app.world_mut().resource_mut::<Player>();
@@ -106,7 +106,7 @@ impl Walker {
 }
 
 #[test]
-fn a_character_follows_bevys_animation() {
+fn character_follows_bevys_animation() {
     let mut walker = Walker::new(false);
     let mut most = 0.0f32;
     for step in 0..90 {
@@ -128,15 +128,15 @@ fn a_character_follows_bevys_animation() {
 }
 
 #[test]
-fn a_character_animated_by_bevy_falls_and_gets_up() {
+fn character_animated_by_bevy_falls_and_gets_up() {
     let mut walker = Walker::new(false);
     (0..70).for_each(|_| walker.frame());
     let led = walker.spins();
     walker.go_limp();
     let fastest = led.iter().map(|spin| spin.length()).fold(0.0, f32::max);
     let lost = led.iter().zip(walker.spins()).map(|(led, now)| (*led - now).length()).fold(0.0, f32::max);
-    assert!(fastest > 1.0 && lost < 0.4 * fastest, "{lost} of {fastest} rad/s are lost");
-    // The joints show the fall although the player goes on.
+    assert!(fastest > 1.0 && lost < 0.4 * fastest, "{lost} of {fastest} rad/s are lost at hand-over");
+    // The joints show the fall although the player continues.
     (0..45).for_each(|_| walker.frame());
     assert_eq!(walker.handle().state(), State::Limp);
     let player = walker.app.world().resource::<Player>();
@@ -145,15 +145,15 @@ fn a_character_animated_by_bevy_falls_and_gets_up() {
         let of = Quat::from_xyzw(local.rotation.x, local.rotation.y, local.rotation.z, local.rotation.w);
         assert!(shown.angle_between(of) < 1e-3);
     }
-    assert!(walker.off() > 0.3, "it lies as it fell");
-    // Up again, it shows the player's pose, including the head, which nobody has animated since.
+    assert!(walker.off() > 0.3, "the joints do not show the fall");
+    // After getting up it shows the player's pose, including the head, which nothing has animated since.
     for _ in 0..900 {
         walker.frame();
         if walker.handle().state() == State::Animated && walker.off() < 0.02 {
             return;
         }
     }
-    panic!("{:?}, {} rad from the pose that it is given", walker.handle().state(), walker.off());
+    panic!("{:?}, {} rad from its target pose", walker.handle().state(), walker.off());
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Characters: against the library by itself, on the joints of a scene, and gone.
+//! Characters: compared with the library alone, on the joints of a scene, and after removal.
 
 use super::*;
 use bevy_sinew::sinew::anim::{Rig, local_to_model};
@@ -14,12 +14,12 @@ mod crowd;
 mod shooter;
 
 #[test]
-fn the_character_falls_and_gets_up() {
+fn character_falls_and_gets_up() {
     character::main();
 }
 
 #[test]
-fn the_target_flinches_and_falls() {
+fn target_flinches_and_falls() {
     shooter::main();
 }
 
@@ -56,7 +56,7 @@ fn hit(app: &mut App, entity: Entity, impulse: Vec3) {
 }
 
 #[test]
-fn characters_have_the_bits_of_the_library() {
+fn characters_have_the_same_bits_as_in_the_library() {
     let mut app = app();
     let mut world = PhysicsWorld::new(WorldDef::default());
     let floor = ground(&mut app);
@@ -85,7 +85,7 @@ fn characters_have_the_bits_of_the_library() {
         }
     }
     assert_eq!(handle(&app, entities[0]).state(), State::Animated);
-    assert!(fell, "the other one lay");
+    assert!(fell, "the other character never fell");
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn scene_joints_follow_the_pose() {
     let def = Arc::new(mannequin::character());
     let entity = hero(&mut app, &def, Vec3::new(1.0, 0.0, 2.0));
     run(&mut app, 3);
-    // The scene comes later than the character.
+    // The scene is added after the character.
     let joints = scene(&mut app, entity, &def.rig);
     run(&mut app, 30);
     let found = &app.world().get::<CharacterJoints>(entity).expect("it was found").0;
@@ -103,7 +103,7 @@ fn scene_joints_follow_the_pose() {
     hit(&mut app, entity, Vec3::Z * -120.0);
     run(&mut app, 30);
     assert_eq!(handle(&app, entity).state(), State::Limp);
-    // All matrices from the joints' own transforms, against those that skin a mesh.
+    // All matrices from the joints' own transforms, compared with the skinning matrices of the character.
     let character = handle(&app, entity);
     let root = character.world_from_model();
     let mut model = Vec::new();
@@ -146,6 +146,6 @@ fn characters_teleport_report_and_despawn() {
     run(&mut app, 1);
     let physics = physics(&app);
     let left = (physics.body_ids().count(), physics.joint_ids().count(), physics.mover_ids().count());
-    assert_eq!(left, (1, 0, 0), "the ground alone is left");
+    assert_eq!(left, (1, 0, 0), "something besides the ground remains");
     assert_eq!(physics.entity(limb), None);
 }

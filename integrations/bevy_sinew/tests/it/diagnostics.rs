@@ -4,7 +4,7 @@ use super::*;
 use bevy_diagnostic::{DiagnosticPath, DiagnosticsPlugin, DiagnosticsStore};
 
 #[test]
-fn a_step_is_measured() {
+fn step_time_is_measured() {
     let mut app = app();
     app.add_plugins((DiagnosticsPlugin, SinewDiagnosticsPlugin));
     ground(&mut app);

@@ -1,4 +1,4 @@
-//! Lines.
+//! Debug lines.
 
 use super::*;
 use bevy_asset::{AssetPlugin, Assets};
@@ -7,7 +7,7 @@ use bevy_sinew::physics::DrawKind;
 use core::any::TypeId;
 
 #[test]
-fn the_world_is_drawn_in_its_colours() {
+fn world_is_drawn_in_its_colours() {
     let mut app = app();
     app.add_plugins((bevy_app::TaskPoolPlugin::default(), AssetPlugin::default(), GizmoPlugin));
     app.add_plugins(SinewGizmosPlugin);

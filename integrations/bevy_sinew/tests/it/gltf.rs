@@ -13,7 +13,7 @@ fn file() -> Vec<u8> {
 }
 
 #[test]
-fn a_file_becomes_a_character_by_one_component() {
+fn one_component_loads_a_character() {
     let dir = Dir::default();
     dir.insert_asset(Path::new("hero.glb"), file());
     let mut app = App::new();

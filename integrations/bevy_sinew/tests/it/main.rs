@@ -34,12 +34,12 @@ mod reflect;
 const DT: f32 = 1.0 / 60.0;
 
 #[test]
-fn the_box_falls() {
+fn box_falls() {
     hello::main();
 }
 
 #[test]
-fn the_mover_goes_through_the_door() {
+fn mover_goes_through_the_door() {
     door::main();
 }
 
@@ -53,7 +53,7 @@ fn app() -> App {
     app.add_plugins((TimePlugin, SinewPlugin::default()));
     app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
     app.insert_resource(Interpolation::Off);
-    // In its first update Bevy has no time to spend.
+    // Bevy's first update has no elapsed time.
     app.update();
     app
 }
@@ -79,7 +79,7 @@ fn physics(app: &App) -> &Physics {
 }
 
 #[test]
-fn a_scene_has_the_bits_of_the_library() {
+fn scene_has_the_same_bits_as_in_the_library() {
     let mut app = app();
     let mut world = PhysicsWorld::new(WorldDef::default());
     let shape =
@@ -107,7 +107,11 @@ fn a_scene_has_the_bits_of_the_library() {
         assert_eq!(physics(&app).hash(), world.hash(), "step {step}");
     }
     for (entity, id) in entities.into_iter().zip(world.body_ids()) {
-        assert_eq!(at(&app, entity), world.transform(id).translation, "what is drawn is where it is");
+        assert_eq!(
+            at(&app, entity),
+            world.transform(id).translation,
+            "the drawn position differs from the body's"
+        );
     }
 }
 
@@ -118,13 +122,13 @@ fn memory() -> Option<u64> {
     line.split_whitespace().nth(1)?.parse().ok()
 }
 
-/// In a process of its own, for memory is counted by process.
+/// The test runs in a process of its own, because memory is counted by process.
 #[test]
-fn a_thousand_spawns_a_frame_leak_nothing() {
+fn thousand_spawns_per_frame_do_not_leak() {
     const ALONE: &str = "SINEW_TEST_ALONE";
     if std::env::var_os(ALONE).is_none() {
         let mut alone = std::process::Command::new(std::env::current_exe().expect("it runs"));
-        alone.args(["--exact", "a_thousand_spawns_a_frame_leak_nothing", "--nocapture"]);
+        alone.args(["--exact", "thousand_spawns_per_frame_do_not_leak", "--nocapture"]);
         assert!(alone.env(ALONE, "1").status().expect("it starts").success());
         return;
     }
@@ -154,7 +158,7 @@ fn a_thousand_spawns_a_frame_leak_nothing() {
 }
 
 #[test]
-fn children_are_where_their_bodies_are() {
+fn children_follow_their_bodies() {
     let mut app = app();
     let slant = Quat::from_rotation_y(0.7);
     let root = Transform { translation: Vec3::new(3.0, 1.0, 0.0), rotation: slant, scale: Vec3::splat(2.0) };
@@ -162,7 +166,7 @@ fn children_are_where_their_bodies_are() {
     let wide = Transform { scale: Vec3::new(1.0, 3.0, 1.0), ..Transform::default() };
     let middle = app.world_mut().spawn((wide, ChildOf(root))).id();
     let child = app.world_mut().spawn((ball(Vec3::new(0.5, 2.0, 0.0)), ChildOf(middle))).id();
-    // A body below a body: each goes its own way.
+    // A child body of a body: both move independently.
     let below = app.world_mut().spawn((ball(Vec3::X * 2.0), ChildOf(child))).id();
     let global = |app: &App, entity: Entity| {
         let mut affine = app.world().get::<Transform>(entity).expect("it has one").compute_affine();
@@ -192,7 +196,7 @@ fn children_are_where_their_bodies_are() {
         };
         run(&mut app, 1);
         let way = before - global(&app, child);
-        assert!(way.length() < 0.2, "a step's fall, not {way}");
+        assert!(way.length() < 0.2, "it moved {way}, more than in a step's fall");
     }
 }
 
@@ -220,7 +224,7 @@ fn messages_and_observers_report_the_same() {
     let heard = &app.world().resource::<Heard>().0;
     let due = [("observed", floor, ball), ("read", floor, ball), ("observed the end", floor, ball)];
     assert_eq!(heard, &due);
-    assert_eq!(physics(&app).len(), 1, "it is forgotten");
+    assert_eq!(physics(&app).len(), 1, "the body's entity remains in the map");
 }
 
 #[test]
@@ -229,22 +233,22 @@ fn changes_of_components_reach_the_world() {
     let ball = app.world_mut().spawn((ball(Vec3::Y * 5.0), Velocity::default())).id();
     run(&mut app, 2);
     let id = app.world().get::<BodyHandle>(ball).expect("it has one").id();
-    // A place.
+    // Changes the position.
     app.world_mut().get_mut::<Transform>(ball).expect("it has one").translation = Vec3::X * 7.0;
     run(&mut app, 1);
     assert!((at(&app, ball) - Vec3::X * 7.0).length() < 0.05, "{}", at(&app, ball));
-    // A velocity, which returns changed by gravity.
+    // Changes the velocity; gravity changes it in the step.
     app.world_mut().get_mut::<Velocity>(ball).expect("it has one").linear = Vec3::Z * 3.0;
     run(&mut app, 1);
     let velocity = app.world().get::<Velocity>(ball).expect("it has one").linear;
     assert!((velocity - Vec3::new(0.0, -9.81 * DT, 3.0)).length() < 1e-3, "{velocity}");
-    // A kind.
+    // Changes the kind.
     *app.world_mut().get_mut::<RigidBody>(ball).expect("it has one") = RigidBody::Static;
     let before = at(&app, ball);
     run(&mut app, 30);
     assert_eq!((physics(&app).kind(id), at(&app, ball)), (BodyKind::Static, before));
     *app.world_mut().get_mut::<RigidBody>(ball).expect("it has one") = RigidBody::Dynamic;
-    // Shapes: mass follows.
+    // Changes the shapes; the mass follows.
     let light = physics(&app).shape_ids(id).count();
     let shapes = vec![Shape::sphere(0.5).into(), Shape::cuboid(Vec3::splat(0.5)).into()];
     *app.world_mut().get_mut::<Collider>(ball).expect("it has one") = Collider(shapes);
@@ -252,7 +256,7 @@ fn changes_of_components_reach_the_world() {
     assert_eq!((light, physics(&app).shape_ids(id).count()), (1, 2));
     let mass = 1000.0 * (1.0 + 4.0 / 3.0 * core::f32::consts::PI * 0.125);
     assert!((physics(&app).mass(id).mass - mass).abs() < 0.5);
-    // Nothing more.
+    // Removes the body.
     app.world_mut().entity_mut(ball).remove::<RigidBody>();
     run(&mut app, 1);
     assert!(!physics(&app).contains(id) && app.world().get::<BodyHandle>(ball).is_none());
@@ -269,10 +273,10 @@ fn joints_and_fields_are_added_changed_and_removed() {
     let hinge = app.world_mut().spawn(hinge).id();
     run(&mut app, 120);
     let sunk = 3.0 - at(&app, bob).y;
-    assert!((sunk - math::trig::sin(0.5)).abs() < 0.02, "it hangs at its limit: {sunk}");
+    assert!((sunk - math::trig::sin(0.5)).abs() < 0.02, "it is not at its limit: {sunk}");
     app.world_mut().get_mut::<Joint>(hinge).expect("it has one").kind = JointKind::Hinge { limit: None };
     run(&mut app, 20);
-    assert!(3.0 - at(&app, bob).y > 0.6, "it swings on");
+    assert!(3.0 - at(&app, bob).y > 0.6, "it does not swing further");
     let up = UniformGravity { acceleration: Vec3::Y * 20.0 };
     let field = app.world_mut().spawn(Field(FieldDef::new(FieldKind::Uniform(up)))).id();
     app.world_mut().despawn(hinge);
@@ -300,13 +304,13 @@ fn interpolated_poses_lie_between_two_steps() {
         app.update();
         let way = at(&app, ball).x - last;
         last = at(&app, ball).x;
-        assert!((way - 6.0 * DT / 4.0).abs() < 1e-3, "as far in each frame: {way}");
+        assert!((way - 6.0 * DT / 4.0).abs() < 1e-3, "unequal motion per frame: {way}");
     }
     assert_eq!(app.world().resource::<Time<Fixed>>().timestep(), Duration::from_nanos(16_666_667));
 }
 
 #[test]
-fn the_sets_are_in_order_for_a_users_systems() {
+fn user_systems_run_between_the_sets() {
     let mut app = app();
     let ball = app.world_mut().spawn(ball(Vec3::Y)).id();
     app.init_resource::<Heard>();

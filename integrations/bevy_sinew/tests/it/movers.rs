@@ -10,7 +10,7 @@ fn mover(app: &mut App, place: Vec3, walk: Vec3) -> Entity {
 }
 
 #[test]
-fn movers_have_the_bits_of_the_library() {
+fn movers_have_the_same_bits_as_in_the_library() {
     let mut app = app();
     let mut world = PhysicsWorld::new(WorldDef::default());
     let floor = ground(&mut app);
@@ -37,7 +37,7 @@ fn movers_have_the_bits_of_the_library() {
         assert_eq!(physics(&app).hash(), world.hash(), "step {step}");
         assert_eq!(at(&app, entity), world.mover(id).position());
     }
-    assert!(at(&app, entity).x > 4.0 && at(&app, crate_).x > 3.0, "it walked, and pushed");
+    assert!(at(&app, entity).x > 4.0 && at(&app, crate_).x > 3.0, "it did not walk or push");
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn movers_teleport_crouch_and_despawn() {
 }
 
 #[test]
-fn a_rope_hangs_on_entities_and_goes_with_them() {
+fn rope_attached_to_entities_is_removed_with_them() {
     let mut app = app();
     let top = Vec3::Y * 3.0;
     let hook = app.world_mut().spawn((RigidBody::Static, Transform::from_translation(top))).id();
@@ -77,13 +77,13 @@ fn a_rope_hangs_on_entities_and_goes_with_them() {
     assert_eq!(physics(&app).group_ids().collect::<Vec<_>>(), [id]);
     app.world_mut().despawn(hook);
     run(&mut app, 1);
-    assert_eq!(physics(&app).group_ids().count(), 0, "nothing hangs on nothing");
+    assert_eq!(physics(&app).group_ids().count(), 0, "particles remain after their body");
     app.world_mut().despawn(rope);
     run(&mut app, 1);
 }
 
 #[test]
-fn threads_of_bevy_change_no_bit() {
+fn bevys_threads_do_not_change_the_bits() {
     ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(3).build());
     let hashes = [StepThreads::Bevy, StepThreads::One].map(|threads| {
         let mut app = app();

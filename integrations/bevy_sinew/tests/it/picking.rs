@@ -1,4 +1,4 @@
-//! Pointers.
+//! Picking by pointers.
 
 use super::*;
 use bevy_camera::Camera;
@@ -9,7 +9,7 @@ use bevy_picking::pointer::PointerId;
 use bevy_shape::Ray3d;
 
 #[test]
-fn a_pointer_finds_the_body_under_it() {
+fn pointer_finds_the_body_under_it() {
     let mut app = app();
     app.init_resource::<RayMap>().add_message::<PointerHits>();
     app.add_plugins(SinewPickingPlugin);

@@ -37,7 +37,7 @@ fn components_round_trip_through_a_scene() {
     let rope = RopeDef { from, to, links: 4, mass: 1.0, stiffness: 1e4, radius: 0.02 }.build().group;
     let particles = Particles { def: rope, hangs: vec![Hang { particle: 0, body: a, point: Vec3::X }] };
     assert_eq!(round(&app, &particles), particles);
-    // Entities of a scene are others once it is spawned.
+    // Spawned entities of a scene have other ids.
     let mut spawned = particles;
     Component::map_entities(&mut spawned, &mut EntityHashMap::from_iter([(a, b)]));
     assert_eq!(spawned.hangs[0].body, b);

@@ -1,4 +1,4 @@
-//! The examples of the plugin, of which each has a `main` that runs it without a window.
+//! The examples of the plugin; each has a `main` that runs it without a window.
 #![allow(dead_code)]
 
 #[path = "../../examples/character.rs"]

@@ -1,4 +1,4 @@
-//! Looks of shapes, movers, ropes and characters.
+//! Appearance of shapes, movers, ropes and characters.
 
 use bevy::asset::io::AssetSourceBuilder;
 use bevy::asset::io::memory::{Dir, MemoryAssetReader};
@@ -13,7 +13,7 @@ use bevy_sinew::{CharacterBody, Collider, Mover, ParticlesHandle, Physics, Rigid
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Half of a side of the ground that is drawn of a half-space, metres.
+/// Half size of the drawn part of a half-space, metres.
 const GROUND: f32 = 60.0;
 /// Thickness at which ropes are drawn, metres.
 const ROPE: f32 = 0.02;
@@ -25,7 +25,7 @@ pub struct Files {
     kinds: Vec<Arc<CharacterDef>>,
 }
 
-/// Files that Bevy's loader finds under `kind://`. Before Bevy's `AssetPlugin`.
+/// Adds files that Bevy's loader finds under `kind://`. Call it before Bevy's `AssetPlugin` is added.
 pub fn files(app: &mut App) -> Files {
     let files = Files { dir: Dir::default(), kinds: Vec::new() };
     let dir = files.dir.clone();
@@ -39,7 +39,7 @@ pub fn add(app: &mut App, files: Files, camera: Transform) {
     app.insert_resource(files);
     app.insert_resource(ClearColor(Color::srgb(0.62, 0.72, 0.82)));
     app.insert_resource(GlobalAmbientLight { brightness: 400.0, ..GlobalAmbientLight::default() });
-    // Bevy's default tone mapping wants tables that are a feature of their own.
+    // Bevy's default tone mapping needs tables of a separate feature.
     app.world_mut().spawn((Camera3d::default(), Tonemapping::Reinhard, camera));
     let sun = Transform::from_xyz(3.0, 8.0, -2.0).looking_at(Vec3::ZERO, Vec3::Y);
     let light =
@@ -48,7 +48,7 @@ pub fn add(app: &mut App, files: Files, camera: Transform) {
     app.add_systems(Update, (dress_bodies, dress_movers, dress_characters, string_ropes, place_ropes));
 }
 
-/// Mesh of a shape, in its own axes; none for those that the examples do not have.
+/// Mesh of a shape, in its own axes; none for shapes that the examples lack.
 fn mesh(shape: &Shape) -> Option<Mesh> {
     Some(match *shape {
         Shape::Box { half_extents } => Cuboid { half_size: half_extents }.into(),

@@ -15,7 +15,7 @@ use picture::Picture;
 
 const USAGE: &str = "window hello|door|character|shooter|crowd [FILE.glb] [--picture OUT.png [--at SECONDS]]";
 
-/// An example, and from where one sees it.
+/// An example, and its camera position.
 struct Example {
     name: &'static str,
     plugin: fn(&mut App),

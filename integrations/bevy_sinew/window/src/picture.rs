@@ -9,20 +9,20 @@ use std::path::PathBuf;
 /// Least difference of a channel between a visible body and the sky or the ground, of 255.
 const SEEN: u8 = 25;
 
-/// A picture that is due.
+/// A requested picture.
 #[derive(Resource)]
 pub struct Picture {
     path: PathBuf,
-    /// Seconds of the world.
+    /// Time of the world, seconds.
     at: f32,
     taken: bool,
 }
 
 impl Picture {
-    /// Picture that the arguments ask for, if they ask for one.
+    /// Picture requested by the arguments, if any.
     ///
     /// # Errors
-    /// An option that there is not, or that lacks its value.
+    /// If an option is unknown or lacks its value.
     pub fn from_args(mut args: impl Iterator<Item = String>) -> Result<Option<Self>, String> {
         let (mut path, mut at) = (None, 1.0);
         while let Some(arg) = args.next() {
@@ -33,14 +33,14 @@ impl Picture {
                     at = seconds.parse().map_err(|_| format!("--at needs seconds, not {seconds}"))?;
                 }
                 file if file.ends_with(".glb") => {} // of the example
-                other => return Err(format!("there is no {other}")),
+                other => return Err(format!("unknown option {other}")),
             }
         }
         Ok(path.map(|path| Self { path: path.into(), at, taken: false }))
     }
 }
 
-/// Takes it, then ends. Each frame is a step until then, so that the picture does not depend on the machine.
+/// Takes the picture, then exits. Each frame is a step until then, so that the picture does not depend on the machine.
 pub fn add(app: &mut App, picture: Picture) {
     app.insert_resource(picture);
     app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
@@ -48,7 +48,7 @@ pub fn add(app: &mut App, picture: Picture) {
     app.add_systems(Last, take);
 }
 
-/// Once it is time, and all characters have their skins; until they do the world waits.
+/// Waits for the time and for the skins of all characters; meanwhile the world does not advance.
 fn take(
     mut commands: Commands,
     mut picture: ResMut<Picture>,
@@ -68,7 +68,7 @@ fn take(
     }
 }
 
-/// Ends, with an error unless the pixel of each thing that moves differs from the sky and from the ground.
+/// Exits, with an error unless the pixel of each moving object differs from the sky and from the ground.
 fn check(
     captured: On<ScreenshotCaptured>,
     camera: Single<(&Camera, &GlobalTransform)>,
@@ -95,7 +95,10 @@ fn check(
         let Some(color) = camera.world_to_viewport(eye, place).ok().and_then(color) else { continue };
         // Sky and ground are shades of grey and blue; moving bodies are orange or wooden.
         let is_seen = color[0] > color[2].saturating_add(SEEN);
-        println!("{entity} at {place:.2}: {color:?}{}", if is_seen { "" } else { ", which is not its own" });
+        println!(
+            "{entity} at {place:.2}: {color:?}{}",
+            if is_seen { "" } else { ", the colour of the background" }
+        );
         if is_seen { seen += 1 } else { missed += 1 }
     }
     println!("{seen} seen, {missed} hidden");

@@ -1,4 +1,4 @@
-//! A rigged file that Bevy's own loader has read, played by Bevy's own player: it becomes a character by one component.
+//! A rigged file read by Bevy's loader and played by Bevy's player becomes a character by one component.
 
 use bevy::asset::io::memory::{Dir, MemoryAssetReader};
 use bevy::asset::io::{AssetSourceBuilder, AssetSourceId};
@@ -56,7 +56,7 @@ struct Hero {
 }
 
 impl Hero {
-    /// Loads it, and lets Bevy's player walk.
+    /// Loads it and plays the walk by Bevy's player.
     fn new() -> Self {
         let mut app = app();
         let server = app.world().resource::<AssetServer>().clone();
@@ -83,7 +83,7 @@ impl Hero {
         world.entity_mut(player).insert(AnimationGraphHandle(graph));
         let mut hero = Self { app, entity, player, walk };
         hero.animation().repeat();
-        // Bevy takes a graph that is new into use.
+        // Bevy needs an update to use a new graph.
         hero.run(1);
         hero
     }
@@ -106,7 +106,7 @@ impl Hero {
         self.app.world().resource::<Physics>().transform(self.handle().bodies()[0]).translation.y
     }
 
-    /// The skinned mesh's entities of the joints that bodies carry, where Bevy draws them, each beside its place on that body.
+    /// Entities of the skinned mesh's joints that bodies carry, as Bevy draws them, each with its place on that body.
     fn joints_and_bodies(&mut self) -> Vec<(String, Pose, Pose)> {
         let world = self.app.world_mut();
         let mut skins = world.query::<&SkinnedMesh>();
@@ -118,7 +118,7 @@ impl Hero {
         let physics = self.app.world().resource::<Physics>();
         let carried = def.ragdoll.bodies.iter().zip(handle.bodies()).map(|(body, &id)| {
             let entity = found.0[body.joint].expect("each joint has an entity");
-            assert!(skinned.contains(&entity), "{}: the mesh hangs on it", body.bone);
+            assert!(skinned.contains(&entity), "{}: the mesh uses it", body.bone);
             let drawn = self.app.world().get::<GlobalTransform>(entity).expect("it has one").affine();
             let (_, turn, at) = drawn.to_scale_rotation_translation();
             let drawn = Pose::new(at, Rotation::from_xyzw(turn.x, turn.y, turn.z, turn.w).normalize());
@@ -136,7 +136,7 @@ impl Hero {
         });
     }
 
-    /// Entities of the scene that are left.
+    /// Number of remaining entities of the scene.
     fn parts(&mut self) -> usize {
         let world = self.app.world_mut();
         world
@@ -147,9 +147,9 @@ impl Hero {
 }
 
 #[test]
-fn bevys_player_poses_it() {
+fn bevys_player_poses_the_character() {
     let mut hero = Hero::new();
-    // By our own sampling of the clip that was never in a file, in its own order of joints.
+    // The reference is our own sampling of the original clip, in its own joint order.
     let own = mannequin::character();
     let walk = &own.motions().clips[own.motions().looped.expect("it walks")];
     let mut most = 0.0f32;
@@ -171,11 +171,11 @@ fn bevys_player_poses_it() {
             most = most.max(due.rotation.angle_to(rest.rotation));
         }
     }
-    assert!(most > 0.5, "it walks: {most} rad");
+    assert!(most > 0.5, "the walk moves only {most} rad");
 }
 
 #[test]
-fn its_mesh_follows_the_fall() {
+fn mesh_follows_the_fall() {
     let mut hero = Hero::new();
     hero.run(40);
     assert_eq!(hero.handle().state(), State::Animated);
@@ -196,18 +196,18 @@ fn its_mesh_follows_the_fall() {
         (a.translation - b.translation).length()
     };
     let moved = start.iter().zip(&hero.joints_and_bodies()).map(moved).fold(0.0, f32::max);
-    assert!(moved > 1.0, "the head comes down: {moved} m");
-    assert!(!hero.animation().is_paused(), "the player has gone on");
+    assert!(moved > 1.0, "the head moves only {moved} m");
+    assert!(!hero.animation().is_paused(), "the player is paused");
 }
 
 #[test]
-fn despawned_in_its_fall_it_leaves_nothing() {
+fn despawn_during_a_fall_removes_everything() {
     let mut hero = Hero::new();
     hero.run(20);
     let stands = hero.height();
     hero.go_limp();
     hero.run(25);
-    assert!((0.3 * stands..0.95 * stands).contains(&hero.height()), "it is falling: {} m", hero.height());
+    assert!((0.3 * stands..0.95 * stands).contains(&hero.height()), "it is not falling: {} m", hero.height());
     let limbs = hero.handle().bodies().to_vec();
     let joints = hero.handle().def().rig.joints.len();
     assert!(hero.parts() > joints, "{} parts", hero.parts());
@@ -215,10 +215,10 @@ fn despawned_in_its_fall_it_leaves_nothing() {
     hero.run(3);
     let physics = hero.app.world().resource::<Physics>();
     let left = (physics.body_ids().count(), physics.joint_ids().count(), physics.mover_ids().count());
-    assert_eq!(left, (1, 0, 0), "the ground alone is left");
+    assert_eq!(left, (1, 0, 0), "something besides the ground remains");
     assert!(limbs.iter().all(|&limb| physics.entity(limb).is_none()));
-    assert_eq!((physics.len(), hero.parts()), (1, 1), "the ground alone is left");
-    // Bevy's own, once nothing asks for the file any more.
+    assert_eq!((physics.len(), hero.parts()), (1, 1), "something besides the ground remains");
+    // Bevy frees its assets once nothing uses the file any more.
     assert_eq!(hero.app.world().resource::<Assets<Mesh>>().len(), 0);
     assert_eq!(hero.app.world().resource::<Assets<Gltf>>().len(), 0);
 }

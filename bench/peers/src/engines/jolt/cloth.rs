@@ -14,7 +14,7 @@ use sinew::physics::Sleeping;
 /// particles explodes at its first contact.
 const COMPLIANCE: f32 = 5e-3;
 
-/// The scene with 5 iterations, Jolt's default.
+/// Builds the scene with 5 iterations, Jolt's default.
 pub fn build(scene: &ClothScene) -> Result<Box<dyn ClothSimulation>, Unsupported> {
     let obstacles = scene.obstacles();
     let gravity = Vec3::new(0.0, -9.81, 0.0);

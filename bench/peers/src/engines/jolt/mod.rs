@@ -3,8 +3,8 @@
 //! Compared with earlier figures of Jolt 5.5.1 with link-time optimisation on a Zen 4, this Jolt 5.6.0 without it on an Intel
 //! Xeon takes about as long relative to Rapier for joints (pile of figures 0.79 of Rapier's time, then 0.72; chain 0.98, then
 //! 1.01), but longer for stacks of boxes (pyramid of 15 layers 1.40, then 0.98 to 1.10) and rays (0.9, then 0.6). This
-//! crate is not the cause: of the pyramid, 51 % is one function of Jolt, the velocity solver of a contact,
-//! which has new friction in 5.6; of the rays, 86 % is Jolt's tree and boxes. Caches are not the cause either: pyramids of 6 and 11
+//! crate is not the cause: one function of Jolt takes 51 % of the pyramid's time, the velocity solver of a contact,
+//! which has new friction in 5.6, and Jolt's tree and boxes take 86 % of the rays' time. Caches are not the cause either: pyramids of 6 and 11
 //! layers have 1.43 and 1.44.
 
 mod cloth;
@@ -26,7 +26,7 @@ use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, JointKind, Sensing, Sleeping};
 use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
 
-/// Of Jolt 5.6.0, as the crate bundles it.
+/// Commit of Jolt 5.6.0 that the crate bundles.
 const JOLT_COMMIT: &str = "e77f1755";
 
 /// Capacity for contacts, in body pairs and in manifolds: a step that exceeds it is not measured but stops the run.
@@ -35,7 +35,7 @@ const MAX_CONTACTS: u32 = 65_536;
 /// Scratch memory of a step, bytes; only the used part is touched.
 const SCRATCH: u32 = 256 << 20;
 
-/// This engine.
+/// Jolt.
 pub struct Jolt;
 
 impl Engine for Jolt {

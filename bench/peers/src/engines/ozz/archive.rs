@@ -35,7 +35,7 @@ pub fn skeleton(scene: &CrowdScene) -> Vec<u8> {
 /// Returns a clip of a crowd, version 7 of the format: each key of the clip is one, and constant tracks have two.
 ///
 /// # Panics
-/// If a channel is not of the clip's key times: nothing else is needed here.
+/// If a channel has other key times than the clip's first channel.
 pub fn animation(scene: &CrowdScene, clip: &Clip) -> Vec<u8> {
     let times = &clip.channels[0].times;
     let rest = filled(rest_pose(&scene.rig));
@@ -49,7 +49,7 @@ pub fn animation(scene: &CrowdScene, clip: &Clip) -> Vec<u8> {
     for keys in [&translations, &rotations, &scales] {
         bytes.u32(keys.len());
     }
-    // No iframes, from which seeking starts: two numbers for each property.
+    // Without iframes (seek points): two numbers for each property.
     (0..6).for_each(|_| bytes.u32(0));
     bytes.0.extend(clip.name.as_bytes());
     times.iter().for_each(|time| bytes.f32(time / clip.duration));
@@ -119,7 +119,7 @@ fn is_of(channel: &Channel, joint: usize, property: Property) -> bool {
     channel.joint == joint && channel.property == property
 }
 
-/// In ozz's order.
+/// Sorts keys in ozz's order.
 fn sorted(mut keys: Vec<Key>) -> Vec<Key> {
     keys.sort_by(|a, b| match a.needed.cmp(&b.needed) {
         Ordering::Equal => a.track.cmp(&b.track),
@@ -157,7 +157,7 @@ fn halves(value: &[f32]) -> [u16; 3] {
 /// Rounds to the nearest half-precision number, for values that are neither tiny nor huge.
 fn half(value: f32) -> u16 {
     let sign = if value.is_sign_negative() { 0x8000 } else { 0 };
-    // Below the least normal number, 2⁻¹⁴, are multiples of 2⁻²⁴.
+    // Below the smallest normal number, 2⁻¹⁴, values are multiples of 2⁻²⁴.
     if value.abs() < 6.2e-5 {
         return sign | (value.abs() * 16_777_216.0 + 0.5) as u16;
     }

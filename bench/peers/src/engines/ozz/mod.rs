@@ -15,7 +15,7 @@ use sinew_scenes::crowd::{CrowdScene, DURATION};
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// This engine.
+/// Ozz.
 pub struct Ozz;
 
 impl Engine for Ozz {

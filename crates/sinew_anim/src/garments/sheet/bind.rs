@@ -1,4 +1,4 @@
-//! Vertices on the particles of their sheet.
+//! Weights vertices to the particles of their sheet.
 
 use super::reduce::Reduced;
 use super::weld::Welded;

@@ -19,39 +19,37 @@ pub struct MeshPart {
     pub name: String,
     /// Index into [`Rig::meshes`].
     pub mesh: usize,
-    /// Its primitives, ascending.
+    /// Primitives of the mesh, ascending.
     pub primitives: Vec<usize>,
 }
 
 /// Reason why a part of a rig cannot be cloth.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SheetError {
-    /// Nothing has the name.
+    /// No mesh or material has the name.
     #[error("no mesh or material has that name")]
     Unknown,
     /// Several meshes have it: their nodes.
     #[error("{} meshes have that name or material, and a garment is of one: {}", .0.len(), .0.join(", "))]
     Several(Vec<String>),
-    /// It has no weights, but another part of its mesh has.
+    /// The part has no weights, but another part of its mesh has.
     #[error("that part of the mesh has no weights, and others have: give it some")]
     NoSkin,
-    /// It is cloth already.
+    /// The mesh is cloth already.
     #[error("that mesh is a garment already")]
     Twice,
     /// There are no triangles, or all of them lie in a point.
     #[error("that mesh has no triangles with an area")]
     Empty,
-    /// All of it is held.
-    #[error("all of that mesh is held: nothing of it is left to hang")]
+    /// The whole mesh is held.
+    #[error("all of that mesh is held: no part can move")]
     AllHeld,
     /// Most of it is not connected to the held part.
-    #[error(
-        "most of that mesh does not hang together with what is held at its top: a larger `held` holds more"
-    )]
+    #[error("most of that mesh is not connected to the held part at its top: use a larger `held`")]
     MostlyLoose,
     /// More pieces are held than particles are allowed.
     #[error(
-        "{0} separate pieces of that mesh are held, and each takes a particle at least: a larger `most_particles` has room for them"
+        "{0} separate pieces of that mesh are held, and each needs a particle: use a larger `most_particles`"
     )]
     TooManyPieces(usize),
     /// The skin would have more joints than its indices can address.
@@ -182,7 +180,7 @@ impl Rig {
         }
     }
 
-    /// Removes that skin, the last one, again.
+    /// Removes that skin (the last one) again.
     fn hang_rigidly(&mut self, mesh: usize) {
         self.skins.pop();
         let mesh = &mut self.meshes[mesh];
@@ -198,7 +196,7 @@ fn lay(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> Result<usi
     let (vertices, longest_edge) = (welded.places.len(), welded.longest_edge());
     let (low, high) = welded.heights().ok_or(SheetError::Empty)?;
     let above = high - options.held.unwrap_or(crate::tuning::HELD_SHARE * (high - low));
-    welded.split_what_hangs(above, options);
+    welded.split_connected(above, options);
     let graph = graph::Graph::new(&welded);
     let is_held = |vertex: usize| welded.places[vertex].y >= above;
     let reduced = reduce::reduce(&welded, &graph, is_held, options)?;

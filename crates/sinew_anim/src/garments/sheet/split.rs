@@ -26,7 +26,7 @@ impl Welded {
     }
 
     /// Splits what is connected to a vertex at least as high as `above` (m).
-    pub fn split_what_hangs(&mut self, above: f32, options: &SheetOptions<'_>) {
+    pub fn split_connected(&mut self, above: f32, options: &SheetOptions<'_>) {
         let graph = Graph::new(self);
         let mut is_held = vec![false; self.places.len()];
         for (place, &component) in self.places.iter().zip(&graph.component) {

@@ -1,4 +1,4 @@
-//! Merges vertices in one place.
+//! Merges vertices at equal positions.
 
 use super::{MeshPart, SheetOptions};
 use crate::rig::{Primitive, Rig};
@@ -85,7 +85,7 @@ impl Welded {
         known: &mut BTreeMap<[u32; 3], usize>,
     ) -> usize {
         let at = primitive.positions[vertex];
-        // Both zeros are one place.
+        // Maps −0 to 0, so that both give one key.
         let key = at.to_array().map(|x| (x + 0.0).to_bits());
         *known.entry(key).or_insert_with(|| {
             let (mut place, mut heaviest) = (Vec3::ZERO, 0);

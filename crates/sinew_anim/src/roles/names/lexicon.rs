@@ -11,9 +11,9 @@ pub(super) enum Word {
     /// The part nearer to the trunk, or higher in it.
     Upper,
     Lower,
-    /// Between upper and lower: another part of the spine; in a limb a part that humans lack.
+    /// The part between upper and lower: another part of the spine; in a limb a part that humans lack.
     Mid,
-    /// Before "arm" the lower one, before "leg" one of a beast.
+    /// The lower part before "arm", and a part of a beast before "leg".
     Fore,
     /// Front of a quadruped; `Back` is its hind part.
     Front,
@@ -46,7 +46,7 @@ pub(super) enum Word {
     Twist,
     /// Animator's control, not a body part: an appendix too, as long as it has little skin.
     Control,
-    /// Makes the joint an appendix whatever else its name says.
+    /// Makes the joint an appendix whatever the rest of its name.
     Appendix,
 }
 
@@ -255,8 +255,8 @@ const PAIRS: &[(&str, [Word; 2])] =
 
 /// Meaning of a whole word.
 pub(super) fn meaning(word: &str) -> Option<Word> {
-    let said = |&&(_, words): &&(Word, &str)| words.split(' ').any(|known| known == word);
-    WORDS.iter().find(said).map(|&(meaning, _)| meaning)
+    let has_word = |&&(_, words): &&(Word, &str)| words.split(' ').any(|known| known == word);
+    WORDS.iter().find(has_word).map(|&(meaning, _)| meaning)
 }
 
 /// Meanings of a word, whole or as known words joined together ("lefttoebase", "lthigh", "左足首"); `None` if a part of it

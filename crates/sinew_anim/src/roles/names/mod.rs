@@ -27,7 +27,7 @@ pub(super) enum Part {
     Tail,
     /// A limb of a body on four legs, which is no human's.
     Beast,
-    /// Never a body: twist and IK joints, ends, sockets, fingers, face.
+    /// The joint is never a body: twist and IK joints, ends, sockets, fingers, face.
     Appendix,
 }
 
@@ -42,7 +42,7 @@ pub(super) struct Reading {
     pub part: Option<Part>,
     /// True if the name speaks of a wing.
     pub is_wing: bool,
-    /// True if the name is "root" and nothing else: of a rig that calls nothing hips, they are meant where it moves skin.
+    /// True if the name is only "root": if no joint of the rig is named hips, a root that moves skin is the hips.
     pub is_root: bool,
     /// True if it is an appendix only because the name speaks of a control, such as "IK".
     pub is_control: bool,
@@ -57,7 +57,7 @@ pub(super) fn read_names(names: &[&str], parents: &[Option<usize>]) -> Vec<Readi
     let upper_arm = has(&[Sense::Arm, Sense::Part(Part::UpperArm)]);
     let thigh = has(&[Sense::Part(Part::UpperLeg)]);
     let shank = has(&[Sense::Part(Part::LowerLeg)]);
-    // Of the same side: a mesh beside the skeleton may be called a wrist, too.
+    // The parts must be of the same side: a mesh beside the skeleton may be called a wrist, too.
     let sides_with = |wanted: Sense| {
         [Side::Left, Side::Right].map(|side| {
             (0..senses.len()).any(|i| senses[i] == Some(wanted) && readings[i].side == Some(side))
@@ -119,7 +119,7 @@ fn name_ball(readings: &mut [Reading], parents: &[Option<usize>]) {
 
 /// Resolves parts that several skinned joints of one side claim; they have a `depth`, the number of joints above them.
 /// If the rig names all four long limb parts, one joint is the part and the others continue it (Rigify's
-/// "upper_arm.L.001"); else the name says nothing (CesiumMan calls all of its arm "arm").
+/// "upper_arm.L.001"); else the name has no meaning (CesiumMan calls all of its arm "arm").
 pub(super) fn settle_duplicates(
     readings: &mut [Reading],
     names: &[&str],
@@ -146,8 +146,8 @@ pub(super) fn settle_duplicates(
         if same.len() == 1 {
             continue;
         }
-        let meant = meant(same.clone(), names, &depth).filter(|_| names_all);
-        for joint in same.into_iter().filter(|&joint| Some(joint) != meant) {
+        let chosen = chosen_index(same.clone(), names, &depth).filter(|_| names_all);
+        for joint in same.into_iter().filter(|&joint| Some(joint) != chosen) {
             readings[joint].part = names_all.then_some(Part::Appendix);
         }
     }
@@ -217,16 +217,20 @@ pub(super) fn settle_trunk(
     readings[hips].part = Some(Part::Hips);
 }
 
-/// The joint meant among several of one name, independent of the file order: the nearest to the root; of siblings the
+/// The joint to use among several of one name, independent of the file order: the nearest to the root; of siblings the
 /// middle one by name (of three palms the second, of two the first).
-fn meant(mut same: Vec<usize>, names: &[&str], depth: &impl Fn(usize) -> Option<usize>) -> Option<usize> {
+fn chosen_index(
+    mut same: Vec<usize>,
+    names: &[&str],
+    depth: &impl Fn(usize) -> Option<usize>,
+) -> Option<usize> {
     let least = same.iter().filter_map(|&joint| depth(joint)).min()?;
     same.retain(|&joint| depth(joint) == Some(least));
     same.sort_by_key(|&joint| names[joint]);
     same.get((same.len() - 1) / 2).copied()
 }
 
-/// Meaning of a name by itself; some words depend on the rest of the rig.
+/// Meaning of a name without the others; some words depend on the rest of the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sense {
     Part(Part),
@@ -254,7 +258,7 @@ fn read(tokens: &[Token]) -> (Reading, Option<Sense>) {
         for word in said {
             match word {
                 Word::Noise => {}
-                // Of two sides the last counts (Blender's ".L"); the other is some letter.
+                // If a name has two sides, the last one counts (Blender's ".L"), because the other is just a letter.
                 Word::Side(side) => unknown |= reading.side.replace(*side).is_some(),
                 _ => words.push(*word),
             }
@@ -337,7 +341,7 @@ fn sense(words: &[Word]) -> Option<Sense> {
     if has(Twist) && !trunk { Some(Sense::Part(Part::Appendix)) } else { Some(found) }
 }
 
-/// Meaning of a word by itself.
+/// Meaning of a single word.
 fn plain(word: Word) -> Option<Sense> {
     Some(match word {
         Word::Pelvis => Sense::Pelvis,
@@ -384,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_the_common_conventions() {
+    fn common_naming_conventions_are_read() {
         use Part::*;
         let (l, r) = (Some(Side::Left), Some(Side::Right));
         let names =
@@ -409,7 +413,7 @@ mod tests {
 
     /// Body parts in the languages of asset stores, on both sides, in any case.
     #[test]
-    fn names_in_other_languages_and_in_any_case() {
+    fn names_are_read_in_other_languages_and_any_case() {
         use Part::*;
         let (l, r) = (Some(Side::Left), Some(Side::Right));
         let wanted = [
@@ -459,7 +463,7 @@ mod tests {
     }
 
     #[test]
-    fn words_whose_meaning_hangs_on_the_others() {
+    fn word_meaning_depends_on_the_other_names() {
         use Part::*;
         let (l, r) = (Some(Side::Left), Some(Side::Right));
         let smpl = [

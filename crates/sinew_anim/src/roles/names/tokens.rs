@@ -17,7 +17,7 @@ const FEW: usize = 4;
 pub(super) fn tokens(names: &[&str]) -> Vec<Vec<Token>> {
     let mut split: Vec<Vec<String>> = names.iter().map(|name| words(name)).collect();
     name_vertebrae(names, &mut split);
-    // Beside "rt", "lf" is short for left, else for left front.
+    // If a name has "rt", "lf" is short for left, else for left front.
     let has = |wanted: &str| split.iter().flatten().any(|word| word == wanted);
     if has("rt") && !has("rf") {
         split.iter_mut().flatten().filter(|word| *word == "lf").for_each(|word| *word = "left".into());
@@ -97,7 +97,7 @@ fn own_words(split: &[Vec<String>]) -> Vec<(String, bool)> {
     own
 }
 
-/// Cuts off the common start of half of all first words, if it is no word itself and the rest of them is known
+/// Removes a prefix that half of all first words have, if it is no known word and the rest of each is one
 /// ("herohips", "herospine").
 fn cut_glued_prefix(split: &mut [Vec<String>]) {
     let unknown = |words: &&Vec<String>| words.first().is_some_and(|word| meanings(word).is_none());

@@ -9,14 +9,14 @@ use sinew::math::Vec3;
 use sinew::motions::{BuiltinError, set_motions_with_builtin};
 use sinew::ragdoll::{AfterSettling, CharacterDef, GroundContact, Locomotion, MotionSet, RagdollDef};
 
-/// Source of the clips by which a character gets up.
+/// Source of the get-up clips of a character.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GetsUpBy {
-    /// Its own, or those of `--clips`.
+    /// The file's own clips, or those of `--clips`.
     Own,
-    /// The built-in ones.
+    /// The built-in motions.
     Builtin,
-    /// There are none; the reason, to follow 'it does not get up: '.
+    /// No clips; the reason, appended to 'it does not get up: '.
     Nothing(String),
     /// The built-in ones exist, but none comes out on this body; the reason, as above.
     Unfit(String),
@@ -31,7 +31,7 @@ impl GetsUpBy {
 }
 
 /// Advice for a user whose character has no get-up clips.
-const CLIPS_HELP: &str = "name a file with a clip to get up by with --clips, called such as 'get up'";
+const CLIPS_HELP: &str = "--clips adds a file with a get-up clip, named for example 'get up'";
 
 /// The character and its get-up motions; `builtin`: built-in motions may replace missing ones.
 pub fn actor(
@@ -47,7 +47,7 @@ pub fn actor(
     let mut get_ups = def.get_ups_among(&motions.clips);
     get_ups.retain(|&clip| Some(clip) != motions.looped);
     let Motions { clips, looped, .. } = motions;
-    // Who lies in its file would walk along its own axes into the floor.
+    // Without this, a character that lies in its file would walk along its own axes into the floor.
     let is_lying = lies(&def.ragdoll, analysis.hints.up.unwrap_or(Vec3::Y));
     let locomotion = if is_lying { Locomotion::Exact } else { Locomotion::ByClip };
     let own = MotionSet { clips, looped, get_ups, locomotion, ..MotionSet::default() };
@@ -60,13 +60,13 @@ pub fn actor(
             Ok(()) => return Ok((def, GetsUpBy::Builtin)),
             Err(BuiltinError::Motion(error)) => return Err(failed(error)),
             Err(BuiltinError::Retarget(RetargetError::NotHumanoid(_))) => GetsUpBy::Nothing(format!(
-                "Sinew's own motions are a human's, and this is none; {CLIPS_HELP}"
+                "the built-in motions are for humans, and this character is not human; {CLIPS_HELP}"
             )),
             Err(error) => GetsUpBy::Unfit(format!("{error}; {CLIPS_HELP}")),
         }
     } else {
         GetsUpBy::Nothing(format!(
-            "no clip of its own does it, and --no-builtin-motions leaves out Sinew's; {CLIPS_HELP}"
+            "it has no get-up clip, and --no-builtin-motions leaves out the built-in ones; {CLIPS_HELP}"
         ))
     };
     // A lying body without a get-up motion would float to its feet.

@@ -1,4 +1,4 @@
-//! The body that a hit means.
+//! Finds the body for a hit.
 
 use super::hit::HitArg;
 use crate::failure::{Failure, Result};
@@ -8,10 +8,10 @@ use sinew::anim::{RigAnalysis, Role, Side};
 use sinew::ragdoll::settings::{instead, role_named};
 use sinew::ragdoll::{BakeHit, CharacterDef, RagdollBodyDef};
 
-/// From the hips up.
+/// Roles of the spine, from the hips up.
 const SPINE: [Role; 6] = [Role::Hips, Role::Spine, Role::Chest, Role::UpperChest, Role::Neck, Role::Head];
 
-/// A hit on the named body, or on the nearest one, with a note, if the body part has none of its own.
+/// Aims at the named body; if the body part has none, at the nearest one, with a note.
 pub fn aim(
     hit: &HitArg,
     character: &CharacterDef,
@@ -57,8 +57,8 @@ fn carrier(role: Role, analysis: &RigAnalysis, bodies: &[RagdollBodyDef]) -> Opt
     bodies.iter().position(|body| body.joint == joint || body.merged.contains(&joint))
 }
 
-/// The nearest body along the spine, the lower of two equally near ones; for a limb, the next part toward the trunk. A
-/// creature's spine counts as long as a human's, however many parts it has.
+/// The nearest body along the spine (of two equally near ones the lower); for a limb, the next part toward the trunk. A
+/// creature's spine is scaled to a human's, however many parts it has.
 fn nearest(role: Role, bodies: &[RagdollBodyDef]) -> Option<usize> {
     if let Some(place) = SPINE.iter().position(|other| *other == role) {
         let along = (1..SPINE.len()).flat_map(|away| [place.checked_sub(away), Some(place + away)]);

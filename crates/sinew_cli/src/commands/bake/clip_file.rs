@@ -9,12 +9,12 @@ use sinew::math::Rotation;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// Its bytes, and notes on what the format cannot represent.
+/// Format of the clip's file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipFormat {
-    /// A copy of the character's file with one clip more.
+    /// A copy of the character's file with the clip added.
     Copy,
-    /// Its skeleton and the clip, with every frame.
+    /// The character's skeleton and the clip, with every frame.
     Bvh,
 }
 
@@ -32,7 +32,7 @@ impl ClipFile {
         &self.path
     }
 
-    /// Its bytes, and notes on what the format cannot represent, one sentence each.
+    /// The file's bytes, and notes on what the format cannot represent, one sentence each.
     pub fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<(Vec<u8>, Vec<String>)> {
         let written = match self.format {
             ClipFormat::Copy => append_clip(

@@ -14,9 +14,9 @@ const DOORS: core::ops::Range<f32> = 0.5..0.97;
 /// Free depth behind a door, and largest distance of its wall, in room heights.
 const BEHIND: f32 = 0.3;
 const FARTHEST: f32 = 4.0;
-/// Walls over a door are coplanar within this share of the room's height.
+/// Largest distance of two walls over a door from one plane, as a share of the room's height.
 const EVEN: f32 = 0.05;
-/// Rooms, metres.
+/// Plausible heights of rooms, metres.
 const ROOMS: core::ops::Range<f32> = 0.3..60.0;
 
 /// Median free height of the doors of a world, metres; `None` without doors.
@@ -79,7 +79,7 @@ impl Rays {
             .collect()
     }
 
-    /// From the ground up: free rays up to a lintel, then one wall up to the ceiling.
+    /// A door has free rays from the ground up to a lintel, then one wall up to the ceiling.
     fn door(&self, ground: Vec3, toward: Vec3, room: f32) -> Option<f32> {
         let levels: Vec<f32> = (1..LEVELS).map(|level| room * f32::from(level) / f32::from(LEVELS)).collect();
         let see = |&level: &f32| self.way(ground + Vec3::Y * level, toward * (FARTHEST * room));

@@ -11,7 +11,7 @@ const COLUMNS: [usize; 2] = [24, 128];
 const STEP: f32 = 0.25;
 /// Additional height for a slope, in column widths.
 const SLOPE: f32 = 0.5;
-/// Size ratio up to which the lower of two grounds comes first, as a house's floor before its roof.
+/// Size ratio above which two grounds count as similar: then the lower comes first, as a house's floor before its roof.
 const ALIKE: f32 = 0.5;
 /// Largest number of positions tested per ground, evenly spread.
 const MOST_PLACES: usize = 1024;
@@ -22,7 +22,7 @@ struct Node {
     at: Vec3,
 }
 
-/// Grounds by size, largest first, each as its positions, those nearest its middle first. `floors` returns the walkable
+/// Grounds by size, largest first, each as its positions, nearest to the middle first. `floors` returns the walkable
 /// heights below a position, down to a depth.
 pub fn grounds(bounds: &Aabb, height: f32, floors: impl Fn(Vec3, f32) -> Vec<f32>) -> Vec<Vec<Vec3>> {
     let size = bounds.max - bounds.min;
@@ -31,7 +31,7 @@ pub fn grounds(bounds: &Aabb, height: f32, floors: impl Fn(Vec3, f32) -> Vec<f32
     let (nx, nz) = (count(size.x), count(size.z));
     let cell = Vec3::new(size.x / nx as f32, 0.0, size.z / nz as f32);
     let top = bounds.max.y + height;
-    // Also finds a half-space below everything else.
+    // The ray also finds a half-space below everything else.
     let depth = size.y + 2.0 * height + 1000.0;
     let mut nodes: Vec<Node> = Vec::new();
     let mut first = Vec::with_capacity(nx * nz + 1);
@@ -49,7 +49,7 @@ pub fn grounds(bounds: &Aabb, height: f32, floors: impl Fn(Vec3, f32) -> Vec<f32
     by_size(&nodes, parts)
 }
 
-/// Nodes that are connected by steps no higher than that, by their indices.
+/// Indices of the nodes connected by steps of at most `step`.
 fn connected(nodes: &[Node], first: &[usize], nx: usize, step: f32) -> Vec<Vec<usize>> {
     let mut seen = vec![false; nodes.len()];
     let mut parts = Vec::new();
@@ -106,9 +106,9 @@ fn by_size(nodes: &[Node], mut parts: Vec<Vec<usize>>) -> Vec<Vec<Vec3>> {
 mod tests {
     use super::*;
 
-    /// A field of 20 m with a hut of 4 m on it, whose roof is in the middle: one stands on the field.
+    /// A field of 20 m with a hut of 4 m on it, whose roof is in the middle: the field is chosen.
     #[test]
-    fn the_field_goes_before_the_roof() {
+    fn larger_field_comes_before_the_roof() {
         let bounds = Aabb::around(Vec3::ZERO, Vec3::new(10.0, 3.0, 10.0));
         let floors =
             |at: Vec3, _: f32| if at.x.abs() < 2.0 && at.z.abs() < 2.0 { vec![3.0] } else { vec![0.0] };
@@ -119,7 +119,7 @@ mod tests {
 
     /// Floor and roof of a house, the roof a little larger.
     #[test]
-    fn the_floor_goes_before_the_roof() {
+    fn floor_comes_before_a_roof_of_similar_size() {
         let bounds = Aabb::around(Vec3::ZERO, Vec3::new(5.0, 3.0, 5.0));
         let floors = |at: Vec3, _: f32| if at.x.abs() < 4.5 { vec![3.0, 0.0] } else { vec![3.0] };
         assert!(grounds(&bounds, 1.75, floors)[0].iter().all(|at| at.y == 0.0));

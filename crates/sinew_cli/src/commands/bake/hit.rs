@@ -3,21 +3,21 @@
 use sinew::math::Vec3;
 use std::str::FromStr;
 
-/// A push as the user writes it.
+/// A push as given by the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HitArg {
-    /// Joint name or role.
+    /// Joint name or role of the body.
     pub bone: String,
-    /// N·s, world axes.
+    /// Impulse, N·s, world axes.
     pub impulse: Vec3,
-    /// Seconds.
+    /// Time, seconds.
     pub time: f32,
 }
 
 impl FromStr for HitArg {
     type Err = String;
 
-    /// Bone names may contain `@` and `=`, so the last one of each counts.
+    /// Bone names may contain `@` and `=`, so the last one of each is the separator.
     fn from_str(text: &str) -> Result<Self, String> {
         let (rest, time) = text.rsplit_once('@').ok_or("'@T' is missing: a hit has a time")?;
         let (bone, impulse) = rest.rsplit_once('=').ok_or("'=IX,IY,IZ' is missing: a hit has an impulse")?;
@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_signs_split() {
+    fn last_separators_split_the_argument() {
         let hit = |bone: &str, impulse: [f32; 3], time| {
             Ok(HitArg { bone: bone.to_owned(), impulse: Vec3::from_array(impulse), time })
         };
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_named() {
+    fn missing_parts_are_named() {
         let refused = |text: &str, reason: &str| {
             assert_eq!(text.parse::<HitArg>(), Err(reason.to_owned()), "{text}");
         };

@@ -103,11 +103,11 @@ pub struct Bake {
     /// Do not simulate the garments (capes, skirts, coats) listed in the settings
     #[arg(long)]
     no_garments: bool,
-    /// Push a bone: joint name or role, impulse in N·s along the world's axes (+Y up), time in seconds; repeatable. A role
-    /// without a body means the nearest one that has
+    /// Push a bone: joint name or role, impulse in N·s along the world's axes (+Y up), time in seconds; repeatable. For
+    /// a role without a body the nearest body is used
     #[arg(long = "hit", value_name = "BONE=IX,IY,IZ@T", allow_hyphen_values = true)]
     hits: Vec<HitArg>,
-    /// Show hits that are too weak to fell it as a flinch: the limb gives way and recovers
+    /// Show hits that are too weak to fell it as a flinch: the limb yields and recovers
     #[arg(long)]
     flinch: bool,
     /// Go limp at this time, seconds; without any --hit the default is 0.5, and a character that stays upright is
@@ -140,7 +140,7 @@ struct Cast {
     file: CharacterFile,
     ragdoll: RagdollDef,
     garments: Vec<Garment>,
-    /// About its mass.
+    /// Doubt about its mass.
     doubt: Option<Doubt>,
     notes: Vec<String>,
 }
@@ -148,7 +148,7 @@ struct Cast {
 /// Largest allowed key error, mm: beyond it the clip is no copy of the motion.
 const LARGEST_KEY_ERROR: f32 = 100.0;
 
-/// An error that keys may have, mm.
+/// Parses an allowed key error, mm.
 fn key_error(text: &str) -> Result<f32, String> {
     let error: f32 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
     if (0.0..=LARGEST_KEY_ERROR).contains(&error) {
@@ -239,7 +239,7 @@ impl Bake {
             .map_err(|what| Failure::at(&name, what, if self.at.is_some() { "--at" } else { "--world" }))
     }
 
-    /// Allowed key error; zero for a format that stores every frame.
+    /// Allowed key error; zero for formats that store every frame.
     fn key_bound(&self) -> Result<KeyBound> {
         match (self.output.format, self.key_error) {
             (ClipFormat::Bvh, None) => Ok(KeyBound::ALL_KEYS),
@@ -278,7 +278,7 @@ impl Bake {
         let rig = &mut file.document.rig;
         rig.springs = self.spring_source(None).springs(rig, file.analysis.up_axis);
         let ragdoll = read_definition(path, &file)?;
-        // It is unknown if its mass was guessed or given.
+        // A given definition may have a guessed or a given mass.
         let mut doubt = Doubt::of(&ragdoll);
         if let Some(doubt) = &mut doubt {
             doubt.reason += "; --height, --unit or --mass of `ragdoll build` sets it";
@@ -314,14 +314,14 @@ impl Bake {
         }
     }
 
-    /// The user's own files are never the output.
+    /// Rejects an output that is one of the user's own files.
     fn check_outputs(&self) -> Result<()> {
         let settings = self.settings.path_for(&self.character);
         let inputs = self.clips.iter().chain([&self.character, &settings]).map(PathBuf::as_path);
         never_over(inputs.chain(self.world.as_deref()).chain(self.ragdoll.as_deref()), self.outputs())
     }
 
-    /// A hit after the end is an error; going limp after the end only means that there is no fall.
+    /// Rejects a hit after the end; going limp after the end only gives a note.
     fn check_times(&self) -> Result<()> {
         match self.hits.iter().map(|hit| hit.time).find(|time| *time > self.seconds) {
             Some(time) => {
@@ -362,7 +362,7 @@ impl Bake {
     }
 }
 
-/// Each sentence once.
+/// Removes repeated sentences.
 fn once(notes: Vec<String>) -> Vec<String> {
     let mut said: Vec<String> = Vec::new();
     for note in notes {
@@ -373,7 +373,7 @@ fn once(notes: Vec<String>) -> Vec<String> {
     said
 }
 
-/// Non-colliding triangles of the world, if any.
+/// Report on degenerate and duplicate triangles of the world, if any.
 fn left_out(bodies: &[BodyDef]) -> Option<String> {
     let shapes = bodies.iter().flat_map(|body| &body.shapes);
     let dropped = shapes.filter_map(|shape| match &shape.shape {
@@ -384,18 +384,18 @@ fn left_out(bodies: &[BodyDef]) -> Option<String> {
         dropped.fold((0, 0), |(flat, twice), one| (flat + one.degenerate, twice + one.repeated));
     (degenerate + repeated > 0).then(|| {
         format!(
-            "  left out of the world: {degenerate} triangles without area, {repeated} that are there twice"
+            "  left out of the world: {degenerate} triangles without area, {repeated} that are duplicates"
         )
     })
 }
 
-/// A static half-space with its surface at that height.
+/// A static half-space with its surface at height `level`.
 fn floor(level: f32) -> BodyDef {
     let shapes = vec![ShapeDef::new(Shape::HalfSpace)];
     BodyDef { kind: BodyKind::Static, position: Vec3::Y * level, shapes, ..BodyDef::default() }
 }
 
-/// The whole character, seen from its front left (facing +Z), unless something blocks the view.
+/// A film of the whole character from its front left (facing +Z), unless the view is blocked there.
 fn film<'a>(fall: &'a Fall<'a>) -> Film<'a> {
     let mut set = Vec::new();
     for (index, body) in fall.input.bodies.iter().enumerate() {

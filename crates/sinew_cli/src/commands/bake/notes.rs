@@ -7,7 +7,7 @@ use sinew::physics::ray::Ray;
 use sinew::physics::{BodyKinds, QueryFilter, World, WorldDef};
 use sinew::ragdoll::{BakeInput, CharacterEvent};
 
-/// Depth to which the ground is sought, metres.
+/// Depth down to which ground is searched, metres.
 const DEPTH: f32 = 1000.0;
 /// Depth below the soles from which ground no longer counts as standing ground, metres.
 const GAP: f32 = 0.3;
@@ -33,8 +33,8 @@ pub fn stands_at(place: &Place, world: &str) -> Option<String> {
     let [x, y, z] = place.stands.translation.to_array();
     place.found.then(|| {
         format!(
-            "it stands at {x:.2},{y:.2},{z:.2}, the place with room over it nearest the middle of the largest ground of {world} that can be walked on; \
-             --at X,Y,Z says another"
+            "it stands at {x:.2},{y:.2},{z:.2}, the free place nearest the middle of the largest walkable ground of {world}; \
+             --at X,Y,Z sets another"
         )
     })
 }
@@ -44,7 +44,7 @@ pub fn is_pushed(input: &BakeInput<'_>) -> String {
     let time = input.limp_at.unwrap_or(0.0);
     format!(
         "limp alone it stays upright: it is pushed over at {time} s, its highest point by {:.1} m/s; --limp-at {time} leaves out the push, \
-         --hit says another",
+         --hit sets another",
         input.topple.length()
     )
 }
@@ -53,7 +53,7 @@ pub fn is_pushed(input: &BakeInput<'_>) -> String {
 fn borrows(events: &[(f32, CharacterEvent)], gets_up_by: &GetsUpBy) -> Option<String> {
     let rises = events.iter().any(|(_, event)| matches!(event, CharacterEvent::GettingUp { .. }));
     (rises && *gets_up_by == GetsUpBy::Builtin).then(|| {
-        "it gets up by motions that come with Sinew, for it has no clip that does: --clips brings others, \
+        "it gets up by built-in motions, because it has no get-up clip: --clips adds some, \
          --no-builtin-motions leaves it lying"
             .to_owned()
     })
@@ -81,7 +81,7 @@ fn ground(input: &BakeInput<'_>, file: Option<&str>) -> Option<String> {
     Some(format!("the ground of {file} is {:.2} m below the character", soles.y - hit.point.y))
 }
 
-/// Reason why a fallen character is not up again at the end.
+/// Reason why a fallen character is not up at the end.
 fn stays_down(
     input: &BakeInput<'_>,
     events: &[(f32, CharacterEvent)],

@@ -8,13 +8,13 @@ use sinew::physics::{
     BodyDef, BodyHit, BodyKind, BodyKinds, OverlapWith, Probe, QueryFilter, Shape, World, WorldDef,
 };
 
-/// Cosine of the steepest ground that is walked on: 40°.
+/// Cosine of the steepest walkable slope: 40°.
 const WALKABLE: f32 = 0.766;
 /// Requirements for a position, in heights of the character.
 struct Demand {
     /// Free distance on each side: to fall, or to stand.
     room: f32,
-    /// Free height.
+    /// Free height over the position.
     over: f32,
     /// Least cosine of the ground's slope.
     level: f32,
@@ -39,7 +39,7 @@ const OVER: f32 = 0.06;
 
 /// A position and a facing, given or found.
 pub struct Place {
-    /// World from character.
+    /// Transform from the character to the world.
     pub stands: Transform,
     /// True if the position was searched.
     pub found: bool,
@@ -50,7 +50,7 @@ pub struct Place {
 pub fn place(bodies: &[BodyDef], height: f32, at: Option<Vec3>, facing: f32) -> Result<Place, String> {
     let turn = Rotation::from_axis_angle(Vec3::Y, facing.to_radians());
     let ground = Ground::new(bodies);
-    let help = "--at X,Y,Z says where it stands, --floor Y adds a floor";
+    let help = "--at X,Y,Z sets its place, --floor Y adds a floor";
     match at {
         Some(at) if ground.is_under(at, height) => {
             Ok(Place { stands: Transform::new(at, turn), found: false })
@@ -73,7 +73,7 @@ pub fn place(bodies: &[BodyDef], height: f32, at: Option<Vec3>, facing: f32) -> 
 /// A world to stand on.
 struct Ground {
     world: World,
-    /// Around all finite static bodies.
+    /// Bounds of all finite static bodies.
     bounds: Option<Aabb>,
 }
 
@@ -206,9 +206,9 @@ mod tests {
         BodyDef { kind: BodyKind::Static, position, rotation, shapes, ..BodyDef::default() }
     }
 
-    /// A room whose ceiling is 1.3 heights over its floor, without ground above it.
+    /// A room whose ceiling is 1.3 heights above its floor, without ground above it.
     #[test]
-    fn a_low_ceiling_is_room_enough() {
+    fn room_with_a_low_ceiling_is_accepted() {
         let over = 1.3 * 2.0;
         let comb = (0..40).map(|tooth| {
             let half_height = if tooth % 2 == 0 { 0.5 } else { 1.5 };
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slope_is_stood_on_where_there_is_nothing_flatter() {
+    fn slope_is_chosen_without_flatter_ground() {
         let field = |degrees: f32| {
             let turn = Rotation::from_axis_angle(Vec3::X, degrees.to_radians());
             vec![slab(Vec3::new(10.0, 0.5, 10.0), Vec3::ZERO, turn)]

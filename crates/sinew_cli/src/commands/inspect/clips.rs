@@ -22,7 +22,7 @@ pub struct ClipFacts<'a> {
 
 /// Displacement of a body by a clip: its end relative to its start.
 struct Way {
-    /// Metres, character axes.
+    /// Translation in metres, character axes.
     shift: Vec3,
     /// Radians about the vertical.
     turn: f32,
@@ -64,14 +64,14 @@ impl<'a> ClipFacts<'a> {
         })
     }
 
-    /// Why it cannot be played, if so.
+    /// The reason why the clip cannot be played, if so.
     pub fn warning(&self) -> Option<String> {
         let why = self.built.as_ref().err()?;
         Some(format!("clip {} cannot be played: {why}", shown(&self.clip.name)))
     }
 }
 
-/// From the first to the last pose of a clip, measured at the joint that carries the body.
+/// Displacement from the first to the last pose of a clip, measured at the joint that carries the body.
 fn way(motion: &Motion, clip: &Clip, analysis: &RigAnalysis) -> Option<Way> {
     let rig = &motion.file.rig;
     let carrier = analysis.joint_with(Role::Hips).or_else(|| analysis.kept.first().map(|bone| bone.joint))?;

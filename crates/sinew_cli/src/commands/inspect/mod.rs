@@ -61,7 +61,7 @@ impl Inspect {
         Ok(Some(read.map_err(|error| error.with_file(path.display().to_string()))?))
     }
 
-    /// Trouble with these.
+    /// Converts an error in the settings.
     fn failure(&self, error: SettingsError) -> Failure {
         let name = settings_path(&self.file).display().to_string();
         match error {
@@ -91,7 +91,7 @@ impl Inspect {
     }
 }
 
-/// A file that was read.
+/// Content of a read file.
 struct Content<'a> {
     motion: &'a Motion,
     clips: Vec<ClipFacts<'a>>,
@@ -218,7 +218,7 @@ impl Content<'_> {
         while let Some((index, depth)) = open.pop() {
             open.extend(children[index].iter().map(|&child| (child, depth + 1)));
             let joint = &joints[index];
-            // A chain of thousands would fill the page with spaces.
+            // Limits the indentation: a chain of thousands of joints would fill the page with spaces.
             let indent = "  ".repeat(depth.min(DEEPEST_INDENT));
             let star = if self.has_body(index) { " *" } else { "" };
             let guess = self.motion.analysis.as_ref().and_then(|analysis| analysis.roles[index]);

@@ -1,4 +1,5 @@
-//! `sinew view`: a window on a scene, or a scene, a world file, or a file with a skeleton, a skin or a clip as a picture or a movie.
+//! `sinew view`: opens a window on a scene, or draws a scene, a world file, or a character or motion file as a picture
+//! or a movie.
 
 mod reel;
 mod window;
@@ -20,7 +21,7 @@ use sinew_picture::{EncodeError, RenderSettings};
 use sinew_scenes::scenes::{Instance, Scene, Settings, find};
 use std::path::{Path, PathBuf};
 
-/// Duration of the movie of a world file, and time of its still picture, seconds: things have fallen by then.
+/// Duration of the movie of a world file, and time of its still picture, seconds: long enough for objects to fall.
 const WORLD_SECONDS: f32 = 3.0;
 
 /// Open a window on scenes, or draw a scene, a world file, or a character or motion file as a picture or a movie
@@ -62,7 +63,7 @@ pub struct View {
     /// Change a setting of the scene; repeatable
     #[arg(long = "set", value_name = "KEY=VALUE")]
     settings: Vec<String>,
-    /// The window starts without running
+    /// Start the window paused
     #[arg(long, conflicts_with_all = ["picture", "movie"])]
     paused: bool,
     /// A second recording of the same scene, shown in the window next to the first
@@ -71,13 +72,13 @@ pub struct View {
     /// Open the window, write a picture of it with its panels (after --at seconds of a scene), and close it
     #[arg(long, value_name = "OUT.png", conflicts_with_all = ["picture", "movie"])]
     screenshot: Option<PathBuf>,
-    /// The window's messages go to stderr as well
+    /// Write the window's messages to stderr as well
     #[arg(long, conflicts_with_all = ["picture", "movie"])]
     log: bool,
-    /// Pixels across
+    /// Width, pixels
     #[arg(long, value_name = "N", default_value_t = 640, value_parser = clap::value_parser!(u16).range(16..=4096))]
     width: u16,
-    /// Pixels down
+    /// Height, pixels
     #[arg(long, value_name = "N", default_value_t = 360, value_parser = clap::value_parser!(u16).range(16..=4096))]
     height: u16,
 }
@@ -89,7 +90,7 @@ impl View {
             return self.open();
         }
         let Some(name) = self.subject.as_deref() else {
-            return Err(Failure::Usage("a picture of what? name a scene or a file".into()));
+            return Err(Failure::Usage("nothing to draw: name a scene or a file".into()));
         };
         if is_motion(name) {
             return self.show(Path::new(name));
@@ -178,7 +179,7 @@ fn failed(file: &PictureFile) -> impl Fn(EncodeError) -> Failure {
     |error| Failure::of_file(file.path().display().to_string(), error)
 }
 
-/// Subject that is drawn.
+/// Subject of a picture.
 pub enum Subject<'a> {
     /// A named scene with its settings.
     Scene(&'static Scene, Box<Settings>),
@@ -208,7 +209,7 @@ impl<'a> Subject<'a> {
         Ok(Self::Scene(scene, Box::new(settings)))
     }
 
-    /// Recreated.
+    /// A fresh instance of the subject.
     pub fn start(&self) -> Instance {
         match self {
             Self::Scene(scene, settings) => scene.start(settings),

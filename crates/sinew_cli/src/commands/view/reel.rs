@@ -1,4 +1,4 @@
-//! Pictures of a scene that runs.
+//! Pictures of a running scene.
 
 use super::Subject;
 use crate::render::skin;
@@ -16,15 +16,15 @@ use sinew_scenes::scenes::{CameraHint, Curve, Expected, Figure, Instance, Metric
 
 /// Pictures per second: a whole number of a GIF's hundredths of a second.
 const FPS: u32 = 20;
-/// Figures on a picture.
+/// Largest number of figures on a picture.
 const MOST_FIGURES: usize = 3;
-/// Largest number of bodies with drawn trails: more are indistinguishable.
+/// Largest number of bodies with drawn trails; more would be indistinguishable.
 const MOST_TRAILS: usize = 4;
 /// Length of trails in steps.
 const TRAIL_STEPS: usize = 600;
 /// Number of rays that test for occlusion.
 const MOST_RAYS: usize = 64;
-/// Largest radius of a picture around moving bodies, in radii of the largest one.
+/// Largest radius of the visible region around moving bodies, in radii of the largest body.
 const WIDEST: f32 = 120.0;
 /// Extent of a skin beyond its joints, as a share of the joints' extent.
 const FLESH: f32 = 0.08;
@@ -35,7 +35,7 @@ const MARGIN: f32 = 0.1;
 pub struct Reel<'a> {
     /// Title of the subject.
     pub title: &'a str,
-    /// When its closed forms hold, seconds.
+    /// Time until which its closed forms hold, seconds.
     pub ends: f32,
     /// Size and quality.
     pub settings: RenderSettings,
@@ -91,7 +91,7 @@ impl Reel<'_> {
 struct Take {
     run: Instance,
     hint: CameraHint,
-    /// Around all that a picture is about, so far.
+    /// Bounds of the subject over time, so far.
     whole: Aabb,
     /// Paths of the centres of mass so far, each with its colour.
     trails: Vec<Trail>,
@@ -134,15 +134,15 @@ impl Take {
         }
     }
 
-    /// Tries camera directions around the subject, by quarter turns, and picks the one with the least occlusion.
+    /// Tries camera directions around the subject in quarter turns and picks the one with the least occlusion.
     fn turn_to_see(&mut self) {
         let Vec3 { x, y, z } = self.hint.direction;
         let sides = [Vec3::new(x, y, z), Vec3::new(z, y, -x), Vec3::new(-z, y, x), Vec3::new(-x, y, -z)];
-        // Among equal ones the first, which is the requested one.
+        // Among equal directions take the first, which is the requested one.
         self.hint.direction = sides.into_iter().min_by_key(|&side| self.hidden(side)).unwrap_or(sides[0]);
     }
 
-    /// Number of the first bodies that move that are hidden.
+    /// Number of hidden bodies among the first moving ones.
     fn hidden(&self, direction: Vec3) -> usize {
         let world = self.run.world();
         let size = (self.whole.max - self.whole.min).length();
@@ -153,7 +153,7 @@ impl Take {
         rays.filter(|ray| stands.any(ray)).count()
     }
 
-    /// Around all that a picture is about, now.
+    /// Current bounds of the subject.
     fn now(&self) -> Aabb {
         let moving = world::subject(self.run.world()).into_iter();
         let figures = self.run.figures().into_iter().filter_map(|figure| around(&figure));
@@ -170,7 +170,7 @@ impl Take {
         lines
     }
 
-    /// The current state, in a frame for all of `whole`.
+    /// Draws the current state with a view of all of `whole`.
     fn draw(&self, reel: &Reel<'_>, whole: &Aabb, renderer: &mut Renderer) -> Image {
         let shown = self.shown(whole);
         let figures = self.run.figures();
@@ -197,8 +197,7 @@ impl Take {
         renderer.render(&scene, &Camera::framing_box(&shown, self.hint.direction, aspect))
     }
 
-    /// The part of `whole` that a picture shows: all of it unless things are then too small, and always everything
-    /// present at that time.
+    /// The visible part of `whole`: all of it unless objects would be too small, and always all current objects.
     fn shown(&self, whole: &Aabb) -> Aabb {
         let now = self.now();
         let limit = WIDEST * self.largest();
@@ -238,7 +237,7 @@ impl Take {
             x: -10,
             y: 10 + 12 * number as i32,
             scale: 1,
-            // Paler than the curve, to be read on the plate.
+            // Paler than the curve, for contrast on the caption's background.
             color: draw::curve_color(number).map(|part| part + 0.4 * (1.0 - part)),
             ..Caption::new(curve.name)
         };
@@ -248,7 +247,7 @@ impl Take {
     }
 }
 
-/// Around a character's joints and its estimated skin.
+/// Bounds of a character's joints and its estimated skin.
 fn around(figure: &Figure<'_>) -> Option<Aabb> {
     let joints = figure.world_from_joint.iter().map(|joint| joint.translation);
     let bones = joints.map(|at| Aabb { min: at, max: at }).reduce(|a, b| a.merge(&b))?;
@@ -279,7 +278,7 @@ impl Trail {
     }
 }
 
-/// State of a scene: tells if every expectation has had time to be met.
+/// State of a scene: running, or at its end, when every expectation applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Moment {
     OnTheWay,
@@ -306,7 +305,7 @@ fn figure(metric: &Metric, moment: Moment) -> Option<String> {
     })
 }
 
-/// Five digits.
+/// Formats a number with five digits.
 fn digits(x: f64) -> String {
     let size = x.abs();
     if size == 0.0 {

@@ -5,7 +5,7 @@ use crate::failure::{Failure, Result};
 use crate::report::Report;
 
 impl View {
-    /// Opens the window, until it is closed.
+    /// Opens the window and returns when it is closed.
     #[cfg(feature = "viewer")]
     pub(super) fn open(&self) -> Result<Report> {
         use crate::input::scene_choice::choose;
@@ -29,7 +29,7 @@ impl View {
         let dt = sinew::physics::WorldDef::default().dt();
         let steps = self.at.map(|seconds| (seconds / dt).round() as u64);
         let options = Options {
-            // A picture of the window is of a moment.
+            // A screenshot shows one time, so the window is paused.
             paused: self.paused || self.screenshot.is_some() && steps.is_none(),
             steps,
             hides_times: self.screenshot.is_some(),

@@ -34,7 +34,7 @@ fn each_i16(bytes: &mut [u8], f: impl Fn([i32; 4], i32) -> [i32; 4]) {
     }
 }
 
-/// To the nearest integer, halves away from 0.
+/// Rounds to the nearest integer, halves away from 0.
 fn rounded(x: f32) -> i32 {
     (if x >= 0.0 { x + 0.5 } else { x - 0.5 }) as i32
 }

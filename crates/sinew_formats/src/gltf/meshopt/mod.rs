@@ -19,7 +19,7 @@ pub(super) fn is_known(name: &str) -> bool {
     NAMES.contains(&name)
 }
 
-/// Why a stream cannot be decoded, in a few words.
+/// Decoded bytes, or the reason why a stream cannot be decoded, in a few words.
 type Decoded = Result<Vec<u8>, &'static str>;
 
 /// The bytes of each compressed buffer view; `None` for the others. `budget` shrinks by their size.

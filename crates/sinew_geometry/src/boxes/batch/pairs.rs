@@ -78,7 +78,7 @@ pub enum Axes {
 }
 
 impl Separations {
-    /// Nothing yet.
+    /// Creates an empty list.
     pub fn new() -> Self {
         Self::default()
     }

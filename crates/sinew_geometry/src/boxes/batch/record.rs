@@ -27,7 +27,7 @@ impl Record<f32> {
         Self { center: obb.center.into(), vector: q.vector().into(), w: q.w, half: obb.half_extents.into() }
     }
 
-    /// In the order of the rows of a block.
+    /// Numbers in the order of the rows of a block.
     #[inline]
     pub fn to_array(self) -> [f32; NUMBERS] {
         let ([cx, cy, cz], [x, y, z]) = (self.center.to_array(), self.vector.to_array());
@@ -37,7 +37,7 @@ impl Record<f32> {
 }
 
 impl<L: Lanes> Record<L> {
-    /// From the rows of a block.
+    /// Loads the numbers from the rows of a block.
     #[inline(always)]
     pub fn load(rows: [&[f32; WIDTH]; NUMBERS]) -> Self {
         let [cx, cy, cz, x, y, z, w, hx, hy, hz] = rows;

@@ -32,12 +32,13 @@ pub enum SeparatingAxis {
     FaceOfA(u8),
     /// Side 0, 1 or 2 of B.
     FaceOfB(u8),
-    /// At right angles to this side of A and to this one of B.
+    /// The axis is at right angles to this side of A and to this one of B.
     Edges(u8, u8),
 }
 
 impl SeparatingAxis {
-    /// From its index: three faces of A, three of B, nine pairs of edges, the axis of B changing fastest.
+    /// Creates an axis from its index: three faces of A, three of B, nine pairs of edges, the axis of B changing
+    /// fastest.
     #[inline]
     pub(super) fn from_index(index: u8) -> Self {
         match index {

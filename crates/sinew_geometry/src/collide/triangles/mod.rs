@@ -33,7 +33,7 @@ use solid::Solid;
 pub struct Motion {
     /// Velocity of the shape's centre relative to the surface, world, m/s.
     pub velocity: Vec3,
-    /// For how long, seconds.
+    /// Duration of the motion, seconds.
     pub dt: f32,
     /// Search distance for points, metres.
     pub margin: f32,
@@ -42,7 +42,7 @@ pub struct Motion {
 /// Answer of one triangle: points along one normal.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
-    /// From the surface to the shape.
+    /// Normal from the surface to the shape.
     normal: Vec3,
     /// Feature of the triangle that is touched.
     part: Part,
@@ -51,7 +51,7 @@ struct Candidate {
     /// Motion of the shape until then, metres.
     shift: Vec3,
     triangle: Triangle,
-    /// Its points, in the list of all.
+    /// First of its points in the list of all.
     first: u32,
     count: u32,
     /// Least separation, metres.

@@ -37,7 +37,7 @@ impl Patch {
         }
     }
 
-    /// From the surface's axes around the shape's centre to the world; drops what is not finite.
+    /// Converts from the surface's axes around the shape's centre to the world; drops what is not finite.
     pub fn finish(&mut self, world_from_surface: &Transform, center: Vec3) {
         let mut kept = 0;
         for k in 0..self.count {

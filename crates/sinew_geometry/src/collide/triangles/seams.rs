@@ -26,7 +26,7 @@ pub(super) fn mend(
         let own = &points[candidate.first as usize..][..candidate.count as usize];
         let deeper = |p: ManifoldPoint, q: ManifoldPoint| if q.separation < p.separation { q } else { p };
         let Some(deepest) = own.iter().copied().reduce(deeper) else { continue };
-        // Where it is once the shape is over the triangle.
+        // Position of the point once the shape is over the triangle.
         let on_surface = deepest.position - candidate.normal * (0.5 * deepest.separation) + candidate.shift;
         let (at, _) = closest_on_triangle(&candidate.triangle.corners, on_surface);
         let shown = ground(world_from_center.point(at), world_from_center.rotation * candidate.normal);

@@ -43,7 +43,7 @@ pub(super) struct Home {
     pub moves: bool,
     /// It is pending a search.
     pub dirty: bool,
-    /// When it last could touch something.
+    /// Step in which it last could touch something.
     pub active: u64,
 }
 

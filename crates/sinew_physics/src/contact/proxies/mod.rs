@@ -44,9 +44,9 @@ pub(crate) struct Proxies {
     lone: Vec<Option<Placed>>,
     /// Bounds of each leaf of `moving` during the coming step, world, metres; [`UNKNOWN`] if not needed.
     reach: Vec<Aabb>,
-    /// By the first leaf of each movable body.
+    /// Traces by the first leaf of each movable body.
     traces: Vec<Trace>,
-    /// By index of the body.
+    /// Strides by index of the body.
     strides: Vec<Stride>,
     /// Bodies that could touch something at the last pair search, and its time.
     active: Vec<u32>,

@@ -52,7 +52,7 @@ pub(crate) struct Closing {
 pub(crate) struct Ahead {
     /// No farther than this.
     pub most: f32,
-    /// Its share for impulses that joints will transmit.
+    /// Part for impulses that joints will transmit.
     pub blow: f32,
 }
 
@@ -63,7 +63,7 @@ pub(super) struct Trace {
     arm: f32,
     pose: Transform,
     velocity: Velocity,
-    /// As in [`Stride`].
+    /// Displacement as in [`Stride`].
     shift: Vec3,
     turned: f32,
     /// Distance that a kinematic body's centre may move until a ball around it, which contains the whole body in any

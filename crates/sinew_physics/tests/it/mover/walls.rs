@@ -143,7 +143,10 @@ fn a_mover_does_not_catch_on_mesh_seams() {
     for _ in 0..180 {
         world.step();
         let now = world.mover(id).position();
-        assert!((now.x - last.x - 3.0 * world.def().dt()).abs() < 2e-3, "it caught at {now} from {last}");
+        assert!(
+            (now.x - last.x - 3.0 * world.def().dt()).abs() < 2e-3,
+            "the mover got stuck at {now} from {last}"
+        );
         assert!((now.y - last.y).abs() < 1e-3 && world.mover(id).is_grounded(), "it hops at {now}");
         last = now;
     }

@@ -10,7 +10,7 @@ use sinew_physics::{
     Sensors, Shape, ShapeDef, ShapeId, Velocity, World, WorldDef,
 };
 
-/// Returns first hit, containing bodies and nearest surface, by asking every shape.
+/// Returns first hit, containing bodies and nearest surface, by testing every shape.
 fn agrees(populated: &Populated, random: &mut Random) {
     let filter = filter(&[], random);
     let query = populated.world.query().filter(filter);

@@ -1,5 +1,5 @@
-//! Files as avatars come: the mannequin with many strands of hair, as VRM 1 (`VRMC_springBone` with extended colliders and limits) and as VRM 0
-//! (`secondaryAnimation`), written by code and random in all that a file may say.
+//! Random avatar files: the mannequin with many strands of hair, as VRM 1 (`VRMC_springBone` with extended colliders
+//! and limits) and VRM 0 (`secondaryAnimation`), with random values for everything that a file may contain.
 
 use sinew::anim::springs::{ColliderShape, LimitKind, Side};
 use sinew::anim::{
@@ -8,7 +8,7 @@ use sinew::anim::{
 use sinew::formats::gltf::{SpringFormat, write_gltf};
 use sinew::math::{Affine, Random, Rotation, Vec3};
 
-/// A rig with springs as a VRM file; what VRM 0 does not have is left out of it.
+/// A rig with springs as a VRM file. Features that VRM 0 lacks are omitted.
 pub fn vrm(rig: &Rig, format: SpringFormat) -> Vec<u8> {
     let bytes = write_gltf(rig, &[]).expect("a rig made by code can be written");
     let length = u32::from_le_bytes(bytes[12..16].try_into().expect("four bytes")) as usize;
@@ -38,7 +38,7 @@ fn array(v: Vec3) -> String {
     format!("{:?}", v.to_array())
 }
 
-/// The springs as `VRMC_springBone`: a group for each collider, and a joint more than bones for each spring.
+/// The springs as `VRMC_springBone`: one group per collider; each spring lists one joint more than it has bones.
 fn version_1(springs: &Springs) -> String {
     let spring = |chain: &SpringChain| {
         let last = chain.bones.last().expect("it has some").joint + 1;
@@ -107,8 +107,8 @@ fn collider_1(collider: &SpringCollider) -> String {
     format!("{{\"node\":{},\"shape\":{{{plain}}}{extended}}}", collider.joint)
 }
 
-/// The springs as `secondaryAnimation`: a group for each chain, and all that hangs on its first joint swings. Shapes that it does not have are
-/// left out.
+/// The springs as `secondaryAnimation`: one group per chain, whose first joint swings with all its descendants. Shapes
+/// that it lacks are omitted.
 fn version_0(springs: &Springs) -> String {
     let unity = |v: Vec3| format!("{{\"x\":{:?},\"y\":{:?},\"z\":{:?}}}", v.x, v.y, -v.z);
     let balls = |collider: &SpringCollider| {
@@ -142,7 +142,7 @@ fn version_0(springs: &Springs) -> String {
     )
 }
 
-/// Ways of the links of strands from the head: down, aside, out and up.
+/// Directions of strands from the head: down, sideways, out and up.
 const WAYS: [Vec3; 6] = [
     Vec3::new(0.0, -0.06, -0.02),
     Vec3::new(0.05, -0.03, 0.0),
@@ -152,7 +152,8 @@ const WAYS: [Vec3; 6] = [
     Vec3::new(0.0, -0.08, 0.0),
 ];
 
-/// A rig with a strand each way on its head, of three to six bones, without springs yet. Gives the joints of each strand, its end among them.
+/// Adds a strand of three to six bones per direction to the head, without springs yet. Returns the joints of each
+/// strand, including its end.
 pub fn strands(rig: &mut Rig) -> Vec<Vec<usize>> {
     let head = rig.joints.iter().position(|joint| joint.name == "head").expect("it has a head");
     let mut strands = Vec::new();
@@ -176,16 +177,16 @@ pub fn strands(rig: &mut Rig) -> Vec<Vec<usize>> {
     strands
 }
 
-/// Time in which springs come to rest.
+/// Rate at which springs come to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Calming {
-    /// Drag and stiffness as avatars have them.
+    /// Usual drag and stiffness of avatars.
     Soon,
-    /// Nearly no stiffness, or no drag.
+    /// Almost no stiffness, or no drag.
     Late,
 }
 
-/// Settings of a strand, from stiff to limp, with and without all that may be left out.
+/// Settings of a strand from stiff to limp, with and without optional values.
 fn settings(random: &mut Random, calming: Calming) -> SpringBone {
     let (stiffness, drag) = match calming {
         Calming::Soon => {
@@ -211,17 +212,17 @@ fn settings(random: &mut Random, calming: Calming) -> SpringBone {
     }
 }
 
-/// Place of a joint of a strand at rest, in the head's space.
+/// Position of a strand's joint at rest, in the head's space.
 fn place(rig: &Rig, joints: &[usize]) -> Vec3 {
     let along = |at: Affine, &joint: &usize| at * rig.joints[joint].rest.to_affine();
     joints.iter().fold(Affine::IDENTITY, along).translation
 }
 
-/// Shape that touches or holds a place on a strand, in the head's space; the strand hangs at `root`.
+/// A shape that touches or contains a point of a strand, in the head's space; the strand starts at `root`.
 fn touching(random: &mut Random, root: Vec3, place: Vec3, thick: f32) -> ColliderShape {
     let out = random.direction();
     let radius = random.range(0.02, 0.1);
-    // So deep that the tip rests on it, or outside by as much.
+    // The tip is up to 1 cm inside of the collider, or up to 3 cm outside.
     let middle = place - out * (radius + thick - random.range(-0.01, 0.03));
     match random.index(5) {
         0 => ColliderShape::Sphere { offset: middle, radius, keeps: Side::Outside },
@@ -246,11 +247,11 @@ fn touching(random: &mut Random, root: Vec3, place: Vec3, thick: f32) -> Collide
     }
 }
 
-/// Springs on strands, each with settings and colliders of its own: none, one or two that it touches where it hangs at rest.
+/// Springs on strands, each with its own settings and up to two colliders that it touches at rest.
 pub fn random_avatar(rig: &Rig, strands: &[Vec<usize>], calming: Calming, random: &mut Random) -> Springs {
     let mut springs = Springs::default();
     for joints in strands {
-        let head = rig.joints[joints[0]].parent.expect("it hangs on the head");
+        let head = rig.joints[joints[0]].parent.expect("its parent is the head");
         let usual = settings(random, calming);
         let mut colliders = Vec::new();
         for _ in 0..random.index(3) {
@@ -267,7 +268,7 @@ pub fn random_avatar(rig: &Rig, strands: &[Vec<usize>], calming: Calming, random
         };
         let mut bones: Vec<SpringBone> = joints.windows(2).map(bone).collect();
         if softer {
-            // Softer toward the end, as modellers do it.
+            // The springs are softer toward the end, as modellers make them.
             bones.iter_mut().enumerate().for_each(|(index, bone)| bone.stiffness /= 1.0 + index as f32);
         }
         let center = [None, None, Some(head), Some(0)][random.index(4)];

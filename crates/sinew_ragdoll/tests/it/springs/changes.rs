@@ -1,10 +1,13 @@
-//! Changes under springs: far away and back, falls, teleports, pauses, sizes, rates. Bounds on the speed of tips, stated before anything was measured:
+//! Spring bones through changes: level of detail, falls, teleports, pauses, sizes, rates. The bounds on the speed of
+//! tips were set before measuring:
 //!
-//! - **The law's**: a tip that is held at its bone's length about a joint moves along the bone by no more than the joint (or the head, which may push it), and across it by
-//!   no more than in the frame before and what stiffness and gravity give across the bone: the root of both squares; a tenth more for a way that is bent, a fifth
-//!   between ticks (ADR 0020).
-//! - **Easing**: the animated tip's speed, and 1/0.3 s of each angle that a bone above it was off by, over that bone's distance.
-//! - **Coming back**: the change of a tip's velocity is that of its joint, what drag takes, and the part of stiffness and gravity across the bone.
+//! - **Law**: along the bone, a tip moves no faster than its joint (or than the head, which may push it). Across the
+//! bone, it moves no faster than in the previous frame, plus what stiffness and gravity add. The bound is the root of
+//! the sum of both squares, plus a tenth for curved paths, plus a fifth between ticks (ADR 0020).
+//! - **Easing**: the speed of the animated tip, plus for each bone above it 1/0.3 s times its angle from the pose times
+//! the tip's distance from that bone.
+//! - **Return**: the change of a tip's velocity is that of its joint, plus the loss by drag, plus the part of stiffness
+//! and gravity across the bone.
 
 use super::{place_at, still};
 use sinew_anim::{LocalTransform, SpringBone, SpringChain, local_to_model, rest_pose};
@@ -14,17 +17,17 @@ use sinew_ragdoll::{Character, CharacterDef, Detail, SpringSwing, State};
 use sinew_scenes::maned::{HAIR, maned};
 use std::sync::Arc;
 
-/// Slack of numbers, m/s.
+/// Tolerance for rounding, m/s.
 const ROUNDING: f32 = 0.005;
 
-/// Spring bone as it is shown, in the world.
+/// A drawn spring bone, in the world.
 #[derive(Clone, Copy)]
 struct Seen {
     joint: Vec3,
     tip: Vec3,
     /// Stiffness and gravity across the bone, m/s.
     across: f32,
-    /// Turn from the pose, radians.
+    /// Rotation from the pose, radians.
     off: f32,
     drag: f32,
     chain: usize,
@@ -35,7 +38,7 @@ struct Seen {
 struct Motion {
     tip: Vec3,
     joint: Vec3,
-    /// Velocity with which the head would take the tip along.
+    /// Velocity of the tip if it moved rigidly with the head.
     head: Vec3,
 }
 
@@ -52,7 +55,7 @@ fn seen(
     let bone = |chain: usize, bone: &SpringBone| {
         let at = model[bone.joint];
         let (joint, tip) = (at.translation, at.point(bone.tail));
-        let parent = model[def.rig.joints[bone.joint].parent.expect("a bone hangs on something")];
+        let parent = model[def.rig.joints[bone.joint].parent.expect("a bone has a parent")];
         let rest = parent.vector(plain[bone.joint].rotation * bone.tail).normalize();
         let along = (tip - joint).normalize();
         let force = rest * bone.stiffness + bone.gravity;
@@ -65,7 +68,7 @@ fn seen(
     (springs.chains.iter().enumerate().flat_map(bones).collect(), model[springs.colliders[0].joint])
 }
 
-/// Slack that the bounds leave to the fastest tip of a frame, m/s; negative: it was too fast.
+/// Margin of the fastest tip of a frame below each bound, m/s; negative if it was too fast.
 #[derive(Clone, Copy, Debug)]
 struct Slack {
     law: f32,
@@ -85,13 +88,13 @@ impl Slack {
     }
 }
 
-/// Eyes on springs.
+/// Records the speeds of spring bones.
 struct Watch {
     rate: f32,
     bones: Vec<Seen>,
     head: Affine,
     motions: Vec<Motion>,
-    /// Highest speed of a tip, and of one as the head alone would carry it, m/s.
+    /// Largest speed of a tip, and of a tip carried rigidly by the head, m/s.
     fastest: f32,
     carried: f32,
 }
@@ -102,7 +105,7 @@ impl Watch {
         Self { rate, bones, head: Affine::IDENTITY, motions, fastest: 0.0, carried: 0.0 }
     }
 
-    /// Sees the next frame from where the character was put.
+    /// Moves the last frame along with a displaced character.
     fn carry(&mut self, moved: Transform) {
         self.head = Affine::from(moved) * self.head;
         for bone in &mut self.bones {
@@ -115,7 +118,7 @@ impl Watch {
         }
     }
 
-    /// Sees the next frame from where the character has become larger, about the origin.
+    /// Scales the last frame about the origin along with the character.
     fn resize(&mut self, factor: f32) {
         let larger =
             Affine::from_scale_rotation_translation(Vec3::splat(factor), Rotation::IDENTITY, Vec3::ZERO);
@@ -164,7 +167,7 @@ impl Watch {
         let (had, speed, ticks) = (&self.motions[k], motion.tip.length(), max(1.0, 60.0 / self.rate));
         let force = max(was.across, is.across) * ticks;
         let bent = if self.rate == 60.0 { 1.1 } else { 1.2 };
-        // A bone that grows takes its tip along.
+        // A growing bone carries its tip along.
         let length = (is.tip - is.joint).length();
         let grown = (length - (was.tip - was.joint).length()).abs() * self.rate;
         let (carried, across) = (max(motion.joint.length(), motion.head.length()), had.tip.length() + force);
@@ -200,7 +203,8 @@ fn step(world: &mut World, character: &mut Character) {
     character.update(world);
 }
 
-/// Far away for a time, and back: least slacks of easing, of the first twentieth of a second after the return and of the law in the first third.
+/// A period at low detail, and back. Returns the smallest margins: of easing, of the first twentieth of a second after
+/// the return, and of the law in the first third.
 fn away_and_back(rate: u64, seconds: f32) -> (Watch, Slack) {
     let (mut world, mut character) = walking(rate);
     let (mut watch, frames) =
@@ -227,12 +231,12 @@ fn away_and_back(rate: u64, seconds: f32) -> (Watch, Slack) {
         }
     }
     let off = watch.bones.iter().map(|bone| bone.off).fold(0.0, max);
-    assert!(off > 0.05, "it swings again: {off} rad");
+    assert!(off > 0.05, "it does not swing again: {off} rad");
     (watch, least)
 }
 
 #[test]
-fn far_away_and_back_no_tip_jumps() {
+fn tips_do_not_jump_on_changes_of_detail() {
     for rate in [30, 60, 240] {
         for seconds in [0.1, 4.0] {
             let (watch, least) = away_and_back(rate, seconds);
@@ -249,7 +253,7 @@ fn far_away_and_back_no_tip_jumps() {
 }
 
 #[test]
-fn springs_that_are_far_away_cost_nothing() {
+fn distant_springs_are_not_simulated() {
     let def = maned(&HAIR);
     let pose = rest_pose(&def.rig);
     let mut swing = SpringSwing::new();
@@ -265,13 +269,13 @@ fn springs_that_are_far_away_cost_nothing() {
     for frame in 60..78 {
         swing.ease(&still(&def, &pose, at(frame), 1.0 / 60.0));
     }
-    // 18 frames are 0.3 s: 1/e is left, at every rate.
+    // 18 frames are 0.3 s: 1/e remains, at every rate.
     assert!((most(&swing) / began - trig::exp(-1.0)).abs() < 1e-3, "{} of {began}", most(&swing));
     for frame in 78..360 {
         swing.ease(&still(&def, &pose, at(frame), 1.0 / 60.0));
     }
     assert!(swing.is_away() && swing.turns().is_empty());
-    // Nothing that a step computes is computed: not a bit of all that it keeps, state and scratch, changes.
+    // A step computes nothing: no bit of state or scratch memory changes.
     let bits = format!("{swing:?}");
     for frame in 360..600 {
         swing.ease(&still(&def, &pose, at(frame), 1.0 / 60.0));
@@ -280,7 +284,7 @@ fn springs_that_are_far_away_cost_nothing() {
 }
 
 #[test]
-fn easing_goes_on_from_numbers_that_are_none() {
+fn easing_recovers_from_non_finite_clips() {
     let def = maned(&HAIR);
     let pose = rest_pose(&def.rig);
     let mut swing = SpringSwing::new();
@@ -288,7 +292,7 @@ fn easing_goes_on_from_numbers_that_are_none() {
         let at = Affine::from(place_at(f32::from(frame) / 60.0));
         swing.step(&still(&def, &pose, at, 1.0 / 60.0));
     }
-    // A clip without numbers for a bone in the frame in which it begins.
+    // A clip with non-finite values for a bone in the frame in which easing starts.
     let first = def.springs().joints().next().expect("it has springs");
     let mut broken = pose.clone();
     broken[first].rotation = Rotation::from_scaled_axis(Vec3::splat(f32::NAN));
@@ -308,7 +312,7 @@ fn easing_goes_on_from_numbers_that_are_none() {
 }
 
 #[test]
-fn what_begins_far_away_comes_near_at_rest() {
+fn character_created_far_away_starts_at_rest() {
     let (mut world, mut character) = walking(60);
     character.set_level_of_detail(&mut world, Detail::Keyed);
     for frame in 0..30 {
@@ -316,7 +320,7 @@ fn what_begins_far_away_comes_near_at_rest() {
         assert_eq!(character.pose(), character.pose_without_springs());
         assert!(frame == 0 || core::ptr::eq(character.pose(), character.pose_without_springs()));
     }
-    // Hit bodies are near enough.
+    // The level with hit bodies counts as near.
     character.set_level_of_detail(&mut world, Detail::HitBodies);
     step(&mut world, &mut character);
     assert_eq!(character.pose(), character.pose_without_springs());
@@ -327,13 +331,13 @@ fn what_begins_far_away_comes_near_at_rest() {
 }
 
 #[test]
-fn a_snapshot_on_the_way_to_afar_goes_on_alike() {
+fn snapshot_during_easing_continues_identically() {
     let bytes = |character: &Character| {
         let mut w = Writer::new();
         character.save(&mut w);
         w.into_bytes()
     };
-    // In the middle of easing, away, and one step after the return.
+    // During easing, while far away, and one step after the return.
     for (eased, near, back) in [(30, 0, 20), (600, 0, 20), (600, 0, 0), (600, 1, 20), (30, 1, 20)] {
         let (mut world, mut character) = walking(144);
         (0..101).for_each(|_| step(&mut world, &mut character));
@@ -363,8 +367,8 @@ fn a_snapshot_on_the_way_to_afar_goes_on_alike() {
 }
 
 #[test]
-fn snapshots_of_before_the_distance_are_read() {
-    // One byte said whether they swing, and what followed is the same.
+fn old_snapshots_without_easing_are_read() {
+    // Old snapshots stored one byte for whether springs swing; the rest is unchanged.
     let def = maned(&HAIR);
     let saved = |swing: &SpringSwing| {
         let mut w = Writer::new();
@@ -376,12 +380,13 @@ fn snapshots_of_before_the_distance_are_read() {
     swing.step(&still(&def, &rest_pose(&def.rig), Affine::IDENTITY, 1.0 / 60.0));
     let bones = def.springs().joints().len();
     let bytes = saved(&swing);
-    // A phase, 13 tips, ways and turns, a stride, and whole frames of what does not swing.
+    // A phase, 13 tips, displacements and rotations, a step length, and whole frames for bones that do not swing.
     assert_eq!((bytes[0], (bytes.len() - 9 - 40 * bones) % 96), (1, 0));
     assert!(SpringSwing::load(def.springs(), &mut Reader::new(&[4])).is_err());
 }
 
-/// Least slack of the law about every change of a character's state, of a life with a hit while it walks: (change, slack, m/s).
+/// Smallest margin of the law around each change of state, for a character that is hit while it walks: (state, margin,
+/// m/s).
 fn life(rate: u64) -> (Watch, Vec<(State, f32)>) {
     let (mut world, mut character) = walking(rate);
     let mut watch = Watch::new(rate as f32);
@@ -411,7 +416,7 @@ fn life(rate: u64) -> (Watch, Vec<(State, f32)>) {
 }
 
 #[test]
-fn no_tip_is_too_fast_where_bodies_take_over_and_give_back() {
+fn tip_speed_is_bounded_at_hand_over() {
     for rate in [60, 240] {
         let (watch, changes) = life(rate);
         println!("{rate} a second: {changes:.3?}, fastest {}", watch.fastest);
@@ -423,7 +428,7 @@ fn no_tip_is_too_fast_where_bodies_take_over_and_give_back() {
 }
 
 #[test]
-fn no_tip_is_too_fast_where_one_without_a_mover_goes_limp() {
+fn tip_speed_is_bounded_when_going_limp_without_a_mover() {
     let (mut world, character) = walking(60);
     character.despawn(&mut world);
     let mut character = Character::new(Arc::new(maned(&HAIR)), Transform::IDENTITY, 0.3);
@@ -440,7 +445,7 @@ fn no_tip_is_too_fast_where_one_without_a_mover_goes_limp() {
 }
 
 #[test]
-fn no_tip_is_too_fast_after_a_teleport() {
+fn tip_speed_is_bounded_after_a_teleport() {
     let moved = Transform::new(Vec3::new(40.0, 0.0, -7.0), Rotation::from_axis_angle(Vec3::Y, 2.0));
     for (rate, reset) in [(60, false), (60, true), (240, false), (240, true)] {
         let (mut world, mut character) = walking(rate);
@@ -457,7 +462,7 @@ fn no_tip_is_too_fast_after_a_teleport() {
             step(&mut world, &mut character);
             if frame == rate && reset {
                 assert_eq!(character.pose(), character.pose_without_springs());
-                // A cut: nobody saw the way.
+                // A cut: the displacement is not counted.
                 watch = Watch::new(rate as f32);
             }
             let slack = watch.look(&character);
@@ -468,7 +473,7 @@ fn no_tip_is_too_fast_after_a_teleport() {
     }
 }
 
-/// Springs alone, at times and sizes of a list: frames' lengths in seconds of the world, how far its time goes in them, and size.
+/// Springs alone, for a list of frame lengths (seconds of the world), advances of world time, and sizes.
 fn alone(def: &CharacterDef, frames: impl Iterator<Item = (f32, f32)>, rate: f32) -> (f32, Vec<Rotation>) {
     let pose = rest_pose(&def.rig);
     let (mut swing, mut watch, mut time, mut size) = (SpringSwing::new(), Watch::new(rate), 0.0, 1.0);
@@ -486,7 +491,7 @@ fn alone(def: &CharacterDef, frames: impl Iterator<Item = (f32, f32)>, rate: f32
         swing.step(&still(def, &pose, root, seconds));
         let mut shown = pose.clone();
         def.springs().joints().zip(swing.turns()).for_each(|(joint, &turn)| shown[joint].rotation = turn);
-        // In slow motion the eye has as many frames.
+        // In slow motion there are as many drawn frames per second.
         watch.rate = if seconds > 0.0 { 1.0 / seconds } else { rate };
         let slack = watch.frame(def, root, &shown, &pose);
         least = min(least, slack.law);
@@ -495,7 +500,7 @@ fn alone(def: &CharacterDef, frames: impl Iterator<Item = (f32, f32)>, rate: f32
 }
 
 #[test]
-fn a_pause_is_nothing() {
+fn pause_does_not_change_springs() {
     let def = maned(&HAIR);
     for rate in [30.0_f32, 60.0, 90.0, 240.0] {
         let second = rate as usize;
@@ -511,9 +516,9 @@ fn a_pause_is_nothing() {
 }
 
 #[test]
-fn slow_motion_moves_no_tip_too_fast() {
+fn tip_speed_is_bounded_in_slow_motion() {
     let def = maned(&HAIR);
-    // A second at 60 a second, then 60 frames each at a quarter of the time, at a tenth, and so on.
+    // A second at 60 frames a second, then 60 frames each at a quarter of the time, at a tenth, and so on.
     let rates = [60_u16, 240, 600, 60, 20, 60];
     let frames = |segments: usize| {
         rates[..segments].iter().flat_map(|&rate| core::iter::repeat_n((1.0 / f32::from(rate), 1.0), 60))
@@ -531,9 +536,9 @@ fn slow_motion_moves_no_tip_too_fast() {
 }
 
 #[test]
-fn a_change_of_size_moves_no_tip_too_fast() {
+fn tip_speed_is_bounded_on_changes_of_size() {
     let def = maned(&HAIR);
-    // At once to twice the size and back: what hangs stays as it hangs; and slowly, by itself.
+    // The size doubles and halves at once, with hair that keeps its shape, and then changes slowly.
     let size = |seconds: f32| match seconds {
         0.0..1.0 => 1.0,
         1.0..2.0 => 2.0,

@@ -1,5 +1,5 @@
-//! The reference implementation of VRMC_springBone 1.0 with its extended colliders, written down from its text in double
-//! precision, for rigs without scale. Limits after their draft: after the inertia and after every collider.
+//! The reference algorithm of VRMC_springBone 1.0 with its extended colliders, implemented from its text in double
+//! precision, for rigs without scale. Limits follow their draft: after inertia and after every collider.
 
 use glam::{DMat3, DQuat, DVec3};
 use sinew_anim::springs::{ColliderShape, LimitKind, Side};
@@ -9,7 +9,7 @@ use sinew_math::{Rotation, Transform, Vec3};
 pub struct Reference {
     joints: Vec<(Option<usize>, DVec3, DQuat)>,
     springs: Springs,
-    /// Per bone, in the order of the chains: current and previous tail, in the centre's space.
+    /// For each bone, in the order of the chains: current and previous tail, in the centre's space.
     tails: Vec<(DVec3, DVec3)>,
     /// World position and rotation of every joint.
     world: Vec<(DVec3, DQuat)>,
@@ -75,7 +75,7 @@ impl Reference {
         for chain in &springs.chains {
             for bone in &chain.bones {
                 let (parent, at, rest) = self.joints[bone.joint];
-                let (from, by) = self.world[parent.expect("hair hangs on something")];
+                let (from, by) = self.world[parent.expect("hair has a parent")];
                 let world_position = from + by * at;
                 let local = by * rest;
                 let axis = d(bone.tail).normalize();
@@ -103,7 +103,7 @@ impl Reference {
                     (self.seen_from_center(chain.center, next), self.seen_from_center(chain.center, current));
                 let to = local.inverse() * (next - world_position).normalize();
                 self.world[bone.joint] = (world_position, local * DQuat::from_rotation_arc(axis, to));
-                // What hangs on it follows.
+                // Update the descendants.
                 for joint in bone.joint + 1..self.joints.len() {
                     let (parent, at, turn) = self.joints[joint];
                     if let Some(parent) = parent.filter(|&p| p >= bone.joint) {

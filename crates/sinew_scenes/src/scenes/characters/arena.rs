@@ -17,22 +17,22 @@ use std::sync::Arc;
 pub(in crate::scenes) const ARENA: Scene = Scene {
     chapter: Chapter::Characters,
     name: "arena",
-    about: "powered mannequins push each other: they stand, step to catch themselves, or fall and get up",
+    about: "powered mannequins push each other: each stands, takes a step for balance, or falls and gets up",
     steps: 600,
     settings: &[
         Setting::whole("n", 8, (2, 200), "number of mannequins"),
-        Setting::number("push", 60.0, (0.0, 500.0), "mean of a push, N·s"),
+        Setting::number("push", 60.0, (0.0, 500.0), "mean impulse of a push, N·s"),
     ],
     build: arena,
 };
 
-/// Radius of the ring for each mannequin's root, and least, metres.
+/// Radius of the ring for each mannequin's root, and smallest radius of the ring, metres.
 const ROOM: f32 = 1.1;
 const LEAST: f32 = 3.0;
-/// Speed at which they come together, m/s, and distance from which they push.
+/// Walking speed, m/s, and distance from which they push.
 const SPEED: f32 = 0.9;
 const ARM: f32 = 0.85;
-/// Steps between two pushes of one.
+/// Number of steps between two pushes of one mannequin.
 const RESTS: u32 = 75;
 /// Step at which the referee, beside the ring, jumps.
 const JUMPS: u64 = 60;
@@ -75,7 +75,7 @@ fn arena(setup: &Setup<'_>) -> Instance {
 
 struct Fighter {
     character: Character,
-    /// Steps until its next push.
+    /// Number of steps until its next push.
     rests: u32,
     /// World from joint.
     model: Vec<Affine>,
@@ -117,10 +117,10 @@ struct Watch {
 
 struct Arena {
     def: Arc<CharacterDef>,
-    /// The last is the referee.
+    /// All characters; the last is the referee.
     fighters: Vec<Fighter>,
     radius: f32,
-    /// Mean, N·s.
+    /// Mean impulse of a push, N·s.
     push: f32,
     seed: u64,
     watch: Watch,
@@ -137,7 +137,7 @@ impl Arena {
             .reduce(|a, b| if b.1.length() < a.1.length() { b } else { a })
     }
 
-    /// Each character walks to the nearest one and pushes those in reach.
+    /// Lets each character walk to the nearest one and push those in reach.
     fn fight(&mut self, world: &mut World) {
         let chest = self.def.body_named("chest").expect("a mannequin has a chest");
         for index in 0..self.fighters.len() - 1 {

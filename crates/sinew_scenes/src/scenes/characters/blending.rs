@@ -21,8 +21,8 @@ pub(in crate::scenes) const TWO_TRACKS: Scene = Scene {
     about: "the same walk in two tracks of different weights and slightly different speeds: they beat",
     steps: 660,
     settings: &[
-        Setting::number("weight", 0.6, (0.0, 1.0), "of the first track; the second has the rest"),
-        Setting::number("speed", 1.1, (1.02, 2.0), "of the second track; the first has 1"),
+        Setting::number("weight", 0.6, (0.0, 1.0), "weight of the first track; the second has the rest"),
+        Setting::number("speed", 1.1, (1.02, 2.0), "speed of the second track; the first has 1"),
     ],
     build: two_tracks,
 };
@@ -74,7 +74,7 @@ fn two_tracks(setup: &Setup<'_>) -> Instance {
 struct TwoTracks {
     /// The first track alone, both, the second alone.
     shown: [Actor; 3],
-    /// Both at one speed: the first alone.
+    /// The first track alone, and both tracks at the same speed.
     same: Actor,
     clip: ClipId,
     /// Weight and speed of the tracks.
@@ -147,14 +147,14 @@ impl Script for TwoTracks {
     }
 }
 
-/// From the left and in front of characters that face +Z.
+/// Camera at the left and in front of characters that face +Z.
 pub(in crate::scenes) fn facing() -> CameraHint {
     CameraHint { direction: Vec3::new(0.75, 0.28, 1.0), ..CameraHint::default() }
 }
 
 /// Requested speeds, m/s.
 const SPEEDS: [f32; 4] = [WALK_SPEED, 1.8, 2.4, RUN_SPEED];
-/// From one runner to the next, metres.
+/// Distance from one runner to the next, metres.
 const APART: f32 = 1.0;
 
 fn walk_run(setup: &Setup<'_>) -> Instance {
@@ -177,9 +177,9 @@ struct Runner {
     actor: Actor,
     /// Requested speed, m/s.
     speed: f32,
-    /// Laps per second at that speed: of both clips, as they are in phase.
+    /// Laps per second at that speed; both clips have the same because they are in phase.
     cadence: f32,
-    /// Along z so far, metres.
+    /// Distance along z so far, metres.
     way: f32,
     /// Largest difference of the two tracks' shares of a lap.
     phase_gap: f32,
@@ -217,7 +217,7 @@ impl Runner {
         laps.next().zip(laps.next()).map_or(0.0, |(walk, run)| (walk - run).abs() as f32)
     }
 
-    /// Laps of each track, so far.
+    /// Laps of each track so far.
     fn laps(&self) -> impl Iterator<Item = f64> {
         let set = &self.actor.cast.set;
         self.actor.animator.tracks().map(|track| {

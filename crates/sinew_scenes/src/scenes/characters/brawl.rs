@@ -25,7 +25,7 @@ pub(in crate::scenes) const BRAWL: Scene = Scene {
     settings: &[
         Setting::whole("n", 20, (1, 200), "number of mannequins"),
         Setting::whole("crates", 12, (0, 200), "number of crates"),
-        Setting::number("hits", 4.0, (0.0, 60.0), "blows each second, of 5 to 90 N·s"),
+        Setting::number("hits", 4.0, (0.0, 60.0), "number of blows per second, each of 5 to 90 N·s"),
         Setting::whole(
             "powered",
             0,
@@ -33,12 +33,12 @@ pub(in crate::scenes) const BRAWL: Scene = Scene {
             "1: standing mannequins are powered, 0: they follow their clips",
         ),
         Setting::whole("tiles", 0, (0, 1), "1: the floor is of boxes of 1 m, 0: one half-space"),
-        Setting::whole("seed", 1, (0, 10_000), "number that decides places, ways and blows"),
+        Setting::whole("seed", 1, (0, 10_000), "seed of places, directions and blows"),
     ],
     build: brawl,
 };
 
-/// Half the width of the room, inside, metres.
+/// Half of the room's inner width, metres.
 const ROOM: f32 = 6.0;
 /// Distance from a wall at which a walker turns back, metres.
 const TURNS_BACK: f32 = 0.9;
@@ -86,7 +86,7 @@ fn brawl(setup: &Setup<'_>) -> Instance {
     Instance::new(world, script)
 }
 
-/// Static boxes that all stand on.
+/// Static boxes on which all characters stand.
 fn ground(setup: &Setup<'_>) -> Vec<BodyDef> {
     if setup.whole("tiles") == 0 {
         return vec![floor()];
@@ -97,7 +97,7 @@ fn ground(setup: &Setup<'_>) -> Vec<BodyDef> {
     side().flat_map(|x| side().map(move |z| tile(x, z))).collect()
 }
 
-/// Boxes by half extents and middle.
+/// Half extents and centres of the boxes.
 fn walls_and_stairs() -> Vec<(Vec3, Vec3)> {
     let (thick, high) = (0.2, 1.5);
     let far = ROOM + thick;
@@ -144,7 +144,7 @@ impl Fighter {
         local_to_model(&character.def().rig, character.pose(), &root, &mut self.model);
     }
 
-    /// Walks on, and changes direction after its time or at a wall.
+    /// Lets the character walk on; its direction changes after its time or at a wall.
     fn walk(&mut self, random: &mut Random, dt: f32) {
         self.keeps -= dt;
         let place = self.character.world_from_character().translation;
@@ -165,10 +165,10 @@ impl Fighter {
 struct Brawl {
     def: Arc<CharacterDef>,
     fighters: Vec<Fighter>,
-    /// Hits per second.
+    /// Number of hits per second.
     hits: f32,
     powered: bool,
-    /// Hits that are due.
+    /// Number of hits that are due.
     due: f32,
     seed: u64,
     watch: Watch,

@@ -17,31 +17,36 @@ use std::sync::Arc;
 pub(in crate::scenes) const FOOTSTEPS: Scene = Scene {
     chapter: Chapter::Characters,
     name: "footsteps",
-    about: "a walk whose footfalls call back: faster, standing still, backward, each exactly once",
+    about: "a walk reports each footfall exactly once: faster, standing still and backward",
     steps: 400,
-    settings: &[Setting::number("speed", 1.5, (0.5, 3.0), "of the second stretch, clip seconds per second")],
+    settings: &[Setting::number(
+        "speed",
+        1.5,
+        (0.5, 3.0),
+        "speed of the second stretch, clip seconds per second",
+    )],
     build: footsteps,
 };
 
 pub(in crate::scenes) const PUNCH: Scene = Scene {
     chapter: Chapter::Characters,
     name: "punch",
-    about: "a punch calls back when the fist arrives, and says how hard: a ball flies off its post",
+    about: "an event of a punch gives the impulse when the fist arrives, and a ball flies off its post",
     steps: 90,
-    settings: &[Setting::number("impulse", 2.0, (0.5, 10.0), "that the event's payload tells, N·s")],
+    settings: &[Setting::number("impulse", 2.0, (0.5, 10.0), "impulse in the event's payload, N·s")],
     build: punched,
 };
 
 /// The feet, by the payload of their events.
 const FEET: [&str; 2] = ["leftToes", "rightToes"];
-/// When the first foot falls, clip seconds: off the grid of steps.
+/// Clip time of the first footfall, seconds; between two steps of the world.
 const FIRST: f32 = 0.0625;
 
 /// A stretch of the walk at one speed.
 #[derive(Clone, Copy)]
 struct Stretch {
     steps: u64,
-    /// Clip seconds per second.
+    /// Speed, clip seconds per second.
     speed: f32,
 }
 
@@ -71,7 +76,7 @@ fn footsteps(setup: &Setup<'_>) -> Instance {
 #[derive(Clone, Copy)]
 struct Heard {
     foot: usize,
-    /// Seconds from the start.
+    /// Time since the start, seconds.
     time: f64,
     /// World position of the ball of the foot in the step of the event.
     place: Vec3,
@@ -83,9 +88,9 @@ struct Footsteps {
     plan: Vec<Stretch>,
     /// Time of each footfall, clip seconds.
     falls: [f32; 2],
-    /// Seconds.
+    /// Duration of a lap, seconds.
     lap: f32,
-    /// Metres.
+    /// Length of a walking step, metres.
     step_length: f32,
     heard: Vec<Heard>,
     gone: Gone,
@@ -228,14 +233,14 @@ fn punched(setup: &Setup<'_>) -> Instance {
     Instance::new(world, script)
 }
 
-/// From the wrist to the knuckles, metres.
+/// Distance from the wrist to the knuckles, metres.
 const HAND: f32 = 0.1;
 
 /// A hit reported by the callback.
 #[derive(Clone, Copy)]
 struct Hit {
     step: u64,
-    /// Seconds from the start.
+    /// Time since the start, seconds.
     time: f64,
     /// Distance of the knuckles from their target, metres.
     miss: f32,
@@ -257,7 +262,7 @@ struct Punched {
 }
 
 impl Punched {
-    /// The payload of a punch event in this step, N·s.
+    /// Returns the payload of a punch event in this step, N·s.
     fn step(&mut self, step: u64, dt: f32) -> Option<f32> {
         self.actor.update(dt);
         let fired = self.actor.animator.events().first().copied()?;

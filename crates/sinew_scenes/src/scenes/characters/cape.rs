@@ -22,15 +22,15 @@ pub(in crate::scenes) const CAPE: Scene = Scene {
     about: "the mannequin in a cape walks, is hit, falls down the stairs, gets up and walks on, still in its cape",
     steps: 720,
     settings: &[
-        Setting::number("impulse", 110.0, (0.0, 200.0), "in the back, N·s"),
-        Setting::number("mass", 0.6, (0.1, 3.0), "of the cape, kg"),
+        Setting::number("impulse", 110.0, (0.0, 200.0), "impulse of the hit in the back, N·s"),
+        Setting::number("mass", 0.6, (0.1, 3.0), "mass of the cape, kg"),
     ],
     build: cape,
 };
 
-/// Middle of the cape's upper edge, on the back between the shoulders, from the soles, metres.
+/// Position of the middle of the cape's upper edge, on the back between the shoulders, measured from the soles, metres.
 const NAPE: Vec3 = Vec3::new(0.0, 1.42, -0.09);
-/// Width and length, metres.
+/// Width and length of the cape, metres.
 const WIDE: f32 = 0.36;
 const LONG: f32 = 0.96;
 /// Number of springs along its edges; its particles are less than two radii apart.
@@ -42,7 +42,7 @@ const STANDS_OFF: u32 = 2;
 const RADIUS: f32 = 0.02;
 /// Distance before the edge of the porch at which the hit comes, metres.
 const HIT_BEFORE_EDGE: f32 = 0.45;
-/// Role of the body that wears it and is hit.
+/// Role of the body that carries the cape and is hit.
 const SHOULDERS: &str = "chest";
 
 fn cape(setup: &Setup<'_>) -> Instance {
@@ -106,7 +106,8 @@ fn worn(world: &World, body: BodyId, nape: Vec3, mass: f32) -> GroupDef {
 
 #[derive(Clone, Copy, Default)]
 struct Watch {
-    /// Largest depth of a free particle's centre in a body of the wearer, and in anything else, metres; 0 if it was outside.
+    /// Largest depth of a free particle's centre in a body of the wearer, and in anything else, metres; 0 if it was
+    /// outside.
     deepest_in_wearer: f32,
     deepest_in_world: f32,
     wear: Wear,
@@ -115,7 +116,7 @@ struct Watch {
 struct Worn {
     character: Character,
     cape: GroupId,
-    /// N·s.
+    /// Impulse of the hit, N·s.
     impulse: f32,
     was_hit: bool,
     /// World from joint.

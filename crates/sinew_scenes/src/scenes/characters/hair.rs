@@ -20,7 +20,7 @@ use std::sync::Arc;
 pub(in crate::scenes) const HAIR_RATES: Scene = Scene {
     chapter: Chapter::Characters,
     name: "hair",
-    about: "a runner's hair at 30, 60, 144 and 240 frames a second: the curves lie on each other",
+    about: "a runner's hair at 30, 60, 144 and 240 frames a second: the curves coincide",
     steps: 240,
     settings: &[],
     build: hair,
@@ -28,21 +28,21 @@ pub(in crate::scenes) const HAIR_RATES: Scene = Scene {
 
 /// Frame rates, frames a second.
 const RATES: [u64; 4] = [30, 60, 144, 240];
-/// Number of world steps after which all of them have a frame: a sixth of a second.
+/// Number of world steps after which every runner has a frame: a sixth of a second.
 const COMMON: u64 = 10;
-/// From one runner to the next, metres.
+/// Distance from one runner to the next, metres.
 const APART: f32 = 1.0;
 /// Sideways displacement of a tip that counts as a swing, metres.
 const LEAST_SWING: f32 = 0.1;
-/// Sway of the runners from side to side, metres and turns a second, and how far they turn, radians.
+/// Sway of the runners from side to side, metres and turns per second, and amplitude of their rotation, radians.
 const SWAY: f32 = 0.12;
 const PACE: f32 = 1.3;
 const TURN: f32 = 0.5;
-/// Graph of the ponytails' tips, seen from behind: its left end, metres to a second, and metres to a metre.
+/// Graph of the ponytails' tips, seen from behind: its left end, metres per second of time, and metres per metre.
 const GRAPH: Vec3 = Vec3::new(2.0, 2.3, 0.0);
 const GRAPH_SECOND: f32 = -1.0;
 const GRAPH_METRE: f32 = 1.5;
-/// From one dash of a curve to the next, seconds: a dozen frames of the coarsest.
+/// Time from one dash of a curve to the next, seconds: a dozen frames of the coarsest rate.
 const DASH: f32 = 0.4;
 
 fn hair(setup: &Setup<'_>) -> Instance {
@@ -77,15 +77,15 @@ fn hair(setup: &Setup<'_>) -> Instance {
 struct Runner {
     actor: Actor,
     swing: SpringSwing,
-    /// Frames a second.
+    /// Frame rate, frames a second.
     rate: u64,
-    /// Frames so far.
+    /// Number of frames so far.
     frames: u64,
     /// Position about which it sways.
     middle: Vec3,
-    /// Tips of its bones as seen from the middle, metres.
+    /// Tips of its bones relative to the middle, metres.
     tips: Vec<Vec3>,
-    /// Path of the ponytail's tip: time, and how far it is to the side of the head.
+    /// Path of the ponytail's tip: time, and sideways distance from the head.
     curve: Vec<(f32, f32)>,
 }
 
@@ -132,7 +132,7 @@ struct Hair {
     def: Arc<CharacterDef>,
     runners: [Runner; 4],
     gone: Gone,
-    /// Largest distance between the same tips at one time, over the length of their bone.
+    /// Largest distance between the same tips at one time, relative to the length of their bone.
     apart: f32,
     /// Largest sideways distance of the ponytail's tip from its root, metres.
     swung: f32,
@@ -169,7 +169,7 @@ impl Script for Hair {
 
     fn metrics(&self, _: &World) -> Vec<Metric> {
         vec![
-            // Hair that hangs still proves nothing.
+            // Without this bar, hair that never moves would pass.
             Metric::awaited(
                 "apart_over_length",
                 (self.swung > LEAST_SWING).then_some(self.apart),

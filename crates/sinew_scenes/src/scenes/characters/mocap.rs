@@ -24,36 +24,36 @@ pub(in crate::scenes) const RETARGET: Scene = Scene {
     build: retargeted,
 };
 
-/// Needs a file of the user's.
+/// This scene needs a file of the user's.
 pub(in crate::scenes) const MOCAP: Scene = Scene {
     chapter: Chapter::Characters,
     name: "mocap",
     about: "a captured motion on the mannequin, a child of 0.8 m and a giant of 14 m",
     steps: 300,
-    settings: &[Setting::motion("motion", "of a human actor")],
+    settings: &[Setting::motion("motion", "captured motion of a human actor")],
     build: captured,
 };
 
 /// Proportions of a character beside the mannequin.
 struct Build {
-    /// Metres.
+    /// Height, metres.
     height: f32,
     /// Lengths of the legs and the arms and size of the head, over those of a mannequin of the same trunk.
     legs: f32,
     arms: f32,
     head: f32,
-    /// Place where it begins, metres.
+    /// Start of the character, metres.
     place: Vec3,
 }
 
 const CHILD: Build = Build { height: 0.8, legs: 0.72, arms: 0.8, head: 1.5, place: Vec3::new(1.4, 0.0, 1.0) };
 const HUMAN: Build = Build { height: 1.75, legs: 1.0, arms: 1.0, head: 1.0, place: Vec3::ZERO };
-/// Long legs and very short arms: a T-rex as a human actor would drive it.
+/// Long legs and very short arms: a T-rex that a human actor would drive.
 const GIANT: Build =
     Build { height: 14.0, legs: 1.15, arms: 0.45, head: 1.6, place: Vec3::new(-4.5, 0.0, -3.0) };
 
 impl Build {
-    /// Factor by which the way to a joint is longer than the mannequin's, before all is brought to its height.
+    /// Factor by which the vector to a joint is longer than the mannequin's, before all is scaled to its height.
     fn factor(&self, joint: &str) -> f32 {
         let is = |parts: &[&str]| parts.iter().any(|part| joint.ends_with(part));
         if is(&["LowerLeg", "Foot"]) {
@@ -72,7 +72,7 @@ impl Build {
             joint.rest.translation *= self.factor(&joint.name);
         }
         let mut model = bind(&rig);
-        // Feet on the ground again, and the head's top where it should be.
+        // Puts the feet on the ground again, and the head's top at its height.
         let lift = self.lowest(&model, &rig);
         let head = rig.joints.iter().position(|joint| joint.name == "head").unwrap_or(0);
         let crown = model[head].translation.y - lift + HEAD * self.head;
@@ -149,14 +149,14 @@ struct Character {
     actor: Actor,
     fitted: Retargeted,
     height: f32,
-    /// Along z so far, metres.
+    /// Distance along z so far, metres.
     way: f32,
     /// Largest depth of a toe joint below the ground, metres.
     sunk: f32,
 }
 
 impl Character {
-    /// Plays a performance that can be carried over.
+    /// Plays a performance that can be retargeted.
     fn new(world: &mut World, of: &Performance, rig: &Rig, build: &Build, loop_mode: LoopMode) -> Self {
         let fitted = of.fitted(rig).expect("both are humanoids");
         let mut cast = Cast::of(rig.clone());
@@ -167,7 +167,7 @@ impl Character {
         Self { actor, fitted, height: build.height, way: 0.0, sunk: 0.0 }
     }
 
-    /// Goes against the ground that its feet push back.
+    /// Moves against the velocity of the feet on the ground.
     fn update(&mut self, dt: f32) {
         self.actor.update(dt);
         let step = self.fitted.ground.velocity * -dt;
@@ -180,12 +180,12 @@ impl Character {
         }
     }
 
-    /// Slide of its feet, cm/s for each metre of height.
+    /// Speed at which its feet slide, cm/s for each metre of height.
     fn slide(&self) -> f32 {
         100.0 * self.fitted.feet.slide[1].mean / self.height
     }
 
-    /// Length of a clip over that of the actor's: by Froude's law the root of the ratio of their legs.
+    /// Length of a clip relative to the actor's: by Froude's law the root of the ratio of their legs.
     fn pace(&self) -> Expected {
         Expected::near(self.fitted.scale.sqrt(), 1e-6)
     }
@@ -243,7 +243,7 @@ impl Script for Retarget {
 }
 
 struct Captured {
-    /// Child, human, giant.
+    /// The child, the human and the giant.
     characters: [Character; 3],
     gone: Gone,
 }

@@ -1,4 +1,4 @@
-//! Movers on a course: each in a lane of its own.
+//! Movers on a course: each has a lane of its own.
 
 use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
@@ -18,16 +18,16 @@ pub(in crate::scenes) const COURSE: Scene = Scene {
     about: "movers climb stairs and a ramp, push a crate, ride a turntable and a belt, and jump",
     steps: 420,
     settings: &[
-        Setting::number("speed", 2.0, (1.0, 4.0), "with which they walk, m/s"),
-        Setting::number("jump", 5.0, (2.0, 8.0), "with which one of them jumps, m/s"),
-        Setting::number("rise", 0.2, (0.05, 0.34), "of each of the stairs' steps, metres"),
+        Setting::number("speed", 2.0, (1.0, 4.0), "walking speed, m/s"),
+        Setting::number("jump", 5.0, (2.0, 8.0), "initial speed of a jump, m/s"),
+        Setting::number("rise", 0.2, (0.05, 0.34), "height of each step of the stairs, metres"),
     ],
     build: course,
 };
 
-/// Steps until all stand.
+/// Number of steps until all stand.
 const SETTLING: u64 = 60;
-/// Steps up, and as many down again, and the depth of each, metres.
+/// Number of steps up, and of as many down again, and the depth of each, metres.
 const STEPS: u8 = 6;
 const TREAD: f32 = 0.3;
 /// Width of a lane, metres.
@@ -36,7 +36,7 @@ const LANE: f32 = 2.4;
 const BELT: f32 = 0.5;
 /// Angular velocity of the turntable, rad/s.
 const SPIN: f32 = 0.8;
-/// Kilograms of the crate, and the coefficient with which it slides.
+/// Mass of the crate, kg, and the coefficient with which it slides.
 const CRATE: f32 = 60.0;
 const FRICTION: f32 = 0.6;
 
@@ -110,7 +110,7 @@ fn belt(world: &mut World) {
 }
 
 struct Course {
-    /// With the bodies that show them and meet nothing.
+    /// Movers with the bodies that show them, which collide with nothing.
     movers: [(MoverId, BodyId); 6],
     crate_: BodyId,
     table: BodyId,
@@ -121,15 +121,15 @@ struct Course {
 }
 
 struct Watch {
-    /// Feet of each since all stand, metres.
+    /// Greatest height of each mover's feet since all stand, metres.
     highest: [f32; 6],
     deepest: f32,
-    /// Steps in which one on the stairs, the ramp or the table was off the ground.
+    /// Number of steps in which a mover on the stairs, the ramp or the table was off the ground.
     aloft: u32,
-    /// On the table, from where it stood, metres.
+    /// Distance of the mover on the table from where it stood, metres.
     drift: f32,
     on_table: Option<Vec3>,
-    /// Way on the belt in the last second so far, and from where, metres.
+    /// Way on the belt in the last second so far, and its start, metres.
     gone: Option<(f32, f32)>,
 }
 
@@ -181,7 +181,7 @@ impl Script for Course {
         }
     }
 
-    /// Work of the mover behind the crate, J: against friction, and into its motion.
+    /// Work of the mover behind the crate, J: against friction, and for its motion.
     fn work_in(&self, world: &World) -> f32 {
         let pushed = world.transform(self.crate_).translation.x + 2.0;
         let speed = world.velocity(self.crate_).linear.length();

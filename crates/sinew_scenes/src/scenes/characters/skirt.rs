@@ -23,8 +23,8 @@ pub(in crate::scenes) const SKIRT_SCENE: Scene = Scene {
     about: "the mannequin in a skirt and a cape of bones walks, is hit, lies, gets up and walks on",
     steps: 600,
     settings: &[
-        Setting::number("impulse", 110.0, (0.0, 200.0), "in the side, N·s"),
-        Setting::number("area_density", 0.4, (0.1, 2.0), "of the cloth, kg/m²"),
+        Setting::number("impulse", 110.0, (0.0, 200.0), "impulse of the hit in the side, N·s"),
+        Setting::number("area_density", 0.4, (0.1, 2.0), "area density of the cloth, kg/m²"),
     ],
     build: skirt,
 };
@@ -58,7 +58,7 @@ struct Watch {
     deepest_in_wearer: f32,
     /// Depth of a free particle that is pinched between two bodies, metres.
     deepest_pinched: f32,
-    /// Depth of a free particle in a body that is not the wearer's, metres.
+    /// Depth of a free particle in a body that is not part of the wearer, metres.
     deepest_in_world: f32,
     /// Speed of the fastest particle, m/s.
     fastest: f32,
@@ -67,7 +67,7 @@ struct Watch {
 
 struct Dressed {
     character: Character,
-    /// N·s.
+    /// Impulse of the hit, N·s.
     impulse: f32,
     was_hit: bool,
     /// World from joint.
@@ -88,8 +88,9 @@ impl Dressed {
         local_to_model(&self.character.def().rig, self.character.pose(), &root, &mut self.model);
     }
 
-    /// Depth of the deepest free particle's middle in a body of the wearer and in another that it meets, metres; 0: outside. The third is that of those that are
-    /// pinched between two bodies: where a clip folds the thigh on the belly, or lays a leg on the floor, there is no place outside of both.
+    /// Depth of the deepest free particle's middle in a body of the wearer and in another that it touches, metres; 0:
+    /// outside. The third is that of particles between two bodies: where a clip folds the thigh on the belly, or lays a
+    /// leg on the floor, there is no place outside of both.
     fn deepest(&self, world: &World, id: GroupId) -> [f32; 3] {
         let (group, own) = (world.particles(id), self.character.bodies());
         let bounds = group.bounds();

@@ -21,7 +21,12 @@ pub(in crate::scenes) const STREET: Scene = Scene {
     settings: &[
         Setting::whole("n", 24, (2, 1_000), "number of mannequins"),
         Setting::whole("crates", 12, (0, 1_000), "number of crates"),
-        Setting::number("hits", 3.6, (0.0, 200.0), "each second, by one half enough to fell"),
+        Setting::number(
+            "hits",
+            3.6,
+            (0.0, 200.0),
+            "number of hits per second, half of them strong enough for a fall",
+        ),
         Setting::whole("bodies", 1, (0, 1), "1: with hit bodies, 0: without"),
     ],
     build: street,
@@ -30,14 +35,14 @@ pub(in crate::scenes) const STREET: Scene = Scene {
 /// Width of a lane, half the length and half the width of the street for each lane, metres.
 const LANE: f32 = 1.1;
 const HALF_LENGTH: f32 = 9.0;
-/// Speeds at which they walk, m/s.
+/// Range of walking speeds, m/s.
 const SPEEDS: (f32, f32) = (0.8, 1.5);
 /// Steps between turns of the lift, and its speed, m/s.
 const LIFT_TURNS: u64 = 150;
 const LIFT: f32 = 0.8;
-/// Index of the character that a user may control: it stands in the open.
+/// Index of the character that a user may control; there is free space around it.
 const LED: usize = 1;
-/// Step at which the last of them jumps.
+/// Step at which the last character jumps.
 const JUMPS: u64 = 90;
 
 fn street(setup: &Setup<'_>) -> Instance {
@@ -101,7 +106,7 @@ fn walls(world: &mut World, half_width: f32) {
 
 struct Walker {
     character: Character,
-    /// Along x, m/s.
+    /// Velocity along x, m/s.
     speed: f32,
     /// World from joint.
     model: Vec<Affine>,
@@ -127,10 +132,10 @@ impl Walker {
 struct Watch {
     /// Least distance of two movers' surfaces, metres.
     nearest: f32,
-    /// Largest drift of the rider on its lift, metres.
+    /// Largest drift of the character on the lift, metres.
     drift: f32,
     highest: f32,
-    /// Steps in which a standing character was outside the walls.
+    /// Number of steps in which a standing character was outside the walls.
     outside: u32,
     flinches: u32,
     falls: u32,
@@ -143,9 +148,9 @@ struct Street {
     walkers: Vec<Walker>,
     lift: BodyId,
     half_width: f32,
-    /// Hits per second.
+    /// Number of hits per second.
     hits: f32,
-    /// Hits that are due.
+    /// Number of hits that are due.
     due: f32,
     seed: u64,
     watch: Watch,

@@ -17,15 +17,15 @@ use std::sync::Arc;
 pub(in crate::scenes) const TRANSITION: Scene = Scene {
     chapter: Chapter::Characters,
     name: "transition",
-    about: "from a run to a boxer's guard by a cut, a crossfade and inertialisation: how hard it jerks",
+    about: "from a run to a boxer's guard by a cut, a crossfade and inertialisation: the largest accelerations",
     steps: 120,
-    settings: &[Setting::number("seconds", 0.3, (0.1, 1.0), "that a transition takes")],
+    settings: &[Setting::number("seconds", 0.3, (0.1, 1.0), "duration of a transition")],
     build: transition,
 };
 
 /// Step before which the transition starts.
 const START: u64 = 50;
-/// From one character to the next, metres.
+/// Distance from one character to the next, metres.
 const APART: f32 = 1.1;
 
 fn transition(setup: &Setup<'_>) -> Instance {
@@ -73,14 +73,14 @@ impl History {
         self.0.push(pose.clone());
     }
 
-    /// Angular acceleration of a joint, rad/s², about now.
+    /// Angular acceleration of a joint at the middle of the three poses, rad/s².
     fn acceleration(&self, joint: usize, dt: f32) -> f32 {
         let [a, b, c] = &self.0[..] else { return 0.0 };
         let [a, b, c] = [a, b, c].map(|pose| pose.get(joint));
         (velocity(&b, &c, dt) - velocity(&a, &b, dt)).length() / dt
     }
 
-    /// Angular velocity of a joint, rad/s, since the step before.
+    /// Angular velocity of a joint since the previous step, rad/s.
     fn velocity(&self, joint: usize, dt: f32) -> Vec3 {
         match &self.0[..] {
             [.., a, b] => velocity(&a.get(joint), &b.get(joint), dt),
@@ -110,13 +110,14 @@ impl Subject {
 }
 
 struct Transitions {
-    /// Cut, crossfaded, inertialised.
+    /// Subjects whose motion is cut, crossfaded and inertialised.
     subjects: [Subject; 3],
-    /// Each clip on its own, not drawn: the motion of its joints without a transition.
+    /// Each clip alone, not drawn: the motion of its joints without a transition.
     alone: [(Actor, History); 2],
     clips: [ClipId; 2],
     seconds: f32,
-    /// Bound of each joint's acceleration, rad/s²: its value in either clip, and `6 |x₀|/t₁² + 4 |v₀|/t₁`, each the largest so far.
+    /// Bound of each joint's acceleration, rad/s²: its value in either clip, and `6 |x₀|/t₁² + 4 |v₀|/t₁`, each the
+    /// largest so far.
     bounds: Vec<f32>,
     gone: Gone,
 }

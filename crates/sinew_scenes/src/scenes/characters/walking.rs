@@ -23,18 +23,18 @@ use std::sync::Arc;
 pub(in crate::scenes) const ROOT_WALK: Scene = Scene {
     chapter: Chapter::Characters,
     name: "root_walk",
-    about: "root motion leads a kinematic capsule round a circle, and no foot slides more than in its clip",
+    about: "root motion moves a kinematic capsule on a circle, and no foot slides more than in its clip",
     steps: 604,
-    settings: &[Setting::number("radius", 2.0, (1.0, 20.0), "of the circle, m")],
+    settings: &[Setting::number("radius", 2.0, (1.0, 20.0), "radius of the circle, m")],
     build: root_walk,
 };
 
 pub(in crate::scenes) const UNEVEN_GROUND: Scene = Scene {
     chapter: Chapter::Characters,
     name: "uneven_ground",
-    about: "a walk made for a flat floor goes over waves, beside one without inverse kinematics",
+    about: "inverse kinematics adapts a walk for a flat floor to waves, beside a walk without it",
     steps: 300,
-    settings: &[Setting::number("height", 0.07, (0.0, 0.12), "of the waves over their middle, m")],
+    settings: &[Setting::number("height", 0.07, (0.0, 0.12), "height of the waves above their mean, m")],
     build: uneven_ground,
 };
 
@@ -42,7 +42,7 @@ pub(in crate::scenes) const UNEVEN_GROUND: Scene = Scene {
 const CAPSULE: [f32; 2] = [0.57, 0.3];
 /// Height of the mannequin, metres.
 const HEIGHT: f32 = 1.75;
-/// From the soles to the middle of the capsule.
+/// Vector from the soles to the middle of the capsule.
 const MIDDLE: Vec3 = Vec3::new(0.0, CAPSULE[0] + CAPSULE[1], 0.0);
 
 fn root_walk(setup: &Setup<'_>) -> Instance {
@@ -65,14 +65,14 @@ fn root_walk(setup: &Setup<'_>) -> Instance {
 
 const FEET: [&str; 2] = ["leftToes", "rightToes"];
 
-/// The ball of a foot while it is down.
+/// Contact of the ball of a foot while the foot is down.
 struct Ball {
     joint: usize,
-    /// In the world, and as the clip by itself would have it, a step ago if it was down then.
+    /// Position in the world, and position by the clip alone, in the last step if the foot was down then.
     last: Option<[Vec3; 2]>,
-    /// Places where it came down, in the world.
+    /// Places where it touched down, in the world.
     prints: Vec<Vec3>,
-    /// Slid so far, metres, and time down, seconds.
+    /// Total slide, metres, and total contact time, seconds.
     slid: [f32; 2],
     time: f32,
 }
@@ -103,9 +103,9 @@ struct RootWalk {
     capsule: BodyId,
     cycle: Cycle,
     balls: [Ball; 2],
-    /// The clip as it was made: world from joint.
+    /// Joints of the unchanged clip: world from joint.
     alone: Vec<Affine>,
-    /// Farthest from the closed form, metres.
+    /// Largest distance from the closed form, metres.
     off_path: f32,
     gone: Gone,
 }
@@ -119,7 +119,7 @@ impl RootWalk {
         share_of_lap(&self.actor, &self.cycle)
     }
 
-    /// Poses the clip as it was before anything was taken out of it, lap after lap.
+    /// Poses the unchanged clip, lap after lap.
     fn play_alone(&mut self) {
         let Cycle { clip, path, speed, .. } = &self.cycle;
         let rig = &self.actor.cast.rig;
@@ -210,12 +210,12 @@ impl Script for RootWalk {
     }
 }
 
-/// Corners of the ground along x and z, and how far apart, metres.
+/// Number of corners of the ground along x and z, and their spacing, metres.
 const CORNERS: [usize; 2] = [17, 41];
 const SPACING: f32 = 0.2;
-/// From crest to crest, along x and z, metres.
+/// Distance from crest to crest along x and z, metres.
 const WAVES: [f32; 2] = [3.4, 2.2];
-/// Lanes of the two, metres to the left, and the place where they begin.
+/// Lanes of the two characters, metres to the left, and the place where they begin.
 const LANES: [f32; 2] = [-0.7, 0.7];
 const BEGIN: f32 = -3.2;
 
@@ -270,16 +270,16 @@ struct Uneven {
     legs: [TwoBone; 2],
     pelvis: usize,
     cycle: Cycle,
-    /// Farthest that an ankle stayed from where it should be, metres.
+    /// Largest distance of an ankle from its target, metres.
     miss: f32,
     gone: Gone,
 }
 
-/// Height of the ankle above the sole, and from there to heel and ball in the axes of the foot, metres.
+/// Height of the ankle above the sole, and vectors from there to heel and ball in the axes of the foot, metres.
 const ANKLE: f32 = 0.08;
 const SOLE: [Vec3; 2] = [Vec3::new(0.0, -ANKLE, -0.055), Vec3::new(0.0, -ANKLE, 0.135)];
 
-/// The ground below a point.
+/// Returns the ground below a point.
 fn below(world: &World, point: Vec3) -> Option<FootGround> {
     let ray = Ray { origin: point + Vec3::Y, direction: Vec3::Y * -3.0 };
     let hit = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&ray)?;

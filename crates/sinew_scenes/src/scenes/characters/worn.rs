@@ -11,7 +11,7 @@ use sinew::ragdoll::{Character, CharacterEvent};
 pub(super) struct Wear {
     /// Largest mean over the threads of the relative length error.
     stretch: f32,
-    /// Sum of that mean over steps.
+    /// Sum of that mean over the steps.
     stretch_sum: f32,
     /// Largest distance of an attached particle from its attachment, metres.
     pub torn: f32,
@@ -19,7 +19,7 @@ pub(super) struct Wear {
     falls: u32,
     /// Time at which it was up again, seconds; 0 if it was not.
     up: f32,
-    /// Work of drives and led bodies, J.
+    /// Work of drives and of bodies that clips move, J.
     pub work_in: f32,
 }
 

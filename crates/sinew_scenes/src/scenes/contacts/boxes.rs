@@ -12,7 +12,7 @@ use sinew::physics::{BodyDef, BodyId, DebugDraw, DrawKind, Obb, Shape, World};
 pub(in crate::scenes) const AABB_VS_OBB: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "aabb_vs_obb",
-    about: "a box turns, its bounds along the axes swell and shrink, and its oriented box does not",
+    about: "a box rotates: its axis-aligned bounds change their size, its oriented box does not",
     steps: 360,
     settings: &[Setting::number("slenderness", 4.0, (1.0, 100.0), "length of the box over its width")],
     build: aabb_vs_obb,
@@ -20,7 +20,7 @@ pub(in crate::scenes) const AABB_VS_OBB: Scene = Scene {
 
 /// Half extent of the box across, metres.
 const HALF_WIDTH: f32 = 0.25;
-/// One turn in 360 steps, rad/s.
+/// Angular velocity of one turn in 360 steps, rad/s.
 const TURNING: f32 = core::f32::consts::TAU / 6.0;
 
 fn aabb_vs_obb(setup: &Setup<'_>) -> Instance {
@@ -53,15 +53,15 @@ struct Turning {
     /// Sum of the ratio of the bounds' volume to the oriented box's, over all steps.
     ratio_sum: f64,
     ratio_max: f32,
-    /// The largest that a ratio was off its closed form, as a share of it.
+    /// Largest error of a ratio against its closed form, as a share of it.
     off: f32,
-    /// The largest change of the oriented box's volume, as a share of it.
+    /// Largest change of the oriented box's volume, as a share of it.
     drift: f32,
 }
 
 impl Turning {
-    /// Half extents `a`, `b` turned by `θ` reach `a |cos θ| + b |sin θ|` and `a |sin θ| + b |cos θ|`: over `a b`, that is
-    /// `1 + (a/b + b/a) |sin θ cos θ|`.
+    /// Half extents `a`, `b` rotated by `θ` reach `a |cos θ| + b |sin θ|` and `a |sin θ| + b |cos θ|`: over `a b`, that
+    /// is `1 + (a/b + b/a) |sin θ cos θ|`.
     fn closed_form(&self, angle: f32) -> f32 {
         let (sin, cos) = trig::sin_cos(angle);
         1.0 + (self.slenderness + 1.0 / self.slenderness) * (sin * cos).abs()
@@ -69,7 +69,7 @@ impl Turning {
 }
 
 impl Script for Turning {
-    /// The bounds.
+    /// Draws the bounds.
     fn draw(&self, world: &World, out: &mut dyn DebugDraw) {
         let bounds = world.bounds(self.body);
         let corner = |bits: usize| {
@@ -112,9 +112,9 @@ impl Script for Turning {
 pub(in crate::scenes) const POINT_IN_OBB: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "point_in_obb",
-    about: "probes fall through a tilted box that asks how deep they are in it, and which way is out",
+    about: "probes fall through a tilted box; queries give their depth and the direction out of it",
     steps: 48,
-    settings: &[Setting::number("tilt", 25.0, (0.0, 40.0), "of the box about z, degrees")],
+    settings: &[Setting::number("tilt", 25.0, (0.0, 40.0), "rotation of the box about z, degrees")],
     build: point_in_obb,
 };
 
@@ -122,7 +122,7 @@ pub(in crate::scenes) const POINT_IN_OBB: Scene = Scene {
 const HALF_EXTENTS: Vec3 = Vec3::new(1.5, 0.25, 0.5);
 /// Height of the probes at the start, metres.
 const START_HEIGHT: f32 = 1.5;
-/// Lines along which the probes come down, metres along x.
+/// Positions along x of the probes' vertical lines, metres.
 const LINES: [f32; 5] = [-0.4, -0.2, 0.0, 0.2, 0.4];
 
 fn point_in_obb(setup: &Setup<'_>) -> Instance {
@@ -176,8 +176,8 @@ impl Probes {
         (self.rotation * Vec3::Y).dot(Vec3::new(x, (f64::from(START_HEIGHT) - fallen) as f32, 0.0))
     }
 
-    /// When a probe is at a distance over the middle plane, seconds: `y = y₀ − g t (t + h) / 2` on the line `x`, solved for
-    /// `t` (see [`fallen`]).
+    /// Time at which a probe is at a distance over the middle plane, seconds: `y = y₀ − g t (t + h) / 2` on the line
+    /// `x`, solved for `t` (see [`fallen`]).
     fn time_at(&self, x: f32, over: f32, world: &World) -> f64 {
         let normal = self.rotation * Vec3::Y;
         let y = f64::from((over - normal.x * x) / normal.y);

@@ -13,23 +13,23 @@ use sinew::physics::{BodyDef, BodyId, Material, Shape, ShapeId, World};
 pub(in crate::scenes) const COIN: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "coin",
-    about: "a leaning coin rolls round on its rim at the rate of a closed form, sinks and comes to rest flat",
+    about: "a leaning coin rolls in a circle on its rim at the rate of a closed form, sinks and comes to rest flat",
     steps: 600,
     settings: &[Setting::number(
         "tilt",
         50.0,
         (50.0, 75.0),
-        "of its faces from the level at the start, degrees",
+        "initial angle of its faces from the level, degrees",
     )],
     build,
 };
 
-/// Metres.
+/// Radius of the coin, metres.
 const RADIUS: f32 = 0.5;
 const HALF_THICKNESS: f32 = 0.02;
 /// Duration of the rate measurement, seconds.
 const MEASURED: f64 = 0.5;
-/// Rolling resistance after that, metres: without any it would whirl for minutes.
+/// Rolling resistance after the measurement, metres: without it the coin would whirl for minutes.
 const ROLLING: f32 = 0.02;
 
 fn build(setup: &Setup<'_>) -> Instance {
@@ -38,7 +38,7 @@ fn build(setup: &Setup<'_>) -> Instance {
     let degrees = setup.number("tilt");
     let (sin, cos) = trig::sin_cos(degrees.to_radians());
     let rotation = tilt(degrees);
-    // Rotate about the line from the centre to the contact point, so that neither moves.
+    // Rotates the coin about the line from its centre to the contact point, so that neither moves.
     let line = rotation * Vec3::new(1.0, HALF_THICKNESS / RADIUS, 0.0);
     let cylinder = Shape::Cylinder { half_height: HALF_THICKNESS, radius: RADIUS };
     let coin = world.add_body(&BodyDef {
@@ -69,9 +69,9 @@ struct Coin {
     due: f32,
     /// Number of tilts in that sum.
     looks: u16,
-    /// Seconds.
+    /// Time at which the coin fell asleep, seconds.
     asleep: Option<f32>,
-    /// Free fall of a ball, for gravity's sake.
+    /// Free fall of a ball, to verify gravity.
     flight: Flight,
 }
 

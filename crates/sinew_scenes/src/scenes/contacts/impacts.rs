@@ -22,13 +22,13 @@ fn elastic_ball(mass: f32, radius: f32, position: Vec3) -> BodyDef {
 pub(in crate::scenes) const ELASTIC_PAIRS: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "elastic_pairs",
-    about: "balls of 1 kg hit balls of 1, 3 and 100 kg head-on and lose nothing; one hits a row of four",
+    about: "balls of 1 kg hit balls of 1, 3 and 100 kg head-on without energy loss; one hits a row of four",
     steps: 60,
     settings: &[],
     build: elastic_pairs,
 };
 
-/// Before the hits, m/s.
+/// Velocities before the hits, m/s.
 const SPEEDS: [f32; 2] = [4.0, -1.0];
 const PAIR_RADIUS: f32 = 0.1;
 /// Mass of the second ball, kg (the first has 1 kg), with the names of the figures that are the speeds after the hit.
@@ -60,7 +60,7 @@ fn elastic_pairs(_: &Setup<'_>) -> Instance {
 }
 
 struct Pair {
-    /// Mass of the second, kg.
+    /// Mass of the second ball, kg.
     mass: f32,
     names: [&'static str; 2],
     ids: [BodyId; 2],
@@ -100,17 +100,17 @@ impl Script for ElasticPairs {
 pub(in crate::scenes) const NEWTONS_CRADLE: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "newtons_cradle",
-    about: "five steel balls on rods: as many leave on one side as come in on the other, and as high",
+    about: "five steel balls on rods: as many rise on one side as come in on the other, and as high",
     steps: 300,
     settings: &[
-        Setting::number("lift", 30.0, (10.0, 60.0), "of the first ball, degrees"),
-        Setting::number("gap", 0.01, (0.0, 0.05), "between the balls, m"),
+        Setting::number("lift", 30.0, (10.0, 60.0), "initial angle of the first ball, degrees"),
+        Setting::number("gap", 0.01, (0.0, 0.05), "gap between the balls, m"),
     ],
     build: newtons_cradle,
 };
 
 const CRADLE_RADIUS: f32 = 0.1;
-/// From pivot to ball, metres.
+/// Distance from pivot to ball, metres.
 const ROD: f32 = 1.0;
 
 fn newtons_cradle(setup: &Setup<'_>) -> Instance {
@@ -130,9 +130,9 @@ fn newtons_cradle(setup: &Setup<'_>) -> Instance {
 }
 
 struct Cradle {
-    /// With their pivots.
+    /// Balls with their pivots.
     balls: Vec<(BodyId, Vec3)>,
-    /// Degrees.
+    /// Initial angle of the first ball, degrees.
     lift: f32,
     /// Angle of the first ball from hanging straight one step ago, degrees.
     before: f32,
@@ -140,7 +140,7 @@ struct Cradle {
     quarter: Option<f32>,
     /// Largest angle of the last ball from hanging straight, degrees.
     out: f32,
-    /// Largest angle of the others from hanging straight then, degrees.
+    /// Largest angle of the other balls from hanging straight at that time, degrees.
     left_behind: f32,
 }
 
@@ -178,13 +178,13 @@ impl Script for Cradle {
 pub(in crate::scenes) const BOUNCING_BALLS: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "bouncing_balls",
-    about: "49 balls fall from 5 m and lose nothing: how far their energy strays (SimBenchmark)",
+    about: "49 balls fall from 5 m and bounce without loss: the error of their energy (SimBenchmark)",
     steps: 500,
     settings: &[Setting::number("step_ms", 10.0, (0.5, 20.0), "length of a step, ms")],
     build: bouncing_balls,
 };
 
-/// SimBenchmark's "bouncing": balls in a square, kg, metres.
+/// SimBenchmark's "bouncing": balls in a square, their mass in kg, lengths in metres.
 const SIDE: usize = 7;
 const BOUNCING_MASS: f32 = 10.0;
 const BOUNCING_RADIUS: f32 = 0.1;
@@ -204,7 +204,7 @@ fn bouncing_balls(setup: &Setup<'_>) -> Instance {
 }
 
 struct BouncingBalls {
-    /// Energy, J.
+    /// Energy at the start, J.
     start: f64,
     /// Sum over the steps of the squared error of the energy, J².
     squares: f64,

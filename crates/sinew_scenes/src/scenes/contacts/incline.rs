@@ -1,4 +1,4 @@
-//! On a slope: Coulomb friction holds a box below its angle and lets it slide above it; a ball rolls.
+//! Bodies on a slope: Coulomb friction holds a box below its angle and lets it slide above it; a ball rolls.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -11,12 +11,12 @@ use sinew::physics::{BodyDef, BodyId, Material, Shape, World};
 pub(in crate::scenes) const HOLDS: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "incline_holds",
-    about: "a box pushed up a slope below its friction angle comes to a stop, and stays",
+    about: "a box pushed up a slope below its friction angle stops and stays there",
     steps: 600,
     settings: &[
-        Setting::number("angle", 26.0, (0.0, 80.0), "of the slope, degrees"),
+        Setting::number("angle", 26.0, (0.0, 80.0), "angle of the slope, degrees"),
         FRICTION,
-        Setting::number("speed", 3.0, (1.5, 20.0), "up the slope, m/s"),
+        Setting::number("speed", 3.0, (1.5, 20.0), "initial speed up the slope, m/s"),
     ],
     build: |setup| {
         let (world, slope) = box_on_incline(setup);
@@ -30,7 +30,7 @@ pub(in crate::scenes) const SLIDES: Scene = Scene {
     name: "incline_slides",
     about: "a box on a slope above its friction angle slides down at g (sin − μ cos)",
     steps: 240,
-    settings: &[Setting::number("angle", 35.0, (0.0, 80.0), "of the slope, degrees"), FRICTION],
+    settings: &[Setting::number("angle", 35.0, (0.0, 80.0), "angle of the slope, degrees"), FRICTION],
     build: |setup| {
         let (world, slope) = box_on_incline(setup);
         let pull = slope.pull - slope.hold;
@@ -41,12 +41,12 @@ pub(in crate::scenes) const SLIDES: Scene = Scene {
 pub(in crate::scenes) const ROLLS: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "incline_rolls",
-    about: "a ball on a slope rolls down at 5/7 g sin, whatever the friction that makes it roll",
+    about: "a ball rolls down a slope at 5/7 g sin, whatever its friction",
     steps: 240,
-    settings: &[Setting::number("angle", 35.0, (0.0, 60.0), "of the slope, degrees"), FRICTION],
+    settings: &[Setting::number("angle", 35.0, (0.0, 60.0), "angle of the slope, degrees"), FRICTION],
     build: |setup| {
         let (world, slope) = incline(setup, ball(BALL_RADIUS, Vec3::Y * BALL_RADIUS));
-        // For a homogeneous ball, `1 / (1 + 2/5)` of the pull accelerates it.
+        // A homogeneous ball gets `1 / (1 + 2/5)` of the acceleration.
         let pull = slope.pull * 5.0 / 7.0;
         Instance::new(world, Slides { slope, pull, settled: None })
     },
@@ -54,20 +54,20 @@ pub(in crate::scenes) const ROLLS: Scene = Scene {
 
 const BALL_RADIUS: f32 = 0.25;
 
-/// Its friction angle is 26.565°.
+/// The friction angle of the default is 26.565°.
 const FRICTION: Setting = Setting::number("friction", 0.5, (0.0, 2.0), "coefficient");
 
 const HALF_EXTENTS: Vec3 = Vec3::new(0.3, 0.1, 0.3);
 /// Distance uphill from the origin, along the slope, at which the box starts, metres.
 const UPHILL: f32 = 10.0;
-/// Steps until the contact carries the weight, sinking by a millimetre: until then friction is incomplete.
+/// Number of steps until the contact carries the weight, sinking by a millimetre: until then friction is incomplete.
 const SETTLING: u64 = 60;
 
 fn box_on_incline(setup: &Setup<'_>) -> (World, Slope) {
     incline(setup, cuboid(HALF_EXTENTS, Vec3::Y * HALF_EXTENTS.y))
 }
 
-/// A slope with a body given at the origin of a level floor.
+/// Builds a slope with a body given at the origin of a level floor.
 fn incline(setup: &Setup<'_>, body_at_origin: BodyDef) -> (World, Slope) {
     let mut world = setup.world();
     let (angle, friction) = (setup.number("angle"), setup.number("friction"));
@@ -88,7 +88,7 @@ fn incline(setup: &Setup<'_>, body_at_origin: BodyDef) -> (World, Slope) {
 struct Slope {
     block: BodyId,
     uphill: Vec3,
-    /// Weight along the slope, m/s².
+    /// Acceleration by the weight along the slope, m/s².
     pull: f32,
     /// Largest acceleration that friction can resist, m/s².
     hold: f32,
@@ -97,16 +97,16 @@ struct Slope {
 /// Motion of the box at some moment.
 #[derive(Clone, Copy)]
 struct Motion {
-    /// Along the slope, metres.
+    /// Position along the slope, metres.
     place: f32,
-    /// m/s.
+    /// Speed, m/s.
     speed: f32,
-    /// s.
+    /// Time, s.
     time: f32,
 }
 
 impl Slope {
-    /// Uphill is positive.
+    /// Motion along the slope; uphill is positive.
     fn motion(&self, world: &World) -> Motion {
         Motion {
             place: world.transform(self.block).translation.dot(self.uphill),
@@ -140,7 +140,7 @@ impl Script for Holds {
         let way = self.pushed.zip(self.stopped).map(|(from, to)| to.place - from.place);
         let h = world.def().dt() / world.def().substeps as f32;
         let brake = self.slope.pull + self.slope.hold;
-        // Symplectic Euler moves at the speed of each substep's end.
+        // Symplectic Euler moves by the speed at the end of each substep.
         let expected = 0.5 * self.speed * (self.speed / brake - h);
         let crept = self.stopped.map(|from| (self.slope.motion(world).place - from.place).abs());
         vec![
@@ -152,7 +152,7 @@ impl Script for Holds {
 
 struct Slides {
     slope: Slope,
-    /// Remaining acceleration of its weight along the slope, m/s².
+    /// Remaining acceleration of the weight along the slope, m/s².
     pull: f32,
     settled: Option<Motion>,
 }

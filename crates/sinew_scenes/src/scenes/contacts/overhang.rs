@@ -12,9 +12,9 @@ use sinew::physics::{BodyId, World};
 pub(in crate::scenes) const BLOCK_OVERHANG: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "block_overhang",
-    about: "stacks of 2 to 10 planks lean out over a table: they stand at 98 % of the harmonic series, fall at 102 %",
+    about: "stacks of 2 to 10 planks overhang a table: at 98 % of the harmonic series they stand, at 102 % they fall",
     steps: 300,
-    settings: &[Setting::number("thickness", 0.1, (0.02, 1.0), "of a plank of 4 m, m")],
+    settings: &[Setting::number("thickness", 0.1, (0.02, 1.0), "thickness of a plank of 4 m, m")],
     build: block_overhang,
 };
 
@@ -23,19 +23,19 @@ pub(in crate::scenes) const BLOCK_OVERHANG: Scene = Scene {
 const HALF_LENGTH: f32 = 2.0;
 const HALF_WIDTH: f32 = 0.3;
 const TABLE: Vec3 = Vec3::new(6.0, 2.0, 5.0);
-/// From stack to stack, metres.
+/// Distance from stack to stack, metres.
 const APART: f32 = 0.8;
 const COUNTS: [usize; 5] = [2, 3, 4, 5, 10];
-/// Shares of the largest overhang.
+/// Shares of the largest possible overhang.
 const STANDING: f32 = 0.98;
 const FALLING: f32 = 1.02;
-/// Most that the top plank of a stack that stands may have moved, metres: ten soft contacts sink and tilt by 0.1 m.
+/// Largest allowed motion of the top plank of a standing stack, metres: ten soft contacts sink and tilt by 0.1 m.
 const MOST_MOVED: f32 = 0.12;
 
 fn block_overhang(setup: &Setup<'_>) -> Instance {
     let mut world = setup.world();
     world.add_body(&floor());
-    // Its edge is at x = 0.
+    // The edge of the table is at x = 0.
     world.add_body(&fixed(cuboid(TABLE, Vec3::new(-TABLE.x, TABLE.y, 0.0))));
     let mut stacks = |share: f32, first: usize| {
         let stack = |(i, &count): (usize, &usize)| {
@@ -50,8 +50,8 @@ fn block_overhang(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Overhang { standing, falling, flight })
 }
 
-/// Plank `k` from the top reaches `share · L / 2k` beyond the one below it, or the table; gives the top one and where it
-/// is.
+/// Builds a stack: plank `k` from the top reaches `share · L / 2k` beyond the one below it, or the table. Returns the
+/// top plank and its position.
 fn add_stack(world: &mut World, thickness: f32, count: usize, share: f32, z: f32) -> (BodyId, Vec3) {
     let half = Vec3::new(HALF_LENGTH, 0.5 * thickness, HALF_WIDTH);
     let mut end = 0.0;
@@ -66,10 +66,10 @@ fn add_stack(world: &mut World, thickness: f32, count: usize, share: f32, z: f32
 }
 
 struct Overhang {
-    /// Top planks with the places where they were put.
+    /// Top planks with their initial positions.
     standing: Vec<(BodyId, Vec3)>,
     falling: Vec<(BodyId, Vec3)>,
-    /// Free fall of a ball beside them.
+    /// Free fall of a ball beside the stacks.
     flight: Flight,
 }
 

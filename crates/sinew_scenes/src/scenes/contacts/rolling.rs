@@ -11,10 +11,10 @@ use sinew::physics::{BodyId, Material, Sleeping, World, WorldDef};
 pub(in crate::scenes) const SLIDE_TO_ROLL: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "slide_to_roll",
-    about: "a ball pushed along the floor slides until friction has made it roll, at 5/7 of its speed",
+    about: "friction turns the slide of a pushed ball into rolling at 5/7 of its speed",
     steps: 150,
     settings: &[
-        Setting::number("speed", 5.0, (1.0, 50.0), "that the push gives, m/s"),
+        Setting::number("speed", 5.0, (1.0, 50.0), "speed after the push, m/s"),
         Setting::number("friction", 0.3, (0.05, 2.0), "coefficient"),
     ],
     build: |setup| {
@@ -31,9 +31,9 @@ pub(in crate::scenes) const SLIDE_TO_ROLL: Scene = Scene {
 };
 
 const BALL_RADIUS: f32 = 0.2;
-/// Steps until the contact carries the weight, sinking by a millimetre: until then friction is incomplete.
+/// Number of steps until the contact carries the weight, sinking by a millimetre: until then friction is incomplete.
 const SETTLING: u64 = 60;
-/// Share of the speed below which a ball that slips counts as rolling.
+/// Share of the speed below which a slipping ball counts as rolling.
 const ROLLING: f32 = 0.01;
 
 struct SlideToRoll {
@@ -51,11 +51,11 @@ struct SlideToRoll {
 /// Motion of the ball at some time.
 #[derive(Clone, Copy)]
 struct Moment {
-    /// s.
+    /// Time, s.
     time: f32,
-    /// Metres.
+    /// Position, metres.
     x: f32,
-    /// m/s.
+    /// Speed, m/s.
     speed: f32,
     /// Speed of the contact point over the floor, m/s.
     slip: f32,
@@ -86,7 +86,7 @@ impl Script for SlideToRoll {
             if now.slip > ROLLING * self.speed {
                 self.sliding = Some(now);
             } else {
-                // The remaining slip decays at the rate set by friction.
+                // Friction reduces the remaining slip at this rate.
                 let left = before.slip / (3.5 * self.friction * GRAVITY);
                 let x = before.x + 0.5 * (before.speed + now.speed) * left;
                 self.rolling = Some(Moment { time: before.time + left, x, ..now });
@@ -111,7 +111,7 @@ impl Script for SlideToRoll {
 pub(in crate::scenes) const ROLLING_BALLS: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "rolling_balls",
-    about: "a box with 25 balls on it is pulled askew: it slides on the floor, and they roll on it (SimBenchmark)",
+    about: "an oblique force pulls a box with 25 balls on it: it slides on the floor, and they roll on it (SimBenchmark)",
     steps: 400,
     settings: &[Setting::number("step_ms", 10.0, (0.5, 20.0), "length of a step, ms")],
     build: rolling_balls,
@@ -159,14 +159,14 @@ struct RollingBalls {
 }
 
 impl RollingBalls {
-    /// For one step.
+    /// Applies the force for one step.
     fn pull(&mut self, world: &mut World) {
         let center = world.center_of_mass(self.tray);
         world.apply_force(self.tray, TOWARD * FORCE, center);
     }
 
-    /// Accelerations of the box and of a ball, m/s²: the floor's friction is `f₁`, a ball's `f₂`, and a homogeneous ball
-    /// that is pulled at its foot moves with 2/7 of the acceleration below it.
+    /// Accelerations of the box and of a ball, m/s²: the floor's friction is `f₁`, a ball's `f₂`, and a homogeneous
+    /// ball that is pulled at its foot has 2/7 of the acceleration of the box below it.
     fn accelerations() -> [f32; 2] {
         let balls = BALLS as f32;
         let f1 = ON_FLOOR * (BOX_MASS + balls * BALL_MASS) * GRAVITY;

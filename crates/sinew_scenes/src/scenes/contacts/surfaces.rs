@@ -11,11 +11,11 @@ use sinew::physics::{BodyId, ContactRule, Material, OneWay, Sensing, Shape, Shap
 pub(in crate::scenes) const STATIC_FRICTION: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "static_friction",
-    about: "half a degree below the angle of static friction a block holds, half a degree above it slides with less",
+    about: "a block stays half a degree below the angle of static friction, and slides with less friction half a degree above it",
     steps: 300,
     settings: &[
         Setting::number("static", 0.6, (0.1, 2.0), "coefficient of static friction"),
-        Setting::number("share", 0.5, (0.1, 0.9), "of it that is left while sliding"),
+        Setting::number("share", 0.5, (0.1, 0.9), "sliding friction as a share of static friction"),
     ],
     build: static_friction,
 };
@@ -23,10 +23,10 @@ pub(in crate::scenes) const STATIC_FRICTION: Scene = Scene {
 pub(in crate::scenes) const CONVEYOR: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "conveyor",
-    about: "a belt that starts carries a box to its speed at μ g",
+    about: "a starting belt accelerates a box at μ g to its speed",
     steps: 180,
     settings: &[
-        Setting::number("speed", 3.0, (1.0, 5.0), "of the belt, m/s"),
+        Setting::number("speed", 3.0, (1.0, 5.0), "speed of the belt, m/s"),
         Setting::number("friction", 0.3, (0.3, 1.0), "coefficient"),
     ],
     build: conveyor,
@@ -44,18 +44,23 @@ pub(in crate::scenes) const ONE_WAY: Scene = Scene {
 pub(in crate::scenes) const SENSORS: Scene = Scene {
     chapter: Chapter::Contacts,
     name: "sensors",
-    about: "a gate notices when a falling ball comes in and when it goes out",
+    about: "a sensor reports when a falling ball enters and when it leaves",
     steps: 150,
-    settings: &[Setting::number("height", 10.0, (3.0, 20.0), "from the ball down to the gate, metres")],
+    settings: &[Setting::number(
+        "height",
+        10.0,
+        (3.0, 20.0),
+        "distance from the ball down to the gate, metres",
+    )],
     build: sensors,
 };
 
-/// Steps until contacts carry the weight, sinking by a millimetre: until then friction is incomplete.
+/// Number of steps until contacts carry the weight, sinking by a millimetre: until then friction is incomplete.
 const SETTLING: u64 = 60;
 
 const HALF_EXTENTS: Vec3 = Vec3::new(0.3, 0.1, 0.3);
 
-/// Substep, seconds.
+/// Duration of a substep, seconds.
 fn substep(world: &World) -> f32 {
     world.def().dt() / world.def().substeps as f32
 }
@@ -84,12 +89,12 @@ fn static_friction(setup: &Setup<'_>) -> Instance {
 }
 
 struct StaticFriction {
-    /// The blocks, with the directions downhill.
+    /// Both blocks with their downhill directions.
     holds: (BodyId, Vec3),
     slides: (BodyId, Vec3),
     /// Remaining acceleration of the weight along the slope, m/s².
     pull: f32,
-    /// Position of the first, speed of the second, time.
+    /// Position of the first block, speed of the second, and the time.
     settled: Option<(f32, f32, f32)>,
 }
 
@@ -138,7 +143,7 @@ struct Conveyor {
     friction: f32,
     /// Energy added by friction, J.
     work: f32,
-    /// Speed of the load a step ago, m/s.
+    /// Speed of the load in the last step, m/s.
     before: f32,
     /// Speed of the load after half the needed time, and that time since the start.
     half_way: Option<(f32, f32)>,
@@ -194,9 +199,9 @@ fn one_way(setup: &Setup<'_>) -> Instance {
 
 struct Thrown {
     ball: BodyId,
-    /// m/s.
+    /// Initial speed of the ball, m/s.
     speed: f32,
-    /// Greatest height of its centre, metres.
+    /// Greatest height of the ball's centre, metres.
     highest: f32,
 }
 
@@ -206,7 +211,7 @@ impl Script for Thrown {
     }
 
     fn metrics(&self, world: &World) -> Vec<Metric> {
-        // Symplectic Euler is ahead by half a substep of gravity.
+        // Symplectic Euler leads by half a substep of gravity.
         let speed = self.speed - 0.5 * GRAVITY * substep(world);
         let risen = Expected::near(speed * speed / (2.0 * GRAVITY), 0.003);
         let rests = Expected::Near { value: f64::from(TOP + BALL_RADIUS), tolerance: 0.002 };
@@ -232,15 +237,16 @@ fn sensors(setup: &Setup<'_>) -> Instance {
 
 struct Gate {
     falling: BodyId,
-    /// Height of its fall to the gate, metres.
+    /// Height of the fall to the gate, metres.
     height: f32,
-    /// Times at which it entered and left, seconds.
+    /// Times at which the ball entered and left, seconds.
     entered: Vec<f32>,
     left: Vec<f32>,
 }
 
 impl Gate {
-    /// Time at which the ball was at a height: events refer to the state at the step's beginning, so it was there within the previous step.
+    /// Time at which the ball was at a height: events refer to the start of the step, so it was there within the
+    /// previous step.
     fn moment(&self, world: &World, height: f32) -> f32 {
         let Velocity { linear, .. } = world.velocity(self.falling);
         let beyond = height - world.transform(self.falling).translation.y;

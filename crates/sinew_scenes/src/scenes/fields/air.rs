@@ -10,10 +10,10 @@ use sinew::math::{Vec3, trig};
 use sinew::physics::particles::{GroupDef, ParticleDef};
 use sinew::physics::{BodyDef, BodyId, Drag, FieldDef, FieldId, FieldKind, Filter, GroupId, Wind, World};
 
-/// kg/m³.
+/// Density of air, kg/m³.
 const AIR: f32 = 1.225;
 
-/// Frontal area of a ball of a radius, m².
+/// Frontal area of a ball of this radius, m².
 fn disk(radius: f32) -> f32 {
     PI * radius * radius
 }
@@ -55,7 +55,7 @@ pub(in crate::scenes) const WIND: Scene = Scene {
     name: "wind",
     about: "wind carries a plate and a particle along, and tilts a ball on a string",
     steps: 600,
-    settings: &[Setting::number("speed", 10.0, (0.0, 40.0), "of the wind along x, m/s")],
+    settings: &[Setting::number("speed", 10.0, (0.0, 40.0), "speed of the wind along x, m/s")],
     build: wind,
 };
 
@@ -72,7 +72,7 @@ fn wind(setup: &Setup<'_>) -> Instance {
     let plate = world.add_body(&BodyDef { gravity_scale: 0.0, ..plate });
     let mut def = ghost(ball(BALL_RADIUS, Vec3::NEG_Y * STRING));
     def.shapes[0].density = BALL_DENSITY;
-    // Damping lets it come to rest instead of swinging.
+    // The damping stops its swing.
     def.linear_damping = 2.0;
     let hung = world.add_body(&def);
     let hook = world.add_body(&hook());
@@ -138,13 +138,13 @@ impl Script for Windy {
 pub(in crate::scenes) const TERMINAL_VELOCITY: Scene = Scene {
     chapter: Chapter::Fields,
     name: "terminal_velocity",
-    about: "balls fall through still air and through a viscous medium until weight and drag are even",
+    about: "balls fall through still air and through a viscous medium until drag balances weight",
     steps: 600,
     settings: &[],
     build: terminal_velocity,
 };
 
-/// N·s/m.
+/// Drag coefficient of the viscous medium, N·s/m.
 const VISCOUS: f32 = 2.0;
 
 fn terminal_velocity(setup: &Setup<'_>) -> Instance {

@@ -12,16 +12,16 @@ use sinew::physics::{BodyDef, BodyId, Explosion, Occlusion, World};
 pub(in crate::scenes) const EXPLOSION: Scene = Scene {
     chapter: Chapter::Fields,
     name: "explosion",
-    about: "a blast throws balls by their distance; one behind a wall and one out of reach stay",
+    about: "a blast throws balls according to their distance; one behind a wall and one out of reach stay",
     steps: 90,
-    settings: &[Setting::number("impulse", 3000.0, (0.0, 10_000.0), "at the centre, N·s/m²")],
+    settings: &[Setting::number("impulse", 3000.0, (0.0, 10_000.0), "impulse at the centre, N·s/m²")],
     build: explosion,
 };
 
 const RADIUS: f32 = 0.1;
 /// Reach of the blast, metres.
 const REACH: f32 = 4.0;
-/// From its centre to the nearest point of the balls beside it and of the one above, metres.
+/// Distance from its centre to the nearest point of the balls beside it and of the one above, metres.
 const NEAR: f32 = 1.0;
 const FAR: f32 = 3.0;
 const ABOVE: f32 = 2.0;
@@ -50,7 +50,7 @@ struct Blast {
     /// Bodies behind the wall and out of reach.
     spared: [BodyId; 2],
     impulse: f32,
-    /// Greatest height of the one above, metres over where it was.
+    /// Greatest height of the ball above it over its start, metres.
     highest: f32,
 }
 
@@ -71,7 +71,7 @@ impl Script for Blast {
         let momentum = |body| world.velocity(body).linear * world.mass(body).mass;
         let spared: f32 = self.spared.iter().map(|&body| momentum(body).length()).sum();
         let speed = self.expected(ABOVE) / world.mass(self.above).mass;
-        // v²/2g, less the lead of symplectic Euler.
+        // Height `v²/2g`, less the lead of symplectic Euler.
         let h = world.def().dt() / world.def().substeps as f32;
         let rise = speed * speed / (2.0 * GRAVITY) - 0.5 * speed * h;
         let near = |gap: f32| Expected::near(self.expected(gap), 1e-4);

@@ -12,15 +12,15 @@ use sinew::physics::{BodyDef, BodyId, Buoyancy, FieldDef, FieldKind, Shape, Worl
 pub(in crate::scenes) const FLOAT: Scene = Scene {
     chapter: Chapter::Fields,
     name: "float",
-    about: "a box, a ball and a capsule float as deep as they are dense; a stone sinks at its steady speed",
+    about: "a box, a ball and a capsule float at the depth of their density; a stone sinks at its terminal speed",
     steps: 600,
-    settings: &[Setting::number("density", 400.0, (50.0, 950.0), "of what floats, kg/m³")],
+    settings: &[Setting::number("density", 400.0, (50.0, 950.0), "density of the floating bodies, kg/m³")],
     build: float,
 };
 
 const WATER: f32 = 1000.0;
 const STONE: f32 = 2500.0;
-/// Damping of the velocity against the water, per second.
+/// Damping of the velocity relative to the water, per second.
 const DAMPING: f32 = 4.0;
 
 fn float(setup: &Setup<'_>) -> Instance {
@@ -64,7 +64,7 @@ impl Floating {
 impl Script for Floating {
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let [cuboid, ball, capsule] = self.floating.map(|body| Self::share(world, body));
-        // Archimedes: ρ V g of the water displaced is the weight.
+        // The weight `ρ V g` of the displaced water equals that of the body (Archimedes).
         let depth = || Expected::near(self.density / WATER, 2e-3);
         let sinks = (STONE / WATER - 1.0) * GRAVITY / DAMPING;
         vec![

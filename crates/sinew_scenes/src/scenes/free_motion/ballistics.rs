@@ -1,4 +1,4 @@
-//! Things that fly: free fall, projectile, bounce.
+//! Flying bodies: free fall, projectile, bounce.
 
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
@@ -12,7 +12,7 @@ use sinew::physics::{BodyId, Material, World};
 pub(in crate::scenes) const FREE_FALL: Scene = Scene {
     chapter: Chapter::FreeMotion,
     name: "free_fall",
-    about: "a ball falls through empty space: the integrator's own formula, to the last digits",
+    about: "a ball falls through empty space by the integrator's formula, exact to the last digits",
     steps: 600,
     settings: &[],
     build: |setup| {
@@ -53,7 +53,7 @@ impl Script for Thrown {
         let drop = fallen(world);
         let height = f64::from(self.velocity.y) * world.time() - drop;
         let range = f64::from(self.velocity.x) * world.time();
-        // Rounding: of a position and a velocity of this size, in every substep.
+        // Rounding error of a position and a velocity of this size in every substep.
         let tolerance = 6e-6 * (drop + range.abs());
         vec![
             Metric::new("x_m", at.x, Expected::Near { value: range, tolerance }),
@@ -65,11 +65,11 @@ impl Script for Thrown {
 pub(in crate::scenes) const BOUNCE: Scene = Scene {
     chapter: Chapter::FreeMotion,
     name: "bounce",
-    about: "a ball dropped on a floor comes back to the square of its restitution of the height",
+    about: "a dropped ball rebounds to its height times its restitution squared",
     steps: 300,
     settings: &[
-        Setting::number("height", 1.0, (0.2, 10.0), "of the drop, m"),
-        Setting::number("restitution", 0.8, (0.1, 1.0), "share of the speed given back"),
+        Setting::number("height", 1.0, (0.2, 10.0), "height of the drop, m"),
+        Setting::number("restitution", 0.8, (0.1, 1.0), "speed after the bounce over the speed before"),
     ],
     build: bounce,
 };
@@ -91,7 +91,7 @@ struct Bounce {
     height: f32,
     restitution: f32,
     flight: Flight,
-    /// Highest since it first moved up, metres.
+    /// Greatest height since its first motion upward, metres.
     rebound: Option<f32>,
 }
 

@@ -16,7 +16,7 @@ pub(in crate::scenes) const TWO_MEN: Scene = Scene {
     steps: 120,
     settings: &[
         Setting::number("first", 300.0, (0.0, 2000.0), "force of the first man, N"),
-        Setting::number("second", 250.0, (0.0, 2000.0), "force of the second, N"),
+        Setting::number("second", 250.0, (0.0, 2000.0), "force of the second man, N"),
     ],
     build: two_men,
 };
@@ -30,7 +30,7 @@ fn two_men(setup: &Setup<'_>) -> Instance {
     world.add_body(&made_of(floor(), iron));
     let (first, second) = (setup.number("first"), setup.number("second"));
     let mut cart = |place: f32, forces: [f32; 2]| {
-        // Low and long, so that friction does not tip it when it is pushed at its middle.
+        // The cart is low and long, so that friction does not tip it when it is pushed at its middle.
         let half = Vec3::new(0.8, 0.1, 0.3);
         let mut def = made_of(cuboid(half, Vec3::new(0.0, half.y, place)), iron);
         def.shapes[0].density = CART_MASS / def.shapes[0].shape.volume();
@@ -46,7 +46,7 @@ fn two_men(setup: &Setup<'_>) -> Instance {
 
 struct Cart {
     body: BodyId,
-    /// Sum of the forces on it, N along x.
+    /// Sum of the forces on the cart, N along x.
     sum: f32,
 }
 
@@ -55,7 +55,7 @@ impl Cart {
         world.transform(self.body).translation.x
     }
 
-    /// Coulomb friction: it rests while the push is at most `μ m g`, else `a = (F − μ m g)/m`.
+    /// By Coulomb friction the cart rests while the push is at most `μ m g`; else `a = (F − μ m g)/m`.
     fn metric(&self, world: &World, name: &'static str) -> Metric {
         let free = self.sum / CART_MASS - CART_FRICTION * GRAVITY;
         if free <= 0.0 {
@@ -68,7 +68,7 @@ impl Cart {
 }
 
 struct TwoMen {
-    /// Two forces forward, two opposed, and one internal.
+    /// Carts with two forces forward, with two opposed forces, and with an internal force.
     carts: [Cart; 3],
 }
 
@@ -90,9 +90,9 @@ impl Script for TwoMen {
 pub(in crate::scenes) const PUSH: Scene = Scene {
     chapter: Chapter::FreeMotion,
     name: "push_centre_off_centre",
-    about: "a push beside the centre moves a ball as one through it does, and turns it besides",
+    about: "a push beside the centre moves a ball like a push through the centre, and also rotates it",
     steps: 60,
-    settings: &[Setting::number("force", 100.0, (0.0, 1000.0), "of each push, N")],
+    settings: &[Setting::number("force", 100.0, (0.0, 1000.0), "force of each push, N")],
     build: push,
 };
 
@@ -108,8 +108,8 @@ fn push(setup: &Setup<'_>) -> Instance {
     Instance::new(world, pushed)
 }
 
-/// Three balls: one is pushed through the centre, one at its top as by an unwinding string, and one at top and bottom in opposite
-/// directions.
+/// Three balls: one is pushed through the centre, one at its top as by an unwinding string, and one at top and bottom
+/// in opposite directions.
 struct Pushed {
     bodies: [BodyId; 3],
     force: Vec3,
@@ -169,20 +169,20 @@ impl Script for Pushed {
 pub(in crate::scenes) const BULLET: Scene = Scene {
     chapter: Chapter::FreeMotion,
     name: "bullet",
-    about: "a bullet lodges in three blocks: free, struck beside the centre, and hung as a ballistic pendulum",
+    about: "a bullet stops in three blocks: a free one, one hit beside the centre, and a ballistic pendulum",
     steps: 90,
     settings: &[
-        Setting::number("mass", 0.01, (0.001, 0.1), "of the bullet, kg"),
-        Setting::number("speed", 400.0, (10.0, 1000.0), "of the bullet, m/s"),
+        Setting::number("mass", 0.01, (0.001, 0.1), "mass of the bullet, kg"),
+        Setting::number("speed", 400.0, (10.0, 1000.0), "speed of the bullet, m/s"),
     ],
     build: bullet,
 };
 
-/// From the hook to the middle of the block, metres.
+/// Distance from the hook to the middle of the block, metres.
 const ROPE: f32 = 1.5;
-/// Steps before the shot.
+/// Number of steps before the shot.
 const WAIT: u64 = 10;
-/// Beside the centre, metres.
+/// Distance of the off-centre shot from the centre, metres.
 const ASIDE: f32 = 0.06;
 
 fn bullet(setup: &Setup<'_>) -> Instance {
@@ -201,11 +201,11 @@ fn bullet(setup: &Setup<'_>) -> Instance {
 }
 
 struct Shot {
-    /// Hit in the middle, off-centre, and a hanging one.
+    /// The blocks: hit in the middle, hit off-centre, and hanging.
     blocks: [BodyId; 3],
     mass: f32,
     speed: f32,
-    /// Greatest height of the one that hangs, metres above where it hung.
+    /// Greatest height of the hanging block above its rest height, metres.
     highest: f32,
 }
 
@@ -229,7 +229,7 @@ impl Script for Shot {
         let block = world.mass(self.blocks[0]);
         let (m, inertia) = (block.mass, block.inertia.diagonal.z);
         let momentum = self.mass * self.speed;
-        // Off-centre, the bullet moves on with the point that it hit.
+        // The bullet of the off-centre hit moves on with the point that it hit.
         let spin = -beside.angular.z;
         let struck = beside.linear.x + spin * ASIDE;
         let reduced = 1.0 / (1.0 / self.mass + 1.0 / m);

@@ -13,22 +13,27 @@ use sinew::physics::{BodyDef, BodyId, JointId, MassProperties, Motor, Shape, Sha
 pub(in crate::scenes) const GIMBAL: Scene = Scene {
     chapter: Chapter::FreeMotion,
     name: "gimbal",
-    about: "bodies in three rings are pitched into gimbal lock and lose a freedom; one without rings does not",
+    about: "bodies in three rings pitch into gimbal lock and lose a degree of freedom; one without rings does not",
     steps: 180,
-    settings: &[Setting::number("margin", 5.0, (1.0, 60.0), "by which the free body misses lock, degrees")],
+    settings: &[Setting::number(
+        "margin",
+        5.0,
+        (1.0, 60.0),
+        "smallest angle between the free body and gimbal lock, degrees",
+    )],
     build: gimbal,
 };
 
-/// Heading about y by the outer ring, pitch about x by the middle one, roll about z by the body in the inner one.
+/// The outer ring gives heading about y, the middle one pitch about x, the body in the inner one roll about z.
 const RINGS: EulerConvention = EulerOrder::Yxz.intrinsic();
 
-/// To which the gimbals are pitched, degrees.
+/// Pitches of the gimbals, degrees.
 const PITCHES: [f32; 4] = [0.0, 45.0, 80.0, 90.0];
 /// Number of steps for the pitch.
 const PITCHING: u64 = 60;
-/// Inertia of the body inside, about any axis, kg·m².
+/// Inertia of the inner body about any axis, kg·m².
 const INERTIA: f32 = 0.02;
-/// Inertia of each of the two rings that it can turn, over that of the body.
+/// Inertia of each of the two rings that the inner body can turn, relative to its own.
 const RING: f32 = 0.1;
 /// Angular velocity of a free body after the kick, rad/s.
 const KICK: f32 = 0.1;
@@ -45,7 +50,7 @@ fn gimbal(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Gimbals { gimbals, free, free_spin: None, flyer })
 }
 
-/// Gives a body equal inertia about every axis: a share of that of the body inside.
+/// Gives a body equal inertia about every axis: a share of that of the inner body.
 fn round(def: BodyDef, share: f32) -> BodyDef {
     let inertia = Sym3::from_diagonal(Vec3::splat(share * INERTIA));
     BodyDef { mass: Some(MassProperties { mass: share, center: Vec3::ZERO, inertia }), ..def }
@@ -65,19 +70,19 @@ fn ring(center: Vec3, radius: f32, axis: Vec3) -> BodyDef {
     round(ghost(BodyDef { position: center, shapes, ..BodyDef::default() }), RING)
 }
 
-/// Two rings and a body in them; one hinge after the other, about y, x and z while nothing is turned.
+/// Two rings and a body in them, with hinges about y, x and z in the initial pose.
 struct Gimbal {
     rings: [BodyId; 2],
     body: BodyId,
-    /// Pitches.
+    /// Motor of the pitch.
     motor: JointId,
-    /// Aimed at, radians.
+    /// Target pitch, radians.
     pitch: f32,
     /// Work of the motor, J.
     work: f32,
-    /// Angular velocity of the body about the kick's axis right after it, rad/s.
+    /// Angular velocity of the body about the kick's axis right after the kick, rad/s.
     answer: Option<f32>,
-    /// Distance from gimbal lock before the kick, by the three angles, radians.
+    /// Distance from gimbal lock before the kick by the three angles, radians.
     margin: Option<f32>,
 }
 
@@ -100,11 +105,11 @@ impl Gimbal {
     }
 
     fn after_pitching(&mut self, world: &World) {
-        // It turns by equal angles in each step.
+        // The gimbal turns by equal angles in each step.
         self.work += world.reaction(self.motor).torque.x * self.pitch / PITCHING as f32;
     }
 
-    /// Stops everything, and gives the body an angular impulse about z.
+    /// Stops all motion, and gives the body an angular impulse about z.
     fn kick(&mut self, world: &mut World) {
         self.margin = Some(world.transform(self.body).rotation.to_euler(RINGS).lock_margin);
         world.set_motor(self.motor, None);
@@ -114,9 +119,9 @@ impl Gimbal {
         world.apply_angular_impulse(self.body, Vec3::Z * (KICK * INERTIA));
     }
 
-    /// Share of the kick that the body follows. Rings turn about `A = (y, x, z″)`, the body with `A q̇`: an impulse L gives `A (Aᵀ I A +
-    /// J)⁻¹ Aᵀ L`. For L along z, with the inertia r of both rings relative to the body's and the cosine c of the pitch, it is `c² (1 + r)
-    /// / (c² + r)`.
+    /// Share of the kick by which the body moves. Rings turn about `A = (y, x, z″)`, the body with `A q̇`: an impulse L
+    /// gives `A (Aᵀ I A + J)⁻¹ Aᵀ L`. For L along z, with the inertia r of both rings relative to the body's and the
+    /// cosine c of the pitch, it is `c² (1 + r) / (c² + r)`.
     fn expected(&self) -> f32 {
         let c = trig::cos(self.pitch);
         let (square, r) = (c * c, 2.0 * RING);
@@ -124,14 +129,14 @@ impl Gimbal {
     }
 }
 
-/// A body without rings that rotates at constant speed, past an orientation where three angles would lock.
+/// A body without rings that rotates at constant speed past an orientation in which three angles would lock.
 struct Flyer {
     body: BodyId,
     spin: Vec3,
     /// Smallest distance from gimbal lock, radians.
     miss: f32,
     last: Transform,
-    /// Largest turn of the outermost of the rings that could carry it, within a step, radians.
+    /// Largest angle by which the outermost ring would turn within a step, radians.
     heading_step: f32,
     margin: f32,
     /// Largest deviation of its angular velocity from constant, rad/s.
@@ -169,7 +174,7 @@ impl Flyer {
     }
 
     fn metrics(&self, dt: f32) -> [Metric; 3] {
-        // Its nose goes along a great circle that passes the pole at a distance of `miss`.
+        // The body's nose moves on a great circle that passes the pole at a distance of `miss`.
         let half_step = 0.5 * self.spin.length() * dt;
         let heading_step = 2.0 * trig::atan2(trig::tan(half_step), trig::sin(self.miss));
         let closest = trig::acos(trig::cos(self.miss) * trig::cos(half_step));
@@ -193,7 +198,7 @@ impl Flyer {
 struct Gimbals {
     gimbals: [Gimbal; 4],
     free: BodyId,
-    /// Angular velocity of the free body about the axis of the kick right after it, rad/s.
+    /// Angular velocity of the free body about the axis of the kick right after the kick, rad/s.
     free_spin: Option<f32>,
     flyer: Flyer,
 }

@@ -24,7 +24,7 @@ fn star(mass: f32, radius: f32, position: Vec3, linear_velocity: Vec3) -> BodyDe
 pub(in crate::scenes) const KEPLER: Scene = Scene {
     chapter: Chapter::FreeMotion,
     name: "kepler",
-    about: "a planet and a particle on ellipses about a centre: period, energy, angular momentum and axis stay",
+    about: "a planet and a particle move on ellipses about a centre: period, energy, angular momentum and axis stay",
     steps: 1140,
     settings: &[],
     build: kepler,
@@ -35,7 +35,7 @@ const ECCENTRICITY: f32 = 0.5;
 
 fn kepler(setup: &Setup<'_>) -> Instance {
     let mut world = weightless_world();
-    // At the nearest point: r = 1 − e, v = √((1 + e)/(1 − e)).
+    // Distance and speed at the nearest point: r = 1 − e, v = √((1 + e)/(1 − e)).
     let near = 1.0 - ECCENTRICITY;
     let fast = ((1.0 + ECCENTRICITY) / near).sqrt();
     let planet = world.add_body(&star(2.0, 0.05, Vec3::X * near, Vec3::Y * fast));
@@ -49,11 +49,11 @@ fn kepler(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Kepler { planet, particles, orbits, start, energy, drift: 0.0, turned: 0.0 })
 }
 
-/// State of one of the two on its orbit.
+/// Observed orbit of the planet or the particle.
 struct Orbit {
     position: Vec3,
     velocity: Vec3,
-    /// Steps at which it was farthest from the centre, between steps.
+    /// Steps at which the distance from the centre was largest, between steps.
     far: Vec<f32>,
     /// Directions of the nearest point at the first and the last time of the largest distance.
     axes: Option<[Vec3; 2]>,
@@ -97,7 +97,7 @@ struct Kepler {
     /// Angular momentum and energy at the start.
     start: Vec3,
     energy: f32,
-    /// Largest relative deviation.
+    /// Largest relative deviation from the start.
     drift: f32,
     turned: f32,
 }
@@ -119,13 +119,13 @@ impl Script for Kepler {
 
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let [planet, particle] = &self.orbits;
-        // T = 2π √(a³/μ)
+        // Kepler's period `T = 2π √(a³/μ)`.
         let period = || Expected::near(TAU, 1e-3);
         vec![
             Metric::awaited("period_s", planet.period(world), period()),
             Metric::awaited("particle_period_s", particle.period(world), period()),
             Metric::awaited("precession_rad", planet.precession(), Expected::AtMost(1e-3)),
-            // E = −(M + m)/2, and swings within each round by the length of the substep.
+            // The energy is `E = −(M + m)/2`, and oscillates within each round by the length of the substep.
             Metric::new("energy_error_max", self.drift, Expected::AtMost(0.02)),
             Metric::new("angular_momentum_error_max", self.turned, Expected::AtMost(1e-5)),
         ]
@@ -141,12 +141,13 @@ pub(in crate::scenes) const SUN_EARTH: Scene = Scene {
     build: sun_earth,
 };
 
-/// Mass of the Earth in those of the Sun.
+/// Mass of the Earth in solar masses.
 const EARTH: f32 = 3.003_490e-6;
 
 fn sun_earth(setup: &Setup<'_>) -> Instance {
     let mut world = weightless_world();
-    // A circle about the common centre, which rests: 1 astronomical unit apart, 2π of them a year.
+    // The orbit is a circle about the common centre of mass, which rests, with a distance of 1 astronomical unit and 2π
+    // units of speed a year.
     let total = 1.0 + EARTH;
     let speed = TAU * total.sqrt();
     let at = |share: f32| (Vec3::X * share, Vec3::Z * (-speed * share));
@@ -209,7 +210,7 @@ impl Script for SunEarth {
         let share = |sun: f32, earth: f32| 100.0 * f64::from(earth) / (f64::from(sun) + f64::from(earth));
         let mass_share = 100.0 / (1.0 + f64::from(EARTH));
         let year = world.time() as f32 * TAU / self.angle.sum;
-        // G m₁ m₂/d² with G = 4π².
+        // Newton's law `G m₁ m₂/d²` with G = 4π².
         let pull = 4.0 * PI * PI * EARTH;
         vec![
             Metric::new("force_on_earth", on_earth.length(), Expected::near(pull, 2e-3)),
@@ -233,7 +234,7 @@ impl Script for SunEarth {
 pub(in crate::scenes) const THREE_BODIES: Scene = Scene {
     chapter: Chapter::FreeMotion,
     name: "three_bodies",
-    about: "three equal bodies chase each other on a figure of eight",
+    about: "three equal bodies move on the same path, a figure of eight",
     steps: 380,
     settings: &[],
     build: three_bodies,

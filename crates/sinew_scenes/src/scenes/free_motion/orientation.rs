@@ -1,4 +1,4 @@
-//! Rotations as matrices, as quaternions and as quotients of vectors, beside bodies that turn.
+//! Rotations as matrices, as quaternions and as quotients of vectors, beside rotating bodies.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -16,9 +16,9 @@ use sinew::physics::{BodyDef, BodyId, BodyKind, MassProperties, Shape, ShapeDef,
 pub(in crate::scenes) const MATRIX_DRIFT: Scene = Scene {
     chapter: Chapter::FreeMotion,
     name: "matrix_drift",
-    about: "a matrix that turns along with a body step by step grows; mended after each step it stays a rotation",
+    about: "a matrix that is rotated step by step grows; corrected after each step it stays a rotation",
     steps: 600,
-    settings: &[Setting::number("spin", 2.0, (0.1, 5.0), "of the body, rad/s")],
+    settings: &[Setting::number("spin", 2.0, (0.1, 5.0), "angular velocity of the body, rad/s")],
     build: matrix_drift,
 };
 
@@ -50,10 +50,10 @@ struct Drift {
     body: BodyId,
     polar: BodyId,
     gram_schmidt: BodyId,
-    /// At the ends of the bare matrix's columns, about the origin: each moves along its tangent for a step, which is
-    /// `R + dt ω × R`.
+    /// Points at the ends of the uncorrected matrix's columns, about the origin: each moves along its tangent for a
+    /// step, which is `R + dt ω × R`.
     tips: [BodyId; 3],
-    /// rad/s.
+    /// Angular velocity, rad/s.
     spin: Vec3,
 }
 
@@ -86,11 +86,11 @@ impl Script for Drift {
 
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let steps = world.step_count();
-        // A tangent of length θ leads from the circle to √(1 + θ²) radii, and turns by atan θ instead of θ.
+        // A tangent of length θ ends at a radius of √(1 + θ²), at the angle atan θ instead of θ.
         let step = self.spin.length() * world.def().dt();
         let growth = (0..steps).fold(1.0, |growth, _| growth * (1.0 + f64::from(step * step)));
         let lag = steps as f32 * (step - trig::atan2(step, 1.0));
-        // Rounding of each step's correction is added.
+        // The rounding error of each step's correction is added.
         let lag = Expected::Near { value: lag.into(), tolerance: 0.005 * f64::from(lag) + 5e-5 };
         let bare = MatrixDrift::of(&self.bare(world));
         let body = Self::rotation(world, self.body);
@@ -115,13 +115,13 @@ impl Script for Drift {
 pub(in crate::scenes) const VERSOR: Scene = Scene {
     chapter: Chapter::FreeMotion,
     name: "versor",
-    about: "the quotient of two vectors turns and stretches one into the other, and takes a body along",
+    about: "the quotient of two vectors rotates and scales one into the other; a body follows it",
     steps: 480,
     settings: &[],
     build: versor,
 };
 
-/// Steps from the first vector to the second.
+/// Number of steps from the first vector to the second.
 const JOURNEY: u64 = 240;
 
 fn versor(_: &Setup<'_>) -> Instance {
@@ -145,7 +145,7 @@ struct Journey {
 }
 
 impl Journey {
-    /// Quaternion that takes the first place into the second.
+    /// Quaternion that maps the first place to the second.
     fn quotient(&self, world: &World) -> Quaternion {
         let at = |id| world.center_of_mass(id);
         Quaternion::quotient(at(self.to), at(self.from)).expect("no place is the origin")
@@ -177,7 +177,7 @@ impl Script for Journey {
         let [from, to, now] = [self.from, self.to, self.walker].map(|id| world.center_of_mass(id));
         let q = self.quotient(world);
         let gap = |place: Option<Vec3>, expected: Vec3| place.map(|place| (place - expected).length());
-        // The midpoint is the geometric mean of the lengths, on the line that halves the angle.
+        // The midpoint has the geometric mean of the lengths, on the line that bisects the angle.
         let middle = (from.normalize() + to.normalize()).normalize() * (from.length() * to.length()).sqrt();
         let turned = self.arrived.map(|pose| (pose.rotation * from.normalize() - to.normalize()).length());
         let scale = f64::from(to.length()) / f64::from(from.length());
@@ -200,9 +200,9 @@ impl Script for Journey {
 pub(in crate::scenes) const HELPERS: Scene = Scene {
     chapter: Chapter::FreeMotion,
     name: "quaternion_helpers",
-    about: "one turn by each of five operations: from axis and angle, from matrix, normalise, inverse, to matrix",
+    about: "the same rotation by each of five operations: from axis and angle, from matrix, normalise, inverse, to matrix",
     steps: 60,
-    settings: &[Setting::number("spin", 0.5, (0.0, 1.0), "of the bodies, rad/s")],
+    settings: &[Setting::number("spin", 0.5, (0.0, 1.0), "angular velocity of the bodies, rad/s")],
     build: helpers,
 };
 
@@ -234,7 +234,7 @@ fn helpers(setup: &Setup<'_>) -> Instance {
     Instance::new(world, script)
 }
 
-/// Three balls at the ends of a matrix's columns, as one body that is not turned.
+/// Three balls at the ends of a matrix's columns, as one body that is not rotated.
 fn tripod(x: f32, m: &Mat3) -> BodyDef {
     let ends = [m.x_axis, m.y_axis, m.z_axis].map(|end| {
         let body_from_shape = Transform::from_translation(end * 0.5);
@@ -242,7 +242,7 @@ fn tripod(x: f32, m: &Mat3) -> BodyDef {
     });
     let core = ShapeDef::new(Shape::Sphere { radius: 0.2 });
     let shapes = ends.into_iter().chain([core]).collect();
-    // As much inertia about every axis, or it would tumble.
+    // Equal inertia about every axis, so that the body does not tumble.
     let inertia = Sym3::from_diagonal(Vec3::splat(0.1));
     let mass = Some(MassProperties { mass: 1.0, center: Vec3::ZERO, inertia });
     ghost(BodyDef { position: Vec3::X * x, shapes, mass, ..BodyDef::default() })
@@ -256,7 +256,7 @@ struct Helpers {
     to_matrix: BodyId,
     /// Matrix from which one of the bodies is made, in the body's own axes.
     columns: Mat3,
-    /// rad/s.
+    /// Angular velocity, rad/s.
     spin: f32,
 }
 

@@ -14,16 +14,16 @@ use sinew::physics::{BodyDef, BodyId, JointId, MassProperties, Momentum, Shape, 
 pub(in crate::scenes) const DZHANIBEKOV: Scene = Scene {
     chapter: Chapter::FreeMotion,
     name: "dzhanibekov",
-    about: "a box spun about its middle axis turns over, again and again, when Euler's equations say so",
+    about: "a box that spins about its middle axis flips again and again, at the times of Euler's equations",
     steps: 700,
     settings: &[
-        Setting::number("spin", 10.0, (1.0, 30.0), "about the middle axis, rad/s"),
-        Setting::number("nudge", 0.1, (0.001, 0.5), "about the long axis, rad/s"),
+        Setting::number("spin", 10.0, (1.0, 30.0), "angular velocity about the middle axis, rad/s"),
+        Setting::number("nudge", 0.1, (0.001, 0.5), "angular velocity about the long axis, rad/s"),
     ],
     build: dzhanibekov,
 };
 
-/// Half of 0.4 × 0.2 × 0.1 m: longest along x, which has the smallest moment of inertia.
+/// Half extents of a box of 0.4 × 0.2 × 0.1 m: longest along x, which has the smallest moment of inertia.
 const BRICK: Vec3 = Vec3::new(0.2, 0.1, 0.05);
 /// Number of flips that are compared to the closed form.
 const FLIPS: usize = 5;
@@ -61,18 +61,18 @@ fn flip_period(inertia: Sym3, omega: [f64; 3]) -> f64 {
 
 struct Flips {
     brick: BodyId,
-    /// s.
+    /// Time between two flips, s.
     period: f64,
     start: Momentum,
-    /// Kinetic, at the start, J.
+    /// Kinetic energy at the start, J.
     energy: f32,
-    /// Component of the angular momentum along the middle axis, one step ago.
+    /// Component of the angular momentum along the middle axis in the last step.
     before: f32,
     /// Times of the flips, s.
     flips: Vec<f64>,
     /// Largest relative deviation of the angular momentum from the start.
     turned: f32,
-    /// The same of the energy.
+    /// Largest relative deviation of the energy from the start.
     gained: f32,
 }
 
@@ -92,7 +92,7 @@ impl Script for Flips {
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let flips = self.flips.get(..FLIPS);
         let every = flips.map(|flips| (flips[FLIPS - 1] - flips[0]) / (FLIPS - 1) as f64);
-        // It starts halfway between two flips.
+        // The motion starts halfway between two flips.
         let off = |(i, time): (usize, &f64)| (time / self.period - (i as f64 + 0.5)).abs() as f32;
         let off = flips.map(|flips| flips.iter().enumerate().map(off).fold(0.0, max));
         vec![
@@ -110,7 +110,7 @@ pub(in crate::scenes) const SYMMETRIC_TOP: Scene = Scene {
     about: "a free disc spins and wobbles: its angular velocity circles its axis at (I3 − I1) / I1 times its spin",
     steps: 600,
     settings: &[
-        Setting::number("spin", 10.0, (1.0, 30.0), "about the axis, rad/s"),
+        Setting::number("spin", 10.0, (1.0, 30.0), "angular velocity about the axis, rad/s"),
         Setting::number("wobble", 1.0, (0.1, 10.0), "across it, rad/s"),
     ],
     build: |setup| {
@@ -128,10 +128,10 @@ pub(in crate::scenes) const SYMMETRIC_TOP: Scene = Scene {
 /// Radius and mass of the disc, metres and kg.
 const DISC_RADIUS: f32 = 0.1;
 const DISC_MASS: f32 = 1.0;
-/// `m R² / 2` about its axis; half of it about a diameter.
+/// Moment of inertia `m R² / 2` about the disc's axis; half of it about a diameter.
 const DISC_MOMENT: f32 = 0.5 * DISC_MASS * DISC_RADIUS * DISC_RADIUS;
 
-/// A thin disc across y that meets nothing, on a pin from its centre down to `foot` in its own frame.
+/// A thin disc across y that collides with nothing, on a pin from its centre down to `foot` in its own frame.
 fn disc(center: Vec3, foot: Vec3) -> BodyDef {
     let plate = Shape::Box { half_extents: Vec3::new(0.7 * DISC_RADIUS, 0.006, 0.7 * DISC_RADIUS) };
     let pin = Shape::Capsule { half_height: 0.5 * foot.length(), radius: 0.004 };
@@ -148,7 +148,7 @@ fn disc(center: Vec3, foot: Vec3) -> BodyDef {
 
 struct Wobble {
     disc: BodyId,
-    /// rad/s.
+    /// Angular velocity about the axis, rad/s.
     spin: f32,
     /// Turn of the angular velocity about the axis, seen from the disc.
     body: Turn,
@@ -182,16 +182,16 @@ impl Script for Wobble {
 pub(in crate::scenes) const SPINNING_TOP: Scene = Scene {
     chapter: Chapter::FreeMotion,
     name: "spinning_top",
-    about: "a fast top on a pivot does not fall: it goes round slowly, at the rate of its weight's torque",
+    about: "a fast top on a pivot does not fall: it precesses slowly, at the rate that its weight's torque gives",
     steps: 420,
     settings: &[
-        Setting::number("spin", 200.0, (60.0, 300.0), "about its axis, rad/s"),
-        Setting::number("lean", 30.0, (5.0, 90.0), "of its axis, degrees"),
+        Setting::number("spin", 200.0, (60.0, 300.0), "angular velocity about its axis, rad/s"),
+        Setting::number("lean", 30.0, (5.0, 90.0), "angle of its axis from the vertical, degrees"),
     ],
     build: spinning_top,
 };
 
-/// From the pivot to the disc, metres.
+/// Distance from the pivot to the disc, metres.
 const STEM: f32 = 0.1;
 
 fn spinning_top(setup: &Setup<'_>) -> Instance {
@@ -224,9 +224,9 @@ fn precession(spin: f32, lean: f32) -> f32 {
 struct Top {
     top: BodyId,
     joint: JointId,
-    /// rad/s.
+    /// Expected rate of precession, rad/s.
     rate: f32,
-    /// Degrees.
+    /// Initial lean of the axis, degrees.
     lean: f32,
     support: Support,
     /// Turn of the axis about the vertical.

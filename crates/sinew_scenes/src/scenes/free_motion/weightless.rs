@@ -1,4 +1,4 @@
-//! Things in free space.
+//! Bodies in free space.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -24,7 +24,7 @@ fn zero_gravity_pile(setup: &Setup<'_>) -> Instance {
     let mut world = weightless_world();
     let bodies = setup.whole("bodies");
     let mut random = Random::new(11);
-    // As dense for any number of bodies.
+    // Choose the spread so that the density is the same for any number of bodies.
     let spread = 0.8 * sinew::math::trig::cbrt(bodies as f32 / 60.0);
     let mut scale = 0.0;
     for i in 0..bodies {
@@ -41,7 +41,7 @@ fn zero_gravity_pile(setup: &Setup<'_>) -> Instance {
 
 struct Pile {
     start: Momentum,
-    /// Σ|mv| at the start, N·s.
+    /// Sum of the bodies' momenta, Σ|mv|, at the start, N·s.
     scale: f32,
 }
 
@@ -85,9 +85,9 @@ pub(in crate::scenes) const SPIN_RAGDOLL: Scene = Scene {
     build: spinning_ragdoll,
 };
 
-const SPIN: Setting = Setting::number("spin", 9.0, (0.1, 30.0), "at the start, rad/s");
+const SPIN: Setting = Setting::number("spin", 9.0, (0.1, 30.0), "angular velocity at the start, rad/s");
 
-/// Rods of 1 m and 1 kg, each bent against the one before and out of its plane, that begin to spin as if they were one.
+/// Rods of 1 m and 1 kg, each at an angle to the one before and out of its plane, that start to spin as one rigid body.
 fn spinning_rods(setup: &Setup<'_>, count: usize) -> Instance {
     let mut world = weightless_world();
     let bend = tilt(50.0) * Rotation::from_axis_angle(Vec3::Y, 0.4);
@@ -112,7 +112,7 @@ fn spinning_ragdoll(setup: &Setup<'_>) -> Instance {
     let def = ragdoll_of_mannequin();
     let state = |pose: Transform| BodyState { world_from_body: pose, velocity: Velocity::default() };
     let states: Vec<_> = def.bodies.iter().map(|body| state(body.character_from_body)).collect();
-    // Tissue that slows spin down takes angular momentum.
+    // Damping of tissue would reduce the angular momentum.
     let body_settings = BodySettings { angular_damping: 0.0, ..BodySettings::default() };
     let Ragdoll { bodies, joints, .. } = Ragdoll::spawn(&mut world, &def, &states, &body_settings);
     let axis = Vec3::new(3.0, 8.0, 2.0).normalize();
@@ -120,26 +120,26 @@ fn spinning_ragdoll(setup: &Setup<'_>) -> Instance {
     Instance::new(world, spin)
 }
 
-/// Joined bodies without anything around them.
+/// Connected bodies without anything around them.
 struct Spin {
     joints: Vec<JointId>,
     start: Momentum,
     /// Kinetic energy at the start, J.
     energy: f32,
-    /// The farthest that the angular momentum was from the start, as a share of it.
+    /// Largest deviation of the angular momentum from the start, as a share of it.
     turned: f32,
     gap: f32,
     overshoot: f32,
 }
 
 impl Spin {
-    /// Sets bodies in motion that rest, as one rigid body that turns about its centre of mass.
+    /// Starts resting bodies as one rigid body that rotates about its centre of mass.
     fn start(world: &mut World, bodies: &[BodyId], joints: Vec<JointId>, spin: Vec3) -> Self {
         let masses = || bodies.iter().map(|&id| world.mass(id).mass);
         let moments = bodies.iter().zip(masses()).map(|(&id, mass)| world.center_of_mass(id) * mass);
         let center = moments.sum::<Vec3>() / masses().sum::<f32>();
         for &id in bodies {
-            // The centre of mass moves to the origin, about which the world measures angular momentum.
+            // Move the centre of mass to the origin, about which the world measures angular momentum.
             let Transform { translation, rotation } = world.transform(id);
             world.set_transform(id, Transform::new(translation - center, rotation));
             let linear = spin.cross(world.center_of_mass(id));

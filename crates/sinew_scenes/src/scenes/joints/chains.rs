@@ -75,9 +75,10 @@ pub(in crate::scenes) const HANGING_ROPE: Scene = Scene {
     },
 };
 
-const LINK: Setting = Setting::number("link", 0.0, (0.0, 10.0), "length of a link, m; 0: 1, 0.5 and 0.25 m");
+const LINK: Setting =
+    Setting::number("link", 0.0, (0.0, 10.0), "length of a link, m; 0: three chains with 1, 0.5 and 0.25 m");
 
-/// Bounds for a chain.
+/// Bounds for the figures of a chain.
 struct Musts {
     gap: Expected,
     gap_per_link: Expected,
@@ -106,10 +107,10 @@ fn hung(setup: &Setup<'_>, plans: &[Blueprint], musts: Musts) -> Instance {
 
 /// A chain in a world.
 struct Chain {
-    /// From the hook down.
+    /// Joints from the hook down.
     joints: Vec<JointId>,
     weight: BodyId,
-    /// From the first joint to the last, metres.
+    /// Distance from the first joint to the last, metres.
     length: f32,
     level: bool,
     gap_peak: f32,
@@ -158,7 +159,7 @@ impl Chain {
 struct Hung {
     chains: Vec<Chain>,
     musts: Musts,
-    /// Energy, J.
+    /// Energy at the start, J.
     start: f32,
     /// Energy of the weights at the height of the horizontal above their lowest points, J.
     depth: f32,

@@ -14,13 +14,13 @@ pub(in crate::scenes) const LINKAGE: Scene = Scene {
     about: "four bars in a loop, a motor on a slider-crank, a joint that breaks, a rope and a rod",
     steps: 600,
     settings: &[
-        Setting::number("speed", 3.0, (0.1, 20.0), "of the crank, rad/s"),
-        Setting::number("strength", 100.0, (79.0, 120.0), "of the joint that breaks, N"),
+        Setting::number("speed", 3.0, (0.1, 20.0), "angular velocity of the crank, rad/s"),
+        Setting::number("strength", 100.0, (79.0, 120.0), "strength of the joint that breaks, N"),
     ],
     build: linkage,
 };
 
-/// Height of everything that hangs, metres.
+/// Height of all hooks, metres.
 const HEIGHT: f32 = 3.0;
 
 fn linkage(setup: &Setup<'_>) -> Instance {
@@ -41,7 +41,7 @@ fn linkage(setup: &Setup<'_>) -> Instance {
 struct FourBars {
     bars: [BodyId; 3],
     hinges: [JointId; 4],
-    /// Energy, J.
+    /// Energy at the start, J.
     start: f32,
     /// Largest deviation of the energy from the start, J.
     drift: f32,
@@ -59,7 +59,7 @@ impl FourBars {
         let [a, b, low] = ends.map(|(from, to)| world.add_body(&thin_rod_between(from, to, BAR_MASS)));
         let hinges = [(hook, a, left_top), (hook, b, right_top), (a, low, left), (b, low, right)];
         let hinges = hinges.map(|(p, q, at)| hinge_about_z(world, p, q, at));
-        // They swing out at 1.5 rad/s.
+        // The bars swing out at 1.5 rad/s.
         let swing = Vec3::Z * 1.5;
         for (bar, top) in [(a, left_top), (b, right_top)] {
             let linear = swing.cross(world.center_of_mass(bar) - top);
@@ -82,7 +82,7 @@ impl FourBars {
     }
 
     fn metrics(&self) -> [Metric; 2] {
-        // The lower bar from its lowest point to the height of the hooks; the others half as much.
+        // The lower bar rises from its lowest point to the height of the hooks; the others rise half as much.
         let depth = 2.0 * BAR_MASS * GRAVITY;
         [
             Metric::new("four_bar_energy_drift", self.drift / depth, Expected::AtMost(0.01)),
@@ -96,17 +96,17 @@ fn hinge_about_z(world: &mut World, a: BodyId, b: BodyId, at: Vec3) -> JointId {
     world.add_joint(&def)
 }
 
-/// A motor turns a crank, whose rod pushes a piston to and fro.
+/// A motor turns a crank, whose rod moves a piston back and forth.
 struct Crank {
     axle: Vec3,
     piston: BodyId,
     motor: JointId,
     hinges: [JointId; 4],
-    /// rad/s.
+    /// Angular velocity of the crank, rad/s.
     speed: f32,
     /// Largest deviation of the piston from its expected position, metres.
     error: f32,
-    /// J.
+    /// Work of the motor, J.
     work_in: f32,
 }
 
@@ -132,7 +132,7 @@ impl Crank {
             hinge_about_z(world, rod, piston, end),
             world.add_joint(&slider),
         ];
-        // At its dead centre: the rod turns about the piston, which stands.
+        // At its dead centre the rod rotates about the piston, which rests.
         let linear = Vec3::Y * (0.5 * speed * CRANK);
         world.set_velocity(crank, Velocity { linear, angular: Vec3::Z * speed });
         world.set_velocity(rod, Velocity { linear, angular: Vec3::NEG_Z * (speed * CRANK / CONNECTING_ROD) });
@@ -157,15 +157,15 @@ impl Crank {
 struct Overloaded {
     weight: BodyId,
     joint: JointId,
-    /// N.
+    /// Strength of the joint, N.
     strength: f32,
-    /// Load of the joint, from the weight and the pull, in the step in which it broke, N.
+    /// Load of the joint by the weight and the pull in the step in which it broke, N.
     broken_at: Option<f32>,
 }
 
-/// kg.
+/// Mass of the weight, kg.
 const WEIGHT: f32 = 8.0;
-/// By which the pull grows, N/s.
+/// Growth rate of the pull, N/s.
 const PULL_RATE: f32 = 5.0;
 
 impl Overloaded {
@@ -200,7 +200,7 @@ impl Overloaded {
     }
 }
 
-/// A ball held at a distance.
+/// A ball at a limited distance from a hook.
 struct Tied {
     body: BodyId,
     joint: JointId,

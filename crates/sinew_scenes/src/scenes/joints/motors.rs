@@ -11,29 +11,34 @@ use sinew::physics::{JointDef, JointId, Motor, Softness, World};
 pub(in crate::scenes) const ARM: Scene = Scene {
     chapter: Chapter::Joints,
     name: "motor_arm",
-    about: "motors hold arms against gravity, swing arms to a goal, and push no harder than they may",
+    about: "motors hold arms against gravity, swing arms to a target, and do not exceed their largest torque",
     steps: 600,
     settings: &[
-        Setting::number("hertz", 0.0, (0.0, 25.0), "natural frequency, Hz; 0: 1, 2, 5 and 10, side by side"),
+        Setting::number(
+            "hertz",
+            0.0,
+            (0.0, 25.0),
+            "natural frequency, Hz; 0: arms with 1, 2, 5 and 10 Hz side by side",
+        ),
         Setting::number("damping_ratio", 0.4, (0.1, 2.0), "1 is critical"),
     ],
     build: motor_arm,
 };
 
-/// Metres.
+/// Length of an arm, metres.
 const LENGTH: f32 = 1.0;
-/// kg.
+/// Mass of an arm, kg.
 const MASS: f32 = 2.0;
-/// About the hinge at its end, kg·m².
+/// Moment of inertia about the hinge at its end, kg·m².
 const MOMENT: f32 = MASS * LENGTH * LENGTH / 3.0;
-/// Torque of its weight about the hinge while it is level, N·m.
+/// Torque of the weight of a level arm about its hinge, N·m.
 const LEVEL_TORQUE: f32 = 0.5 * MASS * GRAVITY * LENGTH;
 /// Target angle of the arms, radians from their start.
 const GOAL: f32 = 0.2;
 /// Torque limit of the weak motor, N·m: half of the torque that holds its arm.
 const CAP: f32 = 0.5 * LEVEL_TORQUE;
-/// Angle below level to which an arm falls with half of the holding torque: the positive root of `sin x = x / 2`, where its weight has done
-/// the work that the motor absorbed, radians.
+/// Angle below level to which an arm falls with half of the holding torque, radians: the positive root of `sin x = x /
+/// 2`, at which the work of its weight equals that which the motor absorbed.
 const WEAK_FALL: f32 = 1.895_494_3;
 
 fn motor_arm(setup: &Setup<'_>) -> Instance {
@@ -50,7 +55,7 @@ fn motor_arm(setup: &Setup<'_>) -> Instance {
     for &hertz in &all {
         let softness = Softness::Frequency { hertz, damping_ratio };
         let oscillator = Oscillator { omega: core::f32::consts::TAU * hertz, damping_ratio };
-        // About z the weight loads the motor; about the vertical it loads only the hinge.
+        // A hinge about z loads the motor with the weight; a hinge about the vertical does not.
         let held = attach(&mut world, Vec3::Z, Motor::toward(Transform::IDENTITY, softness));
         let swung = attach(&mut world, Vec3::Y, Motor::toward(turned(GOAL), softness));
         arms.push(Arm {
@@ -86,16 +91,16 @@ fn angle(world: &World, hinge: JointId) -> f32 {
     world.joint_transform(hinge).rotation.twist_angle(Vec3::X)
 }
 
-/// `x″ + 2ζω x′ + ω² x = ω²`.
+/// The differential equation `x″ + 2ζω x′ + ω² x = ω²`.
 #[derive(Clone, Copy)]
 struct Oscillator {
-    /// rad/s.
+    /// Natural frequency, rad/s.
     omega: f32,
     damping_ratio: f32,
 }
 
 impl Oscillator {
-    /// Its motion from 0, at rest, toward 1: `1 − e^(−ζωt) (cos φ + ζωt sin φ / φ)`, `φ² = (1 − ζ²)(ωt)²`.
+    /// Motion from rest at 0 toward 1: `1 − e^(−ζωt) (cos φ + ζωt sin φ / φ)`, `φ² = (1 − ζ²)(ωt)²`.
     fn step_response(&self, t: f32) -> f32 {
         let Self { omega, damping_ratio } = *self;
         let turned = omega * t;
@@ -114,7 +119,7 @@ impl Oscillator {
         1.0 - cos - damping_ratio * turned * sin_over_phase
     }
 
-    /// N·m/rad.
+    /// Stiffness, N·m/rad.
     fn stiffness(&self) -> f32 {
         MOMENT * self.omega * self.omega
     }
@@ -142,7 +147,7 @@ impl Peak {
     fn see(&mut self, step: u64, value: f32) {
         let [a, b] = self.last;
         if self.found.is_none() && a < b && b >= value {
-            // Top of the parabola through three values.
+            // Maximum of the parabola through three values.
             let after = 0.5 * (value - a) / (2.0 * b - a - value);
             self.found = Some(((step - 1) as f32 + after, b + 0.25 * (value - a) * after));
         }
@@ -157,7 +162,7 @@ struct Arm {
     held: JointId,
     /// Joint of the arm that swings to its target.
     swung: JointId,
-    /// The farthest that the swung arm was from the formula, as a share of its way.
+    /// Largest deviation of the swung arm from the formula, as a share of its way.
     error: f32,
     found: Peak,
     formula: Peak,
@@ -166,7 +171,7 @@ struct Arm {
 impl Arm {
     fn after_step(&mut self, world: &World) {
         let def = world.def();
-        // Positions stand half a substep ahead, as those of a falling body do.
+        // Positions lead by half a substep, as those of a falling body do.
         let t = world.time() as f32 + 0.5 * def.dt() / def.substeps as f32;
         let expected = self.oscillator.step_response(t);
         let found = angle(world, self.swung) / GOAL;
@@ -201,9 +206,9 @@ impl Arm {
 struct Arms {
     arms: Vec<Arm>,
     weak: JointId,
-    /// Most torque of the weak motor, N·m.
+    /// Largest torque of the weak motor, N·m.
     hardest: f32,
-    /// Least angle of its arm, radians.
+    /// Smallest angle of its arm, radians.
     lowest: f32,
 }
 

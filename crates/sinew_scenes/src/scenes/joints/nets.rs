@@ -1,4 +1,4 @@
-//! Joints in loops.
+//! Nets of joints, which form loops.
 
 use crate::blueprint::{Blueprint, joint_grid_of, net};
 use crate::framework::instance::{Instance, Script};
@@ -12,9 +12,9 @@ use sinew::physics::{JointId, World};
 pub(in crate::scenes) const JOINT_GRID: Scene = Scene {
     chapter: Chapter::Joints,
     name: "joint_grid",
-    about: "balls joined to a net hang from its upper edge",
+    about: "a net of jointed balls hangs from its upper edge",
     steps: 100,
-    settings: &[Setting::whole("side", 100, (2, 200), "balls in a row, and rows")],
+    settings: &[Setting::whole("side", 100, (2, 200), "number of rows, and of balls in each")],
     build: |setup| woven(setup, &joint_grid_of(setup.whole("side"))),
 };
 
@@ -27,7 +27,7 @@ pub(in crate::scenes) const NET: Scene = Scene {
     build: |setup| woven(setup, &net()),
 };
 
-/// Widest gap that passes, metres. The true bar is the best of the other engines, which the benchmark measures.
+/// Largest gap allowed, metres. The benchmark compares it to the best of the other engines.
 const GAP: f64 = 0.005;
 
 fn woven(setup: &Setup<'_>, plan: &Blueprint) -> Instance {
@@ -40,12 +40,12 @@ fn woven(setup: &Setup<'_>, plan: &Blueprint) -> Instance {
 
 struct Woven {
     joints: Vec<JointId>,
-    /// Energy, J.
+    /// Energy at the start, J.
     start: f32,
     gap_peak: f32,
-    /// J.
+    /// Largest kinetic energy, J.
     kinetic_peak: f32,
-    /// The most that the energy was above its start, J.
+    /// Largest rise of the energy above its start, J.
     rise: f32,
     support: Support,
 }

@@ -1,4 +1,4 @@
-//! Things that swing freely: pendulum, double and triple pendulum.
+//! Bodies that swing freely: pendulum, double and triple pendulum.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -17,7 +17,7 @@ pub(in crate::scenes) const PENDULUM: Scene = Scene {
         "amplitude",
         0.0,
         (0.0, 170.0),
-        "from the vertical, degrees; 0: 30, 90 and 150, side by side",
+        "initial angle from the vertical, degrees; 0: 30, 90 and 150, side by side",
     )],
     build: pendulum,
 };
@@ -38,18 +38,18 @@ fn pendulum(setup: &Setup<'_>) -> Instance {
 }
 
 struct Bob {
-    /// Name of the figure that is its period.
+    /// Name of the figure for its period.
     name: &'static str,
     id: BodyId,
     joint: JointId,
     amplitude: f32,
-    /// Energy, J.
+    /// Energy at the start, J.
     start: f32,
     /// Largest difference of the energy from the start, J.
     drift: f32,
     /// Energy for one metre of height, J.
     depth: f32,
-    /// x one step ago.
+    /// Position along x in the last step.
     before: f32,
     /// Times of the first and of the last pass through the lowest point toward −x.
     passes: [Option<f32>; 2],
@@ -58,8 +58,8 @@ struct Bob {
     gap: f32,
 }
 
-/// `2π √(l/g) · 2 K(sin(θ/2)) / π` for a rod of 1 m and an amplitude in degrees; the bob of that radius is fixed to its
-/// rod, a compound pendulum of moment `m (l² + 0.4 r²)`.
+/// Period `2π √(l/g) · 2 K(sin(θ/2)) / π` for a rod of 1 m and an amplitude in degrees; the bob of that radius is fixed
+/// to its rod, a compound pendulum of moment `m (l² + 0.4 r²)`.
 pub(in crate::scenes) fn pendulum_period(amplitude: f32, radius: f32) -> f64 {
     let mean = agm(1.0, f64::from(trig::cos(0.5 * amplitude.to_radians())));
     let radius = f64::from(radius);
@@ -67,7 +67,7 @@ pub(in crate::scenes) fn pendulum_period(amplitude: f32, radius: f32) -> f64 {
 }
 
 impl Bob {
-    /// The pendulum number `index`, beside the others.
+    /// Adds pendulum `index` beside the others.
     fn hang(world: &mut World, name: &'static str, amplitude: f32, index: usize) -> Self {
         let pivot = Vec3::Z * index as f32;
         let mut hook = hook();
@@ -129,7 +129,7 @@ impl Script for Pendulums {
 pub(in crate::scenes) const DOUBLE_PENDULUM: Scene = Scene {
     chapter: Chapter::Joints,
     name: "double_pendulum",
-    about: "two rods let go from the horizontal keep their energy for a minute",
+    about: "a double pendulum released from the horizontal keeps its energy for a minute",
     steps: 3600,
     settings: &[],
     // Angular accelerations, from `[4/3 1/2; 1/2 1/3] α = g/l [3/2; 1/2]` (Lagrange).
@@ -139,19 +139,19 @@ pub(in crate::scenes) const DOUBLE_PENDULUM: Scene = Scene {
 pub(in crate::scenes) const TRIPLE_PENDULUM: Scene = Scene {
     chapter: Chapter::Joints,
     name: "triple_pendulum",
-    about: "three rods let go from the horizontal keep their energy for a minute",
+    about: "a triple pendulum released from the horizontal keeps its energy for a minute",
     steps: 3600,
     settings: &[],
-    // Similarly, `[7/3 3/2 1/2; 3/2 4/3 1/2; 1/2 1/2 1/3] α = g/l [5/2; 3/2; 1/2]`.
+    // Angular accelerations, from `[7/3 3/2 1/2; 3/2 4/3 1/2; 1/2 1/2 1/3] α = g/l [5/2; 3/2; 1/2]`.
     build: |setup| rods(setup, &[33.0 / 26.0, -9.0 / 26.0, 3.0 / 26.0]),
 };
 
-/// Metres.
+/// Length of a rod, metres.
 const ROD_LENGTH: f32 = 1.0;
-/// kg.
+/// Mass of a rod, kg.
 const ROD_MASS: f32 = 1.0;
 
-/// Level rods end to end, with the angular accelerations that they start with, downward, in g/l.
+/// Level rods end to end, with their initial angular accelerations, downward, in g/l.
 fn rods(setup: &Setup<'_>, starts: &'static [f32]) -> Instance {
     let mut world = setup.sleepless_world();
     let mut last = world.add_body(&hook());
@@ -172,7 +172,7 @@ struct Rods {
     rods: Vec<BodyId>,
     joints: Vec<JointId>,
     starts: &'static [f32],
-    /// Energy, J.
+    /// Energy at the start, J.
     start: f32,
     /// Largest difference of the energy from the start, J.
     drift: f32,
@@ -193,7 +193,7 @@ impl Script for Rods {
 
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let count = self.rods.len() as f32;
-        // From the horizontal to the plumb line: the middle of rod i falls by (i + ½) l.
+        // From the horizontal to the vertical the middle of rod i falls by (i + ½) l.
         let depth = 0.5 * count * count * ROD_MASS * GRAVITY * ROD_LENGTH;
         let names = ["first_rad_s2", "second_rad_s2", "third_rad_s2"];
         let mut metrics: Vec<_> = names

@@ -14,25 +14,25 @@ use sinew::physics::{BodyId, GroupId, World};
 pub(in crate::scenes) const SPRING: Scene = Scene {
     chapter: Chapter::Joints,
     name: "spring",
-    about: "a mass on a spring comes to rest where the spring is stretched by m g / k",
+    about: "a mass on a spring comes to rest at a stretch of m g / k",
     steps: 600,
-    settings: &[Setting::whole("masses", 1, (1, 50), "hung under each other"), MASS, STIFFNESS],
+    settings: &[Setting::whole("masses", 1, (1, 50), "number of masses below each other"), MASS, STIFFNESS],
     build: hung_alike,
 };
 
 pub(in crate::scenes) const SPRING_CHAIN: Scene = Scene {
     chapter: Chapter::Joints,
     name: "spring_chain",
-    about: "each spring of a hanging chain is stretched by all that hangs below it",
+    about: "the weight below it stretches each spring of a hanging chain",
     steps: 900,
-    settings: &[Setting::whole("masses", 10, (1, 50), "hung under each other"), MASS, STIFFNESS],
+    settings: &[Setting::whole("masses", 10, (1, 50), "number of masses below each other"), MASS, STIFFNESS],
     build: hung_alike,
 };
 
 pub(in crate::scenes) const SPRINGS_RATIO: Scene = Scene {
     chapter: Chapter::Joints,
     name: "springs_ratio",
-    about: "springs of 1,000 and of 1,000,000 N/m in one hanging chain are each as long as they should be",
+    about: "springs of 1,000 and 1,000,000 N/m in one hanging chain stretch by their closed forms",
     steps: 900,
     settings: &[],
     build: |setup| {
@@ -42,7 +42,7 @@ pub(in crate::scenes) const SPRINGS_RATIO: Scene = Scene {
 };
 
 const MASS: Setting = Setting::number("mass", 1.0, (0.001, 100.0), "of each, kg");
-const STIFFNESS: Setting = Setting::number("stiffness", 1000.0, (10.0, 1e6), "of each spring, N/m");
+const STIFFNESS: Setting = Setting::number("stiffness", 1000.0, (10.0, 1e6), "stiffness of each spring, N/m");
 
 /// Rest length of each spring, metres.
 const LENGTH: f32 = 0.2;
@@ -51,7 +51,7 @@ fn hung_alike(setup: &Setup<'_>) -> Instance {
     hung(setup, setup.number("mass"), &vec![setup.number("stiffness"); setup.whole("masses")])
 }
 
-/// As many masses as springs, from above.
+/// A chain of as many masses as springs, from above.
 fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: &[f32]) -> Instance {
     let mut world = setup.world();
     let particle = |i: usize| ParticleDef {
@@ -74,7 +74,7 @@ fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: &[f32]) -> Instance {
         particles: (0..=springs.len()).map(particle).collect(),
         springs,
         attachments: vec![AttachmentDef { particle: 0, target: AttachmentTarget::World(Vec3::ZERO) }],
-        // The slowest swing of a long chain stretches its springs too slowly for their own damping.
+        // The slowest swing of a long chain stretches its springs too slowly for their damping.
         linear_damping: 2.0,
         ..GroupDef::default()
     });
@@ -111,12 +111,12 @@ fn fastest(group: &ParticleGroup) -> f32 {
 pub(in crate::scenes) const ROPE_ON_BOX: Scene = Scene {
     chapter: Chapter::Joints,
     name: "rope_on_box",
-    about: "a rope falls over a box and comes to hang over its edges",
+    about: "a rope falls onto a box and hangs over its edges",
     steps: 600,
     settings: &[
         Setting::whole("links", 24, (2, 400), "number of springs"),
-        Setting::number("mass", 1.0, (0.01, 50.0), "of the rope, kg"),
-        Setting::number("length", 1.2, (0.2, 5.0), "of the rope, m"),
+        Setting::number("mass", 1.0, (0.01, 50.0), "mass of the rope, kg"),
+        Setting::number("length", 1.2, (0.2, 5.0), "length of the rope, m"),
     ],
     build: rope_on_box,
 };
@@ -126,14 +126,14 @@ const HALF: f32 = 0.25;
 const ROPE_RADIUS: f32 = 0.01;
 /// Height at which the rope starts, metres.
 const HEIGHT: f32 = 0.8;
-/// Steps for which it falls freely, at least.
+/// Least number of steps in which it falls freely.
 const FALLING: u64 = 6;
 
 fn rope_on_box(setup: &Setup<'_>) -> Instance {
     let mut world = setup.world();
     world.add_body(&floor());
     let mut block = cuboid(Vec3::splat(HALF), Vec3::Y * HALF);
-    // Of cardboard, 5 kg: the rope could push it.
+    // A cardboard box of 5 kg, which the rope could push.
     block.shapes[0].density = 40.0;
     let block = world.add_body(&block);
     let (length, middle) = (setup.number("length"), Vec3::new(0.0, HEIGHT, 0.02));

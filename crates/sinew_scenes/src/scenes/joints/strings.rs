@@ -1,4 +1,4 @@
-//! Ropes and chains against the formulas for them: a catenary, the modes of a chain.
+//! Ropes and chains compared to formulas: a catenary, the modes of a chain.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -12,16 +12,21 @@ use sinew::physics::{GroupId, World};
 pub(in crate::scenes) const CATENARY: Scene = Scene {
     chapter: Chapter::Joints,
     name: "catenary",
-    about: "a rope between two hooks comes to hang as a catenary",
+    about: "a rope between two hooks comes to rest as a catenary",
     steps: 600,
-    settings: &[Setting::number("length", 12.0, (10.5, 20.0), "of the rope between hooks 10 m apart, m")],
+    settings: &[Setting::number(
+        "length",
+        12.0,
+        (10.5, 20.0),
+        "length of the rope between hooks 10 m apart, m",
+    )],
     build: catenary,
 };
 
-/// Between the hooks, metres.
+/// Distance between the hooks, metres.
 const SPAN: f32 = 10.0;
 const LINKS: u32 = 60;
-/// kg/m.
+/// Mass of the rope per length, kg/m.
 const LINE_MASS: f32 = 0.1;
 
 fn catenary(setup: &Setup<'_>) -> Instance {
@@ -36,7 +41,7 @@ fn catenary(setup: &Setup<'_>) -> Instance {
         radius: 0.01,
     };
     let mut rope = rope.build();
-    // It starts as a V, and swings until its drag has stopped it.
+    // The rope starts in the shape of a V and swings until its drag stops it.
     let depth = (0.25 * (length * length - SPAN * SPAN)).sqrt();
     for (k, p) in rope.group.particles.iter_mut().enumerate() {
         let share = k as f32 / LINKS as f32;
@@ -93,16 +98,16 @@ pub(in crate::scenes) const CHAIN_MODES: Scene = Scene {
     build: chain_modes,
 };
 
-/// Masses of each chain, their mass in kg, stiffness of each spring in N/m.
+/// Number of masses in each chain, their mass in kg, stiffness of each spring in N/m.
 const MASSES: usize = 10;
 const MASS: f32 = 1.0;
 const STIFFNESS: f32 = 1000.0;
-/// Rest length, and length at which the springs hang, metres: stretched, or the weight would fold the lower ones.
+/// Rest length and hanging length of the springs, metres: without a stretch the weight would fold the lower ones.
 const LENGTH: f32 = 0.5;
 const STRETCHED: f32 = 0.8;
 /// Speed of the swing at its start, m/s.
 const SWING: f32 = 0.5;
-/// That are looked at.
+/// Number of observed modes.
 const MODES: usize = 3;
 
 fn chain_modes(setup: &Setup<'_>) -> Instance {
@@ -111,13 +116,13 @@ fn chain_modes(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Modes { chains })
 }
 
-/// Share of mode `mode` that mass `i` (from 1) takes.
+/// Relative amplitude of mass `i` (from 1) in mode `mode`.
 fn shape(mode: usize, i: usize) -> f32 {
     trig::sin(core::f32::consts::PI * (mode * i) as f32 / (MASSES + 1) as f32)
 }
 
-/// Depth of mass `i` at rest below the upper hook: its springs are stretched by the load, `i (N + 1 − i) m g / 2k`
-/// lower than without weight.
+/// Depth of mass `i` at rest below the upper hook: the load stretches its springs, `i (N + 1 − i) m g / 2k` lower than
+/// without weight.
 fn rest(i: usize) -> f32 {
     let sunk = MASS * GRAVITY * (i * (MASSES + 1 - i)) as f32 / (2.0 * STIFFNESS);
     STRETCHED * i as f32 + sunk
@@ -135,7 +140,7 @@ fn swinging(world: &mut World, mode: usize) -> Mode {
     let mut chain = GroupDef {
         particles: (0..MASSES + 2).map(particle).collect(),
         springs: (0..=MASSES).map(spring).collect(),
-        // A step of implicit Euler damps a swing by ω h / 2: shorter ones leave more of it.
+        // A step of implicit Euler damps a swing by ω h / 2, so shorter steps damp less.
         iterations: 4,
         ..GroupDef::default()
     };
@@ -151,16 +156,16 @@ fn swinging(world: &mut World, mode: usize) -> Mode {
     }
 }
 
-/// A chain, how far its mode has swung, and when it went through the middle.
+/// A chain, the displacement of its mode, and the times of its passes through the middle.
 struct Mode {
     mode: usize,
     group: GroupId,
     before: f32,
-    /// Seconds.
+    /// Time of the first pass, seconds.
     first: Option<f64>,
     last: f64,
     crossings: u32,
-    /// Mean height of the middle since then, times the steps.
+    /// Mean height of the middle since then, times the number of steps.
     lowest: f32,
 }
 
@@ -213,7 +218,7 @@ impl Script for Modes {
                 Metric::awaited(NAMES[chain.mode - 1], chain.frequency(), expected)
             })
             .collect();
-        // Mode 3 swings fastest; its mean over many swings is the rest position under gravity.
+        // The oscillation of mode 3 is the fastest; its mean over many swings is the rest position under gravity.
         let mean = self.chains[MODES - 1].lowest / world.step_count() as f32;
         let sunk = STRETCHED * (MASSES / 2) as f32;
         let expected = Expected::near(rest(MASSES / 2) - sunk, 0.005);

@@ -1,4 +1,4 @@
-//! Trees of joints whose bodies differ much in mass.
+//! Trees of joints with very different masses.
 
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
@@ -12,9 +12,9 @@ use sinew::physics::{BodyDef, BodyId, JointDef, JointId, JointKind, MassProperti
 pub(in crate::scenes) const HEAVY_FOOT: Scene = Scene {
     chapter: Chapter::Joints,
     name: "heavy_foot",
-    about: "69 kg land on a foot of 1 kg at 3 m/s, and it does not sink in",
+    about: "a leg of 69 kg lands on its foot of 1 kg at 3 m/s, and the foot does not sink in",
     steps: 600,
-    settings: &[Setting::number("speed", 3.0, (0.1, 10.0), "at the landing, m/s")],
+    settings: &[Setting::number("speed", 3.0, (0.1, 10.0), "speed at the landing, m/s")],
     build: heavy_foot,
 };
 
@@ -43,7 +43,7 @@ fn heavy_foot(setup: &Setup<'_>) -> Instance {
     let at = Transform::from_translation(ankle);
     let kind = JointKind::Hinge { limit: Some(Range::degrees(-ANKLE, ANKLE)) };
     let mut joint = JointDef::new(leg, foot, world.transform(leg), world.transform(foot), at, kind);
-    // Zero where the leg is plumb.
+    // The joint's angle is zero where the leg is vertical.
     joint.frame_a = Transform::new(world.transform(leg).inverse_point(ankle), Rotation::IDENTITY);
     let joint = world.add_joint(&joint);
     let flight = Flight::new(&world, vec![foot, leg]);
@@ -64,7 +64,7 @@ struct Stand {
     flight: Flight,
     /// Deepest overlap of foot and floor, metres.
     sunk: f32,
-    /// Now, metres.
+    /// Present overlap of foot and floor, metres.
     sunk_end: f32,
     overshoot: f32,
     asleep: Option<f32>,
@@ -99,11 +99,11 @@ impl Script for Stand {
 pub(in crate::scenes) const MASS_RATIO: Scene = Scene {
     chapter: Chapter::Joints,
     name: "mass_ratio",
-    about: "trees of light and of heavy rods, one hung up and one falling, hold together",
+    about: "trees of light and heavy rods, one hanging and one falling, hold together",
     steps: 300,
     settings: &[
         Setting::number("ratio", 1e5, (1.0, 1e6), "mass of the heaviest rods over that of the lightest"),
-        Setting::whole("links", 40, (2, 200), "rods of each tree"),
+        Setting::whole("links", 40, (2, 200), "number of rods of each tree"),
     ],
     build: mass_ratio,
 };
@@ -134,7 +134,7 @@ struct Tree {
     joints: Vec<Anchors>,
 }
 
-/// A joint and where it holds its bodies, in their frames.
+/// A joint and its anchors in the frames of its bodies.
 struct Anchors {
     joint: JointId,
     a: (BodyId, Vec3),
@@ -142,8 +142,8 @@ struct Anchors {
 }
 
 impl Tree {
-    /// Rods whose masses lie anywhere between 0.01 kg and `ratio` times that, the first one from `root` on, each other
-    /// one from the end of one of the three before it, in any direction.
+    /// Adds rods with masses from 0.01 kg to `ratio` times that: the first from `root` on, each other one from the end
+    /// of one of the three before it, in any direction.
     fn grow(world: &mut World, ratio: f32, links: usize, root: Vec3) -> Self {
         let mut random = Random::new(5);
         let mut tree = Self { bodies: Vec::new(), joints: Vec::new() };

@@ -1,4 +1,4 @@
-//! Springs that carry loads much heavier than they are.
+//! Springs that carry loads much heavier than themselves.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -12,15 +12,15 @@ use sinew::physics::{BodyId, World};
 pub(in crate::scenes) const TRAMPOLINE: Scene = Scene {
     chapter: Chapter::Particles,
     name: "trampoline",
-    about: "two heavy boxes sink onto springs, trees below one and a net below the other, and come to rest where these bear them",
+    about: "two heavy boxes sink onto springs, trees below one and a net below the other, and come to rest at the depth of a closed form",
     steps: 900,
-    settings: &[Setting::number("mass", 100.0, (1.0, 1000.0), "of each box, kg")],
+    settings: &[Setting::number("mass", 100.0, (1.0, 1000.0), "mass of each box, kg")],
     build: trampoline,
 };
 
 /// Half of a box, metres.
 const BOX: Vec3 = Vec3::new(0.3, 0.1, 0.3);
-/// Particles along each edge of the mat below it, and their spacing, metres.
+/// Number of particles along each edge of the mat below a box, and their spacing, metres.
 const SIDE: u32 = 3;
 const SPACING: f32 = 0.25;
 /// Length of the ties to both sides along x, metres.
@@ -34,14 +34,14 @@ const TAUT: f32 = 0.9;
 const KNOT: f32 = 0.05;
 const KNOT_RADIUS: f32 = 0.02;
 /// Depth at which a box is released, metres: less than its rest depth.
-const LET_GO: f32 = 0.12;
+const RELEASE_DEPTH: f32 = 0.12;
 
 fn trampoline(setup: &Setup<'_>) -> Instance {
-    // With sleep, they would stop within the few millimetres in which a swing counts as rest.
+    // With sleep they would stop within the few millimetres that count as rest.
     let mut world = setup.sleepless_world();
     let mass = setup.number("mass");
     let boxes = [(false, -0.8), (true, 0.8)].map(|(is_net, z)| {
-        let mut falling = cuboid(BOX, Vec3::new(0.0, KNOT_RADIUS + BOX.y - LET_GO, z));
+        let mut falling = cuboid(BOX, Vec3::new(0.0, KNOT_RADIUS + BOX.y - RELEASE_DEPTH, z));
         falling.shapes[0].density = mass / (8.0 * BOX.x * BOX.y * BOX.z);
         world.add_particles(&mat(mass, is_net, Vec3::Z * z));
         world.add_body(&falling)
@@ -59,7 +59,7 @@ fn mat(mass: f32, is_net: bool, center: Vec3) -> GroupDef {
         let place = |k: u32| (k as f32 - 0.5 * (SIDE - 1) as f32) * SPACING;
         let at = center + Vec3::new(place(k % SIDE), 0.0, place(k / SIDE));
         let [knot, left, right] = [0, 1, 2].map(|end| 3 * k + end);
-        for position in [at - Vec3::Y * LET_GO, at - Vec3::X * SPAN, at + Vec3::X * SPAN] {
+        for position in [at - Vec3::Y * RELEASE_DEPTH, at - Vec3::X * SPAN, at + Vec3::X * SPAN] {
             group.particles.push(ParticleDef {
                 position,
                 velocity: Vec3::ZERO,
@@ -97,9 +97,10 @@ fn sag(weight: f32) -> f64 {
 
 struct Trampoline {
     boxes: [BodyId; 2],
-    /// Closed form, metres.
+    /// Expected depth, metres.
     sag: f64,
-    /// Height of each at the end of the last step, metres, and the larger of the ways from that of the one before.
+    /// Height of each box at the end of the last step, metres, and the larger of the displacements of the two from the
+    /// step before.
     heights: [f32; 2],
     moved: f32,
 }

@@ -12,9 +12,9 @@ use sinew::physics::{BodyId, GroupId, Material, World};
 pub(in crate::scenes) const BLOB: Scene = Scene {
     chapter: Chapter::Particles,
     name: "blob",
-    about: "a ball of skin and air falls on the floor, is flattened, and comes to rest as full as it was",
+    about: "a ball of skin and air falls on the floor, flattens, and comes to rest with its initial volume",
     steps: 300,
-    settings: &[Setting::whole("subdivisions", 2, (0, 4), "of its skin"), MASS],
+    settings: &[Setting::whole("subdivisions", 2, (0, 4), "number of subdivisions of its skin"), MASS],
     build: |setup| {
         let mut world = setup.world();
         world.add_body(&floor());
@@ -29,11 +29,11 @@ pub(in crate::scenes) const BLOB: Scene = Scene {
     },
 };
 
-const MASS: Setting = Setting::number("mass", 0.6, (0.05, 10.0), "of the ball, kg");
+const MASS: Setting = Setting::number("mass", 0.6, (0.05, 10.0), "mass of the ball, kg");
 /// Radius of the balls with their skin, and thickness of the skin, metres.
 const RADIUS: f32 = 0.12;
 const SKIN: f32 = 0.005;
-/// From which they fall, of their lowest points, metres.
+/// Initial height of their lowest points, metres.
 const HEIGHT: f32 = 1.0;
 /// Number of steps in which they certainly fall.
 const FALLING: u64 = 20;
@@ -51,7 +51,7 @@ fn soft(setup: &Setup<'_>, subdivisions: usize) -> BlobDef {
     }
 }
 
-/// Mean position and velocity.
+/// Mean position and velocity of the particles.
 fn middle(group: &ParticleGroup) -> (Vec3, Vec3) {
     let mean = |all: &[Vec3]| all.iter().copied().sum::<Vec3>() / all.len() as f32;
     (mean(group.positions()), mean(group.velocities()))
@@ -62,7 +62,7 @@ struct Dropped {
     /// Volume without pressure, m³.
     volume: f32,
     fall: Option<f32>,
-    /// Smallest share of its height.
+    /// Smallest height relative to the initial one.
     squeezed: f32,
 }
 
@@ -79,7 +79,7 @@ impl Script for Dropped {
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let group = world.particles(self.blob);
         let fastest = group.velocities().iter().fold(0.0, |most, v| max(most, v.length()));
-        // Its drag is air resistance.
+        // The drag of the ball is air resistance.
         vec![
             Metric::awaited("fall_m_s2", self.fall, Expected::near(0.967 * GRAVITY, 0.005)),
             Metric::new(
@@ -93,7 +93,7 @@ impl Script for Dropped {
     }
 }
 
-/// Lowest and highest points of a skin.
+/// Heights of the lowest and the highest point of a skin.
 fn extent(group: &ParticleGroup) -> (f32, f32) {
     group.positions().iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), p| {
         (min(low, p.y - SKIN), max(high, p.y + SKIN))
@@ -103,7 +103,7 @@ fn extent(group: &ParticleGroup) -> (f32, f32) {
 pub(in crate::scenes) const STEEL_VS_BASKETBALL: Scene = Scene {
     chapter: Chapter::Particles,
     name: "steel_vs_basketball",
-    about: "a steel ball and a basketball of the same size fall side by side: one strikes in no time, one is flattened",
+    about: "a steel ball and a basketball of the same size fall side by side: the steel ball's impact takes no time, the basketball flattens",
     steps: 90,
     settings: &[MASS],
     build: |setup| {
@@ -128,13 +128,13 @@ const STEEL: f32 = 0.8;
 /// Measurements of one ball's bounce.
 #[derive(Clone, Copy, Default)]
 struct Bounce {
-    /// Speed of its middle while it fell, m/s.
+    /// Speed of its middle during the fall, m/s.
     fall: Option<f32>,
     /// Steps in which it was on the floor.
     contact: u32,
-    /// Highest since then, of the lowest point of a round ball, metres.
+    /// Greatest height since then of the lowest point of a round ball, metres.
     rebound: Option<f32>,
-    /// Largest speed just before and after, m/s.
+    /// Largest speed just before and just after the bounce, m/s.
     before: f32,
     after: f32,
 }

@@ -1,4 +1,4 @@
-//! Cloth.
+//! Cloth that hangs.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -12,7 +12,7 @@ use sinew::physics::{GroupId, World};
 pub(in crate::scenes) const CLOTH: Scene = Scene {
     chapter: Chapter::Particles,
     name: "cloth",
-    about: "a cloth swings down and comes to hang by two corners, stretched by next to nothing",
+    about: "a cloth swings down and hangs by two corners with almost no stretch",
     steps: 480,
     settings: &[SIDE, MASS],
     build: |setup| {
@@ -26,12 +26,12 @@ pub(in crate::scenes) const CLOTH: Scene = Scene {
     },
 };
 
-const SIDE: Setting = Setting::whole("side", 12, (2, 100), "springs along each edge");
-const MASS: Setting = Setting::number("mass", 0.3, (0.01, 10.0), "of the cloth, kg");
+const SIDE: Setting = Setting::whole("side", 12, (2, 100), "number of springs along each edge");
+const MASS: Setting = Setting::number("mass", 0.3, (0.01, 10.0), "mass of the cloth, kg");
 /// Length of each edge, metres.
 const EDGE: f32 = 1.0;
 
-/// A square of cotton around the origin, level.
+/// A level square of cotton around the origin.
 fn level(setup: &Setup<'_>) -> Cloth {
     let side = setup.whole("side") as u32;
     let mut cloth = ClothDef {
@@ -48,14 +48,14 @@ fn level(setup: &Setup<'_>) -> Cloth {
         radius: 0.01,
     }
     .build();
-    // Parts short enough that its threads are as stiff as they should be.
+    // Enough iterations that the threads reach their full stiffness.
     cloth.group.iterations = 12;
     cloth
 }
 
 struct Held {
     cloth: GroupId,
-    /// Weight of all that it carries, itself included, N.
+    /// Weight of all that the corners carry, including the cloth, N.
     weight: f32,
 }
 
@@ -64,7 +64,7 @@ impl Script for Held {
         let cloth = world.particles(self.cloth);
         let substep = world.def().dt() / world.def().substeps as f32;
         let carried: f32 = cloth.attachment_impulses().iter().map(|p| -p.y / substep).sum();
-        // Along the threads: those across are there to give.
+        // Measure along the threads only: the diagonals are soft.
         let threads = cloth.springs().iter().enumerate().filter(|(_, s)| s.stiffness > 500.0);
         let mut stretches: Vec<f32> = threads.map(|(i, s)| cloth.stretch(i).abs() / s.rest_length).collect();
         stretches.sort_unstable_by(f32::total_cmp);

@@ -12,7 +12,7 @@ use sinew::physics::{BodyId, GroupId, Material, World};
 pub(in crate::scenes) const FOLDED: Scene = Scene {
     chapter: Chapter::Particles,
     name: "folded",
-    about: "a cloth folded five times falls on the ground and a box on it: six layers lie on each other, and none goes through another",
+    about: "a cloth folded five times falls on the ground and a box on it: its six layers do not pass through each other",
     steps: 360,
     settings: &[
         Setting::number("load", 0.2, (0.01, 10.0), "mass of the box, kg"),
@@ -20,33 +20,33 @@ pub(in crate::scenes) const FOLDED: Scene = Scene {
             "thickness",
             0.028,
             (0.0, 0.036),
-            "that the layers keep, metres; 0: they do not meet",
+            "distance between the layers, metres; 0: they do not collide",
         ),
     ],
     build: folded,
 };
 
-/// From one particle to the next, metres.
+/// Distance from one particle to the next, metres.
 const GRID: f32 = 0.02;
 const COLUMNS: u32 = 10;
-/// Springs along a layer, and up to the next.
+/// Number of springs along a layer, and up to the next layer.
 const LAYER: u32 = 12;
 const FOLD: u32 = 2;
 const FOLDS: u32 = 5;
 const ROWS: u32 = (LAYER + FOLD) * FOLDS + LAYER;
-/// kg/m².
+/// Area density of the cloth, kg/m².
 const DENSITY: f32 = 0.5;
 /// Rise of each spring along a layer as a share of its length: layers lean until they lie.
 const LEAN: f32 = 0.1;
-/// Height of the lowest particle at first, metres.
+/// Initial height of the lowest particle, metres.
 const HEIGHT: f32 = 0.1;
-/// Half of the box, metres.
+/// Half extents of the box, metres.
 const BOX: Vec3 = Vec3::new(0.08, 0.03, 0.08);
-/// Middle of the cloth, and the height of the box at first, metres.
+/// Middle of the cloth, and the initial height of the box, metres.
 const ABOVE: Vec3 = Vec3::new(0.1, 0.5, 0.12);
-/// Step after which the box lies, at whose end its pressure is measured.
+/// Step after which the box is at rest, at whose end its pressure is measured.
 const LIES: u64 = 240;
-/// Steps in which the box falls freely.
+/// Number of steps in which the box falls freely.
 const FALLS: u64 = 12;
 
 fn cloth(thickness: f32) -> Cloth {
@@ -97,11 +97,11 @@ fn folded(setup: &Setup<'_>) -> Instance {
 
 #[derive(Default)]
 struct Watch {
-    /// Number of threads that pierced the cloth, in all checked steps.
+    /// Number of threads that pierced the cloth in all checked steps.
     crossings: u32,
     /// Least distance of particles of different layers, metres.
     least: f32,
-    /// Sum over steps of the force on the box, N, and the number of these.
+    /// Sum over steps of the force on the box, N, and the number of steps.
     pressed: f32,
     steps: u32,
     /// Distance of the box's free fall before the cloth, relative to the expected one.
@@ -111,7 +111,7 @@ struct Watch {
 struct Folded {
     cloth: GroupId,
     load: BodyId,
-    /// Metres.
+    /// Distance between layers, metres.
     thickness: f32,
     /// Weight of the box, N.
     weight: f32,
@@ -125,7 +125,7 @@ fn triangles() -> impl Iterator<Item = [usize; 3]> {
     cells.flat_map(move |a| [[a, a + 1, a + wide], [a + 1, a + wide + 1, a + wide]])
 }
 
-/// Number of threads that pierce a triangle that they are no edge of.
+/// Number of threads that pierce a triangle of which they are no edge.
 fn crossings(positions: &[Vec3]) -> u32 {
     let wide = COLUMNS as usize + 1;
     let along = (0..positions.len() - wide).map(|i| [i, i + wide]);

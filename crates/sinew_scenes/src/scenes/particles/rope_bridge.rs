@@ -1,4 +1,4 @@
-//! Planks that hang on two ropes carry figures that fall on them.
+//! Figures fall on planks that hang on two ropes.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -15,23 +15,23 @@ use sinew::ragdoll::quality::random_pose;
 pub(in crate::scenes) const ROPE_BRIDGE: Scene = Scene {
     chapter: Chapter::Particles,
     name: "rope_bridge",
-    about: "two limp mannequins fall on a bridge of planks that hang on two ropes, and are borne",
+    about: "a bridge of planks on two ropes carries two limp mannequins that fall on it",
     steps: 1500,
     settings: &[
         Setting::whole("figures", 2, (0, 4), "number of mannequins"),
-        Setting::whole("first", 5, (0, 10_000), "number of the first one's pose"),
-        Setting::number("height", 0.5, (0.1, 3.0), "from their lowest points to the deck, m"),
+        Setting::whole("first", 5, (0, 10_000), "index of the first mannequin's pose"),
+        Setting::number("height", 0.5, (0.1, 3.0), "distance from their lowest points to the deck, m"),
     ],
     build: rope_bridge,
 };
 
 const PLANKS: usize = 8;
-/// From the middle of one plank to that of the next, metres.
+/// Distance from the middle of one plank to that of the next, metres.
 const SPACING: f32 = 0.6;
-/// Half of a plank, metres, and its mass, kg.
+/// Half extents of a plank, metres, and its mass, kg.
 const PLANK: Vec3 = Vec3::new(0.28, 0.03, 1.0);
 const PLANK_MASS: f32 = 15.0;
-/// Hangers are tied to a plank so far from its middle, metres.
+/// Distance from a plank's middle to its hangers, metres.
 const TIED: Vec3 = Vec3::new(0.2, 0.0, 0.95);
 /// Heights of the deck, of the ropes' middles and of their ends, metres.
 const DECK: f32 = 2.0;
@@ -40,13 +40,13 @@ const HIGH: f32 = 3.6;
 /// Stiffness of a spring that is a metre long, N (shorter ones than from plank to plank are no stiffer), and mass of each knot of the ropes, kg.
 const STIFFNESS: f32 = 4e4;
 const KNOT: f32 = 0.5;
-/// Iterations of the ropes in a substep: with many planks longer ones gain energy.
+/// Number of iterations of the ropes in a substep: with many planks longer iterations gain energy.
 const PARTS: u32 = 32;
-/// Damping of springs, as a share of the critical one for a plank's corner.
+/// Damping of the springs, as a share of the critical one for a plank's corner.
 const DAMPED: f32 = 1.0;
 /// Drag of planks and ropes, 1/s: swings decay in some seconds.
 const AIR: f32 = 1.0;
-/// Share of the weight by which a sum of pulls may be off.
+/// Tolerance of a sum of pulls, as a share of the weight.
 const BORNE: f64 = 0.005;
 
 fn rope_bridge(setup: &Setup<'_>) -> Instance {
@@ -86,7 +86,7 @@ fn middle(plank: usize) -> f32 {
     (plank as f32 - 0.5 * (PLANKS as f32 - 1.0)) * SPACING
 }
 
-/// Two ropes with hangers to the corners of the planks, and the particles that are held at the ends.
+/// Two ropes with hangers to the corners of the planks, and the particles at their fixed ends.
 fn ropes(planks: &[BodyId]) -> (GroupDef, Vec<usize>) {
     let mut group = GroupDef { iterations: PARTS, ..GroupDef::default() };
     group.filter.mask = 0;
@@ -118,7 +118,7 @@ fn ropes(planks: &[BodyId]) -> (GroupDef, Vec<usize>) {
                     let corner = Vec3::new(x, DECK, side);
                     let end = add_particle(&mut group, corner);
                     tie(&mut group, [knot, end]);
-                    // From plank to plank.
+                    // Hangers from plank to plank.
                     if let Some((_, edge)) = edge.filter(|(of, _)| *of != k) {
                         tie(&mut group, [edge, end]);
                     }
@@ -149,16 +149,16 @@ struct RopeBridge {
     planks: Vec<BodyId>,
     figures: Vec<Ragdoll>,
     ropes: GroupId,
-    /// Attachments to the world.
+    /// Particles that are attached to the world.
     held: Vec<usize>,
-    /// Weight of all that hangs, N.
+    /// Total weight of planks, ropes and figures, N.
     weight: f32,
-    /// Pull of these in each step, N.
+    /// Pull of the attached particles in each step, N.
     pulls: Vec<f64>,
     /// Centres of the planks after the last step, metres.
     places: Vec<Vec3>,
-    /// Speed of the fastest plank in each step, m/s: by its way, since velocities after a step are those with which gravity is met in
-    /// the next.
+    /// Speed of the fastest plank in each step by its displacement, m/s: velocities after a step already include the
+    /// gravity of the next.
     speeds: Vec<f32>,
 }
 

@@ -12,13 +12,13 @@ use sinew::physics::{BodyDef, BodyId, FieldDef, FieldId, FieldKind, Filter, Grou
 pub(in crate::scenes) const FLAG: Scene = Scene {
     chapter: Chapter::Particles,
     name: "flag",
-    about: "two banners lean in winds of which one is twice as fast, each by the pressure that is left on it where it leans",
+    about: "two banners lean in two winds, one twice as fast, at the angles that balance pressure and weight",
     steps: 900,
     settings: &[Setting::number(
         "wind",
         1.0,
         (0.5, 3.0),
-        "that the first one hangs in, m/s; from 3 on they flutter",
+        "wind of the first banner, m/s; from 3 on they flutter",
     )],
     build: flag,
 };
@@ -26,13 +26,13 @@ pub(in crate::scenes) const FLAG: Scene = Scene {
 /// Width and length of a banner, metres.
 const WIDE: f32 = 0.6;
 const LONG: f32 = 0.8;
-/// Springs along its edges.
+/// Number of springs along its edges.
 const COLUMNS: u32 = 9;
 const ROWS: u32 = 12;
 /// Mass, kg, and radius of each particle, metres.
 const MASS: f32 = 0.2;
 const RADIUS: f32 = 0.01;
-/// Air: kg/m³, and the drag of a sheet.
+/// Density of air, kg/m³, and the drag coefficient of a sheet.
 const AIR: f32 = 1.225;
 const DRAG: f32 = 1.2;
 
@@ -69,16 +69,15 @@ fn flag(setup: &Setup<'_>) -> Instance {
         let field = world.add_field(&FieldDef { layers: layer, ..FieldDef::new(FieldKind::Wind(air)) });
         let mut group = cloth.group;
         group.filter = filter;
-        // Damping lets it come to rest instead of swinging.
+        // The damping stops its swing.
         group.linear_damping = 1.0;
         (world.add_particles(&group), field)
     });
     Instance::new(world, Flag { banners, wind, work: 0.0 })
 }
 
-/// Slope of a flat sheet in a wind: horizontal over vertical extent. At the angle `φ` from the vertical the pressure `½ ρ C v² cos² φ`
-/// balances the weight's component across it, `μ g sin φ`.
-/// across it, `μ g sin φ`.
+/// Slope of a flat sheet in a wind: horizontal over vertical extent. At the angle `φ` from the vertical the pressure `½
+/// ρ C v² cos² φ` balances the weight's component across it, `μ g sin φ`.
 fn slope(wind: f32) -> f32 {
     let pressure = 0.5 * AIR * DRAG * wind * wind / (MASS / (WIDE * LONG) * GRAVITY);
     let sine = ((1.0 + 4.0 * pressure * pressure).sqrt() - 1.0) / (2.0 * pressure);
@@ -86,15 +85,15 @@ fn slope(wind: f32) -> f32 {
 }
 
 struct Flag {
-    /// Each with its wind.
+    /// Banners with their winds.
     banners: [(GroupId, FieldId); 2],
-    /// That the first one hangs in, m/s.
+    /// Wind of the first banner, m/s.
     wind: f32,
     /// Work of the winds, J.
     work: f32,
 }
 
-/// From the upper edge of a banner to its lower one, along the wind over down.
+/// Slope from the upper edge of a banner to its lower one: along the wind over down.
 fn lean(group: &ParticleGroup) -> f32 {
     let columns = COLUMNS as usize + 1;
     let positions = group.positions();
@@ -129,15 +128,15 @@ impl Script for Flag {
 pub(in crate::scenes) const CURTAIN: Scene = Scene {
     chapter: Chapter::Particles,
     name: "curtain",
-    about: "a ball flies through a curtain, which then hangs as it did and sleeps",
+    about: "a ball flies through a curtain, which then returns to its shape and sleeps",
     steps: 1200,
-    settings: &[Setting::number("speed", 1.5, (0.2, 4.0), "of the ball, m/s")],
+    settings: &[Setting::number("speed", 1.5, (0.2, 4.0), "speed of the ball, m/s")],
     build: curtain,
 };
 
 /// Radius of the ball, metres.
 const BALL: f32 = 0.2;
-/// kg/m³; it weighs about 5 kg, twenty times the curtain.
+/// Density of the ball, kg/m³; it weighs about 5 kg, twenty times the curtain.
 const BALL_DENSITY: f32 = 150.0;
 /// Mass of each particle of the curtain, kg.
 const GRAIN: f32 = 2e-3;
@@ -163,13 +162,13 @@ fn curtain(setup: &Setup<'_>) -> Instance {
 struct Curtain {
     curtain: GroupId,
     ball: BodyId,
-    /// Number of its particles that are held.
+    /// Number of attached particles.
     held: usize,
-    /// N.
+    /// Weight of the curtain, N.
     weight: f32,
     /// Largest depth of a particle in the ball, metres.
     deepest: f32,
-    /// Largest displacement, metres.
+    /// Largest displacement of a particle, metres.
     pushed: f32,
 }
 

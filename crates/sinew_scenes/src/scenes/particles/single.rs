@@ -1,4 +1,4 @@
-//! Particles by themselves: one that falls and bounces, one that slides, one that rests; and a thousand fast ones.
+//! Single particles: one that falls and bounces, one that slides, one that rests; and a thousand fast ones.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -12,24 +12,24 @@ use sinew::physics::{BodyDef, GroupId, Material, World};
 pub(in crate::scenes) const PARTICLE: Scene = Scene {
     chapter: Chapter::Particles,
     name: "particle",
-    about: "a particle falls and bounces, one slides down a slope, one rests, all on oriented boxes",
+    about: "on oriented boxes one particle bounces, one slides down a slope, one rests",
     steps: 120,
     settings: &[
-        Setting::number("restitution", 0.5, (0.1, 1.0), "share of the speed given back by the first"),
-        Setting::number("angle", 35.0, (30.0, 60.0), "of the slope, degrees"),
+        Setting::number("restitution", 0.5, (0.1, 1.0), "speed after the bounce over the speed before"),
+        Setting::number("angle", 35.0, (30.0, 60.0), "angle of the slope, degrees"),
     ],
     build: particle,
 };
 
 /// Radius of the particles, metres.
 const RADIUS: f32 = 0.05;
-/// Above the box, metres.
+/// Height above the box, metres.
 const HEIGHT: f32 = 2.0;
 const FRICTION: f32 = 0.5;
-/// After which the first still falls, and all is measured that needs it falling.
+/// Time after which the first still falls; measurements of its fall end then.
 const FALLING: u64 = 30;
 
-/// A particle of 1 kg that belongs to nothing.
+/// A group of one particle of 1 kg.
 fn lone(position: Vec3, velocity: Vec3) -> GroupDef {
     GroupDef {
         particles: vec![ParticleDef { position, velocity, mass: 1.0, radius: RADIUS }],
@@ -72,15 +72,15 @@ struct Three {
     falls: GroupId,
     slides: GroupId,
     rests: GroupId,
-    /// Starts of the one that slides, and of the one that rests.
+    /// Starts of the sliding and of the resting particle.
     start: Vec3,
     top: Vec3,
-    /// Degrees.
+    /// Angle of the slope, degrees.
     angle: f32,
     restitution: f32,
-    /// Speed of the first while it falls, m/s.
+    /// Speed of the first during its fall, m/s.
     speed: Option<f32>,
-    /// Its greatest height after it fell, metres.
+    /// Its greatest height after the bounce, metres.
     apex: f32,
 }
 
@@ -91,7 +91,7 @@ impl Script for Three {
         if world.step_count() == FALLING {
             self.speed = Some(-speed);
         }
-        // It strikes at √(2 h / g), 0.64 s after its start.
+        // The first impact is at √(2 h / g), 0.64 s after its start.
         if world.time() > 0.7 {
             self.apex = max(self.apex, height);
         }
@@ -100,7 +100,7 @@ impl Script for Three {
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let first = |id: GroupId| world.particles(id).positions()[0];
         let (sin, cos) = trig::sin_cos(self.angle.to_radians());
-        // Symplectic Euler takes t (t + h) / 2 for t² / 2.
+        // Symplectic Euler has `t (t + h) / 2` in place of `t² / 2`.
         let (t, h) = (world.time() as f32, world.def().dt() / world.def().substeps as f32);
         let slid = 0.5 * GRAVITY * (sin - FRICTION * cos) * t * (t + h);
         let falling = FALLING as f32 * world.def().dt() * GRAVITY;
@@ -117,16 +117,21 @@ impl Script for Three {
 pub(in crate::scenes) const FAST_PARTICLE: Scene = Scene {
     chapter: Chapter::Particles,
     name: "fast_particle",
-    about: "particles fly about at 100 m/s in a room with walls of 5 cm, and none leaves it",
+    about: "particles fly at 100 m/s in a room with walls of 5 cm, and none leaves it",
     steps: 60,
     settings: &[
-        Setting::whole("particles", 1000, (1, 10_000), "shot from the middle in all directions"),
+        Setting::whole(
+            "particles",
+            1000,
+            (1, 10_000),
+            "number of particles, shot from the middle in all directions",
+        ),
         Setting::number("speed", 100.0, (1.0, 1000.0), "m/s"),
     ],
     build: fast_particle,
 };
 
-/// From the middle of the room to its walls, and half of their thickness, metres.
+/// Distance from the middle of the room to its walls, and half of their thickness, metres.
 const ROOM: f32 = 1.0;
 const WALL: f32 = 0.025;
 /// Radius of a fast particle, metres.
@@ -134,7 +139,7 @@ const SHOT: f32 = 0.005;
 
 fn fast_particle(setup: &Setup<'_>) -> Instance {
     let mut world = setup.world();
-    // The room stands askew, so that its walls are no planes of the axes.
+    // The room is rotated, so that its walls are not perpendicular to the axes.
     let turn = tilt(30.0);
     for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
         for side in [-1.0, 1.0] {
@@ -159,7 +164,7 @@ fn fast_particle(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Room { shots, speed, furthest: 0.0 })
 }
 
-/// Direction `k` of `count` that are spread evenly: a spiral that turns by the golden angle.
+/// Direction `k` of `count` evenly distributed directions: a spiral that turns by the golden angle.
 fn spiral(k: usize, count: usize) -> Vec3 {
     let height = 1.0 - (2 * k + 1) as f32 / count as f32;
     let (sin, cos) = trig::sin_cos((k as f32 * 0.618_034) % 1.0 * core::f32::consts::TAU);
@@ -170,7 +175,7 @@ fn spiral(k: usize, count: usize) -> Vec3 {
 struct Room {
     shots: GroupId,
     speed: f32,
-    /// Beyond any wall's inner side, metres.
+    /// Largest distance beyond a wall's inner side, metres.
     furthest: f32,
 }
 

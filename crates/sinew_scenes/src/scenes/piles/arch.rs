@@ -17,11 +17,11 @@ use sinew::physics::{
 pub(in crate::scenes) const ARCH: Scene = Scene {
     chapter: Chapter::Piles,
     name: "arch",
-    about: "stones without mortar stand as an arch under blocks; its piers say that the thrust stays within the stones",
+    about: "an arch of stones without mortar stands under blocks; the forces on its piers show that the thrust stays within the stones",
     steps: 600,
     settings: &[
-        Setting::whole("stones", 15, (3, 31), "of the arch; an even number gets one more"),
-        Setting::whole("blocks", 4, (0, 10), "on top of the keystone"),
+        Setting::whole("stones", 15, (3, 31), "number of stones; an even number gets one more"),
+        Setting::whole("blocks", 4, (0, 10), "number of blocks on the keystone"),
     ],
     build,
 };
@@ -55,7 +55,7 @@ fn build(setup: &Setup<'_>) -> Instance {
 
 struct Arch {
     stand: Stand,
-    /// At −x, at +x.
+    /// The piers at −x and at +x.
     piers: [Pier; 2],
     masonry: Masonry,
 }
@@ -86,9 +86,9 @@ impl Script for Arch {
 /// Pier on which one end of an arch stands.
 #[derive(Clone, Copy)]
 struct Pier {
-    /// N.
+    /// Weight of the pier, N.
     weight: f32,
-    /// Holds it at the centre of its joint with the arch.
+    /// Joint that holds the pier at the centre of its joint with the arch.
     held: JointId,
 }
 
@@ -103,7 +103,7 @@ impl Pier {
 
     /// Reaction of the pier on the arch, about the middle of their joint.
     fn load(self, world: &World) -> Reaction {
-        // Its own weight acts right below that.
+        // The pier's own weight acts right below that point.
         let Reaction { force, torque } = world.reaction(self.held);
         Reaction { force: force - Vec3::Y * self.weight, torque }
     }
@@ -111,9 +111,9 @@ impl Pier {
 
 /// Weights of an arch, and the joints that transmit them.
 struct Masonry {
-    /// From −x to +x.
+    /// Joints from −x to +x.
     joints: Vec<Joint>,
-    /// Weights of the stones between them; with the keystone the blocks on it.
+    /// Weights of the stones between them; that of the keystone includes the blocks on it.
     weights: Vec<Weight>,
 }
 
@@ -138,7 +138,7 @@ impl Masonry {
     /// known from the first pier. At 1 the joint opens like a hinge.
     fn line_of_thrust(&self, pier: Reaction) -> f32 {
         let mut force = pier.force;
-        // About the world's z axis.
+        // Moment about the world's z axis.
         let mut moment = pier.torque.z + self.joints[0].middle.cross(force).z;
         let crossing = |joint: &Joint, force: Vec3, moment: f32| {
             let about_middle = moment - joint.middle.cross(force).z;
@@ -153,11 +153,11 @@ impl Masonry {
         farthest
     }
 
-    /// Thrust of the halves against each other: between the least and the most at which the line of thrust is within
-    /// the foot and within the keystone's joint (Heyman 1966, "The stone skeleton").
+    /// Thrust of the halves against each other: the smallest and the largest at which the line of thrust is within the
+    /// foot and within the keystone's joint (Heyman 1966, "The stone skeleton").
     ///
-    /// Half of the keystone's load `P` and the stones on this side of it turn about the foot at `p` one way, the thrust `H`
-    /// at `q` in the keystone's joint the other: `H (q − p)_y = Σ w (x − p_x) + P/2 (q − p)_x`.
+    /// The moments about the foot at `p` of half of the keystone's load `P` and of the stones on this side balance that
+    /// of the thrust `H` at `q` in the keystone's joint: `H (q − p)_y = Σ w (x − p_x) + P/2 (q − p)_x`.
     fn thrust(&self) -> Expected {
         let keystone = self.weights.len() / 2;
         let half_load = 0.5 * self.weights[keystone].newtons;

@@ -12,9 +12,9 @@ use sinew::physics::{BodyId, World};
 pub(in crate::scenes) const STACK: Scene = Scene {
     chapter: Chapter::Piles,
     name: "stack",
-    about: "boxes on top of each other, the last one let fall, stand and fall asleep",
+    about: "a stack of boxes, the last one dropped, stands and falls asleep",
     steps: 600,
-    settings: &[Setting::whole("boxes", 10, (1, 100), "height of the stack")],
+    settings: &[Setting::whole("boxes", 10, (1, 100), "number of boxes")],
     build: |setup| {
         let places = (0..setup.whole("boxes")).map(|i| Vec3::Y * (HALF * (2 * i + 1) as f32));
         standing(setup, places)
@@ -24,9 +24,9 @@ pub(in crate::scenes) const STACK: Scene = Scene {
 pub(in crate::scenes) const PYRAMID: Scene = Scene {
     chapter: Chapter::Piles,
     name: "pyramid",
-    about: "a wall of boxes, one fewer in each row, the last one let fall, stands and falls asleep",
+    about: "a wall of boxes, one fewer in each row, the last one dropped, stands and falls asleep",
     steps: 600,
-    settings: &[Setting::whole("base", 10, (1, 60), "boxes in the lowest row")],
+    settings: &[Setting::whole("base", 10, (1, 60), "number of boxes in the lowest row")],
     build: |setup| {
         let base = setup.whole("base");
         let place = |row: usize, i: usize| {
@@ -39,7 +39,7 @@ pub(in crate::scenes) const PYRAMID: Scene = Scene {
 
 /// Half a side of a box, metres.
 const HALF: f32 = 0.25;
-/// From which the last one falls, metres.
+/// Height from which the last box falls, metres.
 const DROP: f32 = 0.1;
 
 fn standing(setup: &Setup<'_>, places: impl Iterator<Item = Vec3>) -> Instance {
@@ -91,20 +91,21 @@ pub(in crate::scenes) const DOMINOES: Scene = Scene {
     steps: 360,
     settings: &[
         Setting::whole("dominoes", 20, (1, 500), "number of dominoes"),
-        Setting::number("amplitude", 40.0, (30.0, 80.0), "of the ball's swing, degrees"),
+        Setting::number("amplitude", 40.0, (30.0, 80.0), "amplitude of the ball's swing, degrees"),
     ],
     build: dominoes,
 };
 
 const DOMINO_HALF: Vec3 = Vec3::new(0.03, 0.25, 0.12);
-/// From one domino to the next, metres.
+/// Distance from one domino to the next, metres.
 const SPACING: f32 = 0.25;
 /// Radius of the ball, metres.
 const RADIUS: f32 = 0.1;
-/// Height of the ball's centre at its lowest, where it strikes, metres.
+/// Height of the ball's centre at its lowest point, where it strikes, metres.
 const STRIKE_HEIGHT: f32 = 0.4;
 const ROD: f32 = 1.0;
-/// Distance behind its lowest point at which the ball meets the first domino, metres: it is at its fastest before it strikes.
+/// Distance behind its lowest point at which the ball touches the first domino, metres: its speed is largest before the
+/// strike.
 const LATE: f32 = 0.02;
 
 fn dominoes(setup: &Setup<'_>) -> Instance {

@@ -36,10 +36,10 @@ pub(in crate::scenes) const RAIN: Scene = Scene {
     },
 };
 
-/// Boxes that fall.
+/// Falling boxes and their measurements.
 struct Rain {
     bodies: Vec<BodyId>,
-    /// Free fall of the first.
+    /// Free fall of the first box.
     flight: Flight,
 }
 
@@ -77,7 +77,7 @@ fn pile(setup: &Setup<'_>) -> Instance {
 const BODIES_OF_ONE: usize = 15;
 /// Overshoot that counts as exceeded, radians.
 const EXCEEDED: f32 = 0.1;
-/// Steps from one look at all overlaps to the next: they cost more than a step.
+/// Number of steps between two checks of all overlaps: they cost more than a step.
 const LOOK: u64 = 30;
 
 struct Pile {
@@ -86,7 +86,7 @@ struct Pile {
     /// Free fall of the first figure.
     flight: Flight,
     gap_max: f32,
-    /// Most joints beyond their limits at once.
+    /// Largest number of joints beyond their limits at the same time.
     exceeded: usize,
     penetration_max: f32,
 }
@@ -100,7 +100,7 @@ impl Pile {
         self.joints.iter().fold(0.0, |gap, &joint| max(gap, world.joint_gap(joint)))
     }
 
-    /// Overlaps of all pairs that touch, shallowest first.
+    /// Overlaps of all touching pairs, shallowest first.
     fn penetrations(&self, world: &World) -> Vec<f32> {
         let of = |&id: &BodyId| {
             world

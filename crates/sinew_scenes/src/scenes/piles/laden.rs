@@ -17,9 +17,9 @@ const SETTINGS: &[Setting] = &[
         "light",
         0.1,
         (0.001, 10.0),
-        "of the light pair and the ropes, masses of the body that bears them",
+        "mass of the light pair and of each rope, relative to the body below them",
     ),
-    Setting::number("heavy", 1.0, (0.001, 10.0), "of the heavy pair, likewise"),
+    Setting::number("heavy", 1.0, (0.001, 10.0), "mass of the heavy pair, relative to the body below it"),
 ];
 
 /// Scene of a standing structure, beside copies of it with loads.
@@ -100,7 +100,7 @@ const CHEST: f32 = 0.35;
 const PLANK: f32 = 0.1;
 
 impl Host {
-    /// With a level top, of which the last body has the edge at +x.
+    /// Host with a level top, of which the last body has the edge at +x.
     fn level(plan: Blueprint, top: Vec3, half: f32, touch: (Vec3, f32)) -> Self {
         let last = plan.bodies.len() - 1;
         let mass = mass_of(&plan, last);
@@ -122,7 +122,7 @@ impl Host {
         }
     }
 
-    /// The same structure with a load.
+    /// A copy of the structure with a load.
     fn laden(&self, setup: &Setup<'_>, load: &Load) -> Blueprint {
         let mut plan = self.plan.clone();
         (load.add)(setup, self, &mut plan);
@@ -170,7 +170,7 @@ const LOADS: [Load; 6] = [
         depth: "hanging_depth_m",
         add: |setup, host, plan| {
             let (body, at) = host.edge;
-            // Beside its support.
+            // The figure lies beside its support.
             let link = 0.5 * host.half;
             loads::hanging(plan, body, at + Vec3::X * (0.15 * link), link, setup.number("light") * host.mass);
         },
@@ -191,13 +191,13 @@ const LOADS: [Load; 6] = [
 
 fn jenga() -> Host {
     const LEVELS: usize = 18;
-    // The outer face of an odd level, half-way up the eighth.
+    // The plank touches the outer face of an odd level, half-way up the eighth.
     let touch = Vec3::new(0.0377, 0.1125, 0.0);
     Host::level(blueprint::jenga(LEVELS), Vec3::Y * (0.015 * LEVELS as f32), 0.0377, (touch, 20.0))
 }
 
 fn size_ratio() -> Host {
-    // On the largest, of 4 m.
+    // The loads lie on the largest cube, of 4 m.
     Host::level(blueprint::stack_ratio(6), Vec3::Y * 7.875, 2.0, (Vec3::new(2.0, 5.0, 0.0), 20.0))
 }
 
@@ -211,12 +211,12 @@ fn pyramid() -> Host {
     Host::level(plan, Vec3::Y * 10.0, 0.5, (Vec3::new(5.0, 0.75, 0.0), 20.0))
 }
 
-/// Things lie on the uppermost ceiling, between the two cards of the last storey, and the rope over these.
+/// Loads lie on the uppermost ceiling, between the two cards of the last storey, and the rope lies over these.
 fn cards() -> Host {
     const PAIRS: usize = 3;
     let plan = blueprint::cards(PAIRS);
     let count = plan.bodies.len();
-    // Own axes: x out of the card, y along it.
+    // Axes of a card: x out of the card, y along it.
     let pose = |place: usize| Transform::new(plan.bodies[place].position, plan.bodies[place].rotation);
     let flat = Rotation::from_axis_angle(Vec3::Z, -core::f32::consts::FRAC_PI_2);
     let half_thickness = 0.001;
@@ -243,7 +243,7 @@ fn cards() -> Host {
     Host { on_floor: true, top, half, figure: 0.13, mass, rope, edge, touch, plank: PLANK * mass, plan }
 }
 
-/// One over the sine of a leaning card's angle from the plumb line.
+/// Reciprocal sine of a leaning card's angle from the vertical.
 fn steepness(card: Transform) -> f32 {
     1.0 / max((card.rotation * Vec3::Y).x.abs(), 0.1)
 }
@@ -282,7 +282,7 @@ fn side_by_side(setup: &Setup<'_>, host: &Host) -> Instance {
 
 /// A structure and its load.
 struct Copy {
-    /// Poses in which the host's bodies belong.
+    /// Initial poses of the host's bodies.
     placed: Vec<(BodyId, Transform)>,
     load: Vec<BodyId>,
 }
@@ -299,7 +299,7 @@ impl Copy {
         self.placed.iter().fold(0.0, |worst, &(id, from)| max(worst, of(from, center(world, id))))
     }
 
-    /// Shift, sink and depth.
+    /// Largest shift, sink and depth.
     fn figures(&self, world: &World) -> [f32; 3] {
         let sink = self.worst(world, |a, b| a.translation.y - b.translation.y);
         let depth = deepest(world, self.placed.iter().map(|&(id, _)| id));
@@ -319,8 +319,8 @@ struct Laden {
     asleep: Option<f32>,
 }
 
-/// Shift, sink and depth that are always allowed for a loaded structure, metres: twice a value near zero says little. An unloaded one may
-/// shift by 5 mm in its own scene.
+/// Shift, sink and depth that are always allowed for a loaded structure, metres: twice a value near zero is no useful
+/// bar. An unloaded one may shift by 5 mm in its own scene.
 const ROOM: [f32; 3] = [0.005, 0.005, 0.001];
 
 impl Script for Laden {

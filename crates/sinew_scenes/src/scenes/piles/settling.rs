@@ -65,7 +65,7 @@ struct Settling {
     bodies: Vec<BodyId>,
     joints: Vec<JointId>,
     flight: Flight,
-    /// Steps.
+    /// Expected number of steps until all sleep.
     asleep_within: u32,
     gap_max: f32,
     /// First step after which all sleep.

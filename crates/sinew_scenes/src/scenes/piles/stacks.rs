@@ -1,4 +1,4 @@
-//! Stacks that stand, if contacts hold: heavy on light, crosswise, leaning, a hundred rows high.
+//! Stacks that stand if contacts hold: heavy on light, crosswise, leaning, a hundred rows high.
 
 use crate::blueprint::{self, Blueprint};
 use crate::framework::flight::Flight;
@@ -17,8 +17,8 @@ pub(in crate::scenes) const MASS_RATIO: Scene = Scene {
     about: "10 boxes of one size, each ten times as heavy as the one that it stands on, stay where they are",
     steps: 600,
     settings: &[
-        Setting::whole("boxes", 10, (2, 20), "height of the stack"),
-        Setting::number("ratio", 10.0, (1.0, 100.0), "of the mass of a box to that of the one below"),
+        Setting::whole("boxes", 10, (2, 20), "number of boxes"),
+        Setting::number("ratio", 10.0, (1.0, 100.0), "mass of a box over that of the one below"),
     ],
     build: |setup| {
         let boxes = setup.whole("boxes");
@@ -41,9 +41,9 @@ pub(in crate::scenes) const SIZE_RATIO: Scene = Scene {
     name: "stack_ratio",
     about: "6 boxes, each twice as large as the one that it stands on, so eight times as heavy, stay where they are",
     steps: 600,
-    settings: &[Setting::whole("boxes", 6, (2, 8), "height of the stack")],
+    settings: &[Setting::whole("boxes", 6, (2, 8), "number of boxes")],
     build: |setup| {
-        // Two slops of the lowest box, 2 % of its side.
+        // The allowed depth is two slops of the lowest box, 2 % of its side.
         let depth = 0.005;
         let bars = Bars { shift: 0.005, top_drift: 0.005, sink: 2.0 * depth, turn: 0.5, depth, asleep: SOON };
         standing(setup, &blueprint::stack_ratio(setup.whole("boxes")), bars)
@@ -55,10 +55,10 @@ pub(in crate::scenes) const JENGA: Scene = Scene {
     name: "jenga",
     about: "a tower of blocks of 75 × 25 × 15 mm, three to a level, laid crosswise, stands and falls asleep",
     steps: 600,
-    settings: &[Setting::whole("levels", 18, (1, 60), "of three blocks")],
+    settings: &[Setting::whole("levels", 18, (1, 60), "number of levels of three blocks")],
     build: |setup| {
         let levels = setup.whole("levels");
-        // Slops are 0.3 mm.
+        // The slops are 0.3 mm.
         let sink = 3e-4 * levels as f64;
         let bars = Bars { shift: 0.002, top_drift: 0.002, sink, turn: 1.0, depth: 6e-4, asleep: SOON };
         standing(setup, &blueprint::jenga(levels), bars)
@@ -70,7 +70,7 @@ pub(in crate::scenes) const CARDS: Scene = Scene {
     name: "cards",
     about: "a house of cards 0.4 m long and 2 mm thick stands and falls asleep",
     steps: 600,
-    settings: &[Setting::whole("pairs", 3, (1, 5), "leaning cards in the lowest storey, two by two")],
+    settings: &[Setting::whole("pairs", 3, (1, 5), "number of leaning pairs in the lowest storey")],
     build: |setup| {
         let bars = Bars { shift: 0.005, top_drift: 0.005, sink: 0.002, turn: 1.0, depth: 2e-4, asleep: SOON };
         standing(setup, &blueprint::cards(setup.whole("pairs")), bars)
@@ -82,7 +82,7 @@ pub(in crate::scenes) const LARGE_PYRAMID: Scene = Scene {
     name: "large_pyramid",
     about: "a wall of unit cubes side by side, one fewer in each row, stands for 1,000 steps",
     steps: 1000,
-    settings: &[Setting::whole("base", 10, (1, 100), "cubes in the lowest row")],
+    settings: &[Setting::whole("base", 10, (1, 100), "number of cubes in the lowest row")],
     build: |setup| {
         let base = setup.whole("base");
         let depth = 0.01;
@@ -95,7 +95,7 @@ pub(in crate::scenes) const LARGE_PYRAMID: Scene = Scene {
 /// Time limit for falling asleep, seconds.
 const SOON: Expected = Expected::AtMost(8.0);
 
-/// The bodies of a plan, which should stay where they are, and far away a ball that falls.
+/// The bodies of a blueprint, which should not move, and a ball that falls far away.
 fn standing(setup: &Setup<'_>, plan: &Blueprint, bars: Bars) -> Instance {
     let mut world = World::new(WorldDef { sleeping: plan.sleeping, ..setup.world_def() });
     let built = plan.build_into(&mut world);

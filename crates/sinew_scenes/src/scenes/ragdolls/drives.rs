@@ -1,4 +1,4 @@
-//! Driven ragdolls: held up, guided through a walk, hit.
+//! Driven ragdolls: held by a pin, guided through a walk, hit.
 
 use crate::framework::actors::Gone;
 use crate::framework::camera_hint::{CameraHint, Trails};
@@ -23,16 +23,16 @@ pub(in crate::scenes) const POWERED: Scene = Scene {
     name: "powered",
     about: "the mannequin, pinned by its pelvis over a stand, holds its pose with its muscles; one arm is limp",
     steps: 480,
-    settings: &[Setting::number("hertz", 5.0, (1.0, 30.0), "of its muscles")],
+    settings: &[Setting::number("hertz", 5.0, (1.0, 30.0), "frequency of its muscles, Hz")],
     build: powered,
 };
 
 pub(in crate::scenes) const HIT_REACTION: Scene = Scene {
     chapter: Chapter::Ragdolls,
     name: "hit_reaction",
-    about: "the mannequin walks on the spot, led by pins and muscles, and is hit on a hand: the arm gives way and returns",
+    about: "pins and muscles move the mannequin through a walk on the spot; a hit on a hand pushes the arm away, and it returns",
     steps: 480,
-    settings: &[Setting::number("impulse", 20.0, (0.0, 60.0), "on the hand, N·s")],
+    settings: &[Setting::number("impulse", 20.0, (0.0, 60.0), "impulse on the hand, N·s")],
     build: hit_reaction,
 };
 
@@ -46,7 +46,7 @@ fn powered(setup: &Setup<'_>) -> Instance {
     let place = Vec3::Y * STAND;
     let targets: Vec<_> = placed(&def, &bind_pose(&def), Rotation::IDENTITY, place).collect();
     let ragdoll = spawn_at(&mut world, &def, &bind_pose(&def), Rotation::IDENTITY, place, Vec3::ZERO);
-    // Behind the pelvis.
+    // The post is behind the pelvis.
     let post =
         Vec3::new(targets[0].translation.x, 0.5 * targets[0].translation.y, targets[0].translation.z - 0.4);
     world.add_body(&fixed(cuboid(Vec3::new(0.06, post.y, 0.06), post)));
@@ -74,7 +74,7 @@ struct Held {
     ragdoll: Ragdoll,
     drives: Drives,
     targets: Vec<Transform>,
-    /// Work of its drives, J.
+    /// Work of the ragdoll's drives, J.
     work: f32,
 }
 
@@ -84,13 +84,13 @@ impl Held {
         self.drives.apply(world, &self.def, &self.ragdoll, &self.targets, &still);
     }
 
-    /// Distance of a body from where it should be, metres.
+    /// Distance of a body from its target, metres.
     fn off(&self, world: &World, body: usize) -> f32 {
         let center = self.def.bodies[body].mass.center;
         (world.center_of_mass(self.ragdoll.bodies[body]) - self.targets[body].point(center)).length()
     }
 
-    /// Angle at which an upper arm hangs from straight down, degrees.
+    /// Angle of a hanging upper arm from the vertical, degrees.
     fn hang(&self, world: &World) -> f32 {
         let arm = body(&self.def, "leftUpperArm");
         let joint = self.def.joints[arm - 1];
@@ -135,7 +135,7 @@ impl Script for Held {
 
 /// Step after which the hand is hit.
 const HIT: u64 = 180;
-/// Soles so high that no foot reaches the floor, metres.
+/// Height of the soles at which no foot reaches the floor, metres.
 const AIR: f32 = 0.25;
 
 fn hit_reaction(setup: &Setup<'_>) -> Instance {
@@ -174,7 +174,7 @@ fn vertical_momentum(world: &World, ragdoll: &Ragdoll) -> f32 {
     ragdoll.bodies.iter().map(|&body| world.velocity(body).linear.y * world.mass(body).mass).sum()
 }
 
-/// A clip as bodies.
+/// Motion of a clip as poses of bodies.
 struct Walk {
     def: CharacterDef,
     walk: Clip,
@@ -192,7 +192,7 @@ impl Walk {
         bodies
     }
 
-    /// At the end of that many steps.
+    /// Target states of the bodies at the end of that many steps.
     fn states(&self, steps: u64, dt: f32) -> Vec<BodyState> {
         let time = steps as f32 * dt;
         let (before, now) = (self.bodies(time - dt), self.bodies(time));
@@ -211,16 +211,16 @@ struct Led {
     gone: Gone,
     hand: usize,
     impulse: f32,
-    /// Work of drives, J.
+    /// Work of the drives, J.
     work: f32,
     /// Sum of the pins' upward forces over the steps, N·s.
     lifted: f32,
     /// Upward momentum at the start, N·s.
     start: f32,
-    /// Largest distance of the arm from where the clip has it, metres: before the hit, in the second after it, in the last
+    /// Largest distance of the arm from the clip's pose, metres: before the hit, in the second after it, in the last
     /// second.
     arm_off: [f32; 3],
-    /// Largest distance of the thighs from where the clip has them, metres: before the hit and since.
+    /// Largest distance of the thighs from the clip's pose, metres: before the hit and since.
     legs_off: [f32; 2],
 }
 
@@ -247,7 +247,7 @@ impl Led {
         let legs = max(self.off(world, "leftUpperLeg", &wanted), self.off(world, "rightUpperLeg", &wanted));
         let seen = |all: &mut f32, now: f32| *all = max(*all, now);
         match steps {
-            // It settles into its pins.
+            // The pins pull the ragdoll into place.
             0..60 => {}
             60..=HIT => {
                 seen(&mut self.arm_off[0], arm);

@@ -19,13 +19,13 @@ pub(in crate::scenes) const POSES: Scene = Scene {
     steps: 600,
     settings: &[
         Setting::whole("poses", 6, (1, 500), "number of mannequins, each in its own pose"),
-        Setting::whole("first", 0, (0, 10_000), "number of the first pose, for a look at it alone"),
-        Setting::number("height", 1.0, (0.1, 50.0), "from their lowest points to the floor, m"),
+        Setting::whole("first", 0, (0, 10_000), "index of the first pose; with poses=1 it falls alone"),
+        Setting::number("height", 1.0, (0.1, 50.0), "distance from their lowest points to the floor, m"),
     ],
     build: poses,
 };
 
-/// From one mannequin to the next, metres: they do not meet.
+/// Distance from one mannequin to the next, metres: they do not touch.
 const APART: f32 = 6.0;
 
 fn poses(setup: &Setup<'_>) -> Instance {
@@ -43,7 +43,7 @@ fn poses(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Falls { falls, flight })
 }
 
-/// One mannequin.
+/// Fall of one mannequin.
 struct Fall {
     ragdoll: Ragdoll,
     meter: QualityMeter,
@@ -67,7 +67,7 @@ impl Fall {
 
     fn after_step(&mut self, world: &World) {
         self.meter.after_step(world, &self.ragdoll);
-        // By itself: a rise in one would be lost in the falls of all.
+        // Measure each mannequin's energy separately: a rise in one would disappear in the losses of all.
         let after = energy(world, &self.ragdoll);
         let rise = (after.kinetic - self.before.kinetic) + (after.potential - self.before.potential);
         let gain = rise / max(self.before.kinetic, self.mass);
@@ -98,7 +98,7 @@ impl Script for Falls {
         }
     }
 
-    /// The worst of all, figure by figure.
+    /// The worst figure of all mannequins.
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let all: Vec<_> = self.falls.iter().map(|fall| fall.meter.quality()).collect();
         let worst = |figure: fn(&sinew::ragdoll::FallQuality) -> f32| all.iter().map(figure).fold(0.0, max);

@@ -1,4 +1,4 @@
-//! A character falls limp down the steps of a house: on its triangles, or on the boxes that stand for it.
+//! A character falls limp down the steps of a house: on its triangles, or on boxes that replace them.
 
 use super::limp::Limp;
 use crate::framework::instance::Instance;
@@ -11,26 +11,31 @@ use sinew::physics::cook::{CookOptions, cook};
 use sinew::physics::{BodyDef, BodyKind, NearestToShape, Probe, Shape, ShapeDef, World};
 use sinew::ragdoll::RagdollDef;
 
-/// Not listed: it is about files that are not ours.
+/// Not listed, because it needs external files.
 pub(in crate::scenes) const HOUSE: Scene = Scene {
     chapter: Chapter::Ragdolls,
     name: "house",
-    about: "a character runs out of a house's door, limp, and falls down its steps",
+    about: "a limp character moves out of a house's door and falls down its steps",
     steps: 720,
     settings: &[
         Setting::level("file", "the house, a GLB or OBJ; its door leads along +z"),
-        Setting::character("rig", "who falls: a GLB; without it the mannequin"),
-        Setting::whole("mesh", 1, (0, 1), "1: the house's triangles; 0: boxes that stand for them"),
-        Setting::number("scale", 3.0, (0.01, 100.0), "of the house, metres for each of the file's units"),
-        Setting::number("height", 0.2, (0.0, 100.0), "of the place where it starts, in the file's units"),
+        Setting::character("rig", "the falling character, a GLB; without it the mannequin"),
+        Setting::whole("mesh", 1, (0, 1), "1: the house's triangles; 0: boxes in their place"),
+        Setting::number(
+            "scale",
+            3.0,
+            (0.01, 100.0),
+            "scale of the house, metres for each of the file's units",
+        ),
+        Setting::number("height", 0.2, (0.0, 100.0), "height of the start, in the file's units"),
         Setting::number(
             "forward",
             1.03,
             (-100.0, 100.0),
-            "of that place along z, in the file's units, or farther if it is wide",
+            "position of the start along z, in the file's units; farther for a wide character",
         ),
-        Setting::number("speed", 2.0, (0.0, 10.0), "with which it leaves the door, m/s"),
-        Setting::number("impulse", 60.0, (0.0, 500.0), "push forward on its chest as it falls, N·s"),
+        Setting::number("speed", 2.0, (0.0, 10.0), "speed in the door, m/s"),
+        Setting::number("impulse", 60.0, (0.0, 500.0), "forward push on its chest during the fall, N·s"),
     ],
     build: house,
 };
@@ -56,8 +61,8 @@ fn house(setup: &Setup<'_>) -> Instance {
     Instance::new(world, limp)
 }
 
-/// The first place from `place` on along +z where a character in its bind pose has room about it: wide ones would start with
-/// their arms in the jambs. If there is none within 2 m, `place` itself.
+/// The first place from `place` on along +z where a character in its bind pose has room around it: the arms of a wide
+/// one would start in the jambs. If there is none within 2 m, `place` itself.
 fn out_of_the_door(world: &World, def: &RagdollDef, place: Vec3) -> Vec3 {
     const ROOM: f32 = 0.03;
     const STRIDE: f32 = 0.05;

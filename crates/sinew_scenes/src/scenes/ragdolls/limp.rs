@@ -18,9 +18,9 @@ pub(in crate::scenes) const DROP: Scene = Scene {
     about: "the mannequin falls limp on the floor and comes to rest",
     steps: 600,
     settings: &[
-        Setting::number("height", 1.0, (0.1, 50.0), "from its lowest point to the floor, m"),
+        Setting::number("height", 1.0, (0.1, 50.0), "distance from its lowest point to the floor, m"),
         Setting::number("pitch", 25.0, (-180.0, 180.0), "leaning forward, degrees"),
-        Setting::number("roll", 0.0, (-180.0, 180.0), "leaning to its right, degrees"),
+        Setting::number("roll", 0.0, (-180.0, 180.0), "lean to its right, degrees"),
     ],
     build: drop,
 };
@@ -28,7 +28,7 @@ pub(in crate::scenes) const DROP: Scene = Scene {
 pub(in crate::scenes) const WALL: Scene = Scene {
     chapter: Chapter::Ragdolls,
     name: "ragdoll_wall",
-    about: "the mannequin is thrown at a wall: nothing stretches, nothing explodes",
+    about: "the mannequin is thrown at a wall: no joint stretches, no body flies away",
     steps: 480,
     settings: &[speed_to_wall(15.0)],
     build: wall,
@@ -44,20 +44,20 @@ pub(in crate::scenes) const WALL_FAST: Scene = Scene {
 };
 
 const fn speed_to_wall(default: f32) -> Setting {
-    Setting::number("speed", default, (1.0, 60.0), "toward the wall, m/s")
+    Setting::number("speed", default, (1.0, 60.0), "speed toward the wall, m/s")
 }
 
-/// Up to which the stricter limits of the specification hold, m/s.
+/// Largest speed for which the stricter limits of the specification hold, m/s.
 const WALL_SPEED: f32 = 15.0;
 
 pub(in crate::scenes) const STAIRS: Scene = Scene {
     chapter: Chapter::Ragdolls,
     name: "stairs",
-    about: "the mannequin runs out onto the cabin's stairs, limp, and is pushed in the back",
+    about: "the limp mannequin moves out onto the cabin's stairs and is pushed in the back",
     steps: 900,
     settings: &[
-        Setting::number("speed", 2.5, (0.0, 10.0), "with which it leaves the porch, m/s"),
-        Setting::number("impulse", 100.0, (0.0, 500.0), "push forward on its chest as it falls, N·s"),
+        Setting::number("speed", 2.5, (0.0, 10.0), "speed at the edge of the porch, m/s"),
+        Setting::number("impulse", 100.0, (0.0, 500.0), "forward push on its chest during the fall, N·s"),
     ],
     build: stairs,
 };
@@ -88,7 +88,7 @@ fn stairs(setup: &Setup<'_>) -> Instance {
     for prop in Site::CabinWithStairs.props() {
         world.add_body(&prop.body);
     }
-    // A hand's breadth off the boards, at the edge.
+    // The start is a hand's breadth above the boards, at the edge.
     let edge = Vec3::new(0.0, PORCH_HEIGHT + 0.1, -0.3);
     let speed = Vec3::Z * setup.number("speed");
     let mut limp = Limp::spawn(&mut world, Rotation::IDENTITY, edge, speed);
@@ -127,9 +127,9 @@ pub(in crate::scenes) struct Limp {
     ragdoll: Ragdoll,
     meter: QualityMeter,
     flight: Flight,
-    /// On the chest, N·s, at [`PUSH_STEP`].
+    /// Push on the chest, N·s, at [`PUSH_STEP`].
     pub push: Vec3,
-    /// Longest that it may take to fall asleep, seconds.
+    /// Longest time until it sleeps, seconds.
     pub asleep_within: f64,
     requirements: Requirements,
     lowest: f32,
@@ -139,19 +139,19 @@ pub(in crate::scenes) struct Limp {
     left: Option<f32>,
 }
 
-/// Duration of a hit's energy loss, seconds.
+/// Duration of the energy loss in a hit, seconds.
 const IMPACT: f32 = 0.1;
 /// Step of the push, during the stumble.
 const PUSH_STEP: u64 = 12;
 
 impl Limp {
-    /// The mannequin in its bind pose, turned about its soles and moving as one, its lowest point at the height of
-    /// `place`.
+    /// The mannequin in its bind pose, rotated about its soles and moving as one rigid piece, with its lowest point at
+    /// the height of `place`.
     fn spawn(world: &mut World, turn: Rotation, place: Vec3, speed: Vec3) -> Self {
         Self::spawn_of(ragdoll_of_mannequin(), world, turn, place, speed)
     }
 
-    /// Another character, put down as [`spawn`](Self::spawn) does.
+    /// Adds another character as [`spawn`](Self::spawn) does.
     pub fn spawn_of(def: RagdollDef, world: &mut World, turn: Rotation, place: Vec3, speed: Vec3) -> Self {
         let ragdoll = spawn_at(world, &def, &bind_pose(&def), turn, place, speed);
         let mut meter = QualityMeter::new(&def, 10.0);

@@ -1,4 +1,4 @@
-//! MuJoCo's humanoid, limp: dropped on its face and on its back, to rest where MuJoCo lets it rest.
+//! MuJoCo's humanoid falls limp on its face and on its back, and must come to rest as in MuJoCo.
 
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
@@ -17,8 +17,8 @@ pub(in crate::scenes) const DROP: Scene = Scene {
     steps: 600,
     settings: &[
         Setting::model("file", "the humanoid, or another model in MJCF"),
-        Setting::whole("pose", 0, (0, 2), "1 on its face, 2 on its back, 0 both beside each other"),
-        Setting::number("height", 1.0, (0.0, 50.0), "above the pose in the file, m"),
+        Setting::whole("pose", 0, (0, 2), "1: on its face, 2: on its back, 0: both beside each other"),
+        Setting::number("height", 1.0, (0.0, 50.0), "height above the pose in the file, m"),
     ],
     build: drop,
 };
@@ -26,13 +26,13 @@ pub(in crate::scenes) const DROP: Scene = Scene {
 /// A keyframe to start from.
 struct Start {
     keyframe: &'static str,
-    /// Height of the centre of mass at rest, metres: MuJoCo 4.0.0 after 10 s, in which its soft friction lets the figure
-    /// creep. Told not to slip (stiff contacts, `noslip_iterations`) it rests at 0.082 and 0.090.
+    /// Height of the centre of mass at rest, metres: MuJoCo 4.0.0 after 10 s, in which its soft friction lets the
+    /// figure creep. Without slip (stiff contacts, `noslip_iterations`) it rests at 0.082 and 0.090.
     rest_height: f64,
     names: Names,
 }
 
-/// Names of the figures of a start.
+/// Names of the figures for a start.
 struct Names {
     rest_height: &'static str,
     asleep: &'static str,
@@ -75,7 +75,7 @@ const STARTS: [Start; 2] = [
     },
 ];
 
-/// From one figure to the next, metres.
+/// Distance from one figure to the next, metres.
 const APART: f32 = 3.0;
 
 fn drop(setup: &Setup<'_>) -> Instance {
@@ -97,7 +97,7 @@ fn drop(setup: &Setup<'_>) -> Instance {
 #[derive(Clone, Copy, PartialEq)]
 enum Ground {
     Keep,
-    /// There is a floor already, and a second one in the same place would push everything twice.
+    /// There is a floor already, and contacts with a second one in the same place would push twice.
     Remove,
 }
 
@@ -114,7 +114,7 @@ struct Figure {
 }
 
 impl Figure {
-    /// Returns the pose of its keyframe, or of the file if it has none of that name, moved by `aside`.
+    /// Returns the pose of the keyframe, or of the file if it has none of that name, moved by `aside`.
     fn spawn(
         world: &mut World,
         model: &MjcfModel,
@@ -158,7 +158,7 @@ impl Figure {
         self.bodies.iter().fold(0.0, |deepest, &body| max(deepest, world.penetration(body)))
     }
 
-    /// Height of the centre of mass of the whole, metres.
+    /// Height of the centre of mass of the whole figure, metres.
     fn height(&self, world: &World) -> f32 {
         let mass = |body: &BodyId| world.mass(*body).mass;
         let moment: f32 = self.bodies.iter().map(|body| mass(body) * world.center_of_mass(*body).y).sum();
@@ -191,7 +191,7 @@ fn p99(values: &[f32]) -> f32 {
 
 struct Fallen {
     figures: Vec<Figure>,
-    /// Free fall of the first.
+    /// Free fall of the first figure.
     flight: Flight,
 }
 

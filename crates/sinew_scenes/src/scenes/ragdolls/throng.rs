@@ -22,19 +22,19 @@ pub(in crate::scenes) const CROWD: Scene = Scene {
     steps: 900,
     settings: &[
         Setting::whole("n", 12, (1, 2_000), "number of mannequins"),
-        Setting::whole("waves", 3, (1, 100), "in which they are hit, 1.5 s apart"),
-        Setting::number("impulse", 70.0, (0.0, 500.0), "of a hit, N·s"),
+        Setting::whole("waves", 3, (1, 100), "number of waves of hits, 1.5 s apart"),
+        Setting::number("impulse", 70.0, (0.0, 500.0), "impulse of a hit, N·s"),
     ],
     build: crowd,
 };
 
-/// From one character to the next at the start, metres.
+/// Distance from one character to the next at the start, metres.
 const SPACING: f32 = 0.9;
-/// Time of the first wave, and time from one to the next, seconds.
+/// Time of the first wave, and time between waves, seconds.
 const FIRST_HIT: f32 = 0.75;
 const BETWEEN_WAVES: f32 = 1.5;
-/// Longest time from the hit until it is up, seconds. A body under others has six to come to rest, one and a half to be rolled over, and
-/// three to get up.
+/// Longest time from the hit until it is up, seconds. A body under others has six seconds to come to rest, one and a
+/// half for the roll, and three for the get-up.
 const UP_WITHIN: f64 = 10.6;
 /// States in the order of updates, with the names of their cost figures.
 const STATES: [(State, &str); 4] = [
@@ -44,7 +44,7 @@ const STATES: [(State, &str); 4] = [
     (State::GettingUp, "getting_up"),
 ];
 
-/// Rows of characters that all walk about the same way, each pushed forward or back, and a little aside.
+/// Rows of characters that all walk in about the same direction, each pushed forward or back, and a little sideways.
 fn crowd(setup: &Setup<'_>) -> Instance {
     let mut world = setup.world();
     world.add_body(&floor());
@@ -80,7 +80,7 @@ fn crowd(setup: &Setup<'_>) -> Instance {
 /// A member of the crowd.
 struct Member {
     character: Character,
-    /// N·s.
+    /// Impulse of its hit, N·s.
     hit: Vec3,
     /// Step after which it is hit.
     hit_at: u64,
@@ -91,7 +91,7 @@ struct Member {
 }
 
 impl Member {
-    /// Updates its joints for pictures.
+    /// Updates the joints for pictures.
     fn show(&mut self) {
         let character = &self.character;
         local_to_model(
@@ -107,9 +107,9 @@ struct Throng {
     def: Arc<CharacterDef>,
     chest: usize,
     members: Vec<Member>,
-    /// At the start of the step.
+    /// States at the start of the step.
     states: Vec<State>,
-    /// Steps that characters have spent in each of [`STATES`].
+    /// Number of steps that characters have spent in each of [`STATES`].
     spent: [u32; 4],
     most_bodies: u32,
     work_in: f32,

@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub(in crate::scenes) const CABIN: Scene = Scene {
     chapter: Chapter::Shows,
     name: "cabin",
-    about: "balls rain on the cabin's boxes, or with mesh=1 on its render mesh: how far apart, and how fast",
+    about: "balls rain on the cabin's boxes, or with mesh=1 on its render mesh, to compare gaps and speeds",
     steps: 300,
     settings: &[
         Setting::whole("mesh", 0, (0, 1), "1: the balls meet the render mesh instead of the boxes"),
@@ -27,13 +27,13 @@ pub(in crate::scenes) const CABIN: Scene = Scene {
 
 /// Radius of a ball, metres.
 const RADIUS: f32 = 0.08;
-/// Lowest ball at the start, metres: above the ridge.
+/// Initial height of the lowest ball, metres: above the ridge.
 const HEIGHT: f32 = 8.0;
-/// Steps for which all of them fall freely, at least.
+/// Least number of steps for which all balls fall freely.
 const FALLING: u64 = 6;
-/// A ball within this of a box rests on it or has just hit it, metres.
+/// Distance from a box at which a ball rests on it or has just hit it, metres.
 const TOUCHING: f32 = 1e-3;
-/// Steps between looks at contacts.
+/// Number of steps between two checks of contacts.
 const LOOK_EVERY: u64 = 10;
 
 fn cabin(setup: &Setup<'_>) -> Instance {
@@ -63,12 +63,12 @@ fn level(triangles: &[[Vec3; 3]]) -> BodyDef {
     fixed(body(Shape::Mesh(Arc::new(mesh)), Vec3::ZERO))
 }
 
-/// Balls of 100 g in layers, in a pattern that repeats after none of its sides.
+/// Balls of 100 g in layers, in a pattern whose period matches no side of the cabin.
 fn rain(count: usize) -> GroupDef {
     const ACROSS: usize = 10;
     let ball = |i: usize| {
         let (row, column, layer) = (i / ACROSS % ACROSS, i % ACROSS, i / (ACROSS * ACROSS));
-        // Golden-ratio steps keep layers from falling onto the same places.
+        // Golden-ratio shifts keep layers from falling onto the same places.
         let shift = 0.618_034 * layer as f32;
         let (x, z) = (row as f32 + shift % 1.0, column as f32 + 1.7 * shift % 1.0);
         let position = Vec3::new(0.62 * x - 3.0, HEIGHT + 0.5 * layer as f32, 0.95 * z - 7.0);
@@ -93,12 +93,12 @@ fn render_mesh(props: &[Prop], detail: usize) -> Vec<[Vec3; 3]> {
 /// Largest radius of an edge of the render mesh, metres.
 const ROUNDING: f32 = 0.03;
 
-/// The surface of a box whose edges are rounded, by `bands` of facets over each half of an edge.
+/// The surface of a box with rounded edges, with `bands` of facets over each half of an edge.
 fn rounded_box(half: Vec3, bands: usize, mut out: impl FnMut([Vec3; 3])) {
     let thin = sinew::math::min(half.x, sinew::math::min(half.y, half.z));
     let radius = sinew::math::min(ROUNDING, 0.4 * thin);
     let core = half - Vec3::splat(radius);
-    // Along a side of a face: over one edge, across the flat, over the other.
+    // Points along a side of a face: over one edge, across the flat part, over the other edge.
     let along = |i: usize| match i <= bands {
         true => (-1.0, i as f32 / bands as f32 - 1.0),
         false => (1.0, (i - bands - 1) as f32 / bands as f32),
@@ -123,7 +123,7 @@ fn rounded_box(half: Vec3, bands: usize, mut out: impl FnMut([Vec3; 3])) {
     }
 }
 
-/// Comparison of the mesh with the boxes where balls touch these.
+/// Comparison of the mesh with the boxes at the balls that touch the boxes.
 #[derive(Default)]
 struct Contacts {
     count: u32,
@@ -137,13 +137,13 @@ struct Contacts {
 struct Rain {
     balls: GroupId,
     mesh: MeshBvh,
-    /// Mean acceleration at first, m/s².
+    /// Mean acceleration of the free fall, m/s².
     fall: Option<f32>,
     contacts: Contacts,
 }
 
 impl Rain {
-    /// The closest box, how far a ball is from it, and the way out of it.
+    /// The closest box, the distance of a ball from it, and the direction out of it.
     fn closest_box(world: &World, p: Vec3) -> Option<(f32, Vec3)> {
         let shapes = world.body_ids().flat_map(|id| world.shapes(id));
         let boxes = shapes.filter(|(shape, _)| matches!(shape, Shape::Box { .. }));
@@ -181,7 +181,7 @@ impl Script for Rain {
         let Contacts { count, gap_sum, gap_max, angle_sum } = self.contacts;
         let mean = |sum: f32| (count > 0).then(|| sum / count as f32);
         let through = world.particles(self.balls).positions().iter().filter(|p| p.y < 0.0).count();
-        // At a corner: the sharp one stands out by (√3 − 1) radii of the rounding.
+        // The sharp corner extends beyond the rounded one by (√3 − 1) radii of the rounding.
         let corner = (3.0_f32.sqrt() - 1.0) * ROUNDING + TOUCHING;
         vec![
             Metric::awaited("fall_m_s2", self.fall, Expected::near(GRAVITY, 1e-3)),

@@ -14,7 +14,7 @@ use sinew::physics::{BodyId, Corrections, ObjectId, PhysicsObject, World};
 pub(in crate::scenes) const FRAME_RATES: Scene = Scene {
     chapter: Chapter::Shows,
     name: "frame_rates",
-    about: "a world at 24, 30, 60 and 144 frames a second and at uneven ones: the same bits after every second",
+    about: "a world gives the same bits after every second at 24, 30, 60, 144 and at uneven frames per second",
     steps: 240,
     settings: &[],
     build: frame_rates,
@@ -35,7 +35,7 @@ fn frame_rates(setup: &Setup<'_>) -> Instance {
     Instance::new(world, FrameRates { dropped, compared: 0, stepped: crowd(setup).0, others })
 }
 
-/// The ball falls from here, m.
+/// Initial height of the ball, m.
 const DROP: f32 = 100.0;
 
 /// Bodies of several kinds, and a ball that falls past them.
@@ -71,13 +71,13 @@ enum Frames {
     Uneven(Random),
 }
 
-/// The same world at another frame rate.
+/// A copy of the world at another frame rate.
 struct Other {
     /// Name of its figure.
     name: &'static str,
     frames: Frames,
     world: World,
-    /// Time that it was given.
+    /// Total time of its frames.
     time: Duration,
     /// Number of times that its state differed.
     differed: u32,
@@ -88,7 +88,8 @@ impl Other {
         Self { name, frames, world, time: Duration::ZERO, differed: 0 }
     }
 
-    /// Advances frame by frame; the last frame is as long as needed, so that no time is left over, which would be part of the state.
+    /// Advances frame by frame. The last frame is as long as needed, because a remaining time would be part of the
+    /// state.
     fn advance(&mut self, until: Duration) {
         while self.time < until {
             let frame = match &mut self.frames {
@@ -106,7 +107,7 @@ struct FrameRates {
     dropped: BodyId,
     /// Number of times that states were compared.
     compared: u32,
-    /// The world stepped without frames.
+    /// The world in single steps without frames.
     stepped: World,
     others: Vec<Other>,
 }
@@ -143,7 +144,7 @@ impl Script for FrameRates {
 pub(in crate::scenes) const TAUTOCHRONE: Scene = Scene {
     chapter: Chapter::Shows,
     name: "tautochrone",
-    about: "beads on cycloids, wires of a kind of the user's own: as fast down from any height",
+    about: "beads on cycloids, wires defined by the user, take the same time down from any height",
     steps: 600,
     settings: &[],
     build: |setup| {
@@ -163,20 +164,21 @@ const CIRCLE: f32 = 0.25;
 /// Radius of a bead, metres.
 const BEAD: f32 = 0.03;
 
-/// Cycloids side by side along z, open upwards, with a bead on each; a wire is neither a shape nor a joint of the engine.
+/// Cycloids side by side along z, open upwards, with a bead on each; a wire is neither a shape nor a joint of the
+/// engine.
 struct Wire {
     beads: Vec<OnWire>,
 }
 
 struct OnWire {
     id: BodyId,
-    /// Angle by which the circle has rolled from the bottom, radians: where on the wire the bead was last.
+    /// Angle by which the circle has rolled from the bottom, radians: the last position of the bead on the wire.
     rolled: f32,
     z: f32,
 }
 
 impl OnWire {
-    /// `r (φ + sin φ)`, `r (1 − cos φ)`.
+    /// Point of the cycloid: `r (φ + sin φ)`, `r (1 − cos φ)`.
     fn place(&self) -> Vec3 {
         let (sin, cos) = trig::sin_cos(self.rolled);
         Vec3::new(CIRCLE * (self.rolled + sin), CIRCLE * (1.0 - cos), self.z)
@@ -187,8 +189,8 @@ impl OnWire {
         Vec3::new(1.0 + cos, sin, 0.0) * CIRCLE
     }
 
-    /// Rolls to the position at which a place meets the wire along the normal of the bead's old position (SHAKE; with the normal of the new
-    /// one it would lose energy in every bend), by Newton's method.
+    /// Rolls to the point at which the line through a place along the normal of the bead's old position crosses the
+    /// wire, by Newton's method (SHAKE; with the normal of the new position the bead would lose energy in every bend).
     fn follow(&mut self, place: Vec3) {
         let came = self.tangent();
         for _ in 0..4 {
@@ -249,11 +251,11 @@ struct Bead {
     /// Energy at the start, and the farthest it was from that, J.
     start: f32,
     drift: f32,
-    /// x one step ago.
+    /// Position along x in the last step.
     before: f32,
     /// Times of the first and the last pass through the bottom toward −x, s.
     passes: Option<(f64, f64)>,
-    /// Periods between them.
+    /// Number of periods between them.
     periods: u32,
 }
 

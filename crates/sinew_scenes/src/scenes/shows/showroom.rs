@@ -17,20 +17,21 @@ pub(in crate::scenes) const SHOWROOM: Scene = Scene {
     about: "one of every shape falls on a half-space, a box, a mesh and a height field, and rests at its height",
     steps: 300,
     settings: &[
-        Setting::number("drop", 0.2, (0.15, 5.0), "from above where it would be at rest, m"),
-        Setting::number("tilt", 20.0, (0.0, 30.0), "from how it would be at rest, degrees"),
+        Setting::number("drop", 0.2, (0.15, 5.0), "initial height above the rest pose, m"),
+        Setting::number("tilt", 20.0, (0.0, 30.0), "initial angle from the rest pose, degrees"),
     ],
     build,
 };
 
-/// Half the side of a floor, and from the middle of one to that of a neighbour, metres.
+/// Half the side of a floor, and the distance between the middles of neighbouring floors, metres.
 const HALF_SIDE: f32 = 3.0;
 const NEXT_FLOOR: f32 = 6.5;
-/// From one body to its neighbour on a floor, metres: they stand on corners, edges and inside of triangles of 1 m.
+/// Distance between neighbouring bodies on a floor, metres: some are on corners, some on edges, some inside of
+/// triangles of 1 m.
 const NEXT_BODY: f32 = 1.5;
-/// From a floor up to the next one, metres.
+/// Height difference from a floor to the next one, metres.
 const STAIR: f32 = 0.5;
-/// Material that stops rolling bodies: where they stop has no closed form.
+/// Material that stops rolling bodies, because their way has no closed form.
 const SURFACE: Material = Material { friction: 0.6, restitution: 0.0, rolling: 0.05, ..Material::DEFAULT };
 
 fn build(setup: &Setup<'_>) -> Instance {
@@ -55,7 +56,7 @@ fn build(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Showroom { floors, flight, asleep: None })
 }
 
-/// Names of figures, and of each a floor whose surface is at the height of the origin.
+/// Names of figures, and for each a floor whose surface is at the height of the origin.
 fn grounds() -> [(&'static str, BodyDef); 4] {
     let flat = Waves { cells: (2.0 * HALF_SIDE) as usize, height: 0.0, frequencies: [0.0; 2] };
     let half_extents = Vec3::new(HALF_SIDE, 0.25, HALF_SIDE);
@@ -68,7 +69,7 @@ fn grounds() -> [(&'static str, BodyDef); 4] {
     ]
 }
 
-/// A shape, its rest orientation, and the height of its centre of mass then, metres.
+/// A shape, its rest orientation, and the rest height of its centre of mass, metres.
 struct Exhibit {
     shape: Shape,
     lies: Rotation,
@@ -85,7 +86,7 @@ fn exhibits() -> [Exhibit; 7] {
     let half_extents = Vec3::new(0.35, 0.2, 0.3);
     let radius_top = 0.15;
     let tapered = Shape::TaperedCapsule { half_height, radius_bottom: radius, radius_top };
-    // Of the way from the lower ball to the upper one.
+    // Share of the way from the lower ball to the upper one.
     let share = 0.5 + 0.5 * tapered.mass_properties(1.0).center.y / half_height;
     let reach = 0.4;
     let corners: Vec<Vec3> = Vec3::AXES.into_iter().flat_map(|axis| [axis * reach, axis * -reach]).collect();
@@ -113,7 +114,7 @@ struct Floor {
 struct Showroom {
     floors: Vec<Floor>,
     flight: Flight,
-    /// Seconds.
+    /// Time at which the floor's bodies fell asleep, seconds.
     asleep: Option<f32>,
 }
 

@@ -19,7 +19,7 @@ const STUCK: u32 = 480;
 const LIES: f32 = 0.3;
 /// Distance from a standing character to a pelvis that leaves room to get up, metres.
 const ROOM_TO_RISE: f32 = 0.6;
-/// Visible depth, metres.
+/// Depth from which an overlap is visible, metres.
 const SEEN: f64 = 0.02;
 
 /// Record of one character from step to step.
@@ -93,10 +93,10 @@ impl Watched {
     }
 }
 
-/// Figures of all.
+/// Figures of all characters.
 #[derive(Default)]
 pub(super) struct Watch {
-    /// Fixed bodies: floor, walls, stairs.
+    /// Static bodies: floor, walls, stairs.
     stands: Vec<BodyId>,
     /// Counts and sizes, in the order of [`COUNTS`] and [`SIZES`].
     counts: [u32; COUNTS.len()],
