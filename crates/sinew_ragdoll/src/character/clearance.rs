@@ -108,6 +108,7 @@ impl LimbChain {
         let Step { from, far, along, over } = steps?[foot];
         // A lying leg has no sole that could slide; lifting its foot would press the knee into the floor.
         let stands = from.rotation * (def.bind()[self.bones.end].to_rigid().rotation.inverse() * Vec3::Y);
+        // It is still up when it is there.
         let is_over = along >= 1.0 && over <= 0.0;
         if is_over || from == to || stands.y < STEPS_FROM {
             return None;

@@ -2,7 +2,7 @@
 
 use crate::actor::{shared, walker};
 use crate::in_world::{level, run};
-use sinew_math::{Transform, Vec3, max};
+use sinew_math::{Transform, Vec3, max, min};
 use sinew_physics::ray::Ray;
 use sinew_physics::{BodyDef, Shape, World};
 use sinew_ragdoll::{
@@ -365,4 +365,36 @@ fn character_turns_to_its_heading_while_getting_up() {
     }
     let [free, facing] = speeds;
     assert!(facing < 1.2 * free + 0.5, "{facing} m/s while turning, {free} without");
+}
+
+/// Hit bodies waited for one step when the clips took them back, and covered the way of two in the next.
+#[test]
+fn hit_bodies_go_on_at_the_end_of_a_flinch() {
+    let def = shared(walker());
+    let hand = def.body_named("rightHand").expect("it has a hand");
+    let (mut world, mut character) = walking(&def);
+    let mut fastest_led = 0.0;
+    for _ in 0..60 {
+        run(&mut world, &mut character, 1);
+        let speed = world.velocity(character.bodies()[hand]).linear.length();
+        fastest_led = max(fastest_led, speed);
+    }
+    for round in 0..12 {
+        character.hit(&mut world, hand, Vec3::new(0.0, 0.0, 4.0));
+        run(&mut world, &mut character, 30 + round);
+        while character.state() == State::Flinching {
+            run(&mut world, &mut character, 1);
+        }
+        let mut slowest = f32::INFINITY;
+        for _ in 0..3 {
+            let speed = world.velocity(character.bodies()[hand]).linear.length();
+            slowest = min(slowest, speed);
+            assert!(
+                speed < 1.5 * fastest_led + 0.5,
+                "a hand at {speed} m/s, led at {fastest_led} m/s at most"
+            );
+            run(&mut world, &mut character, 1);
+        }
+        assert!(slowest > 0.0, "it never stops for a step");
+    }
 }

@@ -2,8 +2,8 @@
 
 use crate::actor::{armed_walker, floor, shared, walker};
 use sinew_anim::local_to_model;
-use sinew_math::{Affine, Reader, Transform, Vec3, Writer, max, min};
-use sinew_physics::{World, WorldDef};
+use sinew_math::{Affine, Reader, Rotation, Transform, Vec3, Writer, max, min};
+use sinew_physics::{BodyDef, Shape, World, WorldDef};
 use sinew_ragdoll::quality::{RisingQuality, measure_rising};
 use sinew_ragdoll::skin::Stage;
 use sinew_ragdoll::{BakeHit, BakeInput, Baked, Character, GroundContact, SkinMeter, State, Verdict, bake};
@@ -124,4 +124,38 @@ fn rising_character_survives_a_snapshot() {
         other.update(&mut copy);
         assert_eq!(hero.pose(), other.pose());
     }
+}
+
+/// Arms passed through a step beside the body, because only the floor of the clip kept them up.
+#[test]
+fn arms_rise_over_a_step_beside_the_body() {
+    let mut def = walker();
+    def.ground_contact = GroundContact::Enforced;
+    let def = shared(def);
+    let body = |role: &str| def.body_named(role).expect("it has arms and a chest");
+    let arms = ["leftHand", "rightHand", "leftLowerArm", "rightLowerArm"].map(body);
+    let mut readings = 0;
+    for side in 0..8 {
+        let turn = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_4 * side as f32);
+        let mut world = World::new(WorldDef::default());
+        world.add_body(&floor());
+        let step = world.add_body(&BodyDef {
+            position: turn * Vec3::Z * 1.2 + Vec3::Y * 0.1,
+            rotation: turn,
+            ..BodyDef::fixed(Shape::Box { half_extents: Vec3::new(1.5, 0.1, 0.6) })
+        });
+        let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+        character.hit(&mut world, body("chest"), turn * Vec3::Z * 90.0);
+        for _ in 0..600 {
+            world.step();
+            character.update(&mut world);
+            if character.state() == State::GettingUp {
+                let is_deep = |&&arm: &&usize| world.overlap(character.bodies()[arm], step) > 0.05;
+                readings += arms.iter().filter(is_deep).count();
+            }
+        }
+    }
+    println!("{readings} readings of arms deeper than 5 cm in the step");
+    // 107 before.
+    assert!(readings <= 80, "{readings} readings of arms deeper than 5 cm in the step");
 }

@@ -186,7 +186,7 @@ impl Tally {
                     break;
                 }
                 Err([to, from]) => {
-                    stuck = Some(format!("stuck at {} on the way from {from} to {to}", walker.feet()))
+                    stuck = Some(format!("stuck at {} on the way from {from} to {to}", walker.feet()));
                 }
             }
         }

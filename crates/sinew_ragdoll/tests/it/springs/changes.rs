@@ -2,12 +2,12 @@
 //! tips were set before measuring:
 //!
 //! - **Law**: along the bone, a tip moves no faster than its joint (or than the head, which may push it). Across the
-//! bone, it moves no faster than in the previous frame, plus what stiffness and gravity add. The bound is the root of
-//! the sum of both squares, plus a tenth for curved paths, plus a fifth between ticks (ADR 0020).
+//!   bone, it moves no faster than in the previous frame, plus what stiffness and gravity add. The bound is the root of
+//!   the sum of both squares, plus a tenth for curved paths, plus a fifth between ticks (ADR 0020).
 //! - **Easing**: the speed of the animated tip, plus for each bone above it 1/0.3 s times its angle from the pose times
-//! the tip's distance from that bone.
+//!   the tip's distance from that bone.
 //! - **Return**: the change of a tip's velocity is that of its joint, plus the loss by drag, plus the part of stiffness
-//! and gravity across the bone.
+//!   and gravity across the bone.
 
 use super::{place_at, still};
 use sinew_anim::{LocalTransform, SpringBone, SpringChain, local_to_model, rest_pose};
