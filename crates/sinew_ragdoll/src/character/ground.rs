@@ -1,7 +1,7 @@
 //! Ground that a character stands on.
 
 use crate::character::tuning::{
-    BORNE, GROUND_DEPTH, LEVEL_GROUND, LIES_LOW, LIES_ON, LYING_SEARCH, STEEPEST_GROUND,
+    BORNE, GROUND_DEPTH, LEAST_TREAD, LEVEL_GROUND, LIES_LOW, LIES_ON, LYING_SEARCH, STEEPEST_GROUND,
 };
 use crate::def::RagdollDef;
 use sinew_math::{Rotation, Vec3, max, min, trig};
@@ -42,10 +42,10 @@ pub(super) fn firm_below(
     is_firm(world, hit.body, least).then_some(hit.point.y)
 }
 
-/// True of ground that bears a character: neither a limb nor a dynamic body lighter than `least` kg.
+/// True of ground that bears a character: neither another character's body nor a dynamic one lighter than `least` kg.
 pub(super) fn is_firm(world: &World, body: BodyId, least: f32) -> bool {
-    let is_dynamic = world.kind(body) == BodyKind::Dynamic;
-    !is_dynamic || (world.body_owner(body).is_none() && world.mass(body).mass >= least)
+    let is_heavy = world.kind(body) != BodyKind::Dynamic || world.mass(body).mass >= least;
+    is_heavy && world.body_owner(body).is_none()
 }
 
 pub(super) fn bearer(world: &World, ray: &Ray, own: &[BodyId]) -> Option<BodyHit> {
@@ -82,18 +82,19 @@ pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
     GroundMotion { velocity: world.velocity(hit.body), center: world.center_of_mass(hit.body) }
 }
 
-/// True if a lying body, its pelvis the first of some, is low over ground, or the static world bears it.
+/// True if a lying body, its pelvis the first of some, is low over ground, or firm ground bears it.
 pub(super) fn bears(def: &RagdollDef, own: &[BodyId], world: &World) -> bool {
     let Some(&pelvis) = own.first() else { return true };
     let (at, low) = (world.center_of_mass(pelvis), LIES_LOW * def.height);
     if found_below(world, at, LYING_SEARCH, Some(own)).is_some_and(|hit| at.y - hit.point.y < low) {
         return true;
     }
+    let least = LEAST_TREAD * def.total_mass;
     let lift = |contact: &BodyContact| {
         let [a, b] = [contact.a.body, contact.b.body];
         let sign = match (own.contains(&a), own.contains(&b)) {
-            (true, false) if world.kind(b) == BodyKind::Static => -1.0,
-            (false, true) if world.kind(a) == BodyKind::Static => 1.0,
+            (true, false) if is_firm(world, b, least) => -1.0,
+            (false, true) if is_firm(world, a, least) => 1.0,
             _ => return 0.0,
         };
         sign * (contact.normal.y * contact.impulse() + contact.friction.y)
