@@ -10,6 +10,9 @@ use sinew_anim::{LocalTransform, local_to_model};
 use sinew_math::{Affine, Vec3, max};
 use sinew_physics::{BodyId, World};
 
+/// Largest number of points of a part below which the ground is sought.
+const MOST_PROBES: usize = 4;
+
 /// World in which the ground is sought.
 #[derive(Clone, Copy)]
 pub(super) struct Grounds<'a> {
@@ -86,6 +89,3 @@ impl Clearance {
         low
     }
 }
-
-/// Largest number of points of a part below which the ground is sought.
-const MOST_PROBES: usize = 4;

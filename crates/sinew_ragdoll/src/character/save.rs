@@ -23,7 +23,7 @@ use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::{BodyId, JointId, MoverId, Velocity};
 
 /// First bytes; the last is the version.
-const MAGIC: &[u8; 8] = b"sinew-c\x08";
+const MAGIC: &[u8; 8] = b"sinew-c\x09";
 /// Flag of a held body: a pulling grip follows.
 const GRASPS: u8 = 2;
 /// Bytes of an unreported event.
