@@ -89,12 +89,14 @@ pub(super) fn bears(def: &RagdollDef, own: &[BodyId], world: &World) -> bool {
     if found_below(world, at, LYING_SEARCH, Some(own)).is_some_and(|hit| at.y - hit.point.y < low) {
         return true;
     }
+    // Kinematic bodies may carry it, as arms do.
     let least = LEAST_TREAD * def.total_mass;
+    let bears = |body| world.kind(body) != BodyKind::Kinematic && is_firm(world, body, least);
     let lift = |contact: &BodyContact| {
         let [a, b] = [contact.a.body, contact.b.body];
         let sign = match (own.contains(&a), own.contains(&b)) {
-            (true, false) if is_firm(world, b, least) => -1.0,
-            (false, true) if is_firm(world, a, least) => 1.0,
+            (true, false) if bears(b) => -1.0,
+            (false, true) if bears(a) => 1.0,
             _ => return 0.0,
         };
         sign * (contact.normal.y * contact.impulse() + contact.friction.y)

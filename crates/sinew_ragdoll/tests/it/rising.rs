@@ -135,8 +135,8 @@ fn arms_rise_over_a_step_beside_the_body() {
     let body = |role: &str| def.body_named(role).expect("it has arms and a chest");
     let arms = ["leftHand", "rightHand", "leftLowerArm", "rightLowerArm"].map(body);
     let mut readings = 0;
-    for side in 0..8 {
-        let turn = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_4 * side as f32);
+    for side in 0..40 {
+        let turn = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::TAU / 40.0 * side as f32);
         let mut world = World::new(WorldDef::default());
         world.add_body(&floor());
         let step = world.add_body(&BodyDef {
@@ -156,6 +156,6 @@ fn arms_rise_over_a_step_beside_the_body() {
         }
     }
     println!("{readings} readings of arms deeper than 5 cm in the step");
-    // 107 before.
-    assert!(readings <= 80, "{readings} readings of arms deeper than 5 cm in the step");
+    // 767 without the ground under the arms.
+    assert!(readings <= 450, "{readings} readings of arms deeper than 5 cm in the step");
 }
