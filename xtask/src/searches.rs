@@ -17,7 +17,7 @@ const CHUNK: f64 = 5.0;
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask lives --of characters --minutes 60")]
 pub struct Lives {
-    /// What to run
+    /// Kind of lives
     #[arg(long, value_enum, default_value_t = Of::Worlds)]
     of: Of,
     /// Seed to begin at; by default where the last run ended

@@ -18,7 +18,7 @@ use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
 /// Number of parts: the trunk with its knees, the feet, the hands, the elbows, left ones first.
 pub(super) const PARTS: usize = 7;
 const TRUNK: usize = 0;
-/// Largest number of times that trunk and limbs are raised: the second time for knees below raised feet.
+/// Largest number of times that trunk and limbs are raised: raising a foot may press its knee into the floor.
 const MOST_PASSES: usize = 3;
 pub(super) const FEET: [usize; 2] = [1, 2];
 const HANDS: [usize; 2] = [3, 4];
@@ -108,7 +108,7 @@ impl LimbChain {
         let Step { from, far, along, over } = steps?[foot];
         // A lying leg has no sole that could slide; lifting its foot would press the knee into the floor.
         let stands = from.rotation * (def.bind()[self.bones.end].to_rigid().rotation.inverse() * Vec3::Y);
-        // It is still up when it is there.
+        // A foot that has arrived is still raised until `over` is 0.
         let is_over = along >= 1.0 && over <= 0.0;
         if is_over || from == to || stands.y < STEPS_FROM {
             return None;
@@ -175,9 +175,7 @@ impl Clearance {
 
     /// Outmost points of a part, in the space of `model`.
     pub fn places(&self, part: usize, model: &[Affine], palette: &mut Vec<Affine>) -> Vec<Vec3> {
-        let Some(surface) = self.parts.get(part) else { return Vec::new() };
-        surface.palette(model, palette);
-        surface.sample.iter().map(|&vertex| surface.place(palette, vertex)).collect()
+        self.parts.get(part).map_or_else(Vec::new, |surface| surface.places(model, palette))
     }
 
     fn depth(&self, part: usize, model: &[Affine], palette: &mut Vec<Affine>) -> f32 {
@@ -418,8 +416,7 @@ pub(crate) struct Sole<'a> {
 impl Sole<'_> {
     /// Its outmost points, in the space of `model`.
     pub fn places(&self, model: &[Affine], palette: &mut Vec<Affine>) -> Vec<Vec3> {
-        self.skin.palette(model, palette);
-        self.skin.sample.iter().map(|&vertex| self.skin.place(palette, vertex)).collect()
+        self.skin.places(model, palette)
     }
 }
 

@@ -99,6 +99,12 @@ impl Surface {
         palette.extend(self.slots.iter().map(|slot| model[slot.joint] * slot.inverse_bind));
     }
 
+    /// Positions of the sampled vertices in the space of `model`; `palette` is cleared and filled.
+    pub fn places(&self, model: &[Affine], palette: &mut Vec<Affine>) -> Vec<Vec3> {
+        self.palette(model, palette);
+        self.sample.iter().map(|&vertex| self.place(palette, vertex)).collect()
+    }
+
     /// Position of a vertex in the target space of the matrices in `palette`.
     pub fn place(&self, palette: &[Affine], vertex: usize) -> Vec3 {
         let Vertex { position, slots, weights } = self.vertices[vertex];
