@@ -22,6 +22,8 @@ const TRUNK: usize = 0;
 const MOST_PASSES: usize = 3;
 pub(super) const FEET: [usize; 2] = [1, 2];
 const HANDS: [usize; 2] = [3, 4];
+/// Number of parts that move out of walls: the trunk, the feet, the hands.
+pub(super) const MOVABLE: usize = 5;
 const ELBOWS: [usize; 2] = [5, 6];
 
 /// Depth of each part in the floor, metres; negative above it, −∞ for a missing part.
@@ -223,11 +225,7 @@ impl Clearance {
         if lifts.iter().all(|&lift| lift <= 0.0) && steps.iter().all(Option::is_none) {
             return;
         }
-        let carried: Vec<Transform> = self
-            .strays
-            .iter()
-            .map(|&(joint, carrier)| model[carrier].to_rigid().inverse() * model[joint].to_rigid())
-            .collect();
+        let carried = self.carried(model);
         let mut palette = Vec::new();
         let mut trunk = lifts[TRUNK];
         for _ in 0..MOST_PASSES {
@@ -257,7 +255,55 @@ impl Clearance {
                 break;
             }
         }
-        for (&(joint, carrier), at) in self.strays.iter().zip(carried) {
+        self.carry(def, &carried, pose, model);
+    }
+
+    /// Displaces the trunk, and the ends of the limbs, which otherwise stay; character space.
+    pub fn shift(
+        &self,
+        def: &CharacterDef,
+        offsets: [Vec3; MOVABLE],
+        pose: &mut [LocalTransform],
+        model: &mut Vec<Affine>,
+    ) {
+        let (rig, root) = (&def.rig, def.mapping().character_from_model());
+        local_to_model(rig, pose, &root, model);
+        let carried = self.carried(model);
+        let ends: Vec<Transform> = self.limbs.iter().map(|limb| model[limb.bones.end].to_rigid()).collect();
+        let trunk = offsets[TRUNK];
+        if trunk != Vec3::ZERO {
+            let way = Transform::new(trunk, Rotation::IDENTITY);
+            def.mapping().reframe(pose, way, Transform::IDENTITY);
+            local_to_model(rig, pose, &root, model);
+        }
+        for (limb, &was) in self.limbs.iter().zip(&ends) {
+            let offset = offsets[limb.end];
+            if trunk != Vec3::ZERO || offset != Vec3::ZERO {
+                let end = Transform { translation: was.translation + offset, ..was };
+                put(rig, limb.bones, end, &root, pose, model);
+            }
+        }
+        self.carry(def, &carried, pose, model);
+    }
+
+    /// Places of the strays, in the axes of their carriers.
+    fn carried(&self, model: &[Affine]) -> Vec<Transform> {
+        let place = |&(joint, carrier): &(JointIdx, JointIdx)| {
+            model[carrier].to_rigid().inverse() * model[joint].to_rigid()
+        };
+        self.strays.iter().map(place).collect()
+    }
+
+    /// Moves the strays to these places in the axes of their carriers.
+    fn carry(
+        &self,
+        def: &CharacterDef,
+        carried: &[Transform],
+        pose: &mut [LocalTransform],
+        model: &mut Vec<Affine>,
+    ) {
+        let (rig, root) = (&def.rig, def.mapping().character_from_model());
+        for (&(joint, carrier), &at) in self.strays.iter().zip(carried) {
             let parent = rig.joints[joint].parent.map_or(root, |parent| model[parent]);
             let place = model[carrier].to_rigid() * at;
             let translation = parent.inverse().point(place.translation);
@@ -268,6 +314,26 @@ impl Clearance {
             }
         }
     }
+
+    /// Joint from which a part extends: a shoulder, a hip, or the pelvis.
+    pub fn origin(&self, def: &RagdollDef, part: usize) -> Option<JointIdx> {
+        match part {
+            TRUNK => def.bodies.first().map(|pelvis| pelvis.joint),
+            _ => self.limbs.iter().find(|limb| limb.end == part).map(|limb| limb.bones.upper),
+        }
+    }
+}
+
+/// Up to `most` of some points at least `apart` metres from each other, those of largest `size` first.
+pub(super) fn spread(mut left: Vec<Vec3>, apart: f32, most: usize, size: impl Fn(Vec3) -> f32) -> Vec<Vec3> {
+    let mut chosen = Vec::new();
+    while chosen.len() < most {
+        let larger = |a: Vec3, b: Vec3| if size(b) > size(a) { b } else { a };
+        let Some(largest) = left.iter().copied().reduce(larger) else { break };
+        chosen.push(largest);
+        left.retain(|&place| (place - largest).length_squared() > apart * apart);
+    }
+    chosen
 }
 
 /// Moves the end of a limb to a position, in the axes of `model`.

@@ -10,6 +10,7 @@ use super::figure::Figure;
 use super::legs::{Legs, Need, Planting, Tilts};
 use super::rises::Grounds;
 use super::tread::Treads;
+use super::walls::WallOffsets;
 use super::{CharacterDef, GroundContact, Locomotion, State, ground};
 use crate::character::tuning::{FOOT_EDGE, FOOT_FLOOR, FOOT_RANGE, FOOT_SEARCH, PLANTED_SOONER, WALKS_FROM};
 use sinew_anim::{Animator, LocalTransform, local_to_model, smoothstep};
@@ -28,7 +29,9 @@ pub(super) struct Feet {
     pub treads: Option<Treads>,
     /// Transition during which it is kept out of the floor.
     pub passage: Passage,
-    /// The clips' pose with planted feet and floor clearance, if that differs; else empty.
+    /// Hands and feet beside walls.
+    pub walls: WallOffsets,
+    /// The clips' pose with planted feet, out of floor and walls, if that differs; else empty.
     pub pose: Vec<LocalTransform>,
 }
 
@@ -52,7 +55,7 @@ pub(super) struct Stand<'a> {
 impl Feet {
     /// True while the shown pose differs from the clips'.
     pub fn are_placed(&self) -> bool {
-        !self.planting.is_over() || self.is_passing() || self.are_astray()
+        !self.planting.is_over() || self.is_passing() || self.are_astray() || !self.walls.are_zero()
     }
 
     /// True while a foot is displaced from the clips'.
@@ -75,11 +78,23 @@ impl Feet {
         self.go_on_passing(stand.activity.state(), world.def().dt());
         self.follow_ground(stand, world, model);
         let state = stand.activity.state();
-        if self.are_placed() && matches!(state, State::Animated | State::GettingUp) {
-            self.show(stand.def, state, stand.figure, model);
-        } else {
-            self.pose.clear();
+        self.pose.clear();
+        if !matches!(state, State::Animated | State::GettingUp) {
+            self.walls = WallOffsets::default();
+            return;
         }
+        let mut pose = core::mem::take(&mut self.pose);
+        self.stand_out_of_floor(stand.def, state, stand.figure, &mut pose, model);
+        if stand.follows || stand.def.ground_contact == GroundContact::Enforced {
+            local_to_model(&stand.def.rig, &pose, &stand.def.mapping().character_from_model(), model);
+            self.walls.follow(stand.def, stand.figure.place, self.treads.is_some(), world, model);
+        }
+        if self.are_placed() {
+            self.walls.shift(stand.def, stand.figure.place, &mut pose, model);
+        } else {
+            pose.clear();
+        }
+        self.pose = pose;
     }
 
     /// Forgets the ground: bodies take over.
@@ -115,10 +130,23 @@ impl Feet {
     /// Computes the shown pose from the clips'.
     pub fn show(&mut self, def: &CharacterDef, state: State, figure: &Figure, model: &mut Vec<Affine>) {
         let mut pose = core::mem::take(&mut self.pose);
-        pose.clone_from(&figure.pose);
-        self.place(def, figure.place, 0.0, &mut pose, model);
-        self.clear_floor(def, state, figure.place, 0.0, &mut pose, model);
+        self.stand_out_of_floor(def, state, figure, &mut pose, model);
+        self.walls.shift(def, figure.place, &mut pose, model);
         self.pose = pose;
+    }
+
+    /// Computes the clips' pose with planted feet and out of the floor.
+    fn stand_out_of_floor(
+        &self,
+        def: &CharacterDef,
+        state: State,
+        figure: &Figure,
+        pose: &mut Vec<LocalTransform>,
+        model: &mut Vec<Affine>,
+    ) {
+        pose.clone_from(&figure.pose);
+        self.place(def, figure.place, 0.0, pose, model);
+        self.clear_floor(def, state, figure.place, 0.0, pose, model);
     }
 
     /// Moves a pose of the clips to the planted feet after `later` seconds more, for a character that will be at

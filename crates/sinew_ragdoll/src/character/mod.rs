@@ -66,6 +66,7 @@ mod stumble;
 mod travel;
 mod tread;
 mod tuning;
+mod walls;
 mod wear;
 
 pub(crate) use floor::moved;

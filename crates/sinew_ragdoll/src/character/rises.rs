@@ -1,7 +1,7 @@
 //! Ground under the parts of a character in a transition, where that is not the floor of its clips: stairs, crates,
 //! slopes. Without it hands and knees would pass through a step beside the body.
 
-use super::clearance::{Clearance, Depths, PARTS, Passage};
+use super::clearance::{Clearance, Depths, PARTS, Passage, spread};
 use super::figure::Figure;
 use super::legs::follow;
 use super::{CharacterDef, ground};
@@ -78,14 +78,6 @@ impl Clearance {
     /// Lowest points of a part that are at least `apart` metres from each other, the lowest one first; `model` and the
     /// points are in the same space.
     fn low_points(&self, part: usize, model: &[Affine], apart: f32, palette: &mut Vec<Affine>) -> Vec<Vec3> {
-        let mut left = self.places(part, model, palette);
-        let mut low = Vec::new();
-        while low.len() < MOST_PROBES {
-            let lower = |a: Vec3, b: Vec3| if b.y < a.y { b } else { a };
-            let Some(lowest) = left.iter().copied().reduce(lower) else { break };
-            low.push(lowest);
-            left.retain(|&place| (place - lowest).length_squared() > apart * apart);
-        }
-        low
+        spread(self.places(part, model, palette), apart, MOST_PROBES, |place| -place.y)
     }
 }

@@ -23,7 +23,7 @@ use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::{BodyId, JointId, MoverId, Velocity};
 
 /// First bytes; the last is the version.
-const MAGIC: &[u8; 8] = b"sinew-c\x09";
+const MAGIC: &[u8; 8] = b"sinew-c\x0a";
 /// Flag of a held body: a pulling grip follows.
 const GRASPS: u8 = 2;
 /// Bytes of an unreported event.
@@ -55,6 +55,7 @@ impl Character {
         if self.feet.is_passing() {
             self.feet.passage.save(w);
         }
+        self.feet.walls.0.iter().for_each(|&offset| w.vec3(offset));
         save_physique(w, &self.physique);
         self.grips.save(w);
         if !self.def.springs().is_empty() {
@@ -92,6 +93,9 @@ impl Character {
             Planting { heights: pair()?, rates: pair()?, slopes: pair()?, slope_rates: pair()? };
         loaded.feet.treads = if r.bool()? { Some(Treads::load(r)?) } else { None };
         loaded.feet.passage = if r.bool()? { Passage::load(r)? } else { Passage::default() };
+        for offset in &mut loaded.feet.walls.0 {
+            *offset = r.vec3()?;
+        }
         loaded.physique = load_physique(&def, r)?;
         loaded.grips = Grips::load(r, count)?;
         let (springs, garments) = (def.springs(), def.garments());

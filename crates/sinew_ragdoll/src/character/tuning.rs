@@ -88,6 +88,16 @@ pub(crate) const GRIP_SHARE: f32 = 0.9;
 /// Larger: a hand over the edge of a step sinks into it. Smaller: more rays. Shown by `brawl`.
 pub(crate) const PROBES_APART: f32 = 0.08;
 
+/// Largest speed at which the end of a limb moves out of a wall, relative to its clip, m/s.
+///
+/// Larger: hands snap back at corners. Smaller: they enter walls. Shown by `brawl`.
+pub(crate) const PULLED_BACK: f32 = 5.0;
+
+/// Speed at which the end of a limb returns to its clip beside a wall, m/s.
+///
+/// Larger: hands snap over edges. Smaller: they lag behind the clip. Shown by `brawl`.
+pub(crate) const RETURNS: f32 = 1.0;
+
 /// Natural frequency with which the parts of a rising character follow the ground, critically damped, rad/s.
 ///
 /// Larger: hands jerk over edges. Smaller: they pass through them. Shown by `brawl`.
@@ -245,6 +255,13 @@ pub(crate) const WALKS_FROM: f32 = 0.3;
 pub(crate) const BALL_AHEAD: f32 = 0.14;
 
 // character/clearance.rs
+
+/// Least level distance of the pelvis from its place in the rest pose at which a clip begins away from its origin, as a
+/// share of the character's height.
+///
+/// Larger: a capture walks beside the ground that bears it. Smaller: a lunge is pulled back. Shown by the tests of
+/// `travel`.
+pub(crate) const OFF_ORIGIN: f32 = 0.3;
 
 /// Largest lift of a body part out of the floor, as a share of the character's height.
 ///

@@ -124,10 +124,10 @@ fn limbs_stay_out_of_a_wall_that_stops_the_walk() {
     assert!(character.world_from_character().translation.z > 1.65, "it reaches the wall");
 }
 
-/// A clip-driven character that a wall stops walks on the spot, and a hand enters the wall as it swings forward, unless
-/// the mover is as wide as the swing of the limbs.
+/// A clip-driven character that a wall stops walks on the spot: its hands stay out of the wall as they swing forward, also
+/// with a mover narrower than the swing of the limbs.
 #[test]
-fn a_mover_as_wide_as_the_limbs_sweep_keeps_them_out_of_a_wall() {
+fn hands_of_a_walker_that_a_wall_stops_stay_out_of_it() {
     let deepest = |wide: bool| {
         let mut def = walker();
         let radius = def.swept_radius();
@@ -147,8 +147,7 @@ fn a_mover_as_wide_as_the_limbs_sweep_keeps_them_out_of_a_wall() {
         deepest
     };
     let (narrow, wide) = (deepest(false), deepest(true));
-    assert!(narrow > 0.0 && narrow < 0.06, "{narrow} m in the wall");
-    assert!(wide < 0.005, "{wide} m in the wall");
+    assert!(narrow < 0.0 && wide < 0.0, "{narrow} and {wide} m in the wall");
 }
 
 #[test]

@@ -6,7 +6,9 @@ use sinew_math::{Affine, Reader, Rotation, Transform, Vec3, Writer, max, min};
 use sinew_physics::{BodyDef, Shape, World, WorldDef};
 use sinew_ragdoll::quality::{RisingQuality, measure_rising};
 use sinew_ragdoll::skin::Stage;
-use sinew_ragdoll::{BakeHit, BakeInput, Baked, Character, GroundContact, SkinMeter, State, Verdict, bake};
+use sinew_ragdoll::{
+    BakeHit, BakeInput, Baked, Character, FootPlanting, GroundContact, SkinMeter, State, Verdict, bake,
+};
 use std::sync::Arc;
 
 /// Height of the mannequin, metres.
@@ -158,4 +160,42 @@ fn arms_rise_over_a_step_beside_the_body() {
     println!("{readings} readings of arms deeper than 5 cm in the step");
     // 767 without the ground under the arms.
     assert!(readings <= 450, "{readings} readings of arms deeper than 5 cm in the step");
+}
+
+/// Limbs and heads passed through a wall beside the body, because only the clip led them.
+#[test]
+fn parts_stay_out_of_a_wall_beside_the_body() {
+    let deepest = |ground_contact: GroundContact, foot_planting: FootPlanting| {
+        let mut def = walker();
+        def.ground_contact = ground_contact;
+        def.in_world.foot_planting = foot_planting;
+        let def = shared(def);
+        let chest = def.body_named("chest").expect("it has one");
+        let mut deepest = 0.0;
+        for side in 0..24 {
+            let turn = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::TAU / 24.0 * side as f32);
+            let mut world = World::new(WorldDef::default());
+            world.add_body(&floor());
+            let wall = world.add_body(&BodyDef {
+                position: turn * Vec3::Z * 1.5 + Vec3::Y,
+                rotation: turn,
+                ..BodyDef::fixed(Shape::Box { half_extents: Vec3::new(3.0, 1.0, 0.5) })
+            });
+            let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+            character.hit(&mut world, chest, turn * Vec3::Z * 90.0);
+            for _ in 0..600 {
+                world.step();
+                character.update(&mut world);
+                if character.state() == State::GettingUp {
+                    let depths = character.bodies().iter().map(|&body| world.overlap(body, wall));
+                    deepest = depths.fold(deepest, max);
+                }
+            }
+        }
+        deepest
+    };
+    let by_clip = deepest(GroundContact::AsBlended, FootPlanting::AsClips);
+    let now = deepest(GroundContact::Enforced, FootPlanting::OnGround);
+    println!("{by_clip} m deep by the clips, {now} m now");
+    assert!(by_clip > 0.2 && now < 0.1, "{by_clip} m deep by the clips, {now} m now");
 }

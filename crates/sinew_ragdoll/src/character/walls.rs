@@ -1,0 +1,98 @@
+//! Keeps trunk, hands and feet of a character that its clips move out of walls beside it.
+//!
+//! Rays from pelvis, hips and shoulders to the outmost points of each part find the wall, and the part moves out along
+//! the wall's level normal.
+
+use super::CharacterDef;
+use super::clearance::{MOVABLE, spread};
+use crate::character::tuning::{PROBES_APART, PULLED_BACK, RETURNS, STEEPEST_TREAD};
+use sinew_anim::LocalTransform;
+use sinew_math::{Affine, Transform, Vec3, max, min, normalize_or};
+use sinew_physics::ray::Ray;
+use sinew_physics::{BodyId, BodyKinds, ContactRule, QueryFilter, ShapeId, World};
+
+/// Largest number of points of a part that are looked at.
+const MOST_POINTS: usize = 2;
+
+/// Displacements of trunk, feet and hands out of walls, world, metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct WallOffsets(pub [Vec3; MOVABLE]);
+
+impl WallOffsets {
+    pub fn are_zero(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Follows the walls for a step; `model` is the pose without these offsets, in character space. `steps`: its feet
+    /// step onto what is lower than its mover climbs.
+    pub fn follow(
+        &mut self,
+        def: &CharacterDef,
+        place: Transform,
+        steps: bool,
+        world: &World,
+        model: &[Affine],
+    ) {
+        let dt = world.def().dt();
+        let climbs = def.in_world.mover.as_ref().filter(|_| steps).map(|mover| mover.step_height);
+        let least = place.translation.y + climbs.unwrap_or(f32::NEG_INFINITY);
+        let mut palette = Vec::new();
+        for (part, offset) in self.0.iter_mut().enumerate() {
+            let ways = rays(def, part, model, &mut palette).map(|[from, to]| {
+                let to = place.point(to);
+                out_of_wall(world, place.point(from), Vec3 { y: max(to.y, least), ..to })
+            });
+            let need =
+                ways.fold(Vec3::ZERO, |most, way| if way.length() > most.length() { way } else { most });
+            let speed = if need.length() > offset.length() { PULLED_BACK } else { RETURNS };
+            let change = need - *offset;
+            *offset += change * min(speed * dt / max(change.length(), f32::MIN_POSITIVE), 1.0);
+        }
+    }
+
+    /// Displaces trunk and limbs of a character at `place`.
+    pub fn shift(
+        &self,
+        def: &CharacterDef,
+        place: Transform,
+        pose: &mut [LocalTransform],
+        model: &mut Vec<Affine>,
+    ) {
+        if !self.are_zero() {
+            let character_from_world = place.rotation.inverse();
+            def.clearance().shift(def, self.0.map(|offset| character_from_world * offset), pose, model);
+        }
+    }
+}
+
+/// Rays along a part to its outmost points, as their two ends; all in the space of `model`.
+fn rays<'a>(
+    def: &CharacterDef,
+    part: usize,
+    model: &[Affine],
+    palette: &'a mut Vec<Affine>,
+) -> impl Iterator<Item = [Vec3; 2]> + 'a {
+    let from = def.clearance().origin(&def.ragdoll, part).map(|joint| model[joint].translation);
+    let rays = from.map_or_else(Vec::new, |from| {
+        let places = def.clearance().places(part, model, palette);
+        let far = |point: Vec3| (point - from).length_squared();
+        let points = spread(places, PROBES_APART * def.ragdoll.height, MOST_POINTS, far);
+        points.into_iter().map(|point| [from, point]).collect()
+    });
+    rays.into_iter()
+}
+
+/// Level displacement that brings `to` before the wall that a ray from `from` to it enters; zero without one.
+fn out_of_wall(world: &World, from: Vec3, to: Vec3) -> Vec3 {
+    let pushes = |body: BodyId, shape: u32| {
+        let rule = world.contact_rule(ShapeId { body, shape });
+        matches!(rule, ContactRule::Push | ContactRule::Modified { .. })
+    };
+    let ray = Ray { origin: from, direction: to - from };
+    let hit = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).accept(pushes).first(&ray);
+    let Some(hit) = hit.filter(|hit| hit.start.is_none() && hit.normal.y.abs() < STEEPEST_TREAD) else {
+        return Vec3::ZERO;
+    };
+    let out = normalize_or(Vec3 { y: 0.0, ..hit.normal }, Vec3::ZERO);
+    out * (hit.point - to).dot(out)
+}
