@@ -185,11 +185,11 @@ pub struct Baked {
 }
 
 impl Baked {
-    /// The clip for the character's own file. It is moved to the height of the played clip if the clip's floor differs from that of the
-    /// rest pose ([`CharacterDef::raised`]).
+    /// The clip for the character's own file. It is moved back to where the file has the played clip, if that has another floor than the
+    /// rest pose ([`CharacterDef::raised`]) or begins elsewhere.
     pub fn clip_for_file(&self, character: &CharacterDef) -> Clip {
-        let down = character.mapping().character_from_model().inverse().vector(Vec3::Y * -character.raised());
-        moved(&character.rig, &character.ragdoll, &self.clip, down, down)
+        let back = character.mapping().character_from_model().inverse().vector(-character.shift());
+        moved(&character.rig, &character.ragdoll, &self.clip, back, back)
     }
 }
 

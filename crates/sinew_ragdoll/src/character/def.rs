@@ -14,7 +14,7 @@ use crate::springs::SpringRig;
 use sinew_anim::{
     AnimationSet, Animator, Clip, ClipId, Garment, LocalTransform, Rig, Springs, TrackDef, TrackId, rest_pose,
 };
-use sinew_math::Affine;
+use sinew_math::{Affine, Vec3};
 use std::sync::Arc;
 
 /// Motion of a character over the ground while its looped clip plays.
@@ -293,6 +293,12 @@ impl CharacterDef {
     /// Sync group of its locomotion clips; none for a single clip.
     pub(super) fn sync_group(&self) -> Option<u8> {
         (self.paces().len() > 1).then_some(0)
+    }
+
+    /// Displacement by which its looped clip is brought to the place of the character, character space, metres: onto the
+    /// floor of the rest pose ([`raised`](Self::raised)), and to its origin if the clip begins elsewhere.
+    pub(crate) fn shift(&self) -> Vec3 {
+        self.moves.shift
     }
 
     /// Height by which its looped clip is raised so that its lowest drawn point stands on the floor of the rest pose,

@@ -40,6 +40,8 @@ pub(super) struct Moves {
     pub upright: Stance,
     /// Heights by which clips are raised to the floor of the rest pose.
     pub raised: Raised,
+    /// Displacement of the looped clip to the place of the character, character space.
+    pub shift: Vec3,
     /// Deepest of the clips that loop, or of the rest pose.
     pub deepest: Depths,
 }
@@ -90,6 +92,7 @@ impl Moves {
             landmarks,
             upright,
             raised,
+            shift: Vec3::ZERO,
             deepest,
         }
     }
@@ -100,11 +103,18 @@ impl Moves {
         let raised = Raised::of(def, motions);
         let own = motions.clips.iter().enumerate();
         let up = def.mapping().character_from_model().inverse();
+        let to_origin = |index: usize| {
+            let follows = locomotion_of(motions, index).is_some_and(|by| by != Locomotion::Exact);
+            let stays = motions.locomotion != Locomotion::Exact && motions.idle == Some(index);
+            if follows || stays { travel::to_origin(def, &motions.clips[index]) } else { Vec3::ZERO }
+        };
+        let shift = motions.looped.map_or(Vec3::ZERO, |index| Vec3::Y * raised.looped + to_origin(index));
         let motions = &MotionSet {
             clips: own
                 .map(|(index, clip)| {
-                    let [by, beside] =
-                        [raised.of_clip(index), raised.looped].map(|up_by| up.vector(Vec3::Y * up_by));
+                    let to_origin = to_origin(index);
+                    let [by, beside] = [raised.of_clip(index), raised.looped]
+                        .map(|up_by| up.vector(Vec3::Y * up_by + to_origin));
                     moved(&def.rig, &def.ragdoll, clip, by, beside)
                 })
                 .collect(),
@@ -151,7 +161,7 @@ impl Moves {
         }
         let upright = stance(&def.rig, def.mapping(), &landmarks, &first_pose(def, motions));
         let deepest = clearance.deepest(def, &standing(def, motions));
-        Ok(Self { set, clips, paces, get_ups, landmarks, upright, raised, deepest })
+        Ok(Self { set, clips, paces, get_ups, landmarks, upright, raised, shift, deepest })
     }
 }
 

@@ -1,9 +1,9 @@
 //! A travelling looped clip: its path is extracted from the pose, so that each lap continues it.
 
 use super::CharacterDef;
-use crate::character::tuning::{STAYS_TURNED, STAYS_WITHIN, STRAIGHT};
+use crate::character::tuning::{OFF_ORIGIN, STAYS_TURNED, STAYS_WITHIN, STRAIGHT};
 use sinew_anim::take::Take;
-use sinew_anim::{MotionTrack, local_to_model};
+use sinew_anim::{Clip, MotionTrack, Wrap, local_to_model, sample};
 use sinew_math::{Affine, Rotation, Transform, Vec3, trig};
 
 /// A motion over the ground: from start to end of a clip, along an arc at constant speed.
@@ -52,6 +52,18 @@ fn stand(def: &CharacterDef, take: &Take, frame: usize) -> Transform {
     let place = model[def.ragdoll.bodies[0].joint].translation;
     let place = def.mapping().character_from_model().point(place) * Vec3::new(1.0, 0.0, 1.0);
     Transform::new(place, Rotation::from_axis_angle(Vec3::Y, heading))
+}
+
+/// Level displacement that brings the start of a clip to the place of the character, character space: captures often
+/// begin metres from their origin. Zero if the pelvis starts near its place in the rest pose.
+pub(super) fn to_origin(def: &CharacterDef, clip: &Clip) -> Vec3 {
+    let mut poses = def.rest().to_vec();
+    sample(clip, &def.rig, 0.0, Wrap::Clamp, &mut poses);
+    poses.extend_from_slice(def.rest());
+    let both = Take { frame_time: 1.0, joints: def.rig.joints.len(), poses };
+    let [start, rest] = [0, 1].map(|frame| stand(def, &both, frame).translation);
+    let way = rest - start;
+    if way.length() > OFF_ORIGIN * def.ragdoll.height { way } else { Vec3::ZERO }
 }
 
 /// The clip in place and the extracted path: model space. `None` if it does not travel.

@@ -1,8 +1,9 @@
 //! Looped clips with root motion: they continue over cycles, and a fall at any frame starts with the speed of the walk.
 
 use crate::actor::{floor, shared, walker};
+use sinew_anim::Property;
 use sinew_math::{Transform, Vec3, max};
-use sinew_physics::{World, WorldDef};
+use sinew_physics::{BodyDef, Shape, World, WorldDef};
 use sinew_ragdoll::{Character, CharacterDef, Locomotion, MotionSet};
 use sinew_scenes::mannequin::Path;
 use sinew_scenes::mannequin::drills::{Cycle, walking};
@@ -87,4 +88,39 @@ fn fall_around_the_seam_keeps_the_walking_speed() {
             );
         }
     }
+}
+
+/// A capture that begins 5 m from its origin walked 5 m beside the ground that bore it.
+#[test]
+fn clip_that_begins_elsewhere_starts_at_the_place_of_the_character() {
+    let at = |beside: Vec3| {
+        let cycle = walking(Path::Straight);
+        let mut def = walker();
+        let mut motions = MotionSet { locomotion: Locomotion::ByClip, ..def.motions().clone() };
+        motions.clips[0] = cycle.clip.clone();
+        let root = def.rig.joints.iter().position(|joint| joint.parent.is_none());
+        let own = motions.clips[0].channels.iter_mut();
+        let mut moved =
+            own.filter(|channel| Some(channel.joint) == root && channel.property == Property::Translation);
+        let values = &mut moved.next().expect("its root moves").values;
+        for place in values.chunks_exact_mut(3) {
+            place.iter_mut().zip(beside.to_array()).for_each(|(number, by)| *number += by);
+        }
+        def.set_motions(motions).expect("it can be played");
+        let mut world = World::new(WorldDef::default());
+        // A platform of 1 m under its place alone.
+        world.add_body(&BodyDef {
+            position: Vec3::Y * 0.5,
+            ..BodyDef::fixed(Shape::Box { half_extents: Vec3::new(2.0, 0.5, 4.0) })
+        });
+        let mut character = Character::new(shared(def), Transform::from_translation(Vec3::Y), 0.0);
+        for _ in 0..60 {
+            world.step();
+            character.update(&mut world);
+        }
+        places(&character)
+    };
+    let (near, far) = (at(Vec3::ZERO), at(Vec3::new(5.0, 0.0, -5.0)));
+    let most = near.iter().zip(&far).map(|(a, b)| (*a - *b).length()).fold(0.0, max);
+    assert!(most < 0.02, "a joint is {most} m from its place");
 }
