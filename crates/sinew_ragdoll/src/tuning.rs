@@ -407,6 +407,11 @@ pub(crate) const MACHINE: f32 = 500.0;
 
 // quality/faults.rs
 
+/// Least depth in static geometry at which a character starts inside the world, as a share of its height.
+///
+/// Larger: it is thrown out of a wall unnoticed. Smaller: feet in uneven ground count. Shown by the tests of `faults`.
+pub(crate) const STARTS_INSIDE: f32 = 0.15;
+
 /// Least distance below all static geometry at which a body has fallen out of the world, metres; else the character's
 /// height.
 ///

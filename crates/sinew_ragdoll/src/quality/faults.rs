@@ -1,16 +1,18 @@
 //! Faults of a ragdoll, or of its bake, that no single figure shows.
 
 use super::Verdict;
-use crate::bake::{BakeInput, Baked, bake};
+use crate::bake::{BakeInput, Baked, Frame, bake};
 use crate::character::{CharacterEvent, State};
-use crate::def::RagdollDef;
-use crate::tuning::{FALLEN_OUT, NEVER_STILL, ON_A_SIDE, OTHER_SIZE, STILL_UPRIGHT, TOPPLES};
+use crate::def::{RagdollBodyDef, RagdollDef};
+use crate::tuning::{FALLEN_OUT, NEVER_STILL, ON_A_SIDE, OTHER_SIZE, STARTS_INSIDE, STILL_UPRIGHT, TOPPLES};
 use sinew_anim::{LocalTransform, Rig, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, min};
-use sinew_physics::{BodyKind, World, WorldDef};
+use sinew_physics::{BodyKind, OverlapWith, PenetrationOf, Probe, Shape, World, WorldDef};
 
 /// Number of joints with skin above which a single body is not a ragdoll: few one-part figures have as many.
 const MANY_JOINTS: usize = 8;
+/// Number of frames from one look at an animated character to the next.
+const INSIDE_EVERY: usize = 5;
 /// Number of joints with skin up to which a single body is correct.
 const FEW_JOINTS: usize = 2;
 
@@ -95,12 +97,13 @@ fn sides(def: &RagdollDef) -> Option<Fault> {
     found.into_iter().next()
 }
 
-/// Faults of a baked character: out of the world, never still, still upright, or drawn at another size during a get-up.
+/// Faults of a baked character: out of the world, inside its static bodies, never still, still upright, or drawn at another size during a get-up.
 ///
 /// # Panics
 /// If the bake does not belong to the input.
 pub fn faults_of_bake(input: &BakeInput<'_>, baked: &Baked) -> Vec<Fault> {
-    let fault = fell_out(input, baked).or_else(|| never_still(input, baked));
+    let fault = fell_out(input, baked).or_else(|| inside(input, baked));
+    let fault = fault.or_else(|| never_still(input, baked));
     let fault = fault.or_else(|| stays_upright(input, baked));
     fault.into_iter().chain(changes_size(input, baked)).collect()
 }
@@ -133,8 +136,11 @@ fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     })
 }
 
-/// A body far below all static geometry.
-fn fell_out(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+/// Time (seconds) and index of the first body of a falling character that is far below all static geometry.
+///
+/// # Panics
+/// If the bake does not belong to the input.
+pub fn fallen_out(input: &BakeInput<'_>, baked: &Baked) -> Option<(f32, usize)> {
     let floor = lowest_of(input)?;
     let (rig, def) = (&input.character.rig, &input.character.ragdoll);
     let least = floor - max(FALLEN_OUT, def.height);
@@ -147,15 +153,60 @@ fn fell_out(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
         let is_in = |y: f32| y >= least;
         let is_out = |place: &Transform| !is_in(place.translation.y);
         if let Some(body) = bodies.iter().position(is_out) {
-            let reason = format!(
-                "it falls out of the world: {} is below everything that stands at {:.1} s; --at X,Y,Z moves it to firm ground, \
-                 --floor Y adds a floor",
-                def.bodies[body].bone, frame.time
-            );
-            return Some(Fault::new(Verdict::Bad, reason));
+            return Some((frame.time, body));
         }
     }
     None
+}
+
+fn fell_out(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+    let (time, body) = fallen_out(input, baked)?;
+    let reason = format!(
+        "it falls out of the world: {} is below everything that stands at {time:.1} s; --at X,Y,Z moves it to firm ground, --floor Y \
+         adds a floor",
+        input.character.ragdoll.bodies[body].bone
+    );
+    Some(Fault::new(Verdict::Bad, reason))
+}
+
+/// Fault if a body starts deep in static geometry, or if the pelvis of a character that its clips move is inside it
+/// later.
+fn inside(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+    let (rig, def) = (&input.character.rig, &input.character.ragdoll);
+    let mut world = World::new(WorldDef::default());
+    for body in input.bodies.iter().filter(|body| body.kind == BodyKind::Static) {
+        world.add_body(body);
+    }
+    let (mut model, mut bodies) = (Vec::new(), Vec::new());
+    let mut bodies_of = |frame: &Frame| {
+        local_to_model(rig, &frame.pose, &Affine::IDENTITY, &mut model);
+        input.character.mapping().bodies_from_model(&model, input.world_from_character, &mut bodies);
+        bodies.clone()
+    };
+    let first = baked.frames.first()?;
+    let starts = bodies_of(first);
+    let depth = |(body, place): (&RagdollBodyDef, &Transform)| {
+        let probe = PenetrationOf(Probe::new(body.shape.clone(), *place));
+        world.query().first(&probe).map_or(0.0, |found| found.depth)
+    };
+    let depths = def.bodies.iter().zip(&starts).map(depth).enumerate();
+    let (body, deepest) = depths.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    let help = "--at X,Y,Z sets another place";
+    if deepest > STARTS_INSIDE * def.height {
+        let bone = &def.bodies[body].bone;
+        let reason = format!("it starts inside the world: {bone} is {deepest:.2} m deep in it; {help}");
+        return Some(Fault::new(Verdict::Bad, reason));
+    }
+    let moved = baked.frames.iter().filter(|frame| matches!(frame.state, State::Animated | State::GettingUp));
+    let is_inside = |frame: &&Frame| {
+        let place = bodies_of(frame)[0];
+        let center = place.point(def.bodies[0].mass.center);
+        world.query().any(&OverlapWith(Probe::at(Shape::Sphere { radius: 0.01 * def.height }, center)))
+    };
+    let frame = moved.step_by(INSIDE_EVERY).find(is_inside)?;
+    let (bone, time) = (&def.bodies[0].bone, frame.time);
+    let reason = format!("its clip moves it into the world: {bone} is inside it at {time:.1} s; {help}");
+    Some(Fault::new(Verdict::Bad, reason))
 }
 
 /// Height of the lowest point of all static geometry, metres; `None` without any.

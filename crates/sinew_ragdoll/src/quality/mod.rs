@@ -21,7 +21,7 @@ mod rising;
 mod verdict;
 
 pub use drop_test::{DropReport, Fallen, drop_test};
-pub use faults::{Fault, faults_of_bake, faults_of_ragdoll, toppled};
+pub use faults::{Fault, fallen_out, faults_of_bake, faults_of_ragdoll, toppled};
 pub use gate::{Bar, GateReport, Miss, gate, gate_on, random_fall, random_ground, random_pose};
 pub use meter::QualityMeter;
 pub use plausible::Doubt;

@@ -5,7 +5,8 @@ use sinew_math::{Rotation, Vec3};
 use sinew_physics::{BodyDef, Shape};
 use sinew_ragdoll::quality::{Doubt, faults_of_bake, faults_of_ragdoll, toppled};
 use sinew_ragdoll::{
-    AfterSettling, BakeInput, Baked, BuildOptions, CharacterDef, RagdollDef, State, Verdict, bake, build,
+    AfterSettling, BakeInput, Baked, BuildOptions, CharacterDef, Locomotion, MotionSet, RagdollDef, State,
+    Verdict, bake, build,
 };
 use sinew_scenes::mannequin::mannequin;
 use std::sync::Arc;
@@ -203,4 +204,34 @@ fn upright_body_with_outstretched_arms_is_reported() {
     }
     let found = faults_of_bake(&input, &baked);
     assert!(found.iter().any(|fault| fault.reason.contains("stays upright")), "{found:?}");
+}
+
+/// The mannequin in a platform up to its hips, in a wall, and in one that its clip walks into.
+#[test]
+fn character_inside_the_world_is_bad() {
+    let (rig, own) = (mannequin().rig, mannequin().clips);
+    let analysis = analyze(&rig).expect("a skin");
+    let mut character = CharacterDef::new(rig, built(), &analysis.bind_model);
+    let speed = 1.4;
+    let motions = MotionSet {
+        clips: own,
+        looped: Some(0),
+        locomotion: Locomotion::Forward { speed },
+        ..MotionSet::default()
+    };
+    character.set_motions(motions).expect("it can be played");
+    let character = Arc::new(character);
+    let reasons = |at: Vec3, half_extents: Vec3| {
+        let floor = BodyDef::fixed(Shape::HalfSpace);
+        let bodies = [floor, BodyDef { position: at, ..BodyDef::fixed(Shape::Box { half_extents }) }];
+        let input = BakeInput { bodies: &bodies, seconds: 2.0, ..BakeInput::new(character.clone()) };
+        let found = faults_of_bake(&input, &bake(&input));
+        assert!(found.iter().all(|fault| fault.at_most == Verdict::Bad), "{found:?}");
+        found.into_iter().map(|fault| fault.reason).collect::<Vec<_>>().join("; ")
+    };
+    assert_eq!(reasons(Vec3::X * 50.0, Vec3::ONE), "");
+    let at_once = reasons(Vec3::ZERO, Vec3::new(3.0, 0.8, 3.0));
+    assert!(at_once.starts_with("it starts inside the world"), "{at_once}");
+    let later = reasons(Vec3::Z * 3.0, Vec3::new(3.0, 3.0, 1.0));
+    assert!(later.starts_with("its clip moves it into the world"), "{later}");
 }
