@@ -6,10 +6,11 @@ use crate::render::skin;
 use crate::report::progress::Progress;
 use crate::report::story;
 use sinew::anim::{Wrap, local_to_model, sample};
-use sinew::math::{Affine, Rotation, Transform, Vec3};
+use sinew::math::{Affine, Rotation, Transform, Vec3, min};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyKind, BodyKinds, QueryFilter, Shape, World, WorldDef};
+use sinew::ragdoll::quality::fallen_out;
 use sinew_picture::draw;
 use sinew_picture::{
     Caption, EncodeError, FollowCamera, Image, Model, Movie, PictureFormat, RenderMaterial, RenderSettings,
@@ -107,9 +108,11 @@ impl<'a> Shots<'a> {
             bodies: Vec::new(),
         };
         if view == View::Whole {
+            // A camera that followed a fall out of the world would be far from everything else.
+            let end = fallen_out(fall.input, &fall.baked).map_or(f32::INFINITY, |(time, _)| time);
             let boxes: Vec<Aabb> = (0..frames)
                 .map(|frame| {
-                    shots.pose(frame as f32 / FPS as f32);
+                    shots.pose(min(frame as f32 / FPS as f32, end));
                     shots.around()
                 })
                 .collect();

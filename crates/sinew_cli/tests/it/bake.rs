@@ -570,3 +570,35 @@ fn lying_character_is_placed_with_its_lowest_point_on_the_floor() {
     let lowest = object["skin"]["standing_height_m"].as_f64().expect("a height");
     assert!(lowest.abs() < 0.02, "{lowest} m; {object:#}");
 }
+
+#[test]
+fn speed_moves_a_walk_on_the_spot_ahead() {
+    let folder = Folder::new("speed");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let bake = |extra: &[&str]| {
+        let arguments = ["bake", &file, "--clip", "Walk", "--limp-at", "2", "--seconds", "2", "-o", &out];
+        sinew(&[&arguments[..], extra].concat())
+    };
+    let way = |extra: &[&str]| {
+        let object = bake(&[extra, &["--json"]].concat()).json();
+        let Document { rig, clips, .. } = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+        let (mut pose, mut model) = (rest_pose(&rig), Vec::new());
+        sample(clips.last().expect("a clip"), &rig, 2.0, Wrap::Clamp, &mut pose);
+        local_to_model(&rig, &pose, &Affine::IDENTITY, &mut model);
+        let hips = rig.joints.iter().position(|joint| joint.name == "hips").expect("it has hips");
+        (model[hips].translation.z, object["notes"].to_string())
+    };
+    let (on_the_spot, notes) = way(&[]);
+    assert!(on_the_spot.abs() < 0.2 && notes.contains("--speed feet"), "{on_the_spot} m: {notes}");
+    let (by_feet, notes) = way(&["--speed", "feet"]);
+    assert!((1.8..4.0).contains(&by_feet) && !notes.contains("--speed"), "{by_feet} m: {notes}");
+    let (given, _) = way(&["--speed", "-0.5"]);
+    assert!((given + 1.0).abs() < 0.1, "{given} m");
+    for (speed, says) in
+        [("fast", "neither a number nor 'feet'"), ("nan", "must lie between"), ("99", "must lie between")]
+    {
+        let run = bake(&["--speed", speed]);
+        let error = run.refusal(2);
+        assert!(error.contains(says), "{error}");
+    }
+}

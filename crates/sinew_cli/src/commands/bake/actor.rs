@@ -46,10 +46,14 @@ pub fn actor(
     def.ground_contact = GroundContact::Enforced;
     let mut get_ups = def.get_ups_among(&motions.clips);
     get_ups.retain(|&clip| Some(clip) != motions.looped);
-    let Motions { clips, looped, .. } = motions;
+    let Motions { clips, looped, ahead, .. } = motions;
     // Without this, a character that lies in its file would walk along its own axes into the floor.
     let is_lying = lies(&def.ragdoll, analysis.hints.up.unwrap_or(Vec3::Y));
-    let locomotion = if is_lying { Locomotion::Exact } else { Locomotion::ByClip };
+    let locomotion = match ahead {
+        _ if is_lying => Locomotion::Exact,
+        0.0 => Locomotion::ByClip,
+        speed => Locomotion::Forward { speed },
+    };
     let own = MotionSet { clips, looped, get_ups, locomotion, ..MotionSet::default() };
     if !own.get_ups.is_empty() {
         def.set_motions(own).map_err(failed)?;

@@ -5,12 +5,15 @@ use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
 use crate::input::motion::Motion;
 use crate::input::onto::carry;
+use crate::report::table::shown;
 use sinew::anim::Clip;
+use sinew::anim::contact::footsteps;
 use sinew::anim::retarget::RetargetOptions;
 use sinew::formats::bvh::BvhRows;
 use sinew::formats::{BvhOptions, MotionOptions};
 use sinew::motions::looped_among;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 /// The motions of a character.
 pub struct Motions {
@@ -18,8 +21,37 @@ pub struct Motions {
     pub clips: Vec<Clip>,
     /// The clip that plays until the fall.
     pub looped: Option<usize>,
+    /// Speed at which the character goes ahead while that clip plays, m/s; 0: as the clip does.
+    pub ahead: f32,
     /// Repairs made on reading the other files, one sentence each.
     pub notes: Vec<String>,
+}
+
+/// Speed of a character whose clip walks on the spot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Speed {
+    /// That of the clip's feet.
+    Feet,
+    /// m/s.
+    Given(f32),
+}
+
+impl FromStr for Speed {
+    type Err = String;
+
+    fn from_str(text: &str) -> core::result::Result<Self, String> {
+        /// Faster than any runner, m/s.
+        const FASTEST: f32 = 50.0;
+        if text == "feet" {
+            return Ok(Self::Feet);
+        }
+        let speed: f32 = text.parse().map_err(|_| format!("'{text}' is neither a number nor 'feet'"))?;
+        if speed.abs() <= FASTEST {
+            Ok(Self::Given(speed))
+        } else {
+            Err(format!("must lie between -{FASTEST} and {FASTEST} m/s"))
+        }
+    }
 }
 
 /// Default name of the baked clip, with a number if the file has that name already. Clips of this name are not played
@@ -40,7 +72,38 @@ impl Motions {
             }
             None => looped_among(&file.document.rig, &file.analysis, &clips),
         };
-        Ok(Self { clips, looped, notes })
+        Ok(Self { clips, looped, ahead: 0.0, notes })
+    }
+
+    /// Sets the speed ahead; returns a note if the clip walks on the spot and none is set.
+    ///
+    /// # Errors
+    /// The speed of feet that do not walk on the spot.
+    pub fn go_ahead(&mut self, file: &CharacterFile, speed: Option<Speed>) -> Result<Option<String>> {
+        let Some(clip) = self.looped.map(|looped| &self.clips[looped]) else {
+            return match speed {
+                Some(_) => Err(Failure::at(&file.name, "there is no clip to play".to_owned(), "--speed")),
+                None => Ok(None),
+            };
+        };
+        let steps = footsteps(&file.document.rig, &file.analysis, clip);
+        let feet = steps.map_or(0.0, |steps| steps.speed);
+        match speed {
+            Some(Speed::Given(speed)) => self.ahead = speed,
+            Some(Speed::Feet) if feet > 0.0 => self.ahead = feet,
+            Some(Speed::Feet) => {
+                let what = format!("'{}' does not walk on the spot: give a number of m/s", shown(&clip.name));
+                return Err(Failure::at(&file.name, what, "--speed"));
+            }
+            None if feet > 0.0 => {
+                return Ok(Some(format!(
+                    "'{}' walks on the spot, so it stays there: --speed feet moves it ahead at {feet:.2} m/s, the speed of its feet",
+                    shown(&clip.name)
+                )));
+            }
+            None => {}
+        }
+        Ok(None)
     }
 }
 

@@ -27,8 +27,8 @@ use crate::report::table::shown;
 pub use actor::actor;
 use aim::aim;
 use clip_file::{ClipFile, ClipFormat};
-use clips::CLIP_NAME;
 pub use clips::Motions;
+use clips::{CLIP_NAME, Speed};
 use door::door;
 use hit::HitArg;
 pub use lies::as_in_file;
@@ -68,6 +68,9 @@ pub struct Bake {
     /// its idle, else its first clip; in a file without clips the rest pose
     #[arg(long, value_name = "NAME")]
     clip: Option<String>,
+    /// Speed ahead while a clip that walks on the spot plays, m/s; 'feet': the speed of its feet
+    #[arg(long, value_name = "M/S|feet", allow_negative_numbers = true)]
+    speed: Option<Speed>,
     /// Further files with clips (GLB, VRMA, BVH, FBX, DeepMimic): for the same skeleton matched by joint names, else
     /// for a human of any size matched by the joints' roles
     #[arg(long, value_name = "FILE", num_args = 1..)]
@@ -168,8 +171,9 @@ impl Bake {
         let bodies = self.bodies()?;
         let Cast { file, ragdoll, garments, doubt, mut notes } = self.character(textures, &bodies)?;
         let name = self.clip_name(&file)?;
-        let motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
+        let mut motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
         notes.extend(motions.notes.iter().cloned());
+        notes.extend(motions.go_ahead(&file, self.speed)?);
         let place = self.place(&bodies, ragdoll.height)?;
         let (mut character, gets_up_by) = actor(&file, ragdoll, motions, !self.no_builtin_motions)?;
         character.set_garments(&garments);
