@@ -91,7 +91,7 @@ pub(crate) const PROBES_APART: f32 = 0.08;
 /// Largest speed at which the end of a limb moves out of a wall, relative to its clip, m/s.
 ///
 /// Larger: hands snap back at corners. Smaller: they enter walls. Shown by `brawl`.
-pub(crate) const PULLED_BACK: f32 = 5.0;
+pub(crate) const PULLED_BACK: f32 = 2.5;
 
 /// Speed at which the end of a limb returns to its clip beside a wall, m/s.
 ///
