@@ -81,9 +81,9 @@ pub struct ConstantForce {
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "reflect",
-    derive(bevy_reflect::Reflect, serde::Serialize, serde::Deserialize),
+    derive(bevy_reflect::Reflect),
     reflect(opaque),
-    reflect(Component, Clone, Debug, PartialEq, Serialize, Deserialize)
+    reflect(Component, Clone, Debug, PartialEq)
 )]
 pub struct Locked(pub LockedAxes);
 
