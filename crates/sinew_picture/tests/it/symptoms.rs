@@ -25,14 +25,20 @@ struct Drawing {
     world: World,
     /// Paths that bodies took, world space, metres.
     trails: Vec<Vec<Vec3>>,
+    /// Bodies with a colour of their own, linear.
+    colors: Vec<(BodyId, [f32; 3])>,
     captions: [&'static str; 2],
     camera: Camera,
 }
 
 impl Drawing {
     fn bytes(&self) -> Vec<u8> {
-        let frame =
-            Frame { center: self.camera.target, radius: 2.0, kinematic: Kinematic::Solid, colors: &[] };
+        let frame = Frame {
+            center: self.camera.target,
+            radius: 2.0,
+            kinematic: Kinematic::Solid,
+            colors: &self.colors,
+        };
         let mut scene = Scene::default();
         paint(&self.world, &frame, &mut scene);
         for pair in self.trails.iter().flat_map(|trail| trail.windows(2)) {
@@ -78,16 +84,18 @@ fn jitters() -> Drawing {
         }
     }
     let camera = Camera::framing(at(0.0, 0.75), 1.3, Vec3::new(0.0, 0.25, 1.0));
-    Drawing { world, trails, captions: ["set_transform in each step", "move_to"], camera }
+    Drawing { world, trails, colors: Vec::new(), captions: ["set_transform in each step", "move_to"], camera }
 }
 
 /// A sheet of triangles, one up and one down, each with a ball on it.
 fn sinks() -> Drawing {
     let mut world = ground();
+    let mut colors = Vec::new();
     let corners = [[-0.9, -0.6], [0.9, -0.6], [0.9, 0.6], [-0.9, 0.6]].map(|[x, z]| Vec3::new(x, 0.0, z));
     for (x, triangles) in [(-1.6, [[0, 1, 2], [0, 2, 3]]), (1.6, [[0, 2, 1], [0, 3, 2]])] {
         let sheet = Shape::mesh(&corners, &triangles).expect("two triangles");
-        world.add_body(&BodyDef::fixed(sheet).at(Vec3::new(x, 0.8, 0.0)));
+        let sheet = world.add_body(&BodyDef::fixed(sheet).at(Vec3::new(x, 0.8, 0.0)));
+        colors.push((sheet, [0.1, 0.25, 0.4]));
         world.add_body(&BodyDef::dynamic(Shape::sphere(0.3)).at(Vec3::new(x, 1.6, 0.0)));
     }
     let balls: Vec<BodyId> = world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic).collect();
@@ -99,7 +107,13 @@ fn sinks() -> Drawing {
         world.step();
     }
     let camera = Camera::framing(Vec3::Y * 0.85, 1.2, Vec3::new(0.0, 0.3, 1.0));
-    Drawing { world, trails, captions: ["clockwise triangles", "counter-clockwise triangles"], camera }
+    Drawing {
+        world,
+        trails,
+        colors,
+        captions: ["clockwise triangles", "counter-clockwise triangles"],
+        camera,
+    }
 }
 
 /// A weight of 40 kg on a rope of soft particles, and on links of bodies.
@@ -140,8 +154,14 @@ fn stretches() -> Drawing {
     let load = weight(&mut world, 1.3, 1.84);
     world.add_joint(&world.ball(above, load, Vec3::new(1.3, 1.84, 0.0)));
     (0..600).for_each(|_| world.step());
-    let camera = Camera::framing(Vec3::Y * 1.75, 1.35, Vec3::new(0.0, 0.1, 1.0));
-    Drawing { world, trails: Vec::new(), captions: ["particles, 500 N/m", "ten bodies with joints"], camera }
+    let camera = Camera::framing(Vec3::Y * 1.55, 1.7, Vec3::new(0.0, 0.1, 1.0));
+    Drawing {
+        world,
+        trails: Vec::new(),
+        colors: Vec::new(),
+        captions: ["particles, 500 N/m", "ten bodies with joints"],
+        camera,
+    }
 }
 
 #[test]
