@@ -23,7 +23,7 @@
 //! assert_eq!(hero.state(), State::Animated, "it has fallen, is up again and walks");
 //! ```
 //!
-//! Start with [`World`](physics::World) and [`Character`](https://docs.rs/sinew/latest/sinew/ragdoll/struct.Character.html). The guide
+//! Start with [`World`](physics::World) and [`Character`](ragdoll::Character). The guide
 //! (`docs/guide` in the repository) has characters, joints, cloth, cost, rollback and tuning by symptom.
 //!
 //! The crate to depend on. Each module is one of its member crates; [`prelude`] has the names that most programs need.
