@@ -382,7 +382,7 @@ mod tests {
                 let text = fs::read_to_string(crates.join(file)).unwrap_or_default();
                 file.contains(filter) || text.contains(&format!("fn {filter}"))
             };
-            assert!(files.iter().any(|file| is_named(&file)), "no test is called {filter}");
+            assert!(files.iter().any(is_named), "no test is called {filter}");
         }
     }
 
