@@ -50,6 +50,8 @@
 //! Scales are kept, but do not scale shapes. All other features of a world are available through the resource [`Physics`], with the id in
 //! [`BodyHandle`].
 #![forbid(unsafe_code)]
+// Types of queries name what a system reads; a name for each would hide it.
+#![allow(clippy::type_complexity)]
 
 #[cfg(feature = "characters")]
 mod animation;
