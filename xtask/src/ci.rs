@@ -170,7 +170,8 @@ fn packages() -> Result<()> {
 /// Scenes that take minutes in a debug build.
 fn large_scenes() -> Result<()> {
     let test = ["test", "--release", "--package", "sinew_scenes", "--test", "it"];
-    command::run(command::cargo(&test).args(["--", "--ignored"]))
+    command::run(command::cargo(&test).args(["--", "--ignored"]))?;
+    command::run(command::cargo(&test).args(["--", "at_any_frame_rate"]).env("SINEW_FULL", "1"))
 }
 
 /// Runs the random worlds beyond the hundred of every test run, with progress output.
