@@ -141,7 +141,7 @@ pub fn python() -> Result<()> {
     }
     command::run(Command::new("python3").arg(source.join("api_page.py")).arg("--check"))?;
     let training = source.join("examples/train.py").display().to_string();
-    run("python", &[&training, "1"], &tests)?;
+    run("python", &[&training], &tests)?;
     let notebook = source.join("notebooks/fall.ipynb");
     let mut convert = Command::new(user.join("bin/python"));
     convert.args(["-m", "nbconvert", "--to", "html", "--execute", "--output-dir"]).arg(&folder).arg(notebook);

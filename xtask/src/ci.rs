@@ -170,7 +170,8 @@ fn packages() -> Result<()> {
 /// Scenes that take minutes in a debug build.
 fn large_scenes() -> Result<()> {
     let test = ["test", "--release", "--package", "sinew_scenes", "--test", "it"];
-    command::run(command::cargo(&test).args(["--", "--ignored"]))
+    command::run(command::cargo(&test).args(["--", "--ignored"]))?;
+    command::run(command::cargo(&test).args(["--", "at_any_frame_rate"]).env("SINEW_FULL", "1"))
 }
 
 /// Runs the random worlds beyond the hundred of every test run, with progress output.
@@ -200,12 +201,25 @@ fn serde() -> Result<()> {
 fn all_cases() -> Result<()> {
     let mut test = command::cargo(&["test", "--release", "--package", "sinew_geometry"]);
     test.args(["--package", "sinew_physics", "--package", "sinew_formats", "--package", "sinew_ragdoll"]);
-    test.args(["--lib", "--test", "it", "--", "boxes", "collide", "convex", "hull", "meshes", "queries"]);
-    command::run(
-        test.args(["tree", "pairs", "hostile", "mjcf", "many_variants", "cut_do_no_harm"])
-            .env("SINEW_FULL", "1"),
-    )
+    test.args(["--lib", "--test", "it", "--"]).args(ALL_CASES);
+    command::run(test.env("SINEW_FULL", "1"))
 }
+
+/// Parts of the names of tests with more cases in full runs.
+const ALL_CASES: &[&str] = &[
+    "boxes",
+    "collide",
+    "convex",
+    "hull",
+    "meshes",
+    "queries",
+    "tree",
+    "pairs",
+    "strangers",
+    "hostile",
+    "mjcf",
+    "variants_of_a_rig",
+];
 
 pub fn clippy() -> Result<()> {
     // Enable features that are off by default, so that they compile.
@@ -352,6 +366,25 @@ mod tests {
             miss("up_s", Gate::Happened, &Value::Null),
             Some("up_s is null, must be a time".to_owned())
         );
+    }
+
+    /// A filter that fits no test would run none, and nobody would notice.
+    #[test]
+    fn every_filter_fits_a_test() {
+        let crates = command::root().join("crates");
+        let list = ["ls-files", "-z", "--", "*/tests/**/*.rs", "*/src/**/*.rs"];
+        let out = Command::new("git").args(list).current_dir(&crates).output().expect("git lists the files");
+        let files = String::from_utf8(out.stdout).expect("names are text");
+        let has_tests =
+            |file: &&str| file.contains("/tests/") || file.ends_with("tests.rs") || file.contains("pairs");
+        let files: Vec<&str> = files.split('\0').filter(has_tests).collect();
+        for filter in ALL_CASES {
+            let is_named = |file: &&str| {
+                let text = fs::read_to_string(crates.join(file)).unwrap_or_default();
+                file.contains(filter) || text.contains(&format!("fn {filter}"))
+            };
+            assert!(files.iter().any(is_named), "no test is called {filter}");
+        }
     }
 
     #[test]

@@ -44,7 +44,8 @@ pub fn library() -> Result<()> {
 /// If it does not build or run, or lists no dependencies.
 pub fn bevy() -> Result<()> {
     let text = read(BEVY_PAGE)?;
-    let printed = blocks(&text, "toml").into_iter().next().context("no dependencies are printed")?;
+    let printed = blocks(&text, "toml").into_iter().find(|block| block.contains("bevy_app"));
+    let printed = printed.context("no dependencies are printed")?;
     let path = command::root().join("integrations/bevy_sinew");
     let by_path = |line: &str| match line.split_once(" = ") {
         Some(("bevy_sinew", _)) => format!("bevy_sinew = {{ path = {path:?} }}\n"),
@@ -135,6 +136,16 @@ mod tests {
         for page in PAGES.iter().map(|page| page.0).chain([BEVY_PAGE]) {
             assert!(!blocks(&read(page).expect("it is there"), "rust").is_empty(), "{page}");
         }
-        assert!(blocks(&read(BEVY_PAGE).expect("it is there"), "toml")[0].contains("bevy_sinew = "));
+        let printed = blocks(&read(BEVY_PAGE).expect("it is there"), "toml");
+        assert!(printed.iter().all(|block| block.contains("bevy_sinew = ")) && printed.len() == 2);
+    }
+
+    /// The package `window` compiles the file, the page shows it.
+    #[test]
+    fn program_with_a_window_is_the_compiled_one() {
+        let shown = blocks(&read(BEVY_PAGE).expect("it is there"), "rust,ignore").swap_remove(0);
+        let file = read("integrations/bevy_sinew/window/examples/first.rs").expect("it is there");
+        let (_, program) = file.split_once("\n\n").expect("a comment comes first");
+        assert_eq!(shown, program);
     }
 }

@@ -1,15 +1,14 @@
 //! Character and ragdoll files, by path.
 
 use crate::Failure;
-use sinew::anim::legs::add_ankles;
+use sinew::CharacterSource;
 use sinew::anim::weights::lost_weights;
-use sinew::anim::{Clip, Garment, Hints, Rig, RigAnalysis, analyze_hinted, characters};
+use sinew::anim::{Clip, Garment, Rig, RigAnalysis};
 use sinew::formats::{
     Document, MotionFile, MotionFormat, MotionOptions, ReadOptions, load_gltf, load_motion, no_files,
     read_bytes, read_gltf, read_model, read_motion, read_ragdoll, read_ragdoll_settings, settings_path,
     write_gltf, write_motion,
 };
-use sinew::math::Vec3;
 use sinew::motions::{BuiltinError, looped_among, set_motions_with_builtin};
 use sinew::ragdoll::build::{joint_name, takes};
 use sinew::ragdoll::settings::{BodyWish, BoneSettings, Unit, analyze_with, role_named};
@@ -169,15 +168,7 @@ impl CharacterFile {
         Self::read(&bytes, name, corrections)
     }
 
-    fn new(name: String, mut document: Document, settings: Settings) -> Result<Self, Failure> {
-        let stem = Path::new(&name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        let hints = Hints {
-            name: stem.unwrap_or_default(),
-            // All readers convert to +Y up.
-            up: Some(Vec3::Y),
-            exporter: document.generator().to_owned(),
-            ..Hints::of_clips(&document.rig, &document.clips)
-        };
+    fn new(name: String, document: Document, settings: Settings) -> Result<Self, Failure> {
         let failed = |error: &dyn core::fmt::Display| Failure::file(&name, error);
         if let Some(joint) = lost_weights(&document.rig) {
             let bone = joint_name(&document.rig, joint);
@@ -186,23 +177,14 @@ impl CharacterFile {
             );
             return Err(failed(&what));
         }
-        let note = keep_largest(&mut document.rig);
-        let nodes = document.node_count();
-        let rig = &mut document.rig;
-        let analyze = |rig: &Rig| {
-            let plain = analyze_hinted(rig, &hints).map_err(|error| failed(&error))?;
-            analyze_with(rig, &plain, &settings).map_err(|error| failed(&error))
-        };
-        let mut analysis = analyze(rig)?;
-        if settings.garments.has_meshes() {
-            settings.garments.lay_sheets(rig, &analysis, nodes).map_err(|error| failed(&error))?;
-            analysis = analyze(rig)?;
-        }
-        add_ankles(rig, &mut analysis);
-        analysis.notes.extend(note);
-        let source = settings.springs.unwrap_or_default();
-        rig.springs = settings.springs_of(source, rig, analysis.up_axis).map_err(|error| failed(&error))?;
-        let garments = settings.garments.garments(rig).map_err(|error| failed(&error))?;
+        let mut source = CharacterSource::new(document, &name).map_err(|error| failed(&error))?;
+        let note = source.keep_largest().map_err(|error| failed(&error))?;
+        source.correct(&settings).map_err(|error| failed(&error))?;
+        source.analysis.notes.extend(note);
+        let springs = source.springs(&settings, settings.springs.unwrap_or_default());
+        source.document.rig.springs = springs.map_err(|error| failed(&error))?;
+        let garments = source.garments(&settings).map_err(|error| failed(&error))?;
+        let CharacterSource { document, analysis, .. } = source;
         Ok(Self { name, document, analysis, settings, garments })
     }
 
@@ -278,27 +260,6 @@ fn of_motion(file: MotionFile, name: &str) -> Result<Document, Failure> {
     let bytes = write_motion(&file.rig, &file.clips, &file.events);
     let read = |bytes: Vec<u8>| read_gltf(&bytes, ReadOptions::default(), &mut no_files);
     Ok(bytes.and_then(read).map_err(|error| error.with_file(name))?)
-}
-
-/// Removes the meshes of all characters but the one with the most vertices; returns a note if there were several.
-fn keep_largest(rig: &mut Rig) -> Option<String> {
-    let all = characters(rig);
-    let vertices = |own: &[usize]| {
-        let primitives = own.iter().flat_map(|&mesh| &rig.meshes[mesh].primitives);
-        primitives.map(|primitive| primitive.positions.len()).sum::<usize>()
-    };
-    let largest = (0..all.len()).reduce(|a, b| if vertices(&all[b]) > vertices(&all[a]) { b } else { a })?;
-    if all.len() < 2 {
-        return None;
-    }
-    let is_others =
-        |mesh: usize| all.iter().any(|meshes| meshes.contains(&mesh)) && !all[largest].contains(&mesh);
-    let mut index = 0;
-    rig.meshes.retain(|_| {
-        index += 1;
-        !is_others(index - 1)
-    });
-    Some(format!("there are {} characters in the file; the one with the most vertices is taken", all.len()))
 }
 
 /// The mannequin of the library, as if it had been read from a file.

@@ -2,6 +2,30 @@
 //!
 #![doc = include_str!("../doc/fall.svg")]
 //!
+#![cfg_attr(feature = "ragdoll", doc = "```")]
+#![cfg_attr(not(feature = "ragdoll"), doc = "```ignore")]
+//! use sinew::prelude::*;
+//! use std::sync::Arc;
+//!
+//! let mut world = World::new(WorldDef::default());
+//! world.add_body(&BodyDef::fixed(Shape::HalfSpace)); // the ground
+//! let def = Arc::new(sinew::mannequin::character()); // or the `def` of `sinew::load_character("hero.glb")`
+//! let mut hero = Character::spawn(&mut world, &def, Transform::IDENTITY);
+//! hero.set_move(Vec3::Z * 1.2); // walk, m/s
+//! for step in 0..900 {
+//!     if step == 90 {
+//!         let chest = def.body_named("chest").expect("it has a chest");
+//!         hero.hit(&mut world, chest, Vec3::new(60.0, 0.0, -60.0)); // N·s
+//!     }
+//!     world.step(); // 1/60 s
+//!     hero.update(&mut world);
+//! }
+//! assert_eq!(hero.state(), State::Animated, "it has fallen, is up again and walks");
+//! ```
+//!
+//! Start with [`World`](physics::World) and [`Character`](ragdoll::Character). The guide
+//! (`docs/guide` in the repository) has characters, joints, cloth, cost, rollback and tuning by symptom.
+//!
 //! The crate to depend on. Each module is one of its member crates; [`prelude`] has the names that most programs need.
 //!
 //! | feature | brings | default |
@@ -29,9 +53,13 @@ pub mod mannequin;
 #[cfg(feature = "ragdoll")]
 pub mod motions;
 pub mod prelude;
+#[cfg(feature = "formats")]
+mod source;
 
 #[cfg(feature = "formats")]
 pub use loaded::{LoadCharacterError, LoadedCharacter, character_of, load_character};
+#[cfg(feature = "formats")]
+pub use source::CharacterSource;
 
 /// Reads a character from a GLB, glTF, VRM or VRMA with the files next to it: rig, clips, and the data needed to write
 /// a clip back into the same file. Pictures are left out.
@@ -77,6 +105,7 @@ mod pages {
         GuideIntroduction: "../../../docs/guide/src/introduction.md",
         GuideFirstRagdoll: "../../../docs/guide/src/first_ragdoll.md",
         GuideYourCharacter: "../../../docs/guide/src/your_character.md",
+        GuideBaking: "../../../docs/guide/src/baking.md",
         GuideWorlds: "../../../docs/guide/src/worlds.md",
         GuideCharacters: "../../../docs/guide/src/characters.md",
         GuideJoints: "../../../docs/guide/src/joints.md",

@@ -1,15 +1,13 @@
 //! A character from a file in one call.
 
-use crate::anim::legs::add_ankles;
-use crate::anim::{Hints, NoSkin, Rig, RigAnalysis, analyze_hinted, characters};
+use crate::anim::{NoSkin, RigAnalysis};
 use crate::formats::{self, Document, read_bytes, read_ragdoll_settings, settings_path};
-use crate::math::Vec3;
 use crate::motions::{BuiltinError, OwnMotions, own_motions, set_motions_with_builtin};
-use crate::ragdoll::build::{BuildReport, takes};
-use crate::ragdoll::settings::analyze_with;
+use crate::ragdoll::build::BuildReport;
 use crate::ragdoll::{
-    AfterSettling, BuildOptions, CharacterDef, MotionError, Opening, Settings, SettingsError, build_moving,
+    AfterSettling, BuildOptions, CharacterDef, MotionError, Opening, Settings, SettingsError,
 };
+use crate::source::CharacterSource;
 use std::path::Path;
 
 /// A character read from a file.
@@ -99,7 +97,7 @@ pub fn load_character(path: impl AsRef<Path>) -> Result<LoadedCharacter, LoadCha
 /// # Errors
 /// As [`load_character`].
 pub fn character_of(
-    mut document: Document,
+    document: Document,
     name: &str,
     settings: &Settings,
 ) -> Result<LoadedCharacter, LoadCharacterError> {
@@ -107,32 +105,16 @@ pub fn character_of(
     let no_skin = |source| LoadCharacterError::NoSkin { file: file(), source };
     let refused = |source| LoadCharacterError::Settings { file: file(), source };
     let mut notes = Vec::new();
-    notes.extend(keep_largest(&mut document.rig));
-    let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-    let hints = Hints {
-        name: stem.unwrap_or_default(),
-        up: Some(Vec3::Y),
-        exporter: document.generator().to_owned(),
-        ..Hints::of_clips(&document.rig, &document.clips)
-    };
-    let nodes = document.node_count();
-    let Document { mut rig, clips, .. } = document;
-    let plain = analyze_hinted(&rig, &hints).map_err(no_skin)?;
-    let mut analysis = analyze_with(&rig, &plain, settings).map_err(refused)?;
-    if settings.garments.has_meshes() {
-        settings.garments.lay_sheets(&mut rig, &analysis, nodes).map_err(refused)?;
-        let plain = analyze_hinted(&rig, &hints).map_err(no_skin)?;
-        analysis = analyze_with(&rig, &plain, settings).map_err(refused)?;
-    }
-    add_ankles(&mut rig, &mut analysis);
-    notes.extend(analysis.unit_guess.iter().map(|guess| guess.note.clone()));
-    notes.extend(analysis.notes.iter().cloned());
-    let source = settings.springs.unwrap_or_default();
-    rig.springs = settings.springs_of(source, &rig, analysis.up_axis).map_err(refused)?;
-    let garments = settings.garments.garments(&rig).map_err(refused)?;
-    let moves = takes(&rig, &clips);
-    let built = build_moving(&rig, &analysis, &moves, &BuildOptions::default(), settings);
-    let (ragdoll, report) = built.map_err(refused)?;
+    let mut source = CharacterSource::new(document, name).map_err(no_skin)?;
+    notes.extend(source.keep_largest().map_err(no_skin)?);
+    source.correct(settings).map_err(refused)?;
+    notes.extend(source.analysis.unit_guess.iter().map(|guess| guess.note.clone()));
+    notes.extend(source.analysis.notes.iter().cloned());
+    let springs = source.springs(settings, settings.springs.unwrap_or_default());
+    source.document.rig.springs = springs.map_err(refused)?;
+    let garments = source.garments(settings).map_err(refused)?;
+    let (ragdoll, report) = source.build(settings, &BuildOptions::default()).map_err(refused)?;
+    let CharacterSource { document: Document { rig, clips, .. }, analysis, .. } = source;
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
     def.set_garments(&garments);
     let found = set_motions(&mut def, &analysis, clips);
@@ -164,27 +146,4 @@ fn set_motions(
     }
     def.set_motions(motions)?;
     Ok(notes)
-}
-
-/// Removes the meshes of all characters except the one with the most vertices; returns a note if there were several.
-fn keep_largest(rig: &mut Rig) -> Option<String> {
-    let all = characters(rig);
-    let vertices = |own: &Vec<usize>| -> usize {
-        let primitives = own.iter().flat_map(|&mesh| &rig.meshes[mesh].primitives);
-        primitives.map(|primitive| primitive.positions.len()).sum()
-    };
-    let largest = (0..all.len()).reduce(|a, b| if vertices(&all[b]) > vertices(&all[a]) { b } else { a })?;
-    if all.len() < 2 {
-        return None;
-    }
-    let is_others = |mesh: usize| {
-        all.iter().enumerate().any(|(index, meshes)| index != largest && meshes.contains(&mesh))
-            && !all[largest].contains(&mesh)
-    };
-    let mut index = 0;
-    rig.meshes.retain(|_| {
-        index += 1;
-        !is_others(index - 1)
-    });
-    Some(format!("there are {} characters in the file; the one with the most vertices is taken", all.len()))
 }

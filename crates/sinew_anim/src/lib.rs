@@ -1,5 +1,27 @@
 //! Animation as plain data and stateless jobs: rig, clips, poses, roles, captured motion.
 //!
+//! ```
+//! use sinew_anim::{Channel, Clip, Interpolation, Joint, LocalTransform, Property, Rig, Wrap, rest_pose, sample};
+//!
+//! let arm = Joint { name: "arm".into(), parent: None, rest: LocalTransform::default(), source: 0 };
+//! let rig = Rig { joints: vec![arm], ..Rig::default() };
+//! // Up by 2 units in a second.
+//! let up = Channel {
+//!     joint: 0,
+//!     property: Property::Translation,
+//!     interpolation: Interpolation::Linear,
+//!     times: vec![0.0, 1.0],
+//!     values: vec![0.0, 0.0, 0.0, 0.0, 2.0, 0.0],
+//! };
+//! let clip = Clip { name: "up".into(), duration: 1.0, channels: vec![up] };
+//! let mut pose = rest_pose(&rig);
+//! sample(&clip, &rig, 0.25, Wrap::Clamp, &mut pose);
+//! assert_eq!(pose[0].translation.y, 0.5);
+//! ```
+//!
+//! A [`Rig`] has joints, skins and meshes, a [`Clip`] moves its joints; [`analyze`] finds which joint is which part of a body, and an
+//! [`Animator`] plays clips with transitions and layers.
+//!
 //! This crate depends on no physics, files or renderer. Rotations are [`sinew_math::Rotation`], times are seconds, lengths
 //! are **file units** until [`roles`] gives metres per unit.
 #![forbid(unsafe_code)]

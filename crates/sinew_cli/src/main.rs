@@ -24,13 +24,13 @@ const STYLES: Styles = Styles::styled()
 
 const AFTER_HELP: &str = "\
 Start here:
-  sinew demo                                  a mannequin walks, is hit, falls down stairs, gets up
-  sinew inspect character.glb                 what is in your file
-  sinew bake character.glb -o fall.glb        let your character fall; written back as a clip
-  sinew ragdoll doctor character.glb          what is wrong with its ragdoll, and what mends it
-  sinew boxes house.glb -o house.json         a world to fall in, from a mesh
-  sinew convert walk.bvh --onto character.glb -o walking.glb   captured motion on your character
-  sinew view                                  a window: look at scenes, pull, throw, pause
+  sinew demo                                 a mannequin walks, falls, gets up
+  sinew inspect hero.glb                     what is in your file
+  sinew bake hero.glb -o fall.glb            a fall, written back as a clip
+  sinew ragdoll doctor hero.glb              what is wrong with its ragdoll
+  sinew boxes house.glb -o house.json        a world to fall in, from a mesh
+  sinew convert a.bvh b.glb --onto hero.glb  captured motion on your character
+  sinew view                                 a window: look, pull, throw, pause
 
 A file that is read may be -, which is standard input.";
 

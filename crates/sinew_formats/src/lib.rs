@@ -1,5 +1,18 @@
 //! Bytes to plain data and back: glTF, worlds, ragdolls, motion capture, MJCF, ragdolls of Jolt.
 //!
+//! ```
+//! use sinew_formats::{ReadOptions, no_files, read_gltf, write_gltf};
+//!
+//! let mannequin = sinew::mannequin::mannequin();
+//! let bytes = write_gltf(&mannequin.rig, &mannequin.clips)?; // or those of a file
+//! let document = read_gltf(&bytes, ReadOptions::default(), &mut no_files)?;
+//! assert_eq!(document.rig.skins.len(), 1);
+//! println!("{} clips", document.clips.len());
+//! # Ok::<(), sinew_formats::Error>(())
+//! ```
+//!
+//! [`load_gltf`] reads a character from disk, [`load_motion`] clips of any format, and [`Document`] writes a clip back into the same file.
+//!
 //! Everything takes bytes, and a closure for external files; only the feature `fs` (on by default) accesses the file
 //! system. Input is untrusted: the result is a value or an [`Error`] with a place, never a panic, and memory is
 //! proportional to the input.

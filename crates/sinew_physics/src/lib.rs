@@ -1,5 +1,19 @@
 //! The world: bodies, shapes, joints, particles and springs, in one deterministic step.
 //!
+//! ```
+//! use sinew_math::Vec3;
+//! use sinew_physics::{BodyDef, Shape, World, WorldDef};
+//!
+//! let mut world = World::new(WorldDef::default());
+//! world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+//! let ball = world.add_body(&BodyDef::dynamic(Shape::sphere(0.5)).at(Vec3::Y * 3.0)); // metres
+//! (0..120).for_each(|_| world.step()); // 1/60 s each
+//! assert!((world.transform(ball).translation.y - 0.5).abs() < 0.001, "it lies on the ground");
+//! ```
+//!
+//! Everything is a call of [`World`]: bodies from a [`BodyDef`], joints from a [`JointDef`], [queries](World::query), [events](World::events),
+//! [snapshots](World::save).
+//!
 //! SI units, radians, +Y up, right-handed, `f32`. Shapes are those of [`sinew_geometry`]. Read `step/mod.rs` first: it is
 //! the physics, in order.
 #![deny(unsafe_code)] // `slices` alone allows it

@@ -2,6 +2,31 @@
 //! animation.
 //!
 #![doc = include_str!("../doc/ragdoll.svg")]
+//!
+//! ```
+//! use sinew::prelude::*;
+//! use std::sync::Arc;
+//!
+//! let mannequin = sinew::mannequin::mannequin();
+//! let analysis = analyze(&mannequin.rig)?;
+//! let (ragdoll, report) = build(&mannequin.rig, &analysis, &BuildOptions::default())?;
+//! println!("{} bodies, {:.0} kg; {:?}", ragdoll.bodies.len(), ragdoll.total_mass, report.notes);
+//! let def = Arc::new(CharacterDef::new(mannequin.rig, ragdoll, &analysis.bind_model));
+//!
+//! let mut world = World::new(WorldDef::default());
+//! world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+//! let mut hero = Character::spawn(&mut world, &def, Transform::IDENTITY);
+//! hero.go_limp(&mut world);
+//! for _ in 0..120 {
+//!     world.step();
+//!     hero.update(&mut world);
+//! }
+//! assert!(hero.world_from_character().translation.y < 0.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`build()`] makes a [`RagdollDef`] of a rig, a [`Character`] lives in a world, [`bake()`] writes a stretch of its life as a clip, and
+//! [`doctor()`] names what is wrong with a ragdoll.
 #![forbid(unsafe_code)]
 
 pub mod bake;

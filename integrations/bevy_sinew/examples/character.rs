@@ -28,8 +28,8 @@ fn scene(mut commands: Commands, heroes: Query<(Entity, &CharacterBody)>) {
 fn kind() -> CharacterDef {
     #[cfg(feature = "gltf")]
     if let Some(path) = std::env::args().find(|path| path.ends_with(".glb")) {
-        let bytes = std::fs::read(path).expect("the file can be read");
-        let file = bevy_sinew::read_character(&bytes, &Default::default()).expect("it is a character");
+        let bytes = std::fs::read(&path).expect("the file can be read");
+        let file = bevy_sinew::read_character(&bytes, &path, &Default::default()).expect("it is a character");
         return CharacterDef::clone(&file.def);
     }
     bevy_sinew::sinew::mannequin::character()

@@ -1,9 +1,11 @@
 //! Bodies, their shapes and velocities.
 
+use crate::colliders::Surface;
 use crate::pose::to_pose;
 use crate::{Physics, order};
 use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
 use bevy_ecs::world::DeferredWorld;
 use bevy_math::Vec3;
 #[cfg(feature = "reflect")]
@@ -12,7 +14,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
-use sinew_physics::{BodyDef, BodyId, BodyKind, MassUpdate, Shape, ShapeDef, ShapeId};
+use sinew_physics::{BodyDef, BodyId, BodyKind, ForceId, JointId, MassProperties, Shape, ShapeDef};
 
 /// A rigid body of a kind.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,8 +40,8 @@ impl From<RigidBody> for BodyKind {
     }
 }
 
-/// The shapes of a body, metres, in its own axes; mass is computed from their densities. A dynamic body without shapes is a point of 1 kg
-/// without contacts.
+/// The shapes of a body, metres, in its own axes; mass is computed from their densities. On an entity without a [`RigidBody`] they are part of
+/// the nearest body above it. A dynamic body without shapes is a point of 1 kg without contacts.
 #[derive(Component, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "reflect",
@@ -77,7 +79,7 @@ impl From<Velocity> for sinew_physics::Velocity {
     }
 }
 
-/// The body of an entity; available from the first fixed step on.
+/// The body of an entity; there as soon as the entity has a [`RigidBody`].
 #[derive(Component, Clone, Copy, Debug)]
 #[component(on_remove = take_out)]
 pub struct BodyHandle {
@@ -85,6 +87,12 @@ pub struct BodyHandle {
     /// The last written or read transform; any difference is a change by the user.
     pub(crate) transform: Transform,
     velocity: Velocity,
+    /// Mass given by a [`Mass`](crate::Mass), kg.
+    pub(crate) mass: Option<f32>,
+    /// Force of a [`ConstantForce`](crate::ConstantForce).
+    pub(crate) force: Option<ForceId>,
+    /// Joint of a [`Locked`](crate::Locked).
+    pub(crate) lock: Option<JointId>,
 }
 
 impl BodyHandle {
@@ -109,44 +117,71 @@ pub(crate) fn forget_body(removed: On<Remove<RigidBody>>, mut commands: Commands
     commands.entity(removed.event().entity).try_remove::<BodyHandle>();
 }
 
-/// Mass of a body without shapes, kg, and its moments, kg·m².
+/// Mass of a body without shapes, kg, and its moment for each kg, m².
 const POINT_MASS: f32 = 1.0;
 const POINT_MOMENT: f32 = 0.1;
 
-fn body_def(kind: RigidBody, shapes: &[ShapeDef]) -> BodyDef {
-    let inertia = sinew_math::Sym3 { diagonal: Vec3::splat(POINT_MOMENT), off: Vec3::ZERO };
-    let point = sinew_physics::MassProperties { mass: POINT_MASS, center: Vec3::ZERO, inertia };
-    let mass = shapes.is_empty().then_some(point);
-    BodyDef { kind: kind.into(), shapes: shapes.to_vec(), mass, ..BodyDef::default() }
+/// Mass and moments of a body without shapes.
+pub(crate) fn point(mass: Option<f32>) -> MassProperties {
+    let mass = mass.unwrap_or(POINT_MASS);
+    let inertia = sinew_math::Sym3 { diagonal: Vec3::splat(POINT_MOMENT * mass), off: Vec3::ZERO };
+    MassProperties { mass, center: Vec3::ZERO, inertia }
 }
 
-/// Adds new bodies in the order of their entities.
+/// What makes the body of an entity.
+pub(crate) type Body = (Entity, &'static RigidBody, Surface, Option<&'static Velocity>, &'static Transform);
+
+fn add_body(
+    commands: &mut Commands,
+    physics: &mut Physics,
+    (entity, &kind, surface, velocity, &transform): <Body as QueryData>::Item<'_, '_>,
+    global: &TransformHelper,
+) {
+    let Ok(pose) = global.compute_global_transform(entity) else { return };
+    let pose = to_pose(&pose.compute_transform());
+    let velocity = velocity.copied().unwrap_or_default();
+    let shapes = surface.own_shapes();
+    let mass = shapes.is_empty().then(|| point(None));
+    let id = physics.add_body(&BodyDef {
+        kind: kind.into(),
+        shapes,
+        mass,
+        position: pose.translation,
+        rotation: pose.rotation,
+        linear_velocity: velocity.linear,
+        angular_velocity: velocity.angular,
+        user_data: entity.to_bits(),
+        ..BodyDef::default()
+    });
+    physics.entities.insert(id, entity);
+    let handle = BodyHandle { id, transform, velocity, mass: None, force: None, lock: None };
+    commands.entity(entity).insert(handle);
+}
+
+/// Adds the body of a new entity at once.
+pub(crate) fn add_at_once(
+    added: On<Add<RigidBody>>,
+    mut commands: Commands,
+    physics: Option<ResMut<Physics>>,
+    bodies: Query<Body, Without<BodyHandle>>,
+    global: TransformHelper,
+) {
+    if let (Some(mut physics), Ok(body)) = (physics, bodies.get(added.event().entity)) {
+        add_body(&mut commands, &mut physics, body, &global);
+    }
+}
+
+/// Adds bodies of entities that were spawned while there was no [`Physics`], in the order of the entities.
 pub(crate) fn add_bodies(
     mut commands: Commands,
     mut physics: ResMut<Physics>,
-    new: Query<(Entity, &RigidBody, &Collider, Option<&Velocity>), Without<BodyHandle>>,
-    transforms: Query<&Transform>,
+    new: Query<Body, Without<BodyHandle>>,
     global: TransformHelper,
 ) {
     let mut new: Vec<_> = new.iter().collect();
     new.sort_unstable_by_key(|&(entity, ..)| order(entity));
-    for (entity, &kind, collider, velocity) in new {
-        let (Ok(pose), Ok(&transform)) = (global.compute_global_transform(entity), transforms.get(entity))
-        else {
-            continue;
-        };
-        let pose = to_pose(&pose.compute_transform());
-        let velocity = velocity.copied().unwrap_or_default();
-        let id = physics.add_body(&BodyDef {
-            position: pose.translation,
-            rotation: pose.rotation,
-            linear_velocity: velocity.linear,
-            angular_velocity: velocity.angular,
-            user_data: entity.to_bits(),
-            ..body_def(kind, &collider.0)
-        });
-        physics.entities.insert(id, entity);
-        commands.entity(entity).insert(BodyHandle { id, transform, velocity });
+    for body in new {
+        add_body(&mut commands, &mut physics, body, &global);
     }
 }
 
@@ -158,36 +193,6 @@ pub(crate) fn change_kinds(
     changed.sort_unstable_by_key(|(handle, _)| handle.id);
     for (handle, &kind) in changed {
         physics.set_kind(handle.id, kind.into());
-    }
-}
-
-/// Replaces the shapes of a changed collider; the body keeps its id.
-pub(crate) fn change_shapes(
-    mut physics: ResMut<Physics>,
-    changed: Query<(&BodyHandle, &RigidBody, Ref<Collider>), Changed<Collider>>,
-) {
-    let mut changed: Vec<_> = changed.iter().collect();
-    changed.sort_unstable_by_key(|(handle, ..)| handle.id);
-    for (handle, &kind, collider) in changed {
-        let body = handle.id;
-        let now: Vec<ShapeDef> = physics.shape_ids(body).map(|id| physics.shape_def(id)).collect();
-        if now == collider.0 {
-            continue;
-        }
-        let common = now.len().min(collider.0.len());
-        for (shape, def) in collider.0.iter().enumerate() {
-            if shape < common {
-                physics.set_shape(ShapeId { body, shape: shape as u32 }, def, MassUpdate::Keep);
-            } else {
-                physics.add_shape(body, def, MassUpdate::Keep);
-            }
-        }
-        for shape in (common..now.len()).rev() {
-            physics.remove_shape(ShapeId { body, shape: shape as u32 }, MassUpdate::Keep);
-        }
-        if kind == RigidBody::Dynamic && !collider.0.is_empty() {
-            physics.set_mass_of_shapes(body);
-        }
     }
 }
 

@@ -6,12 +6,9 @@ use bevy_asset::io::Reader;
 use bevy_asset::{Asset, AssetApp, AssetLoader, Assets, Handle, LoadContext};
 use bevy_ecs::prelude::*;
 use bevy_reflect::TypePath;
-use sinew::anim::{Clip, NoSkin, analyze};
 use sinew::formats::{ReadOptions, no_files, read_gltf};
-use sinew::motions::{BuiltinError, set_motions_with_builtin};
-use sinew::ragdoll::{
-    AfterSettling, BuildError, BuildOptions, CharacterDef, Locomotion, MotionError, MotionSet, build,
-};
+use sinew::ragdoll::{AfterSettling, CharacterDef, MotionError, MotionSet, Settings};
+use sinew::{LoadCharacterError, LoadedCharacter, character_of};
 use std::sync::Arc;
 
 /// Reads characters from GLB files. Needs Bevy's `AssetPlugin`.
@@ -39,14 +36,15 @@ pub struct CharacterFile {
 #[require(bevy_transform::components::Transform)]
 pub struct CharacterScene(pub Handle<CharacterFile>);
 
-/// Names of the clips that a character plays, for `AssetServer::load_with_settings`; an unknown name is an error.
+/// Names of the clips that a character plays, for `AssetServer::load_with_settings`; an unknown name is an error. What is not named is
+/// chosen among the file's clips as by [`sinew::load_character`]; a humanoid that lacks it has the built-in one.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct CharacterSettings {
-    /// Clip that loops while it walks. Default: the built-in walk.
+    /// Clip that loops while it walks.
     pub walk: Option<String>,
-    /// Clip that loops while it stands. Default: none.
+    /// Clip that loops while it stands.
     pub idle: Option<String>,
-    /// Clips that start lying and end standing. Default: those detected in the file, or else the built-in ones.
+    /// Clips that start lying and end standing.
     pub get_ups: Vec<String>,
 }
 
@@ -59,18 +57,12 @@ pub enum CharacterFileError {
     /// The file is not a valid GLB.
     #[error(transparent)]
     Format(#[from] sinew::formats::Error),
-    /// The file has no skin.
+    /// The file has no skin, allows no ragdoll, or has a clip that cannot be played.
     #[error(transparent)]
-    Analysis(#[from] NoSkin),
-    /// No ragdoll can be built from its joints.
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    /// One of its clips cannot be played.
+    Character(#[from] LoadCharacterError),
+    /// One of the named clips cannot be played.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// The character is not a humanoid, or one of its clips cannot be played.
-    #[error(transparent)]
-    Builtin(#[from] BuiltinError),
     /// The settings name a missing clip.
     #[error("no clip is called `{0}`")]
     NoClip(String),
@@ -89,11 +81,11 @@ impl AssetLoader for CharacterLoader {
         &self,
         reader: &mut dyn Reader,
         settings: &CharacterSettings,
-        _: &mut LoadContext<'_>,
+        context: &mut LoadContext<'_>,
     ) -> Result<CharacterFile, CharacterFileError> {
         let mut bytes = Vec::new();
         reader.read_to_end(&mut bytes).await?;
-        read_character(&bytes, settings)
+        read_character(&bytes, &context.path().to_string(), settings)
     }
 
     fn extensions(&self) -> &[&str] {
@@ -101,50 +93,47 @@ impl AssetLoader for CharacterLoader {
     }
 }
 
-/// Creates a kind of character from the bytes of a GLB. Missing motions of humanoids are replaced by built-in ones.
+/// Makes a kind of character from the bytes of a GLB, as [`sinew::character_of`]. `name` is the file's: errors start with it, and its words
+/// help to classify the character.
 ///
 /// # Errors
 /// If the bytes are no GLB with a skin, or the settings do not fit it.
 pub fn read_character(
     bytes: &[u8],
+    name: &str,
     settings: &CharacterSettings,
 ) -> Result<CharacterFile, CharacterFileError> {
     let document = read_gltf(bytes, ReadOptions::default(), &mut no_files)?;
-    let analysis = analyze(&document.rig)?;
-    let (ragdoll, report) = build(&document.rig, &analysis, &BuildOptions::default())?;
-    let mut def = CharacterDef::new(document.rig, ragdoll, &analysis.bind_model);
-    let motions = motions(&def, document.clips, settings)?;
-    if analysis.humanoid {
-        match set_motions_with_builtin(&mut def, &analysis, motions.clone()) {
-            Err(BuiltinError::InFloor(_)) => {
-                def.after_settling = AfterSettling::StayDown;
-                def.set_motions(motions)?;
-            }
-            other => other?,
+    let mut notes = document.warnings.clone();
+    let LoadedCharacter { mut def, notes: more, report, .. } =
+        character_of(document, name, &Settings::default())?;
+    notes.extend(more);
+    notes.extend(report.notes);
+    if *settings != CharacterSettings::default() {
+        let motions = chosen(def.motions().clone(), settings)?;
+        if !settings.get_ups.is_empty() {
+            def.after_settling = AfterSettling::GetUp;
         }
-    } else {
         def.set_motions(motions)?;
     }
-    let notes = [document.warnings, analysis.notes, report.notes].concat();
     Ok(CharacterFile { def: Arc::new(def), notes })
 }
 
-fn motions(
-    def: &CharacterDef,
-    clips: Vec<Clip>,
-    settings: &CharacterSettings,
-) -> Result<MotionSet, CharacterFileError> {
+/// Motions with the named clips instead of those that were chosen.
+fn chosen(mut motions: MotionSet, settings: &CharacterSettings) -> Result<MotionSet, CharacterFileError> {
     let named = |name: &String| {
-        let index = clips.iter().position(|clip| clip.name == *name);
+        let index = motions.clips.iter().position(|clip| clip.name == *name);
         index.ok_or_else(|| CharacterFileError::NoClip(name.clone()))
     };
-    let looped = settings.walk.as_ref().map(named).transpose()?;
+    let walk = settings.walk.as_ref().map(named).transpose()?;
     let idle = settings.idle.as_ref().map(named).transpose()?;
-    let get_ups = match settings.get_ups.as_slice() {
-        [] => def.get_ups_among(&clips),
-        names => names.iter().map(named).collect::<Result<_, _>>()?,
-    };
-    Ok(MotionSet { clips, looped, idle, get_ups, locomotion: Locomotion::ByClip, ..MotionSet::default() })
+    let get_ups: Vec<usize> = settings.get_ups.iter().map(named).collect::<Result<_, _>>()?;
+    motions.looped = walk.or(motions.looped);
+    motions.idle = idle.or(motions.idle);
+    if !get_ups.is_empty() {
+        motions.get_ups = get_ups;
+    }
+    Ok(motions)
 }
 
 fn make_characters(

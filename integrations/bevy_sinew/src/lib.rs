@@ -3,8 +3,7 @@
 //! ```
 //! use bevy_app::{App, Update};
 //! use bevy_ecs::prelude::*;
-//! use bevy_math::Vec3;
-//! use bevy_sinew::{Collider, RigidBody, Shape, SinewPlugin};
+//! use bevy_sinew::prelude::*;
 //! use bevy_time::{TimePlugin, TimeUpdateStrategy};
 //! use bevy_transform::components::Transform;
 //!
@@ -23,10 +22,11 @@
 //!
 //! | component | read | written |
 //! |---|---|---|
-//! | [`RigidBody`], [`Collider`] | when added or changed | never |
+//! | [`RigidBody`], [`Collider`]; [`Friction`], [`Restitution`], [`Layers`], [`Sensor`], [`Mass`] | when added, changed or removed | never |
+//! | [`Damping`], [`GravityScale`], [`ConstantForce`], [`Locked`] | the same | never |
 //! | `Transform` | when a body is added, and when another system changes it | each frame, of bodies that moved: between the last two steps |
 //! | [`Velocity`], if present | when added or changed | after each step |
-//! | [`Joint`], [`Field`] | when added or changed | never |
+//! | [`Joint`], [`JointMotor`], [`Field`] | when added or changed | never |
 //! | [`Mover`], [`Walk`] | before each step; its height and filter may change | a jump is reset after it was applied |
 //! | [`MoverState`] | never | after each step |
 //! | [`Particles`] | when added | never |
@@ -41,6 +41,7 @@
 //! | `characters` | [`CharacterBody`]: walks, is hit, falls, gets up, on the joints of a scene | yes |
 //! | `diagnostics` | `SinewDiagnosticsPlugin`: time of steps, bodies awake, contacts | no |
 //! | `gltf` | `CharacterScene`: characters from GLB files | no |
+//! | `mesh` | `MeshCollider`: colliders from drawn meshes | no |
 //! | `gizmos` | `SinewGizmosPlugin`: debug drawing of the world | no |
 //! | `picking` | `SinewPickingPlugin`: pointers hit bodies | no |
 //! | `reflect` | components in the type registry, for scenes and inspectors | no |
@@ -49,12 +50,15 @@
 //! Scales are kept, but do not scale shapes. All other features of a world are available through the resource [`Physics`], with the id in
 //! [`BodyHandle`].
 #![forbid(unsafe_code)]
+// Types of queries name what a system reads; a name for each would hide it.
+#![allow(clippy::type_complexity)]
 
 #[cfg(feature = "characters")]
 mod animation;
 mod bodies;
 #[cfg(feature = "characters")]
 mod characters;
+mod colliders;
 #[cfg(feature = "diagnostics")]
 mod diagnostics;
 mod events;
@@ -63,11 +67,15 @@ mod gizmos;
 #[cfg(feature = "gltf")]
 mod gltf;
 mod links;
+#[cfg(feature = "mesh")]
+mod mesh;
 mod movers;
 mod particles;
 #[cfg(feature = "picking")]
 mod picking;
 mod pose;
+pub mod prelude;
+mod properties;
 mod threads;
 
 #[cfg(feature = "characters")]
@@ -75,6 +83,7 @@ pub use animation::BevyAnimation;
 pub use bodies::{BodyHandle, Collider, RigidBody, Velocity};
 #[cfg(feature = "characters")]
 pub use characters::{CharacterBody, CharacterHandle, CharacterJoints, CharacterTold};
+pub use colliders::ColliderOf;
 #[cfg(feature = "diagnostics")]
 pub use diagnostics::SinewDiagnosticsPlugin;
 pub use events::{HitTold, SensorEntered, SensorLeft, TouchBegan, TouchEnded};
@@ -86,11 +95,16 @@ pub use gltf::{
     read_character,
 };
 pub use links::{Field, FieldHandle, Joint, JointHandle};
+#[cfg(feature = "mesh")]
+pub use mesh::{MeshCollider, MeshColliderError, SinewMeshPlugin};
 pub use movers::{Mover, MoverHandle, MoverState, Walk};
 pub use particles::{Hang, Particles, ParticlesHandle};
 #[cfg(feature = "picking")]
 pub use picking::SinewPickingPlugin;
 pub use pose::Interpolation;
+pub use properties::{
+    ConstantForce, Damping, Friction, GravityScale, JointMotor, Layers, Locked, Mass, Restitution, Sensor,
+};
 #[cfg(feature = "characters")]
 pub use sinew;
 pub use sinew_math as math;
@@ -109,8 +123,8 @@ use bevy_time::{Fixed, Time};
 use bevy_transform::TransformSystems;
 use core::ops::{Deref, DerefMut};
 use core::time::Duration;
-use sinew_physics::{BodyId, World};
-use std::collections::BTreeMap;
+use sinew_physics::{BodyDef, BodyId, BodyKind, World};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Stages of the plugin, in order. The first three run in `FixedPostUpdate`, the last in `RunFixedMainLoop`, after the fixed
 /// steps of a frame.
@@ -135,6 +149,10 @@ pub struct Physics {
     limbs: BTreeMap<BodyId, Entity>,
     /// Removed bodies, kept until the step has reported the ends of their contacts.
     gone: Vec<BodyId>,
+    /// Entities of bodies whose shapes or mass are to be looked at, because a component was removed or a child moved.
+    stale: BTreeSet<Entity>,
+    /// A body without shapes that never moves, once axes are locked.
+    ground: Option<BodyId>,
 }
 
 impl Physics {
@@ -151,6 +169,15 @@ impl Physics {
     /// Returns true if no entity has a body.
     pub fn is_empty(&self) -> bool {
         self.entities.is_empty()
+    }
+
+    /// The body to which locked axes are locked.
+    fn ground(&mut self) -> BodyId {
+        if let Some(ground) = self.ground.filter(|&ground| self.world.contains(ground)) {
+            return ground;
+        }
+        let (kind, mass) = (BodyKind::Static, Some(bodies::point(None)));
+        *self.ground.insert(self.world.add_body(&BodyDef { kind, mass, ..BodyDef::default() }))
     }
 }
 
@@ -185,15 +212,24 @@ impl Plugin for SinewPlugin {
         let step = Duration::from_nanos(self.def.step_nanoseconds);
         app.insert_resource(Time::<Fixed>::from_duration(step));
         let world = World::new(self.def.clone());
-        let (entities, limbs, gone) = (BTreeMap::new(), BTreeMap::new(), Vec::new());
-        app.insert_resource(Physics { world, entities, limbs, gone });
+        app.insert_resource(Physics {
+            world,
+            entities: BTreeMap::new(),
+            limbs: BTreeMap::new(),
+            gone: Vec::new(),
+            stale: BTreeSet::new(),
+            ground: None,
+        });
         app.init_resource::<Interpolation>().init_resource::<StepThreads>();
         events::add_messages(app);
         let order = (PhysicsSystems::Prepare, PhysicsSystems::Step, PhysicsSystems::Tell);
         app.configure_sets(FixedPostUpdate, order.chain());
         let after = RunFixedMainLoopSystems::AfterFixedMainLoop;
         app.configure_sets(RunFixedMainLoop, PhysicsSystems::Write.in_set(after));
+        app.add_observer(bodies::add_at_once);
         app.add_observer(bodies::forget_body);
+        colliders::add_observers(app);
+        properties::add_observers(app);
         app.add_observer(links::forget_joint);
         app.add_observer(links::forget_field);
         app.add_observer(movers::forget_mover);
@@ -201,11 +237,14 @@ impl Plugin for SinewPlugin {
         let prepare = (
             bodies::add_bodies,
             bodies::change_kinds,
-            bodies::change_shapes,
+            colliders::find_bodies,
+            colliders::change_shapes,
             pose::read_transforms,
             bodies::read_velocities,
+            (properties::change_motion, properties::change_forces, properties::lock_axes).chain(),
             links::add_joints,
             links::change_joints,
+            properties::change_motors,
             links::add_fields,
             links::change_fields,
             movers::add_movers,
@@ -247,6 +286,10 @@ fn register_types(app: &mut App) {
     app.register_type::<Field>().register_type::<Joint>().register_type::<Interpolation>();
     app.register_type::<Walk>().register_type::<MoverState>().register_type::<StepThreads>();
     app.register_type::<Mover>().register_type::<Particles>();
+    app.register_type::<Friction>().register_type::<Restitution>().register_type::<Layers>();
+    app.register_type::<Sensor>().register_type::<Mass>().register_type::<Damping>();
+    app.register_type::<GravityScale>().register_type::<ConstantForce>();
+    app.register_type::<Locked>().register_type::<JointMotor>();
     #[cfg(feature = "characters")]
     app.register_type::<BevyAnimation>();
 }

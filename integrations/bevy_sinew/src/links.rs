@@ -1,5 +1,6 @@
 //! Joints and fields.
 
+use crate::properties::JointMotor;
 use crate::{BodyHandle, Physics, order};
 use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::*;
@@ -115,16 +116,17 @@ pub(crate) fn forget_field(removed: On<Remove<Field>>, mut commands: Commands) {
 pub(crate) fn add_joints(
     mut commands: Commands,
     mut physics: ResMut<Physics>,
-    new: Query<(Entity, &Joint), Without<JointHandle>>,
+    new: Query<(Entity, &Joint, Option<&JointMotor>), Without<JointHandle>>,
     bodies: Query<&BodyHandle>,
 ) {
     let mut new: Vec<_> = new.iter().collect();
-    new.sort_unstable_by_key(|&(entity, _)| order(entity));
-    for (entity, joint) in new {
+    new.sort_unstable_by_key(|&(entity, ..)| order(entity));
+    for (entity, joint, motor) in new {
         let (Ok(a), Ok(b)) = (bodies.get(joint.a), bodies.get(joint.b)) else { continue };
         // The frames of a hinge fit joints of any kind.
         let hinge = physics.hinge(a.id(), b.id(), joint.anchor, joint.axis);
-        let id = physics.add_joint(&JointDef { kind: joint.kind, ..hinge });
+        let motor = motor.map(|motor| motor.0);
+        let id = physics.add_joint(&JointDef { kind: joint.kind, motor, ..hinge });
         commands.entity(entity).insert(JointHandle(id));
     }
 }

@@ -1,5 +1,6 @@
 //! Transforms: read after changes by the user, and written after motion of bodies.
 
+use crate::properties::unlock;
 use crate::{BodyHandle, Physics, order};
 use bevy_ecs::prelude::*;
 use bevy_math::{Affine3A, Quat};
@@ -79,6 +80,8 @@ pub(crate) fn read_transforms(
             Err(_) => to_pose(transform),
         };
         physics.set_transform(handle.id(), pose);
+        // The lock holds the new place.
+        unlock(&mut handle, &mut physics);
     }
 }
 

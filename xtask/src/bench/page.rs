@@ -341,4 +341,32 @@ mod tests {
         }
         assert!(!page.contains("\n\n\n"), "one empty line is enough:\n{page}");
     }
+
+    /// Claims of the README: the scene, and the words around its speed.
+    const CLAIMS: &[(&str, [&str; 2])] = &[
+        ("box_pyramid", ["`box_pyramid` ", " times as fast"]),
+        ("box_rain", ["`box_rain` ", ","]),
+        ("boxes_10000", ["`boxes_10000` ", " |"]),
+        ("humanoid_pile_10", ["`humanoid_pile_10` ", " times as fast as MuJoCo"]),
+        ("humanoid_lying", ["`humanoid_lying` ", ","]),
+        ("ragdoll_pile", ["Sinew has ", " of the fastest one's speed in `ragdoll_pile`"]),
+        ("crowd_pile", [", ", " in `crowd_pile`"]),
+        ("rain", [", ", " in `rain`"]),
+    ];
+
+    /// The README gives the speeds of `docs/benchmarks.md`, which are by the mean step.
+    #[test]
+    fn readme_has_the_speeds_of_the_page() {
+        let read =
+            |name: &str| std::fs::read_to_string(crate::command::root().join(name)).expect("it is there");
+        let (readme, page) = (read("README.md"), read("docs/benchmarks.md"));
+        for &(scene, [before, after]) in CLAIMS {
+            let row = page.lines().find(|line| line.starts_with(&format!("| {scene} "))).expect(scene);
+            let speed = row.rsplit('|').nth(2).and_then(|cell| cell.trim().strip_suffix('×'));
+            let speed: f64 = speed.and_then(|speed| speed.parse().ok()).expect(row);
+            let speed = if speed < 1.0 { format!("{speed:.2}") } else { format!("{speed:.1}") };
+            let claim = format!("{before}{speed}{after}");
+            assert!(readme.contains(&claim), "{scene}: the README does not say `{claim}`");
+        }
+    }
 }

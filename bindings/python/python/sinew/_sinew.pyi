@@ -444,7 +444,7 @@ class Bake:
 
     @property
     def states(self) -> list[str]:
-        """State of the character in each frame: `Animated`, `Limp`, `GettingUp`, ..."""
+        """State of the character in each frame: `animated`, `limp`, `preparing`, `getting up`, ..."""
 
     @property
     def translations(self) -> _Floats:

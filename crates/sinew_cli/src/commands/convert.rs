@@ -15,6 +15,7 @@ use crate::report::Report;
 use crate::report::table::shown;
 use clap::ValueEnum;
 use serde_json::json;
+use sinew::CharacterSource;
 use sinew::anim::retarget::{Feet, Pace, RetargetOptions};
 use sinew::anim::{Clip, ClipEvent, Rig, RigAnalysis, Take, rest_pose};
 use sinew::formats::bvh::{BvhRows, BvhUnit, RestFrame};
@@ -33,9 +34,10 @@ Example:
   sinew convert walk.bvh walk.glb
   sinew convert character.glb --clip Walk walk.bvh
   sinew convert character.fbx character.glb
-  sinew convert walk.bvh --onto character.glb walking.glb --picture walking.gif
+  sinew convert walk.bvh --onto character.glb walking.glb \\
+      --picture walking.gif
 
-Reads glTF, GLB, VRM, VRMA, BVH, DeepMimic and FBX; writes GLB and BVH, by the name of OUT. What the new format cannot hold
+Reads glTF, GLB, VRM, VRMA, BVH, DeepMimic and FBX; writes GLB and BVH, by the name of OUT. What the new format cannot hold \
 is reported in a line each.")]
 pub struct Convert {
     /// The file to read
@@ -210,7 +212,7 @@ impl Convert {
 
     /// The clips on another character: in a copy of its file, or on its skeleton as a BVH.
     fn onto(&self, motion: &Motion, character: &Path, target: Target, outputs: &mut Outputs) -> Result<Told> {
-        let CharacterFile { name, document, analysis, .. } =
+        let CharacterFile { name, source: CharacterSource { document, analysis, .. } } =
             CharacterFile::load(character, Textures::Skip, WeightSource::File)?;
         let rate = self.fps.map_or_else(
             || motion.file.frame_time.map_or(60.0, |frame_time| (1.0 / frame_time).min(60.0)),

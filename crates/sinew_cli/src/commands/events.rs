@@ -4,13 +4,14 @@ use crate::commands::clip_choice::choose_clips;
 use crate::failure::{Failure, Result};
 use crate::input::files::{Outputs, must_end_in, never_over};
 use crate::input::motion::Motion;
+use crate::input::settings_arg::unit;
 use crate::report::table::{Table, counted, shown};
 use crate::report::{Report, number};
 use clap::Subcommand;
 use serde_json::{Value, json};
 use sinew::anim::ClipEvent;
 use sinew::anim::contact::{NoFootsteps, footsteps};
-use sinew::formats::{MotionOptions, write_events};
+use sinew::formats::write_events;
 use std::path::PathBuf;
 
 /// Commands of `sinew events`.
@@ -36,7 +37,7 @@ Example:
   sinew events detect walk.bvh -o walk.events.json
   sinew events detect character.glb --clip Walk --json
 
-Events live in NAME.events.json beside the clip, where every command finds them, or in the glTF animation's
+Events live in NAME.events.json beside the clip, where every command finds them, or in the glTF animation's \
 extras.sinew_events, where 'sinew convert' puts them. Those that are there already stay.")]
 pub struct Detect {
     /// A file with clips: glTF, GLB, VRM, VRMA, BVH, FBX or DeepMimic
@@ -44,6 +45,9 @@ pub struct Detect {
     /// Only this clip, by name, or by number from 0 if it has none; repeatable
     #[arg(long = "clip", value_name = "NAME")]
     clips: Vec<String>,
+    /// Length of one unit of the file: m, dm, cm, mm, in, ft, or metres as a number; by default it is guessed
+    #[arg(long, value_name = "UNIT", value_parser = unit, allow_negative_numbers = true)]
+    unit: Option<f32>,
     /// Events file to write; NAME.events.json beside NAME.glb is read with it
     #[arg(short, long, value_name = "OUT.events.json")]
     output: Option<PathBuf>,
@@ -59,7 +63,7 @@ impl Detect {
     pub fn run(&self) -> Result<Report> {
         self.output.iter().try_for_each(|output| must_end_in(output, &["json"]))?;
         never_over([self.file.as_path()], self.output.as_deref())?;
-        let motion = Motion::load(&self.file, &MotionOptions::default())?;
+        let motion = Motion::load_in(&self.file, self.unit)?;
         let failed = |why| Failure::of_file(&motion.name, why);
         let analysis = motion.analysis.as_ref().ok_or(NoFootsteps::NotHumanoid).map_err(failed)?;
         let rig = &motion.file.rig;

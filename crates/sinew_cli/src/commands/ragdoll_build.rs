@@ -23,7 +23,8 @@ Example:
   sinew ragdoll build character.glb -o character.sinew.json
   sinew ragdoll build character.glb --shapes capsule --mass 62 --sex f
   sinew ragdoll build character.glb --settings hero.ragdoll.json
-  sinew ragdoll build character.glb --role hips=Bone_12 --ignore Cape --height 1.8
+  sinew ragdoll build character.glb --role hips=Bone_12 --ignore Cape \\
+      --height 1.8
   sinew ragdoll build character.glb --limits clips --gate 1000 --threads 8
 
 docs/ragdoll.md says what a definition and settings hold.")]

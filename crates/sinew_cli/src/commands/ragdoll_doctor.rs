@@ -23,10 +23,11 @@ use std::path::PathBuf;
 Example:
   sinew ragdoll doctor character.glb
   sinew ragdoll doctor character.sinew.json --fix -o mended.sinew.json
-  sinew ragdoll doctor character.sinew.json --rig character.glb --fix -o mended.sinew.json
+  sinew ragdoll doctor character.sinew.json --rig character.glb --fix \\
+      -o mended.sinew.json
   sinew ragdoll doctor humanoid.xml --json
 
-An error jitters, explodes or falls apart; a warning behaves, but not as a body does.
+An error jitters, explodes or falls apart; a warning behaves, but not as a body does. \
 The file that is examined is never changed. docs/ragdoll.md lists every code.")]
 pub struct RagdollDoctor {
     /// A character (GLB, glTF, VRM, FBX), a definition (.sinew.json) or an MJCF model (.xml)

@@ -9,6 +9,7 @@ use crate::report::Report;
 use crate::report::table::{counted, shown};
 use clap::ValueEnum;
 use serde_json::json;
+use sinew::CharacterSource;
 use sinew::formats::{KhrFile, MjcfText, Textures, write_khr, write_mjcf};
 use sinew::ragdoll::{BuildOptions, RagdollDef};
 use std::path::PathBuf;
@@ -93,7 +94,7 @@ impl RagdollExport {
             return Err(Failure::of_file(name(&self.file), what));
         }
         let (character, def, mut all_notes) = self.character()?;
-        let CharacterFile { name, document, analysis, .. } = &character;
+        let CharacterFile { name, source: CharacterSource { document, analysis, .. } } = &character;
         let KhrFile { bytes, notes } =
             write_khr(document, &analysis.bind_model, &def).map_err(|error| error.with_file(name))?;
         all_notes.extend(notes);

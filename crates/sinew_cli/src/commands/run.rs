@@ -21,10 +21,10 @@ Example:
   sinew run mjcf_drop --set file=humanoid.xml
   sinew run double_pendulum --quality exact
 
-'sinew scenes' lists the scenes, 'sinew scenes --json' their settings too. 'mjcf_drop', which it does
+'sinew scenes' lists the scenes, 'sinew scenes --json' their settings too. 'mjcf_drop', which it does \
 not list, drops MuJoCo's humanoid, or another model in MJCF with the poses 'prone' and 'supine'.
 
-A scene that misses what it expects ends with exit code 1, its report printed all the same; after --set,
+A scene that misses what it expects ends with exit code 1, its report printed all the same; after --set, \
 --steps or --quality it expects nothing.")]
 pub struct Run {
     /// Name of the scene

@@ -4,16 +4,16 @@ use crate::failure::{Failure, Result};
 use crate::input::kin::units_beside;
 use crate::input::source::{self, load_gltf, load_motion, read_bytes};
 use crate::report::table::shown;
+use sinew::CharacterSource;
 use sinew::anim::roles::Correction;
 use sinew::anim::weights::lost_weights;
-use sinew::anim::{Hints, JointIdx, Rig, RigAnalysis, analyze_hinted, characters};
+use sinew::anim::{Hints, Rig};
 use sinew::formats::{
-    Document, MotionFormat, MotionOptions, ReadOptions, Textures, no_files, read_gltf, write_all_atomic,
-    write_motion,
+    MotionFormat, MotionOptions, ReadOptions, Textures, no_files, read_gltf, write_all_atomic, write_motion,
 };
-use sinew::math::Vec3;
 use sinew::ragdoll::build::joint_name;
 use std::borrow::Cow;
+use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 
 /// Source of the weights of a skin.
@@ -26,16 +26,26 @@ pub enum WeightSource {
     Nearest,
 }
 
-/// A character file: its content and the analysis of its joints.
+/// A character file as a command reads it.
 pub struct CharacterFile {
     /// Name of the file as the user gave it.
     pub name: String,
-    /// Rig, clips and JSON of the file.
-    pub document: Document,
-    /// Analysis of its joints.
-    pub analysis: RigAnalysis,
-    /// Joints of the garments in the settings: not part of the body.
-    pub worn: Vec<JointIdx>,
+    /// Its content and what was recognised in it.
+    pub source: CharacterSource,
+}
+
+impl Deref for CharacterFile {
+    type Target = CharacterSource;
+
+    fn deref(&self) -> &CharacterSource {
+        &self.source
+    }
+}
+
+impl DerefMut for CharacterFile {
+    fn deref_mut(&mut self) -> &mut CharacterSource {
+        &mut self.source
+    }
 }
 
 impl CharacterFile {
@@ -44,7 +54,13 @@ impl CharacterFile {
     pub fn load(path: &Path, textures: Textures, weights: WeightSource) -> Result<Self> {
         let name = source::name(path);
         let options = ReadOptions { textures };
-        let mut document = if is_fbx(path)? {
+        let format = format_of(path)?;
+        if let Some(MotionFormat::Bvh | MotionFormat::DeepMimic) = format {
+            let what = "a motion without a skin: 'sinew convert --onto CHARACTER' puts it on a character, and \
+                        'sinew bake CHARACTER --clips' plays it before a fall";
+            return Err(Failure::of_file(&name, what));
+        }
+        let mut document = if format == Some(MotionFormat::Fbx) {
             let file = load_motion(path, &MotionOptions::default())?;
             let bytes = write_motion(&file.rig, &file.clips, &file.events);
             let read = |bytes: Vec<u8>| read_gltf(&bytes, options, &mut no_files);
@@ -63,21 +79,13 @@ impl CharacterFile {
             );
             return Err(Failure::of_file(&name, what));
         }
-        let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        let hints = Hints {
-            name: stem.unwrap_or_default(),
-            // Readers convert every format to +Y up.
-            up: Some(Vec3::Y),
-            exporter: document.generator().to_owned(),
-            ..Hints::of_clips(&document.rig, &document.clips)
-        };
-        let analysis =
-            analyze_hinted(&document.rig, &hints).map_err(|error| Failure::of_file(&name, error))?;
-        let mut file = Self { name, document, analysis, worn: Vec::new() };
+        let source = CharacterSource::new(document, &path.to_string_lossy());
+        let source = source.map_err(|no_skin| Failure::of_file(&name, no_skin))?;
+        let mut file = Self { name, source };
         // A file in metres is trusted; for others the neighbouring files may give more evidence.
         if file.is_in_doubt() && file.analysis.unit_scale != 1.0 {
             let kin = units_beside(path);
-            file.hint(&Hints { kin, ..hints })?;
+            file.hint(&Hints { kin, ..file.analysis.hints.clone() })?;
         }
         Ok(file)
     }
@@ -92,62 +100,38 @@ impl CharacterFile {
         self.analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only)
     }
 
-    /// Takes more evidence into account.
+    /// Takes other evidence into account.
     pub fn hint(&mut self, hints: &Hints) -> Result<()> {
-        if *hints != self.analysis.hints {
-            let analysis = analyze_hinted(&self.document.rig, hints);
-            self.analysis = analysis.map_err(|no_skin| Failure::of_file(&self.name, no_skin))?;
-        }
-        Ok(())
+        self.source.hint(hints).map_err(|no_skin| Failure::of_file(&self.name, no_skin))
     }
-}
 
-impl CharacterFile {
     /// Removes the meshes of characters other than the `wanted` one, counted from 1. If there are several and none is
     /// wanted, keeps the one with the most vertices, with a note.
     pub fn choose(&mut self, wanted: Option<usize>) -> Result<()> {
-        let rig = &mut self.document.rig;
-        let all = characters(rig);
-        let vertices = |own: &[usize]| {
-            let primitives = own.iter().flat_map(|&mesh| &rig.meshes[mesh].primitives);
-            primitives.map(|primitive| primitive.positions.len()).sum::<usize>()
-        };
-        let largest = (0..all.len()).reduce(|a, b| if vertices(&all[b]) > vertices(&all[a]) { b } else { a });
-        let number = match (wanted, largest) {
+        let count = self.characters().len();
+        let number = match (wanted, self.largest()) {
             (Some(number), _) => number,
-            (None, Some(largest)) if all.len() > 1 => largest + 1,
+            (None, Some(largest)) if count > 1 => largest + 1,
             _ => return Ok(()),
         };
-        let Some(own) = number.checked_sub(1).and_then(|index| all.get(index)) else {
-            let there = if all.len() == 1 { "one character" } else { &format!("{} characters", all.len()) };
-            return Err(Failure::at(
-                &self.name,
-                format!("there is no character {number} but {there}"),
-                "--character",
-            ));
+        let Some(index) = number.checked_sub(1).filter(|&index| index < count) else {
+            let there = if count == 1 { "one character" } else { &format!("{count} characters") };
+            let what = format!("there is no character {number} but {there}");
+            return Err(Failure::at(&self.name, what, "--character"));
         };
-        let is_others = |mesh: usize| all.iter().any(|meshes| meshes.contains(&mesh)) && !own.contains(&mesh);
-        let mut index = 0;
-        rig.meshes.retain(|_| {
-            index += 1;
-            !is_others(index - 1)
-        });
-        let hints = &self.analysis.hints;
-        self.analysis =
-            analyze_hinted(rig, hints).map_err(|no_skin| Failure::of_file(&self.name, no_skin))?;
+        self.source.keep(index).map_err(|no_skin| Failure::of_file(&self.name, no_skin))?;
         if wanted.is_none() {
             self.analysis.notes.push(format!(
-                "there are {} characters in the file, and this is number {number}: --character 1 to {0} picks one",
-                all.len()
+                "there are {count} characters in the file, and this is number {number}: --character 1 to {count} picks one"
             ));
         }
         Ok(())
     }
 }
 
-fn is_fbx(path: &Path) -> Result<bool> {
-    let bytes = read_bytes(path)?;
-    Ok(matches!(MotionFormat::of(&bytes), Ok(MotionFormat::Fbx)))
+/// Format of a file, by its first bytes.
+fn format_of(path: &Path) -> Result<Option<MotionFormat>> {
+    Ok(MotionFormat::of(&read_bytes(path)?).ok())
 }
 
 /// Rejects an output that is one of the user's own files.

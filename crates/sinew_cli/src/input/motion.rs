@@ -5,6 +5,7 @@ use crate::input::kin::units_beside;
 use crate::input::source::{load_motion, name};
 use sinew::anim::retarget::stand;
 use sinew::anim::{Clip, Hints, RigAnalysis, analyze_hinted};
+use sinew::formats::bvh::{BvhOptions, BvhUnit};
 use sinew::formats::{Error, MotionFile, MotionFormat, MotionOptions};
 use std::path::Path;
 
@@ -24,6 +25,20 @@ impl Motion {
         let file = load_motion(path, options).map_err(helped)?;
         let mut motion = Self::new(name(path), file);
         motion.read_neighbours(path);
+        Ok(motion)
+    }
+
+    /// Reads a file whose unit has a given length, metres, or a guessed one.
+    pub fn load_in(path: &Path, unit: Option<f32>) -> Result<Self> {
+        let bvh =
+            BvhOptions { unit: unit.map_or(BvhUnit::default(), BvhUnit::Metres), ..BvhOptions::default() };
+        let mut motion = Self::load(path, &MotionOptions { bvh, ..MotionOptions::default() })?;
+        // The reader of BVH has converted lengths to metres.
+        if motion.file.format != MotionFormat::Bvh
+            && let Some(unit) = unit
+        {
+            motion.analysis = motion.analysis.map(|analysis| analysis.with_unit_scale(unit));
+        }
         Ok(motion)
     }
 

@@ -3,14 +3,13 @@
 use crate::failure::{Failure, Result};
 use crate::input::files::{CharacterFile, WeightSource};
 use crate::input::source::{name, read_bytes};
-use sinew::anim::legs::add_ankles;
-use sinew::anim::{Garment, Hints, RigAnalysis, Role, Springs, UnitGuess, analyze_hinted};
+use sinew::anim::{Garment, Hints, RigAnalysis, Role, Springs, UnitGuess};
 use sinew::formats::{Textures, read_ragdoll_settings, settings_path};
 use sinew::math::Vec3;
-use sinew::ragdoll::build::{BuildReport, takes};
+use sinew::ragdoll::build::BuildReport;
 use sinew::ragdoll::quality::Doubt;
-use sinew::ragdoll::settings::{BodyWish, BoneSettings, SpringSource, Unit, analyze_with, role_named};
-use sinew::ragdoll::{BuildError, BuildOptions, RagdollDef, Settings, SettingsError, build_moving};
+use sinew::ragdoll::settings::{BodyWish, BoneSettings, SpringSource, Unit, role_named};
+use sinew::ragdoll::{BuildError, BuildOptions, RagdollDef, Settings, SettingsError};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -194,14 +193,8 @@ impl SettingsArg {
         if !wears_garments {
             loaded.settings.garments.leave_meshes();
         }
-        loaded.analyze(&mut character)?;
-        if let Some(up) = loaded.settings.up_axis {
-            character.analysis.hints.up = Some(up);
-        }
-        if loaded.settings.garments.has_meshes() {
-            loaded.lay_sheets(&mut character)?;
-        }
-        add_ankles(&mut character.document.rig, &mut character.analysis);
+        let corrected = character.source.correct(&loaded.settings);
+        corrected.map_err(|error| loaded.failure(&character.name, error))?;
         Ok((character, loaded))
     }
 
@@ -264,45 +257,19 @@ pub fn assumed(analysis: &RigAnalysis) -> Vec<String> {
 }
 
 impl LoadedSettings {
-    /// Corrects the analysis of a character.
-    fn analyze(&self, character: &mut CharacterFile) -> Result<()> {
-        let analysis = analyze_with(&character.document.rig, &character.analysis, &self.settings);
-        character.analysis = analysis.map_err(|error| self.failure(&character.name, error))?;
-        let worn = self.settings.garments.joints(&character.document.rig);
-        character.worn = worn.map_err(|error| self.failure(&character.name, error))?;
-        Ok(())
-    }
-
-    /// Converts the meshes of garments to cloth, and analyses the character again with the added joints.
-    fn lay_sheets(&self, character: &mut CharacterFile) -> Result<()> {
-        let nodes = character.document.node_count();
-        let rig = &mut character.document.rig;
-        let laid = self.settings.garments.lay_sheets(rig, &character.analysis, nodes);
-        laid.map_err(|error| self.failure(&character.name, error))?;
-        let hints = character.analysis.hints.clone();
-        let notes = core::mem::take(&mut character.analysis.notes);
-        let analysis = analyze_hinted(&character.document.rig, &hints);
-        character.analysis = analysis.map_err(|no_skin| Failure::of_file(&character.name, no_skin))?;
-        self.analyze(character)?;
-        character.analysis.notes = notes;
-        Ok(())
-    }
-
     /// The ragdoll of a character and its clips, with notes of the build.
     pub fn build(
         &self,
         character: &CharacterFile,
         options: &BuildOptions,
     ) -> Result<(RagdollDef, BuildReport)> {
-        let CharacterFile { name, document, analysis, .. } = character;
-        let moves = takes(&document.rig, &document.clips);
-        let built = build_moving(&document.rig, analysis, &moves, options, &self.settings);
-        let (def, mut report) = built.map_err(|error| self.failure(name, error))?;
+        let built = character.build(&self.settings, options);
+        let (def, mut report) = built.map_err(|error| self.failure(&character.name, error))?;
         let mut notes = Vec::new();
         if !self.file.is_empty() {
             notes.push(format!("with the settings of {}", self.file));
         }
-        notes.extend(assumed(analysis));
+        notes.extend(assumed(&character.analysis));
         notes.extend(self.doubt(&def).map(|doubt| doubt.reason));
         notes.append(&mut report.notes);
         report.notes = notes;
@@ -311,13 +278,13 @@ impl LoadedSettings {
 
     /// Springs of the character from that source.
     pub fn springs(&self, source: SpringSource, character: &CharacterFile) -> Result<Springs> {
-        let springs = self.settings.springs_of(source, &character.document.rig, character.analysis.up_axis);
+        let springs = character.springs(&self.settings, source);
         springs.map_err(|error| self.failure(&character.name, error))
     }
 
     /// Garments of the character.
     pub fn garments(&self, character: &CharacterFile) -> Result<Vec<Garment>> {
-        let garments = self.settings.garments.garments(&character.document.rig);
+        let garments = character.garments(&self.settings);
         garments.map_err(|error| self.failure(&character.name, error))
     }
 

@@ -4,6 +4,7 @@ use crate::fall::Fall;
 use crate::input::files::CharacterFile;
 use crate::report::number;
 use serde_json::{Value, json};
+use sinew::CharacterSource;
 use sinew::math::{Affine, Vec3};
 use sinew::ragdoll::bake::Frame;
 use sinew::ragdoll::build::takes;
@@ -39,7 +40,7 @@ impl SkinReport {
         tested: &DropReport,
         life: Option<Life<'_>>,
     ) -> Self {
-        let CharacterFile { document, analysis, .. } = character;
+        let CharacterSource { document, analysis, .. } = &character.source;
         let moves = takes(&document.rig, &document.clips);
         let body = character.body();
         let mut meter = SkinMeter::new(&body, def, &analysis.bind_model, &moves);

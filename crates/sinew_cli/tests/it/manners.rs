@@ -350,6 +350,11 @@ fn unsupported_file_kinds_are_named() {
             assert!(line.contains(what), "{line}");
         }
     }
+    let bvh = folder.path("walk.bvh");
+    assert_eq!(sinew(&["convert", &folder.mannequin(), &bvh]).code, Some(0));
+    for arguments in [&["bake", &bvh, "-o", "out.glb"][..], &["ragdoll", "build", &bvh]] {
+        assert!(sinew(arguments).refusal(1).contains("a motion without a skin"), "{arguments:?}");
+    }
     let absent = sinew(&["bake", &folder.path("no/such.glb"), "-o", "out.glb"]);
     assert!(absent.refusal(1).ends_with("such.glb: no such folder"), "{absent:?}");
     // A folder that cannot be created because a file has its name.
@@ -400,4 +405,95 @@ fn dash_reads_standard_input() {
     assert_eq!(std::fs::read(a).expect("a ragdoll"), std::fs::read(b).expect("another"));
     let refused = Run::of(command(&["inspect", "-"]).stdin(std::process::Stdio::null()));
     assert!(refused.refusal(1).starts_with("error: standard input: "), "{refused:?}");
+}
+
+/// A clip without a name is offered by its number.
+#[test]
+fn clip_without_a_name_is_chosen_by_number() {
+    let folder = Folder::new("nameless");
+    let mut clips = mannequin().clips[..1].to_vec();
+    clips[0].name.clear();
+    let file = folder.file("nameless.glb", glb(&mannequin().rig, &clips));
+    let bake = |clip: &str| {
+        sinew(&["bake", &file, "--clip", clip, "--seconds", "0.1", "-o", &folder.path("out.glb")])
+    };
+    let wrong = bake("Walk");
+    assert!(
+        wrong.refusal(1).ends_with("no clip 'Walk'; there is number 0, which has no name (--clip)"),
+        "{wrong:?}"
+    );
+    assert_eq!(bake("0").code, Some(0));
+}
+
+/// What `inspect` says of the unit of a BVH is what `convert` takes it for.
+#[test]
+fn unit_of_a_bvh_is_the_same_for_all_commands() {
+    let folder = Folder::new("bvh-unit");
+    let mannequin = folder.mannequin();
+    let [centimetres, inches] = ["cm", "in"].map(|unit| {
+        let bvh = folder.path(&format!("{unit}.bvh"));
+        assert_eq!(sinew(&["convert", &mannequin, &bvh, "--unit", unit]).code, Some(0));
+        bvh
+    });
+    let height =
+        |arguments: &[&str]| sinew(&[&["inspect", "--json"], arguments].concat()).json()["height_m"].as_f64();
+    let is_tall = |found: Option<f64>, due: f64| {
+        let found = found.expect("a human");
+        assert!((found / due - 1.0).abs() < 0.01, "{found} m, not {due} m");
+    };
+    let out = folder.path("out.glb");
+    let converted = |bvh: &str, unit: &[&str]| {
+        let run = sinew(&[&["convert", bvh, &out], unit].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        height(&[&out, "--unit", "m"])
+    };
+    let bones = height(&[&centimetres]).expect("a human");
+    is_tall(height(&[&inches, "--unit", "in"]), bones);
+    is_tall(height(&[&centimetres, "--unit", "in"]), 2.54 * bones);
+    // A converted file has drawn bones, which are a little thicker than the skeleton.
+    let drawn = converted(&centimetres, &[]).expect("a human");
+    assert!((1.0..1.15).contains(&(drawn / bones)), "{drawn} m, {bones} m");
+    is_tall(converted(&inches, &["--unit-in", "in"]), drawn);
+    // The same option with a file of another format.
+    let tall = height(&[&mannequin]).expect("a human");
+    is_tall(height(&[&mannequin, "--unit", "ft"]), 0.3048 * tall);
+    let steps = |unit: &str| {
+        sinew(&["events", "detect", &mannequin, "--clip", "Walk", "--unit", unit, "--json"]).json()["clips"]
+            [0]["events"]
+            .as_array()
+            .map(Vec::len)
+    };
+    assert!(steps("m") > Some(1) && steps("100") != steps("m"), "{:?} {:?}", steps("m"), steps("100"));
+}
+
+#[test]
+fn who_starts_inside_the_world_is_bad() {
+    let folder = Folder::new("inside");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let bake = |at: &str| sinew(&["bake", &file, "--at", at, "--seconds", "1", "-o", &out, "--json"]).json();
+    let inside = bake("0,-1,0");
+    let reasons = inside["reasons"].to_string();
+    assert!(inside["verdict"] == "bad" && reasons.contains("m deep in the world"), "{inside:#}");
+    assert!(!bake("0,0,0")["reasons"].to_string().contains("deep in the world"));
+}
+
+/// `ragdoll build` and `ragdoll doctor` see the same character: its size, their notes, and whether it can be used.
+#[needs_data]
+#[test]
+fn build_and_doctor_agree() {
+    let data = shared_data();
+    for (rig, can_be_used) in [("rigs/CesiumMan.glb", true), ("rigs/kaykit_Knight.glb", true)] {
+        let file = data.join(rig).display().to_string();
+        let built = sinew(&["ragdoll", "build", &file, "--json"]).json();
+        let examined = sinew(&["ragdoll", "doctor", &file, "--json"]).json();
+        let (of_build, of_doctor) = (notes(&built), notes(&examined));
+        assert!(of_doctor.iter().all(|note| of_build.contains(note)), "{of_doctor:?} {of_build:?}");
+        assert_eq!(built["quality"]["verdict"] != "bad", can_be_used, "{built:#}");
+        let errors = examined["findings"].as_array().expect("findings").iter();
+        assert_eq!(
+            errors.filter(|finding| finding["severity"] == "error").count() == 0,
+            can_be_used,
+            "{examined:#}"
+        );
+    }
 }

@@ -1,27 +1,60 @@
 //! Help, and errors reported before any work.
 
-use crate::sinew::sinew;
+use crate::sinew::{Run, command, sinew};
+
+const COMMANDS: [&[&str]; 14] = [
+    &["demo"],
+    &["bake"],
+    &["ragdoll", "build"],
+    &["ragdoll", "doctor"],
+    &["ragdoll", "export"],
+    &["boxes"],
+    &["convert"],
+    &["events", "detect"],
+    &["inspect"],
+    &["run"],
+    &["scenes"],
+    &["view"],
+    &["record"],
+    &["replay"],
+];
 
 #[test]
 fn every_command_shows_an_example() {
-    let commands: [&[&str]; 12] = [
-        &["demo"],
-        &["bake"],
-        &["ragdoll", "build"],
-        &["ragdoll", "doctor"],
-        &["ragdoll", "export"],
-        &["boxes"],
-        &["convert"],
-        &["events", "detect"],
-        &["inspect"],
-        &["run"],
-        &["scenes"],
-        &["view"],
-    ];
-    for command in commands {
+    for command in COMMANDS {
         let run = sinew(&[command, &["--help"]].concat());
         let example = format!("Example:\n  sinew {}", command.join(" "));
         assert!(run.code == Some(0) && run.stdout.contains(&example), "{command:?}: {run:?}");
+    }
+}
+
+/// A narrow terminal breaks paragraphs where it must and nowhere else, and leaves the lines of examples whole.
+#[test]
+fn help_wraps_once() {
+    let narrow = 80;
+    for arguments in COMMANDS.iter().copied().chain([&[][..]]) {
+        let help = |width: usize| {
+            let mut run = command(&[arguments, &["--help"]].concat());
+            Run::of(run.env("COLUMNS", width.to_string())).stdout
+        };
+        let text = help(narrow);
+        let long = text.lines().find(|line| line.chars().count() > narrow);
+        assert_eq!(long, None, "{arguments:?}");
+        let wide = help(100);
+        let (_, after) = wide.split_once("\n\nExample:\n").unwrap_or_default();
+        let (examples, prose) = after.split_once("\n\n").unwrap_or((after, ""));
+        for line in examples.lines() {
+            assert!(text.lines().any(|other| other == line), "{arguments:?}: {line}");
+        }
+        // What follows a break of a paragraph did not fit into the line before it.
+        for paragraph in prose.split("\n\n") {
+            let lines: Vec<&str> = paragraph.lines().collect();
+            for pair in lines.windows(2) {
+                let next = pair[1].split_whitespace().next().unwrap_or_default();
+                let needed = pair[0].chars().count() + 1 + next.chars().count();
+                assert!(needed > 100, "{arguments:?}: it breaks after {:?}", pair[0]);
+            }
+        }
     }
 }
 

@@ -4,3 +4,4 @@ mod drawing;
 mod files;
 mod golden;
 mod stairs;
+mod symptoms;

@@ -31,7 +31,7 @@ const RIGS: [&str; 10] = [
 
 /// Number of variants per rig in full runs; otherwise a few.
 const ALL: u64 = 60;
-const FEW: u64 = 3;
+const FEW: u64 = 2;
 
 const PREFIXES: [&str; 6] = ["", "Armature|", "chr_", "rig:", "GLB_", "Char01."];
 const SUFFIXES: [&str; 4] = ["", "_jnt", ".001", "_050"];

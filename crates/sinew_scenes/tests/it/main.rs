@@ -11,3 +11,4 @@ mod movers;
 mod recording;
 mod scenes;
 mod scenes_repeat;
+mod staged;

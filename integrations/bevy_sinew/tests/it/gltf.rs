@@ -41,11 +41,11 @@ fn one_component_loads_a_character() {
 fn settings_name_clips() {
     let clips = mannequin::mannequin().clips;
     let named = CharacterSettings { walk: Some(clips[0].name.clone()), ..CharacterSettings::default() };
-    let read = read_character(&file(), &named).expect("it is a character");
+    let read = read_character(&file(), "hero.glb", &named).expect("it is a character");
     assert_eq!(read.def.motions().looped, Some(0));
     assert!(!read.def.motions().get_ups.is_empty());
     let wrong = CharacterSettings { idle: Some("no such".into()), ..CharacterSettings::default() };
-    let error = read_character(&file(), &wrong).expect_err("it has no such clip");
+    let error = read_character(&file(), "hero.glb", &wrong).expect_err("it has no such clip");
     assert_eq!(error.to_string(), "no clip is called `no such`");
-    assert!(read_character(b"no file", &CharacterSettings::default()).is_err());
+    assert!(read_character(b"no file", "no.glb", &CharacterSettings::default()).is_err());
 }

@@ -25,9 +25,12 @@ mod gizmos;
 mod gltf;
 #[path = "../../examples/hello.rs"]
 mod hello;
+#[cfg(feature = "mesh")]
+mod mesh;
 mod movers;
 #[cfg(feature = "picking")]
 mod picking;
+mod properties;
 #[cfg(feature = "reflect")]
 mod reflect;
 
@@ -328,5 +331,5 @@ fn user_systems_run_between_the_sets() {
     );
     run(&mut app, 1);
     let heard: Vec<&str> = app.world().resource::<Heard>().0.iter().map(|heard| heard.0).collect();
-    assert_eq!(heard, ["none", "not yet"]);
+    assert_eq!(heard, ["one", "not yet"]);
 }

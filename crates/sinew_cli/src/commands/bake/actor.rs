@@ -4,6 +4,7 @@ use super::clips::Motions;
 use super::lies::lies;
 use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
+use sinew::CharacterSource;
 use sinew::anim::retarget::RetargetError;
 use sinew::math::Vec3;
 use sinew::motions::{BuiltinError, set_motions_with_builtin};
@@ -40,7 +41,7 @@ pub fn actor(
     motions: Motions,
     builtin: bool,
 ) -> Result<(CharacterDef, GetsUpBy)> {
-    let CharacterFile { name, document, analysis, .. } = file;
+    let CharacterFile { name, source: CharacterSource { document, analysis, .. } } = file;
     let failed = |error| Failure::of_file(name, error);
     let mut def = CharacterDef::new(document.rig.clone(), ragdoll, &analysis.bind_model);
     def.ground_contact = GroundContact::Enforced;

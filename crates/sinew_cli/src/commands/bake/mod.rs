@@ -33,6 +33,7 @@ use door::door;
 use hit::HitArg;
 pub use lies::as_in_file;
 use place::{Place, degrees, metres, place, point};
+use sinew::CharacterSource;
 use sinew::anim::{Garment, KeyBound};
 use sinew::formats::{Textures, load_world};
 use sinew::math::{Rotation, Transform, Vec3};
@@ -54,10 +55,13 @@ const OBSTACLES: [[f32; 3]; 3] = [[0.45, 0.33, 0.22], [0.40, 0.36, 0.30], [0.33,
 #[command(after_help = "\
 Example:
   sinew bake character.glb -o fall.glb
-  sinew bake character.glb --clip Walk --hit chest=0,0,-60@1.0 -o fall.glb --picture fall.gif
-  sinew bake character.glb --world house.json --limp-at 1.2 --seconds 6 -o fall.glb --json
+  sinew bake character.glb --clip Walk --hit chest=0,0,-60@1.0 -o fall.glb \\
+      --picture fall.gif
+  sinew bake character.glb --world house.json --limp-at 1.2 --seconds 6 \\
+      -o fall.glb --json
   sinew bake character.glb --ragdoll edited.sinew.json -o fall.glb
-  sinew bake character.glb --role hips=Bone_12 --ignore Cape --height 1.8 -o fall.glb
+  sinew bake character.glb --role hips=Bone_12 --ignore Cape --height 1.8 \\
+      -o fall.glb
   sinew bake character.glb --fps 120 -o fall.bvh
 
 Keys that no joint needs to stay within --key-error are left out. A BVH holds the skeleton alone, with every frame.")]
@@ -279,8 +283,8 @@ impl Bake {
             return Ok(Cast { file, ragdoll, garments, doubt, notes });
         };
         let mut file = CharacterFile::load(&self.character, textures, WeightSource::File)?;
-        let rig = &mut file.document.rig;
-        rig.springs = self.spring_source(None).springs(rig, file.analysis.up_axis);
+        let CharacterSource { document, analysis, .. } = &mut file.source;
+        document.rig.springs = self.spring_source(None).springs(&document.rig, analysis.up_axis);
         let ragdoll = read_definition(path, &file)?;
         // A given definition may have a guessed or a given mass.
         let mut doubt = Doubt::of(&ragdoll);

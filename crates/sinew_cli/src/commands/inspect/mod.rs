@@ -4,7 +4,7 @@ mod clips;
 
 use crate::failure::{Failure, Result};
 use crate::input::motion::Motion;
-use crate::input::settings_arg::assumed;
+use crate::input::settings_arg::{assumed, unit};
 use crate::report::garments_report::{garments_json, garments_text, worn_json, worn_notes};
 use crate::report::ragdoll_report::axis_name;
 use crate::report::springs_report::{colliders_json, links_json, links_text, springs_json, springs_text};
@@ -14,7 +14,7 @@ use clips::{ClipFacts, clip_table, event_table};
 use serde_json::{Value, json};
 use sinew::anim::{Garment, SpringLink};
 use sinew::formats::gltf::SpringFormat;
-use sinew::formats::{MotionOptions, read_bytes, read_ragdoll_settings, settings_path};
+use sinew::formats::{read_bytes, read_ragdoll_settings, settings_path};
 use sinew::math::Vec3;
 use sinew::ragdoll::settings::analyze_with;
 use sinew::ragdoll::{Settings, SettingsError};
@@ -32,12 +32,15 @@ Example:
 pub struct Inspect {
     /// A glTF, GLB, VRM, VRMA, BVH, FBX or DeepMimic file; it need not hold a character
     file: PathBuf,
+    /// Length of one unit of the file: m, dm, cm, mm, in, ft, or metres as a number; by default it is guessed
+    #[arg(long, value_name = "UNIT", value_parser = unit, allow_negative_numbers = true)]
+    unit: Option<f32>,
 }
 
 impl Inspect {
     /// Reads the file and describes it.
     pub fn run(&self) -> Result<Report> {
-        let motion = Motion::load(&self.file, &MotionOptions::default())?;
+        let motion = Motion::load_in(&self.file, self.unit)?;
         let (mut links, mut worn, mut trouble) = (Vec::new(), Vec::new(), Vec::new());
         match self.settings() {
             Ok(settings) => {

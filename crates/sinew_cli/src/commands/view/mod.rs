@@ -38,7 +38,7 @@ Example:
   sinew view walk.bvh --picture walk.png
   sinew view house.json --picture house.png --at 0 --width 1280 --height 720
 
-Without --picture and --movie a window opens; ? in it shows all keys. Pictures need no driver:
+Without --picture and --movie a window opens; ? in it shows all keys. Pictures need no driver: \
 the same command draws the same bytes on every machine.")]
 pub struct View {
     /// Name of a scene ('sinew scenes' lists them), a world file (.json), a recording (.sinewrec, in a window), or a file with a

@@ -1,0 +1,160 @@
+//! A character file before its ragdoll is built.
+
+use crate::anim::legs::add_ankles;
+use crate::anim::{Garment, Hints, JointIdx, NoSkin, RigAnalysis, Springs, analyze_hinted, characters};
+use crate::formats::Document;
+use crate::math::Vec3;
+use crate::ragdoll::build::{BuildReport, takes};
+use crate::ragdoll::settings::{SpringSource, analyze_with};
+use crate::ragdoll::{BuildError, BuildOptions, RagdollDef, Settings, SettingsError, build_moving};
+use std::path::Path;
+
+/// A character file and what was recognised in it: the stages of [`load_character`](crate::load_character) one by one. First
+/// [`new`](Self::new), then [`hint`](Self::hint) and [`keep`](Self::keep) as needed, [`correct`](Self::correct), and
+/// [`build`](Self::build).
+#[derive(Clone, Debug)]
+pub struct CharacterSource {
+    /// Rig, clips and JSON of the file.
+    pub document: Document,
+    /// Analysis of its joints.
+    pub analysis: RigAnalysis,
+    /// Joints of the garments in the settings: not part of the body.
+    pub worn: Vec<JointIdx>,
+}
+
+impl CharacterSource {
+    /// Analyses a file. The words of its name, a path or a name, help to classify the character.
+    ///
+    /// # Errors
+    /// If no vertex is bound to a joint.
+    pub fn new(document: Document, name: &str) -> Result<Self, NoSkin> {
+        let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        let hints = Hints {
+            name: stem.unwrap_or_default(),
+            // Readers convert every format to +Y up.
+            up: Some(Vec3::Y),
+            exporter: document.generator().to_owned(),
+            ..Hints::of_clips(&document.rig, &document.clips)
+        };
+        let analysis = analyze_hinted(&document.rig, &hints)?;
+        Ok(Self { document, analysis, worn: Vec::new() })
+    }
+
+    /// Takes other evidence into account.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn hint(&mut self, hints: &Hints) -> Result<(), NoSkin> {
+        if *hints != self.analysis.hints {
+            self.analysis = analyze_hinted(&self.document.rig, hints)?;
+        }
+        Ok(())
+    }
+
+    /// Vertices of each character in the file.
+    pub fn characters(&self) -> Vec<usize> {
+        let rig = &self.document.rig;
+        let vertices = |own: Vec<usize>| {
+            let primitives = own.into_iter().flat_map(|mesh| &rig.meshes[mesh].primitives);
+            primitives.map(|primitive| primitive.positions.len()).sum()
+        };
+        characters(rig).into_iter().map(vertices).collect()
+    }
+
+    /// The character with the most vertices, if there is one; of equal ones the first.
+    pub fn largest(&self) -> Option<usize> {
+        let vertices = self.characters();
+        (0..vertices.len()).reduce(|a, b| if vertices[b] > vertices[a] { b } else { a })
+    }
+
+    /// Removes the meshes of all characters but one, by its index.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    ///
+    /// # Panics
+    /// If there is no such character.
+    #[track_caller]
+    pub fn keep(&mut self, character: usize) -> Result<(), NoSkin> {
+        let rig = &mut self.document.rig;
+        let all = characters(rig);
+        assert!(character < all.len(), "there is no character {character} but {}", all.len());
+        let is_others =
+            |mesh: usize| all.iter().any(|meshes| meshes.contains(&mesh)) && !all[character].contains(&mesh);
+        let mut index = 0;
+        rig.meshes.retain(|_| {
+            index += 1;
+            !is_others(index - 1)
+        });
+        self.analysis = analyze_hinted(rig, &self.analysis.hints)?;
+        Ok(())
+    }
+
+    /// [`keep`](Self::keep)s the character with the most vertices; returns a note if there are several.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn keep_largest(&mut self) -> Result<Option<String>, NoSkin> {
+        let count = self.characters().len();
+        let Some(largest) = self.largest().filter(|_| count > 1) else { return Ok(None) };
+        self.keep(largest)?;
+        Ok(Some(format!("there are {count} characters in the file; the one with the most vertices is taken")))
+    }
+
+    /// Applies settings to roles and unit, makes cloth of the meshes that they call garments, and gives legs without feet an ankle.
+    ///
+    /// # Errors
+    /// If the settings do not fit the rig.
+    pub fn correct(&mut self, settings: &Settings) -> Result<(), SettingsError> {
+        self.apply(settings)?;
+        if let Some(up) = settings.up_axis {
+            self.analysis.hints.up = Some(up);
+        }
+        if settings.garments.has_meshes() {
+            let nodes = self.document.node_count();
+            settings.garments.lay_sheets(&mut self.document.rig, &self.analysis, nodes)?;
+            let notes = core::mem::take(&mut self.analysis.notes);
+            let analysis = analyze_hinted(&self.document.rig, &self.analysis.hints);
+            self.analysis = analysis.map_err(|NoSkin| BuildError::NoSkin)?;
+            self.apply(settings)?;
+            self.analysis.notes = notes;
+        }
+        add_ankles(&mut self.document.rig, &mut self.analysis);
+        Ok(())
+    }
+
+    fn apply(&mut self, settings: &Settings) -> Result<(), SettingsError> {
+        self.analysis = analyze_with(&self.document.rig, &self.analysis, settings)?;
+        self.worn = settings.garments.joints(&self.document.rig)?;
+        Ok(())
+    }
+
+    /// The ragdoll, with limits learned from the clips if the options ask for them.
+    ///
+    /// # Errors
+    /// If the rig allows no ragdoll, or the settings do not fit it.
+    pub fn build(
+        &self,
+        settings: &Settings,
+        options: &BuildOptions,
+    ) -> Result<(RagdollDef, BuildReport), SettingsError> {
+        let moves = takes(&self.document.rig, &self.document.clips);
+        build_moving(&self.document.rig, &self.analysis, &moves, options, settings)
+    }
+
+    /// Springs from a source, as the settings change them.
+    ///
+    /// # Errors
+    /// If the settings do not fit the rig.
+    pub fn springs(&self, settings: &Settings, source: SpringSource) -> Result<Springs, SettingsError> {
+        settings.springs_of(source, &self.document.rig, self.analysis.up_axis)
+    }
+
+    /// Garments of the settings.
+    ///
+    /// # Errors
+    /// If the settings do not fit the rig.
+    pub fn garments(&self, settings: &Settings) -> Result<Vec<Garment>, SettingsError> {
+        settings.garments.garments(&self.document.rig)
+    }
+}
