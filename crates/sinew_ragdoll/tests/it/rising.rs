@@ -2,7 +2,7 @@
 
 use crate::actor::{armed_walker, floor, shared, walker};
 use sinew_anim::{LocalTransform, local_to_model};
-use sinew_math::{Affine, Reader, Rotation, Transform, Vec3, Writer, max, min};
+use sinew_math::{Affine, Reader, Rotation, Transform, Vec3, Writer, min};
 use sinew_physics::{BodyDef, Shape, World, WorldDef};
 use sinew_ragdoll::quality::{RisingQuality, measure_rising};
 use sinew_ragdoll::skin::Stage;
