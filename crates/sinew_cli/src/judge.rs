@@ -17,10 +17,6 @@ pub const LIMP_AT: f32 = 0.5;
 /// Default length of a bake, seconds.
 pub const SECONDS: f32 = 8.0;
 
-/// Depth in the world, as a share of its height, beyond which a character was not stopped by a surface but is inside something. Falls from a
-/// few metres and walls at 15 m/s reach a hundredth.
-const MOST_SUNK: f32 = 0.1;
-
 /// Result of the judge.
 pub struct Judgement {
     pub verdict: Verdict,
@@ -56,22 +52,12 @@ pub fn judge_life(
     faults.extend(faults_of_bake(life.fall.input, &life.fall.baked));
     let stays_down = |why: &str| Fault { at_most: Verdict::Usable, reason: why.to_owned() };
     faults.extend(life.stays_down.map(stays_down));
-    faults.extend(sunk(life.fall, def.height));
     let skin = SkinReport::of(character, def, tested, Some(life));
     faults.extend(skin.rising.faults(def.height));
     Fault::weigh(&faults, &mut verdict, &mut reasons);
     verdict = SkinQuality::verdict(&skin.flaws, verdict);
     reasons.extend(skin.flaws.iter().map(|flaw| format!("skin: {flaw}")));
     Judgement { verdict, reasons, skin }
-}
-
-/// Fault of a character that is deep in the world.
-fn sunk(fall: &Fall<'_>, height: f32) -> Option<Fault> {
-    let depth = fall.baked.quality.penetration_max_m;
-    let reason = format!(
-        "it is {depth:.2} m deep in the world: it starts inside something or walks into it; --at of `bake` sets its place"
-    );
-    (depth > MOST_SUNK * height).then_some(Fault { at_most: Verdict::Bad, reason })
 }
 
 /// Bakes a character with the defaults of `bake`: on a floor, with its own clips or the built-in ones.

@@ -557,6 +557,13 @@ pub(crate) const JUMPS: f32 = 0.03;
 /// Larger: steps count as slides. Smaller: misses skating just over the floor. Shown by the tests of `rising`.
 pub(crate) const STANDS_NEAR: f32 = 0.008;
 
+/// Height of the hips over the floor from which on the feet bear the body, as a share of their height in the bind pose:
+/// lying and sitting ones are at 0.05 to 0.3.
+///
+/// Larger: skating of a squatting body is missed. Smaller: legs that a sitting body draws in count as slides. Shown by
+/// the tests of `rising`.
+pub(crate) const HIPS_BEAR: f32 = 0.35;
+
 /// Cosine of the largest tilt of a foot that stands on its sole.
 ///
 /// Larger: measures feet that come down. Smaller: measures heels of lying legs. Shown by the tests of `rising`.

@@ -4,8 +4,8 @@ use sinew::anim::contact::sole_points;
 use sinew::anim::legs::Legs;
 use sinew::anim::retarget::Retargeted;
 use sinew::anim::{
-    Channel, Clip, Interpolation, Joint, LocalTransform, Property, Rig, RigAnalysis, Role, Side, analyze,
-    local_to_model,
+    Channel, Clip, Interpolation, Joint, LocalTransform, Primitive, Property, Rig, RigAnalysis, RigMesh,
+    Role, Side, analyze, local_to_model,
 };
 use sinew::formats::{ReadOptions, load_gltf};
 use sinew::mannequin::{WALK_SPEED, mannequin};
@@ -203,4 +203,55 @@ fn a_mirrored_skeleton_gets_up() {
     };
     let [plain, mirrored] = [depth(rig.clone()), depth(mirrored(&rig))];
     assert!((plain - mirrored).abs() < 0.01, "{mirrored} m in the floor, {plain} m without the mirror");
+}
+
+/// The rig with a box skinned to a joint, its centre `off` the joint (model space, metres).
+fn with_box(mut rig: Rig, role: Role, off: Vec3, half: Vec3) -> Rig {
+    let analysis = analyze(&rig).expect("a skin");
+    let joint = analysis.joint_with(role).expect("the role");
+    let slot = rig.skins[0].joints.iter().position(|&at| at == joint).expect("it moves skin");
+    let middle = analysis.bind_model[joint].translation + off;
+    let corner = |i: u32| {
+        let side = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        middle + half * Vec3::new(side(0), side(1), side(2))
+    };
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let part = Primitive {
+        positions: (0..8).map(corner).collect(),
+        joints: vec![[u16::try_from(slot).expect("few"), 0, 0, 0]; 8],
+        weights: vec![[1.0, 0.0, 0.0, 0.0]; 8],
+        indices: faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect(),
+        ..Primitive::default()
+    };
+    let joint = rig.meshes[0].joint;
+    rig.meshes.push(RigMesh { name: "box".into(), joint, skin: Some(0), primitives: vec![part] });
+    rig
+}
+
+/// The rig with all joints as roots, as exporters of deform bones write it.
+fn flat(mut rig: Rig) -> Rig {
+    let mut model = Vec::new();
+    let pose: Vec<LocalTransform> = rig.joints.iter().map(|joint| joint.rest).collect();
+    local_to_model(&rig, &pose, &Affine::IDENTITY, &mut model);
+    for (joint, place) in rig.joints.iter_mut().zip(model) {
+        let Transform { translation, rotation } = place.to_rigid();
+        joint.rest = LocalTransform { translation, rotation, ..LocalTransform::default() };
+        joint.parent = None;
+    }
+    rig
+}
+
+/// A staff as long as its bearer, across the palm: the hand turns about its wrist, and the get-ups are not lost.
+#[test]
+fn a_human_with_a_staff_gets_up() {
+    let hand = Role::Hand(Side::Right);
+    let staff = with_box(mannequin().rig, hand, Vec3::Y * 0.1, Vec3::new(0.02, 0.85, 0.02));
+    for (rig, what) in [(staff.clone(), "a tree of joints"), (flat(staff), "joints without parents")] {
+        let (mut def, analysis) = character(rig);
+        let motions = builtin_motions(&def, &analysis).expect("a human");
+        let depths = [2, 3].map(|fit: usize| def.deepest_skin(&motions.fits[fit].take));
+        assert!(depths.iter().all(|&depth| depth < 0.1), "{what}: {depths:?} m in the floor");
+        set_motions_with_builtin(&mut def, &analysis, MotionSet::default()).expect("get-ups");
+        assert_eq!(def.motions().get_ups.len(), 2, "{what}");
+    }
 }

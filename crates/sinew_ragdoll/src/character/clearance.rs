@@ -129,6 +129,8 @@ pub(super) struct Clearance {
     /// Skin of each part.
     parts: Vec<Surface>,
     limbs: Vec<LimbChain>,
+    /// Joint of each hand, and the skin of the hand with what it holds.
+    hands: Vec<(JointIdx, Surface)>,
     /// Joints beside the limb that carries them, each with the joint that it follows.
     strays: Vec<(JointIdx, JointIdx)>,
 }
@@ -144,6 +146,7 @@ impl Clearance {
         let mut palette = Vec::new();
         surface.palette(bind, &mut palette);
         let mut chosen: [Vec<usize>; PARTS] = Default::default();
+        let mut held: [Vec<usize>; 2] = Default::default();
         for body in 0..def.bodies.len() {
             let own = surface.sample.iter().copied().filter(|&vertex| surface.owner(vertex) == Some(body));
             let places: Vec<(usize, Vec3)> =
@@ -154,15 +157,21 @@ impl Clearance {
                 if let Some(&(vertex, place)) = outmost {
                     let part = part_of(def, &limbs, bind, body, place);
                     part.into_iter().for_each(|part| chosen[part].push(vertex));
+                    hand_of(def, body).into_iter().for_each(|hand| held[hand].push(vertex));
                 }
             }
         }
-        let parts = chosen.map(|mut vertices| {
+        let skin = |mut vertices: Vec<usize>| {
             vertices.sort_unstable();
             vertices.dedup();
             surface.part(&vertices)
-        });
-        Self { parts: parts.into(), strays: strays(rig, def), limbs }
+        };
+        let joint = |hand: usize| {
+            def.bodies.iter().find(|body| body.role == hand_roles()[hand].name()).map(|body| body.joint)
+        };
+        let hands =
+            held.map(skin).into_iter().enumerate().filter_map(|(hand, own)| Some((joint(hand)?, own)));
+        Self { parts: chosen.map(skin).into(), hands: hands.collect(), strays: strays(rig, def), limbs }
     }
 
     /// True of a rig without skin.
@@ -255,7 +264,7 @@ impl Clearance {
                 break;
             }
         }
-        self.carry(def, &carried, pose, model);
+        self.carry(def, &carried, 0..self.strays.len(), pose, model);
     }
 
     /// Displaces the trunk, and the ends of the limbs, which otherwise stay; character space.
@@ -283,29 +292,31 @@ impl Clearance {
                 put(rig, limb.bones, end, &root, pose, model);
             }
         }
-        self.carry(def, &carried, pose, model);
+        self.carry(def, &carried, 0..self.strays.len(), pose, model);
     }
 
-    /// Places of the strays, in the axes of their carriers.
+    /// Places of the strays in the axes of their carriers.
     fn carried(&self, model: &[Affine]) -> Vec<Transform> {
-        let place = |&(joint, carrier): &(JointIdx, JointIdx)| {
+        let at = |&(joint, carrier): &(JointIdx, JointIdx)| {
             model[carrier].to_rigid().inverse() * model[joint].to_rigid()
         };
-        self.strays.iter().map(place).collect()
+        self.strays.iter().map(at).collect()
     }
 
-    /// Moves the strays to these places in the axes of their carriers.
+    /// Moves some of the strays to their places `carried`.
     fn carry(
         &self,
         def: &CharacterDef,
         carried: &[Transform],
+        strays: impl IntoIterator<Item = usize>,
         pose: &mut [LocalTransform],
         model: &mut Vec<Affine>,
     ) {
         let (rig, root) = (&def.rig, def.mapping().character_from_model());
-        for (&(joint, carrier), &at) in self.strays.iter().zip(carried) {
+        for stray in strays {
+            let (joint, carrier) = self.strays[stray];
             let parent = rig.joints[joint].parent.map_or(root, |parent| model[parent]);
-            let place = model[carrier].to_rigid() * at;
+            let place = model[carrier].to_rigid() * carried[stray];
             let translation = parent.inverse().point(place.translation);
             if translation.is_finite() {
                 pose[joint].translation = translation;
@@ -320,6 +331,36 @@ impl Clearance {
         match part {
             TRUNK => def.bodies.first().map(|pelvis| pelvis.joint),
             _ => self.limbs.iter().find(|limb| limb.end == part).map(|limb| limb.bones.upper),
+        }
+    }
+
+    /// Turns hands about their wrists until what they hold is at most `allowed` deep.
+    fn turn_hands(
+        &self,
+        def: &CharacterDef,
+        allowed: f32,
+        pose: &mut [LocalTransform],
+        model: &mut Vec<Affine>,
+    ) {
+        let (rig, root) = (&def.rig, def.mapping().character_from_model());
+        local_to_model(rig, pose, &root, model);
+        let carried = self.carried(model);
+        let mut palette = Vec::new();
+        for (hand, skin) in &self.hands {
+            // The hand itself may be a stray of the forearm.
+            let is_held =
+                |&(joint, carrier): &(JointIdx, JointIdx)| joint != *hand && hangs(rig, carrier, *hand);
+            let held: Vec<usize> =
+                (0..self.strays.len()).filter(|&stray| is_held(&self.strays[stray])).collect();
+            for _ in 0..MOST_PASSES {
+                let places = skin.places(model, &mut palette);
+                let lowest = places.into_iter().reduce(|a, b| if b.y < a.y { b } else { a });
+                let wrist = model[*hand].to_rigid();
+                let turn = lowest.and_then(|lowest| raised_about(wrist.translation, lowest, allowed));
+                let Some(turn) = turn else { break };
+                turn_to(rig, *hand, turn * wrist.rotation, &root, pose, model);
+                self.carry(def, &carried, held.iter().copied(), pose, model);
+            }
         }
     }
 }
@@ -349,6 +390,20 @@ fn put(
     let side = model[bones.lower].translation - middle;
     two_bone_ik(rig, bones, &TwoBoneGoal::at(end.translation, Pole::Keep(side)), pose, model);
     turn_to(rig, bones.end, end.rotation, root, pose, model);
+}
+
+/// The turn about `wrist` that raises `lowest` to `allowed` metres below the floor; `None` if it is not deeper, or if no
+/// turn does.
+fn raised_about(wrist: Vec3, lowest: Vec3, allowed: f32) -> Option<Rotation> {
+    let arm = lowest - wrist;
+    let (length, down) = (arm.length(), wrist.y + allowed);
+    if lowest.y >= -allowed || down <= 0.0 {
+        return None;
+    }
+    let level = Vec3::new(arm.x, 0.0, arm.z);
+    let away = if level.length() > 1e-3 * length { level.normalize() } else { Vec3::X };
+    let wanted = away * max(length * length - down * down, 0.0).sqrt() - Vec3::Y * down;
+    Some(Rotation::from_arc(arm.normalize(), wanted.normalize()))
 }
 
 /// Turns a limb about its upper joint until the middle joint is `up` metres higher, in the axes of `model`.
@@ -443,11 +498,25 @@ fn part_of(
     is_human(body).then_some(TRUNK)
 }
 
+fn hand_roles() -> [Role; 2] {
+    [Side::Left, Side::Right].map(Role::Hand)
+}
+
+/// The hand, left or right, that a body is or that carries it.
+fn hand_of(def: &RagdollDef, body: usize) -> Option<usize> {
+    let parent = |body: usize| def.joints.iter().find(|joint| joint.child == body).map(|joint| joint.parent);
+    let mut bearers = core::iter::successors(Some(body), |&body| parent(body));
+    bearers.find_map(|body| hand_roles().into_iter().position(|role| def.bodies[body].role == role.name()))
+}
+
+/// True if a joint is `above` or its descendant.
+fn hangs(rig: &Rig, joint: JointIdx, above: JointIdx) -> bool {
+    core::iter::successors(Some(joint), |&i| rig.joints[i].parent).any(|i| i == above)
+}
+
 /// Joints that are not descendants of the joint that carries their body, topmost ones only.
 fn strays(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, JointIdx)> {
-    let hangs = |joint: JointIdx, above: JointIdx| {
-        core::iter::successors(Some(joint), |&i| rig.joints[i].parent).any(|i| i == above)
-    };
+    let hangs = |joint: JointIdx, above: JointIdx| hangs(rig, joint, above);
     let of_bodies = def.joints.iter().filter_map(|joint| {
         let (child, parent) = (def.bodies[joint.child].joint, def.bodies[joint.parent].joint);
         (!hangs(child, parent)).then_some((child, parent))
@@ -504,13 +573,16 @@ impl CharacterDef {
         self.clearance.deepest(self, take).into_iter().fold(0.0, max)
     }
 
-    /// Raises feet, hands and elbows whose drawn skin is in the floor of a pose, by bending their limbs. The pose has a
-    /// local transform per joint of the rig.
+    /// Raises feet, hands and elbows whose drawn skin is in the floor of a pose, by bending their limbs. A hand that
+    /// holds something too long for that turns about its wrist. The pose has a local transform per joint of the rig.
     pub fn raise_limbs(&self, pose: &mut [LocalTransform]) {
         if !self.clearance.parts.is_empty() {
-            let mut allowed = [LIMBS_SINK * self.ragdoll.height; PARTS];
+            let sunk = LIMBS_SINK * self.ragdoll.height;
+            let mut allowed = [sunk; PARTS];
             allowed[TRUNK] = f32::INFINITY;
-            self.clearance.clear(self, &allowed, 1.0, None, pose, &mut Vec::new());
+            let mut model = Vec::new();
+            self.clearance.clear(self, &allowed, 1.0, None, pose, &mut model);
+            self.clearance.turn_hands(self, sunk, pose, &mut model);
         }
     }
 }

@@ -320,7 +320,7 @@ impl CharacterDef {
     }
 
     /// Bind pose of every joint in character space, metres.
-    pub(super) fn bind(&self) -> &[Affine] {
+    pub(crate) fn bind(&self) -> &[Affine] {
         &self.bind
     }
 

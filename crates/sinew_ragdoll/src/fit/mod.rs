@@ -67,20 +67,30 @@ pub struct Fit {
 pub fn fit_shapes(bones: &Bones, surface: &[Vec<Share>], choice: ShapeChoice) -> Vec<Fit> {
     let fits: Vec<_> =
         (0..bones.list.len()).map(|bone| fit_bone(bones, bone, &surface[bone], choice)).collect();
-    let held =
-        |bone: usize| holding(bones, &fits, bone, &surface[bone]).filter(|_| choice == ShapeChoice::Auto);
-    (0..fits.len()).map(|bone| held(bone).unwrap_or_else(|| reconciled(bones, &fits, bone))).collect()
+    let shape = |bone: usize| {
+        let fit = reconciled(bones, &fits, bone);
+        if choice != ShapeChoice::Auto {
+            return fit;
+        }
+        protruding_end(bones, bone, &surface[bone], &fit).unwrap_or(fit)
+    };
+    (0..fits.len()).map(shape).collect()
 }
 
-/// The hull of a hand that holds an object with skin of its own, such as a sword, which would otherwise sink into the
-/// floor; `None` for a hand like its twin.
-fn holding(bones: &Bones, fits: &[Fit], bone: usize, shares: &[Share]) -> Option<Fit> {
-    let twin = bones.twin(bone).filter(|_| bones.list[bone].part == Part::Hand)?;
-    let radius = |fit: &Fit| fit.shape.bounding_radius();
-    if fits[twin].selection == Selection::Nothing || radius(&fits[bone]) <= BURDENED * radius(&fits[twin]) {
+/// The hull of the end of a limb of whose skin something protrudes far from its shape (a sword in a hand, a gun on a
+/// forearm, a big shoe), which would otherwise sink into the floor. `None` if nothing does, for other bones and for props.
+fn protruding_end(bones: &Bones, bone: usize, shares: &[Share], fit: &Fit) -> Option<Fit> {
+    let Bone { part, is_prop, .. } = bones.list[bone];
+    let is_limb = !is_trunk(part) && !matches!(part, Part::Head | Part::Neck | Part::Tail);
+    if is_prop || !is_limb || !bones.children[bone].is_empty() {
         return None;
     }
     let patch = Patch::select(shares, Symmetry::AsIs)?;
+    let out = |sample: &patch::Sample| fit.shape.signed_distance(&fit.character_from_body, sample.point).0;
+    let farthest = patch.samples.iter().map(out).fold(0.0, max);
+    if farthest <= PROTRUDING * bones.size() {
+        return None;
+    }
     solid::fit_whole_hull(&solid::fit_box(bones, bone, &patch), &patch, |point| point)
 }
 

@@ -3,7 +3,7 @@
 use super::{Fault, Verdict};
 use crate::bake::{BakeInput, Baked, Frame};
 use crate::character::{CharacterDef, State};
-use crate::tuning::{JUMPS, SLIDES, SLIDES_LEAST, STANDS_NEAR, STANDS_UPRIGHT};
+use crate::tuning::{HIPS_BEAR, JUMPS, SLIDES, SLIDES_LEAST, STANDS_NEAR, STANDS_UPRIGHT};
 use sinew_anim::local_to_model;
 use sinew_math::{Affine, Vec3, max, min};
 
@@ -11,7 +11,7 @@ use sinew_math::{Affine, Vec3, max, min};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RisingQuality {
     /// Largest slide of a foot over the floor while it stands flat on it, over the stances of all get-ups. Level floors
-    /// only.
+    /// only. A foot that a lying or sitting character draws in bears nothing and does not count.
     pub foot_slide_m: Option<f32>,
     /// Largest motion of a body in the frame of a hand-over beyond its motion in the frames before and after: from
     /// bodies to a clip, and from a get-up to the next clip.
@@ -56,6 +56,8 @@ fn model_of(def: &CharacterDef, baked: &Baked, frame: &Frame, model: &mut Vec<Af
 
 fn foot_slide(def: &CharacterDef, baked: &Baked, floor: f32) -> Option<f32> {
     let near = STANDS_NEAR * def.ragdoll.height;
+    let hips = def.ragdoll.bodies[0].joint;
+    let bears = floor + HIPS_BEAR * def.bind()[hips].translation.y;
     let mut farthest = None;
     let (mut model, mut palette) = (Vec::new(), Vec::new());
     for foot in def.soles() {
@@ -70,7 +72,8 @@ fn foot_slide(def: &CharacterDef, baked: &Baked, floor: f32) -> Option<f32> {
             let up = model[foot.joint].to_rigid().rotation * foot.up;
             let places = foot.places(&model, &mut palette);
             let is_on = |place: Vec3| place.y < floor + near;
-            if up.y < STANDS_UPRIGHT || !places.iter().any(|&place| is_on(place)) {
+            let is_up = up.y >= STANDS_UPRIGHT && model[hips].translation.y >= bears;
+            if !is_up || !places.iter().any(|&place| is_on(place)) {
                 stance = None;
                 continue;
             }

@@ -186,6 +186,7 @@ impl<'a> SkinMeter<'a> {
         let mut palette = Vec::new();
         surface.palette(bind_model, &mut palette);
         let stretch = [(); 3].map(|()| Stretch::new(&surface, &palette, def.unit_scale));
+        let bound = stretch::total(&surface, &palette);
         let (low, high) = bounds(&surface, &palette, &to_character);
         let size = size(def, low, high);
         let mut skin = SkinQuality { size, bind_height_m: high.y - low.y, ..SkinQuality::default() };
@@ -209,19 +210,20 @@ impl<'a> SkinMeter<'a> {
             model,
             palette,
         };
-        meter.draw_bound(def);
+        meter.draw_bound(def, bound);
         meter.look_at_clips(takes);
         meter
     }
 
-    /// Height of the skin where the bodies are in the bind pose.
-    fn draw_bound(&mut self, def: &RagdollDef) {
+    /// Height of the skin where the bodies are in the bind pose, by the sizes of its triangles: ears that are bound in
+    /// another pose than they are drawn in do not change its size.
+    fn draw_bound(&mut self, def: &RagdollDef, bound: f32) {
         let own: Vec<Transform> = def.bodies.iter().map(|body| body.character_from_body).collect();
         let mut drawn = Drawn::new(self.rig, &self.mapping);
         drawn.pose_by(self.rig, &self.mapping, &own);
         self.draw(&drawn.pose);
-        let (low, high) = bounds(&self.surface, &self.palette, &self.to_character);
-        self.skin.drawn_height_m = high.y - low.y;
+        let ratio = if bound > 0.0 { stretch::total(&self.surface, &self.palette) / bound } else { 1.0 };
+        self.skin.drawn_height_m = self.skin.bind_height_m * ratio;
     }
 
     fn look_at_clips(&mut self, takes: &[Take]) {

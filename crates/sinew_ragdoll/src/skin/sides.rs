@@ -1,7 +1,6 @@
 //! Compares left with right and checks that limbs are connected, from the definition alone.
 
 use crate::build::bones::Bones;
-use crate::build::part::Part;
 use crate::def::{RagdollDef, RagdollJointDef};
 use crate::tuning::BURDENED;
 use crate::tuning::{LOOSE, MIDDLE, MIRRORED};
@@ -66,10 +65,10 @@ fn difference(def: &RagdollDef, bones: &Bones, body: usize, twin: usize) -> f32 
     max(max((away(body) - away(twin)).abs(), (radius(body) - radius(twin)).abs()), masses)
 }
 
-/// True if a hand is so much larger than the other that it must hold something that its shape encloses.
-fn holds(def: &RagdollDef, bones: &Bones, hand: usize, other: usize) -> bool {
+/// True if the end of a limb is so much larger than the other that it must hold something that its shape encloses.
+fn holds(def: &RagdollDef, bones: &Bones, end: usize, other: usize) -> bool {
     let radius = |body: usize| def.bodies[body].shape.bounding_radius();
-    bones.list[hand].part == Part::Hand && radius(hand) > BURDENED * radius(other)
+    bones.children[end].is_empty() && radius(end) > BURDENED * radius(other)
 }
 
 /// Number of joints between a body and the body that most of its skin continues into: four for a thigh whose skin

@@ -61,6 +61,11 @@ impl Stretch {
     }
 }
 
+/// Length of all sides together, in units of the model space.
+pub(super) fn total(surface: &Surface, palette: &[Affine]) -> f32 {
+    surface.sides.iter().map(|side| length(surface, palette, side)).filter(|length| length.is_finite()).sum()
+}
+
 fn length(surface: &Surface, palette: &[Affine], &Side(a, b): &Side) -> f32 {
     (surface.place(palette, a) - surface.place(palette, b)).length()
 }

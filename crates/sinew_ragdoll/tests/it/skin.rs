@@ -3,7 +3,7 @@
 use crate::data::document;
 use needs_data::needs_data;
 use sinew_anim::{Joint, LocalTransform, Primitive, Rig, RigAnalysis, RigMesh, Role, analyze};
-use sinew_math::{Affine, Transform, Vec3};
+use sinew_math::{Affine, Rotation, Transform, Vec3};
 use sinew_physics::Shape;
 use sinew_ragdoll::build::takes;
 use sinew_ragdoll::doctor::Code;
@@ -195,6 +195,29 @@ fn character_drawn_in_another_size_is_reported() {
     assert!(kinds(&skin.flaws(&subject.def)).contains(&FlawKind::Resized));
 }
 
+/// Ears that are bound upright and drawn lying on the head change the height of the skin, not its size.
+#[test]
+fn ears_bound_in_another_pose_do_not_change_its_size() {
+    let mut rig = mannequin().rig;
+    let analysis = analyze(&rig).expect("a skin");
+    let head = analysis.joint_with(Role::Head).expect("a head");
+    let slot = rig.skins[0].joints.iter().position(|&joint| joint == head).expect("it moves skin");
+    let (ears, source) = (rig.skins[0].joints.len(), rig.joints.len());
+    grown(&mut rig, Role::Head, Vec3::Y * 0.25, Vec3::new(0.05, 0.12, 0.02));
+    let lying =
+        LocalTransform { rotation: Rotation::from_axis_angle(Vec3::X, 1.5), ..LocalTransform::default() };
+    rig.joints.push(Joint { name: "ears".into(), parent: Some(head), rest: lying, source });
+    let inverse_bind = rig.skins[0].inverse_bind[slot];
+    rig.skins[0].joints.push(source);
+    rig.skins[0].inverse_bind.push(inverse_bind);
+    let ear = u16::try_from(ears).expect("few");
+    let grown = rig.meshes.last_mut().expect("it has just grown");
+    grown.primitives[0].joints.iter_mut().for_each(|joints| joints[0] = ear);
+    let subject = Subject::of(rig);
+    let flaws = subject.flaws(&[]);
+    assert!(!kinds(&flaws).contains(&FlawKind::Resized), "{flaws:?}");
+}
+
 /// A fall may stretch the skin half as much again as the animation does.
 #[test]
 fn stretch_of_the_clips_is_allowed() {
@@ -366,6 +389,18 @@ fn skinned_hats_and_packs_rest_on_the_floor() {
     assert!(skin.covered_share > 0.99, "{skin:?}");
     let head = &subject.def.bodies[subject.body("head")].shape;
     assert!(matches!(head, Shape::Hull(_)), "{head:?}");
+}
+
+/// A club skinned to a foot, which has the shape of the other one: the shape encloses it, and it is no lopsided foot.
+#[test]
+fn what_is_skinned_to_the_end_of_a_limb_rests_on_the_floor() {
+    let mut rig = mannequin().rig;
+    let end = Role::Foot(sinew_anim::Side::Right);
+    grown(&mut rig, end, Vec3::Z * 0.5, Vec3::new(0.02, 0.02, 0.45));
+    let subject = Subject::of(rig);
+    let skin = subject.over(&drop_test(&subject.def).falls);
+    assert!(skin.rest_height_m.is_some_and(|height| height > -0.05), "{skin:?}");
+    assert!(!kinds(&skin.flaws(&subject.def)).contains(&FlawKind::Lopsided), "{skin:?}");
 }
 
 /// A trunk whose skin includes forward-hanging arms gets no box with empty corners to rest on.
