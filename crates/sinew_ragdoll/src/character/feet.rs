@@ -83,9 +83,13 @@ impl Feet {
             self.walls = WallOffsets::default();
             return;
         }
+        let meets_walls = stand.follows || stand.def.ground_contact == GroundContact::Enforced;
+        if !meets_walls && !self.are_placed() {
+            return;
+        }
         let mut pose = core::mem::take(&mut self.pose);
         self.stand_out_of_floor(stand.def, state, stand.figure, &mut pose, model);
-        if stand.follows || stand.def.ground_contact == GroundContact::Enforced {
+        if meets_walls {
             local_to_model(&stand.def.rig, &pose, &stand.def.mapping().character_from_model(), model);
             self.walls.follow(stand.def, stand.figure.place, self.treads.is_some(), world, model);
         }
