@@ -23,7 +23,7 @@ pub struct QualityMeter {
     calm_since: Option<f32>,
     /// Deepest penetration of the bodies in the world in the last step, metres.
     penetration: f32,
-    /// True if all bodies slept then and none has moved since.
+    /// True if all bodies slept at some time and none has moved since.
     asleep: bool,
 }
 
@@ -31,7 +31,7 @@ impl QualityMeter {
     /// Reserves memory for falls of about `seconds` of one ragdoll.
     pub fn new(def: &RagdollDef, seconds: f32) -> Self {
         let samples = (max(seconds, 0.0) * 60.0) as usize * def.joints.len();
-        // The estimate is the caller's; a wrong one must cost time, not memory.
+        // A wrong estimate of the caller costs time, not memory.
         let samples = samples.min(1 << 20);
         Self {
             quality: FallQuality::default(),
@@ -139,7 +139,7 @@ impl QualityMeter {
         }
     }
 
-    /// The figures so far.
+    /// Returns the figures so far.
     pub fn quality(&self) -> FallQuality {
         let mut quality = self.quality;
         let mut sorted = self.gaps.clone();
@@ -154,7 +154,7 @@ fn all_sleep(world: &World, ragdoll: &Ragdoll) -> bool {
     ragdoll.bodies.iter().all(|&body| !world.is_awake(body))
 }
 
-/// 99th percentile (nearest rank) and largest value; 0 without samples.
+/// Returns the 99th percentile (nearest rank) and the largest value; 0 without samples.
 fn p99_and_max(samples: &mut [f32]) -> (f32, f32) {
     samples.sort_unstable_by(f32::total_cmp);
     let Some(&largest) = samples.last() else { return (0.0, 0.0) };
