@@ -131,7 +131,7 @@ impl Ragdoll {
         Self::spawn_kinematic_without(world, def, states, body_settings, rule, &[])
     }
 
-    /// Does [`spawn_kinematic`](Self::spawn_kinematic) without some bodies; `gone` has placeholder ids for these.
+    /// Like [`spawn_kinematic`](Self::spawn_kinematic), without some bodies; `gone` has placeholder ids for these.
     pub(crate) fn spawn_kinematic_without(
         world: &mut World,
         def: &RagdollDef,
@@ -181,7 +181,7 @@ impl Ragdoll {
         ragdoll
     }
 
-    /// Does [`wake`](Self::wake) for all bodies but some, without rule or owner.
+    /// Like [`wake`](Self::wake), for all bodies but some, without rule or owner.
     pub(crate) fn wake_without(
         world: &mut World,
         def: &RagdollDef,

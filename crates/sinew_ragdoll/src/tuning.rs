@@ -232,12 +232,12 @@ pub(crate) const STEEPEST: f32 = 0.35;
 
 // fit/solid.rs
 
-/// Weight of the distance from the middle relative to the distance along a direction, and the tilt of the directions,
+/// Weight of the distance from the centre relative to the distance along a direction, and the tilt of the directions,
 /// in half sides of the box.
 ///
-/// All points of a flat side are equally far along it. The one nearest to a corner represents them, and always the same
-/// one of two mirror images. Without this, the last bit of their positions decided, and the same skin in another unit
-/// had a hull of half the volume. Larger: hulls miss protruding parts. Smaller: rounding decides. Shown by the tests of
+/// All points of a flat side are equally far along its direction. The weight selects the point nearest to a corner; the
+/// tilt selects the same one of two mirror images. Otherwise rounding selected the point, and the same skin in another
+/// unit had a hull of half the volume. Larger: hulls miss protruding parts. Smaller: rounding decides. Shown by the tests of
 /// `rig_variants`.
 pub(crate) const TOWARD_CORNERS: f32 = 1e-3;
 
@@ -284,8 +284,8 @@ pub(crate) const SHORTEST_THREAD: f32 = 0.1;
 
 // garments/mesh.rs
 
-/// Cosine of the angle, 75°, above which the opposite edge is the diagonal of a cell, if it is so in both of its
-/// triangles.
+/// Cosine of the angle, 75°, above which the angles opposite an edge, in both of its triangles, make the edge the
+/// diagonal of a cell.
 ///
 /// Larger: equal triangles count as halves of cells and are soft along one side. Smaller: cells that are not quite
 /// square are stiff across. Shown by the tests of `mesh_garments`.

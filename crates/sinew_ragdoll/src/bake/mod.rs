@@ -43,8 +43,9 @@ pub struct BakeHit {
     pub impulse: Vec3,
 }
 
-/// Change of the drive of a part of the character at a given time: [`Character::set_drive`](crate::Character::set_drive). It applies while
-/// the character stands; [`CharacterDef::falling`] sets the drive of a fallen one.
+/// Change of the drive of a part of the character at a given time, by
+/// [`Character::set_drive`](crate::Character::set_drive). The change applies while the character stands;
+/// [`CharacterDef::falling`] sets the drive of a fallen character.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeDrive<'a> {
     /// Time since the start, seconds.

@@ -110,7 +110,7 @@ impl Overrides<'_> {
     }
 }
 
-/// Does [`build`] with changes between its stages.
+/// Like [`build`], with changes between its stages.
 pub(crate) fn build_overridden(
     rig: &Rig,
     analysis: &RigAnalysis,

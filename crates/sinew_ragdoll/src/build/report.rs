@@ -29,7 +29,7 @@ pub struct BuildReport {
 pub struct BodyReport {
     /// Area-weighted mean distance between the bone's skin and the shape's surface, metres.
     pub error: f32,
-    /// Selection of the skin that the shape was fitted to.
+    /// Selection of the skin to which the shape was fitted.
     pub selection: Selection,
     /// Factor on the cross-section to avoid other bodies; 1 if not needed.
     pub scale: f32,

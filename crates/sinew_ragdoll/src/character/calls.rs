@@ -284,7 +284,7 @@ impl Character {
         self.strike(world, body, impulse, None)
     }
 
-    /// Does [`hit`](Self::hit) at the point where a ray or a shape hit one of the character's bodies. `None`, with no
+    /// Like [`hit`](Self::hit), at the point where a ray or a shape hit one of the character's bodies. `None`, with no
     /// effect, if the hit body is not one of them.
     ///
     /// # Panics

@@ -18,7 +18,7 @@ use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
 /// Number of parts: the trunk with its knees, the feet, the hands, the elbows, left ones first.
 pub(super) const PARTS: usize = 7;
 const TRUNK: usize = 0;
-/// Largest number of times that trunk and limbs are raised: raising a foot may press its knee into the floor.
+/// Largest number of passes that raise trunk and limbs: raising a foot may press its knee into the floor.
 const MOST_PASSES: usize = 3;
 pub(super) const FEET: [usize; 2] = [1, 2];
 const HANDS: [usize; 2] = [3, 4];
@@ -123,15 +123,15 @@ impl LimbChain {
     }
 }
 
-/// Lowest candidate points of the skin, and how to raise them.
+/// Candidates for the lowest points of the skin, and the limbs that raise them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Clearance {
     /// Skin of each part.
     parts: Vec<Surface>,
     limbs: Vec<LimbChain>,
-    /// Joint of each hand, and the skin of the hand with what it holds.
+    /// Joint of each hand, and the skin of the hand with the objects that it holds.
     hands: Vec<(JointIdx, Surface)>,
-    /// Joints beside the limb that carries them, each with the joint that it follows.
+    /// Joints that are not descendants of the limb that carries their body, each with the joint that it follows.
     strays: Vec<(JointIdx, JointIdx)>,
 }
 
@@ -544,7 +544,7 @@ fn directions() -> impl Iterator<Item = Vec3> {
 /// A foot of a humanoid.
 pub(crate) struct Sole<'a> {
     pub joint: JointIdx,
-    /// Up direction in the foot's own axes when it stands flat.
+    /// Up direction of a flat foot, in the foot's own axes.
     pub up: Vec3,
     skin: &'a Surface,
 }

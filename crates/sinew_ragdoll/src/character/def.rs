@@ -38,9 +38,9 @@ pub enum Locomotion {
 /// Action of a limp character once it lies still.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AfterSettling {
-    /// It gets up by the clip that fits its pose; without such a clip it fades to its looped clip, standing.
+    /// The character gets up by the clip that fits its pose; without such a clip it fades to its looped clip, standing.
     GetUp,
-    /// It stays where it is.
+    /// The character stays where it is.
     StayDown,
 }
 
@@ -66,7 +66,7 @@ pub enum GroundContact {
     Enforced,
 }
 
-/// Pose or clip of a character before anything has happened to it.
+/// First pose or clip of a new character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Opening {
     /// The character plays its looped clip.
@@ -136,7 +136,7 @@ pub struct CharacterDef {
     pub patience: f32,
     /// Surface and filter of the bodies.
     pub body_settings: BodySettings,
-    /// Bound on the speeds that an animation hands over.
+    /// Largest speeds that an animation hands over to the bodies.
     pub speed_bound: SpeedBound,
     /// Interaction with a world while clips move a character.
     pub in_world: InWorld,

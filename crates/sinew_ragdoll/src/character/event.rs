@@ -70,7 +70,7 @@ pub enum CharacterEvent {
     Stumbled,
     /// Steps caught the character; its feet follow the clips again.
     Caught {
-        /// Number of steps, without those that only returned the feet.
+        /// Number of steps, except those that only returned the feet.
         steps: u32,
     },
     /// A limb was detached.
@@ -84,7 +84,7 @@ pub enum CharacterEvent {
     Touched,
     /// The character lies still.
     Settled {
-        /// World time at which it began to lie still, seconds.
+        /// World time at which the character began to lie still, seconds.
         since: f32,
     },
     /// The character did not come to rest in the given time.

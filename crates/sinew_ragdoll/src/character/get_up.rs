@@ -1,4 +1,4 @@
-//! From lying to standing: choice of clip and moment, room, and heading.
+//! Get-ups: choice of clip and start, free space, and heading.
 
 use super::CharacterDef;
 use super::figure::Figure;

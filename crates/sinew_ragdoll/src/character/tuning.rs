@@ -1,7 +1,7 @@
 //! Tunable constants of characters: animated, limp, getting up, stumbling.
 //!
-//! Each has its unit, the effect of a larger and a smaller value, and the tests (`crates/sinew_ragdoll/tests/it`) that
-//! show it; effects without a figure are estimates.
+//! Each constant has its unit, the effect of a larger and a smaller value, and the tests
+//! (`crates/sinew_ragdoll/tests/it`) that show it. Effects without a figure are estimates.
 
 // character/animate.rs
 

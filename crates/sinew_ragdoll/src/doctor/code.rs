@@ -186,7 +186,7 @@ codes! {
     DrawnResized "drawn-resized" Warning
         "the nodes' own transforms scale the skin otherwise than its bind matrices, so that it sinks in or floats"
         "Apply scales in the modelling tool and export the rig anew.";
-    /// The skin lies in the floor, or above it.
+    /// The skin is in the floor, or above it.
     SkinOffFloor "skin-off-floor" Warning
         "a part of the skin without a shape around it lies in the floor, or a shape outside the skin keeps it above"
         "Give that part a body (`--body`), leave it out (`--ignore`), or change the shape's `scale` in settings.";

@@ -77,7 +77,7 @@ impl Drives {
         }
     }
 
-    /// Does [`release`](Self::release) for some bodies, by index, and for the joints above them.
+    /// Like [`release`](Self::release), for some bodies, by index, and for the joints above them.
     pub(crate) fn release_bodies(&mut self, world: &mut World, ragdoll: &Ragdoll, bodies: &[usize]) {
         for &body in bodies {
             let (drive, id) = (&mut self.drives[body], ragdoll.bodies[body]);

@@ -208,14 +208,14 @@ impl Drives {
         }
     }
 
-    /// Does [`set`](Self::set) for all bodies.
+    /// Like [`set`](Self::set), for all bodies.
     pub fn set_all(&mut self, mode: DriveMode, half_life: f32) {
         for body in 0..self.drives.len() {
             self.set(body, mode, half_life);
         }
     }
 
-    /// Does [`set`](Self::set) for a body and all its descendants: an arm, or all bodies above the waist.
+    /// Like [`set`](Self::set), for a body and all its descendants: an arm, or all bodies above the waist.
     pub fn set_from(&mut self, def: &RagdollDef, body: usize, mode: DriveMode, half_life: f32) {
         for other in (body..self.drives.len()).filter(|&other| hangs_on(def, other, body)) {
             self.set(other, mode, half_life);

@@ -217,7 +217,7 @@ fn remedy(
     (seen, poses): (Seen, &Poses),
 ) -> Remedy {
     let trunk = |bone: usize| bones.list[bone].part.is_trunk() || bones.list[bone].part == Part::Neck;
-    // Second neighbours within the trunk move over each other whatever their sizes.
+    // Second neighbours within the trunk move over each other, independent of their sizes.
     if bones.distance(a, b) <= 2
         && seen.bind > 0.0
         && (trunk(a) && trunk(b) || meets_at_pivot(bones, fits, a, b))

@@ -163,7 +163,7 @@ fn share_skinned(
     finest: f32,
     by_bone: &mut [Vec<Share>],
 ) {
-    // At most three corners with four weights each.
+    // A triangle has at most three corners with four weights each.
     let mut pulls: Vec<Pull> = Vec::with_capacity(12);
     for (index, corners) in triangles(primitive, positions) {
         pulls.clear();

@@ -55,7 +55,7 @@ impl Physical {
         stretch
     }
 
-    /// Does [`pose`](Self::pose) with the undriven joints from `resting` instead of the base pose. `resting` is a later
+    /// Like [`pose`](Self::pose), with the undriven joints from `resting` instead of the base pose. `resting` is a later
     /// pose of the same bone lengths.
     ///
     /// # Panics

@@ -179,7 +179,7 @@ pub(super) fn measure(world: &mut World, def: &RagdollDef, ragdoll: &Ragdoll, se
     measure_seen(world, def, ragdoll, seconds, |_, _| ())
 }
 
-/// Does [`measure`] and also passes the world and the step number to a callback after each step.
+/// Like [`measure`]; also passes the world and the step number to a callback after each step.
 fn measure_seen(
     world: &mut World,
     def: &RagdollDef,

@@ -46,7 +46,7 @@ impl QualityMeter {
         }
     }
 
-    /// Call when a ragdoll has been spawned, before the step.
+    /// Begins the measurement of a fall. Call this after a ragdoll was spawned, before the step.
     pub fn went_limp(&mut self) {
         self.calm_steps = 0;
         self.calm_since = None;
@@ -58,23 +58,23 @@ impl QualityMeter {
         self.quality.work_in_j += work;
     }
 
-    /// Call when the character is animated again.
+    /// Records that the character is animated again.
     pub fn got_up(&mut self, world: &World) {
         self.quality.up_s.get_or_insert(world.time() as f32);
     }
 
-    /// Call before a step, after all pushes.
+    /// Records the energy before a step. Call this after all pushes.
     pub fn before_step(&mut self, world: &World) {
         self.before = world.energy();
     }
 
-    /// Call after a step, with the bodies still in the world.
+    /// Measures a step. Call this after the step, with the bodies still in the world.
     pub fn after_step(&mut self, world: &World, ragdoll: &Ragdoll) {
         self.measure_motion(world, ragdoll);
         self.measure_rest(world, ragdoll, world.time() as f32);
     }
 
-    /// Call after a step of driven bodies, which are not at rest: measures everything except rest.
+    /// Measures a step of driven bodies, except the figures of rest, because driven bodies are not at rest.
     pub fn after_driven_step(&mut self, world: &World, ragdoll: &Ragdoll) {
         self.measure_motion(world, ragdoll);
     }

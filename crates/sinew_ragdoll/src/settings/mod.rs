@@ -198,7 +198,7 @@ pub fn build_with(
     build_moving(rig, analysis, &[], options, settings)
 }
 
-/// Does [`build_with`] for a character whose motion is known, as [`takes`](crate::build::takes()) returns it from
+/// Like [`build_with`], for a character whose motion is known, as [`takes`](crate::build::takes()) returns it from
 /// clips. Shapes that overlap in this motion are corrected, and limits may be learned from it.
 ///
 /// # Errors

@@ -48,7 +48,7 @@ pub enum FlawKind {
     Resized,
     /// The skin is in the floor, or above it.
     OffFloor,
-    /// The character lies still without touching anything.
+    /// The character lies still without contact.
     Airborne,
 }
 

@@ -4,7 +4,7 @@
 //! **Law.** Every spring bone has a tip at the bone's length from its joint. The law is the reference of
 //! [VRMC_springBone 1.0](https://github.com/vrm-c/vrm-specification/tree/master/specification/VRMC_springBone-1.0),
 //! which advances the tip by Verlet integration once per frame, so its motion depends on the frame rate. Authors tune
-//! it at 60 frames per second; here it **always ticks at 60 Hz** ([`TICK`]), whatever the world's step:
+//! springs at 60 frames per second; here the springs **always tick at 60 Hz** ([`TICK`]), for any step of the world:
 //!
 //! ```text
 //! x' = x + (1 − drag) (x − x₋₁) + TICK (stiffness r + gravity + drag · wind)      then the length, limits, colliders

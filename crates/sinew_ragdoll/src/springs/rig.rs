@@ -88,7 +88,7 @@ pub struct SpringRig {
     /// Bit mask, for each bone, of the bodies among the first 64 that the bone does not touch in the bind pose and so
     /// collides with.
     pub(super) meets: Vec<u64>,
-    /// Nodes that chains are attached to, each with the largest distance that a tip can have from it, metres.
+    /// Nodes to which chains are attached, each with the largest distance of a tip from the node, metres.
     pub(super) anchors: Vec<(usize, f32)>,
     left_out: Vec<JointIdx>,
 }

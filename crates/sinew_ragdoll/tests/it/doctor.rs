@@ -493,7 +493,7 @@ fn the_page_lists_every_code() {
     }
 }
 
-/// From the middle of its cone a joint reaches the cone's ends; from elsewhere, the remaining range.
+/// Starting from the middle of its cone a joint reaches the cone's ends; from another rotation, the remaining range.
 #[test]
 fn joint_reach_follows_its_limits() {
     let limit = SwingTwistLimit {

@@ -594,7 +594,7 @@ fn random_drive_changes_stay_stable() {
     assert!(opened <= 1, "{opened} joints opened");
 }
 
-/// Found by random lives: pins to the old place of a teleported body once threw the whole body at 38 m/s.
+/// Random lives found this case: pins to the old place of a teleported body threw the whole body at 38 m/s.
 #[test]
 fn teleported_powered_character_is_not_thrown() {
     let def = shared(walker());
