@@ -118,8 +118,8 @@ pub(crate) const A_FEW: f32 = 0.02;
 /// Cosine of the angle, 35°, between a surface's long axis and its bone up to which the shape uses the bone's
 /// direction.
 ///
-/// A larger angle: shapes are askew to their skin. A smaller one: shapes of limbs are not parallel to their bones.
-/// Shown by the tests of `build`.
+/// A larger angle: shapes are tilted relative to their skin. A smaller one: shapes of limbs are not parallel to their
+/// bones. Shown by the tests of `build`.
 pub(crate) const ALONG_BONE: f32 = 0.819;
 
 /// Least ratio of a surface's largest variance to the next for which it has a long axis.
@@ -131,7 +131,8 @@ pub(crate) const ELONGATED: f32 = 1.5;
 /// Largest ratio of the area of the smallest rectangle around a trunk's cross-section to that of the upright one at
 /// which the smallest is used.
 ///
-/// Larger: boxes of trunks are askew. Smaller: boxes are far larger than bent backs. Shown by the tests of `build`.
+/// Larger: boxes of trunks are tilted needlessly. Smaller: boxes are far larger than bent backs. Shown by the tests of
+/// `build`.
 pub(crate) const WORTH_TILTING: f32 = 0.75;
 
 /// Largest ratio of the box volume in another frame to that in the preferred one at which the other frame is used.
@@ -186,7 +187,7 @@ pub(crate) const HOLLOW: f32 = 0.2;
 
 /// Ratio of the volumes of twins above which both get the better-fitting shape.
 ///
-/// Larger: bodies are lopsided. Smaller: parts that really differ become equal. Shown by the tests of `build`.
+/// Larger: bodies are asymmetric. Smaller: parts that really differ become equal. Shown by the tests of `build`.
 pub(crate) const UNLIKE: f32 = 1.3;
 
 /// Factor on the error of a shape whose kind does not suit the part, so that it is chosen only if clearly nearer to the
@@ -237,8 +238,8 @@ pub(crate) const STEEPEST: f32 = 0.35;
 ///
 /// All points of a flat side are equally far along its direction. The weight selects the point nearest to a corner; the
 /// tilt selects the same one of two mirror images. Otherwise rounding selected the point, and the same skin in another
-/// unit had a hull of half the volume. Larger: hulls miss protruding parts. Smaller: rounding decides. Shown by the tests of
-/// `rig_variants`.
+/// unit had a hull of half the volume. Larger: hulls miss protruding parts. Smaller: rounding decides. Shown by the
+/// tests of `rig_variants`.
 pub(crate) const TOWARD_CORNERS: f32 = 1e-3;
 
 // fit/surface.rs
@@ -313,12 +314,13 @@ pub(crate) const DRAPINGS: usize = 8;
 
 // limits/friction.rs
 
-/// Least resisting torque of a creature's limp joint, as a share of the gravity torque of what it carries.
+/// Least resisting torque of a limp joint of a creature, as a share of the gravity torque of the bodies below the
+/// joint.
 ///
-/// The table's torques give human joints 3 % (spine) to 36 % (elbow) of theirs. They are a human's: on a fish of four
-/// tonnes they are half a per cent, so that it stands on its nose and sways for ten seconds. With a tenth a column of
-/// nine metres still sways for five; with a fifth all tested creatures are asleep 2.2 s after they are calm. Larger:
-/// stiff falls. Shown by the tests of `falls`.
+/// The table's torques are 3 % (spine) to 36 % (elbow) of the gravity torques of human joints. On a fish of four tonnes
+/// the same torques are half a per cent, so that the fish stands on its nose and sways for ten seconds. With a tenth, a
+/// column of nine metres still sways for five; with a fifth, all tested creatures are asleep 2.2 s after they are calm.
+/// Larger: falls look stiff. Smaller: large creatures sway for longer. Shown by the tests of `falls`.
 pub(crate) const SHARE_OF_LOAD: f32 = 0.2;
 
 // limits/learned.rs
@@ -355,13 +357,13 @@ pub(crate) const BIND_MARGIN: f32 = 0.034_906_585;
 
 /// Cosine of the bend, 10°, of a bone in the bind pose from which the bend determines the axis of the hinge.
 ///
-/// A larger bend: knees of A-poses bend askew. A smaller one: noise determines the axis. Shown by the tests of
-/// `build_limits`.
+/// A larger bend: knees of A-poses bend about a wrong axis. A smaller one: noise determines the axis. Shown by the
+/// tests of `build_limits`.
 pub(crate) const BENT: f32 = 0.984_8;
 
 /// Cosine of the angle, 50°, from the anatomical axis up to which the axis of a bend is used.
 ///
-/// A larger angle: knees bend sideways. A smaller one: turned-out legs bend askew. Shown by the tests of
+/// A larger angle: knees bend sideways. A smaller one: turned-out legs bend about a wrong axis. Shown by the tests of
 /// `build_limits`.
 pub(crate) const BELIEVED: f32 = 0.642_8;
 

@@ -41,7 +41,7 @@ impl Physique {
         })
     }
 
-    /// Removes bodies and joints of a ragdoll's limb, without drives, and returns them.
+    /// Cuts off a ragdoll's limb, releases its drives, and returns its bodies and joints.
     pub fn cut(
         &mut self,
         def: &CharacterDef,
@@ -58,8 +58,8 @@ impl Physique {
         (parts.iter().map(|&part| ragdoll.bodies[part]).collect(), joints)
     }
 
-    /// Returns bodies and joints of a limb of a character whose bodies are kinematic or absent: at the velocities of
-    /// `states`.
+    /// Makes a limb of kinematic or absent bodies dynamic, at the velocities of `states`, and returns its bodies and
+    /// joints.
     pub fn cut_led(
         &self,
         def: &CharacterDef,

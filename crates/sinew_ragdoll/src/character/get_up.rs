@@ -58,7 +58,8 @@ impl Rising {
         matches!(self.way, Way::Without(_))
     }
 
-    /// Tilts a clip, made for a level floor, to the slope at first and upright at the end.
+    /// Tilts the place by the slope while the character lies, and makes it upright toward the end, because clips are
+    /// made for a level floor.
     pub fn straighten(&self, def: &CharacterDef, animator: &Animator, figure: &mut Figure) {
         if self.lean == Vec3::ZERO {
             return;
@@ -104,8 +105,7 @@ pub(super) fn choose<'a>(get_ups: &'a [GetUp], landmarks: &Landmarks, lies: &Sta
     .reduce(|a, b| if b.pose_similarity.distance < a.pose_similarity.distance { b } else { a })
 }
 
-/// Returns place, height and heading of a character lying on a slope; its height is `ground`, the height of the ground
-/// at the pelvis.
+/// Returns the place of a character tilted by `lean`, at the height at which its floor is at `ground` under the pelvis.
 pub(super) fn standing(place: Transform, lean: Vec3, pelvis: Vec3, ground: f32) -> Transform {
     let mut to = Transform::new(place.translation, Rotation::from_scaled_axis(lean) * place.rotation);
     let normal = Rotation::from_scaled_axis(lean) * Vec3::Y;

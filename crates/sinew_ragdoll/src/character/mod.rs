@@ -437,8 +437,8 @@ impl Character {
         self.prepare(world);
     }
 
-    /// Returns true while the character is held. Movers then pass through it, so that it does not block the one who
-    /// drags it.
+    /// Returns true while the character is held. Movers then pass through it, so that it does not block the character
+    /// that drags it.
     fn mind_grips(&mut self, world: &mut World) -> bool {
         let is_gripped = self.grips.is_gripped(&self.physique, world);
         let ragdoll = self.physique.limp();

@@ -268,8 +268,8 @@ pub(crate) const BALL_AHEAD: f32 = 0.14;
 /// Least horizontal distance of the pelvis from its place in the rest pose at which a clip begins away from its origin,
 /// as a share of the character's height.
 ///
-/// Larger: a captured clip walks beside its supporting ground. Smaller: a lunge is pulled back. Shown by the tests of
-/// `travel`.
+/// Larger: a character with a captured clip walks beside its ground. Smaller: a lunge is pulled back. Shown by the
+/// tests of `travel`.
 pub(crate) const OFF_ORIGIN: f32 = 0.3;
 
 /// Largest lift of a body part out of the floor, as a share of the character's height.
@@ -503,9 +503,10 @@ pub(crate) const SUNK: f32 = 5e-3;
 
 // character/mirror.rs
 
-/// Largest distance of a joint from the mirror image of its counterpart in the bind pose, as a share of the body's height.
+/// Largest distance of a joint from the mirror image of its counterpart in the bind pose, as a share of the body's
+/// height.
 ///
-/// Larger: mirrored clips look askew. Smaller: no clip is mirrored. Shown by the tests of `character`.
+/// Larger: mirrored clips look crooked. Smaller: no clip is mirrored. Shown by the tests of `character`.
 pub(crate) const MIRROR_TOLERANCE: f32 = 0.03;
 
 /// Distance of a joint from its rest place beyond which it counts as translated, as a share of its distance from its

@@ -34,7 +34,7 @@
 //! let pose = rest_pose(&def.rig);
 //! let mut swing = SpringSwing::new();
 //! for frame in 0..30u16 {
-//!     // It is carried to its left, faster and faster.
+//!     // The character is carried to its left, faster and faster.
 //!     let world_from_model = Affine::from(Transform::from_translation(Vec3::X * 0.002 * f32::from(frame * frame)));
 //!     let (rig, seconds) = (def.springs(), 1.0 / 60.0);
 //!     swing.step(&SpringStep { rig, pose: &pose, world_from_model, bodies: &[], world: None, seconds });
