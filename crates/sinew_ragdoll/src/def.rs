@@ -18,22 +18,22 @@ use sinew_physics::{JointKind, MassProperties, Shape};
 /// One body of a ragdoll.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RagdollBodyDef {
-    /// Name of the rig joint that carries it, or `joint N` if the file gives none.
+    /// Name of the rig joint that carries the body, or `joint N` if the file gives none.
     pub bone: String,
-    /// Index of that joint in the rig.
+    /// Index of this joint in the rig.
     pub joint: usize,
-    /// Further rig joints that move rigidly with it (merged twist, finger, helper joints), by index.
+    /// Further rig joints that move rigidly with the body (merged twist, finger, helper joints), by index.
     pub merged: Vec<usize>,
-    /// VRM 1 humanoid bone name, else `spine_n`, `tail_n`, `limb_n_m`.
+    /// VRM 1 humanoid bone name, or else `spine_n`, `tail_n`, `limb_n_m`.
     pub role: String,
     /// Confidence of the role, 0..=1.
     pub confidence: f32,
-    /// Geometry, metres.
+    /// Geometry, metres, in the body's frame.
     pub shape: Shape,
     /// Body frame in character space at the bind pose: metres, +Y up, facing +Z, feet at y = 0. The shape sits at the
     /// body's origin, along its axes.
     pub character_from_body: Transform,
-    /// Mass, kg; centre in the body's frame, and inertia about it.
+    /// Mass, kg; centre of mass in the body's frame, and inertia about this centre.
     pub mass: MassProperties,
 }
 
@@ -61,9 +61,9 @@ pub struct RagdollDef {
     pub bodies: Vec<RagdollBodyDef>,
     /// Joints.
     pub joints: Vec<RagdollJointDef>,
-    /// Pairs of bodies that do not collide (besides jointed ones).
+    /// Pairs of bodies that do not collide, in addition to jointed pairs.
     pub disabled_pairs: Vec<(usize, usize)>,
-    /// Rig joints that no body carries, by name.
+    /// Names of the rig joints that carry no body.
     pub dropped_bones: Vec<String>,
     /// Total mass, kg.
     pub total_mass: f32,

@@ -16,7 +16,7 @@ use crate::def::RagdollDef;
 use sinew_math::{Transform, Vec3};
 use sinew_physics::Velocity;
 
-/// Largest speeds of a body at its hand-over; motion capture glitches exceed them, people do not.
+/// Largest speeds of a body at its hand-over. Glitches of motion capture exceed them; people do not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedBound {
     /// Largest linear speed, m/s. Default 30.
@@ -31,8 +31,9 @@ impl Default for SpeedBound {
     }
 }
 
-/// Velocity of a body that moves from `before` to `after` within `dt` seconds: linear at its centre of mass (`center`
-/// in the body's frame), and angular. Exact for motion at constant velocity with a rotation below half a turn.
+/// Returns the velocity of a body that moves from `before` to `after` within `dt` seconds: linear at its centre of mass
+/// (`center` in the body's frame), and angular. The result is exact for motion at constant velocity with a rotation
+/// below half a turn.
 ///
 /// # Panics
 /// If `dt` is not positive.
@@ -50,9 +51,9 @@ pub fn body_velocity(
     }
 }
 
-/// [`body_velocity`] of all bodies of a ragdoll; `velocities` is cleared and filled. Bodies with these velocities have
-/// the momentum of the animated pose, linear and angular about any point, whatever produced the two poses (clips,
-/// blends, transitions).
+/// Computes [`body_velocity`] of all bodies of a ragdoll; `velocities` is cleared and filled. Bodies with these
+/// velocities have the linear and angular momentum of the animated pose, whether clips, blends or transitions produced
+/// the two poses.
 ///
 /// # Panics
 /// If `dt` is not positive, or there is not one pose per body.
@@ -72,7 +73,7 @@ pub fn body_velocities(
     );
 }
 
-/// Shortens `v` to `longest`; zero if it is not finite.
+/// Returns `v` shortened to the length `longest`; zero if `v` is not finite.
 fn shortened(v: Vec3, longest: f32) -> Vec3 {
     let length = v.length();
     if !v.is_finite() {

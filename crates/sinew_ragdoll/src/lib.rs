@@ -1,5 +1,4 @@
-//! Builds ragdolls from rigs and bakes their motion into clips. The only crate that depends on physics **and**
-//! animation.
+//! Builds ragdolls from rigs and bakes their motion into clips. No other crate depends on physics **and** animation.
 //!
 #![doc = include_str!("../doc/ragdoll.svg")]
 //!
@@ -25,8 +24,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`build()`] makes a [`RagdollDef`] of a rig, a [`Character`] lives in a world, [`bake()`] writes a stretch of its life as a clip, and
-//! [`doctor()`] names what is wrong with a ragdoll.
+//! [`build()`] makes a [`RagdollDef`] from a rig, [`Character`] is a character in a world, [`bake()`] writes a part of
+//! its motion as a clip, and [`doctor()`] finds defects of a ragdoll.
 #![forbid(unsafe_code)]
 
 pub mod bake;

@@ -14,7 +14,7 @@ pub(crate) enum OwnerKind {
     Limb,
 }
 
-/// Owner of the bodies of a ragdoll; its parts are the bodies, in order.
+/// Returns the owner of the bodies of a ragdoll; its parts are the bodies, in order.
 pub(crate) fn owner(def: &RagdollDef, kind: OwnerKind) -> Owner {
     let (name, calls) = match kind {
         OwnerKind::Character => {
@@ -33,12 +33,12 @@ pub(crate) fn owner(def: &RagdollDef, kind: OwnerKind) -> Owner {
     Owner { name: name.into(), calls: calls.into(), parts: def.bodies.iter().map(part).collect() }
 }
 
-/// True if a body belongs to a severed limb.
+/// Returns true if a body belongs to a severed limb.
 pub(crate) fn is_limb(world: &World, body: BodyId) -> bool {
     world.body_owner(body).is_some_and(|(owner, _)| owner.name == LIMB)
 }
 
-/// A dynamic body and all dynamic bodies connected to it by ragdoll joints, in order of distance.
+/// Returns a dynamic body and all dynamic bodies connected to it by ragdoll joints, in order of distance.
 pub(crate) fn together(world: &World, body: BodyId) -> Vec<BodyId> {
     let (mut found, mut next) = (vec![body], 0);
     while let Some(&body) = found.get(next) {

@@ -38,22 +38,22 @@ use sinew_physics::{
 /// State in which a body starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyState {
-    /// Pose of the body's frame.
+    /// Pose of the body's frame in the world.
     pub world_from_body: Transform,
-    /// Velocity of its centre of mass, and angular velocity; world axes.
+    /// Velocity of the body's centre of mass, and angular velocity; world axes.
     pub velocity: Velocity,
 }
 
 /// Properties that the bodies of a ragdoll have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodySettings {
-    /// Surface. Default: friction 0.7, no bounce, and a rolling resistance of 2 cm, without which round limbs roll
+    /// Surface. Default: friction 0.7, no bounce, and a rolling resistance of 2 cm; without it round limbs roll
     /// forever.
     pub material: Material,
-    /// Collision filter of the bodies. Default: everything, including each other except for the definition's disabled
-    /// pairs.
+    /// Collision filter of the bodies. Default: the bodies collide with everything, and with each other except for the
+    /// definition's disabled pairs.
     pub filter: Filter,
-    /// 1/s: share of the spin lost per second, which is soft tissue's. Default 0.05.
+    /// Share of the spin lost per second, 1/s, as in soft tissue. Default 0.05.
     pub angular_damping: f32,
     /// Step quality for the ragdoll's island. Default `None`: the world's setting.
     pub quality: Option<Quality>,
@@ -73,11 +73,12 @@ impl Default for BodySettings {
 /// A ragdoll in a world.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Ragdoll {
-    /// In the order of the definition.
+    /// Bodies, in the order of the definition.
     pub bodies: Vec<BodyId>,
-    /// In the order of the definition.
+    /// Joints, in the order of the definition.
     pub joints: Vec<JointId>,
-    /// Colliding pairs of the ragdoll's own bodies: pairs that no joint, definition or starting pose excludes.
+    /// Pairs of the ragdoll's own bodies that collide: all pairs except those excluded by a joint, the definition or
+    /// the starting pose.
     pub colliding: Vec<(BodyId, BodyId)>,
     /// Severed bodies, by index, ascending. They and the joints above them keep their list positions but no longer
     /// belong to the ragdoll.
@@ -88,8 +89,8 @@ impl Ragdoll {
     /// Adds a ragdoll to the world with these `states` (one per body).
     ///
     /// An animated pose need not satisfy the ragdoll's joints: it may bend a knee sideways, pull a bone out or exceed a
-    /// limit, and its limbs may overlap. Correcting that by force would add energy, so the joints of this instance are
-    /// adapted to the pose ([`fitted`]), and pairs of bodies that overlap in it do not collide.
+    /// limit, and its limbs may overlap. A correction by force would add energy. Therefore the joints of this instance
+    /// are adapted to the pose ([`fitted`]), and pairs of bodies that overlap in the pose do not collide.
     ///
     /// # Panics
     /// If there is not one finite state per body.
@@ -116,7 +117,7 @@ impl Ragdoll {
     }
 
     /// Adds only the bodies to the world, kinematic and without joints, as hit targets for a character moved by its
-    /// clips; `rule` limits how hard they push. [`wake`](Self::wake) turns them into a ragdoll.
+    /// clips; `rule` limits how hard the bodies push. [`wake`](Self::wake) turns them into a ragdoll.
     ///
     /// # Panics
     /// As [`spawn`](Self::spawn).
@@ -130,7 +131,7 @@ impl Ragdoll {
         Self::spawn_kinematic_without(world, def, states, body_settings, rule, &[])
     }
 
-    /// [`spawn_kinematic`](Self::spawn_kinematic) without some bodies; `gone` has placeholder ids for these.
+    /// Like [`spawn_kinematic`](Self::spawn_kinematic), without some bodies; `gone` has placeholder ids for these.
     pub(crate) fn spawn_kinematic_without(
         world: &mut World,
         def: &RagdollDef,
@@ -180,7 +181,7 @@ impl Ragdoll {
         ragdoll
     }
 
-    /// [`wake`](Self::wake) of all bodies but some, without rule or owner.
+    /// Like [`wake`](Self::wake), for all bodies but some, without rule or owner.
     pub(crate) fn wake_without(
         world: &mut World,
         def: &RagdollDef,
@@ -237,12 +238,12 @@ impl Ragdoll {
         world.own_joints(&owner, &joints, &parts);
     }
 
-    /// Attached bodies, with their indices.
+    /// Returns the attached bodies, with their indices.
     pub fn own_bodies(&self) -> impl Iterator<Item = (usize, BodyId)> {
         self.bodies.iter().copied().enumerate().filter(|(index, _)| !self.lost.contains(index))
     }
 
-    /// Joints of attached bodies, with the indices of these.
+    /// Returns the joints of attached bodies, with the indices of these bodies.
     pub fn own_joints(&self) -> impl Iterator<Item = (usize, JointId)> {
         let children = self.joints.iter().enumerate().map(|(index, &joint)| (index + 1, joint));
         children.filter(|(child, _)| !self.lost.contains(child))
@@ -270,7 +271,7 @@ impl Ragdoll {
         }
     }
 
-    /// Joints between existing bodies; overlapping pairs do not collide.
+    /// Adds the joints between existing bodies; overlapping pairs do not collide.
     fn jointed(
         world: &mut World,
         def: &RagdollDef,
@@ -302,8 +303,8 @@ impl Ragdoll {
         Self { bodies, joints, colliding, lost }
     }
 
-    /// Sets the step quality of all bodies of the ragdoll from the next step on: lower for distant ones, higher for
-    /// filmed ones; `None`: the world's setting. A body in contact with the ragdoll uses the higher of both.
+    /// Sets the step quality of all bodies of the ragdoll from the next step on: lower for distant ragdolls, higher for
+    /// filmed ones; `None`: the world's setting. A body in contact with the ragdoll uses the higher of both qualities.
     ///
     /// # Panics
     /// If a body no longer exists.
@@ -322,7 +323,8 @@ impl Ragdoll {
         }
     }
 
-    /// Poses of the bodies: `poses` is cleared and filled. A severed body gets the pose of the first body, the pelvis.
+    /// Writes the poses of the bodies into `poses`, which is cleared first. A severed body gets the pose of the first
+    /// body, the pelvis.
     pub fn poses(&self, world: &World, poses: &mut Vec<Transform>) {
         poses.clear();
         let is_own = |index: usize| !self.lost.contains(&index);
@@ -335,7 +337,7 @@ impl Ragdoll {
     }
 }
 
-/// Pairs of bodies, by index, that neither a joint nor the definition excludes from collision.
+/// Returns the pairs of bodies, by index, that neither a joint nor the definition excludes from collision.
 pub fn colliding_pairs(def: &RagdollDef) -> Vec<(usize, usize)> {
     let same = |pair: (usize, usize), a, b| pair == (a, b) || pair == (b, a);
     let mut pairs = Vec::new();
@@ -383,8 +385,8 @@ pub(crate) fn joint_def(joint: &RagdollJointDef, bodies: &[BodyId]) -> JointDef 
     }
 }
 
-/// The joint adapted to two bodies in the given poses: the parent's anchor moves to the child's, locked rotations are
-/// taken from the pose, and limits that the pose exceeds are widened to it.
+/// Returns the joint adapted to two bodies in the given poses: the parent's anchor moves to the child's anchor, locked
+/// rotations are taken from the pose, and limits that the pose exceeds are widened to it.
 pub fn fitted(
     joint: &RagdollJointDef,
     world_from_parent: Transform,
@@ -419,7 +421,7 @@ pub fn fitted(
     }
 }
 
-/// The limit, widened where the rotation is outside.
+/// Returns the limit, widened to include the rotation `seen`.
 fn holding(limit: SwingTwistLimit, seen: Rotation) -> SwingTwistLimit {
     if limit.overshoot(seen) <= 0.0 {
         return limit;
@@ -432,7 +434,7 @@ fn holding(limit: SwingTwistLimit, seen: Rotation) -> SwingTwistLimit {
         swing_z: stretched(limit.swing_z, swing.z),
         twist: stretched(limit.twist, twist),
     };
-    // Each axis alone is wide enough now; the ellipse between them may not be.
+    // Each axis alone is wide enough now; the ellipse between the axes may not be.
     let angle = swing.length();
     let room = if angle > 1e-6 { wide.cone_angle(swing.y / angle, swing.z / angle) } else { angle };
     let factor = if room < angle { 1.001 * angle / room } else { 1.0 };
@@ -442,7 +444,7 @@ fn holding(limit: SwingTwistLimit, seen: Rotation) -> SwingTwistLimit {
     SwingTwistLimit { swing_y: scaled(wide.swing_y), swing_z: scaled(wide.swing_z), twist: wide.twist }
 }
 
-/// The range, widened to hold `angle`.
+/// Returns the range, widened to include `angle`.
 fn stretched(range: Range, angle: f32) -> Range {
     let angle = clamp(angle, -core::f32::consts::PI, core::f32::consts::PI);
     Range::new(min(range.lo, angle), max(range.hi, angle))

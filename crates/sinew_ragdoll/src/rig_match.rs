@@ -1,4 +1,4 @@
-//! Match of a definition with the rig that it belongs to.
+//! Matches a definition with its rig.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -23,7 +23,7 @@ use sinew_anim::{JointIdx, Rig};
 /// A body whose bone the rig does not have.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RigMismatch {
-    /// The rig has no joint of this name, or several and none at the old index.
+    /// The rig has no joint of this name, or several of them but none at the old index.
     #[error("the ragdoll's bone `{bone}` is not in this rig")]
     NoBone {
         /// Name of the bone in the definition.
@@ -52,7 +52,7 @@ pub enum RigMismatch {
 }
 
 impl RigMismatch {
-    /// Index of the body concerned.
+    /// Returns the index of the body concerned.
     pub fn body(&self) -> usize {
         match *self {
             Self::NoBone { body, .. } | Self::Twice { body, .. } | Self::NoJoint { body, .. } => body,
@@ -61,8 +61,8 @@ impl RigMismatch {
 }
 
 impl RagdollDef {
-    /// The definition with the joint indices of `rig`, matched by bone names: a re-exported file may order its joints
-    /// differently. If a bone has another index, its merged joints are the joints below it.
+    /// Returns the definition with the joint indices of `rig`, matched by bone names: a re-exported file may order its
+    /// joints differently. If a bone has another index, its merged joints are the joints below it.
     ///
     /// # Errors
     /// See [`RigMismatch`].
@@ -91,7 +91,7 @@ impl RagdollDef {
                     return Err(RigMismatch::NoJoint { joint, bone: body.bone.clone(), body: index });
                 }
             } else {
-                // Indices of a reordered rig are meaningless; joints below the bone follow it anyway.
+                // Indices of a reordered rig have no meaning; joints below the bone follow it anyway.
                 self.bodies[index].merged.clear();
             }
         }

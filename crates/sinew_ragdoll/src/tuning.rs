@@ -5,102 +5,109 @@
 
 // build/report.rs
 
-/// Least widening of limits that is worth a note, radians (1°).
+/// Least widening of limits that the report notes, radians (1°).
 ///
-/// Larger: misses a bind pose beyond its limits. Smaller: notes on every rig. Shown by the tests of `build_limits`.
+/// Larger: the report misses a bind pose beyond its limits. Smaller: it has notes on every rig. Shown by the tests of
+/// `build_limits`.
 pub(crate) const NOTED_WIDENING: f32 = 0.017;
 
 // build/takes.rs
 
 /// Least time between the clip frames that a build reads, seconds.
 ///
-/// Larger: quick motions teach no limits. Smaller: slower builds. Shown by the tests of `learned`.
+/// Larger: quick motions add nothing to the learned limits. Smaller: builds are slower. Shown by the tests of
+/// `learned`.
 pub(crate) const FRAME_TIME: f64 = 1.0 / 30.0;
 
 // drive/level.rs
 
-/// Lowest frequency of a drive that is more than nothing, Hz.
+/// Frequency below which a drive counts as zero, Hz.
 ///
 /// Larger: fading drives end abruptly. Smaller: springs without effect are solved. Shown by the tests of `drive`.
 pub(crate) const LEAST_HERTZ: f32 = 0.02;
 
 /// Number of half-lives after which a body becomes keyed.
 ///
-/// Larger: it lags longer. Smaller: it jumps. Shown by the tests of `drive`.
+/// Larger: the body lags longer. Smaller: it jumps. Shown by the tests of `drive`.
 pub(crate) const KEYED_AFTER: f32 = 5.0;
 
 // drive/mod.rs
 
-/// Speed that a hit must give the whole ragdoll to remove all strength from the muscles where it hit, m/s.
+/// Speed of the whole ragdoll for which a hit's impulse removes all strength from the muscles at the struck body, m/s.
 ///
 /// Larger: hits leave no trace. Smaller: a touch makes a limb limp. Shown by the tests of `blows`.
 pub(crate) const NUMBING_SPEED: f32 = 0.2;
 
-/// Share of its weakness that one joint hands on to the next, 0 to 1.
+/// Ratio of the weakness after a hit at one joint to that at the joint before it, 0 to 1.
 ///
-/// Larger: the whole body yields. Smaller: only the joint that was hit. Shown by the tests of `blows`.
+/// Larger: the whole body yields. Smaller: only the struck joint yields. Shown by the tests of `blows`.
 pub(crate) const WEAKNESS_FALLOFF: f32 = 0.5;
 
 /// Share of strength, or of a pin's force, below which it counts as zero.
 ///
-/// Larger: fading drives end with a jerk. Smaller: they are solved for longer. Shown by the tests of `drive`.
+/// Larger: fading drives end with a jerk. Smaller: fading drives are solved for longer. Shown by the tests of `drive`.
 pub(crate) const NO_STRENGTH: f32 = 1e-3;
 
 // drive/target.rs
 
 /// Distance that a motor's target keeps from a stop, radians.
 ///
-/// Larger: poses at a limit are not reached. Smaller: motor and stop fight. Shown by the tests of `drive`.
+/// Larger: poses at a limit are not reached. Smaller: the motor and the stop push against each other. Shown by the
+/// tests of `drive`.
 pub(crate) const STOP_ROOM: f32 = 0.01;
 
 // drive/torque.rs
 
 /// Torque of a creature's joint over the gravity torque of its subtree, a ratio.
 ///
-/// Larger: stiff creatures. Smaller: they sag under their own weight. Shown by the tests of `drive`.
+/// Larger: creatures are stiff. Smaller: creatures sag under their own weight. Shown by the tests of `drive`.
 pub(crate) const CREATURE_STRENGTH: f32 = 3.0;
 
-/// Acceleration of free fall that strengths are for, m/s².
+/// Acceleration of free fall that strengths are derived from, m/s²: standard gravity.
 ///
-/// Standard gravity; larger or smaller: muscles and the friction of limp creatures with it. Shown by the tests of `drive`.
+/// Larger: muscles and the friction of limp creatures are stronger. Smaller: they are weaker. Shown by the tests of
+/// `drive`.
 pub(crate) const GRAVITY: f32 = 9.81;
 
 // filter/mod.rs
 
 /// Overlap in the bind pose that is tolerated, metres: about the solver's slop.
 ///
-/// Larger: pairs push each other when limp. Smaller: pairs that only touch stop colliding. Shown by the tests of
+/// Larger: pairs push each other apart when limp. Smaller: pairs that only touch do not collide. Shown by the tests of
 /// `filter`.
 pub const TOLERATED: f32 = 0.005;
 
 /// Least factor on a shape's cross-section at which a pair still collides, below 1.
 ///
-/// Larger: more pairs pass through each other. Smaller: thin limbs inside thick skin. Shown by the tests of `filter`.
+/// Larger: more pairs pass through each other. Smaller: limbs are much thinner than their skin. Shown by the tests of
+/// `filter`.
 pub(crate) const LEAST_SCALE: f32 = 0.86;
 
-/// Factor by which a shape's cross-section is shrunk at a time, below 1.
+/// Factor on a shape's cross-section per shrinking step, below 1.
 ///
-/// Larger: more tries. Smaller: shapes thinner than they need be. Shown by the tests of `filter`.
+/// Larger: shrinking takes more steps. Smaller: shapes get thinner than necessary. Shown by the tests of `filter`.
 pub(crate) const SCALE_STEP: f32 = 0.975;
 
-/// Share of the poses within the limits, 0 to 1, from which on a pair that overlaps in them overlaps always.
+/// Share of the poses within the limits, 0 to 1, from which a pair that overlaps in them counts as always overlapping.
 ///
 /// Larger: pairs that always overlap collide and jitter. Smaller: hands pass through thighs. Shown by the tests of
 /// `filter`.
 pub(crate) const ALWAYS: f32 = 0.9;
 
-/// Share of the poses within the limits, 0 to 1, below which a pair that overlaps in the bind pose is only bound so.
+/// Share of the poses within the limits, 0 to 1, below which a pair that overlaps in the bind pose counts as
+/// overlapping only there.
 ///
-/// Larger: pairs that mostly overlap collide. Smaller: arms bound at the hips pass through them. Shown by the tests of `filter`.
+/// Larger: pairs that mostly overlap collide. Smaller: arms bound at the hips pass through them. Shown by the tests of
+/// `filter`.
 pub(crate) const SELDOM: f32 = 0.1;
 
 /// Share of the clips' poses, 0 to 1, above which limbs count as always overlapping.
 ///
-/// Larger: limbs that clips hold together push each other. Smaller: limbs pass through each other. Shown by the tests
-/// of `filter`.
+/// Larger: limbs that overlap in most clips push each other apart. Smaller: limbs pass through each other. Shown by the
+/// tests of `filter`.
 pub(crate) const MOSTLY: f32 = 0.5;
 
-/// Share of the clips' poses, 0 to 1, in which other parts may overlap and still collide.
+/// Share of the clips' poses, 0 to 1, up to which other parts may overlap and still collide.
 ///
 /// A fall does not need their contact to look right. Larger: parts that overlap in clips push each other. Smaller: one
 /// bad frame excludes them. Shown by the tests of `filter`.
@@ -111,156 +118,166 @@ pub(crate) const A_FEW: f32 = 0.02;
 /// Cosine of the angle, 35°, between a surface's long axis and its bone up to which the shape uses the bone's
 /// direction.
 ///
-/// A larger angle: shapes askew to their skin. A smaller one: limbs that are not parallel to their bones. Shown by the tests of
-/// `build`.
+/// A larger angle: shapes are tilted relative to their skin. A smaller one: shapes of limbs are not parallel to their
+/// bones. Shown by the tests of `build`.
 pub(crate) const ALONG_BONE: f32 = 0.819;
 
 /// Least ratio of a surface's largest variance to the next for which it has a long axis.
 ///
-/// Larger: feet point along their bones. Smaller: noise decides the axes of round parts. Shown by the tests of `build`.
+/// Larger: shapes of feet point along their bones. Smaller: noise decides the axes of round parts. Shown by the tests
+/// of `build`.
 pub(crate) const ELONGATED: f32 = 1.5;
 
-/// Largest volume of a trunk's tilted box over the upright one's that is worth tilting it.
+/// Largest ratio of the area of the smallest rectangle around a trunk's cross-section to that of the upright one at
+/// which the smallest is used.
 ///
-/// Larger: askew trunks. Smaller: boxes far larger than bent backs. Shown by the tests of `build`.
+/// Larger: boxes of trunks are tilted needlessly. Smaller: boxes are far larger than bent backs. Shown by the tests of
+/// `build`.
 pub(crate) const WORTH_TILTING: f32 = 0.75;
 
-/// Largest ratio of the box volume in another frame to that in the preferred one at which the other is used.
+/// Largest ratio of the box volume in another frame to that in the preferred one at which the other frame is used.
 ///
-/// Larger: frames change with a vertex. Smaller: loose boxes. Shown by the tests of `build`.
+/// Larger: a moved vertex can change the frame. Smaller: boxes are loose. Shown by the tests of `build`.
 pub(crate) const CLEARLY_SMALLER: f32 = 0.9;
 
 // fit/mod.rs
 
 /// Least half side or radius of a shape, metres.
 ///
-/// Larger: fingers and ears of small figures are clubs. Smaller: thin shapes fall through edges. Shown by the tests of `build`.
+/// Larger: fingers and ears of small figures become clubs. Smaller: thin shapes fall through edges. Shown by the tests
+/// of `build`.
 pub(crate) const LEAST_HALF: f32 = 0.0075;
 
-/// Factor on the fitted cross-section that keeps contacts inside the skin instead of outside.
+/// Factor on the fitted cross-section that places contacts inside the skin instead of outside.
 ///
-/// Larger: figures float. Smaller: they sink. Shown by the tests of `skin`.
+/// Larger: figures float. Smaller: figures sink in. Shown by the tests of `skin`.
 pub(crate) const SHRINK: f32 = 0.97;
 
-/// Share of a bone's length by which its shape may extend past each of its joints: two neighbours then overlap by at
+/// Share of a bone's length by which its shape may extend past each of its joints. Two neighbours then overlap by at
 /// most a quarter.
 ///
-/// Larger: second neighbours touch. Smaller: gaps at knees and elbows. Shown by the tests of `build`.
+/// Larger: second neighbours touch. Smaller: knees and elbows have gaps. Shown by the tests of `build`.
 pub(crate) const PAST_JOINT: f32 = 0.125;
 
-/// Length of a shape over its twin's from which on it has something in it that is not the body's.
+/// Ratio of a shape's bounding radius to its twin's from which the shape contains more than the body part.
 ///
-/// Larger: a sword in a hand becomes part of it. Smaller: smooths away uneven sculpting. Shown by the tests of
-/// `rig_variants`.
+/// Larger: a sword in a hand becomes part of the hand. Smaller: uneven sculpting is smoothed away. Shown by the tests
+/// of `rig_variants`.
 pub(crate) const BURDENED: f32 = 1.6;
 
-/// Distance of the skin of a tail from the shape that is nearest to it, from which on it is a spike, as a share of the character's size.
+/// Distance of a tail's skin from the nearest shape from which this skin is a spike, as a share of the character's
+/// size.
 ///
-/// Larger: spikes in the floor. Smaller: hulls for thick tails. Shown by the tests of `skin`.
+/// Larger: spikes sink into the floor. Smaller: thick tails get hulls. Shown by the tests of `skin`.
 pub(crate) const SPIKED: f32 = 0.04;
 
-/// Distance of skin from the shape that is nearest to it, from which on the part gets the hull of its skin, as a share of
-/// the character's size.
+/// Distance of skin from the nearest shape from which the part gets the hull of its skin, as a share of the character's
+/// size.
 ///
-/// Larger: hats and packs in the floor. Smaller: hulls for hair and clothes, which cost more. Shown by the tests of `skin`.
+/// Larger: hats and packs sink into the floor. Smaller: hair and clothes get hulls, which cost more. Shown by the tests
+/// of `skin`.
 pub(crate) const PROTRUDING: f32 = 0.06;
 
-/// Distance of a box's corner from the nearest skin, from which on the part gets the hull of its skin, as a share of the
+/// Distance of a box's corner from the nearest skin from which the part gets the hull of its skin, as a share of the
 /// character's size.
 ///
-/// Larger: characters float on the corners of their boxes. Smaller: hulls for round trunks, which cost more. Shown by the
-/// tests of `skin`.
+/// Larger: characters float on the corners of their boxes. Smaller: round trunks get hulls, which cost more. Shown by
+/// the tests of `skin`.
 pub(crate) const HOLLOW: f32 = 0.2;
 
 /// Ratio of the volumes of twins above which both get the better-fitting shape.
 ///
-/// Larger: lopsided bodies. Smaller: equalises parts that really differ. Shown by the tests of `build`.
+/// Larger: bodies are asymmetric. Smaller: parts that really differ become equal. Shown by the tests of `build`.
 pub(crate) const UNLIKE: f32 = 1.3;
 
-/// Factor on the error of a shape whose kind does not suit the part.
+/// Factor on the error of a shape whose kind does not suit the part, so that it is chosen only if clearly nearer to the
+/// skin.
 ///
-/// It must be clearly nearer to the skin. Larger: tables decide. Smaller: odd shapes for a few vertices. Shown by the tests of
-/// `build`.
+/// Larger: the table of usual kinds decides. Smaller: a few vertices lead to odd shapes. Shown by the tests of `build`.
 pub(crate) const UNUSUAL: f32 = 1.0 / 0.6;
 
-/// Factor on the error of a tapered capsule for a limb, which is as easy to live with as a capsule.
+/// Factor on the error of a tapered capsule for a limb; a tapered capsule costs about as much as a capsule.
 ///
-/// Larger: only capsules. Smaller: tapered capsules for untapered limbs. Shown by the tests of `build`.
+/// Larger: limbs get only capsules. Smaller: untapered limbs get tapered capsules. Shown by the tests of `build`.
 pub(crate) const TAPERED: f32 = 1.0 / 0.9;
 
-/// Factor on the error of a hull: it costs several times a box's collisions.
+/// Factor on the error of a hull, whose collisions cost several times those of a box.
 ///
-/// Larger: no hulls. Smaller: slow falls. Shown by the tests of `build`.
+/// Larger: no part gets a hull. Smaller: falls are slow to simulate. Shown by the tests of `build`.
 pub(crate) const INTRICATE: f32 = 3.0;
 
 // fit/patch.rs
 
-/// Number of samples that describe a patch of skin, about.
+/// Approximate number of samples of a patch of skin.
 ///
-/// Larger: slower fits. Smaller: shapes depend on the mesh's tessellation. Shown by the tests of `rig_variants`.
+/// Larger: fits are slower. Smaller: shapes depend on the mesh's tessellation. Shown by the tests of `rig_variants`.
 pub(crate) const SAMPLES: f32 = 400.0;
 
-/// Least share of the area that a bone moves, weight by weight, that is all of its flesh, 0 to 1.
+/// Share of the weighted area moved by a bone from which a selection counts as all of its flesh, 0 to 1.
 ///
-/// Larger: wide selections with the neighbours' skin. Smaller: thin shapes where skin is shared. Shown by the tests of `build`.
+/// Larger: wide selections contain the neighbours' skin. Smaller: shapes are too thin where bones share skin. Shown by
+/// the tests of `build`.
 pub(crate) const LEAST_AREA: f32 = 0.4;
 
 // fit/round.rs
 
-/// Length of a capsule's cylinder over its radius below which it is a ball.
+/// Ratio of a capsule's cylinder length to its radius below which the capsule becomes a ball.
 ///
-/// Larger: heads are balls. Smaller: capsules of no length. Shown by the tests of `build`.
+/// Larger: heads become balls. Smaller: some capsules have almost no length. Shown by the tests of `build`.
 pub(crate) const BALL: f32 = 0.1;
 
-/// Largest difference of the radii of a tapered capsule over the distance of their middles: a cone of 20°.
+/// Largest ratio of the difference of a tapered capsule's radii to the distance of their centres: a cone of 20°.
 ///
-/// Larger: balls with a tip. Smaller: calves are capsules. Shown by the tests of `build`.
+/// Larger: some shapes are balls with a tip. Smaller: calves become capsules. Shown by the tests of `build`.
 pub(crate) const STEEPEST: f32 = 0.35;
 
 // fit/solid.rs
 
-/// Weight of the distance from the middle relative to the distance along a direction, and the tilt of the directions,
+/// Weight of the distance from the centre relative to the distance along a direction, and the tilt of the directions,
 /// in half sides of the box.
 ///
-/// All points of a flat side are equally far along it. The one nearest to a corner represents them, and always the same
-/// one of two mirror images. Without this, the last bit of their positions decided, and the same skin in another unit
-/// had a hull of half the volume. Larger: hulls miss protruding parts. Smaller: rounding decides. Shown by the tests of
-/// `rig_variants`.
+/// All points of a flat side are equally far along its direction. The weight selects the point nearest to a corner; the
+/// tilt selects the same one of two mirror images. Otherwise rounding selected the point, and the same skin in another
+/// unit had a hull of half the volume. Larger: hulls miss protruding parts. Smaller: rounding decides. Shown by the
+/// tests of `rig_variants`.
 pub(crate) const TOWARD_CORNERS: f32 = 1e-3;
 
 // fit/surface.rs
 
 /// Least weight of a bone on a triangle for the triangle to count, 0 to 1.
 ///
-/// Larger: skin near joints belongs to no bone. Smaller: slower fits. Shown by the tests of `build`.
+/// Larger: skin near joints belongs to no bone. Smaller: fits are slower. Shown by the tests of `build`.
 pub(crate) const LEAST_PULL: f32 = 0.05;
 
-/// Largest size of the parts of a triangle moved by several bones, as a share of the character's height.
+/// Largest size of the parts into which a triangle moved by several bones is cut, as a share of the character's height.
 ///
-/// Larger: coarse meshes give other shapes than fine ones. Smaller: slower fits. Shown by the tests of `rig_variants`.
+/// Larger: coarse meshes get other shapes than fine ones. Smaller: fits are slower. Shown by the tests of
+/// `rig_variants`.
 pub(crate) const FINEST: f32 = 0.03;
 
 /// Largest number of parts into which a side of a triangle is cut.
 ///
-/// Larger: slow fits of figures with few triangles. Smaller: as a larger [`FINEST`]. Shown by the tests of
-/// `rig_variants`.
+/// Larger: figures with few triangles are slow to fit. Smaller: same effect as a larger [`FINEST`]. Shown by the tests
+/// of `rig_variants`.
 pub(crate) const MOST_CUTS: f32 = 8.0;
 
 // garments/sheet.rs
 
-/// Number of times that a particle is moved out of the nearest body when a sheet is made: between two legs it needs
-/// several.
+/// Number of times that a particle is moved out of the nearest body when a sheet is made; between two legs several are
+/// needed.
 ///
-/// Larger: wasted work. Smaller: sheets start inside a body, which pushes them out violently. Shown by the tests of
-/// `garments`.
+/// Larger: more work without effect. Smaller: sheets start inside a body, which pushes them out violently. Shown by the
+/// tests of `garments`.
 pub(crate) const CLEARINGS: usize = 4;
 
-/// Number of parts of a sheet's substep, as in scene `cape`.
+/// Number of solver iterations of a sheet per substep, as in scene `cape`.
 ///
-/// Larger: slower, and stiffer. Smaller: it stretches like rubber. Shown by the tests of `garments`.
+/// Larger: the sheet is slower to solve, and stiffer. Smaller: it stretches like rubber. Shown by the tests of
+/// `garments`.
 pub(crate) const SHEET_ITERATIONS: u32 = 4;
 
-/// Length over the spacing below which a thread has the stiffness of one of that length, a ratio.
+/// Least ratio of a thread's length to the spacing for its stiffness; a shorter thread gets the stiffness of this
+/// length.
 ///
 /// Larger: short threads are soft. Smaller: where columns meet in a point, springs are too stiff for the solver.
 /// Shown by the tests of `garments`.
@@ -268,93 +285,99 @@ pub(crate) const SHORTEST_THREAD: f32 = 0.1;
 
 // garments/mesh.rs
 
-/// Cosine of the angle, 75°, above which the edge opposite it in both of its triangles is the diagonal of a cell, a
-/// ratio.
+/// Cosine of the angle, 75°, above which the angles opposite an edge, in both of its triangles, make the edge the
+/// diagonal of a cell.
 ///
 /// Larger: equal triangles count as halves of cells and are soft along one side. Smaller: cells that are not quite
 /// square are stiff across. Shown by the tests of `mesh_garments`.
 pub(crate) const SQUARE: f32 = 0.26;
 
-/// Cosine of the angle, 143°, above which two neighbours of a particle count as opposite, a ratio.
+/// Cosine of the angle, 143°, from which two neighbours of a particle count as opposite.
 ///
-/// Larger: resists folds at false corners. Smaller: uneven meshes do not resist bending. Shown by the tests of
+/// Larger: sheets resist folds at wrong corners. Smaller: uneven meshes do not resist bending. Shown by the tests of
 /// `mesh_garments`.
 pub(crate) const STRAIGHT: f32 = -0.8;
 
 // garments/wear.rs
 
-/// Length of a thread over that at rest, or over half the spacing of its sheet if that is longer, from which the body has caught it, a ratio.
+/// Ratio of a thread's length to its rest length, or to half the spacing of its sheet if that is longer, from which the
+/// body has caught the thread.
 ///
-/// Larger: a skirt that a clip sits down on stays caught. Smaller: stretched cloth jumps. Shown by the tests of
-/// `garments`.
+/// Larger: a skirt under a sitting body stays caught. Smaller: stretched cloth jumps. Shown by the tests of `garments`.
 pub(crate) const CAUGHT: f32 = 1.5;
 
-/// Iterations of restoring lengths and leaving bodies when a sheet is added.
+/// Number of iterations that restore lengths and leave bodies when a sheet is added.
 ///
-/// Larger: wasted work. Smaller: a sheet added in mid-stride starts with a jerk. Shown by the tests of `garments`.
+/// Larger: more work without effect. Smaller: a sheet added in mid-stride starts with a jerk. Shown by the tests of
+/// `garments`.
 pub(crate) const DRAPINGS: usize = 8;
 
 // limits/friction.rs
 
-/// Least resisting torque of a creature's limp joint, as a share of the gravity torque of what it carries.
+/// Least resisting torque of a limp joint of a creature, as a share of the gravity torque of the bodies below the
+/// joint.
 ///
-/// The table's torques give human joints 3 % (spine) to 36 % (elbow) of theirs. They are a human's: on a fish of four
-/// tonnes they are half a per cent, so that it stands on its nose and sways for ten seconds. With a tenth a column of
-/// nine metres still sways for five; with a fifth all tested creatures are asleep 2.2 s after they are calm. Larger:
-/// stiff falls. Shown by the tests of `falls`.
+/// The table's torques are 3 % (spine) to 36 % (elbow) of the gravity torques of human joints. On a fish of four tonnes
+/// the same torques are half a per cent, so that the fish stands on its nose and sways for ten seconds. With a tenth, a
+/// column of nine metres still sways for five; with a fifth, all tested creatures are asleep 2.2 s after they are calm.
+/// Larger: falls look stiff. Smaller: large creatures sway for longer. Shown by the tests of `falls`.
 pub(crate) const SHARE_OF_LOAD: f32 = 0.2;
 
 // limits/learned.rs
 
 /// Angle by which twist and hinges may exceed the observed range, radians (10°).
 ///
-/// Larger: limits of the clips' own are lost. Smaller: a fall is stopped where no clip went by chance. Shown by the tests of
-/// `learned`.
+/// Larger: learned limits lose their effect. Smaller: limits stop a fall where the clips by chance did not go. Shown by
+/// the tests of `learned`.
 pub(crate) const TWIST_MARGIN: f32 = 0.174_532_92;
 
-/// Least motion of a joint to learn from, and narrowest range, radians (5°).
+/// Least motion of a joint from which limits are learned, and narrowest learned range, radians (5°).
 ///
 /// Larger: anatomy decides more often. Smaller: joints lock where clips do not move. Shown by the tests of `learned`.
 pub(crate) const LEAST_RANGE: f32 = 0.087_266_46;
 
-/// Angle beyond the clips by which anatomical limits are widened for them, radians (1°): half of the allowed overshoot.
+/// Angle beyond the clips to which anatomical limits are widened, radians (1°): half of the allowed overshoot.
 ///
-/// Larger: limits wider than needed. Smaller: a character starts beyond its limit. Shown by the tests of `learned`.
+/// Larger: limits are wider than necessary. Smaller: a character starts beyond its limit. Shown by the tests of
+/// `learned`.
 pub(crate) const BEYOND_CLIPS: f32 = 0.017_453_292;
 
 // limits/mod.rs
 
 /// Share of the muscles' largest torque that a limp joint resists with.
 ///
-/// Larger: falls like a doll of clay. Smaller: limbs flail. Shown by the tests of `falls`.
+/// Larger: limp bodies fall stiffly. Smaller: limbs flail. Shown by the tests of `falls`.
 pub(crate) const FRICTION_SHARE: f32 = 0.02;
 
 /// Margin of a bind pose to every limit, radians (2°).
 ///
-/// Larger: limits wider than anatomy's. Smaller: a joint bound at a limit overshoots it at once. Shown by the tests of
-/// `build_limits`.
+/// Larger: limits are wider than the anatomical ones. Smaller: a joint bound at a limit overshoots it from the start.
+/// Shown by the tests of `build_limits`.
 pub(crate) const BIND_MARGIN: f32 = 0.034_906_585;
 
-/// Cosine of the bend, 10°, of a bone in the bind pose from which on it shows its hinge's axis itself.
+/// Cosine of the bend, 10°, of a bone in the bind pose from which the bend determines the axis of the hinge.
 ///
-/// A larger bend: knees of A-poses bend askew. A smaller one: noise is an axis. Shown by the tests of `build_limits`.
+/// A larger bend: knees of A-poses bend about a wrong axis. A smaller one: noise determines the axis. Shown by the
+/// tests of `build_limits`.
 pub(crate) const BENT: f32 = 0.984_8;
 
 /// Cosine of the angle, 50°, from the anatomical axis up to which the axis of a bend is used.
 ///
-/// Larger: knees that bend sideways. Smaller: turned-out legs bend askew. Shown by the tests of `build_limits`.
+/// A larger angle: knees bend sideways. A smaller one: turned-out legs bend about a wrong axis. Shown by the tests of
+/// `build_limits`.
 pub(crate) const BELIEVED: f32 = 0.642_8;
 
 /// Largest half-angle to which a swing is widened, radians (170°).
 ///
-/// Larger: limits without effect. Smaller: odd bind poses exceed them. Shown by the tests of `build_limits`.
+/// Larger: limits have no effect. Smaller: odd bind poses exceed their limits. Shown by the tests of `build_limits`.
 pub(crate) const WIDEST_SWING: f32 = 2.967;
 
 // limits/sample.rs
 
 /// Half-axes of the square of random swings over those of the ellipse that contains them: √½, minus a margin.
 ///
-/// Larger: random poses exceed their limits. Smaller: all are near the middle. Shown by the tests of `filter`.
+/// Larger: random poses exceed their limits. Smaller: all random poses are near the middle. Shown by the tests of
+/// `filter`.
 pub(crate) const INSCRIBED: f32 = 0.7;
 
 // masses/inertia.rs
@@ -369,7 +392,7 @@ pub(crate) const LARGEST_MOMENTS: f32 = 8.0;
 
 /// Share of a fitted box that flesh fills, 0 to 1.
 ///
-/// Larger or smaller: creatures without a closed skin are heavier or lighter. Shown by the tests of `volume`.
+/// Larger: creatures without a closed skin are heavier. Smaller: they are lighter. Shown by the tests of `volume`.
 pub(crate) const BOX_FILL: f32 = 0.55;
 
 /// Share of a fitted capsule that flesh fills, 0 to 1.
@@ -377,52 +400,55 @@ pub(crate) const BOX_FILL: f32 = 0.55;
 /// As [`BOX_FILL`].
 pub(crate) const CAPSULE_FILL: f32 = 0.8;
 
-/// Least share of the total mass for a body, 0 to 1.
+/// Least mass of a body as a share of the total mass, 0 to 1.
 ///
-/// The solver needs ratios below about 1000. Larger: fingers as heavy as hands. Smaller: joints that need more sweeps.
+/// The solver needs ratios below about 1000. Larger: fingers are as heavy as hands. Smaller: joints need more sweeps.
 /// Shown by the tests of `build`.
 pub(crate) const LEAST_MASS: f32 = 0.001;
 
-/// Least share of the trunk's length for a body of it, 0 to 1.
+/// Least length of a trunk's body as a share of the trunk's length, 0 to 1.
 ///
-/// Larger: even spines. Smaller: vertebrae without mass between heavy ones. Shown by the tests of `build`.
+/// Larger: all bodies of a spine have about the same length. Smaller: vertebrae without mass lie between heavy ones.
+/// Shown by the tests of `build`.
 pub(crate) const LEAST_TRUNK: f32 = 0.1;
 
 // masses/volume.rs
 
 /// Least share of the sample lines that must cross a closed skin, 0 to 1.
 ///
-/// Larger: figures with open necks weigh by their shapes. Smaller: cloaks enclose air. Shown by the tests of `volume`.
+/// Larger: the mass of figures with open necks is computed from their shapes. Smaller: volumes include the air under
+/// cloaks. Shown by the tests of `volume`.
 pub(crate) const CLOSED: f32 = 0.6;
 
 /// Density of living tissue, kg/m³: about that of water.
 ///
-/// Larger or smaller: creatures weigh more or less. Shown by the tests of `volume`.
+/// Larger: creatures are heavier. Smaller: they are lighter. Shown by the tests of `volume`.
 pub(crate) const FLESH: f32 = 1000.0;
 
-/// Density of a machine with the air in it, kg/m³: cars have 200, tanks 1000.
+/// Mean density of a machine and the air inside, kg/m³: cars have 200, tanks 1000.
 ///
-/// Larger or smaller: machines weigh more or less. Shown by the tests of `volume`.
+/// Larger: machines are heavier. Smaller: they are lighter. Shown by the tests of `volume`.
 pub(crate) const MACHINE: f32 = 500.0;
 
 // quality/faults.rs
 
 /// Least depth in static geometry at which a character starts inside the world, as a share of its height.
 ///
-/// Larger: it is thrown out of a wall unnoticed. Smaller: feet in uneven ground count. Shown by the tests of `faults`.
+/// Larger: the report misses characters that are thrown out of a wall. Smaller: feet in uneven ground count. Shown by
+/// the tests of `faults`.
 pub(crate) const STARTS_INSIDE: f32 = 0.15;
 
-/// Least distance below all static geometry at which a body has fallen out of the world, metres; else the character's
-/// height.
+/// Least distance below all static geometry at which a body has fallen out of the world, metres; or the character's
+/// height, if that is larger.
 ///
-/// Larger: a fall out of the world is detected later. Smaller: a thin floor that lets an arm through counts. Shown by
-/// the tests of `faults`.
+/// Larger: a fall out of the world is detected later. Smaller: an arm through a thin floor counts. Shown by the tests
+/// of `faults`.
 pub(crate) const FALLEN_OUT: f32 = 2.0;
 
 /// Time limp without lying still after which a character counts as never still, seconds.
 ///
-/// The contract has a drop asleep within 6 s. Larger: misses jitter. Smaller: faults long falls. Shown by the tests of
-/// `faults`.
+/// The contract has a drop asleep within 6 s. Larger: jitter is not detected. Smaller: long falls count as faults.
+/// Shown by the tests of `faults`.
 pub(crate) const NEVER_STILL: f32 = 6.0;
 
 /// Height of the highest part over the floor at rest, as a share of its height at release, above which a tall body
@@ -441,60 +467,62 @@ pub(crate) const TOPPLES: [f32; 3] = [0.35, 0.7, 1.05];
 /// Largest ratio of a creature's mass to the cube of its longest side, kg/m³: a human has 14, an elephant 20, a bear
 /// 40, a cow 50, a pig 60.
 ///
-/// Larger: accepts a block of 625 kg at 1.75 m. Smaller: doubts a pig. Shown by the tests of `faults`.
+/// Larger: a block of 625 kg at 1.75 m passes. Smaller: a pig is doubted. Shown by the tests of `faults`.
 pub(crate) const CREATURE_BUILD: f32 = 80.0;
 
-/// Mass below which a creature may have any roundness, kg: a toad, a chick, a hedgehog.
+/// Mass below which a creature of any build passes, kg: a toad, a chick, a hedgehog.
 ///
-/// Larger: accepts a hog. Smaller: doubts a hen. Shown by the tests of `faults`.
+/// Larger: a hog passes. Smaller: a hen is doubted. Shown by the tests of `faults`.
 pub(crate) const ROUND: f32 = 20.0;
 
 /// Largest factor by which a character grows or shrinks between its clip and a get-up.
 ///
-/// Larger: accepts a giant that becomes a child for a second. Smaller: faults clips that stretch a figure a little.
-/// Shown by the tests of `faults`.
+/// Larger: a giant that becomes a child for a second passes. Smaller: clips that stretch a figure slightly count as
+/// faults. Shown by the tests of `faults`.
 pub(crate) const OTHER_SIZE: f32 = 1.15;
 
-/// Least distance of two limbs' roots from the middle, as a share of the height, at which their sides are known.
+/// Least distance of two limbs' roots from the middle plane, as a share of the height, from which the limbs have sides.
 ///
-/// Larger: skips narrow bodies. Smaller: noise counts as a side. Shown by the tests of `faults`.
+/// Larger: narrow bodies are not checked. Smaller: noise counts as a side. Shown by the tests of `faults`.
 pub(crate) const ON_A_SIDE: f32 = 0.01;
 
 // quality/plausible.rs
 
-/// Least share of the height from the joint of the head up that is not an adult's: a two-year-old has 0.2, an adult 0.12.
+/// Least share of the height, from the joint of the head up, that is too large for an adult: a two-year-old has 0.2, an
+/// adult 0.12.
 ///
-/// Larger: doubts toys and children. Smaller: accepts adults in another unit. Shown by the tests of `faults`.
+/// Larger: toys and children are doubted. Smaller: adults in another unit pass. Shown by the tests of `faults`.
 pub(crate) const BIG_HEAD: f32 = 0.17;
 
 // ragdoll.rs
 
 /// Largest half-angle to which a swing is widened for the pose in which a ragdoll is spawned, radians (175°).
 ///
-/// Larger: limits without effect. Smaller: a character starts beyond its limit. Shown by the tests of `hand_over`.
+/// Larger: limits have no effect. Smaller: a character starts beyond its limit. Shown by the tests of `hand_over`.
 pub(crate) const WIDEST_SPAWNED: f32 = 3.054;
 
 // skin/judge.rs
 
-/// Largest distance of the lowest drawn point from the floor while standing and once up again, as a share of the size.
+/// Largest distance of the lowest drawn point from the floor while standing and after getting up, as a share of the
+/// size.
 ///
-/// Larger: floating and sunk characters pass. Smaller: toes that dip in by a few centimetres are blamed. Shown by the tests of `skin`.
+/// Larger: floating and sunk characters pass. Smaller: toes that dip in by a few centimetres count as flaws. Shown by
+/// the tests of `skin`.
 pub(crate) const STANDS_OFF: f32 = 0.04;
 
 /// Largest depth of the lowest drawn point in the floor while getting up, as a share of the size.
 ///
-/// Larger: hands and knees go far through the floor. Smaller: fingertips that dip in for a moment are blamed. Shown by the tests of
-/// `skin`.
+/// Larger: hands and knees far below the floor pass. Smaller: fingertips that dip in for a moment count as flaws.
+/// Shown by the tests of `skin`.
 pub(crate) const SUNK_RISING: f32 = 0.1;
 
-/// Height of the lowest drawn point over the floor at rest, as a share of the size, above which the character floats
-/// and is unusable.
+/// Height of the lowest drawn point over the floor at rest, as a share of the size, above which the verdict is bad.
 ///
-/// A bear on a box as broad as its arms floats by a fifth. Larger: that is usable. Smaller: a big head on a round shape
-/// is bad. Shown by the tests of `skin`.
+/// A bear on a box as broad as its arms floats by a fifth. Larger: such a bear is usable. Smaller: a big head on a
+/// round shape is bad. Shown by the tests of `skin`.
 pub(crate) const HANGS: f32 = 0.125;
 
-/// Ratio of a skin figure to its bar above which the character is unusable.
+/// Ratio of a skin figure to its bar above which the verdict is bad.
 ///
 /// Larger: torsos torn by half a height are usable. Smaller: a coat that drags is bad. Shown by the tests of `skin`.
 pub(crate) const GROSS: f32 = 3.0;
@@ -503,62 +531,63 @@ pub(crate) const GROSS: f32 = 3.0;
 
 /// Least share of a vertex's weight for a body to own the vertex, 0 to 1.
 ///
-/// Larger: judges fewer vertices. Smaller: skin between two bodies must be near both. Shown by the tests of `skin`.
+/// Larger: fewer vertices are judged. Smaller: skin between two bodies must be near both. Shown by the tests of `skin`.
 pub(crate) const OWN_WEIGHT: f32 = 0.25;
 
 // skin/sides.rs
 
 /// Largest distance of a pivot from its twin's mirror image, as a share of the size.
 ///
-/// Larger: any two are twins. Smaller: sculpted figures have none. Shown by the tests of `skin`.
+/// Larger: unrelated bodies become twins. Smaller: sculpted figures have no twins. Shown by the tests of `skin`.
 pub(crate) const MIRRORED: f32 = 0.05;
 
 /// Largest distance from the plane of symmetry of a pivot without twin, as a share of the size.
 ///
-/// Larger: narrow legs have no twins. Smaller: searches spines for twins. Shown by the tests of `skin`.
+/// Larger: narrow legs have no twins. Smaller: bodies of spines count as lacking twins. Shown by the tests of `skin`.
 pub(crate) const MIDDLE: f32 = 0.02;
 
-/// Largest distance of a body whose skin is linked to no other's from its parent, as a share of the size.
+/// Largest distance from its parent of a body whose skin is not linked to another body's, as a share of the size.
 ///
-/// Larger: misses floating parts. Smaller: figures of loose parts count as torn. Shown by the tests of `skin`.
+/// Larger: floating parts are not detected. Smaller: figures of loose parts count as torn. Shown by the tests of
+/// `skin`.
 pub(crate) const LOOSE: f32 = 0.2;
 
 // skin/stretch.rs
 
-/// Percentile of the stretch of all sides in all poses, as a share: one in a thousand is longer.
+/// Percentile of the stretch of all edges in all poses, as a share: one in a thousand stretches more.
 ///
-/// The contract's `edge_stretch_p999`. Larger: single seams decide. Smaller: misses torn parts. Shown by the tests of
-/// `skin`.
+/// The contract's `edge_stretch_p999`. Larger: single seams decide. Smaller: torn parts are not detected. Shown by the
+/// tests of `skin`.
 pub(crate) const STRETCH_PERCENTILE: f32 = 0.999;
 
 // skin/surface.rs
 
-/// Largest difference of the weights of the two ends of a side that cannot stretch it.
+/// Difference of the weights at the two ends of an edge up to which the edge does not stretch.
 ///
-/// Larger: misses sides. Smaller: measures rounding of files. Shown by the tests of `skin`.
+/// Larger: stretched edges are missed. Smaller: the rounding of files is measured. Shown by the tests of `skin`.
 pub(crate) const SAME_WEIGHTS: f32 = 1e-3;
 
 // quality/rising.rs
 
-/// Slide of a foot allowed while a character gets up, as a share of its height, and its minimum, metres.
+/// Largest slide of a foot while a character gets up, as a share of its height; at least [`SLIDES_LEAST`].
 ///
-/// Larger: skating counts as good. Smaller: reports rounding. Shown by the tests of `rising`.
+/// Larger: skating counts as good. Smaller: rounding is reported. Shown by the tests of `rising`.
 pub(crate) const SLIDES: f32 = 0.017;
-/// See [`SLIDES`].
+/// Least allowed slide of a foot while a character gets up, metres. See [`SLIDES`].
 pub(crate) const SLIDES_LEAST: f32 = 0.03;
 
-/// Jump of a pose in a frame of 1/30 s, as a share of the height.
+/// Largest jump of a pose in a frame of 1/30 s, as a share of the height.
 ///
-/// Larger: pops count as good. Smaller: reports quick motion. Shown by the tests of `rising`.
+/// Larger: pops count as good. Smaller: quick motion is reported. Shown by the tests of `rising`.
 pub(crate) const JUMPS: f32 = 0.03;
 
-/// Height over the floor up to which a sole point counts as standing on it, as a share of the character's height.
+/// Height over the floor up to which a sole point counts as on the floor, as a share of the character's height.
 ///
-/// Larger: steps count as slides. Smaller: misses skating just over the floor. Shown by the tests of `rising`.
+/// Larger: steps count as slides. Smaller: skating just over the floor is missed. Shown by the tests of `rising`.
 pub(crate) const STANDS_NEAR: f32 = 0.008;
 
-/// Height of the hips over the floor from which on the feet bear the body, as a share of their height in the bind pose:
-/// lying and sitting ones are at 0.05 to 0.3.
+/// Height of the hips over the floor from which the feet bear the body, as a share of the hips' height in the bind
+/// pose; 0.05 to 0.3 when lying or sitting.
 ///
 /// Larger: skating of a squatting body is missed. Smaller: legs that a sitting body draws in count as slides. Shown by
 /// the tests of `rising`.
@@ -566,5 +595,5 @@ pub(crate) const HIPS_BEAR: f32 = 0.35;
 
 /// Cosine of the largest tilt of a foot that stands on its sole.
 ///
-/// Larger: measures feet that come down. Smaller: measures heels of lying legs. Shown by the tests of `rising`.
+/// Larger: feet about to land are measured. Smaller: heels of lying legs are measured. Shown by the tests of `rising`.
 pub(crate) const STANDS_UPRIGHT: f32 = 0.8;

@@ -14,18 +14,18 @@ pub(super) struct Actor<'a> {
     pub character: Character,
     pub meter: QualityMeter,
     frames: Frames,
-    /// Place at which it started, and its time in the looped clip, seconds.
+    /// Start pose of the character, and its start time in the looped clip, seconds.
     start: Transform,
     phase: f32,
-    /// Pushes that are not yet applied, the latest first.
+    /// Pushes that are not applied yet, the latest first.
     pending: Vec<(f32, Push<'a>)>,
     events: Vec<(f32, CharacterEvent)>,
-    /// Number of events of pushes that are already recorded and that the next update reports again.
+    /// Number of events of pushes that are already recorded; the next update reports them again.
     ahead: usize,
 }
 
-/// Creates the character. It gets bodies in the world from the start if pushes or drives may move a part of it, other characters may hit
-/// it, or it wears garments, which need bodies.
+/// Creates the character. It gets bodies in the world from the start in three cases: pushes or drives may move a part
+/// of it, other characters may hit it, or it wears garments, which need bodies.
 fn spawned(input: &BakeInput<'_>, is_alone: bool, world: &mut World) -> Character {
     let falls = input.hit_effect == HitEffect::Falls;
     if falls && is_alone && input.drives.is_empty() && input.character.garments().is_empty() {
@@ -52,7 +52,7 @@ enum Push<'a> {
 }
 
 impl<'a> Actor<'a> {
-    /// `is_alone` is true if it is the only character of the bake.
+    /// Creates the actor. `is_alone` is true for the only character of the bake.
     pub fn new(input: &BakeInput<'a>, is_alone: bool, world: &mut World) -> Self {
         let limp = input.limp_at.map(|time| (time, Push::Limp { topple: input.topple }));
         let hits =
@@ -76,7 +76,7 @@ impl<'a> Actor<'a> {
         }
     }
 
-    /// Applies what is scheduled for the start, and records the first frame.
+    /// Applies the pushes that are due at the start, and records the first frame.
     pub fn begin(&mut self, world: &mut World) {
         self.push_due(world);
         self.frames.add_until(&self.character, world.time() as f32);
@@ -93,7 +93,7 @@ impl<'a> Actor<'a> {
         }
     }
 
-    /// Updates the character after a step of the world, and applies what is scheduled for the step's end.
+    /// Updates the character after a step of the world, and applies the pushes that are due at the step's end.
     pub fn update(&mut self, world: &mut World) {
         self.character.update(world);
         self.note_events(self.ahead, world);
@@ -170,7 +170,7 @@ impl<'a> Actor<'a> {
         }
     }
 
-    /// Returns clip, frames and figures. `hash` is that of world and character at the end.
+    /// Returns clip, frames and figures. `hash` is the hash of world and character at the end.
     pub fn finish(self, input: &BakeInput<'_>, steps: u64, hash: u64) -> Baked {
         let rig = &input.character.rig;
         let world_from_model = input.character.mapping().world_from_model(input.world_from_character);

@@ -11,7 +11,7 @@ pub(super) struct Frames {
     fps: f32,
     seconds: f32,
     world_from_character: Transform,
-    /// Pose and time of the last step, for the frames between it and the next.
+    /// Pose and time of the last step, for the frames between the last and the next step.
     last: Vec<LocalTransform>,
     last_time: f32,
     now: Vec<LocalTransform>,

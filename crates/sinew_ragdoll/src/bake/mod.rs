@@ -32,38 +32,39 @@ use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::{BodyDef, FieldDef, WorldDef};
 use std::sync::Arc;
 
-/// A push at a moment.
+/// A push at a given time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeHit {
     /// Time since the start, seconds.
     pub time: f32,
-    /// Body, by index in the definition.
+    /// Index of the pushed body in the definition.
     pub body: usize,
     /// Impulse at the body's centre of mass, N·s, world axes.
     pub impulse: Vec3,
 }
 
-/// Change of the drive of a part of the character at a given time: [`Character::set_drive`](crate::Character::set_drive). It applies while
-/// the character stands; [`CharacterDef::falling`] sets the drive of a fallen one.
+/// Change of the drive of a part of the character at a given time, by
+/// [`Character::set_drive`](crate::Character::set_drive). The change applies while the character stands;
+/// [`CharacterDef::falling`] sets the drive of a fallen character.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeDrive<'a> {
     /// Time since the start, seconds.
     pub time: f32,
     /// Bodies whose drive changes.
     pub part: Part<'a>,
-    /// Mode of those drives from then on.
+    /// Mode of these drives from then on.
     pub mode: DriveMode,
     /// Time in which half of the change is made, seconds.
     pub half_life: f32,
 }
 
-/// Return to the looped clip by [`Character::return_to_clip`](crate::Character::return_to_clip), at the place where the character started
-/// and at the clip time that it would have reached without interruption.
+/// Return to the looped clip by [`Character::return_to_clip`](crate::Character::return_to_clip), at the place where the
+/// character started and at the clip time that the character would have reached without interruption.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeReturn {
     /// Time from the start at which the pose is that of the clip alone, seconds.
     pub time: f32,
-    /// Duration of the blend from the simulated pose before that, seconds.
+    /// Duration of the preceding blend from the simulated pose, seconds.
     pub seconds: f32,
 }
 
@@ -74,9 +75,9 @@ pub struct BakeInput<'a> {
     pub character: Arc<CharacterDef>,
     /// Pose of the character in the world at the start.
     pub world_from_character: Transform,
-    /// Time in its looped clip at the start, seconds. Default 0.
+    /// Start time in the character's looped clip, seconds. Default 0.
     pub phase: f32,
-    /// Settings of the world. Its step is the simulation's.
+    /// Settings of the world, with the step of the simulation.
     pub world: WorldDef,
     /// Bodies of the world besides the character's own.
     pub bodies: &'a [BodyDef],
@@ -84,24 +85,26 @@ pub struct BakeInput<'a> {
     pub movers: &'a [BakeMover<'a>],
     /// Wind, water and other fields of the world.
     pub fields: &'a [FieldDef],
-    /// Changes of drives, in any order. If there are any, the character has its bodies in the world from the start.
+    /// Changes of drives, in any order. With any change, the character has its bodies in the world from the start.
     pub drives: &'a [BakeDrive<'a>],
     /// Return to the looped clip; `None`: the character returns only by getting up.
     pub returns: Option<BakeReturn>,
     /// Pushes, in any order.
     pub hits: &'a [BakeHit],
-    /// Effect of pushes. Default: each one makes the character fall.
+    /// Effect of pushes. Default: each push makes the character fall.
     pub hit_effect: HitEffect,
-    /// Time at which it goes limp without a push, seconds; `None`: only hits make it limp.
+    /// Time at which the character goes limp without a push, seconds; `None`: only hits make it limp.
     pub limp_at: Option<f32>,
     /// Length of the bake, seconds.
     pub seconds: f32,
     /// Frames per second of the clip, at least 1.
     pub fps: f32,
-    /// Extra velocity of its highest point when it goes limp at [`limp_at`](Self::limp_at), m/s, world axes: the whole
-    /// body rotates about the ground under it. Default zero. A body with broad feet stays upright without it.
+    /// Extra velocity of the character's highest point when it goes limp at [`limp_at`](Self::limp_at), m/s, world
+    /// axes: the whole body rotates about the ground under it. Default zero. Without it a body with broad feet stays
+    /// upright.
     pub topple: Vec3,
-    /// Largest error of any joint of the clip against the frames, metres and radians; keys that are not needed for that are removed.
+    /// Largest error of any joint of the clip against the frames, metres and radians; keys not needed for this bound
+    /// are removed.
     pub key_bound: KeyBound,
     /// Name of the clip.
     pub name: &'a str,
@@ -121,7 +124,8 @@ pub enum HitEffect {
 pub const KEY_BOUND: KeyBound = KeyBound { distance: 1e-4, angle: 1.745_329_3e-4 };
 
 impl<'a> BakeInput<'a> {
-    /// Ten seconds at 30 frames a second at the world's origin, in an empty world without pushes, with keys within [`KEY_BOUND`].
+    /// Returns an input of ten seconds at 30 frames a second at the world's origin, in an empty world without pushes,
+    /// with keys within [`KEY_BOUND`].
     pub fn new(character: Arc<CharacterDef>) -> Self {
         Self {
             character,
@@ -150,7 +154,7 @@ impl<'a> BakeInput<'a> {
 pub struct Frame {
     /// Time since the start, seconds.
     pub time: f32,
-    /// State that decided the pose.
+    /// State of the character, which determined the pose.
     pub state: State,
     /// Local transform of every joint; see [`Baked::world_from_model`].
     pub pose: Vec<LocalTransform>,
@@ -162,10 +166,10 @@ pub struct Baked {
     /// Linear keys at frame times for every joint that moves: rotations, and translations that change. The clip starts at the place of the
     /// file's character. The pelvis contains all root motion.
     pub clip: Clip,
-    /// Largest error of the clip's joints against the frames, at the times of frames: metres and radians, within
+    /// Largest error of the clip's joints against the frames, at the frame times: metres and radians, within
     /// [`BakeInput::key_bound`].
     pub key_error: KeyError,
-    /// Number of keys in the clip's channels: with one per frame, and after reduction.
+    /// Number of keys in the clip's channels: first with one key per frame, then after reduction.
     pub keys: [usize; 2],
     /// The frames of the clip.
     pub frames: Vec<Frame>,
@@ -179,14 +183,14 @@ pub struct Baked {
     pub bodies: usize,
     /// Number of simulated steps.
     pub steps: u64,
-    /// Hash of the snapshots of world and character at the end. The world's hash alone would not cover the fall once the character has got
-    /// up and its bodies are removed.
+    /// Hash of the snapshots of world and character at the end. The world's hash alone would miss the fall once the
+    /// character has got up and its bodies are removed.
     pub hash: u64,
 }
 
 impl Baked {
-    /// The clip for the character's own file. It is moved back to where the file has the played clip, if that has another floor than the
-    /// rest pose ([`CharacterDef::raised`]) or begins elsewhere.
+    /// Returns the clip for the character's own file. The clip is moved back to its place in the file, if the played
+    /// clip has another floor than the rest pose ([`CharacterDef::raised`]) or begins elsewhere.
     pub fn clip_for_file(&self, character: &CharacterDef) -> Clip {
         let back = character.mapping().character_from_model().inverse().vector(-character.shift());
         moved(&character.rig, &character.ragdoll, &self.clip, back, back)
@@ -206,10 +210,10 @@ pub fn bake(input: &BakeInput<'_>) -> Baked {
 /// Bakes several characters in one world, where they collide with each other. The world contains the bodies, movers and fields of all
 /// inputs. `watch` is called with the simulated seconds after every step; if it breaks, the bake ends and the result is `None`.
 ///
-/// Figures of the world as a whole (energy, work) are the same for all characters.
+/// Figures of the whole world (energy, work) are the same for all characters.
 ///
 /// # Panics
-/// As [`bake`]; or if the inputs differ in their world or their length.
+/// Panics like [`bake`], or if the inputs differ in their world or their length.
 pub fn bake_together(
     inputs: &[BakeInput<'_>],
     watch: &mut dyn FnMut(f32) -> ControlFlow<()>,

@@ -6,12 +6,12 @@ use sinew_physics::{BodyDef, BodyId, BodyKind, World};
 /// Body that follows keys regardless of obstacles.
 #[derive(Clone, Debug)]
 pub struct BakeMover<'a> {
-    /// The body; it is kinematic, and its pose and velocity are those of the keys.
+    /// The body; it is kinematic, and the keys determine its pose and velocity.
     pub body: BodyDef,
     /// Times of the keys, seconds from the start, ascending; at least one.
     pub times: &'a [f32],
-    /// Pose of the body in the world at each time, interpolated linearly between keys; it is at rest before the first and after the last
-    /// key.
+    /// Pose of the body in the world at each time, interpolated linearly between keys. The body is at rest before the
+    /// first and after the last key.
     pub poses: &'a [Transform],
 }
 
@@ -24,7 +24,7 @@ impl BakeMover<'_> {
         assert!(poses.iter().all(|pose| pose.is_finite()), "poses of a mover's keys are finite");
     }
 
-    /// Pose at a time.
+    /// Returns the pose of the body at a time, world.
     fn pose(&self, time: f32) -> Transform {
         let after = self.times.partition_point(|&key| key <= time);
         let (Some(before), true) = (after.checked_sub(1), after < self.times.len()) else {
@@ -46,7 +46,7 @@ impl BakeMover<'_> {
         world.add_body(&BodyDef { kind: BodyKind::Kinematic, position, rotation, ..self.body.clone() })
     }
 
-    /// Moves its body to its pose at the end of the next step of the world.
+    /// Moves the body to its pose at the end of the next step of the world.
     ///
     /// # Panics
     /// If the body does not exist.

@@ -40,7 +40,7 @@ impl<'a> Run<'a> {
         self.world.time() as f32
     }
 
-    /// Steps the world once, and applies what is scheduled for the step's end.
+    /// Steps the world once, and applies the pushes that are due at the step's end.
     pub fn step(&mut self) {
         let Self { world, actors, movers } = self;
         for (id, mover) in movers {
@@ -52,7 +52,7 @@ impl<'a> Run<'a> {
         actors.iter_mut().for_each(|actor| actor.update(world));
     }
 
-    /// Returns clips and figures.
+    /// Returns the clips and figures of all characters.
     pub fn finish(self, inputs: &[BakeInput<'_>]) -> Vec<Baked> {
         let Self { world, actors, .. } = self;
         let of_world = {

@@ -23,9 +23,9 @@ use sinew_math::{Vec3, max, normalize_or};
 /// One kept bone, the source of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bone {
-    /// Rig joint that carries it.
+    /// Rig joint that carries the bone.
     pub joint: JointIdx,
-    /// Rig joints that move rigidly with it.
+    /// Rig joints that move rigidly with the bone.
     pub merged: Vec<JointIdx>,
     /// Role of the bone in the body.
     pub role: Role,
@@ -35,18 +35,18 @@ pub struct Bone {
     pub part: Part,
     /// Side of the body.
     pub side: Side,
-    /// Index of the parent bone; smaller than its own. `None` for the first.
+    /// Index of the parent bone; smaller than the bone's own. `None` for the first.
     pub parent: Option<usize>,
     /// Pivot of the joint to the parent, character space at the bind pose, metres.
     pub head: Vec3,
-    /// True for props: they are no bone end, and their joint is fixed.
+    /// True for props: a prop is not the end of a bone, and its joint is fixed.
     pub is_prop: bool,
 }
 
 /// The kept bones of a character.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bones {
-    /// Parents before children; the first is the pelvis.
+    /// The bones, parents before children; the first is the pelvis.
     pub list: Vec<Bone>,
     /// Indices of the children of each bone, without props.
     pub children: Vec<Vec<usize>>,
@@ -83,8 +83,8 @@ impl Bones {
         Self { list, children, anatomy, height }
     }
 
-    /// The child that continues the bone: forearm of an upper arm, neck of a chest. `None` for the end of a chain, or
-    /// if no child continues it more than the others.
+    /// Returns the child that continues the bone: the forearm of an upper arm, the neck of a chest. `None` for the end
+    /// of a chain, or if no child continues the bone better than the others.
     pub fn continuation(&self, bone: usize) -> Option<usize> {
         let children = &self.children[bone];
         let wanted = self.list[bone].part.continued_by();
@@ -94,8 +94,8 @@ impl Bones {
             .or_else(|| (children.len() == 1 && wanted.is_empty()).then(|| children[0]))
     }
 
-    /// End of the bone, character space: the pivot of its continuation, else the mean of its children's pivots. `None`
-    /// at the end of a chain, or if that point is the bone's own pivot.
+    /// Returns the end of the bone, character space: the pivot of its continuation, else the mean of its children's
+    /// pivots. `None` at the end of a chain, or if that point is the bone's own pivot.
     pub fn tail(&self, bone: usize) -> Option<Vec3> {
         let children = &self.children[bone];
         let tail = match self.continuation(bone) {
@@ -108,8 +108,8 @@ impl Bones {
         ((tail - self.list[bone].head).length() > 1e-3 * self.height).then_some(tail)
     }
 
-    /// Unit vector from pivot to tail; at the end of a chain from the pivot to `middle` (the middle of its surface);
-    /// failing that on from the parent's pivot, or up.
+    /// Returns the unit vector from pivot to tail; at the end of a chain, from the pivot to `middle` (the middle of the
+    /// bone's surface). Without either, the direction from the parent's pivot, or up.
     pub fn direction(&self, bone: usize, middle: Option<Vec3>) -> Vec3 {
         let head = self.list[bone].head;
         let onward = self.list[bone]
@@ -118,12 +118,12 @@ impl Bones {
         self.tail(bone).or(middle).map_or(onward, |end| normalize_or(end - head, onward))
     }
 
-    /// Distance from pivot to tail, metres; `None` at the end of a chain.
+    /// Returns the distance from pivot to tail, metres; `None` at the end of a chain.
     pub fn length(&self, bone: usize) -> Option<f32> {
         self.tail(bone).map(|tail| (tail - self.list[bone].head).length())
     }
 
-    /// First bone of this part on this side.
+    /// Returns the first bone of this part on this side.
     pub fn find(&self, part: Part, side: Side) -> Option<usize> {
         self.list.iter().position(|bone| bone.part == part && bone.side == side)
     }
@@ -135,15 +135,15 @@ impl Bones {
         self.list.iter().position(|other| other.role == role.mirror())
     }
 
-    /// True if a bone lies in the body's plane of symmetry, so that its left and right halves are equal.
+    /// Returns true if a bone is in the body's plane of symmetry, so that its left and right halves are equal.
     pub fn is_central(&self, bone: usize) -> bool {
         let bone = &self.list[bone];
         let aside = (bone.head.x - self.plane_of_symmetry()).abs();
         bone.side == Side::Middle && bone.part != Part::Limb && aside < 0.02 * self.size()
     }
 
-    /// Height of a human; for a creature, whose up axis may be unknown, twice the distance from its first bone to the
-    /// furthest. Metres.
+    /// Returns the size of the character, metres: the height of a human; for a creature, whose up axis may be unknown,
+    /// twice the distance from its first bone to the furthest.
     pub fn size(&self) -> f32 {
         match self.anatomy {
             Anatomy::Human => self.height,
@@ -154,12 +154,13 @@ impl Bones {
         }
     }
 
-    /// Position along x of the plane between left and right: that of the pelvis, character space, metres.
+    /// Returns the x coordinate of the plane between left and right, which contains the pelvis; character space,
+    /// metres.
     pub fn plane_of_symmetry(&self) -> f32 {
         self.list[0].head.x
     }
 
-    /// Number of joints between two bones of the tree.
+    /// Returns the number of joints between two bones of the tree.
     pub fn distance(&self, a: usize, b: usize) -> usize {
         let (mut a, mut b, mut steps) = (a, b, 0);
         while a != b {

@@ -35,7 +35,7 @@ use sinew_anim::roles::RigAnalysis;
 use sinew_anim::{JointIdx, Rig, Take};
 use sinew_math::{Transform, Vec3};
 
-/// Options of a build: the kind of ragdoll that is wanted.
+/// Options of a build.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BuildOptions {
     /// Kind of shapes. Default auto.
@@ -44,7 +44,7 @@ pub struct BuildOptions {
     pub mass: Option<f32>,
     /// Sex for the mass distribution. Default male.
     pub sex: Sex,
-    /// Source of joint limits. Default anatomy.
+    /// Source of joint limits. Default: the anatomy tables.
     pub limits: LimitSource,
 }
 
@@ -57,13 +57,13 @@ pub enum BuildError {
     /// The rig has no bone that gets a body.
     #[error("no bones: nothing to build a ragdoll from")]
     NoBones,
-    /// Numbers of the rig are not finite or out of proportion.
+    /// Numbers of the rig are not finite, or too large or small.
     #[error("the bind pose is not finite")]
     NotFinite,
     /// The requested mass is not a positive number.
     #[error("a mass of {0} kg: it must be positive")]
     Mass(f32),
-    /// Limits should be learned, but there is no clip.
+    /// Limits shall be learned, but there is no clip.
     #[error("no clip moves a joint: there are no limits to learn")]
     NoClips,
 }
@@ -80,7 +80,7 @@ pub fn build(
     build_overridden(rig, analysis, options, &Overrides::none())
 }
 
-/// A body's index, its fit, and a function that fits another kind of shape.
+/// Function from a body's index, its fit, and a function that fits another kind of shape, to the new fit.
 type Refit<'a> = dyn Fn(usize, Fit, &dyn Fn(ShapeChoice) -> Fit) -> Fit + 'a;
 
 /// Changes that settings make during the build.
@@ -110,7 +110,7 @@ impl Overrides<'_> {
     }
 }
 
-/// [`build`] with changes between its stages.
+/// Like [`build`], with changes between its stages.
 pub(crate) fn build_overridden(
     rig: &Rig,
     analysis: &RigAnalysis,
@@ -187,7 +187,8 @@ struct Enclosed {
 }
 
 impl Enclosed {
-    /// Volume of a creature's skin; `None` for humans, whose mass follows their height, and if the skin is too open.
+    /// Returns the volume of a creature's skin; `None` for humans, whose mass follows their height, and if the skin is
+    /// too open.
     fn of(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Option<Self> {
         if bones.anatomy == Anatomy::Human {
             return None;
@@ -197,12 +198,12 @@ impl Enclosed {
         Some(Self { volume, density, matter })
     }
 
-    /// Mass of the enclosed volume, kg.
+    /// Returns the mass of the enclosed volume, kg.
     fn mass(&self) -> f32 {
         self.density * self.volume
     }
 
-    /// Note on the source of the mass, if this build computed it.
+    /// Returns a note on the source of the mass, if this build computed the mass.
     fn note(&self, total_mass: f32) -> Option<String> {
         let Self { volume, matter, .. } = self;
         let is_from_here = (self.mass() / total_mass - 1.0).abs() < 1e-3;
@@ -211,7 +212,7 @@ impl Enclosed {
     }
 }
 
-/// Joints, and the poses in which shapes are compared.
+/// Planned joints, and the poses in which shapes are compared.
 struct Planned {
     plans: Vec<JointPlan>,
     /// Source of the limits of each joint.
@@ -250,7 +251,7 @@ fn planned(
     Ok(Planned { plans, limits, poses })
 }
 
-/// The joint's name in the file, or `joint N`.
+/// Returns the joint's name in the file, or `joint N`.
 pub fn joint_name(rig: &Rig, joint: JointIdx) -> String {
     match rig.joints[joint].name.as_str() {
         "" => format!("joint {joint}"),

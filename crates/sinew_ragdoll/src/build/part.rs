@@ -57,7 +57,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// +1 on the left, −1 on the right, 0 in the middle: the sign of x.
+    /// Returns the sign of x: +1 on the left, −1 on the right, 0 in the middle.
     pub fn sign(self) -> f32 {
         match self {
             Side::Left => 1.0,
@@ -68,7 +68,7 @@ impl Side {
 }
 
 impl Part {
-    /// Parts that continue this one, the best first.
+    /// Returns the parts that continue this one, the best first.
     pub fn continued_by(self) -> &'static [Part] {
         match self {
             Part::Pelvis => &[Part::Spine],
@@ -84,18 +84,18 @@ impl Part {
         }
     }
 
-    /// True if it belongs to the trunk.
+    /// Returns true if the part belongs to the trunk.
     pub fn is_trunk(self) -> bool {
         matches!(self, Part::Pelvis | Part::Spine | Part::Clavicle)
     }
 
-    /// True if it belongs to an arm or a leg.
+    /// Returns true if the part belongs to an arm or a leg.
     pub fn is_limb(self) -> bool {
         !self.is_trunk() && !matches!(self, Part::Neck | Part::Head)
     }
 }
 
-/// Part and side of a role.
+/// Returns the part and side of a role.
 pub fn part_of_role(role: Role) -> (Part, Side) {
     let side = match role.side() {
         Some(roles::Side::Left) => Side::Left,

@@ -16,9 +16,9 @@ pub struct BuildReport {
     pub bodies: Vec<BodyReport>,
     /// Bodies that overlap without a joint, and the remedy for each, sorted by pair.
     pub overlaps: Vec<Overlap>,
-    /// Area-weighted mean distance between skin and shapes over all bodies, metres.
+    /// Area-weighted mean distance between skin and shapes of all bodies, metres.
     pub mean_error: f32,
-    /// Sum of the shapes' volumes, m³; more than the flesh has, because shapes overlap.
+    /// Sum of the shapes' volumes, m³. It exceeds the volume of the flesh, because shapes overlap.
     pub shape_volume: f32,
     /// Notes for a person, one sentence each.
     pub notes: Vec<String>,
@@ -29,11 +29,12 @@ pub struct BuildReport {
 pub struct BodyReport {
     /// Area-weighted mean distance between the bone's skin and the shape's surface, metres.
     pub error: f32,
-    /// Selection of the skin that the shape was fitted to.
+    /// Selection of the skin to which the shape was fitted.
     pub selection: Selection,
     /// Factor on the cross-section to avoid other bodies; 1 if not needed.
     pub scale: f32,
-    /// Angle by which the bind pose exceeded the table's limits of the joint to the parent, radians; they were widened.
+    /// Angle by which the bind pose exceeded the table's limits of the joint to the parent, radians. The limits were
+    /// widened by it.
     pub widened: f32,
     /// Source of the limits of the joint to the parent.
     pub limits: LimitSource,
@@ -104,7 +105,7 @@ fn notes(rig: &Rig, bones: &Bones, bodies: &[BodyReport], filter: &FilterReport)
     notes
 }
 
-/// Poses in which two bodies overlap, in words.
+/// Describes the poses in which two bodies overlap.
 fn places(seen: &Seen) -> String {
     let mut places = Vec::new();
     if seen.bind > 0.0 {

@@ -3,11 +3,11 @@
 use crate::tuning::FRAME_TIME;
 use sinew_anim::{Clip, Rig, Take};
 
-/// Frames of all takes together: about a minute of motion.
+/// Largest number of frames of all takes together: about a minute of motion.
 const MOST_FRAMES: usize = 2048;
 
-/// The clips as takes with equal frame times: 30 a second, or fewer if they are long. Clips without a finite duration
-/// are dropped, and so are those beyond the first 2,048.
+/// Returns the clips as takes with equal frame times: 30 a second, or fewer if the clips are long. Clips without a
+/// finite duration are dropped, and so are those beyond the first 2,048.
 ///
 /// # Panics
 /// As [`sample`](sinew_anim::sample()): if a clip is not one of the rig's.

@@ -9,7 +9,7 @@ use crate::character::tuning::{FLINCH_HALF_LIFE, FLINCH_TIME, RETURNED_AFTER};
 use sinew_anim::Animator;
 use sinew_math::{clamp, max};
 
-/// State of a character and its data. [`State`] is the same without data.
+/// State of a character and the data of this state. [`State`] is the same without data.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Activity {
     Animated,
@@ -32,7 +32,7 @@ impl Activity {
         }
     }
 
-    /// The current stumble.
+    /// Returns the current stumble, if any.
     pub fn stumble(&self) -> Option<&Stumble> {
         match self {
             Self::Powered(balance) => balance.stumble.as_ref(),
@@ -40,7 +40,7 @@ impl Activity {
         }
     }
 
-    /// Time for which a character has lain, in the two lying states.
+    /// Returns the time for which a character has lain, in the two lying states.
     pub fn stillness(&self) -> Option<&Stillness> {
         match self {
             Self::Limp(lying) => Some(&lying.stillness),
@@ -49,7 +49,7 @@ impl Activity {
         }
     }
 
-    /// [`stillness`](Self::stillness), mutable.
+    /// Returns [`stillness`](Self::stillness), mutable.
     pub fn stillness_mut(&mut self) -> Option<&mut Stillness> {
         match self {
             Self::Limp(lying) => Some(&mut lying.stillness),
@@ -58,13 +58,13 @@ impl Activity {
         }
     }
 
-    /// True for a limp character that is being moved out of a wall.
+    /// Returns true for a limp character that is being moved out of a wall.
     pub fn is_clearing(&self) -> bool {
         matches!(self, Self::Limp(lying) if !lying.clearing.velocities.is_empty())
     }
 
-    /// Remaining share of a get-up until the character stands upright: 1 and more while it still lies, 0 and less once
-    /// it stands. 0 in all other states.
+    /// Returns the remaining share of a get-up until the character stands upright: 1 and more while it lies, 0 and less
+    /// once it stands. 0 in all other states.
     pub fn left_to_rise(&self, def: &CharacterDef, animator: &Animator) -> f32 {
         match self {
             Self::GettingUp(rising) => rising.left(def, animator),
@@ -72,7 +72,7 @@ impl Activity {
         }
     }
 
-    /// 1 for a body near the ground, which is hard to fell, to 0 for one that stands upright.
+    /// Returns a number from 1 for a body near the ground, which is hard to fell, to 0 for a body that stands upright.
     pub fn lowness(&self, def: &CharacterDef, animator: &Animator) -> f32 {
         match self {
             Self::Limp(_) | Self::Preparing(_) => 1.0,
@@ -82,30 +82,30 @@ impl Activity {
     }
 }
 
-/// A character of which a limb was struck.
+/// Flinch of a character after a blow to a limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Flinch {
     /// Seconds until the limb has returned.
     pub seconds: f32,
 }
 
-/// Seconds that a limb takes to return.
+/// Returns the time that a limb takes to return, seconds.
 fn comes_back() -> f32 {
     RETURNED_AFTER * FLINCH_HALF_LIFE
 }
 
 impl Flinch {
-    /// A limb that was struck just now.
+    /// Creates the flinch of a limb that was struck in this step.
     pub fn begun() -> Self {
         Self { seconds: FLINCH_TIME + comes_back() }
     }
 
-    /// Keeps the limb weak because something holds it.
+    /// Keeps the limb weak because a hand or joint holds it.
     pub fn go_on(&mut self) {
         self.seconds = max(self.seconds, Self::begun().seconds);
     }
 
-    /// Advances the flinch; true at the moment when the limb begins to return.
+    /// Advances the flinch; returns true at the moment when the limb begins to return.
     pub fn turns_back(&mut self, dt: f32) -> bool {
         let before = self.seconds;
         self.seconds -= dt;

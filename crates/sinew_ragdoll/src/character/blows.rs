@@ -7,7 +7,8 @@ use crate::drive::{DriveMode, Drives, Muscle};
 /// Drive of a struck limb until it returns.
 const GIVING: Muscle = Muscle { hertz: 3.0, damping_ratio: 1.0, strength: 0.5 };
 
-/// Impulse that fells a character this near the ground (0 upright, 1 lying) by a threshold, N·s.
+/// Returns the impulse that fells a character at height `lowness` (0 upright, 1 lying), N·s; `least` is the threshold
+/// upright.
 pub(super) fn felling(least: f32, lowness: f32) -> f32 {
     least * (1.0 + lowness * (LOW_STANDS - 1.0))
 }
@@ -19,12 +20,12 @@ pub(super) fn give_way(def: &RagdollDef, body: usize, drives: &mut Drives) {
     }
 }
 
-/// Bodies whose parent is the pelvis.
+/// Returns the bodies whose parent is the pelvis.
 pub(super) fn pelvis_children(def: &RagdollDef) -> Vec<usize> {
     def.joints.iter().filter(|joint| joint.parent == 0).map(|joint| joint.child).collect()
 }
 
-/// Strengthens the legs and the trunk of a standing character: a blow weakens them less.
+/// Limits how much a blow weakens the legs and the trunk of a standing character.
 pub(super) fn tense(def: &RagdollDef, drives: &mut Drives) {
     for (index, body) in def.bodies.iter().enumerate() {
         let is_leg = ["Leg", "Foot", "Toes"].iter().any(|part| body.role.ends_with(part));
@@ -37,8 +38,8 @@ pub(super) fn tense(def: &RagdollDef, drives: &mut Drives) {
     }
 }
 
-/// The bodies whose subtrees a blow weakens: the struck limb up to the trunk. For the pelvis, its children, because the
-/// pelvis itself is held.
+/// Returns the bodies whose subtrees a blow weakens: the struck limb up to the trunk; for the pelvis its children,
+/// because a pin holds the pelvis itself.
 fn limb_of(def: &RagdollDef, body: usize) -> Vec<usize> {
     let parent = |body: usize| body.checked_sub(1).map(|joint| def.joints[joint].parent);
     let children = |body: usize| def.joints.iter().filter(move |joint| joint.parent == body).count();

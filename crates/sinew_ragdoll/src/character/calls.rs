@@ -17,11 +17,11 @@ use sinew_physics::{BodyHit, BodyId, GroupId, JointId, MoverId, Velocity, World}
 use std::sync::Arc;
 
 impl Character {
-    // Coming and going
+    // Entering and leaving
 
     /// Creates an animated character in a world, with a mover and hit bodies by [`CharacterDef::in_world`].
-    /// `world_from_character` is where it stands (metres, its +Y up, +Z forward). [`despawn`](Self::despawn) removes
-    /// all of it.
+    /// `world_from_character` is its place (metres, +Y up, +Z forward). [`despawn`](Self::despawn) removes the
+    /// character with all its parts.
     ///
     /// # Panics
     /// If the transform is not finite.
@@ -31,10 +31,11 @@ impl Character {
         character
     }
 
-    /// Adds a character made by [`new`](Self::new) to a world, like [`spawn`](Self::spawn). No effect if it is in one.
+    /// Adds a character made by [`new`](Self::new) to a world, like [`spawn`](Self::spawn). No effect if it is in a
+    /// world already.
     ///
     /// # Panics
-    /// If its transform is not finite, or it is not animated.
+    /// If the character's transform is not finite, or the character is not animated.
     pub fn enter(&mut self, world: &mut World) {
         if self.is_in_world() {
             return;
@@ -45,17 +46,17 @@ impl Character {
         self.settle_detail(world);
     }
 
-    /// Removes all of it from the world: bodies, joints, drives, mover.
+    /// Removes all parts of the character from the world: bodies, joints, drives, mover.
     ///
     /// # Panics
-    /// If a part of it is missing.
+    /// If a part of the character is missing.
     pub fn despawn(mut self, world: &mut World) {
         self.leave(world);
     }
 
-    /// Moves it elsewhere at once; the way between is not checked. A lying character keeps its pose, springs and
-    /// garments their swing; [`reset_springs`](Self::reset_springs) and [`reset_garments`](Self::reset_garments)
-    /// restart those.
+    /// Moves the character elsewhere immediately; obstacles in between are not checked. A lying character keeps its
+    /// pose, springs and garments keep their swing; [`reset_springs`](Self::reset_springs) and
+    /// [`reset_garments`](Self::reset_garments) restart them.
     ///
     /// # Panics
     /// If the transform is not finite.
@@ -79,7 +80,7 @@ impl Character {
         if let Activity::Powered(balance) = &mut self.activity {
             balance.stumble = None;
         }
-        // Pins are fixed to the world: they would pull it back.
+        // Pins are fixed to the world: they would pull the character back.
         match (self.activity.state(), &self.physique.ragdoll) {
             (State::Flinching | State::Powered, _) => self.drive_bodies(world),
             (State::Preparing, Some(ragdoll)) => self.physique.drives.release(world, ragdoll),
@@ -87,15 +88,16 @@ impl Character {
         }
     }
 
-    /// Its level of detail, now or once clips move it again. Full for a character outside of a world.
+    /// Returns the character's level of detail, now or once clips move it again. Full for a character outside of a
+    /// world.
     pub fn level_of_detail(&self) -> Detail {
         self.detail.unwrap_or_default()
     }
 
-    /// Sets its level of detail: at once if clips move it, else once they do again, because a flinch, a fall or a
-    /// get-up finishes first. Pose and place do not change. Below hit bodies its bodies leave the world, unless it
-    /// holds something; they return with other ids. Its springs ease to the pose below hit bodies and cost nothing from
-    /// there until they return with the motion of the pose. No effect outside of a world.
+    /// Sets the character's level of detail: immediately if clips move it, otherwise once they do again, because a
+    /// flinch, a fall or a get-up finishes first. Pose and place do not change. Below [`Detail::HitBodies`] its bodies
+    /// leave the world, unless it holds a body; they return with other ids. Its springs then ease to the pose and cost
+    /// nothing from there, until they return with the motion of the pose. No effect outside of a world.
     pub fn set_level_of_detail(&mut self, world: &mut World, detail: Detail) {
         if self.is_in_world() {
             self.detail = Some(detail);
@@ -103,55 +105,55 @@ impl Character {
         self.settle_detail(world);
     }
 
-    // What it is
+    // Properties
 
-    /// Definition that it shares with its kind.
+    /// Returns the definition that the character shares with others of its kind.
     pub fn def(&self) -> &Arc<CharacterDef> {
         &self.def
     }
 
-    /// Its current state.
+    /// Returns the character's current state.
     pub fn state(&self) -> State {
         self.activity.state()
     }
 
-    /// True while it steps to catch itself.
+    /// Returns true while the character steps to catch itself.
     pub fn stumbles(&self) -> bool {
         self.activity.stumble().is_some()
     }
 
-    /// Transform of the character in the world. While it lies it goes with the body, without turning: under the pelvis,
-    /// as high as the lowest body.
+    /// Returns the transform of the character in the world. While the character lies, the transform follows the body
+    /// without rotating: it is under the pelvis, as high as the lowest body.
     pub fn world_from_character(&self) -> Transform {
         self.figure.place
     }
 
-    /// From the file's model space to the world, for a renderer's root node.
+    /// Returns the transform from the file's model space to the world, for a renderer's root node.
     pub fn world_from_model(&self) -> Affine {
         self.def.mapping().world_from_model(self.figure.place)
     }
 
-    /// Local transform of every joint of the rig, including springs and garments; nodes above the pelvis are at rest
-    /// (see [`crate::mapping`]).
+    /// Returns the local transform of every joint of the rig, including springs and garments; nodes above the pelvis
+    /// are at rest (see [`crate::mapping`]).
     pub fn pose(&self) -> &[LocalTransform] {
         if self.wear.pose.is_empty() { self.pose_without_springs() } else { &self.wear.pose }
     }
 
-    /// [`pose`](Self::pose) as clips and bodies have it, with all springs and garments at rest.
+    /// Returns [`pose`](Self::pose) as given by clips and bodies, with all springs and garments at rest.
     pub fn pose_without_springs(&self) -> &[LocalTransform] {
         self.feet.led(&self.figure.pose)
     }
 
-    /// Pose and place between the last step (`alpha` 0) and this one (1): `pose` is cleared and gets one local
-    /// transform per joint; returns the character's transform.
+    /// Computes pose and place between the last step (`alpha` 0) and the present one (1): `pose` is cleared and gets
+    /// one local transform per joint; returns the character's transform.
     pub fn interpolated(&self, alpha: f32, pose: &mut Vec<LocalTransform>) -> Transform {
         self.figure.between(self.pose(), alpha, pose)
     }
 
-    /// Skinning matrices for a renderer, between the last step (`alpha` 0) and this one (1): `palette` is cleared and
-    /// gets one per joint of the skin, from the mesh's bind pose to the world in metres. Each is the upper three rows
-    /// of a 4×4 matrix for column vectors, **row by row**: `[m00, m01, m02, m03, m10, …, m23]`, with the translation in
-    /// `m03`, `m13`, `m23`. [Detached](Self::detach) parts shrink to the cut. Allocates a pose.
+    /// Computes skinning matrices for a renderer, between the last step (`alpha` 0) and the present one (1): `palette`
+    /// is cleared and gets one matrix per joint of the skin, from the mesh's bind pose to the world in metres. Each is
+    /// the upper three rows of a 4×4 matrix for column vectors, **row by row**: `[m00, m01, m02, m03, m10, …, m23]`,
+    /// with the translation in `m03`, `m13`, `m23`. [Detached](Self::detach) parts shrink to the cut. Allocates a pose.
     ///
     /// # Panics
     /// If the rig has no such skin.
@@ -169,68 +171,70 @@ impl Character {
         }));
     }
 
-    /// Animator that plays its clips: those of [`CharacterDef::set`].
+    /// Returns the animator that plays the character's clips, those of [`CharacterDef::set`].
     pub fn animator(&self) -> &Animator {
         &self.gait.animator
     }
 
-    /// The animator that plays its clips; add tracks, crossfades and layers to it. It starts with the looped clip, and
-    /// plays that again after getting up; getting up stops all other tracks of layer 0. While the character is limp,
-    /// clips still move the joints without a body ([`Mapping::free`](crate::Mapping::free)), and events continue.
+    /// Returns the animator that plays the character's clips, mutable; add tracks, crossfades and layers to it. It
+    /// starts with the looped clip, and plays this clip again after getting up; getting up stops all other tracks of
+    /// layer 0. While the character is limp, clips still move the joints without a body
+    /// ([`Mapping::free`](crate::Mapping::free)), and events continue.
     pub fn animator_mut(&mut self) -> &mut Animator {
         &mut self.gait.animator
     }
 
-    /// Events of the last [`update`](Self::update) and since the one before it ended, in order, and what calls have brought about
-    /// since. Poll once after each update to receive every event exactly once.
+    /// Returns the events of the last [`update`](Self::update), in order: those since the end of the update before, and
+    /// those that calls have caused since. Poll once after each update to receive every event exactly once.
     pub fn events(&self) -> &[CharacterEvent] {
         &self.events.list
     }
 
-    /// Its bodies, while it has any: limp, or preparing to get up.
+    /// Returns the character's ragdoll, if any: while it is limp, or prepares to get up.
     pub fn ragdoll(&self) -> Option<&Ragdoll> {
         self.physique.ragdoll.as_ref()
     }
 
-    /// Drives of its bodies, while it has any.
+    /// Returns the drives of the character's bodies.
     pub fn drives(&self) -> &Drives {
         &self.physique.drives
     }
 
-    /// Drives of its bodies, mutable; used while it has any. [`set_drive`](Self::set_drive) creates them.
+    /// Returns the drives of the character's bodies, mutable; they act while it has bodies.
+    /// [`set_drive`](Self::set_drive) creates them.
     pub fn drives_mut(&mut self) -> &mut Drives {
         &mut self.physique.drives
     }
 
-    /// Its mover in the world; `None` without one, and while it lies.
+    /// Returns the character's mover in the world; `None` without a mover, and while the character lies.
     pub fn mover(&self) -> Option<MoverId> {
         self.gait.mover
     }
 
-    /// Its bodies in the world, in the order of the definition: hit bodies or those of its ragdoll; empty outside of a
-    /// world. [Detached](Self::detach) bodies keep their entries.
+    /// Returns the character's bodies in the world, in the order of the definition: hit bodies or those of its ragdoll;
+    /// empty outside of a world. [Detached](Self::detach) bodies keep their entries.
     pub fn bodies(&self) -> &[BodyId] {
         self.physique.ids()
     }
 
-    /// Index in the definition of one of its bodies, for instance one that a ray hit.
+    /// Returns the index in the definition of one of the character's bodies, for instance one that a ray hit.
     pub fn body_index(&self, id: BodyId) -> Option<usize> {
         self.physique.index_of(id)
     }
 
-    /// True if a body, by index in the definition, was not detached.
+    /// Returns true if a body, by index in the definition, was not detached.
     pub fn has_body(&self, body: usize) -> bool {
         self.physique.has(body)
     }
 
-    /// Joints of the rig whose skin was detached, ascending.
+    /// Returns the joints of the rig whose skin was detached, ascending.
     pub fn lost_joints(&self) -> Vec<JointIdx> {
         self.physique.lost_joints(&self.def)
     }
 
-    // Where it goes
+    // Movement
 
-    /// Sets the velocity over the ground, m/s, in place of root motion: clips play at the real speed. The component
+    /// Sets the velocity over the ground, m/s, which replaces root motion: clips play at the real speed. The component
     /// along up is ignored. No effect without a mover.
     ///
     /// # Panics
@@ -242,13 +246,13 @@ impl Character {
         }
     }
 
-    /// Returns to root motion, the initial state.
+    /// Returns to root motion, the initial setting.
     pub fn follow_clips(&mut self) {
         self.gait.follow_clips(&self.def);
     }
 
-    /// Turns it toward a direction, at [`InWorld::turn_speed`](super::InWorld::turn_speed), once it stands. A vertical
-    /// direction has no effect.
+    /// Turns the character toward a direction, at [`InWorld::turn_speed`](super::InWorld::turn_speed), once it stands.
+    /// A vertical direction has no effect.
     ///
     /// # Panics
     /// If the direction is not finite.
@@ -260,17 +264,17 @@ impl Character {
         }
     }
 
-    /// Has it jump in the next step, if it has ground then.
+    /// Makes the character jump in the next step, if it is then on the ground.
     pub fn jump(&mut self, world: &mut World) {
         if let Some(mover) = self.gait.mover {
             world.mover_jump(mover, self.def.in_world.jump_speed);
         }
     }
 
-    // What moves it
+    // Blows, drives and obstacles
 
-    /// Hits a body with an impulse (N·s, world axes) at its centre of mass; what would make it faster than 12 m/s goes
-    /// to the bodies above it in its chain. A character that is in a world and
+    /// Hits a body with an impulse (N·s, world axes) at its centre of mass; the part that would make the body faster
+    /// than 12 m/s goes to the bodies above it in its chain. A character that is in a world and
     /// [tough](super::InWorld::toughness) enough flinches; any other goes limp at its present speed. Returns the work
     /// of the impulse, joules; 0 for a [detached](Self::detach) body.
     ///
@@ -280,8 +284,8 @@ impl Character {
         self.strike(world, body, impulse, None)
     }
 
-    /// [`hit`](Self::hit) at the point where a ray or a shape hit one of its bodies. `None`, with no effect, if it is
-    /// no body of this character.
+    /// Like [`hit`](Self::hit), at the point where a ray or a shape hit one of the character's bodies. `None`, with no
+    /// effect, if the hit body is not one of them.
     ///
     /// # Panics
     /// If the impulse is not finite.
@@ -290,7 +294,8 @@ impl Character {
         Some(self.strike(world, body, impulse, Some(hit.point)))
     }
 
-    /// Goes limp: bodies take over at the pose and speed of the animation. No effect if they did already.
+    /// Makes the character limp: bodies take over at the pose and speed of the animation. No effect on a limp
+    /// character.
     pub fn go_limp(&mut self, world: &mut World) {
         self.fall(world);
     }
@@ -298,7 +303,7 @@ impl Character {
     /// Sets the drive of all bodies.
     ///
     /// # Panics
-    /// If it is not in the world.
+    /// If the character is not in the world.
     pub fn set_preset(&mut self, world: &mut World, preset: Preset) {
         let may_get_up = self.physique.may_get_up(&self.def);
         match (preset, self.state()) {
@@ -307,7 +312,7 @@ impl Character {
                 self.physique.drives.set_all(DriveMode::Keyed, POWERED_HALF_LIFE);
                 self.activity = Activity::Flinching(Flinch { seconds: RETURNED_AFTER * POWERED_HALF_LIFE });
             }
-            // Bodies that clips lead would tear off what holds them.
+            // Bodies moved by clips would tear off whatever holds them.
             (Preset::Animated, State::Limp | State::Preparing)
                 if may_get_up && !self.grips.is_gripped(&self.physique, world) =>
             {
@@ -323,21 +328,22 @@ impl Character {
         }
     }
 
-    /// Sets what it does once it lies still, instead of [`CharacterDef::after_settling`]. A dead one stays down: set
-    /// [`StayDown`](AfterSettling::StayDown) before or after it falls; one that gets up already goes on. Set back, one
-    /// that lies still gets up.
+    /// Sets the character's action once it lies still, instead of [`CharacterDef::after_settling`]. For a dead
+    /// character set [`StayDown`](AfterSettling::StayDown), before or after it falls; a get-up in progress continues.
+    /// With [`GetUp`](AfterSettling::GetUp), a character that lies still gets up.
     pub fn set_after_settling(&mut self, after_settling: AfterSettling) {
         self.after_settling = after_settling;
     }
 
-    /// Its action once it lies still.
+    /// Returns the character's action once it lies still.
     pub fn after_settling(&self) -> AfterSettling {
         self.after_settling
     }
 
-    /// Gives it back to its looped clip, whatever it does now: at `place`, `phase` seconds into the clip. Pose and motion die away within
-    /// `seconds`, in which it counts as getting up. The way there goes through what is between: it is for a moment that was chosen.
-    /// Nothing happens to one that cannot get up, for [a leg of it is gone](Self::detach).
+    /// Returns the character to its looped clip from any state: at `place`, `phase` seconds into the clip. Its pose and
+    /// motion fade to the clip within `seconds`, during which it counts as getting up. It passes through obstacles on
+    /// the way, so choose a suitable moment. No effect on a character that cannot get up because [a leg was
+    /// detached](Self::detach).
     ///
     /// # Panics
     /// If the place or the phase is not finite, or `seconds` is negative or not finite.
@@ -349,11 +355,11 @@ impl Character {
         }
     }
 
-    /// Has part of it moved in another way: half of the change is made within `half_life` seconds. What stands is powered
-    /// from then on, all else of it as its clips have it.
+    /// Changes the drive of a part of the character: half of the change is made within `half_life` seconds. A standing
+    /// character is powered from then on; its other parts follow the clips.
     ///
     /// # Panics
-    /// If no body is called so, or as [`Drives::set`].
+    /// If no body has this name, or as for [`Drives::set`].
     pub fn set_drive(&mut self, world: &mut World, part: Part<'_>, mode: DriveMode, half_life: f32) {
         let def = self.def.clone();
         let named = |name: &str| def.body_named(name).unwrap_or_else(|| panic!("no body is called '{name}'"));
@@ -374,11 +380,11 @@ impl Character {
         }
     }
 
-    /// Moves a limp character out of static shapes that it is deep in, at 1.9 m/s, all its bodies together; it falls
-    /// from where it is clear. Returns false if there is nothing to do: it is not limp, or held, no body is deeper than
-    /// 0.1 m, or no way of at most 1.2 m leads out.
+    /// Moves a limp character out of static shapes in which it is deep, at 1.9 m/s, with all bodies together; it falls
+    /// from where it is clear. Returns false if nothing is done: the character is not limp, or held, no body is deeper
+    /// than 0.1 m, or no displacement of at most 1.2 m leads out.
     ///
-    /// A moving character leaves a wall on the side that it came from, a resting one on the nearer side. Going limp
+    /// A moving character leaves a wall on the side from which it came, a resting one on the nearer side. Going limp
     /// calls this; call it yourself if a wall was placed or a door has closed on a limp character.
     pub fn clear(&mut self, world: &mut World) -> bool {
         let is_gripped = self.grips.is_gripped(&self.physique, world);
@@ -393,15 +399,15 @@ impl Character {
         true
     }
 
-    // What it holds
+    // Holding and detaching
 
-    /// Makes one of its bodies (by role or bone) hold a dynamic body, which is moved there, on a fixed joint. While
-    /// held it passes through the character's own bodies and through movers. Use [`grab`](Self::grab) for limbs of
-    /// others.
+    /// Makes one of the character's bodies (by role or bone) hold a dynamic body, which is moved to the hand, on a
+    /// fixed joint. While held, this body passes through the character's own bodies and through movers. Use
+    /// [`grab`](Self::grab) for limbs of others.
     ///
     /// # Panics
-    /// If no body has that name or it was [detached](Self::detach), the character has none in the world, it holds that
-    /// one already, or that is part of a character or ragdoll.
+    /// If no body has that name or it was [detached](Self::detach), the character has no bodies in the world, it holds
+    /// `held` already, or `held` is part of a character or ragdoll.
     #[track_caller]
     pub fn hold(&mut self, world: &mut World, bone: &str, held: BodyId, grip: &Grip) -> JointId {
         let body = self.def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
@@ -415,29 +421,30 @@ impl Character {
         self.grips.hold(bodies, body, held, grip, world)
     }
 
-    /// Releases a held body; false if it does not hold that.
+    /// Releases a held body; returns false if the character does not hold it.
     pub fn release(&mut self, world: &mut World, held: BodyId) -> bool {
         self.grips.release(self.physique.own(), held, world, &mut self.events)
     }
 
-    /// Held bodies, in the order in which it took them.
+    /// Returns the held bodies, in the order in which the character took them.
     pub fn held(&self) -> impl Iterator<Item = BodyId> {
         self.grips.held()
     }
 
-    /// Makes one of its bodies (by role or bone) grab a body: another's limb, a crate. It holds the surface point
-    /// nearest to the hand, in place, so that nothing snaps, and pulls it to the hand at [`speed`](Grab::speed); the
-    /// body rotates freely about the point. It drags and lifts with at most [`max_force`](Grab::max_force), and lets go
-    /// if that does not suffice: [`CharacterEvent::LetGo`]. [`release`](Self::release) lets go at once. A grabbed body
-    /// passes through the character's own bodies and through movers.
+    /// Makes one of the character's bodies (by role or bone) grab a body: another's limb, a crate. The grip holds the
+    /// surface point nearest to the hand, in place, so that nothing snaps, and pulls this point to the hand at
+    /// [`speed`](Grab::speed); the body rotates freely about the point. The grip drags and lifts with at most
+    /// [`max_force`](Grab::max_force), and lets go if that does not suffice: [`CharacterEvent::LetGo`].
+    /// [`release`](Self::release) lets go immediately. A grabbed body passes through the character's own bodies and
+    /// through movers.
     ///
-    /// One of the two must be dynamic: a kinematic hand drags limp or powered bodies. A grabbed character stays limp
-    /// and does not get up. A limb of an animated one is kinematic until a blow makes it give way:
-    /// [`hit`](Self::hit) it with an impulse of 0 before. Held, it stays so; its character follows the limb at up to
-    /// 2 m/s, and falls if that is drawn 0.3 of its height from the clip.
+    /// One of the two bodies must be dynamic: a kinematic hand drags limp or powered bodies. A grabbed character stays
+    /// limp and does not get up. A limb of an animated character is kinematic until a blow makes it weak:
+    /// [`hit`](Self::hit) it with an impulse of 0 before. While held, the limb stays weak; its character follows the
+    /// limb at up to 2 m/s, and falls if the limb is drawn 0.3 of the character's height from the clip.
     ///
-    /// `None` if the target is out of reach, its own, held by it already, or neither body is dynamic; or if the
-    /// character has no such body in the world.
+    /// Returns `None` if the target is out of reach, a body of the character, or held already, if neither body is
+    /// dynamic, or if the character has no such body in the world.
     ///
     /// ```
     /// use sinew_math::{Rotation, Transform, Vec3};
@@ -474,15 +481,15 @@ impl Character {
         self.grips.grab(&self.physique, body, held, grab, world)
     }
 
-    /// Detaches a limb: the named body (by role or bone) and everything below it. They become bodies of their own at
-    /// their present velocity, in any state; a holder keeps holding them. What they held is dropped; garments hang on
-    /// the rest.
+    /// Detaches a limb: the named body (by role or bone) and all bodies below it. They become bodies of their own at
+    /// their present velocity, in any state; a holder keeps holding them. Bodies that they held are dropped; garments
+    /// hang on the remaining bodies.
     ///
     /// The character lives on. Without an arm or a hand it continues. Without a leg, a foot, the head or a part of the
     /// trunk it goes limp and does not get up again. [`bodies`](Self::bodies) keeps its order: the ids of the limb's
     /// bodies stay in place, and [`has_body`](Self::has_body) is false for them.
     ///
-    /// `None` if that body is detached already.
+    /// Returns `None` if that body is detached already.
     ///
     /// ```
     /// use sinew_math::Transform;
@@ -505,7 +512,7 @@ impl Character {
     /// ```
     ///
     /// # Panics
-    /// If no body is called so, or it is the first of the definition, the pelvis.
+    /// If no body has this name, or it is the first of the definition, the pelvis.
     #[track_caller]
     pub fn detach(&mut self, world: &mut World, bone: &str) -> Option<Limb> {
         let def = self.def.clone();
@@ -532,17 +539,17 @@ impl Character {
         Some(limb)
     }
 
-    // What it wears
+    // Springs and garments
 
-    /// Restarts its springs at rest with the next step, for instance after a camera cut.
+    /// Restarts the character's springs at rest with the next step, for instance after a camera cut.
     pub fn reset_springs(&mut self) {
         self.wear.springs.reset();
     }
 
-    /// Restarts its garments at rest, for instance after a camera cut.
+    /// Restarts the character's garments at rest, for instance after a camera cut.
     ///
     /// # Panics
-    /// If it is another world than the character's.
+    /// If `world` is not the character's world.
     pub fn reset_garments(&mut self, world: &mut World) {
         if !self.wear.garments.groups.is_empty() {
             self.wear.garments.take_off(world);
@@ -551,8 +558,8 @@ impl Character {
         }
     }
 
-    /// Particles of its garments in the world, in the order of
-    /// [`CharacterDef::garments`](super::CharacterDef::garments); empty while it has no bodies.
+    /// Returns the particles of the character's garments in the world, in the order of
+    /// [`CharacterDef::garments`](super::CharacterDef::garments); empty while the character has no bodies.
     pub fn garments(&self) -> &[GroupId] {
         &self.wear.garments.groups
     }

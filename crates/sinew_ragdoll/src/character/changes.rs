@@ -28,7 +28,7 @@ impl Character {
         self.detail.is_some()
     }
 
-    /// True if its feet follow the ground.
+    /// Returns true if the character's feet follow the ground.
     pub(super) fn follows_ground(&self) -> bool {
         self.def.in_world.foot_planting == FootPlanting::OnGround
             && self.def.motions().locomotion != Locomotion::Exact
@@ -40,7 +40,7 @@ impl Character {
         self.detail == Some(Detail::Frozen) && self.state() == State::Animated
     }
 
-    /// True if it catches itself from pushes by steps.
+    /// Returns true if the character steps to catch itself from pushes.
     pub(super) fn steps(&self) -> bool {
         matches!(self.activity, Activity::Powered(_))
             && self.def.in_world.most_steps > 0
@@ -51,7 +51,7 @@ impl Character {
 
     // Detail
 
-    /// Adds or removes bodies and mover by its level of detail.
+    /// Adds or removes bodies and mover by the character's level of detail.
     pub(super) fn settle_detail(&mut self, world: &mut World) {
         let Some(detail) = self.detail else { return };
         if self.state() != State::Animated || self.physique.ragdoll.is_some() {
@@ -72,7 +72,7 @@ impl Character {
         }
     }
 
-    /// Puts hit bodies into the world where the pose has them.
+    /// Adds hit bodies to the world in the character's pose.
     fn enter_bodies(&mut self, world: &mut World) {
         let HitBodies::Present(yields) = self.def.in_world.hit_bodies else { return };
         let mut poses = Vec::new();
@@ -84,7 +84,7 @@ impl Character {
         wear.dress(bearer, world);
     }
 
-    /// Removes all of it from the world; its clips continue at its last place.
+    /// Removes all parts of the character from the world; its clips continue at its last place.
     pub(super) fn leave(&mut self, world: &mut World) {
         self.grips.release_all(self.physique.own(), false, world, &mut self.events);
         self.wear.garments.take_off(world);
@@ -99,14 +99,14 @@ impl Character {
         self.detail = None;
     }
 
-    /// Adds a mover at its place, at a share of its height.
+    /// Adds a mover at the character's place, at a share of its full height.
     fn stand_up(&mut self, world: &mut World, share: f32) {
         if self.is_in_world() {
             self.gait.stand_up(&self.def, self.figure.place.translation, world, share);
         }
     }
 
-    /// Removes its mover because it lies.
+    /// Removes the mover of a lying character.
     fn sit_down(&mut self, world: &mut World) {
         self.gait.sit_down(world);
         self.grips.spare_bearer(self.physique.own(), None, world);
@@ -114,7 +114,7 @@ impl Character {
 
     // Bodies and clips
 
-    /// Prediction of its clips, with buffers.
+    /// Returns the prediction of the clips, with buffers.
     fn ahead(&mut self) -> (Foresight<'_>, &mut Scratch) {
         let foresight = Foresight {
             def: &self.def,
@@ -141,7 +141,7 @@ impl Character {
         }
     }
 
-    /// Turns its bodies into a ragdoll, at the pose and speed of the animation, with one drive for all.
+    /// Turns the bodies into a ragdoll, at the pose and speed of the animation, with the same drive for all.
     pub(super) fn take_bodies(&mut self, world: &mut World, mode: DriveMode) {
         if self.physique.ragdoll.is_none() {
             self.become_bodies(world, self.def.in_world.rule());
@@ -162,7 +162,7 @@ impl Character {
         self.physique.wake(&self.def, &states, rule, world);
     }
 
-    /// Makes clips lead the bodies again: they leave the world, or stay as hit bodies.
+    /// Returns control of the bodies to the clips: the bodies leave the world, or stay as hit bodies.
     pub(super) fn leave_bodies(&mut self, world: &mut World) {
         self.physique.let_go(&self.def, world);
         let Some(ragdoll) = self.physique.ragdoll.take() else { return };
@@ -176,8 +176,8 @@ impl Character {
         self.physique.keep_own();
     }
 
-    /// Gives led bodies the velocities of their clips. Their current ones, which move them to their place within a
-    /// step, would throw them when a mover has just climbed a kerb.
+    /// Gives kinematic bodies the velocities of their clips. Their present velocities, which move them to their place
+    /// within a step, would throw them when a mover has just climbed a kerb.
     fn slow_led(&mut self, world: &mut World, bodies: &[usize]) {
         let (foresight, scratch) = self.ahead();
         foresight.next(world.def().dt(), scratch);
@@ -207,8 +207,8 @@ impl Character {
         }
     }
 
-    /// Flinches or falls by a contact blow to one of its bodies. A dynamic body received the impulse in the contact
-    /// already.
+    /// Makes the character flinch or fall by a contact blow to one of its bodies. A dynamic body received the impulse
+    /// in the contact already.
     pub(super) fn be_struck(&mut self, world: &mut World, body: usize, strike: Strike) {
         let is_led = world.kind(self.physique.ids()[body]) != BodyKind::Dynamic;
         if self.react(world, body, strike.impulse) && is_led {
@@ -216,7 +216,7 @@ impl Character {
         }
     }
 
-    /// Flinches or falls; false if no body may move by the blow.
+    /// Makes the character flinch or fall; returns false if the blow may move no body.
     pub(super) fn react(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
         assert!(impulse.is_finite(), "an impulse is finite");
         assert!(body < self.def.ragdoll.bodies.len(), "there is such a body");
@@ -242,7 +242,8 @@ impl Character {
             }
     }
 
-    /// True if a field that gave it this momentum fells it. Without a threshold the usual one applies: a breeze is no blow.
+    /// Returns true if a field that gave the character this momentum fells it. Without a threshold the usual one
+    /// applies, so that a breeze is not a blow.
     pub(super) fn is_swept_by(&self, blow: Blow) -> bool {
         let lowness = self.activity.lowness(&self.def, &self.gait.animator);
         let fells = |least: f32| blow.impulse.length() >= blows::felling(least, lowness);
@@ -253,8 +254,8 @@ impl Character {
         }
     }
 
-    /// Makes the struck limb weak; false if none may be. For a body that is being driven to the start of a clip, all
-    /// are.
+    /// Makes the struck limb weak; returns false if no limb may be weak. While the character is driven to the start
+    /// of a clip, every limb may be weak.
     pub(super) fn flinch(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
         let state = self.state();
         let gives_way = match state {
@@ -286,7 +287,7 @@ impl Character {
         gives_way
     }
 
-    /// Adds an impulse that its bodies received, N·s.
+    /// Adds an impulse that the character's bodies received, N·s.
     fn shove(&mut self, world: &mut World, impulse: Vec3) {
         let Activity::Powered(balance) = &mut self.activity else { return };
         let on = Balancing {
@@ -300,7 +301,7 @@ impl Character {
         }
     }
 
-    /// Its clips lead all bodies again.
+    /// Lets clips move all bodies again.
     pub(super) fn recover(&mut self, world: &mut World) {
         let (foresight, scratch) = self.ahead();
         foresight.next(world.def().dt(), scratch);
@@ -328,9 +329,9 @@ impl Character {
         }
     }
 
-    // Limp
+    // Limp characters
 
-    /// Goes limp at the pose and speed of the animation.
+    /// Makes the character limp at the pose and speed of the animation.
     pub(super) fn fall(&mut self, world: &mut World) {
         if self.physique.ragdoll.is_some() {
             return self.fall_again(world);
@@ -347,7 +348,7 @@ impl Character {
         self.clear(world);
     }
 
-    /// A preparing or powered body becomes limp again.
+    /// Makes a preparing or powered character limp again.
     fn fall_again(&mut self, world: &mut World) {
         let powered = match self.state() {
             State::Flinching | State::Powered => true,
@@ -374,7 +375,7 @@ impl Character {
         self.clear(world);
     }
 
-    /// Continues its way out of a wall for the next step, or makes the bodies fall where the way ends.
+    /// Continues the way out of a wall for the next step, or makes the bodies fall where the way ends.
     pub(super) fn go_out(&mut self, world: &mut World) {
         let Activity::Limp(lying) = &mut self.activity else { return };
         if !lying.clearing.go_on(self.physique.own(), world) {
@@ -394,7 +395,7 @@ impl Character {
 
     // Getting up
 
-    /// Gets up, or first prepares the body for it.
+    /// Gets up, or first prepares the body for getting up.
     pub(super) fn prepare(&mut self, world: &mut World) {
         let def = self.def.clone();
         let moves = def.moves();
@@ -412,7 +413,7 @@ impl Character {
         prepare::draw(&def, &choice, &mut self.physique, &mut self.scratch, world);
     }
 
-    /// Gets up if nobody stands or lies on it; otherwise it waits.
+    /// Gets up if nobody stands or lies on the character; otherwise it waits.
     pub(super) fn get_up_where_free(&mut self, world: &mut World) {
         let lies = self.figure.stance(&self.def, &mut self.scratch);
         let moves = self.def.moves();
@@ -426,13 +427,13 @@ impl Character {
             && (is_taken(&self.def, world, place.translation)
                 || is_under(&self.def, self.physique.own(), steps, world));
         let Some(still) = self.activity.stillness_mut() else { return };
-        // A character that lay on it may have got up in this update and only leaves with the next step.
+        // A character on top may have got up in this update and leaves only with the next step.
         if core::mem::replace(&mut still.free, !waits) && !waits {
             self.get_up(world);
         }
     }
 
-    /// Starts the moment of a get-up clip that is most like the pose.
+    /// Starts the get-up clip at its moment most similar to the pose.
     pub(super) fn get_up(&mut self, world: &mut World) {
         let def = self.def.clone();
         let moves = def.moves();
@@ -468,7 +469,7 @@ impl Character {
         self.stand_up(world, LYING_MOVER);
     }
 
-    /// Back to the looped clip.
+    /// Returns to the looped clip.
     pub(super) fn stand(&mut self, world: &World) {
         let def = self.def.clone();
         let moves = def.moves();
@@ -499,8 +500,8 @@ impl Character {
         }
     }
 
-    /// Stands on the ground at `place`, stops all tracks of the whole body, and lets the present pose and motion decay
-    /// within `seconds`. Nothing moves in the world yet.
+    /// Moves the character to the ground at `place`, stops all tracks of the whole body, and lets the present pose and
+    /// motion decay within `seconds`. The world does not change yet.
     fn settle_into(&mut self, world: &World, place: Transform, lean: Vec3, seconds: f32) {
         let def = self.def.clone();
         let own = self.detail.map(|_| self.physique.own());
@@ -513,8 +514,8 @@ impl Character {
         self.take_over(world, standing(place, lean, pelvis, height), seconds);
     }
 
-    /// Gives the pose back to the looped clip at `phase` seconds, of a character that stands at `place`: what it does now dies away within
-    /// `seconds`.
+    /// Returns the pose to the looped clip at `phase` seconds, for a character at `place`. The present pose and motion
+    /// decay within `seconds`.
     pub(super) fn return_to(&mut self, world: &mut World, place: Transform, phase: f32, seconds: f32) {
         self.end_clearing(world);
         self.grips.release_all(self.physique.own(), false, world, &mut self.events);
@@ -533,8 +534,8 @@ impl Character {
         self.stand_up(world, 1.0);
     }
 
-    /// Stands at `place` with every joint where it is in the world, stops what plays on the whole body, and lets the present pose and its
-    /// motion die away within `seconds` in what will be played.
+    /// Moves the character's frame to `place` while every joint stays in place in the world, stops all tracks of the
+    /// whole body, and blends the present pose and motion into the next tracks within `seconds`.
     fn take_over(&mut self, world: &World, place: Transform, seconds: f32) {
         let def = self.def.clone();
         self.figure.reframe(&def, place);
@@ -548,9 +549,10 @@ impl Character {
         stopped.into_iter().for_each(|track| animator.stop(def.set(), track));
     }
 
-    // Limbs that are cut off
+    // Detached limbs
 
-    /// Takes a limb's bodies and joints from it: the present ones, or new ones for a character without any.
+    /// Removes a limb's bodies and joints from the character and returns them: the present ones, or new ones for a
+    /// character without any.
     pub(super) fn part_with(&mut self, world: &mut World, parts: &[usize]) -> (Vec<BodyId>, Vec<JointId>) {
         let (bodies, joints) = if self.physique.ragdoll.is_some() {
             self.slow_led(world, parts);
@@ -560,7 +562,7 @@ impl Character {
             self.physique.cut_led(&self.def, parts, states, world)
         };
         for &body in &bodies {
-            // It collides like any body and blocks nobody.
+            // A detached body collides like any body and blocks nobody.
             let rule = ContactRule::Yields(Yields::default());
             world.set_contact_rule(sinew_physics::ShapeId { body, shape: 0 }, rule);
         }
@@ -588,7 +590,7 @@ impl Character {
         wear.rehang(bearer, world);
     }
 
-    /// Springs and garments, with their wearer.
+    /// Returns the springs and garments, with their wearer.
     pub(super) fn wearing(&mut self) -> (&mut Wear, Bearer<'_>) {
         let bearer = Bearer {
             def: &self.def,

@@ -9,8 +9,8 @@ use sinew_physics::{
     ShapeCast, ShapeId, Velocity, World,
 };
 
-/// Starts to move all bodies together out of static shapes that they are deep in; `None` if none is deep, or no way
-/// leads out.
+/// Starts to move all bodies together out of static shapes in which they are deep; `None` if no body is deep, or no
+/// displacement leads out.
 pub(super) fn begin(own: &[BodyId], world: &mut World) -> Option<Clearing> {
     let momentum: Vec3 = own.iter().map(|&body| world.velocity(body).linear * world.mass(body).mass).sum();
     let back = normalize_or(-momentum, Vec3::ZERO);
@@ -18,7 +18,7 @@ pub(super) fn begin(own: &[BodyId], world: &mut World) -> Option<Clearing> {
     let direction = normalize_or(way, Vec3::Y);
     let mut velocities: Vec<Velocity> = own.iter().map(|&body| world.velocity(body)).collect();
     for velocity in &mut velocities {
-        // The velocity that took it into the wall is removed.
+        // Remove the velocity into the wall.
         velocity.linear -= direction * min(velocity.linear.dot(direction), 0.0);
     }
     own.iter().for_each(|&body| world.set_kind(body, BodyKind::Kinematic));
@@ -26,7 +26,7 @@ pub(super) fn begin(own: &[BodyId], world: &mut World) -> Option<Clearing> {
 }
 
 impl Clearing {
-    /// Continues for the next step; false where the way ends.
+    /// Continues for the next step; returns false where the way ends.
     pub fn go_on(&mut self, own: &[BodyId], world: &mut World) -> bool {
         let way = &mut self.way;
         let dt = world.def().dt();
@@ -52,8 +52,8 @@ impl Clearing {
     }
 }
 
-/// Displacement by which the bodies together leave all shapes that they are deep in, world, metres; `None` if none is
-/// deep, or no way leads out. `back` is the direction that they came from, of length 1 or 0.
+/// Returns the displacement by which the bodies together leave all shapes in which they are deep, world, metres; `None`
+/// if no body is deep, or no displacement leads out. `back` is the direction from which they came, of length 1 or 0.
 fn way_out(world: &World, bodies: &[BodyId], back: Vec3) -> Option<Vec3> {
     let placed: Vec<(Shape, Transform)> = bodies.iter().flat_map(|&body| world.shapes(body)).collect();
     let moved = |way: Vec3| {
@@ -86,7 +86,7 @@ fn way_out(world: &World, bodies: &[BodyId], back: Vec3) -> Option<Vec3> {
     (way.length() > 0.0 && way.length() <= CLEARING_REACH).then_some(way)
 }
 
-/// Deepest overlap with a static shape that pushes, if it is deeper than `limit`, metres.
+/// Returns the deepest overlap with a static shape that pushes, if it is deeper than `limit`, metres.
 fn deepest(
     (world, filter): (&World, QueryFilter<'_>),
     probes: impl Iterator<Item = Probe>,
@@ -103,7 +103,7 @@ fn deepest(
     found.reduce(deeper)
 }
 
-/// Directions of the shortest ways of probes out of a shape, and their opposites, each once.
+/// Returns the directions of the shortest ways of probes out of a shape, and their opposites, each once.
 fn directions(world: &World, probes: impl Iterator<Item = Probe>, obstacle: ShapeId) -> Vec<Vec3> {
     let only = |body, shape| obstacle == ShapeId { body, shape };
     let mut directions: Vec<Vec3> = Vec::new();
@@ -117,8 +117,8 @@ fn directions(world: &World, probes: impl Iterator<Item = Probe>, obstacle: Shap
     directions
 }
 
-/// Distance along `direction` at which a probe leaves a shape, metres; `None` if it is still inside at
-/// [`CLEARING_REACH`].
+/// Returns the distance along `direction` at which a probe leaves a shape, metres; `None` if the probe is still inside
+/// at [`CLEARING_REACH`].
 fn exit(world: &World, mut probe: Probe, obstacle: ShapeId, direction: Vec3) -> Option<f32> {
     let reach = direction * CLEARING_REACH;
     probe.world_from_shape.translation += reach;

@@ -1,5 +1,5 @@
 //! Keeps the skin out of the floor during transitions from bodies to a clip and between clips. Joints blend separately,
-//! so feet, hands and knees would pass through the floor on which both poses lie.
+//! so feet, hands and knees would pass through the floor although both poses are above it.
 //!
 //! Each part may be as deep as at the start of the transition, and gradually as deep as in the clip. Deeper parts are
 //! raised: the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper arm.
@@ -18,7 +18,7 @@ use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
 /// Number of parts: the trunk with its knees, the feet, the hands, the elbows, left ones first.
 pub(super) const PARTS: usize = 7;
 const TRUNK: usize = 0;
-/// Largest number of times that trunk and limbs are raised: raising a foot may press its knee into the floor.
+/// Largest number of passes that raise trunk and limbs: raising a foot may press its knee into the floor.
 const MOST_PASSES: usize = 3;
 pub(super) const FEET: [usize; 2] = [1, 2];
 const HANDS: [usize; 2] = [3, 4];
@@ -29,18 +29,18 @@ const ELBOWS: [usize; 2] = [5, 6];
 /// Depth of each part in the floor, metres; negative above it, −∞ for a missing part.
 pub(super) type Depths = [f32; PARTS];
 
-/// The passage that a character is in.
+/// A transition of a character, with the depths that its parts may have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Passage {
-    /// Depths at the start, at least 0.
+    /// Depths at the start of the transition, at least 0.
     pub from: Depths,
     /// Largest depths in the target, at least 0.
     pub to: Depths,
-    /// Ankles at the start, world, left and right.
+    /// Ankles at the start of the transition, world, left and right.
     pub ankles: [Transform; 2],
-    /// Least distance for a foot to step, metres.
+    /// Least distance to the goal at which a foot steps, metres.
     pub far: [f32; 2],
-    /// Seconds since its start, and its duration.
+    /// Seconds since the start of the transition, and its duration.
     pub age: f32,
     pub seconds: f32,
     /// Smoothed height of the ground under each part over the floor of the clip, metres, and its rate of change, m/s.
@@ -51,18 +51,18 @@ pub(super) struct Passage {
 /// A stepping foot.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
-    /// Character space.
+    /// Ankle at the start of the step, character space.
     from: Transform,
-    /// Least distance to its goal, metres.
+    /// Least distance to the foot's goal, metres.
     far: f32,
-    /// Share of the step.
+    /// Share of the step that is done.
     along: f32,
-    /// Height over the line, as a share of the step height.
+    /// Height of the foot over the straight line, as a share of the step height.
     over: f32,
 }
 
 impl Passage {
-    /// Allowed depths in the floor of the clip after this many seconds more.
+    /// Returns the allowed depths in the floor of the clip after `later` seconds more.
     pub fn allowed(&self, later: f32) -> Depths {
         let share = if self.seconds > 0.0 { smoothstep((self.age + later) / self.seconds) } else { 1.0 };
         core::array::from_fn(|part| {
@@ -71,7 +71,7 @@ impl Passage {
         })
     }
 
-    /// Steps of the feet: at once while it lies, alternately once it stands.
+    /// Returns the steps of the feet: both together while the character lies, alternately once it stands.
     pub fn steps(&self, later: f32, state: State, place: Transform) -> [Step; 2] {
         let u = if self.seconds > 0.0 { (self.age + later) / self.seconds } else { f32::INFINITY };
         [0, 1].map(|foot| {
@@ -82,7 +82,7 @@ impl Passage {
         })
     }
 
-    /// Share of a lift that is applied; it returns to zero after the transition.
+    /// Returns the share of a lift that is applied; it returns to zero after the transition.
     pub fn share(&self, later: f32, state: State) -> f32 {
         match state {
             State::GettingUp => 1.0,
@@ -98,13 +98,13 @@ impl Passage {
 #[derive(Clone, Copy, Debug)]
 struct LimbChain {
     bones: TwoBone,
-    /// Part of its end, and of its middle joint if the limb raises that.
+    /// Part of the limb's end, and of its middle joint if the limb raises that joint.
     end: usize,
     middle: Option<usize>,
 }
 
 impl LimbChain {
-    /// An ankle stepping to `to`; `None` if it is there.
+    /// Returns an ankle on its step to `to`; `None` if it is there already.
     fn stepped(&self, to: Transform, steps: Option<[Step; 2]>, def: &CharacterDef) -> Option<Transform> {
         let foot = FEET.into_iter().position(|part| part == self.end)?;
         let Step { from, far, along, over } = steps?[foot];
@@ -123,20 +123,20 @@ impl LimbChain {
     }
 }
 
-/// Lowest candidate points of the skin, and how to raise them.
+/// Candidates for the lowest points of the skin, and the limbs that raise them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Clearance {
     /// Skin of each part.
     parts: Vec<Surface>,
     limbs: Vec<LimbChain>,
-    /// Joint of each hand, and the skin of the hand with what it holds.
+    /// Joint of each hand, and the skin of the hand with the objects that it holds.
     hands: Vec<(JointIdx, Surface)>,
-    /// Joints beside the limb that carries them, each with the joint that it follows.
+    /// Joints that are not descendants of the limb that carries their body, each with the joint that it follows.
     strays: Vec<(JointIdx, JointIdx)>,
 }
 
 impl Clearance {
-    /// From the drawn skin; `bind` is the bind pose in model space.
+    /// Collects the points of the drawn skin; `bind` is the bind pose in model space.
     pub fn of(rig: &Rig, def: &RagdollDef, bind: &[Affine]) -> Self {
         let surface = Surface::of(rig, def);
         if surface.sample.is_empty() {
@@ -174,17 +174,17 @@ impl Clearance {
         Self { parts: chosen.map(skin).into(), hands: hands.collect(), strays: strays(rig, def), limbs }
     }
 
-    /// True of a rig without skin.
+    /// Returns true for a rig without skin.
     pub fn is_empty(&self) -> bool {
         self.parts.is_empty()
     }
 
-    /// Joint of an ankle, left and right.
+    /// Returns the joint of an ankle, left and right.
     pub fn ankle(&self, foot: usize) -> Option<JointIdx> {
         self.limbs.iter().find(|limb| limb.end == FEET[foot]).map(|limb| limb.bones.end)
     }
 
-    /// Outmost points of a part, in the space of `model`.
+    /// Returns the outermost points of a part, in the space of `model`.
     pub fn places(&self, part: usize, model: &[Affine], palette: &mut Vec<Affine>) -> Vec<Vec3> {
         self.parts.get(part).map_or_else(Vec::new, |surface| surface.places(model, palette))
     }
@@ -193,7 +193,7 @@ impl Clearance {
         -self.places(part, model, palette).iter().map(|place| place.y).fold(f32::INFINITY, min)
     }
 
-    /// Depths of all parts; `model` is in character space.
+    /// Returns the depths of all parts; `model` is in character space.
     pub fn depths(&self, model: &[Affine]) -> Depths {
         let mut palette = Vec::new();
         if self.parts.is_empty() {
@@ -202,7 +202,7 @@ impl Clearance {
         core::array::from_fn(|part| self.depth(part, model, &mut palette))
     }
 
-    /// Largest depth of each part over some poses, at least 0.
+    /// Returns the largest depth of each part over some poses, at least 0.
     pub fn deepest(&self, def: &CharacterDef, take: &Take) -> Depths {
         let (mut model, mut deepest) = (Vec::new(), [0.0; PARTS]);
         for frame in 0..take.frames() {
@@ -258,7 +258,7 @@ impl Clearance {
                 let up = lift(self.depth(middle, model, &mut palette), middle);
                 raise_middle(rig, limb.bones, up, &root, pose, model);
             }
-            // A raised foot presses its knee into the floor, which is the trunk's.
+            // A raised foot presses its knee, which belongs to the trunk, into the floor.
             trunk = lift(self.depth(TRUNK, model, &mut palette), TRUNK);
             if trunk <= 0.0 {
                 break;
@@ -267,7 +267,7 @@ impl Clearance {
         self.carry(def, &carried, 0..self.strays.len(), pose, model);
     }
 
-    /// Displaces the trunk, and the ends of the limbs, which otherwise stay; character space.
+    /// Displaces the trunk and the ends of the limbs, which otherwise keep their places; character space.
     pub fn shift(
         &self,
         def: &CharacterDef,
@@ -295,7 +295,7 @@ impl Clearance {
         self.carry(def, &carried, 0..self.strays.len(), pose, model);
     }
 
-    /// Places of the strays in the axes of their carriers.
+    /// Returns the transforms of the strays relative to their carriers.
     fn carried(&self, model: &[Affine]) -> Vec<Transform> {
         let at = |&(joint, carrier): &(JointIdx, JointIdx)| {
             model[carrier].to_rigid().inverse() * model[joint].to_rigid()
@@ -303,7 +303,7 @@ impl Clearance {
         self.strays.iter().map(at).collect()
     }
 
-    /// Moves some of the strays to their places `carried`.
+    /// Moves some of the strays to their transforms `carried`.
     fn carry(
         &self,
         def: &CharacterDef,
@@ -326,7 +326,7 @@ impl Clearance {
         }
     }
 
-    /// Joint from which a part extends: a shoulder, a hip, or the pelvis.
+    /// Returns the joint from which a part extends: a shoulder, a hip, or the pelvis.
     pub fn origin(&self, def: &RagdollDef, part: usize) -> Option<JointIdx> {
         match part {
             TRUNK => def.bodies.first().map(|pelvis| pelvis.joint),
@@ -334,7 +334,7 @@ impl Clearance {
         }
     }
 
-    /// Turns hands about their wrists until what they hold is at most `allowed` deep.
+    /// Rotates hands about their wrists until the objects that they hold are at most `allowed` deep.
     fn turn_hands(
         &self,
         def: &CharacterDef,
@@ -365,7 +365,7 @@ impl Clearance {
     }
 }
 
-/// Up to `most` of some points at least `apart` metres from each other, those of largest `size` first.
+/// Returns up to `most` of some points that are at least `apart` metres from each other, those of largest `size` first.
 pub(super) fn spread(mut left: Vec<Vec3>, apart: f32, most: usize, size: impl Fn(Vec3) -> f32) -> Vec<Vec3> {
     let mut chosen = Vec::new();
     while chosen.len() < most {
@@ -392,8 +392,8 @@ fn put(
     turn_to(rig, bones.end, end.rotation, root, pose, model);
 }
 
-/// The turn about `wrist` that raises `lowest` to `allowed` metres below the floor; `None` if it is not deeper, or if no
-/// turn does.
+/// Returns the rotation about `wrist` that raises `lowest` to `allowed` metres below the floor; `None` if the point is
+/// not deeper, or no rotation suffices.
 fn raised_about(wrist: Vec3, lowest: Vec3, allowed: f32) -> Option<Rotation> {
     let arm = lowest - wrist;
     let (length, down) = (arm.length(), wrist.y + allowed);
@@ -406,7 +406,7 @@ fn raised_about(wrist: Vec3, lowest: Vec3, allowed: f32) -> Option<Rotation> {
     Some(Rotation::from_arc(arm.normalize(), wanted.normalize()))
 }
 
-/// Turns a limb about its upper joint until the middle joint is `up` metres higher, in the axes of `model`.
+/// Rotates a limb about its upper joint until the middle joint is `up` metres higher, in the axes of `model`.
 fn raise_middle(
     rig: &Rig,
     bones: TwoBone,
@@ -441,7 +441,7 @@ pub(super) fn larger(a: Depths, b: Depths) -> Depths {
     core::array::from_fn(|part| max(a[part], b[part]))
 }
 
-/// Legs and arms by the roles of the bodies; limbs that are not chains of three joints are skipped.
+/// Returns legs and arms by the roles of the bodies; limbs that are not chains of three joints are skipped.
 fn limbs(rig: &Rig, def: &RagdollDef) -> Vec<LimbChain> {
     let joint = |role: Role| def.bodies.iter().find(|body| body.role == role.name()).map(|body| body.joint);
     let hangs = |joint: JointIdx, above: JointIdx| {
@@ -461,7 +461,7 @@ fn limbs(rig: &Rig, def: &RagdollDef) -> Vec<LimbChain> {
     limbs
 }
 
-/// The part of a skin point, in model space of the bind pose; `None` for tails and the like.
+/// Returns the part of a skin point, in model space of the bind pose; `None` for tails and other points without a part.
 fn part_of(
     def: &RagdollDef,
     limbs: &[LimbChain],
@@ -502,19 +502,20 @@ fn hand_roles() -> [Role; 2] {
     [Side::Left, Side::Right].map(Role::Hand)
 }
 
-/// The hand, left or right, that a body is or that carries it.
+/// Returns the hand, left or right, that a body is or that carries the body.
 fn hand_of(def: &RagdollDef, body: usize) -> Option<usize> {
     let parent = |body: usize| def.joints.iter().find(|joint| joint.child == body).map(|joint| joint.parent);
     let mut bearers = core::iter::successors(Some(body), |&body| parent(body));
     bearers.find_map(|body| hand_roles().into_iter().position(|role| def.bodies[body].role == role.name()))
 }
 
-/// True if a joint is `above` or its descendant.
+/// Returns true if a joint is `above` or its descendant.
 fn hangs(rig: &Rig, joint: JointIdx, above: JointIdx) -> bool {
     core::iter::successors(Some(joint), |&i| rig.joints[i].parent).any(|i| i == above)
 }
 
-/// Joints that are not descendants of the joint that carries their body, topmost ones only.
+/// Returns joints that are not descendants of the joint that carries their body, topmost ones only, each with this
+/// joint.
 fn strays(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, JointIdx)> {
     let hangs = |joint: JointIdx, above: JointIdx| hangs(rig, joint, above);
     let of_bodies = def.joints.iter().filter_map(|joint| {
@@ -531,7 +532,7 @@ fn strays(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, JointIdx)> {
     of_bodies.chain(of_joints).filter(|&(joint, carrier)| !hangs(carrier, joint)).collect()
 }
 
-/// Directions to sides, edges and corners of a box.
+/// Returns the directions to sides, edges and corners of a box.
 fn directions() -> impl Iterator<Item = Vec3> {
     let steps = [-1.0_f32, 0.0, 1.0];
     let all = steps.into_iter().flat_map(move |x| steps.into_iter().map(move |y| (x, y)));
@@ -543,20 +544,20 @@ fn directions() -> impl Iterator<Item = Vec3> {
 /// A foot of a humanoid.
 pub(crate) struct Sole<'a> {
     pub joint: JointIdx,
-    /// Up in its own axes when it stands flat.
+    /// Up direction of a flat foot, in the foot's own axes.
     pub up: Vec3,
     skin: &'a Surface,
 }
 
 impl Sole<'_> {
-    /// Its outmost points, in the space of `model`.
+    /// Returns the outermost points of the sole, in the space of `model`.
     pub fn places(&self, model: &[Affine], palette: &mut Vec<Affine>) -> Vec<Vec3> {
         self.skin.places(model, palette)
     }
 }
 
 impl CharacterDef {
-    /// Feet that can stand.
+    /// Returns the feet that can stand.
     pub(crate) fn soles(&self) -> Vec<Sole<'_>> {
         let legs = self.clearance.limbs.iter().filter(|limb| FEET.contains(&limb.end));
         let sole = |limb: &LimbChain| {
@@ -567,14 +568,15 @@ impl CharacterDef {
         legs.map(sole).collect()
     }
 
-    /// Depth of the lowest point of the drawn skin, with props, in the floor over a motion of its rig, metres; at least
-    /// 0, and 0 for a rig without skin.
+    /// Returns the depth of the lowest point of the drawn skin, with props, in the floor over a motion of its rig,
+    /// metres; at least 0, and 0 for a rig without skin.
     pub fn deepest_skin(&self, take: &Take) -> f32 {
         self.clearance.deepest(self, take).into_iter().fold(0.0, max)
     }
 
-    /// Raises feet, hands and elbows whose drawn skin is in the floor of a pose, by bending their limbs. A hand that
-    /// holds something too long for that turns about its wrist. The pose has a local transform per joint of the rig.
+    /// Raises feet, hands and elbows whose drawn skin is in the floor of a pose, by bending their limbs. If a hand
+    /// holds too long an object for that, the hand rotates about its wrist. The pose has a local transform per joint of
+    /// the rig.
     pub fn raise_limbs(&self, pose: &mut [LocalTransform]) {
         if !self.clearance.parts.is_empty() {
             let sunk = LIMBS_SINK * self.ragdoll.height;

@@ -24,12 +24,13 @@ pub enum Locomotion {
     InPlace,
     /// The character travels on with each lap. A clip that ends where it began stays in place.
     ByClip,
-    /// Exactly as the clip has it, at the place where the character was put: the clip is not raised onto its floor, no ground lifts the character,
-    /// and its feet are not moved to the ground. For an animation that was made for this very world.
+    /// The character moves exactly as in the clip, from its start place: the clip is not raised onto its floor, no
+    /// ground lifts the character, and its feet are not moved to the ground. For an animation that was made for this
+    /// world.
     Exact,
     /// The clip walks on the spot; the character advances along its facing at this speed, m/s.
     Forward {
-        /// m/s; negative walks backwards.
+        /// Speed along the facing, m/s; negative walks backwards.
         speed: f32,
     },
 }
@@ -37,64 +38,66 @@ pub enum Locomotion {
 /// Action of a limp character once it lies still.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AfterSettling {
-    /// It gets up by the clip that fits its pose; without such a clip it fades to its looped clip, standing.
+    /// The character gets up by the clip that fits its pose; without such a clip it fades to its looped clip, standing.
     GetUp,
-    /// It stays where it is.
+    /// The character stays where it is.
     StayDown,
 }
 
-/// First action of a character that lies unlike the start of all get-up clips.
+/// First action of a character whose pose differs from the start of all get-up clips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GettingReady {
-    /// Nothing: the difference is blended out during the clip.
+    /// The character gets up without preparation: the difference is blended out during the clip.
     AtOnce,
-    /// It is rolled over and its limbs are driven to the start of the nearest clip, within bounds of force and time.
+    /// The character is rolled over and its limbs are driven to the start of the nearest clip, within bounds of force
+    /// and time.
     RollOver,
 }
 
-/// Treatment of floor and feet during the transitions to a get-up clip and to what follows.
+/// Treatment of floor and feet during the transitions to a get-up clip and to the following clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GroundContact {
-    /// None: the pose difference decays smoothly in every joint, and limbs may pass through the floor. Default.
+    /// Floor and feet are not treated: the pose difference decays smoothly in every joint, and limbs may pass through
+    /// the floor. Default.
     #[default]
     AsBlended,
-    /// The drawn skin stays out of the floor, as far as in the poses before and after, and feet step to their new
-    /// places. Motions are quicker then.
+    /// The drawn skin stays out of the floor as far as it does in the poses before and after, and feet step to their
+    /// new places. Motions are quicker then.
     Enforced,
 }
 
-/// Pose or clip of a character before anything has happened to it.
+/// First pose or clip of a new character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Opening {
-    /// It plays its looped clip.
+    /// The character plays its looped clip.
     Looped,
-    /// It stands in its rest pose; the looped clip plays after getting up.
+    /// The character stands in its rest pose; the looped clip plays after getting up.
     Rest,
 }
 
-/// Motions of a kind of character. Default: none, it stands in its rest pose.
+/// Motions of a kind of character. Default: no motions, so that the character stands in its rest pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionSet {
-    /// All motions, for the indices below.
+    /// All motions, to which the indices below refer.
     pub clips: Vec<Clip>,
-    /// The clip that loops while the character is animated; `None`: it stands in its rest pose. Default none.
+    /// Clip that loops while the character is animated; `None`: the character stands in its rest pose. Default none.
     pub looped: Option<usize>,
     /// Clips that loop at higher speeds than the looped one (a jog, a run), each with its locomotion. If
     /// [`Character::set_move`](super::Character::set_move) moves the character, the two with neighbouring speeds are
     /// blended, in step by their first events with the payload `left`. Clips that cover no ground are skipped. Default
     /// none.
     pub faster: Vec<(usize, Locomotion)>,
-    /// The clip that loops at rest, if [`Character::set_move`](super::Character::set_move) moves it; `None`: the looped
-    /// clip stops. Default none.
+    /// Clip that loops at rest, if [`Character::set_move`](super::Character::set_move) moves the character; `None`: the
+    /// looped clip stops. Default none.
     pub idle: Option<usize>,
     /// Clips that start lying and end standing. Their mirror images are used, too. Default none.
     pub get_ups: Vec<usize>,
     /// Clip moments for [`CharacterEvent::Clip`](super::CharacterEvent::Clip), each with the index of its clip: steps,
     /// punches. Default none.
     pub events: Vec<(usize, sinew_anim::ClipEvent)>,
-    /// Default in place.
+    /// Locomotion of the looped clip. Default in place.
     pub locomotion: Locomotion,
-    /// Default: the looped clip.
+    /// First pose or clip. Default: the looped clip.
     pub opening: Opening,
 }
 
@@ -118,35 +121,36 @@ impl Default for MotionSet {
 pub struct CharacterDef {
     /// The file's nodes, skins and meshes.
     pub rig: Rig,
-    /// Its bodies and joints; the mapping was built from these, so other bodies need another definition.
+    /// Bodies and joints. The mapping was built from these, so other bodies need another definition.
     pub ragdoll: RagdollDef,
-    /// Default get up.
+    /// Action of a limp character once it lies still. Default get up.
     pub after_settling: AfterSettling,
-    /// Default roll over.
+    /// First action before a get-up. Default roll over.
     pub getting_ready: GettingReady,
-    /// Default as blended.
+    /// Treatment of the floor in transitions. Default as blended.
     pub ground_contact: GroundContact,
-    /// Drive mode of its bodies while it falls: powered, toward the pose that its clips go on with. Default limp.
+    /// Drive mode of the bodies while a character falls: powered, toward the pose with which its clips continue.
+    /// Default limp.
     pub falling: DriveMode,
     /// Seconds after which a limp character gets up even if it still moves. Default 6.
     pub patience: f32,
-    /// Surface and filter of its bodies.
+    /// Surface and filter of the bodies.
     pub body_settings: BodySettings,
-    /// Bound on the speeds that an animation hands over.
+    /// Largest speeds that an animation hands over to the bodies.
     pub speed_bound: SpeedBound,
-    /// Its share of a world while its clips move it.
+    /// Interaction with a world while clips move a character.
     pub in_world: InWorld,
     mapping: Mapping,
     rest: Vec<LocalTransform>,
     /// Bind pose in character space, metres.
     bind: Vec<Affine>,
-    /// Its legs, if it is a humanoid.
+    /// Legs, if the rig is a humanoid.
     legs: Option<Legs>,
-    /// Points of its skin that meet the floor first.
+    /// Points of the skin that reach the floor first.
     pub(super) clearance: Arc<Clearance>,
-    /// Hair and the like, which swing.
+    /// Springs, such as hair.
     springs: SpringRig,
-    /// Capes and the like, which are cloth in the world.
+    /// Garments, such as capes, which are cloth in the world.
     garments: GarmentRig,
     motions: MotionSet,
     /// Clips and stances built from the motions.
@@ -154,7 +158,8 @@ pub struct CharacterDef {
 }
 
 impl CharacterDef {
-    /// A character without motions, with the springs that the rig states ([`set_springs`](Self::set_springs)). `bind_model` is `RigAnalysis::bind_model`.
+    /// Creates a character without motions, with the springs that the rig declares
+    /// ([`set_springs`](Self::set_springs)). `bind_model` is `RigAnalysis::bind_model`.
     ///
     /// # Panics
     /// As [`Mapping::new`].
@@ -185,15 +190,15 @@ impl CharacterDef {
         }
     }
 
-    /// The fixed relations between rig and bodies.
+    /// Returns the fixed relations between rig and bodies.
     pub fn mapping(&self) -> &Mapping {
         &self.mapping
     }
 
-    /// Sets its motions: builds all clips, and the mirror images of get-ups.
+    /// Sets the motions: builds all clips, and the mirror images of get-ups.
     ///
     /// # Errors
-    /// If a clip cannot be played; the motions are unchanged then.
+    /// If a clip cannot be played; the motions then do not change.
     ///
     /// # Panics
     /// If `looped`, `faster` or `get_ups` names a missing clip, or a channel moves a joint that the rig does not have.
@@ -203,29 +208,29 @@ impl CharacterDef {
         Ok(())
     }
 
-    /// Sets what a character does at first. Existing characters keep the old definition.
+    /// Sets the first pose or clip of new characters. Existing characters keep the old definition.
     pub fn set_opening(&mut self, opening: Opening) {
         self.motions.opening = opening;
     }
 
-    /// Replaces its rig's springs. Existing characters keep the old definition.
+    /// Replaces the rig's springs. Existing characters keep the old definition.
     ///
     /// # Panics
-    /// If they name a missing joint or collider.
+    /// If the springs name a missing joint or collider.
     pub fn set_springs(&mut self, springs: &Springs) {
         let bind_model = self.bind_model();
         self.springs = SpringRig::new(&self.rig, &self.ragdoll, &self.mapping, &bind_model, springs);
     }
 
-    /// Springs of this kind of character.
+    /// Returns the springs of this kind of character.
     pub fn springs(&self) -> &SpringRig {
         &self.springs
     }
 
-    /// Sets its garments; their joints are removed from its springs. Existing characters keep the old definition.
+    /// Sets the garments; their joints are removed from the springs. Existing characters keep the old definition.
     ///
     /// # Panics
-    /// If they name a missing joint.
+    /// If the garments name a missing joint.
     pub fn set_garments(&mut self, garments: &[Garment]) {
         let bind_model = self.bind_model();
         self.garments = GarmentRig::new(&self.rig, &self.ragdoll, &self.mapping, &bind_model, garments);
@@ -239,28 +244,29 @@ impl CharacterDef {
         }
     }
 
-    /// Garments of this kind of character.
+    /// Returns the garments of this kind of character.
     pub fn garments(&self) -> &GarmentRig {
         &self.garments
     }
 
-    /// Bind pose of every joint in model space.
+    /// Returns the bind pose of every joint in model space.
     pub(super) fn bind_model(&self) -> Vec<Affine> {
         let model_from_character = self.mapping.character_from_model().inverse();
         self.bind.iter().map(|&bind| model_from_character * bind).collect()
     }
 
-    /// Motions of this kind of character.
+    /// Returns the motions of this kind of character.
     pub fn motions(&self) -> &MotionSet {
         &self.motions
     }
 
-    /// Animation set of its characters' animators: the clips of [`motions`](Self::motions), and derived ones.
+    /// Returns the animation set of the characters' animators: the clips of [`motions`](Self::motions), and derived
+    /// ones.
     pub fn set(&self) -> &AnimationSet {
         &self.moves.set
     }
 
-    /// The clip of that index in [`MotionSet::clips`], for an [`Animator`](sinew_anim::Animator).
+    /// Returns the clip of that index in [`MotionSet::clips`], for an [`Animator`](sinew_anim::Animator).
     ///
     /// # Panics
     /// If there is no such clip.
@@ -268,7 +274,7 @@ impl CharacterDef {
         self.moves.clips[index]
     }
 
-    /// The animator of a new character, with its looped clip if it opens by that, `phase` seconds in.
+    /// Returns the animator of a new character, `phase` seconds into its looped clip if it opens with this clip.
     pub(super) fn opening(&self, phase: f32) -> Animator {
         let mut animator = Animator::new(self.set());
         if self.motions.opening == Opening::Looped {
@@ -285,24 +291,24 @@ impl CharacterDef {
         Some(animator.play(self.set(), &TrackDef { start: phase, sync_group, ..TrackDef::new(clip) }))
     }
 
-    /// Locomotion clips, slowest first: the looped one, then faster ones.
+    /// Returns the locomotion clips, slowest first: the looped one, then faster ones.
     pub(super) fn paces(&self) -> &[Pace] {
         &self.moves.paces
     }
 
-    /// Sync group of its locomotion clips; none for a single clip.
+    /// Returns the sync group of the locomotion clips; none for a single clip.
     pub(super) fn sync_group(&self) -> Option<u8> {
         (self.paces().len() > 1).then_some(0)
     }
 
-    /// Displacement by which its looped clip is brought to the place of the character, character space, metres: onto the
-    /// floor of the rest pose ([`raised`](Self::raised)), and to its origin if the clip begins elsewhere.
+    /// Returns the displacement of the looped clip to the place of the character, character space, metres: onto the
+    /// floor of the rest pose ([`raised`](Self::raised)), and to the character's origin if the clip begins elsewhere.
     pub(crate) fn shift(&self) -> Vec3 {
         self.moves.shift
     }
 
-    /// Height by which its looped clip is raised so that its lowest drawn point stands on the floor of the rest pose,
-    /// metres; usually 0.
+    /// Returns the height by which the looped clip is raised so that its lowest drawn point is on the floor of the rest
+    /// pose, metres; usually 0.
     pub fn raised(&self) -> f32 {
         self.moves.raised.looped
     }
@@ -319,17 +325,17 @@ impl CharacterDef {
         &self.moves
     }
 
-    /// Bind pose of every joint in character space, metres.
+    /// Returns the bind pose of every joint in character space, metres.
     pub(crate) fn bind(&self) -> &[Affine] {
         &self.bind
     }
 
-    /// Rest pose of the file.
+    /// Returns the rest pose of the file.
     pub fn rest(&self) -> &[LocalTransform] {
         &self.rest
     }
 
-    /// Index of the body that has this role or carries this joint (by name), merged joints included.
+    /// Returns the index of the body that has this role or carries this joint (by name), merged joints included.
     pub fn body_named(&self, name: &str) -> Option<usize> {
         let bodies = &self.ragdoll.bodies;
         let carries = |joint: usize| self.rig.joints.get(joint).is_some_and(|joint| joint.name == name);

@@ -1,4 +1,4 @@
-//! Detached limbs: the new bodies, and the rest.
+//! Detached limbs: the new bodies, and the remaining ones.
 
 use super::CharacterDef;
 use super::limb::{cut_joint, shrunk};
@@ -13,17 +13,17 @@ use sinew_physics::{BodyId, JointId, World};
 
 /// Roles of parts without which a character still gets up.
 const SPARED: [&str; 5] = ["Shoulder", "Arm", "Hand", "Toes", "tail"];
-/// Words in the roles of fingers, which it gets up without as well.
+/// Words in the roles of fingers, without which a character also gets up.
 const FINGERS: [&str; 5] = ["Thumb", "Index", "Middle", "Ring", "Little"];
 
 impl Physique {
-    /// Indices of a body and of its descendants that were not detached before.
+    /// Returns the indices of a body and of its descendants that were not detached before.
     pub fn limb_from(&self, def: &CharacterDef, first: usize) -> Vec<usize> {
         let all = 0..def.ragdoll.bodies.len();
         all.filter(|&body| hangs_on(&def.ragdoll, body, first) && self.has(body)).collect()
     }
 
-    /// Joints of the rig whose skin was detached, ascending.
+    /// Returns the joints of the rig whose skin was detached, ascending.
     pub fn lost_joints(&self, def: &CharacterDef) -> Vec<JointIdx> {
         let carrier = |joint: JointIdx| def.mapping().body_above(&def.rig, joint);
         let is_lost = |&joint: &JointIdx| carrier(joint).is_some_and(|body| !self.has(body));
@@ -33,7 +33,7 @@ impl Physique {
         (0..def.rig.joints.len()).filter(is_lost).collect()
     }
 
-    /// True if it still has everything it needs to stand.
+    /// Returns true if the character still has all parts that it needs to stand.
     pub fn may_get_up(&self, def: &CharacterDef) -> bool {
         self.lost.iter().all(|&(body, _)| {
             let role = &def.ragdoll.bodies[body].role;
@@ -41,7 +41,7 @@ impl Physique {
         })
     }
 
-    /// Bodies and joints of a ragdoll's limb, without drives.
+    /// Cuts off a ragdoll's limb, releases its drives, and returns its bodies and joints.
     pub fn cut(
         &mut self,
         def: &CharacterDef,
@@ -58,7 +58,8 @@ impl Physique {
         (parts.iter().map(|&part| ragdoll.bodies[part]).collect(), joints)
     }
 
-    /// Bodies and joints of a limb of a character whose bodies are led or absent: at the velocities of `states`.
+    /// Makes a limb of kinematic or absent bodies dynamic, at the velocities of `states`, and returns its bodies and
+    /// joints.
     pub fn cut_led(
         &self,
         def: &CharacterDef,
@@ -84,14 +85,15 @@ impl Physique {
         (bodies, parts[1..].iter().map(|&part| ragdoll.joints[part - 1]).collect())
     }
 
-    /// Parts of detached bodies.
+    /// Records the parts of detached bodies.
     pub fn lose(&mut self, parts: &[usize], bodies: &[BodyId]) {
         self.lost.extend(parts.iter().copied().zip(bodies.iter().copied()));
         self.lost.sort_unstable_by_key(|&(part, _)| part);
         self.keep_own();
     }
 
-    /// Enables collision between the limb and the rest; pairs that overlap at the cut collide once they are apart.
+    /// Enables collision between the limb and the remaining bodies; pairs that overlap at the cut collide once they are
+    /// apart.
     pub fn part_bodies(&mut self, bodies: &[BodyId], world: &mut World) {
         let mut parting = core::mem::take(&mut self.parting);
         for &own in self.own() {
@@ -121,7 +123,7 @@ impl Physique {
         });
     }
 
-    /// Skinning matrix of a detached joint: shrinks its skin to the cut; `None` for a present joint.
+    /// Returns the skinning matrix of a detached joint, which shrinks its skin to the cut; `None` for a present joint.
     pub fn shrunk_joint(&self, def: &CharacterDef, joint: JointIdx, model: &[Affine]) -> Option<Affine> {
         if self.lost.is_empty() {
             return None;
@@ -139,7 +141,7 @@ impl Physique {
         }
     }
 
-    /// Moves detached bodies where springs do not meet them.
+    /// Moves detached bodies to a place where springs do not touch them.
     pub fn hide_lost(&self, bodies: &mut [Transform]) {
         for &(lost, _) in &self.lost {
             if let Some(body) = bodies.get_mut(lost) {

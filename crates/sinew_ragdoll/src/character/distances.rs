@@ -2,16 +2,16 @@
 
 use sinew_math::max;
 
-/// Share that a character has of its world while its clips move it, from nothing to all.
+/// Interaction of a character with its world while clips move it, the least first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Detail {
-    /// Nothing: its clips stand still, nothing stops or carries it, and an update costs nothing.
+    /// No interaction: the character's clips are paused, nothing stops or carries it, and an update costs nothing.
     Frozen,
-    /// A mover and its clips; rays and contacts do not see its limbs.
+    /// A mover and clips; rays and contacts do not find the character's limbs.
     Keyed,
-    /// Also hit bodies that do not flinch: blows below the threshold are only reported.
+    /// In addition hit bodies, which do not flinch: blows below the threshold are only reported.
     HitBodies,
-    /// Everything. Default.
+    /// Full interaction. Default.
     #[default]
     Full,
 }
@@ -23,7 +23,7 @@ pub struct Distances {
     pub full: f32,
     /// Largest distance of hit bodies, metres. Default 40.
     pub hit_bodies: f32,
-    /// Largest distance of keyed characters, frozen beyond, metres. Default 120.
+    /// Largest distance of keyed characters, metres; farther ones are frozen. Default 120.
     pub keyed: f32,
     /// Hysteresis: share by which a distance must be exceeded for less detail. Default 0.1.
     pub slack: f32,
@@ -36,7 +36,7 @@ impl Default for Distances {
 }
 
 impl Distances {
-    /// Detail at a distance, metres, for a character that has that much `now`. `NaN` is far away.
+    /// Returns the detail at a distance, metres, for a character that has the detail `now`. `NaN` counts as far away.
     pub fn detail(&self, distance: f32, now: Detail) -> Detail {
         let up_to = |limit: f32, detail: Detail| {
             let limit = if now >= detail { limit * (1.0 + max(self.slack, 0.0)) } else { limit };

@@ -4,106 +4,107 @@ use sinew_anim::FiredEvent;
 use sinew_math::{ReadError, Reader, Writer};
 use sinew_physics::BodyId;
 
-/// State of a character: what decides its pose.
+/// State of a character, which determines the source of its pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// Clips; they lead its bodies, if it has any in the world.
+    /// Clips determine the pose; they move the character's bodies, if it has any in the world.
     Animated,
-    /// Its bodies: it falls, or lies.
+    /// Bodies determine the pose: the character falls, or lies.
     Limp,
-    /// Its bodies, which are driven to the start of a get-up clip.
+    /// Bodies determine the pose; they are driven to the start of a get-up clip.
     Preparing,
-    /// A get-up clip, in which the pose and the motion of the bodies die away.
+    /// A get-up clip determines the pose, after a blend from the pose and motion of the bodies.
     GettingUp,
-    /// Clips, except for a struck limb that returns to them.
+    /// Clips determine the pose, except for a struck limb that returns to them.
     Flinching,
-    /// Its bodies, which muscles and pins draw to its clips.
+    /// Bodies determine the pose; muscles and pins drive them to the clips.
     Powered,
 }
 
-/// Something that happened to a character.
+/// An event of a character.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CharacterEvent {
-    /// It was pushed.
+    /// The character was pushed.
     Hit {
         /// Index of the body in the definition.
         body: usize,
     },
-    /// Something struck one of its bodies: a contact, or a blast or another impulse on bodies that its clips lead.
+    /// One of the character's bodies was struck: by a contact, or by a blast or another impulse on bodies that clips
+    /// move.
     Struck {
-        /// Index of the body in the definition; of several the one that was struck hardest.
+        /// Index of the body in the definition; if several were struck, the one struck hardest.
         body: usize,
-        /// N·s; of a blast the sum over its bodies.
+        /// Impulse, N·s; of a blast the sum over the character's bodies.
         impulse: f32,
     },
-    /// A blow did not fell it: the limb is weak and returns.
+    /// A blow did not fell the character: the limb is weak and returns.
     Flinched {
         /// Index of the struck body in the definition.
         body: usize,
     },
-    /// Its limb follows the clips again.
+    /// The limb follows the clips again.
     Recovered,
-    /// Muscles and pins hold it from now on.
+    /// Muscles and pins drive the character from now on.
     Powered,
-    /// A moment of a clip that decides its pose passed ([`MotionSet::events`](super::MotionSet::events)); its name is
+    /// An event of a clip that determines the pose ([`MotionSet::events`](super::MotionSet::events)); its name is
     /// [`AnimationSet::event`](sinew_anim::AnimationSet::event) of [`CharacterDef::set`](super::CharacterDef::set).
     Clip(FiredEvent),
-    /// One of its bodies began or stopped touching another's body, if
+    /// One of the character's bodies began or stopped touching another's body, if
     /// [`InWorld::tells_contacts`](super::InWorld::tells_contacts) is set.
     Contact {
-        /// Index of its body in the definition.
+        /// Index of the character's body in the definition.
         body: usize,
-        /// The other.
+        /// The other's body.
         other: BodyId,
-        /// False: they separated.
+        /// True if the contact began, false if it ended.
         begins: bool,
     },
-    /// It released a held body, or that was torn off.
+    /// The character released a held body, or the body was torn off.
     LetGo {
-        /// Index of its body in the definition.
+        /// Index of the holding body in the definition.
         body: usize,
         /// Body that was held.
         held: BodyId,
     },
-    /// It starts stepping to catch a push.
+    /// The character starts stepping to catch a push.
     Stumbled,
-    /// Its steps caught it; its feet follow the clips again.
+    /// Steps caught the character; its feet follow the clips again.
     Caught {
-        /// Number of steps, without those that only returned the feet.
+        /// Number of steps, except those that only returned the feet.
         steps: u32,
     },
     /// A limb was detached.
     Detached {
-        /// Index in the definition of the body at the cut, the limb's first.
+        /// Index in the definition of the limb's first body, at the cut.
         body: usize,
     },
-    /// It went limp.
+    /// The character went limp.
     WentLimp,
-    /// The first of its bodies touched something of the world since it went limp.
+    /// One of the bodies touched the world for the first time since the character went limp.
     Touched,
-    /// It lies still.
+    /// The character lies still.
     Settled {
-        /// Start of lying still, seconds of the world's time.
+        /// World time at which the character began to lie still, seconds.
         since: f32,
     },
-    /// It did not come to rest in the given time.
+    /// The character did not come to rest in the given time.
     NeverSettled,
-    /// It lies unlike the start of its get-up clips, and is driven to the nearest one.
+    /// The pose of the lying character differs from the start of all get-up clips, so it is driven to the nearest one.
     Preparing {
-        /// True if it must be rolled over.
+        /// True if the character must be rolled over.
         rolls: bool,
     },
-    /// It began to get up.
+    /// The character began to get up.
     GettingUp {
-        /// Index of the clip; `None`: none fits, and it fades to standing.
+        /// Index of the clip; `None`: no clip fits, and the character fades to standing.
         clip: Option<usize>,
     },
-    /// It is animated again.
+    /// The character is animated again.
     Up,
 }
 
 impl CharacterEvent {
-    /// Writes an event that a call caused and no update has reported; those of clips are reported by the update in
+    /// Writes an event that a call caused and no update has reported. Events of clips are reported by the update in
     /// which they occur.
     pub(super) fn save(&self, w: &mut Writer) {
         let (tag, numbers): (u8, [u64; 2]) = match *self {
@@ -130,7 +131,7 @@ impl CharacterEvent {
         numbers.into_iter().for_each(|number| w.u64(number));
     }
 
-    /// Reads what [`save`](Self::save) wrote.
+    /// Reads an event written by [`save`](Self::save).
     pub(super) fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
         let (tag, first, second) = (r.u8()?, r.u64()?, r.u64()?);
         let (body, id) = (first as usize, BodyId::from_bits(second));
@@ -157,7 +158,7 @@ impl CharacterEvent {
     }
 }
 
-/// Unreported events of a character, and those of its last update.
+/// Unreported events of a character, and the events of its last update.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Events {
     pub list: Vec<CharacterEvent>,
@@ -175,7 +176,7 @@ impl Events {
         self.list.drain(..self.told);
     }
 
-    /// Events caused by calls since the last update.
+    /// Returns the events caused by calls since the last update.
     pub fn untold(&self) -> &[CharacterEvent] {
         &self.list[self.told..]
     }

@@ -1,7 +1,7 @@
-//! Feet on the ground while a character gets up on other ground than its clip's floor: across the edge of a stair both
-//! feet would be over the lower step.
+//! Keeps feet on the ground while a character gets up on ground that differs from its clip's floor. Without it both
+//! feet would be at the height of the lower step across the edge of a stair.
 //!
-//! The state is the height of the ground under each foot over the clip's floor: it follows the world like a critically
+//! The state is the height of the ground under each foot over the clip's floor. It follows the world like a critically
 //! damped spring, so that an edge below a moving foot causes no jump.
 
 use super::activity::Activity;
@@ -17,21 +17,21 @@ use sinew_anim::{Animator, LocalTransform, local_to_model, smoothstep};
 use sinew_math::{Affine, Transform, Vec3, max};
 use sinew_physics::{BodyId, World};
 
-/// Depths of the pose that is shown, at least 0, and its ankles in the world.
+/// Depths of the shown pose, at least 0, and its ankles in the world.
 pub(super) type Depth = (Depths, [Transform; 2]);
 
 /// Planted feet of a character, and clearance of its skin.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Feet {
-    /// Ground under its feet where it is not the floor of its clips.
+    /// Ground under the character's feet, where it differs from the floor of its clips.
     pub planting: Planting,
-    /// Feet of a walking character; `None` while it gets up, lies, or follows its clips only.
+    /// Feet of a walking character; `None` while it gets up, lies, or only follows its clips.
     pub treads: Option<Treads>,
-    /// Transition during which it is kept out of the floor.
+    /// Transition during which the character is kept out of the floor.
     pub passage: Passage,
     /// Hands and feet beside walls.
     pub walls: WallOffsets,
-    /// The clips' pose with planted feet, out of floor and walls, if that differs; else empty.
+    /// Pose of the clips with planted feet, out of floor and walls; empty if that equals the clips' pose.
     pub pose: Vec<LocalTransform>,
 }
 
@@ -42,34 +42,34 @@ pub(super) struct Stand<'a> {
     pub activity: &'a Activity,
     pub animator: &'a Animator,
     pub figure: &'a Figure,
-    /// Speed over the ground, m/s.
+    /// Speed of the character over the ground, m/s.
     pub speed: f32,
-    /// It jumps or falls.
+    /// True if the character jumps or falls.
     pub aloft: bool,
-    /// Its feet follow the ground.
+    /// True if the character's feet follow the ground.
     pub follows: bool,
-    /// Its bodies, if it is in the world.
+    /// Bodies of the character, if it is in the world.
     pub own: Option<&'a [BodyId]>,
 }
 
 impl Feet {
-    /// True while the shown pose differs from the clips'.
+    /// Returns true while the shown pose differs from the clips' pose.
     pub fn are_placed(&self) -> bool {
         !self.planting.is_over() || self.is_passing() || self.are_astray() || !self.walls.are_zero()
     }
 
-    /// True while a foot is displaced from the clips'.
+    /// Returns true while a foot is displaced from the clips' foot.
     fn are_astray(&self) -> bool {
         self.treads.iter().flat_map(|treads| treads.feet).any(|tread| tread.offset != Vec3::ZERO)
     }
 
-    /// The pose of clips or bodies, with feet on the ground and out of the floor.
+    /// Returns the pose of clips or bodies, with feet on the ground and out of the floor.
     pub fn led<'a>(&'a self, pose: &'a [LocalTransform]) -> &'a [LocalTransform] {
         if self.pose.is_empty() { pose } else { &self.pose }
     }
 
-    /// Plants the feet of a character that gets up, or has and still stands there. For one that walks they return to
-    /// the clips.
+    /// Plants the feet of a character that gets up, or has got up and still stands there. The feet of a walking
+    /// character return to the clips.
     pub fn plant(&mut self, stand: &Stand<'_>, world: &World, model: &mut Vec<Affine>) {
         if self.is_passing() {
             let grounds = Grounds { world, own: stand.own };
@@ -101,7 +101,7 @@ impl Feet {
         self.pose = pose;
     }
 
-    /// Forgets the ground: bodies take over.
+    /// Clears the state, because bodies take over.
     pub fn leave(&mut self) {
         *self = Self::default();
     }
@@ -131,7 +131,7 @@ impl Feet {
         self.planting.follow(goals, world.def().dt());
     }
 
-    /// Computes the shown pose from the clips'.
+    /// Computes the shown pose from the clips' pose.
     pub fn show(&mut self, def: &CharacterDef, state: State, figure: &Figure, model: &mut Vec<Affine>) {
         let mut pose = core::mem::take(&mut self.pose);
         self.stand_out_of_floor(def, state, figure, &mut pose, model);
@@ -180,7 +180,7 @@ impl Feet {
         self.bring_home(def, offsets, place, pose, model);
     }
 
-    /// Depths in the ground of the pose that is shown, and its ankles.
+    /// Returns the depths in the ground of the shown pose, and its ankles.
     pub fn shown_depths(
         &self,
         def: &CharacterDef,
@@ -197,7 +197,7 @@ impl Feet {
         (depths, [0, 1].map(ankle))
     }
 
-    /// Starts a transition of this many seconds to a pose no deeper than `to`, from the shown pose.
+    /// Starts a transition of `seconds` to a pose no deeper than `to`, from the shown pose.
     pub fn pass(&mut self, def: &CharacterDef, (from, ankles): Depth, to: Depths, seconds: f32) {
         self.passage = match def.ground_contact {
             GroundContact::Enforced => Passage { from, to, ankles, seconds, ..Passage::default() },
@@ -205,7 +205,8 @@ impl Feet {
         };
     }
 
-    /// Sets these bodies, in the world, as the target of the new transition: feet with far goals are lifted at once.
+    /// Sets these bodies, in the world, as the target of the new transition: feet with far goals are lifted
+    /// immediately.
     pub fn pass_to(&mut self, def: &CharacterDef, bodies: &[Transform], motion: Transform, to: &[Transform]) {
         if !self.is_passing() {
             return;
@@ -231,12 +232,12 @@ impl Feet {
         }
     }
 
-    /// True while the shown pose is kept out of the floor.
+    /// Returns true while the shown pose is kept out of the floor.
     pub fn is_passing(&self) -> bool {
         self.passage != Passage::default()
     }
 
-    /// Raises a pose of the clips out of the floor, as after `later` seconds more.
+    /// Raises a pose of the clips out of the floor, as it will be after `later` seconds more.
     pub fn clear_floor(
         &self,
         def: &CharacterDef,
@@ -257,8 +258,8 @@ impl Feet {
 }
 
 impl Stand<'_> {
-    /// The ground under each foot over the clip's floor: on a slope the one under the heel, with the tilt; across an
-    /// edge the higher one of heel and ball.
+    /// Returns the ground under each foot over the clip's floor: on a slope the ground under the heel, with the tilt;
+    /// across an edge the higher ground of heel and ball.
     fn needed(&self, world: &World, legs: &Legs, model: &mut Vec<Affine>) -> [Need; 2] {
         let root = self.def.mapping().character_from_model();
         local_to_model(&self.def.rig, &self.figure.pose, &root, model);

@@ -6,7 +6,7 @@ use sinew_anim::{Animator, LocalTransform, Pose, local_to_model};
 use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::Velocity;
 
-/// Pose and place at a moment.
+/// Pose and place at a given time.
 #[derive(Clone, Debug)]
 pub(super) struct Moment {
     pub pose: Vec<LocalTransform>,
@@ -16,13 +16,13 @@ pub(super) struct Moment {
 /// Pose and place of a character.
 #[derive(Clone, Debug)]
 pub(super) struct Figure {
-    /// As bodies or clips have it, without planted feet and worn parts.
+    /// Pose of bodies or clips, without planted feet and worn parts.
     pub pose: Vec<LocalTransform>,
-    /// World from character.
+    /// Transform from the character to the world.
     pub place: Transform,
-    /// A step ago.
+    /// Pose and place one step ago.
     pub earlier: Moment,
-    /// As shown at the end of the last step, with feet and worn parts.
+    /// Pose and place as shown at the end of the last step, with feet and worn parts.
     pub shown: Moment,
 }
 
@@ -32,7 +32,7 @@ impl Figure {
         Self { pose, place, earlier: moment.clone(), shown: moment }
     }
 
-    /// Takes the animator's pose.
+    /// Copies the animator's pose.
     pub fn take(&mut self, animator: &Animator) {
         self.pose.clear();
         self.pose.extend(animator.pose().iter());
@@ -45,7 +45,7 @@ impl Figure {
         self.pose.clone_from(&self.earlier.pose);
     }
 
-    /// Changes its place and keeps every joint where it is in the world.
+    /// Changes the character's place while every joint keeps its place in the world.
     pub fn reframe(&mut self, def: &CharacterDef, to: Transform) {
         let mapping = def.mapping();
         mapping.reframe(&mut self.pose, self.place, to);
@@ -56,7 +56,7 @@ impl Figure {
         }
     }
 
-    /// Changes its place with its pose.
+    /// Moves the character's place together with its pose.
     pub fn carry(&mut self, to: Transform) {
         let moved = to * self.place.inverse();
         self.place = to;
@@ -64,7 +64,7 @@ impl Figure {
         self.shown.place = moved * self.shown.place;
     }
 
-    /// The present pose in the world. Its points may be given back to the [`Scratch`].
+    /// Returns the present pose in the world. Its points may be returned to the [`Scratch`].
     pub fn stance(&self, def: &CharacterDef, scratch: &mut Scratch) -> Stance {
         local_to_model(&def.rig, &self.pose, &Affine::IDENTITY, &mut scratch.model);
         let points = core::mem::take(&mut scratch.points);
@@ -72,7 +72,7 @@ impl Figure {
         landmarks.stance(def.mapping(), &scratch.model, self.place, points, &mut scratch.before)
     }
 
-    /// Pose and place between the last shown (`alpha` 0) and `now` (1).
+    /// Computes pose and place between the last shown (`alpha` 0) and `now` (1).
     pub fn between(&self, now: &[LocalTransform], alpha: f32, pose: &mut Vec<LocalTransform>) -> Transform {
         pose.clear();
         let (from, to) = (self.shown.place, self.place);
@@ -93,11 +93,11 @@ impl Figure {
     }
 }
 
-/// Buffers for reuse; except for `posed` they hold nothing between calls.
+/// Buffers for reuse; except for `posed` they keep nothing between calls.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
-    /// Bodies from which the present pose was computed, a cache while they do not move; else empty. It is not state:
-    /// the pose is the same without it.
+    /// Bodies from which the present pose was computed, a cache while they do not move; otherwise empty. The cache is
+    /// not state: the pose is the same without it.
     pub posed: Vec<Transform>,
     pub ahead: Option<Animator>,
     pub pose: Vec<LocalTransform>,
@@ -112,7 +112,7 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    /// World poses of the bodies for a pose of a character at `place`.
+    /// Computes the world poses of the bodies for a pose of a character at `place`.
     pub fn bodies_of(
         &mut self,
         def: &CharacterDef,
@@ -127,7 +127,7 @@ impl Scratch {
         }
     }
 
-    /// A copy of an animator, in place of the last one; it must be put back into `ahead`.
+    /// Copies an animator into the copy of the last call, and returns this copy; return it to `ahead` afterwards.
     pub fn sent_ahead(&mut self, animator: &Animator) -> Animator {
         match self.ahead.take() {
             Some(mut ahead) => {

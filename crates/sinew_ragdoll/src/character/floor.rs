@@ -9,13 +9,12 @@ use sinew_anim::take::Take;
 use sinew_anim::{Channel, Clip, Interpolation, LocalTransform, Property, Rig, local_to_model};
 use sinew_math::{Affine, Vec3, min};
 
-/// Evenly spread poses of a looped clip that are examined.
+/// Number of evenly spread poses of a looped clip that are examined.
 const LOOKS: usize = 24;
-/// Words in names of clips that are in the air or in water: their lowest point is on no floor.
+/// Words in names of clips in the air or in water, whose lowest point is not on a floor.
 const ALOFT: [&str; 7] = ["fly", "flies", "hover", "swim", "float", "glide", "jump"];
 
-/// Heights by which clips are raised to stand on the floor of the rest pose, metres: the looped clip, and get-ups by
-/// clip.
+/// Heights by which clips are raised to the floor of the rest pose, metres: the looped clip, and get-ups by clip.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Raised {
     pub looped: f32,
@@ -23,7 +22,8 @@ pub(super) struct Raised {
 }
 
 impl Raised {
-    /// The looped clip has its floor at its lowest drawn point, a clip to get up by where it ends.
+    /// Measures the clips. The floor of the looped clip is at its lowest drawn point, the floor of a get-up clip at the
+    /// lowest point of its end.
     pub fn of(def: &CharacterDef, motions: &MotionSet) -> Self {
         let mut surface = Surface::of(&def.rig, &def.ragdoll);
         let may_stand = may_stand(&def.ragdoll);
@@ -51,14 +51,14 @@ impl Raised {
         let looped = looped.map_or(0.0, |index| {
             let clip = &motions.clips[index];
             let raised = raise(low(clip, 0));
-            // Without legs, or in the air, nothing stands; only parts in the floor are raised.
+            // Without legs, or in the air, nothing stands on a floor; only parts in the floor are raised.
             if raised < 0.0 && (!has_legs || is_aloft(&clip.name)) { 0.0 } else { raised }
         });
         let get_ups = motions.get_ups.iter().map(|&clip| (clip, raise(low(&motions.clips[clip], LOOKS))));
         Self { looped, get_ups: get_ups.collect() }
     }
 
-    /// Height by which that clip is raised; the looped clip's, unless it is a get-up.
+    /// Returns the height by which a clip is raised; for a clip that is not a get-up, that of the looped clip.
     pub fn of_clip(&self, index: usize) -> f32 {
         self.get_ups.iter().find(|(clip, _)| *clip == index).map_or(self.looped, |(_, raised)| *raised)
     }
@@ -69,7 +69,7 @@ fn is_aloft(name: &str) -> bool {
     ALOFT.iter().any(|word| name.contains(word))
 }
 
-/// Height of the lowest drawn point over the floor of the rest pose, metres.
+/// Returns the height of the lowest drawn point over the floor of the rest pose, metres.
 fn lowest(def: &CharacterDef, surface: &Surface, pose: &[LocalTransform]) -> f32 {
     let (mut model, mut palette) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, pose, &Affine::IDENTITY, &mut model);
@@ -79,8 +79,8 @@ fn lowest(def: &CharacterDef, surface: &Surface, pose: &[LocalTransform]) -> f32
     heights.fold(f32::INFINITY, min)
 }
 
-/// A clip with all rig roots that carry the character moved by `by`, and the others, such as a floor in the file, by
-/// `beside`; model space.
+/// Returns a clip with all rig roots that carry the character moved by `by`, and the others, such as a floor in the
+/// file, by `beside`; model space.
 pub(crate) fn moved(rig: &Rig, ragdoll: &RagdollDef, clip: &Clip, by: Vec3, beside: Vec3) -> Clip {
     let mut moved = clip.clone();
     let carries = carries_character(rig, ragdoll);
@@ -97,7 +97,7 @@ pub(crate) fn moved(rig: &Rig, ragdoll: &RagdollDef, clip: &Clip, by: Vec3, besi
             Some(channel) => {
                 let is_cubic = channel.interpolation == Interpolation::CubicSpline;
                 for (index, place) in channel.values.chunks_exact_mut(3).enumerate() {
-                    // Of three numbers of a cubic key the first and the last are slopes.
+                    // A cubic key has three entries; the first and the last are slopes.
                     if !is_cubic || index % 3 == 1 {
                         place.iter_mut().zip(by.to_array()).for_each(|(number, by)| *number += by);
                     }

@@ -1,4 +1,4 @@
-//! Predicted poses and velocities of the bodies by the clips, for hand-over speeds and drives.
+//! Predicts poses and velocities of the bodies from the clips, for hand-over speeds and drives.
 
 use super::CharacterDef;
 use super::State;
@@ -14,7 +14,7 @@ use sinew_anim::Animator;
 use sinew_math::{Transform, Vec3};
 use sinew_physics::Velocity;
 
-/// The parts that decide how a pose continues.
+/// The parts that determine how a pose continues.
 #[derive(Clone, Copy)]
 pub(super) struct Foresight<'a> {
     pub def: &'a CharacterDef,
@@ -26,8 +26,8 @@ pub(super) struct Foresight<'a> {
 }
 
 impl Foresight<'_> {
-    /// Poses of the bodies by an animator that is advanced by `seconds`, relative to the character's present place.
-    /// `place` is where the animator has moved it until then.
+    /// Returns the poses of the bodies from an animator that is advanced by `seconds`, relative to the character's
+    /// present place. `place` is the place to which the animator has moved the character until then.
     fn bodies(
         &self,
         ahead: &mut Animator,
@@ -51,24 +51,24 @@ impl Foresight<'_> {
         scratch.pose = pose;
     }
 
-    /// Poses and velocities of the bodies by the animation: by its pose a moment later, because tracks, weights and
-    /// transitions may have changed since the last pose.
+    /// Returns the poses and velocities of the bodies in the animation, from its pose shortly afterwards, because
+    /// tracks, weights and transitions may have changed since the last pose.
     pub fn carried(&self, scratch: &mut Scratch) -> Vec<BodyState> {
         let (mut now, mut ahead) =
             (core::mem::take(&mut scratch.before), core::mem::take(&mut scratch.after));
-        // Relative to the character: far from the world's origin small displacements are lost in rounding.
+        // Compute relative to the character: far from the world's origin small displacements are lost in rounding.
         let pose = self.feet.led(&self.figure.pose);
         scratch.bodies_of(self.def, pose, Transform::IDENTITY, &mut now);
         let (mut animator, mut way) = (scratch.sent_ahead(&self.gait.animator), Transform::IDENTITY);
         let laps = laps(&animator);
-        // Velocities are those of the clips from their present pose: the shown pose may be that of bodies or of
+        // Velocities are those of the clips from the clips' present pose: the shown pose may come from bodies or
         // stepping feet.
         let (mut from, mut further) = (Vec::new(), Vec::new());
         self.bodies(&mut animator, &mut way, 0.0, scratch, &mut from);
         self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut ahead);
         self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut further);
         if self::laps(&animator) != laps {
-            // Across a loop's seam poses may jump: the motion behind the seam counts.
+            // Poses may jump across a loop's seam, so the motion after the seam counts.
             core::mem::swap(&mut from, &mut further);
             self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut ahead);
             self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut further);
@@ -79,8 +79,8 @@ impl Foresight<'_> {
             let [first, second, third] = [from[index], ahead[index], further[index]];
             let between = |a, b| body_velocity(a, b, body.mass.center, HAND_OVER_TIME, self.def.speed_bound);
             let (soon, later) = (between(first, second), between(second, third));
-            // Means of two spans, extrapolated to the start of the first: a transition may change speeds by a tenth in
-            // one.
+            // Extrapolate the means of two intervals to the start of the first: a transition may change speeds by a
+            // tenth in one interval.
             let start = |soon: Vec3, later: Vec3| place.rotation * (soon + (soon - later) * 0.5);
             let velocity = Velocity {
                 linear: start(soon.linear, later.linear),
@@ -93,8 +93,8 @@ impl Foresight<'_> {
         states
     }
 
-    /// Poses of the bodies by the clips at the end of the next step, in `scratch.after`, and their velocities until
-    /// then, in `scratch.velocities`.
+    /// Computes the poses of the bodies in the clips at the end of the next step, in `scratch.after`, and their
+    /// velocities until then, in `scratch.velocities`.
     pub fn next(&self, dt: f32, scratch: &mut Scratch) {
         let mut targets = core::mem::take(&mut scratch.after);
         let mut before = core::mem::take(&mut scratch.before);
@@ -117,7 +117,7 @@ impl Foresight<'_> {
     }
 }
 
-/// Sum of the laps of all tracks: a change shows a seam in between.
+/// Returns the sum of the laps of all tracks: a change shows that a seam was passed.
 fn laps(animator: &Animator) -> i64 {
     animator.tracks().fold(0, |sum, track| sum.wrapping_add(track.playhead().lap()))
 }

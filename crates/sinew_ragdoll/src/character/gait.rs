@@ -12,15 +12,15 @@ use sinew_anim::{Animator, ClipId, TrackDef, TrackId, smoothstep, weights_on_lin
 use sinew_math::{Rotation, Transform, Vec3, clamp, max, min, normalize_or, trig};
 use sinew_physics::{BodyId, MoverDef, MoverId, World};
 
-/// Clips and mover of a character, and where it is to go.
+/// Clips and mover of a character, and its requested motion.
 #[derive(Clone, Debug)]
 pub(super) struct Gait {
     pub animator: Animator,
-    /// While it stands in a world.
+    /// Mover of the character, while it stands in a world.
     pub mover: Option<MoverId>,
     /// Requested velocity, m/s; `None`: root motion.
     pub wish: Option<Vec3>,
-    /// Direction in which it is to look, level, of length 1.
+    /// Direction that the character shall face, level, of length 1.
     pub facing: Option<Vec3>,
     /// The mover's rotation when last read.
     pub yaw: f32,
@@ -32,22 +32,23 @@ pub(super) struct Gait {
     pub climbing: f32,
     /// Speed at which the looped clip is played, m/s.
     pub pace: f32,
-    /// Seconds since the mover had ground.
+    /// Time since the mover last had ground, seconds.
     pub air: f32,
-    /// Offset from its mover to its shown place: it takes a moment to follow a step down, or a mover that was pushed
-    /// out, metres.
+    /// Offset from the mover to the shown place, metres: the character takes a moment to follow a step down, or a mover
+    /// that was pushed aside.
     pub beside: Vec3,
-    /// Velocity that blasts and fields give it beside its walk, m/s; its feet brake it. Upward: on the way off the ground.
+    /// Velocity by blasts and fields in addition to the walk, m/s; the feet brake it. Upward: on the way off the
+    /// ground.
     pub shoved: Vec3,
-    /// Change of velocity by these in the last step, m/s; nothing between updates.
+    /// Change of velocity by blasts and fields in the last step, m/s; zero between updates.
     pub blown: Vec3,
-    /// Velocity at which it follows a held limb, level, m/s; nothing between updates.
+    /// Velocity at which the character follows a held limb, level, m/s; zero between updates.
     pub pulled: Vec3,
-    /// It left the ground for too long or landed too fast.
+    /// True if the character was off the ground for too long or landed too fast.
     pub falls: bool,
 }
 
-/// Motion of a character in the last update of an animator, in its own space.
+/// Returns the motion of a character in the last update of an animator, in its own space.
 pub(super) fn root_step(def: &CharacterDef, animator: &Animator) -> Transform {
     let root = def.mapping().character_from_model();
     let turn = root.to_rigid().rotation;
@@ -76,7 +77,8 @@ impl Gait {
         }
     }
 
-    /// Advances the clips and the figure over the ground by a step. `own`: bodies of a character in the world.
+    /// Advances the clips and the figure over the ground by a step. `own`: bodies of the character, if it is in the
+    /// world.
     pub fn advance(
         &mut self,
         def: &CharacterDef,
@@ -91,7 +93,7 @@ impl Gait {
         figure.keep_earlier();
         figure.take(&self.animator);
         let step = root_step(def, &self.animator);
-        // A lying body would be swung about its feet, so it turns as it comes to stand.
+        // Facing would swing a lying body about its feet, so the turning speed grows as the character rises.
         let most = if activity.state() == State::Powered { POWERED_TURNS } else { f32::INFINITY };
         let turns = min(def.in_world.turn_speed, most) * (1.0 - activity.lowness(def, &self.animator));
         let from = figure.place;
@@ -112,7 +114,8 @@ impl Gait {
         self.climbing = (to.translation.y - from.translation.y) / dt;
     }
 
-    /// Place after a step, by its mover; records what the mover feels. `turns`: largest turning speed, rad/s.
+    /// Returns the place after a step, by the mover, and records the mover's speeds. `turns`: largest turning speed,
+    /// rad/s.
     fn ride(
         &mut self,
         def: &CharacterDef,
@@ -130,7 +133,7 @@ impl Gait {
         let way = feet - mover.interpolated(0.0);
         let level = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
         let beyond = way - velocity * dt;
-        // Overlapping bodies and a tread in front of it push it aside within a step.
+        // Overlapping bodies and a step in front of the mover push it aside within a step of the world.
         let aside = if ground.is_some() { level(beyond) } else { beyond };
         let pushed = aside * max(1.0 - PUSHED_ASIDE * dt / max(aside.length(), 1e-6), 0.0);
         self.beside -= pushed;
@@ -160,8 +163,8 @@ impl Gait {
         Some(Transform::new(feet + self.beside - Vec3::Y * mover.def().skin, rotation.normalize()))
     }
 
-    /// Tells the mover where to go in the next step, and lets it grow to its height. `on_feet`: it accelerates by its
-    /// own feet.
+    /// Sets the mover's motion for the next step, and lets it grow to its full height. `on_feet`: the mover accelerates
+    /// by its own feet.
     pub fn steer(
         &mut self,
         def: &CharacterDef,
@@ -183,7 +186,7 @@ impl Gait {
         }
     }
 
-    /// Adds what blasts, fields and pulls do to a walk: on the ground feet brake it, in the air nothing does.
+    /// Adds the effects of blasts, fields and pulls to a walk: on the ground feet brake them, in the air nothing does.
     fn be_shoved(&mut self, mover: MoverId, walk: Vec3, world: &mut World) -> Vec3 {
         let (blown, pulled) = (core::mem::take(&mut self.blown), core::mem::take(&mut self.pulled));
         if blown == Vec3::ZERO && self.shoved == Vec3::ZERO {
@@ -209,7 +212,7 @@ impl Gait {
         walk + kept + pulled
     }
 
-    /// [`wanted_walk`](Self::wanted_walk), limited by the acceleration of its own feet.
+    /// Returns [`wanted_walk`](Self::wanted_walk), limited by the acceleration of the character's own feet.
     fn reachable_walk(
         &self,
         def: &CharacterDef,
@@ -228,7 +231,7 @@ impl Gait {
         now + change * min(PICKS_UP * dt / max(change.length(), 1e-6), 1.0)
     }
 
-    /// Wanted velocity over the ground in a step of `dt` seconds: as requested, or by root motion.
+    /// Returns the wanted velocity over the ground in a step of `dt` seconds: as requested, or by root motion.
     pub fn wanted_walk(&self, def: &CharacterDef, state: State, rotation: Rotation, dt: f32) -> Vec3 {
         let step = root_step(def, &self.animator).translation;
         let wish = self.wish.filter(|_| state != State::GettingUp);
@@ -277,14 +280,14 @@ impl Gait {
         }
     }
 
-    /// The track of a clip, started without weight if there is none.
+    /// Returns the track of a clip, started without weight if there is none.
     fn track_or_silent(&mut self, def: &CharacterDef, clip: ClipId, sync_group: Option<u8>) -> TrackId {
         self.track_of(clip).unwrap_or_else(|| {
             self.animator.play(def.set(), &TrackDef { weight: 0.0, sync_group, ..TrackDef::new(clip) })
         })
     }
 
-    /// Moves it with its clips' root motion.
+    /// Moves the character with its clips' root motion.
     pub fn follow_clips(&mut self, def: &CharacterDef) {
         self.wish = None;
         if let Some(track) = self.looped_track(def) {
@@ -309,7 +312,8 @@ impl Gait {
         self.animator.tracks().find(plays).map(sinew_anim::Track::id)
     }
 
-    /// Place after `seconds` more, relative to its present place: by its mover, or by its clips.
+    /// Returns the place after `seconds` more, relative to the character's present place: by its mover, or by its
+    /// clips.
     pub fn gone_on(
         &self,
         def: &CharacterDef,
@@ -330,7 +334,7 @@ impl Gait {
         place
     }
 
-    /// Adds a mover at its place, at a share of its height.
+    /// Adds a mover at the character's place, at a share of its full height.
     pub fn stand_up(&mut self, def: &CharacterDef, place: Vec3, world: &mut World, share: f32) {
         let Some(mover) = def.in_world.mover.as_ref().filter(|_| self.mover.is_none()) else { return };
         let height = max(2.0 * mover.radius, share * mover.height);
@@ -346,13 +350,14 @@ impl Gait {
         self.clear_shoves();
     }
 
-    /// True once it has left the ground: at once in a jump, after a moment over an edge or a kerb.
+    /// Returns true once the character has left the ground: immediately in a jump, after a moment over an edge or a
+    /// kerb.
     pub fn is_aloft(&self) -> bool {
         self.air >= OFF_GROUND || self.air > 0.0 && self.velocity.y > LIFTS_OFF
     }
 
-    /// Follows a held limb that is drawn from its clip by `off` and moves at `velocity`: at its speed once it is off by
-    /// the slack, and by what it is off beyond that.
+    /// Follows a held limb that is drawn from its clip by `off` and moves at `velocity`. The speed is the limb's own
+    /// speed once `off` reaches the slack, and grows with the distance beyond the slack.
     pub fn follow_pull(&mut self, off: Vec3, velocity: Vec3, height: f32) {
         let level = Vec3::new(off.x, 0.0, off.z);
         let way = normalize_or(level, Vec3::ZERO);
@@ -367,7 +372,7 @@ impl Gait {
         (self.shoved, self.blown, self.pulled) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
     }
 
-    /// Removes its mover because it lies.
+    /// Removes the mover of a lying character.
     pub fn sit_down(&mut self, world: &mut World) {
         self.clear_shoves();
         if let Some(mover) = self.mover.take().filter(|&mover| world.contains_mover(mover)) {
@@ -386,7 +391,7 @@ impl Gait {
     }
 }
 
-/// A rotation turned about the vertical so that +z moves toward a level direction, by at most an angle.
+/// Returns a rotation turned about the vertical so that +z moves toward a level direction, by at most an angle.
 fn turned_to(rotation: Rotation, direction: Vec3, most: f32) -> Rotation {
     let ahead = rotation * Vec3::Z;
     let angle = trig::atan2(

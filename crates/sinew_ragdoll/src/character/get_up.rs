@@ -1,4 +1,4 @@
-//! From lying to standing: choice of clip and moment, room, and heading.
+//! Get-ups: choice of clip and start, free space, and heading.
 
 use super::CharacterDef;
 use super::figure::Figure;
@@ -13,32 +13,33 @@ use sinew_physics::{BodyContact, BodyId, BodyKind, Effect, World};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rising {
     pub way: Way,
-    /// Slope of the ground, as a rotation from the vertical: scaled axis, world axes.
+    /// Slope of the ground: rotation from the vertical to its normal, scaled axis, world axes.
     pub lean: Vec3,
 }
 
-/// A get-up.
+/// The way in which a character gets up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Way {
-    /// By this track.
+    /// The track plays a get-up clip.
     ByClip(TrackId),
-    /// By the looped clip alone, for this many seconds more.
+    /// The looped clip alone plays, for this many seconds more.
     Without(f32),
 }
 
 /// Outcome of a step of rising.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Risen {
-    /// It continues.
+    /// The get-up continues.
     NotYet,
-    /// Its clip is over.
+    /// The get-up clip is over.
     ByClip,
-    /// Its time is over.
+    /// The time without a clip is over.
     Without,
 }
 
 impl Rising {
-    /// Remaining share of a get-up until it stands upright: 1 and more while it still lies, 0 and less once it stands.
+    /// Returns the remaining share of a get-up until the character stands upright: 1 and more while it lies, 0 and less
+    /// once it stands.
     pub fn left(&self, def: &CharacterDef, animator: &Animator) -> f32 {
         match self.way {
             Way::ByClip(id) => {
@@ -52,18 +53,19 @@ impl Rising {
         }
     }
 
-    /// True if it gets up by no clip of its own.
+    /// Returns true if the character gets up without a get-up clip.
     pub fn is_without_clip(&self) -> bool {
         matches!(self.way, Way::Without(_))
     }
 
-    /// On a slope the clip, made for a level floor, lies as the slope does and comes to stand upright.
+    /// Tilts the place by the slope while the character lies, and makes it upright toward the end, because clips are
+    /// made for a level floor.
     pub fn straighten(&self, def: &CharacterDef, animator: &Animator, figure: &mut Figure) {
         if self.lean == Vec3::ZERO {
             return;
         }
         let before = figure.place.rotation;
-        // The remaining lean after the last step is in the rotation; the heading is the one without it.
+        // The rotation contains the remaining lean after the last step; the heading is the rotation without the lean.
         let heading = Rotation::from_axis_angle(Vec3::Y, before.twist_angle(Vec3::Y));
         let left = smoothstep(self.left(def, animator));
         figure.place.rotation = Rotation::from_scaled_axis(self.lean * left) * heading;
@@ -84,7 +86,7 @@ impl Rising {
     }
 }
 
-/// A get-up clip, the moment of it that is most like the present pose, and how much that is.
+/// A get-up clip, the moment of this clip that is most similar to the present pose, and their similarity.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Choice<'a> {
     pub get_up: &'a GetUp,
@@ -92,7 +94,7 @@ pub(super) struct Choice<'a> {
     pub pose_similarity: PoseSimilarity,
 }
 
-/// The best of all clips and moments for a body in this pose.
+/// Returns the best of all clips and moments for a body in this pose.
 pub(super) fn choose<'a>(get_ups: &'a [GetUp], landmarks: &Landmarks, lies: &Stance) -> Option<Choice<'a>> {
     let all = get_ups.iter().flat_map(|get_up| get_up.starts.iter().map(move |start| (get_up, start)));
     all.map(|(get_up, start)| Choice {
@@ -103,8 +105,7 @@ pub(super) fn choose<'a>(get_ups: &'a [GetUp], landmarks: &Landmarks, lies: &Sta
     .reduce(|a, b| if b.pose_similarity.distance < a.pose_similarity.distance { b } else { a })
 }
 
-/// Place, height and heading of a character lying on a slope: as high as the ground at the pelvis. `ground`: height of
-/// the ground there.
+/// Returns the place of a character tilted by `lean`, at the height at which its floor is at `ground` under the pelvis.
 pub(super) fn standing(place: Transform, lean: Vec3, pelvis: Vec3, ground: f32) -> Transform {
     let mut to = Transform::new(place.translation, Rotation::from_scaled_axis(lean) * place.rotation);
     let normal = Rotation::from_scaled_axis(lean) * Vec3::Y;
@@ -113,7 +114,7 @@ pub(super) fn standing(place: Transform, lean: Vec3, pelvis: Vec3, ground: f32) 
     to
 }
 
-/// True if another mover occupies its mover's place.
+/// Returns true if another mover occupies the place of the character's mover.
 pub(super) fn is_taken(def: &CharacterDef, world: &World, place: Vec3) -> bool {
     let Some(own) = &def.in_world.mover else { return false };
     world.mover_ids().any(|id| {
@@ -125,9 +126,9 @@ pub(super) fn is_taken(def: &CharacterDef, world: &World, place: Vec3) -> bool {
     })
 }
 
-/// True if something movable lies on it, and it has not waited too long: a kinematic body that stands on it, or dynamic
-/// ones that press it down by more than it presses others. These net loads of characters in a pile sum to zero, so that
-/// one is always free. `steps`: time it has lain.
+/// Returns true if a movable body is on the character, and it has not waited too long: a kinematic body that stands on
+/// it, or dynamic bodies that press it down by more than it presses others. These net loads of characters in a pile sum
+/// to zero, so at least one character is always free. `steps`: time that the character has lain.
 pub(super) fn is_under(def: &CharacterDef, own: &[BodyId], steps: u32, world: &World) -> bool {
     let dt = world.def().dt();
     if steps as f32 * dt > BEARS_FOR {

@@ -1,4 +1,5 @@
-//! Grips on limbs and other dynamic bodies: they hold the touched point with bounded force, and let go beyond it.
+//! Grips on limbs and other dynamic bodies. A grip holds the touched point with bounded force, and lets go beyond this
+//! force.
 
 use super::grasp::{Grab, Grasp};
 use super::hold::{Grips, Hold};
@@ -10,7 +11,7 @@ use sinew_physics::boxes::Overlap;
 use sinew_physics::{Aabb, BodyId, BodyKind, JointId, JointState, World};
 
 impl Grips {
-    /// Makes one of its bodies, by index, grab another body where they touch.
+    /// Makes one of the character's bodies, by index, grab another body where the two touch.
     pub fn grab(
         &mut self,
         physique: &Physique,
@@ -36,19 +37,19 @@ impl Grips {
         Some(joint)
     }
 
-    /// True if something holds one of its bodies: see [`gripped`](Self::gripped).
+    /// Returns true if one of the character's bodies is held: see [`gripped`](Self::gripped).
     pub fn is_gripped(&self, physique: &Physique, world: &World) -> bool {
         self.gripped(physique, world).is_some()
     }
 
-    /// Index of the first of its bodies that a hand, a grip or a joint of something else holds: another character, a body
-    /// that is not dynamic, or one that hangs on such by joints.
+    /// Returns the index of the first of the character's bodies that is held by a hand, a grip or a joint of another
+    /// object: another character, a body that is not dynamic, or a body connected to one of these by joints.
     pub fn gripped(&self, physique: &Physique, world: &World) -> Option<usize> {
         let own = physique.own();
         let is_own_joint =
             |joint| physique.drives.is_pin(joint) || self.holds.iter().any(|hold| hold.joint == joint);
         let is_held = |&body: &BodyId| {
-            // Those of ragdolls have owners.
+            // Joints of ragdolls have owners.
             world.joints_of(body).filter(|&joint| world.joint_owner(joint).is_none()).any(|joint| {
                 let other = across(world, joint, body);
                 let is_others = !own.contains(&other) && !is_own_joint(joint);
@@ -58,7 +59,8 @@ impl Grips {
         own.iter().find(|body| is_held(body)).and_then(|&body| physique.index_of(body))
     }
 
-    /// True for a body that its own pass through because it hangs on a held or released one.
+    /// Returns true for a body that is held or released, or connected to such a body; the character's own bodies pass
+    /// through it.
     pub fn passes_through(&self, world: &World, body: BodyId) -> bool {
         let mut all = self.held().chain(self.freed.iter().copied()).filter(|&held| world.contains(held));
         all.any(|held| held == body || together(world, held).contains(&body))
@@ -89,7 +91,7 @@ impl Grips {
         self.freed = freed;
     }
 
-    /// Pulls all grips through the next step; returns what one lets go of.
+    /// Pulls all grips through the next step; returns the body that one of them lets go.
     pub(super) fn pull(&mut self, world: &mut World) -> Option<BodyId> {
         for hold in &mut self.holds {
             if let Some(grasp) = &mut hold.grasp
@@ -102,14 +104,14 @@ impl Grips {
     }
 }
 
-/// The other body of a joint.
+/// Returns the other body of a joint.
 fn across(world: &World, joint: JointId, body: BodyId) -> BodyId {
     let (a, b) = world.joint_bodies(joint);
     if a == body { b } else { a }
 }
 
-/// True for a body that is not dynamic or is another character's, and for one that hangs on such by joints, as the hook of
-/// a crane does. `own`: bodies through which the search does not go.
+/// Returns true for a body that is not dynamic or belongs to another character, and for a body connected to one of
+/// these by joints, like the hook of a crane. `own`: bodies through which the search does not go.
 fn is_anchored(world: &World, body: BodyId, own: &[BodyId]) -> bool {
     let (mut found, mut next) = (vec![body], 0);
     while let Some(&body) = found.get(next) {
@@ -128,7 +130,7 @@ fn is_anchored(world: &World, body: BodyId, own: &[BodyId]) -> bool {
     false
 }
 
-/// True if a mover stands in these bodies, for instance one that dragged them.
+/// Returns true if a mover overlaps these bodies, for instance the mover of a character that dragged them.
 pub(super) fn is_entered(world: &World, own: &[BodyId]) -> bool {
     let Some(own) = around(world, own) else { return false };
     world.mover_ids().any(|id| {
@@ -140,7 +142,7 @@ pub(super) fn is_entered(world: &World, own: &[BodyId]) -> bool {
     })
 }
 
-/// Bounds of bodies, enlarged for a step.
+/// Returns the bounds of bodies, enlarged by [`PARTED`].
 fn around(world: &World, bodies: &[BodyId]) -> Option<Aabb> {
     let bounds = bodies.iter().map(|&body| world.bounds(body)).reduce(|a, b| a.merge(&b))?;
     let room = Vec3::splat(PARTED);

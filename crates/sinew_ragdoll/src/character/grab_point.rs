@@ -1,14 +1,15 @@
-//! A point that grabs: a mouse's, a crane's.
+//! A point that grabs, for example of a mouse or a crane.
 
 use super::grasp::{Grab, Grasp};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::{BodyDef, BodyId, BodyKind, JointId, World};
 
-/// First bytes; the last is the version.
+/// First bytes of a saved point; the last one is the version.
 const MAGIC: &[u8; 8] = b"sinew-g\x01";
 
-/// A point of the world that holds a body, such as a limb, and drags it: for instance a mouse. It moves at
-/// [`Grab::speed`], at most as far ahead of its body as its force stretches, so that jumps of the target throw nothing.
+/// A point of the world that holds a body, such as a limb, and drags it: for instance a mouse. The point moves at
+/// [`Grab::speed`], and stays ahead of its body by at most the stretch at full force, so that jumps of the target throw
+/// no body.
 ///
 /// ```
 /// use sinew_math::{Transform, Vec3};
@@ -35,7 +36,7 @@ const MAGIC: &[u8; 8] = b"sinew-g\x01";
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct GrabPoint {
-    /// Static, without shape, at the origin.
+    /// Static body without shape, at the origin.
     ground: BodyId,
     joint: JointId,
     held: BodyId,
@@ -46,7 +47,7 @@ pub struct GrabPoint {
 
 impl GrabPoint {
     /// Grabs a body at the surface point nearest to `point` (metres, world), or at `point` itself if it is inside.
-    /// `None` if that is further away than [`Grab::reach`], or the body is not dynamic. For a limb of an animated
+    /// `None` if that point is further away than [`Grab::reach`], or the body is not dynamic. For a limb of an animated
     /// character see [`Character::grab`](super::Character::grab).
     ///
     /// # Panics
@@ -64,33 +65,33 @@ impl GrabPoint {
         Some(Self { ground, joint, held, origin, grasp })
     }
 
-    /// Has it go to a point, metres, world.
+    /// Sets the target of the point, metres, world.
     ///
     /// # Panics
-    /// If that is not finite.
+    /// If the target is not finite.
     #[track_caller]
     pub fn set_target(&mut self, point: Vec3) {
         assert!(point.is_finite(), "a point is finite, not {point:?}");
         self.grasp.lead(point - self.origin);
     }
 
-    /// Target position, metres, world.
+    /// Returns the target position, metres, world.
     pub fn target(&self) -> Vec3 {
         self.origin + self.grasp.goal
     }
 
-    /// Body that it holds, or held.
+    /// Returns the body that the point holds, or held.
     pub fn held(&self) -> BodyId {
         self.held
     }
 
-    /// Its joint in the world, whose [reaction](World::reaction) is the force of the grip.
+    /// Returns the point's joint in the world, whose [reaction](World::reaction) is the force of the grip.
     pub fn joint(&self) -> JointId {
         self.joint
     }
 
-    /// Pulls through the next step: call it before each. False once it holds nothing: the body is gone, or further from
-    /// the target than [`Grab::slip`].
+    /// Pulls through the next step; call it before each step. Returns false once the point holds nothing: the body is
+    /// gone, or further from the target than [`Grab::slip`].
     pub fn update(&mut self, world: &mut World) -> bool {
         let is_there = world.contains_joint(self.joint) && world.contains(self.held);
         if is_there && self.grasp.pull(world, self.joint, true) {
@@ -100,7 +101,7 @@ impl GrabPoint {
         false
     }
 
-    /// Lets go.
+    /// Releases the body.
     pub fn release(self, world: &mut World) {
         self.leave(world);
     }
@@ -111,7 +112,7 @@ impl GrabPoint {
         }
     }
 
-    /// Writes the state that the world's snapshot does not hold.
+    /// Writes the state that the world's snapshot does not contain.
     pub fn save(&self, w: &mut Writer) {
         w.raw(MAGIC);
         w.u64(self.ground.to_bits());
@@ -121,10 +122,10 @@ impl GrabPoint {
         self.grasp.save(w);
     }
 
-    /// Reads a saved point; it belongs to the world's snapshot of the same time.
+    /// Reads a saved point, which belongs to the world's snapshot of the same time.
     ///
     /// # Errors
-    /// If the bytes are not those of such a point of this version.
+    /// If the bytes are not a saved point of this version.
     pub fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
             return Err(r.error("is not a point that grabs of this version"));

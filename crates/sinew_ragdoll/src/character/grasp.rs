@@ -1,5 +1,4 @@
-//! A grip: a joint with a motor that holds one point, with a stiffness that reaches its force at a hundredth of a
-//! metre.
+//! A grip: a joint with a motor that holds one point. Its stiffness reaches the full force at a stretch of 1 cm.
 
 use super::tuning::{GRIP_SHARE, GRIP_STRETCH, LEAST_ALONG, LEAST_GAP};
 use sinew_math::{ReadError, Reader, Rotation, Transform, Vec3, Writer, max, min};
@@ -12,17 +11,18 @@ use sinew_physics::{
 pub struct Grab {
     /// Largest force of the grip, N. Default 1300, which drags a man at a walk.
     pub max_force: f32,
-    /// Largest distance from the surface to the middle of the hand, or to the point, metres. Default 0.25.
+    /// Largest distance from the surface to the centre of the hand, or to the point, metres. Default 0.25.
     pub reach: f32,
     /// Distance by which the grip slips at its full force before it lets go, metres; for a
     /// [`GrabPoint`](super::GrabPoint) the distance from its target. Default 0.4.
     pub slip: f32,
-    /// Point in the frame of the hand's body to which it pulls the held body, at `speed`; `None`: to the hand's
+    /// Point in the frame of the hand's body to which the grip pulls the held body, at `speed`; `None`: to the hand's
     /// surface. Default `None`.
     pub to: Option<Vec3>,
-    /// Speed at which it pulls the held body, and at which a [`GrabPoint`](super::GrabPoint) moves, m/s. Default 1.
+    /// Speed at which the grip pulls the held body, and at which a [`GrabPoint`](super::GrabPoint) moves, m/s. Default
+    /// 1.
     pub speed: f32,
-    /// It lets go when its character goes limp. Default true.
+    /// True if the grip lets go when its character goes limp. Default true.
     pub drops: bool,
 }
 
@@ -30,7 +30,7 @@ impl Grab {
     /// Grip of a hand.
     pub const HAND: Self =
         Self { max_force: 1300.0, reach: 0.25, slip: 0.4, to: None, speed: 1.0, drops: true };
-    /// Grip for a point moved by a person, such as a mouse: at most 2.5 m/s, and it never lets go by itself.
+    /// Grip for a point moved by a person, such as a mouse: at most 2.5 m/s; it never lets go by itself.
     pub const POINT: Self = Self { slip: f32::INFINITY, speed: 2.5, ..Self::HAND };
 
     /// # Panics
@@ -57,26 +57,26 @@ impl Default for Grab {
 pub(super) struct Grasp {
     /// Target of the hold.
     pub goal: Vec3,
-    /// Offset from there to the current hold, world axes: a body pulled from afar does not rotate with it.
+    /// Offset from the target to the current hold, world axes. A body pulled from afar does not rotate with the hand.
     pub off: Vec3,
-    /// Anchors on the hand's body and on the held one, in their frames.
+    /// Anchors on the hand's body and on the held body, in their frames.
     anchors: [Vec3; 2],
     max_force: f32,
     slip: f32,
     speed: f32,
-    /// N·s/m.
+    /// Damping of the motor, N·s/m.
     damping: f32,
 }
 
 impl Grasp {
-    /// Point of `held` that a hand at `palm` grabs, world; `None` if it is out of reach.
+    /// Returns the point of `held` that a hand at `palm` grabs, world; `None` if it is out of reach.
     pub fn touch(world: &World, held: BodyId, palm: Vec3, reach: f32) -> Option<Vec3> {
         let surface = world.nearest_surface(held, palm)?;
         let point = if surface.distance <= 0.0 { palm } else { surface.point };
         (surface.distance <= reach).then_some(point)
     }
 
-    /// Joins two bodies at `point` of the held one, which is pulled to `to`; world.
+    /// Joins two bodies at `point` of the held one, which is pulled to `to`; both in world space.
     pub fn take(
         world: &mut World,
         [hand, held]: [BodyId; 2],
@@ -102,8 +102,8 @@ impl Grasp {
         (grasp, joint)
     }
 
-    /// Pulls through the next step; `leads`: the target stays near the held point instead of dragging behind. False: it
-    /// lets go.
+    /// Pulls through the next step; returns false if the grip lets go. `leads`: the target stays near the held point
+    /// instead of dragging it from afar.
     pub fn pull(&mut self, world: &mut World, joint: JointId, leads: bool) -> bool {
         let (dt, def) = (world.def().dt(), world.joint(joint));
         let held = def.frame_a.rotation * world.joint_transform(joint).translation;
@@ -131,10 +131,10 @@ impl Grasp {
         self.goal = goal;
     }
 
-    /// The joint that pulls the held point; `velocity` is that of the target.
+    /// Returns the joint that pulls the held point; `velocity` is the velocity of the target.
     ///
-    /// Each axis has its own cap. The axes lie symmetrically about the pull, so that together they give the force, and
-    /// no more in any direction.
+    /// Each axis has its own largest force. The axes are symmetric about the pull, so that together they give the full
+    /// force along it, and no more in any direction.
     fn pulling(&self, def: &JointDef, at: Vec3, held: Vec3, velocity: Vec3) -> JointDef {
         let (gap, third) = (at - held, (1.0_f32 / 3.0).sqrt());
         let (about, mut turn) = (Vec3::splat(third), def.frame_a.rotation);
@@ -179,7 +179,7 @@ impl Grasp {
     }
 }
 
-/// The point nearest to `at` to which a grip stretches at its full force.
+/// Returns the point nearest to `at` to which a grip stretches at its full force.
 fn near(at: Vec3, held: Vec3) -> Vec3 {
     let gap = at - held;
     held + gap * min(GRIP_STRETCH / max(gap.length(), 1e-9), 1.0)

@@ -1,4 +1,4 @@
-//! Ground that a character stands on.
+//! Ground under a character.
 
 use crate::character::tuning::{
     BORNE, GROUND_DEPTH, LEAST_TREAD, LEVEL_GROUND, LIES_LOW, LIES_ON, LYING_SEARCH, STEEPEST_GROUND,
@@ -11,26 +11,26 @@ use sinew_physics::{
     World,
 };
 
-/// Height of the supporting surface under a point, searched from `above` metres over it: of the static world for a
-/// character outside of a world (`own` is `None`), else of everything except its own bodies, led bodies of others, and
-/// detached limbs.
+/// Returns the height of the supporting surface under a point, searched from `above` metres over the point. A character
+/// outside of a world (`own` is `None`) finds only the static world; otherwise all bodies count except the character's
+/// own, kinematic bodies of other characters, and detached limbs.
 pub(super) fn below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId]>) -> Option<f32> {
     found_below(world, point, above, own).map(|hit| hit.point.y)
 }
 
-/// [`below`], with the supporting body.
+/// Returns the hit of [`below`], with the supporting body.
 pub(super) fn found_below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId]>) -> Option<BodyHit> {
     let ray = Ray { origin: point + Vec3::Y * above, direction: Vec3::Y * -(above + GROUND_DEPTH) };
     let hit = match own {
         None => world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&ray)?,
         Some(own) => bearer(world, &ray, own)?,
     };
-    // A ray that starts inside says nothing about the height.
+    // A ray that starts inside a shape does not give the height.
     hit.start.is_none().then_some(hit)
 }
 
-/// Height of the ground under a point as [`below`], without detached limbs, other characters, and dynamic bodies lighter
-/// than `least` kg.
+/// Returns the height of the ground under a point like [`below`], but ignores detached limbs, other characters, and
+/// dynamic bodies lighter than `least` kg.
 pub(super) fn firm_below(
     world: &World,
     point: Vec3,
@@ -42,7 +42,8 @@ pub(super) fn firm_below(
     is_firm(world, hit.body, least).then_some(hit.point.y)
 }
 
-/// True of ground that bears a character: neither another character's body nor a dynamic one lighter than `least` kg.
+/// Returns true if a body bears a character: neither another character's body nor a dynamic body lighter than `least`
+/// kg.
 pub(super) fn is_firm(world: &World, body: BodyId, least: f32) -> bool {
     let is_heavy = world.kind(body) != BodyKind::Dynamic || world.mass(body).mass >= least;
     is_heavy && world.body_owner(body).is_none()
@@ -55,7 +56,7 @@ pub(super) fn bearer(world: &World, ray: &Ray, own: &[BodyId]) -> Option<BodyHit
     world.query().filter(QueryFilter::without(own)).accept(bears).first(ray)
 }
 
-/// Motion of the ground under a body; by default it stands.
+/// Motion of the ground under a body; the default is at rest.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct GroundMotion {
     velocity: Velocity,
@@ -63,18 +64,18 @@ pub(super) struct GroundMotion {
 }
 
 impl GroundMotion {
-    /// Velocity of its surface at a point, m/s.
+    /// Returns the velocity of the ground's surface at a point, m/s.
     pub fn at(&self, point: Vec3) -> Vec3 {
         self.velocity.at(point - self.center)
     }
 
-    /// Spin, rad/s.
+    /// Returns the angular velocity of the ground, rad/s.
     pub fn angular(&self) -> Vec3 {
         self.velocity.angular
     }
 }
 
-/// Motion of the body under a pelvis, the first of some bodies.
+/// Returns the motion of the body under a pelvis, the first of `bodies`.
 pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
     let Some(&pelvis) = bodies.first() else { return GroundMotion::default() };
     let ray = Ray { origin: world.center_of_mass(pelvis), direction: Vec3::Y * -LIES_ON };
@@ -82,7 +83,7 @@ pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
     GroundMotion { velocity: world.velocity(hit.body), center: world.center_of_mass(hit.body) }
 }
 
-/// True if a lying body, its pelvis the first of some, is low over ground, or firm ground bears it.
+/// Returns true if a lying body, its pelvis the first of `own`, is low over ground, or firm ground bears it.
 pub(super) fn bears(def: &RagdollDef, own: &[BodyId], world: &World) -> bool {
     let Some(&pelvis) = own.first() else { return true };
     let (at, low) = (world.center_of_mass(pelvis), LIES_LOW * def.height);
@@ -106,8 +107,8 @@ pub(super) fn bears(def: &RagdollDef, own: &[BodyId], world: &World) -> bool {
     borne > BORNE * def.total_mass * world.def().gravity.length() * world.def().dt()
 }
 
-/// The ground under a body as a plane through its heights under these points: the rotation from the vertical to the
-/// plane's normal, scaled axis. Stairs act as the slope through their treads. `least`: as for [`firm_below`].
+/// Fits a plane to the heights of the ground under these points and returns the rotation from the vertical to its
+/// normal, scaled axis. Stairs act as the slope through their treads. `least`: as for [`firm_below`].
 pub(super) fn slope(world: &World, points: &[Vec3], own: Option<&[BodyId]>, least: f32) -> Vec3 {
     let under = |&point: &Vec3| {
         firm_below(world, point, LYING_SEARCH, own, least).map(|y| Vec3::new(point.x, y, point.z))

@@ -1,4 +1,4 @@
-//! Bodies of a character that its clips lead, and contacts that strike them.
+//! Bodies of a character that its clips move, and contacts that strike them.
 
 use super::figure::Scratch;
 use super::physique::Physique;
@@ -13,14 +13,14 @@ use sinew_physics::{BodyId, BodyKind, Hit, Push, Velocity, World};
 /// A contact blow.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Strike {
-    /// N·s, world axes.
+    /// Impulse of the blow, N·s, world axes.
     pub impulse: Vec3,
-    /// Largest speed that the striker can give, m/s.
+    /// Largest speed that the striker can give to the body, m/s.
     pub speed: f32,
 }
 
 impl Physique {
-    /// Leads the hit bodies to the predicted pose at the end of the next step.
+    /// Moves the hit bodies to the predicted pose at the end of the next step.
     pub fn lead(
         &mut self,
         def: &CharacterDef,
@@ -64,8 +64,8 @@ impl Physique {
         own.for_each(|(_, (&id, &next))| world.move_to(id, next, dt));
     }
 
-    /// The hardest blow to its bodies in the last step, if it is felt. `steps`: it stands on its own feet, whose steps
-    /// are no blows.
+    /// Returns the hardest blow to the character's bodies in the last step, with the body's index, if the blow is felt.
+    /// `steps`: the character stands on its own feet, whose steps are not blows.
     pub fn felt(&self, def: &CharacterDef, steps: bool, world: &World) -> Option<(usize, Strike)> {
         let least = def.in_world.feels;
         if self.hit.is_empty() || least == f32::INFINITY {
@@ -80,7 +80,7 @@ impl Physique {
             }
         };
         let own = |id: BodyId| self.index_of(id);
-        // Its own steps are no blows: standing things strike nobody.
+        // The character's own steps are not blows: static bodies strike nobody.
         let stands = |id: BodyId| steps && world.contains(id) && world.kind(id) == BodyKind::Static;
         for hit in &world.events().hits {
             match (own(hit.a.body), own(hit.b.body)) {
@@ -105,13 +105,13 @@ impl Physique {
         felt
     }
 
-    /// Impulses on its led bodies in the last step, by index: of blasts, bullets and forces.
+    /// Returns the impulses of blasts, bullets and forces on kinematic bodies in the last step, by index.
     pub fn pushes(&self, world: &World) -> Vec<(usize, Push)> {
         let pushed = world.events().pushed.iter();
         pushed.filter_map(|push| Some((self.index_of(push.body)?, *push))).collect()
     }
 
-    /// Impulse of all fields on its led bodies in a step, N·s.
+    /// Returns the impulse of all fields on the character's kinematic bodies in a step, N·s.
     pub fn field_impulse(&self, world: &World) -> Vec3 {
         let mut force = Vec3::ZERO;
         for field in world.field_ids() {
@@ -121,7 +121,7 @@ impl Physique {
         force * world.def().dt()
     }
 
-    /// Applies impulses to those of its bodies that are led no longer.
+    /// Applies impulses to those of the bodies that are no longer kinematic.
     pub fn take_pushes(&self, pushes: &[(usize, Push)], world: &mut World) {
         for &(_, Push { body, impulse, angular_impulse }) in pushes {
             if world.kind(body) == BodyKind::Dynamic {
@@ -131,7 +131,7 @@ impl Physique {
         }
     }
 
-    /// Contacts that its bodies began and ended in the last step, as events.
+    /// Returns the contacts that the character's bodies began and ended in the last step, as events.
     pub fn contacts(&self, world: &World) -> impl Iterator<Item = CharacterEvent> {
         let told = world.events();
         let all = [(&told.begin, true), (&told.end, false)].into_iter();
@@ -143,8 +143,8 @@ impl Physique {
         })
     }
 
-    /// Applies the impulse that a led body stopped, shared along its chain by the striker's speed. What is left beyond
-    /// the pelvis is lost.
+    /// Applies the impulse that a kinematic body stopped, shared along its chain by the striker's speed. The rest
+    /// beyond the pelvis is lost.
     pub fn take_up(&self, def: &CharacterDef, body: usize, strike: Strike, world: &mut World) {
         let way = normalize_or(strike.impulse, Vec3::ZERO);
         let mut left = strike.impulse.length();
@@ -160,8 +160,8 @@ impl Physique {
 
     /// Applies an impulse to a body, at a point or at its centre of mass, and returns the work, joules.
     ///
-    /// A share that would make the body faster than [`HIT_SPEED`] goes to the bodies above it, or the blow would fling a
-    /// hand away. What is left beyond the pelvis goes to the struck body.
+    /// A share that would make the body faster than [`HIT_SPEED`] goes to the bodies above it; otherwise the blow would
+    /// fling a hand away. The rest beyond the pelvis goes to the struck body.
     pub fn push(
         &self,
         def: &CharacterDef,
@@ -194,15 +194,16 @@ impl Physique {
     }
 }
 
-/// Impulses that give a body and each one above it up to the pelvis this speed, m/s: N·s.
+/// Returns the indices of a body and of each body above it up to the pelvis, each with the impulse that gives it this
+/// speed (m/s), N·s.
 fn shares(def: &RagdollDef, body: usize, speed: f32) -> impl Iterator<Item = (usize, f32)> {
     let parent = |&body: &usize| body.checked_sub(1).map(|joint| def.joints[joint].parent);
     core::iter::successors(Some(body), parent).map(move |body| (body, def.bodies[body].mass.mass * speed))
 }
 
-/// Impulse of a hit on one of its bodies by another, `way` being the direction from that to it, N·s: at most what the
-/// striker could give to the whole character, `whole` kg, and to a keyed body only the striker's own momentum. A foot
-/// that comes down on a hand presses it to the ground however strongly it is keyed.
+/// Returns the blow by another body to one of the character's, with `way` the direction from the other body to it. The
+/// impulse is at most the one that the striker could give to the whole character, `whole` kg. A keyed body gets only
+/// the striker's own momentum: a foot that lands on a hand presses the hand to the ground however strongly it is keyed.
 fn taken(world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3, whole: f32) -> Strike {
     let Velocity { linear, angular } = world.velocity(own);
     let led = linear + angular.cross(hit.point - world.center_of_mass(own));
@@ -212,8 +213,8 @@ fn taken(world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3, whole: 
     Strike { impulse: way * min(hit.impulse, meeting_mass(world, other, whole) * speed), speed }
 }
 
-/// Effective mass of the character and the striker for a push between them, kg; jointed or immovable strikers count as
-/// infinite.
+/// Returns the effective mass of the character and the striker for a push between them, kg; jointed or immovable
+/// strikers count as infinite.
 fn meeting_mass(world: &World, other: BodyId, whole: f32) -> f32 {
     if world.contains(other) && is_limb(world, other) {
         let mass: f32 = together(world, other).iter().map(|&body| world.mass(body).mass).sum();
@@ -229,7 +230,7 @@ fn meeting_mass(world: &World, other: BodyId, whole: f32) -> f32 {
     mass * whole / (mass + whole)
 }
 
-/// Impulse that a body passing through one of its own would give it if they stopped each other: N·s.
+/// Returns the blow of a body that passes through one of the character's bodies, as if the two stopped each other.
 fn passing(world: &World, own: BodyId, other: BodyId, whole: f32) -> Strike {
     let gone = !world.contains(other) || !world.contains(own);
     if gone || world.kind(other) != BodyKind::Dynamic || world.kind(own) == BodyKind::Dynamic {

@@ -1,4 +1,4 @@
-//! Bodies that hang on a character's: a sword in a hand, a lantern on a belt. Hit bodies and ragdoll are the same
+//! Bodies attached to a character's bodies: a sword in a hand, a lantern on a belt. Hit bodies and ragdoll are the same
 //! bodies, so held bodies stay in every state.
 
 use super::CharacterEvent;
@@ -13,11 +13,11 @@ use sinew_physics::{
 /// Settings of a hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip {
-    /// From the frame of the held body to the frame of the bone's body. Default: identity.
+    /// Transform from the frame of the held body to the frame of the bone's body. Default: identity.
     pub bone_from_held: Transform,
     /// Force and torque beyond which the held body is torn off. Default unbreakable.
     pub strength: Strength,
-    /// It is dropped when the character goes limp. Default false.
+    /// True if the held body is dropped when the character goes limp. Default false.
     pub drops: bool,
 }
 
@@ -32,25 +32,25 @@ impl Default for Grip {
 pub(super) struct Hold {
     pub held: BodyId,
     pub joint: JointId,
-    /// Index of the body that holds it.
+    /// Index of the body that holds `held`.
     pub body: u32,
     pub drops: bool,
     /// A pulling grip; `None`: a fixed joint.
     pub grasp: Option<Grasp>,
 }
 
-/// Bodies that a character holds, has released, and stands on: its own pass through all of these.
+/// Bodies that a character holds, has released, or stands on. The character's own bodies pass through all of these.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Grips {
     pub holds: Vec<Hold>,
-    /// Released limbs, through whose bodies its own pass until they are apart.
+    /// Released limbs, whose bodies the character's own bodies pass through until they are apart.
     pub freed: Vec<BodyId>,
     /// Dynamic body under the mover.
     pub bearer: Option<BodyId>,
 }
 
 impl Grips {
-    /// Attaches a body by a fixed joint to one of its own, `own[body]`, at that one's velocity.
+    /// Attaches a body by a fixed joint to one of the character's bodies, `own[body]`, at the velocity of that one.
     pub fn hold(
         &mut self,
         (ids, own): (&[BodyId], &[BodyId]),
@@ -74,7 +74,7 @@ impl Grips {
         joint
     }
 
-    /// Releases a held body; false if it does not hold that.
+    /// Releases a held body; returns false if the character does not hold it.
     pub fn release(&mut self, own: &[BodyId], held: BodyId, world: &mut World, events: &mut Events) -> bool {
         let Some(index) = self.holds.iter().position(|hold| hold.held == held) else { return false };
         let hold = self.holds.remove(index);
@@ -88,7 +88,7 @@ impl Grips {
         true
     }
 
-    /// Held bodies, in the order in which it took them.
+    /// Returns the held bodies, in the order in which the character took them.
     pub fn held(&self) -> impl Iterator<Item = BodyId> {
         self.holds.iter().map(|hold| hold.held)
     }
@@ -126,7 +126,7 @@ impl Grips {
         }
     }
 
-    /// Drops what these bodies hold, by index.
+    /// Drops the bodies that the bodies `parts`, by index, hold.
     pub fn drop_from(&mut self, own: &[BodyId], parts: &[usize], world: &mut World, events: &mut Events) {
         let holds = self.holds.iter();
         let dropped: Vec<BodyId> =
@@ -136,8 +136,8 @@ impl Grips {
         }
     }
 
-    /// Lets a body pass through those of the character and through movers, or reverts that. For a body of another
-    /// character this applies to all of that one's bodies; the two collide again once they are apart.
+    /// Lets a body pass through the character's bodies and through movers, or reverts that. For a body of another
+    /// character this applies to all of that character's bodies; the two characters collide again once they are apart.
     pub fn set_passes(&mut self, own: &[BodyId], other: BodyId, passes: bool, world: &mut World) {
         let rule = if passes { ContactRule::Yields(Yields::default()) } else { ContactRule::Push };
         let is_owned = world.body_owner(other).is_some();
@@ -161,8 +161,8 @@ impl Grips {
         }
     }
 
-    /// Lets its bodies pass through the dynamic body that bears its mover, which only feels the mover's weight: feet
-    /// that kick a crate on which they ride would accelerate it and themselves without end.
+    /// Lets the character's bodies pass through the dynamic body under its mover. This body gets only the mover's
+    /// weight: feet that kick a crate on which they ride would accelerate it and themselves without end.
     pub fn spare_bearer(&mut self, own: &[BodyId], mover: Option<MoverId>, world: &mut World) {
         let ground = mover.and_then(|mover| world.mover_ground(mover));
         let bearer = ground.and_then(|ground| ground.shape).map(|shape| shape.body);

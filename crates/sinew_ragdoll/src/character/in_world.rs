@@ -1,5 +1,5 @@
-//! Settings of a character's share of the world while clips move it: a mover that stands, walks and falls, and bodies
-//! that can be hit.
+//! Settings of a character's interaction with the world while clips move it: a mover that stands, walks and falls, and
+//! bodies that can be hit.
 
 use super::{CharacterDef, State};
 use crate::character::tuning::{FELLING_SPEED, MOVER_RADIUS};
@@ -10,33 +10,33 @@ use sinew_physics::{ContactRule, MoverDef, Yields};
 /// Bodies of a character that its clips move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HitBodies {
-    /// In the world, kinematic: rays, shapes and contacts find them, and flying bodies bounce off. They push within
-    /// these bounds. Default.
+    /// The bodies are in the world, kinematic: rays, shapes and contacts find them, and flying bodies bounce off. They
+    /// push within these bounds. Default.
     Present(Yields),
-    /// Not in the world.
+    /// The bodies are not in the world.
     Absent,
 }
 
-/// A blow that a character got.
+/// A blow to a character.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blow {
-    /// Body that was struck, by index in the definition.
+    /// Struck body, by index in the definition.
     pub body: usize,
-    /// N·s, world axes.
+    /// Impulse, N·s, world axes.
     pub impulse: Vec3,
-    /// State in which it was struck.
+    /// State of the character before the blow.
     pub state: State,
 }
 
-/// Rule by which blows fell a standing character, or make it flinch.
+/// Rule that decides which blows fell a standing character, and which make it flinch.
 #[derive(Clone, Copy, Debug)]
 pub enum Toughness {
-    /// Every blow fells.
+    /// Every blow fells the character.
     None,
-    /// Blows of at least that many N·s fell; weaker ones make it flinch. While it gets up near the ground, 2.5 times as
-    /// much is needed. Default: a speed of 0.6 m/s for its whole mass.
+    /// Blows of at least this impulse, N·s, fell the character; weaker ones make it flinch. While it gets up near the
+    /// ground, 2.5 times this impulse is needed. Default: a speed of 0.6 m/s for the character's whole mass.
     Impulse(f32),
-    /// A user's function decides: true fells it.
+    /// A user's function decides: it returns true if the blow fells the character.
     Function(fn(&CharacterDef, &Blow) -> bool),
 }
 
@@ -51,51 +51,51 @@ impl PartialEq for Toughness {
     }
 }
 
-/// Feet of a character that goes and stands.
+/// Placement of the feet of a walking or standing character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FootPlanting {
-    /// On the ground under them: on stairs, slopes, edges and moving ground; a planted foot keeps its place. Bodies
-    /// lighter than a twentieth of the character, and limbs of others, are no ground. For humanoids in a world, with
-    /// [hit bodies](InWorld::hit_bodies). Default.
+    /// Feet are placed on the ground under them: on stairs, slopes, edges and moving ground; a planted foot keeps its
+    /// place. Bodies lighter than a twentieth of the character, and limbs of others, are not ground. For humanoids in a
+    /// world, with [hit bodies](InWorld::hit_bodies). Default.
     OnGround,
-    /// As the clips have them, except for a character that got up and still stands there.
+    /// Feet follow the clips, except those of a character that got up and still stands there.
     AsClips,
 }
 
 /// Settings of a kind of character in a world while clips move it: mover, bodies, blows and falls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InWorld {
-    /// Its bodies. Default present.
+    /// Bodies of the character. Default present.
     pub hit_bodies: HitBodies,
-    /// Its mover, by size, mass and filter; `position` is ignored. `None`: nothing stops or carries it, and root motion
-    /// moves it over the static world. Default: as tall and heavy as the character.
+    /// Mover of the character, by size, mass and filter; `position` is ignored. `None`: nothing stops or carries the
+    /// character, and root motion moves it over the static world. Default: as tall and heavy as the character.
     pub mover: Option<MoverDef>,
-    /// Turning speed, rad/s; powered at most 3.5. Default 8.
+    /// Turning speed, rad/s; at most 3.5 while powered. Default 8.
     pub turn_speed: f32,
-    /// Speed of a jump, m/s. Default 3.5, which is 0.6 m.
+    /// Speed at which a jump begins, m/s. Default 3.5, which reaches 0.6 m.
     pub jump_speed: f32,
-    /// Time without ground after which it falls limp, seconds. Default 1.2.
+    /// Time without ground after which the character falls limp, seconds. Default 1.2.
     pub air_time: f32,
-    /// Speed toward the ground with which a landing fells it, m/s. Default 7, a fall from 2.5 m.
+    /// Speed toward the ground from which a landing fells the character, m/s. Default 7, a fall from 2.5 m.
     pub landing_speed: f32,
-    /// Placement of its feet. Default on the ground.
+    /// Placement of the feet. Default on the ground.
     pub foot_planting: FootPlanting,
-    /// Rule by which blows fell it or make it flinch.
+    /// Rule that decides which blows fell the character or make it flinch.
     pub toughness: Toughness,
-    /// Most steps in a row to catch a push while powered: such a character is felled by losing its balance and not by
-    /// [`toughness`](Self::toughness), unless that is a function or none. 0: it does not step. Humanoids with a mover
-    /// only. Default 4.
+    /// Largest number of steps in a row to catch a push while powered. Such a character falls by losing its balance and
+    /// not by [`toughness`](Self::toughness), unless that is a function or none. 0: the character does not step. Only
+    /// for humanoids with a mover. Default 4.
     pub most_steps: u32,
-    /// Least impulse that it feels from contacts and blasts, N·s; infinite: it feels only
-    /// [`Character::hit`](super::Character::hit). Default 3.
+    /// Least impulse from contacts and blasts that counts as a blow, N·s; infinite: only
+    /// [`Character::hit`](super::Character::hit) counts. Default 3.
     pub feels: f32,
-    /// True: [`CharacterEvent::Contact`](super::CharacterEvent::Contact) reports contacts of its bodies. Default false,
-    /// because crowds have many.
+    /// True if [`CharacterEvent::Contact`](super::CharacterEvent::Contact) reports contacts of the character's bodies.
+    /// Default false, because crowds have many.
     pub tells_contacts: bool,
 }
 
 impl InWorld {
-    /// The defaults for a ragdoll's size and mass.
+    /// Returns the defaults for a ragdoll's size and mass.
     pub fn of(ragdoll: &RagdollDef) -> Self {
         let sound = |x: f32, else_: f32| if x > 0.0 && x < f32::INFINITY { x } else { else_ };
         let (height, mass) = (sound(ragdoll.height, 1.8), sound(ragdoll.total_mass, 80.0));
@@ -124,7 +124,7 @@ impl InWorld {
         }
     }
 
-    /// Rule for contacts of its bodies while its clips or its muscles move them.
+    /// Returns the rule for contacts of the bodies while clips or muscles move them.
     pub(super) fn rule(&self) -> ContactRule {
         match self.hit_bodies {
             HitBodies::Present(yields) => ContactRule::Yields(yields),

@@ -1,4 +1,4 @@
-//! Legs of a humanoid, and bringing its feet to the ground.
+//! Legs of a humanoid, and placing its feet on the ground.
 
 use crate::character::tuning::{BALL_AHEAD, FEET_QUICKNESS, FOOT_HOME, FOOT_RANGE, MOST_TILT};
 use crate::def::RagdollDef;
@@ -11,9 +11,9 @@ use sinew_math::{Affine, Vec3, max, min, normalize_or, trig};
 pub(super) struct Legs {
     pub pelvis: JointIdx,
     pub chains: [TwoBone; 2],
-    /// The ball, in the axes of the ankle without scale, metres.
+    /// Balls of the feet, in the axes of the ankle without scale, metres.
     pub balls: [Vec3; 2],
-    /// On the sole below the ankle, below the ball, and at the tip of the toes, likewise.
+    /// Points on the sole below the ankle, below the ball, and at the tip of the toes, in the same axes, metres.
     pub soles: [[Vec3; 3]; 2],
     /// Length of a foot behind the ankle, metres.
     pub heel: f32,
@@ -22,7 +22,8 @@ pub(super) struct Legs {
 }
 
 impl Legs {
-    /// By the roles of the bodies; `None` without two whole legs below the pelvis. `bind`: in character space, metres.
+    /// Finds the legs by the roles of the bodies; `None` without two whole legs below the pelvis. `bind`: in character
+    /// space, metres.
     pub fn of(rig: &Rig, def: &RagdollDef, bind: &[Affine]) -> Option<Self> {
         let joint = |role: &str| def.bodies.iter().find(|body| body.role == role).map(|body| body.joint);
         let hangs_on = |joint: JointIdx, above: JointIdx| {
@@ -40,7 +41,7 @@ impl Legs {
                 (place(leg.lower) - place(leg.upper)).length() + (place(leg.end) - place(leg.lower)).length();
             let body = def.bodies.iter().find(|body| body.joint == leg.end)?;
             let toes = part("Toes").into_iter().chain(body.merged.iter().copied()).map(place);
-            // The foremost joint of the foot.
+            // Find the foremost joint of the foot.
             let foremost = toes.fold(ankle.translation, |a, b| if b.z > a.z { b } else { a });
             let usual = ankle.translation + Vec3::Z * (BALL_AHEAD * length);
             let ball =
@@ -68,8 +69,8 @@ impl Legs {
         })
     }
 
-    /// Displacement of an ankle on a slope along its normal instead of the vertical; `model` is in the space of the
-    /// character.
+    /// Returns the displacement of an ankle on a slope along its normal instead of the vertical; `model` is in the
+    /// space of the character.
     pub fn lean(&self, foot: usize, slope: f32, model: &[Affine]) -> Vec3 {
         let ankle = model[self.chains[foot].end].to_rigid();
         let ahead = normalize_or(ankle.rotation * self.balls[foot] * Vec3::new(1.0, 0.0, 1.0), Vec3::ZERO);
@@ -116,27 +117,27 @@ impl Legs {
     }
 }
 
-/// Feet that tilt with a slope.
+/// Condition under which feet tilt with a slope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tilts {
-    /// On the floor only.
+    /// Feet tilt on the floor only.
     OnTheFloor,
-    /// In the air as well.
+    /// Feet tilt in the air as well.
     Always,
 }
 
 /// Smoothed ground under each foot, over the floor of the clip, and its rates of change, per second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Planting {
-    /// Metres.
+    /// Heights of the ground, metres.
     pub heights: [f32; 2],
     pub rates: [f32; 2],
-    /// From heel to ball: up over along.
+    /// Slopes of the ground from heel to ball, rise over run.
     pub slopes: [f32; 2],
     pub slope_rates: [f32; 2],
 }
 
-/// Ground under a foot over the floor of its clip: metres, and up over along.
+/// Ground under a foot over the floor of its clip: height, metres, and slope, rise over run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Need {
     pub height: f32,
@@ -148,7 +149,7 @@ impl Planting {
         *self == Self::default()
     }
 
-    /// Follows the ground for `dt` seconds.
+    /// Makes both feet follow the ground for `dt` seconds.
     pub fn follow(&mut self, goals: [Need; 2], dt: f32) {
         for (foot, goal) in goals.into_iter().enumerate() {
             self.follow_foot(foot, goal, FEET_QUICKNESS, dt);
@@ -168,20 +169,20 @@ impl Planting {
         }
     }
 
-    /// Follows the ground under one foot.
+    /// Makes one foot follow the ground under it.
     pub fn follow_foot(&mut self, foot: usize, goal: Need, quickness: f32, dt: f32) {
         follow(&mut self.heights[foot], &mut self.rates[foot], goal.height, quickness, dt);
         follow(&mut self.slopes[foot], &mut self.slope_rates[foot], goal.slope, quickness, dt);
     }
 
-    /// After this many seconds more at the present rates.
+    /// Returns the state after `seconds` more at the present rates.
     pub fn ahead(&self, seconds: f32) -> Self {
         let at = |x: [f32; 2], rate: [f32; 2]| [0, 1].map(|foot| x[foot] + rate[foot] * seconds);
         Self { heights: at(self.heights, self.rates), slopes: at(self.slopes, self.slope_rates), ..*self }
     }
 }
 
-/// `x″ = −ω²(x − g) − 2ω x′` for `dt` seconds, solved exactly.
+/// Advances `x` by `x″ = −ω²(x − g) − 2ω x′` for `dt` seconds, solved exactly.
 pub(super) fn follow(x: &mut f32, rate: &mut f32, goal: f32, quickness: f32, dt: f32) {
     let decay = trig::exp(-quickness * dt);
     let off = *x - goal;

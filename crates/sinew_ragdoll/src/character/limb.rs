@@ -9,21 +9,21 @@ use sinew_math::{Affine, Mat3, ReadError, Reader, Transform, Vec3, Writer};
 use sinew_physics::{BodyId, JointId, World};
 use std::sync::Arc;
 
-/// First bytes; the last is the version.
+/// First bytes of a saved limb; the last one is the version.
 const MAGIC: &[u8; 8] = b"sinew-l\x01";
-/// Bytes of a body, and of a joint of the skin.
+/// Number of saved bytes of a body, and of a joint of the skin.
 const BODY_BYTES: usize = 12;
 const SKIN_BYTES: usize = 56;
 
 /// A limb from [`Character::detach`](super::Character::detach): bodies, joints between them, and the joints of the rig
-/// that move its skin. The world simulates it, it needs no update, and it stays until [`despawn`](Self::despawn).
+/// that move the limb's skin. The world simulates the limb without updates, until [`despawn`](Self::despawn).
 #[derive(Clone, Debug)]
 pub struct Limb {
     def: Arc<CharacterDef>,
-    /// Indices of its bodies in the definition, ascending: all others hang on the first.
+    /// Indices of the limb's bodies in the definition, ascending; all others are descendants of the first.
     parts: Vec<usize>,
     bodies: Vec<BodyId>,
-    /// One for each body but the first: to the body above it.
+    /// Joints to the body above, one for each body but the first.
     joints: Vec<JointId>,
     skin: Vec<SkinJoint>,
 }
@@ -32,14 +32,14 @@ pub struct Limb {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct SkinJoint {
     joint: JointIdx,
-    /// Number among the limb's bodies.
+    /// Index of the body among the limb's bodies.
     body: usize,
     body_from_joint: Affine,
 }
 
 impl Limb {
-    /// A limb whose bodies are in the world. `world_from_joint`: of every joint of the rig at that moment; `poses`: of
-    /// its bodies.
+    /// Creates a limb whose bodies are in the world. `world_from_joint`: transforms of every joint of the rig at that
+    /// moment; `poses`: those of the limb's bodies.
     pub(super) fn new(
         def: Arc<CharacterDef>,
         parts: Vec<usize>,
@@ -59,35 +59,37 @@ impl Limb {
         Self { def, parts, bodies, joints, skin }
     }
 
-    /// Definition of the character that it was a part of.
+    /// Returns the definition of the character to which the limb belonged.
     pub fn def(&self) -> &Arc<CharacterDef> {
         &self.def
     }
 
-    /// Indices of its bodies in the definition, ascending; the first is where it was cut.
+    /// Returns the indices of the limb's bodies in the definition, ascending; the first is at the cut.
     pub fn parts(&self) -> &[usize] {
         &self.parts
     }
 
-    /// Its bodies in the world, one for each of [`parts`](Self::parts).
+    /// Returns the limb's bodies in the world, one for each of [`parts`](Self::parts).
     pub fn bodies(&self) -> &[BodyId] {
         &self.bodies
     }
 
-    /// Its joints in the world, one for each body but the first: to the body above.
+    /// Returns the limb's joints in the world, one for each body but the first: to the body above.
     pub fn joints(&self) -> &[JointId] {
         &self.joints
     }
 
-    /// Joints of the rig whose skin is the limb's, ascending. A vertex belongs to it if these joints move it most.
+    /// Returns the joints of the rig whose skin belongs to the limb, ascending. A vertex belongs to the limb if these
+    /// joints move it most.
     pub fn skin_joints(&self) -> impl Iterator<Item = JointIdx> {
         self.skin.iter().map(|skin| skin.joint)
     }
 
-    /// World transform of each of [`skin_joints`](Self::skin_joints), metres, between the last step (`alpha` 0) and this one (1): `out` is cleared and filled.
+    /// Computes the world transform of each of [`skin_joints`](Self::skin_joints), metres, between the last step
+    /// (`alpha` 0) and the present one (1): `out` is cleared and filled.
     ///
     /// # Panics
-    /// If one of its bodies is missing.
+    /// If one of the limb's bodies is missing.
     pub fn world_from_joints(&self, world: &World, alpha: f32, out: &mut Vec<Affine>) {
         let poses: Vec<Affine> =
             self.bodies.iter().map(|&body| Affine::from(world.interpolated(body, alpha))).collect();
@@ -95,11 +97,11 @@ impl Limb {
         out.extend(self.skin.iter().map(|skin| poses[skin.body] * skin.body_from_joint));
     }
 
-    /// Skinning matrices for a renderer, like [`Character::skin_palette`](super::Character::skin_palette): the limb is
-    /// drawn with the whole mesh, whose other parts shrink to the cut. Allocates.
+    /// Computes skinning matrices for a renderer, like [`Character::skin_palette`](super::Character::skin_palette): the
+    /// limb is drawn with the whole mesh, whose other parts shrink to the cut. Allocates.
     ///
     /// # Panics
-    /// If the rig has no such skin, or one of its bodies is missing.
+    /// If the rig has no such skin, or one of the limb's bodies is missing.
     pub fn skin_palette(&self, world: &World, skin: usize, alpha: f32, palette: &mut Vec<[f32; 12]>) {
         let mut places = Vec::new();
         self.world_from_joints(world, alpha, &mut places);
@@ -117,11 +119,11 @@ impl Limb {
         );
     }
 
-    /// Detaches a part of it, by role or bone, like [`Character::detach`](super::Character::detach). `None` if it has
-    /// no such body, or that is its first one.
+    /// Detaches a part of the limb, by role or bone, like [`Character::detach`](super::Character::detach). `None` if
+    /// the limb has no such body, or that is its first one.
     ///
     /// # Panics
-    /// If no body of the definition has that name, or one of its bodies is missing.
+    /// If no body of the definition has that name, or one of the limb's bodies is missing.
     pub fn detach(&mut self, world: &mut World, bone: &str) -> Option<Self> {
         let def = self.def.clone();
         let named = def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
@@ -154,10 +156,10 @@ impl Limb {
         Some(off)
     }
 
-    /// Removes it from the world.
+    /// Removes the limb from the world.
     ///
     /// # Panics
-    /// If one of its bodies is missing.
+    /// If one of the limb's bodies is missing.
     pub fn despawn(self, world: &mut World) {
         for body in self.bodies {
             world.disown_body(body);
@@ -165,14 +167,14 @@ impl Limb {
         }
     }
 
-    /// Takes ownership of its bodies and joints, so that no other call removes them.
+    /// Takes ownership of the limb's bodies and joints, so that no other call removes them.
     pub(super) fn own(&self, world: &mut World) {
         let owner = owner(&self.def.ragdoll, OwnerKind::Limb);
         world.own_bodies(&owner, &self.bodies, &self.parts);
         world.own_joints(&owner, &self.joints, &self.parts[1..]);
     }
 
-    /// Writes the state that the world's snapshot and the definition do not hold.
+    /// Writes the state that neither the world's snapshot nor the definition contains.
     pub fn save(&self, w: &mut Writer) {
         w.raw(MAGIC);
         w.count(self.parts.len());
@@ -190,11 +192,11 @@ impl Limb {
         }
     }
 
-    /// Reads a saved limb of a character of that definition. Its bodies are those of the world's snapshot of the same
-    /// time.
+    /// Reads a saved limb of a character of that definition. The limb's bodies come from the world's snapshot of the
+    /// same time.
     ///
     /// # Errors
-    /// If the bytes are not those of a limb of this definition and version.
+    /// If the bytes are not a saved limb of this definition and version.
     pub fn load(def: &Arc<CharacterDef>, r: &mut Reader<'_>) -> Result<Self, ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
             return Err(r.error("is not a limb of this version"));
@@ -234,7 +236,7 @@ pub(super) fn cut_joint(world: &mut World, joint: JointId) {
     world.remove_joint(joint);
 }
 
-/// The map that shrinks all to a point.
+/// Returns the map that shrinks all points to one point.
 pub(super) fn shrunk(to: Vec3) -> Affine {
     Affine { linear: Mat3::ZERO, translation: to }
 }

@@ -1,4 +1,4 @@
-//! Lying: state of a limp character, and when it lies still.
+//! State of a limp character, and detection of its rest.
 
 use super::CharacterDef;
 use super::figure::{Figure, Scratch};
@@ -16,20 +16,20 @@ use sinew_physics::{BodyId, Velocity, World};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Lying {
     pub stillness: Stillness,
-    /// Way out of shapes that it was deep in when it went limp.
+    /// Way out of shapes in which the character was deep when it went limp.
     pub clearing: Clearing,
 }
 
 /// Time for which a limp character has been still, in steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Stillness {
-    /// Steps since it went limp.
+    /// Steps since the character went limp.
     pub steps: u32,
     /// Steps for which every body has been slow.
     pub calm_steps: u32,
     pub settled: bool,
     pub touched: bool,
-    /// Nobody was on it when it last tried to get up.
+    /// True if nobody was on the character when it last tried to get up.
     pub free: bool,
 }
 
@@ -38,21 +38,21 @@ pub(super) struct Stillness {
 pub(super) struct Clearing {
     /// Remaining displacement after the next step, world, metres.
     pub way: Vec3,
-    /// Velocities of its bodies at the end of the way; empty without one.
+    /// Velocities of the bodies at the end of the way; empty without a way.
     pub velocities: Vec<Velocity>,
 }
 
 /// Result of a step while lying.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Lain {
-    /// The first of its bodies touched something.
+    /// True if a body touched another object for the first time.
     pub touched: bool,
-    /// It has lain still for this many seconds.
+    /// Time for which the character has lain still, seconds, once it settles.
     pub settled: Option<f32>,
 }
 
 impl Stillness {
-    /// Updates whether the bodies touch something and lie still. `on_ground`: relative to the body under them.
+    /// Updates whether the bodies touch another object and lie still. `on_ground`: relative to the body under them.
     pub fn look(&mut self, world: &World, own: &[BodyId], on_ground: bool) -> Lain {
         let mut lain = Lain::default();
         if !self.touched && touches_world(world, own) {
@@ -72,26 +72,26 @@ impl Stillness {
         lain
     }
 
-    /// Something holds it: its time restarts once it is free.
+    /// Restarts the time of a character that is held; it counts once the character is free.
     pub fn wait(&mut self, dt: f32) {
         let slack = (SLACKENS / dt) as u32 + 1;
         self.steps = u32::min(self.steps, slack);
         self.settled &= self.calm_steps > 0;
     }
 
-    /// Share of the joint friction after so much time limp.
+    /// Returns the share of the joint friction at the present time since the character went limp.
     pub fn slackness(&self, dt: f32) -> f32 {
         self.steps as f32 * dt / SLACKENS
     }
 }
 
 impl Physique {
-    /// The ragdoll, if there is one.
+    /// Returns the ragdoll, if there is one.
     pub fn limp(&self) -> &Ragdoll {
         self.ragdoll.as_ref().expect("a limp character has bodies")
     }
 
-    /// Applies a share of the friction to the joints: full friction at once would stop a hand within a step.
+    /// Applies a share of the friction to the joints: the full friction would stop a hand within a step.
     pub fn slacken(&self, def: &CharacterDef, share: f32, world: &mut World) {
         for (child, id) in self.limp().own_joints() {
             let joint = &def.ragdoll.joints[child - 1];
@@ -108,7 +108,7 @@ impl Physique {
         scratch.resting = now;
     }
 
-    /// The base pose, with the decaying rest of its motion a step later, in `scratch.pose`.
+    /// Computes the base pose, with the decaying rest of its motion a step later, in `scratch.pose`.
     fn come_to_rest(&mut self, seconds: f32, scratch: &mut Scratch) {
         let base = self.physical.base();
         scratch.pose.clear();
@@ -125,7 +125,8 @@ impl Physique {
         scratch.pose.extend(resting.iter());
     }
 
-    /// Has the place of a limp character go with its pelvis, under which it comes to be, as high as its lowest body.
+    /// Moves the place of a limp character with its pelvis; the place approaches the point under the pelvis, as high as
+    /// the lowest body.
     pub fn take_along(&self, place: &mut Transform, world: &World, scratch: &mut Scratch) {
         let Some(&pelvis) = self.own().first() else { return };
         let dt = world.def().dt();
@@ -141,8 +142,8 @@ impl Physique {
         }
     }
 
-    /// Takes the pose from the bodies, except for joints without one. Bodies that have not moved since the last pose
-    /// need no new one, which saves most of a fall.
+    /// Takes the pose from the bodies, except for joints without a body. Bodies that have not moved since the last pose
+    /// need no new pose, which saves most of the time of a fall.
     pub fn pose(&mut self, def: &CharacterDef, figure: &mut Figure, world: &World, scratch: &mut Scratch) {
         self.poses(def, world, scratch);
         if self.lingering.is_over() && scratch.posed == scratch.after {
@@ -158,12 +159,12 @@ impl Physique {
     }
 }
 
-/// True if every body is below the stillness speeds.
+/// Returns true if every body is below the stillness speeds.
 pub(crate) fn is_still(world: &World, bodies: &[BodyId]) -> bool {
     is_still_on(world, bodies, GroundMotion::default())
 }
 
-/// The same relative to the body under them.
+/// Returns true if every body is below the stillness speeds relative to the body under them.
 fn is_still_on(world: &World, bodies: &[BodyId], ground: GroundMotion) -> bool {
     bodies.iter().all(|&body| {
         let velocity = world.velocity(body);
@@ -172,12 +173,12 @@ fn is_still_on(world: &World, bodies: &[BodyId], ground: GroundMotion) -> bool {
     })
 }
 
-/// True if one of the bodies is deeper than [`SUNK`] in static shapes and being pushed out.
+/// Returns true if one of the bodies is deeper than [`SUNK`] in static shapes and being pushed out.
 pub(crate) fn is_sunk(world: &World, bodies: &[BodyId]) -> bool {
     bodies.iter().any(|&body| world.penetration(body) > SUNK)
 }
 
-/// True if one of the bodies began to touch something else in the last step.
+/// Returns true if one of the bodies began to touch another object in the last step.
 pub(crate) fn touches_world(world: &World, bodies: &[BodyId]) -> bool {
     let own = |body: &BodyId| bodies.contains(body);
     world.events().begin.iter().any(|(a, b)| own(a) != own(b))

@@ -1,7 +1,7 @@
 //! Mirror images of motions for any rig.
 //!
-//! It mirrors not local rotations, whose axes differ from rig to rig, but rotations since the bind pose, in the
-//! character's own axes.
+//! Local rotations cannot be mirrored, because their axes differ from rig to rig. Instead the rotations since the bind
+//! pose are mirrored, in the character's own axes.
 
 use super::CharacterDef;
 use crate::character::tuning::{MIRROR_TOLERANCE, MOVED};
@@ -11,11 +11,11 @@ use sinew_math::{Affine, Rotation, Transform, Vec3};
 /// Counterparts of the joints on the other side of the body.
 #[derive(Clone, Debug)]
 pub(super) struct Mirror {
-    /// A joint of the midline, or one that has no counterpart, is its own.
+    /// Counterpart of each joint; a joint of the midline, or one without a counterpart, is its own.
     twins: Vec<JointIdx>,
     /// True for one-sided parts, such as a sword in one hand: they stay on their limb.
     one_sided: Vec<bool>,
-    /// Character space.
+    /// Rotations of the bind pose, character space.
     bind: Vec<Rotation>,
 }
 
@@ -24,7 +24,7 @@ impl Mirror {
         let bind: Vec<Transform> = def.bind().iter().map(Affine::to_rigid).collect();
         let mut twins = by_places(&def.rig, &bind, MIRROR_TOLERANCE * def.ragdoll.height);
         by_roles(def, &mut twins);
-        // A joint whose counterpart has another counterpart is one-sided.
+        // A joint is one-sided if its counterpart has another counterpart.
         let seen = twins.clone();
         for (joint, twin) in twins.iter_mut().enumerate() {
             if seen[*twin] != joint {
@@ -39,8 +39,8 @@ impl Mirror {
         Self { twins, one_sided, bind: bind.iter().map(|bind| bind.rotation).collect() }
     }
 
-    /// The mirror image of a flat pose. A joint with an animated translation takes its counterpart's; others keep their
-    /// own place, since the two sides of a rig may differ.
+    /// Returns the mirror image of a flat pose. A joint with an animated translation takes the counterpart's
+    /// translation; others keep their own, since the two sides of a rig may differ.
     pub fn pose(&self, def: &CharacterDef, pose: &[LocalTransform]) -> Vec<LocalTransform> {
         let (rig, mapping) = (&def.rig, def.mapping());
         let root = mapping.character_from_model();
@@ -76,7 +76,7 @@ impl Mirror {
     }
 }
 
-/// True if a pose translates the joint from its rest place.
+/// Returns true if a pose translates the joint from its rest place.
 fn is_moved(rig: &Rig, pose: &[LocalTransform], joint: JointIdx) -> bool {
     let rest = rig.joints[joint].rest.translation;
     (pose[joint].translation - rest).length() > MOVED * rest.length()
@@ -86,12 +86,13 @@ fn across(v: Vec3) -> Vec3 {
     Vec3::new(-v.x, v.y, v.z)
 }
 
-/// The same rotation mirrored across x.
+/// Returns the same rotation mirrored across x.
 fn reflected(q: Rotation) -> Rotation {
     Rotation::from_xyzw(q.x, -q.y, -q.z, q.w)
 }
 
-/// Counterparts by where joints are in the bind pose: below counterparts, the nearest to the mirror image.
+/// Returns counterparts by the positions of joints in the bind pose: below counterparts, the joint nearest to the
+/// mirror image.
 fn by_places(rig: &Rig, bind: &[Transform], tolerance: f32) -> Vec<JointIdx> {
     let mut twins: Vec<JointIdx> = Vec::with_capacity(bind.len());
     for (joint, node) in rig.joints.iter().enumerate() {
@@ -106,7 +107,7 @@ fn by_places(rig: &Rig, bind: &[Transform], tolerance: f32) -> Vec<JointIdx> {
     twins
 }
 
-/// Counterparts by the roles of the bodies, which are more reliable than positions.
+/// Sets counterparts by the roles of the bodies, which are more reliable than positions.
 fn by_roles(def: &CharacterDef, twins: &mut [JointIdx]) {
     for body in &def.ragdoll.bodies {
         let Some(part) = body.role.strip_prefix("left") else { continue };

@@ -3,7 +3,7 @@
 //!
 #![doc = include_str!("states.svg")]
 //!
-//! The host steps the world, then calls [`Character::update`]; poses and bodies are those of the same moment.
+//! The host steps the world, then calls [`Character::update`]; poses and bodies then belong to the same time.
 //!
 //! ```
 //! use sinew_math::{Transform, Vec3};
@@ -106,11 +106,11 @@ use wear::{Bearer, Wear};
 #[derive(Clone, Debug)]
 pub struct Character {
     def: Arc<CharacterDef>,
-    /// State, with its data.
+    /// State of the character, with its data.
     activity: Activity,
-    /// Its action once it lies still.
+    /// Action of the character once it lies still.
     after_settling: AfterSettling,
-    /// Its level of detail, now or once clips move it; `None`: it is in no world.
+    /// Level of detail, now or once clips move the character; `None`: it is in no world.
     detail: Option<Detail>,
     gait: Gait,
     figure: Figure,
@@ -123,8 +123,8 @@ pub struct Character {
 }
 
 impl Character {
-    /// An animated character that stands at `world_from_character` (metres, its +Y up, +Z forward), `phase` seconds
-    /// into its looped clip.
+    /// Creates an animated character at `world_from_character` (metres, +Y up, +Z forward), `phase` seconds into its
+    /// looped clip.
     ///
     /// # Panics
     /// If `phase` is not finite.
@@ -150,7 +150,7 @@ impl Character {
     /// Updates the character after a step of the world.
     ///
     /// # Panics
-    /// If it is another world than the character's.
+    /// If `world` is not the character's world.
     pub fn update(&mut self, world: &mut World) {
         self.events.begin();
         self.keep_shown();
@@ -168,7 +168,7 @@ impl Character {
         self.events.end();
     }
 
-    /// Advances its state by a step.
+    /// Advances the character's state by a step.
     fn follow(&mut self, world: &mut World) {
         match self.state() {
             State::Animated => self.go_animated(world),
@@ -215,7 +215,7 @@ impl Character {
         self.events.list.extend(fired.iter().map(|&fired| CharacterEvent::Clip(fired)));
     }
 
-    /// Puts the feet on the ground.
+    /// Places the feet on the ground.
     fn plant(&mut self, world: &World) {
         let stand = Stand {
             def: &self.def,
@@ -230,7 +230,7 @@ impl Character {
         self.feet.plant(&stand, world, &mut self.scratch.model);
     }
 
-    /// Exchange of a character that its clips move with the world: blows, hit bodies, steering.
+    /// Exchanges blows, hit bodies and steering between the world and a character that its clips move.
     fn attend(&mut self, world: &mut World) {
         if !self.is_in_world() {
             return;
@@ -245,7 +245,7 @@ impl Character {
         self.steer(world);
     }
 
-    /// Flinches or falls by blows to its bodies in the last step.
+    /// Makes the character flinch or fall by blows to its bodies in the last step.
     fn feel(&mut self, world: &mut World) {
         if !self.is_in_world() {
             return;
@@ -260,7 +260,7 @@ impl Character {
         }
     }
 
-    /// Reacts to blasts, other impulses on its led bodies, and fields.
+    /// Reacts to blasts, other impulses on kinematic bodies, and fields.
     fn apply_pushes(&mut self, world: &mut World) {
         let pushes = self.physique.pushes(world);
         let blown = self.physique.field_impulse(world);
@@ -281,20 +281,20 @@ impl Character {
         }
     }
 
-    /// True if a field, such as wind, has swept it off its feet.
+    /// Returns true if a field, such as wind, has swept the character off its feet.
     fn is_swept_off(&self) -> bool {
         let momentum = Vec3 { y: 0.0, ..self.gait.shoved } * self.def.ragdoll.total_mass;
         let blow = Blow { body: 0, impulse: momentum, state: self.state() };
         momentum != Vec3::ZERO && self.gait.air == 0.0 && self.is_swept_by(blow)
     }
 
-    /// Has the hit bodies go where the pose will be.
+    /// Moves the hit bodies toward the predicted pose.
     fn lead_bodies(&mut self, world: &mut World) {
         let pose = self.feet.led(&self.figure.pose);
         self.physique.lead(&self.def, pose, self.figure.place, &mut self.scratch, world);
     }
 
-    /// Tells its mover where to go.
+    /// Sets the mover's motion.
     fn steer(&mut self, world: &mut World) {
         let mover = self.gait.mover;
         self.grips.spare_bearer(self.physique.own(), mover, world);
@@ -302,7 +302,7 @@ impl Character {
         self.gait.steer(&self.def, &self.activity, rotation, steps, world);
     }
 
-    /// A step while clips and physics share the bodies.
+    /// Advances by a step while clips and physics share the bodies.
     fn go_powered(&mut self, world: &mut World) {
         self.advance(world);
         self.plant(world);
@@ -329,7 +329,7 @@ impl Character {
         self.steer(world);
     }
 
-    /// Advances a flinch; false once its limb has returned. True while powered.
+    /// Advances a flinch; returns false once its limb has returned, and true while powered.
     fn goes_on_flinching(&mut self, world: &World) -> bool {
         let Activity::Flinching(flinch) = &mut self.activity else { return true };
         if self.grips.is_gripped(&self.physique, world) {
@@ -341,7 +341,7 @@ impl Character {
         flinch.seconds > 0.0
     }
 
-    /// Steps to keep its balance; true if that fails.
+    /// Steps to keep the character's balance; returns true if that fails.
     fn keep_balance(&mut self, world: &World) -> bool {
         let steps = self.steps();
         let Activity::Powered(balance) = &mut self.activity else { return false };
@@ -354,7 +354,7 @@ impl Character {
         balance.go_on(on, steps, &mut self.scratch, world, &mut self.events)
     }
 
-    /// Gives way with a limb that something holds; held by the pelvis, or while it gets up, it goes limp.
+    /// Makes a held limb weak. A character held by the pelvis, or while it gets up, goes limp.
     fn give_way_to_grips(&mut self, world: &mut World) {
         if self.physique.hit.is_empty() || self.physique.ragdoll.is_some() {
             return;
@@ -366,7 +366,7 @@ impl Character {
         }
     }
 
-    /// Follows a held limb; true if that is pulled too far from its clip.
+    /// Follows a held limb; returns true if the limb is pulled too far from its clip.
     fn is_pulled_over(&mut self, world: &World) -> bool {
         if !matches!(self.activity, Activity::Flinching(_)) {
             return false;
@@ -391,14 +391,14 @@ impl Character {
             && powered::is_toppled(&self.def, animator, place, &self.physique, &mut self.scratch, world)
     }
 
-    /// A step of lying, until the bodies lie still.
+    /// Advances a lying character by a step, until the bodies lie still.
     fn go_lying(&mut self, world: &mut World) {
         self.follow_bodies(world);
         if self.activity.is_clearing() {
             return self.go_out(world);
         }
         if self.def.falling != DriveMode::Limp {
-            // Muscles draw it toward the pose of its clips.
+            // Muscles drive the bodies toward the pose of the clips.
             self.drive_bodies(world);
         }
         let dt = world.def().dt();
@@ -437,7 +437,8 @@ impl Character {
         self.prepare(world);
     }
 
-    /// True while something holds it: movers then pass through it, so that it does not block whoever drags it.
+    /// Returns true while the character is held. Movers then pass through it, so that it does not block the character
+    /// that drags it.
     fn mind_grips(&mut self, world: &mut World) -> bool {
         let is_gripped = self.grips.is_gripped(&self.physique, world);
         let ragdoll = self.physique.limp();
@@ -453,7 +454,7 @@ impl Character {
         is_gripped
     }
 
-    /// A step of preparing; gets up when the body lies as the clip begins, or time is up.
+    /// Advances preparing by a step; the character gets up when its body is near the start of the clip, or time is up.
     fn go_preparing(&mut self, world: &mut World) {
         self.follow_bodies(world);
         let stays = self.after_settling == AfterSettling::StayDown || !self.lies_on_ground(world);
@@ -478,13 +479,13 @@ impl Character {
         prepare::draw(&def, &choice, &mut self.physique, &mut self.scratch, world);
     }
 
-    /// True if ground is under its pelvis, or the static world bears it: one that is carried does not get up. Outside of
-    /// a world: always.
+    /// Returns true if ground is under the pelvis, or the static world bears the character; a carried character does
+    /// not get up. Outside of a world: always true.
     fn lies_on_ground(&self, world: &World) -> bool {
         !self.is_in_world() || ground::bears(&self.def.ragdoll, self.physique.own(), world)
     }
 
-    /// Takes place and pose from the bodies, except for joints without one.
+    /// Takes place and pose from the bodies, except for joints without a body.
     fn follow_bodies(&mut self, world: &World) {
         self.figure.keep_earlier();
         if self.is_in_world() {
@@ -498,7 +499,7 @@ impl Character {
         }
     }
 
-    /// Advances what it wears.
+    /// Advances springs and garments.
     fn go_on_wearing(&mut self, world: &mut World) {
         let is_far = self.level_of_detail() <= Detail::Keyed;
         let mends = self.state() == State::Animated;

@@ -29,11 +29,11 @@ pub struct MotionError {
 #[derive(Clone, Debug)]
 pub(super) struct Moves {
     pub set: AnimationSet,
-    /// In the order of [`MotionSet::clips`].
+    /// Animation clips, in the order of [`MotionSet::clips`].
     pub clips: Vec<ClipId>,
     /// Locomotion clips, slowest first; the first is the looped one.
     pub paces: Vec<Pace>,
-    /// Each with its mirror image after it.
+    /// Get-up clips, each with its mirror image after it.
     pub get_ups: Vec<GetUp>,
     pub landmarks: Landmarks,
     /// Stance at the start of the looped clip, or in the rest pose, character space.
@@ -42,7 +42,7 @@ pub(super) struct Moves {
     pub raised: Raised,
     /// Displacement of the looped clip to the place of the character, character space.
     pub shift: Vec3,
-    /// Deepest of the clips that loop, or of the rest pose.
+    /// Largest depths of the clips that loop, or of the rest pose.
     pub deepest: Depths,
 }
 
@@ -50,35 +50,35 @@ pub(super) struct Moves {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pace {
     pub clip: ClipId,
-    /// Speed over the ground, m/s; 0: it covers none.
+    /// Speed over the ground, m/s; 0 if the clip does not travel.
     pub speed: f32,
 }
 
 /// A get-up clip.
 #[derive(Clone, Debug)]
 pub(super) struct GetUp {
-    /// Index into [`MotionSet::clips`].
+    /// Index of the clip in [`MotionSet::clips`].
     pub clip: usize,
     pub id: ClipId,
-    /// Moments at which it may begin.
+    /// Moments at which a get-up may begin.
     pub starts: Vec<Start>,
-    /// Largest depth of its parts in the floor.
+    /// Largest depth of the parts in the floor.
     pub deepest: Depths,
 }
 
 /// A moment of a get-up clip.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
-    /// Clip seconds.
+    /// Time in the clip, seconds.
     pub time: f32,
-    /// Character space.
+    /// Stance at this moment, character space.
     pub stance: Stance,
-    /// Character from body, one for each.
+    /// Transform from each body to character space.
     pub bodies: Vec<Transform>,
 }
 
 impl Moves {
-    /// Moves of a character that has no motions.
+    /// Returns the moves of a character that has no motions.
     pub fn none(rig: &Rig, ragdoll: &RagdollDef, mapping: &Mapping) -> Self {
         let (landmarks, set) = (Landmarks::new(ragdoll), AnimationSet::new(Skeleton::new(rig)));
         let upright = stance(rig, mapping, &landmarks, &rest_pose(rig));
@@ -165,7 +165,7 @@ impl Moves {
     }
 }
 
-/// Poses of the clips that loop, or the rest pose.
+/// Returns the poses of the clips that loop, or the rest pose.
 fn standing(def: &CharacterDef, motions: &MotionSet) -> Take {
     let mut poses = Take { frame_time: MIRRORED_FRAME, joints: def.rig.joints.len(), poses: Vec::new() };
     let faster = motions.faster.iter().map(|&(clip, _)| clip);
@@ -181,13 +181,13 @@ fn standing(def: &CharacterDef, motions: &MotionSet) -> Take {
 /// Payload of the events that keep clips in step.
 const LEFT: &str = "left";
 
-/// Locomotion of that clip, if the character uses it.
+/// Returns the locomotion of a clip, if the character uses the clip.
 fn locomotion_of(motions: &MotionSet, index: usize) -> Option<Locomotion> {
     let looped = motions.looped.filter(|&clip| clip == index).map(|_| motions.locomotion);
     looped.or_else(|| motions.faster.iter().find(|(clip, _)| *clip == index).map(|&(_, by)| by))
 }
 
-/// The looped clip and faster ones, by speed. Clips that are no faster than the one before are dropped.
+/// Returns the looped clip and faster ones, by speed. Clips that are no faster than the one before are dropped.
 fn paces(def: &CharacterDef, set: &AnimationSet, clips: &[ClipId], motions: &MotionSet) -> Vec<Pace> {
     let pace = |index: usize| {
         let clip = set.clip(clips[index]);
@@ -208,7 +208,7 @@ fn paces(def: &CharacterDef, set: &AnimationSet, clips: &[ClipId], motions: &Mot
     paces
 }
 
-/// Moments of a clip, in order of time.
+/// Returns the events of a clip, in order of time.
 fn events_of(motions: &MotionSet, clip: usize) -> Vec<sinew_anim::ClipEvent> {
     let own = motions.events.iter().filter(|(of, _)| *of == clip).map(|(_, event)| event.clone());
     let mut events: Vec<sinew_anim::ClipEvent> = own.collect();
@@ -222,14 +222,14 @@ fn built(def: &CharacterDef, clip: &Clip) -> Result<AnimatedClip, MotionError> {
         .map_err(|error| MotionError { name: clip.name.clone(), error })
 }
 
-/// The clip with all its root motion in the pelvis: see [`Mapping`](crate::Mapping).
+/// Returns the clip with all its root motion in the pelvis: see [`Mapping`](crate::Mapping).
 fn flat(def: &CharacterDef, clip: &Clip) -> Clip {
     let moves_carriers = clip.channels.iter().any(|channel| def.mapping().carries(channel.joint));
     if moves_carriers { flat_take(def, clip, ROOT_FRAME).to_clip(&def.rig, &clip.name) } else { clip.clone() }
 }
 
 fn flat_take(def: &CharacterDef, clip: &Clip, frame_time: f64) -> Take {
-    // No step of time is short enough for a clip that claims to last for years.
+    // The time step grows with the duration, since a file may claim a clip of years.
     let shortest = f64::from(clip.duration) / (Take::MOST_FRAMES - 1) as f64;
     let mut take = Take::of(&def.rig, clip, if shortest > frame_time { shortest } else { frame_time });
     for frame in 0..take.frames() {
@@ -238,7 +238,8 @@ fn flat_take(def: &CharacterDef, clip: &Clip, frame_time: f64) -> Take {
     take
 }
 
-/// A travelling clip in place, and its path; frames divide its length, so that the last is its end.
+/// Returns a travelling clip in place, and its path. Frames divide the clip's length evenly, so that the last one is at
+/// its end.
 fn travelling(def: &CharacterDef, clip: &Clip) -> Option<(Clip, MotionTrack)> {
     let frames = (f64::from(clip.duration) / ROOT_FRAME).round();
     if !(frames >= 1.0 && frames < (Take::MOST_FRAMES - 1) as f64) {
@@ -254,7 +255,7 @@ fn mirrored(def: &CharacterDef, mirror: &Mirror, take: &Take) -> Take {
     Take { poses, ..*take }
 }
 
-/// Root motion that the locomotion of the character adds to its looped clip: model space.
+/// Returns the root motion that the locomotion of the character adds to its looped clip, model space.
 fn way(def: &CharacterDef, locomotion: Locomotion, duration: f32) -> Option<MotionTrack> {
     let Locomotion::Forward { speed } = locomotion else { return None };
     let model = def.mapping().character_from_model().inverse();
@@ -271,7 +272,7 @@ fn starts(def: &CharacterDef, landmarks: &Landmarks, take: &Take) -> Vec<Start> 
             let (mut model, mut bodies) = (Vec::new(), Vec::new());
             local_to_model(&def.rig, take.pose(frame), &Affine::IDENTITY, &mut model);
             let (mapping, points) = (def.mapping(), Vec::new());
-            // Which fills in the bodies, too.
+            // This call fills in the bodies, too.
             let stance = landmarks.stance(mapping, &model, Transform::IDENTITY, points, &mut bodies);
             Start { time: take.time(frame), stance, bodies }
         })
@@ -284,7 +285,7 @@ fn stance(rig: &Rig, mapping: &Mapping, landmarks: &Landmarks, pose: &[LocalTran
     landmarks.stance(mapping, &model, Transform::IDENTITY, Vec::new(), &mut Vec::new())
 }
 
-/// The flat pose at the start of the looped clip, or the rest pose.
+/// Returns the flat pose at the start of the looped clip, or the rest pose.
 fn first_pose(def: &CharacterDef, motions: &MotionSet) -> Vec<LocalTransform> {
     let mut pose = def.rest().to_vec();
     if let Some(clip) = motions.looped {

@@ -1,5 +1,4 @@
-//! Bodies of a character in the world: hit bodies that its clips lead, or a ragdoll, with drives, without detached
-//! ones.
+//! Bodies of a character in the world, without detached ones: hit bodies that its clips move, or a ragdoll with drives.
 
 use super::CharacterDef;
 use super::figure::Scratch;
@@ -14,20 +13,20 @@ use sinew_physics::{BodyId, ContactRule, Velocity, World};
 /// Bodies of a character.
 #[derive(Clone, Debug)]
 pub(super) struct Physique {
-    /// Hit bodies, which are the ragdoll's while it has one.
+    /// Hit bodies, which are also the ragdoll's bodies while there is one.
     pub hit: Vec<BodyId>,
-    /// Poses of the bodies by the clips a step ago; empty: none.
+    /// Poses of the bodies in the clips one step ago; empty if unknown.
     pub before: Vec<Transform>,
     pub ragdoll: Option<Ragdoll>,
     pub drives: Drives,
     pub physical: Physical,
-    /// Motion of joints without bodies, which decays after the bodies took over.
+    /// Motion of joints without bodies, which decays after the bodies have taken over.
     pub lingering: Inertia,
     /// Detached bodies, by index, with their ids.
     pub lost: Vec<(usize, BodyId)>,
-    /// Remaining bodies, if some were detached.
+    /// Remaining bodies; empty if none was detached.
     pub kept: Vec<BodyId>,
-    /// Pairs of own and detached bodies that overlap and pass through each other until they are apart.
+    /// Pairs of own and detached bodies that overlap. They pass through each other until they are apart.
     pub parting: Vec<(BodyId, BodyId)>,
 }
 
@@ -46,27 +45,27 @@ impl Physique {
         }
     }
 
-    /// Bodies in the order of the definition, detached ones included. Empty for a character without bodies.
+    /// Returns the bodies in the order of the definition, detached ones included. Empty for a character without bodies.
     pub fn ids(&self) -> &[BodyId] {
         self.ragdoll.as_ref().map_or(&self.hit, |ragdoll| &ragdoll.bodies)
     }
 
-    /// Remaining bodies.
+    /// Returns the remaining bodies.
     pub fn own(&self) -> &[BodyId] {
         if self.lost.is_empty() { self.ids() } else { &self.kept }
     }
 
-    /// True if a body, by index in the definition, was not detached.
+    /// Returns true if a body, by index in the definition, was not detached.
     pub fn has(&self, body: usize) -> bool {
         self.lost.iter().all(|&(lost, _)| lost != body)
     }
 
-    /// Index in the definition of one of its bodies.
+    /// Returns the index in the definition of one of the character's bodies.
     pub fn index_of(&self, id: BodyId) -> Option<usize> {
         self.ids().iter().position(|&body| body == id).filter(|&body| self.has(body))
     }
 
-    /// Indices of detached bodies.
+    /// Returns the indices of detached bodies.
     pub fn lost_indices(&self) -> Vec<usize> {
         self.lost.iter().map(|&(body, _)| body).collect()
     }
@@ -90,7 +89,7 @@ impl Physique {
         }
     }
 
-    /// Takes ownership of its bodies and joints in the world, so that no other call removes them.
+    /// Takes ownership of the character's bodies and joints in the world, so that no other call removes them.
     fn mark_own(&self, def: &CharacterDef, world: &mut World) {
         let def = &def.ragdoll;
         if let Some(ragdoll) = &self.ragdoll {
@@ -102,7 +101,7 @@ impl Physique {
         world.own_bodies(&owner(def, OwnerKind::Character), &bodies, &parts);
     }
 
-    /// Puts hit bodies into the world.
+    /// Adds hit bodies to the world.
     pub fn enter(&mut self, def: &CharacterDef, poses: &[Transform], rule: ContactRule, world: &mut World) {
         let at = |&world_from_body: &Transform| BodyState { world_from_body, velocity: Velocity::default() };
         let states: Vec<BodyState> = poses.iter().map(at).collect();
@@ -112,7 +111,7 @@ impl Physique {
         self.mark_own(def, world);
     }
 
-    /// Removes its hit bodies from the world.
+    /// Removes the hit bodies from the world.
     pub fn remove_hit(&mut self, world: &mut World) {
         let lost = self.lost_indices();
         for (_, body) in self.hit.drain(..).enumerate().filter(|(index, _)| !lost.contains(index)) {
@@ -150,7 +149,7 @@ impl Physique {
         self.drives.set_all(def.falling, 0.0);
     }
 
-    /// Sets the contact rules while it has a ragdoll.
+    /// Sets the contact rules of the bodies while the character has a ragdoll.
     pub fn set_rule(&self, world: &mut World, rule: ContactRule) {
         if let Some(ragdoll) = &self.ragdoll {
             ragdoll.set_rule(world, rule);
@@ -170,7 +169,7 @@ impl Physique {
         }
     }
 
-    /// Poses of the bodies of a ragdoll, in `scratch.after`; detached ones are in their rest place.
+    /// Computes the poses of the bodies of a ragdoll, in `scratch.after`; detached ones are at their rest place.
     pub fn poses(&self, def: &CharacterDef, world: &World, scratch: &mut Scratch) {
         let ragdoll = self.ragdoll.as_ref().expect("it has bodies");
         ragdoll.poses(world, &mut scratch.after);

@@ -1,7 +1,8 @@
 //! Similarity of two poses, independent of place and heading.
 //!
-//! As in motion graphs (Kovar, Gleicher, Pighin, SIGGRAPH 2002, §3.1): one pose is rotated about the vertical and moved
-//! so that its points are as near to the other's as possible; the remaining distance is the difference.
+//! The method is that of motion graphs (Kovar, Gleicher, Pighin, SIGGRAPH 2002, §3.1): one pose is rotated about the
+//! vertical and moved so that its points are as near to the other's as possible; the remaining distance is the
+//! difference.
 
 use crate::character::tuning::{STICK, STICK_WEIGHT};
 use crate::def::{RagdollBodyDef, RagdollDef};
@@ -9,20 +10,21 @@ use crate::mapping::Mapping;
 use sinew_anim::JointIdx;
 use sinew_math::{Affine, Rotation, Transform, Vec3, min, trig};
 
-/// Points of a body that count in a comparison of poses, with their weights.
+/// Points of a body that are compared between poses, with their weights.
 #[derive(Clone, Debug)]
 pub(super) struct Landmarks {
-    /// Joints of the bodies, in their order.
+    /// Joints of the bodies, in the order of the bodies.
     joints: Vec<JointIdx>,
-    /// Bodies whose orientation counts too: by the ends of two short sticks, forward and up. The pelvis is the first.
+    /// Bodies whose orientation is compared too, by the ends of two short sticks, forward and up. The pelvis is the
+    /// first.
     trunk: Vec<(usize, Rotation)>,
-    /// One for each joint and each stick; they sum to 1.
+    /// Weights, one for each joint and each stick, with the sum 1.
     weights: Vec<f32>,
     /// Length of the sticks, metres.
     stick: f32,
 }
 
-/// A body's pose by its landmarks.
+/// A pose, described by its landmarks.
 #[derive(Clone, Debug)]
 pub(super) struct Stance {
     pub points: Vec<Vec3>,
@@ -33,13 +35,13 @@ pub(super) struct Stance {
 /// Motion that aligns one stance with another, and the remaining distance.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PoseSimilarity {
-    /// A turn about the vertical, then a move.
+    /// Rotation about the vertical, followed by a translation.
     pub motion: Transform,
     /// Remaining distance: root of the weighted mean of squared distances, metres.
     pub distance: f32,
 }
 
-/// Share of a body's joint, by its role.
+/// Returns the weight of a body's joint, by its role.
 fn weight(body: &RagdollBodyDef) -> f32 {
     let has = |part: &str| body.role.ends_with(part);
     if has("Foot") || has("LowerLeg") || body.role == "hips" || body.role == "head" {
@@ -69,7 +71,7 @@ impl Landmarks {
         }
     }
 
-    /// The stance of a pose in model space at `world_from_character`. `points` and `bodies` are buffers.
+    /// Computes the stance of a pose in model space at `world_from_character`. `points` and `bodies` are buffers.
     pub fn stance(
         &self,
         mapping: &Mapping,
@@ -93,12 +95,12 @@ impl Landmarks {
         Stance { points, pelvis }
     }
 
-    /// Bodies whose orientation counts, the pelvis first.
+    /// Returns the bodies whose orientation is compared, the pelvis first.
     pub fn trunk_bodies(&self) -> impl Iterator<Item = usize> {
         self.trunk.iter().map(|&(body, _)| body)
     }
 
-    /// Aligns `from` with `to`, with the same lowest height.
+    /// Aligns `from` with `to`, so that both have the same lowest height.
     pub fn compare(&self, from: &Stance, to: &Stance) -> PoseSimilarity {
         let middle = |stance: &Stance| {
             let mean =

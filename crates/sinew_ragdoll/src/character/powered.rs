@@ -1,4 +1,4 @@
-//! Bodies between clips and physics: led, pinned, driven by muscles or limp, while clips and mover continue.
+//! Bodies between clips and physics: kinematic, pinned, driven by muscles or limp, while clips and mover continue.
 
 use super::CharacterDef;
 use super::figure::Scratch;
@@ -14,34 +14,35 @@ use sinew_physics::World;
 /// Presets for all bodies of a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preset {
-    /// Clips: a lying character gets up, a powered one returns to them.
+    /// Clips move the character: a lying character gets up, a powered one returns to the clips.
     Animated,
-    /// Clips, with all bodies weak and returning as if struck everywhere.
+    /// Clips move the character, with all bodies weak and returning as if all were struck.
     Flinching,
-    /// Muscles toward the clips, and soft pins that keep it near its place, strongest at the pelvis.
+    /// Muscles drive the bodies to the clips, and soft pins keep the character near its place, strongest at the pelvis.
     Powered,
-    /// Nothing: it falls.
+    /// Nothing drives the bodies: the character falls.
     Limp,
 }
 
-/// Bodies of a character.
+/// Bodies of a character, selected by index or name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part<'a> {
-    /// All.
+    /// All bodies.
     All,
-    /// One, by index in the definition.
+    /// One body, by index in the definition.
     Body(usize),
-    /// One, by role or bone.
+    /// One body, by role or bone.
     Named(&'a str),
-    /// That body, by role or bone, and everything below it.
+    /// A body, by role or bone, and all bodies below it.
     From(&'a str),
 }
 
-/// Pins that keep a body of a powered character near its place, stronger for legs and pelvis: else feet would drag.
+/// Pin that keeps a body of a powered character near its place. Pins of legs and pelvis are stronger, because otherwise
+/// feet would drag.
 const NEAR: Pin = Pin { hertz: 2.0, damping_ratio: 1.0, max_force: 0.0, max_torque: 0.0 };
 const WALKS: Pin = Pin { hertz: 4.0, ..NEAR };
 
-/// Pin that holds a body near its place by [`Preset::Powered`].
+/// Returns the pin that holds a body near its place in [`Preset::Powered`].
 fn powered_pin(def: &CharacterDef, body: usize, gravity: f32) -> Pin {
     let def = &def.ragdoll;
     if body == 0 {
@@ -57,7 +58,7 @@ fn powered_pin(def: &CharacterDef, body: usize, gravity: f32) -> Pin {
     }
 }
 
-/// Has muscles and pins draw all bodies to the clips.
+/// Sets muscles and pins that drive all bodies to the clips.
 pub(super) fn set_drives(def: &CharacterDef, physique: &mut Physique, world: &World) {
     let gravity = world.def().gravity.length();
     for body in 0..def.ragdoll.bodies.len() {
@@ -66,8 +67,8 @@ pub(super) fn set_drives(def: &CharacterDef, physique: &mut Physique, world: &Wo
     }
 }
 
-/// True if the pelvis is too far from its clips' for the feet to hold it, or leans too far; its heading is ignored,
-/// because it lags behind when the character turns on the spot.
+/// Returns true if the pelvis is too far from the clips' pelvis for the feet to hold it, or leans too far. Its heading
+/// is ignored, because it lags behind when the character turns on the spot.
 pub(super) fn is_toppled(
     def: &CharacterDef,
     animator: &Animator,

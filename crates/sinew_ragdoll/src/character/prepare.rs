@@ -1,7 +1,7 @@
-//! Between lying still and getting up: drives a body to the start of the nearest get-up clip.
+//! Drives a lying body to the start of the nearest get-up clip.
 //!
 //! Muscles drive the limbs. The trunk is rolled over by a non-physical torque: a pin that only rotates, bounded in
-//! torque and time; [`Drives::pin_effort`](crate::Drives::pin_effort) reports how much.
+//! torque and time; [`Drives::pin_effort`](crate::Drives::pin_effort) reports this torque.
 
 use super::CharacterDef;
 use super::figure::Scratch;
@@ -17,22 +17,22 @@ use sinew_physics::{Velocity, World};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Preparing {
     pub stillness: Stillness,
-    /// Index of the get-up, and of its moment.
+    /// Index of the get-up, and of its start.
     pub get_up: u32,
     pub start: u32,
     /// Remaining seconds.
     pub seconds: f32,
 }
 
-/// Largest rotation of the trunk from the start of its clip, radians, and largest mean distance of the joints, share of
-/// the body's height: for getting up at once, and after driving.
+/// Largest rotation of the trunk from the start of its clip, radians, and largest mean distance of the joints, as a
+/// share of the body's height: first without driving, then after driving.
 const AT_ONCE: [f32; 2] = [0.85, 0.16];
 const NEAR_ENOUGH: [f32; 2] = [0.7, 0.14];
-/// Muscle that draws the limbs.
+/// Muscle that drives the limbs.
 const PULL: Muscle = Muscle { hertz: 2.0, damping_ratio: 1.0, strength: 0.6 };
 
 impl Preparing {
-    /// Toward a moment of a clip; `rolls`: its trunk must be rolled over.
+    /// Starts driving toward the chosen start of a clip; `rolls`: the trunk must be rolled over.
     pub fn toward(def: &CharacterDef, choice: &Choice<'_>, rolls: bool, stillness: Stillness) -> Self {
         let index = |at: Option<usize>| at.unwrap_or_default() as u32;
         let get_ups = &def.moves().get_ups;
@@ -46,17 +46,17 @@ impl Preparing {
 }
 
 impl Choice<'_> {
-    /// True if a body with this pelvis may get up at once.
+    /// Returns true if a body with this pelvis may get up without driving.
     pub fn is_near(&self, def: &CharacterDef, pelvis: Rotation) -> bool {
         self.is_like(def, pelvis, AT_ONCE)
     }
 
-    /// True if a driven body is near enough.
+    /// Returns true if a driven body is near enough.
     pub fn is_reached(&self, def: &CharacterDef, pelvis: Rotation) -> bool {
         self.is_like(def, pelvis, NEAR_ENOUGH)
     }
 
-    /// True if the trunk must be rolled over.
+    /// Returns true if the trunk must be rolled over.
     pub fn rolls(&self, pelvis: Rotation) -> bool {
         self.trunk_off(pelvis) > AT_ONCE[0]
     }
@@ -66,7 +66,7 @@ impl Choice<'_> {
         self.trunk_off(pelvis) < trunk && joints_off < joints
     }
 
-    /// By how much the pelvis is turned from how the clip has it, radians.
+    /// Returns the angle between the pelvis and the pelvis of the clip, radians.
     fn trunk_off(&self, pelvis: Rotation) -> f32 {
         (self.pose_similarity.motion.rotation * self.start.stance.pelvis).angle_to(pelvis)
     }
@@ -86,7 +86,7 @@ pub(super) fn set_drives(def: &CharacterDef, rolls: bool, physique: &mut Physiqu
     }
 }
 
-/// Drives the bodies toward the moment of the clip, at their place, for the next step.
+/// Drives the bodies toward the start of the clip, at their place, for the next step.
 pub(super) fn draw(
     def: &CharacterDef,
     choice: &Choice<'_>,

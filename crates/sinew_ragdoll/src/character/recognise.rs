@@ -4,17 +4,16 @@ use super::CharacterDef;
 use sinew_anim::{Clip, LocalTransform, Wrap, local_to_model, sample};
 use sinew_math::{Affine, Transform, Vec3};
 
-/// Names of such clips, without case, blanks, `-` and `_`.
+/// Names of get-up clips, without case, blanks, `-` and `_`.
 const NAMES: [&str; 3] = ["getup", "standup", "gettingup"];
-/// While lying, the pelvis' own up rises by at most this over its length, and its height is at most this share of that
-/// in the bind pose.
+/// Largest uprightness of a lying pelvis (1 upright), and largest height of it as a share of that in the bind pose.
 const LYING: [f32; 2] = [0.6, 0.4];
-/// While standing, at least this.
+/// Least uprightness and height of a standing pelvis, in the same units as [`LYING`].
 const STANDING: [f32; 2] = [0.8, 0.8];
 
 impl CharacterDef {
-    /// Indices of the get-up clips of this character: by name (`get_up`, `StandUp`, …), and those that start lying and
-    /// end standing.
+    /// Returns the indices of the get-up clips of this character: clips with such a name (`get_up`, `StandUp`, …), and
+    /// clips that start lying and end standing.
     ///
     /// # Panics
     /// As [`sample`](sinew_anim::sample()).
@@ -30,7 +29,7 @@ impl CharacterDef {
             && end.iter().zip(STANDING).all(|(value, least)| *value > least)
     }
 
-    /// Uprightness of the pelvis (1 upright), and its height over that of the bind pose, at a time.
+    /// Returns the uprightness of the pelvis (1 upright), and its height over that of the bind pose, at a time.
     fn posture(&self, clip: &Clip, time: f32) -> [f32; 2] {
         let mut pose: Vec<LocalTransform> = self.rest().to_vec();
         sample(clip, &self.rig, time, Wrap::Clamp, &mut pose);

@@ -1,5 +1,5 @@
-//! Ground under the parts of a character in a transition, where that is not the floor of its clips: stairs, crates,
-//! slopes. Without it hands and knees would pass through a step beside the body.
+//! Ground under the parts of a character in a transition, where the ground differs from the floor of the clips: stairs,
+//! crates, slopes. Without it hands and knees would pass through a step beside the body.
 
 use super::clearance::{Clearance, Depths, PARTS, Passage, spread};
 use super::figure::Figure;
@@ -10,19 +10,19 @@ use sinew_anim::{LocalTransform, local_to_model};
 use sinew_math::{Affine, Vec3, max};
 use sinew_physics::{BodyId, World};
 
-/// Largest number of points of a part below which the ground is sought.
+/// Largest number of points of a part below which the ground is searched.
 const MOST_PROBES: usize = 4;
 
-/// World in which the ground is sought.
+/// World in which the ground is searched.
 #[derive(Clone, Copy)]
 pub(super) struct Grounds<'a> {
     pub world: &'a World,
-    /// Its bodies, if it is in the world.
+    /// Bodies of the character, if it is in the world.
     pub own: Option<&'a [BodyId]>,
 }
 
 impl Grounds<'_> {
-    /// Depths of the parts of a pose in the floor of the character's place, and in the ground below them.
+    /// Returns the depths of the parts of a pose in the floor of the character's place, and in the ground below them.
     pub fn depths(
         self,
         def: &CharacterDef,
@@ -44,7 +44,7 @@ impl Grounds<'_> {
         both
     }
 
-    /// Depth of a point in the ground below it.
+    /// Returns the depth of a point in the ground below it.
     fn depth(self, def: &CharacterDef, point: Vec3) -> Option<f32> {
         let above = MOST_LIFT * def.ragdoll.height;
         let least = LEAST_TREAD * def.ragdoll.total_mass;
@@ -75,8 +75,8 @@ impl Passage {
 }
 
 impl Clearance {
-    /// Lowest points of a part that are at least `apart` metres from each other, the lowest one first; `model` and the
-    /// points are in the same space.
+    /// Returns the lowest points of a part that are at least `apart` metres from each other, the lowest one first;
+    /// `model` and the points are in the same space.
     fn low_points(&self, part: usize, model: &[Affine], apart: f32, palette: &mut Vec<Affine>) -> Vec<Vec3> {
         spread(self.places(part, model, palette), apart, MOST_PROBES, |place| -place.y)
     }

@@ -1,4 +1,4 @@
-//! A character's own state, beside the world's snapshot.
+//! Saves a character's own state, in addition to the world's snapshot.
 
 use super::activity::{Activity, Flinch};
 use super::clearance::{Depths, PARTS, Passage};
@@ -22,19 +22,19 @@ use sinew_anim::{Animator, Inertia, LocalTransform, TrackId};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::{BodyId, JointId, MoverId, Velocity};
 
-/// First bytes; the last is the version.
+/// First bytes of a saved character; the last one is the version.
 const MAGIC: &[u8; 8] = b"sinew-c\x0a";
-/// Flag of a held body: a pulling grip follows.
+/// Flag of a held body whose pulling grip is saved after it.
 const GRASPS: u8 = 2;
-/// Bytes of an unreported event.
+/// Number of bytes of an unreported event.
 const EVENT_BYTES: usize = 17;
-/// Bytes of a local transform.
+/// Number of bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
-/// Reason why bytes that do not fit the definition are refused.
+/// Reason for refusing bytes that do not fit the definition.
 const OF_ANOTHER: &str = "is of another character";
 
 impl Character {
-    /// Writes what decides the future, without the definition.
+    /// Writes all state that affects the future, without the definition.
     pub fn save(&self, w: &mut Writer) {
         w.raw(MAGIC);
         save_activity(w, &self.activity);
@@ -69,11 +69,11 @@ impl Character {
         untold.iter().for_each(|event| event.save(w));
     }
 
-    /// Restores a saved state of a character of the same definition. Its bodies are those of the world's snapshot of
-    /// the same time.
+    /// Restores a saved state of a character of the same definition. Its bodies come from the world's snapshot of the
+    /// same time.
     ///
     /// # Errors
-    /// If the bytes are not those of a character of this definition and version; the character is unchanged then.
+    /// If the bytes are not a saved character of this definition and version; the character then does not change.
     pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
             return Err(ReadError { at: 0, what: "is not a character of this version" });
@@ -119,7 +119,7 @@ impl Character {
         Ok(())
     }
 
-    /// The shown pose at the time of saving.
+    /// Computes the shown pose at the time of saving.
     fn show_loaded(&mut self) {
         let state = self.activity.state();
         self.feet.pose.clear();
@@ -481,7 +481,7 @@ fn save_pose(w: &mut Writer, pose: &[LocalTransform]) {
     }
 }
 
-/// A pose of `joints` joints, or an empty one.
+/// Reads a pose of `joints` joints, or an empty one.
 fn load_pose(r: &mut Reader<'_>, joints: usize) -> Result<Vec<LocalTransform>, ReadError> {
     let count = r.count(LOCAL_BYTES)?;
     if count != 0 && count != joints {

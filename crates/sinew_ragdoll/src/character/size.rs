@@ -8,13 +8,13 @@ use sinew_anim::{Animator, Garment, LocalTransform, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, max3};
 use sinew_physics::Yields;
 
-/// Moments of a clip at which its limbs are measured.
+/// Number of moments of a clip at which its limbs are measured.
 const MOMENTS: u16 = 64;
 
 impl CharacterDef {
-    /// Radius of a mover that keeps all its bodies on this side of a wall while its looped clip plays, metres: their
-    /// largest distance from its vertical axis. 0 without such a clip. The default mover is narrower, to pass doors:
-    /// with root motion a hand is in a wall for part of each swing.
+    /// Returns the radius of a mover that keeps all of the character's bodies on its side of a wall while the looped
+    /// clip plays, metres: the largest distance of the bodies from the mover's vertical axis. 0 without such a clip.
+    /// The default mover is narrower, to pass doors: with root motion a hand is in a wall for part of each swing.
     pub fn swept_radius(&self) -> f32 {
         let Some(looped) = self.motions().looped else { return 0.0 };
         let duration = self.set().clip(self.clip(looped)).clip.duration();
@@ -35,9 +35,9 @@ impl CharacterDef {
         farthest
     }
 
-    /// The same kind of character, larger by `factor` (1: unchanged): a child, a giant. Lengths and the speeds of its
-    /// walk and springs grow by it, masses and forces by its third power, torques by its fourth. One definition serves
-    /// all characters of that size.
+    /// Returns the same kind of character scaled by `factor` (1: unchanged): a child, a giant. Lengths and the speeds
+    /// of walk and springs scale with `factor`, masses and forces with its third power, torques with its fourth. One
+    /// definition serves all characters of that size.
     ///
     /// # Panics
     /// If the factor is not above 0 and finite.
@@ -53,7 +53,7 @@ impl CharacterDef {
                 distance: backstop.distance * factor,
                 radius: backstop.radius * factor,
             }),
-            // As far as it stretches and bends under its weight, relative to its size.
+            // Keeps stretch and bend under the garment's own weight the same relative to its size.
             stretching: garment.stretching * factor,
             shearing: garment.shearing * factor,
             bending: garment.bending * factor * factor * factor,

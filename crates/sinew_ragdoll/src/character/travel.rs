@@ -1,4 +1,4 @@
-//! A travelling looped clip: its path is extracted from the pose, so that each lap continues it.
+//! Travelling looped clips: the path is extracted from the pose, so that each lap continues it.
 
 use super::CharacterDef;
 use crate::character::tuning::{OFF_ORIGIN, STAYS_TURNED, STAYS_WITHIN, STRAIGHT};
@@ -9,14 +9,14 @@ use sinew_math::{Affine, Rotation, Transform, Vec3, trig};
 /// A motion over the ground: from start to end of a clip, along an arc at constant speed.
 #[derive(Clone, Copy, Debug)]
 struct Lap {
-    /// Level, metres.
+    /// Displacement, level, metres.
     way: Vec3,
-    /// About the vertical, radians.
+    /// Rotation about the vertical, radians.
     turn: f32,
 }
 
 impl Lap {
-    /// Lap of the pelvis, in character space.
+    /// Measures the lap of the pelvis, in character space.
     fn of(def: &CharacterDef, take: &Take) -> Self {
         let [start, end] = [0, take.frames() - 1].map(|frame| stand(def, take, frame));
         let lap = end * start.inverse();
@@ -27,13 +27,13 @@ impl Lap {
         self.way.length() > STAYS_WITHIN || self.turn.abs() > STAYS_TURNED
     }
 
-    /// After a share of it.
+    /// Returns the transform after a share of the lap.
     fn at(self, share: f32) -> Transform {
         let turned = |angle: f32| Rotation::from_axis_angle(Vec3::Y, angle);
         if self.turn.abs() < STRAIGHT {
             return Transform::new(self.way * share, turned(self.turn * share));
         }
-        // About the fixed centre c: way = c − R c.
+        // The motion rotates about the fixed centre c: way = c − R c.
         let half = 0.5 * self.turn;
         let across = Vec3::new(self.way.z, 0.0, -self.way.x);
         let center = (self.way + across * (trig::cos(half) / trig::sin(half))) * 0.5;
@@ -42,7 +42,7 @@ impl Lap {
     }
 }
 
-/// Place of the pelvis over the ground, and its heading.
+/// Returns the place of the pelvis over the ground, and its heading.
 fn stand(def: &CharacterDef, take: &Take, frame: usize) -> Transform {
     let (mut model, mut bodies) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, take.pose(frame), &Affine::IDENTITY, &mut model);
@@ -54,8 +54,8 @@ fn stand(def: &CharacterDef, take: &Take, frame: usize) -> Transform {
     Transform::new(place, Rotation::from_axis_angle(Vec3::Y, heading))
 }
 
-/// Level displacement that brings the start of a clip to the place of the character, character space: captures often
-/// begin metres from their origin. Zero if the pelvis starts near its place in the rest pose.
+/// Returns the level displacement that brings the start of a clip to the place of the character, character space:
+/// captures often begin metres from their origin. Zero if the pelvis starts near its place in the rest pose.
 pub(super) fn to_origin(def: &CharacterDef, clip: &Clip) -> Vec3 {
     let mut poses = def.rest().to_vec();
     sample(clip, &def.rig, 0.0, Wrap::Clamp, &mut poses);
@@ -66,7 +66,7 @@ pub(super) fn to_origin(def: &CharacterDef, clip: &Clip) -> Vec3 {
     if way.length() > OFF_ORIGIN * def.ragdoll.height { way } else { Vec3::ZERO }
 }
 
-/// The clip in place and the extracted path: model space. `None` if it does not travel.
+/// Returns the clip in place and the extracted path, model space. `None` if the clip does not travel.
 pub(super) fn parted(def: &CharacterDef, take: &Take) -> Option<(Take, MotionTrack)> {
     let last = take.frames() - 1;
     if last == 0 {

@@ -1,8 +1,8 @@
-//! Feet of a walking character: each stays planted where it came down, and swings over edges.
+//! Feet of a walking character: each foot stays planted where it landed, and swings over edges.
 //!
 //! A planted foot keeps its place on the ground: the clip's displacement is removed, except for the roll from heel to
-//! ball. In the air the offset decays, and the foot takes the height of the ground where it will come down:
-//! [`LOOKS_AHEAD`] ahead at half its speed. Continuous ground is followed at once, edges like a spring.
+//! ball. In the air the offset decays, and the foot takes the height of the ground at its landing point, predicted over
+//! [`LOOKS_AHEAD`]. Continuous ground is followed immediately, edges like a spring.
 
 use super::CharacterDef;
 use super::feet::{Feet, Stand};
@@ -20,20 +20,20 @@ use sinew_math::{Affine, Transform, Vec3, clamp, max, min, trig};
 use sinew_physics::ray::Ray;
 use sinew_physics::{BodyHit, World};
 
-/// A foot, apart from the height in [`Planting`](super::legs::Planting).
+/// State of a foot, apart from the height in [`Planting`](super::legs::Planting).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Tread {
-    /// Level offset of the foot from the clips', world, metres.
+    /// Level offset of the foot from the clips' foot, world, metres.
     pub offset: Vec3,
-    /// Target of that offset in the air, so that its toes avoid walls.
+    /// Target of `offset` in the air, so that the toes avoid walls.
     pub home: Vec3,
-    /// Velocity with which the clips slide it over the ground, level, m/s.
+    /// Velocity at which the clips slide the foot over the ground, level, m/s.
     pub slip: Vec3,
-    /// Its ankle and ball as the clips had them in the last step, world.
+    /// Ankle and ball of the clips' foot in the last step, world.
     pub points: [Vec3; 2],
-    /// Height of its ground, world, metres.
+    /// Height of the ground under the foot, world, metres.
     pub ground: f32,
-    /// Velocity of the ground under it, m/s.
+    /// Velocity of the ground under the foot, m/s.
     pub floor: Vec3,
     pub stands: bool,
 }
@@ -43,21 +43,21 @@ pub(super) struct Tread {
 pub(super) struct Treads {
     pub feet: [Tread; 2],
     pub level: f32,
-    /// It jumps or falls: its feet leave the ground with it.
+    /// True if the character jumps or falls, so that its feet leave the ground.
     pub aloft: bool,
 }
 
-/// A foot as the clips have it in a step.
+/// A foot in the clips' pose of one step.
 struct Step {
-    /// Ankle and ball, world.
+    /// Positions of ankle and ball, world.
     points: [Vec3; 2],
-    /// Below ankle and ball, and the tip of the toes, world.
+    /// Points below ankle and ball, and the tip of the toes, world.
     sole: [Vec3; 3],
     /// Motion of the ball over the ground, level, metres.
     way: Vec3,
-    /// Part of the motion that is not the clip's.
+    /// Part of this motion that is not the clip's.
     slip: Vec3,
-    /// Height of its lower end over the floor of the clip, metres.
+    /// Height of the foot's lower end over the floor of the clip, metres.
     height: f32,
 }
 
@@ -65,7 +65,7 @@ impl Tread {
     /// Advances a planted or swinging foot; `size`: height of the whole body, metres.
     fn go_on(&mut self, step: &Step, size: f32, grounded: bool, dt: f32) {
         let speed = step.way.length() / dt;
-        // A planted foot leaves only at 1.5 times that.
+        // A planted foot leaves the ground only at 1.5 times these limits.
         let slack = if self.stands { 1.5 } else { 1.0 };
         let stands = grounded && step.height < slack * STANCE_HEIGHT * size && speed < slack * STANCE_SPEED;
         if stands && self.stands {
@@ -82,8 +82,8 @@ impl Tread {
 }
 
 impl Legs {
-    /// A foot of a pose, by its model in the space of a character at `place`: ankle and ball, the points below them and
-    /// the tip of the toes, world.
+    /// Returns ankle and ball of a foot, then the points below them and the tip of the toes, world. `model` is in the
+    /// space of a character at `place`.
     fn points(&self, foot: usize, place: Transform, model: &[Affine]) -> ([Vec3; 2], [Vec3; 3]) {
         let ankle = place * model[self.chains[foot].end].to_rigid();
         ([ankle.translation, ankle.point(self.balls[foot])], self.soles[foot].map(|point| ankle.point(point)))
@@ -96,7 +96,7 @@ impl Feet {
         let (def, figure, dt) = (stand.def, stand.figure, world.def().dt());
         let (place, level) = (figure.place, figure.place.translation.y);
         local_to_model(&def.rig, &figure.pose, &def.mapping().character_from_model(), model);
-        // Where it would be if it went as its clips do.
+        // Place of the character if it moved exactly as its clips do.
         let by_clips = figure.earlier.place * root_step(def, stand.animator);
         let is_new = self.treads.is_none();
         let mut treads = self.treads.unwrap_or(Treads { level, ..Treads::default() });
@@ -125,7 +125,7 @@ impl Feet {
             let planting = &mut self.planting;
             let ground = level + found.need.height;
             let change = ground - tread.ground;
-            // Continuous ground is followed at once, and so is moving ground.
+            // Continuous ground is followed immediately, and so is moving ground.
             let moves = max(tread.floor.y.abs(), found.floor.y.abs()) * dt;
             let goes_on = !is_new && change.abs() <= FOOT_EDGE * step.way.length() + moves;
             planting.heights[foot] += if goes_on { change } else { tread.floor.y * dt } - rise;
@@ -141,8 +141,8 @@ impl Feet {
         self.treads = Some(treads);
     }
 
-    /// Moves the feet of a pose of the clips, already at their heights, to their planted places. `now` is where the
-    /// character is after `later` seconds.
+    /// Moves the feet of a pose of the clips, already at their heights, to their planted places. `now` is the place of
+    /// the character after `later` seconds.
     pub(super) fn bring_home(
         &self,
         def: &CharacterDef,
@@ -163,7 +163,7 @@ impl Feet {
         hold_feet(&def.rig, legs.pelvis, &legs.chains, &ankles, most, pose, model);
     }
 
-    /// Level offsets of the feet from a pose of the clips, `later` seconds from now.
+    /// Returns the level offsets of the feet from a pose of the clips, `later` seconds from now.
     pub(super) fn offsets(&self, later: f32) -> [Vec3; 2] {
         let Some(treads) = self.treads else { return [Vec3::ZERO; 2] };
         treads.feet.map(|tread| {
@@ -175,7 +175,7 @@ impl Feet {
         })
     }
 
-    /// Heights of the feet over the floor of a clip of a character that will be at `now`.
+    /// Returns the heights of the feet over the floor of a clip of a character that will be at `now`.
     pub(super) fn planting_at(&self, now: Transform, later: f32) -> super::legs::Planting {
         let mut planting = self.planting.ahead(later);
         if let Some(treads) = self.treads.filter(|treads| later > 0.0 && !treads.aloft) {
@@ -192,21 +192,21 @@ impl Feet {
 struct Found {
     need: Need,
     floor: Vec3,
-    /// Heights below ankle, ball and tip of the toes over the floor of the clip, metres.
+    /// Heights of the ground below ankle, ball and tip of the toes over the floor of the clip, metres.
     under: [Option<f32>; 3],
     /// Level direction from ankle to ball.
     ahead: Vec3,
-    /// Level distance by which its toes must stay back from a wall where it comes down, metres.
+    /// Level distance by which the toes must stay back from a wall at the landing point, metres.
     home: Vec3,
 }
 
 impl Found {
-    /// Least height by which the foot must be raised so that neither end is in the ground, metres.
+    /// Returns the least height by which the foot must be raised so that neither end is in the ground, metres.
     fn least(&self, step: &Step, level: f32, slope: f32) -> f32 {
         let flat = |end: usize| (step.sole[end] - step.points[0]) * Vec3::new(1.0, 0.0, 1.0);
         let each = (0..3).filter_map(|end| {
             let tilts = slope * flat(end).dot(self.ahead);
-            // Toes bend.
+            // Toes bend, so their tip counts at the height of the ball at least.
             let height = if end == 2 { max(step.sole[1].y, step.sole[2].y) } else { step.sole[end].y };
             Some(self.under[end]? - (height - level) - tilts)
         });
@@ -215,13 +215,13 @@ impl Found {
 }
 
 impl Stand<'_> {
-    /// The ground under the shown foot, and where it will come down.
+    /// Finds the ground under the shown foot, and at its landing point.
     fn found(&self, world: &World, tread: &Tread, step: &Step, (heel, dt): (f32, f32)) -> Found {
         let (level, size) = (self.figure.place.translation.y, self.def.ragdoll.height);
         let under = |point: Vec3| {
             let over = Vec3::new(point.x, level, point.z);
             let hit = ground::found_below(world, over, FOOT_SEARCH, self.own)?;
-            // Light bodies are kicked, limbs are stepped over.
+            // Light bodies are kicked, and limbs of others are stepped over.
             let is_firm = ground::is_firm(world, hit.body, LEAST_TREAD * self.def.ragdoll.total_mass);
             let over = hit.point.y - level;
             (is_firm && over <= FOOT_RANGE && over >= -TREAD_RANGE * size).then_some((over, hit))
@@ -258,14 +258,15 @@ impl Stand<'_> {
         let bearer = found[1].or(found[0]).map(|(_, hit)| hit);
         let floor = bearer.map_or(Vec3::ZERO, |hit| {
             let (velocity, arm) = (world.velocity(hit.body), hit.point - world.center_of_mass(hit.body));
-            // In the middle of the next step.
+            // Velocity in the middle of the next step.
             velocity.at(arm + velocity.at(arm) * (0.5 * dt))
         });
         Found { need, floor, under: heights, ahead, home }
     }
 
-    /// Shift along itself of a foot's landing place, metres: toes out of a wall, and the ball on the step that bears
-    /// the heel, or the heel past its edge. `heel`, `toes`: lengths behind the ankle and before the ball.
+    /// Returns the shift of a foot's landing place along the foot, metres: toes out of a wall, and the ball onto the
+    /// step that bears the heel, or the heel past the edge of this step. `heel`, `toes`: lengths behind the ankle and
+    /// before the ball.
     fn aside(
         &self,
         world: &World,

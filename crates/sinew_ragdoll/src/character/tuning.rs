@@ -1,79 +1,85 @@
 //! Tunable constants of characters: animated, limp, getting up, stumbling.
 //!
-//! Each has its unit, the effect of a larger and a smaller value, and the tests (`crates/sinew_ragdoll/tests/it`) that
-//! show it; effects without a figure are estimates.
+//! Each constant has its unit, the effect of a larger and a smaller value, and the tests
+//! (`crates/sinew_ragdoll/tests/it`) that show it. Effects without a figure are estimates.
 
 // character/animate.rs
 
 /// Largest speed at which the height of a character's origin follows the ground, m/s: a stair step takes a few frames.
 ///
-/// Larger: it jerks up a stair. Smaller: it wades in the steps. Shown by the tests of `slopes`.
+/// Larger: the character jerks up a stair. Smaller: its feet sink into the steps. Shown by the tests of `slopes`.
 pub(crate) const CLIMB_SPEED: f32 = 1.2;
 
 // character/blows.rs
 
 /// Time for which a struck limb is weak, seconds.
 ///
-/// Larger: it hangs. Smaller: a blow is not visible. Shown by the tests of `blows`.
+/// Larger: the limb hangs down. Smaller: the blow is not visible. Shown by the tests of `blows`.
 pub(crate) const FLINCH_TIME: f32 = 0.12;
 
 /// Half-life of a struck limb's return, seconds.
 ///
-/// Larger: it floats home. Smaller: it snaps. Shown by the tests of `blows`.
+/// Larger: the limb drifts back slowly. Smaller: it snaps back. Shown by the tests of `blows`.
 pub(crate) const FLINCH_HALF_LIFE: f32 = 0.08;
 
-/// Largest share of their strength, 0 to 1, that a blow takes from the legs of a stepping character.
+/// Largest share of the legs' strength, 0 to 1, that a blow takes from a stepping character.
 ///
-/// Larger: it kneels before its foot is down. Smaller: legs like poles. Shown by the tests of `stumble`.
+/// Larger: the character kneels before its foot is down. Smaller: the legs stay stiff. Shown by the tests of `stumble`.
 pub(crate) const LEGS_WEAKEN: f32 = 0.2;
 
-/// Speed at which a led body yields to slow, hard pressure, m/s; faster only to faster bodies.
+/// Largest speed at which a led body yields to slow, hard pressure, m/s; it yields faster only to faster bodies.
 ///
-/// Larger: treading on a body kicks it. Smaller: a foot stays pressed on a trodden body. Shown by the tests of `grab`.
+/// Larger: a foot that treads on a body kicks it away. Smaller: the foot stays pressed against the body. Shown by the
+/// tests of `grab`.
 pub(crate) const GIVES_WAY: f32 = 3.0;
 
-/// Fastest speed that [`hit`](super::Character::hit) gives the struck body alone, m/s; the rest of the blow goes up its chain.
+/// Largest speed that [`hit`](super::Character::hit) gives to the struck body alone, m/s; the rest of the blow goes up
+/// its chain.
 ///
-/// A fist or foot strikes at 8 to 12 m/s. Larger: a strong blow flings a hand away. Smaller: weak blows move trunks. Shown by `brawl`.
+/// A fist or foot strikes at 8 to 12 m/s. Larger: a strong blow flings a hand away. Smaller: weak blows move the trunk.
+/// Shown by `brawl`.
 pub(crate) const HIT_SPEED: f32 = 12.0;
 
 /// Ratio of the blow that fells a character still near the ground to the one that fells a standing one.
 ///
-/// Larger: nothing stops a get-up. Smaller: in a crowd few come to stand. Shown by the tests of `blows`.
+/// Larger: no blow stops a get-up. Smaller: few characters of a crowd get up. Shown by the tests of `blows`.
 pub(crate) const LOW_STANDS: f32 = 2.5;
 
-/// Largest share of its strength, 0 to 1, that a blow takes from the trunk of a stepping character.
+/// Largest share of the trunk's strength, 0 to 1, that a blow takes from a stepping character.
 ///
-/// Larger: it folds. Smaller: it steps like a board. Shown by the tests of `stumble`.
+/// Larger: the trunk folds. Smaller: the trunk stays stiff. Shown by the tests of `stumble`.
 pub(crate) const TRUNK_WEAKENS: f32 = 0.5;
 
 /// Number of half-lives after which a limb follows the clips again.
 ///
-/// Larger: it counts as flinching for longer. Smaller: it jumps at the end. Shown by the tests of `blows`.
+/// Larger: the limb counts as flinching for longer. Smaller: it jumps at the end. Shown by the tests of `blows`.
 pub(crate) const RETURNED_AFTER: f32 = 6.0;
 
 // character/detach.rs
 
-/// Height of detached bodies for springs that collide with the body, metres, world: where nothing is.
+/// Height at which detached bodies are placed for springs that collide with bodies, metres, world; the world is empty
+/// there.
 ///
-/// Larger: springs may meet it. Smaller: only rounding. Shown by the tests of `detach`.
+/// Larger: springs may touch these bodies. Smaller: only rounding grows. Shown by the tests of `detach`.
 pub(crate) const FAR_BELOW: f32 = -1e6;
 
 // character/grasp.rs
 
-/// Gap of a grip below which it has no direction, metres.
+/// Gap of a grip below which the gap has no direction, metres.
 ///
-/// Larger: the axes of the grip stay while it already slips. Smaller: they follow noise. Shown by the tests of `grab`.
+/// Larger: the axes of the grip stay although it already slips. Smaller: the axes follow noise. Shown by the tests of
+/// `grab`.
 pub(crate) const LEAST_GAP: f32 = 1e-4;
 
 /// Cosine between a grip's pull and the diagonal of its axes below which the axes are aligned again.
 ///
-/// Larger: they are aligned all the time. Smaller: it pulls with less than its force. Shown by the tests of `grab`.
+/// Larger: the axes are aligned all the time. Smaller: the grip pulls with less than its force. Shown by the tests of
+/// `grab`.
 pub(crate) const LEAST_ALONG: f32 = 0.98;
 
 /// Stretch of a grip at its full force, metres.
 ///
-/// Larger: held bodies hang away from the hand. Smaller: it jerks. Shown by the tests of `grab`.
+/// Larger: held bodies hang away from the hand. Smaller: the grip jerks. Shown by the tests of `grab`.
 pub(crate) const GRIP_STRETCH: f32 = 0.01;
 
 /// Share of a grip's force that its motor uses, 0 to 1: contacts and stops of joints add to it within a substep.
@@ -83,317 +89,327 @@ pub(crate) const GRIP_SHARE: f32 = 0.9;
 
 // character/rises.rs
 
-/// Distance between the points of a part below which the ground is sought, as a share of the height.
+/// Distance between the points of a part at which the ground is searched, as a share of the height.
 ///
-/// Larger: a hand over the edge of a step sinks into it. Smaller: more rays. Shown by `brawl`.
+/// Larger: a hand over the edge of a step sinks into it. Smaller: more rays are cast. Shown by `brawl`.
 pub(crate) const PROBES_APART: f32 = 0.08;
 
 /// Largest speed at which the end of a limb moves out of a wall, relative to its clip, m/s.
 ///
-/// Larger: hands snap back at corners. Smaller: they enter walls. Shown by `brawl`.
+/// Larger: hands snap back at corners. Smaller: hands enter walls. Shown by `brawl`.
 pub(crate) const PULLED_BACK: f32 = 2.5;
 
 /// Speed at which the end of a limb returns to its clip beside a wall, m/s.
 ///
-/// Larger: hands snap over edges. Smaller: they lag behind the clip. Shown by `brawl`.
+/// Larger: hands snap over edges. Smaller: hands lag behind the clip. Shown by `brawl`.
 pub(crate) const RETURNS: f32 = 1.0;
 
-/// Natural frequency with which the parts of a rising character follow the ground, critically damped, rad/s.
+/// Natural frequency at which the parts of a rising character follow the ground, rad/s; critically damped.
 ///
-/// Larger: hands jerk over edges. Smaller: they pass through them. Shown by `brawl`.
+/// Larger: hands jerk over edges. Smaller: hands pass through them. Shown by `brawl`.
 pub(crate) const PART_QUICKNESS: f32 = 12.0;
 
 // character/grab.rs
 
-/// Distance between the bounds of two characters from which they collide again after a release, metres, twice.
+/// Half of the distance between the bounds of two characters from which they collide again after a release, metres.
 ///
-/// Larger: they pass through each other for longer. Smaller: feet kick the released one. Shown by the tests of `grab`.
+/// Larger: the characters pass through each other for longer. Smaller: feet kick the released character. Shown by the
+/// tests of `grab`.
 pub(crate) const PARTED: f32 = 0.05;
 
 // character/feet.rs
 
-/// Natural frequency with which feet follow the ground, critically damped, rad/s: a stair step asks as much of a leg as
-/// a transition within 0.2 s.
+/// Natural frequency at which feet follow the ground, rad/s; critically damped. A stair step moves a leg as far as a
+/// transition of 0.2 s does.
 ///
 /// Larger: legs jerk. Smaller: feet sink in and float. Shown by the tests of `slopes`.
 pub(crate) const FEET_QUICKNESS: f32 = 12.0;
 
-/// Largest height difference of the ground for a foot to stand on it, metres.
+/// Largest height difference of the ground on which a foot is placed, metres.
 ///
 /// Larger: legs reach into holes. Smaller: feet hang over steps. Shown by the tests of `slopes`.
 pub(crate) const FOOT_RANGE: f32 = 0.32;
 
-/// Distance up or down below which ground is the floor of the clip, metres.
+/// Height difference below which ground counts as level with the clip's floor, metres.
 ///
-/// Larger: feet off the ground. Smaller: noise of meshes moves legs. Shown by the tests of `slopes`.
+/// Larger: feet float above the ground. Smaller: noise of meshes moves legs. Shown by the tests of `slopes`.
 pub(crate) const FOOT_FLOOR: f32 = 2e-3;
 
-/// Height and speed below which a foot counts as back, metres and m/s.
+/// Offset and speed below which a foot counts as returned to its clip, metres and m/s.
 ///
-/// Larger: it jumps at the end. Smaller: work for nothing. Shown by the tests of `pops`.
+/// Larger: the foot jumps at the end. Smaller: the correction runs without effect. Shown by the tests of `pops`.
 pub(crate) const FOOT_HOME: f32 = 1e-5;
 
-/// Ratio of the times for standing up and for planting the feet.
+/// Ratio of the time for standing up to the time for planting the feet.
 ///
-/// Larger: feet jerk. Smaller: they slide while it rises. Shown by the tests of `slopes`.
+/// Larger: feet jerk. Smaller: feet slide while the character rises. Shown by the tests of `slopes`.
 pub(crate) const PLANTED_SOONER: f32 = 2.0;
 
-/// Rise or fall of ground along a foot, a slope, from which on it is an edge.
+/// Slope of the ground along a foot, rise over run, from which it counts as an edge.
 ///
-/// Larger: feet tilt on edges. Smaller: they are level on slopes. Shown by the tests of `slopes`.
+/// Larger: feet tilt on edges. Smaller: feet stay level on slopes. Shown by the tests of `slopes`.
 pub(crate) const FOOT_EDGE: f32 = 0.6;
 
 /// Largest tilt of a foot, radians.
 ///
-/// Larger: broken ankles. Smaller: feet in steep ground. Shown by the tests of `slopes`.
+/// Larger: ankles bend too far. Smaller: feet sink into steep ground. Shown by the tests of `slopes`.
 pub(crate) const MOST_TILT: f32 = 0.6;
 
-/// Largest turning speed of a powered character, rad/s: its muscles and pins can follow it. A person turns round on the
-/// spot within a second.
+/// Largest turning speed of a powered character, rad/s, which its muscles and pins can follow. A person turns round on
+/// the spot within a second.
 ///
-/// Larger: it twists and falls over its own legs. Smaller: it turns slowly. Shown by the scene `brawl`.
+/// Larger: the character twists and falls over its own legs. Smaller: it turns slowly. Shown by the scene `brawl`.
 pub(crate) const POWERED_TURNS: f32 = 3.5;
 
-/// Natural frequency with which a walking foot follows edges, critically damped, rad/s: within the half swing in which
-/// it sees them.
+/// Natural frequency at which a walking foot follows edges, rad/s; critically damped. The foot reaches the new height
+/// within half a swing, the time over which edges are detected.
 ///
-/// Larger: feet jerk over edges. Smaller: they float when they come down. Shown by the tests of `feet`.
+/// Larger: feet jerk over edges. Smaller: feet are still too high when they land. Shown by the tests of `feet`.
 pub(crate) const TREAD_QUICKNESS: f32 = 25.0;
 
-/// Time by which a foot in the air looks ahead at its speed, seconds: it comes down there, since it slows down evenly
-/// in the second half of its swing.
+/// Time over which the landing point of a foot in the air is predicted from its speed, seconds. The foot slows down
+/// evenly in the second half of its swing.
 ///
-/// Larger: it is raised for the step after. Smaller: it sees edges late. Shown by the tests of `feet`.
+/// Larger: the foot is raised for the step after. Smaller: edges are detected late. Shown by the tests of `feet`.
 pub(crate) const LOOKS_AHEAD: f32 = 0.12;
 
-/// Heights of its lower end over the clip's floor, over body height, from which a foot looks ahead at all, and fully: a
-/// foot about to come down does not get far.
+/// Height of a foot's lower end over the clip's floor, over body height, from which the landing point is predicted, and
+/// the further height over which the prediction grows to its full time. A foot about to land does not get far.
 ///
-/// Larger: edges are seen late. Smaller: it comes down on the step after. Shown by the tests of `feet`.
+/// Larger: edges are detected late. Smaller: the foot is raised for the step after. Shown by the tests of `feet`.
 pub(crate) const LANDS: [f32; 2] = [0.006, 0.017];
 
-/// Component along up of a surface normal below which it is a wall for toes.
+/// Upward component of a surface normal below which the surface is a wall for toes, a cosine.
 ///
-/// Larger: they draw back from slopes. Smaller: they go into steep ones. Shown by the tests of `feet`.
+/// Larger: toes draw back from slopes. Smaller: toes enter steep slopes. Shown by the tests of `feet`.
 pub(crate) const STEEPEST_TREAD: f32 = 0.5;
 
 /// Height over the ground from which an obstacle in front of a foot counts as a wall, metres.
 ///
-/// Larger: toes in low kerbs. Smaller: they draw back from slopes. Shown by the tests of `feet`.
+/// Larger: toes enter low kerbs. Smaller: toes draw back from slopes. Shown by the tests of `feet`.
 pub(crate) const TOES_OVER: f32 = 0.06;
 
-/// Distance that toes and heel keep from a wall where a foot comes down, metres: foot shapes are slightly smaller than
-/// the drawn feet.
+/// Distance that toes and heel keep from a wall where a foot lands, metres. Foot shapes are slightly smaller than the
+/// drawn feet.
 ///
-/// Larger: feet come down beside their clips. Smaller: toes in walls. Shown by the tests of `feet`.
+/// Larger: feet land beside their clips. Smaller: toes enter walls. Shown by the tests of `feet`.
 pub(crate) const TOES_CLEAR: f32 = 0.02;
 
-/// Largest drop of the ground for a walking foot, over body height: a mover is up a stair by its radius before the
-/// foot.
+/// Largest drop of the ground for a walking foot, over body height. A mover reaches the next stair before the foot
+/// does, by its radius.
 ///
 /// Larger: legs reach into holes. Smaller: feet hang over steps. Shown by the tests of `feet`.
 pub(crate) const TREAD_RANGE: f32 = 0.34;
 
-/// Height of its lower end over the clip's floor below which a foot stands, over body height.
+/// Height of a foot's lower end over the clip's floor below which the foot stands, over body height.
 ///
-/// Larger: feet stick in a swing. Smaller: they slide. Shown by the tests of `feet`.
+/// Larger: feet stick during a swing. Smaller: feet slide. Shown by the tests of `feet`.
 pub(crate) const STANCE_HEIGHT: f32 = 0.015;
 
-/// Speed over the ground of a clip's foot below which it stands, m/s.
+/// Speed of a clip's foot over the ground below which the foot stands, m/s.
 ///
-/// Larger: feet stick in a swing. Smaller: they slide with the clip. Shown by the tests of `feet`.
+/// Larger: feet stick during a swing. Smaller: feet slide with the clip. Shown by the tests of `feet`.
 pub(crate) const STANCE_SPEED: f32 = 0.8;
 
 /// Rate at which a foot in the air returns to its clip, 1/s.
 ///
-/// Larger: it flicks. Smaller: it lands beside its target. Shown by the tests of `feet`.
+/// Larger: the foot flicks. Smaller: the foot lands beside its target. Shown by the tests of `feet`.
 pub(crate) const RELEASES: f32 = 12.0;
 
-/// Offset of a foot that is not corrected, metres: a mover's speed lags the clips' by a step.
+/// Part of a foot's offset that is not corrected, metres. A mover's speed lags the clips' speed by a step.
 ///
 /// Larger: feet slide. Smaller: legs tremble. Shown by the tests of `feet`.
 pub(crate) const SMALL_WAY: f32 = 4e-3;
 
-/// Least mass of a dynamic body that is ground, over that of the character.
+/// Least mass of a dynamic body that counts as ground, over the mass of the character.
 ///
-/// Larger: feet pass through crates. Smaller: they step onto crates they should kick. Shown by the tests of `in_world`.
+/// Larger: feet pass through crates. Smaller: feet step onto crates that they should kick. Shown by the tests of
+/// `in_world`.
 pub(crate) const LEAST_TREAD: f32 = 0.05;
 
 /// Largest distance of a planted foot from its clip, over body height.
 ///
-/// Larger: twisted legs. Smaller: feet slide. Shown by the tests of `feet`.
+/// Larger: legs twist. Smaller: feet slide. Shown by the tests of `feet`.
 pub(crate) const MOST_ASTRAY: f32 = 0.07;
 
-/// Depth of a sole in the ground from which on it is raised at once, metres.
+/// Depth of a sole in the ground from which it is raised immediately, metres.
 ///
-/// Larger: it sinks in. Smaller: it jerks over noise. Shown by the tests of `feet`.
+/// Larger: the sole sinks in. Smaller: the foot jerks over noise. Shown by the tests of `feet`.
 pub(crate) const SOLE_SINKS: f32 = 0.01;
 
 /// Speed at which a sole rises out of the ground, m/s.
 ///
-/// Larger: it jerks over late edges. Smaller: it passes through them. Shown by the tests of `feet`.
+/// Larger: the foot jerks over edges that are detected late. Smaller: the foot passes through them. Shown by the tests
+/// of `feet`.
 pub(crate) const RISES: f32 = 5.0;
 
 /// Time without ground after which feet are no longer planted, seconds.
 ///
-/// Larger: feet stick to the ground in a jump. Smaller: they let go at each kerb. Shown by the tests of `feet`.
+/// Larger: feet stick to the ground in a jump. Smaller: feet are released at each kerb. Shown by the tests of `feet`.
 pub(crate) const OFF_GROUND: f32 = 0.1;
 
-/// Height above a foot from which the ground is sought, metres.
+/// Height above a foot from which the ground is searched, metres.
 ///
-/// Larger: a table over it counts as ground. Smaller: steps are seen late. Shown by the tests of `slopes`.
+/// Larger: a table above the foot counts as ground. Smaller: steps are detected late. Shown by the tests of `slopes`.
 pub(crate) const FOOT_SEARCH: f32 = 0.5;
 
-/// Speed from which on a character has its feet where its clips have them, m/s.
+/// Speed from which the feet of a character follow its clips, m/s.
 ///
-/// Larger: feet stick while walking. Smaller: they slide while standing. Shown by the tests of `slopes`.
+/// Larger: feet stick while walking. Smaller: feet slide while standing. Shown by the tests of `slopes`.
 pub(crate) const WALKS_FROM: f32 = 0.3;
 
-/// Position of the ball in front of an ankle without toes, in leg lengths.
+/// Position of the ball of the foot in front of an ankle without toes, in leg lengths.
 ///
-/// As that of the animations. Shown by the tests of `slopes`.
+/// The animations use the same value. Shown by the tests of `slopes`.
 pub(crate) const BALL_AHEAD: f32 = 0.14;
 
 // character/clearance.rs
 
-/// Least level distance of the pelvis from its place in the rest pose at which a clip begins away from its origin, as a
-/// share of the character's height.
+/// Least horizontal distance of the pelvis from its place in the rest pose at which a clip begins away from its origin,
+/// as a share of the character's height.
 ///
-/// Larger: a capture walks beside the ground that bears it. Smaller: a lunge is pulled back. Shown by the tests of
-/// `travel`.
+/// Larger: a character with a captured clip walks beside its ground. Smaller: a lunge is pulled back. Shown by the
+/// tests of `travel`.
 pub(crate) const OFF_ORIGIN: f32 = 0.3;
 
 /// Largest lift of a body part out of the floor, as a share of the character's height.
 ///
-/// Larger: it hovers where the skin of a limb is far from it. Smaller: limbs in the floor. Shown by the tests of `rising`.
+/// Larger: the character hovers where a limb's shape is far from its skin. Smaller: limbs sink into the floor. Shown by
+/// the tests of `rising`.
 pub(crate) const MOST_LIFT: f32 = 0.25;
 
-/// Depth in the floor of the skin of feet, hands and elbows for which a clip to get up by is not bent, as a share of the character's height.
+/// Depth of the skin of feet, hands and elbows in the floor up to which a get-up clip is not corrected, as a share of
+/// the character's height.
 ///
-/// Larger: fingers in the floor. Smaller: soles over it. Shown by the tests of `motions`.
+/// Larger: fingers sink into the floor. Smaller: soles float above it. Shown by the tests of `motions`.
 pub(crate) const LIMBS_SINK: f32 = 0.003;
 
-/// Height of a foot's step toward a clip, over its length, and the largest as a share of the character's height.
+/// Height of a foot's step toward a clip, over the step's length; [`STEP_HEIGHT`] is the largest, as a share of the
+/// character's height.
 ///
-/// Larger: it stamps. Smaller: feet slide. Shown by the tests of `rising`.
+/// Larger: the character stamps. Smaller: feet slide. Shown by the tests of `rising`.
 pub(crate) const STEP_OVER: f32 = 0.6;
 /// See [`STEP_OVER`].
 pub(crate) const STEP_HEIGHT: f32 = 0.05;
 
-/// Cosine of the largest tilt of a foot from which it steps to where a clip has it.
+/// Cosine of the largest tilt of a foot that steps to its place in a clip.
 ///
 /// Larger: feet slide. Smaller: lying legs kick. Shown by the tests of `rising`.
 pub(crate) const STEPS_FROM: f32 = 0.0;
 
 /// Share of a step, at each end, in which the foot only moves up or down.
 ///
-/// Larger: it jerks in between. Smaller: it slides. Shown by the tests of `rising`.
+/// Larger: the foot jerks between the ends. Smaller: the foot slides. Shown by the tests of `rising`.
 pub(crate) const STRAIGHT_UP: f32 = 0.22;
 
 // character/grab.rs
 
-/// Distance by which a held limb is drawn from its clip before its character follows, over body height.
+/// Distance of a held limb from its clip beyond which its character follows, over body height.
 ///
-/// Larger: it leans out before it steps. Smaller: it creeps after a hand that only touches. Shown by the tests of `held`.
+/// Larger: the character leans before it steps. Smaller: it creeps after a hand that only touches it. Shown by the
+/// tests of `held`.
 pub(crate) const PULL_SLACK: f32 = 0.03;
 
 /// Upward speed at which a standing character leaves the ground, m/s.
 ///
-/// Larger: an updraft lifts it late, and feet stick in a jump. Smaller: its mover finds the ground again. Shown by the tests of `blown`.
+/// Larger: an updraft lifts the character late, and feet stick in a jump. Smaller: the mover finds the ground again.
+/// Shown by the tests of `blown`.
 pub(crate) const LIFTS_OFF: f32 = 0.5;
 
 /// Rate at which a character follows a held limb beyond [`PULL_SLACK`], 1/s.
 ///
-/// Larger: it jerks. Smaller: a slow pull fells it. Shown by the tests of `held`.
+/// Larger: the character jerks. Smaller: a slow pull fells it. Shown by the tests of `held`.
 pub(crate) const PULL_RATE: f32 = 6.0;
 
-/// Largest speed at which it follows a held limb, m/s.
+/// Largest speed at which a character follows a held limb, m/s.
 ///
-/// Larger: it is dragged on its feet faster than it can walk. Smaller: a walker who holds it fells it. Shown by the tests
-/// of `held`.
+/// Larger: the character is dragged on its feet faster than it can walk. Smaller: a walker who holds it fells it.
+/// Shown by the tests of `held`.
 pub(crate) const PULL_SPEED: f32 = 2.0;
 
-/// Distance of a held limb from its clip at which its character falls, over body height: an arm is out of reach.
+/// Distance of a held limb from its clip at which its character falls, over body height: about an arm's reach.
 ///
-/// Larger: joints are torn. Smaller: a pull fells it at once. Shown by the tests of `held`.
+/// Larger: joints are torn apart. Smaller: every pull fells the character. Shown by the tests of `held`.
 pub(crate) const PULL_FELLS: f32 = 0.3;
 
 // character/get_up.rs
 
-/// Height of a pelvis over the ground up to which a body lies on it, over body height.
+/// Height of a pelvis over the ground up to which the body lies on this ground, over body height.
 ///
-/// Larger: carried bodies get up in the air. Smaller: who lies on others waits. Shown by the tests of `held`.
+/// Larger: carried bodies get up in the air. Smaller: a body that lies on others does not get up. Shown by the tests of
+/// `held`.
 pub(crate) const LIES_LOW: f32 = 0.3;
 
-/// Share of its weight that the static world bears of a body that lies over an edge or a rail, from which it gets up.
+/// Share of its weight that the static world must bear for a body to get up from an edge or a rail.
 ///
-/// Larger: it stays on rails. Smaller: a carried body whose foot drags gets up. Shown by the tests of `held`.
+/// Larger: the body stays on rails. Smaller: a carried body whose foot drags gets up. Shown by the tests of `held`.
 pub(crate) const BORNE: f32 = 0.5;
 
-/// Time in which the bodies' pose dies away in a get-up clip, seconds.
+/// Time of the blend from the bodies' pose into a get-up clip, seconds.
 ///
-/// Larger: limbs through the floor. Smaller: a jerk. Shown by the tests of `pops`.
+/// Larger: limbs pass through the floor. Smaller: limbs jerk. Shown by the tests of `pops`.
 pub(crate) const INTO_GET_UP: f32 = 0.35;
 
-/// Time in which the bodies' pose dies away in the looped clip, without one to get up by, seconds.
+/// Time of the blend from the bodies' pose into the looped clip, if no get-up clip exists, seconds.
 ///
-/// Larger: it floats up. Smaller: it jumps up. Shown by the tests of `pops`.
+/// Larger: the character floats up. Smaller: it jumps up. Shown by the tests of `pops`.
 pub(crate) const INTO_STANDING: f32 = 0.8;
 
-/// Time in which the end of a get-up clip dies away in the looped one, seconds.
+/// Time of the blend from the end of a get-up clip into the looped clip, seconds.
 ///
-/// Larger: feet slide. Smaller: a jerk. Shown by the tests of `pops`.
+/// Larger: feet slide. Smaller: limbs jerk. Shown by the tests of `pops`.
 pub(crate) const INTO_LOOP: f32 = 0.3;
 
-/// Share of a get-up clip, to its end, in which a body that lay on a slope comes upright, 0 to 1.
+/// Share of a get-up clip, ending with the clip, in which a body that lay on a slope becomes upright, 0 to 1.
 ///
-/// Larger: hands leave the ground. Smaller: it swings upright. Shown by the tests of `slopes`.
+/// Larger: hands leave the ground. Smaller: the body swings upright. Shown by the tests of `slopes`.
 pub(crate) const STRAIGHTENS: f32 = 0.6;
 
-/// Net load from others under which a lying body does not get up, as a share of its own weight: half of an arm.
+/// Net load from other bodies from which a lying body does not get up, as a share of its own weight: half of an arm.
 ///
-/// Larger: it gets up under another's limb and throws it off. Smaller: it waits for someone who only leans on it.
+/// Larger: the body gets up under another's limb and throws it off. Smaller: it waits for someone who only leans on it.
 /// Shown by `in_world::upper_of_two_fallen_characters_gets_up_first`.
 pub(crate) const BEARS: f32 = 0.02;
 
-/// Upward component of the normal toward a kinematic body above which that stands on the lying one, a cosine: 17° from
-/// level.
+/// Upward component of the contact normal toward a kinematic body above which this body stands on the lying one, a
+/// cosine: 17° from level.
 ///
-/// Larger: a body kneeling on it is lifted. Smaller: it waits for a lift beside it. Shown as [`BEARS`].
+/// Larger: a body that kneels on the lying one is lifted. Smaller: the lying body waits for a lift beside it. Shown as
+/// [`BEARS`].
 pub(crate) const ON_TOP: f32 = 0.3;
 
-/// Time after its fall for which a body waits for such a load to go, seconds.
+/// Time after its fall for which a body waits until a load above [`BEARS`] is gone, seconds.
 ///
-/// Larger: it lies long under a crate that nobody removes. Smaller: it throws off slow ones. Shown as [`BEARS`].
+/// Larger: the body lies long under a crate that nobody removes. Smaller: it throws off slow loads. Shown as [`BEARS`].
 pub(crate) const BEARS_FOR: f32 = 5.0;
 
-/// Height of a mover over a lying body, as a share of its own.
+/// Height of a mover over a lying body, as a share of the mover's own height.
 ///
-/// Larger: it does not fit under obstacles above. Shown by the tests of `in_world`.
+/// Larger: the mover does not fit under obstacles. Shown by the tests of `in_world`.
 pub(crate) const LYING_MOVER: f32 = 0.0;
 
-/// Height above the pelvis from which the ground is sought, metres.
+/// Height above the pelvis from which the ground is searched, metres.
 ///
-/// Larger: objects above it count as ground. Smaller: a pelvis sunk in a slope finds none. Shown by the tests of
-/// `slopes`.
+/// Larger: objects above the pelvis count as ground. Smaller: no ground is found for a pelvis sunk in a slope. Shown by
+/// the tests of `slopes`.
 pub(crate) const ABOVE_PELVIS: f32 = 0.3;
 
 // character/ground.rs
 
 /// Highest step that a walking character climbs, metres.
 ///
-/// Larger: it climbs tables. Smaller: it stops at stairs. Shown by the tests of `travel`.
+/// Larger: the character climbs tables. Smaller: it stops at stairs. Shown by the tests of `travel`.
 pub(crate) const HIGHEST_STEP: f32 = 0.45;
 
-/// Depth down to which the ground is sought, metres.
+/// Depth to which the ground is searched, metres.
 ///
-/// Larger: slower over holes. Smaller: high bodies have no ground. Shown by the tests of `character`.
+/// Larger: searches over holes are slower. Smaller: high bodies have no ground. Shown by the tests of `character`.
 pub(crate) const GROUND_DEPTH: f32 = 100.0;
 
 /// Depth under a pelvis to which the supporting ground is searched, metres.
 ///
-/// Larger: a body over an edge gets up on the floor below. Smaller: large figures find no support. Shown by the tests
-/// of `slopes`.
+/// Larger: a body on an edge gets up on the floor below. Smaller: large figures find no support. Shown by the tests of
+/// `slopes`.
 pub(crate) const LIES_ON: f32 = 1.0;
 
 /// Height above a point of a lying body from which the ground is searched, metres.
@@ -401,14 +417,14 @@ pub(crate) const LIES_ON: f32 = 1.0;
 /// As [`ABOVE_PELVIS`].
 pub(crate) const LYING_SEARCH: f32 = 0.3;
 
-/// Slope from which on steeper ground counts as if it were not, radians.
+/// Largest slope to which a character aligns, radians; steeper ground counts as this steep.
 ///
 /// Larger: a character gets up leaning. Smaller: it gets up through the ground. Shown by the tests of `slopes`.
 pub(crate) const STEEPEST_GROUND: f32 = 0.6;
 
 /// Slope below which ground counts as level, radians.
 ///
-/// Larger: feet off gentle slopes. Smaller: needless work. Shown by the tests of `slopes`.
+/// Larger: feet float above gentle slopes. Smaller: feet are corrected needlessly. Shown by the tests of `slopes`.
 pub(crate) const LEVEL_GROUND: f32 = 0.02;
 
 // character/hit_bodies.rs
@@ -421,47 +437,50 @@ pub(crate) const TELEPORTED: f32 = 1.0;
 
 // character/in_world.rs
 
-/// Speed that a felling blow gives to the whole character, m/s.
+/// Least speed that a felling blow gives to the whole character, m/s.
 ///
-/// Larger: it withstands more. Smaller: a touch fells it. Shown by the tests of `in_world`.
+/// Larger: the character withstands more. Smaller: a touch fells it. Shown by the tests of `in_world`.
 pub(crate) const FELLING_SPEED: f32 = 0.6;
 
 /// Radius of a mover over its height.
 ///
-/// Larger: it does not fit through doors. Smaller: arms in walls. Shown by the tests of `in_world`.
+/// Larger: the mover does not fit through doors. Smaller: arms enter walls. Shown by the tests of `in_world`.
 pub(crate) const MOVER_RADIUS: f32 = 0.17;
 
 // character/limp.rs
 
 /// Time between the predicted poses for hand-over velocities, seconds: short against any motion, long against rounding.
 ///
-/// Larger: speeds of the next step. Smaller: noise. Shown by the tests of `hand_over`.
+/// Larger: bodies get the speeds of the next step. Smaller: rounding makes the speeds noisy. Shown by the tests of
+/// `hand_over`.
 pub(crate) const HAND_OVER_TIME: f32 = 1.0 / 1000.0;
 
-/// Rate at which the place of a limp character approaches the point under its pelvis, beside moving with it, 1/s.
+/// Rate at which the place of a limp character approaches the point under its pelvis, in addition to moving with this
+/// point, 1/s.
 ///
-/// Larger: it jumps where a fall begins. Smaller: a camera looks beside the body. Shown by the tests of `held`.
+/// Larger: the place jumps where a fall begins. Smaller: a camera looks beside the body. Shown by the tests of `held`.
 pub(crate) const PLACE_FOLLOWS: f32 = 8.0;
 
-/// Distance below which that place stays, metres: a body at rest keeps its pose.
+/// Distance from that point below which the place stays, metres, so that a resting body keeps its pose.
 ///
-/// Larger: it stays beside the body. Smaller: the pose of a resting body is computed in every step. Shown by the tests of
-/// `held`.
+/// Larger: the place stays beside the body. Smaller: the pose of a resting body is computed in every step. Shown by the
+/// tests of `held`.
 pub(crate) const PLACE_RESTS: f32 = 1e-4;
 
 /// Time in which joints without bodies come to rest, seconds.
 ///
-/// Larger: fingers keep moving on a lying body. Smaller: they freeze. Shown by the tests of `pops`.
+/// Larger: fingers keep moving on a lying body. Smaller: fingers freeze. Shown by the tests of `pops`.
 pub(crate) const LINGERS: f32 = 0.25;
 
-/// Time in which joints take on the friction of a limp body, seconds.
+/// Time in which joints reach the friction of a limp body, seconds.
 ///
-/// Larger: it falls like water. Smaller: joints jerk at the hand-over. Shown by the tests of `hand_over`.
+/// Larger: the body falls without resistance. Smaller: joints jerk at the hand-over. Shown by the tests of `hand_over`.
 pub(crate) const SLACKENS: f32 = 0.2;
 
 /// Speed below which a body lies still, m/s: 2 cm/s by the contract.
 ///
-/// Larger: it gets up while it slides. Smaller: it waits. Shown by the tests of `character`.
+/// Larger: the character gets up while its body slides. Smaller: it lies longer before it gets up. Shown by the tests
+/// of `character`.
 pub(crate) const STILL_LINEAR: f32 = 0.02;
 
 /// Angular speed below which a body lies still, rad/s: by the contract.
@@ -471,10 +490,12 @@ pub(crate) const STILL_ANGULAR: f32 = 0.05;
 
 /// Time that all bodies must be still, seconds: by the contract.
 ///
-/// Larger: it waits. Smaller: it gets up at a turning point. Shown by the tests of `character`.
+/// Larger: the character lies longer before it gets up. Smaller: it gets up at the turning point of a swing, while
+/// bodies still move. Shown by the tests of `character`.
 pub(crate) const STILL_TIME: f32 = 0.5;
 
-/// Penetration above which a body does not lie yet, metres: it is still pushed out, without a velocity of its own.
+/// Penetration above which a body does not count as lying yet, metres: contacts still push it out, without a velocity
+/// of its own.
 ///
 /// Larger: stuck bodies count as at rest. Smaller: bodies resting within the slop do not. Shown by the tests of
 /// `falls`.
@@ -482,31 +503,35 @@ pub(crate) const SUNK: f32 = 5e-3;
 
 // character/mirror.rs
 
-/// Largest distance of a joint from the mirror image of its counterpart in the bind pose, as a share of the body's height.
+/// Largest distance of a joint from the mirror image of its counterpart in the bind pose, as a share of the body's
+/// height.
 ///
-/// Larger: mirrored clips look askew. Smaller: no clip is mirrored. Shown by the tests of `character`.
+/// Larger: mirrored clips look crooked. Smaller: no clip is mirrored. Shown by the tests of `character`.
 pub(crate) const MIRROR_TOLERANCE: f32 = 0.03;
 
-/// Distance from its rest place beyond which a joint counts as translated, as a share of its distance from its parent.
+/// Distance of a joint from its rest place beyond which it counts as translated, as a share of its distance from its
+/// parent.
 ///
 /// Larger: sliding joints stay behind in mirrored clips. Smaller: rounding counts. Shown by the tests of `character`.
 pub(crate) const MOVED: f32 = 1e-3;
 
 // character/moves.rs
 
-/// Share of a get-up clip in which it may begin, 0 to 1.
+/// Share of a get-up clip, from its start, within which a get-up may begin, 0 to 1.
 ///
-/// Larger: it may begin nearly upright. Smaller: a sitting body lies down first. Shown by the tests of `character`.
+/// Larger: the get-up may begin nearly upright. Smaller: a sitting body lies down first. Shown by the tests of
+/// `character`.
 pub(crate) const MAY_BEGIN: f32 = 0.4;
 
-/// Time between the moments at which a get-up clip may begin, seconds.
+/// Time between the moments at which a get-up may begin in its clip, seconds.
 ///
-/// Larger: worse matches. Smaller: slower. Shown by the tests of `character`.
+/// Larger: the start matches the lying pose less well. Smaller: the search is slower. Shown by the tests of
+/// `character`.
 pub(crate) const STARTS_APART: f32 = 1.0 / 15.0;
 
 /// Time between the poses of a clip whose root motion is moved to the pelvis, seconds.
 ///
-/// Larger: steps are cut short. Smaller: larger clips. Shown by the tests of `travel`.
+/// Larger: steps are cut short. Smaller: clips take more memory. Shown by the tests of `travel`.
 pub(crate) const ROOT_FRAME: f64 = 1.0 / 60.0;
 
 /// Time between the poses of a mirrored clip, seconds: getting up is slow.
@@ -516,12 +541,13 @@ pub(crate) const MIRRORED_FRAME: f64 = 1.0 / 30.0;
 
 // character/pose_similarity.rs
 
-/// Weight of a stick's end that shows how the trunk is turned, over the mean body's share of the mass.
+/// Weight of the end of a stick that represents the rotation of the trunk, over the mean body's share of the mass.
 ///
-/// Larger: limbs count for nothing. Smaller: it gets up from its back by the clip for its belly. Shown by the tests of `character`.
+/// Larger: limbs have no influence. Smaller: a body on its back gets up by the clip for its belly. Shown by the tests
+/// of `character`.
 pub(crate) const STICK_WEIGHT: f32 = 1.5;
 
-/// Length of a stick that shows how the trunk is turned, over the height of the body.
+/// Length of a stick that represents the rotation of the trunk, over the height of the body.
 ///
 /// As [`STICK_WEIGHT`].
 pub(crate) const STICK: f32 = 0.2;
@@ -530,35 +556,35 @@ pub(crate) const STICK: f32 = 0.2;
 
 /// Largest force of the pin of a powered body, over its weight.
 ///
-/// Larger: puppets on strings. Smaller: arms lag. Shown by the tests of `lives`.
+/// Larger: the body moves like a puppet on strings. Smaller: arms lag. Shown by the tests of `lives`.
 pub(crate) const PIN_HELPS: f32 = 1.0;
 
-/// Largest force of the pin of a powered leg, over its weight: feet would drag.
+/// Largest force of the pin of a powered leg, over the body's weight; a weaker pin lets feet drag.
 ///
 /// Larger: feet push obstacles. Smaller: they drag. Shown by the tests of `lives`.
 pub(crate) const PIN_STEPS: f32 = 4.0;
 
 /// Largest force of a powered pelvis' pin, over the total weight.
 ///
-/// Larger: nothing fells it. Smaller: it sags. Shown by the tests of `lives`.
+/// Larger: nothing fells the character. Smaller: it sags. Shown by the tests of `lives`.
 pub(crate) const PIN_BEARS: f32 = 1.0;
 
 /// Largest torque of a powered pelvis' pin over the total weight, metres.
 ///
-/// Larger: nothing tips it. Smaller: it leans. Shown by the tests of `lives`.
+/// Larger: nothing tips the character. Smaller: it leans. Shown by the tests of `lives`.
 pub(crate) const PIN_TURNS: f32 = 0.3;
 
 /// Half-life of a powered body's return to the clips, seconds.
 ///
-/// Larger: it floats home. Smaller: it snaps. Shown by the tests of `lives`.
+/// Larger: the body drifts back slowly. Smaller: it snaps back. Shown by the tests of `lives`.
 pub(crate) const POWERED_HALF_LIFE: f32 = 0.1;
 
-/// Distance of a powered pelvis from its clips', over its height, beyond which the character falls.
+/// Distance of a powered pelvis from the pelvis of its clips, over its height, beyond which the character falls.
 ///
-/// Larger: it is dragged along. Smaller: a push fells it. Shown by the tests of `lives`.
+/// Larger: the character is dragged along. Smaller: a push fells it. Shown by the tests of `lives`.
 pub(crate) const FALLS_BEYOND: f32 = 0.3;
 
-/// Rotation of a powered pelvis from its clips' beyond which the character falls, radians.
+/// Rotation of a powered pelvis from the pelvis of its clips beyond which the character falls, radians.
 ///
 /// As [`FALLS_BEYOND`].
 pub(crate) const FALLS_TURNED: f32 = 1.0;
@@ -567,34 +593,34 @@ pub(crate) const FALLS_TURNED: f32 = 1.0;
 
 /// Time to drive a body to the start of a get-up clip if its trunk must be rolled over, seconds.
 ///
-/// Larger: it lies for long. Smaller: it is thrown over. Shown by the tests of `character`.
+/// Larger: the character lies long. Smaller: it is thrown over. Shown by the tests of `character`.
 pub(crate) const TIME_TO_ROLL: f32 = 1.5;
 
-/// Time to drive a body to the start of a get-up clip if its trunk lies right, seconds.
+/// Time to drive a body to the start of a get-up clip if its trunk needs no roll, seconds.
 ///
 /// As [`TIME_TO_ROLL`].
 pub(crate) const TIME_TO_PULL: f32 = 0.5;
 
-/// Time until half of the rolling strength is reached, seconds.
+/// Time until the rolling strength reaches half, seconds.
 ///
-/// Larger: slow rolls. Smaller: a jerk. Shown by the tests of `character`.
+/// Larger: the trunk rolls late. Smaller: the trunk jerks. Shown by the tests of `character`.
 pub(crate) const PREPARES_HALF_LIFE: f32 = 0.1;
 
 /// Frequency of the pin that rolls a trunk over, Hz.
 ///
-/// Larger: it flips. Smaller: it does not finish in time. Shown by the tests of `character`.
+/// Larger: the trunk flips. Smaller: the roll does not finish in time. Shown by the tests of `character`.
 pub(crate) const ROLL_HERTZ: f32 = 2.0;
 
 /// Largest rolling torque on each part of the trunk, over weight times height: 90 N·m for a man.
 ///
-/// Larger: it throws off its load. Smaller: it stays lying. Shown by the tests of `character`.
+/// Larger: the body throws off its load. Smaller: it stays lying. Shown by the tests of `character`.
 pub(crate) const ROLL_STRENGTH: f32 = 0.07;
 
 // character/stumble/mod.rs
 
 /// Time of a step that only returns a foot, seconds.
 ///
-/// Larger: slow. Smaller: feet snap. Shown by the tests of `stumble`.
+/// Larger: the foot returns slowly. Smaller: it snaps back. Shown by the tests of `stumble`.
 pub(crate) const HOME_TIME: f32 = 0.25;
 
 /// Share of a step until which its goal may change, 0 to 1.
@@ -602,24 +628,24 @@ pub(crate) const HOME_TIME: f32 = 0.25;
 /// Larger: feet dart aside at the end. Smaller: they land at the first prediction. Shown by the tests of `stumble`.
 pub(crate) const AIMS_UNTIL: f32 = 0.7;
 
-/// Height of a step over that of the body.
+/// Height of a step over the height of the body.
 ///
-/// Larger: marches. Smaller: feet drag. Shown by the tests of `stumble`.
+/// Larger: the character marches. Smaller: feet drag. Shown by the tests of `stumble`.
 pub(crate) const LIFT: f32 = 0.05;
 
 /// Half the width of a sole over the height of the body.
 ///
-/// Larger: it balances on edges. Smaller: steps for nothing. Shown by the tests of `stumble`.
+/// Larger: the character balances on edges. Smaller: it steps needlessly. Shown by the tests of `stumble`.
 pub(crate) const SOLE_RIM: f32 = 0.023;
 
-/// Farthest that the pelvis is lowered over the height of the body.
+/// Largest distance by which the pelvis is lowered, over the height of the body.
 ///
-/// Larger: squats. Smaller: feet do not reach. Shown by the tests of `stumble`.
+/// Larger: the character squats. Smaller: feet do not reach their goals. Shown by the tests of `stumble`.
 pub(crate) const PELVIS_SINKS: f32 = 0.12;
 
 /// Distance of a capture point from the feet that triggers a step, metres.
 ///
-/// Larger: it falls before it steps. Smaller: it steps for nothing. Shown by the tests of `stumble`.
+/// Larger: the character falls before it steps. Smaller: it steps needlessly. Shown by the tests of `stumble`.
 pub(crate) const CAPTURE_MARGIN: f32 = 0.01;
 
 /// Distance of a capture point from the feet that triggers the first step without a reported push, metres.
@@ -627,9 +653,9 @@ pub(crate) const CAPTURE_MARGIN: f32 = 0.01;
 /// As [`CAPTURE_MARGIN`].
 pub(crate) const UNTOLD_MARGIN: f32 = 0.08;
 
-/// Velocity error at which a character counts as caught, m/s.
+/// Velocity error below which a character counts as caught, m/s.
 ///
-/// Larger: it stands still while it sways. Smaller: it steps on. Shown by the tests of `stumble`.
+/// Larger: the character stands still while it sways. Smaller: it keeps stepping. Shown by the tests of `stumble`.
 pub(crate) const CAUGHT_SPEED: f32 = 0.15;
 
 /// Additional velocity error of a caught character, as a share of its requested velocity, 0 to 1.
@@ -637,125 +663,129 @@ pub(crate) const CAUGHT_SPEED: f32 = 0.15;
 /// As [`CAUGHT_SPEED`].
 pub(crate) const CAUGHT_SHARE: f32 = 0.35;
 
-/// Landing error traded for a second less of step time, metres per second.
+/// Landing error accepted for a second less of step time, metres per second.
 ///
-/// Larger: hasty steps. Smaller: late ones. Shown by the tests of `stumble`.
+/// Larger: steps are hasty. Smaller: steps come late. Shown by the tests of `stumble`.
 pub(crate) const HURRY: f32 = 0.2;
 
-/// Landing error traded for a metre less of reach beyond the standing foot, a ratio.
+/// Landing error accepted for a metre less of reach beyond the standing foot, a ratio.
 ///
-/// Larger: short steps. Smaller: splits. Shown by the tests of `stumble`.
+/// Larger: steps are short. Smaller: the character does the splits. Shown by the tests of `stumble`.
 pub(crate) const STRAIN_COST: f32 = 3.0;
 
-/// Landing error at which a swinging foot is put down for the other to step, over body height.
+/// Landing error from which a swinging foot is put down and the other foot steps, over body height.
 ///
-/// Larger: steps that do not catch. Smaller: feet patter. Shown by the tests of `stumble`.
+/// Larger: steps do not catch the character. Smaller: the character takes many tiny steps. Shown by the tests of
+/// `stumble`.
 pub(crate) const HOPELESS: f32 = 0.04;
 
 /// Step length at which a foot reaches the full [`LIFT`], metres.
 ///
-/// Larger: feet drag. Smaller: short steps march. Shown by the tests of `stumble`.
+/// Larger: feet drag. Smaller: short steps look like marching. Shown by the tests of `stumble`.
 pub(crate) const WIDE_STEP: f32 = 0.2;
 
 /// Rate at which a caught character approaches its requested velocity, 1/s.
 ///
-/// Larger: a jerk. Smaller: it drifts. Shown by the tests of `stumble`.
+/// Larger: the character jerks. Smaller: it drifts. Shown by the tests of `stumble`.
 pub(crate) const RESUMES: f32 = 10.0;
 
 /// Height of an ankle above its height on the floor at which a foot is in the air, metres.
 ///
-/// Larger: hopping counts as standing. Smaller: rough ground throws it. Shown by the tests of `stumble`.
+/// Larger: hopping counts as standing. Smaller: rough ground counts as air. Shown by the tests of `stumble`.
 pub(crate) const AIRBORNE: f32 = 0.04;
 
-/// Time without ground after which there is nothing to step on, seconds.
+/// Time without ground after which the character has no ground to step on, seconds.
 ///
-/// Larger: it steps in the air. Smaller: a kerb fells it. Shown by the tests of `stumble`.
+/// Larger: the character steps in the air. Smaller: a kerb fells it. Shown by the tests of `stumble`.
 pub(crate) const FLIES_AFTER: f32 = 0.15;
 
-/// Largest height difference of the ground to step on, metres.
+/// Largest height difference of the ground that a step may cover, metres.
 ///
-/// Larger: it steps onto tables. Smaller: stairs fell it. Shown by the tests of `stumble`.
+/// Larger: the character steps onto tables. Smaller: stairs fell it. Shown by the tests of `stumble`.
 pub(crate) const STEP_RANGE: f32 = 0.4;
 
 // character/stumble/step.rs
 
-/// Time in which a swinging foot is put down at once, seconds.
+/// Time in which a swinging foot that must stop is put down, seconds.
 ///
-/// Larger: it falls meanwhile. Smaller: a stamp. Shown by the tests of `stumble`.
+/// Larger: the character falls meanwhile. Smaller: the foot stamps. Shown by the tests of `stumble`.
 pub(crate) const DROP_TIME: f32 = 0.1;
 
 /// Time of a step of a steady walk, seconds.
 ///
-/// Larger: long steps. Smaller: feet patter. Shown by the tests of `stumble`.
+/// Larger: steps are long. Smaller: the character takes many tiny steps. Shown by the tests of `stumble`.
 pub(crate) const STRIDE_TIME: f32 = 0.28;
 
 /// Least lateral distance of the feet, over body height.
 ///
-/// Larger: a straddle. Smaller: feet cross. Shown by the tests of `stumble`.
+/// Larger: the character straddles. Smaller: feet cross. Shown by the tests of `stumble`.
 pub(crate) const FEET_APART: f32 = 0.08;
 
-/// Farthest of a foot from the body, over its height.
+/// Largest distance of a foot from the body, over the body's height.
 ///
-/// Larger: splits. Smaller: it falls where a step would catch it. Shown by the tests of `stumble`.
+/// Larger: the character does the splits. Smaller: it falls where a step would catch it. Shown by the tests of
+/// `stumble`.
 pub(crate) const STEP_REACH: f32 = 0.3;
 
 /// Largest mean speed of a foot over body height, 1/s: a quick step of a person takes 0.2 s for 0.6 m.
 ///
-/// Larger: feet flash. Smaller: it falls where a step would catch it. Shown by the tests of `stumble`.
+/// Larger: feet move too fast to see. Smaller: the character falls where a step would catch it. Shown by the tests of
+/// `stumble`.
 pub(crate) const FOOT_SPEED: f32 = 1.7;
 
 /// Lateral distance of a foot from the capture point, over body height.
 ///
-/// Larger: it sways from side to side. Smaller: it tips over its own foot. Shown by the tests of `stumble`.
+/// Larger: the character sways from side to side. Smaller: it tips over its own foot. Shown by the tests of `stumble`.
 pub(crate) const STEP_OUT: f32 = 0.015;
 
 /// Lead of the foot over the capture point for braking, as a factor on the excess velocity over the pendulum's
 /// frequency.
 ///
-/// Larger: it swings back. At 1 or below: it never stops. Shown by the tests of `stumble`.
+/// Larger: the character swings back. At 1 or below: it never stops. Shown by the tests of `stumble`.
 pub(crate) const BRAKES: f32 = 1.5;
 
 // character/travel.rs
 
-/// Distance from its start below which a clip's end counts as in place, metres.
+/// Distance between the start and the end of a clip below which the clip counts as in place, metres.
 ///
-/// Larger: slow walks stay. Smaller: idle clips creep. Shown by the tests of `travel`.
+/// Larger: slow walks stay in place. Smaller: idle clips creep. Shown by the tests of `travel`.
 pub(crate) const STAYS_WITHIN: f32 = 0.02;
 
-/// Rotation from its start below which a clip's end counts as in place, radians.
+/// Rotation between the start and the end of a clip below which the clip counts as in place, radians.
 ///
 /// As [`STAYS_WITHIN`].
 pub(crate) const STAYS_TURNED: f32 = 0.02;
 
-/// Rotation of a lap below which it goes straight, radians.
+/// Rotation of a lap below which the lap counts as straight, radians.
 ///
-/// Larger: wide circles are lines. Smaller: the middle of a circle is rounded away. Shown by the tests of `travel`.
+/// Larger: wide circles become lines. Smaller: rounding moves the centre of a circle. Shown by the tests of `travel`.
 pub(crate) const STRAIGHT: f32 = 1e-4;
 
 // character/walk.rs
 
 /// Rate at which the lift of a stair step decays, 1/s: the eye follows within a few frames.
 ///
-/// Larger: it jerks. Smaller: it wades in the steps. Shown by the tests of `in_world`.
+/// Larger: the character jerks. Smaller: its feet sink into the steps. Shown by the tests of `in_world`.
 pub(crate) const STEP_SETTLES: f32 = 14.0;
 
-/// Farthest that a character is shown from its mover, metres.
+/// Largest distance of a shown character from its mover, metres.
 ///
-/// Larger: it floats after a drop. Smaller: high steps jerk. Shown by the tests of `in_world`.
+/// Larger: the character floats after a drop. Smaller: high steps jerk. Shown by the tests of `in_world`.
 pub(crate) const MOST_BESIDE: f32 = 0.4;
 
-/// Extra speed at which a mover that is pushed aside takes its character along at once, m/s; beyond it the character
-/// follows.
+/// Extra speed up to which a mover that is pushed aside takes its character along immediately, m/s; the character
+/// follows the rest later.
 ///
-/// Larger: it jumps aside. Smaller: it overlaps what pushes it. Shown by the tests of `in_world`.
+/// Larger: the character jumps aside. Smaller: it overlaps the pushing body. Shown by the tests of `in_world`.
 pub(crate) const PUSHED_ASIDE: f32 = 1.5;
 
-/// Slope of the ground, rise over run, from which it is a step.
+/// Slope of the ground, rise over run, from which the ground counts as a step.
 ///
-/// Larger: steps jerk. Smaller: slopes are smoothed, and feet sink in. Shown by the tests of `in_world`.
+/// Larger: the character jerks at steps. Smaller: slopes are smoothed, and feet sink in. Shown by the tests of
+/// `in_world`.
 pub(crate) const STEP_SLOPE: f32 = 1.2;
 
-/// Rate at which the pace of the looped clip follows the speed, 1/s.
+/// Rate at which the pace of the looped clip follows the character's speed, 1/s.
 ///
 /// Larger: legs jerk. Smaller: feet slide. Shown by the tests of `in_world`.
 pub(crate) const PACE_RATE: f32 = 10.0;
@@ -767,32 +797,32 @@ pub(crate) const STANDS_BELOW: f32 = 0.35;
 
 /// Longest crossfade between the looped clip and idling, seconds.
 ///
-/// Larger: a starting character slides. Smaller: limbs are flung to the other clip and kick what is near. Shown by the
+/// Larger: a starting character slides. Smaller: limbs are flung to the other clip and kick nearby bodies. Shown by the
 /// tests of `in_world`.
 pub(crate) const STANDS_IN: f32 = 0.2;
 
-/// Acceleration of a character on its own feet, m/s²: shoes slip beyond it.
+/// Largest acceleration of a character on its own feet, m/s²; shoes slip beyond it.
 ///
-/// Larger: starts without weight. Smaller: it answers late. Shown by the tests of `in_world`.
+/// Larger: starts look weightless. Smaller: the character reacts late. Shown by the tests of `in_world`.
 pub(crate) const PICKS_UP: f32 = 5.0;
 
-/// Most locomotion clips of a character, walk and run among them.
+/// Largest number of locomotion clips of a character, with walk and run.
 ///
-/// Larger: more weights on the stack. Smaller: faster clips are left out. Shown by the tests of `paces`.
+/// Larger: more weights are kept on the stack. Smaller: faster clips are left out. Shown by the tests of `paces`.
 pub(crate) const MOST_PACES: usize = 8;
 
-/// Largest speed of a clip over its own.
+/// Largest playing speed of a clip, over the clip's own speed.
 ///
 /// Larger: legs whirl. Smaller: feet slide. Shown by the tests of `in_world`.
 pub(crate) const FASTEST_PACE: f32 = 2.0;
 
 // floor.rs
 
-/// Distance of the lowest drawn point of a clip from the floor of the rest pose from which the clip has its own floor,
-/// as a share of the character's height.
+/// Distance of a clip's lowest drawn point from the floor of the rest pose above which the clip has its own floor, as a
+/// share of the character's height.
 ///
-/// Larger: characters float or sink by as much. Smaller: a toe that dips in raises everything. Shown by the tests of
-/// `floors`.
+/// Larger: characters float or sink by up to this share. Smaller: a toe that dips in raises the whole character.
+/// Shown by the tests of `floors`.
 pub(crate) const OWN_FLOOR: f32 = 0.03;
 
 /// Penetration from which a character that goes limp is moved out, metres.
@@ -801,24 +831,24 @@ pub(crate) const OWN_FLOOR: f32 = 0.03;
 /// into a stair lifts the whole figure. Shown by the tests of `clear`.
 pub(super) const DEEP: f32 = 0.1;
 
-/// Speed at which it is moved out, m/s.
+/// Speed at which the character is moved out, m/s.
 ///
-/// Larger: it jumps. Smaller: it floats for longer. Shown by the tests of `clear`.
+/// Larger: the character jumps. Smaller: it floats for longer. Shown by the tests of `clear`.
 pub(super) const CLEARING_SPEED: f32 = 1.9;
 
-/// Longest way out, metres.
+/// Largest distance by which the character is moved out, metres.
 ///
 /// Larger: a character in a hill rises out of it. Smaller: it stays in a thick wall. Shown by the tests of `clear`.
 pub(super) const CLEARING_REACH: f32 = 1.2;
 
-/// Most static shapes that it is moved out of one after the other, a number.
+/// Largest number of static shapes that the character is moved out of in sequence.
 ///
 /// Floor, two walls of a corner, and one more. Larger: more queries if no way leads out. Smaller: corners are not left.
 /// Shown by the tests of `clear`.
 pub(super) const MOST_OBSTACLES: usize = 4;
 
-/// Cosine from which two directions out of a shape count as one.
+/// Cosine of the angle, 11°, below which two directions out of a shape count as one.
 ///
-/// 11°. Larger: more queries. Smaller: a slanted side of a hull shares its neighbour's direction. Shown by the tests of
-/// `clear`.
+/// Larger: more queries are made. Smaller: a slanted side of a hull gets its neighbour's direction. Shown by the tests
+/// of `clear`.
 pub(super) const SAME_WAY: f32 = 0.98;

@@ -1,7 +1,7 @@
 //! Keeps trunk, hands and feet of a character that its clips move out of walls beside it.
 //!
-//! Rays from pelvis, hips and shoulders to the outmost points of each part find the wall, and the part moves out along
-//! the wall's level normal.
+//! Rays from pelvis, hips and shoulders to the outermost points of each part find the wall, and the part moves out
+//! along the wall's horizontal normal.
 
 use super::CharacterDef;
 use super::clearance::{MOVABLE, spread};
@@ -11,7 +11,7 @@ use sinew_math::{Affine, Transform, Vec3, max, min, normalize_or};
 use sinew_physics::ray::Ray;
 use sinew_physics::{BodyId, BodyKinds, ContactRule, QueryFilter, ShapeId, World};
 
-/// Largest number of points of a part that are looked at.
+/// Largest number of points of a part that are tested.
 const MOST_POINTS: usize = 2;
 
 /// Displacements of trunk, feet and hands out of walls, world, metres.
@@ -23,8 +23,8 @@ impl WallOffsets {
         *self == Self::default()
     }
 
-    /// Follows the walls for a step; `model` is the pose without these offsets, in character space. `steps`: its feet
-    /// step onto what is lower than its mover climbs.
+    /// Follows the walls for a step; `model` is the pose without these offsets, in character space. `steps`: the feet
+    /// step onto obstacles lower than the mover's highest step.
     pub fn follow(
         &mut self,
         def: &CharacterDef,
@@ -65,7 +65,7 @@ impl WallOffsets {
     }
 }
 
-/// Rays along a part to its outmost points, as their two ends; all in the space of `model`.
+/// Returns rays along a part to its outermost points, as their two ends; all in the space of `model`.
 fn rays<'a>(
     def: &CharacterDef,
     part: usize,
@@ -82,7 +82,8 @@ fn rays<'a>(
     rays.into_iter()
 }
 
-/// Level displacement that brings `to` before the wall that a ray from `from` to it enters; zero without one.
+/// Returns the level displacement of `to` out of the wall that a ray from `from` to `to` enters; zero if it enters
+/// none.
 fn out_of_wall(world: &World, from: Vec3, to: Vec3) -> Vec3 {
     let pushes = |body: BodyId, shape: u32| {
         let rule = world.contact_rule(ShapeId { body, shape });

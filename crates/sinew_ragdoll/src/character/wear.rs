@@ -14,7 +14,7 @@ use sinew_physics::World;
 pub(super) struct Wear {
     pub springs: SpringSwing,
     pub garments: Worn,
-    /// The pose with springs and garments; empty for a character without any.
+    /// Pose with springs and garments; empty for a character without any.
     pub pose: Vec<LocalTransform>,
 }
 
@@ -22,7 +22,7 @@ pub(super) struct Wear {
 #[derive(Clone, Copy)]
 pub(super) struct Bearer<'a> {
     pub def: &'a CharacterDef,
-    /// Pose without springs and garments, and place.
+    /// Pose without springs and garments; `place` is the character's place.
     pub pose: &'a [LocalTransform],
     pub place: Transform,
     pub physique: &'a Physique,
@@ -47,7 +47,7 @@ impl Wear {
     }
 
     /// Advances springs and garments by a step of the world, about the wearer's pose. `shown`: the moment that was
-    /// shown last; `is_far`: springs rest; `mends`: frees cloth caught by clips.
+    /// shown last; `is_far`: springs rest; `mends`: cloth caught by clips is freed.
     pub fn go_on(
         &mut self,
         bearer: Bearer<'_>,
@@ -73,7 +73,7 @@ impl Wear {
         self.show_garments(def);
     }
 
-    /// Springs of a far character equal the pose, and return with the shown pose's motion.
+    /// Advances the springs. Those of a far character equal the pose, and resume with the shown pose's motion.
     fn swing(
         &mut self,
         bearer: Bearer<'_>,
@@ -113,21 +113,21 @@ impl Wear {
         scratch.after = bodies;
     }
 
-    /// Adds its garments if it has bodies to wear them, frees cloth caught by clips, and reads their pose. Their joints
-    /// are shown below swinging springs; cloth itself follows the pose without springs.
+    /// Adds the garments if the character has bodies to wear them, frees cloth caught by clips, and reads their pose.
+    /// Garment joints are shown below swinging springs; the cloth itself follows the pose without springs.
     fn drape(&mut self, bearer: Bearer<'_>, mends: bool, world: &mut World) {
         self.dress(bearer, world);
         if self.garments.groups.is_empty() {
             return;
         }
-        // The sheet in the pose of a character getting up may be in the ground.
+        // The sheet of a character getting up may be in the ground.
         if mends {
             bearer.wearer().mend(world, &self.garments.groups);
         }
         Bearer { pose: &self.pose, ..bearer }.wearer().turns(world, &mut self.garments);
     }
 
-    /// Puts its garments on, before the first step in which it has bodies.
+    /// Adds the garments to the world, before the first step in which the character has bodies.
     pub fn dress(&mut self, bearer: Bearer<'_>, world: &mut World) {
         let is_there = !bearer.physique.ids().is_empty();
         if !bearer.def.garments().is_empty() && self.garments.groups.is_empty() && is_there {
@@ -135,7 +135,7 @@ impl Wear {
         }
     }
 
-    /// Attaches its garments to its remaining bodies, at their present shape.
+    /// Attaches the garments to the remaining bodies, at their present shape.
     pub fn rehang(&mut self, bearer: Bearer<'_>, world: &mut World) {
         if self.garments.groups.is_empty() {
             return;

@@ -28,7 +28,7 @@ const UNITS: [(f32, &str); 6] = [
     (39.37, "metres taken as inches"),
 ];
 
-/// Bodies and joints with numbers that are not finite.
+/// Returns findings about bodies and joints with numbers that are not finite.
 pub(super) fn not_finite(def: &RagdollDef) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut find = |body: usize, what: String| {
@@ -77,7 +77,7 @@ fn limits_are_numbers(kind: &JointKind) -> bool {
     }
 }
 
-/// Finding about a height that no character has.
+/// Returns a finding about a height that no character has.
 pub(super) fn wrong_unit(def: &RagdollDef) -> Vec<Finding> {
     if heights(def).contains(&def.height) {
         return Vec::new();
@@ -104,7 +104,7 @@ fn heights(def: &RagdollDef) -> core::ops::RangeInclusive<f32> {
     if bones_of(def).anatomy == Anatomy::Human { HEIGHTS } else { CREATURES }
 }
 
-/// Converts the ragdoll to metres; its rig too, if that was read in the same unit.
+/// Converts the ragdoll to metres, and also its rig if it was read in the same unit.
 pub(super) fn repair_in_metres(repair: &Repair) -> Repair {
     let def = in_metres(&repair.def);
     let is_same = |rig: &RagdollDef| (0.5..2.0).contains(&(rig.height / repair.def.height));
@@ -113,7 +113,7 @@ pub(super) fn repair_in_metres(repair: &Repair) -> Repair {
     Repair { def, reference, ..repair.clone() }
 }
 
-/// Factor on all lengths, and the assumed unit.
+/// Returns the factor on all lengths, and the name of the assumed unit.
 fn unit_of(def: &RagdollDef) -> (f32, String) {
     // Choose the unit whose height is closest to a person's; for a creature any that gives a plausible size.
     let human = bones_of(def).anatomy == Anatomy::Human;
@@ -127,7 +127,7 @@ fn unit_of(def: &RagdollDef) -> (f32, String) {
     )
 }
 
-/// The definition in metres, with the mass of a body of that size if the old one was not that.
+/// Returns the definition in metres, with the natural mass of a body of that size if the old mass was not natural.
 fn in_metres(def: &RagdollDef) -> RagdollDef {
     let (factor, _) = unit_of(def);
     let mut def = def.clone();
@@ -154,7 +154,8 @@ fn in_metres(def: &RagdollDef) -> RagdollDef {
     def
 }
 
-/// Findings about a head or limbs without a body: those of the rig, if it is given, else those of a human.
+/// Returns findings about a head or limbs without a body. The rig decides which are expected, if it is given; otherwise
+/// a human's are.
 pub(super) fn missing_bodies(exam: &Exam<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (role, parent_is_there) in expected(exam) {
@@ -163,7 +164,7 @@ pub(super) fn missing_bodies(exam: &Exam<'_>) -> Vec<Finding> {
         let known = exam.repair.reference.as_ref();
         let bone = known.and_then(|rig| rig.bodies.iter().find(|body| body.role == role.name()));
         if known.is_some() && bone.is_none() {
-            // The rig has no such bone to make a body of.
+            // The rig has no bone for such a body.
             continue;
         }
         let above =
@@ -179,7 +180,7 @@ pub(super) fn missing_bodies(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// A human's roles without a body, each with its parent body; of a limb only the first.
+/// Returns a human's roles without a body, each with its parent body; of a limb only the first.
 fn expected(exam: &Exam<'_>) -> Vec<(Role, Option<usize>)> {
     use sinew_anim::roles::Side::{Left, Right};
     if exam.bones.anatomy != Anatomy::Human {
@@ -213,7 +214,7 @@ fn expected(exam: &Exam<'_>) -> Vec<(Role, Option<usize>)> {
     missing
 }
 
-/// Findings about assumptions that may be wrong.
+/// Returns findings about assumptions that may be wrong.
 pub(super) fn inferred(exam: &Exam<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     let unit = exam.def.unit_scale;

@@ -3,7 +3,7 @@
 /// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The ragdoll jitters, explodes or falls apart.
+    /// The ragdoll jitters, explodes or falls apart because of the defect.
     Error,
     /// The ragdoll is stable, but does not move like a body.
     Warning,
@@ -12,7 +12,7 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// `error`, `warning` or `note`.
+    /// Returns `error`, `warning` or `note`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Error => "error",
@@ -34,28 +34,28 @@ macro_rules! codes {
             /// Every code.
             pub const ALL: &'static [Self] = &[$(Self::$variant,)*];
 
-            /// Name of the code in reports.
+            /// Returns the name of the code in reports.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name,)*
                 }
             }
 
-            /// Usual severity of findings of this kind.
+            /// Returns the usual severity of findings of this kind.
             pub fn severity(self) -> Severity {
                 match self {
                     $(Self::$variant => Severity::$severity,)*
                 }
             }
 
-            /// Cause and consequence, as a phrase.
+            /// Returns cause and consequence, as a phrase.
             pub fn cause(self) -> &'static str {
                 match self {
                     $(Self::$variant => $cause,)*
                 }
             }
 
-            /// Recommended action, one sentence.
+            /// Returns the recommended action, one sentence.
             pub fn fix(self) -> &'static str {
                 match self {
                     $(Self::$variant => $fix,)*
@@ -114,7 +114,7 @@ codes! {
     LimitTooNarrow "limit-too-narrow" Warning
         "a range of a few degrees has both stops at work at once: it jitters, and is meant to be locked"
         "Lock that direction.";
-    /// A knee or elbow that bends backwards.
+    /// A knee or elbow bends backwards.
     BendsBothWays "bends-both-ways" Warning
         "the range of a knee or elbow lies on both sides of straight"
         "Let it bend one way only.";
@@ -122,11 +122,11 @@ codes! {
     LimitsNotMirrored "limits-not-mirrored" Warning
         "the two sides do not have the same range, as when signs were copied and not mirrored"
         "Take the mirror image of the other side's range.";
-    /// A contact between a pair keeps a joint from its range.
+    /// A contact between a pair prevents a joint from using its range.
     CollisionFightsLimit "collision-fights-limit" Warning
         "the joint allows what the contact forbids, so that the two push against each other"
         "Leave out contacts between the two.";
-    /// No contact between limbs and trunk.
+    /// Limbs and trunk have no contact.
     NoSelfCollision "no-self-collision" Warning
         "limbs sink into the trunk, because all pairs of them are left out"
         "Let the pairs collide that do not overlap in the bind pose.";
@@ -134,7 +134,7 @@ codes! {
     TinyShape "tiny-shape" Warning
         "so thin a shape sinks into everything and falls through meshes"
         "Give it a thickness in proportion to the character.";
-    /// A shape is larger than a body part can be.
+    /// A shape is larger than any body part.
     HugeShape "huge-shape" Warning
         "the shape holds more than its body part, and collides with everything"
         "Fit it to the length of its bone.";
@@ -162,7 +162,7 @@ codes! {
     InertiaOutOfProportion "inertia-out-of-proportion" Warning
         "the body turns too easily or too slowly for its mass and size"
         "Take the inertia of its shape at its mass.";
-    /// A spring is faster than the step.
+    /// A spring oscillates faster than a step can follow.
     StiffnessAboveNyquist "stiffness-above-nyquist" Warning
         "a spring that swings faster than twice per two substeps cannot be followed"
         "Lower it to half of what the substep can follow, or take more substeps.";
@@ -186,7 +186,7 @@ codes! {
     DrawnResized "drawn-resized" Warning
         "the nodes' own transforms scale the skin otherwise than its bind matrices, so that it sinks in or floats"
         "Apply scales in the modelling tool and export the rig anew.";
-    /// The skin lies in the floor, or above it.
+    /// The skin is in the floor, or above it.
     SkinOffFloor "skin-off-floor" Warning
         "a part of the skin without a shape around it lies in the floor, or a shape outside the skin keeps it above"
         "Give that part a body (`--body`), leave it out (`--ignore`), or change the shape's `scale` in settings.";

@@ -24,10 +24,10 @@ pub(super) struct Exam<'a> {
     pub size: f32,
 }
 
-/// Angles by which a joint exceeds its freedom, radians.
+/// Angles by which a joint rotation exceeds the joint's freedom, radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Beyond {
-    /// Angle beyond its limits.
+    /// Angle beyond the joint's limits.
     pub limit: f32,
     /// Rotation about locked directions.
     pub locked: f32,
@@ -47,7 +47,7 @@ impl<'a> Exam<'a> {
         Self { repair, def, bones, fits: fits.collect(), size: def.height }
     }
 
-    /// A finding about these bodies.
+    /// Creates a finding about these bodies.
     pub fn finding(&self, code: Code, bodies: &[usize], evidence: String) -> Finding {
         Finding {
             code,
@@ -60,19 +60,19 @@ impl<'a> Exam<'a> {
         }
     }
 
-    /// Role and bone of a body; the bone only if its name differs.
+    /// Returns role and bone of a body; the bone only if its name differs.
     pub fn who(&self, body: usize) -> String {
         let body = &self.def.bodies[body];
         if body.role == body.bone { body.role.clone() } else { format!("{} ({})", body.role, body.bone) }
     }
 
-    /// Both bodies of a joint, the parent first.
+    /// Names both bodies of a joint, the parent first.
     pub fn between(&self, joint: usize) -> String {
         let joint = &self.def.joints[joint];
         format!("{} and {}", self.who(joint.parent), self.who(joint.child))
     }
 
-    /// The joint's rotation in the bind pose, its child rotated by `turn` (character axes) from there.
+    /// Returns the joint's rotation when its child is rotated by `turn` (character axes) from the bind pose.
     pub fn turned(&self, joint: usize, turn: Rotation) -> Rotation {
         let joint = &self.def.joints[joint];
         let rotation = |body: usize| self.def.bodies[body].character_from_body.rotation;
@@ -80,18 +80,18 @@ impl<'a> Exam<'a> {
         parent.inverse() * (turn * rotation(joint.child) * joint.frame_child.rotation)
     }
 
-    /// Anchors of the joint on parent and child in the bind pose, character space.
+    /// Returns the anchors of the joint on parent and child in the bind pose, character space.
     pub fn anchors(&self, joint: usize) -> [Vec3; 2] {
         anchors(self.def, &self.def.joints[joint])
     }
 
-    /// Axes of the joint as the parent carries it, character axes.
+    /// Returns the axes of the joint's frame on the parent, in character axes.
     pub fn axes(&self, joint: usize) -> Rotation {
         let joint = &self.def.joints[joint];
         self.def.bodies[joint.parent].character_from_body.rotation * joint.frame_parent.rotation
     }
 
-    /// Unit vector along a bone.
+    /// Returns the unit vector along a bone.
     pub fn direction(&self, body: usize) -> Vec3 {
         self.bones.direction(body, Some(self.def.bodies[body].character_from_body.translation))
     }
@@ -100,7 +100,7 @@ impl<'a> Exam<'a> {
         self.bones.list[body].part
     }
 
-    /// The anatomical joint: same pivot, with axes and range from the table.
+    /// Returns the anatomical joint: same pivot, with axes and range from the table.
     pub fn anatomical(&self, joint: usize) -> JointPlan {
         let mut plan = joints(&self.bones, &self.fits, self.def.total_mass)[joint];
         plan.def.kind = within_half_turns(plan.def.kind);
@@ -108,8 +108,8 @@ impl<'a> Exam<'a> {
     }
 }
 
-/// The kind with twists and hinges limited to half a turn each way: added room near that end would wrap to the other
-/// side.
+/// Returns the kind with twists and hinges limited to half a turn each way. Room added near that end would wrap to the
+/// other side.
 fn within_half_turns(kind: JointKind) -> JointKind {
     let held = |range: Range| Range::new(max(range.lo, -PI), min(range.hi, PI));
     match kind {
@@ -121,13 +121,13 @@ fn within_half_turns(kind: JointKind) -> JointKind {
     }
 }
 
-/// Anchors of a joint on parent and child in the bind pose, character space.
+/// Returns the anchors of a joint on parent and child in the bind pose, character space.
 pub(super) fn anchors(def: &RagdollDef, joint: &RagdollJointDef) -> [Vec3; 2] {
     let point = |body: usize, frame: Transform| def.bodies[body].character_from_body.point(frame.translation);
     [point(joint.parent, joint.frame_parent), point(joint.child, joint.frame_child)]
 }
 
-/// Angles by which the joint rotation `frame_a⁻¹ frame_b` exceeds the joint's freedom, radians.
+/// Returns the angles by which the joint rotation `frame_a⁻¹ frame_b` exceeds the joint's freedom, radians.
 pub(super) fn beyond(kind: &JointKind, seen: Rotation) -> Beyond {
     let (swing, twist) = seen.swing_twist(Vec3::X);
     let swung = swing.to_scaled_axis().length();
@@ -146,14 +146,14 @@ pub(super) fn beyond(kind: &JointKind, seen: Rotation) -> Beyond {
     }
 }
 
-/// Angle by which the swing alone is outside the cone, radians.
+/// Returns the angle by which the swing alone is outside the cone, radians.
 pub(super) fn swing_excess(limit: &SwingTwistLimit, seen: Rotation) -> f32 {
     max(0.0, -limit.swing_state(seen).slack)
 }
 
-/// Angle by which the child of a joint can rotate about an axis of its own joint frame from `bind`, the joint's
-/// rotation there, before it reaches a limit: radians, at most π. The twist of a universal joint is ignored: it appears
-/// in a swing that goes round.
+/// Returns the angle, radians, at most π, by which the child of a joint can rotate about `axis` of its own joint frame
+/// before it reaches a limit. The rotation starts from `bind`, the joint's rotation in the bind pose. The twist of a
+/// universal joint is ignored, because a swing that goes round contains some.
 pub fn limit_reach(kind: &JointKind, bind: Rotation, axis: Vec3) -> f32 {
     const STEP: f32 = 0.02;
     let is_free = |angle: f32| {
@@ -163,7 +163,7 @@ pub fn limit_reach(kind: &JointKind, bind: Rotation, axis: Vec3) -> f32 {
     let mut inside = 0.0;
     while inside < core::f32::consts::PI {
         if !is_free(inside + STEP) {
-            // The stop lies within the step.
+            // The stop is within the step.
             let (mut low, mut high) = (inside, inside + STEP);
             for _ in 0..16 {
                 let middle = 0.5 * (low + high);
@@ -180,7 +180,7 @@ pub fn limit_reach(kind: &JointKind, bind: Rotation, axis: Vec3) -> f32 {
     core::f32::consts::PI
 }
 
-/// The bodies of a definition as bones.
+/// Returns the bodies of a definition as bones.
 pub(crate) fn bones_of(def: &RagdollDef) -> Bones {
     let list: Vec<Bone> = def
         .bodies

@@ -1,4 +1,4 @@
-//! Data of an examination: the ragdoll that is examined, and one finding.
+//! Data of an examination: the ragdoll to examine, and one finding.
 
 use super::code::{Code, Severity};
 use crate::def::RagdollDef;
@@ -10,19 +10,19 @@ use sinew_physics::{Softness, WorldDef};
 pub struct Repair {
     /// The ragdoll.
     pub def: RagdollDef,
-    /// Spring or motor of each joint, in the order of the joints; `None` for a limp one. May be shorter than the
-    /// joints.
+    /// Spring or motor of each joint, in the order of the joints; `None` for a limp joint. The list may be shorter than
+    /// that of the joints.
     pub springs: Vec<Option<Softness>>,
-    /// Ragdoll built from its rig, if that is at hand: it shows what the definition lacks.
+    /// Ragdoll built from the definition's rig, if available: it shows what the definition lacks.
     pub reference: Option<RagdollDef>,
-    /// Flaws of its skin ([`SkinQuality::flaws`](crate::SkinQuality::flaws)), where it was measured.
+    /// Flaws of the ragdoll's skin ([`SkinQuality::flaws`](crate::SkinQuality::flaws)), if it was measured.
     pub skin: Vec<Flaw>,
-    /// Length of a substep, seconds. Default: that of a default world, 1/240.
+    /// Length of a substep, seconds. Default: 1/240, as in a default world.
     pub substep: f32,
 }
 
 impl Repair {
-    /// A limp ragdoll without its rig.
+    /// Creates a limp ragdoll without its rig.
     pub fn new(def: RagdollDef) -> Self {
         let world = WorldDef::default();
         let substep = world.dt() / world.substeps as f32;
@@ -30,7 +30,7 @@ impl Repair {
     }
 }
 
-/// Something that is wrong with a ragdoll.
+/// A defect of a ragdoll.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// Kind of the finding.
@@ -39,9 +39,9 @@ pub struct Finding {
     pub severity: Severity,
     /// Indices of the bodies concerned, the most important first.
     pub bodies: Vec<usize>,
-    /// Names of their bones; of a body that is missing, its role.
+    /// Names of these bodies' bones; for a missing body, its role.
     pub bones: Vec<String>,
-    /// Measured evidence, a sentence with both bodies' names.
+    /// Measured evidence: a sentence with both bodies' names.
     pub evidence: String,
     /// Recommended action, one sentence.
     pub fix: String,

@@ -6,25 +6,25 @@ use crate::fit::stretched;
 use sinew_math::{Transform, Vec3, max};
 use sinew_physics::Shape;
 
-/// Full sizes of the box around a shape, in its own axes, metres.
+/// Returns the full sizes of the box around a shape, along the shape's axes, metres.
 pub(super) fn full_size(shape: &Shape) -> Vec3 {
     let aabb = shape.aabb(&Transform::IDENTITY);
     aabb.max - aabb.min
 }
 
-/// Longest side of that box, metres.
+/// Returns the longest side of the box around a shape, metres.
 pub(super) fn longest(shape: &Shape) -> f32 {
     let size = full_size(shape);
     max(size.x, max(size.y, size.z))
 }
 
-/// Depth by which body `a`, moved to another pose, overlaps body `b`, metres; 0 if they do not overlap.
+/// Returns the depth by which body `a`, moved to another pose, overlaps body `b`, metres; 0 if they do not overlap.
 pub(super) fn depth_at(exam: &Exam<'_>, (a, place): (usize, Transform), b: usize) -> f32 {
     let (one, other) = (&exam.def.bodies[a], &exam.def.bodies[b]);
     depth_of((&one.shape, &place), (&other.shape, &other.character_from_body))
 }
 
-/// Depth by which two bodies overlap in the bind pose, metres; 0 if they do not.
+/// Returns the depth by which two bodies overlap in the bind pose, metres; 0 if they do not.
 pub(super) fn depth(exam: &Exam<'_>, a: usize, b: usize) -> f32 {
     depth_at(exam, (a, exam.def.bodies[a].character_from_body), b)
 }

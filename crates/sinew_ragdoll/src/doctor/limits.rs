@@ -13,7 +13,7 @@ use sinew_math::{
 };
 use sinew_physics::{JointKind, MassProperties, Softness};
 
-/// Adds defects of joints to `findings`, which holds those of their bodies.
+/// Adds defects of joints to `findings`, which already contains the defects of their bodies.
 pub(super) fn findings(exam: &Exam<'_>, findings: &mut Vec<Finding>) {
     let joints = 0..exam.def.joints.len();
     let checks: [fn(&Exam<'_>, usize) -> Option<Finding>; 4] = [frames, pivot, at_bind, missing];
@@ -35,7 +35,7 @@ pub(super) fn findings(exam: &Exam<'_>, findings: &mut Vec<Finding>) {
     findings.extend(joints.filter_map(|joint| too_stiff(exam, joint)));
 }
 
-/// True if a defect of the joint's frames or limits is known.
+/// Returns true if `findings` contains a defect of the joint's frames or limits.
 pub(super) fn is_marked(findings: &[Finding], joint: usize) -> bool {
     use Code::{
         AnchorsApart, BendsBothWays, IdentityFrames, LimitTooNarrow, LimitViolatedAtBind, LimitsAllAlike,
@@ -58,7 +58,7 @@ pub(super) fn is_marked(findings: &[Finding], joint: usize) -> bool {
     })
 }
 
-/// Finding about default frames or different anchors.
+/// Returns a finding about default frames or different anchors.
 fn frames(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let bodies = [joint.child, joint.parent];
@@ -89,8 +89,8 @@ fn frames(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     })
 }
 
-/// Finding about a pivot away from the start of its bone: far from the rig's, or at the parent's origin and outside the
-/// child.
+/// Returns a finding about a pivot away from the start of its bone: far from the rig's pivot, or at the parent's origin
+/// and outside the child.
 fn pivot(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let (pivot, child) = (exam.bones.list[joint.child].head, &exam.def.bodies[joint.child]);
@@ -117,7 +117,7 @@ fn pivot(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     })
 }
 
-/// Start of a body's bone in the rig, character space; `None` without the rig or the joint.
+/// Returns the start of a body's bone in the rig, character space; `None` without the rig or the joint.
 pub(super) fn head_of_rig(exam: &Exam<'_>, body: usize) -> Option<Vec3> {
     let rig = exam.repair.reference.as_ref()?;
     let bone = &exam.def.bodies[body].bone;
@@ -145,7 +145,7 @@ fn width(range: Range) -> f32 {
     range.hi - range.lo
 }
 
-/// True if some direction of a joint has no effective limit.
+/// Returns true if some direction of a joint has no effective limit.
 pub(super) fn is_unlimited(kind: &JointKind) -> bool {
     match kind {
         JointKind::Ball { limit: None }
@@ -171,7 +171,7 @@ fn missing(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     Some(exam.finding(Code::LimitsMissing, &[joint.child, joint.parent], evidence))
 }
 
-/// Ranges of a joint's free directions.
+/// Returns the name and range of each free direction of a joint.
 fn ranges(kind: &JointKind) -> Vec<(&'static str, Range)> {
     match *kind {
         JointKind::Ball { limit: Some(l) } => {
@@ -185,7 +185,7 @@ fn ranges(kind: &JointKind) -> Vec<(&'static str, Range)> {
     }
 }
 
-/// True if a range is too narrow to move in but not locked.
+/// Returns true if a range is too narrow to move in but not locked.
 pub(super) fn is_narrow(range: Range) -> bool {
     (LOCKED..NARROW).contains(&width(range))
 }
@@ -202,7 +202,7 @@ fn too_narrow(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     Some(exam.finding(Code::LimitTooNarrow, &[joint.child, joint.parent], evidence))
 }
 
-/// Finding if most joints of a human have the same range.
+/// Returns a finding if most joints of a human have the same range.
 fn all_alike(exam: &Exam<'_>) -> Option<Finding> {
     if exam.bones.anatomy != Anatomy::Human {
         return None;
@@ -246,7 +246,7 @@ fn all_alike(exam: &Exam<'_>) -> Option<Finding> {
     Some(exam.finding(Code::LimitsAllAlike, &bodies, evidence))
 }
 
-/// Finding about a knee or elbow that bends as far backwards as forwards.
+/// Returns a finding about a knee or elbow that bends as far backwards as forwards.
 fn both_ways(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let parts = (exam.part(joint.parent), exam.part(joint.child));
@@ -276,7 +276,7 @@ fn both_ways(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     Some(exam.finding(Code::BendsBothWays, &[joint.child, joint.parent], evidence))
 }
 
-/// Angle of a hinge at which its two bones lie in line, radians.
+/// Returns the angle of a hinge at which its two bones are in line, radians.
 pub(super) fn straight_angle(exam: &Exam<'_>, index: usize) -> f32 {
     let joint = &exam.def.joints[index];
     let axis = exam.axes(index) * Vec3::X;
@@ -290,8 +290,8 @@ pub(super) fn straight_angle(exam: &Exam<'_>, index: usize) -> f32 {
     sinew_math::limits::wrap(now + turn)
 }
 
-/// Angles by which a cone lets the bone bend to either side of straight, about the axis where the smaller of the two is
-/// largest; radians.
+/// Returns the angles by which a cone lets the bone bend to either side of straight, radians. The bend is about the
+/// axis for which the smaller of the two angles is largest.
 fn cone_both_ways(exam: &Exam<'_>, index: usize, limit: &SwingTwistLimit) -> (f32, f32) {
     let joint = &exam.def.joints[index];
     let [parent, child] = [joint.parent, joint.child].map(|body| exam.direction(body));
@@ -336,7 +336,7 @@ fn too_stiff(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     Some(exam.finding(Code::StiffnessAboveNyquist, &[joint.child, joint.parent], evidence))
 }
 
-/// Frequency of a joint's spring, with each side of the joint as one rigid piece, Hz.
+/// Returns the frequency of a joint's spring, with each side of the joint as one rigid piece, Hz.
 pub(super) fn hertz(exam: &Exam<'_>, index: usize, softness: Softness) -> f32 {
     let Softness::Stiffness { stiffness, .. } = softness else {
         let Softness::Frequency { hertz, .. } = softness else { return 0.0 };
@@ -345,7 +345,7 @@ pub(super) fn hertz(exam: &Exam<'_>, index: usize, softness: Softness) -> f32 {
     (stiffness / turning_inertia(exam, index)).sqrt() / (2.0 * PI)
 }
 
-/// Least inertia of the relative motion of a joint's two sides, kg·m².
+/// Returns the least inertia of the relative motion of a joint's two sides, kg·m².
 pub(super) fn turning_inertia(exam: &Exam<'_>, index: usize) -> f32 {
     let child = exam.def.joints[index].child;
     let mut below = vec![false; exam.def.bodies.len()];
@@ -357,7 +357,7 @@ pub(super) fn turning_inertia(exam: &Exam<'_>, index: usize) -> f32 {
         *side = side.combine(&def.mass.transformed(&def.character_from_body));
     }
     let pivot = exam.bones.list[child].head;
-    // Use the axis with the least inertia: bodies in line with the pivot add nothing about their own line.
+    // Use the axis with the least inertia: bodies in line with the pivot add no inertia about that line.
     let [above, below] = sides.map(|side| {
         let arm = side.center - pivot;
         let about_pivot = side.inertia.to_mat3()

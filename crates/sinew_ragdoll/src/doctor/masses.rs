@@ -1,4 +1,4 @@
-//! Masses and inertias.
+//! Checks of masses and inertias.
 
 use super::exam::Exam;
 use super::{Code, Finding};
@@ -14,7 +14,7 @@ use sinew_physics::{MassProperties, Shape};
 const BODY_MASS_INDEX: core::ops::RangeInclusive<f32> = 11.0..=50.0;
 /// Densities that the shapes of a creature may have, kg/m³.
 const DENSITY: core::ops::RangeInclusive<f32> = 60.0..=4000.0;
-/// Largest moment of a body relative to that of its shape at its mass.
+/// Plausible ratios of a body's moment to the moment of its shape at its mass.
 const INERTIA: core::ops::RangeInclusive<f32> = 0.1..=10.0;
 
 pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
@@ -28,7 +28,7 @@ pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// True if a world accepts a body of this mass.
+/// Returns true if a world accepts a body of this mass.
 pub(super) fn is_positive(mass: &MassProperties) -> bool {
     mass.mass > 0.0
         && mass.mass.is_finite()
@@ -46,7 +46,7 @@ fn not_positive(exam: &Exam<'_>, body: usize) -> Option<Finding> {
     (!is_positive(mass)).then(|| exam.finding(Code::MassNotPositive, &[body], evidence()))
 }
 
-/// Mass that a body of this size has, kg.
+/// Returns the natural mass of a body of this size, kg.
 pub(super) fn natural_mass(exam: &Exam<'_>) -> f32 {
     match exam.bones.anatomy {
         Anatomy::Human => default_mass(exam.size, Sex::Male),
@@ -106,7 +106,7 @@ fn ratios(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// Finding about the largest ratio along a chain, if it is too large.
+/// Returns a finding about the largest ratio along a chain, if it is too large.
 fn chain(exam: &Exam<'_>) -> Option<Finding> {
     let mass = |body: usize| exam.def.bodies[body].mass.mass;
     let mut worst: Option<(f32, usize, usize)> = None;
@@ -131,7 +131,7 @@ fn chain(exam: &Exam<'_>) -> Option<Finding> {
     Some(exam.finding(Code::MassRatio, &[body, above], evidence))
 }
 
-/// Principal moments of the shape at this mass, largest first, kg·m².
+/// Returns the principal moments of the shape at this mass, largest first, kg·m².
 fn moments_of(shape: &Shape, mass: f32) -> Vec3 {
     let unit = shape.mass_properties(1.0);
     unit.inertia.eigen().0 * (mass / unit.mass)
@@ -161,7 +161,8 @@ fn shown(v: Vec3) -> String {
     format!("{:.2e}, {:.2e} and {:.2e}", v.x, v.y, v.z)
 }
 
-/// Mass, centre and inertia of a shape at a mass, suitable for a solver: no moment below an eighth of the largest.
+/// Returns mass, centre and inertia of a shape at a mass, suitable for a solver: no moment is below an eighth of the
+/// largest.
 pub(super) fn of_shape(shape: &Shape, mass: f32) -> MassProperties {
     let unit = shape.mass_properties(1.0);
     let factor = mass / max(unit.mass, 1e-9);
@@ -181,7 +182,7 @@ pub(super) fn scale_all(def: &mut RagdollDef, factor: f32) {
     def.total_mass = def.bodies.iter().map(|body| body.mass.mass).sum();
 }
 
-/// Makes the lighter of two bodies heavy enough for the ratio `most`, and keeps the total.
+/// Makes the lighter of two bodies heavy enough for the mass ratio `most`, and keeps the total mass.
 pub(super) fn limit_mass_ratio(def: &mut RagdollDef, [a, b]: [usize; 2], most: f32) {
     let (light, heavy) = if def.bodies[a].mass.mass < def.bodies[b].mass.mass { (a, b) } else { (b, a) };
     let total = def.total_mass;

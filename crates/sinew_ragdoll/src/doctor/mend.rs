@@ -11,7 +11,7 @@ use core::f32::consts::PI;
 use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min};
 use sinew_physics::{JointKind, Shape, Softness};
 
-/// Repairs a finding; false if nothing could be done.
+/// Repairs a finding; returns false if nothing could be done.
 pub(super) fn mend(repair: &mut Repair, finding: &Finding) -> bool {
     let Some(&body) = finding.bodies.first() else { return false };
     let other = finding.bodies.get(1).copied().unwrap_or(body);
@@ -37,7 +37,7 @@ pub(super) fn mend(repair: &mut Repair, finding: &Finding) -> bool {
     }
 }
 
-/// The definition with one finding repaired.
+/// Returns the definition with one finding repaired.
 fn remedied(exam: &Exam<'_>, finding: &Finding, body: usize, other: usize) -> Option<RagdollDef> {
     let mut def = exam.def.clone();
     let joint = body.checked_sub(1);
@@ -101,7 +101,7 @@ fn remedied(exam: &Exam<'_>, finding: &Finding, body: usize, other: usize) -> Op
     Some(def)
 }
 
-/// Mass and inertia by the body's share of the volume of all bodies.
+/// Returns mass and inertia by the body's share of the volume of all bodies.
 fn natural(exam: &Exam<'_>, body: usize) -> sinew_physics::MassProperties {
     let volume = |body: &crate::def::RagdollBodyDef| body.shape.volume();
     let all: f32 = exam.def.bodies.iter().map(volume).sum();
@@ -109,13 +109,13 @@ fn natural(exam: &Exam<'_>, body: usize) -> sinew_physics::MassProperties {
     masses::of_shape(shape, masses::natural_mass(exam) * shape.volume() / all)
 }
 
-/// The joint with both frames at one pivot; with `IdentityFrames` also with the anatomical axes and range.
+/// Returns the joint with both frames at one pivot; with `IdentityFrames` also with the anatomical axes and range.
 fn moved(exam: &Exam<'_>, index: usize, code: Code) -> RagdollJointDef {
     let joint = exam.def.joints[index];
     let [on_parent, on_child] = exam.anchors(index);
     let end = near_end(exam, index);
     let pivot = head_of_rig(exam, joint.child).unwrap_or_else(|| match code {
-        // The anchor nearer to the start of the child.
+        // Use the anchor nearer to the start of the child.
         Code::AnchorsApart if (on_parent - end).length() < (on_child - end).length() => on_parent,
         Code::AnchorsApart => on_child,
         Code::IdentityFrames if (on_parent - on_child).length() < 0.003 * exam.size => on_child,
@@ -138,12 +138,12 @@ fn moved(exam: &Exam<'_>, index: usize, code: Code) -> RagdollJointDef {
     new
 }
 
-/// The end of the child's shape nearer to the parent, character space, where the bone must begin.
+/// Returns the end of the child's shape nearer to the parent, character space, where the bone must begin.
 fn near_end(exam: &Exam<'_>, index: usize) -> Vec3 {
     let joint = &exam.def.joints[index];
     let child = &exam.def.bodies[joint.child];
     let half = full_size(&child.shape) * 0.5;
-    // Slightly inside, where a bone's head is.
+    // Place the point slightly inside, where a bone's head is.
     let along = if half.y >= half.x && half.y >= half.z {
         Vec3::Y * (0.9 * half.y)
     } else if half.x >= half.z {
@@ -157,7 +157,8 @@ fn near_end(exam: &Exam<'_>, index: usize) -> Vec3 {
     if a < b { ends[0] } else { ends[1] }
 }
 
-/// The joint with limits that hold the bind pose, and frames that agree in it where the joint does not turn.
+/// Returns the joint with limits that contain the bind pose, and frames that agree in the bind pose along locked
+/// directions.
 fn holding_bind(exam: &Exam<'_>, index: usize) -> RagdollJointDef {
     let joint = exam.def.joints[index];
     let pose = |body: usize| exam.def.bodies[body].character_from_body;
@@ -188,7 +189,7 @@ fn holding_bind(exam: &Exam<'_>, index: usize) -> RagdollJointDef {
     new
 }
 
-/// The joint with its narrow directions locked: a ball becomes a hinge, a universal joint or a weld.
+/// Returns the joint with its narrow directions locked: a ball becomes a hinge, a universal joint or a weld.
 fn locked(exam: &Exam<'_>, index: usize) -> RagdollJointDef {
     let joint = exam.def.joints[index];
     let turned_x_to = |axis: Vec3| {
@@ -225,7 +226,7 @@ fn locked(exam: &Exam<'_>, index: usize) -> RagdollJointDef {
     at_bind(exam, RagdollJointDef { kind, ..joint })
 }
 
-/// A narrow range, widened to be stable (±5°).
+/// Returns a narrow range, widened to be stable (±5°).
 fn quiet(range: Range) -> Range {
     Range::new(min(range.lo, -0.09), max(range.hi, 0.09))
 }
@@ -251,7 +252,7 @@ fn at_bind(exam: &Exam<'_>, joint: RagdollJointDef) -> RagdollJointDef {
     fitted(&joint, pose(joint.parent), pose(joint.child))
 }
 
-/// Gives one of two sides the range of the other: the side whose range is further from anatomy changes.
+/// Gives one of two sides the range of the other: the side whose range is further from the anatomical one changes.
 fn mirror_joint(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     let strangeness = |body: usize| {
         let anatomical = exam.anatomical(body - 1).def.kind;
@@ -269,7 +270,7 @@ fn mirror_joint(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     def.joints[wrong - 1] = if max(out.limit, out.locked) > 0.01 { at_bind(exam, joint) } else { joint };
 }
 
-/// Sum of the distances between the ends of two limits, radians; a large value for different kinds.
+/// Returns the sum of the distances between the ends of two limits, radians; a large value for different kinds.
 fn span(a: &JointKind, b: &JointKind) -> f32 {
     let apart = |a: Range, b: Range| (a.lo - b.lo).abs() + (a.hi - b.hi).abs();
     match (a, b) {
@@ -282,7 +283,7 @@ fn span(a: &JointKind, b: &JointKind) -> f32 {
     }
 }
 
-/// Gives one of two sides the mirror image of the other's shape: the side whose length is further from its bone's
+/// Gives one of two sides the mirror image of the other's shape: the side whose length differs more from its bone's
 /// changes.
 fn mirror_shape(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     let misfit = |body: usize| {
@@ -325,8 +326,8 @@ fn min_of(a: usize, b: usize) -> usize {
     if a < b { a } else { b }
 }
 
-/// Removes possible causes of a push: limits that the bind pose slightly exceeds, each too small for a finding; without
-/// any, the deepest contact near `body`.
+/// Removes possible causes of a push: limits that the bind pose slightly exceeds, each by too little for a finding.
+/// Without any, it removes the deepest contact near `body`.
 fn settle(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) -> Option<()> {
     let strained = |joint: &usize| {
         let out = beyond(&exam.def.joints[*joint].kind, exam.turned(*joint, Rotation::IDENTITY));
@@ -343,7 +344,7 @@ fn settle(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) -> Option<()> {
     Some(())
 }
 
-/// Returns the touching pair that collides and contains this body or a neighbour of it.
+/// Returns the touching pair that collides and contains this body or a neighbour of this body.
 fn nearest_pair(exam: &Exam<'_>, body: usize) -> Option<(usize, usize)> {
     let pairs = crate::ragdoll::colliding_pairs(exam.def).into_iter();
     let near =
@@ -358,7 +359,7 @@ fn nearest_pair(exam: &Exam<'_>, body: usize) -> Option<(usize, usize)> {
     best.1
 }
 
-/// A shape with the size of the rig, the other side or the bone.
+/// Gives a body's shape the size of the rig's shape, the other side's shape or the bone.
 fn resize(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) {
     let own = &exam.def.bodies[body];
     let rig = exam.repair.reference.as_ref();
@@ -390,7 +391,7 @@ fn resize(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) {
     reshape(exam, def, body, shape, own.character_from_body);
 }
 
-/// Lowers a spring's frequency to half of what the substep can follow.
+/// Lowers a spring's frequency to half of the largest that the substep can follow.
 fn soften(repair: &mut Repair, index: usize) -> bool {
     let nyquist = 0.5 / repair.substep;
     let wanted = 0.5 * nyquist;

@@ -9,7 +9,7 @@ use crate::doctor::tuning::{ENDS_APART, LENGTHS_APART, VOLUMES_APART, WIDTH_APAR
 use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min};
 use sinew_physics::{JointKind, Shape};
 
-/// Size of the steps by which a reach is measured, radians (2.5°).
+/// Step of the search for a joint's reach, radians (2.5°).
 const STEP: f32 = 0.043_633;
 
 /// Adds findings about asymmetric sides.
@@ -37,7 +37,8 @@ fn mirrored_axis(axis: Vec3) -> Vec3 {
     Vec3::new(axis.x, -axis.y, -axis.z)
 }
 
-/// Angle by which the child of a joint can rotate about `axis` (character axes) from the bind pose, radians.
+/// Returns the angle by which the child of a joint can rotate about `axis` (character axes) from the bind pose,
+/// radians.
 fn reach(exam: &Exam<'_>, joint: usize, axis: Vec3) -> f32 {
     let kind = &exam.def.joints[joint].kind;
     if let JointKind::Hinge { .. } = kind {
@@ -102,7 +103,7 @@ fn shapes(exam: &Exam<'_>, left: usize, right: usize) -> Option<Finding> {
     Some(exam.finding(Code::SidesDiffer, &[right, left], evidence))
 }
 
-/// Mirror image of a placed frame in the plane x = `plane`: x axes keep their meaning, y and z are reversed.
+/// Returns the mirror image of a frame in the plane x = `plane`: x axes keep their meaning, y and z are reversed.
 pub(super) fn mirrored(frame: Transform, plane: f32) -> Transform {
     let m = frame.rotation.to_mat3();
     let turned = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
@@ -112,7 +113,7 @@ pub(super) fn mirrored(frame: Transform, plane: f32) -> Transform {
     Transform::new(translation, Rotation::from_mat3(&axes).normalize())
 }
 
-/// The joint of a body as the mirror image of its twin's, about its own pivot.
+/// Returns the joint of a body as the mirror image of its twin's joint, about the body's own pivot.
 pub(super) fn mirrored_joint(exam: &Exam<'_>, body: usize, twin: usize) -> RagdollJointDef {
     let def = exam.def;
     let (own, other) = (&def.joints[body - 1], &def.joints[twin - 1]);
@@ -122,7 +123,7 @@ pub(super) fn mirrored_joint(exam: &Exam<'_>, body: usize, twin: usize) -> Ragdo
         let seen = mirrored(def.bodies[of].character_from_body * frame, plane);
         def.bodies[onto].character_from_body.inverse() * Transform::new(pivot, seen.rotation)
     };
-    // With these axes a rotation about x keeps its sign in the mirror image, one about y or z changes it.
+    // With these axes a rotation about x keeps its sign in the mirror image; a rotation about y or z changes its sign.
     let turned = |range: Range| Range::new(-range.hi, -range.lo);
     let cone = |limit: SwingTwistLimit| SwingTwistLimit {
         swing_y: turned(limit.swing_y),

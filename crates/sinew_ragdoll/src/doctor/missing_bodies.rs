@@ -1,11 +1,11 @@
-//! Bodies that a definition lacks, from a build of its rig.
+//! Bodies that a definition lacks, taken from a build of its rig.
 
 use super::Repair;
 use super::exam::anchors;
 use crate::def::{RagdollDef, RagdollJointDef};
 use sinew_math::Transform;
 
-/// Adds the body of a role, and its missing descendants in the rig; false without the rig or such a bone.
+/// Adds the body of a role, and its missing descendants in the rig; returns false without the rig or such a bone.
 pub(super) fn add_missing(repair: &mut Repair, role: &str) -> bool {
     let Some(rig) = repair.reference.clone() else { return false };
     let Some(found) = rig.bodies.iter().position(|body| body.role == role) else { return false };
@@ -38,7 +38,7 @@ fn add(def: &mut RagdollDef, rig: &RagdollDef, body: usize) {
     let own_of =
         |def: &RagdollDef, body: usize| def.bodies.iter().position(|own| own.bone == rig.bodies[body].bone);
     let Some(joint) = body.checked_sub(1).map(|joint| &rig.joints[joint]) else { return };
-    // The nearest existing body above.
+    // Find the nearest existing body above.
     let mut above = joint.parent;
     let parent = loop {
         match own_of(def, above) {
@@ -67,7 +67,7 @@ fn add(def: &mut RagdollDef, rig: &RagdollDef, body: usize) {
     def.dropped_bones.retain(|bone| *bone != rig.bodies[body].bone);
 }
 
-/// A joint of the rig's build between two bodies of the definition, whose frames may differ.
+/// Returns a joint of the rig's build between two bodies of the definition, whose frames may differ.
 fn hung(
     def: &RagdollDef,
     rig: &RagdollDef,
@@ -89,7 +89,8 @@ fn hung(
     }
 }
 
-/// Restores parents before children, with joints in the order of the bodies; otherwise the order stays.
+/// Restores the order of parents before children, with joints in the order of the bodies. If that fails, the order
+/// stays.
 fn put_in_order<T: Clone>(def: &mut RagdollDef, springs: &mut Vec<Option<T>>) {
     let parent_of = |body: usize| body.checked_sub(1).map(|joint| def.joints[joint].parent);
     let mut order: Vec<usize> = Vec::with_capacity(def.bodies.len());

@@ -72,7 +72,7 @@ pub fn doctor(repair: &Repair) -> Vec<Finding> {
     findings
 }
 
-/// Turns a flaw of the skin into a finding. Repairs do not measure the skin again, so none counts as fixed.
+/// Turns a flaw of the skin into a finding. It does not count as fixed, because repairs do not measure the skin again.
 fn of_skin(flaw: &Flaw) -> Finding {
     let code = match flaw.kind {
         FlawKind::Uncovered => Code::SkinUncovered,
@@ -94,7 +94,7 @@ fn of_skin(flaw: &Flaw) -> Finding {
     }
 }
 
-/// Findings about a ragdoll with finite numbers and a plausible size.
+/// Returns findings about a ragdoll with finite numbers and a plausible size.
 fn in_proportion(exam: &Exam<'_>) -> Vec<Finding> {
     let mut findings = masses::findings(exam);
     findings.extend(anatomy::missing_bodies(exam));
@@ -102,7 +102,7 @@ fn in_proportion(exam: &Exam<'_>) -> Vec<Finding> {
     findings.extend(anatomy::inferred(exam));
     limits::findings(exam, &mut findings);
     mirror::findings(exam, &mut findings);
-    // Motion of the bodies is an effect; with a known cause it shows the consequence.
+    // Motion of the bodies is an effect. If the cause is known, the motion is its consequence.
     let jitter = motion::Jitter::of(exam);
     if let Some(evidence) = jitter.is_notable(exam) {
         let cause = findings.iter_mut().find(|f| f.severity == Severity::Error || f.code == Code::HugeShape);
@@ -114,11 +114,11 @@ fn in_proportion(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// Largest number of repair rounds; each repairs what the previous one uncovered.
+/// Largest number of repair rounds; each round repairs defects uncovered by the previous one.
 const ROUNDS: usize = 6;
 
 /// Repairs all findings that can be repaired. Returns the ragdoll and the findings about the input; `fixed` is true for
-/// those that are gone.
+/// the findings that are gone.
 ///
 /// # Panics
 /// As [`doctor`].
@@ -139,7 +139,7 @@ pub fn cure(repair: &Repair) -> (Repair, Vec<Finding>) {
     for finding in &mut findings {
         finding.fixed = !open.iter().any(|left| left.code == finding.code && left.bones == finding.bones);
     }
-    // Effects of a repair that cannot be repaired are reported too.
+    // Report effects of a repair too that cannot be repaired.
     let known = |left: &Finding| findings.iter().any(|f| f.code == left.code && f.bones == left.bones);
     let new: Vec<Finding> = open.into_iter().filter(|left| !known(left)).collect();
     findings.extend(new);

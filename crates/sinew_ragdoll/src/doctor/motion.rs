@@ -10,21 +10,21 @@ use sinew_physics::{BodyDef, BodyId, JointDef, ShapeDef, Spring, World, WorldDef
 const STEPS: u32 = 30;
 
 /// Motion of the bodies without a cause. Positions show more than speeds: a solver that adds no energy corrects errors
-/// by moving.
+/// by position changes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Jitter {
-    /// Largest displacement of a body, metres, and the body.
+    /// Largest displacement of a body, metres, and the index of the body.
     moved: (f32, usize),
-    /// Largest rotation of a body, radians, and the body.
+    /// Largest rotation of a body, radians, and the index of the body.
     turned: (f32, usize),
     /// Largest kinetic energy, J.
     energy: f32,
-    /// True if a state stopped being finite.
+    /// True if a state became not finite.
     is_lost: bool,
 }
 
 impl Jitter {
-    /// Simulates half a second from rest. The joints are those of the definition, not fitted to the pose.
+    /// Simulates half a second from rest. The joints come from the definition and are not fitted to the pose.
     pub fn of(exam: &Exam<'_>) -> Self {
         let def = exam.def;
         if !def.bodies.iter().all(|body| super::masses::is_positive(&body.mass)) {
@@ -75,7 +75,7 @@ impl Jitter {
         seen
     }
 
-    /// Description of significant motion; `None` if there is none.
+    /// Returns a description of significant motion; `None` if there is none.
     pub fn is_notable(&self, exam: &Exam<'_>) -> Option<String> {
         if self.is_lost {
             return Some("left alone without gravity it is lost within half a second".to_owned());
@@ -96,7 +96,7 @@ impl Jitter {
         })
     }
 
-    /// The finding, if no other finding explains it.
+    /// Returns the finding for motion that no other finding explains.
     pub fn finding(&self, exam: &Exam<'_>, evidence: String) -> Finding {
         exam.finding(Code::MovesByItself, &[self.moved.1], evidence)
     }

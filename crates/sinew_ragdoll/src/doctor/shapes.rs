@@ -12,7 +12,7 @@ use crate::tuning::TOLERATED;
 use sinew_math::{Range, Rotation, Transform, Vec3, max, min};
 use sinew_physics::JointKind;
 
-/// Findings about shapes and pairs of them.
+/// Returns findings about shapes and pairs of shapes.
 pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
     let mut findings: Vec<Finding> =
         (0..exam.def.bodies.len()).filter_map(|body| out_of_size(exam, body)).collect();
@@ -30,7 +30,7 @@ pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// Tolerated overlap, metres.
+/// Returns the tolerated overlap, metres.
 pub(super) fn tolerated(exam: &Exam<'_>) -> f32 {
     max(TOLERATED, 0.002 * exam.size) * 1.02
 }
@@ -88,7 +88,7 @@ fn overlap(exam: &Exam<'_>, (a, b): (usize, usize)) -> Option<Finding> {
     })
 }
 
-/// Finding if all pairs of limb ends with the trunk are disabled, although they do not overlap.
+/// Returns a finding if all pairs of limb ends with the trunk are disabled, although they do not overlap.
 fn no_self_collision(exam: &Exam<'_>) -> Option<Finding> {
     let pairs = limbs_and_trunk(exam);
     let is_disabled = |&(a, b): &(usize, usize)| {
@@ -107,7 +107,7 @@ fn no_self_collision(exam: &Exam<'_>) -> Option<Finding> {
     Some(exam.finding(Code::NoSelfCollision, &[limb, trunk], evidence))
 }
 
-/// Pairs of a forearm, hand, shank or foot and a trunk bone that do not overlap in the bind pose.
+/// Returns pairs of a forearm, hand, shank or foot and a trunk bone that do not overlap in the bind pose.
 pub(super) fn limbs_and_trunk(exam: &Exam<'_>) -> Vec<(usize, usize)> {
     let is_end =
         |body: usize| matches!(exam.part(body), Part::Forearm | Part::Hand | Part::Shank | Part::Foot);
@@ -121,14 +121,15 @@ pub(super) fn limbs_and_trunk(exam: &Exam<'_>) -> Vec<(usize, usize)> {
     ends.iter().flat_map(|&limb| trunk.iter().map(move |&t| (limb, t))).filter(is_far).collect()
 }
 
-/// Pairs with one body between them that collide over most of the range of the joint between them.
+/// Returns findings about pairs with one body between them that collide over most of the range of the joint between
+/// them.
 fn colliding_neighbours(exam: &Exam<'_>, pairs: &[(usize, usize)]) -> Vec<Finding> {
     let mut findings = Vec::new();
     for &(a, b) in pairs {
         if exam.bones.distance(a, b) != 2 {
             continue;
         }
-        // The joint moves the child of the two.
+        // The joint moves the child of the pair.
         let moved = [b, a].into_iter().find(|&body| body > 0 && body > other_of(exam, body, a, b));
         let Some(child) = moved else { continue };
         if is_unlimited(&exam.def.joints[child - 1].kind) {
@@ -151,7 +152,7 @@ fn colliding_neighbours(exam: &Exam<'_>, pairs: &[(usize, usize)]) -> Vec<Findin
     findings
 }
 
-/// The body between a pair, seen from one of them: its parent, which is also the parent or child of the other.
+/// Returns the body between a pair, given one of the two: its parent, which is also the parent or child of the other.
 fn other_of(exam: &Exam<'_>, body: usize, a: usize, b: usize) -> usize {
     let other = a + b - body;
     let parent = exam.bones.list[body].parent;
@@ -162,7 +163,7 @@ fn other_of(exam: &Exam<'_>, body: usize, a: usize, b: usize) -> usize {
     }
 }
 
-/// Share of a joint's range in which its child overlaps a body, and the deepest overlap, metres.
+/// Returns the share of a joint's range in which its child overlaps a body, and the deepest overlap, metres.
 fn share_of_range(exam: &Exam<'_>, index: usize, other: usize) -> (f32, f32) {
     let joint = &exam.def.joints[index];
     let parent = exam.def.bodies[joint.parent].character_from_body * joint.frame_parent;
@@ -178,7 +179,7 @@ fn share_of_range(exam: &Exam<'_>, index: usize, other: usize) -> (f32, f32) {
     (hits as f32 / max(poses.len() as f32, 1.0), deepest)
 }
 
-/// Rotations spread over the range of a joint.
+/// Returns rotations spread over the range of a joint.
 fn samples(kind: &JointKind) -> Vec<Rotation> {
     let along = |range: Range, share: f32| range.center() + 0.5 * share * (range.hi - range.lo);
     match *kind {

@@ -11,8 +11,8 @@ use sinew_physics::{
 };
 
 impl Drives {
-    /// Call before a step: advances the drives by one step and sets the motors, pins and velocities that move the
-    /// bodies to their targets.
+    /// Advances the drives by one step and sets the motors, pins and velocities that move the bodies to their targets.
+    /// Call it before each step.
     ///
     /// `targets`: world pose of each body frame at the end of the coming step. `velocities`: linear velocity of each
     /// centre of mass and angular velocity, world axes. A target beyond a joint limit is clamped to the limit.
@@ -59,8 +59,8 @@ impl Drives {
         }
     }
 
-    /// Advances time without a world: blends continue and weakness decays. For drives recreated for a running world:
-    /// call it once per step taken so far, with the step length.
+    /// Advances time without a world: blends continue and weakness decays. For drives that are recreated in a running
+    /// world, call this once per step taken so far, with the step length.
     pub fn skip(&mut self, seconds: f32) {
         for drive in &mut self.drives {
             drive.pass(seconds, self.recovery);
@@ -77,7 +77,7 @@ impl Drives {
         }
     }
 
-    /// [`release`](Self::release) of some bodies, by index, and of the joints above them.
+    /// Like [`release`](Self::release), for some bodies, by index, and for the joints above them.
     pub(crate) fn release_bodies(&mut self, world: &mut World, ragdoll: &Ragdoll, bodies: &[usize]) {
         for &body in bodies {
             let (drive, id) = (&mut self.drives[body], ragdoll.bodies[body]);
@@ -94,15 +94,15 @@ impl Drives {
         }
     }
 
-    /// Reaction of a body's pin in the last step, averaged over the step: force in N at the centre of mass and torque
-    /// in N·m about it, world axes. Zero without a pin.
+    /// Returns the reaction of a body's pin in the last step, averaged over the step: force in N at the centre of mass
+    /// and torque in N·m about it, world axes. Zero without a pin.
     pub fn pin_force(&self, world: &World, body: usize) -> Reaction {
         let pin = self.drives[body].pin.filter(|&pin| world.contains_joint(pin));
         pin.map_or(Reaction::default(), |pin| world.reaction(pin))
     }
 
-    /// Sums of the sizes of all pins' forces (N) and torques (N·m) in the last step: the help from outside, which no
-    /// real body gets.
+    /// Returns the sums of the magnitudes of all pins' forces (N) and torques (N·m) in the last step. Real bodies get
+    /// no such external help.
     pub fn pin_effort(&self, world: &World) -> (f32, f32) {
         (0..self.drives.len()).fold((0.0, 0.0), |(force, torque), body| {
             let reaction = self.pin_force(world, body);
@@ -194,8 +194,8 @@ fn muscle(
     })
 }
 
-/// A motor's target is constant within a step although the pose moves. The target is therefore the pose at the mean of
-/// the substep start times, when motors are evaluated.
+/// Time by which a motor's target precedes the step's end. The target is constant within a step although the pose
+/// moves. It is therefore the pose at the mean of the substep start times, when motors are evaluated.
 struct Lag {
     /// Time before the step's end, seconds.
     seconds: f32,

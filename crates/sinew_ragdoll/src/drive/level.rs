@@ -1,11 +1,11 @@
-//! Springs as numbers that can be blended: stiffness and damping for a unit of mass, and caps.
+//! Springs as numbers that can be blended: stiffness and damping for a unit of mass, and largest forces and torques.
 
 use super::{Drive, DriveMode, Muscle, Pin};
 use crate::tuning::{KEYED_AFTER, LEAST_HERTZ};
 use sinew_math::{max, trig};
 use sinew_physics::Softness;
 
-/// A spring for a unit of mass, over `(2π)²` and `2π`: `hertz²` and `2 ζ hertz`.
+/// A spring for a unit of mass: `hertz²` and `2 ζ hertz`, which are stiffness over `(2π)²` and damping over `2π`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Spring {
     pub stiffness: f32,
@@ -17,7 +17,7 @@ impl Spring {
         Self { stiffness: hertz * hertz, damping: 2.0 * damping_ratio * hertz }
     }
 
-    /// The spring with `share` of its stiffness and the same damping ratio; `None` if the result is zero.
+    /// Returns the spring with `share` of its stiffness and the same damping ratio; `None` if the result is zero.
     pub fn softness(self, share: f32) -> Option<Softness> {
         let hertz = (self.stiffness * share).sqrt();
         let damping_ratio = self.damping / (2.0 * max(self.stiffness.sqrt(), 1e-6));
@@ -33,11 +33,11 @@ impl Spring {
 /// Pin that holds a body during its blend to keyed.
 const KEYING: Pin = Pin { hertz: 30.0, damping_ratio: 1.0, max_force: 1e5, max_torque: 2e4 };
 
-/// Current strength of a body's drive: the springs of its muscle and pin, and their caps.
+/// Current strength of a body's drive: the springs of its muscle and pin, and their largest forces and torques.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Level {
     pub muscle: Spring,
-    /// Share of the largest torque.
+    /// Share of the joint's largest torque, 0..=1.
     pub strength: f32,
     pub pin: Spring,
     /// Largest force, N, and largest torque, N·m, of the pin.

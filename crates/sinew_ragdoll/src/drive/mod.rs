@@ -50,14 +50,14 @@ use sinew_math::{clamp, max};
 use sinew_physics::{BodyId, JointId};
 pub use torque::torque_caps;
 
-/// A joint motor that acts as a muscle: it drives toward the pose's angle and angular velocity.
+/// A joint motor that acts as a muscle: it drives the joint toward the pose's rotation and angular velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Muscle {
-    /// Natural frequency of everything the joint carries, Hz, at least 0.
+    /// Natural frequency of the muscle with all bodies that the joint carries, Hz, at least 0.
     pub hertz: f32,
     /// Damping ratio; 1 is critical.
     pub damping_ratio: f32,
-    /// Share of the largest torque of the joint ([`torque_caps`]) that it may use, 0..=1.
+    /// Share of the largest torque of the joint ([`torque_caps`]) that the muscle may use, 0..=1.
     pub strength: f32,
 }
 
@@ -76,7 +76,7 @@ impl Default for Muscle {
     }
 }
 
-/// Springs from the world to a body: to its position (at the centre of mass) and to its rotation.
+/// Springs from the world to a body: one to its position (at the centre of mass) and one to its rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pin {
     /// Natural frequency of all bodies that are nearer to this pin than to other pins, Hz, at least 0.
@@ -96,7 +96,7 @@ impl Pin {
     pub const FIRM: Self = Self { hertz: 20.0, damping_ratio: 1.0, max_force: 1e4, max_torque: 2e3 };
 }
 
-/// Mode of a drive: what moves a body.
+/// Mode of a drive, which determines what moves a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum DriveMode {
     /// Only the friction of the joint acts. Default.
@@ -106,7 +106,7 @@ pub enum DriveMode {
     Powered(Muscle),
     /// A muscle drives the joint, and a pin pulls the body.
     Pinned(Muscle, Pin),
-    /// Follows the animation exactly, whatever is in the way.
+    /// The body follows the animation exactly, regardless of obstacles.
     Keyed,
 }
 
@@ -119,7 +119,7 @@ struct Drive {
     /// Time since the mode was set, seconds.
     since: f32,
     level: Level,
-    /// Share of its strength lost to a hit, 0..=1.
+    /// Share of the muscle's strength lost to a hit, 0..=1.
     weakness: f32,
     /// True if the body is kinematic.
     keyed: bool,
@@ -127,28 +127,28 @@ struct Drive {
     pin: Option<JointId>,
 }
 
-/// The drives of one ragdoll. Plain data: [`apply`](Self::apply) writes it into a world, [`release`](Self::release)
-/// removes it.
+/// The drives of one ragdoll. They are plain data: [`apply`](Self::apply) writes motors and pins into a world,
+/// [`release`](Self::release) removes them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drives {
     /// Drive of each body.
     drives: Vec<Drive>,
     /// Largest torque of the joint to the parent of each body, N·m.
     torques: Vec<f32>,
-    /// Body that pins attach to.
+    /// Static body that pins attach to.
     ground: Option<BodyId>,
     /// Seconds in which the weakness after a hit falls to `1/e`. Default 0.45.
     pub recovery: f32,
 }
 
 impl Drives {
-    /// All bodies are limp, with the torques of [`torque_caps`].
+    /// Creates drives for limp bodies, with the torques of [`torque_caps`].
     pub fn new(def: &RagdollDef) -> Self {
         Self::with_torques(def, torque_caps(def))
     }
 
-    /// All bodies are limp. `torques`: largest muscle torque of the joint between a body and its parent, N·m, body by
-    /// body; that of the first is ignored.
+    /// Creates drives for limp bodies. `torques`: largest muscle torque of the joint between each body and its parent,
+    /// N·m; the first body's entry is ignored.
     ///
     /// # Panics
     /// If the number of entries is not the number of bodies, or one is negative or not finite.
@@ -161,18 +161,18 @@ impl Drives {
         Self { drives: vec![Drive::default(); def.bodies.len()], torques, ground: None, recovery: 0.45 }
     }
 
-    /// Drive mode of a body.
+    /// Returns the drive mode of a body.
     pub fn mode(&self, body: usize) -> DriveMode {
         self.drives[body].mode
     }
 
-    /// Share of its strength that a body's muscle has, 0..=1: less than 1 after a hit.
+    /// Returns the share of its strength that a body's muscle has, 0..=1: less than 1 after a hit.
     pub fn vigour(&self, body: usize) -> f32 {
         1.0 - self.drives[body].weakness
     }
 
-    /// Changes the mode of a body: half of the change happens within `half_life` seconds, all of it at once if that is
-    /// 0. A body on its way to keyed is pinned with increasing strength.
+    /// Changes the mode of a body: half of the change happens within `half_life` seconds, all of it immediately if that
+    /// is 0. A body that changes to keyed is pinned with increasing strength.
     ///
     /// # Panics
     /// If the body does not exist, or a number is negative or not finite, or a strength exceeds 1.
@@ -208,34 +208,34 @@ impl Drives {
         }
     }
 
-    /// [`set`](Self::set) for all bodies.
+    /// Like [`set`](Self::set), for all bodies.
     pub fn set_all(&mut self, mode: DriveMode, half_life: f32) {
         for body in 0..self.drives.len() {
             self.set(body, mode, half_life);
         }
     }
 
-    /// [`set`](Self::set) for a body and all its descendants: an arm, or everything above the waist.
+    /// Like [`set`](Self::set), for a body and all its descendants: an arm, or all bodies above the waist.
     pub fn set_from(&mut self, def: &RagdollDef, body: usize, mode: DriveMode, half_life: f32) {
         for other in (body..self.drives.len()).filter(|&other| hangs_on(def, other, body)) {
             self.set(other, mode, half_life);
         }
     }
 
-    /// True if the joint is one of the drives' pins.
+    /// Returns true if the joint is one of the drives' pins.
     pub(crate) fn is_pin(&self, joint: JointId) -> bool {
         self.drives.iter().any(|drive| drive.pin == Some(joint))
     }
 
-    /// Limits the weakness of a body to this share of its strength.
+    /// Limits the weakness of a body to `weakness`, a share of its strength.
     pub(crate) fn steady(&mut self, body: usize, weakness: f32) {
         let drive = &mut self.drives[body];
         drive.weakness = sinew_math::min(drive.weakness, weakness);
     }
 
-    /// Weakens muscles and pins where an impulse of `impulse` N·s hit, half as much one joint away, and so on. An
-    /// impulse that would move the whole ragdoll at 0.2 m/s removes all strength there. The caller applies the push
-    /// itself.
+    /// Weakens muscles and pins at the body that an impulse of `impulse` N·s hit, half as much one joint away, and so
+    /// on. An impulse that would move the whole ragdoll at 0.2 m/s removes all strength at that body. The caller
+    /// applies the impulse itself.
     pub fn hit(&mut self, def: &RagdollDef, body: usize, impulse: f32) {
         let mass: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
         let weakness = clamp(impulse.abs() / (NUMBING_SPEED * mass), 0.0, 1.0);
@@ -251,17 +251,17 @@ impl Drives {
     }
 }
 
-/// The parent of a body; `None` for the first.
+/// Returns the parent of a body; `None` for the first.
 fn parent(def: &RagdollDef, body: usize) -> Option<usize> {
     body.checked_sub(1).map(|joint| def.joints[joint].parent)
 }
 
-/// True if a body is `ancestor` or below it.
+/// Returns true if a body is `ancestor` or a descendant of it.
 pub(crate) fn hangs_on(def: &RagdollDef, body: usize, ancestor: usize) -> bool {
     core::iter::successors(Some(body), |&at| parent(def, at)).any(|at| at == ancestor)
 }
 
-/// Number of joints on the path from one body to another.
+/// Returns the number of joints on the path from one body to another.
 fn joints_between(def: &RagdollDef, mut a: usize, mut b: usize) -> usize {
     let mut count = 0;
     // Parents precede their children, so the later of two bodies cannot be the ancestor.

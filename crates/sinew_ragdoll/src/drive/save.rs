@@ -5,7 +5,7 @@ use super::{Drive, DriveMode, Drives, Muscle, Pin};
 use sinew_math::{ReadError, Reader, Writer};
 use sinew_physics::{BodyId, JointId};
 
-/// First bytes; the last is the version.
+/// First bytes of saved drives; the last one is the version.
 const MAGIC: &[u8; 8] = b"sinew-d\x01";
 
 impl Drives {

@@ -5,7 +5,8 @@ use sinew_math::limits::{hinge_angle, wrap};
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, clamp, max, min};
 use sinew_physics::{JointDef, JointKind, Velocity};
 
-/// Frame B relative to frame A, restricted to rotations the joint allows, and its angular velocity in A's axes, rad/s.
+/// Returns the rotation of frame B relative to frame A, restricted to rotations that the joint allows, and its angular
+/// velocity in A's axes, rad/s.
 pub(super) fn of_joint(
     joint: &JointDef,
     poses: [Transform; 2],
@@ -33,7 +34,7 @@ pub(super) fn of_joint(
     (held, if inside { rate } else { Vec3::ZERO })
 }
 
-/// An angle clamped to a range, and whether it was inside.
+/// Returns an angle clamped to a range, and whether it was inside.
 fn within(range: Option<Range>, angle: f32) -> (f32, bool) {
     let Some(range) = range else { return (angle, true) };
     let (middle, half) = (range.center(), 0.5 * (range.hi - range.lo));
@@ -42,7 +43,7 @@ fn within(range: Option<Range>, angle: f32) -> (f32, bool) {
     (middle + clamp(beyond, -room, room), beyond.abs() <= half)
 }
 
-/// A rotation clamped to a limit, and whether it was inside.
+/// Returns a rotation clamped to a limit, and whether it was inside.
 fn clamped(limit: &SwingTwistLimit, wanted: Rotation) -> (Rotation, bool) {
     let (swing, twist) = SwingTwistLimit::angles(wanted);
     let angle = swing.length();

@@ -5,8 +5,9 @@ use crate::def::RagdollDef;
 use crate::tuning::{CREATURE_STRENGTH, GRAVITY};
 use sinew_math::{Vec3, max};
 
-/// Largest torques of the muscles about a joint of 75 kg at 1.75 m, N·m, by the role of the body below it: the humanoid
-/// of Peng et al. 2018 ("DeepMimic"), between the clinical figures and those of dm_control's CMU humanoid.
+/// Largest torques of the muscles about a joint of a body of 75 kg and 1.75 m, N·m, by the role of the body below the
+/// joint. The values are those of the humanoid of Peng et al. 2018 ("DeepMimic"); they are between the clinical figures
+/// and those of dm_control's CMU humanoid.
 const HUMAN: [(&str, f32); 12] = [
     ("Shoulder", 100.0),
     ("UpperArm", 100.0),
@@ -25,10 +26,9 @@ const HEAD: f32 = 50.0;
 /// Mass times height of the reference body, kg m.
 const REFERENCE: f32 = 75.0 * 1.75;
 
-/// Largest muscle torque of each body's joint to its parent, N·m; 0 for the first body. Human roles take it from a
-/// table, in proportion to mass and height. Other roles take it from the weight they carry: three times the torque that
-/// holds the joint's subtree level, and for limbs at least the torque that carries the whole weight at the middle of
-/// their bone.
+/// Returns the largest muscle torque of each body's joint to its parent, N·m; 0 for the first body. Human roles use a
+/// table, in proportion to mass and height. Other roles get three times the torque that holds the joint's subtree
+/// level; limbs get at least the torque that carries the whole weight at the middle of their bone.
 pub fn torque_caps(def: &RagdollDef) -> Vec<f32> {
     let total: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
     let strength = total * def.height / REFERENCE;

@@ -61,10 +61,10 @@ pub struct Seen {
 /// Remedy for an overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
-    /// None: the overlap is below the solver's tolerance, or occurs in only a few poses.
+    /// The overlap is below the solver's tolerance, or occurs in only a few poses, so it needs no remedy.
     Tolerated,
-    /// They overlap in the bind pose and in hardly any other: they collide, except in a ragdoll that starts in the bind
-    /// pose.
+    /// The bodies overlap in the bind pose and in hardly any other: they collide, except in a ragdoll that starts in
+    /// the bind pose.
     OnlyBound,
     /// Both shapes were thinned.
     Shrunk,
@@ -110,12 +110,12 @@ pub fn filter_pairs(bones: &Bones, fits: &mut [Fit], poses: &Poses) -> FilterRep
     report
 }
 
-/// True if a pair must be tested in every pose. Most pairs are separate in the first few poses within the limits and in
-/// all clips.
+/// Returns true if a pair must be tested in every pose. Most pairs are separate in the first few poses within the
+/// limits and in all clips.
 fn may_need_room(fits: &[Fit], poses: &Poses, (a, b): (usize, usize)) -> bool {
     let meeting = Meeting::of(fits, (a, b));
     let apart = |pose: &&Vec<Transform>| !meeting.is_in(pose);
-    // One more separate pose proves that they do not always overlap.
+    // One more separate pose proves that the bodies do not always overlap.
     let within = &poses.within_limits;
     let enough = ((1.0 - ALWAYS) * within.len() as f32) as usize + 1;
     depth(&fits[a], &fits[b]) > 0.0
@@ -137,7 +137,7 @@ impl<'a> Meeting<'a> {
         Self { pair, shapes: [&a.shape, &b.shape], reach: reach(a) + reach(b) }
     }
 
-    /// True if they overlap by more than the tolerance.
+    /// Returns true if the shapes overlap by more than the tolerance.
     fn is_in(&self, pose: &[Transform]) -> bool {
         let (at, there) = (&pose[self.pair.0], &pose[self.pair.1]);
         let apart = (at.translation - there.translation).length_squared() > self.reach * self.reach;
@@ -159,18 +159,18 @@ fn look(fits: &[Fit], poses: &Poses, (a, b): (usize, usize)) -> Seen {
     }
 }
 
-/// Radius of a ball about the body's origin that holds its shape.
+/// Returns the radius of a ball about the body's origin that contains its shape.
 fn reach(fit: &Fit) -> f32 {
     let bounds = fit.shape.aabb(&Transform::IDENTITY);
     max(bounds.min.length(), bounds.max.length())
 }
 
-/// True if a pair overlaps in poses in which it should not.
+/// Returns true if a pair overlaps in poses in which it should not.
 fn needs_more_room(bones: &Bones, seen: &Seen, (a, b): (usize, usize)) -> bool {
     seen.bind > TOLERATED || seen.clips.unwrap_or(0.0) > A_FEW || is_never_apart(bones, seen, (a, b))
 }
 
-/// True if a pair overlaps in so many poses that it cannot collide.
+/// Returns true if a pair overlaps in so many poses that it cannot collide.
 fn is_never_apart(bones: &Bones, seen: &Seen, (a, b): (usize, usize)) -> bool {
     let limb = |bone: usize| bones.list[bone].part.is_limb();
     let most = if limb(a) || limb(b) { MOSTLY } else { A_FEW };
@@ -217,7 +217,7 @@ fn remedy(
     (seen, poses): (Seen, &Poses),
 ) -> Remedy {
     let trunk = |bone: usize| bones.list[bone].part.is_trunk() || bones.list[bone].part == Part::Neck;
-    // Second neighbours within the trunk move over each other whatever their sizes.
+    // Second neighbours within the trunk move over each other, independent of their sizes.
     if bones.distance(a, b) <= 2
         && seen.bind > 0.0
         && (trunk(a) && trunk(b) || meets_at_pivot(bones, fits, a, b))
@@ -239,8 +239,8 @@ fn remedy(
     if seen.limits < SELDOM { Remedy::OnlyBound } else { Remedy::Disabled }
 }
 
-/// True if two bodies with one between them touch around the joint of the later one (an upper arm and the chest at the
-/// shoulder): they then overlap there in every pose.
+/// Returns true if two bodies with one body between them touch around the joint of the later one (an upper arm and the
+/// chest at the shoulder). Such bodies overlap there in every pose.
 fn meets_at_pivot(bones: &Bones, fits: &[Fit], a: usize, b: usize) -> bool {
     let pivot = bones.list[b].head;
     let (distance, _) = fits[a].shape.signed_distance(&fits[a].character_from_body, pivot);
@@ -253,7 +253,7 @@ fn is_worth_shrinking(bones: &Bones, a: usize, b: usize) -> bool {
     limb(a) && (limb(b) || b.is_trunk()) || limb(b) && a.is_trunk()
 }
 
-/// Thins both shapes until they overlap only in poses in which they may. If the allowed amount does not suffice, they
+/// Thins both shapes until they overlap only in allowed poses. If the allowed thinning does not suffice, the shapes
 /// stay unchanged and this returns false. A trunk is not thinned: its neighbours need its size.
 fn shrink_apart(
     bones: &Bones,
@@ -284,12 +284,12 @@ fn shrink_apart(
     }
 }
 
-/// Depth by which two fitted shapes overlap, metres; 0 if they do not.
+/// Returns the depth by which two fitted shapes overlap, metres; 0 if they do not.
 pub fn depth(a: &Fit, b: &Fit) -> f32 {
     depth_of((&a.shape, &a.character_from_body), (&b.shape, &b.character_from_body))
 }
 
-/// Depth by which two placed shapes overlap, metres; 0 if they do not.
+/// Returns the depth by which two placed shapes overlap, metres; 0 if they do not.
 pub(crate) fn depth_of((a, at): (&Shape, &Transform), (b, there): (&Shape, &Transform)) -> f32 {
     let mut manifold = Manifold::default();
     collide(a, at, b, there, 0.0, &mut manifold);

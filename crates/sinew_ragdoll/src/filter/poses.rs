@@ -41,9 +41,9 @@ use crate::limits::sample::random_turn;
 use sinew_anim::{Rig, Take, local_to_model};
 use sinew_math::{Affine, Random, Transform, Vec3};
 
-/// Number of poses within the limits: enough to tell a share of a tenth from zero.
+/// Number of poses within the limits: enough to distinguish a share of a tenth from zero.
 const WITHIN_LIMITS: usize = 96;
-/// Largest number of clip frames tested, the same number from each clip.
+/// Largest number of clip frames tested, with the same number from each clip.
 const OF_CLIPS: usize = 256;
 const SEED: u64 = 0x00F1_17E4;
 
@@ -65,7 +65,7 @@ pub enum Frames {
     Some,
 }
 
-/// Poses within the limits of `plans`, the same for every build of a rig.
+/// Returns poses within the limits of `plans`, the same for every build of a rig.
 pub fn within_limits(fits: &[Fit], plans: &[JointPlan]) -> Vec<Vec<Transform>> {
     let mut random = Random::new(SEED);
     let bind: Vec<_> = fits.iter().map(|fit| fit.character_from_body).collect();
@@ -82,7 +82,7 @@ pub fn within_limits(fits: &[Fit], plans: &[JointPlan]) -> Vec<Vec<Transform>> {
     (0..WITHIN_LIMITS).map(|_| turned(&mut random)).collect()
 }
 
-/// Poses of frames of `takes`, without those that are not finite.
+/// Returns poses of frames of `takes`, without poses that are not finite.
 ///
 /// # Panics
 /// If a take does not belong to the rig.
@@ -100,7 +100,7 @@ pub fn of_clips(
     };
     let character = bind.character_from_file();
     let rigid = |model: &[Affine], body: usize| (character * model[bones.list[body].joint]).to_rigid();
-    // A body keeps the offset to its bone that it has in the bind pose.
+    // A body keeps its offset from its bone in the bind pose.
     let bone_from_body: Vec<_> = (0..fits.len())
         .map(|body| rigid(bind.model, body).inverse() * fits[body].character_from_body)
         .collect();

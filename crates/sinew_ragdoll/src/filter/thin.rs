@@ -4,7 +4,7 @@ use crate::fit::stretched;
 use sinew_math::Vec3;
 use sinew_physics::Shape;
 
-/// Scales the cross-section of a shape; its length along y does not change.
+/// Returns a shape with its cross-section scaled by `factor`; its length along y does not change.
 pub(super) fn thinner(shape: &Shape, factor: f32) -> Shape {
     match shape {
         Shape::Box { half_extents: h } => {
@@ -28,7 +28,7 @@ pub(super) fn thinner(shape: &Shape, factor: f32) -> Shape {
             Shape::Cone { half_height: *half_height, radius: radius * factor }
         }
         Shape::Hull(hull) => stretched(hull, Vec3::new(factor, 1.0, factor)).unwrap_or_else(|| shape.clone()),
-        // A fit is never one of these shapes.
+        // No fit has one of these shapes.
         Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => shape.clone(),
     }
 }

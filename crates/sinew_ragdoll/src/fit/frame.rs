@@ -18,10 +18,10 @@ use crate::fit::rectangle::{least_rectangle, rectangle_area};
 use crate::tuning::{ALONG_BONE, CLEARLY_SMALLER, ELONGATED, WORTH_TILTING};
 use sinew_math::{Mat3, Vec2, Vec3, any_orthonormal, normalize_or};
 
-/// Unit vector along the flesh of a bone, pointing away from its joint.
+/// Returns the unit vector along the flesh of a bone, pointing away from its joint.
 ///
-/// The direction to the next joints where the surface's long axis agrees with it, else that axis. Where the surface has
-/// no long axis (a head), the direction from the joint to its middle.
+/// The result is the direction to the next joints if the surface's long axis agrees with it, otherwise this axis. If
+/// the surface has no long axis (a head), the result is the direction from the joint to the surface's middle.
 pub fn long_axis(bones: &Bones, bone: usize, patch: &Patch) -> Vec3 {
     let mut direction = bones.direction(bone, Some(patch.center));
     if bones.is_central(bone) {
@@ -36,11 +36,11 @@ pub fn long_axis(bones: &Bones, bone: usize, patch: &Patch) -> Vec3 {
     if !elongated || agrees || bones.is_central(bone) { direction } else { along }
 }
 
-/// Axes of a box around a bone's skin: columns, right-handed, in any order and sign.
+/// Returns the axes of a box around a bone's skin: columns, right-handed, in any order and sign.
 pub fn box_frame(bones: &Bones, bone: usize, patch: &Patch) -> Mat3 {
     if bones.is_central(bone) {
-        // The skin is symmetric in x, so x is one of the axes and only the rotation about it is open. Human trunks are
-        // upright; creatures' trunks follow their spine.
+        // The skin is symmetric in x, so x is one of the axes and only the rotation about x is unknown. Human trunks
+        // are upright; creatures' trunks follow their spine.
         let upright = match bones.anatomy {
             Anatomy::Human => Vec3::Y,
             Anatomy::Creature => long_axis(bones, bone, patch),
@@ -63,15 +63,15 @@ pub fn box_frame(bones: &Bones, bone: usize, patch: &Patch) -> Mat3 {
     best.0
 }
 
-/// A level foot gets a level sole: a box tilted by a few degrees would rest on an edge.
+/// Returns axes with a level sole for a level foot: a box tilted by a few degrees would rest on an edge.
 fn sole_frame(patch: &Patch) -> Option<Mat3> {
     let (_, axes) = patch.covariance.eigen();
     let along = axes * Vec3::X;
     (along.y.abs() < 0.5).then(|| around(patch, Vec3::Y, None))
 }
 
-/// `axis` and the sides of the smallest rectangle around the patch seen along it. `preferred` (perpendicular to the
-/// axis) replaces the rectangle's side unless the rectangle saves a quarter of the area.
+/// Returns `axis` and the sides of the smallest rectangle around the patch seen along `axis`. `preferred`
+/// (perpendicular to the axis) replaces the rectangle's side unless the rectangle saves a quarter of the area.
 fn around(patch: &Patch, axis: Vec3, preferred: Option<Vec3>) -> Mat3 {
     let u = preferred.unwrap_or_else(|| any_orthonormal(axis));
     let v = axis.cross(u);
@@ -92,8 +92,8 @@ fn volume(patch: &Patch, frame: &Mat3) -> f32 {
     extent(frame.x_axis) * extent(frame.y_axis) * extent(frame.z_axis)
 }
 
-/// The same axes, permuted and signed so that y is nearest to `direction`, z points forward (+Z) as far as possible,
-/// and the three are right-handed.
+/// Returns the same axes, permuted and signed: y is nearest to `direction`, z points forward (+Z) as far as possible,
+/// and the axes are right-handed.
 pub fn with_y(frame: Mat3, direction: Vec3) -> Mat3 {
     let axes = [frame.x_axis, frame.y_axis, frame.z_axis];
     let nearest = |to: Vec3, axes: &[Vec3]| {

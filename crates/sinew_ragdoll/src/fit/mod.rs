@@ -38,9 +38,9 @@ use surface::Share;
 /// Shape kinds of a ragdoll.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShapeChoice {
-    /// Boxes only.
+    /// Only boxes.
     Box,
-    /// Capsules only.
+    /// Only capsules.
     Capsule,
     /// Boxes for trunk, hands, feet and carried objects; capsules for limbs, neck and head, unless the other kind is
     /// clearly closer to the skin.
@@ -57,13 +57,13 @@ pub struct Fit {
     pub character_from_body: Transform,
     /// Area-weighted mean distance between the bone's skin and the shape's surface, metres; 0 without skin.
     pub error: f32,
-    /// Area of that skin, m².
+    /// Area of the bone's skin, m².
     pub area: f32,
-    /// Selection of the skin that it was fitted to.
+    /// Selection of the skin to which the shape was fitted.
     pub selection: Selection,
 }
 
-/// One shape per bone. `surface` as from [`surface::share_surface`].
+/// Fits one shape per bone. `surface` is a result of [`surface::share_surface`].
 pub fn fit_shapes(bones: &Bones, surface: &[Vec<Share>], choice: ShapeChoice) -> Vec<Fit> {
     let fits: Vec<_> =
         (0..bones.list.len()).map(|bone| fit_bone(bones, bone, &surface[bone], choice)).collect();
@@ -77,8 +77,9 @@ pub fn fit_shapes(bones: &Bones, surface: &[Vec<Share>], choice: ShapeChoice) ->
     (0..fits.len()).map(shape).collect()
 }
 
-/// The hull of the end of a limb of whose skin something protrudes far from its shape (a sword in a hand, a gun on a
-/// forearm, a big shoe), which would otherwise sink into the floor. `None` if nothing does, for other bones and for props.
+/// Returns the hull of the end of a limb if some of its skin protrudes far from its shape (a sword in a hand, a gun on
+/// a forearm, a big shoe); this skin would otherwise sink into the floor. `None` if nothing protrudes, for other bones
+/// and for props.
 fn protruding_end(bones: &Bones, bone: usize, shares: &[Share], fit: &Fit) -> Option<Fit> {
     let Bone { part, is_prop, .. } = bones.list[bone];
     let is_limb = !is_trunk(part) && !matches!(part, Part::Head | Part::Neck | Part::Tail);
@@ -94,8 +95,8 @@ fn protruding_end(bones: &Bones, bone: usize, shares: &[Share], fit: &Fit) -> Op
     solid::fit_whole_hull(&solid::fit_box(bones, bone, &patch), &patch, |point| point)
 }
 
-/// The shape of a bone, or the mirror image of its twin's if that fits better: a pad skinned to a shoulder is not part
-/// of it, and a coarse mesh may give the two sides different shapes.
+/// Returns the shape of a bone, or the mirror image of its twin's shape if that fits better: a pad skinned to a
+/// shoulder is not part of the shoulder, and a coarse mesh may give the two sides different shapes.
 fn reconciled(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
     let own = fits[bone].clone();
     let Some(twin) = bones.twin(bone) else { return own };
@@ -123,7 +124,7 @@ fn reconciled(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
     Fit { shape, character_from_body, selection: Selection::Twin, ..other }
 }
 
-/// The image of a shape in the plane x = 0 of its own axes.
+/// Returns the mirror image of a shape in the plane x = 0 of its own axes.
 fn with_x_turned(shape: &Shape) -> Option<Shape> {
     match shape {
         Shape::Hull(hull) => stretched(hull, Vec3::new(-1.0, 1.0, 1.0)),
@@ -131,7 +132,7 @@ fn with_x_turned(shape: &Shape) -> Option<Shape> {
     }
 }
 
-/// The hull of a hull's corners scaled per coordinate; `None` if rounding leaves none.
+/// Returns the hull of a hull's corners scaled per coordinate; `None` if rounding leaves no hull.
 pub(crate) fn stretched(hull: &Hull, factors: Vec3) -> Option<Shape> {
     let corners: Vec<Vec3> = hull.vertices().iter().map(|&corner| corner * factors).collect();
     Hull::new(&corners).ok().map(|hull| Shape::Hull(Arc::new(hull)))
@@ -152,8 +153,8 @@ fn fit_bone(bones: &Bones, bone: usize, shares: &[Share], choice: ShapeChoice) -
     }
 }
 
-/// The hull of a part of whose skin something protrudes far from the nearest shape (a hat, a crest, spikes, a pack): that
-/// would otherwise sink into the floor. `None` if nothing does, and for limbs.
+/// Returns the hull of a part if some of its skin protrudes far from the nearest shape (a hat, a crest, spikes, a
+/// pack); this skin would otherwise sink into the floor. `None` if nothing protrudes, and for limbs.
 fn protruding(bones: &Bones, bone: usize, patch: &Patch, nearest: &Fit) -> Option<Fit> {
     let part = bones.list[bone].part;
     let is_end = bones.children[bone].is_empty();
@@ -176,8 +177,8 @@ fn protruding(bones: &Bones, bone: usize, patch: &Patch, nearest: &Fit) -> Optio
     solid::fit_whole_hull(&frame, patch, within)
 }
 
-/// The hull of a part of the trunk if a corner of its box is far from all skin (as for a trunk with its arms): the
-/// character would float on that corner. `None` for other shapes.
+/// Returns the hull of a part of the trunk if a corner of its box is far from all skin (as for a trunk with its arms);
+/// the character would float on that corner. `None` for other shapes.
 fn hollow(bones: &Bones, bone: usize, patch: &Patch, nearest: &Fit) -> Option<Fit> {
     let Shape::Box { half_extents: half } = nearest.shape else { return None };
     let far = HOLLOW * bones.size();
@@ -194,7 +195,7 @@ fn is_trunk(part: Part) -> bool {
     matches!(part, Part::Pelvis | Part::Spine)
 }
 
-/// The shape with the least error among all kinds, weighted by how well the kind suits the part.
+/// Returns the shape with the least error among all kinds; a factor on the error favours kinds that suit the part.
 fn nearest(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     let is_square = prefers_box(bones.list[bone].part) || bones.list[bone].is_prop;
     let [flat, round] = if is_square { [1.0, UNUSUAL] } else { [UNUSUAL, 1.0] };
@@ -213,7 +214,7 @@ fn prefers_box(part: Part) -> bool {
     matches!(part, Part::Pelvis | Part::Spine | Part::Hand | Part::Foot | Part::Toes)
 }
 
-/// A thin capsule along a bone that moves no skin.
+/// Returns a thin capsule along a bone that moves no skin.
 fn stand_in(bones: &Bones, bone: usize) -> Fit {
     let direction = bones.direction(bone, None);
     let parent_length = bones.list[bone].parent.and_then(|parent| bones.length(parent));
@@ -230,9 +231,9 @@ fn stand_in(bones: &Bones, bone: usize) -> Fit {
     }
 }
 
-/// The extent `lo..hi` of a shape along `axis` from `origin`: cut where it passes the bone's own joint or that of its
-/// continuation by more than [`PAST_JOINT`] of its length, and for the trunk extended to reach them. Shapes across the
-/// bone (feet) and held objects stay as they are.
+/// Returns the extent `lo..hi` of a shape along `axis` from `origin`. The extent is cut at [`PAST_JOINT`] of the bone's
+/// length beyond the bone's own joint and that of its continuation; for the trunk it is extended to reach these joints.
+/// Shapes across the bone (feet) and held objects are not changed.
 fn clip_at_joints(bones: &Bones, bone: usize, origin: Vec3, axis: Vec3, lo: f32, hi: f32) -> (f32, f32) {
     let direction = bones.direction(bone, Some(origin));
     let Bone { part, is_prop, .. } = bones.list[bone];
@@ -245,8 +246,8 @@ fn clip_at_joints(bones: &Bones, bone: usize, origin: Vec3, axis: Vec3, lo: f32,
     let (mut new_lo, mut new_hi) =
         (own.map_or(lo, |own| max(lo, own - past)), next.map_or(hi, |next| min(hi, next + past)));
     if bones.is_central(bone) && bones.list[bone].part.is_trunk() {
-        // In the range where weights fade from one bone to the next, neither owns the skin, so the gap to the joint is
-        // closed.
+        // In the range where weights fade from one bone to the next, neither bone owns the skin, so the gap to the
+        // joint is closed.
         new_lo = own.map_or(new_lo, |own| min(new_lo, own));
         new_hi = next.map_or(new_hi, |next| max(new_hi, next));
     }

@@ -1,4 +1,4 @@
-//! The piece of skin that one shape is fitted to: even samples and second moments.
+//! The piece of skin to which one shape is fitted: even samples and second moments.
 //!
 //! ```
 //! use sinew_math::Vec3;
@@ -26,7 +26,7 @@ use sinew_math::{Sym3, Vec3, clamp, max, min};
 /// Selection of the skin triangles used for a bone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Selection {
-    /// Triangles on which the bone's mean weight is at least this.
+    /// Triangles on which the bone's mean weight is at least this value.
     Weight(f32),
     /// Triangles on which no other bone has more weight.
     Most,
@@ -41,7 +41,7 @@ pub enum Selection {
 pub struct Sample {
     /// Position in character space, metres.
     pub point: Vec3,
-    /// Area it represents, m².
+    /// Area that the sample represents, m².
     pub area: f32,
 }
 
@@ -56,7 +56,7 @@ pub struct Patch {
     pub covariance: Sym3,
     /// Area of the piece, m².
     pub area: f32,
-    /// Selection by which its triangles were chosen.
+    /// Selection by which the patch's triangles were chosen.
     pub selection: Selection,
 }
 
@@ -70,8 +70,8 @@ pub enum Symmetry {
 }
 
 impl Patch {
-    /// The surface of a bone: triangles of weight ≥ 0.5, or ≥ 0.3 if those are too few or flat, or those where the bone
-    /// has the most weight. `None` if there are none.
+    /// Selects the surface of a bone: triangles of weight ≥ 0.5, or ≥ 0.3 if the former are too few or flat, or those
+    /// on which the bone has the most weight. `None` if there are no triangles.
     pub fn select(shares: &[Share], symmetry: Symmetry) -> Option<Self> {
         let choices =
             [Selection::Weight(0.5), Selection::Weight(0.3), Selection::Most, Selection::Weight(0.05)];
@@ -98,14 +98,14 @@ impl Patch {
         best
     }
 
-    /// True if the patch extends in three directions, without which its axes are meaningless.
+    /// Returns true if the patch extends in three directions; otherwise its axes are meaningless.
     fn is_solid(&self) -> bool {
         let (value, _) = self.covariance.eigen();
         value.z > 1e-4 * value.x
     }
 
-    /// Second moments by the closed form for triangles (Gottschalk, "Collision Queries using Oriented Bounding Boxes",
-    /// 2000, §5.3), about the first corner to avoid cancellation.
+    /// Computes second moments by the closed form for triangles (Gottschalk, "Collision Queries using Oriented Bounding
+    /// Boxes", 2000, §5.3), about the first corner to avoid cancellation.
     fn of_triangles(triangles: &[[Vec3; 3]], selection: Selection, symmetry: Symmetry) -> Option<Self> {
         let origin = triangles.first()?[0];
         let (mut area, mut first, mut second) = (0.0, Vec3::ZERO, Sym3::ZERO);
@@ -148,14 +148,14 @@ impl Patch {
         self.center.x = x;
     }
 
-    /// Values of `f` below which the given shares of the area lie.
+    /// Returns the values of `f` below which the given shares of the area are.
     pub fn quantiles<const N: usize>(&self, shares: [f32; N], f: impl Fn(Vec3) -> f32) -> [f32; N] {
         let mut values: Vec<_> = self.samples.iter().map(|s| (f(s.point), s.area)).collect();
         quantiles_of(&mut values, shares)
     }
 }
 
-/// Values below which the given shares of the weight lie. `values` (value, weight) is sorted.
+/// Returns the values below which the given shares of the weight are. `values` (value, weight) gets sorted.
 ///
 /// # Panics
 /// If `values` is empty.
@@ -176,8 +176,8 @@ fn triangle_area(corners: &[Vec3; 3]) -> f32 {
     0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length()
 }
 
-/// Centres of equal subdivisions of the triangles. Large triangles are cut finer, so that coarse meshes are sampled as
-/// evenly as fine ones.
+/// Returns the centres of equal subdivisions of the triangles. Large triangles are cut finer, so that coarse meshes are
+/// sampled as evenly as fine ones.
 fn sample(triangles: &[[Vec3; 3]], area: f32) -> Vec<Sample> {
     let mut samples = Vec::new();
     for corners in triangles {
@@ -193,7 +193,7 @@ fn sample(triangles: &[[Vec3; 3]], area: f32) -> Vec<Sample> {
     samples
 }
 
-/// Smallest and largest value of `f` over the samples.
+/// Returns the smallest and the largest value of `f` over the samples.
 pub fn bounds(samples: &[Sample], f: impl Fn(Vec3) -> f32) -> (f32, f32) {
     samples.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), s| {
         let x = f(s.point);

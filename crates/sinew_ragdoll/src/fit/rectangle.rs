@@ -13,8 +13,8 @@
 
 use sinew_math::Vec2;
 
-/// Unit vector along one side of the smallest rectangle around the points; the other side is perpendicular. X if the
-/// points span no area.
+/// Returns a unit vector along one side of the smallest rectangle around the points; the other side is perpendicular.
+/// The result is X if the points span no area.
 ///
 /// One side of that rectangle is collinear with a side of the convex hull (Freeman & Shapira, CACM 1975).
 pub fn least_rectangle(points: &mut Vec<Vec2>) -> Vec2 {
@@ -35,7 +35,7 @@ pub fn least_rectangle(points: &mut Vec<Vec2>) -> Vec2 {
     best.1
 }
 
-/// Area of the rectangle with a side along unit vector `u` around the points.
+/// Returns the area of the rectangle around the points with a side along the unit vector `u`.
 pub fn rectangle_area(points: &[Vec2], u: Vec2) -> f32 {
     let extent = |axis: Vec2| {
         let (lo, hi) = points.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), p| {
@@ -47,7 +47,7 @@ pub fn rectangle_area(points: &[Vec2], u: Vec2) -> f32 {
     extent(u) * extent(Vec2::new(-u.y, u.x))
 }
 
-/// Corners of the convex hull, counter-clockwise (Andrew's monotone chain). Sorts the points.
+/// Returns the corners of the convex hull, counter-clockwise (Andrew's monotone chain). Sorts the points.
 pub fn convex_hull(points: &mut Vec<Vec2>) -> Vec<Vec2> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();

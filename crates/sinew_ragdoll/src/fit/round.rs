@@ -1,4 +1,4 @@
-//! Capsules, tapered ones and balls around skin.
+//! Capsules, tapered capsules and balls around skin.
 
 use super::patch::{Patch, quantiles_of};
 use super::{Fit, LEAST_HALF, SHRINK, clip_at_joints, measured};
@@ -9,10 +9,10 @@ use crate::tuning::{BALL, STEEPEST};
 use sinew_math::{Rotation, Transform, Vec3, clamp, max, min};
 use sinew_physics::Shape;
 
-/// Range, in shares of a limb's length from its lower end, in which the radius of that end is measured.
+/// Distances from a limb's end, in shares of its length, between which the radius of this end is measured.
 const NEAR_END: [f32; 2] = [0.1, 0.4];
 
-/// Capsule nearest to the skin, over all candidate axes.
+/// Returns the capsule nearest to the skin, over all candidate axes.
 pub(super) fn fit_capsule(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     let axis = long_axis(bones, bone, patch);
     let along = capsule_along(bones, bone, patch, axis);
@@ -44,7 +44,8 @@ fn capsule_along(bones: &Bones, bone: usize, patch: &Patch, axis: Vec3) -> Fit {
         radial.push((half, 1.0));
     }
     let frame = Transform::new(middle, Rotation::from_arc(Vec3::Y, axis));
-    // The 80 % quantile of the radial distance suits a cylinder; on a tapered limb it is fat and a lower one is nearer.
+    // The 80 % quantile of the radial distance suits a cylinder. On a tapered limb it is too large, and a lower
+    // quantile is nearer.
     let [thick, thin] = quantiles_of(&mut radial, [0.8, 0.65]).map(|radius| {
         let radius = max(min(radius * SHRINK, half), LEAST_HALF);
         measured(Shape::Capsule { half_height: max(half - radius, 0.0), radius }, frame, patch)
@@ -52,7 +53,7 @@ fn capsule_along(bones: &Bones, bone: usize, patch: &Patch, axis: Vec3) -> Fit {
     if thin.error < 0.95 * thick.error { thin } else { thick }
 }
 
-/// The capsule, as a ball if it is nearly one.
+/// Returns the capsule, or a ball if it is nearly one.
 pub(super) fn rounded(fit: Fit) -> Fit {
     match fit.shape {
         Shape::Capsule { half_height, radius } if half_height < BALL * radius => {
@@ -62,7 +63,7 @@ pub(super) fn rounded(fit: Fit) -> Fit {
     }
 }
 
-/// The capsule with a separate radius at each end; `None` for a ball, and without skin near an end.
+/// Returns the capsule with a separate radius at each end; `None` for a ball, and without skin near an end.
 pub(super) fn taper(capsule: &Fit, patch: &Patch) -> Option<Fit> {
     let Shape::Capsule { half_height, radius } = capsule.shape else { return None };
     if half_height < BALL * radius {
@@ -90,13 +91,13 @@ pub(super) fn taper(capsule: &Fit, patch: &Patch) -> Option<Fit> {
         .reduce(|a, b| if b.error < a.error { b } else { a })
 }
 
-/// A tapered capsule with the capsule's extent, from radii a quarter of the length from each end.
+/// Returns a tapered capsule with the capsule's extent, from radii a quarter of the length from each end.
 fn tapered([low, high]: [f32; 2], half: f32, frame: Transform, patch: &Patch) -> Fit {
     let (mean, slope) = (0.5 * (low + high), high - low);
     let least = 0.3 * mean;
     let limited = |r: f32| clamp(r * SHRINK, max(least, LEAST_HALF), 0.9 * half);
     let [mut low, mut high] = [limited(mean - slope), limited(mean + slope)];
-    // The centres of the two balls lie one radius inside the ends.
+    // The centres of the two balls are one radius inside the ends.
     let distance = 2.0 * half - low - high;
     let steep = (high - low).abs() / max(distance, LEAST_HALF);
     if steep > STEEPEST {

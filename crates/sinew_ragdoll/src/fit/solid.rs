@@ -19,7 +19,7 @@ pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
         direction.y = 0.0;
     }
     let axes = with_y(box_frame(bones, bone, patch), direction);
-    // The last hundredth of a sword is its point.
+    // The last hundredth of a sword is its point, so the whole length of props is used.
     let shares = if bones.list[bone].is_prop { [0.0, 1.0] } else { [0.01, 0.99] };
     let extent = |axis: Vec3| patch.quantiles(shares, |p| (p - patch.center).dot(axis));
     let ([x_lo, x_hi], [z_lo, z_hi]) = (extent(axes.x_axis), extent(axes.z_axis));
@@ -33,20 +33,20 @@ pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     measured(Shape::Box { half_extents }, frame, patch)
 }
 
-/// The hull of the outermost points along 26 directions (the faces, edges and corners of the part's box), clipped to
-/// the box so that it ends at the joints like the box. `None` if the points have no hull.
+/// Returns the hull of the outermost points along 26 directions (the faces, edges and corners of the part's box),
+/// clipped to the box so that it ends at the joints like the box. `None` if the points have no hull.
 pub(super) fn fit_hull(cuboid: &Fit, patch: &Patch) -> Option<Fit> {
     let Shape::Box { half_extents: half } = cuboid.shape else { return None };
     hull_of(cuboid, patch, |point| max3(min3(point, half), -half))
 }
 
-/// As [`fit_hull`], around all of the skin, wherever `within` leaves it (character space).
+/// Like [`fit_hull`], around all of the skin; `within` moves each point first (character space).
 pub(super) fn fit_whole_hull(cuboid: &Fit, patch: &Patch, within: impl Fn(Vec3) -> Vec3) -> Option<Fit> {
     let frame = cuboid.character_from_body;
     hull_of(cuboid, patch, |point| frame.inverse_point(within(frame.point(point))))
 }
 
-/// Moves a point of the skin along the bone to the end of its part, if it is beyond one of its joints.
+/// Moves a point of the skin beyond one of the bone's joints along the bone to the end of its part.
 pub(super) fn within_joints(
     bones: &Bones,
     bone: usize,
@@ -85,7 +85,7 @@ fn hull_of(cuboid: &Fit, patch: &Patch, within: impl Fn(Vec3) -> Vec3) -> Option
     Some(measured(Shape::Hull(Arc::new(hull)), frame, patch))
 }
 
-/// Directions toward the faces, edges and corners of a cube.
+/// Returns the directions toward the faces, edges and corners of a cube.
 fn directions() -> impl Iterator<Item = Vec3> {
     let side = |k: i32| (k - 1) as f32;
     (0..27).map(move |k| Vec3::new(side(k % 3), side(k / 3 % 3), side(k / 9))).filter(|d| *d != Vec3::ZERO)

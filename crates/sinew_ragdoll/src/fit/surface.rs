@@ -24,18 +24,19 @@ pub struct Share {
     pub corners: [Vec3; 3],
     /// Mean weight of the bone (with the bones merged into it) at the corners, 0..=1.
     pub weight: f32,
-    /// True if no other bone has more weight here.
+    /// True if no other bone has more weight on the triangle.
     pub most: bool,
 }
 
-/// Index of the bone, if any, that carries each joint of the rig.
+/// Returns the index of the bone, if any, that carries each joint of the rig.
 ///
-/// A joint that is neither kept nor merged follows its nearest ancestor that is.
+/// A joint that is neither kept nor merged follows its nearest kept or merged ancestor.
 pub fn owners(rig: &Rig, bones: &Bones) -> Vec<Option<usize>> {
     carried(rig, bones.list.iter().map(|bone| (bone.joint, bone.merged.as_slice())))
 }
 
-/// [`owners`] of bodies by their joints and the joints merged into them; skips joints that the rig does not have.
+/// Like [`owners`], for bodies by their joints and the joints merged into them; joints that the rig does not have are
+/// skipped.
 pub(crate) fn carried<'a>(
     rig: &Rig,
     bodies: impl Iterator<Item = (JointIdx, &'a [JointIdx])> + Clone,
@@ -77,7 +78,7 @@ impl BindPose<'_> {
         self.character_from_model.point(model_point * self.unit_scale)
     }
 
-    /// Transform from model space, file units, to character space, metres.
+    /// Returns the transform from model space, file units, to character space, metres.
     pub fn character_from_file(&self) -> Affine {
         let turn = self.character_from_model;
         let scale = Vec3::splat(self.unit_scale);
@@ -85,8 +86,8 @@ impl BindPose<'_> {
     }
 }
 
-/// The skin's triangles by bone. Meshes without a skin (armour, robots) count for bones that have no skin at all, so
-/// that a sword does not lengthen a hand.
+/// Returns the skin's triangles by bone. Meshes without a skin (armour, robots) count only for bones that have no skin,
+/// so that a sword does not lengthen a hand.
 pub fn share_surface(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<Vec<Share>> {
     let owner = owners(rig, bones);
     let mut skinned = vec![Vec::new(); bones.list.len()];
@@ -120,7 +121,7 @@ pub fn share_surface(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<Vec<Sh
     skinned
 }
 
-/// All triangles that move with a body, character space at the bind pose, metres.
+/// Returns all triangles that move with a body, character space at the bind pose, metres.
 pub fn skin_triangles(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<[Vec3; 3]> {
     let owner = owners(rig, bones);
     let mut all = Vec::new();
@@ -138,7 +139,7 @@ pub fn skin_triangles(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<[Vec3
     all
 }
 
-/// Indices and positions of the triangles whose corners exist and are finite.
+/// Returns the indices and positions of the triangles whose corners exist and are finite.
 fn triangles<'a>(
     primitive: &'a Primitive,
     positions: &'a [Vec3],
@@ -150,11 +151,11 @@ fn triangles<'a>(
     })
 }
 
-/// Weights of one bone on the corners of a triangle.
+/// Index of a bone, and its weights on the corners of a triangle.
 type Pull = (usize, [f32; 3]);
 
-/// Triangles moved by several bones are subdivided until no side is longer than `finest` (metres), so that each bone
-/// gets its own part of them even on a coarse mesh: weights are linear over a triangle.
+/// Subdivides triangles moved by several bones until no side is longer than `finest` (metres), so that each bone gets
+/// its own part of them even on a coarse mesh. Weights are linear over a triangle.
 fn share_skinned(
     primitive: &Primitive,
     positions: &[Vec3],
@@ -162,7 +163,7 @@ fn share_skinned(
     finest: f32,
     by_bone: &mut [Vec<Share>],
 ) {
-    // At most three corners with four weights each.
+    // A triangle has at most three corners with four weights each.
     let mut pulls: Vec<Pull> = Vec::with_capacity(12);
     for (index, corners) in triangles(primitive, positions) {
         pulls.clear();
@@ -183,7 +184,7 @@ fn share_skinned(
     }
 }
 
-/// Number of parts that a triangle's sides are cut into.
+/// Returns the number of parts into which a triangle's sides are cut.
 fn cuts_of(corners: &[Vec3; 3], finest: f32) -> usize {
     let [p, q, r] = *corners;
     let longest = max((q - p).length(), max((r - q).length(), (p - r).length()));

@@ -9,16 +9,16 @@ use sinew_physics::particles::GroupDef;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Backing {
     pub particle: usize,
-    /// Body of the ragdoll that it is fixed to.
+    /// Body of the ragdoll to which the ball is fixed.
     pub body: usize,
     /// Centre of the ball in the frame of that body, metres.
     pub center: Vec3,
     pub radius: f32,
 }
 
-/// Backstops of a sheet's particles at rest (character space), except held particles and places where the sheet has no
-/// area; empty for a garment without backstops. Bodies that pass through the sheet get none, because the sheet does not
-/// move with them.
+/// Returns the backstops of a sheet's particles at rest (character space), except held particles and places where the
+/// sheet has no area; empty for a garment without backstops. Bodies that pass through the sheet get none, because the
+/// sheet does not move with them.
 pub(super) fn backings(
     garment: &Garment,
     group: &GroupDef,
@@ -36,7 +36,7 @@ pub(super) fn backings(
         let place = group.particles[particle].position;
         let (body, outward) = nearest(ragdoll, passed, place)?;
         let normal = direction(normal)?;
-        // Sheets have either winding, and a lining faces the other way.
+        // The winding of a sheet is arbitrary, and a lining faces the other way.
         let outward = if normal.dot(outward) < 0.0 { -normal } else { normal };
         let center = place - outward * (backstop.distance + backstop.radius + garment.radius);
         let center = ragdoll.bodies[body].character_from_body.inverse_point(center);
@@ -45,7 +45,8 @@ pub(super) fn backings(
     normals.iter().enumerate().filter(|(particle, _)| !is_held[*particle]).filter_map(back).collect()
 }
 
-/// The body nearest to a position, among those that do not pass through the sheet, and the direction away from it.
+/// Returns the body nearest to a position, among those that do not pass through the sheet, and the direction away from
+/// this body.
 fn nearest(ragdoll: &RagdollDef, passed: &[usize], place: Vec3) -> Option<(usize, Vec3)> {
     let mut nearest: Option<(f32, usize, Vec3)> = None;
     for (index, body) in ragdoll.bodies.iter().enumerate().filter(|(body, _)| !passed.contains(body)) {

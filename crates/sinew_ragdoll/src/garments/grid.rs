@@ -5,7 +5,7 @@ use sinew_math::{Vec3, max};
 /// Line of particles from the seam to the hem: on a column, or between two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Line {
-    /// Column to its left, and the fraction of the distance to the next column, 0..1.
+    /// Column to the left of the line, and the fraction of the distance to the next column, 0..1.
     pub column: usize,
     pub share: f32,
 }
@@ -16,20 +16,20 @@ pub(super) struct Grid {
     pub lines: Vec<Line>,
     /// Number of columns.
     pub columns: usize,
-    /// Steps from the seam to the hem.
+    /// Number of steps from the seam to the hem.
     pub rows: usize,
-    /// The last line is next to the first.
+    /// True if the last line is next to the first.
     pub closed: bool,
 }
 
-/// Largest number of lines between two columns, and of rows. A spacing that needs more was made for a character of
-/// another size.
+/// Largest number of lines between two columns, and of rows. A spacing that needs more lines was made for a character
+/// of another size.
 const MOST_SPLITS: usize = 16;
 const MOST_ROWS: usize = 64;
 
 impl Grid {
-    /// A grid on columns (each a polyline from the seam to the hem, metres) whose neighbouring particles are at most
-    /// `spacing` apart.
+    /// Creates a grid on columns (each a polyline from the seam to the hem, metres) whose neighbouring particles are at
+    /// most `spacing` apart.
     pub fn new(columns: &[Vec<Vec3>], closed: bool, spacing: f32) -> Self {
         let parts = |length: f32, most: usize| ((length / spacing).ceil() as usize).clamp(1, most);
         let longest = columns.iter().map(|column| length(column)).fold(0.0, max);
@@ -51,12 +51,13 @@ impl Grid {
         Self { lines, columns: columns.len(), rows, closed }
     }
 
-    /// Index of a particle.
+    /// Returns the index of a particle.
     pub fn particle(&self, line: usize, row: usize) -> usize {
         line * (self.rows + 1) + row
     }
 
-    /// Lines next to a line: the one before and the one after. A line at an edge counts as its own neighbour.
+    /// Returns the lines next to a line: the one before and the one after. A line at an edge counts as its own
+    /// neighbour.
     pub fn beside(&self, line: usize) -> [usize; 2] {
         let last = self.lines.len() - 1;
         if self.closed {
@@ -66,13 +67,13 @@ impl Grid {
         }
     }
 
-    /// The column that a line is nearest to.
+    /// Returns the column nearest to a line.
     pub fn nearest_column(&self, line: usize) -> usize {
         let Line { column, share } = self.lines[line];
         if share < 0.5 { column } else { (column + 1) % self.columns }
     }
 
-    /// Positions of all particles on columns, each a polyline from the seam to the hem, metres.
+    /// Computes the positions of all particles on columns, each a polyline from the seam to the hem, metres.
     pub fn places(&self, columns: &[Vec<Vec3>], out: &mut Vec<Vec3>) {
         out.clear();
         for line in &self.lines {
@@ -89,7 +90,7 @@ impl Grid {
         }
     }
 
-    /// Position on a line at a fraction of its length from seam to hem, for particles at `places`.
+    /// Returns the position on a line at a fraction of its length from seam to hem, for particles at `places`.
     pub fn on_line(&self, places: &[Vec3], line: usize, share: f32) -> Vec3 {
         let at = share * self.rows as f32;
         let row = usize::min(at as usize, self.rows - 1);
@@ -98,12 +99,12 @@ impl Grid {
     }
 }
 
-/// Length of a polyline, metres.
+/// Returns the length of a polyline, metres.
 pub(super) fn length(way: &[Vec3]) -> f32 {
     way.windows(2).map(|pair| (pair[1] - pair[0]).length()).sum()
 }
 
-/// Position at a fraction of a polyline's length.
+/// Returns the position at a fraction of a polyline's length.
 fn along(way: &[Vec3], share: f32) -> Vec3 {
     let mut left = share * length(way);
     for pair in way.windows(2) {

@@ -14,28 +14,28 @@ pub(super) struct Grain {
     pub node: usize,
     pub sheet: usize,
     pub particle: usize,
-    /// Corners of the sheet's triangles at the particle, each with the next two.
+    /// Corners of the sheet's triangles at the particle, each triangle with the particle first.
     around: Vec<[u32; 3]>,
     /// Neighbour particles with their coefficients for the direction x, 1/m: `Σ coefficient (place − own)` points along
     /// x at rest.
     beside: Vec<(u32, f32)>,
-    /// Rotation of the bone in the frame of the sheet about it, at rest.
+    /// Rotation of the bone in the frame of the sheet at the particle, at rest.
     pub frame_from_bone: Rotation,
-    /// Vector from its drawn position at rest to its simulated position, in that frame, metres.
+    /// Vector from the drawn position at rest to the simulated position, in the sheet's frame, metres.
     moved_out: Vec3,
 }
 
 /// Surroundings of all particles of a sheet.
 pub(super) struct Around {
     places: Vec<Vec3>,
-    /// Triangles of each particle: start index of each particle's entries.
+    /// Triangles at each particle.
     faces: Vec<Vec<[u32; 3]>>,
     /// Neighbours of each particle.
     beside: Vec<Vec<u32>>,
 }
 
 impl Around {
-    /// Surroundings in a sheet of a mesh.
+    /// Finds the surroundings in a sheet of a mesh.
     pub fn new(sheet: &Sheet, mesh: &MeshSheet) -> Self {
         let places: Vec<Vec3> = sheet.group.particles.iter().map(|particle| particle.position).collect();
         let (mut faces, mut beside) = (vec![Vec::new(); places.len()], vec![Vec::new(); places.len()]);
@@ -100,8 +100,8 @@ impl Grain {
         direction(self.around.iter().map(|&face| area(face)).sum())
     }
 
-    /// Rotation of the sheet at the particle: z along the normal, x along its neighbours as at rest. `None` where the
-    /// sheet has no area.
+    /// Returns the rotation of the sheet at the particle: z along the normal, x along the direction to the neighbours
+    /// as at rest. `None` where the sheet has no area.
     fn frame(&self, places: &[Vec3]) -> Option<Rotation> {
         let z = self.normal(places)?;
         let own = places[self.particle];
@@ -111,7 +111,8 @@ impl Grain {
         Some(Rotation::from_mat3(&Mat3::from_cols(x, z.cross(x), z)))
     }
 
-    /// Position where the particle is drawn, and rotation of the sheet there, for particles at `places`.
+    /// Returns the position where the particle is drawn, and the rotation of the sheet there, for particles at
+    /// `places`.
     pub fn drawn(&self, places: &[Vec3]) -> (Vec3, Option<Rotation>) {
         let frame = self.frame(places);
         let out = frame.map_or(Vec3::ZERO, |frame| frame * self.moved_out);
@@ -119,8 +120,8 @@ impl Grain {
     }
 }
 
-/// The particle group of a mesh's sheet with its springs, bends and tethers, and each particle's strand: the held
-/// particle it hangs from.
+/// Returns the particle group of a mesh's sheet with its springs, bends and tethers, and each particle's strand: the
+/// held particle from which it hangs.
 pub(super) fn weave(garment: &Garment, mesh: &MeshSheet, places: &[Vec3]) -> (GroupDef, Vec<usize>) {
     let weave = Weave { garment, mesh, places };
     let mut group = unsprung(garment, particles(garment, places, &mesh.areas));
@@ -146,15 +147,15 @@ impl Weave<'_> {
         0.5 * self.way([a, b]).cross(self.way([a, c])).length()
     }
 
-    /// True if two sides meet at nearly a right angle, or a larger one.
+    /// Returns true if two sides meet at nearly a right angle, or a larger one.
     fn is_square(&self, at: u32, ends: [u32; 2]) -> bool {
         let [a, b] = ends.map(|end| direction(self.way([at, end])).unwrap_or(Vec3::ZERO));
         a.dot(b) < SQUARE
     }
 
-    /// Springs along edges, each with the stiffness that the adjacent triangles have along it (Van Gelder, "Approximate
-    /// Simulation of Elastic Membranes", 1998), and weaker springs across the edges from corner to corner. In a cell
-    /// between threads both diagonals are equally weak, and no spring crosses the threads of such cells.
+    /// Adds springs along edges, each with the stiffness of the adjacent triangles in its direction (Van Gelder,
+    /// "Approximate Simulation of Elastic Membranes", 1998), and weaker springs across the edges from corner to corner.
+    /// In a cell between threads both diagonals are equally weak, and no spring crosses the threads of such cells.
     fn join_all(&self, group: &mut GroupDef) {
         let mut beside: BTreeMap<[u32; 2], Vec<usize>> =
             self.mesh.links.iter().map(|&link| (link, Vec::new())).collect();
@@ -214,7 +215,7 @@ impl Weave<'_> {
         }
     }
 
-    /// Bends through each particle, between neighbours on opposite sides of it.
+    /// Adds bends through each particle, between neighbours on its opposite sides.
     fn stiffen(&self, group: &mut GroupDef, areas: &[f32]) {
         if self.garment.bending <= 0.0 {
             return;
@@ -245,8 +246,8 @@ impl Weave<'_> {
         group.bends.retain(|bend| bend.stiffness > 0.0 && bend.stiffness.is_finite());
     }
 
-    /// Tethers each particle to the nearest held particle along the edges, with that distance as its length; returns
-    /// the held particle of each.
+    /// Tethers each particle to the nearest held particle along the edges, with this distance as the tether's length;
+    /// returns the held particle of each.
     fn tether(&self, group: &mut GroupDef) -> Vec<usize> {
         let (way, from) = ways_from_held(self.mesh, self.places);
         for particle in (0..way.len()).filter(|&particle| way[particle] > 0.0 && way[particle].is_finite()) {
@@ -257,8 +258,8 @@ impl Weave<'_> {
     }
 }
 
-/// Distance along the edges from each particle to the nearest held one, metres, and the index of that one; the particle
-/// itself if there is no path.
+/// Returns the distance along the edges from each particle to the nearest held one, metres, and the index of this held
+/// particle; the particle itself if there is no path.
 pub(super) fn ways_from_held(mesh: &MeshSheet, places: &[Vec3]) -> (Vec<f32>, Vec<usize>) {
     let count = places.len();
     let mut beside: Vec<Vec<(usize, f32)>> = vec![Vec::new(); count];

@@ -12,9 +12,9 @@
 //!   hem     ●───○───●───○───●
 //! ```
 //!
-//! Each joint rotates with the sheet under its bone: along the column, and about it by the neighbouring columns. Where
-//! the rest pose has the sheet inside a body, the sheet is moved outside. Joints rotate relative to rest, so the drawn
-//! garment at rest is as the artist made it.
+//! Each joint rotates with the sheet under its bone: along the column, and about the column with the neighbouring
+//! columns. Where the rest pose has the sheet inside a body, the sheet is moved outside. Joints rotate relative to
+//! rest, so the drawn garment at rest is as the artist made it.
 //!
 //! ```
 //! use sinew_math::{Transform, Vec3};

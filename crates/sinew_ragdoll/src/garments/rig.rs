@@ -12,13 +12,13 @@ use sinew_math::{Affine, Mat3, Rotation, Vec3, any_orthonormal, direction};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Node {
     pub joint: JointIdx,
-    /// Index among the nodes; smaller than its own.
+    /// Index of the parent among the nodes; smaller than the node's own.
     pub parent: Option<usize>,
-    /// Reason for which it moves.
+    /// Manner in which the node moves with a garment.
     pub moves: Moves,
 }
 
-/// Reason for which a joint moves with a garment.
+/// Manner in which a joint moves with a garment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Moves {
     /// The joint does not follow a sheet.
@@ -42,7 +42,7 @@ pub(super) enum Hanging {
 pub(super) struct Bone {
     pub node: usize,
     pub sheet: usize,
-    /// Line of the sheet that its column is.
+    /// Line of the sheet at the bone's column.
     pub line: usize,
     /// Start and end of the bone, as shares of the distance from seam to hem.
     pub from: f32,
@@ -81,18 +81,18 @@ pub struct GarmentRig {
 struct Hung<'a> {
     joints: &'a [JointIdx],
     tip: Option<Vec3>,
-    /// Body that holds it.
+    /// Body that holds the column.
     body: usize,
-    /// Positions of its joints and hem, character space, metres.
+    /// Positions of the column's joints and hem, character space, metres.
     way: Vec<Vec3>,
 }
 
 impl GarmentRig {
-    /// Garments of a rig with a ragdoll; `bind_model` is its bind pose in model space. Columns are left out
-    /// ([`left_out`](Self::left_out)) that no body carries, that have no length, or that contain a joint that moves a
-    /// body or belongs to another column. Garments with fewer than two columns are left out, and mesh sheets with a
-    /// held particle that no body carries. A free particle that no body carries hangs from the body of the nearest held
-    /// one.
+    /// Prepares the garments of a rig with a ragdoll; `bind_model` is the rig's bind pose in model space. A column is
+    /// left out ([`left_out`](Self::left_out)) if no body carries it, it has no length, or it contains a joint that
+    /// moves a body or belongs to another column. A garment is left out if it has fewer than two columns, and a mesh
+    /// sheet if no body carries one of its held particles. A free particle that no body carries hangs from the body of
+    /// the nearest held one.
     ///
     /// # Panics
     /// If a garment names a joint that does not exist, or one of its numbers is invalid.
@@ -147,7 +147,7 @@ impl GarmentRig {
         it
     }
 
-    /// Records for each node why it moves.
+    /// Records for each node how it moves.
     fn finish(&mut self) {
         let it = self;
         it.bones.sort_by_key(|bone| bone.node);
@@ -184,7 +184,7 @@ impl GarmentRig {
         self.sheets.push(sheet);
     }
 
-    /// Columns of a garment that can be worn.
+    /// Finds the columns of a garment that can be worn.
     fn hang<'a>(
         &mut self,
         rig: &Rig,
@@ -214,7 +214,7 @@ impl GarmentRig {
         hung
     }
 
-    /// Nodes: the required joints and all their ancestors. Returns the node of every joint.
+    /// Adds nodes: the required joints and all their ancestors. Returns the node of every joint.
     fn add_nodes(&mut self, rig: &Rig, joints: impl Iterator<Item = JointIdx>) -> Vec<Option<usize>> {
         let mut needed = vec![false; rig.joints.len()];
         joints.for_each(|joint| needed[joint] = true);
@@ -232,7 +232,7 @@ impl GarmentRig {
         node_of
     }
 
-    /// Bones of a sheet: every joint except a last one at the hem.
+    /// Adds the bones of a sheet: every joint except a last one at the hem.
     fn add_bones(
         &mut self,
         sheet: &Sheet,
@@ -267,39 +267,40 @@ impl GarmentRig {
         }
     }
 
-    /// Garments this was made from.
+    /// Returns the garments from which the rig was made.
     pub fn source(&self) -> &[Garment] {
         &self.source
     }
 
-    /// Joints that follow sheets, parents first.
+    /// Returns the joints that follow sheets, parents first.
     pub fn joints(&self) -> impl ExactSizeIterator<Item = JointIdx> {
         self.turning.iter().copied()
     }
 
-    /// Joints that are particles and so move as well, parents first.
+    /// Returns the joints that are particles and therefore also move, parents first.
     pub fn moving(&self) -> impl ExactSizeIterator<Item = JointIdx> {
         self.grains.iter().map(|grain| self.nodes[grain.node].joint)
     }
 
-    /// Joints of columns and sheets that were left out.
+    /// Returns the joints of columns and sheets that were left out.
     pub fn left_out(&self) -> &[JointIdx] {
         &self.left_out
     }
 
-    /// Number of particles of each sheet.
+    /// Returns the number of particles of each sheet.
     pub fn particles(&self) -> impl ExactSizeIterator<Item = usize> {
         self.sheets.iter().map(|sheet| sheet.group.particles.len())
     }
 
-    /// True if there is no garment to wear.
+    /// Returns true if there is no garment to wear.
     pub fn is_empty(&self) -> bool {
         self.sheets.is_empty()
     }
 }
 
-/// Bodies that the particles of a mesh hang from. A free particle that no body carries uses the body of its held one.
-/// `None` if no body carries a held particle, or if a particle moves a body or belongs to another garment.
+/// Returns the bodies from which the particles of a mesh hang. A free particle that no body carries uses the body of
+/// its held particle. `None` if no body carries a held particle, or if a particle moves a body or belongs to another
+/// garment.
 fn holders(
     rig: &Rig,
     mapping: &Mapping,
@@ -322,8 +323,8 @@ fn holders(
 }
 
 impl Bone {
-    /// Rotation of the sheet under the bone, for particles at `places`: y along the bone, x across where the sheet has
-    /// a width. `None` where the sheet has no area.
+    /// Returns the rotation of the sheet under the bone, for particles at `places`: y along the bone, x across where
+    /// the sheet has a width. `None` where the sheet has no area.
     pub fn frame(&self, sheet: &Sheet, places: &[Vec3]) -> Option<Rotation> {
         let grid = sheet.grid.as_ref()?;
         let on = |line: usize, share: f32| grid.on_line(places, line, share);

@@ -17,8 +17,8 @@ use sinew_physics::{Material, Shape};
 pub(super) struct Sheet {
     /// Lines and rows, for a sheet on columns.
     pub grid: Option<Grid>,
-    /// Particles at rest outside the bodies, character space, metres, with springs, bends and tethers; they are not
-    /// attached yet.
+    /// Particles at rest outside the bodies, character space, metres, with springs, bends and tethers, not attached to
+    /// bodies yet.
     pub group: GroupDef,
     /// Offset that moved each particle out of the bodies at rest, character space, metres.
     pub moved_out: Vec<Vec3>,
@@ -26,19 +26,19 @@ pub(super) struct Sheet {
     pub spacing: f32,
     /// Particles that bodies hold.
     pub is_held: Vec<bool>,
-    /// Body that holds each particle or that it hangs from.
+    /// Body that holds each particle, or from which the particle hangs.
     pub held_by: Vec<usize>,
-    /// Strand of each particle: its line, or the index of the held particle it hangs from.
+    /// Strand of each particle: its line, or the index of the held particle from which it hangs.
     pub strand: Vec<usize>,
-    /// Bodies of the wearer that pass through it, ascending.
+    /// Bodies of the wearer that pass through the sheet, ascending.
     pub passed: Vec<usize>,
-    /// Backstops of particles, if it has any.
+    /// Backstops of particles, if the garment has any.
     pub backings: Vec<Backing>,
 }
 
 impl Sheet {
-    /// The sheet of a garment on `columns` (polylines from the seam to the hem in the bind pose, character space,
-    /// metres), each held by a body of the ragdoll.
+    /// Creates the sheet of a garment on `columns` (polylines from the seam to the hem in the bind pose, character
+    /// space, metres), each held by a body of the ragdoll.
     pub fn new(garment: &Garment, columns: &[Vec<Vec3>], held_by: &[usize], ragdoll: &RagdollDef) -> Self {
         let passed = passed(garment, held_by, ragdoll);
         let grid = Grid::new(columns, garment.closed, garment.spacing);
@@ -56,8 +56,8 @@ impl Sheet {
         Self { grid: Some(grid), group, moved_out, spacing, is_held, held_by, strand, passed, backings }
     }
 
-    /// A sheet of a mesh whose particles have these positions in the bind pose, character space, metres; each hangs
-    /// from a body of the ragdoll.
+    /// Creates the sheet of a mesh whose particles have these positions in the bind pose, character space, metres; each
+    /// particle hangs from a body of the ragdoll.
     pub fn of_mesh(
         garment: &Garment,
         mesh: &MeshSheet,
@@ -86,7 +86,7 @@ impl Sheet {
     }
 }
 
-/// Positions of particles outside the bodies they collide with; held particles keep theirs.
+/// Returns positions of particles outside the bodies with which they collide; held particles keep their positions.
 fn places_outside(
     drawn: &[Vec3],
     is_held: &[bool],
@@ -100,7 +100,7 @@ fn places_outside(
     drawn.iter().zip(is_held).map(place).collect()
 }
 
-/// A group of cloth of a garment, without springs.
+/// Returns a group of cloth of a garment, without springs.
 pub(super) fn unsprung(garment: &Garment, particles: Vec<ParticleDef>) -> GroupDef {
     GroupDef {
         particles,
@@ -113,7 +113,7 @@ pub(super) fn unsprung(garment: &Garment, particles: Vec<ParticleDef>) -> GroupD
     }
 }
 
-/// Particles of cloth, each with the mass of its area (m²).
+/// Returns particles of cloth, each with the mass of its area (m²).
 pub(super) fn particles(garment: &Garment, places: &[Vec3], areas: &[f32]) -> Vec<ParticleDef> {
     // No particle is more than a hundred times lighter than the mean: where columns meet in a point, cells have no
     // area.
@@ -127,7 +127,7 @@ pub(super) fn particles(garment: &Garment, places: &[Vec3], areas: &[f32]) -> Ve
     places.iter().zip(areas).map(particle).collect()
 }
 
-/// Bodies of the wearer that pass through a garment: arms, unless the garment collides with them.
+/// Returns the bodies of the wearer that pass through a garment: arms, unless the garment collides with them.
 fn passed(garment: &Garment, held_by: &[usize], ragdoll: &RagdollDef) -> Vec<usize> {
     let role = |body: usize| ragdoll.bodies[body].role.as_str();
     let is_arm = |body: &usize| ["Shoulder", "Arm", "Hand"].iter().any(|part| role(*body).ends_with(part));
@@ -136,7 +136,7 @@ fn passed(garment: &Garment, held_by: &[usize], ragdoll: &RagdollDef) -> Vec<usi
     (0..ragdoll.bodies.len()).filter(is_arm).filter(|_| !meets_arms).collect()
 }
 
-/// Position at least `radius` outside the bodies, near the given one.
+/// Returns a position at least `radius` outside the bodies, near the given one.
 pub(super) fn cleared<'a>(
     place: Vec3,
     radius: f32,
@@ -204,7 +204,7 @@ impl Weave<'_> {
         (self.place(to) - self.place(from)).length()
     }
 
-    /// Particles, each with a quarter of the mass of each adjacent cell.
+    /// Returns particles, each with a quarter of the mass of each adjacent cell.
     fn particles(&self) -> Vec<ParticleDef> {
         let grid = self.grid;
         let mut areas = vec![0.0; self.places.len()];
@@ -220,7 +220,7 @@ impl Weave<'_> {
         particles(self.garment, self.places, &areas)
     }
 
-    /// Two triangles per cell.
+    /// Returns two triangles per cell.
     fn faces(&self) -> Vec<[u32; 3]> {
         let grid = self.grid;
         let cells = (0..grid.lines.len()).flat_map(|line| (0..grid.rows).map(move |row| (line, row)));
@@ -234,7 +234,7 @@ impl Weave<'_> {
         cells.flat_map(split).collect()
     }
 
-    /// A spring with the stiffness `strip` (N) divided by its length.
+    /// Adds a spring with the stiffness `strip` (N) divided by its length.
     fn join(&self, group: &mut GroupDef, ends: [[usize; 2]; 2], strip: f32) {
         let length = self.span(ends[0], ends[1]);
         let stiffness = strip / max(length, SHORTEST_THREAD * self.garment.spacing);
@@ -261,7 +261,7 @@ impl Weave<'_> {
         }
     }
 
-    /// Adds bends down every line, and across every row.
+    /// Adds bends along every line, and across every row.
     fn stiffen(&self, group: &mut GroupDef) {
         let (grid, bending) = (self.grid, self.garment.bending);
         let particle = |line, row| grid.particle(line, row) as u32;
@@ -277,11 +277,11 @@ impl Weave<'_> {
                 group.stiffen(&across, bending * high);
             }
         }
-        // Coincident particles define no bend.
+        // Coincident particles determine no bend.
         group.bends.retain(|bend| bend.stiffness > 0.0 && bend.stiffness.is_finite());
     }
 
-    /// Tethers a line's particles to its seam, with the distance along the line as length.
+    /// Returns tethers of a line's particles to its seam, with the distance along the line as length.
     fn tethers(&self, line: usize) -> impl Iterator<Item = TetherDef> {
         let mut length = 0.0;
         let tether = move |row: usize| {

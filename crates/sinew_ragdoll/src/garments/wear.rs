@@ -28,7 +28,7 @@ impl Worn {
         self.places.clear();
     }
 
-    /// Positions and velocities of all particles, sheet by sheet.
+    /// Returns the positions and velocities of all particles, sheet by sheet.
     pub fn lie(&self, world: &World) -> Vec<(Vec<Vec3>, Vec<Vec3>)> {
         let there = self.groups.iter().filter(|&&id| world.group_ids().any(|known| known == id));
         let lie = |&id: &GroupId| {
@@ -109,7 +109,7 @@ pub(crate) struct Wearer<'a> {
     pub world_from_model: Affine,
     /// Bodies in the world, in the order of the definition.
     pub bodies: &'a [BodyId],
-    /// Severed bodies, by index, ascending.
+    /// Severed bodies with their ids, by index, ascending.
     pub lost: &'a [(usize, BodyId)],
 }
 
@@ -125,7 +125,8 @@ impl Wearer<'_> {
         groups
     }
 
-    /// True if these groups exist in the world and have the sheets' particles: a snapshot may come from another world.
+    /// Returns true if these groups exist in the world and have the sheets' particles: a snapshot may come from another
+    /// world.
     fn fits(&self, world: &World, groups: &[GroupId]) -> bool {
         let is_there = |&id: &GroupId| world.group_ids().any(|known| known == id);
         let fits = |(sheet, &id): (&Sheet, &GroupId)| {
@@ -134,7 +135,7 @@ impl Wearer<'_> {
         groups.len() == self.rig.sheets.len() && self.rig.sheets.iter().zip(groups).all(fits)
     }
 
-    /// World positions of a sheet's particles in the pose, with the nodes at these positions.
+    /// Returns the world positions of a sheet's particles in the pose, with the nodes at `nodes`.
     fn places(&self, sheet: usize, nodes: &[Affine]) -> Vec<Vec3> {
         let way = |column: &Column| {
             let mut way: Vec<Vec3> = column.nodes.iter().map(|&node| nodes[node].translation).collect();
@@ -156,8 +157,8 @@ impl Wearer<'_> {
         }
     }
 
-    /// Returns lines to the pose if bodies have caught one of their threads, which is then far too long. A clip that
-    /// folds the body onto its skirt may leave a part of it on the wrong side.
+    /// Moves lines back to the pose if bodies have caught one of their threads, which is then far too long. A clip that
+    /// folds the body onto its skirt may leave a part of the skirt on the wrong side.
     pub fn mend(&self, world: &mut World, groups: &[GroupId]) {
         if !self.fits(world, groups) {
             return;
@@ -191,19 +192,19 @@ impl Wearer<'_> {
         }
     }
 
-    /// Shapes of the wearer that a sheet collides with, at their world poses.
+    /// Returns the shapes of the wearer that a sheet collides with, at their world poses.
     fn shapes(&self, world: &World, sheet: &Sheet) -> Vec<(&Shape, Transform)> {
         let bodies = self.ragdoll.bodies.iter().zip(self.bodies).enumerate();
         let met = bodies.filter(|(body, _)| !sheet.passed.contains(body) && self.has(*body));
         met.map(|(_, (body, &id))| (&body.shape, world.transform(id))).collect()
     }
 
-    /// True if a body still belongs to the wearer.
+    /// Returns true if a body still belongs to the wearer.
     fn has(&self, body: usize) -> bool {
         self.lost.iter().all(|&(lost, _)| lost != body)
     }
 
-    /// The nearest attached ancestor of a severed body; the body itself if it is attached.
+    /// Returns the nearest attached ancestor of a severed body; the body itself if it is attached.
     fn left_of(&self, body: usize) -> usize {
         let mut at = body;
         while !self.has(at) {
@@ -212,7 +213,7 @@ impl Wearer<'_> {
         at
     }
 
-    /// World pose of a body; for a severed body, the pose where it would be at rest.
+    /// Returns the world pose of a body; for a severed body, its pose at rest.
     fn frame(&self, world: &World, body: usize) -> Transform {
         let left = self.left_of(body);
         let bind = |body: usize| self.ragdoll.bodies[body].character_from_body;
@@ -220,7 +221,7 @@ impl Wearer<'_> {
         if left == body { frame } else { frame * (bind(left).inverse() * bind(body)) }
     }
 
-    /// Velocity of a body of the wearer at a point.
+    /// Returns the velocity of a body of the wearer at a point.
     fn carried(&self, world: &World, body: usize, point: Vec3) -> Vec3 {
         let body = self.bodies[self.left_of(body)];
         let velocity = world.velocity(body);
@@ -234,7 +235,7 @@ impl Wearer<'_> {
             let body = sheet.held_by[index];
             let frame = self.frame(world, body);
             if sheet.is_held[index] && self.has(body) {
-                // Use the bind-pose offset, whatever the clip does: joints of bodies do not stretch.
+                // Use the bind-pose offset, independent of the clip: joints of bodies do not stretch.
                 let point = bind(body).inverse_point(particle.position);
                 let target = AttachmentTarget::Body { body: self.bodies[body], point };
                 group.attachments.push(AttachmentDef { particle: index as u32, target });
@@ -285,9 +286,9 @@ impl Wearer<'_> {
         }
     }
 
-    /// Local rotations of the following joints, in the order of [`GarmentRig::joints`], and local positions of those
-    /// that are particles, from the sheets in the world. If the sheets do not exist in it, the garments are no longer
-    /// worn and the next step adds them again.
+    /// Computes the local rotations of the following joints, in the order of [`GarmentRig::joints`], and the local
+    /// positions of those that are particles, from the sheets in the world. If the sheets do not exist in this world,
+    /// the garments are no longer worn and the next step adds them again.
     pub fn turns(&self, world: &World, worn: &mut Worn) {
         let Worn { groups, turns, places } = worn;
         turns.clear();
@@ -337,7 +338,7 @@ impl Wearer<'_> {
         }
     }
 
-    /// World positions of the nodes.
+    /// Returns the world transforms of the nodes.
     fn nodes(&self) -> Vec<Affine> {
         let mut nodes: Vec<Affine> = Vec::with_capacity(self.rig.nodes.len());
         for node in &self.rig.nodes {

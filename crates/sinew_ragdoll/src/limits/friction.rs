@@ -21,7 +21,7 @@ use crate::tuning::{GRAVITY, SHARE_OF_LOAD};
 use sinew_math::{Vec3, max, min};
 use sinew_physics::MassProperties;
 
-/// Friction torque of each joint, N·m. `plans` hold the table's torques for the total mass.
+/// Returns the friction torque of each joint, N·m. `plans` contain the table's torques for the total mass.
 pub fn friction_torques(
     bones: &Bones,
     fits: &[Fit],
@@ -40,8 +40,8 @@ pub fn friction_torques(
     }
 }
 
-/// Largest gravity torque at a bone's joint, N·m: of the subtree below it or of the rest of the body, which the joint
-/// carries equally, whichever is less.
+/// Returns the largest gravity torque at a bone's joint, N·m: that of the subtree below or that of the rest of the
+/// body, whichever is less. The joint carries both equally.
 fn load(bones: &Bones, fits: &[Fit], masses: &[MassProperties], bone: usize) -> f32 {
     let pivot = bones.list[bone].head;
     let mut below = vec![false; bones.list.len()];

@@ -1,8 +1,8 @@
 //! Limits learned from the character's clips, within its anatomical limits.
 //!
 //! The rotations of each joint in all frames give a centre, a swing ellipse and a twist range that contain 99.5 % of
-//! them, plus a margin. Beyond the anatomical limits there is no margin: they are exceeded only as far as the clips'
-//! frames or the ellipse around them do.
+//! the rotations, plus a margin. Beyond the anatomical limits there is no margin: the learned limits exceed them only
+//! as far as the clips' frames or the ellipse around these frames do.
 //!
 //! ```
 //! use sinew_ragdoll::build::takes;
@@ -29,17 +29,17 @@ use sinew_math::limits::{hinge_angle, wrap};
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min, trig};
 use sinew_physics::JointKind;
 
-/// Factors on the observed swing, tried from the widest on.
+/// Factors on the observed swing, tried from the largest on.
 const SWING_FACTORS: [f32; 4] = [1.15, 1.1, 1.05, 1.0];
-/// One copy of the bind pose per this many frames: twice the share that the coverage excludes, so that the limits
-/// contain it.
+/// Number of frames per added copy of the bind pose: the copies are twice the share that the coverage excludes, so that
+/// the limits contain the bind pose.
 const FRAMES_PER_BIND: usize = 100;
 /// Number of directions in which a cone is compared to the anatomical one.
 const DIRECTIONS: usize = 16;
 
-/// The joint with limits from the clips; `None` if they show too little of its motion. The mirrored motion of its twin
-/// counts too: a motion that only one arm makes does not mean that the other cannot. `fits` and `poses` are ordered as
-/// the plan's bodies; poses are in character space, one transform per body.
+/// Returns the joint with limits from the clips; `None` if the clips show too little of its motion. The mirrored motion
+/// of its twin counts too: a motion that only one arm makes does not mean that the other cannot. `fits` and `poses` are
+/// ordered as the plan's bodies; poses are in character space, one transform per body.
 pub fn learned(
     plan: &JointPlan,
     twin: Option<&JointPlan>,
@@ -80,7 +80,7 @@ pub fn learned(
     Some(JointPlan { def, widened: 0.0 })
 }
 
-/// Joint rotation in a pose of the bodies.
+/// Returns the joint rotation in a pose of the bodies.
 fn turn(joint: &RagdollJointDef, pose: &dyn Fn(usize) -> Transform) -> Rotation {
     let parent = pose(joint.parent).rotation * joint.frame_parent.rotation;
     (parent.inverse() * (pose(joint.child).rotation * joint.frame_child.rotation)).normalize()
@@ -99,7 +99,7 @@ fn is_wide_enough(limit: &LearnedLimit) -> bool {
     limit.hinge.is_some() || max(y, z) >= LEAST_RANGE || limit.twist.hi - limit.twist.lo >= 2.0 * LEAST_RANGE
 }
 
-/// Range of a human's hinge from its motion, with a margin limited by its anatomy.
+/// Returns the range of a human's hinge from its motion, with a margin limited by its anatomy.
 fn hinge_range(anatomical: Range, turns: &[Rotation], bind: f32) -> Option<Range> {
     let middle = anatomical.center();
     let angle = |&turn: &Rotation| middle + wrap(hinge_angle(turn) - middle);
@@ -111,7 +111,7 @@ fn hinge_range(anatomical: Range, turns: &[Rotation], bind: f32) -> Option<Range
     })
 }
 
-/// A creature's joint that rotates about only one axis becomes a hinge about it.
+/// Returns a hinge for a creature's joint that rotates about only one axis.
 fn hinged(
     joint: &RagdollJointDef,
     learned: &LearnedLimit,
@@ -167,8 +167,8 @@ impl Cone<'_> {
         turned(self.joint, parent, child, kind)
     }
 
-    /// The widest learned cone that exceeds the anatomical one no further than the clips do, measured by their frames
-    /// and by the cone around them without a margin.
+    /// Returns the widest learned cone that exceeds the anatomical one no further than the clips do. The clips' excess
+    /// is that of their frames or of the cone around these frames without a margin, whichever is larger.
     fn limit(&self, learned: &LearnedLimit, turns: &[Rotation]) -> SwingTwistLimit {
         let mut beyond: Vec<f32> = turns.iter().map(|&turn| self.beyond(turn)).collect();
         beyond.sort_unstable_by(f32::total_cmp);
@@ -179,7 +179,7 @@ impl Cone<'_> {
         widest.into_iter().find(|limit| self.farthest(learned, limit) <= shown).unwrap_or(bare)
     }
 
-    /// Angle by which a rotation exceeds the anatomical limits, radians.
+    /// Returns the angle by which a rotation exceeds the anatomical limits, radians.
     fn beyond(&self, turn: Rotation) -> f32 {
         match self.twisting {
             Twist::Free => self.anatomical.overshoot(turn),
@@ -187,7 +187,7 @@ impl Cone<'_> {
         }
     }
 
-    /// Angle by which the farthest rotation of a cone exceeds the anatomical limits, radians.
+    /// Returns the angle by which the farthest rotation of a cone exceeds the anatomical limits, radians.
     fn farthest(&self, learned: &LearnedLimit, limit: &SwingTwistLimit) -> f32 {
         let frame = learned.frame;
         let mut farthest = 0.0;
@@ -203,7 +203,8 @@ impl Cone<'_> {
     }
 }
 
-/// Learned cone with margins: `factor` on the swing, and the same share of the twist margin as of the swing margin.
+/// Returns the learned cone with margins: `factor` on the swing, and the same share of the twist margin as of the swing
+/// margin.
 fn cone(learned: &LearnedLimit, factor: f32) -> SwingTwistLimit {
     let [y, z] =
         learned.swing.map(|half| Range::symmetric(min(max(half * factor, LEAST_RANGE), WIDEST_SWING)));

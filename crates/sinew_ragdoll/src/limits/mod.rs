@@ -39,21 +39,22 @@ pub enum LimitSource {
     /// Table of ranges of motion.
     #[default]
     Anatomy,
-    /// Motion of the character in its clips, within the table; the table alone for joints that hardly move in the
-    /// clips.
+    /// Motion of the character in its clips, within the table; joints that hardly move in the clips use the table
+    /// alone.
     Clips,
 }
 
 /// A joint, and the corrections made to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointPlan {
-    /// The joint, in the frames of the two bodies.
+    /// The joint, with frames relative to the two bodies.
     pub def: RagdollJointDef,
-    /// Angle by which the bind pose exceeded the table's limits, radians; they were widened by it. 0 for most joints.
+    /// Angle by which the bind pose exceeded the table's limits, radians; the limits were widened by it. 0 for most
+    /// joints.
     pub widened: f32,
 }
 
-/// The joint of every bone but the first to its parent, in the bones' order.
+/// Returns the joint between every bone but the first and its parent, in the bones' order.
 pub fn joints(bones: &Bones, fits: &[Fit], total_mass: f32) -> Vec<JointPlan> {
     let middles: Vec<_> = fits.iter().map(|fit| fit.character_from_body.translation).collect();
     let turned = bind_from_anatomical(bones, &middles);
@@ -94,8 +95,8 @@ struct Seen {
 }
 
 impl Seen {
-    /// The joint's frame on the parent and on the child (character axes), its free axes, and the angle by which a limit
-    /// was widened.
+    /// Returns the joint's frames on parent and child (character axes), its kind with limits, and the angle by which a
+    /// limit was widened.
     fn joint(&self, entry: &Entry, anatomy: Anatomy) -> ([Rotation; 2], JointKind, f32) {
         match entry.motion {
             Motion::Ball(cone) => {
@@ -126,7 +127,7 @@ impl Seen {
         }
     }
 
-    /// Joint axes in the anatomical pose, as columns.
+    /// Returns the joint axes in the anatomical pose, as a rotation.
     fn basis(&self, axes: Axes) -> Rotation {
         // Mirroring in x keeps the x component of a rotation axis and negates the other two.
         let mirror = if self.side == Side::Right { -1.0 } else { 1.0 };
@@ -144,7 +145,7 @@ impl Seen {
         Rotation::from_mat3(&Mat3::from_cols(x, y, x.cross(y)))
     }
 
-    /// Frames whose alignment is the middle of the cone.
+    /// Returns frames that coincide in the middle of the cone.
     fn cone_frames(&self, axes: Axes, cone: Cone) -> [Rotation; 2] {
         let basis = self.basis(axes);
         if axes == Axes::Bind {
@@ -155,7 +156,7 @@ impl Seen {
         [self.turned[0] * basis * center, self.turned[1] * basis]
     }
 
-    /// Sign of the side: −1 on the right, because swing about z and twist change sign there.
+    /// Returns the sign of the side: −1 on the right, because swing about z and twist change sign there.
     fn mirror(&self) -> f32 {
         if self.side == Side::Right { -1.0 } else { 1.0 }
     }
@@ -167,7 +168,7 @@ impl Seen {
         SwingTwistLimit { swing_y: y, swing_z: z, twist }
     }
 
-    /// Frames with the hinge's axis as x and angle 0 where the two bones are in line.
+    /// Returns frames with the hinge's axis as x, and angle 0 where the two bones are in line.
     fn hinge_frames(&self, axes: Axes) -> [Rotation; 2] {
         let [along_parent, along_child] = self.directions;
         let anatomical = self.turned[0] * (self.basis(axes) * Vec3::Y);
@@ -189,8 +190,8 @@ enum Twist {
     Locked,
 }
 
-/// The limit extended to include the joint rotation `joint` (the bind pose), and the angle by which that exceeded it,
-/// radians.
+/// Returns the limit extended to include the joint rotation `joint` (the bind pose), and the angle by which this
+/// rotation exceeded the limit, radians.
 fn widened_cone(limit: SwingTwistLimit, joint: Rotation, twisting: Twist) -> (SwingTwistLimit, f32) {
     let mut wide = limit;
     let (swing, twist) = SwingTwistLimit::angles(joint);

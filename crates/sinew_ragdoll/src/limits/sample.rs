@@ -18,10 +18,11 @@ use crate::tuning::INSCRIBED;
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Vec3};
 use sinew_physics::JointKind;
 
-/// Range used by random rotations for a joint without limits, radians.
+/// Range of random rotations of a joint without limits, radians.
 const FREE: Range = Range::symmetric(1.0);
 
-/// A joint rotation (joint frame of the parent to that of the child) within `share` of each range, about its middle.
+/// Returns a joint rotation (joint frame of the parent to that of the child) within `share` of each range, about its
+/// middle.
 ///
 /// # Panics
 /// If the joint also translates.

@@ -23,22 +23,22 @@ use crate::build::part::{Part, Side};
 /// Range of motion of a joint, from the anatomical pose (standing, arms hanging, palms inward, feet level).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
-    /// Swing within an elliptic cone, and twist. Angles about the [`Axes`] of the joint.
+    /// Swing within an elliptic cone, and twist. The angles are about the [`Axes`] of the joint.
     Ball(Cone),
-    /// A cone as of `Ball`, without twist.
+    /// A cone like that of `Ball`, without twist.
     Universal(Cone),
-    /// Bends about one axis between these two angles; 0 is straight.
+    /// Bend about one axis between these two angles; 0 is straight.
     Hinge(f32, f32),
 }
 
-/// An elliptic swing cone with its own middle.
+/// An elliptic swing cone about its own centre, degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
-    /// Middle: swing about y and z.
+    /// Centre: swing about y and z.
     pub center: [f32; 2],
-    /// Half-angles about y and z, from the middle.
+    /// Half-angles about y and z, from the centre.
     pub half: [f32; 2],
-    /// Twist about x.
+    /// Range of twist about x.
     pub twist: [f32; 2],
 }
 
@@ -61,11 +61,11 @@ pub enum Axes {
 /// Entry of the table for one joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
-    /// Axes the motion is measured about.
+    /// Axes of the angles of `motion`.
     pub axes: Axes,
     /// Range of motion.
     pub motion: Motion,
-    /// Largest torque of the muscles about it for 75 kg at 1.75 m, N·m (DeepMimic and dm_control humanoids).
+    /// Largest torque of the muscles about the joint for 75 kg at 1.75 m, N·m (DeepMimic and dm_control humanoids).
     pub torque: f32,
 }
 
@@ -91,7 +91,7 @@ const LIMB: Entry = ball(Axes::Bind, [0.0; 2], [50.0, 50.0], [-20.0, 20.0], 60.0
 const TAIL: Entry = ball(Axes::Bind, [0.0; 2], [25.0, 25.0], [-10.0, 10.0], 40.0);
 const CREATURE_NECK: Entry = ball(Axes::Bind, [0.0; 2], [40.0, 40.0], [-30.0, 30.0], 50.0);
 
-/// The table's entry for the joint between a bone and its parent.
+/// Returns the table's entry for the joint between a bone and its parent.
 pub fn entry(bones: &Bones, bone: usize) -> Entry {
     let part = bones.list[bone].part;
     if bones.anatomy == Anatomy::Creature {
@@ -128,14 +128,15 @@ fn count(bones: &Bones, parts: &[Part]) -> f32 {
     bones.list.iter().filter(|bone| is(bone.part) && bone.side == Side::Middle).count() as f32
 }
 
-/// The whole spine flexes 83, extends 30, leans 35 and twists 45 degrees. Each of `n` joints has an equal part, plus a
-/// fifth more swing, because they never reach their ends together.
+/// Returns the entry of one of `n` spine joints. The whole spine flexes 83, extends 30, bends sideways 35 and twists 45
+/// degrees. Each joint has an equal part, plus a fifth more swing, because the joints never reach their ends together.
 fn spine(n: f32) -> Entry {
     let half = [1.2 * 0.5 * (83.0 + 30.0) / n, 1.2 * 35.0 / n];
     ball(Axes::Upright, [0.5 * (83.0 - 30.0) / n, 0.0], half, [-45.0 / n, 45.0 / n], 200.0)
 }
 
-/// The whole neck nods 48, leans 40 and twists 70 degrees, divided like the spine's.
+/// Returns the entry of one of `n` neck joints. The whole neck nods 48, bends sideways 40 and twists 70 degrees,
+/// divided as for the spine.
 fn neck(n: f32) -> Entry {
     let more = if n > 1.0 { 1.2 } else { 1.0 };
     let twist = if n > 1.0 { 76.0 / n } else { 70.0 };

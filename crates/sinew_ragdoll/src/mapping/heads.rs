@@ -9,7 +9,7 @@ use sinew_math::{Affine, Transform, Vec3};
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Head {
     pub joint: JointIdx,
-    /// Transform from its parent's space to model space, with all nodes above it at rest.
+    /// Transform from the space of the joint's parent to model space, with all nodes above the joint at rest.
     model_from_parent: Affine,
     parent_from_model: Affine,
 }
@@ -23,7 +23,7 @@ impl Head {
     }
 }
 
-/// Transform of a joint in model space, by the chain of local transforms above it.
+/// Returns the transform of a joint in model space, by the chain of local transforms above it.
 fn chain(rig: &Rig, joint: JointIdx, local: impl Fn(JointIdx) -> LocalTransform) -> Affine {
     let mut model = local(joint).to_affine();
     let mut at = rig.joints[joint].parent;
@@ -34,7 +34,7 @@ fn chain(rig: &Rig, joint: JointIdx, local: impl Fn(JointIdx) -> LocalTransform)
     model
 }
 
-/// True for each joint that moves skin, is among `others`, or has such a descendant.
+/// Returns true for each joint that moves skin, is among `others`, or has such a descendant.
 fn with_descendants(rig: &Rig, others: impl Iterator<Item = JointIdx>) -> Vec<bool> {
     let mut counts = vec![false; rig.joints.len()];
     let skinned = rig.skins.iter().flat_map(|skin| skin.joints.iter().copied());
@@ -47,15 +47,16 @@ fn with_descendants(rig: &Rig, others: impl Iterator<Item = JointIdx>) -> Vec<bo
     counts
 }
 
-/// True for each joint that carries skin or an object that moves with a body; false for a floor, lamp or camera in the
-/// file.
+/// Returns true for each joint that carries skin or an object that moves with a body; false for a floor, lamp or camera
+/// in the file.
 pub(crate) fn carries_character(rig: &Rig, def: &RagdollDef) -> Vec<bool> {
     let merged = def.bodies.iter().flat_map(|body| body.merged.iter().copied().chain([body.joint]));
     with_descendants(rig, merged)
 }
 
-/// The pelvis, or its highest ancestor that moves skin with a body, and every other child of a node above it that
-/// carries skin or what moves with a body. Skin above the pelvis would stay behind if its joint were at rest.
+/// Finds the heads: the pelvis, or its highest ancestor that moves skin with a body, and every other child of a node
+/// above it that carries skin or objects that move with a body. Skin above the pelvis would stay behind if its joint
+/// were at rest.
 pub(super) fn find(rig: &Rig, def: &RagdollDef) -> Vec<Head> {
     let merged = |joint: JointIdx| def.bodies.iter().any(|body| body.merged.contains(&joint));
     let above = core::iter::successors(rig.joints[def.bodies[0].joint].parent, |&at| rig.joints[at].parent);
@@ -77,7 +78,7 @@ pub(super) fn find(rig: &Rig, def: &RagdollDef) -> Vec<Head> {
         .collect()
 }
 
-/// All nodes above any head, ascending.
+/// Returns all nodes above any head, ascending.
 pub(super) fn carriers(rig: &Rig, heads: &[Head]) -> Vec<JointIdx> {
     let mut carriers = Vec::new();
     for head in heads {
@@ -93,8 +94,8 @@ pub(super) fn carriers(rig: &Rig, heads: &[Head]) -> Vec<JointIdx> {
 }
 
 impl Mapping {
-    /// Moves a clip's motion of the nodes above the pelvis into the heads: those nodes are then at rest, and every
-    /// joint below keeps its model-space transform.
+    /// Moves a clip's motion of the nodes above the pelvis into the heads. These nodes are then at rest, and every
+    /// joint below them keeps its model-space transform.
     pub fn flatten(&self, rig: &Rig, pose: &mut [LocalTransform]) {
         if self.carriers.iter().all(|&joint| pose[joint] == rig.joints[joint].rest) {
             return;
@@ -109,8 +110,8 @@ impl Mapping {
         }
     }
 
-    /// Converts a flat pose of a character at `from` (world from character) to a character at `to`: every joint keeps
-    /// its world transform.
+    /// Converts a flat pose of a character at `from` (character to world) to a pose of the character at `to`: every
+    /// joint keeps its world transform.
     pub fn reframe(&self, pose: &mut [LocalTransform], from: Transform, to: Transform) {
         if from == to {
             return;
@@ -124,7 +125,8 @@ impl Mapping {
     }
 }
 
-/// The local transform of `local`, with its scale where a node above had one that was animated.
+/// Returns the local transform of `local`. Each axis keeps the scale of `like`, unless the length of the axis in
+/// `local` differs.
 fn rescaled(like: &LocalTransform, local: &Affine) -> LocalTransform {
     let m = &local.linear;
     let lengths = Vec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());

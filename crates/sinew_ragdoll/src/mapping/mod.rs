@@ -1,7 +1,7 @@
 //! Converts between poses of the rig and poses of the bodies, for every joint of the file.
 //!
-//! Three spaces: the **model** space of the file (file units, its own up axis), the **character** space of the ragdoll
-//! (metres, +Y up, facing +Z) and the world. A body keeps the offset to its bone that it had in the bind pose.
+//! There are three spaces: the **model** space of the file (file units, its own up axis), the **character** space of
+//! the ragdoll (metres, +Y up, facing +Z) and the world. A body keeps its offset from its bone in the bind pose.
 //!
 //! Root motion must be stored in one place; otherwise a clip that moves a root node above the pelvis could not blend
 //! with a ragdoll that moves the pelvis. So all poses here are **flat**: nodes above the pelvis stay in their rest
@@ -38,10 +38,10 @@ use sinew_math::{Affine, Rotation, Transform, Vec3};
 /// Manner in which a joint follows its body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Follow {
-    /// The rotation is that of the body; the position follows from the parent, because joints do not stretch.
+    /// The joint takes the body's rotation; its position follows from the parent, because joints do not stretch.
     Turn,
-    /// Rotation and position are those of the body: the pelvis, and joints that the rig parents differently from the
-    /// anatomy.
+    /// The joint takes the body's rotation and position: the pelvis, and joints that the rig parents differently from
+    /// the anatomy.
     Move,
 }
 
@@ -58,7 +58,7 @@ pub struct Mapping {
     /// Transform from model space (file units) to character space (metres).
     character_from_model: Affine,
     model_from_character: Affine,
-    /// The rigid part of that transform, metres, and the scale in metres per file unit.
+    /// Rigid part of this transform, metres, and its scale in metres per file unit.
     place_of_model: Transform,
     unit_scale: f32,
     /// Joint of each body, and the body's frame in the bone's rigid frame, metres.
@@ -110,38 +110,38 @@ impl Mapping {
         }
     }
 
-    /// Transform from model space (file units) to character space (metres, +Y up, facing +Z).
+    /// Returns the transform from model space (file units) to character space (metres, +Y up, facing +Z).
     pub fn character_from_model(&self) -> Affine {
         self.character_from_model
     }
 
-    /// Transform from model space to the world, for a character that stands at `world_from_character`.
+    /// Returns the transform from model space to the world, for a character at `world_from_character`.
     pub fn world_from_model(&self, world_from_character: Transform) -> Affine {
         Affine::from(world_from_character) * self.character_from_model
     }
 
-    /// The joints that carry root motion, the pelvis first.
+    /// Returns the joints that carry root motion, the pelvis first.
     pub fn heads(&self) -> impl Iterator<Item = JointIdx> {
         self.heads.iter().map(|head| head.joint)
     }
 
-    /// Joints that no body moves and that move no body: fingers, face, end helpers. On a limp character they keep
-    /// playing their clips, except toes, whose walking motion makes no sense in a lying pose.
+    /// Returns the joints that no body moves and that move no body: fingers, face, end helpers. On a limp character
+    /// they still follow its clips, except toes, whose walking motion makes no sense in a lying pose.
     pub fn free(&self) -> &[JointIdx] {
         &self.free
     }
 
-    /// True if the joint is above the pelvis: in a flat pose it is at rest.
+    /// Returns true if the joint is above the pelvis: in a flat pose it is at rest.
     pub fn carries(&self, joint: JointIdx) -> bool {
         self.carriers.binary_search(&joint).is_ok()
     }
 
-    /// True if a body moves the joint or one of its descendants: physics determines it.
+    /// Returns true if a body moves the joint or one of its descendants, so that physics determines it.
     pub fn moves_bodies(&self, joint: JointIdx) -> bool {
         self.moves_bodies[joint]
     }
 
-    /// Body that carries a joint from above: the nearest that moves it or one above it.
+    /// Returns the body that carries a joint from above: the nearest body that moves the joint or one of its ancestors.
     pub(crate) fn body_above(&self, rig: &Rig, joint: JointIdx) -> Option<usize> {
         let mut at = Some(joint);
         while let Some(joint) = at {
@@ -153,7 +153,7 @@ impl Mapping {
         None
     }
 
-    /// World pose of every body for a model pose: `bodies` is cleared and filled.
+    /// Computes the world pose of every body for a model pose: `bodies` is cleared and filled.
     ///
     /// # Panics
     /// If `model` is shorter than the rig has joints.
@@ -169,7 +169,7 @@ impl Mapping {
         }));
     }
 
-    /// World pose of every body for the local transforms of all joints: equal to
+    /// Computes the world pose of every body for the local transforms of all joints: equal to
     /// [`bodies_from_model`](Self::bodies_from_model) up to rounding, at a quarter of its cost. `bodies` is cleared and
     /// filled. Returns false, with undefined contents, if an ancestor joint of a body has a non-uniform scale. `frames`
     /// is scratch memory.
@@ -202,24 +202,25 @@ impl Mapping {
         true
     }
 
-    /// Rigid frame of a bone in character space, metres.
+    /// Returns the rigid frame of a bone in character space, metres.
     fn bone(&self, model: &Affine) -> Transform {
         (self.character_from_model * *model).to_rigid()
     }
 
-    /// A rigid motion in character space as the equivalent affine map of model space.
+    /// Returns a rigid motion in character space as the equivalent affine map of model space.
     fn in_model(&self, motion: Transform) -> Affine {
         self.model_from_character * Affine::from(motion) * self.character_from_model
     }
 }
 
-/// Transform from model space (file units) to character space (metres).
+/// Returns the transform from model space (file units) to character space (metres).
 pub fn character_from_model(def: &RagdollDef) -> Affine {
     let turn = def.character_from_model;
     Affine::from_scale_rotation_translation(Vec3::splat(def.unit_scale), turn.rotation, turn.translation)
 }
 
-/// The local transform of `local_affine` with the scale of `like`: a rig's local transforms cannot hold shear.
+/// Returns the local transform of `local_affine` with the scale of `like`: a rig's local transforms cannot contain
+/// shear.
 fn with_scale_of(like: &LocalTransform, local_affine: &Affine) -> LocalTransform {
     let s = like.scale;
     let unscaled = |column: Vec3, scale: f32| if scale.abs() > 1e-12 { column / scale } else { column };
@@ -231,13 +232,13 @@ fn with_scale_of(like: &LocalTransform, local_affine: &Affine) -> LocalTransform
     );
     LocalTransform {
         translation: local_affine.translation,
-        // Choose the sign of the pose that it replaces, so that keys made from it do not change sign.
+        // Use the sign nearer to the replaced pose, so that keys made from this pose do not change sign.
         rotation: Rotation::from_mat3_lossy(&columns).toward(like.rotation),
         scale: s,
     }
 }
 
-/// Joints with a body and all their ancestors, ascending, each with its parent.
+/// Returns the joints with a body and all their ancestors, ascending, each with its parent.
 fn bearing(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, Option<JointIdx>)> {
     let mut bears = vec![false; rig.joints.len()];
     for body in &def.bodies {
@@ -252,7 +253,7 @@ fn bearing(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, Option<JointIdx>)> {
         .collect()
 }
 
-/// Body that each joint of the rig follows, and how; `None` for a joint without one.
+/// Returns the body that each joint of the rig follows, and how; `None` for a joint without a body.
 fn driven(rig: &Rig, def: &RagdollDef) -> Vec<Option<Driven>> {
     let mut driven: Vec<Option<Driven>> = vec![None; rig.joints.len()];
     let body_of = |joint: JointIdx| def.bodies.iter().position(|body| body.joint == joint);
@@ -281,7 +282,7 @@ fn driven(rig: &Rig, def: &RagdollDef) -> Vec<Option<Driven>> {
     driven
 }
 
-/// True per joint if it or one of its descendants is driven.
+/// Returns, for each joint, true if it or one of its descendants is driven.
 fn moves_bodies(rig: &Rig, driven: &[Option<Driven>]) -> Vec<bool> {
     let mut moves: Vec<bool> = driven.iter().map(Option::is_some).collect();
     for joint in (0..moves.len()).rev() {
@@ -292,7 +293,8 @@ fn moves_bodies(rig: &Rig, driven: &[Option<Driven>]) -> Vec<bool> {
     moves
 }
 
-/// Joints that no body moves and that have no driven descendant, except those of feet and those that `keeps` excludes.
+/// Returns the joints that no body moves and that have no driven descendant, except those of feet and those that
+/// `keeps` excludes.
 fn free(
     rig: &Rig,
     def: &RagdollDef,

@@ -4,8 +4,8 @@ use super::{Follow, Mapping, with_scale_of};
 use sinew_anim::{LocalTransform, Rig, local_to_model};
 use sinew_math::{Affine, Transform, max};
 
-/// Converts body poses into poses of the rig, based on the character's pose when its bodies took over. Reuses its
-/// buffers.
+/// Converts body poses into poses of the rig, based on the character's pose when its bodies took over. The buffers are
+/// reused.
 #[derive(Clone, Debug, Default)]
 pub struct Physical {
     base: Vec<LocalTransform>,
@@ -30,14 +30,14 @@ impl Physical {
         }));
     }
 
-    /// The base pose of the last [`rebase`](Self::rebase).
+    /// Returns the base pose of the last [`rebase`](Self::rebase).
     pub fn base(&self) -> &[LocalTransform] {
         &self.base
     }
 
-    /// Pose of all joints for bodies at `world_from_body`, relative to a character at `world_from_character`. Returns
-    /// the hidden stretch, metres: the largest distance between a bone's position on its body and in the pose, whose
-    /// bones cannot stretch.
+    /// Computes the pose of all joints for bodies at `world_from_body`, relative to a character at
+    /// `world_from_character`. Returns the hidden stretch, metres: the largest distance between a bone's position on
+    /// its body and its position in the pose, in which bones cannot stretch.
     ///
     /// # Panics
     /// If there is no base pose, or not one pose per body.
@@ -55,11 +55,11 @@ impl Physical {
         stretch
     }
 
-    /// [`pose`](Self::pose) with the undriven joints from `resting` instead of the base pose: a later pose of the same
-    /// bone lengths.
+    /// Like [`pose`](Self::pose), with the undriven joints from `resting` instead of the base pose. `resting` is a later
+    /// pose of the same bone lengths.
     ///
     /// # Panics
-    /// As [`pose`](Self::pose), and if `resting` is not as long.
+    /// As for [`pose`](Self::pose), or if `resting` has another length.
     pub fn pose_over(
         &mut self,
         mapping: &Mapping,

@@ -10,7 +10,7 @@
 //! assert!((thigh - 10.3).abs() < 0.1, "{thigh} kg");
 //! ```
 
-/// Choice of body proportions.
+/// Sex, which selects body proportions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sex {
     /// Male: 73.0 kg at 1.741 m.
@@ -20,12 +20,12 @@ pub enum Sex {
     Female,
 }
 
-/// Numbers of one segment.
+/// Mass distribution of one segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
     /// Share of the body's mass.
     pub mass: f32,
-    /// Centre of mass, share of the segment's length from its proximal end.
+    /// Distance of the centre of mass from the proximal end, as a share of the segment's length.
     pub center: f32,
     /// Radii of gyration about the centre, shares of the length: about the sagittal (fore and aft), transverse
     /// (side to side) and longitudinal axis.
@@ -51,26 +51,26 @@ pub struct Table {
     pub head: f32,
     /// Upper, middle and lower trunk: share of the body's mass, and length in millimetres.
     pub trunk: [(f32, f32); 3],
-    /// Shoulder to elbow.
+    /// Segment from shoulder to elbow.
     pub upper_arm: Segment,
-    /// Elbow to wrist.
+    /// Segment from elbow to wrist.
     pub forearm: Segment,
-    /// Wrist to third metacarpal.
+    /// Segment from wrist to third metacarpal.
     pub hand: Segment,
-    /// Hip to knee.
+    /// Segment from hip to knee.
     pub thigh: Segment,
-    /// Knee to ankle.
+    /// Segment from knee to ankle.
     pub shank: Segment,
-    /// Heel to toe tip.
+    /// Segment from heel to toe tip.
     pub foot: Segment,
 }
 
-/// Share of the neck in head and neck: 1.2 % of the body's mass. The table combines them; the neck is separated as a
+/// Share of the neck in head and neck: 1.2 % of the body's mass. The table combines the two; the neck is separated as a
 /// cylinder 11 cm wide and 10 cm high.
 pub const NECK_OF_HEAD: f32 = 0.17;
 /// Share of each shoulder girdle in the upper trunk, if it is a separate body.
 pub const GIRDLE_OF_UPPER_TRUNK: f32 = 0.10;
-/// Share of the toes in the foot, if they are a body of their own.
+/// Share of the toes in the foot, if the toes are a body of their own.
 pub const TOES_OF_FOOT: f32 = 0.2;
 
 const MALE: Table = Table {
@@ -99,7 +99,7 @@ const FEMALE: Table = Table {
     foot: segment(1.29, 40.14, 29.9, 27.9, 13.9),
 };
 
-/// The table of a sex.
+/// Returns the table of a sex.
 pub fn table(sex: Sex) -> &'static Table {
     match sex {
         Sex::Male => &MALE,

@@ -4,24 +4,24 @@ use crate::tuning::LARGEST_MOMENTS;
 use sinew_math::{Vec3, clamp, max, max3, min};
 use sinew_physics::Shape;
 
-/// Principal moments of a homogeneous shape of this mass about its middle, in its own axes, kg·m².
+/// Returns the principal moments of a homogeneous shape of this mass about its centre, along the shape's axes, kg·m².
 pub fn of_shape(shape: &Shape, mass: f32) -> Vec3 {
     let unit = shape.mass_properties(1.0);
     unit.inertia.diagonal * (mass / unit.mass)
 }
 
-/// Principal moments adjusted for a solver: the smallest at least an eighth of the largest, and none above the sum of
-/// the other two, which no real body exceeds.
+/// Returns principal moments adjusted for a solver: the smallest is at least an eighth of the largest, and none exceeds
+/// the sum of the other two, as for real bodies.
 pub fn conditioned(principal: Vec3) -> Vec3 {
     let largest = max(principal.x, max(principal.y, principal.z));
     let i = max3(principal, Vec3::splat(largest / LARGEST_MOMENTS));
     let need = |a: f32, b: f32, c: f32| max(0.0, 0.5 * (c - a - b));
-    // Half of the deficit goes to each of the two smaller ones; at most one of the three conditions can fail.
+    // Each of the two smaller moments gets half of the deficit; at most one of the three conditions can fail.
     let (x, y, z) = (need(i.y, i.z, i.x), need(i.x, i.z, i.y), need(i.x, i.y, i.z));
     i + Vec3::new(y + z, x + z, x + y)
 }
 
-/// Moves the point to within nine tenths of the shape if it lies farther out.
+/// Returns `p`, moved to within nine tenths of the shape if it is farther out.
 pub fn inside(shape: &Shape, p: Vec3) -> Vec3 {
     let reach = match *shape {
         Shape::Box { half_extents } => half_extents,
@@ -34,12 +34,12 @@ pub fn inside(shape: &Shape, p: Vec3) -> Vec3 {
             Vec3::new(0.6 * radius, half_height + 0.4 * radius, 0.6 * radius)
         }
         Shape::Cylinder { half_height, radius } => Vec3::new(0.7 * radius, half_height, 0.7 * radius),
-        // For a cone: the box between its base and half of its height, and the mirror image of that.
+        // Cone: use the box between the base and half of the height, and its mirror image.
         Shape::Cone { half_height, radius } => {
             Vec3::new(0.35 * radius, 0.0, 0.35 * radius) + Vec3::Y * (0.5 * half_height)
         }
         Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => Vec3::ZERO,
-        // For a hull: the cube in the largest ball inside.
+        // Hull: use the cube in the largest ball inside the hull.
         Shape::Hull(ref hull) => Vec3::splat(0.57 * hull.inner_radius()),
     } * 0.9;
     Vec3::new(clamp(p.x, -reach.x, reach.x), clamp(p.y, -reach.y, reach.y), clamp(p.z, -reach.z, reach.z))

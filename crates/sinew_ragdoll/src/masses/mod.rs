@@ -1,8 +1,8 @@
 //! Masses, centres and inertias of the bodies.
 //!
-//! Humans: shares of the total by de Leva's table, never from shape volumes, whose sum is 1.3 to 2.2 times the body's
-//! (measured). Creatures have no table: the total comes from the volume the skin encloses, and the parts share it by
-//! shape volume.
+//! Humans get shares of the total by de Leva's table, never from shape volumes, whose sum is 1.3 to 2.2 times the
+//! body's (measured). Creatures have no table: the total comes from the volume that the skin encloses, and the parts
+//! share it by shape volume.
 //!
 //! ```
 //! use sinew_ragdoll::Sex;
@@ -30,25 +30,25 @@ use sinew_physics::{MassProperties, Shape};
 pub struct MassOptions {
     /// Total mass, kg; `None`: [`default_mass`].
     pub total: Option<f32>,
-    /// Sex whose table is used.
+    /// Sex that selects the table.
     pub sex: Sex,
-    /// Mass of the skin's enclosed volume, kg, for creatures; if it is unknown or does not match the shapes, the shapes
-    /// decide.
+    /// Mass of the skin's enclosed volume, kg, for creatures. If the mass is unknown or does not match the shapes, the
+    /// shapes determine the mass.
     pub enclosed: Option<f32>,
 }
 
-/// The enclosed mass is accepted within these shares of the shapes' mass.
+/// Ratios of the enclosed mass to the shapes' mass for which the enclosed mass is accepted.
 const BELIEVED: core::ops::Range<f32> = 0.1..2.0;
 
-/// Mass of a person of this height at the body mass index of the table's reference body (male 24.1, female 20.6
-/// kg/m²): 73.0 kg × (height / 1.741 m)². kg.
+/// Returns the mass of a person of this height, kg, at the body mass index of the table's reference body (male 24.1,
+/// female 20.6 kg/m²); for a male 73.0 kg × (height / 1.741 m)².
 pub fn default_mass(height: f32, sex: Sex) -> f32 {
     let table = table(sex);
     let ratio = height / table.reference_height;
     table.reference_mass * ratio * ratio
 }
 
-/// Mass, centre and inertia of every body, in the body's frame. The masses add up to the requested total.
+/// Returns mass, centre and inertia of every body, in the body's frame. The masses add up to the requested total.
 pub fn distribute(bones: &Bones, fits: &[Fit], options: MassOptions) -> Vec<MassProperties> {
     let shares = match bones.anatomy {
         Anatomy::Human => human_shares(bones, table(options.sex)),
@@ -68,13 +68,14 @@ pub fn distribute(bones: &Bones, fits: &[Fit], options: MassOptions) -> Vec<Mass
     (0..fits.len()).map(|body| properties(bones, &fits[body], body, masses[body], options.sex)).collect()
 }
 
-/// Mass of flesh in a shape, kg.
+/// Returns the mass of flesh in a shape, kg.
 fn flesh(shape: &Shape) -> f32 {
     let fill = if matches!(shape, Shape::Box { .. }) { BOX_FILL } else { CAPSULE_FILL };
     FLESH * fill * shape.volume()
 }
 
-/// Share of the total mass per bone. The mass of a bone the rig lacks goes to the bone that would carry it.
+/// Returns the share of the total mass per bone. The mass of a bone that the rig lacks goes to the bone that would
+/// carry it.
 fn human_shares(bones: &Bones, table: &Table) -> Vec<f32> {
     let mut shares = vec![0.0; bones.list.len()];
     let carrier = |chain: &[Part], side: Side| {
@@ -112,7 +113,7 @@ fn human_shares(bones: &Bones, table: &Table) -> Vec<f32> {
     shares
 }
 
-/// Several neck bones share the neck's mass equally.
+/// Shares the neck's mass equally between several neck bones.
 fn share_necks(bones: &Bones, shares: &mut [f32], neck: f32) {
     let necks: Vec<_> = (0..bones.list.len()).filter(|&b| bones.list[b].part == Part::Neck).collect();
     for &bone in &necks {
@@ -120,7 +121,7 @@ fn share_necks(bones: &Bones, shares: &mut [f32], neck: f32) {
     }
 }
 
-/// Distributes the trunk's mass over the pelvis and the spine: each bone takes the table's mass between its own pivot
+/// Distributes the trunk's mass over the pelvis and the spine. Each bone takes the table's mass between its own pivot
 /// and the next, measured from the hips to the neck.
 fn share_trunk(bones: &Bones, shares: &mut [f32], table: &Table, girdles: f32) {
     let mut chain = vec![0];
@@ -155,11 +156,11 @@ fn share_trunk(bones: &Bones, shares: &mut [f32], table: &Table, girdles: f32) {
         shares[bone] += trunk_between(table, below, above);
         below = above;
     }
-    // Shoulder girdles with bodies of their own already have their part of the upper trunk's mass.
+    // Shoulder girdles that are bodies already have their part of the upper trunk's mass.
     shares[last] -= girdles;
 }
 
-/// Share of the body's mass in the trunk between two heights, 0 at the hips and 1 at the neck.
+/// Returns the share of the body's mass in the trunk between two heights, 0 at the hips and 1 at the neck.
 fn trunk_between(table: &Table, lo: f32, hi: f32) -> f32 {
     let whole: f32 = table.trunk.iter().map(|part| part.1).sum();
     let mut start = 0.0;
@@ -173,7 +174,7 @@ fn trunk_between(table: &Table, lo: f32, hi: f32) -> f32 {
     share
 }
 
-/// Bones that no human has (tails, ears, capes, fingers): a small share each.
+/// Gives a small share to each bone that no human has (tails, ears, capes, fingers).
 fn share_others(bones: &Bones, shares: &mut [f32]) {
     for (bone, share) in bones.list.iter().zip(shares) {
         if matches!(bone.part, Part::Tail | Part::Limb) {
@@ -182,7 +183,7 @@ fn share_others(bones: &Bones, shares: &mut [f32]) {
     }
 }
 
-/// The de Leva segment of a limb bone with joints at both ends.
+/// Returns the de Leva segment of a limb bone with joints at both ends.
 fn limb_segment(part: Part, table: &Table) -> Option<Segment> {
     match part {
         Part::UpperArm => Some(table.upper_arm),
@@ -193,14 +194,14 @@ fn limb_segment(part: Part, table: &Table) -> Option<Segment> {
     }
 }
 
-/// Centre and inertia of one body, in its frame.
+/// Returns centre and inertia of one body, in its frame.
 fn properties(bones: &Bones, fit: &Fit, body: usize, mass: f32, sex: Sex) -> MassProperties {
     let shape_inertia = of_shape(&fit.shape, mass);
     let segment = match bones.anatomy {
         Anatomy::Human => limb_segment(bones.list[body].part, table(sex)).zip(bones.tail(body)),
         Anatomy::Creature => None,
     };
-    // Trunk, head, hands and feet: rigs divide them differently, so the shape gives the centre.
+    // Rigs divide trunk, head, hands and feet differently, so the shape gives their centre.
     let Some((segment, tail)) = segment else {
         let inertia = Sym3::from_diagonal(conditioned(shape_inertia));
         return MassProperties { mass, center: Vec3::ZERO, inertia };
@@ -214,9 +215,9 @@ fn properties(bones: &Bones, fit: &Fit, body: usize, mass: f32, sex: Sex) -> Mas
         let radius = g * length;
         mass * radius * radius
     });
-    // Radii about the two cross axes differ by a few per cent only, and the bind pose's rotation of a limb about its
-    // axis is unknown, so both get the mean. Thick cartoon limbs get at least half their shape's inertia about the
-    // axis.
+    // Radii about the two cross axes differ by a few per cent only, and the rotation of a limb about its axis in the
+    // bind pose is unknown, so both axes get the mean. Thick cartoon limbs get at least half of their shape's inertia
+    // about the long axis.
     let across = 0.5 * (sagittal + transverse);
     let principal = conditioned(Vec3::new(across, max(longitudinal, 0.5 * shape_inertia.y), across));
     MassProperties {

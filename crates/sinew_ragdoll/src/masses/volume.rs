@@ -1,4 +1,4 @@
-//! Volume that a skin encloses, and its density.
+//! Volume that a skin encloses, and the density of the body.
 //!
 //! ```
 //! use sinew_math::Vec3;
@@ -14,14 +14,14 @@ use crate::tuning::{CLOSED, FLESH, MACHINE};
 use sinew_anim::Rig;
 use sinew_math::{Vec3, clamp, max, max3, min, min3};
 
-/// Number of sample lines along each axis, per side.
+/// Number of sample lines per side of the grid across each axis.
 const LINES: usize = 64;
-/// Position of the lines in their cells, as shares of a cell: not in the middle, where symmetric meshes have their edges.
+/// Position of the lines in their cells, as shares of a cell: off the centre, where symmetric meshes have their edges.
 const OFF_MIDDLE: [f32; 2] = [0.513_7, 0.487_1];
 
-/// Volume that triangles enclose, m³: overlapping volumes count once, and so do inverted ones. Sample lines cross the
-/// volume along each axis; a line through a hole is ignored, and the others stand in for it. `None` if most lines along
-/// every axis are ignored.
+/// Returns the volume that triangles enclose, m³, the median over the three axes: overlapping volumes count once, and
+/// so do inverted ones. Sample lines cross the volume along each axis. A line through a hole is ignored, and the other
+/// lines are scaled up to replace it. `None` if most lines along every axis are ignored.
 pub fn enclosed(triangles: &[[Vec3; 3]]) -> Option<f32> {
     let corners = || triangles.iter().flatten().copied();
     let low = corners().reduce(min3)?;
@@ -31,7 +31,7 @@ pub fn enclosed(triangles: &[[Vec3; 3]]) -> Option<f32> {
     volumes.get(volumes.len() / 2).copied()
 }
 
-/// Crossings of one line with the skin: position, and whether it leaves the volume.
+/// Crossings of one line with the skin: position, and true if the line leaves the volume.
 type Crossings = Vec<(f32, bool)>;
 
 fn along(triangles: &[[Vec3; 3]], low: Vec3, high: Vec3, axis: usize) -> Option<f32> {
@@ -91,7 +91,7 @@ fn cross(flat: [[f32; 2]; 3], heights: [f32; 3], lines: &mut [Crossings]) {
     }
 }
 
-/// Length of a line within the skin; `None` if it enters and leaves a different number of times.
+/// Returns the length of a line within the skin; `None` if the line enters and leaves a different number of times.
 fn inside(line: &mut Crossings) -> Option<f32> {
     line.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut depth, mut length) = (0_i32, 0.0);
@@ -122,7 +122,7 @@ const MACHINES: [&str; 14] = [
     "drone",
 ];
 
-/// Density of a body's matter, kg/m³, and a word for it, from the words of its joints' names.
+/// Returns the density of a body's matter, kg/m³, and a word for the matter, from the words in its joints' names.
 pub fn density(rig: &Rig) -> (f32, &'static str) {
     let is_machine =
         rig.joints.iter().any(|joint| words(&joint.name).any(|word| MACHINES.contains(&word.as_str())));

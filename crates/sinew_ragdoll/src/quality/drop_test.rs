@@ -11,14 +11,14 @@ use sinew_physics::{BodyDef, BodyId, BodyKind, Shape, ShapeDef, Velocity, World,
 const HEIGHT: f32 = 1.0;
 /// Longest duration of a drop, seconds.
 const DROP_SECONDS: f32 = 10.0;
-/// Speed and duration of the wall hit, m/s and seconds.
+/// Speed of the ragdoll in the wall hit, m/s, and duration of the hit, seconds.
 const WALL_SPEED: f32 = 15.0;
 const WALL_SECONDS: f32 = 3.0;
 
 /// Result of [`drop_test`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropReport {
-    /// The worst value of each figure over the 8 drops; a time is `None` if the event is missing in any drop.
+    /// The worst value of each figure over the 8 drops; a time is `None` if any drop lacks the event.
     pub drop: FallQuality,
     /// Figures of each drop.
     pub drops: Vec<FallQuality>,
@@ -35,18 +35,18 @@ pub struct DropReport {
 /// Course of a drop onto the plane y = 0: poses of the bodies, and time in the air.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fallen {
-    /// World poses of the bodies, four times a second from the release on, and the final ones.
+    /// World poses of the bodies, four times a second from the release on, and at the end.
     pub poses: Vec<Vec<Transform>>,
-    /// Time after the first calm (every body below 0.3 m/s after something touched the floor) in which no body was within 1 cm of
-    /// the floor, seconds.
+    /// Time in which no body was within 1 cm of the floor, seconds, counted from the first calm: every body below 0.3
+    /// m/s after a body touched the floor.
     pub airborne_s: f32,
     has_touched: bool,
     is_calm: bool,
 }
 
-/// Time between two poses of a [`Fallen`], in steps of 1/60 s.
+/// Number of steps of 1/60 s between two poses of a [`Fallen`].
 const STEPS_A_POSE: u32 = 15;
-/// Distance from the floor below which a body is not in the air, metres.
+/// Distance from the floor above which a body counts as in the air, metres.
 const IN_THE_AIR: f32 = 0.01;
 
 impl Fallen {
@@ -76,7 +76,7 @@ impl Fallen {
 /// Drops the ragdoll from 1 m in eight orientations and throws it at a wall at 15 m/s.
 ///
 /// # Panics
-/// If `build` could not have produced the definition: no bodies, masses that are not positive.
+/// If `build` could not have produced the definition: for instance no bodies, or masses that are not positive.
 pub fn drop_test(def: &RagdollDef) -> DropReport {
     let (drops, falls): (Vec<_>, Vec<_>) =
         releases().into_iter().map(|(turn, spin)| drop_once(def, turn, spin)).unzip();
@@ -86,9 +86,9 @@ pub fn drop_test(def: &RagdollDef) -> DropReport {
     DropReport { drop, drops, wall, falls, verdict, reasons }
 }
 
-/// Orientations and angular velocities (rad/s) of the eight drops: standing, on the face, on the back, on each side, on
-/// the head, and two that tumble. The drop on the head is slightly tilted: a symmetric body with a large head can
-/// balance upright on it for seconds, which says nothing about how it settles.
+/// Returns the orientations and angular velocities (rad/s) of the eight drops: standing, on the face, on the back, on
+/// each side, on the head, and two that tumble. The drop on the head is slightly tilted: a symmetric body with a large
+/// head can balance upright on it for seconds, independent of how well it settles.
 fn releases() -> [(Rotation, Vec3); 8] {
     let turned = |axis, degrees: f32| Rotation::from_axis_angle(axis, degrees.to_radians());
     let askew = turned(Vec3::Z, 40.0) * turned(Vec3::X, 25.0);
@@ -104,7 +104,7 @@ fn releases() -> [(Rotation, Vec3); 8] {
     ]
 }
 
-/// A static half-space with its surface at y = 0.
+/// Returns a static half-space with its surface at y = 0.
 fn floor() -> BodyDef {
     BodyDef { kind: BodyKind::Static, shapes: vec![ShapeDef::new(Shape::HalfSpace)], ..BodyDef::default() }
 }
@@ -153,7 +153,7 @@ fn released(world: &mut World, def: &RagdollDef, turn: Rotation, spin: Vec3, spe
     Ragdoll::spawn(world, def, &states, &BodySettings::default())
 }
 
-/// States of the bodies in the bind pose, moving as one rigid body that spins about its pelvis.
+/// Returns the states of the bodies in the bind pose, moving as one rigid body that spins about its pelvis.
 pub(super) fn carried(
     def: &RagdollDef,
     world_from_character: Transform,
@@ -174,12 +174,12 @@ pub(super) fn carried(
         .collect()
 }
 
-/// Steps until the ragdoll sleeps, or the time is over.
+/// Steps until the ragdoll sleeps, or the time is over, and returns the figures.
 pub(super) fn measure(world: &mut World, def: &RagdollDef, ragdoll: &Ragdoll, seconds: f32) -> FallQuality {
     measure_seen(world, def, ragdoll, seconds, |_, _| ())
 }
 
-/// [`measure`] that also passes the world and the step number to a callback after each step.
+/// Like [`measure`]; also passes the world and the step number to a callback after each step.
 fn measure_seen(
     world: &mut World,
     def: &RagdollDef,
@@ -198,7 +198,7 @@ fn measure_seen(
         see(step, world);
         let all = ragdoll.bodies.iter().all(|&body| !world.is_awake(body));
         asleep = if all { asleep + 1 } else { 0 };
-        // The figures at rest are those of the first half second of rest.
+        // The figures at rest cover the first half second of rest.
         if asleep > steps_of_rest {
             break;
         }
@@ -206,7 +206,7 @@ fn measure_seen(
     meter.quality()
 }
 
-/// The worse value of each figure.
+/// Returns the worse value of each figure.
 pub(super) fn worse(a: FallQuality, b: FallQuality) -> FallQuality {
     let later = |a: Option<f32>, b: Option<f32>| Some(max(a?, b?));
     FallQuality {

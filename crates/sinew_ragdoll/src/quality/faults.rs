@@ -9,9 +9,9 @@ use sinew_anim::{LocalTransform, Rig, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, min};
 use sinew_physics::{BodyKind, OverlapWith, PenetrationOf, Probe, Shape, World, WorldDef};
 
-/// Number of joints with skin above which a single body is not a ragdoll: few one-part figures have as many.
+/// Number of joints with skin from which a single body is not a ragdoll: few one-part figures have as many.
 const MANY_JOINTS: usize = 8;
-/// Number of frames from one look at an animated character to the next.
+/// Number of frames between two checks of an animated character.
 const INSIDE_EVERY: usize = 5;
 /// Number of joints with skin up to which a single body is correct.
 const FEW_JOINTS: usize = 2;
@@ -19,9 +19,9 @@ const FEW_JOINTS: usize = 2;
 /// A fault, and the best verdict that it allows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// The best verdict on a ragdoll that has it.
+    /// Best verdict on a ragdoll that has the fault.
     pub at_most: Verdict,
-    /// Reason and remedy, a sentence.
+    /// Reason and remedy, one sentence.
     pub reason: String,
 }
 
@@ -37,7 +37,7 @@ impl Fault {
     }
 }
 
-/// Faults independent of the fall: a rig of many joints with one body, left and right on the same side.
+/// Returns faults independent of the fall: a rig of many joints with one body, left and right on the same side.
 ///
 /// # Panics
 /// If the definition has no body.
@@ -63,7 +63,7 @@ fn one_body(rig: &Rig, def: &RagdollDef) -> Option<Fault> {
     Some(Fault::new(at_most, reason))
 }
 
-/// Finding if limb roots of a human lie on each other's side, or both on one side.
+/// Returns a fault if limb roots of a human are on each other's side, or both on one side.
 fn sides(def: &RagdollDef) -> Option<Fault> {
     let place = |role: &str| {
         let body = def.bodies.iter().position(|body| body.role == role)?;
@@ -97,7 +97,8 @@ fn sides(def: &RagdollDef) -> Option<Fault> {
     found.into_iter().next()
 }
 
-/// Faults of a baked character: out of the world, inside its static bodies, never still, still upright, or drawn at another size during a get-up.
+/// Returns the faults of a baked character: out of the world, inside its static bodies, never still, still upright, or
+/// drawn at another size during a get-up.
 ///
 /// # Panics
 /// If the bake does not belong to the input.
@@ -108,8 +109,8 @@ pub fn faults_of_bake(input: &BakeInput<'_>, baked: &Baked) -> Vec<Fault> {
     fault.into_iter().chain(changes_size(input, baked)).collect()
 }
 
-/// Fault if a character is drawn at another size during a get-up than in the clip before: the clip scales its bones and
-/// the get-up does not.
+/// Returns a fault if a character is drawn at another size during a get-up than in the clip before: the clip scales its
+/// bones and the get-up does not.
 fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let first = &input.character.ragdoll.bodies[0];
     let mut model = Vec::new();
@@ -136,7 +137,7 @@ fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     })
 }
 
-/// Time (seconds) and index of the first body of a falling character that is far below all static geometry.
+/// Returns time (seconds) and index of the first body of a falling character that is far below all static geometry.
 ///
 /// # Panics
 /// If the bake does not belong to the input.
@@ -169,8 +170,8 @@ fn fell_out(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     Some(Fault::new(Verdict::Bad, reason))
 }
 
-/// Fault if a body starts deep in static geometry, or if the pelvis of a character that its clips move is inside it
-/// later.
+/// Returns a fault if a body starts deep in static geometry, or if the pelvis of a character that its clips move is
+/// inside static geometry later.
 fn inside(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let (rig, def) = (&input.character.rig, &input.character.ragdoll);
     let mut world = World::new(WorldDef::default());
@@ -209,7 +210,7 @@ fn inside(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     Some(Fault::new(Verdict::Bad, reason))
 }
 
-/// Height of the lowest point of all static geometry, metres; `None` without any.
+/// Returns the height of the lowest point of all static geometry, metres; `None` without any.
 fn lowest_of(input: &BakeInput<'_>) -> Option<f32> {
     let mut world = World::new(WorldDef::default());
     let standing =
@@ -235,8 +236,8 @@ fn never_still(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     })
 }
 
-/// If the character stays upright when it goes limp, the input of a bake with the weakest forward
-/// [push](BakeInput::topple) that fells it, if one exists.
+/// Returns the input of a bake with the weakest forward [push](BakeInput::topple) that fells the character. `None` if
+/// the character does not stay upright when it goes limp, or no push fells it.
 ///
 /// # Panics
 /// If the bake does not belong to the input.
@@ -251,7 +252,7 @@ pub fn toppled<'a>(input: &BakeInput<'a>, baked: &Baked) -> Option<BakeInput<'a>
     })
 }
 
-/// The ragdoll has a body taller than wide whose highest part at rest is about as high as at release.
+/// Returns a fault if a body taller than wide has its highest part at rest about as high as at release.
 fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let def = &input.character.ragdoll;
     let floor = input.world_from_character.translation.y;

@@ -1,4 +1,4 @@
-//! Many random falls: pose × velocity × terrain.
+//! Simulates many random falls: pose × velocity × terrain.
 
 use super::drop_test::{carried, measure, worse};
 use super::{FallQuality, Verdict, judge};
@@ -13,7 +13,7 @@ use std::sync::{Mutex, PoisonError};
 const SECONDS: f32 = 10.0;
 /// Share of a joint's range that a random pose uses.
 const POSE_SHARE: f32 = 0.6;
-/// Tries to find a pose in which no two bodies overlap.
+/// Number of tries to find a pose in which no two bodies overlap.
 const TRIES: u32 = 16;
 
 /// Result of [`gate`].
@@ -62,7 +62,7 @@ impl Bar {
     /// All bars.
     pub const ALL: [Self; 3] = [Self::Finite, Self::EnergyGain, Self::JointGap];
 
-    /// The figure's key in reports.
+    /// Returns the figure's key in reports.
     pub fn key(self) -> &'static str {
         match self {
             Self::Finite => "nan",
@@ -71,7 +71,7 @@ impl Bar {
         }
     }
 
-    /// The figure, and whether it meets the bar; NaN does not.
+    /// Returns the figure, and the side of the bar on which it is; NaN does not meet the bar.
     fn of(self, quality: &FallQuality) -> (f32, Side) {
         let (value, holds) = match self {
             Self::Finite => (quality.nan as f32, quality.nan == 0),
@@ -90,7 +90,7 @@ enum Side {
 }
 
 impl Default for GateReport {
-    /// Report of zero falls.
+    /// Returns the report of zero falls.
     fn default() -> Self {
         Self {
             spawns: 0,
@@ -129,7 +129,7 @@ impl GateReport {
     }
 
     fn of_fall(spawn: u64, quality: FallQuality) -> Self {
-        // A fall has no wall hit, so its own figures serve for both.
+        // A fall has no wall hit, so its own figures serve as both.
         let (verdict, reasons) = judge(&quality, &quality);
         let is = |wanted: Verdict| usize::from(verdict == wanted);
         let misses = Bar::ALL.into_iter().filter_map(|bar| match bar.of(&quality) {
@@ -154,13 +154,13 @@ pub fn gate(def: &RagdollDef, spawns: usize) -> GateReport {
     gate_on(def, 0..spawns as u64, &Serial)
 }
 
-/// The falls with these numbers, on the threads of `runner`. The report does not depend on the runner.
+/// Simulates the falls with these numbers, on the threads of `runner`. The report does not depend on the runner.
 pub fn gate_on(def: &RagdollDef, spawns: core::ops::Range<u64>, runner: &dyn TaskRunner) -> GateReport {
     let count = usize::try_from(spawns.end.saturating_sub(spawns.start)).unwrap_or(usize::MAX);
     let queue = Mutex::new(spawns);
     let fallen = Mutex::new(Vec::new());
     runner.run(count, &|| {
-        // A free thread starts the next fall: some last three times as long as others.
+        // A free thread starts the next fall: some falls last three times as long as others.
         loop {
             let next = queue.lock().unwrap_or_else(PoisonError::into_inner).next();
             let Some(spawn) = next else { break };
@@ -186,7 +186,7 @@ pub fn random_fall(def: &RagdollDef, seed: u64) -> FallQuality {
     measure(&mut world, def, &ragdoll, SECONDS)
 }
 
-/// A floor with nothing, a slope, stairs, or scattered boxes on it: static bodies, at most 1.1 m high except slopes.
+/// Returns a floor with nothing, a slope, stairs, or scattered boxes: static bodies, at most 1.1 m high except slopes.
 pub fn random_ground(random: &mut Random) -> Vec<BodyDef> {
     let fixed = |position: Vec3, rotation: Rotation, shape: Shape| BodyDef {
         kind: BodyKind::Static,
@@ -221,7 +221,7 @@ pub fn random_ground(random: &mut Random) -> Vec<BodyDef> {
     ground
 }
 
-/// A random pose within the limits, with a random position and motion.
+/// Returns a random pose within the limits, with a random position and motion.
 fn posed(def: &RagdollDef, random: &mut Random) -> Vec<BodyState> {
     let turn = random.rotation();
     let (spin, speed) = (random.in_cube() * 6.0, random.in_cube() * 5.0);
@@ -243,8 +243,8 @@ fn posed(def: &RagdollDef, random: &mut Random) -> Vec<BodyState> {
     states
 }
 
-/// A random pose within the limits, in which no two bodies that are meant to collide overlap, unless that is hard to
-/// find: poses of the bodies in character space.
+/// Returns a random pose within the limits in which no two bodies that are meant to collide overlap, if one is found in
+/// a few tries: poses of the bodies in character space.
 pub fn random_pose(def: &RagdollDef, random: &mut Random) -> Vec<Transform> {
     let mut shrink = POSE_SHARE;
     let mut pose = turned_joints(def, random, shrink);
@@ -258,7 +258,7 @@ pub fn random_pose(def: &RagdollDef, random: &mut Random) -> Vec<Transform> {
     pose
 }
 
-/// Body poses in character space with joints at random angles, within a share of their ranges.
+/// Returns body poses in character space with joints at random angles, within a share of their ranges.
 fn turned_joints(def: &RagdollDef, random: &mut Random, share: f32) -> Vec<Transform> {
     let mut pose: Vec<_> = def.bodies.iter().map(|body| body.character_from_body).collect();
     for joint in &def.joints {
@@ -271,7 +271,7 @@ fn turned_joints(def: &RagdollDef, random: &mut Random, share: f32) -> Vec<Trans
     pose
 }
 
-/// True if two bodies that are meant to collide overlap.
+/// Returns true if two bodies that are meant to collide overlap.
 fn overlaps(def: &RagdollDef, pose: &[Transform]) -> bool {
     let states: Vec<_> =
         pose.iter().map(|&world_from_body| BodyState { world_from_body, ..BodyState::default() }).collect();

@@ -23,7 +23,7 @@ pub struct QualityMeter {
     calm_since: Option<f32>,
     /// Deepest penetration of the bodies in the world in the last step, metres.
     penetration: f32,
-    /// True if all bodies slept then and none has moved since.
+    /// True if all bodies slept at some time and none has moved since.
     asleep: bool,
 }
 
@@ -31,7 +31,7 @@ impl QualityMeter {
     /// Reserves memory for falls of about `seconds` of one ragdoll.
     pub fn new(def: &RagdollDef, seconds: f32) -> Self {
         let samples = (max(seconds, 0.0) * 60.0) as usize * def.joints.len();
-        // The estimate is the caller's; a wrong one must cost time, not memory.
+        // A wrong estimate of the caller costs time, not memory.
         let samples = samples.min(1 << 20);
         Self {
             quality: FallQuality::default(),
@@ -46,7 +46,7 @@ impl QualityMeter {
         }
     }
 
-    /// Call when a ragdoll has been spawned, before the step.
+    /// Begins the measurement of a fall. Call this after a ragdoll was spawned, before the step.
     pub fn went_limp(&mut self) {
         self.calm_steps = 0;
         self.calm_since = None;
@@ -58,23 +58,23 @@ impl QualityMeter {
         self.quality.work_in_j += work;
     }
 
-    /// Call when the character is animated again.
+    /// Records that the character is animated again.
     pub fn got_up(&mut self, world: &World) {
         self.quality.up_s.get_or_insert(world.time() as f32);
     }
 
-    /// Call before a step, after all pushes.
+    /// Records the energy before a step. Call this after all pushes.
     pub fn before_step(&mut self, world: &World) {
         self.before = world.energy();
     }
 
-    /// Call after a step, with the bodies still in the world.
+    /// Measures a step. Call this after the step, with the bodies still in the world.
     pub fn after_step(&mut self, world: &World, ragdoll: &Ragdoll) {
         self.measure_motion(world, ragdoll);
         self.measure_rest(world, ragdoll, world.time() as f32);
     }
 
-    /// Call after a step of driven bodies, which are not at rest: measures everything except rest.
+    /// Measures a step of driven bodies, except the figures of rest, because driven bodies are not at rest.
     pub fn after_driven_step(&mut self, world: &World, ragdoll: &Ragdoll) {
         self.measure_motion(world, ragdoll);
     }
@@ -139,7 +139,7 @@ impl QualityMeter {
         }
     }
 
-    /// The figures so far.
+    /// Returns the figures so far.
     pub fn quality(&self) -> FallQuality {
         let mut quality = self.quality;
         let mut sorted = self.gaps.clone();
@@ -154,7 +154,7 @@ fn all_sleep(world: &World, ragdoll: &Ragdoll) -> bool {
     ragdoll.bodies.iter().all(|&body| !world.is_awake(body))
 }
 
-/// 99th percentile (nearest rank) and largest value; 0 without samples.
+/// Returns the 99th percentile (nearest rank) and the largest value; 0 without samples.
 fn p99_and_max(samples: &mut [f32]) -> (f32, f32) {
     samples.sort_unstable_by(f32::total_cmp);
     let Some(&largest) = samples.last() else { return (0.0, 0.0) };

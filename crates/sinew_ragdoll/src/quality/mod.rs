@@ -32,18 +32,18 @@ pub use verdict::{Verdict, judge, judge_bake};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FallQuality {
     /// Largest rise of kinetic and potential energy of all dynamic bodies within one step, minus the work of motors,
-    /// pins and kinematic bodies in it, as a share of the kinetic energy before it, or of 1 J per kg of the character
-    /// if that is more. Pushes happen between steps and do not count.
+    /// pins and kinematic bodies in this step. It is a share of the kinetic energy before the step, or of 1 J per kg of
+    /// the character if that is more. Pushes happen between steps and do not count.
     pub energy_gain_max: f32,
     /// Work of the pushes, of motors, pins and kinematic bodies, J.
     pub work_in_j: f32,
     /// Largest distance between the two anchors of a joint, metres.
     pub joint_gap_max_m: f32,
-    /// 99th percentile over joints and steps, metres.
+    /// 99th percentile of this distance over joints and steps, metres.
     pub joint_gap_p99_m: f32,
     /// Largest angle beyond a joint limit, degrees.
     pub limit_overshoot_max_deg: f32,
-    /// 99th percentile over joints and steps, degrees.
+    /// 99th percentile of this angle over joints and steps, degrees.
     pub limit_overshoot_p99_deg: f32,
     /// Deepest overlap with a static body while limp, metres.
     pub penetration_max_m: f32,
@@ -51,18 +51,18 @@ pub struct FallQuality {
     pub penetration_rest_max_m: f32,
     /// Deepest overlap of two bodies of the character that are meant to collide and that no joint connects, metres.
     pub nonadjacent_overlap_max_m: f32,
-    /// First contact with the world after the character went limp.
+    /// Time of the first contact with the world after the character went limp.
     pub first_contact_s: Option<f32>,
     /// Start of the first half second in which every body is below 0.05 rad/s and 2 cm/s.
     pub settled_s: Option<f32>,
-    /// First time the character was animated again.
+    /// Time when the character was first animated again.
     pub up_s: Option<f32>,
     /// Fastest spin of a body once settled, rad/s.
     pub settled_omega_max: Option<f32>,
-    /// First time that all bodies slept.
+    /// Time when all bodies first slept.
     pub asleep_s: Option<f32>,
     /// Time from the first moment when every body was below 0.3 m/s to sleep, seconds.
     pub calm_to_asleep_s: Option<f32>,
-    /// Number of bodies with a non-finite state, counted once per step.
+    /// Number of bodies with a non-finite state, summed over the steps.
     pub nan: u32,
 }

@@ -1,4 +1,4 @@
-//! Doubts about a guessed size or mass.
+//! Doubts about an inferred size or mass.
 
 use super::{FallQuality, Verdict};
 use crate::def::RagdollDef;
@@ -11,22 +11,22 @@ const HUMAN: core::ops::RangeInclusive<f32> = 3.0..=300.0;
 const HUMAN_BUILD: core::ops::RangeInclusive<f32> = 10.0..=80.0;
 /// Height range of a human with adult proportions, metres.
 const ADULT: core::ops::RangeInclusive<f32> = 0.9..=2.6;
-/// Mass range of a creature, kg: from a small bird to a bull or the largest bears. Heavier ones are elephants, whales
-/// and, far more often, files drawn in another unit: a wolf of 2.5 t, a wasp of 1.6 t.
+/// Mass range of a creature, kg: from a small bird to a bull or the largest bears. Heavier creatures are elephants,
+/// whales and, far more often, files drawn in another unit: a wolf of 2.5 t, a wasp of 1.6 t.
 const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=1000.0;
 
-/// Doubt about an estimated mass that hardly any body has. If the file's unit is guessed, the unit is usually wrong,
+/// Doubt about an estimated mass that hardly any body has. If the file's unit was guessed, the guess is usually wrong,
 /// and a verdict on the ragdoll means little.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
     /// Reason, a sentence.
     pub reason: String,
-    /// Scale at which the heaviest of its kind would have this mass, at most 1.
+    /// Scale at which the heaviest body of its kind would have this mass, at most 1.
     size: f32,
 }
 
 impl Doubt {
-    /// Doubt about a ragdoll's mass or size; `None` if such bodies exist.
+    /// Returns a doubt about a ragdoll's mass or size; `None` if such bodies exist.
     pub fn of(def: &RagdollDef) -> Option<Self> {
         let (kind, range) = kin(def);
         if range.contains(&def.total_mass) {
@@ -42,7 +42,8 @@ impl Doubt {
         })
     }
 
-    /// Doubt about a human of a mass that humans have: for its height, or its height for its build.
+    /// Returns a doubt about a human of plausible mass: about this mass for the height, or about the height for the
+    /// proportions.
     fn of_human(def: &RagdollDef) -> Option<Self> {
         let (mass, height) = (def.total_mass, def.height);
         let doubt = |why: String| {
@@ -66,7 +67,7 @@ impl Doubt {
         None
     }
 
-    /// Doubt about a creature of a mass that creatures have: for how long, high or wide it is.
+    /// Returns a doubt about a creature of plausible mass: the mass is too large for its longest side.
     fn of_build(def: &RagdollDef) -> Option<Self> {
         let boxes = def.bodies.iter().map(|body| body.shape.aabb(&body.character_from_body));
         let corners = boxes.map(|own| (own.min, own.max));
@@ -85,11 +86,11 @@ impl Doubt {
         Some(Self { reason, size: 1.0 })
     }
 
-    /// Verdict and reasons for a ragdoll in doubt, from drops or bakes: `judge` judges the figures of a ragdoll without
-    /// doubt. The verdict is at most `usable`, and the doubt is the first reason. The bars are in metres and seconds
-    /// for real bodies, so a heavier ragdoll is judged at the scale where the heaviest real body would have its mass:
-    /// lengths scale with the size and times with its square root. Figures that miss their bar unscaled are still
-    /// listed among the reasons.
+    /// Judges a ragdoll in doubt, from drops or bakes, and returns verdict and reasons; `judge` judges the figures of a
+    /// ragdoll without doubt. The verdict is at most `usable`, and the doubt is the first reason. The bars are in
+    /// metres and seconds for real bodies, so a heavier ragdoll is judged at the scale where the heaviest real body
+    /// would have its mass: lengths scale with the size and times with its square root. Figures that miss their bar
+    /// unscaled are still listed among the reasons.
     pub fn judge<const N: usize>(
         &self,
         figures: [FallQuality; N],
@@ -102,7 +103,7 @@ impl Doubt {
     }
 }
 
-/// The figures of the same fall scaled to a body `size` times as large.
+/// Returns the figures of the same fall scaled to a body `size` times as large.
 fn at_size(quality: FallQuality, size: f32) -> FallQuality {
     let time = |seconds: Option<f32>| seconds.map(|seconds| seconds * size.sqrt());
     FallQuality {
@@ -117,13 +118,13 @@ fn at_size(quality: FallQuality, size: f32) -> FallQuality {
     }
 }
 
-/// Name of the kind a ragdoll is taken for, and the mass range of such bodies.
+/// Returns the name of the ragdoll's presumed kind, and the mass range of such bodies.
 fn kin(def: &RagdollDef) -> (&'static str, core::ops::RangeInclusive<f32>) {
     let human = def.bodies.iter().any(|body| body.role == "hips");
     if human { ("human", HUMAN) } else { ("creature", CREATURE) }
 }
 
-/// A mass with its unit, to three digits.
+/// Returns a mass with its unit, to three digits.
 fn in_words(kg: f32) -> String {
     let (value, unit) = match kg {
         kg if kg >= 1000.0 => (kg / 1000.0, "t"),

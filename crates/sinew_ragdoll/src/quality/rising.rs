@@ -10,8 +10,8 @@ use sinew_math::{Affine, Vec3, max, min};
 /// Figures of getting up, metres; `None` if a character does not get up, or has no feet with skin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RisingQuality {
-    /// Largest slide of a foot over the floor while it stands flat on it, over the stances of all get-ups. Level floors
-    /// only. A foot that a lying or sitting character draws in bears nothing and does not count.
+    /// Largest slide of a foot over the floor while the foot is flat on it, over the stances of all get-ups. Only on
+    /// level floors. A foot that a lying or sitting character draws in bears nothing and does not count.
     pub foot_slide_m: Option<f32>,
     /// Largest motion of a body in the frame of a hand-over beyond its motion in the frames before and after: from
     /// bodies to a clip, and from a get-up to the next clip.
@@ -31,7 +31,7 @@ pub fn measure_rising(input: &BakeInput<'_>, baked: &Baked, floor: Option<f32>) 
 }
 
 impl RisingQuality {
-    /// Figures that miss their bars, for a character of this height (metres).
+    /// Returns the figures that miss their bars, for a character of this height (metres).
     pub fn faults(&self, height: f32) -> Vec<Fault> {
         let mut faults = Vec::new();
         let help = "--clips FILE brings a clip to get up by that is made for this body";
@@ -81,7 +81,7 @@ fn foot_slide(def: &CharacterDef, baked: &Baked, floor: f32) -> Option<f32> {
             if let Some((before, sum)) = stance {
                 let both = before.iter().zip(&places).filter(|(a, b)| is_on(**a) && is_on(**b));
                 let ways = both.map(|(a, b)| ((b.x - a.x) * (b.x - a.x) + (b.z - a.z) * (b.z - a.z)).sqrt());
-                // A foot that rolls or rotates has a point that does not move.
+                // One point of a foot that rolls or rotates does not move.
                 slide = sum + ways.reduce(min).unwrap_or(0.0);
             }
             farthest = Some(max(farthest.unwrap_or(0.0), slide));

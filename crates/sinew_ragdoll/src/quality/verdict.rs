@@ -15,7 +15,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// `good`, `usable` or `bad`.
+    /// Returns `good`, `usable` or `bad`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Good => "good",
@@ -25,12 +25,12 @@ impl Verdict {
     }
 }
 
-/// A limit on one figure.
+/// Limit of one figure.
 struct Limit {
     what: &'static str,
     value: Option<f32>,
     good: f32,
-    /// Beyond this value the ragdoll is bad; infinite if the figure alone never makes it bad.
+    /// Value beyond which the ragdoll is bad; infinite if the figure alone never makes it bad.
     usable: f32,
 }
 
@@ -81,7 +81,7 @@ pub fn judge_bake(quality: &FallQuality) -> (Verdict, Vec<String>) {
     ])
 }
 
-/// Limits that must hold of a ragdoll's joints wherever it is.
+/// Returns the limits of a ragdoll's joints, which hold in any world.
 fn of_joints(q: &FallQuality) -> [Limit; 5] {
     [
         Limit::of("bodies with a state that is not finite", q.nan as f32, 0.0, 0.0),
@@ -102,7 +102,7 @@ fn verdict_of(limits: impl IntoIterator<Item = Limit>) -> (Verdict, Vec<String>)
                 Verdict::min(verdict, if usable < f32::INFINITY { Verdict::Bad } else { Verdict::Usable });
             continue;
         };
-        // Comparisons with NaN are false, so a poisoned figure is bad.
+        // Comparisons with NaN are false, so a figure that is NaN is bad.
         if value <= good {
             continue;
         }

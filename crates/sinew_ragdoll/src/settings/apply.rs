@@ -14,7 +14,7 @@ use sinew_anim::{Rig, Take};
 use sinew_math::{Range, SwingTwistLimit};
 use sinew_physics::{JointKind, Shape};
 
-/// Builds with the settings applied; the analysis is final.
+/// Builds with the settings applied; the analysis is not changed any more.
 pub(super) fn build(
     rig: &Rig,
     analysis: &RigAnalysis,
@@ -75,7 +75,7 @@ impl<'a> Wishes<'a> {
         Ok(wishes)
     }
 
-    /// Bodies with that name.
+    /// Returns the bodies with that name.
     fn named(&self, name: &str, place: &str) -> Result<Vec<usize>, SettingsError> {
         let is = |body: &usize| named(name, &self.names[*body][0], &self.names[*body][1]);
         let found: Vec<usize> = (0..self.names.len()).filter(is).collect();
@@ -86,7 +86,7 @@ impl<'a> Wishes<'a> {
         Ok(found)
     }
 
-    /// Pairs of bodies, the smaller index first.
+    /// Returns pairs of bodies, the smaller index first.
     fn pairs(&self, pairs: &[[String; 2]], key: &str) -> Result<Vec<(usize, usize)>, SettingsError> {
         let mut out = Vec::new();
         for (index, [a, b]) in pairs.iter().enumerate() {
@@ -115,7 +115,7 @@ impl<'a> Wishes<'a> {
         Ok(())
     }
 
-    /// The shape of a body: `fit` is the build's, `other` computes that of another kind.
+    /// Returns the shape of a body: `fit` is the build's shape, `other` computes a shape of another kind.
     fn shape(&self, body: usize, fit: Fit, other: &dyn Fn(ShapeChoice) -> Fit) -> Fit {
         let wish = &self.bodies[body];
         let mut fit = match wish.shape {
@@ -135,13 +135,13 @@ impl<'a> Wishes<'a> {
         fit
     }
 
-    /// Masses from the settings; with a total, the other bodies share the rest.
+    /// Sets masses from the settings; with a total, the other bodies share the rest.
     fn weigh(&self, def: &mut RagdollDef, total: Option<f32>) {
         let wanted = |body: usize| self.bodies[body].mass;
         let given: f32 = (0..def.bodies.len()).filter_map(wanted).sum();
         let free: f32 =
             (0..def.bodies.len()).filter(|&b| wanted(b).is_none()).map(|b| def.bodies[b].mass.mass).sum();
-        // If the given masses exceed the total, the other bodies keep theirs.
+        // If the given masses exceed the total, the other bodies keep their masses.
         let rest = total.map(|total| (total - given) / free).filter(|rest| *rest > 0.0).unwrap_or(1.0);
         let rest = if given > 0.0 { rest } else { 1.0 };
         for body in 0..def.bodies.len() {
@@ -163,7 +163,7 @@ impl<'a> Wishes<'a> {
     }
 }
 
-/// Joint kind with the requested ranges.
+/// Returns the joint kind with the requested ranges.
 fn kind(kind: JointKind, wish: &BoneSettings) -> JointKind {
     const SHUT: Range = Range::new(0.0, 0.0);
     const OPEN: Range = Range::new(-PI, PI);
@@ -196,7 +196,7 @@ fn kind(kind: JointKind, wish: &BoneSettings) -> JointKind {
     }
 }
 
-/// Merges two settings of a bone: the later one wins. With `mirror`, ranges are the left side's applied to the right:
+/// Merges two settings of a bone: the later one wins. With `mirror`, ranges of the left side are applied to the right:
 /// swing about z and twist change sign.
 fn merged(old: BoneSettings, new: &BoneSettings, mirror: bool) -> BoneSettings {
     let turned = |range: Range| if mirror { Range::new(-range.hi, -range.lo) } else { range };

@@ -7,7 +7,7 @@ use sinew_anim::skinning::skin_vertices;
 use sinew_anim::{JointIdx, Rig};
 use sinew_math::{Rotation, Transform, Vec3, max, min};
 
-/// Analysis with the requested axis and unit.
+/// Returns the analysis with the requested axis and unit.
 pub(super) fn placed(
     rig: &Rig,
     mut analysis: RigAnalysis,
@@ -29,7 +29,7 @@ pub(super) fn placed(
     }
 }
 
-/// Analysis with bodies for the requested bones.
+/// Returns the analysis with bodies for the requested bones.
 pub(super) fn settled(
     rig: &Rig,
     mut analysis: RigAnalysis,
@@ -74,13 +74,13 @@ fn stand_along(rig: &Rig, analysis: &mut RigAnalysis, up: Vec3) {
     }
 }
 
-/// Indices of the kept bones with that name: a role, a role of both sides, or a joint name.
+/// Returns the indices of the kept bones with that name: a role, a role of both sides, or a joint name.
 fn kept_named(rig: &Rig, analysis: &RigAnalysis, name: &str) -> Vec<usize> {
     let is = |bone: &KeptBone| named(name, &bone.role.name(), &joint_name(rig, bone.joint));
     (0..analysis.kept.len()).filter(|&index| is(&analysis.kept[index])).collect()
 }
 
-/// True if a setting's name refers to a bone of this role and name: `upperArm` means both sides.
+/// Returns true if a setting's name refers to a bone of this role and name: `upperArm` means both sides.
 pub(super) fn named(name: &str, role: &str, bone: &str) -> bool {
     let without_side = ["left", "right"].iter().find_map(|side| role.strip_prefix(side));
     let both = without_side.is_some_and(|part| {
@@ -151,7 +151,7 @@ fn keep(rig: &Rig, analysis: &mut RigAnalysis, name: &str, place: &str) -> Resul
     Ok(())
 }
 
-/// Makes a separate bone of a joint that another bone carried, with its descendants.
+/// Makes a separate bone of a joint that belonged to another bone, with the joint's descendants.
 fn insert(rig: &Rig, analysis: &mut RigAnalysis, joint: JointIdx, carrier: usize) {
     let is_below = |mut at: JointIdx| loop {
         if at == joint {
@@ -203,7 +203,7 @@ fn unknown(rig: &Rig, analysis: &RigAnalysis, name: &str, place: &str) -> Settin
     no_bone(name, &known, place)
 }
 
-/// Error for a name that no bone has; `known` are the existing names.
+/// Returns the error for a name that no bone has; `known` are the existing names.
 pub(super) fn no_bone(name: &str, known: &[String], place: &str) -> SettingsError {
     let instead = instead(name, known.iter().map(String::as_str));
     SettingsError::at(place, format!("no bone or role `{}`; {instead}", name.escape_debug()))

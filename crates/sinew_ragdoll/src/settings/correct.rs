@@ -1,4 +1,4 @@
-//! Settings that supply what the analysis cannot infer: roles, and joints that are not part of the body.
+//! Settings that supply facts that the analysis cannot infer: roles, and joints that are not part of the body.
 
 use super::bodies::placed;
 use super::{Settings, SettingsError, instead};
@@ -6,7 +6,7 @@ use crate::build::joint_name;
 use sinew_anim::roles::{Correction, CorrectionError, RigAnalysis, analyze_corrected};
 use sinew_anim::{JointIdx, Rig};
 
-/// The correction that the settings request. If something is set twice, the later one wins.
+/// Returns the correction that the settings request. If a value is set twice, the later setting wins.
 pub(super) fn correction(rig: &Rig, settings: &Settings) -> Result<Correction, SettingsError> {
     let mut correction = Correction::default();
     for (name, bone) in &settings.bones {
@@ -26,7 +26,7 @@ fn place_of_role(bone: &str) -> String {
     format!("bones.{bone}.role")
 }
 
-/// The analysis of the rig with the requested roles, axis and unit.
+/// Returns the analysis of the rig with the requested roles, axis and unit.
 pub(super) fn corrected(
     rig: &Rig,
     seen: &Rig,
@@ -53,7 +53,7 @@ pub(super) fn corrected(
     placed(seen, analyzed, settings)
 }
 
-/// Joints with that name, at least one.
+/// Returns the joints with that name, at least one.
 fn joints_named(rig: &Rig, name: &str, place: &str) -> Result<Vec<JointIdx>, SettingsError> {
     let names: Vec<String> = (0..rig.joints.len()).map(|joint| joint_name(rig, joint)).collect();
     let found: Vec<JointIdx> = (0..names.len()).filter(|&joint| names[joint] == name).collect();

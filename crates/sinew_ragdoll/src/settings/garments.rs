@@ -20,40 +20,40 @@ pub enum GarmentSource {
     Listed(Vec<GarmentSettings>),
 }
 
-/// Garment as settings describe it.
+/// A garment as described by settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GarmentSettings {
-    /// Names of the first joints of its chains, side by side. A name that ends in `*` stands for all joints with that
-    /// prefix that do not hang on another such joint, in spatial order.
+    /// Names of the first joints of the garment's chains, side by side. A name that ends in `*` matches all joints with
+    /// that prefix that are not descendants of another match, in spatial order.
     pub chains: Vec<String>,
     /// Mesh of the garment, if it has no chains.
     pub mesh: Option<MeshSettings>,
-    /// True: the last chain is sewn to the first. `None`: sewn if they form a ring.
+    /// True if the last chain is sewn to the first. `None`: sewn if the chains form a ring.
     pub closed: Option<bool>,
     /// Name and cloth of the garment; its columns are ignored.
     pub cloth: Garment,
 }
 
-/// Mesh of the character that is a garment, as settings describe it.
+/// A mesh of the character that is a garment, as described by settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshSettings {
     /// Name of the mesh, of its node, or of one of its materials.
     pub name: String,
-    /// Depth below its highest point down to which bodies hold it, metres, ≥ 0; `None`: a tenth of its height.
+    /// Depth below the mesh's highest point down to which bodies hold it, metres, ≥ 0; `None`: a tenth of its height.
     pub held: Option<f32>,
     /// Largest number of particles, at least 4: finer meshes are reduced. Default [`MOST_PARTICLES`].
     pub most_particles: usize,
 }
 
 impl MeshSettings {
-    /// A mesh, with defaults for everything else.
+    /// Creates settings for a mesh, with defaults for everything else.
     pub fn new(name: &str) -> Self {
         Self { name: name.to_owned(), held: None, most_particles: MOST_PARTICLES }
     }
 }
 
 impl GarmentSource {
-    /// True if it lists a mesh.
+    /// Returns true if the source lists a mesh.
     pub fn has_meshes(&self) -> bool {
         matches!(self, Self::Listed(listed) if listed.iter().any(|garment| garment.mesh.is_some()))
     }
@@ -65,7 +65,7 @@ impl GarmentSource {
         }
     }
 
-    /// Makes sheets of its meshes ([`Rig::sheets`]), with one new joint per particle. Call it before the rig is
+    /// Makes sheets of the listed meshes ([`Rig::sheets`]), with one new joint per particle. Call it before the rig is
     /// analysed for the build. `analysis` belongs to the current rig, with the requested unit and axis; nodes of its
     /// file have indices below `nodes`.
     ///
@@ -99,7 +99,7 @@ impl GarmentSource {
         Ok(())
     }
 
-    /// Joints of garments, which are not part of the body: those of the listed chains and of all sheets.
+    /// Returns the joints of garments, which are not part of the body: those of the listed chains and of all sheets.
     ///
     /// # Errors
     /// As [`garments`](Self::garments).
@@ -115,7 +115,7 @@ impl GarmentSource {
         Ok(garments.iter().flat_map(Garment::joints).chain(of_sheets).collect())
     }
 
-    /// Garments of a rig whose sheets exist ([`lay_sheets`](Self::lay_sheets)).
+    /// Returns the garments of a rig whose sheets exist ([`lay_sheets`](Self::lay_sheets)).
     ///
     /// # Errors
     /// For names that the rig does not have, with the nearest ones, fewer than two chains, and a mesh without a sheet;
@@ -173,7 +173,7 @@ impl MeshSettings {
     }
 }
 
-/// Transform from model space to metres with +Y up, at any position.
+/// Returns the transform from model space to metres with +Y up, at any position.
 fn metres_from_model(analysis: &RigAnalysis) -> Affine {
     Affine::from_scale_rotation_translation(
         Vec3::splat(analysis.unit_scale),
@@ -182,14 +182,14 @@ fn metres_from_model(analysis: &RigAnalysis) -> Affine {
     )
 }
 
-/// Chains that a name matches, side by side, at least one.
+/// Returns the chains that a name matches, side by side, at least one.
 pub(super) fn columns(rig: &Rig, name: &str, place: &str) -> Result<Vec<GarmentColumn>, SettingsError> {
     let tops = tops(rig, name, place)?;
     let below: Vec<GarmentColumn> = tops.iter().map(|&top| GarmentColumn::below(rig, top)).collect();
     Ok(if name.ends_with('*') { side_by_side(rig, &below) } else { below })
 }
 
-/// Joints that a chain name matches, at least one.
+/// Returns the joints that a chain name matches, at least one.
 fn tops(rig: &Rig, name: &str, place: &str) -> Result<Vec<JointIdx>, SettingsError> {
     let names: Vec<String> = (0..rig.joints.len()).map(|joint| joint_name(rig, joint)).collect();
     let fits = |joint: JointIdx| match name.strip_suffix('*') {

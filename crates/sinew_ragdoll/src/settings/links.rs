@@ -6,28 +6,28 @@ use sinew_anim::garments::is_ring;
 use sinew_anim::{Rig, SpringLink, Springs};
 use sinew_math::Vec3;
 
-/// Links across strands as settings describe them.
+/// Links across strands, as described by settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinkSettings {
-    /// Names of the first joints of the strands, side by side. A name that ends in `*` stands for several, as in the
+    /// Names of the first joints of the strands, side by side. A name that ends in `*` matches several, as in the
     /// chains of a [garment](super::GarmentSettings::chains).
     pub chains: Vec<String>,
-    /// True: the last strand is linked to the first. `None`: linked if they form a ring.
+    /// True if the last strand is linked to the first. `None`: linked if the strands form a ring.
     pub closed: Option<bool>,
     /// Share of the link and its bounds; its joints are ignored.
     pub link: SpringLink,
 }
 
 impl Settings {
-    /// Springs that a character shall wear: those of `source` (an option may override [`springs`](Self::springs)), with
-    /// the requested [links](Self::spring_links). `up` is the rig's up axis, unit.
+    /// Returns the springs that a character shall wear: those of `source` (an option may override
+    /// [`springs`](Self::springs)), with the requested [links](Self::spring_links). `up` is the rig's up axis, unit.
     ///
     /// # Errors
     /// For names that the rig does not have, with the nearest ones; fewer than two strands; strands that do not swing;
     /// with the setting's key.
     pub fn springs_of(&self, source: SpringSource, rig: &Rig, up: Vec3) -> Result<Springs, SettingsError> {
         let mut springs = source.springs(rig, up);
-        // There are no links without springs.
+        // Links need springs.
         let listed = self.spring_links.as_ref().filter(|_| source != SpringSource::None);
         let Some(listed) = listed else { return Ok(springs) };
         let links = listed.iter().enumerate().map(|(index, links)| links.on(rig, &springs, index));

@@ -1,5 +1,5 @@
-//! Settings: a user's overrides of the build, stored beside the rig. They name bones by role or joint name, never by
-//! index, so that they survive a re-export of the rig.
+//! Settings: a user's overrides of the build, stored beside the rig. Settings name bones by role or joint name, never
+//! by index, so that they survive a re-export of the rig.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -42,30 +42,30 @@ use sinew_math::{Range, Vec3};
 /// Requested changes to the build. The default changes nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
-    /// Kind of all shapes; `None`: the option's.
+    /// Kind of all shapes; `None`: as in the options.
     pub shapes: Option<ShapeChoice>,
-    /// Total mass, kg; `None`: the option's.
+    /// Total mass, kg; `None`: as in the options.
     pub mass: Option<f32>,
-    /// Mass distribution; `None`: the option's.
+    /// Mass distribution; `None`: as in the options.
     pub sex: Option<Sex>,
-    /// Source of joint limits; `None`: the option's.
+    /// Source of joint limits; `None`: as in the options.
     pub limits: Option<LimitSource>,
-    /// Length of the file's unit.
+    /// Length of the file's unit; `None`: inferred.
     pub unit: Option<Unit>,
-    /// The file's axis that points up: unit, along an axis.
+    /// The file's axis that points up: unit, along an axis; `None`: inferred.
     pub up_axis: Option<Vec3>,
     /// Bones, by role, by role without its side (both sides), or by joint name; later entries win.
     pub bones: Vec<(String, BoneSettings)>,
-    /// Bones that are not part of the body, with all their descendants, by joint name: they follow their parents, and
+    /// Bones that are not part of the body, with all their descendants, by joint name. They follow their parents, and
     /// their skin does not affect shapes.
     pub ignore: Vec<String>,
     /// Pairs of bones that shall not collide.
     pub disable: Vec<[String; 2]>,
-    /// Pairs of bones that must collide, whatever the build decides.
+    /// Pairs of bones that collide in any case.
     pub enable: Vec<[String; 2]>,
-    /// Source of the springs that the character wears; `None`: the file's. The build of bodies ignores it.
+    /// Source of the springs that the character wears; `None`: the file. The build of bodies ignores it.
     pub springs: Option<SpringSource>,
-    /// Links across strands of those springs; `None`: the springs' own.
+    /// Links across strands of these springs; `None`: the links of the source.
     pub spring_links: Option<Vec<LinkSettings>>,
     /// Garments that the character wears. Their bones are not part of the body, as if [`ignore`](Self::ignore) named
     /// them. Default none.
@@ -75,17 +75,17 @@ pub struct Settings {
 /// Source of the springs that a character wears.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SpringSource {
-    /// Springs that the file states. Default.
+    /// Springs that the file declares. Default.
     #[default]
     File,
-    /// Springs that the file declares, else springs inferred from joint names ([`guess_springs`]).
+    /// Springs that the file declares; without any, springs inferred from joint names ([`guess_springs`]).
     Names,
     /// No springs.
     None,
 }
 
 impl SpringSource {
-    /// Springs of a rig whose up axis is `up`, unit.
+    /// Returns the springs of a rig whose up axis is `up`, unit.
     pub fn springs(self, rig: &Rig, up: Vec3) -> Springs {
         match self {
             Self::None => Springs::default(),
@@ -109,19 +109,19 @@ pub enum Unit {
 pub struct BoneSettings {
     /// Body part of the bone. Only for a bone selected by joint name, because this changes roles.
     pub role: Option<Role>,
-    /// Forces or forbids a body of its own; `None`: the build decides.
+    /// Forces or forbids a body for the bone; `None`: the build decides.
     pub body: Option<BodyWish>,
-    /// Kind of its shape.
+    /// Kind of the bone's shape.
     pub shape: Option<ShapeWish>,
     /// Factor on the fitted shape.
     pub scale: Option<f32>,
     /// Mass, kg. If the total mass is also given, the other bodies share the rest.
     pub mass: Option<f32>,
-    /// Kind of its joint to the parent.
+    /// Kind of the bone's joint to its parent.
     pub joint: Option<JointWish>,
-    /// Swing about y, radians, zero inside.
+    /// Swing about y, radians; the range contains zero.
     pub swing_y: Option<Range>,
-    /// Swing about z, radians, zero inside.
+    /// Swing about z, radians; the range contains zero.
     pub swing_z: Option<Range>,
     /// Twist, or the angle of a hinge, radians.
     pub twist: Option<Range>,
@@ -132,7 +132,7 @@ pub struct BoneSettings {
 /// Forces or forbids a body for a bone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyWish {
-    /// The bone gets a body, even if the build would merge it into another.
+    /// The bone gets a body, even if the build would merge the bone into another.
     Keep,
     /// The bone moves with its parent's body.
     Drop,
@@ -184,7 +184,7 @@ impl SettingsError {
     }
 }
 
-/// [`build`](crate::build()) with settings. If an option is `None`, the setting applies.
+/// Does [`build`](crate::build()) with settings. If an option is `None`, the setting applies.
 ///
 /// # Errors
 /// The errors of `build`; names that match no bone of this rig, with the nearest one; a dropped pelvis; colliding pairs
@@ -198,8 +198,8 @@ pub fn build_with(
     build_moving(rig, analysis, &[], options, settings)
 }
 
-/// [`build_with`] for a character whose motion is known, as [`takes`](crate::build::takes()) returns it from clips:
-/// shapes that overlap in it are corrected, and limits may be learned from it.
+/// Like [`build_with`], for a character whose motion is known, as [`takes`](crate::build::takes()) returns it from
+/// clips. Shapes that overlap in this motion are corrected, and limits may be learned from it.
 ///
 /// # Errors
 /// The errors of `build_with`; if limits are to be learned and no take moves a joint, [`BuildError::NoClips`].
@@ -220,8 +220,8 @@ pub fn build_moving(
     apply::build(&seen, &analysis, options, settings, takes)
 }
 
-/// An analysis corrected by the settings: roles, ignored joints, unit and axis. The build decides which bones get
-/// bodies; it calls this itself.
+/// Returns an analysis corrected by the settings: roles, ignored joints, unit and axis. The build decides which bones
+/// get bodies; it calls this function itself.
 ///
 /// # Errors
 /// For names that the rig does not have, with the nearest ones, and impossible roles.

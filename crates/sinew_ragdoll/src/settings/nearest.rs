@@ -2,14 +2,14 @@
 
 use sinew_anim::roles::{HUMANOID_ROLES, Role};
 
-/// The name in `known` nearest to `name`, if at most a third of its letters differ.
+/// Returns the name in `known` nearest to `name`, if at most a third of its letters differ.
 pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let close = |&(distance, _): &(usize, &str)| distance <= name.chars().count().div_ceil(3);
     known.map(|other| (distance(name, other), other)).filter(close).min_by_key(|&(d, _)| d).map(|(_, n)| n)
 }
 
-/// The three names in `known` nearest to `name`, nearest first, however far: names that contain it or are contained in
-/// it come before others.
+/// Returns the three names in `known` nearest to `name`, nearest first, at any distance. Names that contain `name`, or
+/// that `name` contains, come before others.
 pub fn nearest_three<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let wanted = name.to_lowercase();
     // Almost every name contains a single letter.
@@ -27,7 +27,8 @@ pub fn nearest_three<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Ve
     ranked.into_iter().map(|(_, _, other)| other).collect()
 }
 
-/// Distance of two names: as a whole, or slightly more if `name` matches one word of the other, or its beginning.
+/// Returns the distance of two names: as a whole, or slightly more if `name` matches one word of the other name, or its
+/// beginning.
 fn unlike(wanted: &str, other: &str) -> usize {
     let length = wanted.chars().count();
     let of_word = |word: &str| {
@@ -38,7 +39,7 @@ fn unlike(wanted: &str, other: &str) -> usize {
     words.map(of_word).fold(distance(wanted, other), usize::min)
 }
 
-/// The end of an error sentence that lists the existing names: all if few, else the three nearest.
+/// Returns the end of an error sentence that lists the existing names: all if few, otherwise the three nearest.
 pub fn instead<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let mut known: Vec<&str> = known.collect();
     let mut seen = std::collections::BTreeSet::new();
@@ -58,10 +59,10 @@ pub fn instead<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// The role of that name, case-insensitive.
+/// Returns the role of that name, case-insensitive.
 ///
 /// # Errors
-/// No role has it: a line with the nearest three.
+/// If no role has the name: a line with the nearest three.
 pub fn role_named(name: &str) -> Result<Role, String> {
     let lower = name.to_lowercase();
     let human = HUMANOID_ROLES.into_iter().find(|role| role.name().to_lowercase() == lower);
@@ -73,7 +74,7 @@ pub fn role_named(name: &str) -> Result<Role, String> {
     })
 }
 
-/// Levenshtein distance, case-insensitive; a swap of two neighbours counts as one edit.
+/// Returns the Levenshtein distance, case-insensitive; a swap of two neighbours counts as one edit.
 fn distance(a: &str, b: &str) -> usize {
     let lower = |text: &str| -> Vec<char> { text.chars().flat_map(char::to_lowercase).take(64).collect() };
     let (a, b) = (lower(a), lower(b));

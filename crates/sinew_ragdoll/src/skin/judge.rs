@@ -9,29 +9,31 @@ use crate::quality::Verdict;
 use crate::tuning::{GROSS, HANGS, STANDS_OFF, SUNK_RISING};
 use sinew_math::max;
 
-/// Least share of vertices near their body.
+/// Least share of vertices that are near their body.
 const COVERED: f32 = 0.95;
-/// Largest stretch, as a share of the size: 99.9th percentile and worst. Sound rigs reach 8 % and 16 %; torn ones start
-/// at 15 % and 24 %.
+/// Largest stretch, as a share of the size: 99.9th percentile and maximum. Sound rigs reach 8 % and 16 %; torn ones
+/// start at 15 % and 24 %.
 const STRETCH: [f32; 2] = [0.10, 0.20];
-/// Stretch tolerated because the file's own clips have it, as a multiple of theirs: 99.9th percentile and worst.
+/// Stretch tolerated because the file's own clips stretch the skin too, as a multiple of their stretch: 99.9th
+/// percentile and maximum.
 const STRETCH_OF_CLIPS: [f32; 2] = [1.5, 3.0];
 /// Largest difference between left and right, as a share of the size. Of 136 characters that were inspected, 20 differ
 /// by 2 to 4 % (a holster, a scar, an odd weight) and look symmetric; visible defects start at 5.6 %.
 const ASYMMETRY: f32 = 0.045;
 /// Largest difference of the drawn and the bound height, as a share of the size.
 const HEIGHT: f32 = 0.02;
-/// Largest depth of the lowest drawn point in the floor, as a share of the size: shapes lie inside the skin, so noses,
+/// Largest depth of the lowest drawn point in the floor, as a share of the size. Shapes are inside the skin, so noses,
 /// hair and fingers sink in.
 const SUNK: f32 = 0.06;
-/// Largest height of that point above the floor, as a share of the size: only a shape outside the skin causes it.
+/// Largest height of the lowest drawn point above the floor, as a share of the size; only a shape outside the skin
+/// causes it.
 const RAISED: f32 = 0.02;
-/// Smaller depths and heights do not count, metres.
+/// Depth or height of the lowest drawn point up to which it does not count, metres.
 const LEAST_OFF: f32 = 0.01;
-/// Longest time in the air after calm, seconds: six steps, in which a body that fell asleep askew may tip over.
+/// Longest time in the air after calm, seconds: six steps, in which a body that fell asleep tilted may tip over.
 const AIRBORNE: f32 = 0.1;
 
-/// Kind of trouble with the skin.
+/// Kind of a flaw of the skin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlawKind {
     /// Skin is far from every body that moves it.
@@ -40,30 +42,30 @@ pub enum FlawKind {
     Torn,
     /// Left and right differ.
     Lopsided,
-    /// A part is attached to something that it is not connected to.
+    /// A part is attached to a body to which it is not connected.
     Apart,
     /// The character is drawn at another size than in the bind pose.
     Resized,
-    /// The skin lies in the floor, or above it.
+    /// The skin is in the floor, or above it.
     OffFloor,
-    /// The character lies still without touching anything.
+    /// The character lies still without contact.
     Airborne,
 }
 
-/// Something that is wrong with the skin of a ragdoll.
+/// A flaw of the skin of a ragdoll.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flaw {
     /// Kind of the flaw.
     pub kind: FlawKind,
-    /// Measured figure and the bar that it misses, a sentence.
+    /// Measured figure and the bar that it misses, one sentence.
     pub evidence: String,
-    /// Option or setting that helps, with the bones it is about.
+    /// Option or setting that helps, with the bones concerned.
     pub remedy: String,
-    /// Bodies to look at, by index in the definition.
+    /// Bodies concerned, by index in the definition.
     pub bodies: Vec<usize>,
     /// Bones of these bodies.
     pub bones: Vec<String>,
-    /// The best verdict on a ragdoll that has it.
+    /// Best verdict on a ragdoll that has the flaw.
     pub at_most: Verdict,
 }
 
@@ -74,10 +76,11 @@ impl core::fmt::Display for Flaw {
 }
 
 impl SkinQuality {
-    /// Everything that keeps the skin from being good; `definition` is the one the skin was measured on.
+    /// Returns all flaws that keep the verdict on the skin below good; `def` is the definition with which the skin was
+    /// measured.
     ///
     /// # Panics
-    /// If the figures are of a definition with more bodies.
+    /// If the figures belong to a definition with more bodies.
     pub fn flaws(&self, def: &RagdollDef) -> Vec<Flaw> {
         let names = BodyNames(def);
         [
@@ -97,13 +100,13 @@ impl SkinQuality {
         .collect()
     }
 
-    /// Combined verdict of bodies and skin: that on the bodies, limited by the worst skin flaw.
+    /// Returns the combined verdict of bodies and skin: the verdict on the bodies, limited by the worst skin flaw.
     pub fn verdict(flaws: &[Flaw], of_bodies: Verdict) -> Verdict {
         flaws.iter().map(|flaw| flaw.at_most).fold(of_bodies, Verdict::min)
     }
 
     fn uncovered(&self, names: &BodyNames<'_>) -> Option<Flaw> {
-        // Comparisons with NaN are false: a poisoned figure is a flaw.
+        // Comparisons with NaN are false: a figure that is NaN is a flaw.
         if self.covered_share >= COVERED {
             return None;
         }
@@ -236,8 +239,8 @@ impl SkinQuality {
         })
     }
 
-    /// While clips move the character, the lowest point of the skin is far from the floor: in it, or, if standing,
-    /// above it.
+    /// Returns a flaw if the lowest point of the skin is far from the floor while clips move the character: in the
+    /// floor, or, while standing, above it.
     fn stands_off(&self, names: &BodyNames<'_>, stage: Stage) -> Option<Flaw> {
         let (height, what) = match stage {
             Stage::Standing => (self.standing_height_m, "standing before the fall"),
@@ -286,13 +289,13 @@ impl SkinQuality {
 struct BodyNames<'a>(&'a RagdollDef);
 
 impl BodyNames<'_> {
-    /// Role and bone, the bone only where it differs.
+    /// Returns role and bone, the bone only where it differs.
     fn name(&self, body: usize) -> String {
         let body = &self.0.bodies[body];
         if body.role == body.bone { body.role.clone() } else { format!("{} ({})", body.role, body.bone) }
     }
 
-    /// Advice for skin far from a body: give its joint a body, or enlarge the shape if it has one.
+    /// Returns the advice for skin far from a body: give its joint a body, or enlarge the shape if it has one.
     fn body_or_shape(&self, body: Option<usize>, joint: Option<&str>) -> String {
         match (body, joint.filter(|joint| !joint.is_empty())) {
             (_, Some(joint)) => {

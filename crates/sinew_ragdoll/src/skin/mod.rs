@@ -1,4 +1,4 @@
-//! Quality of the drawn skin on the bodies: the visible result, where [`crate::quality`] measures the simulation.
+//! Quality of the drawn skin on the bodies: the visible result, whereas [`crate::quality`] measures the simulation.
 //!
 //! A ragdoll may rest quietly and still look broken: a limb without a body stays behind and tears the mesh, a hat sinks
 //! into the floor, a figure scaled twice floats. The skin is therefore posed as a viewer would draw it, in the poses of
@@ -35,7 +35,7 @@ use surface::{Side, Surface, may_stand};
 /// Largest number of clip poses measured, evenly spread over all clips.
 const MOST_CLIP_POSES: usize = 64;
 
-/// Figures of the drawn skin. Metres, except where a field says otherwise.
+/// Figures of the drawn skin, metres unless a field says otherwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkinQuality {
     /// Share of the skin's vertices that are, in the bind pose, no farther than [`tolerance`](Self::tolerance) outside the shape of
@@ -44,11 +44,11 @@ pub struct SkinQuality {
     /// Growth of triangle sides over the drops beyond their bind length: 99.9th percentile over sides and poses, as a
     /// share of [`size`](Self::size).
     pub edge_stretch_p999: f32,
-    /// The largest growth, as a share of the size.
+    /// Largest growth over the drops, as a share of the size.
     pub edge_stretch_max: f32,
-    /// 99.9th percentile of the growth over the file's clips; `None` without clips.
+    /// 99.9th percentile of the growth over the file's clips, as a share of the size; `None` without clips.
     pub clips_stretch_p999: Option<f32>,
-    /// The largest growth over the file's clips.
+    /// Largest growth over the file's clips, as a share of the size.
     pub clips_stretch_max: Option<f32>,
     /// Largest difference between a body and its mirror image, as a length.
     pub symmetry_error_m: f32,
@@ -56,8 +56,8 @@ pub struct SkinQuality {
     pub bind_height_m: f32,
     /// Height of the skin drawn with the bodies in the bind pose, by the nodes' own transforms.
     pub drawn_height_m: f32,
-    /// Height of the drawn skin's lowest point above the floor, at the end of the drop where it is farthest from it.
-    /// Negative inside the floor; `None` if it never lay on one.
+    /// Height of the drawn skin's lowest point above the floor, at the end of the drop for which this distance is
+    /// largest. Negative inside the floor; `None` if the character never lay on a floor.
     pub rest_height_m: Option<f32>,
     /// True if every body is near its parent, and every part of a limb descends from that limb.
     pub contiguous: bool,
@@ -66,52 +66,52 @@ pub struct SkinQuality {
     pub standing_height_m: Option<f32>,
     /// Lowest height of the drawn skin above the floor during a get-up.
     pub rising_height_m: Option<f32>,
-    /// Lowest height of the drawn skin above the floor once it is up again.
+    /// Lowest height of the drawn skin above the floor once the character is up again.
     pub up_height_m: Option<f32>,
     /// Longest time in a drop without a body near the floor after the ragdoll had become calm, seconds; `None` if not
     /// measured.
     pub airborne_s: Option<f32>,
     /// Reference length of heights and stretches: a human's height; for a creature the longest side of its skin's box.
     pub size: f32,
-    /// Bodies to look at first.
+    /// Bodies with the worst figures.
     pub worst: Worst,
 }
 
-/// Bodies of a definition, by index, with the worst of each figure; `None` if nothing is wrong or no body is
+/// Body with the worst value of each figure, by index in the definition; `None` if the figure is good or no body is
 /// responsible.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Worst {
-    /// The body with the most vertices that are not covered.
+    /// Body with the most vertices that are not covered.
     pub uncovered: Option<usize>,
     /// Name of the joint that moves most of these vertices, if it has no body of its own.
     pub uncovered_joint: Option<String>,
-    /// Vertices that no body moves, per thousand.
+    /// Number of vertices that no body moves, per thousand.
     pub adrift: u32,
-    /// The body that moves one end of the most stretched side; that of the other end is second.
+    /// Bodies that move the two ends of the most stretched side.
     pub torn: Option<(usize, usize)>,
-    /// Stage in which that side is stretched most.
+    /// Phase in which this side is stretched most.
     pub torn_in: Phase,
-    /// The bodies that move the lowest point while standing, while getting up and once up.
+    /// Bodies that move the lowest point while standing, while getting up and once up.
     pub lowest_in: [Option<usize>; 3],
-    /// The body that differs most from its mirror image.
+    /// Body that differs most from its mirror image.
     pub unlike: Option<usize>,
-    /// The body that is separate from its parent.
+    /// Body that is separate from its parent.
     pub apart: Option<usize>,
-    /// The body that moves the lowest point at rest.
+    /// Body that moves the lowest point at rest.
     pub lowest: Option<usize>,
-    /// Name of the joint that moves it, if that has no body of its own.
+    /// Name of the joint that moves this point, if the joint has no body of its own.
     pub lowest_joint: Option<String>,
 }
 
-/// Phase of a life in which the skin is measured.
+/// Phase of a character's motion in which the skin is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phase {
     /// The character falls in one of the drops of a [`drop_test`](crate::drop_test).
     #[default]
     Drop,
-    /// The character falls, lies, or is rolled to where a clip begins.
+    /// The character falls, lies, or is rolled to the start of a clip.
     Fall,
-    /// The character gets up, or moves as its clips do.
+    /// The character gets up, or follows its clips.
     Clip,
 }
 
@@ -127,8 +127,8 @@ pub enum Stage {
 }
 
 impl SkinQuality {
-    /// Distance from its body at which a vertex still counts as covered, metres: 3 cm, or 5 % of the size if that is
-    /// more.
+    /// Returns the distance from its body up to which a vertex counts as covered, metres: 3 cm, or 5 % of the size if
+    /// that is more.
     pub fn tolerance(&self) -> f32 {
         tolerance(self.size)
     }
@@ -173,8 +173,8 @@ pub struct SkinMeter<'a> {
 }
 
 impl<'a> SkinMeter<'a> {
-    /// Measures what does not depend on a fall: cover, sides, heights, and stretch in the file's clips. `bind_model` is
-    /// the bind pose (`RigAnalysis::bind_model`), `takes` are the clips.
+    /// Measures everything that does not depend on a fall: cover, sides, heights, and stretch in the file's clips.
+    /// `bind_model` is the bind pose (`RigAnalysis::bind_model`), `takes` are the clips.
     ///
     /// # Panics
     /// If the definition does not belong to the rig: it has no body, or names joints that the rig does not have; or if
@@ -215,8 +215,8 @@ impl<'a> SkinMeter<'a> {
         meter
     }
 
-    /// Height of the skin where the bodies are in the bind pose, by the sizes of its triangles: ears that are bound in
-    /// another pose than they are drawn in do not change its size.
+    /// Measures the height of the skin where the bodies are in the bind pose, by the sizes of its triangles. Ears that
+    /// are bound in another pose than they are drawn in do not change this height.
     fn draw_bound(&mut self, def: &RagdollDef, bound: f32) {
         let own: Vec<Transform> = def.bodies.iter().map(|body| body.character_from_body).collect();
         let mut drawn = Drawn::new(self.rig, &self.mapping);
@@ -240,7 +240,7 @@ impl<'a> SkinMeter<'a> {
         (self.skin.clips_stretch_p999, self.skin.clips_stretch_max) = (Some(p999 / size), Some(max / size));
     }
 
-    /// The poses of drops onto a floor at y = 0, and the index where each ends.
+    /// Measures the poses of drops onto a floor at y = 0.
     ///
     /// # Panics
     /// If the falls belong to another ragdoll.
@@ -268,8 +268,8 @@ impl<'a> SkinMeter<'a> {
         self.stretch[phase as usize].add(&self.surface, &self.palette);
     }
 
-    /// Measures a pose above a floor at height `floor` (metres) of the world, in a phase of the character's life: keeps
-    /// the lowest point.
+    /// Measures a pose above a floor at height `floor` (metres) of the world, at a stage of a get-up, and keeps the
+    /// lowest point.
     ///
     /// # Panics
     /// As [`show`](Self::show).
@@ -290,7 +290,7 @@ impl<'a> SkinMeter<'a> {
         }
     }
 
-    /// Height and index of the lowest drawn vertex whose body counts.
+    /// Returns the height and index of the lowest drawn vertex whose body counts.
     fn lowest(&self, to_world: &Affine, counts: impl Fn(Option<usize>) -> bool) -> (f32, usize) {
         let mut lowest = (f32::INFINITY, 0);
         for &vertex in self.surface.sample.iter().filter(|&&vertex| counts(self.surface.owner(vertex))) {
@@ -302,7 +302,7 @@ impl<'a> SkinMeter<'a> {
         lowest
     }
 
-    /// The pose at rest over a floor at y = 0; `to_world` is from the model space of the file.
+    /// Measures the pose at rest over a floor at y = 0; `to_world` is the transform from the model space of the file.
     ///
     /// # Panics
     /// As [`show`](Self::show).
@@ -322,7 +322,7 @@ impl<'a> SkinMeter<'a> {
         self.surface.palette(&self.model, &mut self.palette);
     }
 
-    /// The figures so far; stretches are the worst of all phases.
+    /// Returns the figures so far; stretches are the worst of all phases.
     pub fn figures(mut self) -> SkinQuality {
         let mut skin = self.skin;
         for (phase, stretch) in [Phase::Drop, Phase::Fall, Phase::Clip].into_iter().zip(&mut self.stretch) {
@@ -363,7 +363,7 @@ impl Drawn {
     }
 }
 
-/// Minimum and maximum corner of the skin in a pose, character space; the origin without skin.
+/// Returns the minimum and maximum corner of the skin in a pose, character space; the origin without skin.
 fn bounds(surface: &Surface, palette: &[Affine], to_character: &Affine) -> (Vec3, Vec3) {
     let places = surface.sample.iter().map(|&vertex| to_character.point(surface.place(palette, vertex)));
     let corners = places.filter(|place| place.is_finite()).fold(None, |corners, place| {
@@ -377,11 +377,11 @@ fn size(def: &RagdollDef, low: Vec3, high: Vec3) -> f32 {
     let is_human = def.bodies[0].role == "hips";
     let sides = high - low;
     let size = if is_human { def.height } else { max(sides.x, max(sides.y, sides.z)) };
-    // Avoids a division by zero.
+    // Avoid a division by zero.
     max(size, 1e-6)
 }
 
-/// Name of the joint that moves most of a body's bare vertices, unless it is the body's own.
+/// Returns the name of the joint that moves most of a body's bare vertices, unless it is the body's own joint.
 fn without_body(
     rig: &Rig,
     def: &RagdollDef,
@@ -397,8 +397,8 @@ fn without_body(
     (joint != def.bodies[body].joint).then(|| rig.joints[joint].name.clone())
 }
 
-/// Writes the share of the skin near its body and the body that moves most of the rest. Returns the rest: the body and the joint
-/// that move each vertex.
+/// Writes the share of the skin near its body and the body that moves most of the rest. Returns body and joint that
+/// move each vertex of the rest.
 fn cover(
     skin: &mut SkinQuality,
     surface: &Surface,

@@ -8,7 +8,7 @@ use sinew_anim::roles::Role;
 use sinew_math::{Vec3, max};
 use sinew_physics::convex::gap;
 
-/// Largest difference of two sides, metres, and the body that has it.
+/// Returns the largest difference of two sides, metres, and the body that has it.
 ///
 /// The compared lengths do not depend on the pose: pivot to body centre, the shape's bounding radius, and the mass
 /// difference as a length (a third of the relative difference, times the radius, because mass grows with the cube of a
@@ -65,20 +65,20 @@ fn difference(def: &RagdollDef, bones: &Bones, body: usize, twin: usize) -> f32 
     max(max((away(body) - away(twin)).abs(), (radius(body) - radius(twin)).abs()), masses)
 }
 
-/// True if the end of a limb is so much larger than the other that it must hold something that its shape encloses.
+/// Returns true if the end of a limb is so much larger than the other that its shape must enclose a held object.
 fn holds(def: &RagdollDef, bones: &Bones, end: usize, other: usize) -> bool {
     let radius = |body: usize| def.bodies[body].shape.bounding_radius();
     bones.children[end].is_empty() && radius(end) > BURDENED * radius(other)
 }
 
-/// Number of joints between a body and the body that most of its skin continues into: four for a thigh whose skin
-/// continues into the tail across two hip parts. Feet attached to the root are five from their shanks.
+/// Number of joints up to which a body is near the body into which most of its skin continues: four for a thigh whose
+/// skin continues into the tail across two hip parts. Feet attached to the root are five joints from their shanks.
 const NEAR: usize = 4;
 
-/// The first body attached to something it is not connected to: most triangle sides that link its skin (with its
-/// descendants') to other skin lead to a body more than four joints away; or, without such sides, its shape is far from
-/// its parent's; or a part of a limb is attached to no part of that limb. `links` are the bodies at both ends of such
-/// sides.
+/// Returns the first body attached to a body to which it is not connected. It has one of three defects: most triangle
+/// sides from its skin (with its descendants') to other skin lead to a body more than four joints away; or it has no
+/// such sides, and its shape is far from its parent's; or it is a part of a limb attached to no part of that limb.
+/// `links` are the bodies at both ends of such sides.
 pub(super) fn apart(def: &RagdollDef, bones: &Bones, links: &[(usize, usize)], size: f32) -> Option<usize> {
     let is_apart = |joint: &&RagdollJointDef| {
         let far = match neighbour(bones, links, joint.child) {
@@ -90,7 +90,7 @@ pub(super) fn apart(def: &RagdollDef, bones: &Bones, links: &[(usize, usize)], s
     def.joints.iter().find(is_apart).map(|joint| joint.child)
 }
 
-/// The body outside a subtree that most links of the subtree lead to.
+/// Returns the body outside a subtree to which most links of the subtree lead.
 fn neighbour(bones: &Bones, links: &[(usize, usize)], body: usize) -> Option<usize> {
     let mut below = vec![false; bones.list.len()];
     below[body] = true;
@@ -112,11 +112,11 @@ fn neighbour(bones: &Bones, links: &[(usize, usize)], body: usize) -> Option<usi
 fn is_loose(def: &RagdollDef, joint: &RagdollJointDef, size: f32) -> bool {
     let (parent, child) = (&def.bodies[joint.parent], &def.bodies[joint.child]);
     let gap = gap(&parent.shape, &parent.character_from_body, &child.shape, &child.character_from_body);
-    // A side that cannot be measured does not connect.
+    // A gap that cannot be measured does not connect.
     !gap.is_some_and(|gap| gap.distance <= LOOSE * size)
 }
 
-/// True if a part of a limb is attached to that limb, where the limb has a part nearer to the trunk.
+/// Returns true if a part of a limb is attached to that limb, where the limb has a part nearer to the trunk.
 fn in_order(bones: &Bones, parent: usize, child: usize) -> bool {
     use Role::{Foot, Hand, LimbSegment, LowerArm, LowerLeg, TailSegment, UpperArm, UpperLeg};
     let is = |role| move |other: Role| other == role;

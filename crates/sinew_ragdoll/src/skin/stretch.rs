@@ -1,4 +1,4 @@
-//! Sides of triangles that get longer than they were bound: where the skin tears.
+//! Sides of triangles that are longer than in the bind pose: where the skin tears.
 
 use super::surface::{Side, Surface};
 use crate::tuning::STRETCH_PERCENTILE;
@@ -9,7 +9,7 @@ use sinew_math::{Affine, max};
 pub(super) struct Stretched {
     /// 99.9th percentile over the sides of all triangles and all poses.
     pub p999: f32,
-    /// The largest growth.
+    /// Largest growth of a side.
     pub max: f32,
     /// Index of the side with the largest growth, in [`Surface::sides`].
     pub side: Option<usize>,
@@ -27,7 +27,7 @@ pub(super) struct Stretch {
 }
 
 impl Stretch {
-    /// Creates the collection; `palette` is that of the bind pose.
+    /// Creates the collection; `palette` belongs to the bind pose.
     pub fn new(surface: &Surface, palette: &[Affine], unit_scale: f32) -> Self {
         let bound = surface.sides.iter().map(|side| length(surface, palette, side) * unit_scale).collect();
         Self { bound, longer: Vec::new(), unit_scale, worst: Stretched::default() }
@@ -46,7 +46,7 @@ impl Stretch {
         }
     }
 
-    /// The figures over all poses since the last call; zeros where no side can stretch.
+    /// Returns the figures over all poses since the last call; zeros where no side can stretch.
     pub fn take(&mut self, surface: &Surface) -> Stretched {
         let mut longer = core::mem::take(&mut self.longer);
         let worst = core::mem::take(&mut self.worst);
@@ -61,7 +61,7 @@ impl Stretch {
     }
 }
 
-/// Length of all sides together, in units of the model space.
+/// Returns the length of all sides together, in units of the model space.
 pub(super) fn total(surface: &Surface, palette: &[Affine]) -> f32 {
     surface.sides.iter().map(|side| length(surface, palette, side)).filter(|length| length.is_finite()).sum()
 }

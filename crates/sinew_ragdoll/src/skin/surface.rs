@@ -1,5 +1,5 @@
-//! The drawn skin of a character as plain vertices: the bodies that move each one, and the sides along which it may
-//! tear.
+//! The drawn skin of a character as plain vertices: the bodies that move each vertex, and the sides along which the
+//! skin may tear.
 
 use crate::def::RagdollDef;
 use crate::fit::surface::carried;
@@ -8,7 +8,7 @@ use sinew_anim::roles::{HUMANOID_ROLES, Role};
 use sinew_anim::{JointIdx, Primitive, Rig, RigMesh};
 use sinew_math::{Affine, Mat3, Vec3};
 
-/// Largest number of vertices measured: of larger meshes every n-th.
+/// Largest number of vertices measured; larger meshes are sampled at every n-th vertex.
 const MOST_VERTICES: usize = 8192;
 /// Largest number of triangle sides measured, of those that a pose can stretch.
 const MOST_SIDES: usize = 4096;
@@ -93,19 +93,19 @@ impl Surface {
         part
     }
 
-    /// Matrices from mesh space to that of `model`, one per slot: `palette` is cleared and filled.
+    /// Computes the matrices from mesh space to the space of `model`, one per slot: `palette` is cleared and filled.
     pub fn palette(&self, model: &[Affine], palette: &mut Vec<Affine>) {
         palette.clear();
         palette.extend(self.slots.iter().map(|slot| model[slot.joint] * slot.inverse_bind));
     }
 
-    /// Positions of the sampled vertices in the space of `model`; `palette` is cleared and filled.
+    /// Returns the positions of the sampled vertices in the space of `model`; `palette` is cleared and filled.
     pub fn places(&self, model: &[Affine], palette: &mut Vec<Affine>) -> Vec<Vec3> {
         self.palette(model, palette);
         self.sample.iter().map(|&vertex| self.place(palette, vertex)).collect()
     }
 
-    /// Position of a vertex in the target space of the matrices in `palette`.
+    /// Returns the position of a vertex in the target space of the matrices in `palette`.
     pub fn place(&self, palette: &[Affine], vertex: usize) -> Vec3 {
         let Vertex { position, slots, weights } = self.vertices[vertex];
         // Most of a figure's vertices follow one joint.
@@ -123,8 +123,8 @@ impl Surface {
         sum.point(position)
     }
 
-    /// Bodies that move a vertex, with weights: at most four, each once; without weights of joints that no body
-    /// carries.
+    /// Returns the bodies that move a vertex, with weights: at most four, each once; without weights of joints that no
+    /// body carries.
     pub fn pulls(&self, vertex: usize) -> impl Iterator<Item = (usize, f32)> {
         let Vertex { slots, weights, .. } = self.vertices[vertex];
         let mut pulls = [(0_usize, 0.0_f32); 4];
@@ -142,13 +142,13 @@ impl Surface {
         pulls.into_iter().take(count)
     }
 
-    /// Bodies at both ends of the sides whose ends are moved by different bodies.
+    /// Returns the bodies at both ends of the sides whose ends are moved by different bodies.
     pub fn links(&self) -> Vec<(usize, usize)> {
         let link = |&Side(a, b): &Side| Some((self.owner(a)?, self.owner(b)?));
         self.sides.iter().filter_map(link).filter(|(a, b)| a != b).collect()
     }
 
-    /// The joint with a body that moves a vertex most; `None` without one.
+    /// Returns the joint with a body that moves a vertex most; `None` without such a joint.
     pub fn mover(&self, vertex: usize) -> Option<JointIdx> {
         let Vertex { slots, weights, .. } = self.vertices[vertex];
         let on_bodies = slots
@@ -159,7 +159,7 @@ impl Surface {
         most.map(|(slot, _)| self.slots[slot as usize].joint)
     }
 
-    /// The body that moves a vertex most; `None` without one.
+    /// Returns the body that moves a vertex most; `None` without such a body.
     pub fn owner(&self, vertex: usize) -> Option<usize> {
         self.pulls(vertex).reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(body, _)| body)
     }
@@ -192,7 +192,8 @@ impl Raw {
         }
     }
 
-    /// Vertices and sides of a part; `first` is the slot of the part's slot 0, `rigid` that of a part without weights.
+    /// Adds vertices and sides of a part; `first` is the slot of the part's slot 0, `rigid` that of a part without
+    /// weights.
     fn add_primitive(&mut self, primitive: &Primitive, first: Option<usize>, rigid: usize) {
         let base = self.vertices.len();
         for (index, &position) in primitive.positions.iter().enumerate() {
@@ -221,7 +222,7 @@ impl Raw {
     }
 }
 
-/// True if the same joints move both with equal weights.
+/// Returns true if the same joints move both vertices with equal weights.
 fn alike(a: &Vertex, b: &Vertex) -> bool {
     let weight = |of: &Vertex, slot: u32| -> f32 {
         of.slots.iter().zip(of.weights).filter(|(at, _)| **at == slot).map(|(_, weight)| weight).sum()
@@ -230,14 +231,15 @@ fn alike(a: &Vertex, b: &Vertex) -> bool {
     slots.all(|&slot| (weight(a, slot) - weight(b, slot)).abs() <= SAME_WEIGHTS)
 }
 
-/// At most `most` of the indices below `count`, evenly spread, including the first.
+/// Returns at most `most` of the indices below `count`, evenly spread, including the first.
 fn strided(count: usize, most: usize) -> Vec<usize> {
     let used = usize::min(count, most);
     // For a count that fits in memory the product does not overflow in 64 bits; 32-bit targets widen it.
     (0..used).map(|k| (k as u64 * count as u64 / used as u64) as usize).collect()
 }
 
-/// For each body, true if a character may stand on its skin: false for a human's hands and forearms and what they hold.
+/// Returns, for each body, true if a character may stand on its skin: false for a human's hands and forearms and
+/// objects that they hold.
 pub(crate) fn may_stand(def: &RagdollDef) -> Vec<bool> {
     let is_human = def.bodies[0].role == "hips";
     let may = |role: &str| {

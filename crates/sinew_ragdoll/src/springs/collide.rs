@@ -5,15 +5,16 @@ use sinew_anim::springs::{ColliderShape, Side};
 use sinew_math::{Affine, Mat3, Vec3, clamp, max, normalize_or};
 use sinew_physics::{BodyId, NearestTo, Probe, Shape, ShapeCast, World};
 
-/// Exit direction from a collider, unit, and signed distance of the surface of a ball from it, metres; negative inside.
+/// Unit direction out of a collider, and signed distance from the collider to the surface of a ball, metres; negative
+/// if they overlap.
 #[derive(Clone, Copy)]
 pub(super) struct Gap {
     pub direction: Vec3,
     pub distance: f32,
 }
 
-/// A collider where its joint has carried it (VRMC_springBone, and the appendix of its extended colliders). A joint's scale enters by its
-/// largest axis.
+/// A collider at the present place of its joint (VRMC_springBone, and the appendix of its extended colliders). A
+/// joint's scale enters by its largest axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Placed {
     /// A ball, or a capsule whose other end is at offset `along`.
@@ -30,7 +31,7 @@ pub(super) enum Placed {
 }
 
 impl Placed {
-    /// Collider that its joint carries to `world_from_joint`.
+    /// Places a collider whose joint is at `world_from_joint`.
     pub fn new(shape: &ColliderShape, world_from_joint: &Affine) -> Self {
         match *shape {
             ColliderShape::Sphere { offset, radius, keeps } => Self::Round {
@@ -51,7 +52,7 @@ impl Placed {
         }
     }
 
-    /// Gap between it and a ball that overlaps it; `None` if they are separate.
+    /// Returns the gap between the collider and a ball that overlaps it; `None` if they are separate.
     #[inline]
     pub fn touch(&self, center: Vec3, radius: f32) -> Option<Gap> {
         match *self {
@@ -61,7 +62,7 @@ impl Placed {
                 if square > 0.0 {
                     from -= along * clamp(from.dot(along) / square, 0.0, 1.0);
                 }
-                // Nearly all tips are separate from nearly all colliders, so the square root is avoided.
+                // Nearly all tips are separate from nearly all colliders, so this test avoids the square root.
                 let square = from.length_squared();
                 let is_clear = match keeps {
                     Side::Outside => square >= (own + radius) * (own + radius),
@@ -85,14 +86,14 @@ impl Placed {
 }
 
 impl Placed {
-    /// End position of a fast ball that would pass through the collider: along the first surface it hits. Positions are
-    /// relative to the collider's own motion. `None` if it hits nothing.
+    /// Returns the end position of a fast ball that would pass through the collider: it slides along the first surface
+    /// that it hits. Positions are relative to the collider's own motion. `None` if the ball hits nothing.
     #[inline]
     pub fn stop(&self, from: Vec3, to: Vec3, radius: f32) -> Option<Vec3> {
         let Self::Round { head, along, radius: own, keeps: Side::Outside } = *self else { return None };
         let way = to - from;
         let reach = own + radius;
-        // A shorter motion ends inside the collider, on this side.
+        // A shorter motion ends inside the collider, on the same side.
         if way.length_squared() <= reach * reach {
             return None;
         }
@@ -116,13 +117,14 @@ impl Placed {
     }
 }
 
-/// The end of a motion that hit a surface at a position, without the component into the surface.
+/// Returns the end of a motion that hit a surface at `met`, without the component into the surface.
 fn along_surface(met: Vec3, to: Vec3, normal: Vec3) -> Option<Vec3> {
     let into = (to - met).dot(normal);
     (into < 0.0).then(|| to - normal * into)
 }
 
-/// Normals go by the inverse transpose; the cofactors of the matrix have its direction without a division.
+/// Transforms a normal. Normals transform by the inverse transpose; the cofactors of the matrix give the same direction
+/// without a division.
 fn turned_normal(m: &Mat3, normal: Vec3) -> Vec3 {
     let (x, y, z) = (m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
     let mirrored = m.x_axis.dot(x) < 0.0;
@@ -143,13 +145,13 @@ pub(super) struct Surroundings<'a> {
 }
 
 impl Surroundings<'_> {
-    /// True if anything is within `reach` of a position, metres.
+    /// Returns true if any shape is within `reach` of a position, metres.
     pub fn are_near(&self, center: Vec3, reach: f32) -> bool {
         let question = NearestTo { point: center, within: reach };
         self.world.query().accept(|body, _| !self.own.contains(&body)).any(&question)
     }
 
-    /// End position of a fast ball that would pass through a thin obstacle.
+    /// Returns the end position of a fast ball that would pass through a thin obstacle.
     pub fn stop(&self, from: Vec3, to: Vec3, radius: f32) -> Option<Vec3> {
         let translation = to - from;
         if translation.length() <= max(radius, THIN) {
@@ -165,7 +167,7 @@ impl Surroundings<'_> {
         along_surface(from + translation * hit.fraction, to, hit.normal)
     }
 
-    /// Deepest gap between a ball and the world.
+    /// Returns the deepest gap between a ball and the world.
     pub fn touch(&self, center: Vec3, radius: f32) -> Option<Gap> {
         let question = NearestTo { point: center, within: radius };
         let near = self.world.query().accept(|body, _| !self.own.contains(&body)).first(&question)?;

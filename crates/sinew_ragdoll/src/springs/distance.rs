@@ -1,4 +1,5 @@
-//! Level of detail of springs: distant ones ease to the pose, then cost nothing, and resume with the pose's own motion.
+//! Level of detail of springs: distant springs ease to the pose, then cost nothing, and resume with the pose's own
+//! motion.
 
 use super::step::Mode;
 use super::tuning::{EASE, GONE};
@@ -9,7 +10,7 @@ use sinew_math::{Affine, Rotation, Vec3, trig};
 impl SpringSwing {
     /// Moves the springs one step nearer to the pose, instead of [`step`](Self::step): each bone's rotation from the
     /// pose falls to 1/e in 0.3 s. Once the rest is negligible, nothing is computed any more
-    /// ([`is_away`](Self::is_away)); springs that have not been stepped yet are away at once.
+    /// ([`is_away`](Self::is_away)). Springs that have not been stepped yet are away immediately.
     ///
     /// # Panics
     /// If the pose does not have one transform per joint of the springs' rig.
@@ -46,18 +47,19 @@ impl SpringSwing {
         self.turns.clear();
     }
 
-    /// True if the springs equal the pose and nothing is computed: they have been eased for long enough.
+    /// Returns true if the springs equal the pose and nothing is computed, because they have been eased for long
+    /// enough.
     pub fn is_away(&self) -> bool {
         self.mode == Mode::Away
     }
 
-    /// True if the last update eased the springs, whether or not a rotation remains.
+    /// Returns true if the last update eased the springs, whether or not a rotation remains.
     pub fn is_eased(&self) -> bool {
         matches!(self.mode, Mode::Easing | Mode::Away)
     }
 
-    /// Resumes springs that were eased, instead of the first [`step`](Self::step): they start at the eased rotations,
-    /// with the motion of the pose and root since the previous step.
+    /// Resumes eased springs, instead of the first [`step`](Self::step): they start at the eased rotations, with the
+    /// motion of pose and root since the previous step.
     ///
     /// # Panics
     /// If a pose does not have one transform per joint of the springs' rig.

@@ -8,7 +8,7 @@ use sinew_math::{Rotation, Vec3, clamp, min, normalize_or};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limit {
     kind: LimitKind,
-    /// Rotation from the limit's frame, with +Y along the bone at rest, to the joint's frame.
+    /// Transform from the limit's frame, whose +Y is along the bone at rest, to the joint's frame.
     joint_from_limit: Rotation,
 }
 
@@ -19,7 +19,7 @@ impl Limit {
         Self { kind: limit.kind, joint_from_limit: (along * limit.rotation).normalize() }
     }
 
-    /// The nearest direction that is allowed, unit, in the joint's space. `direction` is unit.
+    /// Returns the nearest allowed direction, unit, in the joint's space. `direction` is unit.
     pub fn hold(&self, direction: Vec3) -> Vec3 {
         let v = self.joint_from_limit.inverse() * direction;
         let held = match self.kind {

@@ -4,7 +4,7 @@
 //! **Law.** Every spring bone has a tip at the bone's length from its joint. The law is the reference of
 //! [VRMC_springBone 1.0](https://github.com/vrm-c/vrm-specification/tree/master/specification/VRMC_springBone-1.0),
 //! which advances the tip by Verlet integration once per frame, so its motion depends on the frame rate. Authors tune
-//! it at 60 frames per second; here it **always ticks at 60 Hz** ([`TICK`]), whatever the world's step:
+//! springs at 60 frames per second; here the springs **always tick at 60 Hz** ([`TICK`]), for any step of the world:
 //!
 //! ```text
 //! x' = x + (1 − drag) (x − x₋₁) + TICK (stiffness r + gravity + drag · wind)      then the length, limits, colliders
@@ -34,7 +34,7 @@
 //! let pose = rest_pose(&def.rig);
 //! let mut swing = SpringSwing::new();
 //! for frame in 0..30u16 {
-//!     // It is carried to its left, faster and faster.
+//!     // The character is carried to its left, faster and faster.
 //!     let world_from_model = Affine::from(Transform::from_translation(Vec3::X * 0.002 * f32::from(frame * frame)));
 //!     let (rig, seconds) = (def.springs(), 1.0 / 60.0);
 //!     swing.step(&SpringStep { rig, pose: &pose, world_from_model, bodies: &[], world: None, seconds });

@@ -8,15 +8,15 @@ use sinew_anim::{JointIdx, Rig};
 use sinew_math::{Affine, Transform, Vec3, clamp, max, normalize_or};
 use sinew_physics::Shape;
 
-/// Joint that springs are attached to or move with, or that carries colliders.
+/// Joint that is needed by springs: they are attached to it or move with it, or it carries colliders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Node {
     pub joint: JointIdx,
-    /// Index among the nodes; smaller than its own.
+    /// Index of the parent among the nodes; smaller than the node's own.
     pub parent: Option<usize>,
     /// Bone that rotates the joint.
     pub bone: Option<usize>,
-    /// True if the joint or one of its ancestors swings: such nodes come after all that do not.
+    /// True if the joint or one of its ancestors swings. Such nodes come after all others.
     pub swings: bool,
     /// True if another node, a collider or a centre is attached to the joint.
     pub carries: bool,
@@ -27,14 +27,14 @@ pub(super) struct Node {
 pub(super) struct Bone {
     pub node: usize,
     pub chain: usize,
-    /// Tip in the joint's space, file units, and its direction there.
+    /// Tip in the joint's space, file units; `axis` is its direction there, unit.
     pub tail: Vec3,
     pub axis: Vec3,
     /// Length of the bone, file units.
     pub length: f32,
-    /// Speed toward the rest pose, m/s.
+    /// Speed toward the rest pose caused by stiffness, m/s.
     pub stiffness: f32,
-    /// Velocity by gravity, m/s, character axes: the character's facing does not rotate it.
+    /// Velocity caused by gravity, m/s, character axes. The character's facing does not rotate it.
     pub gravity: Vec3,
     pub drag: f32,
     /// Radius of the tip, metres.
@@ -74,7 +74,7 @@ pub(super) struct Link {
 pub struct SpringRig {
     source: Springs,
     pub(super) nodes: Vec<Node>,
-    /// Number of nodes that do not swing; they are the first.
+    /// Number of nodes that do not swing; these nodes come first.
     pub(super) stills: usize,
     /// Bones that swing, by node, ascending, so that descendants of a bone come after it.
     pub(super) bones: Vec<Bone>,
@@ -85,17 +85,18 @@ pub struct SpringRig {
     pub(super) swinging_colliders: bool,
     /// Shapes of the ragdoll's bodies, for chains that collide with them.
     pub(super) bodies: Vec<Shape>,
-    /// Bit mask of the first 64 bodies that each bone is clear of in the bind pose, and so collides with.
+    /// Bit mask, for each bone, of the bodies among the first 64 that the bone does not touch in the bind pose and so
+    /// collides with.
     pub(super) meets: Vec<u64>,
-    /// Nodes that chains are attached to, each with the largest distance that a tip can have from it, metres.
+    /// Nodes to which chains are attached, each with the largest distance of a tip from the node, metres.
     pub(super) anchors: Vec<(usize, f32)>,
     left_out: Vec<JointIdx>,
 }
 
 impl SpringRig {
-    /// Springs of a rig with a ragdoll; `bind_model` is its bind pose in model space. A bone is left out
-    /// ([`left_out`](Self::left_out)) if a body moves its joint or a descendant, if it is listed twice, has no parent,
-    /// or has no length.
+    /// Prepares the springs of a rig with a ragdoll; `bind_model` is the rig's bind pose in model space. A bone is left
+    /// out ([`left_out`](Self::left_out)) if a body moves its joint or a descendant, or if the bone is listed twice,
+    /// has no parent, or has no length.
     ///
     /// # Panics
     /// If a named joint or collider does not exist.
@@ -146,8 +147,8 @@ impl SpringRig {
         it
     }
 
-    /// Nodes: joints of bones, centres and colliders of chains that have a bone, and all their ancestors. Returns the
-    /// node of every joint.
+    /// Adds nodes: joints of bones, centres and colliders of chains that have a bone, and all their ancestors. Returns
+    /// the node of every joint.
     fn add_nodes(
         &mut self,
         rig: &Rig,
@@ -214,7 +215,7 @@ impl SpringRig {
         }
     }
 
-    /// Links between swinging bones, with their length in the bind pose.
+    /// Adds links between swinging bones, with their length in the bind pose.
     fn add_links(&mut self, mapping: &Mapping, bind_model: &[Affine]) {
         let character = mapping.character_from_model();
         let bone_of = |joint| self.bones.iter().position(|bone| self.nodes[bone.node].joint == joint);
@@ -230,7 +231,7 @@ impl SpringRig {
         self.links = self.source.links.iter().filter_map(link).collect();
     }
 
-    /// Anchors, with their reach along the bones as the bind pose has them.
+    /// Adds anchors, with their reach along the bones in the bind pose.
     fn add_anchors(&mut self, mapping: &Mapping, bind_model: &[Affine]) {
         let character = mapping.character_from_model();
         let place = |node: &Node| character.point(bind_model[node.joint].translation);
@@ -255,7 +256,8 @@ impl SpringRig {
         self.anchors = farthest.into_iter().enumerate().filter(|(_, reach)| *reach > 0.0).collect();
     }
 
-    /// Bodies that each bone collides with: all except those its tip touches in the bind pose.
+    /// Finds the bodies that each bone collides with: all bodies except those that the bone's tip touches in the bind
+    /// pose.
     fn meet_bodies(&mut self, ragdoll: &RagdollDef, mapping: &Mapping, bind_model: &[Affine]) {
         if !self.chains.iter().any(|chain| chain.hits_body) {
             self.meets = vec![0; self.bones.len()];
@@ -279,32 +281,32 @@ impl SpringRig {
         self.bodies = bodies.iter().map(|body| body.shape.clone()).collect();
     }
 
-    /// Springs this was made from.
+    /// Returns the springs from which the rig was made.
     pub fn source(&self) -> &Springs {
         &self.source
     }
 
-    /// Joints that swing, parents first.
+    /// Returns the joints that swing, parents first.
     pub fn joints(&self) -> impl ExactSizeIterator<Item = JointIdx> {
         self.bones.iter().map(|bone| self.nodes[bone.node].joint)
     }
 
-    /// Number of links between bones that swing.
+    /// Returns the number of links between bones that swing.
     pub fn link_count(&self) -> usize {
         self.links.len()
     }
 
-    /// Joints of bones that were left out.
+    /// Returns the joints of bones that were left out.
     pub fn left_out(&self) -> &[JointIdx] {
         &self.left_out
     }
 
-    /// True if a chain collides with the character's bodies.
+    /// Returns true if a chain collides with the character's bodies.
     pub fn meets_bodies(&self) -> bool {
         !self.bodies.is_empty()
     }
 
-    /// True if no bone swings.
+    /// Returns true if no bone swings.
     pub fn is_empty(&self) -> bool {
         self.bones.is_empty()
     }

@@ -17,14 +17,15 @@ const MOST_TICKS: u32 = 60;
 pub struct SpringStep<'a> {
     /// Springs of the kind of character.
     pub rig: &'a SpringRig,
-    /// Pose at the end of the step from clips or bodies, one transform per joint of the rig: the springs swing about
-    /// it.
+    /// Pose at the end of the step from clips or bodies, one transform per joint of the rig; the springs swing about
+    /// this pose.
     pub pose: &'a [LocalTransform],
     /// Transform from the file's model space to the world at the end of the step.
     pub world_from_model: Affine,
-    /// World poses of the ragdoll's bodies at the end of the step, for chains that collide with them; else empty.
+    /// World poses of the ragdoll's bodies at the end of the step, for chains that collide with bodies; otherwise
+    /// empty.
     pub bodies: &'a [Transform],
-    /// The world, and the character's own bodies in it; `None`: no collisions with the world, and no wind.
+    /// The world, and the character's own bodies in this world; `None`: no collisions with the world, and no wind.
     pub world: Option<(&'a World, &'a [BodyId])>,
     /// Length of the step, seconds.
     pub seconds: f32,
@@ -49,26 +50,26 @@ pub struct SpringSwing {
     pub(super) mode: Mode,
     /// Share of a tick that has passed since the last one, 0..1.
     pub(super) phase: f32,
-    /// Tips at the last tick, and their displacement in it: metres, in the space of the chain's centre, else of the
-    /// world.
+    /// Tips at the last tick, and their displacement in it: metres, in the space of the chain's centre, or of the world
+    /// without a centre.
     pub(super) tips: Vec<Vec3>,
     pub(super) ways: Vec<Vec3>,
-    /// Nodes that do not swing at the end of the last step, in the world.
+    /// World transforms at the end of the last step of the nodes that do not swing.
     pub(super) before: Vec<Affine>,
-    /// Non-swinging nodes one step earlier, and the length of that step, seconds: gives the curvature of the path
-    /// between two poses.
+    /// Transforms of the non-swinging nodes one step earlier, and the length of that step, seconds. They give the
+    /// curvature of the path between two poses.
     pub(super) earlier: Vec<Affine>,
     pub(super) stride: f32,
     /// Local rotation of every bone, as shown.
     pub(super) turns: Vec<Rotation>,
-    /// Rotation of every bone from the pose while it eases, scaled axis.
+    /// Rotation of every bone from the pose while the springs ease, scaled axis.
     pub(super) offsets: Vec<Vec3>,
     pub(super) now: Vec<Affine>,
-    /// All nodes at the time of a tick, and the colliders on them.
+    /// Transforms of all nodes at the time of a tick, and the colliders on these nodes.
     pub(super) at: Vec<Affine>,
     placed: Vec<Placed>,
-    /// Non-swinging nodes at the tick before, and the displacement of each collider since then; `None` on swinging
-    /// nodes.
+    /// Transforms of the non-swinging nodes at the tick before, and the displacement of each collider since then;
+    /// `None` on swinging nodes.
     last: Vec<Affine>,
     moved: Vec<Option<Affine>>,
     /// Pull of links on each tip per tick, metres.
@@ -76,12 +77,12 @@ pub struct SpringSwing {
 }
 
 impl SpringSwing {
-    /// Springs at rest.
+    /// Creates springs at rest.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Restarts at rest in the next step.
+    /// Makes the springs restart at rest in the next step.
     pub fn reset(&mut self) {
         self.mode = Mode::Fresh;
     }
@@ -113,7 +114,7 @@ impl SpringSwing {
             *node = Affine { linear, translation: larger(node.translation) };
         }
         for (index, bone) in rig.bones.iter().enumerate() {
-            // The space of a centre is scaled with it.
+            // The space of a centre is scaled with the character.
             if rig.chains[bone.chain].center.is_none() {
                 self.tips[index] = larger(self.tips[index]);
                 self.ways[index] *= factor;
@@ -121,13 +122,14 @@ impl SpringSwing {
         }
     }
 
-    /// Local rotations of the bones, in the order of [`SpringRig::joints`]; empty while they equal the pose.
+    /// Returns the local rotations of the bones, in the order of [`SpringRig::joints`]; empty while they equal the
+    /// pose.
     pub fn turns(&self) -> &[Rotation] {
         &self.turns
     }
 
-    /// Follows the character by a step, from rest in the first step; a step of no length changes nothing. Allocates
-    /// only in the first step.
+    /// Moves the springs with the character by a step, from rest in the first step; a step of zero length changes
+    /// nothing. Allocates only in the first step.
     ///
     /// # Panics
     /// If the pose does not have one transform per joint of the springs' rig.
@@ -139,7 +141,7 @@ impl SpringSwing {
         if self.mode != Mode::Swinging {
             return self.rest(step);
         }
-        // In a pause the motion does not change.
+        // A pause does not change the motion.
         if step.seconds == 0.0 {
             return;
         }
@@ -166,7 +168,8 @@ impl SpringSwing {
         self.stride = step.seconds;
     }
 
-    /// Positions of the non-swinging nodes at the last tick: on the line through the ends of the last two steps.
+    /// Computes the positions of the non-swinging nodes at the last tick, on the line through the ends of the last two
+    /// steps.
     fn look_back(&mut self) {
         let back = if self.stride > 0.0 { self.phase * TICK / self.stride } else { 0.0 };
         self.last.clear();
@@ -182,7 +185,7 @@ impl SpringSwing {
         }
     }
 
-    /// Positions of the non-swinging nodes.
+    /// Computes the positions of the non-swinging nodes.
     pub(super) fn look(&mut self, step: &SpringStep<'_>) {
         self.now.clear();
         for node in &step.rig.nodes[..step.rig.stills] {
@@ -225,7 +228,7 @@ impl SpringSwing {
         }
     }
 
-    /// Position of a tip at the new place of its node, in the space of its chain's centre.
+    /// Returns the position of a tip at the new place of its node, in the space of its chain's centre.
     pub(super) fn placed_tip(&self, rig: &SpringRig, index: usize) -> Vec3 {
         let bone = &rig.bones[index];
         let tip = self.at[bone.node].point(bone.tail);
@@ -236,7 +239,7 @@ impl SpringSwing {
         rig.chains[bone.chain].center.map(|node| &self.at[node])
     }
 
-    /// True if some part of the world is within reach of a bone.
+    /// Returns true if some part of the world is within reach of a bone.
     fn are_near(&self, rig: &SpringRig, around: &Surroundings<'_>) -> bool {
         let place = |anchor: usize| self.now[anchor].translation;
         let sum = rig.anchors.iter().fold(Vec3::ZERO, |sum, &(anchor, _)| sum + place(anchor));
@@ -245,8 +248,8 @@ impl SpringSwing {
         around.are_near(middle, rig.anchors.iter().map(reach).fold(0.0, max))
     }
 
-    /// Advances the bones from the last tick by the share `rho` of one; a whole tick is stored. `share` is the elapsed
-    /// share of the step.
+    /// Advances the bones from the last tick by the share `rho` of a tick; a whole tick is stored. `share` is the
+    /// elapsed share of the step.
     fn advance(&mut self, step: &SpringStep<'_>, meets: Option<Surroundings<'_>>, share: f32, rho: f32) {
         let ratio = self.stride / step.seconds;
         let rig = step.rig;
@@ -313,7 +316,7 @@ impl SpringSwing {
         }
     }
 
-    /// Position of a tip after the share `rho` of a tick.
+    /// Returns the position of a tip after the share `rho` of a tick.
     #[inline]
     fn next(
         &self,
@@ -342,7 +345,7 @@ impl SpringSwing {
         if next.is_finite() { next } else { held.rest() }
     }
 
-    /// World position of a tip at the last tick; `tip` has moved with the chain's centre since.
+    /// Returns the world position of a tip at the last tick; `tip` has moved with the chain's centre since.
     #[inline]
     fn last_place(&self, rig: &SpringRig, index: usize, tip: Vec3) -> Vec3 {
         match rig.chains[rig.bones[index].chain].center {
@@ -357,7 +360,7 @@ impl SpringSwing {
         if rig.links.is_empty() {
             return;
         }
-        // The vectors hold the predicted positions first, and the displacement from them at the end.
+        // The vectors contain the predicted positions first, and the displacement from them at the end.
         for (index, bone) in rig.bones.iter().enumerate() {
             let free = self.tips[index] + self.ways[index] * (1.0 - bone.drag);
             self.pulls.push(self.center(rig, bone).map_or(free, |center| center.point(free)));
@@ -391,7 +394,7 @@ impl SpringSwing {
     }
 }
 
-/// Matrix of a rotation after a scale.
+/// Returns the matrix of a rotation after a scale.
 #[inline]
 fn scaled(turn: Rotation, scale: Vec3) -> Mat3 {
     let m = turn.to_mat3();
@@ -401,8 +404,9 @@ fn scaled(turn: Rotation, scale: Vec3) -> Mat3 {
     Mat3::from_cols(m.x_axis * scale.x, m.y_axis * scale.y, m.z_axis * scale.z)
 }
 
-/// Position of a node at a share of the step from the second position to the third, on the parabola through all three;
-/// `ratio` is the previous step's length over this one's. Columns keep their lengths, because bones do.
+/// Returns the position of a node at a share of the step from the second position to the third, on the parabola through
+/// all three positions; `ratio` is the previous step's length over this step's. Columns keep their lengths, because
+/// bones do.
 fn between([a, b, c]: [&Affine; 3], ratio: f32, share: f32) -> Affine {
     if share == 1.0 {
         return *c;

@@ -1,4 +1,4 @@
-//! One tip: its motion in a tick and in a part of one, and its constraints.
+//! One tip: its motion over a tick and over a part of a tick, and its constraints.
 
 use super::collide::{Gap, Placed, Surroundings};
 use super::rig::Bone;
@@ -11,7 +11,7 @@ use sinew_math::{Affine, Mat3, Rotation, Vec3, normalize_or};
 /// Number of times that a tip is pushed out of the world within a tick: a corner has two sides.
 const PUSHES: usize = 2;
 
-/// A bone with all that holds or pushes its tip.
+/// A bone with all constraints and forces on its tip.
 pub(super) struct Around<'a> {
     pub placed: &'a [Placed],
     /// Displacement of each collider since the last tick, for continuous collision.
@@ -23,8 +23,8 @@ pub(super) struct Around<'a> {
 }
 
 impl Around<'_> {
-    /// Position of the tip one tick later, from its position and displacement, with an added displacement `push`;
-    /// `from` is its world position.
+    /// Returns the position of the tip one tick later, from its position `tip`, displacement `way` and an added
+    /// displacement `push`; `from` is its world position.
     #[inline]
     pub fn tick(&self, tip: Vec3, from: Vec3, way: Vec3, push: Vec3) -> Vec3 {
         let [keeps, pushed] = flight(self.held.bone.drag, 1.0);
@@ -32,8 +32,8 @@ impl Around<'_> {
         self.push_out(self.stopped(from, next), None)
     }
 
-    /// End position of a tip that moves from one position to another. It does not pass through a collider or the world,
-    /// even where it is so fast that its end position alone would miss them.
+    /// Returns the end position of a tip that moves from one position to another. A tip does not pass through a
+    /// collider or the world, even if it is so fast that its end position alone would not touch them.
     #[inline]
     fn stopped(&self, from: Vec3, mut next: Vec3) -> Vec3 {
         let (rig, bone) = (self.step.rig, self.held.bone);
@@ -51,8 +51,9 @@ impl Around<'_> {
         next
     }
 
-    /// Position of the tip after the share `rho` of a tick that ends at `whole`: constraints and pushes act as evenly
-    /// in time as the spring, so a tip at rest stays. Colliders allow the same depth as at the end of the tick.
+    /// Returns the position of the tip after the share `rho` of a tick that ends at `whole`. Constraints and pushes act
+    /// as evenly in time as the spring, so a tip at rest stays. Colliders allow the same depth as at the end of the
+    /// tick.
     pub fn part(&self, tip: Vec3, way: Vec3, whole: Vec3, rho: f32) -> Vec3 {
         let drag = self.held.bone.drag;
         let acts = whole - tip - way * flight(drag, 1.0)[0];
@@ -60,7 +61,8 @@ impl Around<'_> {
         self.push_out(self.held.hold(tip, way * keeps + acts * pushed), Some(whole))
     }
 
-    /// Pushes out of every collider, one after the other; if a position is given, only as far as it is outside.
+    /// Pushes the tip out of every collider in sequence; if `as_far_as` is given, only until it is no deeper than this
+    /// position.
     #[inline]
     fn push_out(&self, mut next: Vec3, as_far_as: Option<Vec3>) -> Vec3 {
         let (rig, bone) = (self.step.rig, self.held.bone);
@@ -109,7 +111,7 @@ pub(super) struct Held<'a> {
 }
 
 impl<'a> Held<'a> {
-    /// Creates the relation for a joint that has moved to `place`.
+    /// Creates the relation for a joint at `place`.
     #[inline(always)]
     pub fn new(bone: &'a Bone, local: &LocalTransform, world_from_parent: &'a Mat3, place: Vec3) -> Self {
         let rest = local.rotation;
@@ -125,7 +127,7 @@ impl<'a> Held<'a> {
         Self { bone, rest, seen_axis, world_from_parent, place, length, axis: along / length }
     }
 
-    /// False if the bone has no length: it does not swing.
+    /// Returns false if the bone has no length, so that it does not swing.
     #[inline(always)]
     pub fn has_length(&self) -> bool {
         self.length > 1e-12 && self.length < f32::INFINITY
@@ -134,25 +136,25 @@ impl<'a> Held<'a> {
     /// Converts a world direction to the space of the joint's parent, unit.
     #[inline]
     fn seen(&self, v: Vec3) -> Vec3 {
-        // The rows of the inverse, up to a common factor.
+        // Use the rows of the inverse, up to a common factor.
         let m = self.world_from_parent;
         let (x, y, z) = (m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
         let seen = Vec3::new(v.dot(x), v.dot(y), v.dot(z));
         normalize_or(if m.x_axis.dot(x) < 0.0 { -seen } else { seen }, self.seen_axis)
     }
 
-    /// Local rotation that puts the tip at this position.
+    /// Returns the local rotation that puts the tip at this position.
     #[inline]
     pub fn turn_to(&self, tip: Vec3) -> Rotation {
         (Rotation::from_arc(self.seen_axis, self.seen(tip - self.place)) * self.rest).normalize()
     }
 
-    /// Position of the tip at rest.
+    /// Returns the position of the tip at rest.
     pub fn rest(&self) -> Vec3 {
         self.place + self.axis * self.length
     }
 
-    /// The position nearest to `by` beyond a tip, at the bone's length and in a direction that its limit allows.
+    /// Returns the position nearest to `tip + by` at the bone's length and in a direction that the bone's limit allows.
     #[inline]
     pub fn hold(&self, tip: Vec3, by: Vec3) -> Vec3 {
         // Subtract first, so that small displacements lose no digits to the world position.
@@ -167,8 +169,7 @@ impl<'a> Held<'a> {
         self.place + direction * self.length
     }
 
-    /// Pushes out of a collider until it is no deeper in it than the position `as_far_as`, if given; `None`: until it
-    /// is outside.
+    /// Pushes a tip out of a collider until it is no deeper than the position `as_far_as`; `None`: until it is outside.
     #[inline]
     fn out_of(
         &self,
@@ -183,8 +184,8 @@ impl<'a> Held<'a> {
     }
 }
 
-/// Displacement of a free tip in the share `rho` of a tick, as shares of its displacement in the previous tick and of
-/// the push per tick.
+/// Returns the displacement of a free tip in the share `rho` of a tick, as shares of the displacement in the previous
+/// tick and of the push per tick.
 fn flight(drag: f32, rho: f32) -> [f32; 2] {
     let keeps = 1.0 - drag;
     if rho == 1.0 {
@@ -214,7 +215,7 @@ mod tests {
             assert!((near - whole).length() < 1e-4 * (1.0 + drag) * 0.1, "drag {drag}: {near} {whole}");
             assert_eq!(flight(way, push, drag, 0.0), Vec3::ZERO);
         }
-        // Free flight against drag, closed form: half a tick twice is a tick, where nothing pushes.
+        // Free flight against drag has a closed form: without a push, two half ticks equal one tick.
         let [half, _] = flight(0.64, 0.5);
         assert!((half - 0.36 * 0.4 / 0.64).abs() < 1e-7, "{half}");
     }

@@ -9,14 +9,14 @@ use sinew_ragdoll::{BuildOptions, CharacterDef, Locomotion, MotionSet, build};
 use sinew_scenes::mannequin::{Mannequin, Motions, mannequin};
 use std::sync::Arc;
 
-/// The mannequin with a walk and both get-up clips.
+/// Returns the mannequin with a walk and both get-up clips.
 pub fn walker() -> CharacterDef {
     let Mannequin { rig, clips, motions } = mannequin();
     character(rig, clips, motions)
 }
 
-/// The walker with a sword in its right hand. The sword's joints have no counterpart in the ragdoll, and no clip moves
-/// them.
+/// Returns the walker with a sword in its right hand. The sword's joints have no counterpart in the ragdoll, and no
+/// clip moves them.
 pub fn armed_walker() -> CharacterDef {
     let Mannequin { mut rig, clips, motions } = mannequin();
     let hand = analyze(&rig).expect("a skin").joint_with(Role::Hand(Side::Right));
@@ -55,12 +55,13 @@ pub fn floor() -> BodyDef {
     BodyDef { kind: BodyKind::Static, shapes: vec![ShapeDef::new(Shape::HalfSpace)], ..BodyDef::default() }
 }
 
-/// A pose away from the origin, turned about the vertical.
+/// Returns a pose away from the origin, turned about the vertical.
 pub fn somewhere() -> Transform {
     Transform::new(Vec3::new(1.5, 0.0, -2.0), Rotation::from_axis_angle(Vec3::Y, 0.7))
 }
 
-/// The walker as some exporters write it: under an armature node that scales to centimetres and rotates to Z up.
+/// Returns the walker as some exporters write it: under an armature node that scales to centimetres and rotates to Z
+/// up.
 pub fn in_centimetres_and_z_up() -> CharacterDef {
     let Mannequin { mut rig, mut clips, motions } = mannequin();
     let armature = LocalTransform {
@@ -79,8 +80,8 @@ pub fn in_centimetres_and_z_up() -> CharacterDef {
     character(rig, clips, motions)
 }
 
-/// The KayKit mannequin of the shared data, with its own walk and its own get-up from its back; the get-up from its
-/// face is retargeted from the built-in mannequin. `None` if the data are absent.
+/// Returns the KayKit mannequin of the shared data, with its own walk and its own get-up from its back; the get-up from
+/// its face is retargeted from the built-in mannequin. `None` if the data are absent.
 pub fn kaykit() -> CharacterDef {
     let of = |name: &str| data::document(&format!("kaykit_mannequin/{name}"));
     let rig = of("manny_med_mod.gltf").rig;
@@ -109,7 +110,7 @@ pub fn kaykit() -> CharacterDef {
     def
 }
 
-/// The built-in mannequin's get-up from its face, retargeted to another rig.
+/// Returns the built-in mannequin's get-up from its face, retargeted to another rig.
 fn from_face_on(rig: &Rig, analysis: &RigAnalysis) -> Clip {
     let Mannequin { rig: actor, clips, motions } = mannequin();
     let own = analyze(&actor).expect("the mannequin has a skin");

@@ -1,5 +1,5 @@
-//! Backstops of garments: they keep cloth out of the drawn body where no ragdoll body fills it, and do not disturb
-//! cloth elsewhere.
+//! Backstops of garments: they keep cloth out of the drawn body where no ragdoll body fills the mesh, and do not
+//! disturb cloth elsewhere.
 
 use crate::garments::{go_on, ground, mean_stretch};
 use sinew_anim::garments::Backstop;
@@ -29,7 +29,7 @@ fn thinner(shape: &Shape, factor: f32) -> Shape {
     }
 }
 
-/// A character whose bodies are half as thick as its mesh.
+/// Returns a character whose bodies are half as thick as its mesh.
 fn character_with_thin_bodies(backstop: Option<Backstop>) -> CharacterDef {
     let full = worn(&SKIRT, backstop);
     let mut ragdoll = full.ragdoll.clone();
@@ -40,7 +40,7 @@ fn character_with_thin_bodies(backstop: Option<Backstop>) -> CharacterDef {
     def
 }
 
-/// Largest depth of a free particle in the mannequin's fitted bodies, which stand for its mesh; metres.
+/// Returns the largest depth of a free particle in the mannequin's fitted bodies, which represent its mesh; metres.
 fn deepest(world: &World, character: &Character, drawn: &CharacterDef) -> f32 {
     let group = world.particles(character.garments()[0]);
     let is_free = |particle: u32| group.attachments().iter().all(|held| held.particle != particle);
@@ -83,7 +83,7 @@ fn cloth_stays_out_of_the_mesh_where_no_body_is() {
     assert!(fastest < 0.3, "the cloth moves at {fastest} m/s");
 }
 
-/// Depth of each particle below its backstop's ball, metres; negative above it.
+/// Returns the depth of each particle below its backstop's ball, metres; negative above the ball.
 fn depths(world: &World, group: &ParticleGroup) -> Vec<f32> {
     let depth = |stop: &sinew_physics::particles::BackstopDef| {
         let particle = stop.particle as usize;

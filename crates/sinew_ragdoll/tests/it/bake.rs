@@ -1,4 +1,4 @@
-//! `bake`: a run of a character from walk to walk, as a clip.
+//! Bakes of a character from walk to walk.
 
 use crate::actor::{floor, in_centimetres_and_z_up, shared, somewhere, walker};
 use core::ops::ControlFlow;
@@ -58,7 +58,7 @@ fn clip_matches_the_simulated_frames() {
         let def = shared(def);
         let baked = baked(&def, PUSH, 25.0);
         assert_eq!(baked.frames.len(), 226);
-        // Whether the character has to be rolled over first depends on its fall.
+        // The fall decides whether the character must be rolled over first.
         let needed = baked.frames.iter().filter(|frame| frame.state != State::Preparing);
         let mut states: Vec<_> = needed.map(|frame| frame.state).collect();
         states.dedup();
@@ -141,7 +141,8 @@ fn frame_rate_changes_only_the_number_of_frames() {
     assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{hashes:?}");
 }
 
-/// Largest distance (metres) and angle between the joints of the clip and of the frames, at the frames' times.
+/// Returns the largest distance (metres) and angle between the joints of the clip and of the frames, at the frames'
+/// times.
 fn off(def: &CharacterDef, baked: &Baked) -> [f32; 2] {
     let mut worst = [0.0, 0.0];
     let root = def.mapping().character_from_model();
@@ -174,7 +175,7 @@ fn key_error_stays_within_the_bound_at_any_rate() {
                 angle.to_degrees(),
                 baked.key_error
             );
-            // Keys at the frames' own times differ from them by rounding only.
+            // Keys at the frames' own times differ from the frames by rounding only.
             assert!(distance <= 1.01 * KEY_BOUND.distance && angle <= 1.01 * KEY_BOUND.angle);
             assert!((distance - baked.key_error.distance).abs() < 4e-6, "{distance} {:?}", baked.key_error);
             assert!((angle - baked.key_error.angle).abs() < 4e-6, "{angle} {:?}", baked.key_error);
@@ -223,8 +224,8 @@ fn weak_hit_bakes_a_flinch() {
     assert_eq!(states(&run(HitEffect::Falls))[..2], [State::Animated, State::Limp]);
 }
 
-/// The mannequin with stylised proportions: head, hands and feet nearly twice as large, masses computed from their
-/// shapes.
+/// Returns the mannequin with stylised proportions: head, hands and feet nearly twice as large, masses computed from
+/// their shapes.
 fn stylised() -> CharacterDef {
     let Mannequin { rig, clips, motions } = mannequin();
     let analysis = analyze(&rig).expect("the mannequin has a skin");
@@ -263,7 +264,7 @@ fn a_figure_with_large_feet_and_head_keeps_its_limits_in_a_bake() {
     }
 }
 
-/// World positions of all joints, frame by frame.
+/// Returns the world positions of all joints, frame by frame.
 fn places(def: &CharacterDef, baked: &Baked) -> Vec<Vec<Vec3>> {
     let mut model = Vec::new();
     let of = |frame: &sinew_ragdoll::bake::Frame| {
@@ -277,7 +278,7 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
     a.iter().zip(b).fold(0.0, |most, (a, b)| max(most, (*a - *b).length()))
 }
 
-/// The walker with `exact` playback of its clip.
+/// Returns the walker with `exact` playback of its clip.
 fn exact() -> Arc<CharacterDef> {
     let mut def = walker();
     let motions = MotionSet { locomotion: Locomotion::Exact, ..def.motions().clone() };
@@ -335,7 +336,7 @@ fn timed_drives_move_parts_and_return_them() {
 #[test]
 fn movers_push_and_wind_blows() {
     let mut def = walker();
-    // With the default, clips would move the character and a plough would pass through.
+    // With the default, clips would move the character and the plough would pass through it.
     def.after_settling = AfterSettling::StayDown;
     let (def, bodies) = (shared(def), [floor()]);
     let still =

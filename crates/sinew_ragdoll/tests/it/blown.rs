@@ -14,7 +14,7 @@ fn pelvis(world: &World, character: &Character) -> Vec3 {
     world.center_of_mass(character.bodies()[0])
 }
 
-/// A standing character that no clip moves.
+/// Returns a standing character that no clip moves, with its world.
 fn standing(def: &Arc<CharacterDef>) -> (World, Character) {
     let mut world = level();
     let mut character = Character::spawn(&mut world, def, Transform::IDENTITY);
@@ -23,7 +23,8 @@ fn standing(def: &Arc<CharacterDef>) -> (World, Character) {
     (world, character)
 }
 
-/// An explosion one metre from a standing character that gives it `momentum` (N·s). Returns the character's events.
+/// Simulates an explosion one metre from a standing character that gives it `momentum` (N·s). Returns the character's
+/// events.
 fn blast(world: &mut World, character: &mut Character, momentum: f32) -> Vec<CharacterEvent> {
     let center = pelvis(world, character) - Vec3::X;
     let unit = Explosion::new(center, 3.0, 1.0);
@@ -108,7 +109,7 @@ fn bullet_or_impulse_on_an_animated_body_counts_as_a_hit() {
     assert_eq!(character.state(), State::Flinching, "a rifle's bullet has 8 N·s");
 }
 
-/// A field that pulls aside with this acceleration, m/s².
+/// Returns a field with this sideways acceleration, m/s².
 fn pull(acceleration: Vec3) -> FieldDef {
     FieldDef::new(FieldKind::Uniform(UniformGravity { acceleration }))
 }
@@ -129,7 +130,7 @@ fn character_resists_a_field_until_its_feet_slip() {
     assert!(state == State::Animated && way > 0.01, "7 m/s²: {state:?}, {way} m");
     let (state, _) = after(7.0, 60);
     assert_eq!(state, State::Limp, "7 m/s² sweeps it off its feet");
-    // In the air it accelerates like any free body.
+    // In the air the character accelerates like any free body.
     let (mut world, mut character) = standing(&def);
     world.add_field(&pull(Vec3::X * 3.0));
     character.jump(&mut world);

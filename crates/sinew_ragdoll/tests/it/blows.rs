@@ -18,7 +18,7 @@ fn walking(def: &Arc<CharacterDef>) -> (World, Character) {
     (world, character)
 }
 
-/// World positions of all joints that have bodies.
+/// Returns the world positions of all joints that have bodies.
 fn places(character: &Character) -> Vec<Vec3> {
     let def = character.def();
     let mut model = Vec::new();
@@ -26,7 +26,7 @@ fn places(character: &Character) -> Vec<Vec3> {
     def.ragdoll.bodies.iter().map(|body| model[body.joint].translation).collect()
 }
 
-/// Largest distance of a joint from its place in an undisturbed twin, metres.
+/// Returns the largest distance of a joint from its place in an undisturbed twin, metres.
 fn apart(one: &Character, twin: &Character) -> f32 {
     let far = |(a, b): (&Vec3, &Vec3)| (*a - *b).length();
     places(one).iter().zip(&places(twin)).map(far).fold(0.0, max)
@@ -254,7 +254,8 @@ fn skin_matrices_map_the_bind_pose_to_the_current_pose() {
     }
     assert_eq!(character.interpolated(1.0, &mut pose), character.world_from_character());
     assert_eq!(palettes[0].len(), def.rig.skins[0].joints.len());
-    // The joint's position in the bind pose is mapped to its current position: rows, translation last.
+    // The joint's position in the bind pose is mapped to its current position. The matrix is stored by rows,
+    // translation last.
     let mut model = Vec::new();
     sinew_anim::local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
     let skin = &def.rig.skins[0];
@@ -289,13 +290,13 @@ fn flinch_preset_moves_the_body_and_returns() {
     assert!(most > 0.01 && apart(&character, &twin) < 2e-3, "{most} m, then {}", apart(&character, &twin));
 }
 
-/// Largest speed of a body, m/s.
+/// Returns the largest speed of a body, m/s.
 fn fastest(world: &World, character: &Character) -> f32 {
     character.bodies().iter().map(|&body| world.velocity(body).linear.length()).fold(0.0, max)
 }
 
-/// Hits it while it flinches so that it falls, then runs until `state`. Returns the largest body speed since it came to
-/// rest.
+/// Hits a flinching character so that it falls, then runs until `state`. Returns the largest body speed since the
+/// character came to rest.
 fn until(world: &mut World, character: &mut Character, state: State) -> f32 {
     let mut most = 0.0;
     for step in 0..900 {
@@ -366,7 +367,8 @@ fn character_turns_to_its_heading_while_getting_up() {
     assert!(facing < 1.2 * free + 0.5, "{facing} m/s while turning, {free} without");
 }
 
-/// Hit bodies waited for one step when the clips took them back, and covered the way of two in the next.
+/// In the past, hit bodies waited for one step when the clips took them back, and moved by two steps' distance in the
+/// next.
 #[test]
 fn hit_bodies_go_on_at_the_end_of_a_flinch() {
     let def = shared(walker());

@@ -57,7 +57,7 @@ impl Hammock {
             let center = world.center_of_mass(body);
             for particle in cloth.row(row) {
                 let place = &mut cloth.group.particles[particle as usize].position;
-                // Moved over the inner edge of the block, without contact.
+                // Particles are moved over the inner edge of the block, without contact.
                 *place = Vec3::new(place.x, top + 0.03, 0.5 * GAP * place.z.signum());
                 let point = *place - center;
                 cloth.group.hold(particle, AttachmentTarget::Body { body, point });
@@ -69,7 +69,7 @@ impl Hammock {
         Self { world, bodies: [left, right, load], cloth }
     }
 
-    /// Number of bodies and particle groups that are awake, out of four.
+    /// Returns the number of bodies and particle groups that are awake, out of four.
     fn awake(&self) -> usize {
         let bodies = self.bodies.iter().filter(|&&id| self.world.is_awake(id)).count();
         bodies + usize::from(self.world.particles(self.cloth).is_awake())

@@ -8,7 +8,7 @@ use sinew_ragdoll::fit::{Fit, patch::Selection};
 use sinew_ragdoll::limits::friction::friction_torques;
 use sinew_ragdoll::limits::{JointPlan, joints};
 
-/// A person of 1.75 m whose arms hang `drop` radians below the horizontal.
+/// Returns a person of 1.75 m whose arms hang `drop` radians below the horizontal.
 fn person(drop: f32) -> Bones {
     let mut list = vec![
         Bone::new(0, Role::Hips, None, Vec3::new(0.0, 1.0, 0.0)),
@@ -32,7 +32,7 @@ fn person(drop: f32) -> Bones {
     Bones::new(list, Anatomy::Human, 1.75)
 }
 
-/// Fitted bodies with random frame rotations: limits must not depend on them.
+/// Returns fitted bodies with random frame rotations, on which limits must not depend.
 fn fits(bones: &Bones) -> Vec<Fit> {
     (0..bones.list.len())
         .map(|i| {
@@ -60,7 +60,7 @@ fn index(bones: &Bones, role: Role) -> usize {
     bones.list.iter().position(|bone| bone.role == role).expect("made by hand")
 }
 
-/// Joint rotation at the bind pose, parent frame to child frame, and the parent's frame in character axes.
+/// Returns the joint rotation at the bind pose, parent frame to child frame, and the parent's frame in character axes.
 fn at_bind(bones: &Bones, plan: &JointPlan) -> (Rotation, Rotation) {
     let fits = fits(bones);
     let of = |body: usize, frame: Transform| fits[body].character_from_body.rotation * frame.rotation;
@@ -69,7 +69,7 @@ fn at_bind(bones: &Bones, plan: &JointPlan) -> (Rotation, Rotation) {
     (parent.inverse() * child, parent)
 }
 
-/// Returns where a point attached to the child is when the joint rotation is `joint`, in character space.
+/// Returns the position of a point attached to the child for the joint rotation `joint`, in character space.
 fn moved(bones: &Bones, child: usize, joint: Rotation, point: Vec3) -> Vec3 {
     let plan = &plans(bones)[child - 1];
     let (bind, parent) = at_bind(bones, plan);
@@ -195,7 +195,7 @@ fn right_is_the_mirror_image_of_left() {
             }
             other => panic!("unlike kinds {other:?}"),
         }
-        // A mirror keeps the x component of an axis of rotation and negates the others; likewise for a rotation's
+        // A mirror keeps the x component of a rotation axis and negates the others. The same holds for a rotation's
         // vector part.
         let (a, b) = (at_bind(&bones, &plans[bone - 1]).1, at_bind(&bones, &plans[twin - 1]).1);
         let along = |frame: Rotation| frame * Vec3::X;
@@ -225,8 +225,8 @@ fn every_bind_pose_is_within_the_limits() {
     }
 }
 
-/// 5 kg centred 0.1 m below the joint and 3 kg 0.4 m above it: the joint carries at most the smaller of the two
-/// moments. Its friction is a fifth of that, or the table's torque if that is larger.
+/// Bodies are 5 kg centred 0.1 m below the joint and 3 kg 0.4 m above it; the joint carries at most the smaller of the
+/// two moments. Its friction is a fifth of this moment, or the table's torque if that is larger.
 #[test]
 fn creature_joint_friction_follows_the_carried_moment() {
     let list = vec![

@@ -64,17 +64,17 @@ const BEETLE: Figure = Figure {
     ],
 };
 
-/// A human of sixteen boxes.
+/// Returns a human of sixteen boxes.
 pub fn block_man() -> Rig {
     BLOCK_MAN.rig()
 }
 
-/// A dog of eighteen boxes.
+/// Returns a dog of eighteen boxes.
 pub fn dog() -> Rig {
     DOG.rig()
 }
 
-/// A beetle of fourteen boxes.
+/// Returns a beetle of fourteen boxes.
 pub fn beetle() -> Rig {
     BEETLE.rig()
 }

@@ -34,7 +34,7 @@ fn run_until(
     events
 }
 
-/// World position of a joint, metres.
+/// Returns the world position of a joint, metres.
 fn place_of(character: &Character, name: &str) -> Vec3 {
     let def = character.def();
     let joint = def.rig.joints.iter().position(|joint| joint.name == name).expect("the joint is there");
@@ -86,7 +86,7 @@ fn character_falls_settles_gets_up_and_walks_on() {
     assert_eq!(kinds, expected.map(|event| core::mem::discriminant(&event)), "{events:?}");
     assert_eq!(world.body_ids().count(), 1, "its bodies are removed");
     assert!(place_of(&character, "head").y > 1.3);
-    // It accelerates gradually: it does not start at full walking speed.
+    // The character accelerates gradually: it does not start at full walking speed.
     run_until(&mut world, &mut character, 0.35, |_| false);
     let before = character.world_from_character().translation;
     run_until(&mut world, &mut character, 1.0, |_| false);
@@ -119,7 +119,7 @@ fn get_up_clip_matches_the_lying_side() {
     assert!(clear.iter().all(|&falls| falls > 0), "it never fell on one of the two sides: {clear:?}");
 }
 
-/// Direction in which the pelvis faces.
+/// Returns the direction in which the pelvis faces.
 fn pelvis_forward(character: &Character) -> Vec3 {
     let def = character.def();
     let mut model = Vec::new();
@@ -257,18 +257,18 @@ fn joints_without_bodies_keep_their_secondary_motion() {
         way += last.angle_to(now);
         last = now;
         steps += 1;
-        // Their last motion has decayed by then.
+        // The joints' last motion has decayed by then.
         if character.state() == State::Limp && steps > 20 {
             let now = character.pose()[toes].rotation;
             assert_eq!(*frozen.get_or_insert(now), now, "toes move while it lies");
         }
     }
-    // It sways 0.5 rad to either side once per cycle of about a second: 2 rad per cycle, at most about π rad/s.
+    // The finger sways 0.5 rad to either side once per cycle of about a second: 2 rad per cycle, at most about π rad/s.
     assert!(way > 1.0, "the finger turned {way} rad");
     assert!(step < 1.1 * core::f32::consts::PI / 60.0, "it jumped by {step} rad");
 }
 
-/// The walker with an extra finger that sways in all of its clips.
+/// Returns the walker with an extra finger that sways in all of its clips.
 fn waving() -> Arc<CharacterDef> {
     let plain = walker();
     let mut rig = plain.rig.clone();
@@ -296,12 +296,12 @@ fn waving() -> Arc<CharacterDef> {
 fn hit_while_getting_up_knocks_it_over_again() {
     let def = shared(walker());
     for wanted in [State::Preparing, State::GettingUp] {
-        // Pushed to fall onto its side.
+        // A push makes the character fall onto its side.
         let side = somewhere().rotation * Vec3::X;
         let (mut world, mut character) = knocked_over(&def, side * 90.0);
         run_until(&mut world, &mut character, 9.0, |c| c.state() == wanted);
         if character.state() != wanted {
-            // It has fallen so that it need not be rolled over.
+            // After this fall the character need not be rolled over.
             assert_eq!(wanted, State::Preparing);
             continue;
         }
@@ -338,7 +338,7 @@ fn a_powered_fall_keeps_more_of_its_pose() {
     assert!(powered < 0.6 * limp, "off by {powered} rad on the mean, limp by {limp}");
 }
 
-/// Character-space joint positions (metres) in a clip of the set.
+/// Returns the joint positions in character space (metres) in a clip of the set.
 fn places(def: &CharacterDef, clip: ClipId, time: f32) -> Vec<Vec3> {
     let clip = &def.set().clip(clip).clip;
     let mut pose = Pose::new(clip.joints());
@@ -349,7 +349,7 @@ fn places(def: &CharacterDef, clip: ClipId, time: f32) -> Vec<Vec3> {
     model.iter().map(|joint| joint.translation).collect()
 }
 
-/// The name of the corresponding joint on the other side.
+/// Returns the name of the corresponding joint on the other side.
 fn other_side(name: &str) -> String {
     let sides = [("left", "right"), ("right", "left")];
     let ends = [(".l", ".r"), (".r", ".l")];

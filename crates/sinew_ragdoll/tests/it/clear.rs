@@ -5,7 +5,7 @@ use sinew_physics::{BodyDef, BodyId, BodyKind, Filter, Shape, ShapeDef, Velocity
 use sinew_ragdoll::{Character, CharacterDef};
 use std::sync::Arc;
 
-/// Half a second, in steps.
+/// Number of steps in half a second.
 const HALF_SECOND: usize = 30;
 
 fn deepest(world: &World, character: &Character) -> f32 {
@@ -18,7 +18,7 @@ fn fastest(world: &World, character: &Character) -> f32 {
     character.bodies().iter().fold(0.0, |most, &body| max(most, world.velocity(body).linear.length()))
 }
 
-/// A floor, and a wall 0.2 m thick across z = 0.
+/// Returns a world with a floor and a wall 0.2 m thick across z = 0.
 fn world_with_wall() -> World {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -84,7 +84,7 @@ fn limp_character_leaves_a_wall_on_the_nearer_side() {
     }
 }
 
-/// A moving limp character leaves on the side it came from, and its velocity component into the wall is removed.
+/// A moving limp character leaves on the side from which it came, and its velocity component into the wall is removed.
 #[test]
 fn moving_character_leaves_a_wall_on_its_entry_side() {
     let def = Arc::new(sinew::mannequin::character());
@@ -121,7 +121,7 @@ fn filtered_shapes_do_not_move_the_character() {
     assert!(character.bodies().iter().all(|&body| world.kind(body) == BodyKind::Dynamic));
 }
 
-/// A snapshot taken during the way out continues identically, also after a limb is detached there.
+/// A snapshot taken during the way out continues identically, also after a limb is detached during the way out.
 #[test]
 fn snapshot_during_clearing_continues_identically() {
     let def = Arc::new(sinew::mannequin::character());

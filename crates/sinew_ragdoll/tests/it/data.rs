@@ -6,17 +6,17 @@ use std::path::Path;
 
 const RIGS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/rigs");
 
-/// True if the shared data are present, for tests that also use rigs of the repository.
+/// Returns true if the shared data are present, for tests that also use rigs of the repository.
 pub fn is_there() -> bool {
     Path::new(RIGS).is_dir()
 }
 
-/// A rig of the shared data, for tests with `needs_data`.
+/// Returns a rig of the shared data, for tests with `needs_data`.
 pub fn rig(name: &str) -> Rig {
     document(name).rig
 }
 
-/// A file of the shared rigs, for tests with `needs_data`.
+/// Returns a file of the shared rigs, for tests with `needs_data`.
 pub fn document(name: &str) -> Document {
     let document = load_gltf(Path::new(RIGS).join(name), ReadOptions::default());
     document.unwrap_or_else(|error| panic!("{name}: {error}"))

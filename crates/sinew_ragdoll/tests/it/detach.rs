@@ -1,5 +1,5 @@
-//! Detached limbs: a limb keeps its motion, the rest stays alive, and the world's own calls cannot remove parts of a
-//! character.
+//! Detached limbs: a limb keeps its motion, the other bodies stay animated, and the world's own calls cannot remove
+//! parts of a character.
 
 use crate::actor::{shared, walker};
 use crate::in_world::{level, run};
@@ -15,7 +15,7 @@ use std::sync::Arc;
 const STATES: [State; 6] =
     [State::Animated, State::Limp, State::Preparing, State::GettingUp, State::Flinching, State::Powered];
 
-/// A character that has reached `state`.
+/// Returns a character that has reached `state`, with its world.
 fn in_state(def: &Arc<CharacterDef>, state: State) -> (World, Character) {
     let mut world = level();
     let mut character = Character::spawn(&mut world, def, Transform::IDENTITY);
@@ -44,18 +44,18 @@ fn in_state(def: &Arc<CharacterDef>, state: State) -> (World, Character) {
     panic!("it never entered {state:?}");
 }
 
-/// Total energy of the bodies, J.
+/// Returns the total energy of the bodies, J.
 fn energy(world: &World) -> f32 {
     world.energy().total()
 }
 
-/// Largest joint gap of characters and limbs, metres.
+/// Returns the largest joint gap of characters and limbs, metres.
 fn widest_gap(world: &World) -> f32 {
     let owned = world.joint_ids().filter(|&joint| world.joint_owner(joint).is_some());
     owned.map(|joint| world.joint_gap(joint)).fold(0.0, max)
 }
 
-/// Largest speed of a dynamic body, m/s.
+/// Returns the largest speed of a dynamic body, m/s.
 fn fastest(world: &World) -> f32 {
     let dynamic = world.body_ids().filter(|&body| world.kind(body) == BodyKind::Dynamic);
     dynamic.map(|body| world.velocity(body).linear.length()).fold(0.0, max)
@@ -82,7 +82,7 @@ fn removing_an_owned_body_names_the_character_and_the_call() {
         panic_text.contains("character's leftUpperArm") && panic_text.contains("`Character::despawn`"),
         "{panic_text}"
     );
-    // The same in a world loaded from a snapshot, and for hit bodies.
+    // Repeat the test in a world loaded from a snapshot, and for hit bodies.
     let mut w = Writer::new();
     world.save(&mut w);
     let mut other = World::new(world.def().clone());
@@ -194,7 +194,7 @@ fn nested_limbs_and_the_rest_share_the_whole_skin() {
         arm.skin_joints().position(|joint| joint == def.ragdoll.bodies[upper].joint).expect("its own");
     let away = (places[joint].translation - world.transform(arm.bodies()[0]).translation).length();
     assert!(away < 0.3, "the shoulder of the arm is {away} m from its middle ({:?})", bind(upper));
-    // The skins of both have a finite matrix for each joint.
+    // Skins of character and limb have a finite matrix for each joint.
     for skin in 0..def.rig.skins.len() {
         let mut palettes = [Vec::new(), Vec::new(), Vec::new()];
         character.skin_palette(skin, 1.0, &mut palettes[0]);

@@ -6,7 +6,7 @@ use sinew_anim::{
 };
 use sinew_math::{Affine, Random, Rotation, Transform, Vec3};
 
-/// The rig in other units and axes: changes every root and every bind matrix.
+/// Returns the rig in other units and axes: changes every root and every bind matrix.
 pub fn transformed(rig: &Rig, scale: f32, turn: Rotation) -> Rig {
     let mut rig = rig.clone();
     for joint in rig.joints.iter_mut().filter(|joint| joint.parent.is_none()) {
@@ -30,7 +30,7 @@ pub fn transformed(rig: &Rig, scale: f32, turn: Rotation) -> Rig {
     rig
 }
 
-/// The joints in random order, parents before children, and the new index of each.
+/// Returns the joints in random order, parents before children, and the new index of each.
 pub fn shuffled(rig: &Rig, seed: u64) -> (Rig, Vec<usize>) {
     let mut random = Random::new(seed);
     let mut place = vec![None; rig.joints.len()];
@@ -71,7 +71,7 @@ pub fn nameless(rig: &Rig) -> Rig {
     rig
 }
 
-/// Names without meaning, or with a wrong one.
+/// Gives joints names without meaning, or with a wrong one.
 pub fn misnamed(rig: &Rig) -> Rig {
     let mut rig = rig.clone();
     let count = rig.joints.len();
@@ -388,9 +388,8 @@ pub fn affixed(rig: &Rig, prefix: &str, suffix: &str) -> Rig {
     rig
 }
 
-/// Meshes bound in another unit than the joints, as in exports through FBX, or mirrored by a negative unit; the skin is
-/// drawn in the
-/// same place.
+/// Binds meshes in another unit than the joints, as in exports through FBX, or mirrored by a negative unit; the skin is
+/// drawn in the same place.
 pub fn bound_in(rig: &Rig, unit: f32) -> Rig {
     let mut rig = rig.clone();
     let joints_from_mesh =
@@ -406,7 +405,7 @@ pub fn bound_in(rig: &Rig, unit: f32) -> Rig {
     rig
 }
 
-/// Puts a new first joint of negative scale above all roots, and adjusts the roots so that the drawing is unchanged.
+/// Adds a new first joint of negative scale above all roots, and adjusts the roots so that the drawing is unchanged.
 pub fn under_a_mirror(rig: &Rig) -> Rig {
     let mut rig = rig.clone();
     let mirror = Vec3::new(-1.0, 1.0, 1.0);
@@ -435,7 +434,7 @@ pub fn under_a_mirror(rig: &Rig) -> Rig {
     rig
 }
 
-/// Every skinned mesh in two, the second with its own skin, bound in another unit.
+/// Splits every skinned mesh in two, the second with its own skin, bound in another unit.
 pub fn with_two_skins(rig: &Rig, unit: f32) -> Rig {
     let mut rig = rig.clone();
     let other = bound_in(&rig, unit);
@@ -469,13 +468,13 @@ fn rest_models(rig: &Rig) -> Vec<Affine> {
     model
 }
 
-/// A transform of uniform scale, split into translation, rotation, scale.
+/// Returns a transform of uniform scale, split into translation, rotation, scale.
 fn parts(transform: &Affine) -> LocalTransform {
     let Transform { translation, rotation } = transform.to_rigid();
     LocalTransform { translation, rotation, scale: Vec3::splat(transform.linear.x_axis.length()) }
 }
 
-/// The joint that is an ancestor of all others, if there is one.
+/// Returns the joint that is an ancestor of all others, if there is one.
 fn top(rig: &Rig) -> Option<JointIdx> {
     let mut roots = (0..rig.joints.len()).filter(|&joint| rig.joints[joint].parent.is_none());
     roots.next().filter(|_| roots.next().is_none())
@@ -554,7 +553,7 @@ fn add_slot(rig: &mut Rig, mesh: usize, slot: usize, joint: JointIdx, offset: Ve
     u16::try_from(skin.joints.len() - 1).expect("few")
 }
 
-/// A strand of hair on a joint, three joints long, with a little skin.
+/// Adds a strand of hair to a joint, three joints long, with a little skin.
 pub fn with_hair(rig: &Rig, analysis: &RigAnalysis, head: JointIdx, random: &mut Random) -> Rig {
     let Some((mesh, slot)) = skinned_by(rig, head) else { return rig.clone() };
     let mut rig = rig.clone();
@@ -634,7 +633,7 @@ pub fn with_twists(rig: &Rig, analysis: &RigAnalysis) -> Rig {
     rig
 }
 
-/// Vertices of a slot beyond `middle` (in its joint's space) go to another slot.
+/// Moves the weights of a slot beyond `middle` (in its joint's space) to another slot.
 fn give_far_half(mesh: &mut RigMesh, joint_from_mesh: &Affine, middle: Vec3, slot: usize, to: u16) {
     for primitive in mesh.primitives.iter_mut().filter(|primitive| !primitive.joints.is_empty()) {
         for (position, slots) in primitive.positions.iter().zip(&mut primitive.joints) {
@@ -690,7 +689,7 @@ pub fn with_eyes(rig: &Rig, analysis: &RigAnalysis, head: JointIdx) -> Rig {
     rig
 }
 
-/// Moves half of the skin of a joint to a new bone in the same place, with the same parent, as the halves of a pelvis
+/// Moves half of the skin of a joint to a new bone in the same place, with the same parent, like the halves of a pelvis
 /// or a breast.
 pub fn with_halves(rig: &Rig, joint: JointIdx, name: &str) -> Rig {
     let Some((mesh, slot)) = skinned_by(rig, joint) else { return rig.clone() };

@@ -1,5 +1,5 @@
-//! Defects known from ragdolls of other tools, put into a healthy one: the doctor reports exactly that defect and
-//! repairs it.
+//! Defects known from ragdolls of other tools, injected into a healthy ragdoll: the doctor reports exactly the injected
+//! defect and repairs it.
 
 use crate::actor::walker;
 use needs_data::needs_data;
@@ -10,13 +10,13 @@ use sinew_ragdoll::{
     BuildOptions, RagdollBodyDef, RagdollDef, RagdollJointDef, Repair, build, cure, doctor, drop_test, gate,
 };
 
-/// A healthy ragdoll with its rig.
+/// Returns a healthy ragdoll with its rig.
 fn healthy() -> Repair {
     let def = walker().ragdoll;
     Repair { reference: Some(def.clone()), ..Repair::new(def) }
 }
 
-/// The healthy ragdoll of a rig from another author, if the data are present.
+/// Returns the healthy ragdoll of a rig from another author, if the data are present.
 fn healthy_other_ragdoll() -> Repair {
     let rig = crate::data::rig("mannequiny.glb");
     let analysis = sinew_anim::analyze(&rig).expect("a skin");
@@ -40,7 +40,7 @@ fn cone(y: f32, z: f32, twist: [f32; 2]) -> JointKind {
     JointKind::Ball { limit: Some(limit) }
 }
 
-/// Sets the joint up as other tools do: the bind pose is its zero.
+/// Sets up a joint as other tools do: the bind pose is its zero.
 fn zeroed(repair: &mut Repair, role: &str, kind: JointKind) {
     let def = &repair.def;
     let joint = def.joints[body(def, role) - 1];
@@ -96,7 +96,7 @@ fn thicker(repair: &mut Repair, role: &str, factor: f32) {
 
 type Plant = (&'static str, Code, fn(&mut Repair));
 
-/// A defect of another tool, its code, and a function that puts it into a definition.
+/// Defects of other tools: code, and function that injects the defect into a definition.
 const DEFECTS: [Plant; 28] = [
     ("UE: every generated limit is 45°", Code::LimitsAllAlike, |p| {
         every_joint(p, cone(45.0, 45.0, [-45.0, 45.0]));
@@ -271,7 +271,7 @@ fn each_defect_is_reported_alone() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The defects are also found on a body of other proportions, in another pose, with collar bones.
+/// The doctor also finds the defects on a body of other proportions, in another pose, with collar bones.
 #[needs_data]
 #[test]
 fn defects_of_a_foreign_rig_are_reported() {
@@ -317,7 +317,7 @@ fn defects_are_repaired_and_the_ragdoll_falls_well() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Eight drops and a wall impact: energy does not grow, no joint opens, and it comes to rest.
+/// Checks eight drops and a wall impact: energy does not grow, no joint opens, and the ragdoll comes to rest.
 fn falls_well(def: &RagdollDef, what: &str) {
     let report = drop_test(def);
     assert_eq!(report.drop.nan + report.wall.nan, 0, "{what}");
@@ -327,7 +327,7 @@ fn falls_well(def: &RagdollDef, what: &str) {
     assert!(gain < 0.02, "{what}: energy gain {gain}");
 }
 
-/// Defects that the doctor calls errors do harm, which the simulation shows and the finding reports.
+/// Findings of severity error are harmful: the simulation shows the harm.
 #[test]
 fn findings_of_severity_error_show_in_simulation() {
     let mut wrong = Vec::new();
@@ -346,8 +346,8 @@ fn findings_of_severity_error_show_in_simulation() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Three upright pieces; the last is folded back to 120° about the middle one, and its hinge can turn further by
-/// `range`.
+/// Returns three upright pieces; the last is folded back to 120° about the middle one, and its hinge can turn further
+/// by `range`.
 fn folding(range: Range) -> RagdollDef {
     let piece = |role: &str, x: f32, z: f32| {
         let shape = Shape::Capsule { half_height: 0.12, radius: 0.05 };
@@ -363,10 +363,11 @@ fn folding(range: Range) -> RagdollDef {
         }
     };
     let (sin, cos) = sinew_math::trig::sin_cos(120.0_f32.to_radians());
-    // On a circle of 14 cm about x = 10 cm: at 180° it would be 4 cm behind the centre of the first piece.
+    // The piece moves on a circle of 14 cm about x = 10 cm: at 180° it would be 4 cm behind the centre of the first
+    // piece.
     let (x, z) = (0.1 + 0.14 * cos, -0.14 * sin);
     let bodies = vec![piece("limb_0_0", 0.0, 0.0), piece("limb_0_1", 0.12, 0.0), piece("limb_0_2", x, z)];
-    // A hinge about y, at the given points of both bodies.
+    // Create a hinge about y, at the given points of both bodies.
     let upright = sinew_math::Rotation::from_arc(Vec3::X, Vec3::Y);
     let hinge = |parent: usize, at: Vec3, range: Range| {
         let frame = |body: usize| Transform::new(bodies[body].character_from_body.inverse_point(at), upright);
@@ -408,7 +409,7 @@ fn contact_against_a_limit_is_reported() {
     assert_eq!(cured.def.disabled_pairs, [(0, 2)]);
 }
 
-/// A tail of hinges, each 0.9° beyond its limit: too little to be reported one by one.
+/// Returns a tail of hinges, each 0.9° beyond its limit: too little for a finding each.
 fn strained() -> RagdollDef {
     let link = |index: u8| {
         let shape = Shape::Capsule { half_height: 0.03, radius: 0.02 };
@@ -492,7 +493,7 @@ fn the_page_lists_every_code() {
     }
 }
 
-/// From the middle of its cone a joint reaches the cone's ends; from elsewhere, the remaining range.
+/// Starting from the middle of its cone a joint reaches the cone's ends; from another rotation, the remaining range.
 #[test]
 fn joint_reach_follows_its_limits() {
     let limit = SwingTwistLimit {

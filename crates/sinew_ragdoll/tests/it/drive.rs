@@ -1,4 +1,5 @@
-//! Drives of a ragdoll, compared with closed forms, balances of force, momentum and energy, and other step rates.
+//! Drives of a ragdoll, compared with closed forms, balances of force, momentum and energy, and results at other step
+//! rates.
 
 use crate::actor::{floor, shared, walker};
 use crate::in_world::{level, run};
@@ -26,8 +27,8 @@ fn body(role: &str, at: Vec3, mass: f32) -> RagdollBodyDef {
     }
 }
 
-/// A heavy body, and an arm of 2 kg whose centre is 0.3 m from its hinge about z. Moment of inertia about the hinge:
-/// 0.22 kg m².
+/// Returns a heavy body, and an arm of 2 kg whose centre is 0.3 m from its hinge about z. Moment of inertia about the
+/// hinge: 0.22 kg m².
 fn arm() -> RagdollDef {
     let axis = Rotation::from_arc(Vec3::X, Vec3::Z);
     RagdollDef {
@@ -72,7 +73,7 @@ impl Driven {
         Self { world, def, ragdoll, drives, targets }
     }
 
-    /// The mannequin, one metre above the ground.
+    /// Returns the mannequin, one metre above the ground.
     fn mannequin() -> Self {
         Self::new(walker().ragdoll, Transform::from_translation(Vec3::Y), 60)
     }
@@ -93,7 +94,7 @@ impl Driven {
         }
     }
 
-    /// Angle of the arm's hinge.
+    /// Returns the angle of the arm's hinge, radians.
     fn bend(&self) -> f32 {
         let seen = self.world.joint_transform(self.ragdoll.joints[0]).rotation;
         sinew_math::limits::hinge_angle(seen)
@@ -136,7 +137,7 @@ fn motor_torque_stays_below_its_cap() {
     let scaled = 100.0 * 52.0 / 75.0;
     assert!((cap - scaled).abs() < 0.01 * scaled, "{cap}: a shoulder of 52 kg");
     driven.drives.set(0, DriveMode::Keyed, 0.0);
-    // 5.9 N m are needed to hold the arm: a twentieth of its strength is less.
+    // The arm needs 5.9 N m to be held; a twentieth of its strength is less.
     let weak = Muscle { strength: 0.05, ..Muscle::STIFF };
     driven.drives.set(1, DriveMode::Powered(weak), 0.0);
     let mut hardest = 0.0;
@@ -394,7 +395,7 @@ fn drives_do_not_allocate_after_warm_up() {
     assert_eq!((of_drives, of_steps), (0, 0));
 }
 
-/// A body held by its first part, and a tail of `count` parts, each half as heavy as the previous one.
+/// Returns a body held by its first part, and a tail of `count` parts, each half as heavy as the previous one.
 fn tail(count: usize) -> RagdollDef {
     let mut def = RagdollDef { bodies: vec![body("hips", Vec3::ZERO, 20.0)], ..RagdollDef::default() };
     for i in 1..=count {
@@ -418,9 +419,9 @@ fn creature_strength_follows_the_carried_moment() {
     let def = tail(3);
     let caps = sinew_ragdoll::torque_caps(&def);
     assert_eq!(caps[0], 0.0);
-    // The last part: three times 0.5 kg at 0.15 m.
+    // The last part carries three times 0.5 kg at 0.15 m.
     assert!((caps[3] - 3.0 * G * 0.5 * 0.15).abs() < 1e-4, "{caps:?}");
-    // The first: 2, 1 and 0.5 kg at 0.15, 0.45 and 0.75 m.
+    // The first part carries 2, 1 and 0.5 kg at 0.15, 0.45 and 0.75 m.
     assert!((caps[1] - 3.0 * G * (2.0 * 0.15 + 0.45 + 0.5 * 0.75)).abs() < 1e-3, "{caps:?}");
     let mut driven = Driven::new(def, Transform::IDENTITY, 60);
     driven.drives.set(0, DriveMode::Keyed, 0.0);
@@ -475,7 +476,7 @@ fn a_target_beyond_a_stop_is_held_at_the_stop() {
 
 #[test]
 fn a_weak_motor_that_lifts_is_not_slowed_by_long_steps() {
-    // 5.9 N m hold the arm. The rest of the motor's torque lifts it, equally at 30 and at 120 steps a second.
+    // Holding the arm takes 5.9 N m. The rest of the motor's torque lifts it, equally at 30 and at 120 steps a second.
     let lifted = |rate: u64| {
         let mut driven = Driven::new(arm(), Transform::IDENTITY, rate);
         driven.drives.set(0, DriveMode::Keyed, 0.0);
@@ -491,7 +492,7 @@ fn a_weak_motor_that_lifts_is_not_slowed_by_long_steps() {
     assert!(fast > 0.3 && (slow - fast).abs() < 0.02 * fast, "{slow} and {fast}");
 }
 
-/// A random drive mode with random gains; `modes` limits it to modes that can follow a jumping pose.
+/// Returns a random drive mode with random gains; `modes` limits it to modes that can follow a jumping pose.
 fn some_mode(random: &mut Random, modes: usize) -> DriveMode {
     let muscle = Muscle {
         hertz: random.range(0.5, 30.0),
@@ -507,8 +508,8 @@ fn some_mode(random: &mut Random, modes: usize) -> DriveMode {
     }
 }
 
-/// Random changes of mode and random hits. The pose sways if `jumps` is `None`; otherwise it jumps by that much from
-/// step to step. Returns the quality and the largest body speed, m/s.
+/// Applies random changes of mode and random hits. The pose sways if `jumps` is `None`; otherwise it jumps by this
+/// distance from step to step. Returns the quality and the largest body speed, m/s.
 fn random_drive_run(seed: u64, jumps: Option<f32>) -> (FallQuality, f32) {
     let mut fastest: f32 = 0.0;
     let mut random = Random::new(seed);
@@ -575,13 +576,13 @@ fn random_drive_changes_stay_stable() {
             let (q, fastest) = random_drive_run(seed, jumps);
             assert_eq!(q.nan, 0);
             assert!(q.joint_gap_p99_m < 1e-4, "{seed}, {jumps:?}: {}", q.joint_gap_p99_m);
-            // Pins to a pose that jumps within a step act like impacts, and their work is counted inaccurately: there,
-            // speeds must stay bounded, and a joint may open for a step. Of 60 such seeds the median of the largest
-            // gaps is 1.3 µm, the largest 1.2 mm (1.1 in the previous build); the median of the largest speeds is 24
-            // m/s, the largest 63, the second 46 (previous builds: median 23, largest 43 to 54).
+            // Pins to a pose that jumps within a step act like impacts, and their work is counted inaccurately.
+            // Therefore only speeds must stay bounded, and a joint may open for a step. Of 60 such seeds the largest
+            // gaps have a median of 1.3 µm and a maximum of 1.2 mm (1.1 in the previous build). The largest speeds have
+            // a median of 24 m/s and a maximum of 63, the second is 46 (previous builds: median 23, maximum 43 to 54).
             // For a pose without jumps, added energy is the work of motors (at most 3e-5 of the measure, of 24 seeds;
-            // 0.30 while saturated motors pushed before the forces). The median of the largest speeds is 24 m/s, the
-            // largest 57.
+            // 0.30 while saturated motors pushed before the forces). The largest speeds then have a median of 24 m/s
+            // and a maximum of 57.
             let (gap, gain) = if jumps.is_some() { (0.05, f32::INFINITY) } else { (5e-3, 0.01) };
             let speed = 70.0;
             opened += usize::from(q.joint_gap_max_m > 0.01);
@@ -593,7 +594,7 @@ fn random_drive_changes_stay_stable() {
     assert!(opened <= 1, "{opened} joints opened");
 }
 
-/// Found by random lives: pins to the old place of a teleported body once threw the whole body at 38 m/s.
+/// Random lives found this case: pins to the old place of a teleported body threw the whole body at 38 m/s.
 #[test]
 fn teleported_powered_character_is_not_thrown() {
     let def = shared(walker());

@@ -1,4 +1,4 @@
-//! Random falls: every character stands up again, and no joint jumps at hand-over to bodies and back.
+//! Random falls: every character gets up again, and no joint jumps at hand-over to bodies and back.
 
 use crate::actor::{floor, kaykit, shared, walker};
 use crate::pops::Pops;
@@ -9,7 +9,7 @@ use sinew_physics::{World, WorldDef};
 use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, State};
 use std::sync::Arc;
 
-/// Longest allowed time from the hit until it is up, seconds.
+/// Longest allowed time from the hit until the character is up, seconds.
 const UP_WITHIN: f32 = 8.0;
 
 /// Lying posture.
@@ -41,7 +41,7 @@ fn lying(character: &Character, world: &World) -> Lying {
 /// Result of one fall.
 struct Fall {
     lying: Option<Lying>,
-    /// Time from the hit, seconds.
+    /// Time from the hit until the character is up, seconds.
     up: Option<f32>,
 }
 
@@ -53,7 +53,7 @@ fn head(character: &Character) -> f32 {
     model[def.ragdoll.bodies[body].joint].translation.y
 }
 
-/// Hits a character at a random time of its walk, at a random body, from a random direction.
+/// Hits a character at a random time of its walk, on a random body, from a random direction.
 fn fall(def: &Arc<CharacterDef>, random: &mut Random, pops: &mut Pops) -> Fall {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());

@@ -1,4 +1,4 @@
-//! Faults that no single metric shows, each put into the mannequin.
+//! Faults that no single figure shows, each injected into the mannequin.
 
 use sinew_anim::analyze;
 use sinew_math::{Rotation, Vec3};
@@ -59,7 +59,7 @@ fn one_body_for_a_rig_of_many_joints_is_bad() {
     assert!(reason.contains("statue") && reason.contains("--body"), "{reason}");
 }
 
-/// A human of 57 cm and 8 kg with an adult's head, a wolf of 2.5 t, a wasp of 1.6 t.
+/// The cases are a human of 57 cm and 8 kg with an adult's head, a wolf of 2.5 t, and a wasp of 1.6 t.
 #[test]
 fn implausible_masses_and_sizes_are_reported() {
     let mut small = built();
@@ -80,7 +80,7 @@ fn implausible_masses_and_sizes_are_reported() {
     assert_eq!(Doubt::of(&bear), None);
 }
 
-/// A blocky figure of 625 kg at 1.75 m that is not recognised as human.
+/// A blocky figure of 625 kg at 1.75 m is not recognised as human.
 #[test]
 fn creature_too_heavy_for_its_length_is_reported() {
     let creature = |mass: f32| {
@@ -206,7 +206,7 @@ fn upright_body_with_outstretched_arms_is_reported() {
     assert!(found.iter().any(|fault| fault.reason.contains("stays upright")), "{found:?}");
 }
 
-/// The mannequin in a platform up to its hips, in a wall, and in one that its clip walks into.
+/// The mannequin is in a platform up to its hips, in a wall, or walks into a wall by its clip.
 #[test]
 fn character_inside_the_world_is_bad() {
     let (rig, own) = (mannequin().rig, mannequin().clips);

@@ -9,9 +9,9 @@ use sinew_physics::{BodyDef, BodyId, BodyKind, QueryFilter, Shape, ShapeDef, Vel
 use sinew_ragdoll::{Character, CharacterDef, State};
 use std::sync::Arc;
 
-/// A clip's foot stands below this height over the clip's floor (metres) and this speed over the ground (m/s).
+/// Height over the clip's floor (metres) and speed over the ground (m/s) below which a clip's foot stands.
 const STANDS: (f32, f32) = (0.02, 0.5);
-/// Distance of a drawn sole from the ground that counts as on it, metres.
+/// Distance from the ground up to which a drawn sole counts as on it, metres.
 const ON: f32 = 0.02;
 
 /// A scene to walk in.
@@ -23,7 +23,7 @@ struct Ground {
     start: Vec3,
     walk: Vec3,
     seconds: f32,
-    /// Horizontal distance out of the edge of a step, metres; infinite without edges.
+    /// Horizontal distance from a point to the edge of a step, metres; infinite without edges.
     edge: fn(Vec3) -> f32,
 }
 
@@ -36,13 +36,13 @@ fn moving(half_extents: Vec3, position: Vec3) -> BodyDef {
     BodyDef { kind: BodyKind::Kinematic, ..fixed(half_extents, position, Rotation::IDENTITY) }
 }
 
-/// A plane that rises toward +Z by this angle, degrees, starting at the origin.
+/// Returns a plane that rises toward +Z by this angle, degrees, starting at the origin.
 fn ramp(degrees: f32) -> Vec<BodyDef> {
     let turn = Rotation::from_axis_angle(Vec3::X, -degrees.to_radians());
     vec![fixed(Vec3::new(20.0, 1.0, 20.0), turn * Vec3::NEG_Y, turn)]
 }
 
-/// Steps of 17 by 30 cm that rise toward +Z, starting at 1 m.
+/// Returns steps of 17 by 30 cm that rise toward +Z, starting at 1 m.
 fn stairs() -> Vec<BodyDef> {
     let step = |k: i32| {
         let top = 0.17 * k as f32;
@@ -52,7 +52,7 @@ fn stairs() -> Vec<BodyDef> {
     core::iter::once(floor()).chain((1..20).map(step)).collect()
 }
 
-/// Horizontal distance by which a point is behind the riser in front of it.
+/// Returns the horizontal distance by which a point is behind the riser in front of it, metres.
 fn riser(at: Vec3) -> f32 {
     let behind = at.z - 1.0;
     if behind < 0.0 { f32::INFINITY } else { behind - 0.3 * (behind / 0.3).floor() }
@@ -107,7 +107,7 @@ fn grounds() -> Vec<Ground> {
     ]
 }
 
-/// Vertices of the two feet, by mesh and primitive.
+/// Returns the vertices of the two feet, by mesh and primitive.
 fn foot_vertices(def: &CharacterDef) -> [Vec<[usize; 3]>; 2] {
     let rig = &def.rig;
     ["left", "right"].map(|side| {
@@ -189,7 +189,7 @@ fn level(v: Vec3) -> Vec3 {
 }
 
 impl Walk<'_> {
-    /// Distance of a point from the ground, negative inside.
+    /// Returns the distance of a point from the ground, negative inside.
     fn gap(&self, at: Vec3) -> f32 {
         let ray = Ray { origin: at + Vec3::Y * 0.6, direction: Vec3::Y * -3.0 };
         let hit = self.world.query().filter(QueryFilter::without(self.character.bodies())).first(&ray);

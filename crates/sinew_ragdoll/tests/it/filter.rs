@@ -14,7 +14,7 @@ const HAND: usize = 4;
 const THIGH: usize = 5;
 const HEAD: usize = 8;
 
-/// Balls of 5 cm, far from each other: hips, spine, a left arm, a left thigh with shank and foot, a head.
+/// Returns balls of 5 cm, far from each other: hips, spine, a left arm, a left thigh with shank and foot, a head.
 fn body() -> (Bones, Vec<Fit>) {
     let left = Side::Left;
     let list = [
@@ -42,7 +42,7 @@ fn body() -> (Bones, Vec<Fit>) {
     (bones, (0..list.len()).map(fit).collect())
 }
 
-/// Poses in which, for this share, body `b` is at `distance` from body `a`.
+/// Returns poses in which, for this share, body `b` is at `distance` from body `a`.
 fn meeting(fits: &[Fit], share: f32, (a, b): (usize, usize), distance: f32) -> Vec<Vec<Transform>> {
     let pose = |index: usize| {
         let mut pose: Vec<_> = fits.iter().map(|fit| fit.character_from_body).collect();
@@ -61,7 +61,7 @@ fn found(report: &FilterReport, pair: (usize, usize)) -> Option<Remedy> {
     remedy
 }
 
-/// Remedy for a pair that overlaps in these shares of the poses within the limits and of the clips.
+/// Returns the remedy for a pair that overlaps in these shares of the poses within the limits and of the clips.
 fn remedy(pair: (usize, usize), distance: f32, limits: f32, clips: f32) -> Option<Remedy> {
     let (bones, mut fits) = body();
     let poses = Poses {
@@ -96,8 +96,8 @@ fn limbs_that_always_overlap_do_not_collide() {
     assert_eq!(remedy((HIPS, HEAD), 0.02, 0.0, 0.02), None);
 }
 
-/// Two balls of 5 cm with centres 9 cm apart overlap by 1 cm. Each is made a few per cent thinner; half of the overlap
-/// is tolerated.
+/// Two balls of 5 cm with centres 9 cm apart overlap by 1 cm. Each ball is made a few per cent thinner; half of the
+/// overlap is tolerated.
 #[test]
 fn limbs_that_graze_each_other_are_made_thinner() {
     let (bones, mut fits) = body();
@@ -112,7 +112,7 @@ fn limbs_that_graze_each_other_are_made_thinner() {
     assert!(report.scale.iter().filter(|&&scale| scale < 1.0).count() == 2);
 }
 
-/// A rig bound with its hand in its thigh: the hand can leave, so the pair collides like others.
+/// In a rig bound with its hand in its thigh the hand can leave, so the pair collides like others.
 #[test]
 fn overlap_in_the_bind_pose_alone_disables_no_pair() {
     let (bones, mut fits) = body();

@@ -19,7 +19,7 @@ fn earth() -> Vec3 {
     WorldDef::default().gravity
 }
 
-/// A walking character with these garments.
+/// Returns a walking character with these garments, and its world.
 fn walking(garments: &[&Chains]) -> (World, Character) {
     let mut world = ground(earth());
     let def = Arc::new(dressed(garments, |_| ()));
@@ -35,14 +35,14 @@ pub fn go_on(world: &mut World, character: &mut Character, steps: u32) {
     }
 }
 
-/// True if a spring joins two particles. Particles are stored line after line.
+/// Returns true if a spring joins two particles. Particles are stored line after line.
 fn is_joined(group: &ParticleGroup, a: usize, b: usize) -> bool {
     group.springs().iter().any(|spring| {
         [spring.a, spring.b] == [a as u32, b as u32] || [spring.b, spring.a] == [a as u32, b as u32]
     })
 }
 
-/// Relative change of each spring's length since rest.
+/// Returns the relative change of each spring's length since rest.
 fn stretches(group: &ParticleGroup) -> impl Iterator<Item = f32> {
     let at = group.positions();
     group
@@ -76,7 +76,7 @@ fn skirt_is_closed_and_cape_is_open() {
         let (count, lines) = (group.positions().len(), group.attachments().len());
         let rows = count / lines;
         assert_eq!(count, rows * lines, "a grid");
-        // The hem particles of the first and the last line.
+        // Test the hem particles of the first and the last line.
         assert_eq!(is_joined(group, rows - 1, count - 1), closed);
         assert!(is_joined(group, rows - 1, 2 * rows - 1) && is_joined(group, 0, 1));
         let longest = group.springs().iter().map(|spring| spring.rest_length).fold(0.0, max);
@@ -87,7 +87,7 @@ fn skirt_is_closed_and_cape_is_open() {
 #[test]
 fn garments_are_found_by_bone_names() {
     let mut rig = dressed_rig(&[&SKIRT]);
-    // Columns are listed in another order than around the waist; each still neighbours the right ones.
+    // Columns are listed in another order than around the waist; each still is next to the right ones.
     let first = rig.joints.len() - SKIRT.columns * (SKIRT.bones + 1);
     let rests: Vec<_> = rig.joints.iter().map(|joint| joint.rest).collect();
     for column in 0..SKIRT.columns {
@@ -158,7 +158,7 @@ fn garment_bones_follow_the_sheet() {
             for joint in garment.joints() {
                 let place = model[joint].translation;
                 let away = positions.iter().map(|p| (*p - place).length()).fold(f32::INFINITY, min);
-                // Bones keep their length where the sheet is wavy: tolerance is an eighth of the cape's length.
+                // Bones keep their length where the sheet is wavy, so the tolerance is an eighth of the cape's length.
                 let bar = if garment.closed { 0.045 } else { 0.12 };
                 assert!(away < bar, "{} {away} m from the sheet", def.rig.joints[joint].name);
             }
@@ -168,7 +168,7 @@ fn garment_bones_follow_the_sheet() {
 
 #[test]
 fn sheet_that_starts_inside_the_body_stays_slow() {
-    // A skirt so tight that most of it is inside hips and thighs.
+    // A skirt so tight that bodies of hips and thighs contain most of it.
     const TIGHT: Chains =
         Chains { place: |across, down| (SKIRT.place)(across, down) * Vec3::new(0.7, 1.0, 0.7), ..SKIRT };
     let mut def = dressed(&[&TIGHT], |_| ());
@@ -181,15 +181,15 @@ fn sheet_that_starts_inside_the_body_stays_slow() {
         let group = world.particles(character.garments()[0]);
         fastest = group.velocities().iter().map(|v| v.length()).fold(fastest, max);
     }
-    // At most the speed of a fall from the seam to the ground.
+    // The bound is the speed of a fall from the seam to the ground.
     assert!(fastest < 4.4, "{fastest} m/s");
     let group = world.particles(character.garments()[0]);
     let now = group.velocities().iter().map(|v| v.length()).fold(0.0, max);
     assert!(now < 0.2 && mean_stretch(group) < 0.03, "{now} m/s, {}", mean_stretch(group));
 }
 
-/// A skirt is put on in mid-stride, where the thighs intersect its bones' positions: it starts outside the legs, with
-/// its lengths kept.
+/// A skirt is put on in mid-stride, where the thighs intersect its bones' positions. The skirt starts outside the legs,
+/// with its lengths kept.
 #[test]
 fn sheet_put_on_in_mid_stride_starts_outside_the_legs() {
     let (mut deepest, mut stretch): (f32, f32) = (0.0, 0.0);
@@ -285,7 +285,7 @@ fn garments_exist_while_bodies_do() {
     assert_eq!((world.group_ids().count(), world.body_ids().count()), (0, 1));
 }
 
-/// A character added outside of the world gets its bodies when it falls, and its garments with them.
+/// A character added outside of the world gets its bodies, and its garments with them, when it falls.
 #[test]
 fn new_bodies_come_with_garments() {
     let mut world = ground(earth());

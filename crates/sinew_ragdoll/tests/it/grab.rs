@@ -1,4 +1,4 @@
-//! Grips: a character drags, lifts and releases what it holds, and nothing is thrown.
+//! Grips: a character drags, lifts and releases bodies, and no body is thrown.
 
 use crate::actor::{shared, walker};
 use crate::in_world::level;
@@ -12,13 +12,13 @@ const MOST_SPEED: f32 = 10.0;
 /// Upper bound on the gap of a joint between limbs, metres.
 const MOST_GAP: f32 = 0.01;
 
-/// Upper bound on a grip's force, relative to its maximum.
+/// Upper bound on a grip's force, relative to the grip's maximum.
 const MOST_FORCE: f32 = 1.25;
 
-/// Extremes observed while something is held.
+/// Extremes observed while a body is held.
 #[derive(Debug, Default)]
 struct Seen {
-    /// Speed (m/s), force (N), gap (metres).
+    /// Largest speed, m/s, force, N, and gap, metres.
     speed: f32,
     force: f32,
     gap: f32,
@@ -37,7 +37,7 @@ impl Seen {
         }
     }
 
-    /// True if speed, gap and force are within `times` their bounds.
+    /// Returns true if speed, gap and force are within `times` their bounds.
     fn is_within(&self, times: f32, grab: &Grab) -> bool {
         self.speed <= times * MOST_SPEED
             && self.gap <= times * MOST_GAP
@@ -56,7 +56,7 @@ fn body(def: &CharacterDef, name: &str) -> usize {
     def.body_named(name).expect("it has that body")
 }
 
-/// A limp character at rest on the ground.
+/// Returns a limp character at rest on the ground.
 fn lying(world: &mut World, def: &Arc<CharacterDef>, place: Transform) -> Character {
     let mut character = Character::spawn(world, def, place);
     character.go_limp(world);
@@ -85,7 +85,7 @@ fn mouse_grab_drags_a_limp_character() {
                 3 => at + Vec3::new(0.0, 3.0, -2.0),
                 4 => at + Vec3::new(5.0, -2.0, 5.0),
                 5 => at + Vec3::new(0.0, 1.8, 0.0),
-                // Back and forth.
+                // The target moves back and forth.
                 6 | 7 => at + Vec3::new(if step % 20 < 10 { 3.0 } else { -3.0 }, 2.2, 0.0),
                 _ => at + Vec3::Y * 2.5,
             };
@@ -108,7 +108,7 @@ fn mouse_grab_drags_a_limp_character() {
     }
 }
 
-/// A character that stands at a limb of a lying one, turned away from it, and has grabbed the limb.
+/// Returns a character that stands at a limb of a lying one, turned away from it, and has grabbed the limb.
 fn dragging(
     def: &Arc<CharacterDef>,
     limb: &str,
@@ -134,8 +134,8 @@ fn dragging(
     (world, hero, victim, joint)
 }
 
-/// Eleven of twelve starts stay within the bounds, and none exceeds them twofold: a limb dragged over the ground
-/// catches and turns chaotically, and so does the peak force.
+/// Eleven of twelve starts stay within the bounds, and none exceeds them twofold. A limb dragged over the ground
+/// catches and turns chaotically, and the peak force varies with it.
 #[test]
 fn walker_drags_a_limp_character() {
     let def = shared(walker());
@@ -212,8 +212,8 @@ fn grip_releases_at_its_maximum_force() {
     seen.expect("fixed", &grab);
     assert!(let_go.is_some(), "it releases a fixed body");
     assert_eq!(hero.state(), State::Animated);
-    // A crate hangs on a grip: it is held if its weight is a little less than the grip's force, and dropped if a little
-    // more.
+    // A crate hangs on a grip: the grip holds it if its weight is slightly less than the grip's force, and drops it if
+    // slightly more.
     for (share, holds) in [(0.85, true), (1.05, false)] {
         let mut world = level();
         let side = 0.5;
@@ -297,7 +297,7 @@ fn character_carried_over_the_shoulder_stays_on() {
     }
     let hips = victim.bodies()[0];
     let chest = hero.bodies()[body(&def, "chest")];
-    // The victim lies over the left shoulder, held at the hips.
+    // The victim is over the left shoulder, held at the hips.
     let shoulder =
         world.transform(chest).inverse_point(world.center_of_mass(chest) + Vec3::new(0.2, 0.3, 0.0));
     let grab = Grab { max_force: 3000.0, reach: 2.0, to: Some(shoulder), speed: 1.0, ..Grab::HAND };

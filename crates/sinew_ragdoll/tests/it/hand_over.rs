@@ -13,7 +13,7 @@ use sinew_ragdoll::{BodySettings, BodyState, Character, CharacterDef, Ragdoll};
 use sinew_scenes::mannequin::WALK_SPEED;
 use std::sync::Arc;
 
-/// World poses of the bodies in the walk at a time, computed without a `Character`.
+/// Returns the world poses of the bodies in the walk at a time, computed without a `Character`.
 fn carried_bodies(def: &CharacterDef, at: Transform, time: f32) -> Vec<Transform> {
     let mut pose = def.rest().to_vec();
     sample(&def.motions().clips[0], &def.rig, time, Wrap::Loop, &mut pose);
@@ -30,17 +30,18 @@ struct Carried {
     linear: Vec3,
     /// Angular momentum about the common centre of mass.
     angular: Vec3,
-    /// Sum of the magnitudes of the bodies' shares: limbs that swing against each other would cancel.
+    /// Sum of the magnitudes of the bodies' shares; in the vector sum, limbs that swing against each other would
+    /// cancel.
     swing: f32,
 }
 
-/// Momentum by central differences over `dt` on either side.
+/// Computes the momentum by central differences over `dt` on either side.
 fn carried_momentum(def: &CharacterDef, at: Transform, time: f32, dt: f32) -> Carried {
     let [before, now, after] = [time - dt, time, time + dt].map(|time| carried_bodies(def, at, time));
     momentum_of_motion(def, &before, &now, &after, 2.0 * dt)
 }
 
-/// Momentum at `now` of bodies that move from `before` to `after` within `dt`.
+/// Returns the momentum at `now` of bodies that move from `before` to `after` within `dt`.
 fn momentum_of_motion(
     def: &CharacterDef,
     before: &[Transform],
@@ -129,7 +130,7 @@ fn hand_over_speeds_are_bounded() {
     assert!((velocity.angular - Vec3::Y * 3.0).length() < 1e-5);
 }
 
-/// Body poses `seconds` ahead, from an animator that is advanced separately.
+/// Returns the body poses `seconds` ahead, from an animator that is advanced separately.
 fn bodies_in(character: &Character, seconds: f32) -> Vec<Transform> {
     let def = character.def();
     let mut animator = character.animator().clone();
@@ -176,8 +177,8 @@ fn momentum_matches_random_blends_of_clips() {
             world.step();
             character.update(&mut world);
         }
-        // Three points, because speeds change within a transition. At a key of a clip they are discontinuous; points at
-        // twice the distance then give another result.
+        // Use three points, because speeds change within a transition. At a key of a clip speeds are discontinuous;
+        // points at twice the distance then give another result.
         let start = |h: f32| {
             let [now, ahead, further] = [0.0, h, 2.0 * h].map(|seconds| bodies_in(&character, seconds));
             let soon = momentum_of_motion(&def, &now, &now, &ahead, h);
@@ -213,7 +214,7 @@ fn momentum_matches_random_blends_of_clips() {
     assert!(worst.iter().all(|&error| error < 0.01), "{worst:?}");
 }
 
-/// An animator that blends the walker's clips at random, evaluated as body poses.
+/// An animator that blends the walker's clips at random, evaluated as poses of bodies.
 struct Mixer {
     def: CharacterDef,
     set: AnimationSet,
@@ -236,7 +237,7 @@ impl Mixer {
         Self { animator: Animator::new(&set), def, set, clips, place }
     }
 
-    /// Starts a track beside the others, or cross-fades to it.
+    /// Starts a track in addition to the others, or cross-fades to it.
     fn change(&mut self, random: &mut Random) {
         let track = TrackDef {
             weight: random.range(0.2, 1.0),
@@ -271,7 +272,7 @@ impl Mixer {
     }
 }
 
-/// Linear and angular momentum of a ragdoll, the latter about its common centre of mass.
+/// Returns the linear and angular momentum of a ragdoll, the latter about its common centre of mass.
 fn momentum_of_ragdoll(world: &World, ragdoll: &Ragdoll) -> (Vec3, Vec3) {
     let momentum = world.momentum();
     let (mut mass, mut moment) = (0.0, Vec3::ZERO);
@@ -320,8 +321,8 @@ fn ragdoll_inherits_the_momentum_of_any_blend() {
     assert!(least > 10.0, "nothing moves");
 }
 
-/// Largest angular acceleration of a body in the first step after going limp, at several phases, in the air: only
-/// joints act on limbs, no floor or push. In the last run joints have the friction of the definition.
+/// Returns the largest angular acceleration of a body in the first step after going limp, at several phases, in the
+/// air: only joints act on limbs, no floor or push. In the last run joints have the friction of the definition.
 fn first_jolt(def: &Arc<CharacterDef>) -> f32 {
     let mut jolt = 0.0;
     for start in [0.0, 0.2, 0.45, 0.7] {

@@ -1,4 +1,4 @@
-//! Characters held by a joint, a hook, a hand or arms, carried or driven around, and dying.
+//! Characters held by a joint, a hook, a hand or arms, carried, driven around, or dying.
 
 use crate::actor::{shared, walker};
 use crate::in_world::{level, run};
@@ -15,7 +15,7 @@ fn body(def: &CharacterDef, name: &str) -> usize {
     def.body_named(name).expect("it has that body")
 }
 
-/// A kinematic ball without contacts at a body, joined to it.
+/// Returns a kinematic ball without contacts at a body, and the joint between the two.
 fn hook(world: &mut World, held: BodyId) -> (BodyId, JointId) {
     let at = world.center_of_mass(held);
     let hook = BodyDef { kind: BodyKind::Kinematic, ..BodyDef::default() }.at(at);
@@ -121,7 +121,7 @@ fn hook_moves_or_fells_a_standing_character() {
             }
             let way = world.center_of_mass(character.bodies()[0]).z;
             let what = format!("{limb} at {speed} m/s: {:?}, {way} m", character.state());
-            // Until the character falls, a hook this fast opens its own joint for three steps.
+            // A hook of this speed opens its own joint for three steps until the character falls.
             seen.expect_within(&what, if stays_up { MOST_GAP } else { 2.0 * MOST_GAP });
             let state = if stays_up { State::Flinching } else { State::Limp };
             assert_eq!(character.state(), state, "{what}");
@@ -182,7 +182,7 @@ fn carried_character_does_not_get_up_in_the_air() {
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     character.go_limp(&mut world);
     run(&mut world, &mut character, 120);
-    // Two bars under trunk and thighs lift it like arms, carry it, and put it down.
+    // Two bars under trunk and thighs lift the character like arms, carry it, and put it down.
     let trunk = world.center_of_mass(character.bodies()[body(&def, "chest")]);
     let legs = world.center_of_mass(character.bodies()[body(&def, "leftUpperLeg")]);
     let along = ((trunk - legs) * Vec3::new(1.0, 0.0, 1.0)).normalize();
@@ -228,7 +228,7 @@ fn character_grabbed_while_getting_up_goes_limp() {
     while character.state() != State::GettingUp {
         run(&mut world, &mut character, 1);
     }
-    // A crane's hook on a kinematic trolley.
+    // Add a crane's hook on a kinematic trolley.
     let hand = character.bodies()[body(&def, "rightHand")];
     let at = world.center_of_mass(hand);
     let hook = BodyDef { mass: Some(Shape::sphere(0.1).mass_properties(1000.0)), ..BodyDef::default() };
@@ -315,7 +315,7 @@ fn death_of_one_character_leaves_the_others() {
     reload(&mut world, &mut pair[0]);
     all(&mut world, &mut pair, 700);
     assert_eq!(pair.each_ref().map(Character::state), [State::Limp, State::Animated]);
-    // It can be revived, and can die while it is rolled over.
+    // The character can be revived, and can die while it is rolled over.
     pair[0].set_after_settling(AfterSettling::GetUp);
     all(&mut world, &mut pair, 600);
     assert_eq!(pair[0].state(), State::Animated);

@@ -11,14 +11,14 @@ use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, FootPlanting, HitBo
 use sinew_scenes::mannequin::WALK_SPEED;
 use std::sync::Arc;
 
-/// A world with a floor.
+/// Returns a world with a floor.
 pub fn level() -> World {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
     world
 }
 
-/// A fixed box from corner to corner.
+/// Adds a fixed box from corner to corner.
 fn block(world: &mut World, min: Vec3, max: Vec3) -> BodyId {
     let half_extents = (max - min) * 0.5;
     world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at((min + max) * 0.5))
@@ -50,7 +50,7 @@ fn wall_stops_a_walking_character() {
     let z = place(&character).z;
     assert!((z - (2.0 - radius)).abs() < 0.02, "it stands at {z} m before the wall at 2 m");
     assert_eq!(character.state(), State::Animated);
-    // Without a mover it passes through.
+    // Without a mover the character passes through.
     let mut ghost = Character::new(def, Transform::IDENTITY, 0.0);
     run(&mut world, &mut ghost, 300);
     assert!(place(&ghost).z > 5.0);
@@ -85,7 +85,7 @@ fn two_characters_stop_each_other() {
     assert!(place(&one).z < 2.1 && place(&other).z > 1.9);
 }
 
-/// Body poses in the drawn pose.
+/// Returns the body poses in the drawn pose.
 fn shown_bodies(character: &Character) -> Vec<Transform> {
     let def = character.def();
     let (mut model, mut poses) = (Vec::new(), Vec::new());
@@ -94,7 +94,7 @@ fn shown_bodies(character: &Character) -> Vec<Transform> {
     poses
 }
 
-/// A horizontal ray through the middle of a drawn bone.
+/// Returns a horizontal ray through the middle of a drawn bone.
 fn across(character: &Character, bone: &str) -> Ray {
     let def = character.def();
     let body = def.body_named(bone).expect("a bone");
@@ -180,7 +180,7 @@ fn hit_bodies_can_be_left_out() {
     assert!(character.mover().is_some());
 }
 
-/// A box with a given mass.
+/// Adds a box with a given mass.
 fn load(world: &mut World, mass: f32, half: f32, at: Vec3) -> BodyId {
     let shape = Shape::Box { half_extents: Vec3::splat(half) };
     let mut def = BodyDef::dynamic(shape.clone()).at(at);
@@ -264,7 +264,7 @@ fn fast_landing_makes_the_character_limp() {
     assert!(events.contains(&CharacterEvent::WentLimp), "8.9 m/s are more than 7");
 }
 
-/// A moving platform.
+/// Adds a moving platform.
 fn lift(world: &mut World, at: Vec3, velocity: Velocity) -> BodyId {
     let def = BodyDef {
         kind: BodyKind::Kinematic,
@@ -447,7 +447,7 @@ fn character_waits_to_get_up_until_nobody_stands_on_it() {
     run(&mut world, &mut fallen, 30);
     fallen.go_limp(&mut world);
     run(&mut world, &mut fallen, 90);
-    // Placed above it, without overlap.
+    // The second character is placed above the fallen one, without overlap.
     let over = world.center_of_mass(fallen.bodies()[0]) + Vec3::Y * 0.15;
     let mut other = Character::spawn(&mut world, &def, Transform::from_translation(over));
     let mut least = f32::INFINITY;
@@ -483,7 +483,8 @@ fn character_waits_to_get_up_until_nobody_stands_on_it() {
     assert!(least > -0.01, "they overlap by {} m", -least);
 }
 
-/// Upward impulse that bodies gave other dynamic bodies in the last step, minus what they received, N·s.
+/// Returns the upward impulse that bodies gave other dynamic bodies in the last step, minus the impulse that they
+/// received, N·s.
 fn lifts(world: &World, own: &[BodyId], others: &[BodyId]) -> f32 {
     let up = |contact: BodyContact| {
         let [a, b] = [contact.a.body, contact.b.body];
@@ -500,8 +501,8 @@ fn lifts(world: &World, own: &[BodyId], others: &[BodyId]) -> f32 {
     world.contacts().map(up).sum()
 }
 
-/// Two characters that fell on each other: neither gets up under a load, both finally stand, and getting up seldom hits
-/// the other hard.
+/// Two characters have fallen on each other: neither gets up under a load, both finally stand, and getting up seldom
+/// hits the other hard.
 #[test]
 fn upper_of_two_fallen_characters_gets_up_first() {
     let def = shared(walker());
@@ -556,8 +557,7 @@ fn upper_of_two_fallen_characters_gets_up_first() {
     assert!(struck <= 3, "{struck} of 12 are hit at more than 10 m/s");
 }
 
-/// Crates lower than a step, over which the character walks: its mover presses on them, and its feet do not kick them
-/// away.
+/// The character walks over crates lower than a step: its mover presses on them, and its feet do not kick them away.
 #[test]
 fn low_crates_are_not_kicked_away() {
     let def = stander();
@@ -571,7 +571,7 @@ fn low_crates_are_not_kicked_away() {
         character.set_move(Vec3::Z * 1.2);
         let (mut fastest, mut highest) = (0.0, 0.0);
         for step in 0..360 {
-            // It pauses on the crate at times.
+            // The character pauses on the crate at times.
             let stands = (60 + 2 * case..150 + 2 * case).contains(&step);
             character.set_move(Vec3::Z * if stands { 0.0 } else { 1.2 });
             run(&mut world, &mut character, 1);
@@ -583,8 +583,8 @@ fn low_crates_are_not_kicked_away() {
     }
 }
 
-/// Small objects under its feet: an object that only the foot moves is no hit, however hard an animated foot
-/// presses it to the floor.
+/// Small objects are under the character's feet. A contact with an object that only the foot moves is not a hit,
+/// however hard an animated foot presses the object to the floor.
 #[test]
 fn object_under_a_foot_is_no_hit() {
     let def = shared(walker());
@@ -606,7 +606,8 @@ fn object_under_a_foot_is_no_hit() {
     }
 }
 
-/// The walker goes from standing to walking and back: clips are cross-faded gradually, so that hit bodies do not kick.
+/// The walker changes from standing to walking and back: clips are cross-faded gradually, so that hit bodies do not
+/// kick.
 #[test]
 fn walk_starts_and_stops_smoothly() {
     let mut def = walker();

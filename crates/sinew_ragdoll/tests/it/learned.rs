@@ -20,7 +20,7 @@ fn built(rig: &Rig, takes: &[Take], limits: LimitSource) -> Result<RagdollDef, S
     build_moving(rig, &analysis, takes, &options, &Settings::default()).map(|(def, _)| def)
 }
 
-/// Every body in character space, in every frame.
+/// Returns the pose of every body in character space, in every frame.
 fn poses(rig: &Rig, def: &RagdollDef, takes: &[Take]) -> Vec<Vec<Transform>> {
     let mapping = Mapping::new(rig, def, &analyze(rig).expect("a skin").bind_model);
     let (mut model, mut poses) = (Vec::new(), Vec::new());
@@ -35,12 +35,12 @@ fn poses(rig: &Rig, def: &RagdollDef, takes: &[Take]) -> Vec<Vec<Transform>> {
     poses
 }
 
-/// The joint rotation for a rotation of the child relative to the parent.
+/// Returns the joint rotation for a rotation of the child relative to the parent.
 fn joint_turn(joint: &RagdollJointDef, parent: Rotation, child: Rotation) -> Rotation {
     (parent * joint.frame_parent.rotation).inverse() * (child * joint.frame_child.rotation)
 }
 
-/// Excess of a joint's rotation over its limits, radians.
+/// Returns the excess of a joint's rotation over its limits, radians.
 fn beyond(joint: &RagdollJointDef, turn: Rotation) -> f32 {
     match joint.kind {
         JointKind::Ball { limit: Some(limit) } => limit.overshoot(turn),
@@ -53,8 +53,8 @@ fn beyond(joint: &RagdollJointDef, turn: Rotation) -> f32 {
     }
 }
 
-/// The clips and the bind pose are within the limits. An allowed rotation exceeds the table no further than the clips
-/// do, except at the corners of an ellipse around them.
+/// Checks that the clips and the bind pose are within the limits. An allowed rotation exceeds the table no further than
+/// the clips do, except at the corners of an ellipse around them.
 fn check(name: &str, rig: &Rig, takes: &[Take]) {
     let table = built(rig, takes, LimitSource::Anatomy).expect("bones");
     let learned = built(rig, takes, LimitSource::Clips).expect("clips");
@@ -95,7 +95,7 @@ fn check(name: &str, rig: &Rig, takes: &[Take]) {
         let shown = shown.fold(0.0, max);
         for _ in 0..200 {
             let turn = random_turn(new.kind, &mut random, 1.0);
-            // The relative rotation of the bodies in the old frames.
+            // Compute the relative rotation of the bodies in the old frames.
             let child = new.frame_parent.rotation * turn * new.frame_child.rotation.inverse();
             let excess = beyond(old, joint_turn(old, Rotation::IDENTITY, child)) - shown;
             assert!(excess.to_degrees() < 6.0, "{label}: {}° wider than the clips", excess.to_degrees());
@@ -115,7 +115,7 @@ fn learned_limits_contain_the_clips_and_little_more() {
     }
 }
 
-/// One take in which the left elbow bends from 20° to 70° and the left knee 20° the wrong way.
+/// Returns a take in which the left elbow bends from 20° to 70° and the left knee 20° the wrong way.
 fn bending(rig: &Rig) -> Take {
     let def = built(rig, &[], LimitSource::Anatomy).expect("bones");
     let frames = 200;

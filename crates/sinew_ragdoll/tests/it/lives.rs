@@ -10,7 +10,7 @@ use sinew_ragdoll::{
 use sinew_scenes::mannequin::WALK_SPEED;
 use std::sync::Arc;
 
-/// A standing character whose walk has footstep events.
+/// Returns a standing character whose walk has footstep events.
 fn walker_with_footsteps() -> CharacterDef {
     let mut def = walker();
     let motions = def.motions().clone();
@@ -93,7 +93,7 @@ fn contacts_are_reported_by_bone_on_request() {
     assert!(contact_count(true) >= 1 && contact_count(true) - contact_count(false) <= 1, "{events:?}");
 }
 
-/// Largest distance, over some steps, of the held body from its place at the bone, metres.
+/// Returns the largest distance, over some steps, of the held body from its place at the bone, metres.
 fn apart(
     world: &mut World,
     character: &mut Character,
@@ -238,7 +238,7 @@ fn lower_detail_waits_until_the_character_is_up() {
     assert_eq!((character.state(), character.bodies().is_empty()), (State::Limp, false));
     let events = run(&mut world, &mut character, 600);
     assert!(events.contains(&CharacterEvent::Up) && character.bodies().is_empty());
-    // A light hit does nothing; a hard one still fells it.
+    // A light hit has no effect; a hard one still fells the character.
     character.hit(&mut world, 2, Vec3::X * 5.0);
     assert_eq!(character.state(), State::Animated);
     character.hit(&mut world, 2, Vec3::X * 90.0);
@@ -293,9 +293,9 @@ fn no_level_of_detail_adds_disabled_hit_bodies() {
     assert!(character.bodies().is_empty() && character.mover().is_some());
 }
 
-/// Largest displacement over the floor of the ball of a foot while its shoe lies flat in the clip, metres.
+/// Returns the largest displacement over the floor of the ball of a foot while its shoe is flat in the clip, metres.
 fn slide(def: &Arc<CharacterDef>, velocity: Vec3) -> f32 {
-    // Phases of a cycle between which the left shoe lies flat.
+    // Phases of a cycle between which the left shoe is flat on the floor.
     const FLAT: [f32; 2] = [0.10, 0.31];
     let mut world = level();
     let mut character = Character::spawn(&mut world, def, Transform::IDENTITY);

@@ -12,11 +12,11 @@ use std::sync::Arc;
 
 /// Longest observed time of a fall, seconds.
 const WATCHED: f32 = 10.0;
-/// A body lies if its hips are at most this share of their standing height.
+/// Largest height of the hips of a lying body, as a share of their standing height.
 const LIES: f32 = 0.3;
 /// Longest allowed time on head or hands, seconds.
 const HEADSTAND: f32 = 0.3;
-/// A hand or foot lies if it is below this height, metres, for a man of 1.8 m.
+/// Height below which a hand or foot counts as lying, metres, for a man of 1.8 m.
 const LOW: f32 = 0.25;
 
 /// Results of falls.
@@ -50,7 +50,7 @@ impl Parts {
     }
 }
 
-/// One fall after a random hit; adds to the results.
+/// Simulates one fall after a random hit and adds it to the results.
 fn fall(def: &Arc<CharacterDef>, random: &mut Random, lain: &mut Lain) {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
@@ -153,7 +153,8 @@ fn measure(name: &str, mut def: CharacterDef) -> Lain {
     lain
 }
 
-/// Allowed shares of bad falls, percent. They are at the measured level, above the target of the specification.
+/// Checks the shares of bad falls against allowed ones, percent. These are at the measured level, above the target of
+/// the specification.
 fn expect(name: &str, lain: &Lain, [high, headstands, limbs]: [u32; 3]) {
     let most = |share: u32| lain.falls * share / 100 + 2;
     assert!(lain.high <= most(high), "{name}: {lain:?}");

@@ -21,7 +21,7 @@ fn walking(def: &CharacterDef, time: f32) -> Vec<LocalTransform> {
     pose
 }
 
-/// Largest distance between points 10 cm from each joint in the two poses, metres.
+/// Returns the largest distance between points 10 cm from each joint in the two poses, metres.
 fn distance(def: &CharacterDef, a: &[LocalTransform], b: &[LocalTransform]) -> f32 {
     let to_metres = def.mapping().character_from_model();
     let (a, b) = (model_of(def, a), model_of(def, b));
@@ -157,7 +157,7 @@ fn body_poses_agree_for_pose_and_model_transforms() {
     }
 }
 
-/// A mesh that hangs on the root beside the skeleton goes with its body, and with the character wherever clips play.
+/// A mesh that is a child of the root beside the skeleton moves with its body, and with the character while clips play.
 #[test]
 fn an_object_beside_the_skeleton_goes_with_the_character() {
     let mut rig = mannequin().rig;

@@ -1,4 +1,4 @@
-//! Garments made from meshes of the character: reduced, attached at the top, worn, drawn; through walks, falls,
+//! Garments made from meshes of the character: reduced, attached at the top, worn and drawn, through walks, falls,
 //! snapshots and scaling.
 
 use crate::garments::{go_on, ground, mean_stretch};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// Spacing at which the cells of the coarse skirt are kept, metres.
 const COARSE: f32 = 0.1;
 
-/// World positions and normals of the skirt's vertices, as drawn.
+/// Returns the world positions and normals of the skirt's vertices, as drawn.
 fn drawn(character: &Character) -> (Vec<Vec3>, Vec<Vec3>) {
     let rig = &character.def().rig;
     let (mut model, mut places, mut normals) = (Vec::new(), Vec::new(), Vec::new());
@@ -26,7 +26,7 @@ fn drawn(character: &Character) -> (Vec<Vec3>, Vec<Vec3>) {
     (places.iter().map(|&place| to_world.point(place)).collect(), normals)
 }
 
-/// Largest depth of a particle in a body that it collides with, metres.
+/// Returns the largest depth of a particle in a body with which it collides, metres.
 fn deepest(world: &World, character: &Character) -> f32 {
     let group = world.particles(character.garments()[0]);
     let mut deepest = 0.0;
@@ -184,7 +184,7 @@ fn coarse_mesh_is_used_as_its_own_sheet() {
     assert_eq!(group.tethers().len(), free);
 }
 
-/// A coarse skirt whose hem is weighted to an additional joint `flare`, which has the named parent or none.
+/// Returns a coarse skirt whose hem is weighted to an additional joint `flare`, which has the named parent or none.
 fn flared(parent: Option<&str>) -> CharacterDef {
     let mut rig = skirted_rig([20, 8]);
     let source = rig.joints.len();
@@ -212,7 +212,7 @@ fn flared(parent: Option<&str>) -> CharacterDef {
     def
 }
 
-/// Clips scale hidden parts to zero.
+/// Clips may scale hidden parts to zero.
 #[test]
 fn joint_scaled_to_zero_gives_finite_positions() {
     let mut def = flared(Some("hips"));
@@ -246,7 +246,7 @@ fn particles_without_a_body_follow_the_sheet() {
     assert!(mean_stretch(world.particles(character.garments()[0])) < 0.03);
 }
 
-/// A snapshot of a character loaded beside another world's snapshot: missing garments are created again.
+/// A character's snapshot is loaded beside another world's snapshot: missing garments are created again.
 #[test]
 fn missing_garments_are_created_again() {
     let mut def = flared(Some("hips"));
@@ -277,7 +277,8 @@ fn missing_garments_are_created_again() {
     }
 }
 
-/// The skirt on an intermediate bone below the hips, and that bone's index. The bone is a spring if `is_sprung`.
+/// Returns the skirt on an intermediate bone below the hips, and the index of this bone. The bone is a spring if
+/// `is_sprung`.
 fn on_a_spring(is_sprung: bool) -> (CharacterDef, usize) {
     let mut rig = skirted_rig([20, 8]);
     let (hips, bone) = (joint(&rig, "hips"), rig.joints.len());
@@ -318,7 +319,7 @@ fn on_a_spring(is_sprung: bool) -> (CharacterDef, usize) {
     (def, bone)
 }
 
-/// Springs above its joints change neither the cloth nor where it is drawn.
+/// Springs above the skirt's joints change neither the cloth nor its drawn position.
 #[test]
 fn cloth_below_spring_bones_is_drawn_at_its_particles() {
     let walk = |is_sprung| {
@@ -347,7 +348,7 @@ fn cloth_below_spring_bones_is_drawn_at_its_particles() {
     assert!(swung > 0.1, "the bone swings: {swung}");
 }
 
-/// A skirt with ten cells around, each wider than a leg: cells are split for the cloth, so that no leg passes between
+/// A skirt has ten cells around, each wider than a leg: cells are split for the cloth, so that no leg passes between
 /// particles.
 #[test]
 fn legs_do_not_pass_through_a_coarse_mesh() {
@@ -381,7 +382,7 @@ fn legs_do_not_pass_through_a_coarse_mesh() {
     assert!(split < 0.015, "{split} m, {coarse} m without");
 }
 
-/// Largest depth, in bodies that it collides with, of the centre of a face without attached corners; metres.
+/// Returns the largest depth of the centre of a face without attached corners in bodies with which it collides, metres.
 fn deepest_middle(world: &World, character: &Character) -> f32 {
     let group = world.particles(character.garments()[0]);
     let held: Vec<u32> = group.attachments().iter().map(|held| held.particle).collect();

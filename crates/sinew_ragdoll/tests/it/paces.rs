@@ -9,7 +9,7 @@ use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, Locomotion, MotionS
 use sinew_scenes::mannequin::{RUN_SPEED, WALK_SPEED, drills};
 use std::sync::Arc;
 
-/// A walk in place and a travelling run, with footstep events.
+/// Returns a character with a walk in place and a travelling run, with footstep events.
 fn runner() -> Arc<CharacterDef> {
     let mut def = walker();
     let MotionSet { mut clips, looped, .. } = def.motions().clone();
@@ -28,8 +28,8 @@ fn runner() -> Arc<CharacterDef> {
     shared(def)
 }
 
-/// Moves a character forward. Returns its clip events, and the mean speed over the ground of the lower ball of its
-/// feet, m/s.
+/// Moves a character forward. Returns its clip events, and the mean speed over the ground of the ball of its lower
+/// foot, m/s.
 fn moved(world: &mut World, hero: &mut Character, speed: f32, steps: usize) -> (Vec<CharacterEvent>, f32) {
     let def = hero.def().clone();
     let feet = ["leftFoot", "rightFoot"].map(|role| def.body_named(role).expect("a foot"));

@@ -9,18 +9,18 @@ use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, RagdollBodyDef};
 use std::sync::Arc;
 
 const DT: f32 = 1.0 / 60.0;
-/// Observed steps after a hand-over.
+/// Number of observed steps after a hand-over.
 const WINDOW: usize = 24;
-/// Steps of clips before hand-over, and total steps: one cycle of a walk.
+/// Number of steps of clips before hand-over, and of all steps: one cycle of a walk.
 const BEFORE: usize = 12;
 const LAP: usize = 72;
 /// Transition times into a get-up clip and into the looped clip, seconds.
 const INTO: [f32; 2] = [0.35, 0.3];
 
-/// Angular and linear.
+/// Angular and linear rate.
 type Rates = [Vec3; 2];
 
-/// Observed joint transforms: the pelvis in the world, others relative to their parents.
+/// Returns the observed joint transforms: the pelvis in the world, others relative to their parents.
 fn seen(character: &Character) -> Vec<Transform> {
     let def = character.def();
     let mut model = Vec::new();
@@ -41,7 +41,7 @@ fn rates(a: Transform, b: Transform) -> Rates {
     [turn(a.rotation, b.rotation) / DT, (b.translation - a.translation) / DT]
 }
 
-/// Centres of mass of the bodies, with their rotations, in the animated pose.
+/// Returns the centres of mass of the bodies, with their rotations, in the animated pose.
 fn centers(character: &Character) -> Vec<Transform> {
     let def = character.def();
     let (mut model, mut bodies) = (Vec::new(), Vec::new());
@@ -77,14 +77,14 @@ impl Pops {
         Self { def: def.clone(), last: Vec::new(), window: None, worst: Default::default(), count: [0; 3] }
     }
 
-    /// Starts with another character.
+    /// Starts to observe another character.
     pub fn begin(&mut self, character: &Character) {
         self.last = vec![seen(character)];
         self.window = None;
     }
 
     /// Compares body velocities at hand-over with those of the last animated step, relative to their change from step
-    /// to step while animated. The push is left out; the later effect of joint friction, limits and floor is physics
+    /// to step while animated. The push is excluded. The later effect of joint friction, limits and floor is physics
     /// and not counted.
     pub fn go_limp(&mut self, character: &Character) {
         let mut world = World::new(WorldDef::default());
@@ -192,7 +192,8 @@ impl Pops {
                 let decay = Decay { offset: offsets[i], velocity };
                 let whole = INTO[kind];
                 let time = if heads.contains(&joint) {
-                    // It may return as fast as both together; then the decay is shorter, down to a third of the time.
+                    // The joint may return as fast as both together; then the decay is shorter, down to a third of the
+                    // time.
                     let soonest = 5.0 * decay.offset.length() / max(velocity.length(), 1e-6);
                     max(min(whole, soonest), whole / 3.0)
                 } else {
@@ -205,7 +206,7 @@ impl Pops {
         (0..now.len()).map(of).collect()
     }
 
-    /// Worst ratio; above 1 there is a pop.
+    /// Returns the worst ratio; above 1 there is a pop.
     pub fn worst(&self) -> f32 {
         self.worst.iter().fold(0.0, |worst, (ratio, _)| max(worst, *ratio))
     }

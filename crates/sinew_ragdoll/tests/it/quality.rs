@@ -1,4 +1,4 @@
-//! Quality metrics of falls, and the standard tests of every ragdoll.
+//! Figures of falls, and the standard tests of every ragdoll.
 
 use crate::actor::{floor, walker};
 use sinew_math::{Rotation, Transform, Vec3};
@@ -82,7 +82,7 @@ fn meter_detects_added_energy() {
     assert!((gain - 0.1).abs() < 0.01, "{gain}");
 }
 
-/// The walker in its bind pose.
+/// Spawns the walker in its bind pose.
 fn spawn(world: &mut World, body_settings: &BodySettings) -> Ragdoll {
     let def = walker().ragdoll;
     let at = |body: &RagdollBodyDef| BodyState {

@@ -8,7 +8,7 @@ use sinew_physics::{PhysicsObject, Serial, Velocity, World, WorldDef};
 use sinew_ragdoll::quality::random_pose;
 use sinew_ragdoll::{BodySettings, BodyState, Ragdoll, RagdollDef};
 
-/// Counts preparations of islands, and islands.
+/// Numbers of preparations of islands, and of islands.
 #[derive(Default)]
 struct Prepared {
     times: AtomicUsize,
@@ -28,14 +28,14 @@ impl Profiler for Prepared {
     }
 }
 
-/// Steps, and returns true if an island was solved twice.
+/// Steps the world and returns true if an island was solved twice.
 fn step_is_retaken(world: &mut World) -> bool {
     let prepared = Prepared::default();
     world.step_with(&Serial, &prepared);
     prepared.times.into_inner() > prepared.islands.into_inner()
 }
 
-/// An object that does nothing: islands that touch one use the world's substeps.
+/// An object without effect: islands that touch one use the world's substeps.
 struct Idle;
 
 impl PhysicsObject for Idle {
@@ -48,7 +48,7 @@ impl PhysicsObject for Idle {
     }
 }
 
-/// A ragdoll thrown down at 9 m/s from just above the floor, with random pose and spin.
+/// Spawns a ragdoll thrown down at 9 m/s from just above the floor, with random pose and spin.
 fn thrown(world: &mut World, def: &RagdollDef, seed: u64) -> Ragdoll {
     let mut random = Random::new(seed);
     let (turn, spin) = (random.rotation(), random.in_cube() * 10.0);

@@ -8,7 +8,7 @@ use sinew_anim::Rig;
 use sinew_math::Rotation;
 use sinew_ragdoll::{BuildOptions, DropReport, RagdollBodyDef, RagdollDef, Verdict, drop_test, gate};
 
-/// Checks that both have the same bodies on the same joints, at the same places, with the same masses.
+/// Checks that both ragdolls have the same bodies on the same joints, at the same places, with the same masses.
 fn check_same(what: &str, plain: &RagdollDef, other: &RagdollDef, place: &[usize]) {
     assert_eq!(plain.bodies.len(), other.bodies.len(), "{what}");
     let of = |joint: usize| other.bodies.iter().find(|body| body.joint == place[joint]);
@@ -98,7 +98,7 @@ fn mirroring_parent_node_does_not_change_the_ragdoll() {
     }
 }
 
-/// Rigs that need their names: to tell which of two joints in one place is the pelvis, or where a shoulder ends.
+/// Rigs that need their names: names show which of two joints in one place is the pelvis, or where a shoulder ends.
 const NAMED: [&str; 2] = ["quaternius_cyberpunk_Character.glb", "quaternius_Robot.glb"];
 
 #[needs_data]
@@ -121,9 +121,9 @@ fn names_do_not_matter_where_the_shape_is_clear() {
     }
 }
 
-/// Checks that it falls no worse. A fall is chaotic: for any rig, three in a thousand exceed a bar of comfort, and one
-/// of these may be among the eight drops. In that case a hundred random falls of each are compared. The numbers of
-/// failures may differ by two standard deviations, or by three plus one where failures are rare.
+/// Checks that a ragdoll falls no worse than another. A fall is chaotic: for any rig, three in a thousand exceed a bar
+/// of comfort, and one of these may be among the eight drops. In that case a hundred random falls of each are compared.
+/// The numbers of failures may differ by two standard deviations, or by three plus one where failures are rare.
 pub fn check_falls(what: &str, plain: &RagdollDef, other: &RagdollDef) {
     let worse = Falls::of(plain).worse(plain, other);
     assert!(worse.is_none(), "{what}: {}", worse.unwrap_or_default());
@@ -163,7 +163,7 @@ impl Falls {
     }
 }
 
-/// All changes together.
+/// Applies all changes together.
 #[needs_data]
 #[test]
 fn disguised_rig_falls_no_worse() {

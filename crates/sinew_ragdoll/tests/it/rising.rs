@@ -24,7 +24,7 @@ const PUSHES: [Vec3; 6] = [
     Vec3::new(45.0, 0.0, 60.0),
 ];
 
-/// A fall and get-up, its metrics, and the lowest point of the skin while getting up, metres.
+/// Bakes a fall and get-up; returns the bake, its figures, and the lowest point of the skin while getting up, metres.
 fn lives(contact: GroundContact, push: Vec3) -> (Baked, RisingQuality, f32) {
     let mut def = walker();
     def.ground_contact = contact;
@@ -44,7 +44,8 @@ fn lives(contact: GroundContact, push: Vec3) -> (Baked, RisingQuality, f32) {
     (baked, rising, low)
 }
 
-/// Without ground contact the blend moves feet and hands through the floor. (It slides feet only while the body lies.)
+/// Without ground contact the blend moves feet and hands through the floor. (The blend slides feet only while the body
+/// lies.)
 #[test]
 fn ground_contact_keeps_skin_above_the_floor_and_feet_in_place() {
     let mut blended = 0.0;
@@ -84,7 +85,7 @@ fn sword_stays_in_its_hand_in_a_mirrored_get_up() {
     assert!(frames > 100, "it gets up in {frames} frames");
 }
 
-/// Turns a joint about an axis of the character, with its descendants.
+/// Rotates a joint about an axis of the character, with its descendants.
 fn turn(def: &CharacterDef, pose: &mut [LocalTransform], joint: usize, turn: Rotation) {
     let mut model = Vec::new();
     local_to_model(&def.rig, pose, &Affine::IDENTITY, &mut model);
@@ -92,7 +93,7 @@ fn turn(def: &CharacterDef, pose: &mut [LocalTransform], joint: usize, turn: Rot
     pose[joint].rotation = parent.to_rigid().rotation.inverse() * (turn * model[joint].to_rigid().rotation);
 }
 
-/// Legs that a sitting body draws in bear nothing: their feet may drag. Those of a standing one may not.
+/// Legs that a sitting body draws in bear nothing: their feet may drag. Feet of a standing body may not.
 #[test]
 fn only_feet_that_bear_the_body_slide() {
     let def = shared(walker());
@@ -142,7 +143,7 @@ fn metrics_beyond_their_bounds_are_reported() {
     assert!(faults[0].reason.starts_with("getting up a foot slides by 20.0 cm"), "{faults:?}");
 }
 
-/// The transition between the poses is part of the state.
+/// The transition between the poses is part of the saved state.
 #[test]
 fn rising_character_survives_a_snapshot() {
     let mut def = walker();
@@ -173,7 +174,7 @@ fn rising_character_survives_a_snapshot() {
     }
 }
 
-/// Arms passed through a step beside the body, because only the floor of the clip kept them up.
+/// In the past arms passed through a step beside the body, because only the floor of the clip kept them up.
 #[test]
 fn arms_rise_over_a_step_beside_the_body() {
     let mut def = walker();
@@ -203,11 +204,11 @@ fn arms_rise_over_a_step_beside_the_body() {
         }
     }
     println!("{readings} readings of arms deeper than 5 cm in the step");
-    // 767 without the ground under the arms.
+    // Without the ground under the arms the number was 767.
     assert!(readings <= 450, "{readings} readings of arms deeper than 5 cm in the step");
 }
 
-/// Limbs and heads passed through a wall beside the body, because only the clip led them.
+/// In the past limbs and heads passed through a wall beside the body, because only the clip moved them.
 #[test]
 fn parts_stay_out_of_a_wall_beside_the_body() {
     let deepest = |ground_contact: GroundContact, foot_planting: FootPlanting| {

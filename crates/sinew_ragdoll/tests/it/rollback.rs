@@ -1,5 +1,5 @@
-//! Rollback: repeating eight frames with the same inputs gives the same bits, with characters in every state that are
-//! added and removed.
+//! Rollback: repeating eight frames with the same inputs gives the same bits, while characters in every state are added
+//! and removed.
 
 use crate::actor::{floor, shared, walker};
 use sinew_math::hash::hash_bytes;

@@ -1,4 +1,4 @@
-//! Settings: each changes what it names, and nothing else.
+//! Settings: each setting changes the named parts, and nothing else.
 
 use needs_data::needs_data;
 use sinew_anim::{Joint, LocalTransform, Role, analyze};
@@ -110,7 +110,7 @@ fn bones_can_be_dropped_and_kept() {
     assert!((def.total_mass - before.total_mass).abs() < 1e-3);
     // The definition can be mapped to the rig.
     let _ = Mapping::new(&rig, &def, &analysis.bind_model);
-    // A bone that is dropped and then kept is unchanged.
+    // A bone that is dropped by one setting and kept by a later one is unchanged.
     let keep = BoneSettings { body: Some(BodyWish::Keep), ..BoneSettings::default() };
     let mut settings = of_bone("leftHand", drop);
     assert_eq!(with(&settings).expect("goes").bodies.len() + 1, before.bodies.len());
@@ -126,7 +126,7 @@ fn merged_bone_can_be_kept() {
     let options = BuildOptions::default();
     let (before, _) = build(&rig, &analysis, &options).expect("bones");
     let merged = before.bodies.iter().flat_map(|body| body.merged.iter().map(move |&joint| (body, joint)));
-    // A merged bone with skin of its own.
+    // Find a merged bone with skin of its own.
     let skinned = |joint: usize| rig.skins.iter().any(|skin| skin.joints.contains(&joint));
     let (carrier, joint) =
         merged.into_iter().find(|&(_, joint)| skinned(joint)).expect("twist or finger bones");
@@ -189,7 +189,7 @@ fn unit_height_and_up_are_applied() {
     let scaled = with(&scaled).expect("grows");
     assert!((scaled.height - 2.0 * before.height).abs() < 1e-4);
     let lying = with(&Settings { up_axis: Some(Vec3::Z), ..Settings::default() }).expect("lies");
-    // Lying on its back, its height is its former depth.
+    // The figure lies on its back, so its height is its former depth.
     assert!(lying.height < 0.5 * before.height, "{}", lying.height);
     let lowest = lying.bodies.iter().map(|body| body.shape.aabb(&body.character_from_body).min.y);
     assert!(lowest.fold(f32::INFINITY, sinew_math::min).abs() < 0.06, "it is not on the floor");
@@ -208,7 +208,7 @@ fn roles_and_ignored_bones_are_applied() {
     assert!(def.bodies.iter().all(|body| body.bone != hand && body.role != "leftHand"));
     let forearm = |def: &RagdollDef| def.bodies[body(def, "leftLowerArm")].shape.volume();
     assert!(forearm(&def) < 1.1 * forearm(&before), "the hand's skin affects the forearm's shape");
-    // Applying settings to an analysis that already has them changes nothing.
+    // Applying settings to an analysis that already contains them changes nothing.
     let rig = mannequin().rig;
     let settings = Settings { unit: Some(Unit::Height(1.2)), ..of_bone("chest", chest) };
     let once = analyze_with(&rig, &analyze(&rig).expect("a skin"), &settings).expect("a body");

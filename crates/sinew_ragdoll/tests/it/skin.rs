@@ -1,4 +1,4 @@
-//! The verdict on the skin: each measure on a mannequin with just that defect, and on other rigs.
+//! The verdict on the skin: each figure on a mannequin with only one defect, and on other rigs.
 
 use crate::data::document;
 use needs_data::needs_data;
@@ -31,7 +31,7 @@ impl Subject {
         Self { rig, analysis, def }
     }
 
-    /// Skin quality over these falls.
+    /// Returns the skin quality over these falls.
     fn over(&self, falls: &[Fallen]) -> SkinQuality {
         measure_skin(&self.rig, &self.def, &self.analysis.bind_model, &[], falls)
     }
@@ -44,7 +44,7 @@ impl Subject {
         self.def.bodies.iter().position(|body| body.role == role).unwrap_or_else(|| panic!("no {role}"))
     }
 
-    /// A fall that ends in the bind pose, `height` metres above the floor.
+    /// Returns a fall that ends in the bind pose, `height` metres above the floor.
     fn lifted(&self, height: f32) -> Vec<Fallen> {
         let up = Transform::from_translation(Vec3::Y * height);
         let mut fall = Fallen::default();
@@ -67,7 +67,7 @@ fn mannequin_skin_has_no_flaw() {
     assert!(skin.covered_share > 0.99 && skin.contiguous, "{skin:?}");
     assert!((skin.bind_height_m - subject.def.height).abs() < 0.01, "{skin:?}");
     assert!((skin.drawn_height_m - skin.bind_height_m).abs() < 1e-3, "{skin:?}");
-    // It lies on the floor, not above it.
+    // The skin is on the floor, not above it.
     assert!(skin.rest_height_m.is_some_and(|height| (-0.06..0.01).contains(&height)), "{skin:?}");
     assert!(skin.edge_stretch_max > 0.0 && skin.edge_stretch_max >= skin.edge_stretch_p999, "{skin:?}");
     assert_eq!(skin, subject.over(&tested.falls), "the sample is not deterministic");
@@ -95,7 +95,7 @@ fn torn_skin_is_reported() {
     subject.analysis.bind_model.push(Affine::IDENTITY);
     for skin in &mut subject.rig.skins {
         if let Some(slot) = skin.joints.iter().position(|&joint| joint == hand) {
-            // Bound at the hand: the vertices are in place until something moves.
+            // The joint is bound at the hand, so the vertices are in place until a joint moves.
             skin.inverse_bind[slot] = subject.analysis.bind_model[hand] * skin.inverse_bind[slot];
             skin.joints[slot] = stray;
         }
@@ -107,7 +107,7 @@ fn torn_skin_is_reported() {
     assert!(kinds(&flaws).contains(&FlawKind::Torn), "{flaws:?}");
     let torn = flaws.iter().find(|flaw| flaw.kind == FlawKind::Torn).expect("torn");
     assert!(torn.evidence.contains("leftLowerArm"), "{}", torn.evidence);
-    // The doctor reports it with a remedy, and does not claim a repair.
+    // The doctor reports the flaw with a remedy, and does not claim a repair.
     let found = doctor(&Repair { skin: flaws, ..Repair::new(subject.def) });
     let finding = found.iter().find(|finding| finding.code == Code::SkinTorn).expect("a finding");
     assert!(!finding.fix.is_empty() && !finding.fixed, "{finding:?}");
@@ -146,13 +146,13 @@ fn asymmetric_body_is_reported() {
     assert!(sound < 1e-3, "{sound}");
     subject.def.bodies[arm].mass.mass *= 3.0;
     let skin = subject.over(&[]);
-    // A third of the relative difference of the masses (2/3), as a length.
+    // The figure is a third of the relative difference of the masses (2/3), as a length.
     let radius = subject.def.bodies[arm].shape.bounding_radius();
     assert!((skin.symmetry_error_m - radius * 2.0 / 9.0).abs() < 1e-3, "{skin:?}");
     subject.def.bodies[arm].shape = Shape::Sphere { radius: 0.4 };
     let flaws = subject.flaws(&[]);
     assert!(kinds(&flaws).contains(&FlawKind::Lopsided), "{flaws:?}");
-    // A part without a counterpart.
+    // Test a part without a counterpart.
     let mut subject = Subject::mannequin();
     let hand = subject.body("rightHand");
     subject.def.bodies[hand].role = "limb_0_0".into();
@@ -183,7 +183,7 @@ fn foot_attached_to_the_pelvis_is_reported() {
     assert!(flaws[0].evidence.starts_with("leftFoot"), "{}", flaws[0].evidence);
 }
 
-/// Nodes that scale the skin differently from its bind matrices.
+/// The nodes scale the skin differently from its bind matrices.
 #[test]
 fn character_drawn_in_another_size_is_reported() {
     let mut subject = Subject::mannequin();
@@ -262,7 +262,7 @@ fn non_finite_figures_are_flaws_without_panics() {
     assert_eq!((skin.covered_share, skin.edge_stretch_max), (1.0, 0.0), "{skin:?}");
 }
 
-/// Skin quality over the drops of another rig.
+/// Returns the skin quality over the drops of another rig.
 fn skin_of(name: &str) -> (SkinQuality, RagdollDef) {
     let document = document(name);
     let subject = Subject::of(document.rig);
@@ -272,8 +272,8 @@ fn skin_of(name: &str) -> (SkinQuality, RagdollDef) {
     (skin, subject.def)
 }
 
-/// Feet whose joints are named like controls, or are children of the root, fall with their legs. They once tore by half
-/// a height.
+/// Feet whose joints are named like controls, or are children of the root, fall with their legs. In the past they tore
+/// by half a height.
 #[needs_data]
 #[test]
 fn animal_feet_stay_on_their_legs() {
@@ -285,7 +285,7 @@ fn animal_feet_stay_on_their_legs() {
     }
 }
 
-/// The swords and shields of the knight once sank 1.9 m into the floor.
+/// In the past the swords and shields of the knight sank 1.9 m into the floor.
 #[needs_data]
 #[test]
 fn knight_rests_on_top_of_his_sword() {
@@ -295,7 +295,7 @@ fn knight_rests_on_top_of_his_sword() {
     assert_eq!(held, 3, "bodies for both hands and the cape");
 }
 
-/// The sword is skinned to the hand and once sank 1 m into the floor: the hand's shape encloses it.
+/// The sword is skinned to the hand, whose shape encloses it. In the past it sank 1 m into the floor.
 #[needs_data]
 #[test]
 fn sword_skinned_to_a_hand_rests_on_the_floor() {
@@ -391,7 +391,8 @@ fn skinned_hats_and_packs_rest_on_the_floor() {
     assert!(matches!(head, Shape::Hull(_)), "{head:?}");
 }
 
-/// A club skinned to a foot, which has the shape of the other one: the shape encloses it, and it is no lopsided foot.
+/// A club is skinned to a foot, which would get the shape of the other foot. The foot's shape encloses the club, and
+/// the feet do not count as lopsided.
 #[test]
 fn what_is_skinned_to_the_end_of_a_limb_rests_on_the_floor() {
     let mut rig = mannequin().rig;

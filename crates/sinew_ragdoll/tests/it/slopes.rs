@@ -13,13 +13,13 @@ fn fixed(half_extents: Vec3, position: Vec3, rotation: Rotation) -> BodyDef {
     BodyDef { kind: BodyKind::Static, position, rotation, shapes, ..BodyDef::default() }
 }
 
-/// A plane that descends toward +Z.
+/// Returns a plane that descends toward +Z.
 fn slope(degrees: f32) -> Vec<BodyDef> {
     let turn = Rotation::from_axis_angle(Vec3::X, degrees.to_radians());
     vec![fixed(Vec3::new(20.0, 1.0, 20.0), turn * Vec3::NEG_Y, turn)]
 }
 
-/// Steps of 17 by 30 cm that descend toward +Z.
+/// Returns steps of 17 by 30 cm that descend toward +Z.
 fn stairs() -> Vec<BodyDef> {
     let step = |k: i32| {
         let top = -0.17 * k as f32;
@@ -41,8 +41,8 @@ fn height(world: &World, at: Vec3) -> f32 {
     hit.map_or(f32::NEG_INFINITY, |hit| hit.point.y)
 }
 
-/// Largest depth of joints in the ground and largest height of the lower foot above it while getting up, metres; and
-/// the largest acceleration of pelvis and feet after the body pose has decayed, m/s².
+/// Returns the largest depth of joints in the ground and the largest height of the lower foot above it while getting
+/// up, metres; then the largest acceleration of pelvis and feet after the body pose has decayed, m/s².
 fn gets_up(def: &Arc<CharacterDef>, ground: &[BodyDef], push: Vec3) -> [f32; 3] {
     let mut world = world_of(ground);
     let mut character = Character::new(def.clone(), Transform::IDENTITY, 0.2);
@@ -103,7 +103,7 @@ fn rising_character_neither_sinks_nor_floats_on_a_slope() {
 }
 
 /// The resting place on stairs is random, and a clip recorded on a floor sometimes moves a hand or knee through an
-/// edge: in 3, 4 and 6 of 32 falls of three builds, by at most 16, 20 and 19 cm.
+/// edge. In three builds this happened in 3, 4 and 6 of 32 falls, by at most 16, 20 and 19 cm.
 #[test]
 fn few_joints_pass_through_the_edge_of_a_step() {
     let def = shared(walker());
@@ -118,7 +118,7 @@ fn few_joints_pass_through_the_edge_of_a_step() {
     assert!(depths[63] < 0.25, "{depths:?}");
 }
 
-/// Height of heel and ball of both feet above the ground, minus that in the rest pose, metres.
+/// Returns the height of heel and ball of both feet above the ground, minus their height in the rest pose, metres.
 fn soles(def: &CharacterDef, world: &World, character: &Character) -> [[f32; 2]; 2] {
     let (mut model, mut stands) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
@@ -132,12 +132,13 @@ fn soles(def: &CharacterDef, world: &World, character: &Character) -> [[f32; 2];
     })
 }
 
-/// Height of both feet, metres. Across the edge of a step a foot stands on the ground under its heel or under its ball.
+/// Returns the height of both feet, metres. Across the edge of a step a foot stands on the ground under its heel or
+/// under its ball.
 fn held(def: &CharacterDef, world: &World, character: &Character) -> [f32; 2] {
     soles(def, world, character).map(|[heel, ball]| min(heel, ball))
 }
 
-/// A pushed mannequin that has got up and stood for a second and a half.
+/// Returns a pushed mannequin that has got up and stood for a second and a half.
 fn stands_again(def: &Arc<CharacterDef>, world: &mut World, start: Transform, push: Vec3) -> Character {
     let mut character = Character::new(def.clone(), start, 0.0);
     character.hit(world, def.body_named("chest").expect("it has a chest"), push);
@@ -153,7 +154,7 @@ fn stands_again(def: &Arc<CharacterDef>, world: &mut World, start: Transform, pu
     panic!("it never got up");
 }
 
-/// A character without a walk: it stands.
+/// Returns a character without a walk, which stands.
 fn stander() -> Arc<CharacterDef> {
     let mut def = walker();
     let motions = MotionSet { looped: None, locomotion: Locomotion::InPlace, ..def.motions().clone() };
@@ -189,7 +190,7 @@ fn feet_align_with_a_slope() {
 fn both_feet_touch_the_ground_across_an_edge() {
     let def = stander();
     let (mut worst, mut bent) = (0.0_f32, 0);
-    // The positions of the edges below it are random.
+    // The positions of the edges below the character are random.
     for k in 0..6_u8 {
         for push in PUSHES {
             let mut world = world_of(&stairs());
@@ -237,7 +238,7 @@ fn planted_feet_survive_snapshots_and_hand_over() {
             assert_eq!(other.pose(), original.pose(), "step {step} after {rising} and {up}");
         }
     }
-    // Where it stands still, its bodies are still as well, and match the drawn pose.
+    // While the character stands still, its bodies are still as well, and match the drawn pose.
     let (mut model, mut shown) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, character.pose(), &Affine::IDENTITY, &mut model);
     def.mapping().bodies_from_model(&model, character.world_from_character(), &mut shown);

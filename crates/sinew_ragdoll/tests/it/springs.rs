@@ -23,8 +23,8 @@ mod reference;
 use avatar::{Calming, random_avatar, strands, vrm};
 use reference::Reference;
 
-/// Character pose at a time: its head walks, sways and turns. It accelerates over a third of a second, because a sudden
-/// start has no defined motion between frames.
+/// Returns the character's pose at a time: its head walks, sways and turns. The head accelerates over a third of a
+/// second, because a sudden start has no defined motion between frames.
 fn place_at(time: f32) -> Transform {
     let time = time - 0.3 * (1.0 - trig::exp(-time / 0.3));
     let swing = |turns: f32| trig::sin(core::f32::consts::TAU * turns * time);
@@ -33,11 +33,11 @@ fn place_at(time: f32) -> Transform {
     Transform::new(Vec3::new(0.1 * swing(1.3), 0.03 * swing(2.0), 1.2 * time), turn * nod)
 }
 
-/// Positions of all tips at every frame, for a frame rate.
+/// Returns the positions of all tips at every frame, for a frame rate.
 fn run(def: &CharacterDef, rate: f32, seconds: f32) -> Vec<Vec<Vec3>> {
     let (rig, pose) = (def.springs(), rest_pose(&def.rig));
     let (mut swing, mut ways) = (SpringSwing::new(), Vec::new());
-    // Like the reference, it starts at rest in the first pose.
+    // Like the reference, the springs start at rest in the first pose.
     swing.step(&still(def, &pose, Affine::from(place_at(0.0)), 0.0));
     for frame in 1..=(seconds * rate).round() as u32 {
         let root = Affine::from(place_at(frame as f32 / rate));
@@ -57,7 +57,7 @@ fn still<'a>(
     SpringStep { rig: def.springs(), pose, world_from_model, bodies: &[], world: None, seconds }
 }
 
-/// World positions of the tips of all bones, computed from joint rotations.
+/// Returns the world positions of the tips of all bones, computed from joint rotations.
 fn tips(
     def: &CharacterDef,
     pose: &[sinew_anim::LocalTransform],
@@ -74,7 +74,7 @@ fn tips(
     chains.iter().flat_map(|chain| &chain.bones).map(|bone| model[bone.joint].point(bone.tail)).collect()
 }
 
-/// Random settings, typical and untypical for avatars.
+/// Returns random settings, typical and untypical for avatars.
 fn random_hair(random: &mut Random) -> SpringBone {
     let stiffness = random.range(0.3, 4.0);
     SpringBone {
@@ -86,7 +86,7 @@ fn random_hair(random: &mut Random) -> SpringBone {
     }
 }
 
-/// Hair as that of `maned`, with random colliders, centres and limits of every kind.
+/// Returns hair like that of `maned`, with random colliders, centres and limits of every kind.
 fn random_springs(base: &Rig, random: &mut Random) -> Springs {
     let settings = random_hair(random);
     let mut springs = base.springs.clone();
@@ -191,7 +191,7 @@ fn motion_between_ticks_is_smooth() {
     }
 }
 
-/// A character with hair that stands on a floor.
+/// Returns a character with hair that stands on a floor, and its world.
 fn standing(settings: &SpringBone) -> (World, Character) {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -228,8 +228,8 @@ fn resting_hair_stays_still_for_a_minute() {
     }
 }
 
-/// Largest displacement of each tip from frame to frame at rest, and from its first position within a minute, metres;
-/// after a second of motion and five to settle.
+/// Returns the largest displacement of each tip from frame to frame at rest, and from its first position within a
+/// minute, metres. The measurement starts after a second of motion and five to settle.
 fn motion_after_settling(def: &CharacterDef, rate: f32, settling: f32) -> Vec<[f32; 2]> {
     let pose = rest_pose(&def.rig);
     let mut swing = SpringSwing::new();
@@ -258,9 +258,9 @@ fn motion_after_settling(def: &CharacterDef, rate: f32, settling: f32) -> Vec<[f
     most
 }
 
-/// Avatars like those in files: strands of three to six bones, stiff and soft, with and without gravity, with every
-/// collider and limit in contact at rest, in world or joint space. Two of six have almost no stiffness or drag, and are
-/// given minutes to settle.
+/// Avatars resemble those in files: strands of three to six bones, stiff and soft, with and without gravity, with every
+/// collider and limit in contact at rest, in world or joint space. Two of six have almost no stiffness or drag, and get
+/// minutes to settle.
 #[test]
 fn avatar_tips_stay_still_for_a_minute() {
     let mut rig = mannequin().rig;
@@ -304,7 +304,7 @@ fn colliders_hold_between_ticks() {
     let mut def = maned(&HAIR);
     let mut springs = def.springs().source().clone();
     let ColliderShape::Sphere { offset, .. } = springs.colliders[0].shape else { panic!("a ball") };
-    // Large enough to touch all three strands, except for their first bones.
+    // The radius is large enough to touch all three strands, except for their first bones.
     let radius = 0.13;
     springs.colliders[0].shape = ColliderShape::Sphere { offset, radius, keeps: Side::Outside };
     def.set_springs(&springs);
@@ -373,7 +373,8 @@ fn wind_moves_hair_and_teleports_do_not() {
     // The wind pushes the tip by drag · wind = 1.5 m/s, against a stiffness of 0.8 m/s.
 }
 
-/// Largest rotation of a hair bone within one step while standing, hit, falling, lying, and up again.
+/// The hair's largest rotation within one step is bounded while the character stands, is hit, falls, lies, and is up
+/// again.
 #[test]
 fn hair_follows_a_fall_without_a_pop() {
     let (mut world, mut character) = standing(&HAIR);
@@ -409,7 +410,7 @@ fn hair_follows_a_fall_without_a_pop() {
             .collect();
         for (&tip, &length) in tips.iter().zip(&lengths) {
             assert!(tip.is_finite() && length > 0.0);
-            // The tips are on the floor, not inside it, except where the head pushes them.
+            // The tips are on the floor, not below it, except where the head pushes them.
             assert!(tip.y > -0.02, "step {step}: a tip at {tip}");
         }
         if let Some(before) = &before {
@@ -512,8 +513,8 @@ fn joints_with_bodies_are_no_springs() {
     assert_eq!(def.springs().joints().len(), rig.springs.bone_count() - 1);
 }
 
-/// One ponytail bone thrown to the side: carried along by 3 cm a tick, then stopped. Returns how far the tip moves to
-/// that side of its rest position within ten ticks, metres.
+/// Throws one ponytail bone to the side: the bone is carried along by 3 cm a tick, then stopped. Returns the largest
+/// displacement of the tip to that side of its rest position within ten ticks, metres.
 fn thrown(colliders: Vec<SpringCollider>, world: Option<&World>) -> f32 {
     let mut def =
         maned(&SpringBone { stiffness: 1.5, gravity: Vec3::ZERO, radius: 0.002, drag: 0.1, ..HAIR });
@@ -538,7 +539,7 @@ fn thrown(colliders: Vec<SpringCollider>, world: Option<&World>) -> f32 {
     most
 }
 
-/// Joint of the ponytail's parent, and the ends of its first bone at rest in that joint's space.
+/// Returns the joint of the ponytail's parent, and the ends of its first bone at rest in that joint's space.
 fn ponytail() -> (usize, Vec3, Vec3) {
     let rig = maned_rig(&HAIR);
     let bone = rig.springs.chains[0].bones[0];
@@ -550,7 +551,7 @@ fn ponytail() -> (usize, Vec3, Vec3) {
 fn fast_tip_is_stopped_by_a_thin_collider() {
     let free = thrown(Vec::new(), None);
     let (joint, root, tip) = ponytail();
-    // A needle of 2 mm beside the bone and parallel to it.
+    // Add a needle of 2 mm beside the bone and parallel to it.
     let out = (tip - root) * 0.5;
     let needle = |offset: Vec3, tail: Vec3| {
         let shape = ColliderShape::Capsule { offset, tail, radius: 0.001, keeps: Side::Outside };
@@ -561,7 +562,7 @@ fn fast_tip_is_stopped_by_a_thin_collider() {
     println!("free {free}, stopped at {stopped}");
     assert!(free > 0.02, "the free tip moves only {free} m");
     assert!(stopped < 0.013, "the tip passed through: {stopped}");
-    // A needle out of the way has no effect.
+    // A needle that the bone does not reach has no effect.
     assert_eq!(needle(tip + aside - Vec3::Y, tip + aside - Vec3::Y * 0.9), free);
 }
 
@@ -580,8 +581,8 @@ fn fast_tip_is_stopped_by_a_thin_wall() {
     assert!(free > 0.02 && stopped < 0.012, "the tip passed through: {stopped} of {free}");
 }
 
-/// Braids blown apart, with and without links: smallest and largest distance of their ends at 30 frames a second,
-/// relative to the bind pose.
+/// Blows braids apart, with and without links, and returns the smallest and largest distance of their ends at 30 frames
+/// a second, relative to the bind pose.
 fn parted(links: bool, holds_apart: bool, push: f32, rate: f32) -> Vec<f32> {
     let mut def = maned(&HAIR);
     let mut springs = def.springs().source().clone();

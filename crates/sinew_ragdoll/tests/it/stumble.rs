@@ -9,7 +9,7 @@ use sinew_physics::{BodyId, World, WorldDef};
 use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, MotionSet, Preset, QualityMeter, State};
 use std::sync::Arc;
 
-/// A character that stands by default, or walks.
+/// Returns the definition of a character that stands by default, or walks.
 fn puppet() -> Arc<CharacterDef> {
     let mut def = walker();
     let motions = def.motions().clone();
@@ -17,7 +17,7 @@ fn puppet() -> Arc<CharacterDef> {
     shared(def)
 }
 
-/// A powered character that has settled into standing or, if `walks`, into walking at its clip's speed.
+/// Returns a powered character that has settled into standing or, if `walks`, into walking at its clip's speed.
 fn powered(def: &Arc<CharacterDef>, walks: bool, phase: usize) -> (World, Character) {
     let mut world = level();
     let mut character = Character::spawn(&mut world, def, Transform::IDENTITY);
@@ -148,11 +148,11 @@ impl Tally {
     }
 }
 
-/// Pushes, N·s.
+/// Impulses of the pushes, N·s.
 const SIZES: [f32; 5] = [20.0, 60.0, 100.0, 150.0, 200.0];
 
-/// Pushes any of its bodies in any level direction at any moment, standing or walking: 500 times if `SINEW_FULL` is
-/// set, otherwise a tenth.
+/// Any body of a character is pushed in any level direction at any moment, standing or walking: 500 times if
+/// `SINEW_FULL` is set, otherwise a tenth.
 #[test]
 fn random_pushes_are_mostly_survived() {
     let def = puppet();
@@ -205,7 +205,7 @@ fn random_pushes_are_mostly_survived() {
     assert!(tallies[1].upright() >= 0.6, "{table}");
 }
 
-/// Momentum, angular momentum about the origin, and centre of mass of all bodies.
+/// Returns momentum, angular momentum about the origin, and centre of mass of all bodies.
 fn motion(world: &World, def: &CharacterDef, bodies: &[BodyId]) -> [Vec3; 3] {
     let [mut momentum, mut spin, mut center] = [Vec3::ZERO; 3];
     for (&id, body) in bodies.iter().zip(&def.ragdoll.bodies) {
@@ -219,8 +219,8 @@ fn motion(world: &World, def: &CharacterDef, bodies: &[BodyId]) -> [Vec3; 3] {
     [momentum, spin, center]
 }
 
-/// Distance of a floor point from the support polygon of the planted feet, metres, 0 inside; `None` if no foot is
-/// planted.
+/// Returns the distance of a floor point from the support polygon of the planted feet, metres, 0 inside; `None` if no
+/// foot is planted.
 fn outside(character: &Character, point: Vec3) -> Option<f32> {
     // Extents around ankle and ball (heel, toes, sides), and the height of a lifted ankle; metres.
     let [heel, toes, rim, up] = [0.06, 0.08, 0.045, 0.15];
@@ -251,9 +251,9 @@ fn outside(character: &Character, point: Vec3) -> Option<f32> {
     (!corners.is_empty()).then(|| ways.map(beyond).fold(0.0, max))
 }
 
-/// The external force (net force minus weight) averaged over a tenth of a second, which the feet would have to exert:
-/// how far outside of the planted soles it acts on the floor (metres), and the ratio of its horizontal and vertical
-/// parts.
+/// The external force (net force minus weight), averaged over a tenth of a second, is the force that the feet would
+/// have to exert. Two figures are bounded: the distance outside of the planted soles at which the force acts on the
+/// floor (metres), and the ratio of its horizontal and vertical parts.
 #[test]
 fn balance_forces_act_near_the_soles() {
     const OVER: usize = 6;

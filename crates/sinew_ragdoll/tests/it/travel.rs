@@ -15,7 +15,7 @@ fn world() -> World {
     world
 }
 
-/// The mannequin with a walk whose root moves along a path.
+/// Returns the mannequin with a walk whose root moves along a path.
 fn travelling(path: Path, locomotion: Locomotion) -> (Arc<CharacterDef>, Cycle) {
     let cycle = walking(path);
     let mut def = walker();
@@ -53,7 +53,7 @@ fn travelling_clip_continues_past_its_end() {
         assert!((at - expected).length() < 0.05, "{path:?}: it is at {at} for {expected}");
         assert!(fastest < 6.0, "{path:?}: a joint moves at {fastest} m/s");
     }
-    // Played in place, it returns to the start of each cycle.
+    // Played in place, the character returns to the start of each cycle.
     let (def, cycle) = travelling(Path::Straight, Locomotion::InPlace);
     let mut world = world();
     let mut character = Character::new(def, Transform::IDENTITY, 0.0);
@@ -70,7 +70,7 @@ fn fall_around_the_seam_keeps_the_walking_speed() {
     for locomotion in [Locomotion::ByClip, Locomotion::InPlace] {
         let (def, cycle) = travelling(Path::Straight, locomotion);
         let total = def.ragdoll.total_mass;
-        // Phases in sixteenths of a frame around the seam, and two far from it.
+        // Phases are in sixteenths of a frame around the seam, and two are far from it.
         let near = (-24..=24).map(|i| cycle.clip.duration + i as f32 / (16.0 * 60.0));
         for phase in near.chain([0.31, 0.77]) {
             let mut world = world();
@@ -90,7 +90,7 @@ fn fall_around_the_seam_keeps_the_walking_speed() {
     }
 }
 
-/// A capture that begins 5 m from its origin walked 5 m beside the ground that bore it.
+/// In the past a capture that begins 5 m from its origin walked 5 m beside its supporting ground.
 #[test]
 fn clip_that_begins_elsewhere_starts_at_the_place_of_the_character() {
     let at = |beside: Vec3| {
@@ -108,7 +108,7 @@ fn clip_that_begins_elsewhere_starts_at_the_place_of_the_character() {
         }
         def.set_motions(motions).expect("it can be played");
         let mut world = World::new(WorldDef::default());
-        // A platform of 1 m under its place alone.
+        // Add a platform of 1 m under the character's place alone.
         world.add_body(&BodyDef {
             position: Vec3::Y * 0.5,
             ..BodyDef::fixed(Shape::Box { half_extents: Vec3::new(2.0, 0.5, 4.0) })

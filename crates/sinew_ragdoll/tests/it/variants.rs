@@ -15,7 +15,7 @@ use sinew_math::{Random, Rotation};
 use sinew_ragdoll::{BuildOptions, RagdollDef, build};
 use sinew_scenes::mannequin::mannequin;
 
-/// Humans, stylised figures, animals and eight-legged creatures, besides the rigs built in code.
+/// Humans, stylised figures, animals and eight-legged creatures, in addition to the rigs built in code.
 const RIGS: [&str; 10] = [
     "CesiumMan.glb",
     "RiggedFigure.glb",
@@ -36,13 +36,13 @@ const FEW: u64 = 2;
 const PREFIXES: [&str; 6] = ["", "Armature|", "chr_", "rig:", "GLB_", "Char01."];
 const SUFFIXES: [&str; 4] = ["", "_jnt", ".001", "_050"];
 
-/// Feet that may be reparented to the root.
+/// Returns the feet that may be reparented to the root.
 fn feet(rig: &Rig, analysis: &RigAnalysis) -> Vec<JointIdx> {
     let of = |side| analysis.joint_with(Role::Foot(side));
     if analysis.humanoid {
         return [Side::Left, Side::Right].into_iter().filter_map(of).collect();
     }
-    // Bodies of a creature that end a limb, unless feet are children of the root already.
+    // Bodies of a creature at the end of a limb count, unless feet are children of the root already.
     let is_end = |bone: usize| analysis.kept.iter().all(|other| other.parent != Some(bone));
     let holds = |joint: JointIdx, below: JointIdx| {
         std::iter::successors(Some(below), |&at| rig.joints[at].parent).any(|at| at == joint)
@@ -54,7 +54,7 @@ fn feet(rig: &Rig, analysis: &RigAnalysis) -> Vec<JointIdx> {
     limbs.map(|(_, kept)| kept.joint).collect()
 }
 
-/// Thighs and upper arms, or their parent clavicles.
+/// Returns thighs and upper arms, or their parent clavicles.
 fn limbs(analysis: &RigAnalysis) -> Vec<JointIdx> {
     let of = |side: Side| {
         let arm = [Role::Shoulder(side), Role::UpperArm(side)].map(|role| analysis.joint_with(role));
@@ -63,7 +63,7 @@ fn limbs(analysis: &RigAnalysis) -> Vec<JointIdx> {
     [Side::Left, Side::Right].into_iter().flat_map(of).flatten().collect()
 }
 
-/// Thighs or upper arms, each with its parent.
+/// Returns thighs or upper arms, each with its parent.
 fn limb_roots(analysis: &RigAnalysis, random: &mut Random) -> Vec<(JointIdx, JointIdx)> {
     let [thigh, arm] = [|side| Role::UpperLeg(side), |side| Role::UpperArm(side)] as [fn(Side) -> Role; 2];
     let upper = [thigh, arm][random.index(2)];
@@ -93,7 +93,7 @@ struct Subject {
 }
 
 impl Subject {
-    /// Rigs built in code, then those of the shared data if present.
+    /// Returns the rigs built in code, then those of the shared data if present.
     fn all() -> Vec<Self> {
         let mannequin = mannequin();
         let built = [
@@ -124,7 +124,7 @@ impl Subject {
         if chance(&mut random, "twist bones") {
             rig = with_twists(&rig, analysis);
         }
-        // Only a rig with a head gets them: attachments of a creature may be parts of its body.
+        // Only a rig with a head gets attachments: those of a creature may be parts of its body.
         let head = analysis.joint_with(Role::Head);
         if let Some(head) = head.filter(|_| chance(&mut random, "hair")) {
             rig = with_hair(&rig, analysis, head, &mut random);
@@ -137,7 +137,7 @@ impl Subject {
             rig = with_controls(&rig, analysis, &mut random);
         }
         let convention = usize::try_from(seed).expect("few") % CONVENTIONS.len();
-        // A clip belongs to one hierarchy, unit and axes.
+        // A clip fits only one hierarchy, unit and choice of axes.
         if !self.clips.is_empty() && chance(&mut random, "shifted clips") {
             let size = analysis.height / analysis.unit_scale;
             let clips = shifted(&self.clips, &self.rig, random.in_cube() * (5.0 * size));
@@ -180,7 +180,7 @@ impl Subject {
         Variant { rig, hints, place: place[first..].to_vec(), changes_made: changes_made.join(", ") }
     }
 
-    /// Feet as children of the root, limbs as roots, beginnings of limbs without skin.
+    /// Makes feet children of the root, limbs roots, or leaves beginnings of limbs without skin.
     fn reparented(
         &self,
         mut rig: Rig,
@@ -203,7 +203,7 @@ impl Subject {
     }
 }
 
-/// Differences between two ragdolls; empty if the bodies match those of the plain rig, with equal masses.
+/// Returns the differences between two ragdolls; empty if the bodies match those of the plain rig, with equal masses.
 fn differences(plain: &RagdollDef, other: &RagdollDef, place: &[usize]) -> Vec<String> {
     let mut found = Vec::new();
     for a in &plain.bodies {
@@ -240,14 +240,14 @@ fn differences(plain: &RagdollDef, other: &RagdollDef, place: &[usize]) -> Vec<S
     found
 }
 
-/// Flaws of the variants of a rig, one line each.
+/// Returns the flaws of the variants of a rig, one line each.
 fn flaws(number: u64, subject: &Subject, count: u64) -> Vec<String> {
     let name = subject.name;
     let analysis = analyze(&subject.rig).expect("a skin");
     let (plain, _) = built(&subject.rig, &BuildOptions::default());
     let mut falls = Falls::of(&plain);
     let mut wrong = Vec::new();
-    // Different seeds for each rig, so that together they cover more.
+    // Each rig has different seeds, so that the rigs together cover more.
     let first = number * count % ALL;
     for seed in (first..first + count).map(|seed| seed % ALL) {
         let Variant { rig, hints, place, changes_made } = subject.variant(&analysis, seed);

@@ -7,7 +7,7 @@ use sinew_math::{Affine, Random, Rotation, Vec3};
 use sinew_ragdoll::BuildOptions;
 use sinew_ragdoll::masses::volume::{density, enclosed};
 
-/// Corners and triangles of a box, counter-clockwise seen from outside.
+/// Returns the corners and triangles of a box, counter-clockwise seen from outside.
 fn block(center: Vec3, half: Vec3) -> ([Vec3; 8], [[usize; 3]; 12]) {
     let sign = |i: usize, bit: usize| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
     let corners = core::array::from_fn(|i| center + half * Vec3::new(sign(i, 0), sign(i, 1), sign(i, 2)));
@@ -61,7 +61,7 @@ fn overlapping_volumes_count_once() {
     assert_eq!(enclosed(&[]), None);
 }
 
-/// A worm of thick links that overlap by half, with joints of these names.
+/// Returns a worm of thick links that overlap by half, with joints of these names.
 fn worm(names: [&str; 3]) -> Rig {
     let mut rig = Rig::default();
     let mut skin = Skin { name: String::new(), joints: vec![], inverse_bind: vec![] };

@@ -36,7 +36,7 @@ pub const ALL: &[Deed] = &[
     Deed::new("change_part", 2, change_part),
 ];
 
-/// Calls a method of a character and notes it.
+/// Calls a method of a character and records the call.
 macro_rules! to {
     ($a:ident[$chosen:expr].$name:ident(world $(, $argument:expr)* $(,)?)) => {{
         $crate::characters::note($a, $chosen, stringify!($name), concat!("Character::", stringify!($name)), &[$(&$argument),*], true);
@@ -50,7 +50,7 @@ macro_rules! to {
 }
 pub(crate) use to;
 
-/// Notes a call to a character as a line of the program.
+/// Records a call to a character as a line of the program.
 pub fn note(
     a: &mut Actor,
     chosen: usize,
@@ -72,7 +72,7 @@ pub fn note(
 /// Largest distance of a character from the origin in a wild life, metres; beyond it, squares of lengths overflow.
 const FARTHEST: f32 = 1e12;
 
-/// A place to stand: on the floor or slightly above it; in a wild life anywhere.
+/// Returns a place to stand: on the floor or slightly above it; in a wild life anywhere.
 fn place(n: &mut Numbers) -> Transform {
     let turn = n.between(-3.0, 3.0);
     let (x, z) = (n.signed(2.0).clamp(-FARTHEST, FARTHEST), n.signed(2.0).clamp(-FARTHEST, FARTHEST));
@@ -116,7 +116,7 @@ fn despawn(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// An impulse plausible for the body's mass; in a wild life any.
+/// Returns an impulse plausible for the body's mass; in a wild life any impulse.
 fn blow(a: &Actor, n: &mut Numbers, chosen: usize, body: usize) -> Vec3 {
     let impulse = n.vector(60.0);
     let mass = a.more.cast[chosen].character.def().ragdoll.bodies[body].mass.mass;
@@ -389,7 +389,7 @@ fn push_part(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// Calls of the world that a game may make on a character's body.
+/// Makes calls to the world on a character's body, as a game may.
 fn change_part(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let body = part(a, n)?;
     a.more.is_meddled_with = true;

@@ -25,16 +25,16 @@ pub const BUSY: Range<u32> = 40..160;
 
 /// Largest number of characters at a time.
 pub const MOST: usize = 3;
-/// Allowed depth of a body below the floor (metres); steps for which it may be pressed there; rise within a step that
-/// counts as leaving (metres); half the width of the narrowest floor.
+/// Allowed depth of a body below the floor (metres); steps for which a body may be pressed there; rise within a step
+/// that counts as leaving (metres); half the width of the narrowest floor (metres).
 const DEPTH: f32 = 0.05;
 const PRESSED: u32 = 60;
 const RISES: f32 = 1e-3;
 const WIDTH: f32 = 6.0;
-/// Steps after the last action from which limbs are checked.
+/// Number of steps after the last action from which limbs are checked.
 const SETTLED: u32 = 20;
-/// Bounds on the speed (m/s; unstoppable slabs press limbs out at up to 35) and joint gap (metres) of limbs at that
-/// time.
+/// Bounds on the speed (m/s; unstoppable slabs press limbs out at up to 35) and joint gap (metres) of limbs once
+/// settled.
 const FAST: f32 = 60.0;
 const GAP: f32 = 0.02;
 
@@ -67,7 +67,7 @@ pub struct Extension {
     pub limbs: Vec<(u64, usize, Limb)>,
     pub points: Vec<(u64, GrabPoint)>,
     pub born: u32,
-    /// True if the game has changed bodies that characters own: their state is then not checked.
+    /// True if the game has changed bodies that characters own; their state is then not checked.
     pub is_meddled_with: bool,
     /// Steps for which a body has been below the floor without rising, and its height.
     below: BTreeMap<BodyId, (u32, f32)>,
@@ -78,7 +78,7 @@ impl Extension {
         Self::default()
     }
 
-    /// The extension for a copy of the world: cloned for a clone, loaded from bytes otherwise.
+    /// Returns the extension for a copy of the world: cloned for a clone, loaded from bytes otherwise.
     pub fn twin(&self, twin: Twin) -> Self {
         match twin {
             Twin::Clone => self.clone(),
@@ -121,7 +121,7 @@ impl Extension {
         self.cast.iter_mut().for_each(|member| member.character.update(world));
     }
 
-    /// Serialised state.
+    /// Returns the serialised state.
     pub fn state(&self) -> Vec<u8> {
         let mut w = Writer::new();
         self.cast.iter().for_each(|member| member.character.save(&mut w));
@@ -130,18 +130,18 @@ impl Extension {
         w.into_bytes()
     }
 
-    /// Events of the last step.
+    /// Returns the events of the last step.
     pub fn events(&self) -> String {
         let with_events = self.cast.iter().filter(|member| !member.character.events().is_empty());
         with_events.map(|member| format!("{} {:?} ", member.number, member.character.events())).collect()
     }
 
-    /// True if it adds energy that is not accounted for.
+    /// Returns true if the extension adds energy that is not accounted for.
     pub fn drives(&self) -> bool {
         !(self.cast.is_empty() && self.points.is_empty())
     }
 
-    /// Checks it after a step; `quiet`: steps since the last action.
+    /// Checks the extension after a step; `quiet`: steps since the last action.
     ///
     /// # Errors
     /// If an invariant does not hold.
@@ -164,7 +164,7 @@ impl Extension {
         Ok(())
     }
 
-    /// Dynamic bodies of characters and limbs.
+    /// Returns the dynamic bodies of characters and limbs.
     fn loose<'a>(&'a self, world: &'a World) -> impl Iterator<Item = BodyId> + 'a {
         let own = self.cast.iter().flat_map(|member| own(&member.character));
         let lost = self.limbs.iter().flat_map(|(.., limb)| limb.bodies().iter().copied());
@@ -208,7 +208,7 @@ impl Extension {
         Ok(())
     }
 
-    /// Removes everything from the world.
+    /// Removes all characters, limbs and grips from the world.
     pub fn empty(&mut self, world: &mut World) {
         self.points.drain(..).for_each(|(_, point)| point.release(world));
         self.limbs.drain(..).for_each(|(.., limb)| limb.despawn(world));
@@ -223,25 +223,25 @@ impl Extension {
     }
 }
 
-/// True for owner names that no other code of the lives uses.
+/// Returns true for owner names that no other code of the lives uses.
 fn is_ours(name: &str) -> bool {
     name != "cart"
 }
 
-/// Bodies of a character that are not detached.
+/// Returns the bodies of a character that are not detached.
 pub fn own(character: &Character) -> impl Iterator<Item = BodyId> {
     let bodies = character.bodies().iter().enumerate();
     bodies.filter(|&(index, _)| character.has_body(index)).map(|(_, &body)| body)
 }
 
-/// Index of one of the characters, if there are any.
+/// Returns the index of one of the characters, if there are any.
 pub fn chosen(a: &Actor, n: &mut Numbers) -> Option<usize> {
     let names: Vec<(u64, usize)> =
         a.more.cast.iter().enumerate().map(|(i, member)| (member.name, i)).collect();
     pick(&names, n.bits(), |_| true)
 }
 
-/// A body of a character or a limb.
+/// Returns a body of a character or a limb.
 pub fn part(a: &Actor, n: &mut Numbers) -> Option<BodyId> {
     let limbs = a.more.limbs.iter().map(|(name, _, limb)| (*name, limb.bodies().to_vec()));
     let cast = a.more.cast.iter().map(|member| (member.name, own(&member.character).collect()));

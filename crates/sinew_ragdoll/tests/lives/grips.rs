@@ -24,12 +24,12 @@ pub const ALL: &[Deed] = &[
     Deed::new("despawn_limb", 2, despawn_limb),
 ];
 
-/// A body of the world or of a character.
+/// Returns a body of the world or of a character.
 fn thing(a: &Actor, n: &mut Numbers) -> Option<BodyId> {
     if n.chance(0.4) { a.dynamic(n) } else { part(a, n) }
 }
 
-/// A bone of a character; a hand in half of the cases.
+/// Returns a bone of a character; a hand in half of the cases.
 fn bone(a: &Actor, n: &mut Numbers, chosen: usize) -> String {
     let bodies = &a.more.cast[chosen].character.def().ragdoll.bodies;
     let any = bodies[1 + n.index(bodies.len() - 1)].role.clone();
@@ -100,7 +100,7 @@ fn detach(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// Index of one of the limbs, if there are any.
+/// Returns the index of one of the limbs, if there are any.
 fn limb(a: &Actor, n: &mut Numbers) -> Option<usize> {
     let names: Vec<(u64, usize)> =
         a.more.limbs.iter().enumerate().map(|(i, &(name, ..))| (name, i)).collect();
@@ -178,7 +178,7 @@ fn take(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// Index of one of the grab points, if there are any.
+/// Returns the index of one of the grab points, if there are any.
 fn point(a: &Actor, n: &mut Numbers) -> Option<usize> {
     let names: Vec<(u64, usize)> =
         a.more.points.iter().enumerate().map(|(i, &(name, _))| (name, i)).collect();

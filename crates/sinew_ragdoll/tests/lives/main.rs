@@ -64,7 +64,7 @@ fn methods_are_read_from_the_sources() {
     }
 }
 
-/// Prints which lives find each planted fault, and after how many steps.
+/// Prints which lives find each injected fault, and after how many steps.
 #[test]
 #[ignore = "a manual tool: prints, asserts nothing"]
 fn finders() {

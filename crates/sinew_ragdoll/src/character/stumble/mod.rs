@@ -1,9 +1,9 @@
-//! Steps with which a powered character that was pushed catches itself.
+//! Steps by which a powered character catches itself after a push.
 //!
-//! A push gives the whole body a velocity. While the point at which it would come to rest is over its feet, muscles and
-//! pins take it up. Beyond, the character stumbles: its mover moves as a pendulum that stands on the planted feet, and
-//! a foot swings to where it stops that, again and again. Once its speed is right, each foot steps back to the clips.
-//! Muscles and pins drive the bodies; in their pose only the legs are moved, by inverse kinematics.
+//! A push gives the whole body a velocity. While the point at which the body would come to rest is over the feet,
+//! muscles and pins absorb the push. Beyond, the character stumbles: its mover moves as a pendulum on the planted feet,
+//! and a foot swings to the place that stops this pendulum, repeatedly. Once its speed is right, each foot steps back
+//! to the clips. Muscles and pins drive the bodies; inverse kinematics moves only the legs of their pose.
 
 mod step;
 mod support;
@@ -25,17 +25,17 @@ use sinew_physics::World;
 use step::{Pendulum, Print, STEP_TIMES};
 use support::{Support, level};
 
-/// Steps after which the mover has its requested speed.
+/// Number of steps after which the mover has its requested speed.
 const FOLLOWS: u32 = 4;
 
-/// Hold on a foot.
+/// Constraint on a foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Footing {
-    /// Its clips.
+    /// The foot follows its clips.
     Free,
-    /// The ground: its ankle in the world.
+    /// The foot stands on the ground, with its ankle at this transform in the world.
     Planted(Transform),
-    /// Swinging for `time` seconds of `lasts`. `home`: back to the clips.
+    /// The foot has swung for `time` seconds of `lasts`. `home`: back to the clips.
     Swinging { from: Transform, to: Transform, time: f32, lasts: f32, home: bool },
 }
 
@@ -48,13 +48,13 @@ pub(super) struct Stumble {
     floor: Vec3,
     feet: [Footing; 2],
     steps: u32,
-    /// Steps of the world.
+    /// Number of steps of the world.
     age: u32,
-    /// Its speed is right; its feet return.
+    /// True if the speed is right and the feet return.
     caught: bool,
 }
 
-/// Feet in its clips' pose.
+/// Feet in the clips' pose.
 struct Stand {
     center: Vec3,
     ankles: [Transform; 2],
@@ -66,7 +66,7 @@ struct Stand {
 /// Balance of a powered character.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Balance {
-    /// Steps with which it catches itself.
+    /// Current stumble, with the steps that catch the character.
     pub stumble: Option<Stumble>,
 }
 
@@ -74,14 +74,14 @@ pub(super) struct Balance {
 #[derive(Clone, Copy)]
 pub(super) struct Balancing<'a> {
     pub def: &'a CharacterDef,
-    /// World from character.
+    /// Transform from character to world.
     pub place: Transform,
     pub gait: &'a Gait,
     pub physique: &'a Physique,
 }
 
 impl Balance {
-    /// Adds an impulse that its bodies received, N·s; false if it has no ground.
+    /// Adds an impulse that the character's bodies received, N·s; returns false if it has no ground.
     pub fn shove(
         &mut self,
         on: Balancing<'_>,
@@ -102,7 +102,7 @@ impl Balance {
         true
     }
 
-    /// Advances by a step; true if it can no longer catch itself. `steps`: it may step.
+    /// Advances by a step; returns true if the character can no longer catch itself. `steps`: the character may step.
     pub fn go_on(
         &mut self,
         on: Balancing<'_>,
@@ -128,7 +128,7 @@ impl Balance {
         stumble.age += 1;
         stumble.floor = stand.floor;
         if stumble.age >= FOLLOWS {
-            // Walls stop it.
+            // Walls stop the character.
             stumble.velocity = level(on.gait.velocity - stand.floor);
         }
         let dt = world.def().dt();
@@ -169,7 +169,7 @@ impl Balance {
 }
 
 impl Balancing<'_> {
-    /// Lets it fall as far as its feet do not hold it, and swings them to where they will. True if that fails.
+    /// Advances the fall of the pendulum on its feet, and swings the feet to their goals. Returns true if that fails.
     fn catch(&self, world: &World, stand: &Stand, stumble: &mut Stumble) -> bool {
         let dt = world.def().dt();
         let mut body = self.pendulum(stand, stumble.velocity);
@@ -185,7 +185,7 @@ impl Balancing<'_> {
         }
         let outside = support.outside(body.capture());
         let off = (body.velocity - body.wish).length();
-        // A walker is fastest as a foot comes down.
+        // A walker is fastest as a foot lands.
         let calm = CAUGHT_SPEED + CAUGHT_SHARE * body.wish.length();
         if support.outside(body.center + body.velocity / body.omega - body.goes_on()) <= CAPTURE_MARGIN
             && off < calm
@@ -200,7 +200,7 @@ impl Balancing<'_> {
         false
     }
 
-    /// Aims a swinging foot at its best place, and puts it down at once if the other one must step.
+    /// Aims a swinging foot at its best place, and puts it down immediately if the other foot must step.
     fn aim(&self, world: &World, body: &Pendulum, stumble: &mut Stumble, foot: usize) {
         let Footing::Swinging { from, to, time, lasts, home: false } = stumble.feet[foot] else { return };
         let Some(stance) = stumble.feet[1 - foot].planted().filter(|_| time < AIMS_UNTIL * lasts) else {
@@ -209,7 +209,7 @@ impl Balancing<'_> {
         let mut print = self.print(body, foot, to, stance, lasts - time);
         let mut lasts = lasts;
         if from == to {
-            // In the air it keeps the pushed velocity.
+            // In the air the body keeps the pushed velocity.
             print = self.print(body, foot, from, stance, lasts - time);
             if print.miss > HOPELESS * body.height {
                 lasts = DROP_TIME;
@@ -221,7 +221,7 @@ impl Balancing<'_> {
         stumble.feet[foot] = Footing::Swinging { from, to, time, lasts, home: false };
     }
 
-    /// Swings the foot that gets nearer to where one is needed.
+    /// Swings the foot that gets nearer to a needed place.
     fn begin_step(&self, world: &World, body: &Pendulum, stumble: &mut Stumble) {
         let plans = (0..2).flat_map(|foot| STEP_TIMES.map(|lasts| (foot, lasts)));
         let plans = plans.filter_map(|(foot, lasts)| {
@@ -247,7 +247,7 @@ impl Balancing<'_> {
         body.print(foot, middle(from, foot), middle(stance, other), on, seconds)
     }
 
-    /// The ankle of a foot whose sole comes down around a place.
+    /// Returns the pose of the ankle when the middle of the sole is on the ground at `at`.
     fn tread(&self, world: &World, foot: usize, at: Vec3) -> Transform {
         let def = self.def;
         let legs = def.legs().expect("it stands on feet");
@@ -263,13 +263,13 @@ impl Balancing<'_> {
         Transform::new(translation + Vec3::Y * (ground.unwrap_or(floor) + legs.ankle_height), rotation)
     }
 
-    /// Heel and ball of a foot, by its ankle.
+    /// Returns heel and ball of a foot, from its ankle.
     fn sole(&self, ankle: Transform, foot: usize) -> [Vec3; 2] {
         let legs = self.def.legs().expect("it stands on feet");
         [ankle.translation, ankle.point(legs.balls[foot])]
     }
 
-    /// Ground under the planted feet, left and right, by their ankles.
+    /// Returns the support by the planted feet, left and right, from their ankles.
     fn support(&self, ankles: [Option<Transform>; 2]) -> Support {
         let mut support = Support::new(SOLE_RIM * self.def.ragdoll.height);
         for (foot, ankle) in ankles.into_iter().enumerate() {
@@ -291,14 +291,14 @@ impl Balancing<'_> {
         }
     }
 
-    /// True if a capture point this far from the centre of mass leaves the feet of the clips' pose.
+    /// Returns true if a capture point at the offset `away` from the centre of mass leaves the feet of the clips' pose.
     fn is_off(&self, stand: &Stand, away: Vec3, margin: f32) -> bool {
         let support = self.support(stand.ankles.map(Some));
         let center = support.nearest(stand.center);
         support.outside(center + away) > margin
     }
 
-    /// Planted feet in its clips' pose, if any.
+    /// Returns the planted feet in the clips' pose, if any.
     fn clips_stand(&self, world: &World, scratch: &mut Scratch) -> Option<Stand> {
         let ground = world.mover_ground(self.gait.mover?)?;
         let def = self.def;
@@ -327,7 +327,7 @@ impl Balancing<'_> {
         })
     }
 
-    /// Offset of its bodies' capture point from the clips': detects unreported pushes.
+    /// Returns the offset of the bodies' capture point from the clips' one, which shows unreported pushes.
     fn sway(&self, world: &World, stand: &Stand) -> Vec3 {
         let Some(ragdoll) = &self.physique.ragdoll else { return Vec3::ZERO };
         let (mut place, mut momentum) = (Vec3::ZERO, Vec3::ZERO);
@@ -351,8 +351,8 @@ impl Footing {
 }
 
 impl Stumble {
-    /// Moves the legs of a pose of the clips to a stumble's in this many seconds; `way`: displacement of the character
-    /// until then. `place`: its place then.
+    /// Moves the legs of a pose of the clips to the feet of a stumble after the given seconds; `way`: displacement of
+    /// the character until then. `place`: its place then.
     pub fn hold_feet(
         &self,
         def: &CharacterDef,
@@ -395,7 +395,8 @@ impl Stumble {
         );
     }
 
-    /// Loses its balance again: feet that do not swing are planted where they are.
+    /// Restarts balancing after a caught character loses its balance again: feet that do not swing are planted in
+    /// place.
     fn regain(&mut self, ankles: &[Transform; 2]) {
         self.caught = false;
         for (foot, &ankle) in self.feet.iter_mut().zip(ankles) {
@@ -409,7 +410,7 @@ impl Stumble {
         }
     }
 
-    /// Planted feet move with the ground, others swing.
+    /// Moves planted feet with the ground, and swings the others.
     fn carry(&mut self, dt: f32) {
         let by = self.floor * dt;
         for foot in &mut self.feet {
@@ -430,7 +431,7 @@ impl Stumble {
         }
     }
 
-    /// Approaches the requested velocity, and returns its feet to the clips one by one.
+    /// Approaches the requested velocity, and returns the feet to the clips one by one.
     fn go_home(&mut self, stand: &Stand, dt: f32) {
         self.velocity += (stand.wish - self.velocity) * -trig::exp_m1(-RESUMES * dt);
         let swings = self.feet.iter().any(|foot| matches!(foot, Footing::Swinging { .. }));

@@ -1,9 +1,9 @@
 //! Place of a step: the body as an inverted pendulum.
 //!
-//! With `ω² = g / h` its centre of mass `x` moves away from the point of support `p`, `x″ = ω² (x − p)`, and comes to
-//! rest over `p` if that is the **capture point** `ξ = x + x′ / ω`, which itself moves away:
-//! `ξ(t) = p + (ξ − p) exp(ω t)`. A foot that comes down at `ξ` stops it; one that comes down `u T / (exp(ω T) − 1)`
-//! before it keeps the speed `u` with steps of the time `T`.
+//! With `ω² = g / h` the centre of mass `x` moves away from the point of support `p`, `x″ = ω² (x − p)`. It comes to
+//! rest over `p` if `p` is the **capture point** `ξ = x + x′ / ω`, which itself moves away: `ξ(t) = p + (ξ − p) exp(ω
+//! t)`. A foot that lands on `ξ` stops the body. A foot that lands `u T / (exp(ω T) − 1)` before `ξ` keeps the speed
+//! `u` with steps of the time `T`.
 
 use super::support::level;
 use crate::character::tuning::{BRAKES, FEET_APART, FOOT_SPEED, STEP_OUT, STEP_REACH, STRIDE_TIME};
@@ -12,7 +12,7 @@ use sinew_math::{Rotation, Vec3, clamp, max, min, trig};
 /// Allowed step times, seconds, the longest first.
 pub(super) const STEP_TIMES: [f32; 4] = [0.3, 0.26, 0.22, 0.18];
 
-/// A falling body, level except for the heights in ω.
+/// A falling body in the horizontal plane; heights enter only by `ω`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pendulum {
     /// Centre of mass, world, metres.
@@ -20,7 +20,7 @@ pub(super) struct Pendulum {
     /// Velocity of the centre of mass over the ground, and the requested one, m/s.
     pub velocity: Vec3,
     pub wish: Vec3,
-    /// 1/s.
+    /// Rate `ω` of the pendulum, 1/s.
     pub omega: f32,
     pub heading: Rotation,
     /// Height of the whole body, metres.
@@ -32,35 +32,35 @@ pub(super) struct Pendulum {
 pub(super) struct Print {
     /// Middle of the sole, level.
     pub at: Vec3,
-    /// By how much that falls short of where it should be, metres.
+    /// Distance from `at` to the ideal place, metres.
     pub miss: f32,
-    /// Distance by which the body would then be beyond the other foot's reach, metres.
+    /// Distance by which the body would then exceed the other foot's reach, metres.
     pub strain: f32,
 }
 
 impl Pendulum {
-    /// Place at which it would reach the requested velocity.
+    /// Returns the point at which the body would reach the requested velocity.
     pub fn capture(&self) -> Vec3 {
         level(self.center) + (self.velocity - self.wish) / self.omega
     }
 
-    /// Best point of support to reach that velocity.
+    /// Returns the best point of support to reach the requested velocity.
     pub fn brake(&self) -> Vec3 {
         level(self.center) + (self.velocity - self.wish) * (BRAKES / self.omega)
     }
 
-    /// Change of its velocity within a moment in which it presses on `on`.
+    /// Returns the change of the body's velocity within `seconds` while it is supported at `on`.
     pub fn pushed(&self, on: Vec3, seconds: f32) -> Vec3 {
         (level(self.center) - on) * (self.omega * self.omega * seconds)
     }
 
-    /// Distance before the capture point at which a foot comes down to keep the requested speed.
+    /// Returns the offset before the capture point at which a foot lands to keep the requested speed.
     pub fn goes_on(&self) -> Vec3 {
         self.wish * (STRIDE_TIME / (trig::exp(self.omega * STRIDE_TIME) - 1.0))
     }
 
-    /// Place for a foot (0 left, 1 right) with the middle of its sole at `from` that comes down in `seconds`, while the
-    /// body stands on `on`, the other foot at `stance`.
+    /// Returns the place of a foot (0 left, 1 right) that lands in `seconds`. The middle of its sole is at `from` now,
+    /// the body stands on `on`, and the other foot is at `stance`.
     pub fn print(&self, foot: usize, from: Vec3, stance: Vec3, on: Vec3, seconds: f32) -> Print {
         let (grown, shrunk) = (trig::exp(self.omega * seconds), trig::exp(-self.omega * seconds));
         let (cosh, sinh) = (0.5 * (grown + shrunk), 0.5 * (grown - shrunk));
@@ -71,7 +71,7 @@ impl Pendulum {
         let across = self.heading * (Vec3::X * side);
         let wanted = capture - self.goes_on() + across * (STEP_OUT * self.height);
         let mut at = wanted;
-        // On its own side of the other foot.
+        // Keep the foot on its own side of the other foot.
         let apart = (at - stance).dot(across);
         at += across * max(FEET_APART * self.height - apart, 0.0);
         let reach = at - center;
@@ -96,8 +96,8 @@ mod tests {
         Pendulum { center: Vec3::Y, velocity, wish, omega: 3.1, heading, height: 1.75 }
     }
 
-    /// Velocities when a foot comes down on its print, and after standing for as long as it swung; and the remaining
-    /// error of the print.
+    /// Returns the velocities when a foot lands on its print, and after standing for as long as it swung; then the
+    /// remaining error of the print.
     fn after_a_step(mut body: Pendulum, foot: usize, stance: Vec3) -> ([Vec3; 2], f32) {
         let steps = 2800;
         let dt = STRIDE_TIME / steps as f32;
@@ -113,8 +113,8 @@ mod tests {
         (velocities, print.miss)
     }
 
-    /// On the capture point a pendulum's velocity decays as `exp(-ω t)`; the error of the print adds `ω sinh(ω t)`
-    /// times itself.
+    /// On the capture point a pendulum's velocity decays as `exp(-ω t)`; an error `e` of the print adds `e ω sinh(ω
+    /// t)`.
     #[test]
     fn a_step_onto_the_print_slows_it_as_a_pendulum_does() {
         let body = pushed(Vec3::new(0.1, 0.0, 0.9), Vec3::ZERO);

@@ -1,8 +1,8 @@
-//! Ground that feet cover.
+//! Ground area covered by the feet.
 
 use sinew_math::Vec3;
 
-/// The hull of the soles on the ground, seen from above: a line along each, and a rim around them.
+/// Convex hull of the soles on the ground, seen from above: a line along each sole, and a rim around the lines.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Support {
     points: [Vec3; 4],
@@ -16,7 +16,7 @@ impl Support {
         Self { rim, ..Self::default() }
     }
 
-    /// Adds a sole from heel to ball; heights do not count.
+    /// Adds a sole from heel to ball; heights are ignored.
     pub fn add(&mut self, [heel, ball]: [Vec3; 2]) {
         for point in [heel, ball] {
             self.points[self.count] = level(point);
@@ -24,7 +24,7 @@ impl Support {
         }
     }
 
-    /// The nearest supporting point; the point itself without support.
+    /// Returns the nearest supporting point; `point` itself without support.
     pub fn nearest(&self, point: Vec3) -> Vec3 {
         let (point, points) = (level(point), &self.points[..self.count]);
         let mut nearest: Option<Vec3> = None;
@@ -45,7 +45,7 @@ impl Support {
         if far <= self.rim { point } else { nearest + away * (self.rim / far) }
     }
 
-    /// Distance of a point from the support, level, metres; 0 inside.
+    /// Returns the horizontal distance of a point from the support, metres; 0 inside.
     pub fn outside(&self, point: Vec3) -> f32 {
         (level(point) - self.nearest(point)).length()
     }
@@ -55,7 +55,7 @@ pub(super) fn level(v: Vec3) -> Vec3 {
     Vec3::new(v.x, 0.0, v.z)
 }
 
-/// The nearest point of a line from end to end.
+/// Returns the nearest point of a line from end to end.
 fn on_line(point: Vec3, a: Vec3, b: Vec3) -> Vec3 {
     let way = b - a;
     let square = way.dot(way);
@@ -91,7 +91,7 @@ mod tests {
             assert_eq!(support.outside(inside), 0.0, "{inside}");
         }
         assert!((support.outside(at(-0.1, 0.6)) - 0.1).abs() < 1e-6);
-        // Across the corner of the hull.
+        // Test a point across the corner of the hull.
         assert!(support.outside(at(0.15, 0.45)) > 0.03);
         let nearest = support.nearest(at(2.0, 0.05));
         assert!((nearest - Vec3::new(0.15, 0.0, 0.05)).length() < 1e-6, "{nearest}");

@@ -1,5 +1,5 @@
 //! Random avatar files: the mannequin with many strands of hair, as VRM 1 (`VRMC_springBone` with extended colliders
-//! and limits) and VRM 0 (`secondaryAnimation`), with random values for everything that a file may contain.
+//! and limits) and VRM 0 (`secondaryAnimation`), with random values in all fields of these formats.
 
 use sinew::anim::springs::{ColliderShape, LimitKind, Side};
 use sinew::anim::{
@@ -8,7 +8,7 @@ use sinew::anim::{
 use sinew::formats::gltf::{SpringFormat, write_gltf};
 use sinew::math::{Affine, Random, Rotation, Vec3};
 
-/// A rig with springs as a VRM file. Features that VRM 0 lacks are omitted.
+/// Returns a rig with springs as a VRM file. Features that VRM 0 lacks are omitted.
 pub fn vrm(rig: &Rig, format: SpringFormat) -> Vec<u8> {
     let bytes = write_gltf(rig, &[]).expect("a rig made by code can be written");
     let length = u32::from_le_bytes(bytes[12..16].try_into().expect("four bytes")) as usize;
@@ -38,7 +38,8 @@ fn array(v: Vec3) -> String {
     format!("{:?}", v.to_array())
 }
 
-/// The springs as `VRMC_springBone`: one group per collider; each spring lists one joint more than it has bones.
+/// Returns the springs as `VRMC_springBone`: one group per collider; each spring lists one joint more than it has
+/// bones.
 fn version_1(springs: &Springs) -> String {
     let spring = |chain: &SpringChain| {
         let last = chain.bones.last().expect("it has some").joint + 1;
@@ -107,8 +108,8 @@ fn collider_1(collider: &SpringCollider) -> String {
     format!("{{\"node\":{},\"shape\":{{{plain}}}{extended}}}", collider.joint)
 }
 
-/// The springs as `secondaryAnimation`: one group per chain, whose first joint swings with all its descendants. Shapes
-/// that it lacks are omitted.
+/// Returns the springs as `secondaryAnimation`: one group per chain, whose first joint swings with all its descendants.
+/// Shapes that this format lacks are omitted.
 fn version_0(springs: &Springs) -> String {
     let unity = |v: Vec3| format!("{{\"x\":{:?},\"y\":{:?},\"z\":{:?}}}", v.x, v.y, -v.z);
     let balls = |collider: &SpringCollider| {
@@ -186,7 +187,7 @@ pub enum Calming {
     Late,
 }
 
-/// Settings of a strand from stiff to limp, with and without optional values.
+/// Returns settings of a strand from stiff to limp, with and without optional values.
 fn settings(random: &mut Random, calming: Calming) -> SpringBone {
     let (stiffness, drag) = match calming {
         Calming::Soon => {
@@ -212,13 +213,13 @@ fn settings(random: &mut Random, calming: Calming) -> SpringBone {
     }
 }
 
-/// Position of a strand's joint at rest, in the head's space.
+/// Returns the position of a strand's joint at rest, in the head's space.
 fn place(rig: &Rig, joints: &[usize]) -> Vec3 {
     let along = |at: Affine, &joint: &usize| at * rig.joints[joint].rest.to_affine();
     joints.iter().fold(Affine::IDENTITY, along).translation
 }
 
-/// A shape that touches or contains a point of a strand, in the head's space; the strand starts at `root`.
+/// Returns a shape that touches or contains a point of a strand, in the head's space; the strand starts at `root`.
 fn touching(random: &mut Random, root: Vec3, place: Vec3, thick: f32) -> ColliderShape {
     let out = random.direction();
     let radius = random.range(0.02, 0.1);
@@ -247,7 +248,7 @@ fn touching(random: &mut Random, root: Vec3, place: Vec3, thick: f32) -> Collide
     }
 }
 
-/// Springs on strands, each with its own settings and up to two colliders that it touches at rest.
+/// Returns springs on strands, each with its own settings and up to two colliders that it touches at rest.
 pub fn random_avatar(rig: &Rig, strands: &[Vec<usize>], calming: Calming, random: &mut Random) -> Springs {
     let mut springs = Springs::default();
     for joints in strands {

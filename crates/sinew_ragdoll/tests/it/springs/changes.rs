@@ -42,7 +42,7 @@ struct Motion {
     head: Vec3,
 }
 
-/// Bones of a pose with springs, chain by chain, and the head.
+/// Returns the bones of a pose with springs, chain by chain, and the head.
 fn seen(
     def: &CharacterDef,
     root: Affine,
@@ -68,7 +68,7 @@ fn seen(
     (springs.chains.iter().enumerate().flat_map(bones).collect(), model[springs.colliders[0].joint])
 }
 
-/// Margin of the fastest tip of a frame below each bound, m/s; negative if it was too fast.
+/// Margin of the fastest tip of a frame below each bound, m/s; negative if the tip was too fast.
 #[derive(Clone, Copy, Debug)]
 struct Slack {
     law: f32,
@@ -190,7 +190,7 @@ impl Watch {
     }
 }
 
-/// A character with hair that walks over a floor, at a frame rate.
+/// Returns a character with hair that walks over a floor, and its world, at a frame rate.
 fn walking(rate: u64) -> (World, Character) {
     let mut world = World::new(WorldDef { step_nanoseconds: 1_000_000_000 / rate, ..WorldDef::default() });
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -203,8 +203,8 @@ fn step(world: &mut World, character: &mut Character) {
     character.update(world);
 }
 
-/// A period at low detail, and back. Returns the smallest margins: of easing, of the first twentieth of a second after
-/// the return, and of the law in the first third.
+/// Simulates a period at low detail, and the return. Returns the smallest margins: of easing, of the first twentieth of
+/// a second after the return, and of the law in the first third.
 fn away_and_back(rate: u64, seconds: f32) -> (Watch, Slack) {
     let (mut world, mut character) = walking(rate);
     let (mut watch, frames) =
@@ -269,7 +269,7 @@ fn distant_springs_are_not_simulated() {
     for frame in 60..78 {
         swing.ease(&still(&def, &pose, at(frame), 1.0 / 60.0));
     }
-    // 18 frames are 0.3 s: 1/e remains, at every rate.
+    // 18 frames are 0.3 s, after which 1/e remains at every rate.
     assert!((most(&swing) / began - trig::exp(-1.0)).abs() < 1e-3, "{} of {began}", most(&swing));
     for frame in 78..360 {
         swing.ease(&still(&def, &pose, at(frame), 1.0 / 60.0));
@@ -292,7 +292,7 @@ fn easing_recovers_from_non_finite_clips() {
         let at = Affine::from(place_at(f32::from(frame) / 60.0));
         swing.step(&still(&def, &pose, at, 1.0 / 60.0));
     }
-    // A clip with non-finite values for a bone in the frame in which easing starts.
+    // A clip has non-finite values for a bone in the frame in which easing starts.
     let first = def.springs().joints().next().expect("it has springs");
     let mut broken = pose.clone();
     broken[first].rotation = Rotation::from_scaled_axis(Vec3::splat(f32::NAN));
@@ -337,7 +337,7 @@ fn snapshot_during_easing_continues_identically() {
         character.save(&mut w);
         w.into_bytes()
     };
-    // During easing, while far away, and one step after the return.
+    // Test during easing, while far away, and one step after the return.
     for (eased, near, back) in [(30, 0, 20), (600, 0, 20), (600, 0, 0), (600, 1, 20), (30, 1, 20)] {
         let (mut world, mut character) = walking(144);
         (0..101).for_each(|_| step(&mut world, &mut character));
@@ -368,7 +368,7 @@ fn snapshot_during_easing_continues_identically() {
 
 #[test]
 fn old_snapshots_without_easing_are_read() {
-    // Old snapshots stored one byte for whether springs swing; the rest is unchanged.
+    // Old snapshots stored one byte that tells whether springs swing; the rest is unchanged.
     let def = maned(&HAIR);
     let saved = |swing: &SpringSwing| {
         let mut w = Writer::new();
@@ -380,13 +380,14 @@ fn old_snapshots_without_easing_are_read() {
     swing.step(&still(&def, &rest_pose(&def.rig), Affine::IDENTITY, 1.0 / 60.0));
     let bones = def.springs().joints().len();
     let bytes = saved(&swing);
-    // A phase, 13 tips, displacements and rotations, a step length, and whole frames for bones that do not swing.
+    // The bytes are a phase, 13 tips, displacements and rotations, a step length, and whole frames for bones that do
+    // not swing.
     assert_eq!((bytes[0], (bytes.len() - 9 - 40 * bones) % 96), (1, 0));
     assert!(SpringSwing::load(def.springs(), &mut Reader::new(&[4])).is_err());
 }
 
-/// Smallest margin of the law around each change of state, for a character that is hit while it walks: (state, margin,
-/// m/s).
+/// Returns the smallest margin of the law around each change of state, for a character that is hit while it walks:
+/// (state, margin, m/s).
 fn life(rate: u64) -> (Watch, Vec<(State, f32)>) {
     let (mut world, mut character) = walking(rate);
     let mut watch = Watch::new(rate as f32);
@@ -462,7 +463,7 @@ fn tip_speed_is_bounded_after_a_teleport() {
             step(&mut world, &mut character);
             if frame == rate && reset {
                 assert_eq!(character.pose(), character.pose_without_springs());
-                // A cut: the displacement is not counted.
+                // This is a cut, so the displacement is not counted.
                 watch = Watch::new(rate as f32);
             }
             let slack = watch.look(&character);
@@ -473,7 +474,7 @@ fn tip_speed_is_bounded_after_a_teleport() {
     }
 }
 
-/// Springs alone, for a list of frame lengths (seconds of the world), advances of world time, and sizes.
+/// Steps springs alone, for a list of frame lengths (seconds of the world), advances of world time, and sizes.
 fn alone(def: &CharacterDef, frames: impl Iterator<Item = (f32, f32)>, rate: f32) -> (f32, Vec<Rotation>) {
     let pose = rest_pose(&def.rig);
     let (mut swing, mut watch, mut time, mut size) = (SpringSwing::new(), Watch::new(rate), 0.0, 1.0);
@@ -518,7 +519,7 @@ fn pause_does_not_change_springs() {
 #[test]
 fn tip_speed_is_bounded_in_slow_motion() {
     let def = maned(&HAIR);
-    // A second at 60 frames a second, then 60 frames each at a quarter of the time, at a tenth, and so on.
+    // The run has a second at 60 frames a second, then 60 frames each at a quarter of the time, at a tenth, and so on.
     let rates = [60_u16, 240, 600, 60, 20, 60];
     let frames = |segments: usize| {
         rates[..segments].iter().flat_map(|&rate| core::iter::repeat_n((1.0 / f32::from(rate), 1.0), 60))
@@ -530,7 +531,7 @@ fn tip_speed_is_bounded_in_slow_motion() {
         let (_, due) = alone(&def, core::iter::repeat_n((1.0 / 60.0, 1.0), ticks), 60.0);
         let off = turns.iter().zip(&due).map(|(turn, due)| turn.angle_to(*due)).fold(0.0, max);
         println!("{segments}: {slack} m/s left, {off} rad from 60 a second all the time");
-        // A twentieth of a bone's length.
+        // The tolerance is a twentieth of a bone's length.
         assert!(slack > 0.0 && off < 0.05, "{segments}: {slack} m/s, {off} rad");
     }
 }
@@ -538,7 +539,7 @@ fn tip_speed_is_bounded_in_slow_motion() {
 #[test]
 fn tip_speed_is_bounded_on_changes_of_size() {
     let def = maned(&HAIR);
-    // The size doubles and halves at once, with hair that keeps its shape, and then changes slowly.
+    // The size doubles and halves in one frame, with hair that keeps its shape, and then changes slowly.
     let size = |seconds: f32| match seconds {
         0.0..1.0 => 1.0,
         1.0..2.0 => 2.0,

@@ -1,5 +1,5 @@
-//! The reference algorithm of VRMC_springBone 1.0 with its extended colliders, implemented from its text in double
-//! precision, for rigs without scale. Limits follow their draft: after inertia and after every collider.
+//! The reference algorithm of VRMC_springBone 1.0 with its extended colliders, implemented from the specification in
+//! double precision, for rigs without scale. Limits follow their draft: after inertia and after every collider.
 
 use glam::{DMat3, DQuat, DVec3};
 use sinew_anim::springs::{ColliderShape, LimitKind, Side};
@@ -9,7 +9,7 @@ use sinew_math::{Rotation, Transform, Vec3};
 pub struct Reference {
     joints: Vec<(Option<usize>, DVec3, DQuat)>,
     springs: Springs,
-    /// For each bone, in the order of the chains: current and previous tail, in the centre's space.
+    /// Current and previous tail of each bone, in the order of the chains, in the centre's space.
     tails: Vec<(DVec3, DVec3)>,
     /// World position and rotation of every joint.
     world: Vec<(DVec3, DQuat)>,
@@ -66,7 +66,7 @@ impl Reference {
         center.map_or(point, |c| self.world[c].0 + self.world[c].1 * point)
     }
 
-    /// One update of all springs.
+    /// Updates all springs once.
     pub fn frame(&mut self, place: Transform, delta_time: f64) {
         self.pose(place);
         self.shown.clear();
