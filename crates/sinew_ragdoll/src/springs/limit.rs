@@ -8,7 +8,7 @@ use sinew_math::{Rotation, Vec3, clamp, min, normalize_or};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limit {
     kind: LimitKind,
-    /// Transform from the limit's frame, whose +Y is along the bone at rest, to the joint's frame.
+    /// Rotation from the limit's frame, whose +Y is along the bone at rest, to the joint's frame.
     joint_from_limit: Rotation,
 }
 
