@@ -76,8 +76,7 @@ impl<'a, T> SharedRows<'a, T> {
     pub fn at_mut(&mut self, places: &Places, k: usize) -> &mut T {
         assert!(places.len <= self.len);
         // SAFETY: all places are below their length, and the caller of `new` promised that nobody else reads or writes
-        // the
-        // item meanwhile.
+        // the item meanwhile.
         unsafe { &mut *self.start.add(places.at[k] as usize) }
     }
 

@@ -48,8 +48,7 @@ pub enum Stage {
 }
 
 /// Quantity that a step counts for a [`Profiler`] that requests it. [`Bodies`](Self::Bodies) and the quantities after
-/// it
-/// are reported once per island by the thread that solves it, `Bodies` first. A free-flying body only has
+/// it are reported once per island by the thread that solves it, `Bodies` first. A free-flying body only has
 /// [`BodySubsteps`](Self::BodySubsteps) after that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]

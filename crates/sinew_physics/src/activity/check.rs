@@ -44,8 +44,7 @@ impl World {
     }
 
     /// Panics unless each contact is in exactly one list, the step's list is ordered, and stored sleeping contacts
-    /// cannot
-    /// change.
+    /// cannot change.
     fn check_contacts(&self) {
         assert!(self.contacts.is_sorted_by(|p, q| p.key < q.key));
         let keys: BTreeSet<ContactKey> = self.contacts_in_order().map(|contact| contact.key).collect();

@@ -1,8 +1,7 @@
 //! Sets of slots of an arena.
 
 /// Set of slots with one bit per slot, so that iteration is in ascending order. A second level of bits over the words
-/// of
-/// the first makes visiting a few members among a million slots cheap.
+/// of the first makes visiting a few members among a million slots cheap.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SlotSet {
     members: Vec<u64>,

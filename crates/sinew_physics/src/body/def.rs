@@ -25,7 +25,7 @@ pub struct WorldDef {
     pub sleeping: Sleeping,
     /// Thresholds of motion below which an island is at rest.
     pub sleep_thresholds: SleepThresholds,
-    /// Largest speed of a body, m/s: enforced when forces act, before joints and contacts. Default 4,000.
+    /// Largest speed of a body, m/s. Enforced when forces act, before joints and contacts. Default 4,000.
     pub max_speed: f32,
     /// Largest rotation of a body per substep, radians. Beyond a quarter turn (the default, 377 rad/s at 1/60 s and 4
     /// substeps) rows linearised at the substep's start are meaningless; a top may spin faster.
@@ -234,8 +234,7 @@ impl BodyDef {
     }
 
     /// A static body of one box. One such body for each of [`Cooked::boxes`](crate::cook::Cooked) makes a level. The
-    /// broad
-    /// phase stores shapes individually, so one body per box costs nothing extra, and every query about a body
+    /// broad phase stores shapes individually, so one body per box costs nothing extra, and every query about a body
     /// (overlap, neighbours, events) then concerns a single box.
     pub fn fixed_box(obb: &Obb) -> Self {
         let shape = Shape::Box { half_extents: obb.half_extents };

@@ -95,8 +95,7 @@ pub(crate) struct BodyShape {
 }
 
 /// Body of the world. Its pose is that of the **principal frame**: origin at the centre of mass, axes along the
-/// principal
-/// axes of inertia, so that the inertia is diagonal everywhere in the solver.
+/// principal axes of inertia, so that the inertia is diagonal everywhere in the solver.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     pub kind: BodyKind,
@@ -339,8 +338,7 @@ impl Body {
     }
 
     /// Pose of a shape in the world. Most bodies have one shape at their own origin, and levels are bodies at the
-    /// world's
-    /// origin: then no multiplication is needed.
+    /// world's origin: then no multiplication is needed.
     pub fn world_from_shape(&self, shape: usize) -> Transform {
         let principal_from_shape = self.shapes[shape].principal_from_shape;
         if principal_from_shape == Transform::IDENTITY {
