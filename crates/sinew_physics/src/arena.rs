@@ -3,7 +3,7 @@
 use crate::id::{Handle, Lineage};
 use sinew_math::{ReadError, Reader, Writer};
 
-/// Item type of an arena, with its own id type.
+/// Item type of an arena; each has an id type.
 pub(crate) trait Item {
     type Id: Handle;
 }
@@ -12,7 +12,7 @@ pub(crate) trait Item {
 #[derive(Clone, Debug)]
 pub(crate) struct Arena<T> {
     lineage: Lineage,
-    /// Generation of each slot; stored contiguously, because queries check many items without reading them.
+    /// Generation of each slot; stored contiguously, because queries check many generations without reading the items.
     generations: Vec<u32>,
     items: Vec<Option<T>>,
     free: Vec<u32>,

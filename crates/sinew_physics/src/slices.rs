@@ -6,7 +6,7 @@ use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
 use sinew_math::lanes::WIDTH;
 
-/// Most items that a thread claims at once. Two threads that claim one by one spend more on the counter than on a light item.
+/// Most items in one claim of a thread. Two threads that claim one by one spend more on the counter than on a light item.
 const MOST_CLAIMED: usize = 32;
 /// Least number of claims that a few items are divided into, so that no thread waits long for another's last claim.
 const CLAIMS: usize = 16;

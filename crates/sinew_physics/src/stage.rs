@@ -5,13 +5,13 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Stage {
-    /// Broad phase: candidate shape pairs.
+    /// Broad phase: finds candidate shape pairs.
     Pairs,
-    /// Narrow phase: manifolds of near shapes.
+    /// Narrow phase: computes manifolds of near shapes.
     Collide,
-    /// Begin and end of touches; waking.
+    /// Finds the begin and end of touches; wakes bodies.
     Touch,
-    /// Islands: connected bodies.
+    /// Finds the islands of connected bodies.
     Islands,
     /// Determines the order in which an island's contacts are solved.
     Color,
@@ -41,7 +41,7 @@ pub enum Stage {
     Continuous,
     /// Puts islands at rest to sleep.
     Sleep,
-    /// Sensor overlaps.
+    /// Reports sensor overlaps.
     Sensors,
     /// Moves character movers among bodies at their new poses.
     Movers,

@@ -86,7 +86,7 @@ impl OneWay {
     }
 }
 
-/// Limits on the effect of a kinematic body on dynamic ones. Beyond them the two pass through each other until they are
+/// Limits on the effect of a kinematic body on dynamic ones. Beyond the limits the two bodies pass through each other until they are
 /// separate. On a dynamic body this rule has no effect.
 ///
 /// A hand stops a flying object and throws it back, kicks a ball, and passes through a crate of 50 kg.
@@ -126,13 +126,13 @@ impl Yields {
 pub struct ContactSide {
     /// Shape on this side of the contact.
     pub shape: ShapeId,
-    /// The user data of its body.
+    /// User data of the shape's body.
     pub user_data: u64,
     /// Material of the shape.
     pub material: Material,
-    /// Velocity of its body, world axes.
+    /// Velocity of the shape's body, world axes.
     pub velocity: Velocity,
-    /// Centre of mass of its body, world, metres.
+    /// Centre of mass of the shape's body, world, metres.
     pub center: Vec3,
 }
 

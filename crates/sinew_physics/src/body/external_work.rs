@@ -12,7 +12,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// Total, J.
+    /// Sum of all three, J.
     pub fn total(self) -> f32 {
         self.drives + self.kinematic + self.movers
     }

@@ -55,7 +55,7 @@ impl Velocity {
 /// Awake, or asleep with its island.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rest {
-    /// Seconds for which the body has stayed in place.
+    /// Time for which the body has stayed in place, seconds.
     Awake { rest_time: f32 },
     /// Number of the sleeping island; all of its bodies wake together.
     Asleep { island: u32 },
@@ -90,7 +90,7 @@ impl Gain {
 pub(crate) struct BodyShape {
     pub shape: Shape,
     pub principal_from_shape: Transform,
-    /// Number of its surface among those of the body.
+    /// Number of the shape's surface among those of the body.
     pub surface: u32,
 }
 

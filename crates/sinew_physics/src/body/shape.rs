@@ -54,7 +54,7 @@ impl Filter {
 #[doc(alias = "ColliderBuilder")]
 #[doc(alias = "fixture")]
 pub struct ShapeDef {
-    /// Geometry.
+    /// Geometry of the shape.
     pub shape: Shape,
     /// Pose of the shape in the body's frame.
     pub body_from_shape: Transform,
@@ -62,9 +62,9 @@ pub struct ShapeDef {
     pub density: f32,
     /// Material of the surface.
     pub material: Material,
-    /// Collision filter.
+    /// Collision filter of the shape.
     pub filter: Filter,
-    /// Solid shape or sensor.
+    /// Effect on touching shapes: solid or sensor.
     pub sensing: Sensing,
     /// Rule for the shape's contacts. Default: they push.
     pub rule: ContactRule,

@@ -13,9 +13,9 @@ use crate::registered::Registered;
 pub struct PairSide {
     /// Shape on this side of the pair.
     pub shape: ShapeId,
-    /// Kind of its body.
+    /// Kind of the shape's body.
     pub kind: BodyKind,
-    /// The user data of its body.
+    /// User data of the shape's body.
     pub user_data: u64,
     /// Filter of the shape.
     pub filter: Filter,

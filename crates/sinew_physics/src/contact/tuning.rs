@@ -50,7 +50,7 @@ pub(crate) const BOUNDS_STEPS: f32 = 3.0;
 
 /// Steps of motion included in the fat bounds of shapes that collide with nothing, a number.
 ///
-/// Only rays and other queries use them. Larger: rays test more boxes. Smaller: leaves of flying bodies move more
+/// Only rays and other queries use these bounds. Larger: rays test more boxes. Smaller: leaves of flying bodies move more
 /// often. Shown as [`BOUNDS_STEPS`].
 pub(crate) const BOUNDS_STEPS_ALONE: f32 = 12.0;
 

@@ -212,7 +212,7 @@ pub struct ClothDef {
     pub shearing: f32,
     /// Bending stiffness per width, N·m, ≥ 0: `E t³/12` for a plate; with 0 the cloth does not resist bending.
     pub bending: f32,
-    /// Share of critical damping of each spring, ≥ 0.
+    /// Damping of each spring as a share of its critical damping, ≥ 0.
     pub damping_ratio: f32,
     /// Radius of each particle, metres.
     pub radius: f32,
@@ -390,7 +390,7 @@ pub struct BlobDef {
     pub mass: f32,
     /// Stiffness of each spring of the skin, N/m.
     pub stiffness: f32,
-    /// Share of critical damping of each spring, ≥ 0.
+    /// Damping of each spring as a share of its critical damping, ≥ 0.
     pub damping_ratio: f32,
     /// Bulk modulus of the content, Pa, see [`VolumeDef`].
     pub bulk_modulus: f32,

@@ -223,7 +223,7 @@ pub struct GroupDef {
     /// (0.4 kg on scene `folded`); a body of 1 kg slides off and squeezes through in places. Particles that move by the
     /// thickness within a substep pass through. Bodies on a slope creep down on the sheet.
     pub thickness: f32,
-    /// Collision filter.
+    /// Collision filter of the group.
     pub filter: Filter,
     /// Bodies that the group never collides with: arms that swing past the wearer's skirt. Default none.
     pub passes: Vec<BodyId>,

@@ -50,7 +50,7 @@ pub(super) struct Eights {
     pub others: Vec<u32>,
     /// Particles of rows that are projected individually, except attached ones.
     pub outside: Vec<u32>,
-    /// Static solids.
+    /// Resting solids near the group.
     pub solids: Vec<Solid>,
     /// Indices of the obstacles that are not among `solids`.
     pub foreign: Vec<u32>,

@@ -70,7 +70,7 @@ pub(super) struct Hub {
     inertia: Sym3,
     /// Mass that moves with the body.
     added: AddedMass,
-    /// Shares from other groups, and from this one.
+    /// Shares from other groups, and from this group.
     pub others: Share,
     pub own: Share,
     /// Velocity at the end of the iteration without springs and particles; and `free`, with the body's subtrees.

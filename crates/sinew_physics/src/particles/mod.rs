@@ -163,7 +163,7 @@ pub struct ParticleGroup {
     backings: Vec<f32>,
     /// Rows of the net without attached particles.
     batches: Batches,
-    /// Particles in lanes.
+    /// Lane data, and the particles in lanes.
     eights: Eights,
     /// Projected springs with an attached particle.
     held_springs: Vec<u32>,
@@ -389,7 +389,7 @@ impl ParticleGroup {
         self.gravity_scale
     }
 
-    /// Collision filter.
+    /// Collision filter of the group.
     pub fn filter(&self) -> Filter {
         self.filter
     }

@@ -12,7 +12,7 @@ use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 /// Awake, asleep with its island, or woken since the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum GroupRest {
-    /// Seconds for which each particle has stayed in place.
+    /// Time for which each particle has stayed in place, seconds.
     Awake { rest_time: f32 },
     /// Number of the sleeping island; its bodies wake with the group.
     Asleep { island: u32 },

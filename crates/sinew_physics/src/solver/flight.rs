@@ -17,7 +17,7 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Rotation, Transform, Vec3, min};
 
-/// One number for each of eight bodies.
+/// Eight numbers, one for each body in a flock.
 pub(super) type Eight = [f32; WIDTH];
 
 /// True for an island of one body on which only gravity and the forces and torques of this step act.

@@ -56,7 +56,7 @@ use sinew_math::dispatch;
 use sinew_math::{Transform, Vec3, abs3, normalize_or};
 use sweep::conjugate::Conjugate;
 
-/// Solver of one island. The next island reuses its memory, but none of its values.
+/// Solver of one island. The next island reuses the memory, but none of the values.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct IslandSolver {
     pub bodies: Vec<SolverBody>,

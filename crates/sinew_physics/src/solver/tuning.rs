@@ -69,7 +69,7 @@ pub(super) const MAX_TREE: usize = 1024;
 
 /// Largest additional violation of a hard joint limit within a longer substep, radians.
 ///
-/// If a joint exceeds it, the island repeats the step in the world's substeps. Larger: limbs are over-extended in crashes. Smaller: crashes
+/// If a joint exceeds this violation, the island repeats the step in the world's substeps. Larger: limbs are over-extended in crashes. Smaller: crashes
 /// cost more. Sensible from 0.02 to 0.1. Shown by `ragdoll_pile` of `cargo xtask bench`.
 pub(super) const LIMIT_LEAP: f32 = 0.05;
 
@@ -230,7 +230,7 @@ pub(super) const REFRESH_TURN_LANES: f32 = 0.05;
 
 /// Turn within a substep at or above which contacts with kinematic bodies are recomputed, radians.
 ///
-/// Without it, spinning rods missed up to 33 of 80 balls that flew through their discs, and hit as many at positions that the rods had
+/// Without recomputing, spinning rods missed up to 33 of 80 balls that flew through their discs, and hit as many at positions that the rods had
 /// left. Larger: slower rods miss balls too. Smaller: limbs moved by clips cost more, and the bits of their contacts change. Sensible from
 /// 0.05 to 0.2. Shown by the test `spinning::rods_hit_balls_that_fly_through_their_discs`.
 pub(super) const REFRESH_TURN_LED: f32 = 0.1;
@@ -278,7 +278,7 @@ pub(super) const FLAT_SINE: f32 = 0.01;
 
 /// Slip speed above which static friction changes to sliding friction, m/s.
 ///
-/// It is larger than the slip that unconverged loads cause in a substep. The twist of a manifold is compared to the same speed at its lever
+/// The value is larger than the slip that unconverged loads cause in a substep. The twist of a manifold is compared to the same speed at its lever
 /// arm. Larger: bodies that should slide stick. Smaller: stacks at rest have only sliding friction. Sensible from 0.001 to 0.02. Shown by
 /// `static_friction` and the tests of `surfaces`.
 pub(super) const SLIP_SPEED: f32 = 0.005;
@@ -296,7 +296,7 @@ pub(super) const WEIGHT_EVENLY: f32 = 0.2;
 
 /// Largest number of Newton steps to the rim of the friction disk in lanes.
 ///
-/// They end within 1e-4 of the radius; the remaining error is removed by scaling. Larger: no effect. Smaller: the friction of flat or
+/// The steps end within 1e-4 of the radius; scaling removes the remaining error. Larger: no effect. Smaller: the friction of flat or
 /// slender bodies deviates from the direction of least energy. Sensible from 3 to 10. No scene shows it alone; `incline_slides` uses it.
 pub(super) const FRICTION_RIM_STEPS: usize = 6;
 
@@ -304,7 +304,7 @@ pub(super) const FRICTION_RIM_STEPS: usize = 6;
 
 /// Approach speed below which contacts do not bounce, m/s.
 ///
-/// Without it, restitution makes stacks jitter (ADR 0013). An island with a faster bounce takes all substeps. Larger: balls stop bouncing
+/// Without a lower bound, restitution makes stacks jitter (ADR 0013). An island with a faster bounce takes all substeps. Larger: balls stop bouncing
 /// early. Smaller: heaps jitter for long. Sensible from 0.1 to 2. Shown by `bouncing_balls` and the tests of `bounce`.
 pub(super) const BOUNCE_SPEED: f32 = 1.0;
 
@@ -577,7 +577,7 @@ pub(super) const ENERGY_SLACK: f32 = 1e-3;
 
 /// Speed above which a solution counts as diverged, as a multiple of the world's speed limit.
 ///
-/// If a solution exceeds it, the island moves as one rigid piece for the pass. Speeds are limited before the solve, so the factor must be
+/// If a solution exceeds this speed, the island moves as one rigid piece for the pass. Speeds are limited before the solve, so the factor must be
 /// well above 1. Sensible from
 /// 1.5 to 10. Shown by the test `trouble::extreme_impulses_are_limited_and_reported`.
 pub(super) const DIVERGED_SPEED: f32 = 2.5;

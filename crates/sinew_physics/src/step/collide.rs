@@ -99,7 +99,7 @@ fn meet(
     collide_again((shape_a, &from_a), (shape_b, &from_b), margin, parting, manifold);
 }
 
-/// Computes the points of a pair without a contact; `ahead` as in [`margin`].
+/// Computes the points of a pair without a contact; `ahead` has the meaning of that in [`margin`].
 pub(crate) fn ask((a, b, seams): (&Body, &Body, &Seams<'_>), asked: &mut Asked, ahead: Ahead, dt: f32) {
     let (margin, slop) = margin(a, b, asked.key, ahead, dt);
     meet(a, b, asked.key, margin, &mut asked.parting, &mut asked.manifold);

@@ -140,7 +140,7 @@ impl<R: Real> Symmetric<R> {
         Self([a - g, b - h, c - i, d - j, e - k, f - l])
     }
 
-    /// Inertia of a direction-dependent mass, about a point `r` away from it.
+    /// Inertia of a direction-dependent mass, about a point at distance vector `r` from the mass.
     #[inline(always)]
     pub fn at(&self, r: Vector3<R>) -> Inertia<R> {
         let [a0, a1, a2] = self.rows();

@@ -1,4 +1,4 @@
-//! Particle groups in an island: field forces on them, and the bodies they may touch.
+//! Particle groups in an island: field forces on the particles, and the bodies that a group may touch.
 
 use crate::body::Body;
 use crate::boxes::Overlap;

@@ -1,4 +1,4 @@
-//! Shapes placed in the world, and the contact between two of them.
+//! Shapes placed in the world, and the contact between two such shapes.
 
 use crate::body::shape::Shape;
 use crate::collide::{Half, Manifold, collide, is_on_face, name_as_face};

@@ -14,7 +14,7 @@ pub(super) struct Edge {
     pub contact: u32,
     /// Local indices of the bodies.
     pub bodies: [u32; 2],
-    /// Class of its block.
+    /// Class of the contact's block.
     pub class: u32,
     pub firmness: Firmness,
     /// Index of the contact's extra data, or `NONE`; only few contacts have extra data.

@@ -286,7 +286,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
 }
 
 impl Lists<'_> {
-    /// Adds the extra data of a contact. Returns the index of the rolling resistance of its block.
+    /// Adds the extra data of a contact. Returns the index of the block's rolling resistance.
     fn add(&mut self, source: &Source<'_>, edge: &Edge, at: [u32; 3], rolling: u32) -> u32 {
         let OfStep { view, bodies, moving, stretch, .. } = *source.of;
         let extra = &source.extras[edge.extra as usize];

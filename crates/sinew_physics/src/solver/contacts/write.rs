@@ -29,7 +29,7 @@ struct Axes<L> {
     tangents: [Vector3<L>; 2],
 }
 
-/// Writes a block except for the responses of its rows. Returns whether any of its contacts may bounce.
+/// Writes a block except for the responses of its rows. Returns true if a contact of the block may bounce.
 #[inline(always)]
 pub(super) fn write<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,

@@ -74,7 +74,7 @@ impl<R: Real> Turn<R> {
         Self { vector: half * sin_over(angle), real: cos(angle) }
     }
 
-    /// Images of the three axes under the rotation: the columns of its matrix.
+    /// Returns the columns of the rotation matrix: the images of the three axes.
     #[inline(always)]
     fn columns(self) -> [Vector3<R>; 3] {
         let [x, y, z] = self.vector.to_array();

@@ -35,7 +35,7 @@ impl Scratch {
     }
 }
 
-/// Cosine between the force on a body and the direction from it through a contact, whose normal points to the contact times `sign`.
+/// Cosine between the force on a body and the direction from the body to a contact, which is the contact's normal times `−sign`.
 fn slope(body: &SolverBody, touch: &Touch, sign: f32) -> f32 {
     -sign * touch.normal.dot(body.force) / body.force.length()
 }

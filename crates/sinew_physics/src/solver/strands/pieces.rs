@@ -11,7 +11,7 @@ use sinew_math::lanes::{LaneMask, Lanes, Real, Vector3, WIDTH};
 pub(super) struct Tips<L: Lanes> {
     /// Lanes whose last place is filled.
     pub full: L::Mask,
-    /// The same mask for 64-bit numbers.
+    /// Mask `full` for 64-bit numbers.
     pub full_wide: <L::Wide as Real>::Mask,
     pub place: usize,
 }
