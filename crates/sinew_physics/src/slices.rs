@@ -8,7 +8,7 @@ use sinew_math::lanes::WIDTH;
 
 /// Most items in one claim of a thread. Two threads that claim one by one spend more on the counter than on a light item.
 const MOST_CLAIMED: usize = 32;
-/// Least number of claims that a few items are divided into, so that no thread waits long for another's last claim.
+/// Smallest number of claims for a few items, so that no thread waits long for another's last claim.
 const CLAIMS: usize = 16;
 
 /// The items of a slice, shared by threads that each access different ones.

@@ -114,7 +114,7 @@ impl WorldDef {
     /// Checks that the numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// The problem, in lower case.
+    /// Names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         // This form rejects NaN.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;

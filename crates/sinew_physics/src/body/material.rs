@@ -18,7 +18,7 @@ pub struct Material {
     pub static_friction: Option<f32>,
     /// Coefficient of restitution: ratio of separation speed to approach speed, 0..=1. Default 0.
     pub restitution: f32,
-    /// Rolling resistance: lever of the resisting torque, metres. Default 0.
+    /// Rolling resistance: lever arm of the resisting torque, metres. Default 0.
     pub rolling: f32,
     /// Velocity of the surface relative to its body, m/s in the shape's frame: a conveyor, a moving walkway. Friction
     /// carries bodies along; the normal component has no effect. Default 0.
@@ -47,7 +47,7 @@ impl Material {
     /// Checks that the numbers of the material are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// The problem, in lower case.
+    /// Names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         // This form rejects NaN.
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
@@ -110,7 +110,7 @@ impl Combine {
     }
 }
 
-/// Rules requested by a surface. `None`, the default, leaves the choice to the other side.
+/// Combination rules of a surface. `None`, the default, leaves the choice to the other surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -145,7 +145,7 @@ pub struct ContactMaterial {
     pub static_friction: f32,
     /// Coefficient of restitution.
     pub restitution: f32,
-    /// Lever of rolling resistance, metres.
+    /// Lever arm of rolling resistance, metres.
     pub rolling: f32,
     /// Velocity of B's surface minus that of A's at the contact, in addition to the velocities of the bodies, world
     /// axes, m/s: friction brings the surfaces, not the bodies, to relative rest. The normal component has no effect.

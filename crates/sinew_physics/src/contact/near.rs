@@ -187,7 +187,7 @@ pub(crate) fn insert_sorted<T: Copy, K: Ord>(list: &mut Vec<T>, new: &mut Vec<T>
     let mut left = list.len();
     list.extend_from_slice(new);
     let mut end = list.len();
-    // Merge from the back, where there is space.
+    // Merges from the back, where there is space.
     while let Some(item) = new.pop() {
         let place = list[..left].partition_point(|other| key(other) < key(&item));
         let moved = left - place;

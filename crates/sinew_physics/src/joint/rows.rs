@@ -337,7 +337,7 @@ fn open_axis(kind: &JointKind, locks: &[bool; 6], pose: &JointPose, direction: u
     }
 }
 
-/// Deviation of an open direction from a wanted pose of frame B in frame A, metres or radians.
+/// Deviation in an open direction from a requested pose of frame B in frame A, metres or radians.
 pub(crate) fn displacement(kind: &JointKind, pose: &JointPose, direction: usize, wanted: &Transform) -> f32 {
     if direction >= TWIST {
         let error = pose.relative() * wanted.rotation.inverse();

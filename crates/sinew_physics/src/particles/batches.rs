@@ -8,7 +8,7 @@
 //! block are rotated while they are solved. The remaining rows of irregular meshes are gathered. Consecutive aligned
 //! rows share no block, so that none waits for the previous one.
 //!
-//! A projection moves particles within the iteration. The displacement since its start is stored, which gives the
+//! A projection moves particles within the iteration. The displacement since the start is stored, which gives the
 //! velocity without cancellation. Rows with an attached particle are solved in `net.rs`.
 
 use super::project::Project;

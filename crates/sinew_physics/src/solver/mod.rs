@@ -70,7 +70,7 @@ pub(crate) struct IslandSolver {
     starts: Vec<Transform>,
     /// Pairs of touching bodies; for islands without joints.
     touches: Vec<Touch>,
-    /// True for each moving body that touches another one while no joint holds either.
+    /// True for each moving body that touches another one, if neither has joints.
     paired: Vec<bool>,
     /// True if masses of touching bodies differ so much that mass scales are updated in each substep.
     is_unequal: bool,

@@ -280,7 +280,7 @@ impl IslandSolver {
         errors.fill(most);
     }
 
-    /// Adds the residuals of soft welds to their remaining error.
+    /// Records in `bent` the part of the motion of soft welds that the residuals correct.
     fn bend_welds(&mut self) {
         let h = self.h;
         let bend = |joint: &mut SolverJoint, residual: &Vec6| {

@@ -372,7 +372,7 @@ fn invert(m: &mut [f32], n: usize, out: &mut Vec<f32>) {
     out.resize(start + n * n, 0.0);
     let out = &mut out[start..];
     for column in 0..n {
-        // Compute the result row by row; it is symmetric.
+        // Computes the result row by row; the result is symmetric.
         let x = &mut out[column * n..(column + 1) * n];
         x[column] = 1.0;
         for i in column..n {

@@ -94,7 +94,7 @@ pub(crate) struct ManifoldRows {
     tangents: [Row; 2],
     tangent_axes: [Vec3; 2],
     spin: Row,
-    /// Share of the load of each point when the step began: friction acts at the centre of pressure.
+    /// Share of the load at each point at the start of the step: friction acts at the centre of pressure.
     weight: [f32; MAX_POINTS],
     /// Weighted distance of the points from the centre of friction, metres: lever arm of the twist friction.
     lever: f32,
@@ -321,8 +321,8 @@ impl ManifoldRows {
         strip
     }
 
-    /// Applies the starting impulses to the bodies: those of the last substep, or those of the substep before if they increased sharply,
-    /// since an impact must not be repeated. The whole manifold is compared: at rest the load moves between its points.
+    /// Applies the starting impulses to the bodies: those of the last substep. If they increased sharply, scales them down to the sum of
+    /// the substep before, since an impact must not be repeated. At rest the load moves between points, so the sums are compared.
     pub fn warm_start(&mut self, impulses: &mut [Vec6]) {
         let (mut now, mut before) = (0.0, 0.0);
         for point in &self.memory.points[..self.count] {

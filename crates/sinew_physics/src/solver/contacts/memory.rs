@@ -7,9 +7,9 @@ use crate::solver::tuning::{BOUNCE_SPEED, IMPACT_JUMP, LASTING};
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3};
 
-/// Applies the starting impulses to the bodies: those of the last substep, or those of the substep before if they
-/// increased sharply, since an impact must not be repeated. The whole manifold is compared: at rest the load moves
-/// between its points.
+/// Applies the starting impulses to the bodies: those of the last substep. If they increased sharply, scales them down to
+/// the sum of the substep before, since an impact must not be repeated. At rest the load moves between points, so the
+/// sums are compared.
 #[inline(always)]
 pub(super) fn warm_start<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,

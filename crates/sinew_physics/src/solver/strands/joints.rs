@@ -53,7 +53,7 @@ pub(super) enum Asked {
     Rest,
     /// The gaps close within the substep.
     Closed,
-    /// The gaps that the present velocities lead to close.
+    /// The gaps at the poses to which the present velocities lead close.
     Corrected,
 }
 

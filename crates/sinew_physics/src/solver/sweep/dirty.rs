@@ -10,7 +10,7 @@ pub(in crate::solver) struct DirtyRows {
     /// Change below which changes are ignored, m/s or rad/s.
     tolerance: f32,
     trees: Vec<f32>,
-    /// Sum of the changes of its trees at the last visit of each manifold and of each block of limits.
+    /// For each manifold and each block of limits: sum of the changes of its trees at the last visit.
     manifolds: Vec<f32>,
     limits: Vec<f32>,
     /// Sum of each tree at the time when the pass was resumed.

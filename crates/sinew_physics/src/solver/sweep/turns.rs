@@ -19,7 +19,7 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes};
 use sinew_math::max;
 
-/// Impulse that gives a free body this change of velocity.
+/// Impulse that causes a given velocity change of a free body.
 fn impulse_of(body: &SolverBody, change: &Vec6) -> Vec6 {
     let r = body.pose.rotation;
     let inertia = (body.inertia + body.excess) * body.mass_scale;
