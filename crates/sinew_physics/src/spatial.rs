@@ -56,13 +56,13 @@ pub(crate) fn largest(v: &Vec6) -> f32 {
     max(max(a, c), max(b, d))
 }
 
-/// `a − b`
+/// Computes `a − b`.
 #[inline(always)]
 pub(crate) fn difference(a: &Vec6, b: &Vec6) -> Vec6 {
     core::array::from_fn(|k| a[k] - b[k])
 }
 
-/// `a += k b`
+/// Computes `a += k b`.
 #[inline(always)]
 pub(crate) fn add_scaled(a: &mut Vec6, b: &Vec6, k: f32) {
     for (a, b) in a.iter_mut().zip(b) {
@@ -138,7 +138,7 @@ mod tests {
     use super::*;
     use sinew_math::Random;
 
-    /// `a b`
+    /// Computes `a b`.
     fn product(a: &Mat6, b: &Mat6) -> Mat6 {
         let mut out = ZERO66;
         for i in 0..6 {

@@ -87,7 +87,7 @@ pub enum Counter {
     TouchedBytes,
 }
 
-/// Receives stage times and counts from the step: the library reads no clock itself. Stages inside an island are reported
+/// Receives stage times and counts from the step: the library itself reads no clock. Stages inside an island are reported
 /// by the thread that runs it.
 pub trait Profiler: Sync {
     /// Starts a stage.

@@ -22,7 +22,7 @@ pub enum ContactRule {
     /// While the body is kinematic, its contacts push with limited force: for bodies moved by an animation clip. Movers
     /// pass through.
     Yields(Yields),
-    /// A user function decides.
+    /// A user function decides on each contact.
     Modified {
         /// Number of the modifier, as [registered](crate::World::register_modifier).
         modifier: u32,

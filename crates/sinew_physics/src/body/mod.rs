@@ -139,7 +139,7 @@ pub(crate) struct Body {
     pub owner: Option<OwnerMark>,
 }
 
-/// Smallest principal moment relative to the largest, a ratio. Smaller ones are raised to it: they would make long thin
+/// Least ratio of a principal moment to the largest. Smaller moments are raised to it, since they would make long thin
 /// bodies spin wildly on contact, because `r × n` dominates the effective mass.
 const SMALLEST_MOMENT: f32 = 1e-3;
 

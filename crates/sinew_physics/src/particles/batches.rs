@@ -297,7 +297,7 @@ fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) 
             steps[k] = places[k] as i64 - places[k - 1] as i64;
         }
         let block = blocks[0];
-        // Consecutive rows along a thread would wait for each other.
+        // Consecutive rows along a thread of cloth would wait for each other.
         let color = if steps[1].abs() == 1 { block % K } else { 0 };
         keyed.push((steps, color as u32, block, order, row));
     }

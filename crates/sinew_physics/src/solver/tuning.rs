@@ -493,12 +493,12 @@ pub(super) const SATURATION_ROUNDS: usize = 4;
 
 /// Substitute for the mass of a translation row whose bodies are both held, kg.
 ///
-/// A spring given by a frequency then has almost no force. It must be positive and far below any body. No scene shows it alone.
+/// A spring given by a frequency then has almost no force. The value must be positive and far below any body's mass. No scene shows it alone.
 pub(super) const LEAST_ROW_MASS: f32 = 1e-9;
 
 /// Substitute for the inertia of a rotation row whose bodies are both held, kg·m².
 ///
-/// The reason is that of [`LEAST_ROW_MASS`]; it must be far below any body's moments. No scene shows it alone.
+/// The reason is that of [`LEAST_ROW_MASS`]; the value must be far below any body's moments. No scene shows it alone.
 pub(super) const LEAST_ROW_MOMENT: f32 = 1e-9;
 
 // ---- Loops ----
