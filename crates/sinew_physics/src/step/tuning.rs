@@ -80,8 +80,8 @@ pub(super) const JOINT_CHANGE: f32 = 1e-4;
 
 /// Largest number of contacts of two shapes through the particles of a group.
 ///
-/// A limb in the corner of two walls of one mesh has two contacts. Larger: the step is slower. Smaller: a body touched on
-/// several sides is not fully supported. No scene shows it.
+/// A limb in the corner of two walls of one mesh has two contacts. Larger: the step is slower. Smaller: a body touched
+/// on several sides is not fully supported. No scene shows it.
 pub(super) const MOST_PINCHED: u32 = 4;
 
 /// Largest height of a particle above the deepest one of its contact at which it still bears a share of the load,
