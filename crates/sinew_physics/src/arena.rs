@@ -3,7 +3,7 @@
 use crate::id::{Handle, Lineage};
 use sinew_math::{ReadError, Reader, Writer};
 
-/// Item type of an arena, with its own id type.
+/// Item type of an arena; each has an id type.
 pub(crate) trait Item {
     type Id: Handle;
 }
@@ -12,7 +12,7 @@ pub(crate) trait Item {
 #[derive(Clone, Debug)]
 pub(crate) struct Arena<T> {
     lineage: Lineage,
-    /// Generation of each slot; stored contiguously, because queries check many items without reading them.
+    /// Generation of each slot; stored contiguously, because queries check many generations without reading the items.
     generations: Vec<u32>,
     items: Vec<Option<T>>,
     free: Vec<u32>,
@@ -25,14 +25,14 @@ impl<T> Default for Arena<T> {
 }
 
 impl<T> Arena<T> {
-    /// One without items, of a world.
+    /// Creates an arena without items for a world.
     pub fn new(lineage: Lineage) -> Self {
         Self { lineage, generations: Vec::new(), items: Vec::new(), free: Vec::new() }
     }
 }
 
 impl<T: Item> Arena<T> {
-    /// Puts an item in.
+    /// Adds an item; returns its id.
     pub fn insert(&mut self, item: T) -> T::Id {
         let index = self.free.pop().unwrap_or_else(|| {
             self.generations.push(0);
@@ -43,7 +43,7 @@ impl<T: Item> Arena<T> {
         self.id(index)
     }
 
-    /// Removes an item; its id is stale from now on.
+    /// Removes and returns the item of an id, or `None` if the id is stale. The id is stale from now on.
     pub fn remove(&mut self, id: T::Id) -> Option<T> {
         let index = id.index();
         let item = self.is_current(id).then(|| self.items[index as usize].take())??;
@@ -52,17 +52,17 @@ impl<T: Item> Arena<T> {
         Some(item)
     }
 
-    /// The item of an id, if it is not stale.
+    /// Returns the item of an id, or `None` if the id is stale.
     pub fn get(&self, id: T::Id) -> Option<&T> {
         if self.is_current(id) { self.items[id.index() as usize].as_ref() } else { None }
     }
 
-    /// The item of an id, if it is not stale, mutable.
+    /// Returns the item of an id, mutable, or `None` if the id is stale.
     pub fn get_mut(&mut self, id: T::Id) -> Option<&mut T> {
         if self.is_current(id) { self.items[id.index() as usize].as_mut() } else { None }
     }
 
-    /// The item of an id from the user.
+    /// Returns the item of an id from the user.
     ///
     /// # Panics
     /// At the caller's location, with the reason, if the id is stale or from another world.
@@ -74,7 +74,7 @@ impl<T: Item> Arena<T> {
         }
     }
 
-    /// The item of an id from the user, mutable.
+    /// Returns the item of an id from the user, mutable.
     ///
     /// # Panics
     /// At the caller's location, with the reason, if the id is stale or from another world.
@@ -84,7 +84,7 @@ impl<T: Item> Arena<T> {
         self.at_mut(id.index())
     }
 
-    /// Removes the item of an id from the user; the id is stale from now on.
+    /// Removes and returns the item of an id from the user; the id is stale from now on.
     ///
     /// # Panics
     /// At the caller's location, with the reason, if the id is stale or from another world.
@@ -110,22 +110,22 @@ impl<T: Item> Arena<T> {
         generation == Some(&id.generation()) && id.lineage().goes_with(self.lineage)
     }
 
-    /// Id of the item in a slot, or of the next that will be.
+    /// Id of the item in a slot; for a free slot, the id of the next item in it.
     pub fn id(&self, index: u32) -> T::Id {
         T::Id::new(index, self.generations[index as usize], self.lineage)
     }
 
-    /// The item at an index known to be in use.
+    /// Returns the item in a slot known to be in use.
     pub fn at(&self, index: u32) -> &T {
         self.items[index as usize].as_ref().expect("the index is in use")
     }
 
-    /// The item at an index, if any.
+    /// Returns the item in a slot, if any.
     pub fn try_at(&self, index: u32) -> Option<&T> {
         self.items.get(index as usize)?.as_ref()
     }
 
-    /// The item at an index known to be in use, mutable.
+    /// Returns the item in a slot known to be in use, mutable.
     pub fn at_mut(&mut self, index: u32) -> &mut T {
         self.items[index as usize].as_mut().expect("the index is in use")
     }
@@ -135,7 +135,7 @@ impl<T: Item> Arena<T> {
         self.free.len() == self.items.len()
     }
 
-    /// The same slots with other items; `item` maps id and item.
+    /// Replaces every item by `item` of its id and itself; slots and free list are the same.
     pub fn map<U>(self, mut item: impl FnMut(T::Id, T) -> U) -> Arena<U> {
         let Self { lineage, generations, items, free } = self;
         let slots = items.into_iter().zip(&generations).enumerate();

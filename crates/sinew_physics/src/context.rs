@@ -3,9 +3,9 @@
 use crate::runner::TaskRunner;
 use crate::stage::Profiler;
 
-/// Everything that lives for one step.
+/// Settings and services that exist for one step.
 pub(crate) struct StepContext<'a> {
-    /// Step and substep, seconds.
+    /// Length of the step and of a substep (`h`), seconds.
     pub dt: f32,
     pub h: f32,
     pub substeps: u32,

@@ -10,12 +10,12 @@ use std::hash::{BuildHasher, RandomState};
 pub(crate) struct Lineage(u32);
 
 impl Lineage {
-    /// Unique in the process except for a chance of one in 2³¹: hashers are seeded randomly.
+    /// Creates a lineage that is unique in the process except for a chance of one in 2³¹: hashers are seeded randomly.
     pub fn fresh() -> Self {
         Self(RandomState::new().hash_one(()) as u32 | 1)
     }
 
-    /// True unless both are known and different.
+    /// True unless both lineages are known and different.
     pub fn goes_with(self, other: Self) -> bool {
         self == other || self == Self::default() || other == Self::default()
     }
@@ -47,7 +47,7 @@ macro_rules! id {
             pub fn to_bits(self) -> u64 {
                 u64::from(self.generation) << 32 | u64::from(self.index)
             }
-            /// Id from [`to_bits`](Self::to_bits), usable with any world.
+            /// Id from its [bits](Self::to_bits), usable with any world.
             pub fn from_bits(bits: u64) -> Self {
                 Self { index: bits as u32, generation: (bits >> 32) as u32, lineage: Lineage::default() }
             }
@@ -138,14 +138,14 @@ id! {
     MoverId
 }
 id! {
-    /// An object of the user's own kind in a [`World`](crate::World).
+    /// A user-defined object in a [`World`](crate::World).
     ObjectId
 }
 
 /// A shape of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ShapeId {
-    /// The body.
+    /// Body that the shape belongs to.
     pub body: BodyId,
     /// Number of the shape in its body, counted from 0 as in [`BodyDef::shapes`](crate::BodyDef::shapes).
     pub shape: u32,

@@ -1,8 +1,8 @@
 //! Threads that wait for work, for [`Threads`](crate::runner::Threads).
 //!
-//! A batch is on the stack of its caller. Workers reach it by a pointer guarded by one word, the *gate*, which stores
-//! if a batch is open, its number, and the number of workers inside. A worker enters only by incrementing that number
-//! while the gate is open, and the caller does not return before it has closed the gate and the number is 0.
+//! A batch is on the stack of its caller. Workers reach the batch by a pointer guarded by one word, the *gate*, which
+//! stores whether a batch is open, its number, and the number of workers inside. A worker enters only by incrementing
+//! that number while the gate is open. The caller does not return before it has closed the gate and the number is 0.
 #![allow(unsafe_code)]
 
 use core::any::Any;
@@ -12,7 +12,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
-/// Number of polls of the gate before a thread sleeps: some 10 to 40 µs, which exceeds the gap between two batches of a
+/// Number of polls of the gate before a thread sleeps: some 10 to 40 µs. That exceeds the gap between two batches of a
 /// stage and is about the cost of waking.
 const SPINS: u32 = 1_000;
 
@@ -22,14 +22,14 @@ const INSIDE: u64 = (1 << 30) - 1;
 const AWAITED: u64 = 1 << 30;
 /// Gate flag: a batch is open.
 const OPEN: u64 = 1 << 31;
-/// Gate field: the number of the batch, in the upper bits, so that no worker enters the same one twice.
+/// Gate field: the number of the batch, in the upper bits, so that no worker enters the same batch twice.
 const ONE_BATCH: u64 = 1 << 32;
 
-/// Calls of one task.
+/// A number of calls of one task.
 struct Batch<'a> {
     task: &'a (dyn Fn() + Sync),
     count: usize,
-    /// Calls that were begun, or more.
+    /// Number of calls begun, or more.
     begun: AtomicUsize,
     /// Payload of the first call that panicked.
     panic: Mutex<Option<Box<dyn Any + Send>>>,
@@ -55,13 +55,13 @@ struct Shared {
     gate: AtomicU64,
     /// Pointer to the batch, while the gate is open or workers are inside.
     batch: AtomicPtr<Batch<'static>>,
-    /// A batch is running: a nested one runs on its caller's thread alone.
+    /// True while a batch runs; a nested batch runs on its caller's thread alone.
     is_busy: AtomicBool,
-    /// Workers are to end.
+    /// True when the workers must end.
     is_closing: AtomicBool,
-    /// Workers that sleep or are about to.
+    /// Number of workers that sleep or are about to sleep.
     asleep: AtomicUsize,
-    /// Mutex that sleepers hold while they look; nothing is in it.
+    /// Mutex that sleepers hold while they poll the gate; it holds no data.
     sleep: Mutex<()>,
     wake: Condvar,
     /// Mutex for waiting until the last worker has left; it holds no data.
@@ -74,15 +74,16 @@ fn lock(mutex: &Mutex<()>) -> MutexGuard<'_, ()> {
 }
 
 impl Shared {
-    /// Opens `batch` to workers, takes calls as well, and waits until all have left.
+    /// Opens `batch` to workers, makes calls on this thread too, and waits until all workers have left.
     fn run(&self, batch: &Batch<'_>, workers: usize) {
         self.batch.store(core::ptr::from_ref(batch).cast_mut().cast(), Ordering::Relaxed);
-        // No thread is inside, and only this one opens.
+        // No worker is inside, and no other thread opens the gate.
         let number = self.gate.load(Ordering::Relaxed) & !(OPEN | AWAITED | INSIDE);
-        // SeqCst, as `asleep`: either this thread sees the sleeper or the sleeper sees the open gate.
+        // SeqCst, as for `asleep`: this thread reads that a worker sleeps, or the worker reads that the gate is open.
         self.gate.store(number.wrapping_add(ONE_BATCH) | OPEN, Ordering::SeqCst);
         if self.asleep.load(Ordering::SeqCst) > 0 {
-            // A thread about to sleep holds it from its last poll of the gate on; it must not wake into a held lock.
+            // A thread about to sleep holds this mutex from its last poll of the gate on; it must not wake into a held
+            // lock.
             drop(lock(&self.sleep));
             for _ in 0..workers.min(batch.count - 1) {
                 self.wake.notify_one();
@@ -109,16 +110,16 @@ impl Shared {
         }
     }
 
-    /// The life of a worker.
+    /// Runs batches until shutdown: the loop of a worker.
     fn serve(&self) {
         let mut last = 0;
         while let Some(number) = self.enter_next(last) {
             last = number;
             let batch = self.batch.load(Ordering::Relaxed);
-            // SAFETY: we are inside, by a compare-exchange (Acquire) on a gate that was open, so that the pointer is the one
-            // stored before it was opened (SeqCst store), and who runs the batch keeps it alive and where it is until we are
-            // out: it does not leave `run`, whatever panics in a call (`work` catches it), before it has seen nobody inside.
-            // Nothing of the batch is used after `leave`.
+            // SAFETY: this worker is inside, by a compare-exchange (Acquire) on a gate that was open, so the pointer is
+            // the one stored before the gate was opened (SeqCst store). The caller of `run` keeps the batch alive and
+            // in place until this worker leaves: even if a call panics (`work` catches panics), it does not return
+            // before nobody is inside. Nothing of the batch is used after `leave`.
             unsafe { &*batch }.work();
             self.leave();
         }
@@ -150,7 +151,7 @@ impl Shared {
         entered
     }
 
-    /// Enters if the gate is open and the batch's number differs from `last`.
+    /// Enters if the gate is open and the batch's number differs from `last`; returns the number of the batch.
     fn try_enter(&self, last: u64) -> Option<u64> {
         let mut gate = self.gate.load(Ordering::SeqCst);
         loop {
@@ -181,7 +182,7 @@ pub(crate) struct Pool {
 }
 
 impl Pool {
-    /// Creates a pool with this many threads in addition to the caller's, or as many as the system allows.
+    /// Creates a pool with `workers` threads in addition to the caller's, or as many as the system allows.
     pub fn new(workers: usize) -> Self {
         let shared = Arc::new(Shared::default());
         let start = |number: usize| {
@@ -192,15 +193,16 @@ impl Pool {
         Self { shared, workers }
     }
 
-    /// Threads in addition to the caller's.
+    /// Number of threads in addition to the caller's.
     pub fn workers(&self) -> usize {
         self.workers.len()
     }
 
-    /// Calls `task` `count` times. While the pool is busy, on this thread alone.
+    /// Calls `task` `count` times; while the pool is busy, on this thread alone.
     ///
     /// # Panics
-    /// If a call panics, with its payload, after all running calls have ended; the remaining calls are skipped.
+    /// If a call panics, with the payload of that panic, after all running calls have ended; remaining calls are
+    /// skipped.
     pub fn run(&self, count: usize, task: &(dyn Fn() + Sync)) {
         let is_alone = count <= 1 || self.workers.is_empty();
         if is_alone || self.shared.is_busy.swap(true, Ordering::Acquire) {
@@ -221,7 +223,7 @@ impl Drop for Pool {
         drop(lock(&self.shared.sleep));
         self.shared.wake.notify_all();
         for worker in self.workers.drain(..) {
-            // It catches panics of calls, and nothing else in it panics.
+            // The worker catches panics of calls, and nothing else in the worker panics.
             let _ = worker.join();
         }
     }

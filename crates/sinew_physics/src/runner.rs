@@ -12,7 +12,7 @@ pub trait TaskRunner: Sync {
     fn run(&self, count: usize, task: &(dyn Fn() + Sync));
 }
 
-/// Everything on the calling thread.
+/// Runs all tasks on the calling thread.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Serial;
 
@@ -24,19 +24,19 @@ impl TaskRunner for Serial {
     }
 }
 
-/// A fixed number of threads, for hosts without a pool of their own: started once, they wait from one batch to the next,
-/// and end with the last clone.
+/// A fixed number of threads, for hosts without a thread pool. The threads start once, wait from one batch to the next,
+/// and end when the last clone is dropped.
 ///
-/// One batch at a time: one that starts while another runs, within a task or on another host thread, runs on its
-/// caller's thread alone. A panic in a task ends its batch, and continues in the caller.
+/// Only one batch runs at a time: a batch that starts while another runs, within a task or on another host thread, runs
+/// on its caller's thread alone. A panic in a task ends its batch, and continues in the caller.
 #[derive(Clone)]
 pub struct Threads {
     pool: Arc<Pool>,
 }
 
 impl Threads {
-    /// `count` threads, including the caller's; 0 counts as 1. If the system provides fewer (wasm: none), it uses
-    /// those.
+    /// Creates `count` threads, including the caller's; 0 counts as 1. If the system provides fewer (wasm: none), the
+    /// pool uses those.
     pub fn new(count: usize) -> Self {
         Self { pool: Arc::new(Pool::new(count.saturating_sub(1))) }
     }

@@ -6,9 +6,9 @@ use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
 use sinew_math::lanes::WIDTH;
 
-/// Most items that a thread claims at once. Two threads that claim one by one spend more on the counter than on a light item.
+/// Most items in one claim of a thread. Two threads that claim one by one spend more on the counter than on a light item.
 const MOST_CLAIMED: usize = 32;
-/// Least number of claims that a few items are divided into, so that no thread waits long for another's last one.
+/// Smallest number of claims for a few items, so that no thread waits long for another's last claim.
 const CLAIMS: usize = 16;
 
 /// The items of a slice, shared by threads that each access different ones.
@@ -26,13 +26,13 @@ impl<T> Clone for SharedRows<'_, T> {
 
 impl<T> Copy for SharedRows<'_, T> {}
 
-// SAFETY: who makes one promises that no item is written by one thread while another reads or writes it, and T may change
-// threads.
+// SAFETY: the caller of `new` promises that no item is written by one thread while another reads or writes it, and T
+// may change threads.
 unsafe impl<T: Send> Send for SharedRows<'_, T> {}
 // SAFETY: as above.
 unsafe impl<T: Send> Sync for SharedRows<'_, T> {}
 
-/// Eight indices, of which the largest has been compared with a length, for all rows that are as long.
+/// Eight indices that are known to be below a length, for use with all rows of at least that length.
 #[derive(Clone, Copy)]
 pub(crate) struct Places {
     at: [u32; WIDTH],
@@ -40,7 +40,7 @@ pub(crate) struct Places {
 }
 
 impl Places {
-    /// Indices into rows of a length.
+    /// Checks indices into rows of length `len`.
     ///
     /// # Panics
     /// If any index is out of range.
@@ -56,25 +56,27 @@ impl Places {
 }
 
 impl<'a, T> SharedRows<'a, T> {
-    /// Item at the `k`-th of eight indices.
+    /// Returns the item at the `k`-th of eight indices.
     ///
     /// # Panics
     /// If there are fewer items than when the indices were checked, or `k` is out of range.
     #[inline(always)]
     pub fn at(&self, places: &Places, k: usize) -> &T {
         assert!(places.len <= self.len);
-        // SAFETY: all places are below their length, and nobody writes the item meanwhile, as was promised.
+        // SAFETY: all places are below their length, and the caller of `new` promised that nobody writes the item
+        // meanwhile.
         unsafe { &*self.start.add(places.at[k] as usize) }
     }
 
-    /// Item at the `k`-th of eight indices, mutable.
+    /// Returns the item at the `k`-th of eight indices, mutable.
     ///
     /// # Panics
     /// If there are fewer items than when the indices were checked, or `k` is out of range.
     #[inline(always)]
     pub fn at_mut(&mut self, places: &Places, k: usize) -> &mut T {
         assert!(places.len <= self.len);
-        // SAFETY: all places are below their length, and nobody else reads or writes the item meanwhile, as was promised.
+        // SAFETY: all places are below their length, and the caller of `new` promised that nobody else reads or writes
+        // the item meanwhile.
         unsafe { &mut *self.start.add(places.at[k] as usize) }
     }
 
@@ -93,25 +95,26 @@ impl<'a, T> SharedRows<'a, T> {
         Self { start: items.as_mut_ptr(), len: items.len(), of: PhantomData }
     }
 
-    /// Item number `i`.
+    /// Returns item number `i`.
     ///
     /// # Panics
-    /// If there are fewer.
+    /// If there are no more than `i` items.
     #[inline(always)]
     pub fn get(&self, i: usize) -> &T {
         assert!(i < self.len);
-        // SAFETY: it is inside of the slice, and nobody writes it meanwhile, as was promised.
+        // SAFETY: the item is inside the slice, and the caller of `new` promised that nobody writes it meanwhile.
         unsafe { &*self.start.add(i) }
     }
 
-    /// Item number `i`, mutable.
+    /// Returns item number `i`, mutable.
     ///
     /// # Panics
-    /// If there are fewer.
+    /// If there are no more than `i` items.
     #[inline(always)]
     pub fn get_mut(&mut self, i: usize) -> &mut T {
         assert!(i < self.len);
-        // SAFETY: it is inside of the slice, and nobody else reads or writes it meanwhile, as was promised.
+        // SAFETY: the item is inside the slice, and the caller of `new` promised that nobody else reads or writes it
+        // meanwhile.
         unsafe { &mut *self.start.add(i) }
     }
 }
@@ -143,11 +146,11 @@ pub(crate) fn for_each_mut<T: Send>(runner: &dyn TaskRunner, items: &mut [T], wo
 /// Most items of [`for_each_near`].
 pub(crate) const MOST_NEAR: usize = u64::BITS as usize;
 
-/// Number of threads that take part in such a list.
+/// Most threads that take part in [`for_each_near`].
 const MOST_CALLS: usize = 16;
 
-/// As [`for_each_mut`], for at most [`MOST_NEAR`] items of which neighbours share memory: each thread starts where it
-/// started in the previous such list, and continues with free neighbours.
+/// Like [`for_each_mut`], for at most [`MOST_NEAR`] items whose neighbours share memory: each thread starts at the item
+/// where it started in the previous call of this length, and continues with free neighbours.
 pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], work: impl Fn(&mut T) + Sync) {
     let count = items.len();
     assert!(count <= MOST_NEAR);
@@ -177,7 +180,7 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
     task();
 }
 
-/// Takes the first of the remaining items.
+/// Takes the first `count` of the remaining items.
 pub(crate) fn split_off<'a, T>(left: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     left.split_off_mut(..count).expect("there is room for each island")
 }

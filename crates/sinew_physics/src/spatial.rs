@@ -6,12 +6,12 @@ use sinew_math::{Vec3, max};
 /// Velocity (m/s, rad/s) or impulse (N·s, N·m·s) of a body at its centre of mass, or one row of a Jacobian: six numbers, and
 /// two zeros that fill a register of eight.
 pub(crate) type Vec6 = [f32; WIDTH];
-/// Rows of a 6×6 matrix.
+/// 6×6 matrix, by rows.
 pub(crate) type Mat6 = [Vec6; 6];
 
 pub(crate) const ZERO6: Vec6 = [0.0; WIDTH];
 pub(crate) const ZERO66: Mat6 = [ZERO6; 6];
-/// Rows of the unit matrix.
+/// The unit matrix.
 pub(crate) const UNITS: Mat6 = {
     let mut units = ZERO66;
     let mut k = 0;
@@ -27,7 +27,7 @@ pub(crate) fn join(linear: Vec3, angular: Vec3) -> Vec6 {
     [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z, 0.0, 0.0]
 }
 
-/// Spatial impulse of a linear impulse at `arm` from the centre of mass.
+/// Spatial impulse of a linear impulse that acts at `arm` from the centre of mass.
 #[inline(always)]
 pub(crate) fn wrench(arm: Vec3, impulse: Vec3) -> Vec6 {
     join(impulse, arm.cross(impulse))
@@ -48,7 +48,7 @@ pub(crate) fn dot(a: &Vec6, b: &Vec6) -> f32 {
     (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
 }
 
-/// The largest component, without its sign: in pairs, as registers hold them.
+/// Largest absolute value of the components. Compares them in pairs, as SIMD registers hold them.
 #[inline(always)]
 pub(crate) fn largest(v: &Vec6) -> f32 {
     let [a, b, c, d, e, f, g, h] = v.map(f32::abs);
@@ -56,13 +56,13 @@ pub(crate) fn largest(v: &Vec6) -> f32 {
     max(max(a, c), max(b, d))
 }
 
-/// `a − b`
+/// Computes `a − b`.
 #[inline(always)]
 pub(crate) fn difference(a: &Vec6, b: &Vec6) -> Vec6 {
     core::array::from_fn(|k| a[k] - b[k])
 }
 
-/// `a += k b`
+/// Computes `a += k b`.
 #[inline(always)]
 pub(crate) fn add_scaled(a: &mut Vec6, b: &Vec6, k: f32) {
     for (a, b) in a.iter_mut().zip(b) {
@@ -85,10 +85,10 @@ pub(crate) fn spd_inverse(m: &Mat6, n: usize) -> Option<Mat6> {
     }
 }
 
-/// Inverts with constant loop bounds, which the compiler unrolls.
+/// Inverse of the leading block, with constant loop bounds, which the compiler unrolls.
 #[inline(always)]
 fn inverse_of<const N: usize>(m: &Mat6) -> Option<Mat6> {
-    // L below the diagonal, 1/D on it.
+    // The factor L is below the diagonal, 1/D on it.
     let mut l = [[0.0; N]; N];
     for i in 0..N {
         // Row i holds L·D until it is divided below.
@@ -112,7 +112,7 @@ fn inverse_of<const N: usize>(m: &Mat6) -> Option<Mat6> {
             l[i][k] *= l[k][k];
         }
     }
-    // All columns at once: L D Lᵀ X = 1, row by row of X.
+    // Solves L D Lᵀ X = 1 for all columns together, row by row of X.
     let mut inverse = ZERO66;
     for i in 0..N {
         inverse[i][i] = 1.0;
@@ -138,7 +138,7 @@ mod tests {
     use super::*;
     use sinew_math::Random;
 
-    /// `a b`
+    /// Computes `a b`.
     fn product(a: &Mat6, b: &Mat6) -> Mat6 {
         let mut out = ZERO66;
         for i in 0..6 {

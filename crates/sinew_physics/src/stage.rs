@@ -1,63 +1,63 @@
-//! The stages of a step, under the one name that function, module, profile zone and `docs/step.md` share, and the
-//! quantities counted in them.
+//! Stages of a step, and the quantities counted in them. Function, module, profile zone and `docs/step.md` use the same
+//! names.
 
 /// A stage of the step, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Stage {
-    /// Broad phase: candidate shape pairs.
+    /// Broad phase: finds candidate shape pairs.
     Pairs,
-    /// Narrow phase: manifolds of near shapes.
+    /// Narrow phase: computes manifolds of near shapes.
     Collide,
-    /// Begin and end of touches; waking.
+    /// Finds the begin and end of touches; wakes bodies.
     Touch,
-    /// Islands: connected bodies.
+    /// Finds the islands of connected bodies.
     Islands,
     /// Determines the order in which an island's contacts are solved.
     Color,
-    /// Bodies that nothing touches or holds.
+    /// Steps bodies without contacts and joints.
     Flight,
     /// Converts bodies, joints and contacts to the solver's own arrays.
     Prepare,
-    /// Forces to velocities.
+    /// Applies forces to velocities.
     IntegrateVelocity,
-    /// Last substep's contact and limit impulses.
+    /// Applies the contact and limit impulses of the last substep.
     WarmStart,
-    /// Joints exactly, contacts and limits with bias.
+    /// Solves joints exactly, contacts and limits with bias.
     Solve,
-    /// Velocities to poses.
+    /// Applies velocities to poses.
     IntegratePosition,
-    /// Particles against constraints and shapes.
+    /// Moves particles according to their constraints and shapes.
     Project,
-    /// Joints, contacts and limits without bias; friction.
+    /// Solves joints, contacts and limits without bias, and friction.
     Relax,
-    /// Bounce of bodies hit in the substep.
+    /// Bounces bodies hit in the substep.
     Restitution,
-    /// Impulses stored for the next step.
+    /// Stores impulses for the next step.
     Store,
-    /// Bodies take their new state; numeric trouble is quarantined.
+    /// Writes the new state to the bodies; quarantines non-finite bodies.
     Finalize,
     /// Stops fast bodies that would pass through static ones.
     Continuous,
-    /// Islands at rest fall asleep.
+    /// Puts islands at rest to sleep.
     Sleep,
-    /// Sensor overlaps.
+    /// Reports sensor overlaps.
     Sensors,
-    /// Character movers, among bodies at their new poses.
+    /// Moves character movers among bodies at their new poses.
     Movers,
 }
 
-/// Quantity that a step counts for a [`Profiler`] that requests it. From [`Bodies`](Self::Bodies) on each is reported
-/// once per island by the thread that solves it, `Bodies` first; a free-flying body only has
-/// [`BodySubsteps`](Self::BodySubsteps) after it.
+/// Quantity that a step counts for a [`Profiler`] that requests it. [`Bodies`](Self::Bodies) and the quantities after
+/// it are reported once per island by the thread that solves it, `Bodies` first. A free-flying body only has
+/// [`BodySubsteps`](Self::BodySubsteps) after that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Counter {
     /// Shapes of all bodies, awake or not.
     Shapes,
-    /// Pairs of near shapes of which one is awake.
+    /// Pairs of near shapes, at least one of them awake.
     Pairs,
-    /// Pairs of near shapes, one of them awake, that have contact points.
+    /// Pairs of near shapes, at least one of them awake, that have contact points.
     PairsWithPoints,
     /// Moving bodies of an island: one call per island.
     Bodies,
@@ -67,42 +67,42 @@ pub enum Counter {
     Joints,
     /// Contacts that an island solves.
     Manifolds,
-    /// Points of these contacts.
+    /// Points of the contacts that an island solves.
     Points,
     /// Rows of joint limits in the island's last substep.
     LimitRows,
-    /// Manifolds and limit rows of a pass, once per substep: the work of one sweep.
+    /// Manifolds and limit rows of a pass, once per substep: the rows of one sweep.
     PassRows,
-    /// Rows that all sweeps of `solve` went through: over `PassRows`, it is the sweeps of a pass.
+    /// Rows that all sweeps of `solve` visited. Divided by `PassRows`, this is the number of sweeps of a pass.
     SolveRows,
-    /// Rows that all sweeps of `relax` went through.
+    /// Rows that all sweeps of `relax` visited.
     RelaxRows,
-    /// Rows that sweeps solved, over all passes: inactive rows were only visited.
+    /// Rows that sweeps solved, over all passes; inactive rows are only visited.
     Visits,
-    /// Used bytes of the solver's arrays for the island: more than the cache holds comes from memory.
+    /// Used bytes of the solver's arrays for the island. If they exceed the cache, the rest is read from memory.
     ResidentBytes,
-    /// Bytes of these that the step accessed: all of them in `prepare`, twice in each substep (poses change) and in
-    /// `store`, and for each solved row the row and the velocities of its two bodies. Excludes what sweeps write to
-    /// other bodies of a tree.
+    /// Bytes of these arrays that the step accessed: all of them in `prepare`, twice in each substep (poses change) and
+    /// in `store`, and for each solved row the row and the velocities of its two bodies. Excludes the writes of sweeps
+    /// to other bodies of a tree.
     TouchedBytes,
 }
 
-/// Receives stage times and counts from the step: the library reads no clock itself. Stages inside an island are reported
+/// Receives stage times and counts from the step: the library itself reads no clock. Stages inside an island are reported
 /// by the thread that runs it.
 pub trait Profiler: Sync {
-    /// A stage starts.
+    /// Starts a stage.
     fn begin(&self, stage: Stage);
-    /// The stage last started on this thread ends.
+    /// Ends the stage last started on this thread.
     fn end(&self, stage: Stage);
-    /// True if it requests counts; else none are made.
+    /// True if the profiler requests counts; otherwise the step counts nothing.
     fn is_counting(&self) -> bool {
         false
     }
-    /// Adds `by` to a quantity of this step; only called for a counting profiler.
+    /// Adds `by` to a quantity of this step. The step calls this only for a counting profiler.
     fn count(&self, _counter: Counter, _by: u64) {}
 }
 
-/// Measures nothing.
+/// A profiler that measures nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoProfiler;
 

@@ -26,7 +26,7 @@ impl World {
         self.check_contacts();
     }
 
-    /// Panics unless the rings are the sets of sleeping bodies with the same island number.
+    /// Panics unless each ring contains exactly the sleeping bodies with one island number.
     fn check_rings(&self) {
         let mut islands: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
         for (index, body) in self.bodies.iter() {
@@ -43,7 +43,8 @@ impl World {
         }
     }
 
-    /// Each contact is in exactly one list, the step's list is ordered, and contacts put aside cannot change.
+    /// Panics unless each contact is in exactly one list, the step's list is ordered, and stored sleeping contacts
+    /// cannot change.
     fn check_contacts(&self) {
         assert!(self.contacts.is_sorted_by(|p, q| p.key < q.key));
         let keys: BTreeSet<ContactKey> = self.contacts_in_order().map(|contact| contact.key).collect();

@@ -1,4 +1,4 @@
-//! Wakes sleeping particle groups, and the bodies that hang on them.
+//! Wakes sleeping particle groups, and the bodies that fell asleep with them.
 
 use super::Activity;
 use crate::arena::Arena;
@@ -10,8 +10,8 @@ use core::ops::ControlFlow;
 use sinew_math::{Vec3, max, normalize_or};
 
 impl Activity {
-    /// Wakes sleeping groups that something approaches or pulls, or that must not sleep; bodies that sleep with a woken
-    /// group; and bodies that rested on removed particles.
+    /// Wakes sleeping groups that a body approaches or a field pulls, or that must not sleep; bodies that sleep with a
+    /// woken group; and bodies that rested on removed particles.
     pub fn wake_groups(
         &mut self,
         bodies: &mut Arena<Body>,
@@ -58,7 +58,7 @@ impl Activity {
         });
     }
 
-    /// Longest path of any point of a body in a step, metres.
+    /// Longest path of any point of an active or kinematic body in a step, metres.
     fn longest_way(&self, bodies: &Arena<Body>, dt: f32) -> f32 {
         self.movers().fold(0.0, |most, index| max(most, bodies.at(index).fastest_point() * dt))
     }
@@ -88,18 +88,18 @@ fn is_disturbed(group: &ParticleGroup, bodies: &Arena<Body>, proxies: &Proxies, 
     pulls || proxies.overlapping(&bed.bounds.expand(way), near).is_break()
 }
 
-/// True if a body sleeps under that number.
+/// True if the body sleeps in the island with number `island`.
 fn sleeps_in(bodies: &Arena<Body>, index: u32, island: u32) -> bool {
     bodies.try_at(index).is_some_and(|body| body.rest == Rest::Asleep { island })
 }
 
-/// A body that fell asleep with a group and sleeps on.
+/// Index of a body that fell asleep with a group and still sleeps.
 pub(crate) fn sleeping_partner(bodies: &Arena<Body>, group: &ParticleGroup) -> Option<u32> {
     let island = group.slept_with()?;
     group.partner().filter(|&index| sleeps_in(bodies, index, island))
 }
 
-/// Wakes a sleeping group if the bodies that it fell asleep with are awake.
+/// Wakes a sleeping group if the bodies that fell asleep with the group are awake.
 pub(crate) fn follow(bodies: &Arena<Body>, group: &mut ParticleGroup) {
     if group.partner().is_some() && sleeping_partner(bodies, group).is_none() {
         group.get_up();

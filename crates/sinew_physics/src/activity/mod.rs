@@ -1,7 +1,7 @@
 //! Bookkeeping of awake and sleeping bodies and their islands, so that a step visits awake ones only.
 //!
-//! All of it derives from the bodies and contacts and is not part of the state: a world with rebuilt bookkeeping has
-//! the same future.
+//! All of the bookkeeping derives from the bodies and contacts and is not part of the state: a world with rebuilt
+//! bookkeeping has the same future.
 
 #[cfg(test)]
 mod check;
@@ -25,12 +25,12 @@ use sinew_math::Transform;
 use sleeping_contacts::SleepingContacts;
 use slot_set::SlotSet;
 
-/// Awake bodies, the contacts put aside, and the particles' links.
+/// Active bodies, the bodies of each sleeping island, the contacts of sleeping bodies, and the joints of each body.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Activity {
     pub joints_of: Incidence,
     active: SlotSet,
-    /// Ascending.
+    /// Indices of the kinematic bodies, ascending.
     kinematic: Vec<u32>,
     /// The next body of the same sleeping island, as a ring, by slot.
     next: Vec<u32>,
@@ -41,7 +41,7 @@ pub(crate) struct Activity {
 }
 
 impl Activity {
-    /// Bookkeeping of a world whose contacts are all in its own list.
+    /// Bookkeeping of a world that has all contacts in its own list.
     pub fn new(bodies: &Arena<Body>, joints: &Arena<Joint>) -> Self {
         let mut activity = Self { joints_of: Incidence::new(joints), ..Self::default() };
         let mut sleepers = Vec::new();
@@ -58,7 +58,7 @@ impl Activity {
         activity
     }
 
-    /// Bodies that forces move, ascending.
+    /// Active bodies, ascending.
     pub fn active(&self) -> impl Iterator<Item = u32> {
         self.active.iter()
     }
@@ -75,7 +75,7 @@ impl Activity {
         core::iter::successors(Some(index), next).skip(1)
     }
 
-    /// All movable bodies: both sets, each body once.
+    /// Active and kinematic bodies, each once.
     pub fn movers(&self) -> impl Iterator<Item = u32> {
         self.active().chain(self.kinematic.iter().copied())
     }
@@ -101,12 +101,12 @@ impl Activity {
         self.add(index, body);
     }
 
-    /// Records if a body is active.
+    /// Records whether a body is active.
     pub fn note(&mut self, index: u32, body: &Body) {
         self.active.set(index, body.is_active());
     }
 
-    /// Removes a body; returns its contacts in unspecified order.
+    /// Removes a body; passes its contacts outside the world's list to `part_with`, in unspecified order.
     pub fn remove(&mut self, index: u32, mut part_with: impl FnMut(Contact)) {
         self.active.set(index, false);
         self.kinematic.retain(|&other| other != index);
@@ -114,12 +114,13 @@ impl Activity {
         self.drop_returned(|contact| contact.key.has(index), part_with);
     }
 
-    /// Removes contacts from those recalled since the last step.
+    /// Removes contacts for which `goes` is true from those that returned since the last step; passes them to
+    /// `part_with`.
     pub fn drop_returned(&mut self, mut goes: impl FnMut(&Contact) -> bool, part_with: impl FnMut(Contact)) {
         self.returned.extract_if(.., |contact| goes(contact)).for_each(part_with);
     }
 
-    /// Wakes a body that sleeps, and everything it fell asleep with.
+    /// Wakes a sleeping body and all bodies of its sleeping island.
     pub fn wake(&mut self, bodies: &mut Arena<Body>, index: u32) {
         if bodies.at(index).is_awake() {
             return;
@@ -143,7 +144,7 @@ impl Activity {
         bodies.at_mut(index).disturb();
     }
 
-    /// Wakes bodies that particles hit: particles that rest on a sleeper are too slow to wake it.
+    /// Wakes bodies that particles hit; particles that rest on a sleeping body are too slow to wake it.
     pub fn wake_struck(
         &mut self,
         bodies: &mut Arena<Body>,
@@ -162,7 +163,7 @@ impl Activity {
         }
     }
 
-    /// Wakes sleeping bodies with a shape within the bounds that a group collides with according to `meets`.
+    /// Wakes sleeping bodies with a shape within `bounds` that the group collides with and for which `meets` is true.
     fn wake_met(
         &mut self,
         bodies: &mut Arena<Body>,
@@ -203,28 +204,28 @@ impl Activity {
         }
     }
 
-    /// A contact that cannot change until one of its bodies wakes or starts moving.
+    /// Stores a contact that cannot change until one of its bodies wakes or starts moving.
     pub fn put_aside(&mut self, contact: Contact) {
         self.aside.put(contact);
     }
 
-    /// A body can collide again: its contacts take part in the next step.
+    /// Returns the contacts of a body that can collide again: they take part in the next step.
     pub fn recall(&mut self, index: u32) {
         self.aside.take(index, |contact| self.returned.push(contact));
     }
 
-    /// Contacts that were recalled since the last step.
+    /// Contacts that returned since the last step.
     pub fn returned_mut(&mut self) -> impl Iterator<Item = &mut Contact> {
         self.returned.iter_mut()
     }
 
-    /// Merges contacts that were recalled with those of the step, which are in order of their keys.
+    /// Merges the returned contacts with those of the step, which are sorted by key.
     pub fn return_contacts(&mut self, contacts: &mut Vec<Contact>) {
         self.returned.sort_unstable_by_key(|contact| contact.key);
         bear(contacts, &mut self.returned);
     }
 
-    /// The contacts of a body that are not in the world's list, in no order that means anything.
+    /// Contacts of a body that are not in the world's list, in unspecified order.
     pub fn contacts_of(&self, body: u32) -> impl Iterator<Item = &Contact> {
         let returned = self.returned.iter().filter(move |contact| contact.key.has(body));
         self.aside.of(body).chain(returned)

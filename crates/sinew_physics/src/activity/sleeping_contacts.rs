@@ -2,8 +2,8 @@
 
 use crate::contact::{Contact, ContactKey};
 
-/// Contacts between two bodies that both sleep or never move. Each is in the lists of both bodies, so that a change of
-/// either finds and removes it.
+/// Contacts between two bodies that both sleep or never move. Each contact is in the lists of both bodies, so that a
+/// change of either body finds and removes it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SleepingContacts {
     links: Vec<Link>,
@@ -16,14 +16,14 @@ pub(crate) struct SleepingContacts {
 struct Link {
     /// `None` if the link is free.
     contact: Option<Contact>,
-    /// Neighbours in the lists of bodies A and B.
+    /// Previous links in the lists of bodies A and B.
     before: [u32; 2],
     after: [u32; 2],
 }
 
 const NONE: u32 = u32::MAX;
 
-/// Side of the contact that a body is on: 0 for A, 1 for B.
+/// Side of a body in the contact: 0 for A, 1 for B.
 fn side(key: ContactKey, body: u32) -> usize {
     usize::from(key.b == body)
 }
@@ -60,21 +60,21 @@ impl SleepingContacts {
         }
     }
 
-    /// Removes all contacts of a body.
+    /// Removes all contacts of a body and passes them to `each`.
     pub fn take(&mut self, body: u32, mut each: impl FnMut(Contact)) {
         while self.first[body as usize] != NONE {
             each(self.unlink(self.first[body as usize]));
         }
     }
 
-    /// The contacts of a body, in no order that means anything.
+    /// Contacts of a body, in unspecified order.
     pub fn of(&self, body: u32) -> impl Iterator<Item = &Contact> {
         let at = |at: u32| (at != NONE).then(|| &self.links[at as usize]);
         let next = move |link: &&Link| at(link.after[side(link.key(), body)]);
         core::iter::successors(at(self.first[body as usize]), next).filter_map(|link| link.contact.as_ref())
     }
 
-    /// Removes all contacts.
+    /// All contacts, in unspecified order.
     pub fn iter(&self) -> impl Iterator<Item = &Contact> {
         self.links.iter().filter_map(|link| link.contact.as_ref())
     }

@@ -1,7 +1,7 @@
 //! Sets of slots of an arena.
 
-/// One bit per slot, so that iteration is in ascending order, and a second level of bits over the words of the first,
-/// so that visiting a few members among a million slots is cheap.
+/// Set of slots with one bit per slot, so that iteration is in ascending order. A second level of bits over the words
+/// of the first makes visiting a few members among a million slots cheap.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SlotSet {
     members: Vec<u64>,
@@ -41,7 +41,7 @@ fn set_bit(bits: &mut u64, bit: u32, on: bool) {
     *bits = *bits & !(1 << bit) | u64::from(on) << bit;
 }
 
-/// The positions of the set bits, starting at `first`.
+/// Positions of the set bits, counted from `first`.
 fn ones(first: u32, mut bits: u64) -> impl Iterator<Item = u32> {
     core::iter::from_fn(move || {
         let place = (bits != 0).then(|| first + bits.trailing_zeros());

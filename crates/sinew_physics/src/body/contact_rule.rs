@@ -1,4 +1,4 @@
-//! Rules applied to a shape's contacts before solving: push, ignore, or modify.
+//! Rules applied to a shape's contacts before solving: push, ignore or modify.
 
 use crate::body::Velocity;
 use crate::body::material::{ContactMaterial, Material};
@@ -12,17 +12,17 @@ use sinew_math::{Vec3, normalize_or};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(alias = "one-way platform")]
 pub enum ContactRule {
-    /// They push. Default.
+    /// Contacts push. Default.
     #[default]
     Push,
     /// Contacts are reported but do not push.
     Ghost,
     /// Contacts push from one side only.
     OneWay(OneWay),
-    /// While the body is kinematic, its contacts push with limited force: for bodies moved by a clip. Movers pass
-    /// through.
+    /// While the body is kinematic, its contacts push with limited force: for bodies moved by an animation clip. Movers
+    /// pass through.
     Yields(Yields),
-    /// A user function decides.
+    /// A user function decides on each contact.
     Modified {
         /// Number of the modifier, as [registered](crate::World::register_modifier).
         modifier: u32,
@@ -33,7 +33,7 @@ impl ContactRule {
     /// Checks that the numbers of the rule are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// The problem, in lower case.
+    /// Names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         match self {
             Self::OneWay(one_way) => one_way.check(),
@@ -54,7 +54,7 @@ pub struct OneWay {
     /// Direction from the platform to the bodies it holds up, in the shape's frame; non-zero, of any length. Default
     /// +y.
     pub direction: Vec3,
-    /// Largest angle between the contact's normal and that direction with which the contact is solid, radians, 0 to π.
+    /// Largest angle between the contact's normal and that direction at which the contact is solid, radians, 0 to π.
     /// Default 45°.
     pub tolerance: f32,
 }
@@ -80,13 +80,13 @@ impl OneWay {
         Ok(())
     }
 
-    /// True if it is solid against a body in direction `normal` from it, in its frame.
+    /// True if the platform is solid against a body in direction `normal` from the platform, in its frame.
     pub(crate) fn holds(&self, normal: Vec3) -> bool {
         normalize_or(self.direction, Vec3::Y).dot(normal) >= sinew_math::trig::cos(self.tolerance)
     }
 }
 
-/// Limits on the effect of a kinematic body on dynamic ones. Beyond them the two pass through each other until they are
+/// Limits on the effect of a kinematic body on dynamic ones. Beyond the limits the two bodies pass through each other until they are
 /// separate. On a dynamic body this rule has no effect.
 ///
 /// A hand stops a flying object and throws it back, kicks a ball, and passes through a crate of 50 kg.
@@ -94,11 +94,11 @@ impl OneWay {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct Yields {
-    /// Largest force with which it pushes a body that does not approach by itself, N: averaged over a step, as if that
-    /// body were free. Default 150.
+    /// Largest force on a body that does not approach by itself, N: averaged over a step, as if that body were free.
+    /// Default 150.
     #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub max_force: f32,
-    /// Largest momentum of an approaching body that it stops, N·s. Default 60.
+    /// Largest momentum of an approaching body that the kinematic body stops, N·s. Default 60.
     #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub max_impulse: f32,
 }
@@ -124,24 +124,24 @@ impl Yields {
 /// One side of a contact, as passed to a modifier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSide {
-    /// The shape.
+    /// Shape on this side of the contact.
     pub shape: ShapeId,
-    /// The user data of its body.
+    /// User data of the shape's body.
     pub user_data: u64,
     /// Material of the shape.
     pub material: Material,
-    /// Velocity of its body, world axes.
+    /// Velocity of the shape's body, world axes.
     pub velocity: Velocity,
-    /// Centre of mass of its body, world, metres.
+    /// Centre of mass of the shape's body, world, metres.
     pub center: Vec3,
 }
 
 /// A contact as passed to a modifier, at the step's start.
 #[derive(Clone, Copy, Debug)]
 pub struct FoundContact<'a> {
-    /// The two sides; the one with the smaller body index is first.
+    /// Sides of the contact; the one with the smaller body index is first.
     pub sides: [ContactSide; 2],
-    /// Normal from the first to the second, unit length, world axes.
+    /// Normal from the first side to the second, unit length, world axes.
     pub normal: Vec3,
     /// Points of the contact, at least one.
     pub points: &'a [ManifoldPoint],
@@ -149,10 +149,10 @@ pub struct FoundContact<'a> {
     pub step: u64,
 }
 
-/// Function that sets the material of a contact, given the combined one; `None`: no push in this step.
+/// Function that sets the material of a contact, given the combined material; `None` disables the push in this step.
 ///
-/// A pure function of its arguments, so that a snapshot contains everything that decides. A function pointer instead of
-/// a closure, because it must not have state. For the same bits everywhere it must use only `+ − × ÷ √` and
-/// `sinew_math`. It is called in the order of contacts, once for each side that uses it, the first side first. An
+/// The function must be pure, so that a snapshot determines the future. The type is a function pointer instead of a
+/// closure, because the function must not have state. For the same bits everywhere it must use only `+ − × ÷ √` and
+/// `sinew_math`. The step calls it in the order of contacts, once for each side that uses it, the first side first. An
 /// invalid material (negative, not finite) is ignored.
 pub type ContactModifier = fn(&FoundContact<'_>, ContactMaterial) -> Option<ContactMaterial>;

@@ -10,7 +10,7 @@ use sinew_math::{Rotation, Vec3};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct WorldDef {
-    /// m/s². Default (0, −9.81, 0).
+    /// Gravity, m/s². Default (0, −9.81, 0).
     pub gravity: Vec3,
     /// Length of one step in integer nanoseconds, which avoids drift. Default 1/60 s (16 666 667 ns).
     pub step_nanoseconds: u64,
@@ -21,11 +21,11 @@ pub struct WorldDef {
     /// Most steps per [`World::update`](crate::World::update), at least 1, so that a delayed host, or steps that take
     /// longer than they simulate, cannot cause ever longer frames. Default 15, a quarter of a second of default steps.
     pub catch_up_steps: u32,
-    /// Bodies may fall asleep. Default yes.
+    /// Permission for bodies to fall asleep. Default yes.
     pub sleeping: Sleeping,
     /// Thresholds of motion below which an island is at rest.
     pub sleep_thresholds: SleepThresholds,
-    /// Largest speed of a body, m/s: enforced when forces act, before joints and contacts. Default 4,000.
+    /// Largest speed of a body, m/s. Enforced when forces act, before joints and contacts. Default 4,000.
     pub max_speed: f32,
     /// Largest rotation of a body per substep, radians. Beyond a quarter turn (the default, 377 rad/s at 1/60 s and 4
     /// substeps) rows linearised at the substep's start are meaningless; a top may spin faster.
@@ -43,10 +43,10 @@ pub struct WorldDef {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quality {
-    /// Half of the world's substeps unless masses differ by more than 100 or something spins fast, and half of the sweeps: for crowds in
-    /// the distance.
+    /// Half of the world's substeps unless masses differ by more than a factor of 100 or a body spins fast, and half of
+    /// the sweeps: for crowds in the distance.
     Fast,
-    /// Half of the world's substeps where many contacts damp all motion, else all of them.
+    /// Half of the world's substeps where many contacts damp all motion, otherwise all of them.
     #[default]
     Balanced,
     /// Twice the world's substeps and twice the sweeps: for films, robots and measurements.
@@ -70,7 +70,7 @@ pub enum Sleeping {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct SleepThresholds {
-    /// Seconds, not negative. Default 0.5.
+    /// Duration for which each body must stay in place, seconds, not negative. Default 0.5.
     pub time: f32,
     /// Distance from the position at the start of that time, metres, positive. Default 0.003: with the time, bodies
     /// that creep faster than 12 mm/s stay awake.
@@ -106,7 +106,7 @@ impl Default for WorldDef {
     }
 }
 
-/// Nanoseconds.
+/// Longest step, nanoseconds.
 const LONGEST_STEP: u64 = 1_000_000_000_000_000_000;
 const MOST_SUBSTEPS: u32 = 1024;
 
@@ -114,7 +114,7 @@ impl WorldDef {
     /// Checks that the numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// The problem, in lower case.
+    /// Names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         // This form rejects NaN.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
@@ -158,11 +158,11 @@ impl WorldDef {
 #[doc(alias = "RigidBodyType")]
 #[doc(alias = "MotionType")]
 pub enum BodyKind {
-    /// Moved by nothing.
+    /// Never moves.
     Static,
     /// Moves according to its velocity; contacts and forces do not affect it.
     Kinematic,
-    /// Moved by forces.
+    /// Moves according to forces, contacts and joints.
     Dynamic,
 }
 
@@ -177,15 +177,15 @@ pub struct BodyDef {
     pub kind: BodyKind,
     /// World position of the body's origin (not its centre of mass), metres.
     pub position: Vec3,
-    /// World orientation.
+    /// Orientation, body to world.
     pub rotation: Rotation,
     /// Velocity of the centre of mass, m/s, world axes; ignored for a static body.
     pub linear_velocity: Vec3,
     /// Angular velocity, rad/s, world axes; ignored for a static body.
     pub angular_velocity: Vec3,
-    /// 1/s: share of linear velocity lost per second. Default 0.
+    /// Share of linear velocity lost per second, 1/s. Default 0.
     pub linear_damping: f32,
-    /// 1/s. Default 0.
+    /// Share of angular velocity lost per second, 1/s. Default 0.
     pub angular_damping: f32,
     /// Factor on the world's gravity. Default 1.
     pub gravity_scale: f32,
@@ -221,9 +221,9 @@ impl Default for BodyDef {
     }
 }
 
-/// Shorthand constructors: `BodyDef::dynamic(shape).at(position)`. All else is fields.
+/// Shorthand constructors: `BodyDef::dynamic(shape).at(position)`. All other settings are fields.
 impl BodyDef {
-    /// One that forces move, of one shape, at the world's origin.
+    /// A dynamic body of one shape, at the world's origin.
     pub fn dynamic(shape: impl Into<ShapeDef>) -> Self {
         Self { shapes: vec![shape.into()], ..Self::default() }
     }
@@ -233,26 +233,26 @@ impl BodyDef {
         Self { kind: BodyKind::Kinematic, ..Self::dynamic(shape) }
     }
 
-    /// A static body with this box. One for each of [`Cooked::boxes`](crate::cook::Cooked) makes a level. The broad
-    /// phase stores shapes individually, so one body per box costs nothing extra, and every query about a body
+    /// A static body of one box. One such body for each of [`Cooked::boxes`](crate::cook::Cooked) makes a level. The
+    /// broad phase stores shapes individually, so one body per box costs nothing extra, and every query about a body
     /// (overlap, neighbours, events) then concerns a single box.
     pub fn fixed_box(obb: &Obb) -> Self {
         let shape = Shape::Box { half_extents: obb.half_extents };
         Self { position: obb.center, rotation: obb.rotation, ..Self::fixed(shape) }
     }
 
-    /// A static one, of one shape, at the world's origin.
+    /// A static body of one shape, at the world's origin.
     pub fn fixed(shape: impl Into<ShapeDef>) -> Self {
         Self { kind: BodyKind::Static, ..Self::dynamic(shape) }
     }
 
-    /// Sets the position of its origin (world, metres).
+    /// Sets the position of the body's origin (world, metres).
     #[must_use]
     pub fn at(self, position: Vec3) -> Self {
         Self { position, ..self }
     }
 
-    /// Sets its orientation in the world.
+    /// Sets the body's orientation in the world.
     #[must_use]
     pub fn turned(self, rotation: Rotation) -> Self {
         Self { rotation, ..self }

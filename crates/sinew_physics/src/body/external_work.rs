@@ -1,6 +1,6 @@
 //! Energy added to a world within a step by motors and kinematic bodies.
 
-/// Work done on dynamic bodies within a step, J; negative if energy is removed.
+/// Work of motors, kinematic bodies and movers on dynamic bodies within a step, J; negative if energy is removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     /// Work of the motors of joints, pins included.
@@ -12,7 +12,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// Total, J.
+    /// Sum of all three, J.
     pub fn total(self) -> f32 {
         self.drives + self.kinematic + self.movers
     }

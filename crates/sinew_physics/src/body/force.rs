@@ -1,4 +1,4 @@
-//! Forces, torques and impulses applied by the user: for one step, until changed, or at once.
+//! Forces, torques and impulses applied by the user: for one step, until changed, or as an instant impulse.
 //!
 //! World axes and SI units unless stated otherwise. A force `F` at a point `p` accelerates the centre of mass `c` as if
 //! it acted there, and also rotates the body: `a = F/m`, `τ = (p − c) × F`, `α = I⁻¹ τ` (Newton, Euler). Forces add up.
@@ -11,13 +11,13 @@ use sinew_math::{ReadError, Reader, Transform, Vec3, Writer, max, min};
 /// Force and torque about the centre of mass, world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
-    /// N.
+    /// Force, N.
     pub force: Vec3,
-    /// N·m.
+    /// Torque, N·m.
     pub torque: Vec3,
 }
 
-/// Axes that a lasting force is given in.
+/// Axes in which a lasting force is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ForceFrame {
@@ -33,9 +33,9 @@ pub enum ForceFrame {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct ForceDef {
-    /// N, in the axes of `frame`.
+    /// Force, N, in the axes of `frame`.
     pub force: Vec3,
-    /// N·m, in the axes of `frame`, in addition to the torque from `force` at `point`.
+    /// Torque, N·m, in the axes of `frame`, in addition to the torque from `force` at `point`.
     pub torque: Vec3,
     /// Point at which `force` acts, metres in the body's frame. `None`, the default: the centre of mass.
     pub point: Option<Vec3>,
@@ -61,20 +61,20 @@ impl ForceId {
         Self { body, number }
     }
 
-    /// The body that it acts on.
+    /// Body that the force acts on.
     pub fn body(self) -> BodyId {
         self.body
     }
 }
 
-/// Bytes of the shortest force.
+/// Bytes of the shortest force in a snapshot.
 const FORCE_BYTES: usize = 4 + 12 + 12 + 1 + 1;
 
-/// The lasting forces of a body, by the number of their ids, ascending.
+/// Lasting forces of a body, ascending by the number in their ids.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BodyForces {
     pub list: Vec<(u32, ForceDef)>,
-    /// Number of the next one.
+    /// Number of the next force.
     pub next: u32,
 }
 
@@ -115,7 +115,8 @@ impl BodyForces {
         place.unwrap_or_else(|_| panic!("{id:?} is not there"))
     }
 
-    /// Sum of the forces in the given pose of the body's principal frame.
+    /// Sum of the forces and of their torques about the centre of mass, for the given pose of the body's principal
+    /// frame.
     pub fn sum(&self, body: &Body, world_from_principal: Transform) -> Wrench {
         let mut sum = Wrench::default();
         let world_from_body = world_from_principal.rotation * body.principal_from_body.rotation;
@@ -136,10 +137,10 @@ impl BodyForces {
     }
 }
 
-/// Change of a velocity by an impulse; an overflowing change keeps its direction, and the next step limits the speed to
+/// Change of a velocity by an impulse. An overflowing change keeps its direction, and the next step limits the speed to
 /// the world's maximum.
 pub(crate) fn finite_change(impulse: Vec3, change: impl Fn(Vec3) -> Vec3) -> Vec3 {
-    // Beyond the first, products with arms and inverse masses may overflow; beyond the second, squares of sums may.
+    // Beyond `HUGE`, products with arms and inverse masses may overflow; beyond `MOST`, squares of sums may.
     const HUGE: f32 = 1e15;
     const MOST: f32 = 1e30;
     const SCALE: f32 = 1e-20;

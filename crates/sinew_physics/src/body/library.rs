@@ -1,7 +1,7 @@
-//! The library: every shape with data that the world was given, by content hash (ADR 0014).
+//! Library of all shapes with data that the world was given, by content hash (ADR 0014).
 //!
-//! A snapshot references such a shape by kind and hash and looks it up here on restore, which keeps it small and fast.
-//! [`World::save_shapes`](crate::World::save_shapes) transfers the library to another process.
+//! A snapshot references such a shape by kind and hash, and a restore finds the shape here, which keeps snapshots small
+//! and fast. [`World::save_shapes`](crate::World::save_shapes) transfers the library to another process.
 
 use crate::body::shape::Shape;
 use core::fmt;
@@ -9,7 +9,7 @@ use sinew_geometry::DataKind;
 use sinew_math::{ReadError, Reader, Writer};
 use std::collections::BTreeMap;
 
-/// First bytes of a written library; the last is its version.
+/// First bytes of a written library; the last of them is the version.
 pub(crate) const MAGIC: &[u8; 8] = b"sinew-s\x01";
 /// Bytes of the smallest entry: its kind and the length of its data.
 pub(crate) const ENTRY_BYTES: usize = 5;
@@ -22,11 +22,11 @@ pub enum LoadError {
     /// The snapshot references a shape that this world was never given: see
     /// [`World::load_shapes`](crate::World::load_shapes).
     UnknownShape {
-        /// Offset of the hash.
+        /// Offset of the hash in the bytes, bytes.
         at: usize,
-        /// Kind of data that it should be.
+        /// Expected kind of data.
         kind: DataKind,
-        /// Hash of its content.
+        /// Hash of the shape's content.
         hash: u64,
     },
 }
@@ -57,7 +57,7 @@ impl core::error::Error for LoadError {
     }
 }
 
-/// Shapes with data by their content hash. It only grows: a state that is loaded later may name any of them.
+/// Shapes with data by their content hash. Shapes are never removed: a state that is loaded later may reference any.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ShapeLibrary {
     pub shapes: BTreeMap<u64, Shape>,
@@ -75,10 +75,10 @@ impl ShapeLibrary {
         }
     }
 
-    /// The shape whose hash follows in the bytes.
+    /// Reads a hash and returns its shape.
     ///
     /// # Errors
-    /// If the world was never given it.
+    /// If the world was never given such a shape.
     pub fn find(&self, r: &mut Reader<'_>, kind: DataKind) -> Result<Shape, LoadError> {
         let (at, hash) = (r.position(), r.u64()?);
         let found = self.shapes.get(&hash).filter(|shape| shape.data_kind() == Some(kind));

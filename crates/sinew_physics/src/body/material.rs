@@ -1,9 +1,9 @@
-//! Materials of surfaces, and how those of two shapes combine.
+//! Materials of surfaces, and rules that combine the materials of two shapes.
 
 use sinew_geometry::DefError;
 use sinew_math::{Vec3, max, min};
 
-/// Material of a shape: how it rubs, bounces and moves along.
+/// Material of a shape: friction, restitution, rolling resistance and surface velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -12,27 +12,27 @@ use sinew_math::{Vec3, max, min};
 #[doc(alias = "restitution")]
 #[doc(alias = "bounciness")]
 pub struct Material {
-    /// Coulomb coefficient of sliding, ≥ 0. Default 0.6.
+    /// Coulomb coefficient of sliding friction, ≥ 0. Default 0.6.
     pub friction: f32,
-    /// Static friction coefficient, at least `friction`. `None`, the default: the same.
+    /// Static friction coefficient, at least `friction`. `None`, the default: equal to `friction`.
     pub static_friction: Option<f32>,
-    /// Share of the approach speed given back, 0..=1. Default 0.
+    /// Coefficient of restitution: ratio of separation speed to approach speed, 0..=1. Default 0.
     pub restitution: f32,
-    /// Rolling resistance: lever of the resisting torque, metres. Default 0.
+    /// Rolling resistance: lever arm of the resisting torque, metres. Default 0.
     pub rolling: f32,
     /// Velocity of the surface relative to its body, m/s in the shape's frame: a conveyor, a moving walkway. Friction
     /// carries bodies along; the normal component has no effect. Default 0.
     pub surface_velocity: Vec3,
     /// Angular velocity of the surface about the shape's origin, rad/s in the shape's frame: a turntable. Default 0.
     pub surface_spin: Vec3,
-    /// Rules for combining it with the other side's material.
+    /// Rules that combine this material with that of the other shape.
     pub combine: CombineRules,
-    /// User data: what it is made of, for example for sounds. Default 0.
+    /// User data, for example the substance for sounds. Default 0.
     pub tag: u32,
 }
 
 impl Material {
-    /// Friction 0.6, nothing else.
+    /// Material with friction 0.6 and all else zero.
     pub const DEFAULT: Self = Self {
         friction: 0.6,
         static_friction: None,
@@ -47,7 +47,7 @@ impl Material {
     /// Checks that the numbers of the material are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// The problem, in lower case.
+    /// Names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         // This form rejects NaN.
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
@@ -69,7 +69,7 @@ impl Material {
         self.static_friction.unwrap_or(self.friction)
     }
 
-    /// True if its surface moves along its body.
+    /// True if the surface moves relative to its body.
     pub(crate) fn runs(&self) -> bool {
         self.surface_velocity != Vec3::ZERO || self.surface_spin != Vec3::ZERO
     }
@@ -90,11 +90,11 @@ pub enum Combine {
     Average,
     /// `√(a b)`.
     GeometricMean,
-    /// The smaller.
+    /// `min(a, b)`.
     Minimum,
     /// `a b`.
     Multiply,
-    /// The larger.
+    /// `max(a, b)`.
     Maximum,
 }
 
@@ -110,7 +110,7 @@ impl Combine {
     }
 }
 
-/// Rules requested by a surface. `None`, the default, leaves the choice to the other side.
+/// Combination rules of a surface. `None`, the default, leaves the choice to the other surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -124,9 +124,9 @@ pub struct CombineRules {
 }
 
 impl CombineRules {
-    /// The rules of a pair.
+    /// Combines the rules of a pair: friction, restitution, rolling.
     fn with(self, other: Self) -> [Combine; 3] {
-        // Nothing is less than something.
+        // `None` is less than every rule.
         let later = |a: Option<Combine>, b: Option<Combine>, default| Option::max(a, b).unwrap_or(default);
         [
             later(self.friction, other.friction, Combine::GeometricMean),
@@ -139,21 +139,21 @@ impl CombineRules {
 /// Material of a contact: the combination of two materials.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactMaterial {
-    /// Coulomb coefficient of sliding.
+    /// Coulomb coefficient of sliding friction.
     pub friction: f32,
     /// Static friction coefficient, at least `friction`.
     pub static_friction: f32,
-    /// Share of the approach speed given back.
+    /// Coefficient of restitution.
     pub restitution: f32,
-    /// Lever of rolling resistance, metres.
+    /// Lever arm of rolling resistance, metres.
     pub rolling: f32,
     /// Velocity of B's surface minus that of A's at the contact, in addition to the velocities of the bodies, world
     /// axes, m/s: friction brings the surfaces, not the bodies, to relative rest. The normal component has no effect.
     pub velocity: Vec3,
-    /// Angular velocity of B's surface minus that of A's, in addition to those of the bodies, world axes, rad/s; its
-    /// normal component counts.
+    /// Angular velocity of B's surface minus that of A's, in addition to those of the bodies, world axes, rad/s. Unlike
+    /// that of `velocity`, its normal component acts.
     pub spin: Vec3,
-    /// Separation speed that the contact enforces, m/s, ≥ 0: a trampoline, a launching pad. Only a
+    /// Separation speed that the contact enforces, m/s, ≥ 0, for example of a trampoline. Only a
     /// [modifier](crate::ContactModifier) sets it.
     pub launch: f32,
 }
@@ -171,7 +171,7 @@ impl ContactMaterial {
         }
     }
 
-    /// True if its surface moves or launches bodies.
+    /// True if the contact's surfaces move relative to their bodies or launch bodies.
     pub(crate) fn drives(&self) -> bool {
         self.velocity != Vec3::ZERO || self.spin != Vec3::ZERO || self.launch != 0.0
     }

@@ -24,24 +24,24 @@ use sinew_math::{Rotation, Sym3, Transform, Vec3};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Velocity {
-    /// m/s.
+    /// Linear velocity, m/s.
     pub linear: Vec3,
-    /// rad/s.
+    /// Angular velocity, rad/s.
     pub angular: Vec3,
 }
 
 impl Velocity {
-    /// A motion without turning, m/s.
+    /// Creates a velocity without rotation, m/s.
     pub const fn linear(linear: Vec3) -> Self {
         Self { linear, angular: Vec3::ZERO }
     }
 
-    /// A turning without motion of the centre of mass, rad/s.
+    /// Creates a rotation without motion of the centre of mass, rad/s.
     pub const fn angular(angular: Vec3) -> Self {
         Self { linear: Vec3::ZERO, angular }
     }
 
-    /// True if nothing moves.
+    /// True if both velocities are zero.
     pub fn is_zero(&self) -> bool {
         self.linear == Vec3::ZERO && self.angular == Vec3::ZERO
     }
@@ -52,25 +52,25 @@ impl Velocity {
     }
 }
 
-/// Awake, or asleep with the island it fell asleep with.
+/// Awake, or asleep with its island.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rest {
-    /// Seconds for which it has stayed in place.
+    /// Time for which the body has stayed in place, seconds.
     Awake { rest_time: f32 },
-    /// All bodies with the same number wake together.
+    /// Number of the sleeping island; all of its bodies wake together.
     Asleep { island: u32 },
 }
 
-/// Velocity change since it last reversed, of which a share decays per step.
+/// Velocity change since its last reversal; a share of the sum decays per step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Gain {
     pub velocity: Velocity,
-    /// Seconds.
+    /// Time since the last reversal, seconds.
     pub time: f32,
 }
 
 impl Gain {
-    /// Adds the change of a step of `dt` seconds and keeps a share of the previous sum; `arm` (m) converts rotations to
+    /// Adds the change of a step of `dt` seconds to `share` of the previous sum; `arm` (m) converts rotations to
     /// distances.
     pub fn add(&mut self, change: &Velocity, dt: f32, (arm, share): (f32, f32)) {
         let Self { velocity: Velocity { linear, angular }, time } = self;
@@ -90,31 +90,32 @@ impl Gain {
 pub(crate) struct BodyShape {
     pub shape: Shape,
     pub principal_from_shape: Transform,
-    /// Number among the body's surfaces.
+    /// Number of the shape's surface among those of the body.
     pub surface: u32,
 }
 
-/// The pose is that of the **principal frame**: origin at the centre of mass, axes along the principal axes of inertia,
-/// so that the inertia is diagonal everywhere in the solver.
+/// Body of the world. Its pose is that of the **principal frame**: origin at the centre of mass, axes along the
+/// principal axes of inertia, so that the inertia is diagonal everywhere in the solver.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     pub kind: BodyKind,
     pub world_from_principal: Transform,
-    /// Pose before the last step: for interpolation and continuous collision.
+    /// Pose before the last step, for interpolation and continuous collision.
     pub previous: Transform,
     pub velocity: Velocity,
-    /// Applied by the user for the next step, N and N·m, world axes. It does not move a kinematic body and is
-    /// [reported](crate::Events::pushed).
+    /// Force that the user applied for the next step, N, and torque, N·m, world axes. They do not move a kinematic body
+    /// and are [reported](crate::Events::pushed).
     pub force: Vec3,
     pub torque: Vec3,
     /// Forces that last until they are changed.
     pub forces: BodyForces,
     pub principal_from_body: Transform,
-    /// kg; 0 unless dynamic.
+    /// Mass, kg; 0 unless dynamic.
     pub mass: f32,
-    /// Principal moments, kg·m².
+    /// Principal moments of inertia, kg·m².
     pub inertia: Vec3,
-    /// Mass and moments that it has when it becomes dynamic; only for a body that was dynamic or was given some.
+    /// Mass and principal moments for the time when the body becomes dynamic; only for a body that was dynamic or was
+    /// given a mass.
     pub laid_by: Option<(f32, Vec3)>,
     pub linear_damping: f32,
     pub angular_damping: f32,
@@ -124,25 +125,25 @@ pub(crate) struct Body {
     pub rest: Rest,
     /// Permission for the body to fall asleep.
     pub sleeping: Sleeping,
-    /// Instead of the world's.
+    /// Step quality; `None`: that of the world.
     pub quality: Option<Quality>,
-    /// Pose at which its time at rest started.
+    /// Pose at the start of the body's time at rest.
     pub place: Transform,
     pub gain: Gain,
-    /// True after its state became non-finite: it was rolled back and is no longer simulated.
+    /// True after the body's state became non-finite: it was rolled back and is no longer simulated.
     pub quarantined: bool,
-    /// The user changed it since the last step.
+    /// True if the user changed the body since the last step.
     pub changed: bool,
     pub user_data: u64,
-    /// Owner that keeps the body; `None` if it is the user's.
+    /// Owner of the body; `None` if the body is the user's.
     pub owner: Option<OwnerMark>,
 }
 
-/// Principal moments below this share of the largest make long thin bodies spin wildly on contact (`r × n` dominates
-/// the effective mass); they are raised to it.
+/// Least ratio of a principal moment to the largest. Smaller moments are raised to it, since they would make long thin
+/// bodies spin wildly on contact, because `r × n` dominates the effective mass.
 const SMALLEST_MOMENT: f32 = 1e-3;
 
-/// Panics if a number is not finite, a shape is not valid, or a half-space is to move.
+/// Panics if a number is not finite, a shape is not valid, or a half-space belongs to a body that is not static.
 #[track_caller]
 fn check(def: &BodyDef) {
     assert!(
@@ -243,7 +244,7 @@ impl Body {
         }
     }
 
-    /// Pose of the principal frame of a kinematic body after `count` substeps of `h` seconds at its velocity, in the world.
+    /// World pose of a kinematic body's principal frame after `count` substeps of `h` seconds at its velocity.
     pub fn carried(&self, h: f32, count: u32) -> Transform {
         let (Transform { translation, rotation }, time) = (self.world_from_principal, h * count as f32);
         let Velocity { linear, angular } = self.velocity;
@@ -261,7 +262,7 @@ impl Body {
         }
     }
 
-    /// Adds a force and a torque that the next step reports; one that would make the sum infinite is dropped.
+    /// Adds a force (N) and a torque (N·m) that the next step reports. Drops them if they would make a sum infinite.
     pub fn note_push(&mut self, force: Vec3, torque: Vec3) {
         let (force, torque) = (self.force + force, self.torque + torque);
         if force.is_finite() && torque.is_finite() {
@@ -269,7 +270,7 @@ impl Body {
         }
     }
 
-    /// Mass that it has or would have as a dynamic body, kg; 0 if it never had one.
+    /// Mass that the body has or would have as a dynamic body, kg; 0 if it never had one.
     pub fn weighs(&self) -> f32 {
         self.laid_by.map_or(self.mass, |(mass, _)| mass)
     }
@@ -301,7 +302,7 @@ impl Body {
         self.principal_from_body = principal_from_body;
     }
 
-    /// Mass, centre and inertia that its shapes have by their densities, in the body's frame.
+    /// Mass, centre and inertia in the body's frame, computed from the densities of the shapes.
     pub fn mass_of_shapes(&self) -> MassProperties {
         let body_from_principal = self.principal_from_body.inverse();
         let of = |shape: &BodyShape| {
@@ -312,7 +313,7 @@ impl Body {
         self.shapes.iter().fold(MassProperties::default(), |sum, shape| sum.combine(&of(shape)))
     }
 
-    /// One more shape, as the last.
+    /// Adds a shape at the end of the list.
     pub fn push_shape(&mut self, def: &ShapeDef) {
         let shape = BodyShape {
             shape: def.shape.clone(),
@@ -322,7 +323,7 @@ impl Body {
         self.shapes.push(shape);
     }
 
-    /// Forgets surfaces that no shape has any more.
+    /// Removes surfaces that no shape uses.
     pub fn tidy_surfaces(&mut self) {
         let old = core::mem::take(&mut self.surfaces);
         for shape in &mut self.shapes {
@@ -336,8 +337,8 @@ impl Body {
         &self.surfaces.as_slice()[self.shapes[shape].surface as usize]
     }
 
-    /// Most bodies have one shape at their own origin, and levels are bodies at the world's origin: then no
-    /// multiplication is needed.
+    /// Pose of a shape in the world. Most bodies have one shape at their own origin, and levels are bodies at the
+    /// world's origin: then no multiplication is needed.
     pub fn world_from_shape(&self, shape: usize) -> Transform {
         let principal_from_shape = self.shapes[shape].principal_from_shape;
         if principal_from_shape == Transform::IDENTITY {
@@ -349,7 +350,7 @@ impl Body {
         }
     }
 
-    /// Velocity of the surface of a shape along the body at a world point, world axes.
+    /// Velocity of a shape's surface relative to the body at a world point, world axes.
     pub fn surface_velocity(&self, shape: usize, point: Vec3) -> Velocity {
         let (frame, material) = (self.world_from_shape(shape), &self.surface(shape).material);
         let angular = frame.rotation * material.surface_spin;
@@ -366,18 +367,18 @@ impl Body {
         matches!(self.rest, Rest::Awake { .. })
     }
 
-    /// Wakes it and restarts its time at rest.
+    /// Wakes the body and restarts its time at rest.
     pub fn disturb(&mut self) {
         self.rest = Rest::Awake { rest_time: 0.0 };
         self.place = self.world_from_principal;
     }
 
-    /// Takes part in the step as a dynamic body.
+    /// True if the body takes part in the step as a dynamic body.
     pub fn is_active(&self) -> bool {
         self.kind == BodyKind::Dynamic && self.is_awake() && !self.quarantined
     }
 
-    /// May start or end a contact: it moves, or was changed.
+    /// True if the body may start or end a contact: it moves, or was changed.
     pub fn can_touch(&self) -> bool {
         if self.changed {
             return true;
@@ -393,7 +394,7 @@ impl Body {
         if self.mass > 0.0 { 1.0 / self.mass } else { 0.0 }
     }
 
-    /// `I⁻¹ v` in world axes.
+    /// Computes `I⁻¹ v` in world axes.
     pub fn inverse_inertia_mul(&self, v: Vec3) -> Vec3 {
         if self.mass == 0.0 {
             return Vec3::ZERO;
@@ -402,25 +403,25 @@ impl Body {
         r * ((r.inverse() * v) / self.inertia)
     }
 
-    /// `I v` in world axes.
+    /// Computes `I v` in world axes.
     pub fn inertia_mul(&self, v: Vec3) -> Vec3 {
         let r = self.world_from_principal.rotation;
         r * ((r.inverse() * v) * self.inertia)
     }
 
-    /// J.
+    /// Kinetic energy, J.
     pub fn kinetic_energy(&self) -> f32 {
         let w = self.world_from_principal.rotation.inverse() * self.velocity.angular;
         0.5 * self.mass * self.velocity.linear.length_squared() + 0.5 * (w * self.inertia).dot(w)
     }
 
-    /// Approximate largest speed of a point of it, m/s.
+    /// Approximate largest speed of any point of the body, m/s.
     pub fn fastest_point(&self) -> f32 {
         self.velocity.linear.length() + self.velocity.angular.length() * self.reach()
     }
 
-    /// Approximate largest distance from the centre of mass to the surface: converts rad/s to m/s. 0 for static bodies,
-    /// which do not rotate (and may be infinite).
+    /// Approximate largest distance from the centre of mass to the surface, metres: converts rad/s to m/s. 0 for static
+    /// bodies, which do not rotate (and may be infinite).
     pub fn reach(&self) -> f32 {
         let mut reach = 0.0;
         for shape in self.shapes.iter().filter(|_| self.kind != BodyKind::Static) {
@@ -431,8 +432,8 @@ impl Body {
     }
 }
 
-/// Rotation about `v` by its length in radians, like [`Rotation::from_scaled_axis`], by the series where that is
-/// equally exact: a keyed body rotates little per step.
+/// Rotation by `v` (axis times angle, radians), like [`Rotation::from_scaled_axis`]. Uses the series where that is
+/// equally exact, because a kinematic body of an animation rotates little per step.
 fn small_turn(v: Vec3) -> Rotation {
     let square = 0.25 * v.length_squared();
     if square.is_nan() || square > 0.02 {
@@ -451,14 +452,14 @@ fn mass_of_shapes(shapes: &[ShapeDef]) -> MassProperties {
     sum
 }
 
-/// Panics unless a body of such mass (kg) and moments (kg·m²) may be dynamic.
+/// Panics unless the mass (kg) and the principal moments (kg·m²) are valid for a dynamic body.
 #[track_caller]
 pub(crate) fn expect_solid(mass: f32, moments: Vec3) {
     let solid = mass > 0.0 && mass < f32::INFINITY && moments.z > 0.0 && moments.is_finite();
     assert!(solid, "a dynamic body has positive, finite mass and inertia, not {mass} kg and {moments:?}");
 }
 
-/// Principal moments (largest first) and the frame they belong to.
+/// Returns the principal moments (largest first) and their frame.
 pub(crate) fn principal_frame(properties: &MassProperties) -> (Vec3, Transform) {
     let Sym3 { diagonal, off } = properties.inertia;
     if off == Vec3::ZERO {

@@ -1,17 +1,17 @@
-//! Owners: code above the world, such as a character, that keeps bodies and joints and removes them itself.
+//! Owners: code above the world, such as a character, that creates bodies and joints and removes them itself.
 
 use sinew_math::{ReadError, Reader, Writer};
 
-/// Name of code that keeps bodies and joints of a world, and the calls that remove them.
+/// Name of code that owns bodies and joints of a world, and the calls that remove them.
 /// [`World::remove_body`](crate::World::remove_body) and [`World::remove_joint`](crate::World::remove_joint) panic with
-/// these words for an owned item.
+/// these texts for an owned item.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Owner {
     /// Name of the kind of owner: "character".
     pub name: String,
     /// Calls to use instead: "`Character::detach` cuts a limb off".
     pub calls: String,
-    /// Names of its parts: "leftUpperArm".
+    /// Names of the owner's parts: "leftUpperArm".
     pub parts: Vec<String>,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct Owners {
 }
 
 impl Owners {
-    /// Number of an owner; adds it if it is unknown.
+    /// Returns the number of an owner; adds the owner if it is unknown.
     pub fn number(&mut self, owner: &Owner) -> u16 {
         let known = self.all.iter().position(|known| known == owner);
         let index = known.unwrap_or_else(|| {
@@ -39,10 +39,10 @@ impl Owners {
         u16::try_from(index).expect("at most 65,536 owners")
     }
 
-    /// Mark of a part of an owner.
+    /// Returns the mark of a part of an owner.
     ///
     /// # Panics
-    /// If it has no such part.
+    /// If the owner has no such part.
     #[track_caller]
     pub fn mark(&self, owner: u16, part: usize) -> OwnerMark {
         let parts = self.all[usize::from(owner)].parts.len();
@@ -50,7 +50,7 @@ impl Owners {
         OwnerMark { owner, part: u16::try_from(part).expect("at most 65,536 parts") }
     }
 
-    /// Owner and name of the part that a mark refers to.
+    /// Returns the owner and the name of the part of a mark.
     pub fn of(&self, mark: OwnerMark) -> (&Owner, &str) {
         let owner = &self.all[usize::from(mark.owner)];
         (owner, &owner.parts[usize::from(mark.part)])
@@ -60,7 +60,7 @@ impl Owners {
 /// Owners in a snapshot: each is written at its first use, so that a snapshot without owners is as short as before.
 #[derive(Debug, Default)]
 pub(crate) struct OwnersInOrder {
-    /// Numbers in [`Owners`] by the order in which the snapshot names them.
+    /// Numbers in [`Owners`], in the order of first use in the snapshot.
     named: Vec<u16>,
 }
 

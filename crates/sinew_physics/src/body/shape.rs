@@ -7,7 +7,8 @@ use sinew_math::Transform;
 
 pub use sinew_geometry::{MassProperties, Shape};
 
-/// Two shapes collide if each one's mask contains the other's layer, and they are not in the same negative group.
+/// Collision filter of a shape. Two shapes collide if each one's mask contains the other's layer, and they are not in
+/// the same negative group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -16,11 +17,12 @@ pub use sinew_geometry::{MassProperties, Shape};
 #[doc(alias = "InteractionGroups")]
 #[doc(alias = "collision group")]
 pub struct Filter {
-    /// Bits of the layers it is on. Default 1.
+    /// Bits of the shape's layers. Default 1.
     pub layers: u32,
-    /// Bits of the layers it collides with. Default all.
+    /// Bits of the layers that the shape collides with. Default all.
     pub mask: u32,
-    /// Same non-zero group: a positive one always collides, a negative one never. Default 0: none.
+    /// Group of the shape: two shapes in the same positive group always collide, in the same negative group never.
+    /// Default 0: none.
     pub group: i32,
 }
 
@@ -39,7 +41,7 @@ impl Filter {
         self.layers & other.mask != 0 && other.layers & self.mask != 0
     }
 
-    /// True if it collides with no other shape, whatever that one's filter is.
+    /// True if the shape collides with no other shape, whatever the filter of the other.
     pub fn meets_none(self) -> bool {
         self.group <= 0 && (self.layers == 0 || self.mask == 0)
     }
@@ -52,33 +54,33 @@ impl Filter {
 #[doc(alias = "ColliderBuilder")]
 #[doc(alias = "fixture")]
 pub struct ShapeDef {
-    /// Geometry.
+    /// Geometry of the shape.
     pub shape: Shape,
-    /// Shape frame in the body's frame.
+    /// Pose of the shape in the body's frame.
     pub body_from_shape: Transform,
-    /// kg/m³, ≥ 0. Default 1000. Counts only where the body's mass is not given.
+    /// Density, kg/m³, ≥ 0. Default 1000. Has no effect if the body's mass is given.
     pub density: f32,
-    /// Surface.
+    /// Material of the surface.
     pub material: Material,
-    /// Collision filter.
+    /// Collision filter of the shape.
     pub filter: Filter,
-    /// Solid shape or sensor.
+    /// Effect on touching shapes: solid or sensor.
     pub sensing: Sensing,
-    /// Rule for its contacts. Default: they push.
+    /// Rule for the shape's contacts. Default: they push.
     pub rule: ContactRule,
 }
 
-/// Effect of a shape on those it touches.
+/// Effect of a shape on the shapes that touch it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(alias = "trigger")]
 #[doc(alias = "sensor")]
 #[doc(alias = "is_trigger")]
 pub enum Sensing {
-    /// It pushes them. Default.
+    /// The shape pushes others. Default.
     #[default]
     Solid,
-    /// It only reports them.
+    /// The shape only reports others.
     Sensor,
 }
 
@@ -86,7 +88,7 @@ impl ShapeDef {
     /// Checks that the numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// The problem, in lower case.
+    /// Names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         self.shape.check()?;
         self.material.check()?;
@@ -115,7 +117,7 @@ impl ShapeDef {
     }
 }
 
-/// [`ShapeDef::new`].
+/// Converts with [`ShapeDef::new`].
 impl From<Shape> for ShapeDef {
     fn from(shape: Shape) -> Self {
         Self::new(shape)

@@ -1,4 +1,4 @@
-//! Definitions and bodies as bytes.
+//! Writes and reads definitions and bodies.
 
 use crate::arena::Arena;
 use crate::body::contact_rule::{ContactRule, OneWay, Yields};
@@ -77,7 +77,7 @@ fn load_sleeping(r: &mut Reader<'_>) -> Result<Sleeping, ReadError> {
     Ok(if r.bool()? { Sleeping::On } else { Sleeping::Off })
 }
 
-/// Bit of a body's kind: it has an owner, which is written after it.
+/// Bit of a body's kind: the body has an owner, which is written after the body.
 const OWNED: u8 = 8;
 
 /// Writes a body without its owner.
@@ -139,13 +139,13 @@ pub(crate) fn save_body(w: &mut Writer, body: &Body) {
     w.u64(body.user_data);
 }
 
-/// True if a body of such mass and moments may be dynamic.
+/// True if the mass (kg) and the principal moments (kg·m²) are valid for a dynamic body.
 fn solid(mass: f32, inertia: Vec3) -> bool {
     let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
     [mass, inertia.x, inertia.y, inertia.z].into_iter().all(positive)
 }
 
-/// Reads whether a body rests, and its gain of velocity.
+/// Reads whether a body is asleep, its time at rest or island number, and its velocity gain.
 fn load_rest(r: &mut Reader<'_>) -> Result<(Rest, Gain), LoadError> {
     let mut gain = Gain::default();
     let rest = match r.u8()? {

@@ -4,10 +4,10 @@ use crate::body::contact_rule::ContactRule;
 use crate::body::material::Material;
 use crate::body::shape::{Filter, Sensing, ShapeDef};
 
-/// Everything about a shape except its geometry and pose.
+/// All properties of a shape except its geometry and pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Surface {
-    /// kg/m³.
+    /// Density, kg/m³.
     pub density: f32,
     pub material: Material,
     pub filter: Filter,
@@ -29,19 +29,20 @@ impl Surface {
         Self { density, material, filter, sensing, rule }
     }
 
-    /// True if particles with a filter cannot pass: one-way shapes and shapes with a modifier are walls to them.
+    /// True if particles with `filter` collide with the surface: one-way shapes and shapes with a modifier are walls to
+    /// them.
     pub fn is_wall_to(&self, filter: Filter) -> bool {
         self.sensing == Sensing::Solid && self.rule != ContactRule::Ghost && self.filter.meets(filter)
     }
 }
 
 impl Surfaces {
-    /// Surfaces that were read from a snapshot.
+    /// Creates the list from surfaces that were read from a snapshot.
     pub fn new(surfaces: Vec<Surface>) -> Self {
         Self(surfaces)
     }
 
-    /// Number of a surface, added if new.
+    /// Returns the number of a surface; adds the surface if it is new.
     pub fn intern(&mut self, surface: &Surface) -> u32 {
         let known = self.0.iter().rev().take(LOOK_BACK).position(|other| other == surface);
         let place = known.map_or(self.0.len(), |back| self.0.len() - 1 - back);
@@ -56,7 +57,7 @@ impl Surfaces {
         self.0.shrink_to_fit();
     }
 
-    /// Changes a surface that no other shape shares.
+    /// Replaces a surface that no other shape shares.
     pub fn set(&mut self, number: u32, surface: Surface) {
         self.0[number as usize] = surface;
     }

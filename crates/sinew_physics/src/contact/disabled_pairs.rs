@@ -5,28 +5,28 @@ use crate::contact::filter::{PairFilter, PairFunctions};
 use crate::contact::ordered;
 use crate::joint::Joint;
 
-/// Disabled pairs: the user's, and those of joints whose bodies do not collide.
+/// Pairs of bodies that do not collide: those disabled by the user, and those of joints whose bodies do not collide.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DisabledPairs {
     /// Pairs disabled by the user: body indices, smaller first, ascending.
     pub disabled: Vec<(u32, u32)>,
     /// Union of the user's and the joints' pairs: body indices, smaller first, ascending.
     all: Vec<(u32, u32)>,
-    /// `all` misses something.
+    /// True if `all` is out of date.
     stale: bool,
-    /// Version of `all`.
+    /// Version of `all`, which changes with the list.
     version: u64,
-    /// The user's pairs only.
+    /// User functions that filter pairs.
     pub functions: PairFunctions,
 }
 
 impl DisabledPairs {
-    /// Restores the pairs of a snapshot.
+    /// Restores the pairs and the number of the user function from a snapshot.
     pub fn restore(&mut self, disabled: Vec<(u32, u32)>, function: Option<u32>) {
         (self.disabled, self.functions.chosen, self.stale) = (disabled, function, true);
     }
 
-    /// Joints were added, removed or changed.
+    /// Marks the list as out of date after joints were added, removed or changed.
     pub fn invalidate(&mut self) {
         self.stale = true;
     }

@@ -8,9 +8,9 @@ use sinew_math::Vec3;
 /// by the two shape numbers. The order does not depend on the number of threads or on loading a snapshot.
 ///
 /// Two shapes **touch** while their surfaces overlap at the start of the step, or if they pushed each other in the
-/// previous step. Shapes that a step brings together are reported by the next step, even if they separate at once.
+/// previous step. Shapes that a step brings together are reported by the next step, even if they separate immediately.
 /// Touching ends at a gap of half a millimetre, or 0.2 % of the smaller shape's smallest extent if that is less. Two
-/// bodies touch while any of their shapes do. Each touch has exactly one begin and one end event, whatever ends it:
+/// bodies touch while any of their shapes do. Each touch has exactly one begin and one end event, whatever ends the touch:
 /// motion, teleport, removal (the id is stale then), a filter or pair change, quarantine. Falling asleep does not end a
 /// touch.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,11 +20,11 @@ use sinew_math::Vec3;
 pub struct Events {
     /// Pairs of bodies that started to touch, including ghosts and bodies that pass a one-way shape.
     pub begin: Vec<(BodyId, BodyId)>,
-    /// Pairs of bodies that stopped.
+    /// Pairs of bodies that stopped touching.
     pub end: Vec<(BodyId, BodyId)>,
     /// Pairs of shapes that started to touch.
     pub shapes_begin: Vec<(ShapeId, ShapeId)>,
-    /// Pairs of shapes that stopped.
+    /// Pairs of shapes that stopped touching.
     pub shapes_end: Vec<(ShapeId, ShapeId)>,
     /// Pairs of shapes that approached faster than [`WorldDef::hit_speed`](crate::WorldDef::hit_speed) and were
     /// stopped.
@@ -40,15 +40,17 @@ pub struct Events {
     pub sensor_shapes_begin: Vec<(ShapeId, ShapeId)>,
     /// Pairs of a sensor and a shape that left it.
     pub sensor_shapes_end: Vec<(ShapeId, ShapeId)>,
-    /// Bodies whose state became non-finite: rolled back to the step before, stopped and taken out of the simulation.
+    /// Bodies whose state became non-finite: reset to the state before the step, stopped and taken out of the
+    /// simulation.
     pub quarantined: Vec<BodyId>,
-    /// Bodies that were slowed to [`WorldDef::max_speed`](crate::WorldDef::max_speed) or [`WorldDef::max_turn`](crate::WorldDef::max_turn),
-    /// by index: a force or an impulse was too large, or a fall too long.
+    /// Bodies that were slowed to [`WorldDef::max_speed`](crate::WorldDef::max_speed) or
+    /// [`WorldDef::max_turn`](crate::WorldDef::max_turn), by index: a force or an impulse was too large, or a fall too
+    /// long.
     pub limited: Vec<BodyId>,
-    /// Groups with particles whose state became non-finite: these stopped where they were before the step.
+    /// Groups with particles whose state became non-finite: these particles stop at their positions before the step.
     pub rolled_back: Vec<GroupId>,
-    /// Kinematic bodies that forces, impulses or explosions acted on since the last step, by index. They are not moved by
-    /// them; characters react to those on their bodies. Forces of fields and lasting forces are not included.
+    /// Kinematic bodies that forces, impulses or explosions acted on since the last step, by index. These do not move
+    /// kinematic bodies, but characters react to them. Forces of fields and lasting forces are not included.
     pub pushed: Vec<Push>,
     /// Joints that broke, in the order of joint indices. They still exist, but are disabled.
     pub broken: Vec<JointId>,
@@ -57,7 +59,7 @@ pub struct Events {
 /// Impulse on a kinematic body in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
-    /// The body.
+    /// Body that was pushed.
     pub body: BodyId,
     /// Sum of the impulses, N·s, world axes.
     pub impulse: Vec3,

@@ -11,11 +11,11 @@ use crate::registered::Registered;
 /// One side of a candidate pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairSide {
-    /// The shape.
+    /// Shape on this side of the pair.
     pub shape: ShapeId,
-    /// Kind of its body.
+    /// Kind of the shape's body.
     pub kind: BodyKind,
-    /// The user data of its body.
+    /// User data of the shape's body.
     pub user_data: u64,
     /// Filter of the shape.
     pub filter: Filter,
@@ -25,17 +25,17 @@ pub struct PairSide {
 
 /// User filter for two shapes that pass all other filters; the one with the smaller body index comes first.
 ///
-/// A pure function, so that a snapshot contains everything that decides; a function pointer instead of a closure,
-/// because it must not have state. It is called in every step, in unspecified order.
+/// The function must be pure, so that a snapshot determines the future. The type is a function pointer instead of a
+/// closure, because the function must not have state. It is called in every step, in unspecified order.
 pub type PairFunction = fn(&PairSide, &PairSide) -> bool;
 
 /// Filter of shape pairs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairFilter<'a> {
-    /// Body indices, smaller first, ascending.
+    /// Pairs of bodies that do not collide: body indices, smaller first, ascending.
     pub parted: &'a [(u32, u32)],
     pub function: Option<PairFunction>,
-    /// Changes whenever `parted` changes.
+    /// Number that changes whenever `parted` changes.
     pub version: u64,
 }
 
@@ -69,8 +69,8 @@ fn side(bodies: &Arena<Body>, index: u32, shape: u32) -> PairSide {
     }
 }
 
-/// Contacts require a dynamic body. A sensor detects anything that it or the other may move to; two sensors do not
-/// detect each other.
+/// True if the kinds of two shapes allow a contact. Contacts require a dynamic body. A sensor detects anything that
+/// moves to it or that it moves to; two sensors do not detect each other.
 pub(crate) fn kinds_meet([a, b]: [(BodyKind, Sensing); 2]) -> bool {
     let either = |kind: BodyKind| a.0 == kind || b.0 == kind;
     match (a.1, b.1) {
@@ -84,7 +84,7 @@ pub(crate) fn kinds_meet([a, b]: [(BodyKind, Sensing); 2]) -> bool {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairFunctions {
     pub registered: Registered<PairFunction>,
-    /// Part of the snapshot.
+    /// Number of the active function. Part of the snapshot.
     pub chosen: Option<u32>,
 }
 

@@ -13,20 +13,20 @@ use sinew_math::{ReadError, Reader, Vec3, Writer, max, normalize_or};
 /// Two shapes that hit each other; A is the one with the smaller body index.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// One shape.
+    /// Shape with the smaller body index.
     pub a: ShapeId,
-    /// The other.
+    /// Shape with the larger body index.
     pub b: ShapeId,
-    /// Point of the hit, world, metres: the impulse-weighted mean of the contact points, on the surface of the static
-    /// body, if there is one.
+    /// Point of the hit, world, metres: the impulse-weighted mean of the contact points; on the surface of the body
+    /// that is not dynamic, if there is one.
     pub point: Vec3,
     /// Normal from A to B, unit length, world axes.
     pub normal: Vec3,
     /// Approach speed along the normal, m/s, at the first contact, at the start of the step.
     pub approach: f32,
-    /// All that pushed along the normal, N·s: the sum over the points of contact.
+    /// Normal impulse, N·s: the sum over all contact points.
     pub impulse: f32,
-    /// The most of that at one point, N·s.
+    /// Largest normal impulse at one contact point, N·s.
     pub greatest: f32,
     /// Materials of A and B.
     pub materials: [Material; 2],
@@ -49,8 +49,8 @@ struct OpenHit {
 pub(crate) struct OpenHits {
     list: Vec<OpenHit>,
     next: Vec<OpenHit>,
-    /// Pairs that approached fast in this step, with their speed, m/s. Not part of the snapshot, because a step clears
-    /// them.
+    /// Pairs that approached faster than `threshold` in this step. Not part of the snapshot, because a step clears the
+    /// list.
     fast: Vec<ContactKey>,
     threshold: f32,
 }
@@ -62,14 +62,14 @@ impl OpenHit {
 }
 
 impl OpenHits {
-    /// Starts a step with this many contacts; hits faster than `threshold` (m/s) are reported.
+    /// Starts a step with `contacts` contacts; the step reports hits faster than `threshold` (m/s).
     pub fn start(&mut self, contacts: usize, threshold: f32) {
         self.threshold = threshold;
         self.fast.clear();
         self.fast.reserve(contacts + self.list.len());
     }
 
-    /// Records a fast pair.
+    /// Records a pair if it is fast.
     pub fn note(&mut self, pair: &[Contact]) {
         if pair.iter().any(|contact| contact.approach >= self.threshold) {
             self.fast.push(ContactKey { part: 0, ..pair[0].key });
@@ -134,7 +134,7 @@ impl OpenHits {
     }
 }
 
-/// All parts of a pair's contact as one hit, including the previous step's share.
+/// Combines all contacts of a pair into one hit, including the previous step's share.
 fn hit_of(
     bodies: &Arena<Body>,
     pair: &[Contact],
@@ -149,7 +149,8 @@ fn hit_of(
     }
     for contact in pair {
         approach = max(approach, contact.approach);
-        // The points are half way between the surfaces; between a dynamic and another body, the other's surface counts.
+        // The points are half way between the surfaces. Between a dynamic and another body, the hit is on the other's
+        // surface.
         let on = match [a, b].map(|id| bodies.at(id.body.index).kind == BodyKind::Dynamic) {
             [true, false] => 0.5,
             [false, true] => -0.5,
@@ -177,7 +178,7 @@ fn hit_of(
     }
 }
 
-/// Largest remaining approach speed of the pushing points at the end of the step, m/s.
+/// Largest approach speed of the points with an impulse at the end of the step, m/s.
 fn closing_speed(bodies: &Arena<Body>, pair: &[Contact]) -> f32 {
     let mut fastest = 0.0;
     for contact in pair {

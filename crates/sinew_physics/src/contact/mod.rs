@@ -31,12 +31,12 @@ pub(crate) struct ContactKey {
     pub b: u32,
     pub shape_a: u32,
     pub shape_b: u32,
-    /// Number of the manifold among those of the two shapes, from 0; a pair of convex shapes has only one. From [`THROUGH_PARTICLES`] on: of those through
-    /// particles.
+    /// Number of the manifold among those of the two shapes, from 0; a pair of convex shapes has only one. Contacts
+    /// through particles have the numbers from [`THROUGH_PARTICLES`] on.
     pub part: u32,
 }
 
-/// Field by field, two at a time.
+/// Compares the fields in order, two at a time.
 impl Ord for ContactKey {
     fn cmp(&self, other: &Self) -> Ordering {
         let both = |first: u32, second: u32| u64::from(first) << 32 | u64::from(second);
@@ -55,7 +55,7 @@ impl PartialOrd for ContactKey {
 const THROUGH_PARTICLES: u32 = 1 << 31;
 
 impl ContactKey {
-    /// Key of the contact of that number of two shapes through particles between them.
+    /// Key of contact `number` of the same two shapes through particles between them.
     pub fn through_particles(self, number: u32) -> Self {
         Self { part: THROUGH_PARTICLES | number, ..self }
     }
@@ -65,18 +65,18 @@ impl ContactKey {
         self.part >= THROUGH_PARTICLES
     }
 
-    /// Key of two shapes, each given by body and shape number, in either order; part 0.
+    /// Key of two shapes, each given by body index and shape number, in either order; part 0.
     pub fn new(p: (u32, u32), q: (u32, u32)) -> Self {
         let (a, b) = if p.0 < q.0 { (p, q) } else { (q, p) };
         Self { a: a.0, b: b.0, shape_a: a.1, shape_b: b.1, part: 0 }
     }
 
-    /// True if both are manifolds of the same two shapes.
+    /// True if both keys belong to the same two shapes.
     pub fn is_of_pair(&self, other: Self) -> bool {
         Self { part: other.part, ..*self } == other
     }
 
-    /// True if a body is one of the two.
+    /// True if `body` is one of the two bodies.
     pub fn has(self, body: u32) -> bool {
         self.a == body || self.b == body
     }
@@ -95,26 +95,26 @@ pub(crate) fn ordered(a: u32, b: u32) -> (u32, u32) {
 /// Impulses of one manifold point, N·s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PointImpulse {
-    /// Impulses of the last substep and the one before: warm starting uses both, so that an impact is not repeated.
+    /// Impulse of the last substep and of the one before: warm starting uses both, so that an impact is not repeated.
     pub now: f32,
     pub before: f32,
     /// Sum over all substeps of the step.
     pub total: f32,
-    /// Mean over some substeps: the load at rest.
+    /// Mean impulse over some substeps: the load at rest.
     pub lasting: f32,
 }
 
-/// Impulses that a contact carries from step to step.
+/// Impulses that a contact keeps from step to step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ContactMemory {
     pub points: [PointImpulse; MAX_POINTS],
-    /// Friction at the manifold's centre as a world vector, N·s.
+    /// Friction impulse at the manifold's centre, world vector, N·s.
     pub friction: Vec3,
     /// Impulse of twist friction about the normal, N·m·s.
     pub twist: f32,
-    /// Rolling resistance, world vector, N·m·s.
+    /// Impulse of rolling resistance, world vector, N·m·s.
     pub rolling: Vec3,
-    /// Friction of all substeps of the step, world vector, N·s.
+    /// Friction impulse of all substeps of the step, world vector, N·s.
     pub total_friction: Vec3,
 }
 
@@ -125,7 +125,7 @@ impl ContactMemory {
         Self { points, total_friction: Vec3::ZERO, ..*self }
     }
 
-    /// Scales the persistent impulses to substeps `times` as long; the sums of the step are unchanged.
+    /// Scales the persistent impulses to substeps `times` as long; does not change the sums of the step.
     pub fn of_substeps(&self, times: f32) -> Self {
         if times == 1.0 {
             return *self;
@@ -145,9 +145,9 @@ impl ContactMemory {
         }
     }
 
-    /// Stored impulses for a new manifold of the same shapes. Points keep their impulses by feature; the impulses of
-    /// removed points are divided equally among new ones, because the load remains when the shapes tip from one corner
-    /// to another. All are dropped if the normal rotated by more than about 25°.
+    /// Stored impulses for a new manifold of the same shapes. Points keep their impulses by feature. The impulses of
+    /// removed points are divided equally among new points, because the load remains when the shapes tip from one
+    /// corner to another. All impulses are dropped if the normal rotated by more than about 25°.
     pub fn matched(&self, old: &Manifold, new: &Manifold) -> Self {
         if new.count == 0 || old.count == 0 || old.normal.dot(new.normal) < 0.9 {
             return Self::default();
@@ -189,10 +189,10 @@ impl ContactMemory {
 /// Effect of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effect {
-    /// It pushes.
+    /// The shapes push each other.
     #[default]
     Push,
-    /// One of the shapes only senses.
+    /// One of the shapes is a sensor.
     Sense,
     /// The shapes do not push each other.
     Pass,
@@ -204,24 +204,24 @@ pub(crate) struct Contact {
     pub manifold: Manifold,
     pub memory: ContactMemory,
     pub effect: Effect,
-    /// One of the shapes is one-way: the decision lasts while they touch.
+    /// True if one of the shapes is one-way: its decision lasts while the shapes touch.
     pub one_way: bool,
-    /// It or an earlier part of its pair pushed in the last step.
+    /// True if this contact or an earlier part of its pair pushed in the last step.
     pub pushed: bool,
     /// True if its pair was reported as touching, or as a sensor pair.
     pub touching: bool,
     pub sensed: bool,
-    /// A one-way shape let the other pass at its last decision.
+    /// True if a one-way shape let the other pass at its last decision.
     pub passes: bool,
-    /// Approach speed of its points at the start of the step, m/s.
+    /// Largest approach speed of the contact's points at the start of the step, m/s.
     pub approach: f32,
     /// Last separating axis of the shapes. Not part of the state: it only speeds up the next search.
     pub apart: Option<AxisOf>,
-    /// Guaranteed gap at that time, metres, if they had no points. Not part of the state.
+    /// Guaranteed gap of the shapes at the time of `apart`, metres, if they had no points. Not part of the state.
     pub gap: f32,
-    /// One of the shapes is a mesh or a height field.
+    /// True if one of the shapes is a mesh or a height field.
     pub has_surface: bool,
-    /// It only pushes, unless a surface changes. Derived from the surfaces and not part of the state.
+    /// True if the contact only pushes, unless a surface changes. Derived from the surfaces and not part of the state.
     pub is_plain: bool,
     pub kept: Recycled,
 }
@@ -247,38 +247,38 @@ impl Contact {
         }
     }
 
-    /// It has no points and nothing to report: equivalent to no contact.
+    /// True if the contact has no points and nothing to report: equivalent to no contact.
     pub fn is_idle(&self) -> bool {
         self.manifold.count == 0 && !self.touching && !self.sensed
     }
 
-    /// Separating axis and gap of its shapes, if known.
+    /// Separating axis and gap of the shapes, if known.
     pub fn parting(&self) -> SeparationCache {
         SeparationCache { axis: self.apart, gap: self.gap }
     }
 
-    /// True if the solver has to do with it.
+    /// True if the solver solves this contact.
     pub fn pushes(&self) -> bool {
         self.manifold.count > 0 && self.effect == Effect::Push
     }
 
-    /// Surfaces overlap or touch, to rounding.
+    /// True if the surfaces overlap or touch, to rounding.
     pub fn overlaps(&self) -> bool {
         self.manifold.points().iter().any(|point| point.separation <= 0.0)
     }
 
-    /// It pushed in the last step that updated it.
+    /// True if the contact pushed in the last step that updated it.
     pub fn has_pushed(&self) -> bool {
         self.impulses().any(|(_, impulse)| impulse > 0.0)
     }
 
-    /// World positions of its points, m, and the total normal impulse of each in the last step, N·s.
+    /// World positions of the contact's points, metres, and the total normal impulse of each in the last step, N·s.
     pub fn impulses(&self) -> impl Iterator<Item = (Vec3, f32)> {
         let points = self.manifold.points().iter().zip(&self.memory.points);
         points.map(|(point, impulse)| (point.position, impulse.total))
     }
 
-    /// Contact material of its two surfaces at the bodies' current poses.
+    /// Combined material of the two surfaces at the bodies' current poses.
     pub fn material(&self, bodies: &Arena<Body>) -> ContactMaterial {
         let sides = [(self.key.a, self.key.shape_a), (self.key.b, self.key.shape_b)];
         let sides = sides.map(|(body, shape)| (bodies.at(body), shape as usize));
@@ -294,14 +294,14 @@ impl Contact {
     }
 }
 
-/// The first part of the next pair.
+/// Slices of contacts of the same two shapes, pair by pair.
 pub(crate) fn pairs_of(contacts: &mut [Contact]) -> impl Iterator<Item = &mut [Contact]> {
     contacts.chunk_by_mut(|one, other| one.key.is_of_pair(other.key))
 }
 
-/// Length scale of contacts: 5 mm, or 2 % of the smallest extent of either shape, so that small props are as firm as
-/// crates. The search margin is 4 times it. A fifth of it remains as overlap, so that a resting contact keeps touching;
-/// a dead zone of the whole length would let piles sink visibly.
+/// Length scale of contacts of shapes with the given smallest extent (m), metres: 5 mm, or 2 % of the extent if that is
+/// less, so that small props are as firm as crates. The search margin is 4 times the slop. A fifth of the slop remains
+/// as overlap, so that a resting contact keeps touching; a dead zone of the whole slop would let piles sink visibly.
 pub(crate) fn slop(smallest_extent: f32) -> f32 {
     sinew_math::min(0.005, 0.02 * smallest_extent)
 }

@@ -11,12 +11,12 @@ use crate::registered::Registered;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Modifiers {
     pub registered: Registered<ContactModifier>,
-    /// Contacts (by position) modified in this step, ascending, with their materials.
+    /// Positions of the contacts modified in this step, ascending, with their materials.
     changed: Vec<(u32, ContactMaterial)>,
 }
 
 impl Modifiers {
-    /// Calls them for the contacts of this step; they may change the material or disable the push.
+    /// Calls the modifiers for the contacts of this step; they may change the material or disable the push.
     pub fn change(&mut self, bodies: &Arena<Body>, contacts: &mut [Contact], step: u64) {
         self.changed.clear();
         if self.registered.is_empty() {
@@ -31,7 +31,8 @@ impl Modifiers {
         }
     }
 
-    /// Modified material of a contact whose combined material is `own`; `None` if it is unchanged or does not push.
+    /// Modified material of a contact whose combined material is `own`; `None` if it is unchanged, or if a modifier
+    /// disables the push.
     pub fn ask(
         &self,
         bodies: &Arena<Body>,
@@ -64,12 +65,12 @@ impl Modifiers {
         material
     }
 
-    /// Sets a contact's material for this step; its position follows those set before.
+    /// Sets the material of the contact at `place` for this step. Calls must be in ascending order of `place`.
     pub fn set(&mut self, place: u32, material: ContactMaterial) {
         self.changed.push((place, material));
     }
 
-    /// True if any contact of this step was modified.
+    /// True if the contact at `place` was modified in this step.
     pub fn have_changed(&self, place: u32) -> bool {
         self.find(place).is_some()
     }
@@ -79,7 +80,7 @@ impl Modifiers {
         Some(&self.changed[found].1)
     }
 
-    /// Material of a contact in this step.
+    /// Material of the contact at `place` in this step.
     pub fn material(&self, bodies: &Arena<Body>, contacts: &[Contact], place: u32) -> ContactMaterial {
         self.find(place).copied().unwrap_or_else(|| contacts[place as usize].material(bodies))
     }

@@ -1,7 +1,7 @@
 //! Pairs of shapes whose bounds in the trees overlap: candidates that persist from step to step. A shape is searched
 //! again only when it has left those bounds or was changed; every step tests which candidates are near.
 //!
-//! None of it is part of the state. The bounds depend on history, but near pairs are always among the candidates, and
+//! The list is not part of the state. The bounds depend on history, but near pairs are always among the candidates, and
 //! other pairs have no contact.
 
 use crate::arena::Arena;
@@ -19,27 +19,27 @@ use sinew_math::max;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearPair {
     pub key: ContactKey,
-    /// Tree leaves that hold their bounds, in the order of the key.
+    /// Tree leaves of the shapes' bounds, in the order of the key.
     pub leaves: [Leaf; 2],
-    /// Guaranteed remaining gap, metres: the last computed gap, or that of their bounds, minus their largest relative
-    /// motion since. Only while they have no contact.
+    /// Guaranteed remaining gap, metres: the last computed gap of the shapes or of their bounds, minus their largest
+    /// relative motion since. Valid only while the shapes have no contact.
     pub left: f32,
-    /// The axis that separated them then.
+    /// Axis that separated the shapes when the gap was computed.
     axis: PackedAxis,
-    /// True if their filters let them collide.
+    /// True if the filters let the shapes collide.
     pub meets: bool,
-    /// One of them is a mesh or a height field.
+    /// True if one of the shapes is a mesh or a height field.
     pub has_surface: bool,
 }
 
 impl NearPair {
-    /// [Not filtered](Self::met) yet.
+    /// Creates a pair that is [not filtered](Self::met) yet.
     fn new(key: ContactKey, leaves: [Leaf; 2]) -> Self {
         let axis = PackedAxis::default();
         Self { key, leaves, left: f32::NEG_INFINITY, axis, meets: false, has_surface: false }
     }
 
-    /// Copies the pair with the shapes' own filter result.
+    /// Copies the pair with the filter result of its shapes.
     fn met(&self, bodies: &Arena<Body>, filter: PairFilter<'_>) -> Self {
         let key = self.key;
         let is_surface =
@@ -52,14 +52,15 @@ impl NearPair {
         SeparationCache { axis: self.axis.unpack(), gap: f32::NEG_INFINITY }
     }
 
-    /// Updates the gap by their motion: reports if points must be searched at their distance.
+    /// Updates the gap by the shapes' motion; true if they must be searched for points.
     pub fn comes_near(&mut self, closing: &Closing) -> bool {
         self.left -= closing.moved;
         let is_far = self.left > max(MARGIN, closing.ahead);
         !is_far
     }
 
-    /// Stores a gap between their bounds, metres, if no points are searched at that distance.
+    /// Stores the gap between the shapes' bounds, metres, if it shows that a search would find no points; returns true
+    /// in that case.
     pub fn is_apart(&mut self, closing: &Closing, gap: f32) -> bool {
         let is_far = !self.has_surface && gap - GAP_ERROR > max(MARGIN, closing.ahead);
         if is_far {
@@ -68,7 +69,7 @@ impl NearPair {
         is_far
     }
 
-    /// They were tested and have no points.
+    /// Records that the shapes were tested and have no points.
     pub fn part(&mut self, parting: &SeparationCache) {
         self.left = parting.gap - GAP_ERROR;
         self.axis = PackedAxis::new(parting.axis);
@@ -103,7 +104,7 @@ impl PackedAxis {
     }
 }
 
-/// All of them, sorted by key.
+/// All near pairs, sorted by key.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NearPairs {
     pub list: Vec<NearPair>,
@@ -116,7 +117,7 @@ pub(crate) struct NearPairs {
 }
 
 impl NearPairs {
-    /// Updates the list.
+    /// Updates the list after [`Proxies::update_motion`].
     pub fn update(&mut self, proxies: &mut Proxies, bodies: &Arena<Body>, filter: PairFilter<'_>) {
         if proxies.has_pending() {
             self.fresh.clear();
@@ -135,7 +136,7 @@ impl NearPairs {
             }
             proxies.clear_pending();
         }
-        // A user function is called in every step; this is its last result.
+        // A user function is called in every step; `meets` stores its last result.
         let asks = core::mem::replace(&mut self.filter_version, filter.version) != filter.version
             || filter.function.is_some();
         if asks {
@@ -145,7 +146,7 @@ impl NearPairs {
         }
     }
 
-    /// Adds new pairs. Others stay, although their bounds may no longer overlap.
+    /// Adds new pairs. Old pairs remain, although their bounds may no longer overlap.
     fn add(&mut self, bodies: &Arena<Body>, filter: PairFilter<'_>) {
         self.enlarged += self.fresh.len() + 1;
         let list = &mut self.list;
@@ -156,7 +157,7 @@ impl NearPairs {
         insert_sorted(list, &mut self.fresh, |pair| pair.key);
     }
 
-    /// Pairs of pending shapes are removed unless they were found again; these keep their data.
+    /// Removes pairs of pending shapes unless the search found them again; those keep their data.
     fn merge(&mut self, proxies: &Proxies, bodies: &Arena<Body>, filter: PairFilter<'_>) {
         let prunes = self.enlarged > 0;
         let only_enlarged = proxies.only_enlarged();
@@ -181,12 +182,12 @@ impl NearPairs {
     }
 }
 
-/// Inserts items in order; both lists are sorted by key.
+/// Inserts `new` items in order; both lists are sorted by key.
 pub(crate) fn insert_sorted<T: Copy, K: Ord>(list: &mut Vec<T>, new: &mut Vec<T>, key: impl Fn(&T) -> K) {
     let mut left = list.len();
     list.extend_from_slice(new);
     let mut end = list.len();
-    // Merge from the back, where there is space.
+    // Merges from the back, where there is space.
     while let Some(item) = new.pop() {
         let place = list[..left].partition_point(|other| key(other) < key(&item));
         let moved = left - place;

@@ -1,5 +1,5 @@
-//! In `collide`: pairs with several contact regions, one of them a mesh or a height field. Each manifold is a contact
-//! of its own, a part of the pair.
+//! In `collide`: pairs of which one shape is a mesh or a height field, with several contact regions. Each manifold is a
+//! contact of its own, a part of the pair.
 
 use crate::collide::{Ground, MAX_PARTS, Manifold, Motion, Patch, Scratch, collide_pair};
 use crate::contact::proxies::Owner;
@@ -16,11 +16,11 @@ use std::sync::{Mutex, PoisonError};
 pub(crate) struct Parts {
     pairs: Vec<Pair>,
     next: Vec<Contact>,
-    /// One list per thread so far.
+    /// Free search memory: one entry per thread so far.
     idle: Mutex<Vec<(Scratch, Vec<Owner>)>>,
 }
 
-/// No content of it lasts.
+/// A clone starts empty, because no content persists.
 impl Clone for Parts {
     fn clone(&self) -> Self {
         Self::default()
@@ -36,8 +36,8 @@ struct Pair {
 }
 
 impl Parts {
-    /// Recomputes the contacts of such pairs. `motion` returns the bodies' motion if its argument is the first contact
-    /// of a pair.
+    /// Recomputes the contacts of pairs with parts. `motion` returns the bodies' motion if its argument is the first
+    /// contact of such a pair.
     pub fn update(
         &mut self,
         seams: &Seams<'_>,
@@ -104,8 +104,8 @@ fn find(
     collide_pair(a, b, &pair.motion, around, scratch, &mut pair.patch);
 }
 
-/// The contacts of a pair: persisting ones in their previous order, then new ones. There is at least one, possibly
-/// empty: it stores if the pair touches.
+/// Appends the contacts of a pair: persisting contacts in their previous order, then new ones. There is at least one,
+/// possibly without points, which stores whether the pair touches.
 fn push_parts(old: &[Contact], new: &[Manifold], out: &mut Vec<Contact>) {
     let mut taken = [false; MAX_PARTS];
     let pushed = old.iter().any(|contact| contact.pushed);

@@ -1,5 +1,5 @@
-//! Recycled manifolds: while two bodies hardly move relative to each other, the same features touch, and only the
-//! distances are recomputed from points fixed in the bodies, along the normal of a face or across two edges.
+//! Recycled manifolds. While two bodies hardly move relative to each other, the same features touch. Then only the
+//! separations are recomputed from points fixed in the bodies, along the normal of a face or across two edges.
 
 use crate::body::shape::Shape;
 use crate::body::{Body, BodyShape};
@@ -10,7 +10,7 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{ReadError, Reader, Rotation, Transform, Vec3, Writer, normalize_or};
 
-/// From this cosine on, a normal is that of a face, or at right angles to two edges, to rounding.
+/// Cosine above which a normal counts as that of a face, or as perpendicular to two edges.
 const ON_FACE: f32 = 0.999_999;
 
 /// A manifold as it was computed, in the frames of its bodies. Part of the state.
@@ -29,13 +29,13 @@ pub(crate) struct Recycled {
     places: Places,
 }
 
-/// Direction that the normal follows, in the frames of the bodies.
+/// Feature that the normal follows, in the frames of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Normal {
-    /// That of a face of A or of B.
+    /// Normal of a face of A (or of B).
     OfA(Vec3),
     OfB(Vec3),
-    /// Perpendicular to an edge of A and one of B, both of length 1.
+    /// Normal perpendicular to an edge of A and an edge of B, both given as unit vectors.
     Across([Vec3; 2]),
 }
 
@@ -69,7 +69,7 @@ impl Normal {
         across.in_world(poses, n).filter(|across| across.dot(n) > ON_FACE).map(|_| across)
     }
 
-    /// The normal at the current poses, world axes, on the previous side. `None` for nearly parallel edges.
+    /// Normal at the current poses, world axes, on the previous side; `None` for nearly parallel edges.
     fn in_world(&self, poses: [&Transform; 2], before: Vec3) -> Option<Vec3> {
         match *self {
             Self::OfA(normal) => Some(poses[0].rotation * normal),
@@ -122,7 +122,7 @@ impl Places {
             .map(|first| Vec3::new(self.0[first][point], self.0[first + 1][point], self.0[first + 2][point]))
     }
 
-    /// Positions on a surface in the first lanes; the other lanes are undefined.
+    /// Positions on one body's surface in the first lanes; the other lanes are undefined.
     #[inline(always)]
     fn on<L: Lanes>(&self, side: usize) -> Vector3<L> {
         let rows = self.0.as_flattened();
@@ -134,7 +134,7 @@ impl Places {
     }
 }
 
-/// True if a direction in the frame of a solid is that of the normal of one of its faces.
+/// True if a direction in the frame of a solid is the normal of one of its faces.
 fn is_of_face(shape: &Shape, direction: Vec3) -> bool {
     match shape {
         Shape::Box { .. } => direction.abs().cmpgt(Vec3::splat(ON_FACE)).any(),
@@ -144,8 +144,8 @@ fn is_of_face(shape: &Shape, direction: Vec3) -> bool {
 }
 
 impl Recycled {
-    /// Stores a new manifold. Only for solids with flat faces, at a face or two edges: other points are as cheap to
-    /// find as to update, and rolling bodies change theirs every step.
+    /// Stores a new manifold. Stores nothing unless both shapes are solids with flat faces that touch at a face or two
+    /// edges: other points are as cheap to find as to update, and rolling bodies change theirs every step.
     pub fn new([a, b]: [&Body; 2], key: ContactKey, (margin, slop): (f32, f32), manifold: &Manifold) -> Self {
         let shapes = [(a, key.shape_a), (b, key.shape_b)].map(|(body, shape)| &body.shapes[shape as usize]);
         let is_flat = |shape: &Shape| matches!(shape, Shape::Box { .. } | Shape::Hull(_));
@@ -189,12 +189,12 @@ impl Recycled {
         dispatch::run(Renew { recycled: self, poses: [pose_a, pose_b], normal, margin, manifold })
     }
 
-    /// Least search distance of the points, metres; 0 if nothing is stored.
+    /// Smallest search distance of the points, metres; 0 if nothing is stored.
     pub fn least_margin(&self) -> f32 {
         if self.count > 0 { SPECULATIVE_SLOPS * self.slop } else { 0.0 }
     }
 
-    /// It no longer holds.
+    /// Drops the stored manifold.
     pub fn drop(&mut self) {
         self.count = 0;
     }
@@ -231,12 +231,12 @@ impl Recycled {
     }
 }
 
-/// Updates the points of a manifold to the current poses with SIMD. Returns false, with no change, if one has slipped
-/// too far or is beyond the margin.
+/// Updates the points of a manifold to the current poses with SIMD. Returns false, and changes nothing, if a point has
+/// slipped too far or is beyond the margin.
 struct Renew<'a> {
     recycled: &'a Recycled,
     poses: [Transform; 2],
-    /// Current normal of the face, world axes.
+    /// Current normal of the manifold, world axes.
     normal: Vec3,
     margin: f32,
     manifold: &'a mut Manifold,
@@ -255,7 +255,7 @@ impl Kernel for Renew<'_> {
         let separation = gap.dot(n);
         let slip = gap - n * separation;
         let most = RECYCLED_SLIP * recycled.slop * (RECYCLED_SLIP * recycled.slop);
-        // NaN is not within either.
+        // Comparisons with NaN are false.
         let holds = L::le(slip.dot(slip), L::splat(most)) & L::le(separation, L::splat(margin));
         let all = u8::MAX >> (WIDTH - recycled.count);
         if holds.bits() & all != all {
@@ -300,8 +300,8 @@ mod tests {
             Transform::new(translation + shift, Rotation::from_scaled_axis(turn) * rotation);
     }
 
-    /// Boxes stacked and slightly moved: recycled points have the same separations as recomputed ones. Positions are
-    /// not compared: nearly parallel edges cross elsewhere after a small motion.
+    /// Boxes stacked and slightly moved: recycled points have the same separations as recomputed points. Positions are
+    /// not compared: nearly parallel edges cross at other points after a small motion.
     #[test]
     fn kept_points_are_as_far_apart_as_new_ones() {
         let mut random = Random::new(14);
@@ -320,7 +320,7 @@ mod tests {
                 continue;
             }
             let of = Recycled::new([&a, &b], key, (MARGIN, slop(0.4)), &manifold);
-            // Both together, and B slightly, or more than allowed.
+            // Moves both boxes together, and B slightly or beyond the limit.
             let (shift, turn) = (random.in_cube(), random.in_cube());
             for body in [&mut a, &mut b] {
                 let around =
@@ -337,7 +337,7 @@ mod tests {
             }
             kept += 1;
             let anew = found([&a, &b]);
-            // The other box's face may be equally good: tilted by up to 3 degrees, with its own feature names.
+            // The other box's face may be equally good: tilted by up to 3 degrees, with its own feature numbers.
             assert!(anew.normal.dot(manifold.normal) > 0.998, "case {case}: {anew:?}, {manifold:?}");
             for point in manifold.points() {
                 if let Some(other) = anew.points().iter().find(|other| other.feature == point.feature) {

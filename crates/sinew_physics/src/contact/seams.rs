@@ -16,7 +16,7 @@ use crate::contact::tuning::{SEAM_REACH, SEAM_SLOPS};
 use core::ops::ControlFlow;
 use sinew_math::{Rotation, Transform, Vec3, max3, min3};
 
-/// Surroundings of contacts.
+/// Bodies, their bounds and the pair filter: the surroundings of contacts.
 #[derive(Clone, Copy)]
 pub(crate) struct Seams<'a> {
     pub bodies: &'a Arena<Body>,
@@ -24,28 +24,28 @@ pub(crate) struct Seams<'a> {
     pub filter: PairFilter<'a>,
 }
 
-/// Bounds of a manifold's search.
+/// Limits of a manifold's search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Search {
-    /// Metres.
+    /// Search distance (`margin`) and slop of the shapes, metres.
     pub margin: f32,
     pub slop: f32,
     /// Length of the step, seconds.
     pub dt: f32,
 }
 
-/// The two sides of a contact of which one belongs to the ground.
+/// Sides of a contact between the ground and a dynamic body.
 struct Sides {
     ground: Owner,
     mover: Owner,
     of_ground: Half,
-    /// Unit, from the ground.
+    /// Contact normal from the ground to the body, unit length, world axes.
     out: Vec3,
 }
 
 impl Seams<'_> {
-    /// Rotates the normal of a contact at an edge or side of a ground shape to the surrounding surface: to a face of
-    /// the shape, or to a non-pushing side if the face belongs to another shape.
+    /// Rotates the normal of a contact at an edge or side of a ground shape to that of the surrounding surface: a face
+    /// of the shape. If the face belongs to another shape, disables the contact.
     pub fn mend(&self, key: ContactKey, search: Search, manifold: &mut Manifold) {
         let Some(sides) = self.sides(key, manifold) else { return };
         let reach = SEAM_SLOPS * search.slop;
@@ -55,7 +55,7 @@ impl Seams<'_> {
         for (around, point) in faces.iter_mut().zip(manifold.points()) {
             let on_ground = point.position - sides.out * (0.5 * point.separation);
             let Some(found) = self.faces(sides.ground, on_ground, reach) else { continue };
-            // Away from the edges it is unchanged.
+            // A contact away from the edges is unchanged.
             if found.count() < 2 && found.shown(sides.out).is_none_or(|shown| is_as_found(&shown)) {
                 return;
             }
@@ -70,7 +70,7 @@ impl Seams<'_> {
         if shown[..manifold.count].iter().flatten().any(is_as_found) {
             return;
         }
-        // At the part that is over the shape: one end of a long shape that crosses an edge diagonally may be outside.
+        // Uses a point that is over the shape: one end of a long shape that crosses an edge diagonally may be outside.
         let known = manifold.points().iter().enumerate().filter(|(i, _)| faces[*i].is_some());
         let known = known.map(|(i, point)| (i, *point));
         let deeper = |p: (usize, ManifoldPoint), q: (usize, ManifoldPoint)| {
@@ -88,7 +88,7 @@ impl Seams<'_> {
         }
     }
 
-    /// Neighbouring ground shapes within bounds that may continue a surface at its edges.
+    /// Lists neighbouring ground shapes within `bounds` that may continue a surface at its edges.
     pub fn beside(&self, ground: Owner, mover: Owner, bounds: &Aabb, list: &mut Vec<Owner>) {
         list.clear();
         if self.bodies.at(ground.body).kind == BodyKind::Dynamic || !self.pushes(ground) {
@@ -102,8 +102,8 @@ impl Seams<'_> {
         });
     }
 
-    /// Normal of the combined surface at a point, and the height of the point over its plane, metres; `normal` if no
-    /// shape hides the surface, `None` if others hide all of it.
+    /// Normal of the combined surface at a point, and the height of the point over its plane, metres. The normal is
+    /// `normal` if no shape hides the surface; `None` if other shapes hide all of it.
     pub fn shown(
         &self,
         ground: Owner,
@@ -121,7 +121,7 @@ impl Seams<'_> {
         if faces.has_hidden() { faces.shown(normal) } else { Some((normal, 0.0)) }
     }
 
-    /// `None` unless one of the two is dynamic, the other is not and has flat faces, and both push.
+    /// Sides of the contact; `None` unless one is dynamic, the other is not and has flat faces, and both push.
     fn sides(&self, key: ContactKey, manifold: &Manifold) -> Option<Sides> {
         if manifold.count == 0 {
             return None;
@@ -147,7 +147,7 @@ impl Seams<'_> {
         Faces::around(self.shape(owner), &frame, point, reach)
     }
 
-    /// Hides, around each point, the parts behind other ground shapes.
+    /// Hides the parts of the faces around each point that are behind other ground shapes.
     fn hide(
         &self,
         sides: &Sides,
@@ -175,7 +175,7 @@ impl Seams<'_> {
         other != ground && (other.body == ground.body || is_static(ground) && is_static(other))
     }
 
-    /// True if a shape always pushes others.
+    /// True if another shape always pushes the mover.
     fn stops(&self, mover: Owner, other: Owner) -> bool {
         let key = ContactKey::new((mover.body, mover.shape), (other.body, other.shape));
         self.pushes(other) && self.filter.lets_meet(self.bodies, key)
@@ -186,7 +186,7 @@ impl Seams<'_> {
         surface.sensing == Sensing::Solid && surface.rule == ContactRule::Push
     }
 
-    /// The contact with a ground plane, if the other shape is over the ground shape now or within the step.
+    /// Contact of the mover with a ground plane, with the points that are over the ground shape now or within the step.
     fn put_on(
         &self,
         sides: &Sides,
@@ -224,5 +224,5 @@ impl Seams<'_> {
     }
 }
 
-/// Cosine above which a normal counts as the computed one.
+/// Cosine above which a normal counts as unchanged.
 const AS_FOUND: f32 = 0.999_999_9;

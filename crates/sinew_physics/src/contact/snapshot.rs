@@ -1,4 +1,4 @@
-//! Contacts as bytes.
+//! Writes and reads contacts.
 
 use crate::arena::Arena;
 use crate::body::Body;

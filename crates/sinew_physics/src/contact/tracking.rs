@@ -9,13 +9,13 @@ use crate::contact::{Contact, ContactKey};
 use crate::id::{BodyId, ShapeId};
 use sinew_math::{ReadError, Reader, Writer};
 
-/// The world's state of pairs outside their contacts, which exist only while the broad phase finds them. Part of the
+/// State of touching pairs outside their contacts, which exist only while the broad phase finds the pairs. Part of the
 /// snapshot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactTracking {
-    /// Solid shapes.
+    /// Touching pairs of solid shapes.
     pub touching: Touches,
-    /// A sensor and a shape in it.
+    /// Pairs of a sensor and a shape in it.
     pub sensed: Touches,
     pub hits: OpenHits,
     /// Bodies changed since the last step: their contacts are tested again even if nothing moves.
@@ -35,7 +35,7 @@ impl ContactTracking {
         }
     }
 
-    /// Marks the bodies that were changed.
+    /// Reads the state, and marks the bodies that were changed.
     pub fn load(r: &mut Reader<'_>, bodies: &mut Arena<Body>) -> Result<Self, ReadError> {
         let (touching, sensed, hits) = (Touches::load(r)?, Touches::load(r)?, OpenHits::load(r)?);
         let mut changed = Vec::new();
@@ -47,7 +47,7 @@ impl ContactTracking {
         Ok(Self { touching, sensed, hits, changed, modifiers: Modifiers::default() })
     }
 
-    /// A contact is dropped: its touch ends.
+    /// Ends the touch of a contact that is dropped.
     pub fn part(&mut self, bodies: &Arena<Body>, contact: &Contact) {
         if contact.touching {
             self.touching.gone.push(touch_of(bodies, contact.key));
@@ -57,7 +57,7 @@ impl ContactTracking {
         }
     }
 
-    /// The step has processed the changes.
+    /// Clears the marks of changed bodies after the step has processed the changes.
     pub fn settle(&mut self, bodies: &mut Arena<Body>) {
         for index in self.changed.drain(..) {
             bodies.at_mut(index).changed = false;
@@ -73,7 +73,7 @@ pub(crate) struct Touch {
 }
 
 impl Touch {
-    /// Key that all lists are ordered by.
+    /// Key that sorts all lists.
     fn shapes(&self) -> (BodyId, BodyId, u32, u32) {
         (self.a.body, self.b.body, self.a.shape, self.b.shape)
     }
@@ -97,16 +97,16 @@ fn touch_of(bodies: &Arena<Body>, key: ContactKey) -> Touch {
     Touch { a, b }
 }
 
-/// Touching pairs and sensor pairs. A contact stores if its pair touched when last tested; this holds the pairs whose
-/// contact was dropped since, and the results of one step.
+/// Touching pairs or sensor pairs. A contact stores whether its pair touched when last tested. This list holds the
+/// pairs whose contact was dropped since, and the results of one step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Touches {
     /// Pairs that touched until their contact was dropped: the next step reports their end. Part of the snapshot.
     gone: Vec<Touch>,
-    /// Pairs that touched before this step or touch now; without the pairs of bodies that had no change and no dropped
+    /// Pairs that touched before this step or touch now, except pairs of bodies that had no change and no dropped
     /// contact.
     seen: Vec<Seen>,
-    /// Start in `seen` of the current two bodies' pairs, and if any of them changed.
+    /// Start in `seen` of the current two bodies' pairs, and whether any of them changed.
     first: usize,
     changes: bool,
     /// Pairs of `gone` and `seen`, merged for reports.
@@ -135,7 +135,7 @@ pub(crate) struct Told<'a> {
 }
 
 impl Touches {
-    /// Reserves space for the pairs of this many contacts.
+    /// Starts a step; reserves space for the pairs of `contacts` contacts.
     pub fn start(&mut self, contacts: usize) {
         self.seen.clear();
         self.noted.clear();
@@ -145,7 +145,7 @@ impl Touches {
         self.gone.reserve(contacts);
     }
 
-    /// Records if a pair of shapes touched when last tested, and if it touches now. Pairs come in order.
+    /// Records whether a pair of shapes touched when last tested, and whether it touches now. Pairs come in order.
     pub fn note(&mut self, key: ContactKey, was: bool, is: bool) {
         if !was && !is {
             return;
@@ -157,7 +157,8 @@ impl Touches {
         self.seen.push(Seen { key, was, is });
     }
 
-    /// Drops the pairs of two bodies without a change: nothing to report, unless a contact was dropped.
+    /// Drops the pairs of the current two bodies if none changed and no contact was dropped: there is nothing to
+    /// report.
     fn forget_unchanged(&mut self) {
         if !self.changes && self.gone.is_empty() {
             self.seen.truncate(self.first);
@@ -171,7 +172,7 @@ impl Touches {
         let noted = |&Seen { key, was, is }: &Seen| Noted { touch: touch_of(bodies, key), was, is };
         self.noted.extend(self.seen.iter().map(noted));
         self.noted.extend(self.gone.drain(..).map(|touch| Noted { touch, was: true, is: false }));
-        // Reserves space for all: the number varies from hit to hit.
+        // Reserves space for all pairs: the number varies from step to step.
         let most = self.noted.capacity();
         for Told { bodies, shapes } in [&mut begin, &mut end] {
             bodies.clear();
@@ -221,7 +222,7 @@ enum Change {
     Ends,
 }
 
-/// Combined change of some pairs, if any.
+/// Change from no touching pair to at least one, or the reverse; `None` if neither.
 fn change(noted: &[Noted]) -> Option<Change> {
     match (noted.iter().any(|noted| noted.was), noted.iter().any(|noted| noted.is)) {
         (false, true) => Some(Change::Begins),

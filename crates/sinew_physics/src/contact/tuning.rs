@@ -6,95 +6,99 @@
 
 /// Separation up to which contacts are searched, in addition to the motion of the step, metres.
 ///
-/// Must exceed the sum of rounding errors and motion added within a step. Larger: more near pairs that never touch.
-/// Smaller: bodies pushed within a step arrive without a contact. Shown by the tests of `touches`.
+/// Must exceed the sum of rounding errors and motion added within a step. Larger: the step tests more near pairs that
+/// never touch. Smaller: bodies pushed within a step meet without a contact. Shown by the tests of `touches`.
 pub(crate) const MARGIN: f32 = 0.02;
 
 /// Slops within which shapes of the ground count as abutting, a number.
 ///
-/// Below 1, so that a step of 5 mm counts as one. Larger: intended steps and gaps do not stop small bodies. Smaller:
-/// levels assembled by hand have edges between their boxes. Shown by the tests of `seams`.
+/// Below 1, so that a step of 5 mm counts as a step. Larger: intended steps and gaps do not stop small bodies. Smaller:
+/// bodies catch on edges between the boxes of levels assembled by hand. Shown by the tests of `seams`.
 pub(crate) const SEAM_SLOPS: f32 = 0.9;
 
-/// Depth below the plane of the next ground shape that a body may have before it is over the shape, in slops.
+/// Depth below the plane of the next ground shape up to which a point gets a contact before it is over that shape, in
+/// slops.
 ///
-/// Larger: bodies are lifted before a hill's crest. Smaller: bodies that rest below the surface fall in before the next
+/// Larger: bodies are lifted before a hill's crest. Smaller: bodies that rest below the surface sink in before the next
 /// shape. Shown by the tests of `seams`.
 pub(crate) const SEAM_REACH: f32 = 1.0;
 
 /// Margin of the fat bounds of moving shapes, metres.
 ///
-/// Trembling and settling bodies keep their place in the tree. Larger: more candidate pairs. Smaller: more leaves move.
-/// Changes only the order of work; shown by `cargo xtask bench --trace wave_pile`.
+/// With the margin, bodies that tremble or settle keep their leaf. Larger: the step tests more candidate pairs.
+/// Smaller: more leaves move. Changes only the order of work; shown by `cargo xtask bench --trace wave_pile`.
 pub(crate) const BOUNDS_ROOM: f32 = 0.04;
 
-/// Margin of the fat bounds of small kinematic bodies, metres: those of one shape with a radius of at most twice the
-/// margin.
+/// Margin of the fat bounds of small kinematic bodies, metres: of bodies with one shape and a radius of at most twice
+/// the margin.
 ///
 /// Most of them are parts of characters, which swing back and forth without contacts: while they stay within this
-/// margin only their position is tested. Larger: more candidate pairs, and rays test more boxes. Smaller: more leaves
-/// move. Changes only the order of work; shown by `walkers_step` of `cargo xtask bench --counts`.
+/// margin the step tests only their position. Larger: the step tests more candidate pairs, and rays test more boxes.
+/// Smaller: more leaves move. Changes only the order of work; shown by `walkers_step` of `cargo xtask bench --counts`.
 pub(crate) const BOUNDS_ROOM_LED: f32 = 0.3;
 
 /// Steps of motion at the current velocity included in the fat bounds of small kinematic bodies, a number.
 ///
-/// Larger: longer bounds, more candidate pairs. Smaller: more leaves move. Shown as [`BOUNDS_ROOM_LED`].
+/// Larger: bounds are longer and make more candidate pairs. Smaller: more leaves move. Shown as [`BOUNDS_ROOM_LED`].
 pub(crate) const BOUNDS_STEPS_LED: f32 = 12.0;
 
 /// Steps of motion at the current velocity included in fat bounds, a number.
 ///
-/// Larger: longer bounds, more candidate pairs. Smaller: moving bodies search the tree more often. Shown by
+/// Larger: bounds are longer and make more candidate pairs. Smaller: moving bodies search the tree more often. Shown by
 /// `cargo xtask bench --trace box_rain`.
 pub(crate) const BOUNDS_STEPS: f32 = 3.0;
 
 /// Steps of motion included in the fat bounds of shapes that collide with nothing, a number.
 ///
-/// Only rays and other queries use them. Larger: rays test more boxes. Smaller: leaves of flying bodies move more
+/// Only rays and other queries use these bounds. Larger: rays test more boxes. Smaller: leaves of flying bodies move more
 /// often. Shown as [`BOUNDS_STEPS`].
 pub(crate) const BOUNDS_STEPS_ALONE: f32 = 12.0;
 
 /// Factor on the margin above which oversized fat bounds are shrunk, a ratio.
 ///
-/// Larger: bodies at rest keep the long bounds of their flight, and pairs with them. Smaller: bounds of slowing bodies
-/// are rebuilt repeatedly. Shown as [`BOUNDS_STEPS`].
+/// Larger: bodies at rest keep the long bounds of their flight, and the pairs of these. Smaller: the bounds of slowing
+/// bodies are rebuilt repeatedly. Shown as [`BOUNDS_STEPS`].
 pub(crate) const BOUNDS_EXCESS: f32 = 3.0;
 
 /// Error by which a computed gap may be too large, metres.
 ///
-/// Manifold points may be outside their clipping faces by up to half a millimetre. Larger: pairs that motion cannot
-/// close are tested earlier. Smaller than that half: a contact may come late. Shown by the tests of `touches`.
+/// Manifold points may be outside their clipping faces by up to half a millimetre. Larger: pairs are tested earlier
+/// than their motion requires. Smaller than half a millimetre: a contact may come late. Shown by the tests of
+/// `touches`.
 pub(crate) const GAP_ERROR: f32 = 0.001;
 
 /// Separation up to which a nearly static pair gets manifold points, in slops.
 ///
-/// A rocking box needs the points of its other edge. Larger: more points that never push. Smaller: a rocking box falls
-/// onto its edge before it has a row. Shown by `jenga` and the tests of `stacks`.
+/// A rocking box needs the points of its other edge. Larger: manifolds have more points that never push. Smaller: a
+/// rocking box falls onto an edge that has no contact point yet. Shown by `jenga` and the tests of `stacks`.
 pub(crate) const SPECULATIVE_SLOPS: f32 = 4.0;
 
 /// Slip between two bodies up to which their manifold is recycled, in slops: 2 mm for crates.
 ///
-/// Larger: points remain where the faces no longer touch, and piles creep. Smaller: fewer manifolds are recycled.
+/// Larger: points remain where the faces no longer touch, and piles creep. Smaller: the step recomputes more manifolds.
 /// Shown by `large_pyramid`, `jenga`.
 pub(crate) const RECYCLED_SLIP: f32 = 0.4;
 
 /// Cosine of half the relative rotation, 1°, up to which a manifold is recycled.
 ///
-/// A larger angle: a tipping body stands on the points of its face. A smaller one: fewer manifolds are recycled.
-/// Shown by `dominoes`, `cards`.
+/// A larger angle: a tipping body stands on the points of its face. A smaller angle: the step recomputes more
+/// manifolds. Shown by `dominoes`, `cards`.
 pub(crate) const RECYCLED_HALF_TURN: f32 = 0.999_962;
 
-/// Cosine of the normal's rotation, 25°, beyond which a part of a pair is a new one.
+/// Cosine of the normal's rotation, 25°, beyond which a part of a pair counts as a new one.
 ///
-/// A larger angle: impulses move from one slope to another. A smaller one: bodies rolling over a mesh lose their warm
+/// A larger angle: impulses move from one slope to another. A smaller angle: bodies rolling over a mesh lose their warm
 /// start. Shown by `mesh_drop`.
 pub(crate) const SAME_PART_COSINE: f32 = 0.9;
 
-/// Share of its approach speed above which a pair is not yet stopped, a ratio.
+/// Remaining share of a pair's approach speed above which a hit is still in progress, a ratio.
 ///
-/// Larger: a hit over several steps is reported in parts. Smaller: it is reported late. Shown by the tests of `events`.
+/// Larger: a hit over several steps is reported in parts. Smaller: a hit is reported late. Shown by the tests of
+/// `events`.
 pub(crate) const STILL_COMING: f32 = 0.1;
 
 /// Sine of the angle between two edges up to which their manifold is always recomputed.
 ///
-/// Larger: fewer manifolds are recycled. Smaller: the direction across two edges that are nearly parallel is rounding. Shown by `rocks`.
+/// Larger: the step recomputes more manifolds. Smaller: the cross product of nearly parallel edges is only rounding
+/// error. Shown by `rocks`.
 pub(crate) const RECYCLED_SINE: f32 = 0.005;

@@ -13,34 +13,34 @@ use sinew_math::{Range, SwingTwistLimit, Transform, Vec3};
 pub enum JointKind {
     /// Three rotations, within limits.
     Ball {
-        /// `None`: unlimited.
+        /// Swing and twist limits; `None`: unlimited.
         limit: Option<SwingTwistLimit>,
     },
     /// One rotation, about the frames' x axis.
     Hinge {
-        /// Radians, inside −π..=π; `None`: unlimited.
+        /// Limit of the angle, radians, inside −π..=π; `None`: unlimited.
         limit: Option<Range>,
     },
     /// Two rotations: swing about y and z, no twist about x. Twist is undefined at a swing of half a turn and is weak
-    /// near it: limit the swing if it can get there.
+    /// near it: limit the swing if it can reach half a turn.
     Universal {
-        /// The cone; its twist range is ignored. `None`: unlimited.
+        /// Cone of the swing; the twist range is ignored. `None`: unlimited.
         limit: Option<SwingTwistLimit>,
     },
-    /// None.
+    /// No free motion.
     Fixed,
     /// One translation, along the frames' x axis.
     Slider {
-        /// Metres; `None`: unlimited.
+        /// Limit of the translation, metres; `None`: unlimited.
         limit: Option<Range>,
     },
     /// Only the distance of the two anchors is constrained, to a range: a rod if both ends are equal, a rope if the
     /// lower one is 0, a spring with [`JointDef::spring`] and a wide range.
     Distance {
-        /// Metres, at least 0.
+        /// Range of the distance, metres, at least 0.
         range: Range,
     },
-    /// Each of the six directions separately.
+    /// Each of the six directions is set separately.
     SixDof(SixDof),
 }
 
@@ -54,13 +54,13 @@ pub struct SixDof {
     pub twist: AxisMotion,
     /// Swing about y, radians, containing 0; limits on both swings make an elliptic cone.
     pub swing_y: AxisMotion,
-    /// Swing about z, with the same rule.
+    /// Swing about z, radians, with the same rule as `swing_y`.
     pub swing_z: AxisMotion,
 }
 
 impl SixDof {
-    /// Everything free: for motors and springs that pull. To a static or kinematic body it is a pin: as stable as any
-    /// spring, however many a tree of bodies has, and it closes no loop.
+    /// All directions free, for motors and springs that pull. To a static or kinematic body it is a pin: as stable as
+    /// any spring, however many pins a tree of bodies has, and it closes no loop.
     pub const FREE: Self = Self {
         linear: [AxisMotion::Free; 3],
         twist: AxisMotion::Free,
@@ -77,7 +77,7 @@ pub enum AxisMotion {
     Locked,
     /// Unlimited.
     Free,
-    /// Free within a range, metres or radians. One without width is better `Locked`.
+    /// Free within a range, metres or radians. `Locked` is better than a range without width.
     Limited(Range),
 }
 
@@ -85,28 +85,28 @@ pub enum AxisMotion {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Softness {
-    /// Independent of the masses.
+    /// Stiffness and damping independent of the masses.
     Stiffness {
-        /// N/m or N·m/rad.
+        /// Stiffness, N/m or N·m/rad.
         stiffness: f32,
-        /// N·s/m or N·m·s/rad.
+        /// Damping, N·s/m or N·m·s/rad.
         damping: f32,
     },
-    /// Frequency-based: the joint behaves as a damped oscillator whose mass is that of the two sides of the joint, each
+    /// Frequency-based: the joint behaves as a damped oscillator. Its mass is that of the two sides of the joint, each
     /// as one rigid piece in the pose at the step's start, rotating about one joint axis. For a joint that closes a
-    /// loop it is that of its two bodies. For a pin ([`SixDof::FREE`] to a kinematic or static body) it is the mass of
-    /// all bodies that are fewer joints away from it than from other pins and from the tree's support. For limits and
-    /// soft zones it is the effective mass of their row while the joints hold.
+    /// loop it is the mass of its two bodies. For a pin ([`SixDof::FREE`] to a kinematic or static body) it is the mass
+    /// of all bodies that are fewer joints away from this pin than from other pins and from the tree's support. For
+    /// limits and soft zones it is the effective mass of their row while the joints hold.
     Frequency {
         /// Natural frequency, Hz.
         hertz: f32,
-        /// 1 is critical.
+        /// Damping ratio; 1 is critical.
         damping_ratio: f32,
     },
 }
 
-/// Pulls the free directions toward a rest pose, with unlimited force; see [`Motor`] for a limited one. Its rest pose
-/// belongs inside the limits: a stop that a stiff spring exceeds pushes back only as fast as the available energy
+/// Pulls the free directions toward a rest pose, with unlimited force; see [`Motor`] for limited force. The rest pose
+/// must be inside the limits: a stop that a stiff spring exceeds pushes back only as fast as the available energy
 /// allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -121,34 +121,35 @@ pub struct Spring {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Gains {
-    /// The target velocity, as exactly as the caps allow.
+    /// Reaches the target velocity, as exactly as the caps allow.
     Velocity,
-    /// The target pose, and the target velocity by damping.
+    /// Reaches the target pose by stiffness, and the target velocity by damping.
     Position(Softness),
 }
 
-/// Drives the free directions of a joint. Its targets belong inside the limits, see [`Spring`].
+/// Drives the free directions of a joint. The targets must be inside the limits, see [`Spring`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(alias = "drive")]
 #[doc(alias = "actuator")]
 pub struct Motor {
-    /// Aim of the motor: velocity, or pose.
+    /// Aim of the motor: a velocity, or a pose.
     pub gains: Gains,
-    /// Frame B relative to frame A. For a hinge only the rotation about x counts, for a slider only translation x.
+    /// Target pose of frame B in frame A. For a hinge only the rotation about x counts, for a slider only translation
+    /// x.
     pub target: Transform,
     /// Target velocity of frame B relative to frame A, in A's axes, m/s and rad/s.
     pub velocity: Velocity,
-    /// Largest force along each free axis, N, may be infinite; 0 disables translations.
+    /// Largest force along each free axis, N; may be infinite, and 0 disables translations.
     #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub max_force: f32,
-    /// Largest torque about each free axis, N·m, may be infinite; 0 disables rotations.
+    /// Largest torque about each free axis, N·m; may be infinite, and 0 disables rotations.
     #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub max_torque: f32,
 }
 
 impl Motor {
-    /// Creates a motor toward a pose, with no cap.
+    /// Creates a motor toward a pose, with unlimited force and torque.
     pub fn toward(target: Transform, softness: Softness) -> Self {
         Self {
             gains: Gains::Position(softness),
@@ -159,7 +160,7 @@ impl Motor {
         }
     }
 
-    /// Rotates a hinge at `speed` (rad/s) with at most `max_torque` (N·m).
+    /// Creates a motor that rotates a hinge at `speed` (rad/s) with at most `max_torque` (N·m).
     pub fn spin(speed: f32, max_torque: f32) -> Self {
         Self {
             gains: Gains::Velocity,
@@ -170,7 +171,7 @@ impl Motor {
         }
     }
 
-    /// Moves a slider at `speed` (m/s) with at most `max_force` (N).
+    /// Creates a motor that moves a slider at `speed` (m/s) with at most `max_force` (N).
     pub fn push(speed: f32, max_force: f32) -> Self {
         Self {
             gains: Gains::Velocity,
@@ -182,7 +183,7 @@ impl Motor {
     }
 }
 
-/// Softens the end of a joint's rotation. Without effect on translations, and where the limits themselves are soft.
+/// Softens the end of a joint's rotation. No effect on translations, or where the limits themselves are soft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SoftZone {
@@ -197,10 +198,11 @@ pub struct SoftZone {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Strength {
-    /// Mean force over a step, N.
+    /// Mean force over a step at which the joint breaks, N.
     #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub force: f32,
-    /// Mean torque over a step, N·m about B's anchor, springs, motors, limits and friction included.
+    /// Mean torque over a step at which the joint breaks, N·m about B's anchor; includes springs, motors, limits and
+    /// friction.
     #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub torque: f32,
 }
@@ -214,9 +216,9 @@ impl Strength {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointCollision {
-    /// They collide.
+    /// The bodies collide.
     Enabled,
-    /// They do not collide while the joint is enabled.
+    /// The bodies do not collide while the joint is enabled.
     Disabled,
 }
 
@@ -254,22 +256,22 @@ pub struct JointDef {
     pub limit_softness: Option<Softness>,
     /// Zone in front of hard limits of rotations. Default `None`.
     pub soft_zone: Option<SoftZone>,
-    /// Pulls the free directions. Default `None`.
+    /// Spring that pulls the free directions. Default `None`.
     pub spring: Option<Spring>,
-    /// Drives the free directions. Default `None`.
+    /// Motor that drives the free directions. Default `None`.
     pub motor: Option<Motor>,
     /// Torque that resists the free rotations, N·m, and force that resists the free translations, N. Default 0.
     pub friction_torque: f32,
-    /// Default unbreakable.
+    /// Load at which the joint breaks. Default unbreakable.
     pub strength: Strength,
-    /// Default disabled.
+    /// Collision of the two bodies with each other. Default disabled.
     pub collision: JointCollision,
-    /// Default enabled.
+    /// Enabled or disabled. Default enabled.
     pub state: JointState,
 }
 
 impl JointDef {
-    /// A joint whose frames coincide in the bodies' current pose, at the world frame `world_from_joint`.
+    /// Creates a joint at the world frame `world_from_joint`; its frames coincide in the bodies' current pose.
     pub fn new(
         body_a: BodyId,
         body_b: BodyId,
@@ -283,7 +285,7 @@ impl JointDef {
         Self::between(body_a, body_b, frame_a, frame_b, kind)
     }
 
-    /// A joint with a frame on each body, in that body's axes.
+    /// Creates a joint with a frame on each body, in that body's axes.
     pub fn between(
         body_a: BodyId,
         body_b: BodyId,
@@ -309,10 +311,10 @@ impl JointDef {
         }
     }
 
-    /// Sets the range of motion: radians of a hinge, metres of a slider.
+    /// Sets the range of motion: radians for a hinge, metres for a slider.
     ///
     /// # Panics
-    /// If it is of another kind: other limits are fields of their [kinds](JointKind).
+    /// If the joint is of another kind: other limits are fields of their [kinds](JointKind).
     #[track_caller]
     pub fn limited(self, range: Range) -> Self {
         let limit = Some(range);
@@ -324,8 +326,8 @@ impl JointDef {
         Self { kind, ..self }
     }
 
-    /// A mouse joint that pulls a point of `body_b` toward the origin of `hand`, a static or kinematic body: move the
-    /// hand, or the motor's target. `point` in B's frame; at most `max_force` (N).
+    /// Creates a mouse joint, which pulls a point of `body_b` toward the origin of `hand`, a static or kinematic body:
+    /// move the hand, or the motor's target. `point` is in B's frame, `max_force` in N.
     pub fn drag(hand: BodyId, body_b: BodyId, point: Vec3, softness: Softness, max_force: f32) -> Self {
         let frame_b = Transform::from_translation(point);
         let kind = JointKind::SixDof(SixDof::FREE);

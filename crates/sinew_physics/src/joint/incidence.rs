@@ -6,7 +6,7 @@ use crate::arena::Arena;
 /// The joints of each body, ascending. Derived from the joints, and so not part of the state.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Incidence {
-    /// Joints by slot, up to the last body that has any.
+    /// Joints of each body by slot, up to the last body that has any.
     of_body: Vec<Vec<u32>>,
 }
 

@@ -22,7 +22,7 @@ pub(crate) use rows::{
 use sinew_math::{Transform, Vec3};
 
 /// Impulse of a limit in the last substep and the one before, N·s or N·m·s, in frame A. A vector, because the axis of a
-/// cone rotates and an impulse about the old axis must not be applied about the new one.
+/// cone rotates, and an impulse about the previous axis must not act about the current one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct LimitImpulse {
     pub now: Vec3,
@@ -30,13 +30,13 @@ pub(crate) struct LimitImpulse {
 }
 
 impl LimitImpulse {
-    /// Converts to the impulses of substeps `times` as long.
+    /// Scales the impulses to substeps `times` as long.
     pub fn of_substeps(self, times: f32) -> Self {
         Self { now: self.now * times, before: self.before * times }
     }
 }
 
-/// Parameters of the soft parts of a joint.
+/// Softness of the welds and limits, springs, motor and friction of a joint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointDrive {
     pub weld: Option<Softness>,
@@ -59,7 +59,7 @@ impl JointDrive {
         }
     }
 
-    /// The free directions have only friction, and the stops are hard.
+    /// True if the free directions have only friction and the stops are hard.
     pub fn is_limp(&self) -> bool {
         let Self { weld, limit_softness, soft_zone, spring, motor, friction: _ } = self;
         weld.is_none()
@@ -69,14 +69,14 @@ impl JointDrive {
             && motor.is_none()
     }
 
-    /// True if a row depends on the mass it moves.
+    /// True if a row depends on the mass that the joint moves.
     pub fn needs_mass(&self) -> bool {
         self.weld.is_some() || self.spring.is_some() || self.motor.is_some()
     }
 }
 
 impl Softness {
-    /// Stiffness and damping for a mass.
+    /// Stiffness and damping for a mass (kg or kg·m²).
     pub(crate) fn of_mass(self, mass: f32) -> (f32, f32) {
         match self {
             Self::Stiffness { stiffness, damping } => (stiffness, damping),
@@ -93,7 +93,7 @@ pub(crate) type Saturation = [i8; DIRECTIONS];
 
 #[derive(Clone, Debug)]
 pub(crate) struct Joint {
-    /// Body indices.
+    /// Indices of the two bodies.
     pub a: u32,
     pub b: u32,
     /// Joint frame in the principal frames of the bodies.
@@ -106,15 +106,15 @@ pub(crate) struct Joint {
     pub state: JointState,
     pub limits: [LimitImpulse; MAX_LIMITS],
     pub saturated: Saturation,
-    /// Impulses of the last substep if the joint closes one of many loops, direction by direction.
+    /// Impulses of the last substep by direction, N·s and N·m·s, if the joint closes one of many loops.
     pub warm_impulse: Vec6,
-    /// Linear force of the last substep on body B, N, world axes: geometric stiffness needs it.
+    /// Linear force on body B in the last substep, N, world axes: geometric stiffness needs it.
     pub force: Vec3,
-    /// Effective mass that springs and motors moved in the last step, direction by direction, kg or kg·m².
+    /// Effective mass that springs and motors moved in the last step, by direction, kg or kg·m².
     pub mass: Vec6,
-    /// Mean over the last step on body B, N and N·m about its anchor, world axes.
+    /// Mean force over the last step on body B, N, and mean torque about its anchor, N·m, world axes.
     pub reaction: Vec6,
-    /// Owner that keeps the joint; `None` if it is the user's.
+    /// Owner of the joint; `None` if the joint is the user's.
     pub owner: Option<OwnerMark>,
 }
 
@@ -151,7 +151,7 @@ impl Joint {
         }
     }
 
-    /// Applies another definition; stored impulses are kept where their meaning is unchanged.
+    /// Applies another definition; keeps stored impulses where their meaning is unchanged.
     pub fn redefine(&mut self, def: &JointDef, principal_from_a: Transform, principal_from_b: Transform) {
         let new = Self::new(def, self.a, self.b, principal_from_a, principal_from_b);
         let new = Self { owner: self.owner, ..new };
@@ -179,7 +179,7 @@ impl Joint {
         self.state == JointState::Enabled
     }
 
-    /// J.
+    /// Energy stored in welds, springs and soft limits, J.
     pub(crate) fn elastic_energy(&self, pose: &JointPose) -> f32 {
         let half = |softness: Softness, direction: usize, x: f32| {
             0.5 * softness.of_mass(self.mass[direction]).0 * x * x
@@ -204,30 +204,30 @@ impl Joint {
         sum
     }
 
-    /// Most rows that it can have.
+    /// Largest number of rows of the joint.
     pub fn most_rows(&self) -> usize {
         let drive = &self.drive;
         let driven = drive.spring.is_some() || drive.motor.is_some() || drive.friction > 0.0;
         locked_count(&self.kind) + if driven { open_directions(self.kind).count() } else { 0 }
     }
 
-    /// True if it has no locked direction and no stop: only springs, motors and friction in all six directions.
+    /// True if the joint has no locked direction and no stop: only springs, motors and friction in all six directions.
     pub fn leaves_all_free(&self) -> bool {
         self.kind == JointKind::SixDof(SixDof::FREE)
     }
 
-    /// True if the pair of bodies does not collide.
+    /// True if the joint keeps its two bodies from colliding.
     pub fn parts_bodies(&self) -> bool {
         self.is_enabled() && self.collision == JointCollision::Disabled
     }
 
-    /// True if the last step exceeded its strength.
+    /// True if the load in the last step exceeded the joint's strength.
     pub fn is_overloaded(&self) -> bool {
         crate::spatial::linear(&self.reaction).length() > self.strength.force
             || crate::spatial::angular(&self.reaction).length() > self.strength.torque
     }
 
-    /// A new motor keeps the old one's saturation state, if it is of the same kind and has caps.
+    /// Replaces the motor. A new motor keeps the old one's saturation state, if it is of the same kind and has caps.
     pub fn set_motor(&mut self, motor: Option<Motor>) {
         self.saturated = self.saturation_under(motor);
         self.drive.motor = motor;

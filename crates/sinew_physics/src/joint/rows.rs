@@ -11,7 +11,7 @@ pub(crate) const DIRECTIONS: usize = 6;
 /// First rotation among the directions.
 pub(crate) const TWIST: usize = 3;
 
-/// Geometry that the rows of a joint are computed from: its definition without state.
+/// Definition of a joint without state: the geometry of its rows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointGeometry {
     pub frame_a: Transform,
@@ -19,13 +19,13 @@ pub(crate) struct JointGeometry {
     pub kind: JointKind,
 }
 
-/// The joint's frames in the world, and the arms of its anchors.
+/// Frames of a joint in the world, and the arms of its anchors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointPose {
-    /// World arm from A's centre of mass to its anchor, and the same for B.
+    /// Vector from A's centre of mass to A's anchor, world, metres, and the same for B.
     pub arm_a: Vec3,
     pub arm_b: Vec3,
-    /// Anchor of B less anchor of A, world, metres.
+    /// Position of B's anchor minus that of A's, world, metres.
     pub gap: Vec3,
     pub rotation_a: Rotation,
     pub rotation_b: Rotation,
@@ -54,7 +54,7 @@ impl JointPose {
         Transform::new(self.rotation_a.inverse() * self.gap, self.relative())
     }
 
-    /// Unit direction from A's anchor to B's; x of frame A where they coincide.
+    /// Unit direction from A's anchor to B's; x of frame A where the anchors coincide.
     fn line(&self) -> Vec3 {
         let length = self.gap.length();
         if length > 1e-6 { self.gap / length } else { self.rotation_a * Vec3::X }
@@ -65,7 +65,7 @@ impl JointPose {
     }
 }
 
-/// One row's Jacobian on both bodies.
+/// Jacobian of one row on both bodies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
     pub a: Vec6,
@@ -73,7 +73,7 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// Rate of the anchors' distance along a direction fixed in the world.
+    /// Row of the rate of the anchors' distance along a direction fixed in the world.
     fn along(direction: Vec3, pose: &JointPose) -> Self {
         Self {
             a: join(-direction, -pose.arm_a.cross(direction)),
@@ -81,7 +81,7 @@ impl Row {
         }
     }
 
-    /// The same along a direction that rotates with A.
+    /// Row of the rate of the anchors' distance along a direction that rotates with A.
     fn along_turning(direction: Vec3, pose: &JointPose) -> Self {
         Self {
             a: join(-direction, -(pose.arm_a + pose.gap).cross(direction)),
@@ -89,35 +89,35 @@ impl Row {
         }
     }
 
-    /// Rate of rotation of B relative to A about an axis.
+    /// Row of the rate of rotation of B relative to A about an axis.
     fn about(axis: Vec3) -> Self {
         Self { a: join(Vec3::ZERO, -axis), b: join(Vec3::ZERO, axis) }
     }
 }
 
-/// Rows `J_a v_a + J_b v_b` of one joint: those of locked directions first, then those of open ones.
+/// Rows `J_a v_a + J_b v_b` of one joint: rows of locked directions first, then those of open directions.
 ///
-/// A row is an axis: a translation row measures the anchors' motion along it, a rotation row the frames' rotation about
-/// it.
+/// Each row has an axis. A translation row measures the anchors' motion along the axis, a rotation row the frames'
+/// rotation about the axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointRows {
-    /// Rows in use.
+    /// Number of rows.
     pub count: usize,
     /// Number of rows of locked directions, which come first.
     pub locked: usize,
     /// Position error of the locked rows, metres or radians.
     pub error: Vec6,
-    /// World arms from the centres of mass to where the rows of translation act.
+    /// World vectors from the centres of mass to the points at which translation rows act, metres.
     pub arm_a: Vec3,
     pub arm_b: Vec3,
-    /// World axes, row by row.
+    /// World axis of each row.
     pub axis: [Vec3; DIRECTIONS],
     /// Direction of each row, 0 to 5.
     direction: [u8; DIRECTIONS],
 }
 
 impl JointRows {
-    /// No impulses.
+    /// No rows.
     pub const NONE: Self = Self {
         count: 0,
         locked: 0,
@@ -128,7 +128,7 @@ impl JointRows {
         direction: [0; DIRECTIONS],
     };
 
-    /// Rows of all locked directions, and of the requested free ones.
+    /// Rows of all locked directions, and of the free directions requested by `open`.
     pub fn new(joint: &JointGeometry, pose: &JointPose, open: [bool; DIRECTIONS]) -> Self {
         let kind = &joint.kind;
         let locks = locks(kind);
@@ -158,13 +158,13 @@ impl JointRows {
         usize::from(self.direction[row])
     }
 
-    /// True of a row of rotation.
+    /// True for a row of rotation.
     #[inline(always)]
     pub fn turns(&self, row: usize) -> bool {
         self.direction(row) >= TWIST
     }
 
-    /// True if the anchors are locked together: the first three rows, along the axes of the world.
+    /// True if the anchors are locked together. The first three rows are then along the axes of the world.
     pub fn locks_point(&self) -> bool {
         self.locked >= TWIST && self.direction(TWIST - 1) < TWIST
     }
@@ -184,7 +184,8 @@ impl JointRows {
         if self.turns(row) { join(Vec3::ZERO, axis) } else { join(axis, arm.cross(axis)) }
     }
 
-    /// Sums of the rows' impulses on B, and negated on A; torques about each body's centre, A's first.
+    /// Sum of the rows' impulses, as force and torque about the centre of A and about that of B. B receives the second,
+    /// A the negative of the first.
     pub fn impulse(&self, of_rows: &Vec6) -> [Vec6; 2] {
         let [x, y, z, ..] = *of_rows;
         let (first, mut force) =
@@ -197,7 +198,7 @@ impl JointRows {
         [self.arm_a, self.arm_b].map(|arm| join(force, torque + arm.cross(force)))
     }
 
-    /// `J v`, row by row, at velocities of A and B.
+    /// Computes `J v`, row by row, for the velocities of A and B.
     #[inline]
     pub fn rate(&self, a: &Vec6, b: &Vec6) -> Vec6 {
         let turn = angular(b) - angular(a);
@@ -215,12 +216,12 @@ impl JointRows {
     }
 }
 
-/// True if translation rows rotate with A: those of a point and of a distance are fixed.
+/// True if translation rows rotate with A. The rows of a locked point and of a distance do not.
 fn turns_with_a(kind: &JointKind, locks: &[bool; 6]) -> bool {
     locks[..TWIST] != [true; 3] && !matches!(kind, JointKind::Distance { .. })
 }
 
-/// Position errors of the locked rows only, in the order of [`JointRows`].
+/// Position errors of the locked directions, in the row order of [`JointRows`], metres or radians.
 pub(crate) fn locked_error(joint: &JointGeometry, pose: &JointPose) -> Vec6 {
     let (mut all, mut count) = (ZERO6, 0);
     each_locked(&joint.kind, &locks(&joint.kind), pose, |_, error, _| {
@@ -247,12 +248,12 @@ pub(crate) fn locks(kind: &JointKind) -> [bool; DIRECTIONS] {
     }
 }
 
-/// A distance joint has only one translation.
+/// True if the joint has this direction: a distance joint has only one translation.
 fn exists(kind: &JointKind, direction: usize) -> bool {
     !matches!(kind, JointKind::Distance { .. }) || direction == 0
 }
 
-/// Direction, error and axis of each locked direction, in ascending order.
+/// Calls `put` with direction, error and axis of each locked direction, in ascending order.
 #[inline(always)]
 fn each_locked(kind: &JointKind, locks: &[bool; 6], pose: &JointPose, mut put: impl FnMut(usize, f32, Vec3)) {
     if let JointKind::Distance { range } = kind {
@@ -262,7 +263,7 @@ fn each_locked(kind: &JointKind, locks: &[bool; 6], pose: &JointPose, mut put: i
         return;
     }
     if locks[..TWIST] == [true; 3] {
-        // A point: any axes will do, and those of the world need no turning.
+        // For a point any axes are valid, and those of the world need no rotation.
         put(0, pose.gap.x, Vec3::X);
         put(1, pose.gap.y, Vec3::Y);
         put(2, pose.gap.z, Vec3::Z);
@@ -303,12 +304,12 @@ fn each_locked(kind: &JointKind, locks: &[bool; 6], pose: &JointPose, mut put: i
     }
 }
 
-/// Number of directions that are held.
+/// Number of locked directions.
 pub(crate) fn locked_count(kind: &JointKind) -> usize {
     locks(kind).iter().filter(|&&lock| lock).count()
 }
 
-/// Directions that are not held.
+/// Directions of the joint that are not locked.
 pub(crate) fn open_directions(kind: JointKind) -> impl Iterator<Item = usize> {
     let locks = locks(&kind);
     (0..DIRECTIONS).filter(move |&i| !locks[i] && exists(&kind, i))
@@ -330,13 +331,13 @@ fn open_axis(kind: &JointKind, locks: &[bool; 6], pose: &JointPose, direction: u
     match direction {
         0 if matches!(kind, JointKind::Distance { .. }) => pose.line(),
         0..TWIST => pose.axis(direction),
-        // With one swing locked the twist is about the axis that B carries.
+        // With one swing locked, the twist axis rotates with B.
         TWIST if locks[4] != locks[5] => pose.rotation_b * Vec3::X,
         _ => pose.axis(direction - TWIST),
     }
 }
 
-/// Deviation of an open direction from a wanted pose of frame B in frame A, metres or radians.
+/// Deviation in an open direction from a requested pose of frame B in frame A, metres or radians.
 pub(crate) fn displacement(kind: &JointKind, pose: &JointPose, direction: usize, wanted: &Transform) -> f32 {
     if direction >= TWIST {
         let error = pose.relative() * wanted.rotation.inverse();
@@ -350,24 +351,24 @@ pub(crate) fn displacement(kind: &JointKind, pose: &JointPose, direction: usize,
     [error.x, error.y, error.z][direction]
 }
 
-/// A joint has at most this many stops: swing, twist below and above, then below and above for x, y, z.
+/// Largest number of stops of a joint: swing, twist below and above, then below and above for x, y, z.
 pub(crate) const MAX_STOPS: usize = 9;
-/// Opposite stops share their stored impulse: swing, twist, x, y, z.
+/// Number of limits of a joint: swing, twist, x, y, z. Opposite stops share the stored impulse of a limit.
 pub(crate) const MAX_LIMITS: usize = 5;
 
-/// The end of a free motion.
+/// Limit of a free motion in one direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stop {
-    /// Number of its memory among the joint's limits.
+    /// Index of the stop's stored impulse among the joint's limits.
     pub limit: usize,
-    /// Metres or radians left; negative when violated.
+    /// Remaining distance to the stop, metres or radians; negative beyond the stop.
     pub slack: f32,
     /// Gradient of the slack in frame A: rotation for the first two limits, translation for the others.
     pub axis: Vec3,
 }
 
 impl Stop {
-    /// Rate of the slack.
+    /// Row of the rate of the slack.
     pub fn row(&self, kind: &JointKind, pose: &JointPose) -> Row {
         let axis = pose.rotation_a * self.axis;
         if turns(self.limit) {
@@ -380,7 +381,7 @@ impl Stop {
     }
 }
 
-/// True if a limit is of a rotation.
+/// True if the limit with this index limits a rotation.
 pub(crate) fn turns(limit: usize) -> bool {
     limit < 2
 }
@@ -392,8 +393,8 @@ pub(crate) fn stops(kind: &JointKind, pose: &JointPose) -> [Option<Stop>; MAX_ST
     out
 }
 
-/// The stops of a joint in slot order. May omit those with more slack than `reach` (translation and rotation), which
-/// saves computing their axes.
+/// Calls `put` for the stops of a joint in slot order. May omit stops with more slack than the given distance and
+/// angle, which saves computing their axes.
 #[inline]
 pub(crate) fn each_stop(
     kind: &JointKind,
@@ -414,7 +415,7 @@ pub(crate) fn each_stop(
             }
         }
     } else if let JointKind::Hinge { limit: Some(range) } = kind {
-        // Measured from the middle and wrapped, as for a twist.
+        // The angle is measured from the middle of the range and wrapped, like a twist.
         let half = 0.5 * (range.hi - range.lo);
         let angle = wrap(hinge_angle(pose.relative()) - range.center());
         if half - angle.abs() < turn {
@@ -437,7 +438,7 @@ pub(crate) fn each_stop(
     }
 }
 
-/// Cone and twist range of a joint; a hinge's range is read where it is used.
+/// Cone and twist range of a joint; a hinge's range is not included.
 fn rotation_limits(kind: &JointKind) -> (Option<SwingTwistLimit>, Option<Range>) {
     match *kind {
         JointKind::Ball { limit: Some(limit) } => (Some(limit), Some(limit.twist)),

@@ -1,4 +1,4 @@
-//! Joints in snapshots.
+//! Writes and reads joints.
 
 use super::def::{
     AxisMotion, Gains, JointCollision, JointKind, JointState, Motor, SixDof, SoftZone, Softness, Spring,
@@ -10,11 +10,11 @@ use crate::body::owner::OwnerMark;
 use crate::spatial::{Vec6, ZERO6};
 use sinew_math::{Range, ReadError, Reader, SwingTwistLimit, Writer};
 
-/// Bit of a joint's state: it has an owner, which is written after it.
+/// Bit of a joint's state: the joint has an owner, which is written after the joint.
 const OWNED: u8 = 2;
 
 impl Joint {
-    /// Bodies first; without its owner.
+    /// Writes the joint, its bodies first, without its owner.
     pub fn save(&self, w: &mut Writer) {
         w.u32(self.a);
         w.u32(self.b);
@@ -40,7 +40,7 @@ impl Joint {
         save_vec6(w, &self.reaction);
     }
 
-    /// Reads the format of [`save`](Self::save) after the bodies; its owner, if any, follows.
+    /// Reads the format of [`save`](Self::save) after the bodies; the owner, if any, follows.
     pub fn load(r: &mut Reader<'_>, a: u32, b: u32) -> Result<Self, ReadError> {
         let (frame_a, frame_b) = (r.transform()?, r.transform()?);
         let kind = load_kind(r)?;

@@ -1,27 +1,27 @@
-//! Mass that moves with a body that holds particles: of bodies resting on it or jointed to it.
+//! Mass added to a body that particles are attached to: mass of bodies resting on it or jointed to it.
 //!
-//! Springs are solved before body contacts, and see only a plank's own mass. With a box of twenty times that mass on
-//! the plank, the springs would learn of the load one substep late: the plank would hang lower by `g h² M/m`, and stiff
-//! ropes would throw both into the air. So each substep measures the effect of the impulse `p` from the springs: the
-//! body gained the velocity `d`, and passed on `w = p − m d`. With `m + w wᵀ/(w·d)`, the symmetric rank-one update of
-//! quasi-Newton methods, the next substep uses the mass that answers `p` with `d`; at rest this is exact. Rotations are
-//! excluded: where a swing reverses, their ratio is noise.
+//! Springs are solved before body contacts, with a plank's own mass only. With a box of twenty times that mass on the
+//! plank, the load would act on the springs one substep late: the plank would hang lower by `g h² M/m`, and stiff ropes
+//! would throw both into the air. So each substep measures the effect of the impulse `p` from the springs: the body
+//! gained the velocity `d` and transmitted `w = p − m d`. With `m + w wᵀ/(w·d)`, the symmetric rank-one update of
+//! quasi-Newton methods, the next substep uses the mass that responds to `p` with `d`; at rest this is exact. Rotations
+//! are excluded: at the turning points of a swing, their ratio is noise.
 
 use super::contact::ObstacleBody;
 use super::tuning::{LEAST_ADDED, MOST_ADDED};
 use crate::spatial::{Mat6, Vec6, add_scaled, join, linear};
 use sinew_math::{ReadError, Reader, Sym3, Vec3, Writer, max};
 
-/// Mass added to that of a body along the direction of a push.
+/// Mass added to that of a body, along the direction of an impulse.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct AddedMass {
-    /// Momentum passed on, kg·m/s, and twice its energy, `w·d`, J: 0 if nothing moves along.
+    /// Transmitted momentum `w`, kg·m/s, and `power`, twice its energy `w·d`, J; 0 without added mass.
     momentum: Vec3,
     power: f32,
 }
 
 impl AddedMass {
-    /// Estimates the mass from the velocity that a body of `mass` kg gained by an impulse.
+    /// Estimates the added mass from the velocity that a body of `mass` kg gained by an impulse.
     pub fn of(mass: f32, pushed: Vec3, gained: Vec3) -> Self {
         let own = gained * mass;
         let momentum = pushed - own;
@@ -31,17 +31,17 @@ impl AddedMass {
         if power > LEAST_ADDED * own.dot(gained) && added.is_some() { added } else { Self::default() }
     }
 
-    /// True if it is one.
+    /// True if there is an added mass.
     pub fn is_some(&self) -> bool {
         self.momentum.is_finite() && self.power > 0.0 && self.power < f32::INFINITY
     }
 
-    /// Mass along the push, kg.
+    /// Added mass along the impulse, kg; 0 without added mass.
     pub fn mass(&self) -> f32 {
         if self.is_some() { self.momentum.length_squared() / self.power } else { 0.0 }
     }
 
-    /// Adds itself to an inertia.
+    /// Adds the mass to an inertia.
     pub fn add_to(&self, inertia: &mut Mat6) {
         if self.is_some() {
             let whole = join(self.momentum, Vec3::ZERO);
@@ -51,7 +51,7 @@ impl AddedMass {
         }
     }
 
-    /// Energy of a velocity in it, J.
+    /// Kinetic energy of the added mass at a velocity of the body, J.
     pub fn energy(&self, velocity: &Vec6) -> f32 {
         if !self.is_some() {
             return 0.0;

@@ -1,4 +1,4 @@
-//! Particles held by bodies or by fixed points of the world.
+//! Particles attached to bodies or to fixed points of the world.
 
 use super::contact::{Obstacle, ObstacleBody};
 use super::hub::{Hub, Share};
@@ -7,7 +7,7 @@ use super::{AddedMass, AttachmentTarget, Part, ParticleGroup};
 use crate::id::BodyId;
 use sinew_math::{Sym3, Vec3, max};
 
-/// The point that holds an attached particle, in one substep.
+/// Point that an attached particle follows in one substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Anchor {
     /// Position at the end of the substep, world, metres.
@@ -15,10 +15,10 @@ pub struct Anchor {
     /// Velocity of the anchor, m/s.
     pub velocity: Vec3,
     /// Velocity change of the body from other forces in the next substep, m/s. The springs are solved for the coming
-    /// interval, so they must include it; otherwise a hung body would hang lower by `g h²`.
+    /// interval, so they must include it; otherwise a hanging body would hang lower by `g h²`.
     pub gained: Vec3,
-    /// Index of the body in the slice of bodies; one of inverse mass 0 does not move. Without a body, a fixed point of
-    /// the world.
+    /// Index of the body in the slice of bodies; a body of inverse mass 0 is not moved. `None` for a fixed point of the
+    /// world.
     pub body: Option<u32>,
 }
 
@@ -48,7 +48,7 @@ impl ParticleGroup {
                 self.system.points[i] = anchor.position;
                 self.system.hubs[hub].take(&body, gained, &added);
             }
-            // Rows of the net use a share of the inertia, so that their sum is not too large.
+            // Rows of the net use a share of the inertia, so that the sum of their impulses is not too large.
             let of_body = added.response_at(&body, anchor.position).inverse()
                 * (1.0 / self.forest.hubs()[hub].len() as f32);
             let inertia = self.system.inertia[i] + of_body;
@@ -62,8 +62,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Adds the impulse of each attachment: the sum of everything that acts on its particle without changing its
-    /// momentum. The particle ends at its anchor.
+    /// Adds the impulse of each attachment: the sum of all impulses on its particle that do not change the particle's
+    /// momentum. Moves the particle to its anchor.
     pub(super) fn let_go(&mut self, part: Part, anchors: &[Anchor]) {
         let (h, [_, to]) = (part.h(), part.shares());
         for (k, (a, anchor)) in self.attachments.iter().zip(anchors).enumerate() {
@@ -80,8 +80,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Makes the velocities of an attached particle and its anchor equal after the substep, if others have pushed the
-    /// body since, by an inelastic impact; returns the impulse on the body, N·s.
+    /// Makes the velocities of an attached particle and its anchor equal after the substep, by an inelastic impact, if
+    /// others have pushed the body since; returns the impulse on the body, N·s.
     pub(crate) fn join_held(&mut self, k: usize, anchor: &Anchor, body: &mut ObstacleBody) -> Vec3 {
         let i = self.attachments[k].particle as usize;
         let own = 1.0 / self.masses[i];
@@ -94,12 +94,12 @@ impl ParticleGroup {
         impulse
     }
 
-    /// True if it can be solved together with other groups attached to the same body: trees of springs, in one part.
+    /// True if the group can be solved together with others attached to the same body: trees of springs, one iteration.
     pub(crate) fn is_joinable(&self) -> bool {
         self.forest.has_trees() && self.iterations == 1
     }
 
-    /// Bodies that hold particles of it.
+    /// Bodies that particles of the group are attached to.
     pub(crate) fn bodies(&self) -> impl Iterator<Item = BodyId> {
         self.forest.hubs().iter().filter_map(|hub| self.holder(hub[0]))
     }
@@ -109,7 +109,7 @@ impl ParticleGroup {
         self.attachments.get(self.attachment_of[i] as usize).map(|attachment| attachment.target)
     }
 
-    /// Body that holds a particle.
+    /// Body that an attached particle is attached to; `None` for a point of the world.
     fn holder(&self, particle: u32) -> Option<BodyId> {
         match self.attachments[self.attachment_of[particle as usize] as usize].target {
             AttachmentTarget::Body { body, .. } => Some(body),
@@ -117,14 +117,14 @@ impl ParticleGroup {
         }
     }
 
-    /// Clears its own and other groups' contributions to bodies.
+    /// Clears the contributions of this group and of others to bodies.
     pub(crate) fn forget_shares(&mut self) {
         for hub in &mut self.system.hubs {
             (hub.others, hub.own) = (Share::NONE, Share::NONE);
         }
     }
 
-    /// Copies another group's contributions to shared bodies.
+    /// Adds another group's contributions to shared bodies.
     pub(crate) fn add_shares_of(&mut self, other: &Self) {
         for k in 0..self.forest.hubs().len() {
             let body = self.holder(self.forest.hubs()[k][0]);
@@ -136,20 +136,20 @@ impl ParticleGroup {
         }
     }
 
-    /// Clears other groups' contributions to its bodies.
+    /// Clears the contributions of other groups to bodies.
     pub(crate) fn forget_others(&mut self) {
         self.system.hubs.iter_mut().for_each(|hub| hub.others = Share::NONE);
     }
 
-    /// Solves the first half of the substep again, with other groups' current contributions to its bodies. Returns the
-    /// largest relative change of a body's velocity change.
+    /// Repeats the first half of the substep with other groups' current contributions to bodies. Returns the largest
+    /// relative change of a body's velocity change.
     pub(crate) fn solve_again(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> f32 {
         self.system.hubs.iter_mut().for_each(Hub::remember);
         self.settle_contacts(h, obstacles, bodies);
         self.system.hubs.iter().map(Hub::change).fold(0.0, max)
     }
 
-    /// Bodies that hold its particles, each with its added mass.
+    /// Bodies that particles of the group are attached to, each with its added mass.
     pub(crate) fn holders(&mut self) -> impl Iterator<Item = (BodyId, &mut AddedMass)> {
         let Self { added, forest, attachments, attachment_of, .. } = self;
         let first = |hub: &Vec<u32>| attachments[attachment_of[hub[0] as usize] as usize].target;

@@ -1,4 +1,4 @@
-//! Springs and bends of a net, eight side by side: rows that share no particle.
+//! Springs and bends of a net in batches of eight rows that share no particle.
 //!
 //! Particles are stored in blocks of eight that are far apart in the group: of `8 m` particles the lanes of block `j`
 //! are `j`, `m + j`, `2 m + j` and so on. Rows between a particle and the one `o` further on are then **aligned**:
@@ -8,7 +8,7 @@
 //! block are rotated while they are solved. The remaining rows of irregular meshes are gathered. Consecutive aligned
 //! rows share no block, so that none waits for the previous one.
 //!
-//! A projection moves particles within the iteration. The displacement since its start is stored, which gives the
+//! A projection moves particles within the iteration. The displacement since the start is stored, which gives the
 //! velocity without cancellation. Rows with an attached particle are solved in `net.rs`.
 
 use super::project::Project;
@@ -16,20 +16,20 @@ use super::{BendDef, Resists, SpringDef};
 use sinew_math::lanes::{Block, WIDTH};
 use sinew_math::{Vec3, max};
 
-/// Numbers of a particle: position at the start of the iteration, displacement since, which projections change. Eight
-/// take three cache lines.
+/// Numbers per particle: position at the start of the iteration, and displacement since, which projections change.
+/// Eight particles take three cache lines.
 pub(super) const FIELDS: usize = 6;
 pub(super) const WAY: usize = 3;
-/// Numbers of the surface that a particle touches: backing, normal, room before it presses, which projections change.
+/// Numbers per surface that a particle touches: backing, normal, and room before it presses, which projections change.
 pub(super) const SURFACE_FIELDS: usize = 5;
 pub(super) const BACKING: usize = 0;
 pub(super) const NORMAL: usize = 1;
 pub(super) const ROOM: usize = 4;
-/// Number of recent kinds searched for the kind of eight rows.
+/// Number of recent kinds that are searched for the kind of eight rows.
 const LATEST: usize = 64;
-/// Fewest aligned rows that form a block.
+/// Smallest number of aligned rows that form a block.
 const LEAST_ALIGNED: usize = 4;
-/// Number of open blocks that a gathered row is tried in.
+/// Number of open blocks that are tested for a gathered row.
 const OPEN: usize = 32;
 
 /// Constants of eight rows, aligned to cache lines. Most rows of a cloth share a few kinds.
@@ -37,16 +37,16 @@ const OPEN: usize = 32;
 #[repr(align(32))]
 pub(super) struct Kind<const K: usize> {
     pub rest: [f32; WIDTH],
-    /// Compliance: 1 over the stiffness, m/N.
+    /// Compliance, the inverse of the stiffness, m/N.
     pub compliance: [f32; WIDTH],
-    /// N·s/m.
+    /// Damping, N·s/m.
     pub damping: [f32; WIDTH],
-    /// Error above which a row acts: infinity in lanes without a row.
+    /// Error above which a row acts, metres; infinity in lanes without a row.
     pub least: [f32; WIDTH],
     /// Inverse masses of the particles, 1/kg.
     pub weights: [[f32; WIDTH]; K],
     pub is_damped: bool,
-    /// The particles of each row have equal weights.
+    /// True if the particles of each row have equal weights.
     pub is_even: bool,
 }
 
@@ -90,24 +90,24 @@ pub(super) struct Rows<const K: usize> {
 /// Consecutive aligned or turned rows of one kind that share no block.
 #[derive(Clone, Debug)]
 pub(super) struct Run<const K: usize> {
-    /// Blocks of the particles of the first.
+    /// Blocks of the particles of the first row.
     pub first: [u32; K],
     /// Lane rotation of each particle relative to the first of its row: zero if aligned.
     pub lanes: [u8; K],
-    /// Index of the kind of all.
+    /// Index of the kind of all rows.
     pub kind: u32,
     pub count: u32,
 }
 
 impl<const K: usize> Run<K> {
-    /// True if the blocks of each row are consecutive, and rows are contiguous. Otherwise each end has its own range of
-    /// blocks.
+    /// True if the blocks of each row are consecutive and the rows are contiguous. Otherwise each end of the rows has
+    /// its own range of blocks.
     #[inline(always)]
     pub fn is_along(&self) -> bool {
         (1..K).all(|k| self.first[k] == self.first[0] + k as u32)
     }
 
-    /// Blocks of the particles of a row.
+    /// Blocks of the particles of row number `row`.
     #[inline(always)]
     pub fn places(&self, row: u32) -> [usize; K] {
         self.first.map(|block| (block + self.step() * row) as usize)
@@ -119,7 +119,7 @@ impl<const K: usize> Run<K> {
         if self.is_along() { K as u32 } else { 1 }
     }
 
-    /// True if another one, of a single row, continues it.
+    /// True if `next`, a run of a single row, continues this run.
     fn goes_on(&self, next: &Self) -> bool {
         let follows = (0..K).all(|k| next.first[k] == self.first[k] + self.step() * self.count);
         let meets = |k: usize| (0..k).any(|j| self.first[k].abs_diff(self.first[j]) <= self.count);
@@ -139,7 +139,7 @@ impl<const K: usize> Rows<K> {
         self.aligned.is_empty() && self.turned.is_empty() && self.gathered.is_empty()
     }
 
-    /// Index of a kind, reused if it is among the latest.
+    /// Returns the index of a kind; reuses one of the latest if equal.
     fn kind(&mut self, kind: Kind<K>) -> u32 {
         let latest = self.kinds.iter().rev().take(LATEST).position(|other| *other == kind);
         let index = latest.map_or(self.kinds.len(), |back| self.kinds.len() - 1 - back);
@@ -154,7 +154,7 @@ impl<const K: usize> Rows<K> {
 #[derive(Clone, Copy, Debug)]
 struct Row<const K: usize> {
     particles: [u32; K],
-    /// 1/kg.
+    /// Inverse masses of the particles, 1/kg.
     weights: [f32; K],
     rest: f32,
     stiffness: f32,
@@ -162,22 +162,22 @@ struct Row<const K: usize> {
     least: f32,
 }
 
-/// The rows of a group that are solved eight at a time, and its particles in their layout.
+/// Rows of a group that are solved eight at a time, and its particles in the same layout.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Batches {
     pub springs: Rows<2>,
     pub bends: Rows<3>,
-    /// Particles, and a block for lanes without a row.
+    /// Blocks of the particles, and a block for lanes without a row.
     pub particles: Vec<Block<FIELDS>>,
-    /// The surfaces that these touch.
+    /// Surfaces that the particles touch, in the same layout.
     pub surfaces: Vec<Block<SURFACE_FIELDS>>,
-    /// Number of particles, and of those in a lane.
+    /// Number of particles, and number of particles per lane (`per_lane`).
     count: usize,
     per_lane: usize,
 }
 
 impl Batches {
-    /// Batches of rows that hold no attached particle, for particles of these masses, kg.
+    /// Creates batches of rows without attached particles, for particles of these masses, kg.
     pub fn new(
         masses: &[f32],
         springs: impl Iterator<Item = SpringDef>,
@@ -213,7 +213,7 @@ impl Batches {
         self.particles.is_empty()
     }
 
-    /// Loads all particles: their positions at the start of an iteration of `h` seconds, and their velocities since.
+    /// Loads all particles: positions at the start of an iteration of `h` seconds, and displacements at `velocities`.
     pub fn put(&mut self, from: &[Vec3], velocities: &[Vec3], h: f32) {
         let lanes = from.chunks(self.per_lane).zip(velocities.chunks(self.per_lane));
         for (lane, (from, velocities)) in lanes.enumerate() {
@@ -229,7 +229,7 @@ impl Batches {
         }
     }
 
-    /// Loads a particle's position at the start of the iteration, and its displacement since.
+    /// Loads a particle's position at the start of the iteration, and its displacement since, metres.
     pub fn put_way(&mut self, i: usize, from: Vec3, way: Vec3) {
         let (block, lane) = (&mut self.particles[i % self.per_lane].0, i / self.per_lane);
         let numbers = [from.x, from.y, from.z, way.x, way.y, way.z];
@@ -238,17 +238,18 @@ impl Batches {
         }
     }
 
-    /// A number of a particle.
+    /// Returns field number `field` of a particle.
     pub fn number_of(&self, i: usize, field: usize) -> f32 {
         self.particles[i % self.per_lane].0[field][i / self.per_lane]
     }
 
-    /// A vector of a particle, by the first of its fields.
+    /// Returns a vector of a particle that starts at field `field`.
     pub fn vector_of(&self, i: usize, field: usize) -> Vec3 {
         Vec3::new(self.number_of(i, field), self.number_of(i, field + 1), self.number_of(i, field + 2))
     }
 
-    /// Loads the surface that a particle touches, with the impulse onto it after which it presses, N·s².
+    /// Loads the surface that a particle touches. `room` is the impulse toward the surface times the iteration, N·s²,
+    /// beyond which the particle presses.
     pub fn put_surface(&mut self, i: usize, normal: Vec3, backing: f32, room: f32) {
         let (block, lane) = (&mut self.surfaces[i % self.per_lane].0, i / self.per_lane);
         for (field, number) in [backing, normal.x, normal.y, normal.z, room].into_iter().enumerate() {
@@ -256,7 +257,7 @@ impl Batches {
         }
     }
 
-    /// Returns each particle's displacement since the start of the iteration, metres.
+    /// Passes each particle's index and displacement since the start of the iteration, metres, to `tell`.
     pub fn ways(&self, mut tell: impl FnMut(usize, Vec3)) {
         let mut i = 0;
         for lane in 0..WIDTH {
@@ -274,13 +275,13 @@ impl Batches {
         block[ROOM][lane]
     }
 
-    /// Projects all rows once, springs first, to be called through `dispatch`.
+    /// Kernel that projects all rows once, springs first; run it through `dispatch`.
     pub fn project(&mut self, h: f32, touching: bool) -> Project<'_> {
         Project { batches: self, h, touching }
     }
 }
 
-/// Aligned and turned rows in blocks by the distance of their particles, then the others.
+/// Puts aligned and turned rows in blocks by the distance of their particles, then the other rows.
 fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) -> Rows<K> {
     let mut keyed: Vec<([i64; K], u32, usize, usize, Row<K>)> = Vec::new();
     let mut others = Vec::new();
@@ -296,7 +297,7 @@ fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) 
             steps[k] = places[k] as i64 - places[k - 1] as i64;
         }
         let block = blocks[0];
-        // Consecutive rows along a thread would wait for each other.
+        // Consecutive rows along a thread of cloth would wait for each other.
         let color = if steps[1].abs() == 1 { block % K } else { 0 };
         keyed.push((steps, color as u32, block, order, row));
     }
@@ -331,7 +332,7 @@ fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) 
     rows
 }
 
-/// Blocks of rows that share no particle: each row goes into the first block with space for it.
+/// Fills blocks of rows that share no particle: each row goes into the first block with space for it.
 fn gather<const K: usize>(rows: &[Row<K>], per_lane: usize, out: &mut Rows<K>) {
     let mut open: Vec<Vec<Row<K>>> = Vec::new();
     for &row in rows {
@@ -353,7 +354,7 @@ fn gather<const K: usize>(rows: &[Row<K>], per_lane: usize, out: &mut Rows<K>) {
 
 fn push_gathered<const K: usize>(block: &[Row<K>], per_lane: usize, out: &mut Rows<K>) {
     let mut kind = Kind::empty();
-    // Lanes without a row use a dummy particle after all others.
+    // Lanes without a row use a dummy particle after all real particles.
     let mut slots = [core::array::from_fn(|lane| (per_lane * WIDTH + lane) as u32); K];
     for (lane, row) in block.iter().enumerate() {
         kind.set(lane, row);

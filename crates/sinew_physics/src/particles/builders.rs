@@ -8,7 +8,7 @@ use crate::particles::tuning::ROPE_DAMPING;
 use sinew_math::Vec3;
 
 impl GroupDef {
-    /// Holds a particle in place, or at a point of a body.
+    /// Attaches a particle to a point of the world or of a body.
     ///
     /// # Panics
     /// If the particle does not exist.
@@ -21,7 +21,7 @@ impl GroupDef {
         self.attachments.push(AttachmentDef { particle, target });
     }
 
-    /// Holds particles where they are in the world.
+    /// Attaches particles to the world at their positions.
     ///
     /// # Panics
     /// If the particle does not exist.
@@ -32,8 +32,8 @@ impl GroupDef {
         }
     }
 
-    /// Makes each particle inside a row resist bending from its current shape, as a beam of bending stiffness `bending`
-    /// (N·m²): `B/L³` with the mean length `L` of its two sides.
+    /// Makes each inner particle of a row resist bending from its current shape, as a beam of bending stiffness
+    /// `bending` (N·m²) does: the stiffness is `bending / L³`, with the mean length `L` of its two sides.
     ///
     /// # Panics
     /// If a particle does not exist.
@@ -49,8 +49,8 @@ impl GroupDef {
         }
     }
 
-    /// Damps every spring at a share of the critical damping of its two particles alone, see [`SpringDef::damped`];
-    /// currently held particles count as infinitely heavy.
+    /// Damps every spring at `ratio` times the critical damping of its two particles alone, see [`SpringDef::damped`];
+    /// currently attached particles count as infinitely heavy.
     ///
     /// # Panics
     /// If the ratio is negative or not finite.
@@ -64,8 +64,8 @@ impl GroupDef {
         }
     }
 
-    /// Tethers every free particle to the nearest held one at their current distance, which is the path length in flat
-    /// cloth or straight hair. Without held particles it does nothing.
+    /// Tethers every free particle to the nearest attached one at their current distance, which is the path length in
+    /// flat cloth or straight hair. Does nothing if no particle is attached.
     pub fn tether(&mut self) {
         let place = |i: u32| self.particles[i as usize].position;
         let held: Vec<u32> = self.attachments.iter().map(|a| a.particle).collect();
@@ -82,7 +82,7 @@ impl GroupDef {
     }
 }
 
-/// Number of parts of 0.1 m in a length, metres, within bounds.
+/// Number of parts of 0.1 m in a length in metres, limited to `least..=most`.
 fn parts(length: f32, [least, most]: [u32; 2]) -> u32 {
     u32::clamp((10.0 * length).round() as u32, least, most)
 }
@@ -91,34 +91,34 @@ fn parts(length: f32, [least, most]: [u32; 2]) -> u32 {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RopeDef {
-    /// First particle, world, metres.
+    /// Position of the first particle, world, metres.
     pub from: Vec3,
-    /// Last particle.
+    /// Position of the last particle, world, metres.
     pub to: Vec3,
     /// Number of springs, at least 1.
     pub links: u32,
-    /// kg, total.
+    /// Total mass, kg.
     pub mass: f32,
-    /// N/m, total: `force / stretch` between its ends.
+    /// Stiffness of the whole rope, N/m: `force / stretch` between its ends.
     pub stiffness: f32,
-    /// Metres.
+    /// Radius of each particle, metres.
     pub radius: f32,
 }
 
-/// A rope, not yet in a world.
+/// A rope that is not yet in a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rope {
     /// Definition for [`World::add_particles`](crate::World::add_particles). Particles are in order, springs too.
     pub group: GroupDef,
     /// Index of the first particle.
     pub first: u32,
-    /// Index of the last one.
+    /// Index of the last particle.
     pub last: u32,
 }
 
 impl RopeDef {
-    /// A rope of 10 mm nylon between two points (world, metres): 0.1 kg and 40 kN of stiffness per metre, a link every
-    /// 0.1 m, at least 4 and at most 64 links.
+    /// Defines a rope of 10 mm nylon between two points (world, metres): 0.1 kg and 40 kN of stiffness per metre, a
+    /// link every 0.1 m, at least 4 and at most 64 links.
     ///
     /// # Panics
     /// If the points are not finite, or the same.
@@ -129,8 +129,8 @@ impl RopeDef {
         Self { from, to, links, mass: 0.1 * length, stiffness: 40_000.0 / length, radius: 0.01 }
     }
 
-    /// A straight rope at its rest length. Its end particles have half the mass of the others. Each spring is damped
-    /// at a tenth of its critical damping.
+    /// Creates a straight rope at its rest length. Its end particles have half the mass of the others. Each spring is
+    /// damped at a tenth of its critical damping.
     ///
     /// # Panics
     /// If `links` is 0.
@@ -146,7 +146,7 @@ impl RopeDef {
         };
         let rest_length = (self.to - self.from).length() / links;
         let spring = |k: u32| SpringDef {
-            // Damping of two inner particles, `m/2` of which swings.
+            // Critical damping of two inner particles, whose effective mass is `m/2`.
             damping: 2.0 * ROPE_DAMPING * (0.5 * stiffness * link_mass).sqrt(),
             ..SpringDef::new([k, k + 1], rest_length, stiffness)
         };
@@ -165,19 +165,19 @@ impl RopeDef {
 pub struct StrandDef {
     /// Position of the root, and the parameters shared with a rope.
     pub rope: RopeDef,
-    /// `B` = elastic modulus times the section's second moment of area, N·m², positive. A straight strand that is clamped
-    /// level sinks under its weight `w` per length by `w L⁴ / 8B` at its tip.
+    /// Bending stiffness `B` = elastic modulus times the section's second moment of area, N·m², positive. A straight
+    /// strand that is clamped level sinks at its tip by `w L⁴ / 8B`, with its weight `w` per length.
     pub bending: f32,
 }
 
 impl StrandDef {
-    /// A strand along a rope, with a bending stiffness in N·m².
+    /// Defines a strand along a rope, with a bending stiffness in N·m².
     pub fn new(rope: RopeDef, bending: f32) -> Self {
         Self { rope, bending }
     }
 
-    /// A straight strand. To clamp its root, hold its first **two** particles, [`Rope::first`] and the next one: they
-    /// define its direction.
+    /// Creates a straight strand. To clamp its root, hold its first **two** particles, [`Rope::first`] and the next
+    /// one: they define its direction.
     ///
     /// # Panics
     /// If there are no links.
@@ -194,64 +194,64 @@ impl StrandDef {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothDef {
-    /// The first corner, world, metres.
+    /// Position of the first corner, world, metres.
     pub corner: Vec3,
-    /// Offset from there along the first row, metres.
+    /// Offset from `corner` along the first row, metres.
     pub across: Vec3,
-    /// Offset from there along the first column, metres; perpendicular to `across`.
+    /// Offset from `corner` along the first column, metres; perpendicular to `across`.
     pub down: Vec3,
-    /// Springs in a row, at least 1.
+    /// Number of springs in a row, at least 1.
     pub columns: u32,
-    /// Springs in a column, at least 1.
+    /// Number of springs in a column, at least 1.
     pub rows: u32,
-    /// kg, total.
+    /// Total mass, kg.
     pub mass: f32,
-    /// Stiffness of a square of it against being pulled along a thread, N/m: elastic modulus times thickness.
+    /// Stiffness of a square of cloth that is pulled along a thread, N/m: elastic modulus times thickness.
     pub stretching: f32,
     /// Shear stiffness of a square pulled along a diagonal, N/m, ≥ 0; with 0 there are no diagonal springs.
     pub shearing: f32,
-    /// Bending stiffness per width, N·m, ≥ 0: `E t³/12` of a plate; with 0 nothing resists bending.
+    /// Bending stiffness per width, N·m, ≥ 0: `E t³/12` for a plate; with 0 the cloth does not resist bending.
     pub bending: f32,
-    /// Share of critical damping of each spring, ≥ 0.
+    /// Damping of each spring as a share of its critical damping, ≥ 0.
     pub damping_ratio: f32,
     /// Radius of each particle, metres.
     pub radius: f32,
 }
 
-/// Cloth, not yet in a world.
+/// Cloth that is not yet in a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cloth {
     /// Definition for [`World::add_particles`](crate::World::add_particles); projected in two iterations per substep.
     pub group: GroupDef,
-    /// Springs in a row.
+    /// Number of springs in a row.
     pub columns: u32,
-    /// Springs in a column.
+    /// Number of springs in a column.
     pub rows: u32,
 }
 
 impl Cloth {
-    /// Index of a particle; columns and rows count from 0 to the number of springs.
+    /// Returns the index of a particle; columns and rows count from 0 to the number of springs.
     pub fn particle(&self, column: u32, row: u32) -> u32 {
         row * (self.columns + 1) + column
     }
 
-    /// Indices at the ends of the first row, then of the last one.
+    /// Returns the indices of the corners: the ends of the first row, then those of the last row.
     pub fn corners(&self) -> [u32; 4] {
         let (columns, rows) = (self.columns, self.rows);
         [(0, 0), (columns, 0), (0, rows), (columns, rows)].map(|(c, r)| self.particle(c, r))
     }
 
-    /// Indices of a row, in order.
+    /// Returns the indices of the particles in a row, in order.
     pub fn row(&self, row: u32) -> Vec<u32> {
         (0..=self.columns).map(|column| self.particle(column, row)).collect()
     }
 
-    /// Indices of a column, in order.
+    /// Returns the indices of the particles in a column, in order.
     pub fn column(&self, column: u32) -> Vec<u32> {
         (0..=self.rows).map(|row| self.particle(column, row)).collect()
     }
 
-    /// Holds particles at their positions, and tethers all others to the nearest of them.
+    /// Attaches particles to the world at their positions, and tethers all others to the nearest of them.
     ///
     /// # Panics
     /// If a particle does not exist.
@@ -263,8 +263,8 @@ impl Cloth {
 }
 
 impl ClothDef {
-    /// A cotton sheet from a corner along two sides (world, metres; perpendicular): 0.2 kg/m², cells of 0.1 m, at least
-    /// 4 and at most 32 along each side.
+    /// Defines a cotton sheet from a corner along two sides (world, metres; perpendicular): 0.2 kg/m², cells of 0.1 m,
+    /// at least 4 and at most 32 along each side.
     ///
     /// # Panics
     /// If the corner or a side is not finite, or a side has no length.
@@ -287,7 +287,8 @@ impl ClothDef {
         }
     }
 
-    /// Flat, at its rest lengths. Particles at the edges have half the mass of the others, those in corners a quarter.
+    /// Creates flat cloth at its rest lengths. Particles at edges have half the mass of the others, at corners a
+    /// quarter.
     ///
     /// # Panics
     /// If there are no columns or rows.
@@ -360,7 +361,7 @@ impl ClothDef {
     }
 }
 
-/// Springs from the given grid positions to their neighbours.
+/// Adds springs from the given grid positions to their neighbours.
 fn join_row(
     cloth: &mut Cloth,
     [right, below]: [u32; 2],
@@ -378,17 +379,18 @@ fn join_row(
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BlobDef {
-    /// World, metres.
+    /// Position of the centre, world, metres.
     pub center: Vec3,
-    /// Metres, of the skin.
+    /// Radius of the skin, metres.
     pub radius: f32,
-    /// Number of times that the faces of an icosahedron are split in four, 0 to 5: 12, 42, 162, 642, 2,562 or 10,242 particles.
+    /// Number of times that the faces of an icosahedron are split in four, 0 to 5: 12, 42, 162, 642, 2,562 or 10,242
+    /// particles.
     pub subdivisions: u32,
-    /// kg, total.
+    /// Total mass, kg.
     pub mass: f32,
     /// Stiffness of each spring of the skin, N/m.
     pub stiffness: f32,
-    /// Share of critical damping of each spring, ≥ 0.
+    /// Damping of each spring as a share of its critical damping, ≥ 0.
     pub damping_ratio: f32,
     /// Bulk modulus of the content, Pa, see [`VolumeDef`].
     pub bulk_modulus: f32,
@@ -396,7 +398,7 @@ pub struct BlobDef {
     pub skin: f32,
 }
 
-/// A blob, not yet in a world.
+/// A blob that is not yet in a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Blob {
     /// Definition for [`World::add_particles`](crate::World::add_particles); projected in four iterations per substep. All
@@ -404,12 +406,12 @@ pub struct Blob {
     pub group: GroupDef,
     /// Index of the highest particle (+Y).
     pub top: u32,
-    /// Index of the lowest one.
+    /// Index of the lowest particle.
     pub bottom: u32,
 }
 
 impl BlobDef {
-    /// A soft ball of 162 particles around a centre (world, metres): 100 kg/m³, filled with compressible air.
+    /// Defines a soft ball of 162 particles around a centre (world, metres): 100 kg/m³, filled with compressible air.
     ///
     /// # Panics
     /// If the centre is not finite, or the radius is not positive and finite.
@@ -430,7 +432,7 @@ impl BlobDef {
         }
     }
 
-    /// A geodesic ball at rest.
+    /// Creates a geodesic ball at rest.
     ///
     /// # Panics
     /// If there are more than 5 subdivisions.

@@ -3,7 +3,7 @@
 use super::{BackstopDef, BendDef, GroupDef, ParticleDef, SpringDef, TetherDef, VolumeDef};
 use sinew_geometry::DefError;
 
-/// Allowed numbers of parts of a substep.
+/// Largest number of iterations of a substep.
 const MAX_ITERATIONS: u32 = 64;
 
 // This form rejects NaN.
@@ -15,7 +15,7 @@ fn not_negative(x: f32) -> bool {
     (0.0..f32::INFINITY).contains(&x)
 }
 
-/// The phrase, unless it holds.
+/// Returns the error phrase `what`, unless the condition holds.
 fn must(holds: bool, what: &'static str) -> Result<(), DefError> {
     if holds { Ok(()) } else { Err(DefError::new(what)) }
 }
@@ -24,7 +24,7 @@ impl GroupDef {
     /// Checks that all numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// The problem, in lower case.
+    /// Names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         let count = self.particles.len();
         self.particles.iter().try_for_each(ParticleDef::check)?;
@@ -43,7 +43,7 @@ impl GroupDef {
             must(finite, "the point of an attachment must be finite")?;
         }
         self.tethers.iter().try_for_each(|t| t.check(&held))?;
-        // A held particle, or one with a backstop, cannot have another.
+        // A particle that is attached or has a backstop cannot have another backstop.
         let mut taken = held;
         self.backstops.iter().try_for_each(|b| b.check(&mut taken))?;
         self.material.check()?;

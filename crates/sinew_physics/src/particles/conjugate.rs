@@ -1,4 +1,4 @@
-//! Vectors of conjugate gradients over the springs of a group: see `elimination.rs`.
+//! Vectors of conjugate gradients over the springs of a group; see `elimination.rs`.
 
 use crate::spatial::{Vec6, ZERO6, add_scaled};
 use sinew_math::Vec3;
@@ -8,12 +8,12 @@ use sinew_math::Vec3;
 pub(super) struct Conjugate {
     /// Residual momentum of the current velocities, kg·m/s.
     pub residual: Vec<Vec3>,
-    /// Velocity that the preconditioner gains by it, m/s.
+    /// Preconditioned residual, a velocity, m/s.
     pub gain: Vec<Vec3>,
-    /// Search direction of the velocities, m/s, and its image under the preconditioner.
+    /// Search direction of the velocities, m/s, and its product with the preconditioner, kg·m/s (`needed`).
     pub direction: Vec<Vec3>,
     pub needed: Vec<Vec3>,
-    /// Momentum that closing springs pass from end to end, kg·m/s.
+    /// Momentum that closing springs transmit from end to end, kg·m/s.
     pub passed: Vec<Vec3>,
     /// Velocity of each hub, and its search direction.
     pub hubs: Vec<[Vec6; 2]>,
@@ -32,7 +32,8 @@ impl Conjugate {
         }
     }
 
-    /// Starts with these hub velocities; the residual is the new minus the old momentum passed on.
+    /// Starts from the current solution: stores the hub velocities; the residual becomes the transmitted momentum minus
+    /// the one in it before.
     pub fn start<'a>(&mut self, hubs: impl Iterator<Item = &'a Vec6>) {
         for (residual, passed) in self.residual.iter_mut().zip(&self.passed) {
             *residual = *passed - *residual;
@@ -44,7 +45,7 @@ impl Conjugate {
         self.needed.fill(Vec3::ZERO);
     }
 
-    /// Updates the direction from the gain, also of hubs, with this factor on the old one.
+    /// Computes the next direction of particles and hubs: the gain plus `carry` times the previous direction.
     pub fn turn<'a>(&mut self, carry: f32, hubs: impl Iterator<Item = &'a Vec6>) {
         for i in 0..self.gain.len() {
             self.direction[i] = self.gain[i] + self.direction[i] * carry;
@@ -57,7 +58,7 @@ impl Conjugate {
         }
     }
 
-    /// Moves by this factor along the direction.
+    /// Moves the velocities along the direction by the factor `by`, and updates the residual.
     pub fn go(&mut self, by: f32, velocities: &mut [Vec3]) {
         for (i, velocity) in velocities.iter_mut().enumerate() {
             *velocity += self.direction[i] * by;

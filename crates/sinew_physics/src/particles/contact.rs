@@ -1,11 +1,11 @@
 //! Contacts of particles, present or expected within the iteration, as part of the spring solve.
 //!
-//! Without them the solve would let a particle on an edge fall freely, and a rope bent over the edge would have the
-//! wrong tension; a rope end that hits the floor would be moved back against its springs, which would gain energy from
-//! nothing. Each particle on a surface sticks to it or slides on it: its velocity, or one component of it, is
-//! prescribed in the linear system, which remains exact and cannot diverge. The impulses of the solution decide which
-//! particles must release, slip or stick. Grips persist from substep to substep, so that one solve suffices at rest. On
-//! movable bodies the body's inertia at the point is added instead.
+//! If the spring solve ignored contacts, a particle on an edge would fall freely, and a rope bent over the edge would
+//! have the wrong tension. A rope end that hits the floor would be moved back against its springs, which would gain
+//! energy from nothing. Each particle on a surface sticks to it or slides on it: its velocity, or one component of it,
+//! is prescribed in the linear system, which remains exact and cannot diverge. The impulses of the solution decide
+//! which particles must release, slip or stick. Grips persist from substep to substep, so that one solve suffices at
+//! rest. On movable bodies the body's inertia at the point is added instead.
 
 use super::forest::NO_HUB;
 use super::sweep::{Meeting, sweep_ball};
@@ -19,25 +19,25 @@ use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
 /// Largest number of solves per iteration to make grips consistent.
 const GRIP_ROUNDS: u32 = 16;
-/// Number of solves after which surfaces no longer release, so that the grips converge, and slow stopping particles
-/// instead of holding them. Otherwise the particles of a stiff rope would alternate between slip and stick, each in
-/// response to the others (ADR 0023).
+/// Number of solves after which surfaces no longer release particles, so that the grips converge, and slow particles
+/// that stop, instead of holding them. Otherwise the particles of a stiff rope would alternate between slip and stick,
+/// each in response to the others (ADR 0023).
 const LOOSE_ROUNDS: u32 = 4;
 /// Depth at the end of an iteration below which a contact is left to the impact pass, metres.
 const IMPACT_DEPTH: f32 = 1e-5;
 
-/// The motion of a body near particles. Its velocity changes with them.
+/// Motion and mass of a body near particles. Particles change its velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ObstacleBody {
     /// Centre of mass at the end of the substep, world, metres.
     pub center: Vec3,
-    /// m/s.
+    /// Velocity of the centre of mass, m/s, world axes.
     pub linear_velocity: Vec3,
-    /// rad/s, world axes.
+    /// Angular velocity, rad/s, world axes.
     pub angular_velocity: Vec3,
-    /// 1/kg; 0 for static and kinematic bodies.
+    /// Inverse mass, 1/kg; 0 for static and kinematic bodies.
     pub inverse_mass: f32,
-    /// World axes, about the centre, 1/(kg·m²).
+    /// Inverse inertia about the centre of mass, world axes, 1/(kg·m²).
     pub inverse_inertia: Sym3,
 }
 
@@ -59,11 +59,11 @@ impl ObstacleBody {
         Sym3::from_mat3(&Mat3::from_cols(gained(Vec3::X), gained(Vec3::Y), gained(Vec3::Z)))
     }
 
-    /// Effective inertia at `point`, kg, along a unit normal and tangentially: the inverse of the response there
+    /// Effective inertia at `point`, kg, along a unit normal and tangentially: the inverse of the response at the point
     /// without the cross terms.
     ///
-    /// A body that many particles push from below does not rotate; each would assume that its own push rotates it, and
-    /// slide outward.
+    /// A body that many particles push from below does not rotate. With the cross terms each particle would be solved
+    /// as if its own push rotated the body, and would slide outward.
     fn inertia_at(&self, point: Vec3, normal: Vec3) -> Sym3 {
         let whole = self.response_at(point);
         let along = whole * normal;
@@ -72,7 +72,7 @@ impl ObstacleBody {
         (whole - coupling).inverse()
     }
 
-    /// Priority among two bodies that leave a particle no room.
+    /// Priority of the body against another one if both leave a particle no room.
     pub(super) fn firmness(&self) -> Firmness {
         match self.inverse_mass {
             0.0 if self.rests() => Firmness::Rests,
@@ -81,12 +81,12 @@ impl ObstacleBody {
         }
     }
 
-    /// True if it neither moves nor can be moved.
+    /// True if the body neither moves nor can be moved.
     pub(super) fn rests(&self) -> bool {
         self.inverse_mass == 0.0 && self.linear_velocity == Vec3::ZERO && self.angular_velocity == Vec3::ZERO
     }
 
-    /// Mass, and moments about the centre, kg and kg·m², world axes, of a body that moves.
+    /// Mass, kg, and inertia about the centre of mass, kg·m², world axes, of a body that can be moved.
     pub(super) fn inertia(&self) -> (f32, Sym3) {
         // A body that does not rotate has a singular inverse inertia.
         let least = max(1e-9, 1e-6 * self.inverse_inertia.to_mat3().x_axis.length());
@@ -99,40 +99,40 @@ impl ObstacleBody {
     }
 }
 
-/// Priority of a body against others: particles between two follow the firmer one.
+/// Priority of a body against others: a particle between two bodies follows the one with the higher priority.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Firmness {
-    /// Forces move it.
+    /// A dynamic body, which yields to forces.
     Yields,
-    /// It is kinematic.
+    /// A kinematic body in motion.
     Led,
-    /// It is where it is.
+    /// A body that does not move.
     Rests,
 }
 
 /// A shape that particles may touch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
-    /// Geometry.
+    /// Geometry of the shape.
     pub shape: Shape,
     /// Frame of the shape at the beginning of the substep.
     pub previous: Transform,
     /// Frame of the shape at the end of the substep.
     pub world_from_shape: Transform,
-    /// Index of its body in the slice given with it.
+    /// Index of the obstacle's body in the slice of bodies.
     pub body: u32,
-    /// Surface.
+    /// Material of the surface.
     pub material: Material,
 }
 
-/// An obstacle in one iteration.
+/// Start and end pose of an obstacle in one iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
     pub start: Transform,
     pub end: Transform,
-    /// Largest displacement of any of its points, metres.
+    /// Largest displacement of any of the obstacle's points, metres.
     pub way: f32,
-    /// Bounds of its whole motion.
+    /// Bounds of the whole motion.
     pub bounds: Aabb,
 }
 
@@ -158,24 +158,24 @@ impl Placed {
         Self { start, end, way, bounds: bounds.expand(bulge) }
     }
 
-    /// Displacement in the iteration of a point that moves with the shape, metres.
+    /// Length of the displacement in the iteration of a point that moves with the shape, metres.
     fn way_of(&self, point: Vec3) -> f32 {
         if self.way == 0.0 { 0.0 } else { self.displacement(point).length() }
     }
 
-    /// The same with its direction.
+    /// Displacement in the iteration of a point that moves with the shape, metres.
     pub fn displacement(&self, point: Vec3) -> Vec3 {
         self.end.point(self.start.inverse_point(point)) - point
     }
 }
 
-/// A lower bound of the distance from a point to the contents of these bounds.
+/// A lower bound of the distance from a point to anything inside `bounds`, metres.
 pub(crate) fn distance_at_least(bounds: &Aabb, point: Vec3) -> f32 {
     let beyond = max3(bounds.min - point, point - bounds.max);
     max(max(beyond.x, beyond.y), beyond.z)
 }
 
-/// True if an obstacle at this distance, metres, cannot be reached.
+/// True if a particle with displacement `way` (m) cannot reach an obstacle at distance `clearance` (m).
 fn is_beyond(clearance: f32, way: Vec3) -> bool {
     clearance > 0.0 && clearance * clearance > DETOUR * DETOUR * way.length_squared()
 }
@@ -188,22 +188,23 @@ fn between(from: &Transform, to: &Transform, share: f32) -> Transform {
 /// Impulse of a particle on a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyImpulse {
-    /// Index in the slice of bodies.
+    /// Index of the body in the slice of bodies.
     pub body: u32,
-    /// N·s, world.
+    /// Impulse on the body, N·s, world axes.
     pub impulse: Vec3,
-    /// World, metres.
+    /// Point at which the impulse acts, world, metres.
     pub point: Vec3,
 }
 
-/// A particle and a surface.
+/// Contact of a particle with a surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     pub obstacle: usize,
     pub body: usize,
-    /// Unit, outward.
+    /// Normal of the surface, unit length, outward.
     pub normal: Vec3,
-    /// Gap, metres; negative inside. Before the solve that at the iteration's beginning, after it that at its end.
+    /// Gap, metres; negative inside. Before the solve it is the gap at the iteration's beginning, afterwards that at
+    /// its end.
     pub gap: f32,
     /// Point of contact on the surface, world, metres.
     pub point: Vec3,
@@ -211,16 +212,16 @@ pub(super) struct Touch {
     pub material: ContactMaterial,
     /// Smallest allowed normal velocity, m/s: negative while a gap remains.
     pub speed_min: f32,
-    /// Factor on the body's mass for this particle: if the touching particles outweigh it, each gets its share of the
-    /// body's inertia, because their sum would otherwise push it too far.
+    /// Ratio of the mass of all particles that touch the body to that of this particle, if they outweigh the body; else
+    /// 1. The body's inertia is divided by it, because the sum of the particles' impulses would push it too far.
     pub lightness: f32,
     /// Lower bound of the distance to other shapes at the start of the iteration, minus the shapes' motion, metres.
     pub beside: f32,
 }
 
 impl Touch {
-    /// The impulse on the particle that keeps its approach above `speed_min`, with Coulomb friction, if an impulse
-    /// changes its velocity by `response` alone; the body gets the opposite.
+    /// Computes the impulse on the particle that keeps its normal velocity above `speed_min`, with Coulomb friction,
+    /// for a particle of inverse mass `response`; applies the opposite impulse to the body.
     pub fn impulse(&self, response: f32, velocity: Vec3, body: &mut ObstacleBody) -> Vec3 {
         let n = self.normal;
         let approach = (velocity - body.velocity_at(self.point)).dot(n) - self.speed_min;
@@ -229,7 +230,7 @@ impl Touch {
         n * normal + self.rub(normal, response, velocity + n * (normal * response), body)
     }
 
-    /// The friction impulse on the particle for a normal impulse; the body gets the opposite.
+    /// Computes the friction impulse on the particle for a normal impulse; applies the opposite impulse to the body.
     pub(super) fn rub(&self, normal: f32, response: f32, velocity: Vec3, body: &mut ObstacleBody) -> Vec3 {
         let relative = velocity - self.surface_velocity(body);
         let slip = relative - self.normal * relative.dot(self.normal);
@@ -241,19 +242,19 @@ impl Touch {
         friction
     }
 
-    /// True if a particle on this surface does not yield to that of another, less firm body.
+    /// True if a particle on this surface must not yield to the surface of `other`, which belongs to a less firm body.
     pub fn pinches(&self, other: &Self, bodies: &[ObstacleBody]) -> bool {
         self.obstacle != other.obstacle
             && bodies[other.body].firmness() < bodies[self.body].firmness()
             && self.normal.dot(other.normal) < PINCHING
     }
 
-    /// Height of a ball of this radius above the plane that it touches, at the end of the iteration, metres.
+    /// Height of a ball above the plane that it touches, at the end of the iteration, metres.
     pub fn height(&self, center: Vec3, radius: f32) -> f32 {
         (center - self.point).dot(self.normal) - radius
     }
 
-    /// Velocity of the body's surface where it is touched, m/s.
+    /// Velocity of the body's surface at the contact point, m/s.
     pub fn surface_velocity(&self, body: &ObstacleBody) -> Vec3 {
         body.velocity_at(self.point) + self.material.velocity
     }
@@ -265,18 +266,18 @@ pub(super) enum Grip {
     /// The surface does not hold the particle.
     #[default]
     Off,
-    /// The surface holds it along the normal; friction is a force.
+    /// The surface holds the particle along the normal; friction is a force.
     Slide,
-    /// The surface holds it along the normal; friction is a viscosity, until the iteration ends.
+    /// The surface holds the particle along the normal; friction is a viscosity, until the iteration ends.
     Slow,
-    /// The surface holds it in all directions.
+    /// The surface holds the particle in all directions.
     Stick,
-    /// The surface holds it in the corner with another surface, until the end of the iteration.
+    /// The surface holds the particle in the corner with another surface, until the end of the iteration.
     Wedged,
 }
 
 impl ParticleGroup {
-    /// Obstacles at the ends of this iteration.
+    /// Computes the obstacles' poses at the start and end of this iteration.
     pub(super) fn place(&mut self, part: Part, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         let (h, shares) = (part.h(), part.shares());
         self.placed.clear();
@@ -284,9 +285,9 @@ impl ParticleGroup {
         self.placed.extend(obstacles.iter().map(|o| Placed::new(o, shares, turn(o))));
     }
 
-    /// The nearest surface that each particle is on or about to enter; and the distance of all others.
+    /// Finds the nearest surface that each particle touches or is about to touch, and the distance of all others.
     pub(super) fn find_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
-        // No particle touched anything in the previous iteration.
+        // Particles that were not solved in the previous iteration touched nothing.
         for &i in &self.solved {
             self.touches[i as usize] = None;
         }
@@ -309,7 +310,7 @@ impl ParticleGroup {
         self.contact_reach(i, h) + DETOUR * (self.velocities[i].length() * h)
     }
 
-    /// Gap that a particle may close by sinking, metres.
+    /// Gap that a particle may close by its acceleration, metres.
     fn contact_reach(&self, i: usize, h: f32) -> f32 {
         // Includes gravity, and a share of the other forces.
         2.0 * h * h * self.pulls[i] + REACH_SHARE * self.radii[i]
@@ -352,7 +353,7 @@ impl ParticleGroup {
         }
         let touch = |(index, meeting)| self.touch(i, h, index, &meeting, obstacles, bodies);
         let mut touch_of_nearest = nearest.map(touch);
-        // A particle on a wall stays there, whatever approaches from the other side: see `pinch`.
+        // A particle on a wall stays on the wall when a body approaches from the other side: see `pinch`.
         if let (Some(near), Some(wall)) = (&mut touch_of_nearest, wall.map(touch))
             && wall.pinches(near, bodies)
         {
@@ -364,7 +365,7 @@ impl ParticleGroup {
         self.near.note_distance(i, position, distance_now);
     }
 
-    /// The contact of a particle with a plane, which it may at most reach at the end of the iteration.
+    /// Contact of a particle with a plane, which the particle must not cross before the end of the iteration.
     pub(super) fn touch(
         &self,
         i: usize,
@@ -377,11 +378,11 @@ impl ParticleGroup {
         let (o, placed) = (&obstacles[obstacle], &self.placed[obstacle]);
         let normal = placed.end.rotation * meeting.normal;
         let gap = meeting.height(placed.start.inverse_point(self.positions[i]));
-        // Centre of the particle when it touches; inside, where it is.
+        // Centre of the particle at contact; its present centre if it is inside.
         let touching = placed.end.point(meeting.at - meeting.normal * max(meeting.gap, 0.0));
         let point = touching - normal * (self.radii[i] + min(meeting.gap, 0.0));
         let body = &bodies[o.body as usize];
-        // A backstop is no surface of the body: no friction, no bounce.
+        // A backstop is no surface of the body: it has no friction and no bounce.
         let is_common = obstacle < self.near.common(obstacles.len());
         let of_pair = is_common.then(|| ContactMaterial::of(&self.material, &o.material));
         let mut material = of_pair.unwrap_or_default();
@@ -410,12 +411,12 @@ impl ParticleGroup {
         is_beyond(self.clearances[i], way) || self.attachment_of[i] != u32::MAX
     }
 
-    /// True if a particle certainly hits nothing on its path except what it touches.
+    /// True if a particle certainly hits nothing on its path except the surface that it touches.
     pub(super) fn is_clear_beside(&self, i: usize, way: Vec3) -> bool {
         self.touches[i].map_or_else(|| self.is_clear(i, way), |touch| is_beyond(touch.beside, way))
     }
 
-    /// The first obstacle that a particle with these start and end positions ends deeper in than `depth`; ignores
+    /// First obstacle on a particle's path that the particle is in deeper than `depth` (m) at the end; ignores obstacle
     /// `but`.
     pub(super) fn first_met(
         &self,
@@ -443,14 +444,14 @@ impl ParticleGroup {
         first
     }
 
-    /// The surface that a particle would hit within the iteration at its new velocity; returns true if the solve does
-    /// not know it.
+    /// Finds the surface that a particle would hit within the iteration at its new velocity; returns true if the solve
+    /// must include a new contact.
     fn predict_contact(&mut self, i: usize, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> bool {
         let way = self.velocities[i] * h;
         if self.grips[i] == Grip::Wedged || self.is_clear_beside(i, way) {
             return false;
         }
-        // Springs may take a particle farther than it saw.
+        // Springs may take a particle farther than its search distance.
         self.near.follow(i, self.positions[i]);
         let known = self.touches[i].map(|touch| touch.obstacle);
         let ends = (self.positions[i], self.positions[i] + way);
@@ -461,7 +462,7 @@ impl ParticleGroup {
         let fixed = |body: usize| bodies[body].inverse_mass == 0.0;
         match self.touches[i] {
             Some(held) if self.grips[i] != Grip::Off => {
-                // Against two walls a particle can only move along their edge. A yielding body is left to the impact
+                // Between two walls a particle can only move along their edge. A yielding body is left to the impact
                 // pass.
                 let wedged = fixed(held.body) && fixed(touch.body);
                 if wedged {
@@ -478,8 +479,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Initial grip on a particle that approaches a surface at its new velocity: if stopping it exceeds friction, it
-    /// slides, with the friction of the normal impulse.
+    /// Initial grip on a particle that approaches a surface at its new velocity. If friction cannot stop the particle,
+    /// it slides, with the friction of the normal impulse.
     fn first_grip(&mut self, i: usize, touch: &Touch, bodies: &[ObstacleBody]) -> Grip {
         let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
         let normal = max(touch.speed_min - relative.dot(touch.normal), 0.0) * self.masses[i];
@@ -493,7 +494,8 @@ impl ParticleGroup {
         Grip::Slide
     }
 
-    /// Each particle is solved as if it alone pushed the body; returns true if any share has changed.
+    /// Updates the factors by which particles share their bodies' inertia (`lightness`); returns true if any has
+    /// changed.
     fn share_bodies(&mut self, bodies: &[ObstacleBody]) -> bool {
         let mut changed = false;
         self.loads.clear();
@@ -515,7 +517,7 @@ impl ParticleGroup {
         changed
     }
 
-    /// Chooses the particles to solve, and adds bends.
+    /// Chooses the particles to solve, and adds the impulses of bends.
     pub(super) fn prepare_solve(&mut self, h: f32) {
         self.choose_solved(h);
         if self.bends_ahead() {
@@ -523,16 +525,16 @@ impl ParticleGroup {
         }
     }
 
-    /// True if bends go into the solve.
+    /// True if bends are part of the solve.
     fn bends_ahead(&self) -> bool {
         self.forest.has_trees() && !self.bends.is_empty()
     }
 
-    /// Solves for the velocities; repeats while contacts open, close, stick, slip or appear: for all particles
-    /// connected by springs, else for those with changes.
+    /// Solves for the velocities; repeats while contacts open, close, stick, slip or appear. Repeats for all particles
+    /// if springs connect them, otherwise only for those with changes.
     pub(super) fn settle_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         self.system.load_springs(&self.forest, &self.springs, &self.positions, h);
-        // Those of particles outside the lanes are cleared when they are taken out.
+        // With lanes, reactions are cleared when particles are taken out of the lanes.
         if !self.eights.on {
             self.reactions.fill(Vec3::ZERO);
         }
@@ -574,8 +576,9 @@ impl ParticleGroup {
         }
     }
 
-    /// Projects the bends of a group with trees where particles would be without springs, and enters their impulses: springs, which are far
-    /// stiffer, have the last word, or bends would stretch them.
+    /// Projects the bends of a group with trees from the particles' positions without springs, and enters their
+    /// impulses in the solve. The springs are solved after the bends, because they are far stiffer and bends would
+    /// stretch them.
     fn bend_ahead(&mut self, h: f32) {
         self.reactions.fill(Vec3::ZERO);
         for i in 0..self.positions.len() {
@@ -597,8 +600,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Lists the particles to solve: all in spring trees, and those held, touching or about to touch something. The
-    /// others fly freely.
+    /// Lists the particles to solve: all in spring trees, and those that are held, touch a surface or are about to
+    /// touch one. The others move freely.
     fn choose_solved(&mut self, h: f32) {
         self.solved.clear();
         if self.forest.has_trees() {
@@ -619,7 +622,7 @@ impl ParticleGroup {
             self.solved.push(i as u32);
             self.enter(i, h);
         }
-        // Free particles fly on; the solve finds the velocities of the others.
+        // Free particles move on; the solve finds the velocities of the others.
         for at in 0..self.one_by_one() {
             let i = self.one(at);
             if self.attachment_of[i] == u32::MAX {
@@ -628,8 +631,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Computes the backing of each touching particle, its share of the body's inertia along the normal, and its room
-    /// before it presses.
+    /// Computes the backing of each touching particle, `M / (m + M)` with `M` its share of the body's inertia along the
+    /// normal, and its room before it presses.
     pub(super) fn back_contacts(&mut self, bodies: &[ObstacleBody]) {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
@@ -639,7 +642,7 @@ impl ParticleGroup {
             self.rooms[i] = max(away, 0.0) / self.weights[i] - self.pinched_by(i);
             let yielding = bodies[touch.body].yielding(touch.point, touch.normal);
             self.press_normals[i] = touch.normal;
-            // M / (m + M), of M = m / (load · yielding).
+            // M / (m + M), with M = m / (load · yielding).
             self.backings[i] = 1.0 / (1.0 + self.loads[touch.body] * yielding);
         }
     }
@@ -649,7 +652,7 @@ impl ParticleGroup {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
             if let Some(touch) = self.touches[i].filter(|_| self.backings[i] > 0.0) {
-                // The contact of the two that pinch it has pushed with its load, and the solve has rubbed it with that.
+                // The contact of the two pinching shapes has applied its load, and the solve the friction of that load.
                 let pressing = self.backings[i] * (min(self.rooms[i], 0.0) + self.pinched_by(i));
                 let impulse = self.press_normals[i] * pressing;
                 (self.backings[i], self.press_normals[i], self.rooms[i]) = (0.0, Vec3::ZERO, 0.0);
@@ -707,7 +710,7 @@ impl ParticleGroup {
     }
 
     /// Friction on a sliding particle as additional inertia, kg, and momentum, kg·m/s: a force, or a viscosity by
-    /// Coulomb's law at the last slip, which slows it and never drives it.
+    /// Coulomb's law at the last slip, which slows the particle and never drives it.
     fn rubbing(&self, i: usize, touch: &Touch, body: &ObstacleBody) -> (Sym3, Vec3) {
         let n = touch.normal;
         if self.grips[i] == Grip::Slide {
@@ -721,18 +724,18 @@ impl ParticleGroup {
         (viscosity, viscosity * surface)
     }
 
-    /// The tangential part of the last contact impulse.
+    /// Tangential part of the last contact impulse, N·s.
     fn friction(&self, i: usize, normal: Vec3) -> Vec3 {
         let impulse = self.contact_impulses[i];
         impulse - normal * impulse.dot(normal)
     }
 
-    /// Impulse of the solve on a particle that a surface holds, N·s.
+    /// Impulse of the surface on a particle in the solve, N·s.
     fn contact_impulse(&self, i: usize) -> Vec3 {
         self.velocities[i] * self.masses[i] - self.system.momentum[i] - self.reactions[i]
     }
 
-    /// Stores the contact impulses of the last solve.
+    /// Stores the contact impulses of the last solve without changing grips.
     fn keep_grips(&mut self, particles: &[u32]) {
         for &i in particles {
             let i = i as usize;
@@ -741,8 +744,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Stores the contact impulse of the last solve and updates the grip of the particle, or only tightens it; returns
-    /// true if the grip has changed.
+    /// Stores the contact impulse of the last solve and updates the particle's grip; without `may_loosen` the grip can
+    /// only become firmer. Returns true if the grip has changed.
     fn change_grip(&mut self, i: usize, may_loosen: bool, bodies: &[ObstacleBody]) -> bool {
         let Some(touch) = self.touches[i] else {
             self.contact_impulses[i] = Vec3::ZERO;
@@ -762,14 +765,14 @@ impl ParticleGroup {
             Grip::Off => (Grip::Off, Vec3::ZERO),
             Grip::Wedged => (Grip::Wedged, impulse),
             held if !may_loosen && borne <= 0.0 => (held, impulse),
-            // A surface does not pull.
+            // A surface cannot pull.
             _ if borne <= 0.0 => (Grip::Off, Vec3::ZERO),
             Grip::Stick if friction.length() > touch.material.static_friction * borne => {
                 (Grip::Slide, n * normal + friction * (limit / friction.length()))
             }
             Grip::Stick => (Grip::Stick, impulse),
             Grip::Slow => (Grip::Slow, impulse),
-            // Friction that drives the motion has stopped it midway.
+            // Friction along the motion has already stopped the particle within the iteration.
             Grip::Slide if limit > 0.0 && slip.dot(friction) > 0.0 => {
                 (if may_loosen { Grip::Stick } else { Grip::Slow }, impulse)
             }
@@ -780,7 +783,7 @@ impl ParticleGroup {
         changed
     }
 
-    /// Applies the solve's reactions to the bodies.
+    /// Applies the reactions of the contact impulses to the bodies.
     pub(super) fn push_bodies(&mut self, bodies: &mut [ObstacleBody]) {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
@@ -792,7 +795,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Lists the reaction of an impulse on a particle, if the body can move or is kinematic.
+    /// Lists the reaction on a body of an impulse on a particle, if the body moves or can be moved.
     pub(super) fn report(&mut self, touch: &Touch, on_particle: Vec3, bodies: &[ObstacleBody]) {
         if !bodies[touch.body].rests() && on_particle != Vec3::ZERO {
             let body = touch.body as u32;

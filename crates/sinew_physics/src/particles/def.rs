@@ -10,13 +10,13 @@ use sinew_math::Vec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ParticleDef {
-    /// World, metres.
+    /// Position, world, metres.
     pub position: Vec3,
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: Vec3,
-    /// kg, positive. To hold a particle in place, attach it.
+    /// Mass, kg, positive. To hold a particle in place, attach it.
     pub mass: f32,
-    /// Metres, ≥ 0: distance kept from shapes.
+    /// Radius, metres, ≥ 0: distance kept from shapes.
     pub radius: f32,
 }
 
@@ -24,10 +24,10 @@ pub struct ParticleDef {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Resists {
-    /// Longer or shorter than at rest, it pulls or pushes. Default.
+    /// The spring pulls when it is longer than at rest, and pushes when it is shorter. Default.
     #[default]
     Both,
-    /// It pulls; shorter than at rest it is slack, like a string.
+    /// The spring only pulls; when it is shorter than at rest it is slack, like a string.
     Stretch,
 }
 
@@ -37,15 +37,15 @@ pub enum Resists {
 pub struct SpringDef {
     /// Index of the first particle in its group.
     pub a: u32,
-    /// Index of the second one.
+    /// Index of the second particle in its group.
     pub b: u32,
     /// Length without force, metres, ≥ 0.
     pub rest_length: f32,
-    /// N/m, positive.
+    /// Stiffness, N/m, positive.
     pub stiffness: f32,
-    /// N·s/m, ≥ 0. Default 0; see [`damped`](Self::damped).
+    /// Damping, N·s/m, ≥ 0. Default 0; see [`damped`](Self::damped).
     pub damping: f32,
-    /// Deformations that it resists. Default both.
+    /// Deformations that the spring resists. Default both.
     pub resists: Resists,
 }
 
@@ -55,8 +55,8 @@ impl SpringDef {
         Self { a, b, rest_length, stiffness, damping: 0.0, resists: Resists::Both }
     }
 
-    /// Damped at a share `ratio` (≥ 0) of the critical damping of two particles of these masses (kg, infinite for a
-    /// held one) on this spring alone: `2 ratio √(k m)` with `m = m₁ m₂ / (m₁ + m₂)`. At 1 they settle without
+    /// Sets the damping to `ratio` (≥ 0) times the critical damping of two particles of these masses (kg, infinite for
+    /// an attached one) on this spring alone: `2 ratio √(k m)` with `m = m₁ m₂ / (m₁ + m₂)`. At 1 they settle without
     /// oscillation.
     ///
     /// # Panics
@@ -73,30 +73,31 @@ impl SpringDef {
     }
 }
 
-/// A bend keeps three consecutive particles straight, or at their initial curvature: a force `stiffness × (c − rest)`
-/// along `x₁ − 2 x₂ + x₃`, whose length is `c`, on the outer two, and twice its opposite on the middle one. A beam of
-/// bending stiffness `B` (N·m²) with a particle every `L` metres has a stiffness of `B/L³`.
+/// A bend keeps three consecutive particles straight, or at their initial curvature. With the length `c` of
+/// `x₁ − 2 x₂ + x₃`, it applies the force `stiffness × (c − rest)` along that vector to the outer two, and twice the
+/// opposite force to the middle one. A beam of bending stiffness `B` (N·m²) with a particle every `L` metres has a
+/// stiffness of `B/L³`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BendDef {
-    /// Indices of the particles in their group, the middle one in the middle.
+    /// Indices of the particles in their group, in order along the bend.
     pub particles: [u32; 3],
-    /// `|x₁ − 2 x₂ + x₃|` without force, metres, ≥ 0: 0 is straight.
+    /// Length `|x₁ − 2 x₂ + x₃|` without force, metres, ≥ 0; 0 is straight.
     pub rest: f32,
-    /// N/m, positive.
+    /// Stiffness, N/m, positive.
     pub stiffness: f32,
 }
 
 /// A tether limits a particle's distance from an attached one: long-range attachment (Kim, Chentanez and Müller 2012).
-/// It never pushes.
+/// Tethers never push.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TetherDef {
     /// Index of the particle in its group.
     pub particle: u32,
-    /// Index of the attached one.
+    /// Index of the attached particle.
     pub to: u32,
-    /// Metres, positive.
+    /// Largest distance, metres, positive.
     pub length: f32,
 }
 
@@ -104,11 +105,11 @@ pub struct TetherDef {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VolumeDef {
-    /// Particles of each triangle, counterclockwise from outside.
+    /// Particles of each triangle, counterclockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Volume without pressure, m³, positive.
     pub rest_volume: f32,
-    /// Bulk modulus, Pa, positive: of an adiabatic gas at pressure `p`, `1.4 p`.
+    /// Bulk modulus, Pa, positive; `1.4 p` for an adiabatic gas at pressure `p`.
     pub bulk_modulus: f32,
 }
 
@@ -134,42 +135,42 @@ pub enum AttachmentTarget {
     World(Vec3),
     /// A point of a body.
     Body {
-        /// The body.
+        /// Body that the particle is attached to.
         body: BodyId,
         /// Point in the body's frame, metres.
         point: Vec3,
     },
 }
 
-/// A particle held at a point.
+/// Attachment of a particle to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AttachmentDef {
     /// Index of the particle in its group.
     pub particle: u32,
-    /// Point at which it is held.
+    /// Point that the particle is attached to.
     pub target: AttachmentTarget,
 }
 
 impl AttachmentDef {
-    /// Holds a particle at a point of the world, metres.
+    /// Attaches a particle to a point of the world, metres.
     pub fn to_world(particle: u32, point: Vec3) -> Self {
         Self { particle, target: AttachmentTarget::World(point) }
     }
 
-    /// Holds a particle at a point of a body, in the body's space, metres.
+    /// Attaches a particle to a point of a body, in the body's frame, metres.
     pub fn to_body(particle: u32, body: BodyId, point: Vec3) -> Self {
         Self { particle, target: AttachmentTarget::Body { body, point } }
     }
 }
 
 /// A backstop: a ball fixed to a body that only one particle collides with. It limits how deep cloth sinks into the
-/// drawn body, also where no shape of a body is. It pushes the body back like a shape, but transmits nothing to the
-/// floor, and has neither friction nor bounce.
+/// drawn body, also where the body has no shape. The particle pushes the body back like a shape, but a backstop
+/// transmits nothing to the floor, and has neither friction nor bounce.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BackstopDef {
-    /// Index of the particle in its group, which keeps its radius from the ball.
+    /// Index of the particle in its group; the particle keeps its radius as distance from the ball.
     pub particle: u32,
     /// Body that the ball is fixed to.
     pub body: BodyId,
@@ -184,33 +185,33 @@ pub struct BackstopDef {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct GroupDef {
-    /// The particles; springs and attachments name them by index.
+    /// Particles; springs and attachments refer to them by index.
     pub particles: Vec<ParticleDef>,
-    /// The springs. The scheme decides how they are solved, see [`particles`](crate::particles).
+    /// Springs. The scheme decides how they are solved, see [`particles`](crate::particles).
     pub springs: Vec<SpringDef>,
     /// Bends, which resist bending; projected after the springs.
     pub bends: Vec<BendDef>,
-    /// Tethers, which limit how far particles may go from attached ones; projected before the springs.
+    /// Tethers, which limit the distance of particles from attached ones; projected before the springs.
     pub tethers: Vec<TetherDef>,
     /// Volumes that particles enclose; projected last.
     pub volumes: Vec<VolumeDef>,
     /// Faces of a sheet, each with three of its particles in any order, and at most once: [`Wind`](crate::Wind) acts on
-    /// them from either side, instead of on balls. Leave them empty for a closed volume: its lee side would be pressed
-    /// on as well. Default none.
+    /// the faces from either side, instead of on balls. Leave them empty for a closed volume: the wind would also press
+    /// on its lee side. Default none.
     pub faces: Vec<[u32; 3]>,
-    /// Held particles; each at most once.
+    /// Attachments of particles; at most one per particle.
     pub attachments: Vec<AttachmentDef>,
-    /// Balls behind single particles, at most one per particle, none for a held one. They act whatever the filter and
-    /// `passes` say. Default none.
+    /// Balls behind single particles, at most one per particle, none for an attached one. They act regardless of the
+    /// filter and of `passes`. Default none.
     pub backstops: Vec<BackstopDef>,
     /// Scheme by which springs are solved. Default implicit.
     pub scheme: SpringScheme,
-    /// Number of parts of a world substep, 1 to 64: projection is stiffer and loses less energy with more parts.
-    /// Default 1.
+    /// Number of iterations of a world substep, 1 to 64: projection is stiffer and loses less energy with more
+    /// iterations. Default 1.
     pub iterations: u32,
-    /// Surface of the particles; `rolling` is ignored.
+    /// Material of the particles; `rolling` is ignored.
     pub material: Material,
-    /// Drag in proportion to velocity, 1/s, ≥ 0: share of it lost per second. Default 0.
+    /// Share of the velocity lost per second, 1/s, ≥ 0. Default 0.
     pub linear_damping: f32,
     /// Factor on the world's gravity, finite. Default 1.
     pub gravity_scale: f32,
@@ -219,14 +220,14 @@ pub struct GroupDef {
     ///
     /// 1.4 times the grid spacing is good; less than 0.8 lets a sheet pass through itself, more than twice pushes it
     /// apart. Six layers on the ground carry a body of 30 times the mass of the particles under it, dropped from 10 cm
-    /// (0.4 kg on scene `folded`); 1 kg slides off and squeezes through in places. Particles that move by the thickness
-    /// within a substep pass. Bodies on a slope creep down on it.
+    /// (0.4 kg on scene `folded`); a body of 1 kg slides off and squeezes through in places. Particles that move by the
+    /// thickness within a substep pass through. Bodies on a slope creep down on the sheet.
     pub thickness: f32,
-    /// Collision filter.
+    /// Collision filter of the group.
     pub filter: Filter,
-    /// Bodies that it never collides with: arms that swing past the wearer's skirt. Default none.
+    /// Bodies that the group never collides with: arms that swing past the wearer's skirt. Default none.
     pub passes: Vec<BodyId>,
-    /// Permission to fall asleep with its island. Default on.
+    /// Permission for the group to fall asleep with its island. Default on.
     pub sleeping: Sleeping,
 }
 

@@ -2,9 +2,9 @@
 //!
 //! A net has no trees, so each of its particles has independent contacts. On a ball, a box, a capsule or a half-space
 //! that neither moves nor can be moved, the solve of `contact.rs` has a closed form: the particle sticks to the plane
-//! that it touches, or slides on it by Coulomb's law. Most particles of a cloth are in this case: they touch at most
-//! one of these, and certainly hit nothing else. They are processed in the lanes of `batches.rs`; the **others** are
-//! taken out of the lanes, solved individually, and put back (`in_eights.rs`).
+//! that it touches, or slides on it by Coulomb's law. This is the case for most particles of a cloth: they touch at
+//! most one of these solids, and certainly hit nothing else. They are processed in the lanes of `batches.rs`; the
+//! **others** are taken out of the lanes, solved individually, and put back (`in_eights.rs`).
 //!
 //! Rows move particles in lanes without regard to contacts. At the end of the iteration the motion through the touched
 //! plane is reverted, with the corresponding friction: at rest the position and the normal impulse are the same,
@@ -18,8 +18,9 @@ use sinew_math::Vec3;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
-/// Numbers of a particle in addition to those of `batches.rs`: velocity, height above the touched plane at the start of
-/// the iteration, distance from all else, its friction and static friction, radius, acceleration, normal of that plane.
+/// Numbers per particle in addition to those of `batches.rs`: velocity, height above the touched plane at the start of
+/// the iteration, distance from all else, friction and static friction of the plane, radius, acceleration, plane
+/// normal.
 pub(super) const STRIP: usize = 14;
 const HEIGHT: usize = 3;
 const CLEARANCE: usize = 4;
@@ -33,61 +34,61 @@ const NORMAL: usize = 11;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Eights {
     pub strips: Vec<Block<STRIP>>,
-    /// Lanes of each block that hold a free particle.
+    /// Bits of the lanes of each block that hold a free particle.
     pub present: Vec<u8>,
-    /// Lanes that go through this iteration as such.
+    /// Bits of the lanes that are solved in lanes in this iteration.
     pub easy: Vec<u8>,
-    /// Lanes that touch a solid.
+    /// Bits of the lanes that touch a solid.
     pub touched: Vec<u8>,
-    /// Lanes that may have hit something on their path.
+    /// Bits of the lanes that may have hit something on their path.
     pub strayed: Vec<u8>,
     /// Bits of the common acceleration of all particles in the strips, m/s², if there is one.
     pub common_acceleration: Option<[u32; 3]>,
-    /// The substep uses lanes.
+    /// True if the substep uses lanes.
     pub on: bool,
-    /// Particles that do not, ascending.
+    /// Particles that are solved individually, ascending.
     pub others: Vec<u32>,
     /// Particles of rows that are projected individually, except attached ones.
     pub outside: Vec<u32>,
-    /// Static solids.
+    /// Resting solids near the group.
     pub solids: Vec<Solid>,
-    /// Indices of the other obstacles.
+    /// Indices of the obstacles that are not among `solids`.
     pub foreign: Vec<u32>,
-    /// Bounds around these, in this iteration.
+    /// Bounds around the foreign obstacles, in this iteration.
     pub foreign_bounds: Vec<Aabb>,
 }
 
-/// A solid that neither moves nor can be moved. Its numbers are splatted over all lanes.
+/// A solid that neither moves nor can be moved. Each number is repeated in all lanes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Solid {
     pub form: Form,
-    /// Position of its frame, world, metres.
+    /// Position of the solid's frame, world, metres.
     pub at: Block<3>,
-    /// Friction and static friction of the surface, and 1 if it bounces.
+    /// Friction and static friction of the surface, and 1 if particles bounce off it.
     pub surface: Block<3>,
 }
 
 #[expect(clippy::large_enum_variant, reason = "there are few, and each is read for every block")]
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Form {
-    /// Half of each side, and axes.
+    /// Half extents, metres, and axes of a box, world.
     Box(Block<3>, [Block<3>; 3]),
-    /// Half of a segment, world, and the radius round it; its direction.
+    /// Half length and radius of a capsule, metres; direction of its axis, world. A sphere has half length 0.
     Round(Block<2>, Block<3>),
-    /// Normal.
+    /// Normal of a half-space, world.
     Half(Block<3>),
 }
 
-/// Eight points in the frame of a box, round its centre.
+/// Eight points relative to the centre of a box, in its axes.
 struct InBox<L> {
     p: Vector3<L>,
     /// Distances beyond the faces along each axis, metres, negative inside.
     beyond: Vector3<L>,
-    /// The same if outside, else 0.
+    /// Positive part of `beyond`.
     outside: Vector3<L>,
     /// Largest of `beyond`.
     deepest: L,
-    /// Distance if outside, else 0.
+    /// Distance of a point outside, metres; 0 inside.
     distance: L,
 }
 
@@ -107,13 +108,13 @@ impl<L: Lanes> InBox<L> {
         L::gt(self.distance, L::splat(1e-12))
     }
 
-    /// Signed, metres.
+    /// Signed distance, metres; negative inside.
     #[inline(always)]
     fn signed_distance(&self) -> L {
         L::select(self.is_out(), self.distance, self.deepest)
     }
 
-    /// Outward normal; from inside that of the nearest face.
+    /// Outward normal; inside, that of the nearest face.
     #[inline(always)]
     fn normal(&self, axes: &[Vector3<L>; 3]) -> Vector3<L> {
         let Self { p, beyond, outside, deepest, .. } = *self;
@@ -128,7 +129,7 @@ impl<L: Lanes> InBox<L> {
     }
 }
 
-/// Outward normal of a ball whose centre is at this offset, metres.
+/// Outward normal of a ball at offset `from` (m) of that `length` from its centre.
 #[inline(always)]
 fn round_normal<L: Lanes>(from: Vector3<L>, length: L) -> Vector3<L> {
     let (is_out, one) = (L::gt(length, L::splat(1e-12)), L::splat(1.0));
@@ -140,15 +141,15 @@ fn round_normal<L: Lanes>(from: Vector3<L>, length: L) -> Vector3<L> {
     )
 }
 
-/// A number with the sign of another, positive for zero.
+/// Returns `number`, which is not negative, with the sign of `like`; positive if `like` is zero.
 #[inline(always)]
 fn signed<L: Lanes>(number: L, like: L) -> L {
     L::select(L::lt(like, L::splat(0.0)), -number, number)
 }
 
 impl Eights {
-    /// Creates lanes for particles with these radii, of which some are attached; rows that are projected one by one
-    /// reach those of `outside`.
+    /// Creates lanes for particles with these radii, some of them attached; rows that are projected individually
+    /// contain the `outside` particles.
     pub fn new(per_lane: usize, radii: &[f32], attached: &[u32], mut outside: Vec<u32>) -> Self {
         let mut strips = vec![Block::splat([0.0; STRIP]); per_lane];
         let mut present = vec![0; per_lane];
@@ -165,14 +166,14 @@ impl Eights {
         Self { strips, present, easy, touched, strayed, others, outside, ..Self::default() }
     }
 
-    /// True if a particle uses a lane in this iteration.
+    /// True if a particle is solved in a lane in this iteration.
     pub fn is_easy(&self, i: usize) -> bool {
         self.easy[i % self.easy.len()] >> (i / self.easy.len()) & 1 == 1
     }
 }
 
-/// The solid that a particle touches, if any, and the distance of everything else. Normal, friction and bounce are
-/// those of the touched solid.
+/// Gap to the nearest solid, and to the nearest of all others. Normal, friction and bounce are those of the nearest
+/// solid, if a particle touches it.
 struct Surroundings<L: Lanes> {
     gap: L,
     normal: Vector3<L>,
@@ -183,7 +184,7 @@ struct Surroundings<L: Lanes> {
 }
 
 impl<L: Lanes> Surroundings<L> {
-    /// Tests all solids; one touches if it is within `reach`, metres.
+    /// Tests all solids; a particle touches one within `reach`, metres.
     #[inline(always)]
     fn look(solids: &[Solid], p: Vector3<L>, radius: L, reach: L) -> Self {
         let (zero, far) = (L::splat(0.0), L::splat(f32::MAX));
@@ -222,7 +223,8 @@ impl<L: Lanes> Surroundings<L> {
         found
     }
 
-    /// Includes the distance of a solid: records if any may touch, and the nearest so far.
+    /// Includes the gap to a solid. Returns true if any lane is within `reach`, and the lanes in which the solid is the
+    /// nearest so far.
     #[inline(always)]
     fn meet(&mut self, gap: L, reach: L) -> (bool, L::Mask) {
         let nearer = L::lt(gap, self.gap);
@@ -231,7 +233,7 @@ impl<L: Lanes> Surroundings<L> {
         (L::le(gap, reach).any(), nearer)
     }
 
-    /// Includes the surface of the nearest one.
+    /// Stores the surface of a solid in the lanes in which it is the nearest.
     #[inline(always)]
     fn touch(&mut self, solid: &Solid, normal: Vector3<L>, nearer: L::Mask) {
         let Block([friction, hold, bounces]) = &solid.surface;
@@ -241,7 +243,7 @@ impl<L: Lanes> Surroundings<L> {
         self.bounces = L::select(nearer, L::load(bounces), self.bounces);
     }
 
-    /// The velocity of a free particle after its contact, by Coulomb's law for a particle alone.
+    /// Velocity of a free particle after its contact, by Coulomb's law for a particle alone.
     #[inline(always)]
     fn held(&self, free: Vector3<L>, touching: L::Mask, per_second: L) -> Vector3<L> {
         let zero = L::splat(0.0);
@@ -258,19 +260,19 @@ impl<L: Lanes> Surroundings<L> {
     }
 }
 
-/// The vector in every lane.
+/// Loads a vector that is the same in every lane.
 #[inline(always)]
 fn vector<L: Lanes>(Block([x, y, z]): &Block<3>) -> Vector3<L> {
     Vector3::load(x, y, z)
 }
 
-/// The one where the mask is true, else the other.
+/// Selects `a` where the mask is true, otherwise `b`.
 #[inline(always)]
 fn select<L: Lanes>(mask: L::Mask, a: Vector3<L>, b: Vector3<L>) -> Vector3<L> {
     Vector3::new(L::select(mask, a.x, b.x), L::select(mask, a.y, b.y), L::select(mask, a.z, b.z))
 }
 
-/// Starts an iteration.
+/// Kernel that starts an iteration: finds contacts and velocities in lanes.
 pub(super) struct Approach<'a> {
     pub eights: &'a mut Eights,
     pub particles: &'a mut [Block<{ super::batches::FIELDS }>],
@@ -327,7 +329,7 @@ impl Kernel for Approach<'_> {
     }
 }
 
-/// Writes a vector into fields from this one on.
+/// Writes a vector into three fields from `first` on.
 #[inline(always)]
 fn store<L: Lanes, const F: usize>(vector: Vector3<L>, fields: &mut [[f32; WIDTH]; F], first: usize) {
     vector.x.store(&mut fields[first]);
@@ -335,21 +337,21 @@ fn store<L: Lanes, const F: usize>(vector: Vector3<L>, fields: &mut [[f32; WIDTH
     vector.z.store(&mut fields[first + 2]);
 }
 
-/// True where an obstacle at this distance, metres, cannot be reached.
+/// True where a particle with displacement `way` (m) cannot reach an obstacle at distance `clearance` (m).
 #[inline(always)]
 fn is_beyond<L: Lanes>(clearance: L, way: Vector3<L>) -> L::Mask {
     L::gt(clearance, L::splat(0.0))
         & L::gt(clearance * clearance, L::splat(DETOUR) * L::splat(DETOUR) * way.dot(way))
 }
 
-/// A lower bound of the distance from a point to the contents of these bounds.
+/// A lower bound of the distance from a point to anything inside `bounds`, metres.
 #[inline(always)]
 fn distance_at_least<L: Lanes>(bounds: &Aabb, p: Vector3<L>) -> L {
     let (low, high) = (Vector3::<L>::splat(bounds.min) - p, p - Vector3::splat(bounds.max));
     L::max(L::max(L::max(low.x, high.x), L::max(low.y, high.y)), L::max(low.z, high.z))
 }
 
-/// Ends it.
+/// Kernel that ends an iteration: applies contacts to the displacements in lanes.
 pub(super) struct Depart<'a> {
     pub eights: &'a mut Eights,
     pub particles: &'a mut [Block<{ super::batches::FIELDS }>],
@@ -404,7 +406,7 @@ impl Kernel for Depart<'_> {
     }
 }
 
-/// The displacement after the touched plane's reaction, with friction, and the height above the plane at its end.
+/// Displacement after the reaction of the touched plane, with friction, and true where it does not end below the plane.
 #[inline(always)]
 fn rubbed<L: Lanes>(way: Vector3<L>, strip: &[[f32; WIDTH]; STRIP]) -> (Vector3<L>, L::Mask) {
     let zero = L::splat(0.0);

@@ -4,8 +4,8 @@ use super::ParticleGroup;
 use super::net::{enclosed_volume, stretch};
 
 impl ParticleGroup {
-    /// Elastic energy of its springs, `½ k s²` each, its bends likewise, and its volumes, `½ K (V − V₀)²/V₀`, J.
-    /// Tethers store none. A projected row counts with the compliance with which it alone returns energy,
+    /// Elastic energy of the group, J: `½ k s²` for each spring, likewise for each bend, and `½ K (V − V₀)²/V₀` for
+    /// each volume. Tethers store none. A projected row counts with the compliance with which it alone returns energy,
     /// `1/k + h² Σ w`: rows that share particles may return less or more (ADR 0027).
     pub fn elastic_energy(&self) -> f32 {
         let solved = self.forest.solved_springs().map(|index| {
@@ -30,7 +30,7 @@ impl ParticleGroup {
         solved.chain(projected).chain(bends).chain(volumes).sum()
     }
 
-    /// Mobility of a particle in projections, 1/kg; 0 if it is attached.
+    /// Inverse mass of a particle in projections, 1/kg; 0 if it is attached.
     fn weight(&self, particle: u32) -> f32 {
         let i = particle as usize;
         if self.attachment_of[i] == u32::MAX { 1.0 / self.masses[i] } else { 0.0 }
@@ -44,7 +44,7 @@ impl ParticleGroup {
         enclosed_volume(&self.volumes[index].triangles, &self.positions, |_, _| ())
     }
 
-    /// Stretch of spring `index`: length less rest length, metres; 0 where it is slack.
+    /// Stretch of spring `index`: length minus rest length, metres; 0 if it is slack.
     ///
     /// # Panics
     /// If the spring does not exist.
@@ -53,7 +53,7 @@ impl ParticleGroup {
     }
 }
 
-/// Energy of a row with error `c`, its own compliance, and the compliance added by projection.
+/// Energy of a row with error `c`, compliance, and compliance added by projection, J.
 fn energy(c: f32, compliance: f32, added: f32) -> f32 {
     0.5 * c * c / (compliance + added)
 }

@@ -2,9 +2,9 @@
 //!
 //! A tree is factored from the leaves to the roots and solved for any momenta in two passes. A spring that closes a
 //! loop connects nodes that elimination separates. The trees' factor then contains that spring as well, with its other
-//! end held, and is the preconditioner of conjugate gradients (Hestenes and Stiefel 1952; Concus, Golub and O'Leary
-//! 1976) over the whole system: with `M z = r`, `A d` differs only by the terms of the closing springs, so that the
-//! trees are never multiplied. A few loops take a few iterations; nets take as many as they are wide.
+//! end fixed, and is the preconditioner of conjugate gradients (Hestenes and Stiefel 1952; Concus, Golub and O'Leary
+//! 1976) over the whole system: with `M z = r`, `A d` differs from `M d` only by the terms of the closing springs, so
+//! that the trees are never multiplied. A few loops take a few iterations; nets take as many as they are wide.
 
 use super::SpringDef;
 use super::conjugate::{Conjugate, dot};
@@ -14,7 +14,8 @@ use crate::particles::tuning::{CONJUGATE_ROUNDS, CONJUGATE_TOLERANCE, NO_SPEED};
 use sinew_math::{Sym3, Vec3};
 
 impl System {
-    /// Velocities at the end of the step; those that are given are where springs that close loops start from.
+    /// Computes the velocities at the end of the step. Those on entry are used for fixed particles, and as the initial
+    /// guess if springs close loops.
     pub fn solve(&mut self, forest: &Forest, springs: &[SpringDef], h: f32, velocities: &mut [Vec3]) {
         self.factor(forest);
         if forest.closings().is_empty() {
@@ -27,7 +28,7 @@ impl System {
         self.conjugate = conjugate;
     }
 
-    /// Velocities where springs close loops.
+    /// Computes the velocities if springs close loops.
     fn solve_loops(
         &mut self,
         of: &mut Conjugate,
@@ -35,7 +36,7 @@ impl System {
         h: f32,
         velocities: &mut [Vec3],
     ) {
-        // Contributions of the closing springs' other ends at the current velocities, used by the first solve.
+        // The first solve uses the contributions of the closing springs' other ends at the current velocities.
         self.load_momenta(forest, springs, h, velocities);
         self.pass_across(forest, velocities, &mut of.passed);
         for (momentum, passed) in self.gathered_momentum.iter_mut().zip(&of.passed) {
@@ -43,7 +44,7 @@ impl System {
         }
         of.residual.copy_from_slice(&of.passed);
         self.substitute::<true>(forest, velocities);
-        // The residual is the change of these.
+        // The residual is the change of these contributions.
         self.pass_across(forest, velocities, &mut of.passed);
         of.start(self.hubs.iter().map(|hub| &hub.velocity));
         let most = self.conjugate_tolerance(velocities);
@@ -66,7 +67,7 @@ impl System {
         }
     }
 
-    /// Twice the energy of an error of the velocities that is small enough, J.
+    /// Twice the energy of the largest error of the velocities that is accepted, J.
     fn conjugate_tolerance(&self, velocities: &[Vec3]) -> f64 {
         let energies = velocities.iter().zip(&self.inertia).map(|(v, inertia)| {
             f64::from((*inertia * *v).dot(*v)) + f64::from(inertia.diagonal.x * NO_SPEED * NO_SPEED)
@@ -74,14 +75,14 @@ impl System {
         energies.sum::<f64>() * CONJUGATE_TOLERANCE
     }
 
-    /// Solves the preconditioner for the residual; returns the product of both, J.
+    /// Solves the preconditioner for the residual; returns the dot product of the residual and the solution, J.
     fn precondition(&mut self, of: &mut Conjugate, forest: &Forest) -> f64 {
         self.gathered_momentum.copy_from_slice(&of.residual);
         self.substitute::<false>(forest, &mut of.gain);
         dot(&of.residual, &of.gain)
     }
 
-    /// Momentum that each end of a closing spring gets from the other's velocity, kg·m/s.
+    /// Computes the momentum that each end of a closing spring gets from the other end's velocity, kg·m/s.
     fn pass_across(&self, forest: &Forest, velocities: &[Vec3], passed: &mut [Vec3]) {
         passed.fill(Vec3::ZERO);
         for &(k, ends) in forest.closings() {
@@ -91,7 +92,7 @@ impl System {
         }
     }
 
-    /// Velocities of particles that no springs of the forest join.
+    /// Computes the velocities of particles that no springs of the forest connect.
     pub fn solve_apart(&mut self, particles: &[u32], velocities: &mut [Vec3]) {
         for &i in particles {
             let i = i as usize;
@@ -136,8 +137,8 @@ impl System {
         }
     }
 
-    /// Momenta without those of hubs: of particles and contacts, of springs from where they are linearised, of ends that are held; and the
-    /// pulls along the trees.
+    /// Loads the momenta without those of hubs: of particles and contacts, of springs from where they are linearised,
+    /// and of fixed ends; and the pulls along the trees.
     fn load_momenta(&mut self, forest: &Forest, springs: &[SpringDef], h: f32, velocities: &[Vec3]) {
         for i in 0..velocities.len() {
             self.gathered_momentum[i] = self.momentum[i] + self.added_momentum[i];
@@ -160,8 +161,8 @@ impl System {
         }
     }
 
-    /// Velocities for the gathered momenta. `WHOLE`: including the pull of tree springs, the velocities of bodies and
-    /// surfaces, and prescribed ones; else the response to the momenta alone.
+    /// Computes the velocities for the gathered momenta. `WHOLE`: including the pull of tree springs, the velocities of
+    /// bodies and surfaces, and prescribed ones; otherwise the response to the momenta alone.
     fn substitute<const WHOLE: bool>(&mut self, forest: &Forest, velocities: &mut [Vec3]) {
         if !WHOLE {
             velocities.fill(Vec3::ZERO);
@@ -207,7 +208,8 @@ impl System {
         }
     }
 
-    /// Inertia of a child with its descendants, kg: if a movable body holds it, that of a point of the body.
+    /// Inertia of a child with its descendants, kg; for a child on a movable body, the inertia of that point of the
+    /// body.
     fn below(&self, forest: &Forest, child: usize) -> Sym3 {
         if self.is_in_hub(forest, child) {
             self.hubs[forest.hub_of(child)].seen()
@@ -216,13 +218,13 @@ impl System {
         }
     }
 
-    /// True if a body that moves holds it.
+    /// True if particle `i` is attached to a movable body.
     fn is_in_hub(&self, forest: &Forest, i: usize) -> bool {
         forest.hub_of(i) != NO_HUB && self.freedom[i] != Freedom::Fixed
     }
 
-    /// Gathers the inertia of the particles on a particle's movable body, as seen by that particle; returns false if
-    /// there is none.
+    /// Gathers the inertia of all particles on the movable body of particle `i`, as seen at that particle; returns
+    /// false if there is no such body.
     fn factor_hub(&mut self, forest: &Forest, i: usize) -> bool {
         if !self.is_in_hub(forest, i) {
             return false;
@@ -233,7 +235,7 @@ impl System {
         true
     }
 
-    /// Gathers the loads of a particle's movable body; returns false if there is none.
+    /// Gathers the loads of the movable body of particle `i`; returns false if there is no such body.
     fn pull_hub<const WHOLE: bool>(&mut self, forest: &Forest, i: usize) -> bool {
         if !self.is_in_hub(forest, i) {
             return false;
@@ -247,7 +249,7 @@ impl System {
         true
     }
 
-    /// Gives all particles of a body the velocities of its points.
+    /// Sets the velocities of all particles on the body of particle `i` to those of its points.
     fn move_hub(&self, forest: &Forest, i: usize, velocities: &mut [Vec3]) {
         let hub = forest.hub_of(i);
         for &held in &forest.hubs()[hub] {
@@ -255,10 +257,10 @@ impl System {
         }
     }
 
-    /// Velocity of a particle under the momentum of its subtree with an inertia, kg, on a parent with a velocity, m/s.
+    /// Velocity of particle `i`, m/s, for its subtree's momentum and `inertia` (kg) and its `parent`'s velocity (m/s).
     ///
     /// The pull of a stiff spring exceeds the subtree's momentum many thousand times, and its rounding error would be
-    /// as large. The computation therefore uses the momentum relative to the parent's velocity.
+    /// as large as that momentum. The computation therefore uses the momentum relative to the parent's velocity.
     fn velocity<const WHOLE: bool>(
         &self,
         i: usize,
@@ -281,8 +283,8 @@ impl System {
         }
     }
 
-    /// Momentum that a child passes to its parent, kg·m/s: the spring's block times its velocity while the parent is at
-    /// rest. For a stiff spring, the momentum the child does not keep.
+    /// Momentum that a child transmits to its parent, kg·m/s: the spring's block times the child's velocity while the
+    /// parent is at rest. For a stiff spring, it is computed as the momentum that the child does not keep.
     fn passed_on<const WHOLE: bool>(
         &self,
         child: usize,
@@ -305,8 +307,8 @@ impl System {
     }
 }
 
-/// The inverse inertia of a particle whose normal velocity changes only as far as its surface yields, by `c`:
-/// `W − W n nᵀ W / (n·W n + c)` (Sherman and Morrison 1950).
+/// Inverse inertia of a particle on a surface that yields by `c` per impulse along its normal: with the free particle's
+/// inverse inertia `W`, `W − W n nᵀ W / (n·W n + c)` (Sherman and Morrison 1950).
 ///
 /// Inverting the sum `W⁻¹ + n nᵀ / c` instead fails: if the body outweighs the particle by thousands, 32-bit rounding
 /// destroys the particle's tangential part.
@@ -321,14 +323,15 @@ fn constrained(inverse: &Sym3, freedom: &Freedom) -> Sym3 {
     }
 }
 
-/// True if a spring's block outweighs the inertia below it, so that this form is the accurate one.
+/// True if a spring's block outweighs the inertia below it; then the form with the smaller terms is the accurate one.
 fn is_stiff(block: &Sym3, inertia: &Sym3) -> bool {
     let size = |m: &Sym3| m.to_mat3().x_axis.x + m.to_mat3().y_axis.y + m.to_mat3().z_axis.z;
     size(block) > size(inertia)
 }
 
-/// With S the child's inertia, B the spring's block and W its response, the parent gains `B − B W B`. For a free child
-/// that equals `S (S + B)⁻¹ B`, or `S − S (S + B)⁻¹ S`: the smaller one is used, because the other would cancel.
+/// Inertia that a parent gains from a child. With the child's inertia S, the spring's block B and the child's response
+/// W, it is `B − B W B`. For a free child that equals `S (S + B)⁻¹ B` and `S − S (S + B)⁻¹ S`. The form without
+/// cancellation is used.
 fn felt_by_parent(inertia: &Sym3, inverse: &Sym3, block: &Sym3, freedom: &Freedom) -> Sym3 {
     let stiff = is_stiff(block, inertia);
     let free = || {

@@ -6,14 +6,14 @@ use sinew_math::Vec3;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Faces {
     pub list: Vec<[u32; 3]>,
-    /// Start of each particle's part of `corners`, and its end; empty without faces.
+    /// Start of each particle's part of `corners`, and the end of the last part; empty without faces.
     starts: Vec<u32>,
-    /// The two other corners of each face of each particle, in the order of the face.
+    /// Two other corners of each face of each particle, in the face's order.
     corners: Vec<[u32; 2]>,
 }
 
 impl Faces {
-    /// Faces of a group of `count` particles.
+    /// Lists the faces of a group of `count` particles.
     pub fn new(list: &[[u32; 3]], count: usize) -> Self {
         if list.is_empty() {
             return Self::default();
@@ -41,14 +41,14 @@ impl Faces {
         !self.at(particle).is_empty()
     }
 
-    /// Third of the vector area of each face that a particle is a corner of, m²: the part of the face that moves with it.
+    /// Third of the vector area of each face that a particle is a corner of, m²: the part of the face assigned to it.
     pub fn parts<'a>(&'a self, positions: &'a [Vec3], particle: usize) -> impl Iterator<Item = Vec3> + 'a {
         let at = positions[particle];
         let side = move |corner: u32| positions[corner as usize] - at;
         self.at(particle).iter().map(move |&[b, c]| side(b).cross(side(c)) / 6.0)
     }
 
-    /// The two other corners of each face of a particle.
+    /// Two other corners of each face of a particle.
     fn at(&self, particle: usize) -> &[[u32; 2]] {
         match self.starts.get(particle..particle + 2) {
             Some(range) => &self.corners[range[0] as usize..range[1] as usize],

@@ -1,12 +1,12 @@
 //! Trees of springs in a group.
 //!
-//! A spring adds one 3×3 block between its particles to the linear system of a step; where springs form trees, elimination from the
-//! leaves to the root fills nothing in and the solution is exact in linear time.
+//! A spring adds one 3×3 block between its particles to the linear system of a step. If springs form trees, elimination
+//! from the leaves to the root adds no further blocks, and the solution is exact in linear time.
 
 use super::SpringDef;
 use crate::id::BodyId;
 
-/// The spring between a particle and the next one toward the root.
+/// Spring between a particle and its parent, the next particle toward the root.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link {
     pub child: u32,
@@ -14,7 +14,7 @@ pub(super) struct Link {
     pub spring: u32,
 }
 
-/// A spring between a particle and one that is held in the world.
+/// Spring between a particle and another one that is attached to the world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tie {
     pub particle: u32,
@@ -31,14 +31,14 @@ pub(super) struct Forest {
     ties: Vec<Tie>,
     /// Springs that close a loop, with their ends.
     closings: Vec<(u32, [u32; 2])>,
-    /// Springs that are projected, not solved.
+    /// Springs that are projected, not solved in the linear system.
     projected: Vec<u32>,
-    /// Particles that each body holds, and the hub of each particle.
+    /// Particles attached to each body, and the hub of each particle.
     hubs: Vec<Vec<u32>>,
     hub_of: Vec<usize>,
 }
 
-/// Holder of a particle.
+/// Object that a particle is attached to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Holder {
     Nothing,
@@ -46,16 +46,16 @@ pub(super) enum Holder {
     Body(BodyId),
 }
 
-/// Number of the hub of a particle that no body holds.
+/// Hub number of a particle that is attached to no body.
 pub(super) const NO_HUB: usize = usize::MAX;
 
-/// True if both ends of a spring are held so that it cannot change its length.
+/// True if both ends of a spring are attached to the same object, so that its length is constant.
 fn is_rigid([a, b]: [Holder; 2]) -> bool {
     a == b && a != Holder::Nothing
 }
 
 impl Forest {
-    /// All springs projected, none solved: each particle is its own tree.
+    /// Creates a forest without links: all springs are projected, and each particle is its own tree.
     pub fn without_trees(springs: &[SpringDef], holders: &[Holder]) -> Self {
         let ends = |k: u32| [springs[k as usize].a, springs[k as usize].b].map(|i| holders[i as usize]);
         Self {
@@ -65,7 +65,7 @@ impl Forest {
         }
     }
 
-    /// No springs yet.
+    /// Creates a forest without springs, with the hubs of the particles.
     fn with_hubs(holders: &[Holder]) -> Self {
         let mut forest = Self { hub_of: vec![NO_HUB; holders.len()], ..Self::default() };
         let mut bodies: Vec<BodyId> = Vec::new();
@@ -82,8 +82,8 @@ impl Forest {
         forest
     }
 
-    /// A spanning forest in order of indices. Particles held in the world carry no motion, so trees end at them; those that one body holds are
-    /// one node.
+    /// Creates a spanning forest in order of indices. Trees end at particles attached to the world, because these do
+    /// not move; the particles of one body form one node.
     pub fn new(springs: &[SpringDef], holders: &[Holder]) -> Self {
         let mut forest = Self::with_hubs(holders);
         let mut touching: Vec<Vec<u32>> = vec![Vec::new(); holders.len()];
@@ -103,7 +103,8 @@ impl Forest {
         let mut reached: Vec<bool> = holders.iter().map(|&holder| holder == Holder::World).collect();
         let mut in_tree = vec![false; springs.len()];
         let mut frontier = Vec::new();
-        // The loads that a root body gathers are all that the group contributes to it.
+        // Hubs are roots first, because the loads that a root body gathers are all that the group contributes to the
+        // body.
         let first_held: Vec<u32> = forest.hubs.iter().map(|hub| hub[0]).collect();
         for root in first_held.into_iter().chain(0..holders.len() as u32) {
             if reached[root as usize] {
@@ -132,7 +133,7 @@ impl Forest {
         forest
     }
 
-    /// Adds a particle to a tree's frontier, with those that the same body holds.
+    /// Adds a particle to a tree's frontier, with the other particles of the same body.
     fn reach(&self, i: u32, reached: &mut [bool], frontier: &mut Vec<u32>) {
         let alone = [i];
         let node = self.hubs.get(self.hub_of[i as usize]).map_or(&alone[..], |hub| &hub[..]);
@@ -142,7 +143,7 @@ impl Forest {
         }
     }
 
-    /// Particles that each body holds.
+    /// Particles attached to each body.
     pub fn hubs(&self) -> &[Vec<u32>] {
         &self.hubs
     }
@@ -152,7 +153,7 @@ impl Forest {
         self.hub_of[i]
     }
 
-    /// True if there are springs to solve, so that particles affect each other.
+    /// True if springs are solved in the linear system, so that particles affect each other.
     pub fn has_trees(&self) -> bool {
         !(self.links.is_empty() && self.ties.is_empty())
     }
@@ -167,7 +168,7 @@ impl Forest {
         &self.roots
     }
 
-    /// Springs to fixed points of the world.
+    /// Springs to particles that are attached to the world.
     pub fn ties(&self) -> &[Tie] {
         &self.ties
     }

@@ -3,8 +3,8 @@
 use sinew_math::Vec3;
 use std::collections::BTreeMap;
 
-/// Directions of the corners, and the triangles, counterclockwise from outside, of an icosahedron whose faces are split in
-/// four `subdivisions` times.
+/// Returns the directions of the corners, and the triangles, counterclockwise from outside, of an icosahedron whose
+/// faces are split in four `subdivisions` times.
 pub(super) fn sphere(subdivisions: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let (mut corners, mut triangles) = icosahedron();
     for _ in 0..subdivisions {
@@ -24,7 +24,7 @@ pub(super) fn sphere(subdivisions: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (corners, triangles)
 }
 
-/// Each edge of closed triangles once, ascending.
+/// Returns each edge of a closed surface of triangles once, ascending.
 pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     // A closed surface has each edge in both directions.
@@ -33,12 +33,12 @@ pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     edges
 }
 
-/// One corner at the top, one at the bottom, and a ring of five below and above.
+/// Returns corners and triangles: one corner at the top, one at the bottom, and two rings of five between them.
 fn icosahedron() -> (Vec<Vec3>, Vec<[u32; 3]>) {
     // A regular pentagon: cosines and sines of 72° and 144°.
     let (c1, s1, c2, s2) = (0.309_017, 0.951_056_5, -0.809_017, 0.587_785_25);
     let ring = [[1.0, 0.0], [c1, s1], [c2, s2], [c2, -s2], [c1, -s1]];
-    // The rings lie at heights of ±1/√5, with a radius of 2/√5.
+    // The rings are at heights of ±1/√5, with a radius of 2/√5.
     let (height, reach) = (0.447_213_6, 0.894_427_2);
     let upper = ring.map(|[x, z]| Vec3::new(reach * x, height, reach * z));
     let lower = ring.map(|[x, z]| Vec3::new(-reach * x, -height, -reach * z));
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
     use crate::particles::net::enclosed_volume;
 
-    /// Euler's formula, all corners on the sphere, and nearly its volume.
+    /// Checks Euler's formula, that all corners are on the sphere, and that the volume is nearly that of a ball.
     #[test]
     fn a_geodesic_ball_is_closed_and_round() {
         let mut least = 0.0;

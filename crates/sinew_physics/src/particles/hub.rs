@@ -1,9 +1,9 @@
-//! Bodies in the linear system of the springs: particles held by one body move with it.
+//! Bodies in the linear system of the springs: particles attached to one body move with the body.
 //!
 //! Such a body, a **hub**, is one tree node with six degrees of freedom. It gathers inertia and momentum of all its
-//! particles, `S = M + Σ Gᵀ Iᵢ G` with `G = (1, −[r]×)`, and the particle that connects it to the next node toward the
-//! root sees the inertia `(G S⁻¹ Gᵀ)⁻¹`. A rope that continues from one point of a body to another thus pulls through
-//! it. If its points were solved separately, each with its share of the body's inertia, they would separate under
+//! particles, `S = M + Σ Gᵀ Iᵢ G` with `G = (1, −[r]×)`. The particle that connects it to the next node toward the root
+//! has the inertia `(G S⁻¹ Gᵀ)⁻¹`. A rope that continues from one point of a body to another thus pulls through the
+//! body. If the points were solved separately, each with its share of the body's inertia, they would separate under
 //! tension within the solve, and a plank bridge on ropes would stretch and gain energy.
 //!
 //! Several groups attached to one body are solved together: each adds the **shares** of the others to `S` and to the
@@ -17,8 +17,8 @@ use crate::spatial::{
 };
 use sinew_math::{Mat3, Sym3, Vec3};
 
-/// Inertia and pull of a group's particles on the body that holds them, including their subtrees, about the body's
-/// centre.
+/// Inertia and pull of a group's particles on their body, including the particles' subtrees, about the body's centre of
+/// mass.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Share {
     inertia: Mat6,
@@ -41,7 +41,7 @@ impl Share {
         }
     }
 
-    /// Adds another.
+    /// Adds another share.
     pub fn add(&mut self, other: &Self) {
         for (row, more) in self.inertia.iter_mut().zip(&other.inertia) {
             add_scaled(row, more, 1.0);
@@ -49,7 +49,7 @@ impl Share {
         add_scaled(&mut self.pull, &other.pull, 1.0);
     }
 
-    /// Merit function at a velocity relative to the predicted one, J, and the size of its terms.
+    /// Merit function at a velocity relative to the predicted one, J, and the sum of the magnitudes of its terms, J.
     fn merit(&self, gained: &Vec6) -> (f32, f32) {
         let mut own = 0.0;
         for (row, along) in self.inertia.iter().zip(gained) {
@@ -60,30 +60,30 @@ impl Share {
     }
 }
 
-/// A body that holds particles, in one iteration.
+/// A body that particles are attached to, in one iteration.
 #[derive(Clone, Debug)]
 pub(super) struct Hub {
-    /// World, metres.
+    /// Centre of mass, world, metres.
     center: Vec3,
-    /// kg, and kg·m² about the centre, world axes.
+    /// Mass, kg, and inertia about the centre of mass, kg·m², world axes.
     mass: f32,
     inertia: Sym3,
-    /// Inertia that moves along with it.
+    /// Mass that moves with the body.
     added: AddedMass,
-    /// Shares from other groups, and from this one.
+    /// Shares from other groups, and from this group.
     pub others: Share,
     pub own: Share,
-    /// Velocity at the end of the iteration without springs and particles, and with its subtrees.
+    /// Velocity at the end of the iteration without springs and particles; and `free`, with the body's subtrees.
     coming: Vec6,
     free: Vec6,
-    /// Velocity gained per impulse, with the particles below it.
+    /// Velocity gained per impulse, including the particles' inertia.
     response: Mat6,
-    /// Inertia of the point that connects it to the next node, kg.
+    /// Inertia at the point that connects the hub to the next node, kg.
     seen: Sym3,
-    /// Result of the solve, and before the last Newton step.
+    /// Velocity from the solve, and that before the last Newton step.
     pub velocity: Vec6,
     pub last_velocity: Vec6,
-    /// Result of the previous solve.
+    /// Velocity from the previous solve.
     found: Vec6,
 }
 
@@ -106,7 +106,7 @@ impl Hub {
         }
     }
 
-    /// Adds a movable body; `gained` is its velocity change by other forces, m/s.
+    /// Sets the hub to a movable body; `gained` is the body's velocity change by other forces, m/s.
     pub fn take(&mut self, body: &ObstacleBody, gained: Vec3, added: &AddedMass) {
         self.center = body.center;
         (self.mass, self.inertia) = body.inertia();
@@ -115,18 +115,18 @@ impl Hub {
         self.velocity = self.coming;
     }
 
-    /// Velocity of a point of it without springs, m/s.
+    /// Velocity of a point of the body without springs, m/s.
     pub fn coming_at(&self, point: Vec3) -> Vec3 {
         velocity_at(&self.coming, point - self.center)
     }
 
-    /// Velocity of one of its points after the solve, m/s.
+    /// Velocity of a point of the body after the solve, m/s.
     pub fn velocity_at(&self, point: Vec3) -> Vec3 {
         velocity_at(&self.velocity, point - self.center)
     }
 
-    /// Gathers the inertia of its particles: point and inertia of each with its subtree. One of its points connects it
-    /// to the next node.
+    /// Gathers the inertia of the particles: point and inertia of each with its subtree. The point `link` connects the
+    /// hub to the next node.
     pub fn factor(&mut self, particles: impl Iterator<Item = (Vec3, Sym3)>, link: Vec3) {
         let mut whole = ZERO66;
         let turning = self.inertia.to_mat3();
@@ -151,8 +151,8 @@ impl Hub {
         self.seen = Sym3::from_mat3(&Mat3::from_cols(x, y, z)).inverse();
     }
 
-    /// Gathers its loads: point, inertia and momentum of each particle with its subtree. `WHOLE`: including its own
-    /// momentum and the shares of others.
+    /// Gathers the loads: point, inertia and momentum of each particle with its subtree. `WHOLE`: including the body's
+    /// own momentum and the shares of other groups.
     pub fn gather<const WHOLE: bool>(&mut self, particles: impl Iterator<Item = (Vec3, Sym3, Vec3)>) {
         let mut pull = ZERO6;
         for (point, inertia, momentum) in particles {
@@ -177,17 +177,17 @@ impl Hub {
         self.own.add_at(arm, inertia, momentum - inertia * velocity_at(&self.coming, arm));
     }
 
-    /// Inertia of the point that connects it to the next node, for a pull there, kg.
+    /// Inertia at the point that connects the hub to the next node, for a pull at that point, kg.
     pub fn seen(&self) -> Sym3 {
         self.seen
     }
 
-    /// Momentum of that point, kg·m/s.
+    /// Momentum for that inertia at `point`, kg·m/s.
     pub fn momentum_seen_at(&self, point: Vec3) -> Vec3 {
         self.seen * velocity_at(&self.free, point - self.center)
     }
 
-    /// Moves it as a pull at that point would that gives the point this velocity.
+    /// Sets the body's velocity as a pull at `point` does that gives the point this velocity.
     pub fn follow(&mut self, point: Vec3, velocity: Vec3) {
         let pull = wrench(point - self.center, self.seen * velocity - self.momentum_seen_at(point));
         self.velocity = self.free;
@@ -195,13 +195,13 @@ impl Hub {
         add_scaled(&mut self.velocity, &gained, 1.0);
     }
 
-    /// Notes its velocity, to compare with that of the next solve.
+    /// Stores the velocity, to compare with that of the next solve.
     pub fn remember(&mut self) {
         self.found = self.velocity;
     }
 
-    /// Change of its velocity since then, relative to the change added to the prediction; at the centre and about it,
-    /// as energies.
+    /// Change of the velocity since `remember`, relative to the change from the predicted velocity: the square root of
+    /// the ratio of their energies.
     pub fn change(&self) -> f32 {
         let energy_from = |from: &Vec6| {
             let mut gained = self.velocity;
@@ -213,7 +213,7 @@ impl Hub {
         if all > 0.0 { (energy_from(&self.found) / all).sqrt() } else { 0.0 }
     }
 
-    /// Merit function, J, and the size of its terms: see `merit` of `system.rs`.
+    /// Merit function, J, and the sum of the magnitudes of its terms, J: see `merit` of `system.rs`.
     pub fn merit(&self) -> (f32, f32) {
         let mut gained = self.velocity;
         add_scaled(&mut gained, &self.coming, -1.0);

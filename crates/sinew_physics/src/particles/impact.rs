@@ -9,23 +9,24 @@ use crate::particles::tuning::{DETOUR, EXIT_SPEED, IMPACT_SPEED, PINCHING, ROUND
 use core::cmp::Ordering;
 use sinew_math::{Vec3, clamp, max, min, normalize_or};
 
-/// Largest number of surfaces that a particle is moved out of; after that it stays where it hit the next one.
+/// Largest number of surfaces that a particle is moved out of; then it stays where it hits the next one.
 const ROUNDS: usize = 2;
-/// Impulses on bodies per particle and iteration: in the solve, of the net, of its bounce, and of impacts, the last of which may be with two.
+/// Largest number of impulses on bodies per particle and iteration: in the solve, of the net, of its bounce, and of
+/// impacts, the last of which may be with two bodies.
 pub(super) const MAX_TOUCHES: usize = 3 + ROUNDS + 2;
 
 /// A particle at the end of the iteration, after the solve.
 struct Came {
-    /// World, metres.
+    /// Position, world, metres.
     position: Vec3,
-    /// m/s.
+    /// Velocity, m/s.
     velocity: Vec3,
-    /// Impulses on bodies reported before.
+    /// Number of impulses on bodies that were listed before.
     reported: usize,
 }
 
 impl ParticleGroup {
-    /// Restores the energy share of particles that the solve has stopped.
+    /// Applies restitution to particles that the solve has stopped.
     pub(super) fn bounce(&mut self, h: f32, bodies: &mut [ObstacleBody]) {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
@@ -41,8 +42,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Moves particles that are inside a shape, or crossed one, to its surface, on the side they came from. They stop
-    /// or bounce, with friction.
+    /// Moves particles that are inside a shape, or crossed one, to the surface of the shape, on the side from which
+    /// they came. They stop or bounce, with friction.
     pub(super) fn stop_impacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &mut [ObstacleBody]) {
         for at in 0..self.one_by_one() {
             let i = self.one(at);
@@ -83,12 +84,12 @@ impl ParticleGroup {
                     break;
                 }
                 if round == ROUNDS {
-                    // The corner of three surfaces.
+                    // The particle is in the corner of three surfaces.
                     self.positions[i] = end.point(meeting.at);
                     self.velocities[i] = touch.surface_velocity(&bodies[touch.body]);
                     break;
                 }
-                // The solve has moved it there correctly.
+                // The solve has already moved the particle correctly to this surface.
                 let known = self.touches[i].is_some_and(|touch| touch.obstacle == obstacle);
                 if !(known && touch.gap > -ROUNDING) {
                     self.respond(i, h, touch, h * (1.0 - meeting.fraction), bodies);
@@ -99,14 +100,14 @@ impl ParticleGroup {
         }
     }
 
-    /// True if a particle has ended on a surface.
+    /// True if a particle is on a surface at the end of the iteration.
     fn leans_on(&self, i: usize, touch: &Touch) -> bool {
         touch.height(self.positions[i], self.radii[i]) < ROUNDING
     }
 
-    /// A particle between two surfaces without room, each of which would push it into the other. It moves out of the
-    /// firmer one, or midway if neither is firmer, moves with them, and stays free tangentially, so that its springs
-    /// can pull it out. Returns true if there is no room.
+    /// Resolves a particle between two surfaces without room, each of which would push it into the other. It moves out
+    /// of the firmer one, or midway if neither is firmer. It moves with them along the normal, and stays free
+    /// tangentially, so that its springs can pull it out. Returns true if there is no room.
     fn squeeze(
         &mut self,
         i: usize,
@@ -127,7 +128,7 @@ impl ParticleGroup {
         let (speed, opposite_speed) = (body.velocity_at(at), opposite_body.velocity_at(at));
         let across = normalize_or(normal - opposite, normal);
         let most = EXIT_SPEED * h;
-        // Distance by which it moves out of the first, and the first's share in its velocity.
+        // Distance by which the particle moves out of the first surface, and the first's share in its velocity.
         let (out, share) = match body.firmness().cmp(&opposite_body.firmness()) {
             Ordering::Greater => (-gap, 1.0),
             Ordering::Equal => (0.5 * (opposite_gap - gap), 0.5),
@@ -136,7 +137,7 @@ impl ParticleGroup {
         self.positions[i] = at + across * clamp(out, -most, most);
         let behind = speed * share + opposite_speed * (1.0 - share) - came.velocity;
         self.velocities[i] = came.velocity + across * behind.dot(across);
-        // The surface that pushed it here has already felt that, or is fixed.
+        // Drops impulses on fixed bodies. The impulse on a dynamic body that pushed the particle here stays.
         let mut kept = came.reported;
         for k in came.reported..self.body_impulses.len() {
             let hit = self.body_impulses[k];
@@ -169,9 +170,9 @@ impl ParticleGroup {
         (self.positions[i], self.velocities[i]) = (out, velocity);
     }
 
-    /// A particle on a wall that a body approaches: it stays on the wall, and both apply friction, the wall last. If it
-    /// is nipped, a contact of the two transmits the body's pressure to the wall; otherwise the body pushes it aside
-    /// along the wall.
+    /// Resolves a particle on a wall that a body approaches. The particle stays on the wall, and both apply friction,
+    /// the wall last. If the particle is nipped, a contact of the two shapes transmits the body's pressure to the wall;
+    /// otherwise the body pushes the particle aside along the wall.
     fn pinch(&mut self, i: usize, wall: &Touch, touch: &Touch, left: f32, bodies: &mut [ObstacleBody]) {
         let (own, load, begun) = (1.0 / self.masses[i], self.pinched_by(i), self.velocities[i]);
         let along_wall = |v: Vec3| v - wall.normal * v.dot(wall.normal);
@@ -186,7 +187,7 @@ impl ParticleGroup {
             self.velocities[i] += aside * (own * pushed);
             self.positions[i] -= aside * (touch.gap / aside.length_squared());
         }
-        // The wall returns what the body adds along its normal.
+        // The wall returns the part of the body's impulse along the wall's normal.
         let back = -pushed * touch.normal.dot(wall.normal);
         for (touch, pressing, push) in
             [(touch, load + pushed, touch.normal * pushed), (wall, back, Vec3::ZERO)]
@@ -198,7 +199,7 @@ impl ParticleGroup {
         self.positions[i] += along_wall(self.velocities[i] - begun) * left;
     }
 
-    /// True if a particle has ended on the convex solid that it touches, and hit nothing else.
+    /// True if a particle is still on the convex solid that it touches, and hit nothing else.
     fn rests(&self, i: usize, obstacles: &[Obstacle]) -> bool {
         self.touches[i].is_some_and(|touch| {
             touch.height(self.positions[i], self.radii[i]) > -ROUNDING
@@ -207,7 +208,7 @@ impl ParticleGroup {
         })
     }
 
-    /// The surface that a particle has crossed, or else the one it is deepest in.
+    /// Surface that a particle has crossed, otherwise the one that it is deepest in.
     fn entered(
         &self,
         i: usize,
@@ -241,12 +242,12 @@ impl ParticleGroup {
         deepest
     }
 
-    /// Moves a particle out of a surface that it hit with `left` seconds left.
+    /// Moves a particle out of a surface that it hit when `left` seconds of the iteration remained.
     fn respond(&mut self, i: usize, h: f32, mut touch: Touch, left: f32, bodies: &mut [ObstacleBody]) {
         let approach = (self.velocities[i] - touch.surface_velocity(&bodies[touch.body])).dot(touch.normal);
         touch.speed_min = self.rebound(i, approach, h, &touch);
         let change = self.push_off(i, &touch, bodies);
-        // The position must not keep the motion that friction removed from the velocity.
+        // Removes from the position the motion that friction removed from the velocity.
         let aside = change - touch.normal * change.dot(touch.normal);
         self.positions[i] += aside * left - touch.normal * touch.gap;
     }

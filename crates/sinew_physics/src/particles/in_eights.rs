@@ -1,4 +1,4 @@
-//! Moves a group into the lanes of `eights.rs`, out of them for individually solved particles, and back.
+//! Moves a group into the lanes of `eights.rs`, takes individually solved particles out of them, and puts these back.
 
 use super::ParticleGroup;
 use super::batches::{FIELDS, WAY};
@@ -11,11 +11,11 @@ use crate::particles::tuning::MOST_SOLIDS;
 use sinew_math::lanes::Block;
 use sinew_math::{Vec3, dispatch};
 
-/// Number of grips tested at a time.
+/// Number of grips that are tested together.
 const GRIPS: usize = 64;
 
 impl Solid {
-    /// The obstacle, if it is such a solid.
+    /// Converts an obstacle; `None` if it is not a resting ball, box, capsule or half-space.
     fn of(group: &ParticleGroup, o: &Obstacle, bodies: &[ObstacleBody]) -> Option<Self> {
         if !bodies[o.body as usize].rests() || o.previous != o.world_from_shape || o.material.runs() {
             return None;
@@ -44,7 +44,7 @@ impl Solid {
 }
 
 impl ParticleGroup {
-    /// Decides if a substep uses lanes, and loads all particles.
+    /// Decides whether a substep uses lanes, and loads all particles if so.
     pub(super) fn enter_eights(&mut self, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         self.eights.on = !self.forest.has_trees()
             && !self.batches.is_empty()
@@ -75,7 +75,7 @@ impl ParticleGroup {
             eights.common_acceleration = self.common_acceleration;
         }
         for (at, grips) in self.grips.chunks(GRIPS).enumerate() {
-            // Nearly all grips are empty, which whole registers detect in loops without early exit.
+            // Nearly all grips are off, and loops without early exit test them in whole registers.
             if grips.iter().fold(false, |any, grip| any | (*grip != Grip::Off)) {
                 let gripped = (at * GRIPS..).zip(grips).filter(|(_, grip)| **grip != Grip::Off);
                 eights.others.extend(gripped.map(|(i, _)| i as u32));
@@ -92,7 +92,7 @@ impl ParticleGroup {
         dispatch::run(Collect::<STRIP> { vectors: velocities, blocks: &eights.strips, per_lane });
     }
 
-    /// Starts an iteration of `h` seconds: finds each particle's contact and velocity; takes out those that lanes
+    /// Starts an iteration of `h` seconds: finds each particle's contact and velocity; takes particles out that lanes
     /// cannot handle.
     pub(super) fn approach(&mut self, h: f32) {
         let Self { eights, placed, batches, linear_damping, .. } = self;
@@ -138,7 +138,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Projects the rows, in lanes and individually. Surfaces then hold the particles in lanes, see `Depart`.
+    /// Projects the rows, in lanes and individually. `Depart` applies the contacts of particles in lanes afterwards.
     pub(super) fn project_in_eights(&mut self, h: f32) {
         let per_second = 1.0 / h;
         let outside = core::mem::take(&mut self.eights.outside);
@@ -168,7 +168,7 @@ impl ParticleGroup {
         (self.eights.outside, self.eights.others) = (outside, others);
     }
 
-    /// Ends the iteration of those in lanes; takes out those that may have hit something on their path.
+    /// Ends the iteration of particles in lanes; takes out particles that may have hit something on their path.
     pub(super) fn depart(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         dispatch::run(Depart { eights: &mut self.eights, particles: &mut self.batches.particles, h });
         let per_lane = self.eights.strips.len();
@@ -195,7 +195,7 @@ impl ParticleGroup {
         self.eights.others = others;
     }
 
-    /// Puts back those that were taken out.
+    /// Puts back the particles that were taken out.
     pub(super) fn put_back(&mut self) {
         let per_lane = self.eights.strips.len();
         for at in 0..self.eights.others.len() {

@@ -1,16 +1,16 @@
 //! Particles and springs: ropes, strands, cloth, blobs.
 //!
 //! [`ParticleGroup::substep`] moves a group under gravity, springs, attachments and contacts, after the bodies have
-//! moved. It acts back on the bodies that particles are attached to and on those they touch.
+//! moved. It applies the reactions to the bodies that particles are attached to or touch.
 //!
 //! Springs of an implicit group (ropes, strands, bridges, load-bearing nets) are solved together, see `system.rs`: the
-//! stretch at rest is exact, `m g / k`, for a chain as for a single mass, whatever the substeps. Those of cloth and
-//! blobs are projected, each spring once, see `net.rs`: exact at rest for one mass on one spring, softer by
-//! `h² (w₁ + w₂)` per spring in a net. Damping acts on the velocity at the start of the substep, before forces.
+//! stretch at rest is exact, `m g / k`, for a chain as for a single mass, whatever the substeps. Springs of cloth and
+//! blobs are projected, each once, see `net.rs`: exact at rest for one mass on one spring, softer by `h² (w₁ + w₂)`
+//! per spring in a net. Damping acts on the velocity at the start of the substep, before forces.
 //!
 //! Contacts are part of the spring solve (`contact.rs`). Otherwise a rope bent over an edge would have the wrong
-//! tension, and one that hits the floor would be compressed by the depth its end would have sunk. Bounces and remaining
-//! contacts follow (`impact.rs`).
+//! tension, and a rope that hits the floor would be compressed by the depth that its end would have sunk. Bounces and
+//! remaining contacts follow (`impact.rs`).
 
 mod added_mass;
 mod around;
@@ -75,17 +75,17 @@ use self_collision::SelfCollision;
 use sinew_math::{Sym3, Transform, Vec3, dispatch, max};
 use system::{Freedom, System};
 
-/// Largest number of steps of a conservative advancement along a particle's path.
+/// Largest number of sphere-tracing steps along a particle's path.
 const STRIDES: usize = 16;
 
-/// Particles and springs at run time. One array per quantity, by index of the particle.
+/// Particles and springs in a world. One array per quantity, by index of the particle.
 #[derive(Clone, Debug, Default)]
 pub struct ParticleGroup {
     positions: Vec<Vec3>,
     velocities: Vec<Vec3>,
     masses: Vec<f32>,
     radii: Vec<f32>,
-    /// Radius of all particles, metres, if they have one.
+    /// Radius of all particles, metres, if it is the same for all.
     common_radius: Option<f32>,
     springs: Vec<SpringDef>,
     bends: Vec<BendDef>,
@@ -100,13 +100,13 @@ pub struct ParticleGroup {
     linear_damping: f32,
     gravity_scale: f32,
     filter: Filter,
-    /// Bodies that it never collides with, ascending.
+    /// Bodies that the group never collides with, ascending.
     passes: Vec<BodyId>,
     /// Grip of a surface on each particle.
     grips: Vec<Grip>,
     /// Length of the last iteration, seconds; 0 before the first.
     span: f32,
-    /// Impulse of a surface on each particle in the last solve.
+    /// Impulse of a surface on each particle in the last solve, N·s.
     contact_impulses: Vec<Vec3>,
 
     /// Position of each particle before the last step, world, metres, for drawing.
@@ -115,24 +115,24 @@ pub struct ParticleGroup {
     rest: GroupRest,
     /// Position of each particle at the start of its time at rest, world, metres.
     places: Vec<Vec3>,
-    /// Surroundings that it sleeps in, or slept in until it was woken since the last step.
+    /// Surroundings of the group while it sleeps, or slept until it was woken since the last step.
     bed: Option<Bed>,
 
     forest: Forest,
     system: System,
     /// Position of each particle before the iteration, world, metres.
     previous: Vec<Vec3>,
-    /// Inverse mass of each particle in projections, 1/kg: 0 for those held by an immovable anchor.
+    /// Inverse mass of each particle in projections, 1/kg: 0 for particles attached to an immovable anchor.
     weights: Vec<f32>,
-    /// Damped velocity of each particle at the start of the iteration.
+    /// Damped velocity of each particle at the start of the iteration, m/s.
     begun: Vec<Vec3>,
-    /// Bodies as changed by their particles in the iterations so far.
+    /// Bodies with the velocity changes by the particles in the iterations so far.
     holders: Vec<ObstacleBody>,
-    /// Added mass of each body that holds particles.
+    /// Added mass of each body that particles are attached to.
     added: Vec<AddedMass>,
-    /// Volume gradient of each particle, m².
+    /// Gradient of a volume by each particle's position, m².
     gradients: Vec<Vec3>,
-    /// Shapes at the start of the iteration.
+    /// Start and end poses of the obstacles in the iteration.
     placed: Vec<Placed>,
     /// Shapes near each particle.
     near: Near,
@@ -140,15 +140,15 @@ pub struct ParticleGroup {
     attachment_of: Vec<u32>,
     attachment_impulses: Vec<Vec3>,
     body_impulses: Vec<BodyImpulse>,
-    /// Impulse of springs, bends, tethers and volumes on each particle in this iteration.
+    /// Impulse of springs, bends, tethers and volumes on each particle in this iteration, N·s.
     reactions: Vec<Vec3>,
-    /// Impulse of bends on each particle included in this iteration's solve.
+    /// Impulse of bends on each particle included in this iteration's solve, N·s.
     bend_impulses: Vec<Vec3>,
-    /// Self-collision pairs, if it has a thickness.
+    /// Self-collision pairs, if the group has a thickness.
     self_collision: Option<SelfCollision>,
-    /// Particles that are held or near a shape in this iteration.
+    /// Particles that are attached or near a shape in this iteration.
     close: Vec<u32>,
-    /// Particles that the solve of this iteration is about.
+    /// Particles that this iteration solves.
     solved: Vec<u32>,
     /// Particles whose contacts still change between solves.
     unsettled: Vec<u32>,
@@ -158,34 +158,34 @@ pub struct ParticleGroup {
     clearances: Vec<f32>,
     /// Contact search distance of each particle from its surface in this iteration, metres.
     sights: Vec<f32>,
-    /// Share of a particle's impulse against its surface that goes to the body: the ratio of its share of the body's
-    /// inertia to the sum of that and its own.
+    /// Share of a particle's impulse toward its surface that goes to the body: `M / (m + M)`, with `m` the particle's
+    /// mass and `M` its share of the body's inertia.
     backings: Vec<f32>,
-    /// Rows of the net that hold no attached particle.
+    /// Rows of the net without attached particles.
     batches: Batches,
-    /// Particles in lanes.
+    /// Lane data, and the particles in lanes.
     eights: Eights,
-    /// Projected springs that hold one.
+    /// Projected springs with an attached particle.
     held_springs: Vec<u32>,
-    /// Bends that hold one.
+    /// Bends with an attached particle.
     held_bends: Vec<u32>,
     /// Unit normal of each particle's surface, outward.
     press_normals: Vec<Vec3>,
-    /// Impulse against the surface that brings each particle onto it, N·s; negative if it already presses.
+    /// Impulse toward the surface that brings each particle onto it, N·s; negative if the particle already presses.
     rooms: Vec<f32>,
-    /// Contacts of shapes through its particles.
+    /// Contacts of shapes through the group's particles.
     pub(crate) pinched: Pinched,
-    /// Velocities that move particles into the corner of two surfaces.
+    /// Displacements that move particles into the corner of two surfaces, divided by the iteration, m/s.
     wedges: Vec<Vec3>,
-    /// Mass of the particles on each body.
+    /// Mass of the particles on each body, kg.
     loads: Vec<f32>,
     /// Forces of fields on each particle in the coming substep, N; empty without fields.
     outer: Vec<Vec3>,
-    /// Acceleration by gravity and external force on each particle in the last substep, m/s².
+    /// Acceleration of each particle by gravity and external forces in the last substep, m/s².
     accelerations: Vec<Vec3>,
-    /// Lengths of the pulls, m/s².
+    /// Magnitudes of the accelerations, m/s².
     pulls: Vec<f32>,
-    /// Bits of the acceleration of all, m/s², if no external force makes a difference.
+    /// Bits of the acceleration of all particles, m/s², if they have the same.
     common_acceleration: Option<[u32; 3]>,
 }
 
@@ -234,7 +234,7 @@ impl ParticleGroup {
         group
     }
 
-    /// Everything that follows from particles, springs and attachments.
+    /// Computes all data that follow from particles, springs and attachments.
     fn derive(&mut self) {
         let count = self.positions.len();
         self.common_radius =
@@ -282,21 +282,22 @@ impl ParticleGroup {
         self.sort_rows();
     }
 
-    /// World, metres.
+    /// Positions of the particles, world, metres.
     pub fn positions(&self) -> &[Vec3] {
         &self.positions
     }
 
-    /// Positions between the previous step (`alpha` 0) and this one (1), for drawing; see [`Update`](crate::Update).
+    /// Positions between the previous step (`alpha` 0) and this one (1), world, metres, for drawing; see
+    /// [`Update`](crate::Update).
     pub fn interpolated(&self, alpha: f32) -> impl Iterator<Item = Vec3> {
         let steps = self.drawn_from.iter().zip(&self.positions);
         steps.map(move |(&from, &to)| from * (1.0 - alpha) + to * alpha)
     }
 
-    /// Particles whose state became non-finite in the step stop at their previous positions, and non-finite contact
-    /// impulses become zero. Returns true if there were such particles.
+    /// Stops particles whose state became non-finite in the step at their positions before the step, and sets
+    /// non-finite contact impulses to zero. Returns true if there were such particles.
     pub(crate) fn roll_back(&mut self) -> bool {
-        // Without an end in between it is eight at a time.
+        // A fold without early exit tests eight at a time.
         let finite = |vectors: &[Vec3]| vectors.iter().fold(true, |all, v| all & v.is_finite());
         if !finite(&self.contact_impulses) {
             self.contact_impulses.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = Vec3::ZERO);
@@ -319,46 +320,46 @@ impl ParticleGroup {
     /// Stores the current positions as the previous ones, for drawing.
     pub(crate) fn begin_step(&mut self) {
         self.drawn_from.copy_from_slice(&self.positions);
-        // Users may change shapes between steps.
+        // The user may change shapes between steps.
         self.near.forget_distances();
     }
 
-    /// m/s.
+    /// Velocities of the particles, m/s.
     pub fn velocities(&self) -> &[Vec3] {
         &self.velocities
     }
 
-    /// kg.
+    /// Masses of the particles, kg.
     pub fn masses(&self) -> &[f32] {
         &self.masses
     }
 
-    /// Metres.
+    /// Radii of the particles, metres.
     pub fn radii(&self) -> &[f32] {
         &self.radii
     }
 
-    /// Springs as they were defined.
+    /// Springs of the definition.
     pub fn springs(&self) -> &[SpringDef] {
         &self.springs
     }
 
-    /// Bends as they were defined.
+    /// Bends of the definition.
     pub fn bends(&self) -> &[BendDef] {
         &self.bends
     }
 
-    /// Tethers as they were defined.
+    /// Tethers of the definition.
     pub fn tethers(&self) -> &[TetherDef] {
         &self.tethers
     }
 
-    /// Volumes as they were defined.
+    /// Volumes of the definition.
     pub fn volumes(&self) -> &[VolumeDef] {
         &self.volumes
     }
 
-    /// Faces as they were defined.
+    /// Faces of the definition.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces.list
     }
@@ -373,12 +374,12 @@ impl ParticleGroup {
         self.faces.parts(&self.positions, particle)
     }
 
-    /// Attachments as they were defined; [`substep`](Self::substep) takes one [`Anchor`] for each.
+    /// Attachments of the definition; [`substep`](Self::substep) takes one [`Anchor`] for each.
     pub fn attachments(&self) -> &[AttachmentDef] {
         &self.attachments
     }
 
-    /// Obstacles as they were defined; [`substep`](Self::substep) takes one [`Obstacle`] for each.
+    /// Backstops of the definition; [`substep`](Self::substep) takes one [`Obstacle`] for each.
     pub fn backstops(&self) -> &[BackstopDef] {
         &self.backstops
     }
@@ -388,32 +389,33 @@ impl ParticleGroup {
         self.gravity_scale
     }
 
-    /// Collision filter.
+    /// Collision filter of the group.
     pub fn filter(&self) -> Filter {
         self.filter
     }
 
-    /// Surface of its particles.
+    /// Material of the particles.
     pub(crate) fn material(&self) -> Material {
         self.material
     }
 
-    /// Bodies that it never collides with, ascending.
+    /// Bodies that the group never collides with, ascending.
     pub fn passes(&self) -> &[BodyId] {
         &self.passes
     }
 
-    /// True if it cannot get through a shape of this surface, of a body with this id.
+    /// True if the group collides with a shape that has this surface and belongs to this body.
     pub(crate) fn meets(&self, body: BodyId, surface: &Surface) -> bool {
         surface.is_wall_to(self.filter) && self.passes.binary_search(&body).is_err()
     }
 
-    /// Bounds of all particles with their radii. Empty, with inverted infinite corners, for a group without particles.
+    /// Bounds of all particles with their radii. For a group without particles, `min` is infinite and `max` negative
+    /// infinite.
     pub fn bounds(&self) -> Aabb {
         self.bounds_of(&self.positions)
     }
 
-    /// Bounds of its particles at these positions.
+    /// Bounds of balls with the particles' radii at these positions.
     fn bounds_of(&self, centers: &[Vec3]) -> Aabb {
         if let Some(radius) = self.common_radius {
             return dispatch::run(Around(centers)).expand(radius);
@@ -423,12 +425,13 @@ impl ParticleGroup {
         balls.fold(NOTHING, |bounds, ball| bounds.merge(&around(ball)))
     }
 
-    /// Speed of the fastest particle, m/s.
+    /// Largest speed of a particle, m/s.
     pub(crate) fn fastest(&self) -> f32 {
         self.velocities.iter().fold(0.0, |most, v| max(most, v.length_squared())).sqrt()
     }
 
-    /// Bounds of all shapes that [`strikes`](Self::strikes) may be true of, by the speed of the fastest particle, m/s.
+    /// Bounds of all shapes for which [`strikes`](Self::strikes) may be true, given the largest speed of a particle
+    /// (m/s).
     pub(crate) fn strike_bounds(&self, fastest: f32, dt: f32) -> Aabb {
         self.bounds().expand(fastest * dt + STRIKE_GAP + STRIKE_GAP)
     }
@@ -442,7 +445,7 @@ impl ParticleGroup {
                 return false;
             }
             let mut way = 0.0;
-            // Repeatedly as far as it certainly moves without touching (Hart, "Sphere Tracing", 1996).
+            // Moves as far as the particle certainly touches nothing, repeatedly (Hart, "Sphere Tracing", 1996).
             for _ in 0..STRIDES {
                 let (distance, outward) = shape.signed_distance(at, position + velocity * (way / whole));
                 let gap = distance - radius;
@@ -459,17 +462,18 @@ impl ParticleGroup {
         })
     }
 
-    /// Impulse (N·s, world) of each attachment on what holds it, in the last substep.
+    /// Impulse of each attachment on the body or point that it is attached to, in the last substep, N·s, world.
     pub fn attachment_impulses(&self) -> &[Vec3] {
         &self.attachment_impulses
     }
 
-    /// Impulses on bodies that particles touched in the last substep, in order of particles; of bodies that nothing moves only those in motion.
+    /// Impulses on bodies that particles touched in the last substep, in order of particles. Static and kinematic
+    /// bodies are included only if they move.
     pub fn body_impulses(&self) -> &[BodyImpulse] {
         &self.body_impulses
     }
 
-    /// Forces on the particles in the next substep, one per particle or empty, N, world; cleared by it.
+    /// Forces on the particles in the next substep, N, world: one per particle, or empty. The substep clears them.
     pub(crate) fn outer_forces(&mut self) -> &mut Vec<Vec3> {
         &mut self.outer
     }
@@ -487,7 +491,7 @@ impl ParticleGroup {
         self.wake();
     }
 
-    /// Sets the velocity of a particle, m/s, world. An attached one keeps its anchor's.
+    /// Sets the velocity of a particle, m/s, world. An attached particle keeps the velocity of its anchor.
     ///
     /// # Panics
     /// If the particle does not exist, or the velocity is not finite.
@@ -497,7 +501,7 @@ impl ParticleGroup {
         self.wake();
     }
 
-    /// Teleports a particle, world, metres, without a sweep.
+    /// Teleports a particle to `position` (world, metres) without a sweep.
     ///
     /// # Panics
     /// If the particle does not exist, or the position is not finite.
@@ -508,7 +512,7 @@ impl ParticleGroup {
         self.wake();
     }
 
-    /// Moves a particle by `by` (m, world), with the velocity of that motion within `h` seconds.
+    /// Moves a particle by `by` (m, world), and adds the velocity of that motion within `h` seconds.
     ///
     /// # Panics
     /// If the particle does not exist, or a number is not finite.
@@ -539,14 +543,14 @@ impl ParticleGroup {
     /// Moves the group by `h` seconds under `gravity` (m/s²), its springs, its attachments and its contacts.
     ///
     /// `anchors[k]` is the anchor of attachment `k`. Anchors on bodies react within the same solve, as whole bodies, so
-    /// that a stiff rope does not shake a light body. [`attachment_impulses`](Self::attachment_impulses) has the
+    /// that a stiff rope does not shake a light body. [`attachment_impulses`](Self::attachment_impulses) returns the
     /// impulses on the bodies, for the caller to apply.
     ///
     /// `obstacles` and `bodies` are at the end of the substep; pass those near [`bounds`](Self::bounds). Nearby
     /// obstacles of each particle are cached between substeps, so pass them in the same order. The last ones are the
-    /// balls of [`backstops`](Self::backstops), in their order. Bodies are pushed back: their velocities change at
-    /// once, and [`body_impulses`](Self::body_impulses) lists the impulses. Attached particles touch nothing. Particles
-    /// between two shapes do not keep these apart: a [`World`](crate::World) has contacts for that.
+    /// balls of [`backstops`](Self::backstops), in their order. Particles push bodies: the call changes the velocities
+    /// in `bodies`, and [`body_impulses`](Self::body_impulses) lists the impulses. Attached particles touch nothing.
+    /// Particles between two shapes do not keep these apart: a [`World`](crate::World) has contacts for that.
     ///
     /// # Panics
     /// If there is not one anchor per attachment, there are fewer obstacles than backstops, or the body of an anchor or
@@ -563,7 +567,7 @@ impl ParticleGroup {
         self.end_substep(h, anchors, obstacles, bodies);
     }
 
-    /// The first half of a substep, up to the solve of springs and contacts in its first iteration. Pushes no body yet.
+    /// First half of a substep, up to the solve of springs and contacts in its first iteration. Pushes no body yet.
     pub(crate) fn begin_substep(
         &mut self,
         h: f32,
@@ -575,7 +579,7 @@ impl ParticleGroup {
         assert_eq!(anchors.len(), self.attachments.len(), "each attachment needs its anchor");
         assert!(obstacles.len() >= self.backstops.len(), "each backstop needs its ball");
         let gravity = gravity * self.gravity_scale;
-        // A zero has a sign, which differs between restored and computed zeros.
+        // Compares bits, because zeros have a sign that differs between restored and computed zeros.
         let bits = gravity.to_array().map(f32::to_bits);
         if self.common_acceleration != Some(bits) {
             self.accelerations.fill(gravity);
@@ -594,7 +598,7 @@ impl ParticleGroup {
         self.begin_iteration(Part { number: 0, of: self.iterations, whole: h }, anchors, obstacles, bodies);
     }
 
-    /// The second half of a substep, with all other iterations.
+    /// Second half of a substep, with all other iterations.
     pub(crate) fn end_substep(
         &mut self,
         h: f32,
@@ -614,17 +618,17 @@ impl ParticleGroup {
         }
     }
 
-    /// Number of particles that are solved one by one: all but those in lanes.
+    /// Number of particles that are solved individually: all except those in lanes.
     fn one_by_one(&self) -> usize {
         if self.eights.on { self.eights.others.len() } else { self.positions.len() }
     }
 
-    /// Index of particle `at` of those that are solved one by one.
+    /// Index of individually solved particle number `at`.
     fn one(&self, at: usize) -> usize {
         if self.eights.on { self.eights.others[at] as usize } else { at }
     }
 
-    /// The first half of a part of the substep: computes velocities.
+    /// First half of an iteration: computes velocities.
     fn begin_iteration(
         &mut self,
         part: Part,
@@ -647,7 +651,7 @@ impl ParticleGroup {
         self.settle_contacts(h, obstacles, bodies);
     }
 
-    /// The second half of a part of the substep: moves the group.
+    /// Second half of an iteration: moves the group.
     fn end_iteration(
         &mut self,
         part: Part,
@@ -679,7 +683,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Applies damping, and sets up the particles in the system: all if springs are solved in it, else the held ones.
+    /// Applies damping, and enters particles into the system: all if it solves springs, otherwise the attached ones.
     fn begin(&mut self, h: f32) {
         let damping = 1.0 / (1.0 + h * self.linear_damping);
         self.previous.copy_from_slice(&self.positions);
@@ -699,7 +703,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Enters a particle into the system, free.
+    /// Enters a free particle into the system.
     fn enter(&mut self, i: usize, h: f32) {
         let mass = self.masses[i];
         self.system.freedom[i] = Freedom::Free;
@@ -715,7 +719,7 @@ struct Part {
     number: u32,
     /// Number of iterations in the substep.
     of: u32,
-    /// The substep, seconds.
+    /// Length of the substep, seconds.
     whole: f32,
 }
 
@@ -725,7 +729,7 @@ impl Part {
         self.whole / self.of as f32
     }
 
-    /// Shares of the substep elapsed at its start and end.
+    /// Shares of the substep that have elapsed at the start and at the end of the iteration.
     fn shares(self) -> [f32; 2] {
         [self.number, self.number + 1].map(|k| k as f32 / self.of as f32)
     }

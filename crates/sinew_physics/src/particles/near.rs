@@ -1,8 +1,8 @@
-//! Cached nearby obstacles of each particle, so that it is not tested against all.
+//! Cached nearby obstacles of each particle, so that a particle is not tested against all obstacles.
 //!
-//! A list is valid while its particle and all obstacles stay within the margins for which it was made. A particle
-//! outside its margin is tested against all obstacles; once many are, or an obstacle is, all lists are rebuilt.
-//! Excluded obstacles cannot be hit: the results are the bits of testing all, so lists are not part of the state.
+//! A list is valid while its particle and all obstacles stay within the margins for which it was built. A particle
+//! outside its margin is tested against all obstacles. Once many are outside, or an obstacle is, all lists are rebuilt.
+//! Excluded obstacles cannot be hit: the results have the bits of testing all, so lists are not part of the state.
 
 use super::contact::{Grip, Placed, distance_at_least};
 use super::{BackstopDef, ParticleGroup};
@@ -13,37 +13,37 @@ use sinew_math::{Vec3, max};
 
 /// Capacity of all lists together, in indices per particle.
 const SHARE: usize = 32;
-/// Lists are rebuilt when more than one in this many is invalid.
+/// Lists are rebuilt when more than one in this number is invalid.
 const LOST_ONE_IN: usize = 16;
 
-/// The lists of all particles.
+/// Lists of nearby obstacles of all particles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Near {
     /// Bounds of each obstacle with a margin.
     fat_bounds: Vec<Aabb>,
     /// Position of each particle when its list was built, world, metres.
     origins: Vec<Vec3>,
-    /// Least distance of all excluded obstacles from the particle's surface at that position, metres; `None` without a
-    /// list.
+    /// Smallest distance of all excluded obstacles from the particle's surface at the position in `origins`, metres;
+    /// `None` without a list.
     reaches: Vec<Option<f32>>,
-    /// The same from each particle's current position; 0 or less if its list is invalid.
+    /// The same distance from each particle's current position; 0 or less if its list is invalid.
     beyond: Vec<f32>,
-    /// Indices of obstacles, one particle's list after another's, each ascending.
+    /// Indices of obstacles, list by list, each ascending.
     obstacles: Vec<u32>,
     /// End of each particle's list in `obstacles`.
     ends: Vec<usize>,
     /// Lower bound of the distance of all shapes from each particle's surface at the last measurement, metres: minus
     /// infinity if unknown.
     distances: Vec<f32>,
-    /// Position of the particle at that time, world, metres, and `drift`.
+    /// Position of the particle at the last measurement, world, metres, and the value of `drift` then.
     measured_at: Vec<Vec3>,
     drifts: Vec<f32>,
-    /// Displacement of all shapes in this step's previous iterations, metres, each that of the fastest.
+    /// Displacement of shapes in this step's previous iterations, metres: sum of the largest in each iteration.
     drift: f32,
-    /// The same in this iteration.
+    /// Largest displacement of a shape in this iteration, metres.
     way: f32,
-    /// Backstop of each particle, or `u32::MAX`; empty for a group without. They are the last obstacles, and in no
-    /// list.
+    /// Backstop of each particle, or `u32::MAX`; empty for a group without backstops. Backstops are the last obstacles,
+    /// and in no list.
     backstop_of: Vec<u32>,
     backstops: usize,
     /// Capacity of `obstacles`; a list that does not fit is not built.
@@ -51,7 +51,7 @@ pub(super) struct Near {
 }
 
 impl Near {
-    /// Space for the lists of this many particles, none built.
+    /// Reserves lists for `count` particles; builds none.
     pub fn new(count: usize, backstops: &[BackstopDef]) -> Self {
         let mut backstop_of = vec![u32::MAX; if backstops.is_empty() { 0 } else { count }];
         for (index, backstop) in backstops.iter().enumerate() {
@@ -73,8 +73,8 @@ impl Near {
         }
     }
 
-    /// Indices, among `count` obstacles, of all within `distance` (m) of a particle's surface, and possibly others,
-    /// including its own backstop; ascending.
+    /// Indices, among `count` obstacles, of all within `distance` (m) of a particle's surface, and possibly of others,
+    /// ascending; the particle's own backstop is always included.
     pub fn within(&self, i: usize, distance: f32, count: usize) -> impl Iterator<Item = usize> {
         let common = self.common(count);
         let (list, all) = if self.beyond[i] > distance { (self.list(i), 0..0) } else { (&[][..], 0..common) };
@@ -82,24 +82,24 @@ impl Near {
         list.iter().map(|&obstacle| obstacle as usize).chain(all).chain(own)
     }
 
-    /// Number of the obstacles, of `count`, that are no backstops.
+    /// Number of obstacles, of `count` in all, that are not backstops.
     pub fn common(&self, count: usize) -> usize {
         count - self.backstops
     }
 
-    /// Forgets how far away everything was.
+    /// Marks all distances as unknown.
     pub fn forget_distances(&mut self) {
         self.distances.fill(f32::NEG_INFINITY);
         self.drift = 0.0;
         self.way = 0.0;
     }
 
-    /// Stores the least distance of all obstacles from a particle's surface at the start of an iteration, metres.
+    /// Stores the smallest distance of all obstacles from a particle's surface at the start of an iteration, metres.
     pub fn note_distance(&mut self, i: usize, at: Vec3, distance: f32) {
         (self.distances[i], self.measured_at[i], self.drifts[i]) = (distance, at, self.drift);
     }
 
-    /// Advances to the next iteration.
+    /// Advances the displacement of shapes to the next iteration.
     fn drift_on(&mut self, placed: &[Placed]) {
         self.drift += self.way;
         self.way = placed.iter().fold(0.0, |most, placed| max(most, placed.way));
@@ -112,7 +112,7 @@ impl Near {
         self.distances[i] - moved - rounding_at(at)
     }
 
-    /// Least distance from a particle's surface of all that [`within`](Self::within) excludes, metres.
+    /// Smallest distance of obstacles that [`within`](Self::within) excludes from a particle's surface, metres.
     pub fn left_out_from(&self, i: usize, distance: f32) -> f32 {
         if self.beyond[i] > distance { self.beyond[i] } else { f32::INFINITY }
     }
@@ -136,7 +136,8 @@ impl Near {
         }));
     }
 
-    /// Builds the next particle's list of everything within `reach` of its surface, for a ball of `radius` at `at`.
+    /// Builds the list of particle `i`, a ball of `radius` at `at`: all obstacles within `reach` of its surface,
+    /// metres.
     fn push(&mut self, i: usize, at: Vec3, radius: f32, reach: f32) {
         let start = self.obstacles.len();
         self.reaches[i] = (start < self.most).then_some(reach);
@@ -155,7 +156,7 @@ impl Near {
         self.ends[i] = self.obstacles.len();
     }
 
-    /// Computes the current distance of everything that a particle's list excludes.
+    /// Updates `beyond` of a particle for its current position `at`.
     pub fn follow(&mut self, i: usize, at: Vec3) {
         self.beyond[i] = match self.reaches[i] {
             Some(reach) => reach - (at - self.origins[i]).length() - rounding_at(at),
@@ -201,7 +202,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Lists the particles that are held or near a shape; the others drop their contacts.
+    /// Lists the particles that are attached or near a shape; the others drop their contacts.
     fn find_close(&mut self, h: f32) {
         self.close.clear();
         for at in 0..self.one_by_one() {
@@ -237,7 +238,7 @@ mod tests {
     const SUBSTEPS: usize = 600;
     const FLOOR: u32 = 0;
 
-    /// Loose balls, and points of which the first is held; springs connect `links` of them to it.
+    /// Loose balls, and points of which the first is attached; springs connect `links` of them to it.
     fn rain(random: &mut Random, links: u32, iterations: u32) -> GroupDef {
         let mut ball = |radius: f32| ParticleDef {
             position: Vec3::new(random.range(-3.0, 3.0), random.range(1.0, 4.0), random.range(-3.0, 3.0)),
@@ -264,7 +265,7 @@ mod tests {
     }
 
     /// A floor and boxes, balls and capsules, each with its own body; one in `moving_in` moves and rotates, and half of
-    /// these yield.
+    /// these are dynamic.
     fn surroundings(random: &mut Random, moving_in: usize) -> (Vec<Obstacle>, Vec<ObstacleBody>) {
         let (mut obstacles, mut bodies) = (Vec::new(), Vec::new());
         for k in 0..80 {
@@ -302,7 +303,7 @@ mod tests {
             let (from, turn) = (o.world_from_shape, body.angular_velocity);
             o.previous = from;
             if body.linear_velocity != Vec3::ZERO {
-                // To and fro among the balls.
+                // Moves back and forth among the balls.
                 let out = from.translation - Vec3::Y;
                 if out.length() > 2.5 && out.dot(body.linear_velocity) > 0.0 {
                     body.linear_velocity = -body.linear_velocity;
@@ -331,7 +332,7 @@ mod tests {
 
     #[test]
     fn lists_give_the_bits_that_trying_all_gives() {
-        // Constant motion; only particles move; a few bodies pass through resting particles.
+        // Cases: constant motion; only particles move; a few bodies pass through resting particles.
         for (seed, links, moving_in) in [(0, 19, 5), (1, 19, usize::MAX), (2, 0, 27)] {
             let mut random = Random::new(seed);
             let def = rain(&mut random, links, 1 + seed as u32);
@@ -414,7 +415,7 @@ mod tests {
             bodies[1].linear_velocity = Vec3::X * 4.0;
             group.substep(H, GRAVITY, &[], &obstacles, &mut bodies);
         }
-        // The box's front is at −4.5 m + 2 s × 4 m/s.
+        // The front of the box is at −4.5 m + 2 s × 4 m/s.
         let ahead = group.positions()[0].x - 3.5;
         assert!((ahead - 0.1).abs() < 1e-3, "the ball is {ahead} m ahead of the box");
     }

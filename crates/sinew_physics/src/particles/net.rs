@@ -1,17 +1,17 @@
 //! Rows of cloth and blobs, each solved once per iteration: `Δx = −C / (Σ w ∇C² + α/h²) w ∇C` with `α = 1/k` (Macklin
 //! et al., "Small Steps in Physics Simulation", SCA 2019, without its multipliers). A single row is a step of implicit
-//! Euler. Rows that share particles are solved one after the other, and earlier ones do not see later ones: each spring
+//! Euler. Rows that share particles are solved one after the other, without a correction of earlier rows: each spring
 //! of a net is softer by about `h² (w₁ + w₂)`.
 //!
-//! An impulse that presses a particle onto a surface moves it with its share of the body's inertia, and is transmitted
-//! to the body; otherwise the cloth's own few grams would carry a ball. A surface only presses. A particle has
-//! **room**, the impulse that brings it from the solve's position onto the surface. Rows use up the room before they
-//! press, and a later row that pulls the particle away reduces the press first. Otherwise rows would pull particles
-//! through the surface, or push the body by an impulse that no longer presses, and nets would tremble under loads.
-//! Static obstacles need none of this: see `eights.rs`.
+//! An impulse that presses a particle onto a surface moves the particle with its share of the body's inertia, and is
+//! transmitted to the body; otherwise the cloth's own few grams would carry a ball. A surface only presses. A particle
+//! has **room**, the impulse that brings it from the solve's position onto the surface. Rows use up the room before
+//! they press, and a later row that pulls the particle away reduces the press first. Otherwise rows would pull
+//! particles through the surface, or push the body by an impulse that no longer presses, and nets would tremble under
+//! loads. Static obstacles need none of this: see `eights.rs`.
 //!
-//! Rows with an attached particle are solved individually, because the impulse on it counts; all others eight at a
-//! time, see `batches.rs`.
+//! Rows with an attached particle are solved individually, because the impulse on the particle is counted. All other
+//! rows are solved eight at a time, see `batches.rs`.
 
 use super::batches::Batches;
 use super::eights::Eights;
@@ -19,8 +19,8 @@ use super::{BendDef, ParticleGroup, Resists, SpringDef, TetherDef, VolumeDef};
 use sinew_math::{Vec3, dispatch, max, min};
 
 impl ParticleGroup {
-    /// Tethers, springs outside the forest, bends, volumes, self-collision: coarse rows first, so that fine ones are
-    /// solved last, except pressure and non-penetration.
+    /// Projects tethers, springs outside the forest, bends, volumes and self-collision. Coarse rows come first, so that
+    /// fine ones are solved last, except pressure and non-penetration.
     pub(super) fn project_net(&mut self, h: f32) {
         self.project_held(h);
         self.project_batches(h);
@@ -32,7 +32,7 @@ impl ParticleGroup {
         self.part_particles(h);
     }
 
-    /// Tethers, and rows that hold an attached particle.
+    /// Projects tethers, and rows with an attached particle.
     pub(super) fn project_held(&mut self, h: f32) {
         for k in 0..self.tethers.len() {
             self.project_tether(self.tethers[k], h);
@@ -52,7 +52,7 @@ impl ParticleGroup {
         let free_spring = |&k: &u32| is_free(springs[k as usize].a) && is_free(springs[k as usize].b);
         let free_bend = |&k: &u32| bends[k as usize].particles.into_iter().all(is_free);
         let (batched, held): (Vec<u32>, _) = forest.projected().iter().partition(|k| free_spring(k));
-        // Those of groups with trees go into the solve.
+        // In groups with trees, bends are part of the solve.
         let bent_later = if forest.has_trees() { 0 } else { bends.len() as u32 };
         let (batched_bends, held_bends): (Vec<u32>, _) = (0..bent_later).partition(free_bend);
         self.batches = Batches::new(
@@ -101,13 +101,13 @@ impl ParticleGroup {
         }
     }
 
-    /// The normal component of an impulse that goes to the body that a particle touches, N·s.
+    /// Part of an impulse `along` the normal (N·s) that goes to the body that a particle touches, N·s.
     fn handed_on(&self, i: usize, along: f32) -> f32 {
         (min(self.rooms[i] + along, 0.0) - min(self.rooms[i], 0.0)) * self.backings[i]
     }
 
-    /// Speed that a particle gains along `force` by as many times an impulse, and its mobility after it, 1/kg: `∇Cᵀ W ∇C` if
-    /// `force` is as long as the gradient.
+    /// Speed that a particle gains along `force` by an impulse of `force` times `impulse`, and its mobility after it,
+    /// 1/kg: `∇Cᵀ W ∇C` if `force` is the gradient.
     fn moved(&self, i: usize, force: Vec3, impulse: f32) -> (f32, f32) {
         let along = force.dot(self.press_normals[i]);
         let after = self.rooms[i] + along * impulse;
@@ -120,8 +120,8 @@ impl ParticleGroup {
         )
     }
 
-    /// The impulse that gives a row a speed by forces on its ends per N·s, and the mobility there, 1/kg. As
-    /// `on_surfaces` of `project.rs`.
+    /// Returns the impulse that gives a row a `speed`, and the mobility at that impulse, 1/kg. `ends` are particles
+    /// with their forces per unit of the impulse. The method is that of `on_surfaces` in `project.rs`.
     pub(super) fn row_impulse(
         &self,
         ends: &(impl Iterator<Item = (usize, Vec3)> + Clone),
@@ -145,7 +145,7 @@ impl ParticleGroup {
         (impulse, mobility)
     }
 
-    /// An impulse that acts at the end of the iteration, as if it had from its beginning.
+    /// Applies an impulse as if it had acted since the start of the iteration.
     pub(super) fn nudge(&mut self, i: usize, impulse: Vec3, h: f32) {
         let normal = self.press_normals[i];
         let along = impulse.dot(normal);
@@ -169,8 +169,8 @@ impl ParticleGroup {
         let speed = (length - tether.length) / h;
         let (mut impulse, _) = self.row_impulse(&ends.into_iter(), speed, 0.0);
         if self.backings[i] == 1.0 || self.backings[to] == 1.0 {
-            // A particle on a fixed surface cannot pass through it: it pulls as if the surface were not there, not with
-            // the impulse needed to overcome its holder.
+            // A particle on a fixed surface cannot pass through it: the tether pulls as if the surface did not exist,
+            // not with the impulse that would overcome the surface.
             impulse = min(impulse, speed / (self.weights[i] + self.weights[to]));
         }
         if impulse > 0.0 {
@@ -195,7 +195,7 @@ impl ParticleGroup {
         if impulse <= 0.0 {
             return;
         }
-        // Damping of the remaining axial speed.
+        // Damping of the axial speed that remains.
         let speed = (self.velocities[b] - self.velocities[a]).dot(pull) - impulse * sum;
         impulse += speed * h * s.damping / (1.0 + h * s.damping * sum);
         self.nudge(a, pull * impulse, h);
@@ -221,7 +221,7 @@ impl ParticleGroup {
         }
     }
 
-    /// A surface that encloses too little volume is pushed outward, each particle along its area vector.
+    /// Moves the particles of a closed surface along their area vectors, to correct its volume.
     fn project_volume(&mut self, volume: &VolumeDef, h: f32) {
         self.gradients.fill(Vec3::ZERO);
         let enclosed =
@@ -244,7 +244,7 @@ impl ParticleGroup {
 }
 
 /// Volume inside a closed surface, m³: sixths of `a·(b × c)`, relative to a point of the surface. `gradient` gets the
-/// volume derivative at each corner of each triangle, m².
+/// derivative of the volume at each corner of each triangle, m².
 pub(super) fn enclosed_volume(
     triangles: &[[u32; 3]],
     positions: &[Vec3],
@@ -265,7 +265,7 @@ pub(super) fn enclosed_volume(
     volume
 }
 
-/// Length of a spring less its rest length, metres; 0 where it is slack.
+/// Length of a spring minus its rest length, metres; 0 if it is slack.
 pub(super) fn stretch(s: &SpringDef, positions: &[Vec3]) -> f32 {
     let stretch = (positions[s.b as usize] - positions[s.a as usize]).length() - s.rest_length;
     match s.resists {

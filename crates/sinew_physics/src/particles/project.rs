@@ -18,15 +18,15 @@ const SPRING: [f32; 2] = [-1.0, 1.0];
 /// Shares of a bend's particles in the vector whose length it keeps.
 const BEND: [f32; 3] = [1.0, -2.0, 1.0];
 
-/// Eight records of `F` numbers.
+/// Records of `F` numbers for eight particles.
 type Numbers<const F: usize> = [[f32; WIDTH]; F];
 
 /// Projects each row once, springs first.
 pub(super) struct Project<'a> {
     pub batches: &'a mut Batches,
-    /// The iteration, seconds.
+    /// Length of the iteration, seconds.
     pub h: f32,
-    /// Some particle touches a surface.
+    /// True if a particle touches a surface.
     pub touching: bool,
 }
 
@@ -46,7 +46,7 @@ impl Kernel for Project<'_> {
     }
 }
 
-/// Projects each row of `K` particles once; surfaces are optional.
+/// Projects each row of `K` particles once, with surfaces if `TOUCHING`.
 #[inline(always)]
 fn project<L: Lanes, const K: usize, const TOUCHING: bool>(
     particles: &mut [Block<FIELDS>],
@@ -100,18 +100,18 @@ fn project<L: Lanes, const K: usize, const TOUCHING: bool>(
 struct Solver<'a, L, const K: usize> {
     kind: &'a Kind<K>,
     shares: [f32; K],
-    /// The iteration, seconds.
+    /// Length of the iteration, seconds.
     h: f32,
     /// Target length, metres.
     rest: L,
     /// Error above which a row acts, metres.
     least: L,
-    /// `1/S` above, kg.
+    /// `1/S`, kg.
     inertia: L,
-    /// `β` above, kg.
+    /// `β`, kg.
     damping: L,
-    /// Gain of each particle: its displacement along the row's vector per unit of the undamped relative error; with it
-    /// `(1 − r/l) / S + β v·d/l²`, an impulse.
+    /// Gain of each particle: its displacement along the row's vector per unit of the undamped relative error. With
+    /// damping: per unit of the impulse `(1 − r/l) / S + β v·d/l²`.
     gains: [L; K],
 }
 
@@ -260,8 +260,8 @@ impl<'a, L: Lanes, const K: usize> Solver<'a, L, K> {
         }
     }
 
-    /// Solves eight rows of which some touch surfaces. Pulls are in units of the row's vector instead of its direction,
-    /// and errors are squared: only one division remains.
+    /// Solves eight rows, some of which touch surfaces. Pulls are in units of the row's vector instead of its
+    /// direction, and errors are squared: only one division remains.
     #[inline(always)]
     fn solve_on_surfaces(
         &self,
@@ -300,7 +300,7 @@ impl<'a, L: Lanes, const K: usize> Solver<'a, L, K> {
     }
 }
 
-/// The vector of eight rows: that of their ends, from its first field, by their shares.
+/// Sum of a vector of the rows' ends, which starts at field `field`, weighted by their shares.
 #[inline(always)]
 fn combined<L: Lanes, const K: usize>(
     ends: &[&mut Numbers<FIELDS>; K],
@@ -314,7 +314,7 @@ fn combined<L: Lanes, const K: usize>(
     sum
 }
 
-/// Copies of blocks, each rotated so that its lanes match those of the unrotated first one.
+/// Copies blocks, each rotated so that its lanes match those of the first one, which is not rotated.
 #[inline(always)]
 fn turned<L: Lanes, const K: usize, const F: usize>(
     blocks: &[Block<F>],
@@ -333,7 +333,7 @@ fn turned<L: Lanes, const K: usize, const F: usize>(
     ends
 }
 
-/// Writes these back from field `FROM` on: nothing new in lanes without a row.
+/// Writes the copies of `turned` back from field `FROM` on; lanes without a row are unchanged.
 #[inline(always)]
 fn turn_back<L: Lanes, const K: usize, const F: usize, const FROM: usize>(
     blocks: &mut [Block<F>],
@@ -351,7 +351,7 @@ fn turn_back<L: Lanes, const K: usize, const F: usize, const FROM: usize>(
     }
 }
 
-/// Copies of records, each with its own block and lane.
+/// Copies the records of particles, each from its own block and lane.
 #[inline(always)]
 fn fetch<const K: usize, const F: usize>(blocks: &[Block<F>], slots: &[[u32; WIDTH]; K]) -> [Numbers<F>; K] {
     let mut ends = [[[0.0; WIDTH]; F]; K];
@@ -367,7 +367,7 @@ fn fetch<const K: usize, const F: usize>(blocks: &[Block<F>], slots: &[[u32; WID
     ends
 }
 
-/// Writes these back from field `FROM` on.
+/// Writes the copies of `fetch` back from field `FROM` on.
 #[inline(always)]
 fn put_back<const K: usize, const F: usize, const FROM: usize>(
     blocks: &mut [Block<F>],
@@ -385,7 +385,7 @@ fn put_back<const K: usize, const F: usize, const FROM: usize>(
     }
 }
 
-/// A vector of eight particles, from its first field.
+/// Loads a vector of eight particles that starts at field `field`.
 #[inline(always)]
 fn vector<L: Lanes, const F: usize>(numbers: &Numbers<F>, field: usize) -> Vector3<L> {
     Vector3::load(&numbers[field], &numbers[field + 1], &numbers[field + 2])
@@ -409,21 +409,21 @@ fn any_touching<L: Lanes, const K: usize>(beneath: &[&mut Numbers<SURFACE_FIELDS
     L::gt(most, L::splat(0.0)).any()
 }
 
-/// The surface at one end of eight rows, seen by a pull on it.
+/// Effect of the surface at one end of eight rows on a pull.
 #[derive(Clone, Copy, Debug)]
 struct Surface<L> {
-    /// Room before it presses, N·s².
+    /// Room before the particle presses, N·s².
     room: L,
     /// Change of the room per unit of the pull.
     gain: L,
     /// Loss of the row per N·s² pressed onto the body, in units of its error.
     passed: L,
-    /// Loss per unit of a pull that presses completely.
+    /// Loss of the row per unit of a pull that presses completely.
     lacking: L,
 }
 
 impl<L: Lanes> Surface<L> {
-    /// Row for a pull of the end against the vector of its row, with its share in that.
+    /// Loads the surface of an end with inverse mass `weight` and this `share` in the row's vector `apart`.
     #[inline(always)]
     fn load(beneath: &Numbers<SURFACE_FIELDS>, weight: L, apart: Vector3<L>, share: f32) -> Self {
         let gain = apart.dot(vector(beneath, NORMAL)) * L::splat(-share);
@@ -432,15 +432,15 @@ impl<L: Lanes> Surface<L> {
     }
 }
 
-/// The error and slope whose quotient is the pull of eight rows. The effect of a pull, `slope` per unit without
-/// surfaces, changes where a particle starts or stops pressing. The initial slope predicts which do: a single change is
-/// exact, as by two Newton steps.
+/// Returns error and slope, whose quotient is the pull of eight rows. The effect of a pull, `slope` per unit without
+/// surfaces, changes where a particle starts or stops pressing. The initial slope predicts which particles do: a single
+/// change is exact, like two Newton steps.
 #[inline(always)]
 fn on_surfaces<L: Lanes, const K: usize>(surfaces: &[Surface<L>; K], error: L, slope: L) -> (L, L) {
     let zero = L::splat(0.0);
     let mut first = slope;
     for s in surfaces {
-        // One without room presses if it is pulled onto the surface.
+        // A particle without room presses if it is pulled onto the surface.
         let brink = L::splat(f32::MIN_POSITIVE).masked(L::lt(s.gain * error, zero));
         first = first - s.lacking.masked(L::lt(s.room, brink));
     }
@@ -448,7 +448,7 @@ fn on_surfaces<L: Lanes, const K: usize>(surfaces: &[Surface<L>; K], error: L, s
     for s in surfaces {
         let presses = L::lt(s.room * first + s.gain * error, zero);
         last = last - s.lacking.masked(presses);
-        // The part of the pull before that change.
+        // Adds the part of the pull before that change.
         error_left = error_left + s.passed * L::max(L::select(presses, s.room, -s.room), zero);
     }
     (error_left, last)

@@ -1,4 +1,4 @@
-//! Rest of a particle group: its time at rest, and the island it sleeps in.
+//! Rest of a particle group: its time at rest, and the number of its sleeping island.
 
 use super::{AttachmentTarget, ParticleGroup};
 use crate::body::def::{SleepThresholds, Sleeping};
@@ -9,14 +9,14 @@ use crate::particles::contact::distance_at_least;
 use crate::particles::tuning::{BEARING, BED_ROOM, RESTING_SPEED, STRIKE_GAP};
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
-/// Awake, asleep with the island it fell asleep with, or woken since.
+/// Awake, asleep with its island, or woken since the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum GroupRest {
-    /// Seconds for which each particle has stayed in place.
+    /// Time for which each particle has stayed in place, seconds.
     Awake { rest_time: f32 },
-    /// Bodies that sleep under the same number wake with it.
+    /// Number of the sleeping island; its bodies wake with the group.
     Asleep { island: u32 },
-    /// Woken since the last step: bodies that sleep under that number wake in the next one.
+    /// Woken since the last step: bodies that sleep with this island number wake in the next step.
     Roused { island: u32 },
 }
 
@@ -26,22 +26,22 @@ impl Default for GroupRest {
     }
 }
 
-/// A sleeping group's surroundings, which follow from the world.
+/// Surroundings of a sleeping group, derived from the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bed {
-    /// A body that fell asleep with it, if any did.
+    /// Index of a body that fell asleep with the group, if any did.
     pub partner: Option<u32>,
     /// Bounds of all particles with their radii and a margin.
     pub bounds: Aabb,
 }
 
 impl ParticleGroup {
-    /// False while it sleeps.
+    /// True unless the group sleeps.
     pub fn is_awake(&self) -> bool {
         !matches!(self.rest, GroupRest::Asleep { .. })
     }
 
-    /// Permission to fall asleep.
+    /// Permission for the group to fall asleep.
     pub fn sleeping(&self) -> Sleeping {
         self.sleeping
     }
@@ -54,8 +54,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Wakes the group, and in the next step the bodies it fell asleep with. For an awake group it restarts the time at
-    /// rest.
+    /// Wakes the group, and in the next step the bodies that fell asleep with it. Restarts the time at rest of an awake
+    /// group.
     pub fn wake(&mut self) {
         self.rest = match self.rest {
             GroupRest::Awake { .. } => GroupRest::default(),
@@ -63,7 +63,7 @@ impl ParticleGroup {
         };
     }
 
-    /// Number of the island that it sleeps with, or slept with until it was woken since the last step.
+    /// Number of the island that the group sleeps with, or slept with until it was woken since the last step.
     pub(crate) fn slept_with(&self) -> Option<u32> {
         match self.rest {
             GroupRest::Awake { .. } => None,
@@ -71,28 +71,28 @@ impl ParticleGroup {
         }
     }
 
-    /// A body that fell asleep with it.
+    /// Index of a body that fell asleep with the group.
     pub(crate) fn partner(&self) -> Option<u32> {
         self.bed.and_then(|bed| bed.partner)
     }
 
-    /// Surroundings that it sleeps in.
+    /// Surroundings of the group while it sleeps.
     pub(crate) fn bed(&self) -> Option<&Bed> {
         self.bed.as_ref().filter(|_| !self.is_awake())
     }
 
-    /// Wakes it, when those it slept with are awake.
+    /// Wakes the group when the bodies that fell asleep with it are awake.
     pub(crate) fn get_up(&mut self) {
         self.rest = GroupRest::default();
         self.bed = None;
     }
 
-    /// True if it holds bodies, which then rest only when it does.
+    /// True if particles are attached to bodies; these bodies fall asleep only with the group.
     pub(crate) fn holds_bodies(&self) -> bool {
         self.attachments.iter().any(|a| matches!(a.target, AttachmentTarget::Body { .. }))
     }
 
-    /// Bodies that hold its particles or carry its backstops, once for each.
+    /// Bodies that particles are attached to or that carry backstops, once for each attachment and backstop.
     pub(crate) fn carriers(&self) -> impl Iterator<Item = BodyId> {
         let held = self.attachments.iter().filter_map(|a| match a.target {
             AttachmentTarget::Body { body, .. } => Some(body),
@@ -101,7 +101,7 @@ impl ParticleGroup {
         held.chain(self.backstops.iter().map(|backstop| backstop.body))
     }
 
-    /// Puts the group to sleep under an unused island number.
+    /// Puts the group to sleep with an island number and the index of a body that falls asleep with it.
     pub(crate) fn fall_asleep(&mut self, island: u32, partner: Option<u32>) {
         self.rest = GroupRest::Asleep { island };
         self.velocities.fill(Vec3::ZERO);
@@ -110,12 +110,12 @@ impl ParticleGroup {
         self.lie_down(partner);
     }
 
-    /// Records its island (or former island), and a body that fell asleep with it.
+    /// Stores the surroundings of the sleeping group: their bounds, and a body that fell asleep with the group.
     pub(crate) fn lie_down(&mut self, partner: Option<u32>) {
         self.bed = Some(Bed { partner, bounds: self.bounds_of(&self.places).expand(BED_ROOM) });
     }
 
-    /// Counts the time for which it has been calm, seconds; if it is not, less than any time.
+    /// Updates and returns the time at rest of the group, seconds; negative infinity if the group is not calm.
     pub(crate) fn count_rest(&mut self, may: Sleeping, thresholds: &SleepThresholds, dt: f32) -> f32 {
         let stays = all_within(&self.positions, &self.places, thresholds.distance);
         let may = may == Sleeping::On && self.sleeping == Sleeping::On;
@@ -132,22 +132,23 @@ impl ParticleGroup {
         }
     }
 
-    /// True if it has been calm for `time` seconds.
+    /// True if the group is awake and has been at rest for `time` seconds.
     pub(crate) fn has_rested(&self, time: f32) -> bool {
         matches!(self.rest, GroupRest::Awake { rest_time } if rest_time > 0.0 && rest_time >= time)
     }
 
-    /// True if a particle is `distance` metres from where its time at rest started.
+    /// True if a particle is at least `distance` (m) from its position at the start of its time at rest.
     pub(crate) fn strays(&self, distance: f32) -> bool {
         !all_within(&self.positions, &self.places, distance)
     }
 
-    /// Bounds of everything that touched the particles where their time at rest started.
+    /// Bounds of the particles' positions at the start of their time at rest, with the margin for touching shapes.
     pub(crate) fn left(&self) -> Aabb {
         self.bounds_of(&self.places).expand(STRIKE_GAP)
     }
 
-    /// True if a particle that has strayed by `distance` metres touched a shape at rest from below before; `down` is a unit vector.
+    /// True if a particle that has moved by `distance` metres since its time at rest started was then on top of a
+    /// resting body's shape; `down` is a unit vector.
     pub(crate) fn bore(&self, shape: &Shape, at: &Transform, distance: f32, down: Vec3) -> bool {
         let bounds = shape.aabb(at);
         (0..self.positions.len()).any(|i| {
@@ -160,7 +161,7 @@ impl ParticleGroup {
         })
     }
 
-    /// Restarts the time at rest of each particle that has moved by `distance` metres.
+    /// Restarts the time at rest of each particle that has moved by at least `distance` metres.
     pub(crate) fn settle(&mut self, distance: f32) {
         for (position, place) in self.positions.iter().zip(&mut self.places) {
             if !is_within(*position, *place, distance) {
@@ -169,7 +170,7 @@ impl ParticleGroup {
         }
     }
 
-    /// True if a shape comes within `reach` metres of a free particle.
+    /// True if a shape is within `reach` metres of a free particle.
     pub(crate) fn is_near(&self, shape: &Shape, at: &Transform, reach: f32) -> bool {
         let bounds = shape.aabb(at);
         (0..self.positions.len()).any(|i| {
@@ -196,7 +197,7 @@ impl ParticleGroup {
                 out.u32(island);
             }
         }
-        // Asleep, each particle is in place.
+        // While the group sleeps, each particle is at its place.
         if !matches!(self.rest, GroupRest::Asleep { .. }) {
             self.places.iter().for_each(|&place| out.vec3(place));
         }
@@ -232,7 +233,7 @@ impl ParticleGroup {
     }
 }
 
-/// True if each point is nearer than `distance` to the one with the same index.
+/// True if each point is nearer than `distance` to the other point with the same index.
 fn all_within(points: &[Vec3], others: &[Vec3], distance: f32) -> bool {
     points.iter().zip(others).all(|(&point, &other)| is_within(point, other, distance))
 }

@@ -1,16 +1,17 @@
-//! Self-collision: particles of a group without a common spring keep its thickness as distance.
+//! Self-collision: particles of a group without a common spring keep the group's thickness as distance.
 //!
-//! Pairs come from a list that is valid while no particle has moved by half of its margin (Verlet 1967). Excess pairs
-//! have no effect, and the list is in the order of its particles, so the results are the bits of testing all, and the
-//! list is not part of the state. Each pair is a row that only presses along the line between its particles, on the
-//! side at the start of the iteration; particles that move by more than their distance within it pass.
+//! Pairs come from a list that is valid while no particle has moved by half of the list's margin (Verlet 1967). Excess
+//! pairs have no effect, and the list is in the order of its particles, so the results are the bits of testing all, and
+//! the list is not part of the state. Each pair is a row that only presses along the line between its particles, on the
+//! side at the start of the iteration. Particles that move by more than their distance within an iteration pass
+//! through.
 //!
-//! Layers that carry a load are thousands of times lighter than the load: rows that share impulses by mass let it
-//! through. Layers on an immovable obstacle are therefore solved from there outward, and a particle yields to a load
-//! from above only as far as its support allows (shock propagation: Guendelman, Bridson and Fedkiw, "Nonconvex Rigid
-//! Bodies with Stacking", 2003). The pressing impulse is passed layer by layer to the surface at the bottom, and
-//! friction between layers uses all of it. Impulses from below are shared by mass: a light particle that did not yield
-//! would push with momentum it does not have.
+//! Layers that carry a load are thousands of times lighter than the load: rows that share impulses by mass let the load
+//! through. Layers on an immovable obstacle are therefore solved from the obstacle outward, and a particle yields to a
+//! load from above only as far as its support allows (shock propagation: Guendelman, Bridson and Fedkiw, "Nonconvex
+//! Rigid Bodies with Stacking", 2003). The layers transmit the pressing impulse to the surface at the bottom, and
+//! friction between layers uses all of the impulse. Impulses from below are shared by mass: a light particle that did
+//! not yield would push with momentum that it does not have.
 
 use super::tuning::{BEARING, SELF_PUSH_SPEED, SELF_ROOM, SELF_SWEEPS};
 use super::{ParticleGroup, SpringDef};
@@ -19,65 +20,66 @@ use sinew_math::{Vec3, max, min, normalize_or};
 /// Pairs of particles that may touch, and their search.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SelfCollision {
-    /// Distance that pairs keep, metres.
+    /// Distance between the particles of a pair, metres.
     thickness: f32,
-    /// Particles connected to each one.
+    /// Particles connected to each particle by a spring.
     joined: Lists,
-    /// Particles within reach of each.
+    /// Particles within reach of each particle.
     near: Lists,
     /// Pairs within reach, both ways, ascending.
     pairs: Vec<[u32; 2]>,
-    /// Particles by their cells, ascending.
+    /// Particles by the hash of their cell, ascending.
     cells: Vec<(u64, u32)>,
-    /// Position of each particle at the pair search, world, metres; empty before the first.
+    /// Position of each particle at the last pair search, world, metres; empty before the first.
     found_at: Vec<Vec3>,
     /// Particles in the solving order of their pairs: each after its support.
     order: Vec<u32>,
-    /// Number of those whose turn has come.
+    /// Number of particles in that order whose pairs have been started.
     next: usize,
-    /// Turn of each particle.
+    /// State of each particle in the order.
     turns: Vec<Turn>,
-    /// Normal of each particle's support: unit once it is processed, before that the sum over all its supports.
+    /// Normal of each particle's support: of unit length once the particle is processed, before that the sum over all
+    /// its supports.
     supports: Vec<Vec3>,
-    /// Length of that sum.
+    /// Length of the sum of each particle's supports.
     bearing: Vec<f32>,
-    /// Displacement in the iteration of each particle's final support, metres.
+    /// Displacement in the iteration of the surface that finally supports each particle, metres.
     ways: Vec<Vec3>,
-    /// Coefficient of friction of that.
+    /// Coefficient of friction of that surface.
     grips: Vec<f32>,
-    /// Impulse pressed into each particle and passed on to its support, N·s.
+    /// Impulse pressed into each particle and transmitted to its support, N·s.
     loads: Vec<f32>,
     /// Pairs that touch, in the order in which they are solved.
     rows: Vec<Row>,
 }
 
-/// Turn of a particle among those whose pairs are solved.
+/// State of a particle in the order in which pairs are solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Turn {
-    /// It has no known support.
+    /// The particle has no known support.
     Loose,
-    /// It is in the solving order.
+    /// The particle is in the solving order.
     Listed,
-    /// The pairs are solved.
+    /// The pairs of the particle are solved.
     Done,
 }
 
-/// A pair that touches.
+/// Two particles that touch.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     below: u32,
     above: u32,
-    /// Unit, from the one below.
+    /// Normal from the lower particle to the upper one, unit length.
     normal: Vec3,
-    /// Share of an impulse on the lower one that its support takes, outward.
+    /// Share of an impulse on the lower particle that its support takes, outward.
     held: Vec3,
     /// Target distance along the normal, metres.
     goal: f32,
-    /// N·s.
+    /// Impulse, N·s.
     impulse: f32,
 }
 
-/// A list for each particle, one after the other.
+/// A list for each particle, contiguous in memory.
 #[derive(Clone, Debug, Default)]
 struct Lists {
     items: Vec<u32>,
@@ -86,7 +88,7 @@ struct Lists {
 }
 
 impl Lists {
-    /// Fills the lists from ascending pairs: the second of each goes into the first's list.
+    /// Fills the lists from ascending pairs: the second particle of a pair goes into the list of the first.
     fn fill(&mut self, count: usize, pairs: &[[u32; 2]]) {
         self.items.clear();
         self.items.extend(pairs.iter().map(|pair| pair[1]));
@@ -109,7 +111,7 @@ impl Lists {
 }
 
 impl SelfCollision {
-    /// Creates the search for this many particles with these springs at a distance of `thickness` metres.
+    /// Creates the search for `count` particles with these springs at a distance of `thickness` metres.
     pub fn new(count: usize, thickness: f32, springs: &[SpringDef]) -> Self {
         let mut both: Vec<[u32; 2]> = springs.iter().map(|s| [s.a, s.b]).collect();
         both.extend(both.clone().into_iter().map(|[a, b]| [b, a]));
@@ -131,7 +133,7 @@ impl SelfCollision {
             && ways.all(|(from, to)| (*to - *from).length_squared() < most * most)
     }
 
-    /// Finds all pairs within reach of each other.
+    /// Finds all pairs within reach.
     fn find(&mut self, positions: &[Vec3]) {
         let reach = (1.0 + SELF_ROOM) * self.thickness;
         self.found_at.clear();
@@ -157,7 +159,7 @@ impl SelfCollision {
             }
         }
         pairs.sort_unstable();
-        // Distant cells may share a number.
+        // Different cells may have the same hash.
         pairs.dedup();
         self.near.fill(positions.len(), &pairs);
         self.rows.clear();
@@ -165,7 +167,7 @@ impl SelfCollision {
         self.pairs = pairs;
     }
 
-    /// Forgets the last iteration.
+    /// Clears the data of the last iteration.
     fn begin(&mut self) {
         self.order.clear();
         self.rows.clear();
@@ -188,14 +190,14 @@ impl SelfCollision {
         self.supports[i] = normalize_or(self.supports[i], Vec3::ZERO);
     }
 
-    /// Stores a touching pair. If the lower one has a support, it supports the upper one.
+    /// Stores a touching pair. If the lower particle has a support, it supports the upper one.
     fn bear(&mut self, row: Row) {
         self.rows.push(row);
         let above = row.above as usize;
         if self.supports[row.below as usize].dot(row.normal) <= BEARING {
             return;
         }
-        // One that touches a surface hands on to that.
+        // A particle that touches a surface transmits to that surface.
         if self.turns[above] == Turn::Loose {
             self.list(row.above);
             self.ways[above] = self.ways[row.below as usize];
@@ -229,7 +231,7 @@ impl ParticleGroup {
             own.find(&self.positions);
         }
         own.begin();
-        // First those supported by immovable obstacles, then by movable bodies, then the rest.
+        // Particles on immovable obstacles come first, then those on movable bodies, then the rest.
         for fixed in [true, false] {
             self.list_first(&mut own, fixed);
             self.part_listed(&mut own, h);
@@ -251,7 +253,7 @@ impl ParticleGroup {
         self.self_collision = Some(own);
     }
 
-    /// Lists particles that touch surfaces that cannot move, or such that can.
+    /// Lists the particles that touch fixed surfaces (`fixed`), or those that touch movable bodies.
     fn list_first(&self, own: &mut SelfCollision, fixed: bool) {
         for &i in &self.solved {
             let at = i as usize;
@@ -266,7 +268,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Solves the pairs of all unprocessed particles in order, and of those that they support.
+    /// Solves the pairs of all listed particles in order, and those of the particles that they support.
     fn part_listed(&mut self, own: &mut SelfCollision, h: f32) {
         while let Some(&i) = own.order.get(own.next) {
             own.next += 1;
@@ -280,7 +282,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Pushes a particle off an earlier one, and records if it is supported by it.
+    /// Pushes a particle off one that is processed, and records whether that one supports it.
     fn part(&mut self, own: &mut SelfCollision, below: u32, above: u32, h: f32) {
         let (b, a) = (below as usize, above as usize);
         let apart = self.positions[a] - self.positions[b];
@@ -288,14 +290,14 @@ impl ParticleGroup {
             return;
         }
         let before = self.previous[a] - self.previous[b];
-        // Pairs that would have passed each other return to their sides.
+        // Pairs that would have passed each other return to their previous sides.
         let side = if apart.dot(before) > 0.0 { apart } else { before };
         let normal = normalize_or(side, normalize_or(apart, Vec3::Y));
-        // Only loads from above meet an unyielding support: impulses from below would push with more momentum than
-        // there is.
+        // Only loads from above meet an unyielding support: impulses from below would push with momentum that does not
+        // exist.
         let way = |i: usize| (self.positions[i] - self.previous[i] - own.ways[b]).dot(normal);
         let (fallen, risen) = (max(-way(a), 0.0), max(way(b), 0.0));
-        // The first ones share in their surface's load.
+        // Particles without a support below, at a surface, share its load by mass.
         let is_borne = own.bearing[b] > 0.0 && fallen > 0.0;
         let share = if is_borne { fallen / (fallen + risen) } else { 0.0 };
         let held = own.supports[b] * (share * max(normal.dot(own.supports[b]), 0.0));
@@ -307,12 +309,12 @@ impl ParticleGroup {
         own.bear(row);
     }
 
-    /// True if a particle touches a body that it may lift.
+    /// True if a particle touches a movable body, which the pressing impulse lifts.
     fn lifts(&self, i: usize) -> bool {
         self.backings[i] > 0.0 && self.backings[i] < 1.0
     }
 
-    /// Brings a pair to its distance, by a total impulse that never pulls.
+    /// Moves a pair to its distance; the total impulse never pulls.
     fn press(&mut self, row: &mut Row, h: f32) {
         let (below, above) = (row.below as usize, row.above as usize);
         let missing = row.goal - (self.positions[above] - self.positions[below]).dot(row.normal);
@@ -325,7 +327,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Passes each particle's pressing impulse on to its support.
+    /// Transmits each particle's pressing impulse to its support.
     fn hand_down(&mut self, own: &mut SelfCollision) {
         for row in own.rows.iter_mut().rev() {
             let (below, above) = (row.below as usize, row.above as usize);
@@ -342,7 +344,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Friction of pairs by the total pressing impulse, from the immovable outward.
+    /// Applies friction to pairs, by the total pressing impulse, from the surfaces outward.
     fn rub_pairs(&mut self, own: &SelfCollision, h: f32) {
         for row in &own.rows {
             let (below, above) = (row.below as usize, row.above as usize);
@@ -354,7 +356,7 @@ impl ParticleGroup {
             if limit <= 0.0 || weights[1] <= 0.0 {
                 continue;
             }
-            // The ground takes the upper one's impulse, as far as the supports between hold.
+            // The ground takes the upper particle's impulse, up to the friction of the supports between them.
             let ground = own.ways[below] / h;
             let brought = max((self.velocities[above] - ground).dot(along), 0.0);
             let met = max((ground - self.velocities[below]).dot(along), 0.0);

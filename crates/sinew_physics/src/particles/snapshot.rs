@@ -1,4 +1,4 @@
-//! Particle groups to bytes and back.
+//! Writes and reads particle groups.
 
 use super::contact::Grip;
 use super::{
@@ -22,7 +22,7 @@ const TRIANGLE_BYTES: usize = 4 * 3;
 const ATTACHMENT_BYTES: usize = 4 + 1 + 12;
 
 impl ParticleGroup {
-    /// Writes everything that the next substep depends on.
+    /// Writes all data that the next substep depends on.
     pub fn save(&self, out: &mut Writer) {
         save_material(out, self.material);
         out.f32(self.linear_damping);
@@ -59,9 +59,9 @@ impl ParticleGroup {
             out.vec3(self.contact_impulses[i]);
             out.u8(match self.grips[i] {
                 Grip::Off => 0,
-                // The next iteration starts with its last friction as a force.
+                // The next iteration starts with the last friction as a force.
                 Grip::Slide | Grip::Slow => 1,
-                // A corner holds for an iteration.
+                // A wedged grip lasts for one iteration.
                 Grip::Stick | Grip::Wedged => 2,
             });
             out.vec3(self.drawn_from[i]);
@@ -81,7 +81,7 @@ impl ParticleGroup {
         self.save_rest(out);
     }
 
-    /// Writes an attachment; the first one of each body includes the added mass.
+    /// Writes an attachment; the first attachment of each body includes the added mass.
     fn save_attachment(&self, a: &AttachmentDef, out: &mut Writer) {
         out.u32(a.particle);
         match a.target {
@@ -99,7 +99,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Inertia that moves along with the body of a particle, if this is the first that the body holds.
+    /// Added mass of the body that a particle is attached to, if the particle is the first of that body.
     fn added_by_first(&self, particle: u32) -> Option<AddedMass> {
         let hub = self.forest.hub_of(particle as usize);
         self.forest.hubs().get(hub).filter(|held| held[0] == particle).map(|_| self.added[hub])

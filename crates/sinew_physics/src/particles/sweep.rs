@@ -10,26 +10,26 @@ use sinew_math::{Vec3, max, max3, min3};
 pub(super) struct Meeting {
     /// Share of the path before contact, 0..=1.
     pub fraction: f32,
-    /// Centre of the ball.
+    /// Centre of the ball at contact.
     pub at: Vec3,
-    /// Unit, outward.
+    /// Normal of the surface, unit length, outward.
     pub normal: Vec3,
     /// Remaining gap, metres; negative if the sweep starts inside.
     pub gap: f32,
 }
 
 impl Meeting {
-    /// Distance of a point from the plane of the ball's centre at contact.
+    /// Signed distance of a point from the plane of the ball's centre at contact, plus the remaining gap, metres.
     pub fn height(&self, point: Vec3) -> f32 {
         self.gap + (point - self.at).dot(self.normal)
     }
 }
 
-/// Each iteration at least doubles the correct digits, except for grazing paths.
+/// Largest number of iterations. Each at least doubles the correct digits, except for grazing paths.
 const ROUNDS: u32 = 32;
 
-/// The first position between `from` and `to` (the shape's frame) where a ball of this radius touches the shape while
-/// approaching; `None` if it passes. For a surface, the first triangle hit from outside.
+/// First contact of a ball that moves from `from` to `to` (the shape's frame) with the shape, while it approaches;
+/// `None` if there is none. For a mesh or height field, the first triangle hit from outside.
 pub(super) fn sweep_ball(shape: &Shape, radius: f32, from: Vec3, to: Vec3) -> Option<Meeting> {
     let Some(surface) = shape.surface() else {
         return approach(|at| shape.local_distance(at), radius, from, to);
@@ -51,7 +51,7 @@ pub(super) fn sweep_ball(shape: &Shape, radius: f32, from: Vec3, to: Vec3) -> Op
     first
 }
 
-/// True if the nearest feature can be hit: an internal edge is left to its two faces.
+/// True if the nearest feature can be hit: contacts at an internal edge are left to its two faces.
 fn is_felt(triangle: &Triangle, at: Vec3) -> bool {
     match closest_on_triangle(&triangle.corners, at).1 {
         Part::Face => true,
@@ -60,10 +60,10 @@ fn is_felt(triangle: &Triangle, at: Vec3) -> bool {
     }
 }
 
-/// A particle this deep behind a triangle rests on it, metres.
+/// Depth behind a triangle up to which a particle rests on it, metres.
 const SUNK: f32 = 1e-4;
 
-/// Signed distance from a triangle, negative behind it, and the direction away from it.
+/// Returns the signed distance from a triangle, negative behind it, and the direction away from the triangle.
 fn over_triangle(triangle: &Triangle, at: Vec3) -> (f32, Vec3) {
     let (point, part) = closest_on_triangle(&triangle.corners, at);
     let distance = (at - point).length();
@@ -74,9 +74,9 @@ fn over_triangle(triangle: &Triangle, at: Vec3) -> (f32, Vec3) {
     }
 }
 
-/// [`sweep_ball`] by a convex solid's signed distance and outward normal. The whole solid is behind the plane at the
-/// closest point, so the ball can advance at least to that plane (Newton's method on the distance, from the side where
-/// it never overshoots).
+/// Computes [`sweep_ball`] from a convex solid's signed distance and outward normal. The whole solid is behind the
+/// plane at the closest point, so the ball can advance at least to that plane (Newton's method on the distance, from
+/// the side on which it never overshoots).
 fn approach(distance: impl Fn(Vec3) -> (f32, Vec3), radius: f32, from: Vec3, to: Vec3) -> Option<Meeting> {
     let length = (to - from).length();
     if length < 1e-12 {

@@ -15,26 +15,26 @@ use sinew_math::{Sym3, Vec3};
 
 /// Largest number of Newton iterations.
 const NEWTON_ROUNDS: u32 = 16;
-/// Times that a round is halved.
+/// Largest number of times that a Newton step is halved.
 const HALVINGS: u32 = 8;
-/// Rounding of the energy that it lowers, as a share of the terms in it.
+/// Rounding error of the energy that a Newton step must lower, as a share of the energy's terms, a ratio.
 const MERIT_ROUNDING: f64 = 1e-7;
 
 /// Freedom of a particle in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Freedom {
-    /// Anything.
+    /// The particle moves freely.
     #[default]
     Free,
-    /// Free perpendicular to a unit normal; along it, the velocity is the surface's, which yields by `yielding` per
-    /// impulse, 1/kg: 0 if it is prescribed.
+    /// Free perpendicular to a unit normal. Along the normal the particle has the surface's speed (m/s); the surface
+    /// yields by `yielding` per impulse, 1/kg: 0 if the speed is prescribed.
     Along { normal: Vec3, speed: f32, yielding: f32 },
-    /// Nothing: its velocity is given.
+    /// The velocity of the particle is given.
     Fixed,
 }
 
 impl Freedom {
-    /// Energy transferred to its surface by a particle with this velocity, J.
+    /// Energy that a particle with this velocity transfers to its surface, J.
     fn merit(&self, velocity: Vec3) -> f32 {
         match *self {
             Self::Along { normal, speed, yielding } if yielding > 0.0 => {
@@ -46,22 +46,22 @@ impl Freedom {
     }
 }
 
-/// Memory of one step's system, by particle and by spring.
+/// Linear system of a step, by particle and by spring.
 #[derive(Clone, Debug, Default)]
 pub(super) struct System {
-    /// kg: the particle's own, plus its anchor's if there are no trees.
+    /// Inertia of each particle, kg: its own, plus its anchor's if there are no trees.
     pub inertia: Vec<Sym3>,
-    /// kg·m/s: momentum at the end of the step without springs and contacts.
+    /// Momentum of each particle at the end of the step without springs and contacts, kg·m/s.
     pub momentum: Vec<Vec3>,
     /// Inertia that contacts add, kg.
     pub added_inertia: Vec<Sym3>,
     /// Momentum that contacts add, kg·m/s.
     pub added_momentum: Vec<Vec3>,
-    /// The velocity of a fixed particle is read from the velocities.
+    /// Freedom of each particle. The solve reads the velocity of a fixed particle from the velocities.
     pub freedom: Vec<Freedom>,
-    /// Bodies that hold particles.
+    /// Bodies that particles are attached to.
     pub hubs: Vec<Hub>,
-    /// Position of each held particle on its body, world, metres.
+    /// Position of each attached particle on its body, world, metres.
     pub points: Vec<Vec3>,
     pub(super) loads: Vec<Load>,
     /// Velocities and spring impulses before the last Newton step.
@@ -72,8 +72,8 @@ pub(super) struct System {
     pub(super) gathered_momentum: Vec<Vec3>,
     /// Impulse of the parent spring on each particle, relative to its linearisation, N·s.
     pub(super) tensions: Vec<Vec3>,
-    /// Inverse of its inertia including that spring, 1/kg, and velocity gained per impulse with the parent's velocity
-    /// fixed.
+    /// Inverse of each particle's inertia including that spring, 1/kg; and velocity gained per impulse with the
+    /// parent's velocity fixed, 1/kg (`responses`).
     pub(super) inverses: Vec<Sym3>,
     pub(super) responses: Vec<Sym3>,
     pub(super) conjugate: Conjugate,
@@ -111,12 +111,11 @@ impl System {
         }
     }
 
-    /// Velocities at the end of the step, and the corresponding spring impulses, by Newton's method: springs are
-    /// linearised again at the positions of the last velocities until they agree.
+    /// Computes the velocities at the end of the step, and the corresponding spring impulses, by Newton's method:
+    /// springs are linearised again at the positions of the last velocities until they agree.
     ///
-    /// Otherwise a link of a whip that rotates far within the step would be stretched by the linearisation, and store
-    /// energy from nothing. A Newton step is shortened until it lowers the energy that the step's end minimises
-    /// (`merit`).
+    /// Otherwise the linearisation would stretch a link of a whip that rotates far within the step, and store energy
+    /// from nothing. A Newton step is shortened until it lowers the energy that the solution minimises (`merit`).
     pub fn settle_springs(
         &mut self,
         forest: &Forest,
@@ -158,8 +157,8 @@ impl System {
         }
     }
 
-    /// The energy that the velocities at the end of the step minimise, J, and the size of its terms: `½ v·M v − p·v`,
-    /// plus the springs' energy there.
+    /// Returns the energy that the velocities at the end of the step minimise, J, and the sum of the magnitudes of its
+    /// terms, J: `½ v·M v − p·v`, plus the springs' energy at the end of the step.
     fn merit(
         &self,
         forest: &Forest,
@@ -191,8 +190,8 @@ impl System {
         (sum, size)
     }
 
-    /// Linearises the springs again at the positions of these velocities; returns true if any differs from its
-    /// prediction.
+    /// Linearises the springs again at the positions of these velocities, if any of them differs from its prediction;
+    /// returns true if so.
     fn follow_springs(
         &mut self,
         forest: &Forest,
@@ -215,7 +214,7 @@ impl System {
         bent
     }
 
-    /// The impulse of the springs on each particle.
+    /// Computes the sum of the springs' impulses on each particle, N·s.
     fn spring_impulses(
         &self,
         forest: &Forest,
@@ -235,7 +234,7 @@ impl System {
     }
 }
 
-/// Vector from A to B of a spring at the end of the step, and A's velocity relative to B's.
+/// Returns the vector from A to B of a spring at the end of the step, and A's velocity relative to B's.
 fn at_end(s: &SpringDef, positions: &[Vec3], velocities: &[Vec3], h: f32) -> (Vec3, Vec3) {
     let [a, b] = [s.a as usize, s.b as usize];
     let ahead = velocities[a] - velocities[b];

@@ -6,11 +6,11 @@ use sinew_math::{Sym3, Transform, Vec3};
 /// A body of the island. Moving bodies come first, in tree order; fixed bodies (static, kinematic, asleep) follow.
 #[derive(Clone, Debug)]
 pub(crate) struct SolverBody {
-    /// World index.
+    /// Index in the world.
     pub index: u32,
     pub pose: Transform,
     pub mass: f32,
-    /// Principal moments.
+    /// Principal moments of inertia, kg·m².
     pub inertia: Vec3,
     /// Moments added for stability, kg·m²: the geometric stiffness that exceeds the inertia.
     pub excess: Vec3,
@@ -25,11 +25,11 @@ pub(crate) struct SolverBody {
     pub(super) momentum: Vec3,
     pub linear_damping: f32,
     pub angular_damping: f32,
-    /// True if it exceeded the world's speed limits in a substep of this step.
+    /// True if the body exceeded the world's speed limits in a substep of this step.
     pub is_limited: bool,
 }
 
-/// A row's response to its own impulse, ignoring all joints. Bodies from `moving` on are fixed.
+/// Response of a row to its own impulse, ignoring all joints. Bodies from `moving` on are fixed.
 pub(super) fn free_response(bodies: &[SolverBody], moving: usize, ends: [(u32, &Vec6); 2]) -> f32 {
     let on = |(body, row): (u32, &Vec6)| match bodies.get(body as usize) {
         Some(of) if (body as usize) < moving => dot(row, &of.velocity_change(row)),
@@ -39,18 +39,18 @@ pub(super) fn free_response(bodies: &[SolverBody], moving: usize, ends: [(u32, &
 }
 
 impl SolverBody {
-    /// Angular momentum, N·m·s, without the added stiffness moments.
+    /// Angular momentum at angular velocity `w`, N·m·s, without the added stiffness moments.
     pub(super) fn angular_momentum(&self, w: Vec3) -> Vec3 {
         self.pose.rotation.turn(self.pose.rotation.inverse().turn(w) * self.inertia)
     }
 
-    /// Response to an impulse, ignoring all joints.
+    /// Velocity change from an impulse, ignoring all joints.
     pub(super) fn velocity_change(&self, p: &Vec6) -> Vec6 {
         join(linear(p) / (self.mass * self.mass_scale), self.inverse_inertia * angular(p))
     }
 }
 
-/// Pose after moving at velocity `v` for `h` seconds.
+/// Pose of a body after moving at velocity `v` for `h` seconds.
 pub(super) fn advance(pose: &Transform, v: &Vec6, h: f32) -> Transform {
     Transform::new(pose.translation + linear(v) * h, pose.rotation.integrate(angular(v), h))
 }

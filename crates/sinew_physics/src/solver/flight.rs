@@ -1,7 +1,7 @@
-//! Bodies in flight: nothing touches or holds them, so a step integrates eight of them side by side without a solve.
+//! Bodies in flight: no contact or joint acts on them, so a step integrates eight of them side by side without a solve.
 //!
-//! The angular momentum in world axes changes only by torque and damping. Spin and rotation follow from it, substep by substep, by
-//! [`middle_of_spin`].
+//! The angular momentum in world axes changes only by torque and damping. [`middle_of_spin`] computes spin and rotation
+//! from it, substep by substep.
 
 use super::boundary::solution::SolvedBody;
 use super::motion::{Turn, divided, middle_of_spin, over, within};
@@ -17,10 +17,10 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Rotation, Transform, Vec3, min};
 
-/// One number for each of eight bodies.
+/// Eight numbers, one for each body in a flock.
 pub(super) type Eight = [f32; WIDTH];
 
-/// Returns true for an island of one body on which only gravity and the forces and torques of this step act.
+/// True for an island of one body on which only gravity and the forces and torques of this step act.
 pub(crate) fn flies(island: &Island<'_>, view: &View<'_>) -> bool {
     let &[body] = island.bodies else { return false };
     let held = !(island.joints.is_empty() && island.contacts.is_empty() && island.groups.is_empty());
@@ -93,7 +93,7 @@ struct Flock {
     torque: [Eight; 3],
     linear_damping: Eight,
     angular_damping: Eight,
-    /// Bit `k`: the body in lane `k` exceeded the world's speed limits.
+    /// Bit set of the lanes whose bodies exceeded the world's speed limits.
     limited: u8,
 }
 
@@ -159,10 +159,10 @@ impl Flock {
     }
 }
 
-/// Steps a flock.
+/// Kernel that steps a flock.
 struct Fly<'a> {
     flock: &'a mut Flock,
-    /// Substep, seconds.
+    /// Length of the substep, seconds.
     h: f32,
     substeps: u32,
     /// Limits of speed and spin, m/s and rad/s.

@@ -10,7 +10,7 @@ use sinew_math::Vec3;
 /// A joint of the island.
 #[derive(Clone, Debug)]
 pub(crate) struct SolverJoint {
-    /// World index.
+    /// Index in the world.
     pub index: u32,
     /// Local indices of the bodies.
     pub a: u32,
@@ -23,9 +23,9 @@ pub(crate) struct SolverJoint {
     pub(super) rigid: usize,
     /// Position errors that the rigid rows may leave in this substep, row by row, m or rad.
     pub(super) left_open: Vec6,
-    /// Largest number of rows that it may have.
+    /// Largest number of rows that the joint may have.
     pub(super) most_rows: usize,
-    /// Softness of the other rows, row by row.
+    /// Softness of the rows that are not rigid, row by row.
     pub(super) soft: [SoftRow; DIRECTIONS],
     /// Contribution of the motor to the soft rows, row by row.
     pub(super) driven: [SoftRow; DIRECTIONS],
@@ -34,15 +34,16 @@ pub(crate) struct SolverJoint {
     pub(super) bent_before: Vec6,
     /// Effective masses of springs and motors, direction by direction, kg or kg·m².
     pub mass: Vec6,
-    /// Smallest effective masses of motors, if everything but the joint's two bodies yields. Without a motor the same as `mass`.
+    /// Smallest effective masses of motors, if everything except the joint's two bodies yields. Without a motor the
+    /// same as `mass`.
     pub(super) least_mass: Vec6,
-    /// Rates of driven directions when the substep began.
+    /// Rates of driven directions at the start of the substep.
     pub(super) start_rate: Vec6,
     pub saturated: Saturation,
     /// Sign of a pin motor's impulse in the directions in which contacts and stops pushed it beyond its cap in this substep.
     pub(super) exceeded: Saturation,
     pub limits: [LimitImpulse; MAX_LIMITS],
-    /// Least slack of its hard rotational stops in reach, and that of the last substep, radians.
+    /// Smallest slack of the joint's hard rotational stops in reach, and that of the last substep, radians.
     pub(super) least_slack: f32,
     pub(super) slack_before: f32,
     /// Impulses of the limits in the substep so far, world axes.

@@ -1,7 +1,7 @@
 //! Substeps of one island, on its own arrays: bodies in tree order, joints, contact rows, limit rows.
 //!
-//! An island is one task. It copies what it needs from the world, and `store` and `finalize` copy the results back, so threads
-//! never write to shared memory.
+//! An island is one task. It copies its data from the world, and `store` and `finalize` copy the results back, so threads never
+//! write to shared memory.
 
 mod articulation;
 mod body;
@@ -56,7 +56,7 @@ use sinew_math::dispatch;
 use sinew_math::{Transform, Vec3, abs3, normalize_or};
 use sweep::conjugate::Conjugate;
 
-/// Solver of one island. The next island reuses its memory, but none of its values.
+/// Solver of one island. The next island reuses the memory, but none of the values.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct IslandSolver {
     pub bodies: Vec<SolverBody>,
@@ -70,11 +70,11 @@ pub(crate) struct IslandSolver {
     starts: Vec<Transform>,
     /// Pairs of touching bodies; for islands without joints.
     touches: Vec<Touch>,
-    /// True for each moving body that touches another one while no joint holds either.
+    /// True for each moving body that touches another one, if neither has joints.
     paired: Vec<bool>,
-    /// Masses of touching bodies differ so much that mass scales are updated in each substep.
+    /// True if masses of touching bodies differ so much that mass scales are updated in each substep.
     is_unequal: bool,
-    /// At least one contact point bounces in this substep.
+    /// True if at least one contact point bounces in this substep.
     bounces: bool,
     /// Velocities before the bounce.
     bounced_from: Vec<Vec6>,
@@ -99,50 +99,51 @@ pub(crate) struct IslandSolver {
     unconstrained: Vec<Vec6>,
     /// Velocities after the position update, before `relax`.
     moved: Vec<Vec6>,
-    /// Impulses on bodies after the position update from everything but their joints; impulses that contacts and loops applied before it count negative.
+    /// Impulses on bodies after the position update from all sources except their joints; impulses of contacts and loops before the
+    /// update count negative.
     accounted: Vec<Vec6>,
-    /// Fields or lasting forces act and are evaluated in each substep.
+    /// True if fields or lasting forces act and are evaluated in each substep.
     forces_vary: bool,
     attraction: Attraction,
     scratch: Scratch,
     support: SupportDepth,
-    /// Per moving body.
+    /// Impulses that press on each moving body.
     pressing: Vec<Pressing>,
     quality: Quality,
     policy: SweepPolicy,
     dirty: DirtyRows,
     conjugate: Conjugate,
-    /// Sum over the changes of the current sweep of the energy of each, J.
+    /// Sum of the energies of all single changes in the current sweep, J.
     change_energy: f32,
     /// Largest change of a velocity component in the current sweep, m/s or rad/s.
     largest_change: f32,
     /// Kinetic energy before and after forces in this substep, J.
     kinetic_before: f32,
     kinetic_start: f32,
-    /// Momentum after forces.
+    /// Momentum after forces have acted.
     momentum_start: Momentum,
     /// Work of forces, and of springs and motors, in this substep, J.
     force_work: f32,
     drive_work: f32,
-    /// Kinetic energy that the full push of saturated motors gives bodies before joints hold them, and the work that it does once they
-    /// hold, J: in this substep.
+    /// Kinetic energy that the full push of saturated motors would give bodies without joints, and its work with joints, J, in this
+    /// substep.
     push_energy: f32,
     push_work: f32,
     /// Work in the step so far.
     pub work: Work,
-    /// Particle springs hold a body that carries a much heavier one.
+    /// True if particle springs carry a body that carries a much heavier one.
     pub bears_by_springs: bool,
-    /// Particles or objects applied impulses in this substep.
+    /// True if particles or objects applied impulses in this substep.
     pushed_from_outside: bool,
-    /// Objects applied impulses in this step.
+    /// True if objects applied impulses in this step.
     disturbed: bool,
-    /// A contact surface has a velocity, or a contact a speed at which it separates.
+    /// True if a contact surface has a velocity, or a contact has a launch speed.
     driven: bool,
-    /// Poses changed after the values that depend on them were computed.
+    /// True if poses changed after the values that depend on them were computed.
     displaced: bool,
-    /// Fastest rate that a hit may give a joint, rad/s. Limits that it can reach get rows.
+    /// Largest rate that a hit may give a joint, rad/s. Limits that the joint can reach at this rate get rows.
     hit_rate: f32,
-    /// The sweeps resolved every limit and contact that the predicted poses violate by far.
+    /// True if the sweeps resolved every limit and contact that the predicted poses violate by far.
     is_settled: bool,
     /// Length of a substep, s; number of substeps in the step; ratio of their length to the world's, a power of two.
     h: f32,
@@ -165,7 +166,7 @@ struct Scratch {
     before: Vec<Vec6>,
     /// Predicted poses of all bodies at the end of the substep, kinematic ones included.
     predicted: Vec<Transform>,
-    /// For each tree: position error, m or rad; whether it is being corrected; whether the last corrections included it.
+    /// Position error of each tree, m or rad; whether it is being corrected; whether the last corrections included it.
     errors: Vec<f32>,
     errors_left: Vec<f32>,
     corrected: Vec<bool>,
@@ -176,7 +177,7 @@ struct Scratch {
     contacted: Vec<Vec6>,
     /// Velocities before the sweeps by turns of `relax`.
     relaxed_from: Vec<Vec6>,
-    /// Impulses of the limits.
+    /// Impulses of the limits before a sweep or a conjugate step.
     limits: Vec<f32>,
     /// Velocities from which the joints of the substep are solved.
     started: Vec<Vec6>,
@@ -223,7 +224,8 @@ impl IslandSolver {
         self.push_saturated();
     }
 
-    /// Applies the impulses of contacts and limits of the last substep. Impulses that jumped in it are impacts and are not repeated.
+    /// Applies the impulses of contacts and limits of the last substep. Impulses that jumped in that substep are impacts and are not
+    /// repeated.
     pub fn warm_start(&mut self, runner: &dyn TaskRunner) {
         if !self.has_joints() {
             self.contacts.warm_start(&mut self.velocities, runner);
@@ -259,7 +261,7 @@ impl IslandSolver {
 
     /// Solves joints exactly, then contacts and limits with bias, then joint positions at the predicted poses (SHAKE).
     ///
-    /// Joints come before contacts: in the other order they undo what contacts did (823 mm gap, +59 kJ in one step).
+    /// Joints come before contacts: in the other order they undo the effect of contacts (823 mm gap, +59 kJ in one step).
     pub fn solve(&mut self, runner: &dyn TaskRunner) {
         if !self.has_joints() {
             self.contacts.pull_approach(&self.velocities);
@@ -303,8 +305,8 @@ impl IslandSolver {
         self.add_drive_work();
     }
 
-    /// Integrates velocities into poses, stores the joint forces, and recomputes everything that depends on poses, once, for
-    /// `relax` and for `solve` of the next substep.
+    /// Integrates velocities into poses, stores the joint forces, and recomputes all data that depend on poses, once for both
+    /// `relax` and `solve` of the next substep.
     pub fn integrate_position(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         self.read_pins();
         self.store_joint_forces();
@@ -345,7 +347,7 @@ impl IslandSolver {
         self.policy = usual;
     }
 
-    /// `relax` with the current policy.
+    /// Performs `relax` with the current policy.
     fn relax_rows(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         if core::mem::take(&mut self.displaced) {
             self.refresh(view, runner);
@@ -422,7 +424,7 @@ impl IslandSolver {
         self.refresh_response();
     }
 
-    /// Moves contacts in lanes to the current poses.
+    /// Updates contacts in lanes to the current poses.
     fn place_contacts(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         self.contacts.place(&Substep {
             view,
@@ -435,7 +437,7 @@ impl IslandSolver {
         });
     }
 
-    /// Inverse inertias at the present pose. Geometric stiffness `h² k_g` of the joint forces counts only as far as it
+    /// Computes inverse inertias at the present pose. Geometric stiffness `h² k_g` of the joint forces counts only as far as it
     /// exceeds the inertia, as row sums in the principal frame so that the block stays diagonal (Andrews et al. 2017):
     /// without it 1000:1 chains explode, with all of it a double pendulum loses 72 % of its energy in 20 s.
     fn refresh_inertia(&mut self) {
@@ -447,7 +449,7 @@ impl IslandSolver {
             for (body, arm, force) in
                 [(joint.a, joint.pose.arm_a, -joint.force), (joint.b, joint.pose.arm_b, joint.force)]
             {
-                // k_g = max(0, r·f)(1 − r̂ r̂ᵀ) with f the force on this body at its anchor.
+                // k_g = max(0, r·f)(1 − r̂ r̂ᵀ), with f the force on this body at its anchor.
                 let pull = arm.dot(force);
                 if pull > 0.0 && (body as usize) < self.links.len() {
                     let body = &mut self.bodies[body as usize];
@@ -498,8 +500,8 @@ impl IslandSolver {
         }
     }
 
-    /// Adds points to contacts of jointed bodies that the predicted poses press in by far at other points than those of their rows. True if
-    /// there are any. (Without joints nothing swings in so fast, and corners that bounce at once would gain energy.)
+    /// Adds points to contacts of jointed bodies that penetrate far at the predicted poses, at points without rows. Returns true if
+    /// there are any. (Without joints no body swings in so fast, and corners that bounce together would gain energy.)
     fn predict_contacts(&mut self) -> bool {
         let mut any = false;
         if !self.has_joints() {
@@ -514,12 +516,12 @@ impl IslandSolver {
         any
     }
 
-    /// True if joints hold some of its bodies.
+    /// True if joints connect some bodies of the island.
     fn has_joints(&self) -> bool {
         self.coupling != Coupling::Free
     }
 
-    /// True if contacts lie in lanes.
+    /// True if contacts are solved in lanes.
     fn is_in_lanes(&self) -> bool {
         self.coupling != Coupling::Response
     }
@@ -531,8 +533,8 @@ impl IslandSolver {
         self.h * moving.map(power).fold(0.0, |sum, power| sum + power)
     }
 
-    /// True if the substep is longer than the world's and left predicted violations of limits or contacts unresolved, or moved a joint
-    /// far beyond a limit.
+    /// True if the substep is longer than the world's and left predicted violations of limits or contacts unresolved, or moved a
+    /// joint far beyond a limit.
     pub fn overreaches(&self) -> bool {
         self.stretch > 1.0 && (!self.is_settled || self.leaps_limits())
     }
@@ -542,7 +544,7 @@ impl IslandSolver {
         self.substeps
     }
 
-    /// The bodies that move, in tree order.
+    /// Moving bodies of the island, in tree order.
     pub fn moving_bodies(&self) -> &[SolverBody] {
         &self.bodies[..self.links.len()]
     }

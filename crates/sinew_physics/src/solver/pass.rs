@@ -3,18 +3,18 @@
 /// Purpose of a pass over the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pass {
-    /// With bias, no friction.
+    /// Solves with bias and without friction.
     Solve,
-    /// Without bias, with friction. Friction that reacts to bias velocities adds energy to tall stacks.
+    /// Solves without bias and with friction. Friction that reacts to bias velocities adds energy to tall stacks.
     Relax,
-    /// As `Relax`, with the rebound speed of contacts that were hit. The contacts below them bear the rebound too.
+    /// Like `Relax`, with the rebound speed of contacts that were hit. The contacts below them bear the rebound too.
     Restitution,
 }
 
-/// Coupling of contacts and joints in an island. It decides how accurately and how fast they converge, nothing else.
+/// Coupling of contacts and joints in an island. It affects only how accurately and how fast the solution converges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Coupling {
-    /// There are no joints.
+    /// The island has no joints.
     #[default]
     Free,
     /// Each impulse of a contact or limit changes the velocities of all links. For one or two trees.

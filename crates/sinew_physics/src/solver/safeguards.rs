@@ -1,6 +1,6 @@
 //! Safeguards that keep violent hits from adding energy. Rows are linear and valid at the pose at which they were built. A hit that turns a
-//! limb by a good part of a radian within a substep leaves that pose, and impulses that were right before can add energy. None of the
-//! safeguards acts at rest or in ordinary falls.
+//! limb by a large part of a radian within a substep leaves that pose, and impulses that were right before can add energy. No safeguard
+//! acts at rest or in ordinary falls.
 
 use crate::joint::DIRECTIONS;
 use crate::solver::IslandSolver;
@@ -16,8 +16,8 @@ use sinew_math::dispatch;
 use sinew_math::{Vec3, max, min};
 
 impl IslandSolver {
-    /// Drops the warm start of a substep if it adds energy. Impulses that support weights remove energy; those of an impact, repeated at
-    /// another pose, may add it.
+    /// Drops the warm start of a substep if it adds energy. Impulses that support weights remove energy; impulses of an impact, repeated at
+    /// another pose, may add energy.
     pub(in crate::solver) fn drop_bad_warm_start(&mut self) {
         let moving = self.links.len();
         let before = self.kinetic_energy(&self.unconstrained) + self.push_energy;
@@ -98,7 +98,7 @@ impl IslandSolver {
 
     /// Falls back to a rigid motion if the solution is invalid: not finite, beyond all limits, or leaving joints open by `torn`, m or rad.
     /// This happens with rows that contradict each other (a body dragged into the floor, conflicting joints). The island then moves as one
-    /// rigid piece for this pass, with the momentum that the forces gave it: no joint opens, and no energy is added.
+    /// rigid piece for this pass, with its momentum after the forces: no joint opens, and no energy is added.
     pub(in crate::solver) fn fall_back_to_rigid(&mut self, torn: f32) {
         let moving = self.links.len();
         let most = [DIVERGED_SPEED * self.max_speed, DIVERGED_SPIN];
@@ -114,12 +114,12 @@ impl IslandSolver {
         self.forget_impulses();
     }
 
-    /// Rigid motion of the island with the momentum of the given velocities; at rest if the island touches or hangs on a fixed body.
+    /// Rigid motion of the island with the momentum of the given velocities; at rest if the island touches or is jointed to a fixed body.
     fn motion_as_one(&self, velocities: &[Vec6]) -> RigidMotion {
         if self.is_held() { RigidMotion::default() } else { RigidMotion::of(&self.bodies, velocities) }
     }
 
-    /// Rigid motion of the island with the momentum that the forces gave it, at the present poses.
+    /// Rigid motion of the island with its momentum after the forces, at the present poses.
     fn meant_as_one(&self) -> RigidMotion {
         if self.is_held() {
             RigidMotion::default()
@@ -128,7 +128,7 @@ impl IslandSolver {
         }
     }
 
-    /// Returns true if the island touches or hangs on a fixed body.
+    /// True if the island touches or is jointed to a fixed body.
     fn is_held(&self) -> bool {
         self.bodies.len() > self.links.len()
     }
@@ -147,9 +147,9 @@ impl IslandSolver {
     /// by rounding, redundant rows, or stops at a mispredicted pose is removed from the motion relative to the rigid motion of the island:
     /// joints stay satisfied, since their rows are linear, and momentum is conserved.
     ///
-    /// The potential energy by which soft contacts raise a standing body counts as added: a heavy leg on a light foot would rock higher and
-    /// higher, by 0.1 J for each edge that sinks in and comes up again. A small amount is free where something is crushed, since a hand
-    /// under a thigh must get out.
+    /// The potential energy by which soft contacts raise a standing body counts as added: otherwise a heavy leg on a light foot rocks
+    /// higher and higher, by 0.1 J for each edge that sinks in and rises again. A small amount is allowed where a body is crushed, since a
+    /// hand under a thigh must get out.
     pub(in crate::solver) fn bound_energy(&mut self) {
         let moving = self.links.len();
         if self.pushed_from_outside || !self.is_passive() {
@@ -167,7 +167,7 @@ impl IslandSolver {
         if after <= most {
             return;
         }
-        // Momentum is corrected to that after the forces, whatever happened inside the island.
+        // Momentum is corrected to that after the forces, whatever the motion inside the island.
         let (now, meant) = (self.motion_as_one(&self.velocities[..moving]), self.meant_as_one());
         let s = &mut self.scratch;
         s.dv.clear();
@@ -228,14 +228,14 @@ impl IslandSolver {
         }
     }
 
-    /// Returns true if no joint is left open by more than this substep may leave.
+    /// True if no joint is left open by more than the substep allows.
     fn joints_close_in_time(&self) -> bool {
         !self.joints.iter().any(|joint| joint.left_open[..joint.rigid].iter().any(|left| *left != 0.0))
     }
 
-    /// Limits the energy of bounces. Points that bounce at once, each with its own speed, may request more energy than came in. The
-    /// velocities then change only by the share of the bounce that the energy allows: momentum is conserved, and separating points keep
-    /// separating.
+    /// Limits the energy of bounces. Points that bounce together, each with its own speed, may request more energy than the impact had. The
+    /// velocities then change only by the share of the bounce that the energy allows: momentum is conserved, and separating points continue
+    /// to separate.
     pub(in crate::solver) fn limit_bounce(&mut self) {
         if self.pushed_from_outside || !self.is_passive() {
             return;
@@ -262,17 +262,17 @@ impl IslandSolver {
         }
     }
 
-    /// Returns true if no kinematic body or moving surface drives the rows.
+    /// True if no kinematic body or moving surface drives the rows.
     pub(in crate::solver) fn is_passive(&self) -> bool {
         !self.driven && self.velocities[self.links.len()..].iter().all(|v| *v == ZERO6)
     }
 
-    /// Limits the energy that `relax` adds. It cannot add any, except that impulses taken back at another pose than they were given at can,
-    /// in violent hits. The velocities then change only by the share along which energy falls; joints stay satisfied all the way.
+    /// Limits the energy that `relax` adds. It cannot add any, except by impulses that are taken back at another pose, in violent hits. The
+    /// velocities then change only by the share along which energy falls; joints stay satisfied all the way.
     ///
     /// [`bound_energy`](Self::bound_energy) does not cover this: it lets `relax` return the energy that `solve` lost, and removes none from
-    /// the rigid motion of the island. Without this limit, of 400 random worlds as many pass, but two of the failing ones explode (to 8e4
-    /// and 2e14 times their energy), and a figure thrown at a wall sinks in by 10 mm instead of 1.
+    /// the rigid motion of the island. Without this limit, equally many of 400 random worlds pass, but two of the failing ones explode (to
+    /// 8e4 and 2e14 times their energy), and a figure thrown at a wall sinks in by 10 mm instead of 1.
     pub(in crate::solver) fn keep_energy(&mut self) {
         let moving = self.links.len();
         let before = &self.scratch.before[..moving];

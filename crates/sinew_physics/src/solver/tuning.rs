@@ -10,18 +10,18 @@
 
 // ---- Substeps and coupling ----
 
-/// Number of contacts from which on an island of free bodies takes half of the substeps.
+/// Number of contacts at or above which an island of free bodies takes half of the substeps.
 ///
 /// Many contacts damp all motion, and no single one dominates. Sensible from 16 to some hundreds. Smaller: with 16, 10,000 boxes take a
 /// quarter less time, but `cards` sink by 2.009 mm (bar 2.0) and `wave_pile` sleeps 52 steps too late (ADR 0015). Larger: small heaps take
 /// all substeps. Shown by `cards`, `wave_pile`.
 pub(super) const DAMPED_CONTACTS: usize = 32;
 
-/// Contacts per body from which on an island with limp joints takes half of the substeps, a ratio.
+/// Number of contacts per body at or above which an island with limp joints takes half of the substeps, a ratio.
 ///
-/// Figures that lie on something take half of the substeps, figures that swing or fly take all. Sensible from 0.1 to 1. Larger: heaps of
-/// figures cost more. Smaller: figures that hang by joints and hardly touch anything swing in the longer substep. Shown by `ragdoll_pile`;
-/// the tests of `bobs` swing beneath a heap.
+/// Figures that lie on the ground or on each other take half of the substeps, figures that swing or fly take all. Sensible from 0.1 to 1.
+/// Larger: heaps of figures cost more. Smaller: figures that hang by joints and hardly touch anything swing in the longer substep. Shown by
+/// `ragdoll_pile`; the tests of `bobs` swing beneath a heap.
 pub(super) const DAMPED_CONTACTS_PER_BODY: f32 = 0.25;
 
 /// Number of contacts below which an island with joints takes all substeps.
@@ -36,16 +36,16 @@ pub(super) const DAMPED_CONTACTS_JOINTED: usize = 4;
 /// Smaller: heaps in motion cost more. No scene shows it alone; `wave_pile` and `ragdoll_pile` fall below it as they calm down.
 pub(super) const CALM_TURN: f32 = 0.25;
 
-/// Ratio of masses beyond which an island takes all substeps and a pile the sweeps for unequal masses, a number.
+/// Ratio of masses above which an island takes all substeps and a pile the sweeps for unequal masses, a number.
 ///
 /// Sensible from 10 to 1,000. Larger: light bodies between heavy ones are tossed about. Smaller: heaps of mixed sizes take substeps and
 /// sweeps that they do not need. Shown by `stack_ratio`, `stack_mass_ratio`, and the tests of `stacks` with towers of any masses.
 pub(super) const GRADED_RATIO: f32 = 100.0;
 
-/// Trees of joints beyond which an island is solved by turns, a number.
+/// Number of trees of joints above which an island is solved by turns.
 ///
-/// The response of all links grows with trees times contacts (ADR 0017). Sensible from 1 to 16. Larger: heaps of some figures take
-/// half as long again. Smaller: single figures press 6 mm into each other when they hit. Shown by `brawl` (beyond) and `ragdoll_poses`
+/// The cost of the response of all links grows with trees times contacts (ADR 0017). Sensible from 1 to 16. Larger: heaps of some figures
+/// take half as long again. Smaller: single figures press 6 mm into each other when they hit. Shown by `brawl` (above) and `ragdoll_poses`
 /// (below).
 pub(super) const RESPONSE_TREES: usize = 2;
 
@@ -69,11 +69,11 @@ pub(super) const MAX_TREE: usize = 1024;
 
 /// Largest additional violation of a hard joint limit within a longer substep, radians.
 ///
-/// If a joint exceeds it, the island repeats the step in the world's substeps. Larger: limbs are over-extended in crashes. Smaller: crashes
+/// If a joint exceeds this violation, the island repeats the step in the world's substeps. Larger: limbs are over-extended in crashes. Smaller: crashes
 /// cost more. Sensible from 0.02 to 0.1. Shown by `ragdoll_pile` of `cargo xtask bench`.
 pub(super) const LIMIT_LEAP: f32 = 0.05;
 
-/// Number of rounds in a substep in which the rows of badly violated limits and contacts are tightened.
+/// Largest number of rounds in a substep that tighten the rows of badly violated limits and contacts.
 ///
 /// Each round resumes the pass of sweeps. Sensible from 1 to 8. Larger: violent crashes cost more. Smaller: a whirling limb leaves its cone
 /// on a side without a row. Shown by `ragdoll_wall_fast` and the test `humanoid::wall_hits`.
@@ -88,7 +88,7 @@ pub(super) const PREDICTIONS: usize = 8;
 /// a few, `relax` may not converge. Shown by `ragdoll_poses` (hands that tremble) and `slide_to_roll`.
 pub(super) const FRICTION_BOUND_UPDATES: usize = 2;
 
-/// Number of contacts from which on an island of free bodies uses the sweep policy of heaps.
+/// Number of contacts at or above which an island of free bodies uses the sweep policy of heaps.
 ///
 /// Sensible from 8 to 64. Smaller: islands of few contacts get few sweeps; with 8 or 16 sweeps in such islands `block_overhang`, which is
 /// close to tipping, tips over (0.4 m in 10 s; ADR 0015). Larger: heaps take all the sweeps of a small pile. Shown by `block_overhang`,
@@ -114,8 +114,8 @@ pub(super) const MOST_RELAX_SWEEPS: f32 = 512.0;
 
 /// Least change of a velocity that ends the sweeps of unequal piles, m/s.
 ///
-/// A bound on `0.002/(n r)` (ADR 0015): below it, changes are within the rounding of velocities around 1 m/s in 32 bits. Larger: light
-/// bodies under heavy ones creep. Smaller: all sweeps up to the largest number are made. Sensible from 1e-8 to 1e-6. Shown by
+/// A bound on `0.002/(n r)` (ADR 0015): smaller changes are within the rounding error of velocities around 1 m/s in 32 bits. Larger: light
+/// bodies under heavy ones creep. Smaller: the solver makes all sweeps up to the largest number. Sensible from 1e-8 to 1e-6. Shown by
 /// `stack_mass_ratio`.
 pub(super) const LEAST_SWEEP_TOLERANCE: f32 = 1e-7;
 
@@ -136,8 +136,8 @@ pub(super) const REDUNDANCY: f32 = 1e-5;
 /// Proximal term of a manifold's normal block (by response), as a share of its largest response, added to each diagonal entry.
 ///
 /// Four points of a face leave the block singular. Larger: points yield under load. Smaller: the active set method meets pivots of pure
-/// rounding, cycles and falls back to trying all sets. Sensible from 1e-6 to 1e-4. No scene shows it alone; `ragdoll_drop` lands on such
-/// faces.
+/// rounding error, cycles and falls back to trying all sets. Sensible from 1e-6 to 1e-4. No scene shows it alone; `ragdoll_drop` lands on
+/// such faces.
 pub(super) const LCP_PROXIMAL: f32 = 1e-5;
 
 /// Regularisation of each point's and friction's own response in lanes, as a share of that response.
@@ -193,7 +193,7 @@ pub(super) const LASTING: f32 = 1.0 / 60.0;
 /// `stack` and the test `closed_forms::a_box_comes_to_rest_on_the_floor_and_sleeps`.
 pub(super) const DEAD_ZONE: f32 = 0.2;
 
-/// Overlap above which a contact is deep, in multiples of the slop.
+/// Overlap above which a contact counts as deep, in multiples of the slop.
 ///
 /// An island with a deep contact may gain the height that removes the overlap, and 0.1 % of its kinetic energy (or of 1 J/kg) in each
 /// substep, so that crushed bodies get out (ADR 0011). Larger: a hand under a thigh stays in. Smaller: bodies on soft contacts may rock for
@@ -202,64 +202,63 @@ pub(super) const DEEP_SLOPS: f32 = 2.0;
 
 /// Factor by which an impulse must grow within a substep to count as an impact, a number.
 ///
-/// Lasting loads are warm-started, impacts are not: repeating an impact gave 141° of limit overshoot and +214 J (docs/step.md). Contacts
-/// are judged by the whole manifold. Larger: impacts are applied twice. Near 1: the warm start of growing loads is too small. Sensible from
-/// 1.5 to
-/// 4. Shown by `ragdoll_wall`.
+/// Lasting loads are warm-started, impacts are not: repeating an impact gave 141° of limit overshoot and +214 J (docs/step.md). The whole
+/// manifold is compared. Larger: impacts are applied twice. Near 1: the warm start of growing loads is too small. Sensible from 1.5 to 4.
+/// Shown by `ragdoll_wall`.
 pub(super) const IMPACT_JUMP: f32 = 2.0;
 
 /// Largest turn of a body within a substep for `relax` to take back its impulses, radians.
 ///
-/// An impulse taken back at another pose than it was given at adds energy: a hand went from 70 to 2,700 rad/s (ADR 0008). Larger: energy is
-/// added. Smaller: excess impulses of `solve` stay, and bodies separate that should rest. Sensible from 0.05 to 0.3. Shown by
+/// An impulse taken back at another pose adds energy: a hand went from 70 to 2,700 rad/s (ADR 0008). Larger: violent hits add energy.
+/// Smaller: excess impulses of `solve` stay, and bodies separate that should rest. Sensible from 0.05 to 0.3. Shown by
 /// `ragdoll_wall_fast`.
 pub(super) const RELAX_TURN: f32 = 0.15;
 
-/// Turn within a substep from which on contacts by response are recomputed, radians.
+/// Turn within a substep at or above which contacts by response are recomputed, radians.
 ///
 /// The points of the step's beginning do not include a corner that swings in: a hand sank 33 mm into a thigh (docs/step.md). Larger: such
 /// corners sink in. Smaller: rolling figures cost more. The value also decides which contacts are predicted, and half of it which contacts
 /// in lanes have room for four points from the start. Sensible from 0.003 to 0.05. Shown by `ragdoll_drop`, `ragdoll_poses`.
 pub(super) const REFRESH_TURN_RESPONSE: f32 = 0.01;
 
-/// Turn since the last computation from which on contacts in lanes are recomputed, radians.
+/// Turn since the last computation at or above which contacts in lanes are recomputed, radians.
 ///
 /// Known points stay exact, and corners that swing in by a smaller turn have rows, since they were within the margin. Larger: corners of
-/// tumbling bodies come down without rows. With a fifth of the value, falling heaps cost 1.5 times as much and penetrate as deeply.
+/// tumbling bodies hit the ground without rows. With a fifth of the value, falling heaps cost 1.5 times as much and penetrate as deeply.
 /// Sensible from 0.01 to 0.1. Shown by `box_rain`.
 pub(super) const REFRESH_TURN_LANES: f32 = 0.05;
 
-/// Turn within a substep from which on contacts with kinematic bodies are recomputed, radians.
+/// Turn within a substep at or above which contacts with kinematic bodies are recomputed, radians.
 ///
-/// Without it, spinning rods missed up to 33 of 80 balls that flew through their discs, and hit as many at positions that the rods had
+/// Without recomputing, spinning rods missed up to 33 of 80 balls that flew through their discs, and hit as many at positions that the rods had
 /// left. Larger: slower rods miss balls too. Smaller: limbs moved by clips cost more, and the bits of their contacts change. Sensible from
 /// 0.05 to 0.2. Shown by the test `spinning::rods_hit_balls_that_fly_through_their_discs`.
 pub(super) const REFRESH_TURN_LED: f32 = 0.1;
 
-/// Turn within a substep from which on the contacts of a rolling rim are recomputed, radians.
+/// Turn within a substep at or above which the contacts of a rolling rim are recomputed, radians.
 ///
-/// However slowly it rolls, a push at the rim's old position turns the body as much as gyration does. Larger: discs roll in wrong circles.
+/// However slowly the rim rolls, a push at its old position turns the body as much as gyration does. Larger: discs roll in wrong circles.
 /// Smaller: only the cost rises. Sensible from 1e-5 to 1e-3. Shown by the test
 /// `rims::a_disc_rolls_in_a_circle_at_the_rate_of_its_closed_form`, `coin`.
 pub(super) const REFRESH_TURN_RIM: f32 = 1e-4;
 
 /// Distance up to which recomputed contacts get points, as a share of the smaller bounding radius.
 ///
-/// A hand between thigh and floor that spins off one corner hits the other within the substep (ADR 0011). Larger: more rows that never
-/// push. Smaller: the hand sinks in. Sensible from 0.1 to 1. Shown by `ragdoll_poses`.
+/// A hand between thigh and floor that spins off one corner hits the other within the substep (ADR 0011). Larger: there are more rows that
+/// never push. Smaller: the hand sinks in. Sensible from 0.1 to 1. Shown by `ragdoll_poses`.
 pub(super) const FAR_CORNER: f32 = 0.4;
 
 /// Largest predicted penetration of points without rows in a substep, metres.
 ///
-/// Beyond it, the manifold of the predicted pose replaces the present one: a foot at 7 m/s hit the other shin with a corner without rows,
-/// and was 2 cm in (docs/step.md). Larger: limbs enter each other. Smaller: more passes are resumed. Sensible from 0.2 to 5 mm. Shown by
-/// `ragdoll_drop`, the tests of `humanoid`.
+/// Above it, the manifold of the predicted pose replaces the present one: a foot at 7 m/s hit the other shin with a corner without rows,
+/// and penetrated by 2 cm (docs/step.md). Larger: limbs penetrate each other. Smaller: more passes are resumed. Sensible from 0.2 to 5 mm.
+/// Shown by `ragdoll_drop`, the tests of `humanoid`.
 pub(super) const PREDICTED_DEPTH: f32 = 1e-3;
 
 /// Approach speed above which a contact in lanes has room for four points from the start, m/s.
 ///
 /// Faster contacts may get other points within the step. Larger: there may be no room for a new point of a fast body. Smaller: more blocks
-/// of four points that hold one. Sensible from 0.2 to 3. No scene shows it alone.
+/// of four points hold only one. Sensible from 0.2 to 3. No scene shows it alone.
 pub(super) const FAST_APPROACH: f32 = 1.0;
 
 /// Sine of the largest tilt of a cylinder's axis at which it counts as lying on its side.
@@ -279,12 +278,12 @@ pub(super) const FLAT_SINE: f32 = 0.01;
 
 /// Slip speed above which static friction changes to sliding friction, m/s.
 ///
-/// It is larger than the slip that unconverged loads cause in a substep. The twist of a manifold is compared to the same speed at its lever
+/// The value is larger than the slip that unconverged loads cause in a substep. The twist of a manifold is compared to the same speed at its lever
 /// arm. Larger: bodies that should slide stick. Smaller: stacks at rest have only sliding friction. Sensible from 0.001 to 0.02. Shown by
 /// `static_friction` and the tests of `surfaces`.
 pub(super) const SLIP_SPEED: f32 = 0.005;
 
-/// Weight of a point's load in the friction centre, a share; it and [`WEIGHT_EVENLY`] sum to 1.
+/// Weight of a point's load in the friction centre, a share; this and [`WEIGHT_EVENLY`] sum to 1.
 ///
 /// Larger: a point that is about to bear load has no weight. Smaller: friction acts beside the centre of pressure, and turns sliding
 /// bodies. Sensible from 0.5 to 1. No scene shows it alone; `slide_to_roll` and `incline_slides` use it.
@@ -292,20 +291,20 @@ pub(super) const WEIGHT_OF_LOAD: f32 = 0.8;
 
 /// Weight distributed evenly over the points in the friction centre, a share.
 ///
-/// It is 1 minus [`WEIGHT_OF_LOAD`]; a larger value has the effects of a smaller one there, in the same scenes.
+/// The value is 1 minus [`WEIGHT_OF_LOAD`]; a larger value has the effects of a smaller one there, in the same scenes.
 pub(super) const WEIGHT_EVENLY: f32 = 0.2;
 
 /// Largest number of Newton steps to the rim of the friction disk in lanes.
 ///
-/// They end within 1e-4 of the radius; the remaining error is removed by scaling. Larger: no effect. Smaller: the friction of flat or
+/// The steps end within 1e-4 of the radius; scaling removes the remaining error. Larger: no effect. Smaller: the friction of flat or
 /// slender bodies deviates from the direction of least energy. Sensible from 3 to 10. No scene shows it alone; `incline_slides` uses it.
 pub(super) const FRICTION_RIM_STEPS: usize = 6;
 
 // ---- Bounces ----
 
-/// Approach speed below which nothing bounces, m/s.
+/// Approach speed below which contacts do not bounce, m/s.
 ///
-/// Without it, restitution makes stacks jitter (ADR 0013). An island with a faster bounce takes all substeps. Larger: balls stop bouncing
+/// Without a lower bound, restitution makes stacks jitter (ADR 0013). An island with a faster bounce takes all substeps. Larger: balls stop bouncing
 /// early. Smaller: heaps jitter for long. Sensible from 0.1 to 2. Shown by `bouncing_balls` and the tests of `bounce`.
 pub(super) const BOUNCE_SPEED: f32 = 1.0;
 
@@ -314,7 +313,7 @@ pub(super) const BOUNCE_SPEED: f32 = 1.0;
 /// Largest rate at which a violated rotational stop is corrected, rad/s.
 ///
 /// Larger: a joint that a crash bent beyond its limit is thrown back, with energy that has to be removed elsewhere. Smaller: the limit
-/// stays violated for long; a limb that whirls around outside of its cone drifts out as fast as the correction brings it back (ADR 0011, at
+/// stays violated for long; a limb that circles outside its cone drifts out as fast as the correction brings it back (ADR 0011, at
 /// 30 rad/s). Sensible from 1 to 10. Shown by `ragdoll_wall_fast`.
 pub(super) const LIMIT_PUSH_SPIN: f32 = 4.0;
 
@@ -325,8 +324,8 @@ pub(super) const LIMIT_PUSH_SPEED: f32 = 4.0;
 
 /// Slack below which a rotational stop gets a row even at rest, radians.
 ///
-/// The motion in two substeps at the joint's rate, or at the rate after a possible hit, is added. Larger: more rows that never push.
-/// Smaller: a hit violates a stop that has no row. Sensible from 0.05 to 0.5. Shown by `ragdoll_wall`; `ragdoll_pile` counts violated
+/// The motion in two substeps at the joint's rate, or at the rate after a possible hit, is added. Larger: there are more rows that never
+/// push. Smaller: a hit violates a stop that has no row. Sensible from 0.05 to 0.5. Shown by `ragdoll_wall`; `ragdoll_pile` counts violated
 /// limits.
 pub(super) const LIMIT_MARGIN_ANGLE: f32 = 0.15;
 
@@ -356,9 +355,9 @@ pub(super) const LIMIT_BEND: f32 = 10.0;
 
 /// Least lever arm over which a hit converts linear speed to rotation, metres.
 ///
-/// It sets the assumed rate of a joint after a hit, which decides the stops that get rows. Larger: stops of small limbs are missed in a
-/// hit. Smaller: more rows that never push. Sensible from 0.05 to 0.5, with the size of limbs. No scene shows it alone; `ragdoll_wall_fast`
-/// uses it.
+/// The lever arm sets the assumed rate of a joint after a hit, which decides the stops that get rows. Larger: stops of small limbs are
+/// missed in a hit. Smaller: there are more rows that never push. Sensible from 0.05 to 0.5, with the size of limbs. No scene shows it
+/// alone; `ragdoll_wall_fast` uses it.
 pub(super) const HIT_LEVER: f32 = 0.2;
 
 // ---- Joints and positions ----
@@ -379,22 +378,22 @@ pub(super) const POSITION_CORRECTIONS_ITERATED: usize = 1;
 /// Position error that needs no correction, for gaps in metres and locked rotations in radians.
 ///
 /// There is one value for both units, since a tree is judged by its largest error over all rows, and all its rows are corrected together.
-/// Strands have ball joints only, so there it is in metres. With 3e-6 a triple pendulum drifts by 1.3 % of its energy (bar 1), though a
-/// scene of rain takes 277 instead of 294 M instructions (docs/performance.md). Smaller: corrections of rounding errors. Sensible from 3e-7
-/// to 1e-5. Shown by `triple_pendulum`.
+/// Strands have ball joints only, so the unit there is metres. With 3e-6 a triple pendulum drifts by 1.3 % of its energy (bar 1), though a
+/// scene of rain takes 277 instead of 294 M instructions (docs/performance.md). Smaller: corrections act on rounding errors. Sensible from
+/// 3e-7 to 1e-5. Shown by `triple_pendulum`.
 pub(super) const POSITION_TOLERANCE: f32 = 1e-6;
 
 /// Position error of a strand that needs no correction, as a share of its largest coordinate.
 ///
 /// The value is 1.5 ulp, the rounding error of the difference of two positions: at 40 m from the origin, two of three corrections corrected
-/// rounding errors (ADR 0018). Larger: gaps stay open. Smaller: such corrections. Sensible from 1 to 4 times `EPSILON`. Shown by
-/// `chain_100_links`.
+/// rounding errors (ADR 0018). Larger: gaps stay open. Smaller: corrections act on rounding errors. Sensible from 1 to 4 times `EPSILON`.
+/// Shown by `chain_100_links`.
 pub(super) const POSITION_ROUNDING: f32 = 1.5 * f32::EPSILON;
 
 /// Largest share of a tree's error that a correction may leave for another one to follow.
 ///
-/// A correction that increases the error does not end the rounds, since the next one often removes it (ADR 0019). Larger: corrections with
-/// little gain. Smaller: slowly converging errors stay. Sensible from 0.5 to 0.99. No scene shows it alone.
+/// A correction that increases the error does not end the rounds, since the next one often removes it (ADR 0019). Larger: trees make
+/// corrections with little gain. Smaller: slowly converging errors stay. Sensible from 0.5 to 0.99. No scene shows it alone.
 pub(super) const WORTH_ANOTHER: f32 = 0.9;
 
 /// Largest number of additional solves of joint velocities in `relax`.
@@ -437,19 +436,19 @@ pub(super) const MOST_BENT_ANGLE: f32 = 0.1;
 
 /// Pivot below which a direction counts as locked, as a share of the initial pivot.
 ///
-/// A smaller pivot is rounding. Larger: directions that could move are locked. Smaller: a direction that is pure rounding gets a huge
-/// response. Sensible around an ulp of 32 bits, 1e-7 to 1e-5. No scene shows it alone; `gimbal` aligns its axes.
+/// A smaller pivot is rounding error. Larger: directions that could move are locked. Smaller: a direction that is pure rounding error gets
+/// a huge response. Sensible around an ulp of 32 bits, 1e-7 to 1e-5. No scene shows it alone; `gimbal` aligns its axes.
 pub(super) const LEAST_PIVOT: f32 = 1e-7;
 
 /// Squared length below which a joint axis counts as degenerate, a number (valid axes have lengths of about 1).
 ///
-/// Larger: a joint near its singularity loses a row early. Smaller: the row is pure rounding. Sensible from 1e-8 to 1e-4. Shown by
+/// Larger: a joint near its singularity loses a row early. Smaller: the row is pure rounding error. Sensible from 1e-8 to 1e-4. Shown by
 /// `gimbal`.
 pub(super) const LEAST_AXIS_SQUARE: f32 = 1e-6;
 
 /// Least share of an axis's square perpendicular to the joint's other axes, a number.
 ///
-/// Larger: nearly parallel axes count as one early. Smaller: their rows are rounding. Sensible from 1e-6 to 1e-3. Shown by `gimbal`.
+/// Larger: nearly parallel axes count as one early. Smaller: their rows are rounding errors. Sensible from 1e-6 to 1e-3. Shown by `gimbal`.
 pub(super) const LEAST_AXIS_SHARE: f32 = 1e-5;
 
 // ---- Drives ----
@@ -457,8 +456,8 @@ pub(super) const LEAST_AXIS_SHARE: f32 = 1e-5;
 /// Rate below which rotational dry friction is less than the full torque, rad/s.
 ///
 /// Joint friction is a viscosity that gives the full torque at the present rate, but at most the viscosity at this rate. A joint that
-/// should stick creeps below it, until it sleeps. Larger: limp figures sag. Smaller: gains are so large that the limb's inertia is lost in
-/// 32 bits. Sensible from 0.001 to 0.02. Shown by the test `joints::friction_slows_a_hinge_by_its_torque`, `ragdoll_poses`.
+/// should stick creeps below this rate, until it sleeps. Larger: limp figures sag. Smaller: gains are so large that the limb's inertia is
+/// lost in 32 bits. Sensible from 0.001 to 0.02. Shown by the test `joints::friction_slows_a_hinge_by_its_torque`, `ragdoll_poses`.
 pub(super) const STICK_SPIN: f32 = 0.004;
 
 /// Rate below which dry friction of a slide is less than the full force, m/s.
@@ -482,24 +481,24 @@ pub(super) const FASTEST_SPRING: f32 = 1.0;
 /// Factor on the least damping with which springs on small masses are stable, a number.
 ///
 /// A spring with less damping uses implicit Euler: a pin that carries a figure by its hand must not shake if only the hand moves. Larger:
-/// more springs lose their exact poles. Below 1: they shake. Sensible from 1 to 2. Shown by the test
+/// more springs lose their exact poles. Below 1: such pins shake. Sensible from 1 to 2. Shown by the test
 /// `pins::an_underdamped_pin_on_a_light_end_does_not_shake`.
 pub(super) const SPRING_MARGIN: f32 = 1.1;
 
-/// Number of rounds in a substep that saturate motors beyond their caps.
+/// Largest number of rounds in a substep that saturate motors beyond their caps.
 ///
 /// Each round is a factor and a solve. Larger: only the cost rises where many motors saturate. Smaller: motors exceed their caps for a
 /// substep. Sensible from 2 to 8. Shown by the test `joints::motors_in_a_chain_saturate_only_where_they_are_weak`, `powered`.
 pub(super) const SATURATION_ROUNDS: usize = 4;
 
-/// Substitute for the mass of a translation row that moves almost none (both bodies held), kg.
+/// Substitute for the mass of a translation row whose bodies are both held, kg.
 ///
-/// A spring given by a frequency then has almost no force. It must be positive and far below any body. No scene shows it alone.
+/// A spring given by a frequency then has almost no force. The value must be positive and far below any body's mass. No scene shows it alone.
 pub(super) const LEAST_ROW_MASS: f32 = 1e-9;
 
-/// Substitute for the inertia of a rotation row that moves almost none (both bodies held), kg·m².
+/// Substitute for the inertia of a rotation row whose bodies are both held, kg·m².
 ///
-/// The reason is that of [`LEAST_ROW_MASS`]; it must be far below any body's moments. No scene shows it alone.
+/// The reason is that of [`LEAST_ROW_MASS`]; the value must be far below any body's moments. No scene shows it alone.
 pub(super) const LEAST_ROW_MOMENT: f32 = 1e-9;
 
 // ---- Loops ----
@@ -520,12 +519,12 @@ pub(super) const LOOP_ROUNDS: usize = 16;
 /// Largest remaining rate of loops, for translations in m/s and rotations in rad/s.
 ///
 /// There is one value for both units, since the rounds end by the sum of squares over all loop rows of the island. Larger: nets creep.
-/// Smaller: rounds that correct rounding errors. Sensible from 1e-6 to 1e-4. Shown by `joint_grid`.
+/// Smaller: rounds act on rounding errors. Sensible from 1e-6 to 1e-4. Shown by `joint_grid`.
 pub(super) const LOOP_RATE_TOLERANCE: f32 = 1e-5;
 
 /// Share of the residual's square that ends the rounds of conjugate gradients on loops, a number.
 ///
-/// It is 1e-3 of the residual, squared. Larger: nets open. Smaller: all rounds are made. Sensible from 1e-8 to 1e-4. Shown by `net`.
+/// The value is 1e-3 of the residual, squared. Larger: nets open. Smaller: all rounds are made. Sensible from 1e-8 to 1e-4. Shown by `net`.
 pub(super) const LOOP_RESIDUAL_SHARE: f32 = 1e-6;
 
 /// Regularisation of loop rows, as a share of the bodies' response without joints.
@@ -539,8 +538,8 @@ pub(super) const LOOP_REDUNDANCY: f32 = 3e-5;
 
 /// Cosine of the steepest slope on which a body counts as standing when loads are guessed.
 ///
-/// About 45° (ADR 0015); a wrong guess only costs sweeps. Larger: leaning bodies get no guess. Smaller: sliding bodies get one. Sensible
-/// from 0.5 to 0.9. Shown by `large_pyramid`, whose loads are guessed when it is created.
+/// About 45° (ADR 0015); a wrong guess only costs sweeps. Larger: leaning bodies get no guess. Smaller: sliding bodies get a guess.
+/// Sensible from 0.5 to 0.9. Shown by `large_pyramid`, whose loads are guessed when it is created.
 pub(super) const STANDING_COSINE: f32 = 0.7;
 
 /// Largest approach speed of a body that counts as standing when loads are guessed, m/s.
@@ -572,21 +571,21 @@ pub(super) const MAX_INNER_TURN: f32 = 1.0;
 
 /// Largest share of the kinetic energy (of at least 1 J/kg) that a pass may add before it counts as an error.
 ///
-/// Rounding and the energy exchange of resting contacts are far below. Larger: islands gain energy step by step. Smaller: warm starts are
-/// dropped for rounding. Sensible from 1e-4 to 1e-2. Shown by the `random_worlds`, `ragdoll_wall_fast`.
+/// Rounding and the energy exchange of resting contacts are far below this share. Larger: islands gain energy step by step. Smaller: warm
+/// starts are dropped because of rounding errors. Sensible from 1e-4 to 1e-2. Shown by `random_worlds`, `ragdoll_wall_fast`.
 pub(super) const ENERGY_SLACK: f32 = 1e-3;
 
 /// Speed above which a solution counts as diverged, as a multiple of the world's speed limit.
 ///
-/// If a solution exceeds it, the island moves as one rigid piece for the pass. Speeds are limited before the solve, so the factor must be
+/// If a solution exceeds this speed, the island moves as one rigid piece for the pass. Speeds are limited before the solve, so the factor must be
 /// well above 1. Sensible from
 /// 1.5 to 10. Shown by the test `trouble::extreme_impulses_are_limited_and_reported`.
 pub(super) const DIVERGED_SPEED: f32 = 2.5;
 
 /// Spin above which a solution counts as diverged, rad/s.
 ///
-/// The effect is that of [`DIVERGED_SPEED`]; it must be well above the spin that the world's limit on turns allows. Sensible from 1e3 to
-/// 1e5. Shown by the test `trouble::extreme_spins_are_limited_and_reported`.
+/// The effect is that of [`DIVERGED_SPEED`]. The value must be well above the spin that the world's limit on turns allows. Sensible from
+/// 1e3 to 1e5. Shown by the test `trouble::extreme_spins_are_limited_and_reported`.
 pub(super) const DIVERGED_SPIN: f32 = 1e4;
 
 /// Largest increase of a joint's error in a substep before the substep counts as unsolved, for gaps in metres and angles in radians.
@@ -600,8 +599,8 @@ pub(super) const TORN: f32 = 0.1;
 
 /// Largest turn of a body in flight within a substep, if the world's limit allows more, radians.
 ///
-/// The series for sine and cosine are accurate up to it. It must be at most 3. Smaller: spins are limited that the world allows. Shown by
-/// the test `flight::spin_and_speed_stay_within_the_worlds_limits`.
+/// The series for sine and cosine are accurate up to this turn. The value must be at most 3. Smaller: spins are limited that the world
+/// allows. Shown by the test `flight::spin_and_speed_stay_within_the_worlds_limits`.
 pub(super) const MOST_FLIGHT_TURN: f32 = 3.0;
 
 /// Largest number of Newton steps for the midpoint spin of a free body.
@@ -610,19 +609,19 @@ pub(super) const MOST_FLIGHT_TURN: f32 = 3.0;
 /// from 2 to 6. Shown by `dzhanibekov`, `symmetric_top`.
 pub(super) const MIDPOINT_STEPS: usize = 4;
 
-/// Square of the relative change at which these Newton steps end, a number.
+/// Square of the relative change at which the Newton steps for the midpoint spin end, a number.
 ///
-/// It is a change of 1e-6. Larger: the motion of boxes that flip over and over, which depends on differences of 1e-6, is wrong. Smaller:
-/// one more step that corrects rounding errors. Sensible from 1e-14 to 1e-10. Shown by `dzhanibekov`.
+/// The value is a change of 1e-6. Larger: the motion of boxes that flip over and over, which depends on differences of 1e-6, is wrong.
+/// Smaller: one more step acts on rounding errors. Sensible from 1e-14 to 1e-10. Shown by `dzhanibekov`.
 pub(super) const MIDPOINT_TOLERANCE: f32 = 1e-12;
 
-/// Largest half turn in a substep that these Newton steps may use, radians.
+/// Largest half turn in a substep in the Newton steps for the midpoint spin, radians.
 ///
-/// It must be below a quarter of a turn, also if the world's limit allows more: beyond `π/2` the tangent of the Cayley map changes sign.
-/// Smaller: fast spins miss the midpoint. Sensible from 0.8 to 1.5. Shown by the tests of `solver/motion`.
+/// The value must be below a quarter of a turn, even if the world's limit allows more: beyond `π/2` the tangent of the Cayley map changes
+/// sign. Smaller: fast spins miss the midpoint. Sensible from 0.8 to 1.5. Shown by the tests of `solver/motion`.
 pub(super) const MOST_HALF_TURN: f32 = 1.2;
 
-/// Number of links from which on a strand is cut into eight pieces that are solved side by side.
+/// Number of links at or above which a strand is cut into eight pieces that are solved side by side.
 ///
 /// A rope of 49 links then takes a third of the instructions; eight ropes of a hundred links each take 1.5 times the instructions of uncut
 /// ones. Larger: a single rope of some thirty links takes as long as one of fifty. Smaller: many short ropes of one length take longer.
@@ -631,7 +630,7 @@ pub(super) const CUT_STRANDS: usize = 24;
 
 /// Multiple of `max_speed` and `max_turn` to which contacts clamp an approach, a ratio.
 ///
-/// Force integration slows a body that exceeds its limits. If contacts saw the full approach speed, they would count this slowing as a pull
-/// of forces, and a bounce would return half of it. Larger: bounces use speeds at which no body moves. Smaller: the bits of speeds slightly
-/// above the limits change. Sensible from 2 to 100. Shown by the test `events::extreme_hits_are_reported_finite`.
+/// Force integration slows a body that exceeds its limits. If contacts used the full approach speed, they would count this slowing as a
+/// pull of forces, and a bounce would return half of it. Larger: bounces use speeds at which no body moves. Smaller: the bits of speeds
+/// slightly above the limits change. Sensible from 2 to 100. Shown by the test `events::extreme_hits_are_reported_finite`.
 pub(super) const BEYOND_MEASURE: f32 = 4.0;

@@ -1,4 +1,4 @@
-//! The world as islands and their solvers read it.
+//! View of the world for islands and their solvers.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
@@ -12,7 +12,7 @@ use crate::field::Fields;
 use crate::joint::Joint;
 use sinew_math::Vec3;
 
-/// The world as islands and their solvers read it.
+/// View of the world for islands and their solvers: bodies, joints, contacts and settings.
 pub(crate) struct View<'a> {
     pub bodies: &'a Arena<Body>,
     pub activity: &'a Activity,
@@ -26,7 +26,7 @@ pub(crate) struct View<'a> {
 }
 
 impl View<'_> {
-    /// Quality requested for a body.
+    /// Quality of a body: its own, otherwise that of the world.
     pub fn quality(&self, body: u32) -> Quality {
         self.bodies.at(body).quality.unwrap_or(self.def.quality)
     }
@@ -35,7 +35,7 @@ impl View<'_> {
 /// Substeps of the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace {
-    /// Length of a substep, seconds, and the number of substeps in a step.
+    /// Length of a substep, seconds; and the number of substeps in a step.
     pub h: f32,
     pub substeps: u32,
     pub grading: Grading,
@@ -61,7 +61,7 @@ pub(crate) enum Grading {
     None,
 }
 
-/// Force and torque that act on a body for the whole step: gravity and the user's.
+/// Force and torque that act on a body for the whole step: gravity and the forces of the user.
 pub(super) fn lasting_force(body: &Body, view: &View<'_>) -> (Vec3, Vec3) {
     (body.force + view.def.gravity * (body.gravity_scale * body.mass), body.torque)
 }

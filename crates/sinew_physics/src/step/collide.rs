@@ -1,4 +1,4 @@
-//! `collide`: manifolds of all near pairs, and their effect.
+//! `collide`: computes the manifolds of all near pairs, and their effect.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -20,7 +20,7 @@ use crate::step::pairs::{Asked, BroadPhase};
 use crate::step::tuning::{MOST_APPROACH, YIELDING_DEPTH};
 use sinew_math::{Vec3, max, min};
 
-/// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
+/// `collide`: manifolds at the start poses of the step, with points up to the distance that the step may close.
 pub(crate) fn collide(
     (bodies, filter): (&Arena<Body>, PairFilter<'_>),
     broad: &mut BroadPhase,
@@ -65,7 +65,7 @@ pub(crate) fn collide(
     });
 }
 
-/// Updates the manifold of two convex shapes. Extends the search distance for speed by at most `ahead`.
+/// Updates the manifold of a contact of two convex shapes. `ahead` limits the search distance for speed.
 fn renew(contact: &mut Contact, (a, b, seams): (&Body, &Body, &Seams<'_>), ahead: Ahead, dt: f32) {
     let is_slow = ahead.most < contact.kept.least_margin();
     if is_slow && contact.kept.renew([a, b], contact.kept.least_margin(), &mut contact.manifold) {
@@ -84,7 +84,7 @@ fn renew(contact: &mut Contact, (a, b, seams): (&Body, &Body, &Seams<'_>), ahead
     (contact.apart, contact.gap) = (parting.axis, parting.gap);
 }
 
-/// The manifold of two convex shapes.
+/// Computes the manifold of two convex shapes.
 fn meet(
     a: &Body,
     b: &Body,
@@ -99,7 +99,7 @@ fn meet(
     collide_again((shape_a, &from_a), (shape_b, &from_b), margin, parting, manifold);
 }
 
-/// A new contact of a pair, if it has points now; `ahead` as in [`margin`].
+/// Computes the points of a pair without a contact; `ahead` has the meaning of that in [`margin`].
 pub(crate) fn ask((a, b, seams): (&Body, &Body, &Seams<'_>), asked: &mut Asked, ahead: Ahead, dt: f32) {
     let (margin, slop) = margin(a, b, asked.key, ahead, dt);
     meet(a, b, asked.key, margin, &mut asked.parting, &mut asked.manifold);
@@ -107,7 +107,7 @@ pub(crate) fn ask((a, b, seams): (&Body, &Body, &Seams<'_>), asked: &mut Asked, 
     asked.kept = Recycled::new([a, b], asked.key, (margin, slop), &asked.manifold);
 }
 
-/// Computes a contact's approach speed, and its effect.
+/// Computes a contact's approach speed and effect.
 fn weigh(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     contact.approach = approach_of(a, b, &contact.manifold);
     if contact.is_plain && !a.changed && !b.changed {
@@ -121,15 +121,15 @@ fn weigh(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     }
 }
 
-/// Search distance for points of two shapes, and their slop, metres. Its part for speed is limited to `ahead.most`,
-/// because it may be far too large.
+/// Search distance for points of two shapes, and their slop, metres. The part for speed is computed only if
+/// `ahead.most`, its upper bound, exceeds the distance for slow pairs.
 fn margin(a: &Body, b: &Body, key: ContactKey, ahead: Ahead, dt: f32) -> (f32, f32) {
     let slop = slop(smallest_extent(a, b, key));
     let least = SPECULATIVE_SLOPS * slop;
     if ahead.most < least {
         return (least, slop);
     }
-    // In addition to their approach: two bodies that move together may stop doing so once one of them is hit.
+    // The larger of relative and individual speeds: two bodies that move together separate when one is hit.
     let (va, vb) = (a.velocity.linear, b.velocity.linear);
     let approach = max((va - vb).length(), max(va.length(), vb.length()))
         + a.velocity.angular.length() * a.reach()
@@ -143,7 +143,7 @@ pub(crate) fn smallest_extent(a: &Body, b: &Body, key: ContactKey) -> f32 {
     min(shape_a.smallest_extent(), shape_b.smallest_extent())
 }
 
-/// Motion of a pair of a surface and another shape relative to the surface; `None` for other pairs, and at rest.
+/// Motion of the other shape relative to the mesh or height field of a pair; `None` for other pairs, and at rest.
 fn surface_motion(bodies: &Arena<Body>, contact: &Contact, ahead: Ahead, dt: f32) -> Option<Motion> {
     let key = contact.key;
     let (a, b) = (bodies.at(key.a), bodies.at(key.b));
@@ -168,7 +168,7 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, ahead: Ahead, dt: f32
     })
 }
 
-/// Approach speed of the fastest point, m/s; not negative, and at most [`MOST_APPROACH`].
+/// Largest approach speed of the manifold's points, m/s; not negative, and at most [`MOST_APPROACH`].
 ///
 /// Bodies are rigid: rates at two points differ by the relative spin times their offset.
 pub(super) fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
@@ -180,13 +180,13 @@ pub(super) fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
     if least.is_finite() { min(max(0.0, -least), MOST_APPROACH) } else { MOST_APPROACH }
 }
 
-/// True if a surface pushes, wherever it is touched.
+/// True if a surface pushes at every point.
 pub(super) fn is_plain(surface: &Surface) -> bool {
     let pushes = matches!(surface.rule, ContactRule::Push | ContactRule::Modified { .. });
     pushes && surface.sensing == Sensing::Solid
 }
 
-/// Sets the contact's effect, as far as its shapes define it.
+/// Sets the contact's effect according to its shapes.
 fn rule(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
     contact.effect = Effect::Push;
@@ -217,8 +217,8 @@ fn rule(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     }
 }
 
-/// True if a kinematic body lets a dynamic one pass, because it would have to push harder than it may, or did until
-/// they separate.
+/// True if a kinematic body lets a dynamic body pass: pushing the body would exceed a limit, or did so earlier in this
+/// touch.
 fn gives_way(yields: Yields, contact: &Contact, [a, b]: [&Body; 2], dt: f32) -> bool {
     let (other, led, out) = match (a.kind, b.kind) {
         (BodyKind::Kinematic, BodyKind::Dynamic) => (b, a, contact.manifold.normal),
@@ -239,7 +239,7 @@ fn gives_way(yields: Yields, contact: &Contact, [a, b]: [&Body; 2], dt: f32) -> 
     let turn = other.inverse_inertia_mul(at.cross(out)).cross(at).dot(out);
     let mass = 1.0 / (other.inverse_mass() + turn);
     let push = yields.max_force * dt;
-    // The impulse shows if something blocks the other body from behind.
+    // A large impulse shows that an object behind the other body blocks it.
     let took = contact.impulses().fold(0.0, |sum, (_, impulse)| sum + impulse);
     let jammed = contact.touching && closing > 0.0 && shoves > 0.0 && took > push;
     jammed

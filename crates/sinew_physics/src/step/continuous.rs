@@ -18,9 +18,9 @@ use crate::tree::Sweep;
 use sinew_math::{Transform, Vec3, normalize_or};
 
 /// `continuous`: a joint-free body whose centre passed through a static shape within the step is moved back to where
-/// its core touches. Speculative contacts stop nearly everything before; this handles the rest. Jointed bodies rely on
-/// speculative contacts only: moving one link would violate its joints. Afterwards all poses are final, and the trees
-/// are updated.
+/// its core touches the shape. Speculative contacts stop nearly all bodies before. Jointed bodies rely on speculative
+/// contacts only: moving one link would violate its joints. After this stage all poses are final, and the trees are
+/// updated.
 pub(crate) fn continuous(
     islands: &Islands,
     bodies: &mut Arena<Body>,
@@ -45,12 +45,12 @@ pub(crate) fn continuous(
             }
         }
     }
-    // A kinematic body moved as predicted at the step's start.
+    // Kinematic bodies moved as predicted at the step's start.
     broad.proxies.follow(bodies, activity.active(), context.dt);
 }
 
-/// Radius of the largest ball about the centre of mass that is guaranteed to lie inside a single-shape body; 0 if there
-/// is none.
+/// Radius of the largest ball about the centre of mass that is guaranteed to be inside a single-shape body, metres; 0
+/// if there is none.
 fn core_radius(body: &Body) -> f32 {
     match body.shapes.as_slice() {
         [only] if only.principal_from_shape.translation.length() < 1e-4 => only.shape.inner_radius(),
@@ -76,7 +76,7 @@ fn first_static_hit(
             && stops(body.surface(shape as usize), &frame, ray)
             && (0..own).any(meets)
             && let Some(hit) = body.shapes[shape as usize].shape.cast_ray(&frame, ray)
-            // A start inside is an overlap that the contacts are working on.
+            // A fraction of 0 is an overlap at the start, which the contacts resolve.
             && hit.fraction > 0.0
             && first.is_none_or(|first| hit.fraction < first)
         {
@@ -87,7 +87,8 @@ fn first_static_hit(
     first
 }
 
-/// True if a shape certainly stops a body along a ray. A shape that a modifier may open relies on speculative contacts.
+/// True if a shape certainly stops a body along a ray. False for a shape with a modifier: it has speculative contacts
+/// only.
 fn stops(s: &Surface, frame: &Transform, ray: &Ray) -> bool {
     let solid = s.sensing == Sensing::Solid;
     solid

@@ -1,4 +1,4 @@
-//! `finalize`: bodies take the state that the islands computed.
+//! `finalize`: writes the state that the islands computed to the bodies.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
@@ -10,8 +10,9 @@ use crate::solver::SolvedBody;
 use crate::step::islands::Islands;
 use sinew_math::{Vec3, max};
 
-/// `finalize`: poses and velocities. A body with a non-finite state keeps its old pose, stops and is quarantined.
-/// Kinematic bodies move according to their velocity, and forces on them are reported. The forces of the step are cleared.
+/// `finalize`: writes poses and velocities. A body with a non-finite state keeps its old pose, stops and is
+/// quarantined. Kinematic bodies move according to their velocity, and the forces on them are reported. Clears the
+/// forces of the step.
 pub(crate) fn finalize(
     islands: &Islands,
     bodies: &mut Arena<Body>,

@@ -13,11 +13,11 @@ use crate::solver::strands::Strands;
 use crate::solver::{Solution, View};
 use crate::step::tasks::{Queue, Task, Workspace, Workspaces};
 
-/// Union-find over the active bodies, then over the slots of particle groups. Each kind of member is in one list for
-/// all islands: per-island lists would have to grow whenever islands change.
+/// Islands of a step: a union-find over the active bodies, then over the slots of particle groups. Each kind of member
+/// is in one list for all islands: per-island lists would have to grow whenever islands change.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Islands {
-    /// Active bodies, ascending: their positions are their numbers here.
+    /// Active bodies, ascending. Their positions in this list are their numbers in the union-find.
     active: Vec<u32>,
     /// Number of each active body, by slot.
     places: Vec<u32>,
@@ -25,9 +25,9 @@ pub(crate) struct Islands {
     holding: Vec<Tie>,
     /// Contacts that push, ascending.
     touching: Vec<Tie>,
-    /// True if only one of the bodies is active, by position in the contact array.
+    /// True for each contact, by position in the contact array, of which only one body is active.
     is_border: Vec<bool>,
-    /// Memory of `color`.
+    /// Memory for `color`.
     border: Vec<u32>,
     parent: Vec<u32>,
     island_of_root: Vec<u32>,
@@ -38,24 +38,24 @@ pub(crate) struct Islands {
     groups: Lists,
     /// Neighbours of each particle group, by slot.
     neighbors: Vec<Neighbors>,
-    /// Removed from the world during the step, island after island.
+    /// Groups taken out of the world during the step, ordered by island.
     taken: Vec<TakenGroup>,
     solution: Solution,
-    /// The solution is of the last step, not of one before a snapshot was loaded.
+    /// True if the solution is that of the last step, not of one before a snapshot was loaded.
     is_known: bool,
     /// True for each island that is a free-flying body or a strand and has already been solved in this step.
     flown: Vec<bool>,
     flight: Flight,
     strands: Strands,
-    /// One for each concurrent thread so far.
+    /// Free workspaces: one for each concurrent thread so far.
     idle: Vec<Workspace>,
-    /// One for each island, in lockstep mode.
+    /// Workspace of each island, in lockstep mode.
     own: Vec<Workspace>,
 }
 
 const NONE: u32 = u32::MAX;
 
-/// A joint or a contact by its index, and the numbers of its bodies, where they are active.
+/// A joint or a contact by its index, and the numbers of its bodies; [`NONE`] for a body that is not active.
 #[derive(Clone, Copy, Debug)]
 struct Tie {
     index: u32,
@@ -63,7 +63,7 @@ struct Tie {
 }
 
 impl Tie {
-    /// A body of it that is active, by number.
+    /// Number of the first of the two bodies that is active.
     fn either(self) -> Option<u32> {
         self.bodies.into_iter().find(|&place| place != NONE)
     }
@@ -85,7 +85,7 @@ impl Islands {
         }
     }
 
-    /// Work of drives and kinematic bodies, island after island.
+    /// Sum of the work in all islands.
     pub fn work(&self) -> Work {
         self.solution.work[..self.count].iter().fold(Work::default(), |sum, work| sum + *work)
     }
@@ -100,7 +100,7 @@ impl Islands {
         self.is_known.then(|| self.solution.bodies.iter().map(|body| body.index))
     }
 
-    /// Forgets the last step.
+    /// Marks the solution as unknown.
     pub fn forget(&mut self) {
         self.is_known = false;
     }
@@ -169,8 +169,8 @@ impl Islands {
         self.parent.extend(0..(self.active.len() + groups) as u32);
     }
 
-    /// The later of its active bodies finds each joint: if joints were created after their bodies, parents first, that
-    /// is their order.
+    /// Lists the enabled joints by index. The later of its active bodies lists each joint: if joints were created after
+    /// their bodies, parents first, the list is already sorted.
     fn list_joints(&mut self, view: &View<'_>) {
         self.holding.clear();
         for (place, &body) in self.active.iter().enumerate() {
@@ -209,7 +209,7 @@ impl Islands {
         }
     }
 
-    /// Joins everything that a field makes attract each other.
+    /// Joins all bodies and groups that a field makes attract each other.
     fn join_attracted(&mut self, view: &View<'_>, groups: &Arena<ParticleGroup>) {
         for (field, _) in view.fields.mutual() {
             let mut first = None;
@@ -228,7 +228,7 @@ impl Islands {
         }
     }
 
-    /// Returns the groups.
+    /// Returns the groups to the world.
     pub fn release(&mut self, groups: &mut Arena<ParticleGroup>) {
         for TakenGroup { index, group, near } in self.taken.drain(..) {
             *groups.at_mut(index) = group;
@@ -244,13 +244,13 @@ impl Islands {
         i
     }
 
-    /// The smaller root wins, so that the result does not depend on the union order.
+    /// Joins two sets. The smaller root wins, so that the result does not depend on the order of the unions.
     fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.parent[u32::max(a, b) as usize] = u32::min(a, b);
     }
 
-    /// Number of the island of a body or group, by its own number; a new one if it is the first of its island.
+    /// Number of the island of a body or group with this number; a new island number for the first member of an island.
     fn island_of(&mut self, place: u32) -> u32 {
         let root = self.root(place) as usize;
         if self.island_of_root[root] == NONE {
@@ -287,8 +287,8 @@ impl Islands {
         }
     }
 
-    /// `color`: contacts between moving bodies first, those with fixed ones last, each sorted by key. With one scalar
-    /// lane a colour is just this order.
+    /// `color`: puts contacts between moving bodies first and those with fixed bodies last, each sorted by key. With
+    /// one scalar lane no further colours are needed.
     pub fn color(&mut self) {
         for island in 0..self.count {
             let list = self.contacts.of_mut(island);
@@ -307,7 +307,7 @@ impl Islands {
         }
     }
 
-    /// `flight`: steps bodies without contacts and joints, so that [`run`](Self::run) need not.
+    /// `flight`: steps bodies without contacts and joints, and strands; [`run`](Self::run) skips them.
     pub fn fly(&mut self, view: &View<'_>, context: &StepContext<'_>) {
         let mut flight = core::mem::take(&mut self.flight);
         for i in 0..self.count {
@@ -325,7 +325,8 @@ impl Islands {
         }
     }
 
-    /// Runs after a lockstep step: strands that no object has disturbed are stepped as without objects.
+    /// Repeats strands that no object has disturbed after a lockstep step, so that their results are as without
+    /// objects.
     pub fn fly_undisturbed(&mut self, view: &View<'_>, context: &StepContext<'_>) {
         let own = core::mem::take(&mut self.own);
         self.run_strands(view, context, |island| !own[island].solver.is_disturbed());
@@ -351,7 +352,7 @@ impl Islands {
         self.idle = idle;
     }
 
-    /// Calls `work` once for each remaining island, for a part of its step: each island keeps its workspace between
+    /// Calls `work` once for each remaining island, for a part of its step. Each island keeps its workspace between
     /// parts.
     pub fn run_part(&mut self, runner: &dyn TaskRunner, work: impl Fn(&mut Task<'_>) + Sync) {
         let mut own = core::mem::take(&mut self.own);
@@ -394,7 +395,7 @@ impl Islands {
         (self.solution, self.taken) = (solution, taken);
     }
 
-    /// Stores the results of the strands.
+    /// Copies the results of the strands to `solution`.
     fn take_strands(&self, solution: &mut Solution) {
         for strand in self.strands.solved() {
             solution.work[strand.island] = Work::default();
@@ -408,7 +409,7 @@ impl Islands {
         }
     }
 
-    /// Between two parts: the workspaces in the order of islands, and the particle groups.
+    /// Returns the workspaces and the particle groups, both in the order of islands, between two parts of a step.
     pub fn halted(&mut self) -> (&mut [Workspace], &mut [TakenGroup]) {
         (&mut self.own[..self.count], &mut self.taken)
     }
@@ -419,7 +420,7 @@ fn awake(groups: &Arena<ParticleGroup>) -> impl Iterator<Item = (u32, &ParticleG
     groups.iter().filter(|(_, group)| group.is_awake())
 }
 
-/// Ascending lists of numbers, one per island, contiguous in memory.
+/// Ascending lists of numbers, one list per island, contiguous in memory.
 #[derive(Clone, Debug, Default)]
 struct Lists {
     /// Island and number, in the order pushed.
@@ -449,7 +450,7 @@ impl Lists {
         }
         let mut start = 0;
         for end in &mut self.ends {
-            // Where the list starts, until it is filled.
+            // `end` is the start of the list until the list is filled.
             start += core::mem::replace(end, start);
         }
         self.numbers.resize(self.pairs.len(), 0);

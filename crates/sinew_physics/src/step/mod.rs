@@ -1,4 +1,4 @@
-//! One step, in order. `docs/step.md` has a heading for each stage.
+//! Order of the stages of one step. `docs/step.md` has a heading for each stage.
 
 mod blows;
 pub(crate) mod collide;

@@ -12,12 +12,12 @@ use crate::contact::tracking::ContactTracking;
 use crate::contact::{Contact, ContactKey};
 use crate::step::blows::Blows;
 
-/// The trees, and memory for the pair search.
+/// Trees and near pairs, and memory for the pair search.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BroadPhase {
     pub proxies: Proxies,
     pub near: NearPairs,
-    /// Blows that joints are about to pass on.
+    /// Blows that joints will transmit in this step.
     pub blows: Blows,
     /// Pairs without a contact that are near enough to have points, in order.
     pub asked: Vec<Asked>,
@@ -37,8 +37,8 @@ pub(crate) struct Asked {
 }
 
 impl BroadPhase {
-    /// Updates `contacts`: sorted by key, for near pairs. Contacts that cannot change are put aside; dropped touching
-    /// ones are recorded in `meetings`. Near pairs without a contact are then tested for one.
+    /// Updates `contacts`: sorted by key, for near pairs. Stores contacts that cannot change in `activity`, and records
+    /// dropped touching contacts in `meetings`. Lists near pairs without a contact in `asked`, for `collide` to test.
     pub fn update(
         &mut self,
         bodies: &Arena<Body>,
@@ -56,8 +56,8 @@ impl BroadPhase {
         bear(contacts, &mut self.born);
     }
 
-    /// Merges pairs and contacts: contacts of pairs that are no longer near are dropped, or put aside if they cannot
-    /// have changed.
+    /// Merges pairs and contacts. Contacts of pairs that are no longer near are dropped, or stored in `activity` if
+    /// they cannot have changed.
     fn sort_out(
         &mut self,
         bodies: &Arena<Body>,
@@ -76,7 +76,7 @@ impl BroadPhase {
             }
             let count = if next == pair.key { keeper.count_of(pair.key) } else { 0 };
             if count == 0 && !pair.meets {
-                // If they come near, it is tested again.
+                // The pair is tested again when its filters let the shapes collide.
                 pair.left = f32::NEG_INFINITY;
                 continue;
             }
@@ -101,7 +101,7 @@ impl BroadPhase {
                     keeper.part(count);
                 }
                 (1, true) if !pair.has_surface && keeper.next_is_idle() => {
-                    // It had no points in the last step: from now on the pair stores the gap.
+                    // The contact had no points in the last step: from now on the pair stores the gap.
                     let parting = keeper.forget();
                     pair.part(&parting);
                     if pair.comes_near(&self.proxies.closing(pair.key)) {
@@ -117,7 +117,7 @@ impl BroadPhase {
         keeper.finish();
     }
 
-    /// Stores the search results of the tested pairs.
+    /// Makes contacts of the tested pairs with points; stores the gap of the other pairs.
     pub fn answer(&mut self, contacts: &mut Vec<Contact>, weigh: impl Fn(&mut Contact)) {
         self.born.clear();
         for asked in &self.asked {
@@ -149,7 +149,7 @@ impl Asked {
 /// The contacts of the last step, each of which is kept or dropped.
 struct Keeper<'a> {
     contacts: &'a mut Vec<Contact>,
-    /// The first undecided one, and the position for the next kept one.
+    /// Positions of the first undecided contact, and for the next kept one.
     from: usize,
     to: usize,
     bodies: &'a Arena<Body>,
@@ -158,19 +158,19 @@ struct Keeper<'a> {
 }
 
 impl Keeper<'_> {
-    /// The pair of the next one; the maximum if there is none.
+    /// Pair of the first undecided contact; the maximum if there is none.
     fn next_pair(&self) -> ContactKey {
         let end = ContactKey { a: u32::MAX, b: u32::MAX, shape_a: u32::MAX, shape_b: u32::MAX, part: 0 };
         self.contacts.get(self.from).map_or(end, |contact| ContactKey { part: 0, ..contact.key })
     }
 
-    /// Number of contacts of a pair, from the next one on.
+    /// Number of contacts of a pair, from the first undecided one on.
     fn count_of(&self, key: ContactKey) -> usize {
         let rest = &self.contacts[self.from..];
         rest.iter().take_while(|contact| contact.key.is_of_pair(key)).count()
     }
 
-    /// True if the next one has no points and nothing to report.
+    /// True if the first undecided contact has no points and nothing to report.
     fn next_is_idle(&self) -> bool {
         self.contacts[self.from].is_idle()
     }
@@ -183,7 +183,7 @@ impl Keeper<'_> {
         self.to += count;
     }
 
-    /// Drops an idle one, and returns the separation of its shapes.
+    /// Drops an idle contact, and returns the separating axis and gap of its shapes.
     fn forget(&mut self) -> SeparationCache {
         self.from += 1;
         self.contacts[self.from - 1].parting()
@@ -200,7 +200,7 @@ impl Keeper<'_> {
             if !lies_still(contact.key.a) || !lies_still(contact.key.b) {
                 self.meetings.part(self.bodies, &contact);
             } else if !contact.is_idle() {
-                // Its approach speed is not that of the step in which it returns.
+                // The approach speed is not that of the step in which the contact returns.
                 self.activity.put_aside(Contact { approach: 0.0, ..contact });
             }
         }
@@ -215,7 +215,7 @@ impl Keeper<'_> {
 
 #[cfg(test)]
 mod tests {
-    //! Pairs compared with testing every shape against every other.
+    //! Tests that compare the pairs with those found by testing every shape against every other.
 
     use super::*;
     use crate::body::def::{BodyDef, BodyKind, WorldDef};
@@ -229,12 +229,12 @@ mod tests {
     use core::ops::ControlFlow;
     use sinew_math::{Random, Reader, Transform, Vec3, Writer};
 
-    /// Cases: a hundredth unless `SINEW_FULL` is set.
+    /// Number of test cases: a hundredth of `all` unless `SINEW_FULL` is set.
     fn cases(all: usize) -> usize {
         if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
     }
 
-    /// The bounds of the contact search of a shape, computed independently.
+    /// Bounds for the contact search of a shape, computed independently.
     fn grown(body: &Body, shape: usize, dt: f32) -> Aabb {
         let speed = body.velocity.linear.length() + body.velocity.angular.length() * body.reach();
         let motion = if body.kind == BodyKind::Static { 0.0 } else { speed * dt };

@@ -6,13 +6,13 @@ use crate::stage::{Stage, zone};
 use crate::step::tasks::{Task, Workspace};
 
 /// A part of a step that an island executes independently. With objects, which act between two parts, all islands
-/// execute the same part at a time; otherwise a task executes all parts without barriers.
+/// execute the same part at the same time; otherwise a task executes all parts without barriers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Phase {
     Prepare,
-    /// The substep of that number until everything has moved.
+    /// The first part of the substep with this number, until all bodies and particles have moved.
     Move(u32),
-    /// The rest of it.
+    /// The rest of the substep.
     Relax(u32),
     Store,
 }
@@ -25,13 +25,13 @@ impl Phase {
             .chain(core::iter::once(Self::Store))
     }
 
-    /// Phases of this many substeps of an island, after [`Prepare`](Self::Prepare) and before [`Store`](Self::Store).
+    /// Phases of `substeps` substeps of an island, between [`Prepare`](Self::Prepare) and [`Store`](Self::Store).
     pub fn of_substeps(substeps: u32) -> impl Iterator<Item = Self> {
         (0..substeps).flat_map(|substep| [Self::Move(substep), Self::Relax(substep)])
     }
 }
 
-/// A part of an island's step, which continues where the previous part ended.
+/// Executes a part of an island's step; continues where the previous part ended.
 pub(crate) fn solve(phase: Phase, task: &mut Task<'_>, view: &View<'_>, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
     let Task { island, groups, solution, workspace: Workspace { solver, surroundings }, .. } = task;

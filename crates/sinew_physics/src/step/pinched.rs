@@ -1,9 +1,9 @@
 //! Contacts of two shapes through particles between them: cloth under a foot, a rope under a wheel.
 //!
-//! A massless ball between two surfaces is pushed by each along the line through its two touch points, which bisects
-//! their normals. It stays there if that line is within both friction cones (the nip angle of roller mills), and each
-//! surface's push is transmitted to the other. Such particles are therefore points of a contact of the two shapes, with
-//! that line as normal and the sum of both gaps as separation. These contacts are in the world's list from after
+//! Two surfaces push a massless ball between them along the line through its two touch points, which bisects their
+//! normals. The ball stays there if that line is within both friction cones (the nip angle of roller mills), and it
+//! transmits each surface's push to the other. Such particles are therefore points of a contact of the two shapes, with
+//! that line as normal and the sum of both gaps as separation. The world's list contains these contacts from after
 //! `touch` until `store`; at other times their group stores them.
 
 use crate::activity::{Activity, follow};
@@ -28,11 +28,11 @@ use sinew_math::{Transform, Vec3, max, min};
 /// Contacts through particles found in a step, and memory to find them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pinches {
-    /// Number of contacts of the world before those through particles.
+    /// Number of the world's contacts that are not through particles.
     own: usize,
-    /// Index of each group with such contacts, and their number.
+    /// Index of each group with such contacts, and the number of contacts.
     groups: Vec<(u32, usize)>,
-    /// Speed of the fastest point of all that moves, m/s.
+    /// Largest speed of any point of the movable bodies, m/s.
     fastest: f32,
     near: Vec<Near>,
     found: Vec<Between>,
@@ -53,7 +53,7 @@ struct Near {
 struct Between {
     key: ContactKey,
     particle: u32,
-    /// Normal from A to B.
+    /// Contact normal from A to B.
     normal: Vec3,
     point: ManifoldPoint,
 }
@@ -76,7 +76,7 @@ pub(crate) struct Around<'a> {
 }
 
 impl Pinches {
-    /// Adds the contacts through particles of all groups that are awake to those of the world.
+    /// Adds the contacts through particles of all awake groups to those of the world.
     pub fn find(
         &mut self,
         around: &Around<'_>,
@@ -111,7 +111,7 @@ impl Pinches {
         }
     }
 
-    /// Stores the contacts after the step.
+    /// Stores the contacts in their groups after the step.
     pub fn store(&mut self, groups: &mut Arena<ParticleGroup>, contacts: &mut Vec<Contact>) {
         let mut solved = contacts.drain(self.own..);
         for &(index, count) in &self.groups {
@@ -131,7 +131,7 @@ impl Pinches {
             if !body.quarantined && group.meets(bodies.id(index), surface) && is_plain(surface) {
                 let world_from_shape = body.world_from_shape(shape as usize);
                 let bounds = body.shapes[shape as usize].shape.aabb(&world_from_shape);
-                // The trees' content is not part of the state.
+                // The test makes the list independent of the trees, which are not part of the state.
                 if bounds.overlaps(&around) {
                     let is_active = body.is_active();
                     self.near.push(Near { body: index, shape, bounds, world_from_shape, is_active });
@@ -142,7 +142,7 @@ impl Pinches {
         self.near.sort_unstable_by_key(|near| (near.body, near.shape));
     }
 
-    /// Lists the particles of a group that are between two shapes, one of which is active, now or within the step.
+    /// Lists the particles of a group that are, now or within the step, between two shapes, one of which is active.
     fn find_between(&mut self, group: &ParticleGroup, &Around { bodies, filter, .. }: &Around<'_>, dt: f32) {
         self.found.clear();
         let reach = MARGIN + 2.0 * self.fastest * dt;
@@ -150,7 +150,7 @@ impl Pinches {
             for i in 0..group.positions().len() {
                 let Some(facing) = near.facing(bodies, group, i, reach) else { continue };
                 for (other_at, other) in self.near.iter().enumerate() {
-                    // A pair of active shapes is found once.
+                    // Skips a pair of active shapes that is found from the other side.
                     if other.body == near.body || other.is_active && other_at < at {
                         continue;
                     }
@@ -185,7 +185,7 @@ impl Pinches {
             for number in 0..MOST_PINCHED {
                 let Some(deepest) = rest.iter().copied().min_by(Between::deeper) else { break };
                 let is_part = |normal: Vec3| normal.dot(deepest.normal) >= SAME_PART_COSINE;
-                // The part's own come first, in order of particles.
+                // Sorts the points of the part first, in order of particles.
                 rest.sort_unstable_by_key(|between| (!is_part(between.normal), between.particle));
                 let count = rest.partition_point(|between| is_part(between.normal));
                 let (part, others) = core::mem::take(&mut rest).split_at_mut(count);
@@ -207,19 +207,19 @@ impl Pinches {
 }
 
 impl Between {
-    /// Order by depth, the deepest first.
+    /// Compares depths, for an order that begins with the deepest.
     fn deeper(&self, other: &Self) -> Ordering {
         self.point.separation.total_cmp(&other.point.separation)
     }
 
-    /// Height above another one, metres: the difference of their separations.
+    /// Height above `deepest`, metres: the difference of their separations.
     fn above(&self, deepest: &Self) -> f32 {
         self.point.separation - deepest.point.separation
     }
 }
 
 impl Near {
-    /// Surface that a particle faces, if it is within `reach` metres of that.
+    /// Gap and normal of the surface at a particle; `None` if the gap exceeds `reach` (m).
     fn facing(&self, bodies: &Arena<Body>, group: &ParticleGroup, i: usize, reach: f32) -> Option<Facing> {
         let (position, radius) = (group.positions()[i], group.radii()[i]);
         if distance_at_least(&self.bounds, position) > radius + reach {
@@ -233,7 +233,7 @@ impl Near {
     }
 }
 
-/// A particle between two shapes, if it is nipped between them now or within the step.
+/// Contact point of a particle between two shapes; `None` unless they nip it now or within the step.
 fn between(
     bodies: &Arena<Body>,
     group: &ParticleGroup,
@@ -244,7 +244,7 @@ fn between(
     let (mut facing, mut opposite) = (facing, opposite);
     match group.holder_of(i) {
         None => {}
-        // The particle is a ball on the body that holds it.
+        // The particle counts as a ball on the body that it is attached to.
         Some(AttachmentTarget::Body { body, .. }) if body.index == near.body => {
             facing = Facing { gap: 0.0, outward: -opposite.outward };
         }
@@ -283,8 +283,8 @@ fn between(
     Some(Between { key, particle: i as u32, normal: normal * sign, point })
 }
 
-/// Selects distant points of a part, the deepest first: each as far as possible from the selected ones, minus its lack
-/// of depth; the previous step's points are preferred.
+/// Selects distant points of a part, the deepest first. Each further point is as far as possible from the selected
+/// ones, minus its lack of depth; points of the previous step are preferred.
 fn spread(part: &[Between], deepest: &Between, known: Option<&Contact>) -> Manifold {
     let mut manifold = Manifold { normal: deepest.normal, count: 1, ..Manifold::default() };
     manifold.points[0] = deepest.point;
@@ -303,7 +303,7 @@ fn spread(part: &[Between], deepest: &Between, known: Option<&Contact>) -> Manif
         else {
             break;
         };
-        // A selected one has distance zero.
+        // A selected point has distance zero.
         if score <= KEPT_POINT {
             break;
         }
@@ -313,7 +313,7 @@ fn spread(part: &[Between], deepest: &Between, known: Option<&Contact>) -> Manif
     manifold
 }
 
-/// Distributes the recent force of a contact over its particles.
+/// Distributes the recent force of a contact over its particles; adds it to `loads`, N.
 fn share_load(part: &[Between], deepest: &Between, memory: &ContactMemory, h: f32, loads: &mut [f32]) {
     let force = memory.points.iter().fold(0.0, |sum, point| sum + point.lasting) / h;
     let bearing = || part.iter().filter(|between| between.above(deepest) < BEARING_GAP);
@@ -321,7 +321,7 @@ fn share_load(part: &[Between], deepest: &Between, memory: &ContactMemory, h: f3
     bearing().for_each(|between| loads[between.particle as usize] += share);
 }
 
-/// Material of two surfaces with particles between them: friction is that of the more slippery one.
+/// Material of two surfaces with particles between them: friction is the smaller of both.
 fn material(bodies: &Arena<Body>, particles: Material, contact: &Contact) -> ContactMaterial {
     let key = contact.key;
     let [a, b] = [(key.a, key.shape_a), (key.b, key.shape_b)].map(|(body, shape)| {
@@ -332,7 +332,7 @@ fn material(bodies: &Arena<Body>, particles: Material, contact: &Contact) -> Con
         static_friction: min(a.static_friction, b.static_friction),
         restitution: min(a.restitution, b.restitution),
         rolling: max(a.rolling, b.rolling),
-        // Of surfaces that run, as if nothing were between them.
+        // Surface velocities act as if no particles were between the surfaces.
         ..contact.material(bodies)
     }
 }

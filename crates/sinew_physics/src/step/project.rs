@@ -1,4 +1,5 @@
-//! `project`: the particle groups of an island, after its bodies have moved and before their contacts are relaxed.
+//! `project`: moves the particle groups of an island, after its bodies have moved and before their contacts are
+//! relaxed.
 
 use crate::body::Velocity;
 use crate::body::def::BodyKind;
@@ -13,7 +14,7 @@ use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear, wrench};
 use crate::step::tuning::{HEAVY_LOAD, JOINT_CHANGE, JOINT_ROUNDS};
 use sinew_math::{Sym3, Transform, Vec3, max};
 
-/// Bodies as seen by a particle group.
+/// Obstacles, anchors and bodies near a particle group, and memory to collect them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surroundings {
     obstacles: Vec<Obstacle>,
@@ -22,9 +23,9 @@ pub(crate) struct Surroundings {
     seen: Vec<Seen>,
     /// Poses of the island's moving bodies at the start of the substep.
     starts: Vec<Transform>,
-    /// Impulses on the bodies of the island, by local index.
+    /// Impulses on the bodies of the island, by local index, N·s and N·m·s.
     impulses: Vec<Vec6>,
-    /// Number of groups attached to each of them, and of those that can be solved together.
+    /// Number of groups attached to each body of the island, and of those groups that can be solved together.
     hung_on: Vec<u32>,
     joinable: Vec<u32>,
     /// Velocities of the island's moving bodies before the groups' impulses, and these impulses, N·s.
@@ -32,18 +33,18 @@ pub(crate) struct Surroundings {
     pushed: Vec<Vec3>,
 }
 
-/// A body for particles: its current pose, and where to store the impulses on it.
+/// A body near a particle group: its pose, motion and mass, and its local index.
 #[derive(Clone, Debug)]
 struct Seen {
-    /// Position at the start of the substep.
+    /// Pose at the start of the substep.
     start: Transform,
     pose: Transform,
     velocity: Vec6,
-    /// Velocity change from the forces of the coming substep.
+    /// Velocity change from the forces of the coming substep, m/s.
     coming: Vec3,
     inverse_mass: f32,
     inverse_inertia: Sym3,
-    /// Local index in the island, if it moves.
+    /// Local index in the island; `None` if the island does not move the body.
     local: Option<usize>,
 }
 
@@ -66,7 +67,7 @@ impl Seen {
             BodyKind::Kinematic => body.velocity,
             BodyKind::Static | BodyKind::Dynamic => Velocity::default(),
         };
-        // The world moves kinematic bodies when the step is done.
+        // The world moves kinematic bodies only at the end of the step.
         let mut start = body.world_from_principal;
         for _ in 0..substep {
             start = moved(&start, &velocity, view.pace.h);
@@ -83,7 +84,7 @@ impl Seen {
     }
 }
 
-/// Local index of a body among those of an island that move.
+/// Local index of a body among the moving bodies of an island.
 fn local_of(moving: &[SolverBody], index: u32) -> Option<usize> {
     moving.iter().position(|body| body.index == index)
 }
@@ -96,7 +97,7 @@ fn moved(pose: &Transform, velocity: &Velocity, h: f32) -> Transform {
 }
 
 impl Surroundings {
-    /// Reserves memory that only islands with particles need, even for one that has none, because the workspace is
+    /// Reserves memory that only islands with particles need, even for an island without them, because the workspace is
     /// reused.
     pub fn make_room(&mut self, island: &Island<'_>) {
         self.impulses.clear();
@@ -113,8 +114,7 @@ impl Surroundings {
         self.pushed.reserve(island.bodies.len());
     }
 
-    /// Moves the groups of an island by one substep. The impulses of springs and contacts reach the bodies through
-    /// their trees.
+    /// Moves the groups of an island by one substep. The bodies' trees transmit the impulses of springs and contacts.
     pub fn project(
         &mut self,
         groups: &mut [TakenGroup],
@@ -157,12 +157,13 @@ impl Surroundings {
         group.is_joinable() && group.bodies().any(shared)
     }
 
-    /// Starts the substep of groups attached to one body, as one system. Each is solved with the inertia and pull of
-    /// the others, in turns, until the body's velocity converges. If they share a single body, the contributions do not
-    /// depend on the others' velocities, and the first round is exact except for springs that rotate or close loops.
+    /// Starts the substep of groups attached to one body, as one system. Each group is solved with the inertia and pull
+    /// of the others, in turns, until the body's velocity converges. If they share a single body, the contributions do
+    /// not depend on the others' velocities, and the first round is exact except for springs that rotate or close
+    /// loops.
     ///
-    /// Solved one after the other without this, each group would rotate the whole body about its own corner, and one
-    /// rope would undo the other.
+    /// Without this, each group would rotate the whole body about its own corner, and one rope would undo the effect of
+    /// another.
     fn solve_together(
         &mut self,
         groups: &mut [TakenGroup],
@@ -204,9 +205,9 @@ impl Surroundings {
         }
     }
 
-    /// Gives particles of a group the velocity of a body that other groups are attached to as well, because these have
-    /// pushed it since. Otherwise the body would feel their inertia one substep late, and a body on two ropes would
-    /// gain energy.
+    /// Gives a group's attached particles the velocity of a body to which other groups are attached too, because these
+    /// have pushed the body since. Otherwise the particles' inertia would act on the body one substep late, and a body
+    /// on two ropes would gain energy.
     fn join_held(
         &mut self,
         taken: &mut TakenGroup,
@@ -267,8 +268,8 @@ impl Surroundings {
         solver.bears_by_springs = bears;
     }
 
-    /// Estimates the added mass of the bodies that groups hold, from their velocity gain until the end of the substep.
-    /// Groups that share a body and are not solved together take turns, each after the previous one.
+    /// Estimates the added mass of bodies on groups, from their velocity gain until the end of the substep. Groups that
+    /// share a body and are not solved together follow each other, each after the previous one.
     pub fn find_added(&self, groups: &mut [TakenGroup], solver: &IslandSolver) {
         let moving = solver.moving_bodies();
         for (id, added) in groups.iter_mut().flat_map(|taken| taken.group.holders()) {
@@ -280,7 +281,7 @@ impl Surroundings {
         }
     }
 
-    /// Bodies and anchors of a group at the present poses.
+    /// Collects bodies and anchors of a group at the present poses.
     fn see(
         &mut self,
         TakenGroup { group, near, .. }: &TakenGroup,
@@ -316,7 +317,7 @@ impl Surroundings {
         }
     }
 
-    /// Obstacles of a group: shapes of bodies, then its backstops.
+    /// Collects obstacles of a group: shapes of bodies, then its backstops.
     fn place_obstacles(&mut self, TakenGroup { group, near, .. }: &TakenGroup, view: &View<'_>) {
         let seen = &self.seen;
         self.obstacles.clear();
@@ -345,7 +346,7 @@ impl Surroundings {
         }
     }
 
-    /// Hands the impulses of a group to the island's bodies.
+    /// Applies the impulses of a group to the island's bodies.
     fn push_bodies(&mut self, TakenGroup { group, near, .. }: &TakenGroup, solver: &mut IslandSolver) {
         let seen = &self.seen;
         self.impulses.clear();
@@ -356,7 +357,7 @@ impl Surroundings {
             let arm = point - pose.translation;
             match *local {
                 Some(local) => add_scaled(&mut self.impulses[local], &wrench(arm, impulse), 1.0),
-                // The body is kinematic; a static one has no velocity.
+                // A kinematic body does work; a static one has no velocity.
                 None => given -= impulse.dot(linear(velocity) + angular(velocity).cross(arm)),
             }
         };

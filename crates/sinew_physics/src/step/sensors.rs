@@ -1,4 +1,4 @@
-//! `sensors`: sensor events and hits.
+//! `sensors`: reports sensor events and hits.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -6,7 +6,7 @@ use crate::contact::events::Events;
 use crate::contact::tracking::{ContactTracking, Told};
 use crate::contact::{Contact, Effect, pairs_of};
 
-/// Compares the sensor pairs with those of the previous step, and reports hits. Clears the user's change marks.
+/// Compares the sensor pairs with those of the previous step, and reports hits. Clears the marks of changed bodies.
 pub(crate) fn sensors(
     bodies: &mut Arena<Body>,
     contacts: &mut [Contact],

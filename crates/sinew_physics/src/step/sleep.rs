@@ -1,5 +1,5 @@
-//! `sleep`: an island whose bodies have all stayed in place for a while is no longer simulated. Displacement counts: a
-//! body squeezed between others may tremble and still sleep, a creeping one may not.
+//! `sleep`: an island whose bodies have all stayed in place for a while is no longer simulated. The test is
+//! displacement: a body squeezed between others may tremble and still sleep, a creeping body may not.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
@@ -11,8 +11,9 @@ use crate::step::islands::Islands;
 use crate::step::tuning::{CREEP, GAINED, HANGING_SPEED, HANGING_SPIN, PUSHED_SPEED};
 use sinew_math::Vec3;
 
-/// Updates the rest time of every body and particle group and puts islands to sleep. `sleepers` numbers them;
-/// `of_groups` permits groups to sleep. A group keeps the bodies it holds awake; bodies it touches may rest before it.
+/// Updates the rest time of every body and particle group, and puts islands to sleep. `sleepers` is the number of the
+/// next sleeping island; `of_groups` permits groups to sleep. A group keeps the bodies attached to it awake; bodies it
+/// touches may fall asleep before it.
 pub(crate) fn sleep(
     islands: &Islands,
     (bodies, groups): (&mut Arena<Body>, &mut Arena<ParticleGroup>),
@@ -66,7 +67,7 @@ pub(crate) fn sleep(
     }
 }
 
-/// Time for which a body has been calm, seconds; if it is not, less than any time.
+/// Updates and returns the time at rest of a body, seconds; negative infinity if the body is not calm.
 fn count(body: &mut Body, calm: bool, dt: f32) -> f32 {
     match &mut body.rest {
         Rest::Awake { rest_time: time } if calm => {
@@ -80,8 +81,8 @@ fn count(body: &mut Body, calm: bool, dt: f32) -> f32 {
     }
 }
 
-/// True if the net load accelerates the body steadily or reverses it: a ball at the turning point on a slope is slow
-/// for a second. Not tested for bodies with joints, which sag for seconds against joint friction.
+/// True if the net load accelerates the body steadily: a ball at the turning point on a slope is slow for a second. Not
+/// tested for bodies with joints, which sag for seconds against joint friction.
 fn gains(body: &Body, thresholds: &SleepThresholds) -> bool {
     let Gain { velocity: Velocity { linear, angular }, time } = body.gain;
     let is_fast = |gain: Vec3, threshold: f32| gain.length() >= GAINED * threshold / thresholds.time;
@@ -95,13 +96,13 @@ fn stays(body: &Body, thresholds: &SleepThresholds) -> bool {
         && is.rotation.angle_to(was.rotation) < thresholds.angle
 }
 
-/// True if a slow body moved in this step anyway.
+/// True if contacts displaced a slow body in this step.
 fn is_pushed_out(body: &Body, dt: f32) -> bool {
     (body.world_from_principal.translation - body.previous.translation).length() > PUSHED_SPEED * dt
 }
 
-/// True if a body on particles hardly moved in this step. Its velocity is less meaningful: springs push for the coming
-/// substep and leave it with the velocity that its weight will cancel.
+/// True if a body on particles hardly moved in this step. Its velocity does not show this: springs push for the coming
+/// substep and give it the velocity that its weight will cancel.
 fn hangs_still(body: &Body, dt: f32) -> bool {
     let (was, is) = (body.previous, body.world_from_principal);
     (is.translation - was.translation).length() < HANGING_SPEED * dt

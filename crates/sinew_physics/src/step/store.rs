@@ -11,8 +11,8 @@ use crate::particles::ParticleGroup;
 use crate::solver::SolvedJoint;
 use crate::step::islands::Islands;
 
-/// `store`: impulses and joint forces for the next step; particle groups return to the world, where non-finite ones are
-/// rolled back; overloaded joints break.
+/// `store`: writes impulses and joint forces for the next step. Particle groups return to the world; non-finite ones
+/// are rolled back. Overloaded joints break.
 pub(crate) fn store(
     islands: &mut Islands,
     joints: &mut Arena<Joint>,

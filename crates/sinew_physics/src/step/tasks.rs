@@ -10,8 +10,8 @@ use crate::step::phase::{Phase, solve};
 use crate::step::project::Surroundings;
 use std::sync::{Mutex, PoisonError};
 
-/// Memory for solving islands one after the other: it grows to the largest island's size and stays in the cache.
-/// Nothing in it persists between islands.
+/// Memory for solving islands one after the other: it grows to the largest island's size and stays in the cache. No
+/// content persists between islands.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace {
     pub solver: IslandSolver,
@@ -20,9 +20,9 @@ pub(crate) struct Workspace {
 
 /// Workspaces in which islands are solved.
 pub(crate) enum Workspaces<'a> {
-    /// The task uses any free workspace: nothing persists.
+    /// Each task uses any free workspace; no content persists.
     Idle(&'a mut Vec<Workspace>),
-    /// Each in its own workspace, in the order of islands, with its content preserved.
+    /// Each island uses its own workspace, in the order of islands, and its content persists.
     Own(&'a mut [Workspace]),
 }
 
@@ -49,7 +49,7 @@ impl Workspaces<'_> {
     }
 }
 
-/// The unit of work: an island, and all that its substeps write.
+/// The unit of work: an island, and all data that its substeps write.
 pub(crate) struct Task<'a> {
     /// Number of the island.
     number: usize,
@@ -60,8 +60,8 @@ pub(crate) struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// The island's whole step, in its own number of substeps; if long substeps overreach, again from the start with
-    /// the world's number.
+    /// Runs the island's whole step with its own number of substeps. If long substeps overreach, runs it again from the
+    /// start with the world's number.
     pub fn solve(&mut self, view: &View<'_>, context: &StepContext<'_>) {
         if !self.take_substeps(view, context) {
             let of_world = Pace { grading: Grading::None, ..view.pace };
@@ -70,7 +70,7 @@ impl Task<'_> {
         solve(Phase::Store, self, view, context);
     }
 
-    /// Runs all substeps from the start of the step, up to one that overreaches. Returns true if none did.
+    /// Runs all substeps from the start of the step, until one overreaches. Returns true if none did.
     fn take_substeps(&mut self, view: &View<'_>, context: &StepContext<'_>) -> bool {
         solve(Phase::Prepare, self, view, context);
         Phase::of_substeps(self.workspace.solver.substeps()).all(|phase| {
@@ -80,10 +80,10 @@ impl Task<'_> {
     }
 }
 
-/// Islands still to solve, with space for their results.
+/// Islands that are not solved yet, with space for their results.
 pub(crate) struct Queue<'a, I> {
     islands: core::iter::Enumerate<I>,
-    /// It hands out the large ones, or all others.
+    /// True for a queue of the large islands, false for one of all others.
     is_of_large: bool,
     groups: &'a mut [TakenGroup],
     solution: IslandSolution<'a>,
@@ -91,7 +91,7 @@ pub(crate) struct Queue<'a, I> {
 }
 
 impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
-    /// `groups` and `solution` hold the islands' data in their order.
+    /// Creates a queue; `groups` and `solution` hold the islands' data in the order of islands.
     pub fn new(
         (islands, is_of_large): (I, bool),
         groups: &'a mut [TakenGroup],
@@ -121,7 +121,7 @@ impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
         while work_on_next() {}
     }
 
-    /// The next of its islands that has not flown.
+    /// Returns the next island of this queue that has not flown.
     fn next(&mut self) -> Option<Task<'a>> {
         loop {
             let (number, island) = self.islands.next()?;

@@ -1,4 +1,4 @@
-//! `touch`: begin and end of touches, and waking.
+//! `touch`: determines the begin and end of touches, and wakes bodies.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
@@ -15,8 +15,8 @@ use crate::step::collide::smallest_extent;
 use crate::step::tuning::LINGER;
 use sinew_math::min;
 
-/// `touch`: contact effects, events, and waking of bodies that an awake body touches, presses through particles or
-/// attracts, or that a moving kinematic one holds. Woken bodies return with their contacts.
+/// `touch`: computes contact effects and events, and wakes bodies that an awake body touches, presses through particles
+/// or attracts, or that a moving kinematic body holds. Contacts of woken bodies return.
 pub(crate) fn touch(
     bodies: &mut Arena<Body>,
     joints: &Arena<Joint>,
@@ -47,7 +47,7 @@ pub(crate) fn touch(
         Told { bodies: &mut events.begin, shapes: &mut events.shapes_begin },
         Told { bodies: &mut events.end, shapes: &mut events.shapes_end },
     );
-    // Pressing through particles counts as touching.
+    // Pressure through particles counts as a touch.
     let groups = groups.iter().map(|(_, group)| group).filter(|group| group.is_awake());
     let pinched = groups.flat_map(|group| &group.pinched.contacts);
     for contact in pinched.filter(|contact| contact.has_pushed()) {
@@ -83,14 +83,14 @@ fn wake_touched(bodies: &mut Arena<Body>, activity: &mut Activity, pair: &[Conta
     }
 }
 
-/// True if two shapes overlap by more than resting ones do.
+/// True if two shapes overlap by more than resting shapes do.
 fn is_deep(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
     let key = pair[0].key;
     let deep = -slop(smallest_extent(bodies.at(key.a), bodies.at(key.b), key));
     points_of(pair).any(|point| point.separation < deep)
 }
 
-/// Wakes the bodies that joints hold to a kinematic body that moves.
+/// Wakes the bodies that joints connect to a moving kinematic body.
 fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Activity) {
     for at in 0..activity.kinematic().len() {
         let mover = activity.kinematic()[at];
@@ -106,9 +106,9 @@ fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Act
     }
 }
 
-/// True if two shapes overlap, or pushed each other in the last step and are still near: a contact may carry a load at
-/// a gap of a thousandth of a millimetre, and a bounced body has touched although it is gone by now. A touch continues
-/// until the gap exceeds rounding.
+/// True if two shapes overlap, or pushed each other in the last step and are still near. A contact may carry a load at
+/// a gap of a thousandth of a millimetre, and a bounced body has touched although it has left. A touch continues until
+/// the gap exceeds rounding.
 fn touches(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
     let Contact { key, touching, .. } = pair[0];
     let nearest = points_of(pair).fold(f32::INFINITY, |least, point| min(point.separation, least));
@@ -122,8 +122,8 @@ fn points_of(pair: &[Contact]) -> impl Iterator<Item = &ManifoldPoint> {
     pair.iter().flat_map(|contact| contact.manifold.points())
 }
 
-/// All parts of a pair of shapes have the same effect. A shape that touched a one-way shape keeps its state; otherwise
-/// it passes if any part of it approaches from another side.
+/// Sets the same effect for all parts of a pair of shapes. A shape that touched a one-way shape keeps its state. Other
+/// shapes pass if any part approaches from another side.
 fn agree(pair: &mut [Contact]) {
     if !pair[0].one_way || pair[0].effect == Effect::Sense {
         return;

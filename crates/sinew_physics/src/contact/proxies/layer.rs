@@ -35,15 +35,15 @@ pub(super) struct Layer {
     pub gaps: BTreeMap<u32, Vec<u32>>,
 }
 
-/// Leaves of a body: this many from `first` on, one per shape.
+/// Leaves of a body: `count` leaves from `first` on, one per shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Home {
     pub first: u32,
     pub count: u32,
     pub moves: bool,
-    /// It is pending a search.
+    /// True if the body is pending a search.
     pub dirty: bool,
-    /// Step in which it last could touch something.
+    /// Last step in which the body could touch something.
     pub active: u64,
 }
 
@@ -54,7 +54,7 @@ impl Home {
 }
 
 impl Layer {
-    /// Numbers for the shapes of a body; the first of them.
+    /// Allocates leaf numbers for the shapes of a body; returns the first.
     pub(super) fn claim(&mut self, body: u32, count: u32) -> u32 {
         let first = match self.gaps.get_mut(&count).and_then(Vec::pop) {
             Some(first) => first,

@@ -21,7 +21,7 @@ use crate::contact::tuning::{BOUNDS_EXCESS, BOUNDS_ROOM, MARGIN};
 use crate::tree::{Item, PAD};
 use sinew_math::{Transform, Vec3, max, max3, min3};
 
-/// Bodies with fewer shapes are inserted into a tree individually.
+/// Number of shapes up to which a body's shapes are inserted into a tree one by one.
 const FEW: usize = 64;
 
 /// A shape of a body: indices.
@@ -31,38 +31,38 @@ pub(crate) struct Owner {
     pub shape: u32,
 }
 
-/// The shapes of all bodies, by their bounds.
+/// Bounds of the shapes of all bodies.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Proxies {
     fixed: Layer,
     moving: Layer,
-    /// Half-spaces: their bounds would be useless.
+    /// Half-spaces, which have no finite bounds.
     unbounded: Vec<Owner>,
     /// Leaves of each body, by its index.
     homes: Vec<Option<Home>>,
-    /// Static bodies with a single shape, by index: rays hit many, and a body spans several cache lines.
+    /// Static bodies with a single shape, by index. Rays test many of them, and a body spans several cache lines.
     lone: Vec<Option<Placed>>,
     /// Bounds of each leaf of `moving` during the coming step, world, metres; [`UNKNOWN`] if not needed.
     reach: Vec<Aabb>,
-    /// Traces by the first leaf of each movable body.
+    /// Last pose and motion of each movable body, by its first leaf.
     traces: Vec<Trace>,
-    /// Strides by index of the body.
+    /// Motion of each body, by its index.
     strides: Vec<Stride>,
-    /// Bodies that could touch something at the last pair search, and its time.
+    /// Bodies that could touch something at the last pair search, and the number of that search.
     active: Vec<u32>,
     active_before: Vec<u32>,
     stamp: u64,
-    /// Step that the last `update_motion` was for, seconds.
+    /// Length of the step of the last `update_motion`, seconds.
     dt: f32,
     /// Bodies whose shapes are all pending a search.
     dirty: Vec<u32>,
     /// Leaves of `moving` whose bounds have changed since their last search.
     enlarged: Vec<u32>,
-    /// Everything movable is pending a search.
+    /// True if all movable bodies are pending a search.
     all_pending: bool,
     /// Leaves that are marked as pending.
     pending: Vec<Leaf>,
-    /// Some of them belong to removed bodies.
+    /// True if some pending leaves belong to removed bodies.
     has_gone: bool,
     scratch: Vec<Item>,
 }
@@ -81,7 +81,7 @@ fn bounds(body: &Body, shape: u32) -> Aabb {
     body.shapes[shape as usize].shape.aabb(&body.world_from_shape(shape as usize))
 }
 
-/// Enlarged by the rounding error of an exact test; infinite for NaN, which would corrupt the bounds of others.
+/// Enlarges bounds by the rounding error of an exact test; infinite for NaN, which would corrupt other bounds.
 pub(crate) fn thick(bounds: &Aabb) -> Aabb {
     let far = max3(-bounds.min, bounds.max);
     let thick = bounds.expand(PAD * max(far.x, max(far.y, far.z)));
@@ -92,13 +92,13 @@ pub(crate) fn thick(bounds: &Aabb) -> Aabb {
     }
 }
 
-/// Bounds for the contact search of a shape, world: its own, grown by its motion and a margin.
+/// Bounds for the contact search of a shape, world: enlarged by `motion` (m) and a margin.
 fn grown(body: &Body, shape: u32, motion: f32) -> Aabb {
     bounds(body, shape).expand(MARGIN + motion)
 }
 
 impl Proxies {
-    /// A body was added.
+    /// Adds the shapes of a new body.
     pub fn add(&mut self, index: u32, body: &Body) {
         let home = self.move_in(index, body);
         let count = home.count as usize;
@@ -114,7 +114,7 @@ impl Proxies {
         self.mark_dirty(index);
     }
 
-    /// A body was removed.
+    /// Removes the shapes of a removed body.
     pub fn remove(&mut self, index: u32) {
         let Some(home) = self.homes.get_mut(index as usize).and_then(Option::take) else { return };
         self.lone[index as usize] = None;
@@ -132,7 +132,7 @@ impl Proxies {
         }
     }
 
-    /// A body was teleported.
+    /// Updates the shapes of a teleported body.
     pub fn place(&mut self, index: u32, body: &Body) {
         let Some(home) = self.homes[index as usize] else { return };
         self.refresh(index, body);
@@ -142,7 +142,7 @@ impl Proxies {
         self.mark_dirty(index);
     }
 
-    /// A body has new surfaces.
+    /// Updates the shapes of a body with new surfaces.
     pub fn refresh(&mut self, index: u32, body: &Body) {
         self.lone[index as usize] = lone(body);
         if let Some(home) = self.home(index).filter(|home| home.moves && home.count > 0) {
@@ -150,7 +150,7 @@ impl Proxies {
         }
     }
 
-    /// All bodies may have changed: keeps what still matches.
+    /// Updates all bodies, each of which may have changed; keeps data that still matches.
     pub fn adopt(&mut self, bodies: &Arena<Body>) {
         for index in 0..self.homes.len() as u32 {
             let body = bodies.try_at(index);
@@ -180,7 +180,7 @@ impl Proxies {
         self.traces.fill(Trace::NONE);
     }
 
-    /// The shape of a single-shape static body, at its pose, as stored in the body.
+    /// Shape of a static body with a single shape, at its pose, as stored in the body.
     pub fn lone(&self, index: u32) -> Option<&Placed> {
         self.lone[index as usize].as_ref()
     }
@@ -197,7 +197,7 @@ impl Proxies {
         if moves { &mut self.moving } else { &mut self.fixed }
     }
 
-    /// Allocates leaves for a body, not yet in a tree; half-spaces get none.
+    /// Allocates leaves for a body and returns them; does not insert them into a tree. Records its half-spaces.
     fn move_in(&mut self, index: u32, body: &Body) -> Home {
         let moves = body.kind != BodyKind::Static;
         let count = body.shapes.len() as u32;
@@ -220,7 +220,7 @@ impl Proxies {
             self.traces[own].fill(Trace::NONE);
             self.moving.tree.reserve(count);
             self.scratch.reserve(count);
-            // All may leave their margins at once.
+            // All leaves may leave their margins in the same step.
             self.enlarged.reserve(count);
             self.pending.reserve(count);
         }
@@ -229,7 +229,7 @@ impl Proxies {
         home
     }
 
-    /// Rebuilds a degraded tree.
+    /// Rebuilds one of the trees if it is degraded.
     fn mend(&mut self, moves: bool) {
         if moves && self.moving.tree.is_worn() {
             self.moving.tree.rebuild(&mut self.scratch);
@@ -238,7 +238,7 @@ impl Proxies {
         }
     }
 
-    /// True if a body's leaves are up to date and contain it.
+    /// True if a body's leaves match its shapes; updates the body in that case.
     fn fits(&mut self, index: u32, body: &Body) -> bool {
         let Some(home) = self.home(index) else { return false };
         let tree = &self.layer(home.moves).tree;
@@ -252,7 +252,7 @@ impl Proxies {
         fits
     }
 
-    /// Least bounds that the tree must hold for a shape.
+    /// Smallest bounds that the tree must hold for a shape.
     fn needed(&self, home: Home, body: &Body, shape: u32) -> Aabb {
         thick(&if home.moves { grown(body, shape, 0.0) } else { bounds(body, shape) })
     }
@@ -264,8 +264,8 @@ impl Proxies {
         }
     }
 
-    /// Ensures that the bounds of a shape in its tree contain these; if they must change, adds a margin, mostly along
-    /// the expected `way`, metres. Returns true if they changed.
+    /// Ensures that the bounds of a shape in its tree contain `needed`. If they must change, adds a margin of `room`
+    /// (m) and the expected motion `way` (m). Returns true if they changed.
     fn cover(&mut self, home: Home, shape: u32, needed: &Aabb, way: Vec3, room: f32) -> bool {
         let leaf = home.first + shape;
         let tree = &mut self.layer_mut(home.moves).tree;
@@ -282,14 +282,14 @@ impl Proxies {
         !fits
     }
 
-    /// Makes all shapes of a body pending; its motion is unknown.
+    /// Marks all shapes of a body as pending, with unknown motion.
     fn mark_dirty(&mut self, index: u32) {
         let Some(home) = &mut self.homes[index as usize] else { return };
         if core::mem::replace(&mut home.dirty, true) {
             return;
         }
         if !home.moves && home.count as usize > FEW {
-            // Cheaper from the other side.
+            // It is cheaper to search from the movable bodies.
             self.all_pending = true;
         }
         self.dirty.push(index);
@@ -302,7 +302,7 @@ impl Proxies {
         }
     }
 
-    /// Rebuilds a tree, including bodies with new leaves.
+    /// Rebuilds a tree, including new bodies.
     fn build(&mut self, moves: bool, new: &[(u32, &Body)]) {
         let count = new.iter().map(|(_, body)| body.shapes.len()).sum::<usize>();
         let mut items = Vec::with_capacity(self.layer(moves).tree.len() + count);
@@ -324,7 +324,7 @@ impl Proxies {
     }
 }
 
-/// The shape of a static body that has one.
+/// Shape of a static body that has exactly one.
 fn lone(body: &Body) -> Option<Placed> {
     match (body.kind, body.shapes.as_slice()) {
         (BodyKind::Static, [only]) => {

@@ -1,4 +1,4 @@
-//! Motion of bodies in past and coming steps: bounds of their shapes within it, and the margins that save tree updates.
+//! Motion of bodies in past and coming steps: bounds of their shapes during it, and the margins that save tree updates.
 
 use super::{Home, Proxies, grown, thick};
 use crate::arena::Arena;
@@ -14,22 +14,22 @@ use sinew_math::{Transform, Vec3, max, min, min3};
 /// Motion of a body in a step, metres.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stride {
-    /// Motion of its centre since the last pair search, and of its other points; infinite after a teleport. Zero unless
-    /// `stamp` is current.
+    /// Motion of the body's centre since the last pair search, and additional motion of its other points (`turned`);
+    /// infinite after a teleport. Counts as zero unless `stamp` is current.
     shift: Vec3,
     turned: f32,
     stamp: u64,
-    /// Motion in the coming step at its current velocity.
+    /// Motion of the centre in the coming step at the current velocity.
     ahead: Vec3,
     spin: f32,
-    /// Additional motion in the coming step from an impulse, in any direction.
+    /// Possible additional motion in the coming step from an impulse, in any direction.
     blow: f32,
-    /// Margin of its bounds for that, metres.
+    /// Margin of the body's bounds for its motion in the coming step, metres.
     pub grown: f32,
 }
 
 impl Stride {
-    /// Notes the motion in a step of `dt` seconds of a body that reaches so far from its centre, metres.
+    /// Sets the motion in a step of `dt` seconds of a body whose points are within `arm` (m) of its centre.
     fn set_ahead(&mut self, Velocity { linear, angular }: Velocity, arm: f32, dt: f32) {
         self.ahead = linear * dt;
         self.spin = angular.length() * arm * dt;
@@ -43,31 +43,31 @@ impl Stride {
 pub(crate) struct Closing {
     /// Largest approach since the last pair search.
     pub moved: f32,
-    /// Largest distance at which contact points are searched because of speed, metres.
+    /// Distance up to which contact points are searched because of speed, metres.
     pub ahead: f32,
 }
 
-/// Distance at which contact points of two bodies are searched because of speed, metres.
+/// Distance up to which contact points of two bodies are searched because of speed, metres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ahead {
-    /// No farther than this.
+    /// Upper limit of the distance.
     pub most: f32,
-    /// Part for impulses that joints will transmit.
+    /// Part of the distance for impulses that joints will transmit.
     pub blow: f32,
 }
 
 /// Pose and motion of a body at its last bounds update.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Trace {
-    /// The body's reach: its shapes never change.
+    /// Reach of the body, metres; its shapes never change.
     arm: f32,
     pose: Transform,
     velocity: Velocity,
-    /// Displacement as in [`Stride`].
+    /// Motion as in [`Stride`].
     shift: Vec3,
     turned: f32,
-    /// Distance that a kinematic body's centre may move until a ball around it, which contains the whole body in any
-    /// orientation, may leave its bounds in the tree, metres.
+    /// Distance that a kinematic body's centre may move, metres, until a ball around it may leave the body's bounds in
+    /// the tree. The ball contains the body in any orientation.
     pub free: f32,
 }
 
@@ -75,7 +75,7 @@ pub(super) struct Trace {
 pub(super) const UNKNOWN: Aabb = Aabb { min: Vec3::NAN, max: Vec3::NAN };
 
 impl Trace {
-    /// Motion of a teleported body.
+    /// Trace of a teleported body.
     pub const NONE: Self = Self {
         arm: f32::NAN,
         pose: Transform { translation: Vec3::NAN, ..Transform::IDENTITY },
@@ -86,13 +86,13 @@ impl Trace {
     };
 }
 
-/// Safety factors on motion and on the distance from the origin and the body's size: the rounding error of a bound and
-/// of a gap computed from it.
+/// Safety factors on motion, and on the distance from the origin and the body's size. They cover the rounding error of
+/// bounds and of gaps computed from bounds.
 const SLACK: f32 = 1e-3;
 const BLUR: f32 = 2e-6;
 
 /// Motion of a body's centre between two poses, and the largest additional motion of any point within `arm` of it,
-/// metres: by the chord of half the rotation, twice as long as that of a quarter.
+/// metres. The second is twice the chord of half the rotation.
 fn way(from: &Transform, to: &Transform, arm: f32) -> (Vec3, f32) {
     let (p, q) = (from.rotation, to.rotation.toward(from.rotation));
     let turned = Vec3::new(q.x - p.x, q.y - p.y, q.z - p.z).length_squared() + (q.w - p.w) * (q.w - p.w);
@@ -155,13 +155,13 @@ impl Proxies {
             }
         }
         if self.dirty.len() > self.active.len() {
-            // Cheaper from the other side.
+            // It is cheaper to search from the movable bodies.
             self.all_pending = true;
         }
         self.forget_motion(bodies);
     }
 
-    /// Trees in good order for a step of `dt` seconds; true if the last was as long.
+    /// Rebuilds degraded trees and sets the length of the step, seconds; true if the last step was as long.
     fn begin(&mut self, dt: f32) -> bool {
         self.mend(false);
         self.mend(true);
@@ -174,7 +174,7 @@ impl Proxies {
         if same_step && trace.pose == body.world_from_principal && trace.velocity == body.velocity {
             return;
         }
-        // The previous pose of a teleported body is unknown.
+        // The motion of a teleported body is unknown: its trace has no pose.
         let arm = if trace.arm >= 0.0 { trace.arm } else { body.reach() };
         let (shift, turned) = way(&trace.pose, &body.world_from_principal, arm);
         let (shift, turned) = (trace.shift + shift, trace.turned + turned);
@@ -186,8 +186,8 @@ impl Proxies {
         self.predict_bounds(index, home, body, BOUNDS_STEPS, BOUNDS_ROOM);
     }
 
-    /// The same for a kinematic body. There may be many without contacts, so as long as a small one's bounds in the
-    /// tree contain a ball around it, nothing else is computed, and its motion counts as unknown.
+    /// Like [`predict`](Self::predict), for a kinematic body. There may be many without contacts. As long as the bounds
+    /// of a small one in the tree contain a ball around it, nothing else is computed, and its motion counts as unknown.
     fn predict_kinematic(&mut self, index: u32, home: Home, body: &Body) {
         let (trace, stride) = (&mut self.traces[home.first as usize], &mut self.strides[index as usize]);
         let arm = if trace.arm >= 0.0 { trace.arm } else { body.reach() };
@@ -200,7 +200,7 @@ impl Proxies {
         }
         let mut free = trace.free;
         if free < grown {
-            // If it becomes dynamic, its motion is unknown.
+            // The motion is unknown if the body becomes dynamic.
             *trace = Trace { arm, ..Trace::NONE };
             free = self.free(home.first, body, arm);
         }
@@ -211,14 +211,15 @@ impl Proxies {
             self.predict_bounds(index, home, body, BOUNDS_STEPS_LED, room);
             free = self.free(home.first, body, arm);
         }
-        // It moves according to its velocity; the rounding error is less than its rotation, which is also subtracted.
+        // The body moves according to its velocity; the rounding error is less than its rotation, which `gone`
+        // includes.
         let far = body.center().abs();
         let gone = grown * (1.0 + SLACK) + BLUR * (far.x + far.y + far.z + arm);
         self.traces[home.first as usize].free = free - gone;
     }
 
-    /// Distance that the centre of a body may move until a ball around it leaves its bounds in the tree, metres;
-    /// negative if it already has.
+    /// Distance that the centre of a body may move until a ball around it leaves the body's bounds in the tree, metres;
+    /// negative if the ball has already left them.
     fn free(&self, leaf: u32, body: &Body, arm: f32) -> f32 {
         let ball = thick(&Aabb::around(body.center(), Vec3::splat(arm + MARGIN)));
         let own = self.moving.tree.bounds(leaf);
@@ -232,7 +233,7 @@ impl Proxies {
         let (stride, way) = (&mut self.strides[index as usize], speed * self.dt);
         stride.blow = way;
         stride.grown += way;
-        // The next step recomputes it from the velocity at that time.
+        // This makes the next step recompute the motion from the velocity at that time.
         self.traces[home.first as usize].velocity.linear = Vec3::NAN;
         self.predict_bounds(index, home, body, BOUNDS_STEPS, BOUNDS_ROOM);
     }
@@ -267,7 +268,7 @@ impl Proxies {
         Some(home)
     }
 
-    /// Clears the motion of pending bodies.
+    /// Marks the motion of pending bodies as unknown.
     fn forget_motion(&mut self, bodies: &Arena<Body>) {
         for at in 0..self.dirty.len() {
             let index = self.dirty[at];
@@ -275,10 +276,10 @@ impl Proxies {
             let stride = &mut self.strides[index as usize];
             (stride.shift, stride.turned, stride.stamp) = (Vec3::ZERO, f32::INFINITY, self.stamp);
             if !home.moves {
-                // A static body may have a motion set, which counts in the contact search.
+                // A static body may have a velocity, which counts in the contact search.
                 stride.ahead = body.velocity.linear * self.dt;
             } else if home.count > 0 && !body.can_touch() {
-                // It rests, and its bounds will not be computed.
+                // The body rests, and its bounds will not be computed.
                 (stride.ahead, stride.spin, stride.blow, stride.grown) = (Vec3::ZERO, 0.0, 0.0, 0.0);
                 self.traces[home.first as usize] = Trace::NONE;
                 for shape in 0..home.count {
@@ -298,8 +299,8 @@ impl Proxies {
         Closing { moved, ahead: self.ahead(key).most }
     }
 
-    /// Distance at which contact points of two bodies are searched because of speed: their relative or larger
-    /// individual approach, both rotations, and possible impulses.
+    /// Distance up to which contact points of two bodies are searched because of speed: the largest of their relative
+    /// and individual motions, plus their rotations and possible impulses.
     pub fn ahead(&self, key: ContactKey) -> Ahead {
         let [p, q] = [key.a, key.b].map(|body| &self.strides[body as usize]);
         let (p2, q2) = (p.ahead.length_squared(), q.ahead.length_squared());

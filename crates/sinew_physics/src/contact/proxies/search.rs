@@ -76,7 +76,7 @@ impl Proxies {
         }
     }
 
-    /// True if a moving shape's neighbours are requested.
+    /// True if the search visits the neighbours of a movable shape.
     fn is_asking(&self, owner: Owner, leaf: Leaf) -> bool {
         if self.all_pending {
             self.home(owner.body).is_some_and(|home| home.active == self.stamp)
@@ -85,7 +85,7 @@ impl Proxies {
         }
     }
 
-    /// Visits the pairs of a shape with all shapes whose bounds overlap its own.
+    /// Visits the pairs of a shape with shapes whose bounds overlap its own.
     fn neighbors(
         &self,
         bodies: &Arena<Body>,
@@ -100,7 +100,7 @@ impl Proxies {
         let bounds = self.wide_bounds(body, owner, leaf);
         let sensing = body.surface(owner.shape as usize).sensing;
         let mut meet = |other: Owner, its: Leaf| {
-            // Two moving shapes that are both pending find each other.
+            // A pair of pending movable shapes would be found twice.
             let is_found = leaf.moves() && its.moves() && its.at() < leaf.at() && self.is_asking(other, its);
             let its_body = bodies.at(other.body);
             let its_sensing = its_body.surface(other.shape as usize).sensing;
@@ -120,7 +120,7 @@ impl Proxies {
         if !leaf.moves() {
             return;
         }
-        // The bounds of fixed shapes lack its margin.
+        // The bounds of fixed shapes include no search margin.
         let _ = self.fixed.tree.overlapping(&bounds.expand(1.01 * MARGIN), |leaf| {
             meet(self.fixed.owners[leaf as usize], Leaf::new(false, leaf))
         });
@@ -131,7 +131,7 @@ impl Proxies {
         }
     }
 
-    /// Bounds that contain a shape and everything that may touch it, until its tree changes.
+    /// Tree bounds of a shape including the search margin.
     fn wide_bounds(&self, body: &Body, owner: Owner, leaf: Leaf) -> Aabb {
         match (leaf.moves(), is_bounded(body, owner.shape)) {
             (true, _) => self.moving.tree.bounds(leaf.at() as u32),
@@ -167,7 +167,7 @@ impl Proxies {
         apart.length() - PAD * max(far.x, max(far.y, far.z))
     }
 
-    /// Bounds of the shapes of a pair, grown by a margin and by motion, with that motion.
+    /// Bounds of the two shapes, grown by a margin and by motion, and the motion of each, metres.
     fn grown_bounds(&self, bodies: &Arena<Body>, key: ContactKey, leaves: [Leaf; 2]) -> [(Aabb, f32); 2] {
         let grown = |leaf: Leaf, body: u32, shape: u32| {
             if leaf.moves() {
@@ -181,8 +181,8 @@ impl Proxies {
         [grown(leaves[0], key.a, key.shape_a), grown(leaves[1], key.b, key.shape_b)]
     }
 
-    /// Every shape whose bounds overlap these, including touching ones and half-spaces, and possibly other nearby ones;
-    /// in unspecified order, until the callback breaks off.
+    /// Visits every shape whose bounds overlap `bounds`, including touching ones and half-spaces, and possibly other
+    /// nearby ones, in unspecified order, until `visit` breaks.
     pub fn overlapping<B>(
         &self,
         bounds: &Aabb,
@@ -197,18 +197,18 @@ impl Proxies {
         ControlFlow::Continue(())
     }
 
-    /// Half-spaces.
+    /// Half-spaces of all bodies.
     pub fn unbounded(&self) -> &[Owner] {
         &self.unbounded
     }
 
-    /// All other shapes: the non-empty trees with the owners of their leaves.
+    /// Trees of all other shapes that are not empty, with the owners of their leaves.
     pub fn trees(&self) -> impl Iterator<Item = (&Tree, &[Owner])> {
         let layers = [&self.fixed, &self.moving].into_iter().filter(|layer| !layer.tree.is_empty());
         layers.map(|layer| (&layer.tree, layer.owners.as_slice()))
     }
 
-    /// Every shape that a line may hit; see [`Tree::along`].
+    /// Visits every shape that a line may hit; see [`Tree::along`].
     pub fn along(&self, sweep: &Sweep, mut visit: impl FnMut(Owner) -> f32) {
         let mut sweep = *sweep;
         for &owner in &self.unbounded {
@@ -224,7 +224,7 @@ impl Proxies {
         }
     }
 
-    /// Every shape that may be within `distance` (m) of a point; see [`Tree::nearest`].
+    /// Visits every shape that may be within `distance` (m) of a point; see [`Tree::nearest`].
     pub fn nearest(&self, point: Vec3, mut distance: f32, mut visit: impl FnMut(Owner) -> f32) {
         for &owner in &self.unbounded {
             distance = visit(owner);

@@ -101,7 +101,7 @@ enum Together {
 }
 
 /// Effective mass along each row, by direction, with the rigid rows locked. Open rotations are driven together, so the mass of each is
-/// computed with the other two locked. The axes of a shoulder do not lie along the arm: if the others were free, the arm could evade a row
+/// computed with the other two locked. The axes of a shoulder are not along the arm: if the others were free, the arm could evade a row
 /// by spinning about itself, and the mass along that row would be almost zero.
 fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS], together: Together) -> Vec6 {
     let rigid = if joint.drive.weld.is_some() { 0 } else { rows.locked };

@@ -155,8 +155,8 @@ impl SolverJoint {
         Some([row.a.map(|x| x * impulse), row.b.map(|x| x * impulse)])
     }
 
-    /// Rate change that the rows with the given rate request. `solve` removes the position error within the substep and applies the soft
-    /// rows. `relax` stops the rigid rows and leaves the soft rows unchanged, or they would act twice.
+    /// Rate change that rows at the given rate request. `solve` removes the position error within the substep and applies the soft
+    /// rows. `relax` stops the rigid rows and leaves the soft rows unchanged; otherwise they would act twice.
     pub(in crate::solver) fn residual(&self, rate: &Vec6, solve: bool, h: f32) -> Vec6 {
         let mut out = ZERO6;
         for row in 0..self.rows.count {
@@ -170,7 +170,7 @@ impl SolverJoint {
         out
     }
 
-    /// Rate that a soft row approaches where it moves no mass.
+    /// Rate of a soft row that moves no mass.
     pub(in crate::solver) fn wanted(&self, row: usize) -> f32 {
         self.soft[row].wanted(self.start_rate[self.rows.direction(row)])
     }
@@ -196,7 +196,7 @@ impl SolverJoint {
         self.rows.rate(of(self.a), of(self.b))
     }
 
-    /// Position error of a soft weld at other poses of the bodies, beyond what its rows predicted and what has been corrected. Without
+    /// Position error of a soft weld at other poses of the bodies, beyond the prediction of its rows and the corrections so far. Without
     /// this, a rotating body on a soft weld would drift outward by `½ ω² r h²` in each substep, and a damper takes long to pull it back.
     fn bend_error(&self, pose: &JointPose, velocities: &[Vec6], h: f32) -> Vec6 {
         let mut bend = ZERO6;
@@ -214,7 +214,7 @@ impl SolverJoint {
         bend
     }
 
-    /// Position errors to correct at other poses of the bodies, which these velocities lead to.
+    /// Position errors to correct at predicted poses of the bodies, to which `velocities` lead.
     pub(in crate::solver) fn position_error(&self, poses: &[Transform], velocities: &[Vec6], h: f32) -> Vec6 {
         let [a, b] = [self.a, self.b].map(|body| &poses[body as usize]);
         let pose = JointPose::new(&self.geometry, a, b);
@@ -311,8 +311,8 @@ impl IslandSolver {
         self.note_motor_impulses();
     }
 
-    /// Kinetic energy that saturated motors add, J: impulse times the mean of the rates before and after it. The energy they would add to
-    /// bodies without joints is no measure: it may be a thousand times as large.
+    /// Kinetic energy that saturated motors add, J: impulse times the mean of the rates before and after it. The energy that they would add
+    /// to bodies without joints may be a thousand times as large.
     pub(in crate::solver) fn work_of_saturated(&self) -> f32 {
         let mut sum = 0.0;
         for joint in self.joints.iter().filter(|joint| joint.pushes()) {
@@ -324,7 +324,7 @@ impl IslandSolver {
         sum
     }
 
-    /// Visits the motor impulses of this substep with the rates that the bodies are about to move at: joint, direction, impulse, rate.
+    /// Passes the motor impulses of this substep to `see`: joint, direction, impulse, and the rate of the coming motion.
     fn each_motor_impulse(&self, mut see: impl FnMut(usize, usize, f32, f32)) {
         for (j, joint) in self.joints.iter().enumerate().filter(|(_, joint)| joint.drive.motor.is_some()) {
             let rate = joint.rate(&self.velocities);
@@ -340,8 +340,8 @@ impl IslandSolver {
         }
     }
 
-    /// Work of the motors along the displacement that the bodies are about to make, J: force times distance. The sum of kinetic and
-    /// potential energy rises by at most that amount.
+    /// Work of the motors along the coming displacement of the bodies, J: force times distance. The sum of kinetic and potential energy
+    /// rises by at most that amount.
     pub(in crate::solver) fn work_of_motors(&self) -> f32 {
         let mut sum = 0.0;
         self.each_motor_impulse(|_, _, impulse, rate| sum += impulse * rate);
@@ -447,7 +447,7 @@ impl IslandSolver {
     }
 
     /// Releases saturated motors that no longer request their cap, and saturates pins that contacts have pushed beyond their caps, for the
-    /// next substep. Returns whether any changed. The rows change when they are refreshed.
+    /// next substep. Returns true if any changed. The rows change when they are refreshed.
     pub(in crate::solver) fn release_motors(&mut self) -> bool {
         let mut released = false;
         for joint in self.joints.iter_mut().filter(|joint| joint.drive.motor.is_some()) {

@@ -1,6 +1,6 @@
-//! Eliminates a joint's open directions from the articulated inertia of its child (Featherstone 1983), at the joint's anchor. The locked
-//! directions pass the inertia on to the parent unchanged. An open direction is eliminated by a pivot that includes the gains `G = 1/Γ` of
-//! springs, motors and friction.
+//! Eliminates a joint's open directions from the articulated inertia of its child (Featherstone 1983), at the joint's anchor. The inertia
+//! in the locked directions is added to the parent unchanged. An open direction is eliminated by a pivot that includes the gains `G = 1/Γ`
+//! of springs, motors and friction.
 //!
 //! With inertia `I` and impulse `p` of the child at the anchor, the velocities `V = V_p + u` of child and parent
 //! there, and an open direction `s` of gain `g`:
@@ -8,11 +8,11 @@
 //! w = I s        d = sᵀw + g        u = (sᵀp − wᵀV_p)/d
 //! I −= w wᵀ/d    p −= w sᵀp/d
 //! ```
-//! Several directions are eliminated one after the other, or three rotations at once with a 3×3 pivot.
+//! Several directions are eliminated one after the other, or three rotations together with a 3×3 pivot.
 //!
 //! Residuals are not eliminated. Residuals of gains are impulses on both bodies. If locked rows request a velocity `t` of the child at the
-//! anchor, the parent gets `−I' t` of the inertia `I'` that is passed on, and the child follows `t` as it follows its parent
-//! ([`Elimination::follow`]). Passing on `p − I t` instead would leave the solve with the difference of two large numbers.
+//! anchor, the parent gets `−I' t`, with `I'` the inertia that the parent gets, and the child follows `t` as it follows its parent
+//! ([`Elimination::follow`]). With `p − I t` instead, the solve would contain the difference of two large numbers.
 //!
 //! The code is generic over [`Real`]: one tree, or eight of the same shape side by side. Numbers that are equal in all lanes are broadcast
 //! by [`Spread`].
@@ -75,13 +75,13 @@ fn zeros<R: Real>() -> Matrix<R> {
     [zero(), zero(), zero()]
 }
 
-/// `mᵀ v`
+/// Computes `mᵀ v`.
 #[inline(always)]
 pub(crate) fn transposed_times<R: Real>(m: &Matrix<R>, v: Vector3<R>) -> Vector3<R> {
     m[0] * v.x + m[1] * v.y + m[2] * v.z
 }
 
-/// `m v`
+/// Computes `m v`.
 #[inline(always)]
 pub(crate) fn times<R: Real>(m: &Matrix<R>, v: Vector3<R>) -> Vector3<R> {
     Vector3::new(m[0].dot(v), m[1].dot(v), m[2].dot(v))
@@ -140,7 +140,7 @@ impl<R: Real> Symmetric<R> {
         Self([a - g, b - h, c - i, d - j, e - k, f - l])
     }
 
-    /// Inertia of a direction-dependent mass, about a point `r` away from it.
+    /// Inertia of a direction-dependent mass, about a point at distance vector `r` from the mass.
     #[inline(always)]
     pub fn at(&self, r: Vector3<R>) -> Inertia<R> {
         let [a0, a1, a2] = self.rows();
@@ -174,7 +174,7 @@ impl<R: Real> Symmetric<R> {
     }
 }
 
-/// Inertia of a body with the links that hang on it, about some point: momentum `A v + C ω`, angular momentum `Cᵀ v + B ω`.
+/// Inertia of a body with the links below it, about a reference point: momentum `A v + C ω`, angular momentum `Cᵀ v + B ω`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia<R> {
     pub mass: Symmetric<R>,
@@ -199,7 +199,7 @@ impl<R: Real> Inertia<R> {
         Self { mass: Symmetric::zero(), coupling: zeros(), rotation: Symmetric::zero() }
     }
 
-    /// The same inertia about a point `r` away from the present reference point.
+    /// Returns the same inertia about a point `r` away from the present reference point.
     #[inline(always)]
     pub fn shifted(&self, r: Vector3<R>) -> Self {
         let [a0, a1, a2] = self.mass.rows();
@@ -280,7 +280,7 @@ pub(crate) trait Elimination<N> {
     where
         N: Spread<R>;
 
-    /// Descends from a velocity at the anchor: that of the anchor on the parent, or the requested one of the child.
+    /// Descends from a velocity at the anchor: that of the anchor on the parent, or the requested velocity of the child.
     fn follow<R: Real>(&self, anchor: Twist<R>, kept: &[R; 6]) -> Twist<R>
     where
         N: Spread<R>;
@@ -294,7 +294,7 @@ pub(crate) trait Elimination<N> {
 /// Motions that a [`Swivel`] leaves open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Freedom {
-    /// All: the body is the free root of its tree.
+    /// All motions: the body is the free root of its tree.
     All,
     /// All rotations and no translation.
     Rotation,
@@ -302,7 +302,7 @@ pub(crate) enum Freedom {
     DrivenRotation,
 }
 
-/// Three open rotations, eliminated at once.
+/// Three open rotations, eliminated together.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Swivel<N> {
     freedom: Freedom,
@@ -343,7 +343,7 @@ impl<R: Real> Swivel<R> {
         Self { freedom, arm, parent_arm, inertia, gain, pivot, coupled, free }
     }
 
-    /// From the parent's centre of mass to the anchor.
+    /// Vector from the parent's centre of mass to the anchor.
     #[inline(always)]
     pub fn parent_arm(&self) -> Vector3<R> {
         self.parent_arm
@@ -413,7 +413,7 @@ impl<N: Copy> Elimination<N> for Swivel<N> {
         [kept[3], kept[4], kept[5]] = force.to_array();
         let at = spread(self.parent_arm).cross(force);
         if self.freedom == Freedom::DrivenRotation {
-            // B + G less B.
+            // The inertia is B + G minus B.
             return [force, self.gain.spread().times(self.pivot.spread().times(torque)) + at];
         }
         [force, at]
@@ -499,7 +499,7 @@ impl<R: Real> Sequence<R> {
         self.open += 1;
     }
 
-    /// From the parent's centre of mass to the anchor.
+    /// Vector from the parent's centre of mass to the anchor.
     #[inline(always)]
     pub fn parent_arm(&self) -> Vector3<R> {
         self.parent_arm
@@ -582,7 +582,7 @@ mod tests {
     /// An open direction: rotational or not, its axis, its gain.
     type Open = (bool, Vector3<f64>, f64);
 
-    /// A random body of one kilogram up to thousands.
+    /// A random body of one to thousands of kilograms.
     fn body(random: &mut Random, mass: f32) -> Inertia<f64> {
         let size = random.range(0.05, 0.5);
         let moments = Vec3::new(random.range(0.5, 1.0), random.range(0.5, 1.0), random.range(0.5, 1.0))

@@ -85,8 +85,8 @@ impl IslandSolver {
         self.solve_trees();
     }
 
-    /// Refines the solution iteratively: between masses of 1 : 100,000 one solve in single precision leaves too large an error. Islands with loops
-    /// are left out: redundant rows of a closed chain never agree to the last digit, and refinement makes its drives do work.
+    /// Refines the solution iteratively: with masses of 1 : 100,000 one solve in single precision leaves too large an error. Islands with
+    /// loops are excluded: redundant rows of a closed chain never agree to the last digit, and refinement makes its drives do work.
     pub(in crate::solver) fn refine_joints(&mut self) {
         if !self.loops.is_empty() || self.coupling == Coupling::Turns {
             return;
@@ -108,8 +108,8 @@ impl IslandSolver {
 
     /// Removes position errors at the predicted poses (SHAKE) with the factor of the substep's start, tree by tree until they are small
     /// enough: one or two rounds except after violent hits. For a body that turns by much of a radian a round may raise the error and the
-    /// next lower it again, so a tree keeps the best of its rounds and stops when a round gains little. Trees with loops between them, and
-    /// all trees of an island that is not solved by turns, stop together.
+    /// next may lower it again, so a tree keeps its best round and stops when a round gains little. Trees with loops between them, and all
+    /// trees of an island that is not solved by turns, stop together.
     ///
     /// Returns the largest remaining error, m or rad.
     pub(in crate::solver) fn correct_positions(&mut self, of: Corrected) -> f32 {
@@ -153,7 +153,7 @@ impl IslandSolver {
         most
     }
 
-    /// Marks the trees whose positions are corrected.
+    /// Chooses the trees to correct and clears their residuals.
     fn choose_corrected(&mut self, of: Corrected) {
         let s = &mut self.scratch;
         let trees = self.trees.len();
@@ -180,7 +180,7 @@ impl IslandSolver {
         }
     }
 
-    /// Marks the trees that a correction changed, for the visits of limits.
+    /// Marks the trees that a correction changed, so that limits visit them.
     fn tell_corrections(&mut self) {
         if self.coupling != Coupling::Turns {
             return;
@@ -260,7 +260,7 @@ impl IslandSolver {
     fn find_errors(&mut self, errors: &mut [f32]) {
         let Self { velocities, joints, links, loops, trees, coupling, h, scratch: s, .. } = self;
         let (h, poses) = (*h, &s.predicted[..]);
-        // Where loops were closed they are used up.
+        // The residuals were used where loops were closed.
         s.residuals.resize(links.len(), ZERO6);
         for (tree, range) in trees.iter().enumerate().filter(|(tree, _)| s.corrected[*tree]) {
             let residuals = &mut s.residuals[range.clone()];
@@ -280,7 +280,7 @@ impl IslandSolver {
         errors.fill(most);
     }
 
-    /// Adds the residuals of soft welds to the error that they leave open.
+    /// Records in `bent` the part of the motion of soft welds that the residuals correct.
     fn bend_welds(&mut self) {
         let h = self.h;
         let bend = |joint: &mut SolverJoint, residual: &Vec6| {

@@ -1,7 +1,7 @@
 //! Joints that close loops. A few loops are solved exactly by the Schur complement of the tree (Baraff 1996): with the tree's inverse
 //! inertia `W`, the loop rows `J` and `S = J W Jᵀ + Γ`, `λ = S⁻¹ (r − J dv)`. Many loops, or loops between trees, are solved by conjugate
-//! gradients on the same equations. Each product `S p` is one pass through the trees, so a net on ropes is loaded correctly from the first
-//! round on, and every round removes energy, also if the iteration ends early.
+//! gradients on the same equations. Each product `S p` is one pass through the trees, so the first round already distributes the load of a
+//! net on ropes correctly, and every round removes energy, also if the iteration ends early.
 
 use crate::joint::DIRECTIONS;
 use crate::solver::articulation::batches::Batches;
@@ -17,14 +17,14 @@ use crate::solver::{IslandSolver, Scratch};
 use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
 use sinew_math::{clamp, max};
 
-/// The loops of one tree, solved together.
+/// Loops of one tree that are solved together.
 #[derive(Clone, Debug)]
 struct Closure {
     tree: u32,
-    /// Index of its first joint among the loops.
+    /// Index of the closure's first joint among the loops.
     first: usize,
     count: usize,
-    /// Number of its rows, and the offsets of its matrices.
+    /// Number of the closure's rows, and the offsets of its matrices.
     rows: usize,
     inverse: usize,
     columns: usize,
@@ -35,7 +35,7 @@ struct Closure {
 pub(in crate::solver) struct Loops {
     /// Joints of the island; the joints of one closure are contiguous.
     pub joints: Vec<u32>,
-    /// Empty if the loops are iterated.
+    /// Closures of the island; empty if the loops are iterated.
     closures: Vec<Closure>,
     /// S⁻¹ of all closures, row by row.
     inverses: Vec<f32>,
@@ -48,11 +48,11 @@ pub(in crate::solver) struct Loops {
 /// Vectors of conjugate gradients.
 #[derive(Clone, Debug, Default)]
 struct Gradient {
-    /// For each row of the loops.
+    /// Residual of each row of the loops.
     residual: Vec<f32>,
     direction: Vec<f32>,
     answer: Vec<f32>,
-    /// For each moving body: velocity change from the direction, and from all impulses so far.
+    /// Velocity change of each moving body from the direction, and from all impulses so far.
     dv: Vec<Vec6>,
     sum: Vec<Vec6>,
 }
@@ -71,7 +71,7 @@ impl Loops {
         self.closures.is_empty() && !self.joints.is_empty()
     }
 
-    /// Loop joints that the responses include.
+    /// Loop joints whose effect the responses include; empty if the loops are iterated.
     pub fn closed_exactly(&self) -> &[u32] {
         if self.are_iterated() { &[] } else { &self.joints }
     }
@@ -170,8 +170,8 @@ impl Loops {
         }
     }
 
-    /// Scales the solution of an ill-conditioned closure. The inverse of a closure with nearly dependent rows is mostly rounding: if its
-    /// solution does not halve the residual, use the fraction that reduces the residual most.
+    /// Scales the solution of an ill-conditioned closure. The inverse of a closure with nearly dependent rows is mostly rounding error: if
+    /// the solution does not halve the residual, uses the fraction that reduces the residual most.
     fn keep_descent(&mut self, joints: &mut [SolverJoint], scratch: &mut Scratch) {
         let Gradient { residual, direction: lambda, .. } = &self.gradient;
         let (mut square, mut along, mut answered, mut row) = (0.0, 0.0, 0.0, 0);
@@ -186,7 +186,7 @@ impl Loops {
                 row += 1;
             }
         }
-        // |r − a|² against |r|²
+        // Compares |r − a|² with |r|².
         if answered - 2.0 * along <= -0.75 * square || answered <= 0.0 {
             return;
         }
@@ -372,7 +372,7 @@ fn invert(m: &mut [f32], n: usize, out: &mut Vec<f32>) {
     out.resize(start + n * n, 0.0);
     let out = &mut out[start..];
     for column in 0..n {
-        // Compute the result row by row; it is symmetric.
+        // Computes the result row by row; the result is symmetric.
         let x = &mut out[column * n..(column + 1) * n];
         x[column] = 1.0;
         for i in column..n {

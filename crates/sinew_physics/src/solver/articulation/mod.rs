@@ -1,8 +1,9 @@
-//! Joints of an island as trees: what they hold is solved exactly, in time in proportion to their number.
+//! Joints of an island as trees: locked directions are solved exactly, in time proportional to the number of joints.
 //!
-//! [`tree`] is the factor of one tree, [`batches`] that of eight of one shape side by side, both by the [`elimination`] of what joints leave
-//! open; [`joints`] solves velocities (RATTLE) and positions (SHAKE) with it. [`drives`], [`pins`] and [`loops`] are what else pushes along joints,
-//! [`response`] and [`response_cache`] what a tree answers to impulses from elsewhere.
+//! [`tree`] is the factor of one tree, [`batches`] that of eight trees of one shape side by side; both use the
+//! [`elimination`] of open directions. [`joints`] solves velocities (RATTLE) and positions (SHAKE) with the factor.
+//! [`drives`], [`pins`] and [`loops`] apply other impulses along joints. [`response`] and [`response_cache`] compute
+//! the response of a tree to impulses from contacts and limits.
 
 pub(in crate::solver) mod batches;
 pub(in crate::solver) mod composite;

@@ -5,7 +5,7 @@ use crate::solver::body::SolverBody;
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::{Sym3, Vec3};
 
-/// Mass, first moment and inertia of rigidly held bodies about a common reference point.
+/// Mass, first moment and inertia of rigidly connected bodies about a common reference point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::solver) struct Piece {
     mass: f32,
@@ -56,7 +56,7 @@ impl Piece {
     }
 }
 
-/// `|r|² 1 − r rᵀ`
+/// Computes `|r|² 1 − r rᵀ`.
 fn parallel_axis(arm: Vec3) -> Sym3 {
     Sym3::from_diagonal(Vec3::splat(arm.length_squared())) - Sym3::outer(arm)
 }

@@ -1,6 +1,6 @@
 //! Pins: springs and motors between a body and a fixed body that leave all six directions open. A pin closes no loop: with rows `J` of
-//! gains `G` it gives `λ = G (r − J dv)`, so the body moves as if it had `Jᵀ G J` more inertia and were pushed by `Jᵀ G r`. Both go into
-//! the factor of its tree, which stays exact, linear in time, and stable for any stiffness.
+//! gains `G` its impulse is `λ = G (r − J dv)`, so the body moves as if it had `Jᵀ G J` more inertia and were pushed by `Jᵀ G r`. Both are
+//! added to the factor of its tree, which stays exact, linear in time, and stable for any stiffness.
 
 use crate::solver::IslandSolver;
 use crate::solver::articulation::elimination::{Inertia, wide};
@@ -12,12 +12,12 @@ use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, linear};
 /// The pins of an island.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Pins {
-    /// Joints of the island.
+    /// Indices of the pins among the joints of the island.
     pub joints: Vec<u32>,
     /// For each moving body: index of the nearest pin in `joints`, and the number of joints between. `NONE` if there is no pin, or if the
     /// fixed body that holds the tree is nearer.
     nearest: Vec<(u32, u32)>,
-    /// For each pin: the piece that it carries.
+    /// Piece that each pin carries.
     pieces: Vec<Piece>,
 }
 
@@ -35,7 +35,7 @@ impl Pins {
         self.nearest.reserve(bodies);
     }
 
-    /// Piece that hangs on a joint of the island, if the joint is a pin.
+    /// Piece that a pin carries; `None` if the joint is not a pin.
     pub fn piece(&self, joint: usize) -> Option<Piece> {
         let place = self.joints.binary_search(&(joint as u32)).ok()?;
         self.pieces.get(place).copied()
@@ -43,17 +43,17 @@ impl Pins {
 }
 
 impl SolverJoint {
-    /// The moving body of a pin; `moving` is the number of moving bodies.
+    /// Index of the moving body of a pin; `moving` is the number of moving bodies.
     fn pinned(&self, moving: usize) -> usize {
         (if (self.a as usize) < moving { self.a } else { self.b }) as usize
     }
 
-    /// Jacobian of a row on that body.
+    /// Jacobian of a row on the moving body of a pin.
     fn on_pinned(&self, body: usize, row: usize) -> Vec6 {
         if self.a as usize == body { self.rows.on_a(row) } else { self.rows.on_b(row) }
     }
 
-    /// Adds the `Jᵀ G J` of a pin.
+    /// Adds `Jᵀ G J` of a pin to the inertia of its body.
     pub(in crate::solver) fn stiffen(&self, inertia: &mut [Inertia<f64>]) {
         let body = self.pinned(inertia.len());
         for row in 0..self.rows.count {
@@ -97,7 +97,7 @@ impl IslandSolver {
             }
         }
         for &pin in &self.pins.joints {
-            // A second pin on the same body moves the same piece.
+            // A second pin on the same body carries the same piece.
             let body = self.joints[pin as usize].pinned(moving);
             let first = self.pins.joints[self.pins.nearest[body].0 as usize] == pin;
             let reference = self.reference(self.links[body].tree);
@@ -113,7 +113,7 @@ impl IslandSolver {
         }
     }
 
-    /// Adds `Jᵀ G r` to the impulses on the trees.
+    /// Adds `Jᵀ G r` of all pins to the impulses on the trees.
     pub(in crate::solver) fn pull_pins(&mut self) {
         for &pin in &self.pins.joints {
             let joint = &self.joints[pin as usize];
@@ -154,7 +154,7 @@ impl IslandSolver {
         }
     }
 
-    /// Adds the work of kinematic bodies. They push what touches them, and are pulled by what hangs on them, along their prescribed motion:
+    /// Adds the work of kinematic bodies. They push bodies that touch them and pull bodies jointed to them, along their prescribed motion:
     /// their work is that of their reactions along this motion.
     pub(in crate::solver) fn add_kinematic_work(&mut self) {
         let moving = self.links.len();

@@ -1,4 +1,4 @@
-//! Reactions of the joints: the momentum that the subtree below each joint gained, less the impulses of contacts, loops and particles;
+//! Reactions of the joints: the momentum that the subtree below each joint gained, minus the impulses of contacts, loops and particles;
 //! torques are about the anchor of B. The reactions are summed in two parts, since the pose changes between `solve` and `relax`: with the
 //! arms of the new pose, the torque of the `solve` impulses would be 3 % too high for an arm that turns at 3 rad/s.
 
@@ -32,8 +32,8 @@ impl IslandSolver {
         self.add_loop_reactions(1.0);
     }
 
-    /// Subtracts the impulses of the saturated motors of loops and pins, and adds them to their reactions. Those of tree joints are part of
-    /// what the joints give their subtrees.
+    /// Subtracts the impulses of the saturated motors of loops and pins, and adds them to their reactions. The impulses of the motors of
+    /// tree joints are part of the joints' impulses on their subtrees.
     fn take_saturated(&mut self) {
         let sums = &mut self.scratch.impulses;
         for &joint in self.loops.joints.iter().chain(&self.pins.joints) {
@@ -50,7 +50,7 @@ impl IslandSolver {
         }
     }
 
-    /// Begins the reactions of `relax` at the new pose: the present momentum and the impulses of contacts and loops so far do not count.
+    /// Begins the reactions of `relax` at the new pose; the present momentum and the impulses of contacts and loops so far do not count.
     pub(in crate::solver) fn begin_relax_reactions(&mut self) {
         if !self.has_joints() {
             return;
@@ -95,7 +95,7 @@ impl IslandSolver {
         });
     }
 
-    /// Subtracts the impulses that contacts, loops and pins gave in this substep.
+    /// Subtracts the impulses of contacts, loops and pins in this substep.
     fn take_pushes(&mut self) {
         let sums = &mut self.scratch.impulses;
         for rows in &self.manifolds {
@@ -117,7 +117,7 @@ impl IslandSolver {
         }
     }
 
-    /// Leaf to root: a joint gives its child what the child gained and what the child passed on.
+    /// Sums from leaf to root: the impulse of a joint on its child is the child's gain plus the impulses of the joints below.
     fn pass_down(&mut self) {
         for i in (0..self.links.len()).rev() {
             let link = &self.links[i];
@@ -156,7 +156,7 @@ impl crate::solver::SolverJoint {
         }
     }
 
-    /// Adds the reaction to an impulse on B at its centre; `arm` points from there to the anchor, world axes.
+    /// Adds the reaction to an impulse on B at its centre; `arm` points from the centre to the anchor, world axes.
     pub(in crate::solver) fn add_reaction(&mut self, on_b: &Vec6, arm: Vec3) {
         let torque = angular(on_b) - arm.cross(linear(on_b));
         add_scaled(&mut self.reaction, &join(linear(on_b), torque), 1.0);

@@ -26,14 +26,14 @@ pub(crate) struct Response {
 struct Members {
     first: usize,
     count: usize,
-    /// Rows that close loops, where their columns start, and their inverse.
+    /// Number of rows that close loops, start of their columns, and start of their inverse.
     rows: usize,
     columns: usize,
     inverse: usize,
 }
 
 impl Response {
-    /// Chooses the members: `wanted` bodies with everything between them and the root. Links of a tree are contiguous.
+    /// Chooses the members: `wanted` bodies and all bodies between them and the root. Links of a tree are contiguous.
     pub fn choose(&mut self, links: &[Link], tree_count: usize, wanted: &[bool]) {
         self.columns.clear();
         self.inverses.clear();
@@ -68,7 +68,7 @@ impl Response {
         }
     }
 
-    /// Bytes that are filled.
+    /// Size of the data in use, bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.members[..]) + size_of_val(&self.slot[..]) + size_of_val(&self.columns[..])
     }
@@ -79,7 +79,7 @@ impl Response {
         &self.members[tree.first..tree.first + tree.count]
     }
 
-    /// Place of a body among the members of its tree; `None` for fixed bodies.
+    /// Position of a body among the members of its tree; `None` for fixed bodies.
     pub fn slot(&self, body: u32) -> Option<usize> {
         self.slot.get(body as usize).map(|&slot| slot as usize)
     }
@@ -93,7 +93,7 @@ impl Response {
         self.inverses.extend_from_slice(inverse);
     }
 
-    /// Writes columns, `stride` apart: the velocity changes of all members of a tree from the impulses on one or two of them, given with
+    /// Writes columns, `stride` apart: the velocity changes of all members of a tree from the impulses on one or two of them, given by
     /// their positions. The columns must be zero before.
     pub fn answer_all(
         &self,
@@ -140,7 +140,7 @@ pub(crate) type Push<'a> = Option<(usize, &'a Vec6)>;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AnswerLanes {
     numbers: Mat6,
-    /// True if an impulse acts on it or was passed up to it.
+    /// True if an impulse acts on the member or on a member below it.
     is_pushed: bool,
 }
 
@@ -148,8 +148,8 @@ impl AnswerLanes {
     const NONE: Self = Self { numbers: ZERO66, is_pushed: false };
 }
 
-/// Computes the velocity changes of the members of a tree from impulses on one or two of them, eight columns in lanes: impulses are passed up to
-/// the root, then velocity changes down to the leaves (Featherstone 2008, 7.3).
+/// Computes the velocity changes of the members of a tree from impulses on one or two of them, eight columns in lanes: a pass up to the
+/// root transmits impulses, and a pass down to the leaves computes velocity changes (Featherstone 2008, 7.3).
 struct AnswerAll<'a> {
     links: &'a [Link],
     members: &'a [u32],

@@ -1,5 +1,5 @@
-//! Columns of the response: the velocity changes of all members of a row's trees from a unit of its impulse. They are computed
-//! once for a pose, for rows that are not idle. A push then adds a multiple of a column. The responses between rows are dot products with
+//! Columns of the response: the velocity changes of all members of a row's trees from a unit impulse of the row. They are computed once
+//! for a pose, for rows that are not idle. An impulse then adds a multiple of a column. The responses between rows are dot products with
 //! columns.
 
 use crate::collide::MAX_POINTS;
@@ -14,12 +14,12 @@ use sinew_math::lanes::{Lanes, WIDTH};
 /// The columns of all rows that were not idle at the present pose.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ResponseCache {
-    /// Column after column, each as its [`CoveredBodies`] says.
+    /// Columns, one after the other; [`CoveredBodies`] defines the entries of a column.
     entries: Vec<Vec6>,
     lanes: Vec<AnswerLanes>,
 }
 
-/// Place of columns of the same bodies that lie side by side: start and stride, in entries.
+/// Place of contiguous columns of the same bodies: start and stride, in entries.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CachedColumns {
     start: usize,
@@ -33,12 +33,12 @@ impl CachedColumns {
     }
 }
 
-/// Bodies that the columns of two bodies' rows cover: the members of the tree of A, then those of the tree of B if it is
-/// another one. Fixed bodies have none.
+/// Bodies that the columns of two bodies' rows cover: the members of the tree of A, then those of the tree of B if it is a different
+/// tree. Fixed bodies have no entries.
 #[derive(Clone, Copy, Debug)]
 struct CoveredBodies<'a> {
     members: [&'a [u32]; 2],
-    /// Places of A and B in a column.
+    /// Entries of A and B in a column.
     places: [Option<usize>; 2],
 }
 
@@ -53,25 +53,25 @@ impl<'a> CoveredBodies<'a> {
         Self { members, places: [a, b.map(|slot| second + slot)] }
     }
 
-    /// Entries of a column.
+    /// Number of entries of a column.
     fn len(&self) -> usize {
         self.members[0].len() + self.members[1].len()
     }
 }
 
-/// Changes of the impulses of rows whose columns lie side by side.
+/// Changes of the impulses of rows with contiguous columns.
 #[derive(Clone, Debug)]
 pub(crate) struct Change {
     /// Index of the first entry of the first row's column.
     column: usize,
     count: usize,
     by: [f32; MAX_POINTS],
-    /// Impulses on A and on B.
+    /// Sums of the impulses on A and on B.
     pub push: [Vec6; 2],
 }
 
 impl Change {
-    /// None yet, of those from a column on.
+    /// Creates an empty list of changes for rows from a column on.
     pub fn from_column(column: usize) -> Self {
         Self { column, count: 0, by: [0.0; MAX_POINTS], push: [ZERO6; 2] }
     }
@@ -94,7 +94,7 @@ impl ResponseCache {
         self.entries.clear();
     }
 
-    /// Bytes that are filled.
+    /// Size of the data in use, bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.entries[..])
     }
@@ -104,12 +104,12 @@ impl ResponseCache {
         self.entries.len()
     }
 
-    /// From the entry `start` on.
+    /// Entries from index `start` on.
     pub fn from(&self, start: usize) -> &[Vec6] {
         &self.entries[start..]
     }
 
-    /// Appends the columns of rows of two bodies, side by side: of each its Jacobian on A and on B.
+    /// Appends contiguous columns for rows of two bodies. Each row is given by its Jacobians on A and on B.
     pub(in crate::solver) fn add<'a>(
         &mut self,
         response: &Response,
@@ -132,12 +132,12 @@ impl ResponseCache {
         }
     }
 
-    /// Entries of a column where its two bodies have these places: zero where they have none.
+    /// Entries of a column at the places of its two bodies; zero for a body without a place.
     pub fn ends(&self, column: usize, places: [Option<usize>; 2]) -> [Vec6; 2] {
         places.map(|place| place.map_or(ZERO6, |place| self.entries[column + place]))
     }
 
-    /// Appends the columns of up to eight rows of one or two trees. Returns the start of the first and the stride.
+    /// Appends the columns of up to eight rows of one or two trees. Returns the index of the first entry and the stride.
     pub(in crate::solver) fn add_all(
         &mut self,
         response: &Response,
@@ -169,12 +169,12 @@ impl ResponseCache {
         (start, stride)
     }
 
-    /// Places of a row's bodies in its column.
+    /// Places of the bodies of a row in its column.
     pub fn places(response: &Response, links: &[Link], bodies: [u32; 2]) -> [Option<usize>; 2] {
         CoveredBodies::new(response, links, bodies).places
     }
 
-    /// Rate change of a row, whose bodies have these places in a column, by a unit impulse of the column's row.
+    /// Rate change of a row by a unit impulse of the column's row; `places` are the places of its bodies in the column.
     pub fn answer(&self, column: usize, places: [Option<usize>; 2], row: &Row) -> f32 {
         let [a, b] = places.map(|place| place.map(|place| &self.entries[column + place]));
         a.map_or(0.0, |on_a| dot(&row.a, on_a)) + b.map_or(0.0, |on_b| dot(&row.b, on_b))
@@ -247,7 +247,7 @@ impl Kernel for Push<'_> {
     }
 }
 
-/// Adds columns at any places times the changes of their rows to velocities.
+/// Adds columns in arbitrary places times the changes of their rows to velocities.
 struct PushAll<'a> {
     entries: &'a [Vec6],
     starts: &'a [usize],

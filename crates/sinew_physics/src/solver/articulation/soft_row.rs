@@ -4,8 +4,8 @@ use crate::joint::def::Softness;
 use crate::solver::tuning::{FASTEST_SPRING, SPRING_MARGIN};
 use sinew_math::trig;
 
-/// Soft row with the impulse `λ = −(gain v⁺ + carry v + push)`, where `v` is its rate at the beginning of the substep and `v⁺` that at the
-/// end.
+/// Soft row with the impulse `λ = −(gain v⁺ + carry v + push)`, where `v` and `v⁺` are its rates at the beginning and at the end of the
+/// substep.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::solver) struct SoftRow {
     pub(super) gain: f32,
@@ -33,8 +33,8 @@ impl SoftRow {
         let shown = omega2 > 0.0 && omega2 < FASTEST_SPRING;
         let implicit = (2.0 * a + omega2, 0.0);
         let (mut alpha, mut gamma) = if shown { exact_oscillator(omega2, a) } else { implicit };
-        // With a share `r` of the mass the update is stable as long as `4r + 2(α − γ) > (ωh)²`: a pin that carries a figure by its hand
-        // must not shake if only the hand moves. Implicit Euler is stable for any mass.
+        // If a share `r` of the mass moves, the update is stable as long as `4r + 2(α − γ) > (ωh)²`: a pin that carries a figure by its
+        // hand must not shake if only the hand moves. Implicit Euler is stable for any mass.
         if 4.0 * least + 2.0 * mass * (alpha - gamma) < SPRING_MARGIN * mass * omega2 {
             (alpha, gamma) = implicit;
         }
@@ -54,7 +54,7 @@ impl SoftRow {
         self.push += other.push;
     }
 
-    /// Work of the row from one rate to the other.
+    /// Work of the row while its rate changes from `before` to `after`, J.
     pub(super) fn work(&self, before: f32, after: f32) -> f32 {
         0.5 * self.impulse(before, after) * (before + after)
     }
@@ -63,12 +63,12 @@ impl SoftRow {
         -(self.gain * after + self.carry * before + self.push)
     }
 
-    /// Compliance Γ.
+    /// Compliance Γ of the row.
     pub fn compliance(&self) -> f32 {
         1.0 / self.gain
     }
 
-    /// Rate that the row approaches where it moves no mass.
+    /// Rate of the row if it moves no mass.
     pub fn wanted(&self, before: f32) -> f32 {
         -(self.carry * before + self.push) / self.gain
     }

@@ -16,30 +16,30 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, Real, Vector3};
 use sinew_math::{Vec3, any_orthonormal};
 
-/// No parent, no joint, no slot.
+/// Index that stands for no parent, no joint or no slot.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// One in each of the six used lanes, zero in the others.
+/// Vector of six ones, with zeros in the two unused lanes.
 const SIX: Vec6 = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0];
 
 /// A moving body as a node of its tree. Nodes of a tree are contiguous, parents before children.
 #[derive(Clone, Debug)]
 pub(crate) struct Link {
-    /// Local index of the parent body: a moving one with a smaller index, or a fixed one if this root is grounded.
+    /// Local index of the parent body: a moving body with a smaller index, or a fixed body if this root is grounded.
     pub parent: u32,
     /// Local index of the joint to the parent.
     pub joint: u32,
-    /// Index of its tree.
+    /// Index of the link's tree.
     pub tree: u32,
     /// Number of rows that request a velocity, and their indices.
     asking: usize,
     row: [u8; DIRECTIONS],
-    /// Velocity of this body for a unit residual of each requesting row with the parent at rest, and the impulse that it passes on.
+    /// Velocity of this body for a unit residual of each requesting row with the parent at rest, and the impulse on the parent.
     follow: [Vec6; DIRECTIONS],
     pass: [Vec6; DIRECTIONS],
     /// Bit set of the rows whose gains push both bodies.
     pushing: u8,
-    /// Velocity that this body takes over from its parent when nothing acts below the joint: rows, columns.
+    /// Velocity of this body for velocities of its parent when nothing acts below the joint: rows, and columns.
     carry: Mat6,
     carry_columns: Mat6,
     /// Response to an impulse on this body with its parent at rest.
@@ -63,7 +63,7 @@ impl Link {
         }
     }
 
-    /// Velocity that this body takes over from its parent when nothing acts below the joint.
+    /// Velocity of this body for a velocity of its parent when nothing acts below the joint.
     #[inline(always)]
     pub fn carried<L: Lanes>(&self, parent: &Vec6) -> L {
         sum(&self.carry_columns, parent)
@@ -81,19 +81,19 @@ impl Link {
         sum(&self.own, impulse)
     }
 
-    /// [`carried`](Self::carried) from eight velocities of the parent, one in each lane.
+    /// Computes [`carried`](Self::carried) for eight velocities of the parent, one in each lane.
     #[inline(always)]
     pub fn carried_all<L: Lanes>(&self, parent: &Mat6) -> [L; 6] {
         sums(&self.carry_columns, parent)
     }
 
-    /// [`passed_up`](Self::passed_up) of eight impulses.
+    /// Computes [`passed_up`](Self::passed_up) for eight impulses.
     #[inline(always)]
     pub fn passed_up_all<L: Lanes>(&self, impulses: &Mat6) -> [L; 6] {
         sums(&self.carry, impulses)
     }
 
-    /// [`alone`](Self::alone) to eight impulses.
+    /// Computes [`alone`](Self::alone) for eight impulses.
     #[inline(always)]
     pub fn alone_all<L: Lanes>(&self, impulses: &Mat6) -> [L; 6] {
         sums(&self.own, impulses)
@@ -111,7 +111,7 @@ impl Link {
         joint.push(&of_rows, impulses, 1.0);
     }
 
-    /// Makes all rows that are not rigid push, so that none requests a velocity.
+    /// Marks all rows that are not rigid as pushing, so that none requests a velocity.
     pub fn push_all_gains(&mut self, joints: &[SolverJoint]) {
         self.pushing = joints
             .get(self.joint as usize)
@@ -150,12 +150,12 @@ impl Link {
         }
         let answered = if holds_point { TWIST } else { 0 };
         self.answer_rows(answered, &sequence, &through, sequence.parent_arm());
-        // If all directions are open, the rest is rounding.
+        // If all directions are open, the rest is rounding error.
         if joint.rows.count == 0 { Inertia::zero() } else { through }
     }
 
-    /// Applies the elimination to unit velocities and impulses, one in each lane, in double precision: in single precision, light bodies
-    /// between heavy ones would pass on more rounding than they weigh.
+    /// Applies the elimination to unit velocities and impulses, one in each lane, in double precision: in single precision, the rounding
+    /// error of light bodies between heavy ones would exceed their mass.
     #[inline(always)]
     fn condense<L: Lanes>(&mut self, by: &impl Elimination<f64>) {
         let [x, y, z, u, v, w] = &UNITS;
@@ -169,7 +169,7 @@ impl Link {
             let [x, y, z, u, v, w, ..] = L::transpose([x, y, z, u, v, w, none, none]);
             store([x, y, z, u, v, w], &mut self.carry_columns);
         }
-        // By symmetry, what it passes on is a column of what it takes over from the parent's velocity.
+        // By symmetry, the impulses on the parent are the columns of the carried velocities.
         by.ascend(twist(units), &mut kept);
         store(narrow_lanes::<L>(by.descend_alone(&kept)), &mut self.own);
     }
@@ -184,8 +184,8 @@ impl Link {
         }
     }
 
-    /// Computes the child's velocity and the passed-on impulse from the anchor velocities that the rows from `first` on request. Both are
-    /// computed in double precision: what a heavy child takes over and what it passes on nearly cancel.
+    /// Computes the child's velocity and the impulse on the parent for the anchor velocities that the rows from `first` on request. Both
+    /// are computed in double precision, because they nearly cancel for a heavy child.
     #[inline(always)]
     fn answer_rows<E: Elimination<f64>>(
         &mut self,
@@ -239,7 +239,7 @@ impl Link {
                 let row = usize::from(row[k]);
                 let gain = if k >= count { 0.0 } else { f64::from(joint.gain(row)) };
                 if k < count {
-                    // Rows with gains above the inertia request a velocity, those below push: the other way round, rounding would swamp
+                    // Rows with gains above the inertia request a velocity, those below push: otherwise rounding errors would dominate
                     // either.
                     if row < joint.rigid || gain > sequence.weight(turns, wide(way)) {
                         let way = way * sign;
@@ -315,8 +315,8 @@ fn store<L: Lanes>(rows: [L; 6], to: &mut Mat6) {
     }
 }
 
-/// Directions in which a joint's child translates or rotates: each of the first `count` moves its own row by one unit and no other row, and
-/// the rest move none. A row that is nearly dependent on the others has no direction.
+/// Directions in which a joint's child translates or rotates. Each of the first `count` changes its own row by one unit and no other row;
+/// the rest change none. A row that is nearly dependent on the others has no direction.
 pub(in crate::solver) struct Ways {
     pub way: [Vec3; 3],
     pub row: [u8; 3],
@@ -388,7 +388,7 @@ pub(crate) fn factor(
     dispatch::run(Factor { links, range, joints, inertia });
 }
 
-/// Plain arithmetic, which the compiler vectorises for the instruction set of its caller.
+/// Kernel of [`factor`]: plain arithmetic, which the compiler vectorises for the instruction set of its caller.
 struct Factor<'a> {
     links: &'a mut [Link],
     range: Range<usize>,
@@ -426,7 +426,7 @@ pub(crate) fn solve(
     dispatch::run(Solve { links, range, impulses, residuals, dv });
 }
 
-/// Plain arithmetic, as in [`Factor`].
+/// Kernel of [`solve`]: plain arithmetic, as in [`Factor`].
 struct Solve<'a> {
     links: &'a [Link],
     range: Range<usize>,
@@ -445,7 +445,7 @@ impl Kernel for Solve<'_> {
     }
 }
 
-/// [`solve`] within a kernel.
+/// Computes [`solve`] within a kernel.
 #[inline(always)]
 pub(in crate::solver) fn solve_in<L: Lanes>(
     links: &[Link],
@@ -455,7 +455,7 @@ pub(in crate::solver) fn solve_in<L: Lanes>(
     dv: &mut [Vec6],
 ) {
     let (impulses, dv) = (&mut impulses[..links.len()], &mut dv[..links.len()]);
-    // Leaf to root: the impulse that the subtree below a joint passes through it.
+    // Leaf to root: the impulse that the subtree below each joint applies to the parent.
     for i in range.clone().rev() {
         let link = &links[i];
         let (mut own, mut through) = (L::splat(0.0), link.passed_up::<L>(&impulses[i]));
@@ -472,7 +472,7 @@ pub(in crate::solver) fn solve_in<L: Lanes>(
             (L::load(&impulses[parent]) + through).store(&mut impulses[parent]);
         }
     }
-    // Root to leaf.
+    // Root to leaf: the velocities.
     for i in range {
         let link = &links[i];
         let mut v = L::load(&dv[i]) + link.alone::<L>(&impulses[i]);
@@ -484,7 +484,7 @@ pub(in crate::solver) fn solve_in<L: Lanes>(
     }
 }
 
-/// The sum of six rows, each times its factor.
+/// Sum of six rows, each times its factor.
 #[inline(always)]
 pub(crate) fn sum<L: Lanes>(rows: &Mat6, by: &Vec6) -> L {
     let [r0, r1, r2, r3, r4, r5] = rows;
@@ -493,7 +493,7 @@ pub(crate) fn sum<L: Lanes>(rows: &Mat6, by: &Vec6) -> L {
         + (L::load(r4) * L::splat(by[4]) + L::load(r5) * L::splat(by[5]))
 }
 
-/// Eight times [`sum`], with the factors in lanes: each number is broadcast to all lanes.
+/// Computes eight times [`sum`], with the factors in lanes: each number of the rows is broadcast to all lanes.
 #[inline(always)]
 fn sums<L: Lanes>(rows: &Mat6, by: &Mat6) -> [L; 6] {
     let [x, y, z, u, v, w] = by;

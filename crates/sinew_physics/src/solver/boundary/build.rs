@@ -1,4 +1,4 @@
-//! `prepare`: from the world to the arrays of one island's solver.
+//! `prepare`: copies bodies, joints and contacts of the world to the arrays of one island's solver.
 
 use crate::body::def::BodyKind;
 use crate::body::external_work::Work;
@@ -26,7 +26,7 @@ use crate::solver::view::{View, lasting_force};
 use crate::spatial::{Vec6, ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
 
-/// Spare room for bodies and contacts of an island, so that those that come and go need no allocation.
+/// Number of additional bodies and contacts for which memory is reserved, so that small changes of an island need no allocation.
 const SPARE: usize = 32;
 
 impl IslandSolver {
@@ -67,7 +67,7 @@ impl IslandSolver {
         self.refresh_response();
     }
 
-    /// Forms batches of trees in heaps. Loops and pins need the responses of single links, so islands with them use none.
+    /// Forms batches of trees in heaps. Loops and pins need the responses of single links, so islands with them have no batches.
     fn form_batches(&mut self) {
         if self.coupling == Coupling::Turns && self.loops.is_empty() && self.pins.joints.is_empty() {
             self.batches.form(&self.links, &self.joints, &self.trees);
@@ -127,8 +127,8 @@ impl IslandSolver {
     }
 
     /// Builds the spanning trees. One tree for each connected component keeps the number of loops small, and these are solved exactly. If
-    /// there are too many loops for that, all bodies jointed to fixed ones become roots at once, so that parallel ropes become separate
-    /// trees.
+    /// there are too many loops for that, all bodies jointed to fixed ones become roots at the same time, so that parallel ropes become
+    /// separate trees.
     fn order_trees(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.span(island, view, Roots::InTurn);
         if self.is_entangled(island, view) {
@@ -326,7 +326,7 @@ impl IslandSolver {
         }
     }
 
-    /// Lists the touching pairs, and the loads on bodies without joints. Contacts in lanes are collected for them.
+    /// Lists the touching pairs, and the loads on bodies without joints. Collects contacts that are solved in lanes.
     fn note_touches(&mut self, island: &Island<'_>, view: &View<'_>) {
         let mut faces = core::mem::take(&mut self.scratch.build.faces);
         let mut contacts = core::mem::take(&mut self.contacts);
@@ -378,7 +378,7 @@ impl IslandSolver {
         self.scale_masses();
     }
 
-    /// Prepares the contacts in lanes.
+    /// Prepares the contacts that are solved in lanes.
     fn prepare_contacts(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         self.starts.clear();
         self.starts.extend(self.bodies.iter().map(|body| body.pose));
@@ -422,9 +422,9 @@ impl IslandSolver {
 
 /// Velocity of a body as the rows use it, clamped by the largest speed and spin of bodies, m/s and rad/s.
 ///
-/// Rows extrapolate along tangents, so the tangent of a kinematic body with an extreme spin leads to places that its surface never reaches.
-/// A dynamic body that was given an extreme speed keeps a finite approach speed until its forces are integrated and slow it; otherwise its
-/// bounce would have no finite speed.
+/// Rows extrapolate along tangents, and the tangent of a kinematic body with an extreme spin leads to places that its surface never
+/// reaches. A dynamic body that was given an extreme speed keeps a finite approach speed until its forces are integrated and slow it;
+/// otherwise its bounce would have no finite speed.
 fn seen_velocity(body: &Body, [max_speed, max_spin]: [f32; 2]) -> Vec6 {
     let Velocity { linear, angular } = body.velocity;
     match body.kind {

@@ -16,7 +16,7 @@ const PER_SUBSTEP: u64 = 2;
 const PER_STEP: u64 = 2;
 
 impl IslandSolver {
-    /// Reports the counts of the step to a profiler, when the step is over.
+    /// Reports the counts of the step to a profiler at the end of the step.
     pub(in crate::solver) fn tell_counts(&self, profiler: &dyn Profiler) {
         if !profiler.is_counting() {
             return;
@@ -47,7 +47,7 @@ impl IslandSolver {
         }
     }
 
-    /// Size of bodies, velocities, joints, manifolds, limits, links, their responses and the row columns.
+    /// Size of bodies, velocities, joints, manifolds, limits, links, responses and row columns, bytes.
     fn resident_bytes(&self) -> u64 {
         let bytes = self.bodies.len() * size_of::<SolverBody>()
             + self.velocities.len() * size_of::<Vec6>()

@@ -1,4 +1,4 @@
-//! Body properties used by contacts, looked up once a step for each body instead of for each contact.
+//! Body properties used by contacts, computed once a step for each body instead of for each contact.
 
 use crate::body::material::{ContactMaterial, Material};
 use crate::body::{Body, BodyShape};
@@ -19,7 +19,7 @@ pub(in crate::solver) struct Face {
     pub is_curved: bool,
     /// True if the body spins so fast that its contacts may get other points within the step.
     pub turns: bool,
-    /// Index of its material, or [`NONE`] if it has to be looked up for each contact.
+    /// Index of the shape's material, or [`NONE`] if it has to be computed for each contact.
     material: u32,
 }
 
@@ -69,7 +69,7 @@ impl Faces {
         self.of.push(face);
     }
 
-    /// Index of a material, added if it is new.
+    /// Returns the index of a material; adds it if it is new.
     fn place(&mut self, material: &Material) -> u32 {
         if material.runs() {
             return NONE;

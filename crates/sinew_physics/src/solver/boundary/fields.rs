@@ -26,7 +26,7 @@ impl IslandSolver {
         self.forces_vary = !view.fields.is_empty() || self.bodies[..self.links.len()].iter().any(lasting);
     }
 
-    /// Adds the forces at the beginning of a substep to bodies and particles, besides those that are constant for the whole step.
+    /// Adds the forces at the beginning of a substep to bodies and particles, in addition to those that are constant for the whole step.
     pub(in crate::solver) fn add_fields(&mut self, view: &View<'_>, groups: &mut [TakenGroup]) {
         for (body, v) in self.bodies[..self.links.len()].iter_mut().zip(&self.velocities) {
             let load = view.fields.load(&target(view, body, v));
@@ -42,7 +42,7 @@ impl IslandSolver {
         self.attract(view, groups);
     }
 
-    /// Clears the field forces of a substep after it.
+    /// Clears the field forces at the end of a substep.
     pub fn drop_fields(&mut self, view: &View<'_>) {
         if self.forces_vary {
             self.renew_forces(view);

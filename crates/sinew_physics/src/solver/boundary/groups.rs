@@ -1,4 +1,4 @@
-//! Particle groups in an island: field forces on them, and the bodies they may touch.
+//! Particle groups in an island: field forces on the particles, and the bodies that a group may touch.
 
 use crate::body::Body;
 use crate::boxes::Overlap;
@@ -11,7 +11,7 @@ use core::ops::ControlFlow;
 /// A particle group, taken out of the world until `store`.
 #[derive(Clone, Debug)]
 pub(crate) struct TakenGroup {
-    /// Index in the world.
+    /// Index of the group in the world.
     pub index: u32,
     pub group: ParticleGroup,
     pub near: Neighbors,
@@ -36,14 +36,15 @@ impl TakenGroup {
 pub(crate) struct Neighbors {
     /// World body indices, ascending.
     pub bodies: Vec<u32>,
-    /// Index in `bodies`, shape number.
+    /// Index in `bodies` and shape number of each nearby shape.
     pub shapes: Vec<(u32, u32)>,
-    /// Body and shape of each nearby shape; body and no shape for each particle that is attached to it or has a backstop on it.
+    /// Body and shape of each nearby shape; a body without a shape for each particle that is attached to it or has a
+    /// backstop on it.
     found: Vec<(u32, Option<u32>)>,
 }
 
 impl Neighbors {
-    /// Finds everything whose bounds the group may reach within the step.
+    /// Finds all shapes whose bounds the group may reach within the step, and the bodies of attachments and backstops.
     pub fn find(&mut self, group: &ParticleGroup, view: &View<'_>) {
         let movers = view.activity.movers().map(|index| view.bodies.at(index));
         let reach = 0.02 + (group.fastest() + movers.fold(0.0, fastest_point)) * view.def.dt();
@@ -53,7 +54,7 @@ impl Neighbors {
             let id = view.bodies.id(body);
             let body = view.bodies.at(body);
             let frame = body.world_from_shape(shape as usize);
-            // A quarantined body still holds attached particles, as a fixed point.
+            // Particles attached to a quarantined body are attached to a fixed point.
             !body.quarantined
                 && group.meets(id, body.surface(shape as usize))
                 && body.shapes[shape as usize].shape.aabb(&frame).overlaps(&bounds)

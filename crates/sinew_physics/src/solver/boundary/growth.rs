@@ -7,12 +7,12 @@ use crate::solver::tuning::MAX_TREE;
 use crate::solver::view::View;
 use core::ops::Range;
 
-/// Memory for building.
+/// Work memory for building the trees.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Scratch {
     /// Bodies in the order in which the trees reached them.
     pub(super) seeds: Vec<Seed>,
-    /// For each tree: number of its loop rows.
+    /// Number of loop rows of each tree.
     pub(super) loop_rows: Vec<usize>,
     /// Number of seeds whose neighbours have been visited.
     pub(super) grown: usize,
@@ -20,15 +20,16 @@ pub(in crate::solver) struct Scratch {
     pub(super) sizes: Vec<usize>,
     /// World indices of the moving bodies, in tree order.
     pub(super) order: Vec<u32>,
-    /// For each body of the island, by its index there: local index; while trees grow, only whether it is `NONE`.
+    /// Local index of each body of the island, by index in the island; while trees grow, only whether it is `NONE`.
     pub(super) local: Vec<u32>,
     /// World indices of the fixed bodies, ascending.
     pub(super) fixed: Vec<u32>,
-    /// By slot of the world's bodies, for those in the island: index in the island while trees grow, then the local index.
+    /// By slot of the world's bodies: index in the island while trees grow, then the local index. Valid for bodies in
+    /// the island.
     pub(super) local_of: Vec<u32>,
-    /// For each joint of the island: true if a tree uses it.
+    /// True for each joint of the island that a tree uses.
     pub(super) used: Vec<bool>,
-    /// Joint indices of each body, ascending, body after body, and the end of each body's run.
+    /// Joint indices of each body, ascending, body after body; and the end of each body's part.
     pub(super) adjacent: Vec<u32>,
     pub(super) adjacent_ends: Vec<u32>,
     pub(super) faces: Faces,
@@ -39,7 +40,7 @@ pub(in crate::solver) struct Scratch {
 pub(super) enum Roots {
     /// Each tree grows as far as it can before the next one starts.
     InTurn,
-    /// All trees on fixed bodies grow side by side.
+    /// All trees on fixed bodies grow at the same time.
     AtOnce,
 }
 
@@ -47,16 +48,16 @@ pub(super) enum Roots {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seed {
     pub(super) tree: u32,
-    /// Its index in the order of discovery.
+    /// Index of the body in the order of discovery.
     pub(super) found: u32,
-    /// Indices in the island: of the body, of its parent, of the joint between them.
+    /// Indices in the island of the body, its parent, and the joint between them.
     pub(super) place: u32,
     pub(super) parent: u32,
     pub(super) joint: u32,
 }
 
 impl Scratch {
-    /// Starts a new tree, held by the joint `ground` or free.
+    /// Starts a new tree at `root`, held by the joint `ground` or free.
     pub(super) fn plant(&mut self, root: u32, ground: u32) {
         let tree = self.sizes.len() as u32;
         self.sizes.push(0);
@@ -93,7 +94,7 @@ impl Scratch {
         }
     }
 
-    /// Index in the island of a world body, if it moves with the island.
+    /// Index in the island of a world body, if the island moves it.
     pub(super) fn place_of(&self, island: &Island<'_>, body: u32) -> Option<u32> {
         let place = self.local_of[body as usize];
         (island.bodies.get(place as usize) == Some(&body)).then_some(place)
@@ -119,7 +120,7 @@ impl Scratch {
         }
         let mut start = 0;
         for end in &mut ends {
-            // Start of the run until it is filled, then its end.
+            // `end` is the start of a body's part until the part is filled.
             start += core::mem::replace(end, start);
         }
         self.adjacent.clear();
@@ -142,12 +143,12 @@ impl Scratch {
 }
 
 impl Scratch {
-    /// Returns true if a body of a joint or a contact is a moving body.
+    /// True if a body of a joint or a contact moves with the island.
     pub(super) fn moves(&self, body: u32) -> bool {
         self.order.get(self.local_of[body as usize] as usize) == Some(&body)
     }
 
-    /// Lists the bodies of joints and contacts that do not move.
+    /// Lists the bodies of joints and contacts that do not move with the island.
     pub(super) fn list_fixed(&mut self, island: &Island<'_>, view: &View<'_>) {
         let mut fixed = core::mem::take(&mut self.fixed);
         fixed.clear();
@@ -155,7 +156,7 @@ impl Scratch {
             let joint = view.joints.at(index);
             fixed.extend([joint.a, joint.b].into_iter().filter(|&body| !self.moves(body)));
         }
-        // Contacts with fixed bodies come last.
+        // Contacts with fixed bodies are last in the list.
         for &index in island.contacts.iter().rev() {
             let key = view.contacts[index as usize].key;
             let before = fixed.len();

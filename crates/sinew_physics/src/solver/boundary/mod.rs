@@ -1,4 +1,5 @@
-//! Data exchange between the world and an island: bodies, joints and contacts in, forces between stages, results out.
+//! Data exchange between the world and an island: reads bodies, joints and contacts, adds forces between stages, writes
+//! results.
 
 pub(in crate::solver) mod build;
 pub(in crate::solver) mod counts;

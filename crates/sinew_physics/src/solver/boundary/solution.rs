@@ -13,34 +13,34 @@ use sinew_math::{Transform, Vec3};
 /// A moving body after the step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SolvedBody {
-    /// Index in the world.
+    /// Index of the body in the world.
     pub index: u32,
     pub pose: Transform,
     pub velocity: Velocity,
-    /// True if it exceeded the world's speed limits in a substep.
+    /// True if the body exceeded the world's speed limits in a substep.
     pub is_limited: bool,
 }
 
 /// State that a joint keeps for the next step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SolvedJoint {
-    /// Index in the world.
+    /// Index of the joint in the world.
     pub index: u32,
     pub limits: [LimitImpulse; MAX_LIMITS],
     pub force: Vec3,
     pub warm_impulse: Vec6,
     pub saturated: Saturation,
     pub mass: Vec6,
-    /// Impulses of all substeps on B, torque about B's anchor.
+    /// Sum of the impulses on B in all substeps, torque about B's anchor, N·s and N·m·s.
     pub reaction: Vec6,
 }
 
 /// State that a contact keeps for the next step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SolvedContact {
-    /// Index in the world.
+    /// Index of the contact in the world's contact array.
     pub index: u32,
-    /// Its manifold, if it was recomputed within the step.
+    /// Manifold of the contact, if it was recomputed within the step.
     pub found: Option<Manifold>,
     pub memory: ContactMemory,
 }
@@ -51,14 +51,14 @@ pub(crate) struct Solution {
     pub bodies: Vec<SolvedBody>,
     pub joints: Vec<SolvedJoint>,
     pub contacts: Vec<SolvedContact>,
-    /// One for each island.
+    /// Work in each island.
     pub work: Vec<Work>,
 }
 
 impl Solution {
     /// Resizes the lists.
     pub fn resize(&mut self, islands: usize, bodies: usize, joints: usize, contacts: usize) {
-        // Islands merge and split, but there are never more than bodies.
+        // There are never more islands than bodies, even when islands merge and split.
         self.work.clear();
         self.work.reserve(bodies);
         self.work.resize(islands, Work::default());
@@ -67,7 +67,7 @@ impl Solution {
         self.contacts.resize(contacts, SolvedContact::default());
     }
 
-    /// The storage of all islands, to be split among them.
+    /// Returns the storage of all islands, to be split among them.
     pub fn as_mut(&mut self) -> IslandSolution<'_> {
         IslandSolution {
             bodies: &mut self.bodies,

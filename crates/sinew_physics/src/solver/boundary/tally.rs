@@ -2,7 +2,7 @@
 
 use crate::solver::pass::Pass;
 
-/// Counts of the sweeps of a step. They are cheap enough to be collected always.
+/// Counts of the sweeps of a step. They are cheap enough to be always collected.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::solver) struct Tally {
     pub substeps: u64,

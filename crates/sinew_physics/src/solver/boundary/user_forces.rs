@@ -7,7 +7,7 @@ use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
 use sinew_math::Vec3;
 
 impl IslandSolver {
-    /// Resets the forces before a substep; those of the last substep are cleared.
+    /// Resets the forces before a substep; clears those of the last substep.
     pub fn renew_forces(&mut self, view: &View<'_>) {
         let moving = self.links.len();
         for body in &mut self.bodies[..moving] {
@@ -15,7 +15,7 @@ impl IslandSolver {
         }
     }
 
-    /// Adds to the force that `integrate_velocity` applies, N and N·m about the centre of mass.
+    /// Adds to the force (N) and to the torque about the centre of mass (N·m) that `integrate_velocity` applies.
     pub fn add_force(&mut self, local: usize, force: Vec3, torque: Vec3) {
         self.disturbed |= force != Vec3::ZERO || torque != Vec3::ZERO;
         let body = &mut self.bodies[local];
@@ -23,7 +23,7 @@ impl IslandSolver {
         body.torque += torque;
     }
 
-    /// Applies an impulse before the substep to a body alone; `solve` applies the joints' reaction.
+    /// Applies an impulse to a single body before the substep; `solve` applies the joints' reaction.
     pub fn push_loose(&mut self, local: usize, impulse: &Vec6) {
         self.disturbed |= *impulse != ZERO6;
         let change = self.bodies[local].velocity_change(impulse);
@@ -40,7 +40,8 @@ impl IslandSolver {
         self.answer_one(local, impulse);
     }
 
-    /// Applies an impulse through the joints after bodies have moved, and moves them as it would have in the finished substep.
+    /// Applies an impulse through the joints after bodies have moved, and moves them as the impulse would have in the
+    /// finished substep.
     pub fn correct(&mut self, local: usize, impulse: &Vec6) {
         let moving = self.links.len();
         self.scratch.before.clear();
@@ -57,7 +58,7 @@ impl IslandSolver {
         self.displaced = true;
     }
 
-    /// Response of a row on a body to its own impulse, including the tree joints.
+    /// Response of a row on a body to the row's own impulse, including the tree joints.
     pub fn response_along(&mut self, local: usize, row: &Vec6) -> f32 {
         if !self.has_joints() {
             return dot(row, &self.bodies[local].velocity_change(row));

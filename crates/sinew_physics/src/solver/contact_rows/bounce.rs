@@ -18,8 +18,8 @@ pub(super) struct Approach {
 }
 
 impl Approach {
-    /// Speed at the surface, m/s. A velocity of symplectic Euler is that of half a substep ago, and forces keep accelerating the point
-    /// between its present position and the surface.
+    /// Speed at the surface, m/s. A velocity of symplectic Euler is that of half a substep ago, and forces continue to
+    /// accelerate the point between its present position and the surface.
     fn speed_at_surface(&self, h: f32) -> f32 {
         let now = self.rate - 0.5 * self.pull;
         if now < 0.0 { (now * now + 2.0 * (self.pull / h) * self.gap).sqrt() } else { 0.0 }
@@ -27,7 +27,7 @@ impl Approach {
 }
 
 impl ManifoldRows {
-    /// Records the approach of the points when the substep begins.
+    /// Records the approach of the points at the start of the substep.
     pub fn begin_approach(&mut self, velocities: &[Vec6]) {
         for i in 0..self.bouncy_count() {
             let rate = self.rows[i].rate(self.pair(), velocities);
@@ -59,12 +59,12 @@ impl ManifoldRows {
         self.material.restitution > 0.0 && self.impulse[i] == 0.0
     }
 
-    /// Points that may bounce.
+    /// Number of points that may bounce.
     fn bouncy_count(&self) -> usize {
         if self.material.restitution > 0.0 { self.count } else { 0 }
     }
 
-    /// True if a point bounces off what it hit in this substep.
+    /// True if a point bounces in this substep.
     pub fn bounces(&self) -> bool {
         (0..self.bouncy_count()).any(|i| self.rebound[i] > 0.0)
     }

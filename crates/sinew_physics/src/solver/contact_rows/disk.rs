@@ -2,7 +2,7 @@
 
 use sinew_math::{Mat3, Vec3, inverse3, max};
 
-/// The impulse in the disk of radius `most` with the least energy: minimises `½ xᵀ K x − bᵀ x`.
+/// Returns the impulse in the disk of radius `most` with the least energy: it minimises `½ xᵀ K x − bᵀ x`.
 ///
 /// Outside the disk the solution is `(K + μ 1)⁻¹ b`, with the μ that moves it to the rim (the secular equation of a trust region, Moré &
 /// Sorensen 1983, by Newton). Shortening `K⁻¹ b` instead would push along the stiff direction only, and a sweep would never come to rest.
@@ -35,8 +35,8 @@ pub(crate) fn least_energy(k: &[[f32; 2]; 2], b: [f32; 2], most: f32) -> [f32; 2
     [x[0] * scale, x[1] * scale]
 }
 
-/// One projected gradient step for an impulse in a ball, from `x` against the rate `v` with response `k`. The step is exact if the result
-/// is inside the ball.
+/// Returns an impulse in a ball after one projected gradient step from `x` against the rate `v` with response `k`. The step is exact if the
+/// result is inside the ball.
 pub(crate) fn step_in_ball(k: &Mat3, x: Vec3, v: Vec3, most: f32) -> Vec3 {
     let exact = x - inverse3(k) * v;
     if exact.is_finite() && exact.length() <= most {

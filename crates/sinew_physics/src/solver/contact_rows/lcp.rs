@@ -7,12 +7,12 @@ use sinew_math::max;
 /// Largest number of rows.
 const N: usize = 4;
 
-/// New impulses `x ≥ 0` of `n` unilateral rows with response `k`, gap velocities `v` (at impulses `old`, bias
+/// Returns new impulses `x ≥ 0` of `n` unilateral rows with response `k`, gap velocities `v` (at impulses `old`, bias
 /// included) and softness `soft`: `K (x − old) + v + soft x ≥ 0`, complementary to `x`.
 ///
-/// Active set method, started from the last impulses, with a proximal term (four coplanar points make K singular). The set may cycle.
-/// Without a fallback, a body exploded about once in five wall hits at 30 m/s. So if the set cycles, all sets are tried, and if rounding
-/// leaves no valid set, Gauss-Seidel gives the result.
+/// Active set method, started from the last impulses, with a proximal term (four coplanar points make K singular). The
+/// set may cycle. Without a fallback, a body exploded about once in five wall hits at 30 m/s. So if the set cycles, all
+/// sets are tried. If no set is valid because of rounding, Gauss-Seidel computes the result.
 pub(crate) fn solve(k: &[[f32; N]; N], v: &[f32; N], old: &[f32; N], soft: &[f32; N], n: usize) -> [f32; N] {
     if n == 1 && k[0][0] > 0.0 {
         let response = k[0][0] + soft[0] + LCP_PROXIMAL * k[0][0];
@@ -39,7 +39,7 @@ pub(crate) fn solve(k: &[[f32; N]; N], v: &[f32; N], old: &[f32; N], soft: &[f32
     new
 }
 
-/// `M x + r ≥ 0` complementary to `old + x ≥ 0`.
+/// The problem `M x + r ≥ 0`, complementary to `old + x ≥ 0`.
 struct Problem {
     m: [[f32; N]; N],
     r: [f32; N],
@@ -49,7 +49,7 @@ struct Problem {
 }
 
 impl Problem {
-    /// Row `i` of `M x + r`.
+    /// Returns row `i` of `M x + r`.
     fn rate(&self, i: usize, x: &[f32; N]) -> f32 {
         let mut sum = self.r[i];
         for j in 0..self.n {
@@ -82,7 +82,7 @@ impl Problem {
         self.solve_set(set).filter(|x| self.wrong(set, x) == (0, 0))
     }
 
-    /// Active rows that pull, and inactive rows that would penetrate.
+    /// Returns the active rows that pull, and the inactive rows that would penetrate.
     fn wrong(&self, set: u32, x: &[f32; N]) -> (u32, u32) {
         let (mut drop, mut add) = (0, 0);
         for i in 0..self.n {

@@ -38,7 +38,7 @@ pub(super) struct ContactImpulses {
 }
 
 impl ContactImpulses {
-    /// Sum of these impulses and `share` times another's.
+    /// Returns the sum of these impulses and `share` times `other`.
     pub fn plus(&self, other: &Self, share: f32) -> Self {
         Self {
             normal: core::array::from_fn(|i| self.normal[i] + other.normal[i] * share),
@@ -55,7 +55,7 @@ const MOST_ROWS: usize = MAX_POINTS + 2 + 1 + 3;
 /// World axes about which torques resist rolling.
 const AXES: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
 
-/// Impulses on A and on B.
+/// Impulses on body A and on body B.
 pub(super) type Push = (Vec6, Vec6);
 
 #[derive(Clone, Debug)]
@@ -65,7 +65,7 @@ pub(crate) struct ManifoldRows {
     /// Local indices of the bodies.
     pub a: u32,
     pub b: u32,
-    /// The manifold of the step's beginning, or a newer one if a body turned fast.
+    /// Manifold of the step's beginning, or a newer one if a body turned fast.
     pub manifold: Manifold,
     /// True if the manifold was recomputed within the step.
     is_new: bool,
@@ -73,12 +73,12 @@ pub(crate) struct ManifoldRows {
     shapes: [PlacedShape; 2],
     /// Radii of the shapes' roundings around their cores at the contact.
     rounds: [f32; 2],
-    /// Turn within a substep from which on the contact is recomputed, radians.
+    /// Turn within a substep above which the contact is recomputed, radians.
     most_turn: f32,
     normal: Vec3,
     count: usize,
-    /// Cores of the surfaces at each point, in the principal frames, and their distances from the surfaces: the contact point of a ball
-    /// does not rotate with it, that of a box's corner does.
+    /// Cores of the surfaces at each point, in the principal frames, and their distances from the surfaces. The contact point of a ball
+    /// does not rotate with the ball; that of a box's corner rotates with the box.
     core_a: [Vec3; MAX_POINTS],
     core_b: [Vec3; MAX_POINTS],
     a_moves: bool,
@@ -94,12 +94,12 @@ pub(crate) struct ManifoldRows {
     tangents: [Row; 2],
     tangent_axes: [Vec3; 2],
     spin: Row,
-    /// Share of the load of each point when the step began: friction acts at the centre of pressure.
+    /// Share of the load at each point at the start of the step: friction acts at the centre of pressure.
     weight: [f32; MAX_POINTS],
-    /// Weighted distance of the points from that centre: lever arm of the twist friction.
+    /// Weighted distance of the points from the centre of friction, metres: lever arm of the twist friction.
     lever: f32,
-    /// Columns of its rows: of the points, the tangents, the twist, and of torques about each axis if it resists rolling. `None` while it
-    /// is idle at this pose.
+    /// Columns of the rows: of the points, the tangents, the twist, and of torques about each axis if the contact resists rolling. `None`
+    /// while the manifold is idle at this pose.
     pub columns: Option<CachedColumns>,
     /// Responses of the point rows to each other, computed with the columns.
     k: [[f32; MAX_POINTS]; MAX_POINTS],
@@ -193,7 +193,7 @@ impl ManifoldRows {
         rows
     }
 
-    /// Its manifold, if it was recomputed within the step.
+    /// Manifold of the contact, if it was recomputed within the step.
     pub fn found(&self) -> Option<Manifold> {
         self.is_new.then_some(self.manifold)
     }
@@ -220,7 +220,7 @@ impl ManifoldRows {
         let [round_a, round_b] =
             if self.through_particles { [0.0; 2] } else { [a.round(in_a), b.round(in_b)] };
         self.rounds = [round_a, round_b];
-        // For a rim, the points other than the one it rolls on bear no load.
+        // For a rim, only the point on which it rolls bears load.
         let (most_turn, bearing) = match a.has_rim(in_a) || b.has_rim(in_b) {
             _ if self.through_particles => (f32::INFINITY, f32::INFINITY),
             true => (REFRESH_TURN_RIM, self.slop),
@@ -269,7 +269,7 @@ impl ManifoldRows {
         self.tangents = self.tangent_axes.map(|axis| Row::at(axis, arm_a, arm_b));
     }
 
-    /// Computes the columns of its rows and their responses to each other. Returns the position of the columns.
+    /// Computes the columns of the rows and their responses to each other. Returns the position of the columns.
     pub(in crate::solver) fn respond(
         &mut self,
         bodies: &[SolverBody],
@@ -321,8 +321,8 @@ impl ManifoldRows {
         strip
     }
 
-    /// Applies the starting impulses to the bodies: those of the last substep, unless they increased sharply over the substep before, since
-    /// an impact must not be repeated. The manifold is judged as a whole: at rest the load wanders between its points.
+    /// Applies the starting impulses to the bodies: those of the last substep. If they increased sharply, scales them down to the sum of
+    /// the substep before, since an impact must not be repeated. At rest the load moves between points, so the sums are compared.
     pub fn warm_start(&mut self, impulses: &mut [Vec6]) {
         let (mut now, mut before) = (0.0, 0.0);
         for point in &self.memory.points[..self.count] {
@@ -341,7 +341,7 @@ impl ManifoldRows {
         self.add_impulses(impulses, 1.0);
     }
 
-    /// Adds its present impulses, times `sign`, to those of its bodies.
+    /// Adds the present impulses of the manifold, times `sign`, to those of its bodies.
     pub fn add_impulses(&self, impulses: &mut [Vec6], sign: f32) {
         let push = self.total_push();
         add_row(impulses, self.a, &push.0, sign);
@@ -358,8 +358,8 @@ impl ManifoldRows {
         }
     }
 
-    /// Adds `share` times impulses to those of this substep; the caller applies them to the bodies. Returns the largest speed change caused
-    /// by any single one, m/s or rad/s.
+    /// Adds `share` times `more` to the impulses of this substep; the caller applies them to the bodies. Returns the largest speed change
+    /// that any single impulse causes, m/s or rad/s.
     pub(super) fn apply(&mut self, more: &ContactImpulses, share: f32) -> f32 {
         let ContactImpulses { normal, friction, twist, rolling } = self.impulses().plus(more, share);
         (self.impulse, self.friction, self.twist, self.rolling) = (normal, friction, twist, rolling);
@@ -371,7 +371,7 @@ impl ManifoldRows {
         most * share
     }
 
-    /// Returns true if it overlaps by much more than contacts at rest do.
+    /// True if the shapes overlap by much more than at rest.
     pub fn is_deep(&self) -> bool {
         self.separation[..self.count].iter().any(|s| *s < -DEEP_SLOPS * self.slop)
     }
@@ -398,7 +398,7 @@ impl ManifoldRows {
     }
 
     /// Sets the lower bounds for `relax`, which may take back excess impulses of `solve`, except from bodies that turned by more than a
-    /// small angle since: an impulse taken back at another pose than it was given at adds energy (a hand went from 70 to 2,700 rad/s).
+    /// small angle since: an impulse taken back at another pose adds energy (a hand went from 70 to 2,700 rad/s).
     pub fn begin_relax(&mut self, velocities: &[Vec6], h: f32) {
         let turn = |body: u32| angular(&velocities[body as usize]).length() * h;
         let still = turn(self.a) < RELAX_TURN && turn(self.b) < RELAX_TURN;

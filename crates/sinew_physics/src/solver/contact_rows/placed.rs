@@ -1,4 +1,4 @@
-//! Shapes placed in the world, and the contact between two of them.
+//! Shapes placed in the world, and the contact between two such shapes.
 
 use crate::body::shape::Shape;
 use crate::collide::{Half, Manifold, collide, is_on_face, name_as_face};
@@ -38,11 +38,11 @@ impl Placed<'_> {
         )
     }
 
-    /// Radius of the rounding around its core in the direction of a normal (in the principal frame); 0 for shapes with corners.
+    /// Radius of the rounding around the shape's core in the direction of a normal (in the principal frame); 0 for shapes with corners.
     pub fn round(&self, normal: Vec3) -> f32 {
         match *self.shape {
             Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
-            // Use the radius of the thinner end, since the core is rounded by it on all sides.
+            // Uses the radius of the thinner end, since the core is rounded by that radius on all sides.
             Shape::TaperedCapsule { radius_bottom, radius_top, .. } => min(radius_bottom, radius_top),
             Shape::Cylinder { radius, .. } => {
                 let axis = self.principal_from_shape.rotation * Vec3::Y;
@@ -57,8 +57,8 @@ impl Placed<'_> {
         }
     }
 
-    /// Returns true if a curved part not covered by [`Self::round`] faces a normal (in the principal frame): as the shape rolls, other
-    /// points come into contact.
+    /// True if a curved part that [`Self::round`] does not cover faces a normal (in the principal frame): as the shape rolls, other points
+    /// come into contact.
     pub fn has_rim(&self, normal: Vec3) -> bool {
         let axis = || self.principal_from_shape.rotation * Vec3::Y;
         match *self.shape {
@@ -81,7 +81,7 @@ pub(in crate::solver) fn margin(shapes: &[Placed<'_>; 2], turns: [f32; 2], appro
 
 /// Recomputes the contact of two shapes at these poses; `None` if they are apart. A surface, or a ground solid that continues beside the
 /// contact, is replaced by the plane of the known manifold through `on_surfaces` of A or B, since the surface itself would return all its
-/// manifolds at once. Contacts on its edges stay unchanged.
+/// manifolds. Contacts on edges of a surface are not recomputed.
 pub(in crate::solver) fn found_anew(
     [a, b]: [Placed<'_>; 2],
     poses: [Transform; 2],

@@ -18,7 +18,7 @@ fn turn(velocities: &[Vec6], body: u32, h: f32) -> f32 {
 
 impl ManifoldRows {
     /// Recomputes the contact if a body turned fast in this substep: the points of the step's beginning do not include a corner that swings
-    /// in. Impulses are matched by feature. A pair that has separated keeps its rows.
+    /// in. Matches impulses by feature. A pair that has separated keeps its rows.
     pub fn refresh_points(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) {
         if self.turns(velocities, h)
             && let Some(manifold) = self.found_anew(self.poses(bodies), self.margin(velocities, h))
@@ -27,9 +27,9 @@ impl ManifoldRows {
         }
     }
 
-    /// Predicts the contact at the poses that the velocities of this substep lead to. Points without rows may come into contact there, and
+    /// Predicts the contact at the poses to which the velocities of this substep lead. Points without rows may come into contact there, and
     /// would penetrate deeply before they are detected. In that case the predicted manifold replaces the present one, shifted along a
-    /// straight line to the present poses, and the caller computes its responses. Returns whether it was replaced.
+    /// straight line to the present poses, and the caller computes its responses. Returns true if it was replaced.
     pub fn predict_points(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) -> bool {
         if !self.turns(velocities, h) {
             return false;
@@ -85,7 +85,7 @@ impl ManifoldRows {
         margin(&[a.placed(), b.placed()], turns, relative.length() * h, self.slop)
     }
 
-    /// Adopts a manifold that was computed at these poses. Impulses are matched by feature.
+    /// Replaces the manifold by one that was computed at these poses. Matches impulses by feature.
     fn go_on_with(&mut self, manifold: Manifold, poses: [Transform; 2]) {
         let impulse = self.impulse.map(|now| PointImpulse { now, ..PointImpulse::default() });
         let of_substep = ContactMemory { points: impulse, ..self.memory }.matched(&self.manifold, &manifold);

@@ -54,7 +54,7 @@ impl Row {
         dot(&self.a, &velocities[pair.a as usize]) + dot(&self.b, &velocities[pair.b as usize])
     }
 
-    /// Jacobians on A and on B.
+    /// Returns the Jacobians on A and on B.
     pub fn ends(&self) -> [&Vec6; 2] {
         [&self.a, &self.b]
     }
@@ -64,7 +64,7 @@ impl Row {
     }
 }
 
-/// Separation over time of a point that cannot touch in any substep, m/s.
+/// Separation divided by the substep for a point that cannot touch in any substep, m/s.
 pub(in crate::solver) const NEVER: f32 = 1e6;
 
 /// Softness of a contact before its firmness is applied, in a substep of `h` seconds.
@@ -73,7 +73,8 @@ pub(in crate::solver) fn contact_softness(both_move: bool, h: f32) -> Softness {
     Softness::new(min(hertz, 0.25 / h), CONTACT_DAMPING, h)
 }
 
-/// Shares of the load for each point. A point with a separation of at most `bearing` gets a smoothed share before it bears any load.
+/// Share of the load at each point. A point with a separation of at most `bearing` gets a smoothed share before it
+/// bears any load.
 pub(in crate::solver) fn weights(
     memory: &ContactMemory,
     manifold: &Manifold,

@@ -15,11 +15,11 @@ use sinew_math::{Vec3, clamp, max, min};
 /// Complementarity problem of a manifold's normal rows: `K (x − old) + rate + soft x ≥ 0`, complementary to `x ≥ 0`.
 #[derive(Clone, Copy, Debug, Default)]
 struct NormalProblem {
-    /// Rate of the gap with the bias added, m/s; negative if it closes too fast.
+    /// Rate of the gap plus the bias, m/s; negative if the gap closes too fast.
     rate: [f32; MAX_POINTS],
     /// Impulses so far, N·s.
     old: [f32; MAX_POINTS],
-    /// m/s per N·s.
+    /// Softness, m/s per N·s.
     soft: [f32; MAX_POINTS],
 }
 
@@ -38,7 +38,7 @@ impl ManifoldRows {
                 mean += k;
             }
         }
-        // The block's softness is taken at the manifold's centre; taken at each point, a 1 kg foot under 69 kg sinks by 7 mm.
+        // The block's softness is computed at the manifold's centre; computed at each point, a 1 kg foot under 69 kg sinks by 7 mm.
         let at_center = self.firmness.softness * self.soft.impulse_scale / self.soft.mass_scale * mean
             / self.count as f32;
         let mut problem = NormalProblem::default();
@@ -72,7 +72,7 @@ impl ManifoldRows {
         }
     }
 
-    /// Returns true if its impulses are zero and stay zero at these velocities.
+    /// True if all impulses of the manifold are zero and stay zero at these velocities.
     pub fn is_idle(&self, velocities: &[Vec6], pass: Pass, h: f32) -> bool {
         let rate = |i: usize| self.rows[i].rate(self.pair(), velocities) + self.bias(i, pass, h);
         let is_apart = |i: usize| self.separation[i] > 0.0 && self.impulse[i] == 0.0;
@@ -82,7 +82,7 @@ impl ManifoldRows {
             && (0..self.count).all(|i| is_apart(i) && rate(i) >= 0.0)
     }
 
-    /// One visit of the normal rows as a block.
+    /// Visits the normal rows once, as a block.
     pub fn visit_normal(&mut self, strip: CachedColumns, velocities: &[Vec6], pass: Pass, h: f32) -> Change {
         let NormalProblem { rate, old, soft } = self.normal_problem(velocities, pass, h);
         let new = lcp::solve(&self.k, &rate, &old, &soft, self.count);
@@ -94,7 +94,7 @@ impl ManifoldRows {
         change
     }
 
-    /// One visit of friction, limited by the last stored load: a 2×2 row limited to the circle, then twist about the normal. Slip beyond
+    /// Visits friction once, limited by the last stored load: a 2×2 row limited to the circle, then twist about the normal. A slip beyond
     /// static friction becomes sliding.
     pub fn visit_friction(&mut self, strip: CachedColumns, velocities: &[Vec6]) -> Change {
         let pair = self.pair();
@@ -119,7 +119,7 @@ impl ManifoldRows {
         }
         self.friction = self.tangent_axes[0] * new[0] + self.tangent_axes[1] * new[1];
         if self.k_spin > 1e-12 {
-            // Visit the twist after the tangents: a light hand turns far about a contact beside its centre, and solving both at once
+            // Visits the twist after the tangents: a light hand turns far about a contact beside its centre, and a joint solve of both
             // overshoots more in each sweep.
             let [k0, k1] = self.k_spin_tangent;
             let rate = self.spin.rate(pair, velocities)
@@ -137,7 +137,7 @@ impl ManifoldRows {
         change
     }
 
-    /// One visit of the rolling resistance: a torque against the relative rotation, at most `rolling × load`.
+    /// Visits the rolling resistance once: a torque against the relative rotation, at most `rolling × load`.
     pub fn visit_rolling(&mut self, strip: CachedColumns, velocities: &[Vec6]) -> Option<Change> {
         if self.material.rolling <= 0.0 {
             return None;

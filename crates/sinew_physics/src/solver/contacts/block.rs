@@ -1,4 +1,4 @@
-//! Eight manifolds of one colour, side by side. No two of them push the same body, so a sweep can solve them at once.
+//! Eight manifolds of one colour, side by side. No two of them push the same body, so a sweep can solve them together.
 
 use crate::slices::SharedRows;
 use crate::spatial::Vec6;
@@ -24,8 +24,8 @@ pub(super) const fn packed(i: usize, j: usize) -> usize {
 
 /// Data of eight manifolds with up to `N` points that sweeps read and write; their responses to each other are `T = N (N + 1) / 2` numbers.
 ///
-/// Points stay where they were when the step began; the lanes of a body that turns fast are rewritten. World axes, metres, kilograms,
-/// seconds.
+/// Points stay at their places of the step's beginning; the lanes of a body that turns fast are rewritten. World axes,
+/// metres, kilograms, seconds.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Block<const N: usize, const T: usize> {
@@ -35,7 +35,7 @@ pub(super) struct Block<const N: usize, const T: usize> {
     pub normal: Eight3,
     /// First direction of friction; the second is `normal × tangent`.
     pub tangent: Eight3,
-    /// From the centre of mass of B to that of A; an arm of A plus this is the arm of B.
+    /// Vector from the centre of mass of B to that of A; an arm of A plus this is the arm of B.
     pub offset: Eight3,
     /// Inverse masses.
     pub mass: [Eight; 2],
@@ -43,7 +43,7 @@ pub(super) struct Block<const N: usize, const T: usize> {
     pub inertia: [[Eight; 6]; 2],
     /// Arm of each point crossed with the normal, about the centre of A.
     pub levers: [Eight3; N],
-    /// From the centre of A to the point where friction acts.
+    /// Vector from the centre of A to the point at which friction acts.
     pub center: Eight3,
     /// Velocity bias of each point in this pass, m/s: the point may approach at up to this rate.
     pub target: [Eight; N],
@@ -55,15 +55,15 @@ pub(super) struct Block<const N: usize, const T: usize> {
     pub tangent_response: [Eight; 3],
     pub twist_response: Eight,
     pub twist_to_tangents: [Eight; 2],
-    /// Impulses of this substep, and their lower bounds in `relax`.
+    /// Normal impulses of this substep, and their lower bounds in `relax`.
     pub impulse: [Eight; N],
     pub floor: [Eight; N],
     pub friction: [Eight; 2],
     pub twist: Eight,
-    /// Impulses before the last sweep that is a conjugate step, and the search direction.
+    /// Impulses before the last sweep with a conjugate step, and the search direction.
     pub was: Impulses<N>,
     pub direction: Impulses<N>,
-    /// Sum of the normal impulses that limit friction, and that of the last substep.
+    /// Sum of the normal impulses that limit friction, and that sum in the last substep.
     pub load: Eight,
     pub last_load: Eight,
     /// Coefficients of sliding and static friction.
@@ -71,15 +71,15 @@ pub(super) struct Block<const N: usize, const T: usize> {
     pub holding: Eight,
     /// Weighted distance of the points from the centre: lever arm of the twist friction.
     pub lever: Eight,
-    /// Velocity of B's surface less A's along both tangents, and its spin about the normal.
+    /// Velocity of B's surface minus A's along both tangents, and its spin about the normal.
     pub surface: Eight3,
-    /// Index of the rolling resistance of its manifolds, or [`NONE`].
+    /// Index of the rolling resistance of the block's manifolds, or [`NONE`].
     pub rolling: u32,
     /// True if a lane was rewritten, so that the responses have to be recomputed.
     pub is_stale: bool,
-    /// From the centre of A to each point. Sweeps read neither the arms nor the separations.
+    /// Vector from the centre of A to each point. Sweeps read neither the arms nor the separations.
     pub arms: [Eight3; N],
-    /// Separation of each point at the present poses; negative where the surfaces overlap.
+    /// Separation of each point at the present poses; negative if the surfaces overlap.
     pub separation: [Eight; N],
 }
 
@@ -89,7 +89,7 @@ pub(super) struct Block<const N: usize, const T: usize> {
 pub(super) struct Memory<const N: usize> {
     /// Indices in the world's contact array.
     pub contacts: [u32; WIDTH],
-    /// Separations when the step began, and the radii of both shapes' roundings, summed.
+    /// Separations at the start of the step, and the sum of the radii of both shapes' roundings.
     pub start: [Eight; N],
     pub round: Eight,
     /// Overlap that is not corrected, metres.
@@ -102,20 +102,20 @@ pub(super) struct Memory<const N: usize> {
     /// Prescribed separation speed of the surfaces, m/s.
     pub launch: Eight,
     pub restitution: Eight,
-    /// Normal impulses: of the second last substep, the sums over all substeps, and the lasting load.
+    /// Normal impulses of the second last substep, their sums over all substeps, and the lasting load.
     pub before: [Eight; N],
     pub total: [Eight; N],
     pub lasting: [Eight; N],
     /// Friction impulses of all substeps, along both tangents.
     pub total_friction: [Eight; 2],
-    /// Index of the approach and rebound of its points, or [`NONE`] if none of them may bounce.
+    /// Index of the approach and rebound of the block's points, or [`NONE`] if no point may bounce.
     pub bounce: u32,
 }
 
 /// Approach and rebound of the points of eight manifolds, some of which may bounce.
 #[derive(Clone, Debug)]
 pub(super) struct Bounce<const N: usize> {
-    /// Normal rate and gap when the substep began, m/s and metres; the gap of an overlapping point is 0.
+    /// Normal rate and gap at the start of the substep, m/s and metres; the gap of an overlapping point is 0.
     pub rate: [Eight; N],
     pub gap: [Eight; N],
     /// Speed toward the surface added by forces before contacts, m/s.
@@ -140,7 +140,7 @@ pub(super) struct Rolling {
 }
 
 impl<const N: usize, const T: usize> Block<N, T> {
-    /// A block of empty lanes.
+    /// Creates a block of empty lanes.
     pub fn empty() -> Self {
         Self {
             bodies: [[HELD; WIDTH]; 2],
@@ -184,7 +184,7 @@ impl<const N: usize> Bounce<N> {
 }
 
 impl<const N: usize> Memory<N> {
-    /// The memory of empty lanes.
+    /// Creates the memory of empty lanes.
     pub fn empty() -> Self {
         Self {
             contacts: [NONE; WIDTH],
@@ -218,7 +218,7 @@ pub(super) fn store3<L: Lanes>(v: Vector3<L>, to: &mut Eight3) {
     v.z.store(&mut to[2]);
 }
 
-/// Symmetric matrices (xx, yy, zz, yz, xz, xy) times vectors.
+/// Multiplies symmetric matrices (xx, yy, zz, yz, xz, xy) by vectors.
 #[inline(always)]
 pub(super) fn times<L: Lanes>(m: &[Eight; 6], v: Vector3<L>) -> Vector3<L> {
     let (xx, yy, zz) = (L::load(&m[0]), L::load(&m[1]), L::load(&m[2]));
@@ -339,7 +339,7 @@ impl<L: Lanes> Motion<L> {
         self.angular = self.angular + times(inertia, torque);
     }
 
-    /// The largest component of the change since `before`.
+    /// Largest component of the change since `before`.
     #[inline(always)]
     pub fn change(self, before: Self) -> L {
         let (v, w) = ((self.linear - before.linear).abs(), (self.angular - before.angular).abs());

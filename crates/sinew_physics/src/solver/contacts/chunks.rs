@@ -15,9 +15,9 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, WIDTH};
 use sinew_math::max;
 
-/// Blocks in a chunk: a few µs of work, several times the cost of handing it to a thread.
+/// Number of blocks in a chunk: a few µs of work, several times the cost of scheduling it on a thread.
 const CHUNK: usize = 12;
-/// Colours with fewer blocks are not divided.
+/// Number of blocks below which a colour is not divided.
 const DIVIDED: usize = 3 * CHUNK;
 /// Largest number of chunks of a colour; a colour with more blocks has larger chunks.
 const MOST_CHUNKS: usize = MOST_NEAR;
@@ -30,7 +30,7 @@ pub(super) trait Parted: Visitor + Send {
     fn join(&mut self, part: &Self);
 }
 
-/// Makes rows that visitors share: those of bodies, or data owned by one block.
+/// Makes rows that visitors share: those of bodies, or data of one block.
 pub(super) fn shared<T>(rows: &mut [T]) -> SharedRows<'_, T> {
     // SAFETY: a visit writes rows of moving bodies, which no two blocks of a colour share (`Coloring`), and data of its own block. It also
     // reads rows of fixed bodies, which no visit writes. A reference to a row ends within the visit, and a colour within `for_each_near`.

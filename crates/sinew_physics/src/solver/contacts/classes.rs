@@ -11,7 +11,7 @@ pub(super) struct Class<const N: usize, const T: usize> {
     pub(super) blocks: Vec<Block<N, T>>,
     pub(super) memory: Vec<Memory<N>>,
     pub(super) bounces: Vec<Bounce<N>>,
-    /// Number of blocks in use; unused blocks keep their memory for the next island.
+    /// Number of blocks in use; the memory of unused blocks is kept for the next island.
     pub(super) count: usize,
 }
 

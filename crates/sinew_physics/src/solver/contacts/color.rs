@@ -14,10 +14,10 @@ pub(super) struct Edge {
     pub contact: u32,
     /// Local indices of the bodies.
     pub bodies: [u32; 2],
-    /// Class of its block.
+    /// Class of the contact's block.
     pub class: u32,
     pub firmness: Firmness,
-    /// Index of its extra data, or `NONE`; only few contacts have any.
+    /// Index of the contact's extra data, or `NONE`; only few contacts have extra data.
     pub extra: u32,
     color: u32,
 }
@@ -36,7 +36,7 @@ pub(super) struct Coloring {
     sorted: Vec<u32>,
     /// End of each run of one colour and class in `sorted`.
     ends: Vec<usize>,
-    /// Colours that each moving body has in this round.
+    /// Colours of each moving body in this round, as bits.
     used: Vec<u64>,
     pending: Vec<u32>,
     left: Vec<u32>,
@@ -61,8 +61,9 @@ impl Coloring {
         self.ends.reserve(COLORS as usize * CLASSES);
     }
 
-    /// Colours the edges by first fit in their order, then sorts them by colour and class. Bodies from `moving` on are fixed. Contacts with
-    /// fixed bodies get the last colours, so that the sweep corrects them last. Returns the number of colours.
+    /// Colours the edges by first fit in their order, then sorts them by colour and class. Bodies from `moving` on are
+    /// fixed. Contacts with fixed bodies get the last colours, so that the sweep corrects them last. Returns the number
+    /// of colours.
     pub fn color(&mut self, moving: usize) -> u32 {
         let is_free = |edge: &Edge| edge.bodies.iter().all(|&body| (body as usize) < moving);
         let (count, free) = (self.edges.len() as u32, self.edges.partition_point(is_free) as u32);
@@ -80,7 +81,7 @@ impl Coloring {
         colors
     }
 
-    /// Sorts by counting; the order of the edges within a run stays.
+    /// Sorts the edges by counting; keeps their order within a run.
     fn sort(&mut self, colors: u32) {
         let Self { edges, sorted, ends, .. } = self;
         ends.clear();
@@ -90,7 +91,7 @@ impl Coloring {
         }
         let mut start = 0;
         for end in ends.iter_mut() {
-            // Start of the run until it is filled, then its end.
+            // `end` is the start of the run until the run is filled.
             start += core::mem::replace(end, start);
         }
         sorted.clear();
@@ -141,7 +142,7 @@ impl Coloring {
 }
 
 impl Edge {
-    /// Number of its run, by colour and class.
+    /// Number of the edge's run, by colour and class.
     fn run(&self) -> usize {
         self.color as usize * CLASSES + self.class as usize
     }

@@ -16,7 +16,7 @@ use sinew_math::lanes::Lanes;
 /// energy to extrapolate with.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Conjugate {
-    /// State before the sweep.
+    /// Velocities and limit impulses before the sweep.
     was: State,
     /// Search direction.
     direction: State,
@@ -33,7 +33,7 @@ struct State {
     limits: Vec<f32>,
 }
 
-/// Moves one row of eight manifolds along the search direction.
+/// Moves one impulse of each of eight manifolds along the search direction.
 #[inline(always)]
 fn go_on<L: Lanes>(impulse: &mut Eight, was: &mut Eight, direction: &mut Eight, share: f32) {
     let now = L::load(impulse);
@@ -74,7 +74,7 @@ impl<const N: usize, const T: usize> Block<N, T> {
     }
 }
 
-/// Moves bodies by a share of the search direction; the new direction is that share plus the change of the sweep.
+/// Moves bodies by a share of the search direction; the new direction is that share plus the change in the sweep.
 struct GoOnBodies<'a> {
     velocities: &'a mut [Vec6],
     /// Velocities before the sweep.
@@ -85,7 +85,7 @@ struct GoOnBodies<'a> {
     changes: &'a mut [f32],
 }
 
-/// Least number of bodies for one thread.
+/// Smallest number of bodies for one thread.
 const BODIES: usize = 256;
 
 impl<'a> GoOnBodies<'a> {
@@ -176,7 +176,7 @@ impl Contacts {
     }
 
     /// Moves along the search direction after a sweep whose changes had this energy; blocks move when the next sweep visits them. The next
-    /// sweep corrects rows that this moved too far. If `moved` is given, it receives the bodies, in order, and how far each moved.
+    /// sweep corrects rows that moved too far. `moved`, if given, is called for the bodies, in order, with the change of each.
     pub(in crate::solver) fn after_conjugate(
         &mut self,
         energy: f32,

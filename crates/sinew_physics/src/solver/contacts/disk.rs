@@ -3,7 +3,7 @@
 use crate::solver::tuning::FRICTION_RIM_STEPS;
 use sinew_math::lanes::{LaneMask, Lanes, Vector3};
 
-/// `(K + μ 1)⁻¹ b` of a symmetric 2×2 matrix (00, 01, 11).
+/// Computes `(K + μ 1)⁻¹ b` for a symmetric 2×2 matrix (00, 01, 11).
 #[inline(always)]
 fn solve<L: Lanes>(k: [L; 3], mu: L, b: [L; 2]) -> [L; 2] {
     let (k00, k01, k11) = (k[0] + mu, k[1], k[2] + mu);
@@ -18,8 +18,8 @@ fn length<L: Lanes>(x: [L; 2]) -> L {
     (x[0] * x[0] + x[1] * x[1]).sqrt()
 }
 
-/// The impulses in the disks of radius `most` with the least energy: minimise `½ xᵀ K x − bᵀ x` (the secular equation of a trust region,
-/// Moré and Sorensen 1983, by Newton).
+/// Returns the impulses in the disks of radius `most` with the least energy: they minimise `½ xᵀ K x − bᵀ x` (the
+/// secular equation of a trust region, Moré and Sorensen 1983, by Newton).
 #[inline(always)]
 pub(super) fn least_energy<L: Lanes>(k: [L; 3], b: [L; 2], most: L) -> [L; 2] {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
@@ -46,8 +46,9 @@ pub(super) fn least_energy<L: Lanes>(k: [L; 3], b: [L; 2], most: L) -> [L; 2] {
     [x[0].masked(moves), x[1].masked(moves)]
 }
 
-/// One projected gradient step for impulses in balls of radius `most`, from `x` against the rates `v`. The step is exact if the result is
-/// inside the ball. `answer` is `K⁻¹ v`. The trace of `K` bounds its largest eigenvalue, so the step cannot overshoot.
+/// Returns impulses in balls of radius `most` after one projected gradient step from `x` against the rates `v`. The
+/// step is exact if the result is inside the ball. `answer` is `K⁻¹ v`. The trace of `K` bounds its largest eigenvalue,
+/// so the step cannot overshoot.
 #[inline(always)]
 pub(super) fn step_in_ball<L: Lanes>(
     x: Vector3<L>,

@@ -1,4 +1,4 @@
-//! Geometry of a manifold as rows use it: points and directions about the centres of its two bodies.
+//! Geometry of a manifold for its rows: points and directions about the centres of its two bodies.
 
 use super::block::{Block, Memory};
 use crate::collide::{MAX_POINTS, Manifold};
@@ -7,8 +7,8 @@ use sinew_math::{Transform, Vec3, any_orthonormal};
 /// Separation of an unused point, metres.
 pub(super) const FAR: f32 = 1e6;
 
-/// Cores of the surfaces at each point of a manifold, in the principal frames: the contact point of a ball does not rotate with it, that of
-/// a box's corner does.
+/// Cores of the surfaces at each point of a manifold, in the principal frames. The contact point of a ball does not
+/// rotate with the ball; that of a box's corner rotates with the box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cores {
     pub points: [[Vec3; MAX_POINTS]; 2],
@@ -32,7 +32,7 @@ impl Cores {
     }
 }
 
-/// The surface, of the two, to which the contact point is fixed.
+/// Surface to which the contact point is fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     OfA,
@@ -41,8 +41,8 @@ pub(super) enum Side {
 }
 
 impl Side {
-    /// Side of a contact. The contact point moves with a ball, also on a table that moves away under it; otherwise it stays on the fixed
-    /// body.
+    /// Chooses the side of a contact. The contact point moves with a ball, also on a table that moves away under the
+    /// ball; otherwise it stays on the fixed body.
     pub fn new(rounds: [f32; 2], moves: [bool; 2]) -> Self {
         match rounds.map(|round| round > 0.0).into() {
             (true, false) => Self::OfA,
@@ -61,7 +61,7 @@ impl Side {
         }
     }
 
-    /// Position of the contact point as a share of the separation, from the middle between the surfaces toward B.
+    /// Position of the contact point between the surfaces, as a share of the separation: from the middle toward B.
     pub fn share(self) -> f32 {
         match self {
             Self::OfA => -0.5,
@@ -71,7 +71,7 @@ impl Side {
     }
 }
 
-/// Geometry of one manifold at two poses.
+/// Geometry of one manifold with its bodies at given poses.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Geometry {
     normal: Vec3,
@@ -85,7 +85,7 @@ pub(super) struct Geometry {
 }
 
 impl Geometry {
-    /// Geometry of cores at these poses. Friction acts at the weighted centre of the points.
+    /// Computes the geometry from cores at these poses. Friction acts at the weighted centre of the points.
     pub fn new(cores: &Cores, poses: [Transform; 2], moves: [bool; 2], weights: &[f32; MAX_POINTS]) -> Self {
         let n = cores.normal;
         let on = |end: usize, i: usize| poses[end].point(cores.points[end][i]);
@@ -112,7 +112,7 @@ impl Geometry {
         geometry
     }
 
-    /// Computes the lever arm of the twist. Unused points repeat the first point, and are never reached.
+    /// Computes the lever arm of the twist. Unused points repeat the first point and are too far to touch.
     fn finish(&mut self, count: usize, weights: &[f32; MAX_POINTS], round: f32) {
         let first = self.arms[0];
         self.arms[count..].fill(first);
@@ -154,7 +154,7 @@ impl Geometry {
         self.normal
     }
 
-    /// The two directions of friction.
+    /// Returns the two directions of friction.
     pub fn tangents(&self) -> [Vec3; 2] {
         [self.tangent, self.normal.cross(self.tangent)]
     }

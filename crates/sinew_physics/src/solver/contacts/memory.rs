@@ -7,8 +7,9 @@ use crate::solver::tuning::{BOUNCE_SPEED, IMPACT_JUMP, LASTING};
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3};
 
-/// Applies the starting impulses to the bodies: those of the last substep, unless they increased sharply over the substep before, since an
-/// impact must not be repeated. The manifold is judged as a whole: at rest the load wanders between its points.
+/// Applies the starting impulses to the bodies: those of the last substep. If they increased sharply, scales them down to
+/// the sum of the substep before, since an impact must not be repeated. At rest the load moves between points, so the
+/// sums are compared.
 #[inline(always)]
 pub(super) fn warm_start<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -45,7 +46,7 @@ pub(super) fn warm_start<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// Total impulses of all rows of a block: the impulse on B, and torques about both centres; A gets the opposite.
+/// Total impulses of all rows of a block: impulse on B, and torques about both centres; A gets the opposite impulse.
 struct Given<L> {
     impulse: Vector3<L>,
     torques: [Vector3<L>; 2],
@@ -129,7 +130,7 @@ fn rates<L: Lanes, const N: usize, const T: usize>(block: &Block<N, T>, velociti
     rates
 }
 
-/// Records the approach of the points when the substep begins.
+/// Records the approach of the points at the start of the substep.
 #[inline(always)]
 pub(super) fn begin_approach<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,
@@ -158,8 +159,9 @@ pub(super) fn pull_approach<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// Marks points that approached fast and were hit: they bounce as high as their speed at the surface allows. A velocity of symplectic Euler
-/// is that of half a substep ago, and forces keep accelerating the point between its present position and the surface.
+/// Marks points that approached fast and were hit: they bounce as high as their speed at the surface allows. A velocity
+/// of symplectic Euler is that of half a substep ago, and forces continue to accelerate the point between its present
+/// position and the surface.
 #[inline(always)]
 pub(super) fn end_approach<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,

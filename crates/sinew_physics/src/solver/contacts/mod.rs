@@ -1,4 +1,4 @@
-//! Contacts of an island in lanes: eight manifolds without a common moving body are solved at once, by block Gauss-Seidel in impulse space
+//! Contacts of an island in lanes: eight manifolds without a common moving body are solved together, by block Gauss-Seidel in impulse space
 //! over the bodies' own masses, colour after colour.
 //!
 //! Rows are built once a step. From substep to substep only separations change; they are updated exactly from the motion of the bodies. The
@@ -55,11 +55,11 @@ pub(crate) struct Contacts {
     /// Records of the contacts in the order in which they were added, and the extra data that few of them have.
     records: Vec<Record>,
     extras: Vec<Extra>,
-    /// True if a surface moves along its body, or launches what touches it.
+    /// True if a surface moves relative to its body, or launches bodies.
     drives: bool,
     /// Inverse mass and inertia of each body: 1/m, then xx, yy, zz, yz, xz, xy.
     inverse: Vec<Vec6>,
-    /// Centre of each body in the world when the step began, metres: x, y, z.
+    /// World position of each body's centre at the start of the step, metres: x, y, z.
     centers: Vec<Vec6>,
     /// Motion of each body since the step began: translation, then rotation.
     moved: Vec<Vec6>,
@@ -67,9 +67,9 @@ pub(crate) struct Contacts {
     turned: Vec<f32>,
     found: Vec<Found>,
     conjugate: Conjugate,
-    /// For each body: largest component by which a conjugate step moves it, m/s or rad/s.
+    /// Largest velocity change of each body in a conjugate step, by component, m/s or rad/s.
     changes: Vec<f32>,
-    /// Energy of the sweep of this substep with the largest change, J.
+    /// Largest energy of a sweep in this substep, J.
     most_energy: f32,
     is_spoiled: bool,
     tally: Tally,
@@ -285,7 +285,7 @@ impl Contacts {
         self.is_spoiled = true;
     }
 
-    /// Records the approach of the points when the substep begins.
+    /// Records the approach of the points at the start of the substep.
     pub fn begin_approach(&mut self, velocities: &[Vec6]) {
         if self.may_bounce() {
             self.each(BeginApproach { velocities });
@@ -299,7 +299,7 @@ impl Contacts {
         }
     }
 
-    /// Finds the points that will bounce. Returns whether there are any.
+    /// Finds the points that will bounce. Returns true if there are any.
     pub fn end_approach(&mut self, h: f32) -> bool {
         self.may_bounce() && self.each(EndApproach { h, any: false }).any
     }
@@ -390,7 +390,7 @@ impl Contacts {
         Swept { largest: spatial::largest(&largest), energy: energy.iter().sum() }
     }
 
-    /// Counts of the step so far.
+    /// Returns the counts of the step so far.
     pub fn tally(&self) -> Tally {
         self.tally
     }

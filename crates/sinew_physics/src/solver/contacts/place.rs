@@ -1,4 +1,4 @@
-//! Values that depend on body poses: separations, target rates of the points in a pass, and responses of rows.
+//! Updates the values that depend on body poses: separations, target rates of the points in a pass, and responses of rows.
 
 use super::block::{Block, Bounce, HELD, Memory, Motion, NONE, ZERO8, gather, load3, packed, store3, times};
 use crate::solver::contact_rows::NEVER;
@@ -10,7 +10,7 @@ use sinew_math::lanes::{Lanes, Vector3};
 /// Motion of each body since the step began: translation (x, y, z), then rotation (x, y, z, w).
 pub(super) struct Moved<'a>(pub &'a [Vec6]);
 
-/// Change of a direction, seen from a body, by the body's rotation since the step began: `Rᵀ n − n`.
+/// Change of a direction, in the axes of a body, by the body's rotation since the step began: `Rᵀ n − n`.
 #[inline(always)]
 fn leaned<L: Lanes>(rotation: [L; 4], n: Vector3<L>) -> Vector3<L> {
     let (two, u) = (L::splat(2.0), Vector3::new(rotation[0], rotation[1], rotation[2]));
@@ -90,7 +90,7 @@ pub(super) fn aim<L: Lanes, const N: usize, const T: usize>(
 }
 
 /// Raises the lower bounds of impulses in `relax`. It may take back excess impulses of `solve`, except from bodies that turned by more than
-/// a small angle since: an impulse taken back at another pose than it was given at adds energy (a hand went from 70 to 2,700 rad/s).
+/// a small angle since: an impulse taken back at another pose adds energy (a hand went from 70 to 2,700 rad/s).
 #[inline(always)]
 pub(super) fn raise_floor<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -108,7 +108,7 @@ pub(super) fn raise_floor<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// Softness of the block, taken at the manifold's centre; taken at each point, a 1 kg foot under 69 kg sinks by 7 mm.
+/// Softness of the block, computed at the manifold's centre; computed at each point, a 1 kg foot under 69 kg sinks by 7 mm.
 #[inline(always)]
 fn softness_at_center<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,
@@ -162,7 +162,7 @@ pub(super) fn respond<L: Lanes, const N: usize, const T: usize>(block: &mut Bloc
     n.dot(ia1 + ib1).store(&mut block.twist_to_tangents[1]);
 }
 
-/// Inverse masses and inertias of the bodies of a block: mass, then xx, yy, zz, yz, xz, xy. Fixed bodies and empty lanes have zeros.
+/// Stores inverse masses and inertias of the bodies of a block: mass, then xx, yy, zz, yz, xz, xy. Fixed bodies and empty lanes have zeros.
 #[inline(always)]
 pub(super) fn take_inertias<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,

@@ -25,10 +25,10 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, WIDTH};
 use sinew_math::{Sym3, Vec3};
 
-/// Number of blocks reserved at once when another one is needed.
+/// Number of blocks for which memory is reserved when another one is needed.
 pub(super) const SPARE_BLOCKS: usize = 8;
 
-/// Input for an island's contacts when a step begins.
+/// Input for an island's contacts at the start of a step.
 pub(in crate::solver) struct OfStep<'a> {
     pub view: &'a View<'a>,
     /// Bodies of the island; the first `moving` of them move.
@@ -56,7 +56,8 @@ impl Contacts {
         self.four.clear();
     }
 
-    /// Reserves memory for `bodies` bodies and `contacts` contacts, also if this island has none: the next island reuses it.
+    /// Reserves memory for `bodies` bodies and `contacts` contacts, also if this island has none: the next island may
+    /// use it.
     pub fn make_room(&mut self, bodies: usize, contacts: usize) {
         for list in [&mut self.inverse, &mut self.moved, &mut self.centers] {
             list.clear();
@@ -76,7 +77,8 @@ impl Contacts {
         self.coloring.make_room(bodies, contacts);
     }
 
-    /// Colours the added contacts and writes them to blocks. Returns whether a surface moves along its body, or launches what touches it.
+    /// Colours the added contacts and writes them to blocks. Returns true if a surface moves relative to its body, or
+    /// launches bodies.
     pub fn prepare(&mut self, of: &OfStep<'_>) -> bool {
         if self.coloring.edges.is_empty() {
             return false;
@@ -124,17 +126,17 @@ impl Contacts {
 pub(super) struct Source<'a> {
     pub of: &'a OfStep<'a>,
     pub edges: &'a [Edge],
-    /// Records of the edges, and the extra data that few of them have.
+    /// Records of the edges, and the extra data of a few of them.
     pub records: &'a [Record],
     pub extras: &'a [Extra],
-    /// For each body: its centre, inverse mass and inverse inertia.
+    /// Centre of each body, and its inverse mass and inverse inertia.
     pub centers: &'a [Vec6],
     inverse: &'a [Vec6],
-    /// Softness between two moving bodies, and against a fixed one.
+    /// Softness of contacts between two moving bodies, and of contacts with a fixed body.
     pub soft: [Softness; 2],
 }
 
-/// Lists that accompany the blocks.
+/// Lists of rolling resistances and of manifolds to recompute, which accompany the blocks.
 struct Lists<'a> {
     rolling: &'a mut Vec<Rolling>,
     found: &'a mut Vec<Found>,
@@ -284,7 +286,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
 }
 
 impl Lists<'_> {
-    /// Adds the extra data of a contact. Returns the index of the rolling resistance of its block.
+    /// Adds the extra data of a contact. Returns the index of the block's rolling resistance.
     fn add(&mut self, source: &Source<'_>, edge: &Edge, at: [u32; 3], rolling: u32) -> u32 {
         let OfStep { view, bodies, moving, stretch, .. } = *source.of;
         let extra = &source.extras[edge.extra as usize];
@@ -391,6 +393,6 @@ fn write_rolling(
 }
 
 impl Rolling {
-    /// Rolling resistance of lanes without any.
+    /// Rolling resistance of lanes without resistance.
     const NONE: Self = Self { lever: ZERO8, inverse: [ZERO8; 6], trace: ZERO8, impulse: [ZERO8; 3] };
 }

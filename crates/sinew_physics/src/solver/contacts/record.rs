@@ -32,17 +32,17 @@ pub(super) struct Record {
     rows: [Vec6; 6],
 }
 
-/// Data that only few contacts have.
+/// Data that only a few contacts have.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extra {
-    /// Velocity and spin of B's surface less A's, m/s and rad/s.
+    /// Velocity and spin of B's surface minus those of A's, m/s and rad/s.
     pub velocity: Vec3,
     pub spin: Vec3,
     /// Rolling resistance: its lever arm, and the impulse of the last substep.
     pub rolling: f32,
     pub impulse: Vec3,
     pub rounds: [f32; 2],
-    /// True if other points come into contact as it rolls.
+    /// True if other points come into contact as a shape rolls.
     pub rolls: bool,
 }
 
@@ -54,12 +54,12 @@ pub(in crate::solver) struct Added<'a> {
     /// Local indices of the bodies, and whether contacts move them.
     pub bodies: [u32; 2],
     pub moves: [bool; 2],
-    /// Largest number of points that it may have within the step.
+    /// Largest number of points that the contact may have within the step.
     pub points: usize,
     pub firmness: Firmness,
     pub slop: f32,
     pub material: &'a ContactMaterial,
-    /// Its shapes, if one of them is curved.
+    /// Shapes of the contact, if one of them is curved.
     pub curved: Option<[Placed<'a>; 2]>,
 }
 

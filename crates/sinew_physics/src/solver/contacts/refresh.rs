@@ -56,7 +56,7 @@ impl Found {
 pub(in crate::solver) struct Substep<'a> {
     pub view: &'a View<'a>,
     pub bodies: &'a [SolverBody],
-    /// Poses when the step began.
+    /// Poses at the start of the step.
     pub starts: &'a [Transform],
     pub velocities: &'a [Vec6],
     pub moving: usize,
@@ -100,7 +100,8 @@ impl Contacts {
     fn find_fast(&mut self, substep: &Substep<'_>) {
         for (turned, body) in self.turned.iter_mut().zip(0..) {
             let turn = substep.turn(body);
-            // The manifold of the step's beginning is accurate enough for slowly turning kinematic bodies, such as limbs of clips.
+            // The manifold of the step's beginning is accurate enough for slowly turning kinematic bodies, such as
+            // limbs moved by clips.
             if (body as usize) < substep.moving || turn >= REFRESH_TURN_LED {
                 *turned += turn;
             }
@@ -189,7 +190,7 @@ impl Found {
         self.anew = found_anew(shapes, poses, margin, &self.manifold, on_surfaces);
     }
 
-    /// Writes the present contact to its lane. Impulses are matched by feature. A pair that has separated keeps its rows.
+    /// Writes the present contact to its lane. Matches impulses by feature. A pair that has separated keeps its rows.
     fn update<const N: usize, const T: usize>(
         &mut self,
         class: &mut Class<N, T>,
@@ -264,13 +265,13 @@ impl Found {
         self.contact
     }
 
-    /// The manifold computed last.
+    /// Manifold that was computed last.
     pub fn manifold(&self) -> Manifold {
         self.manifold
     }
 }
 
-/// The deepest points of a manifold, limited to the size of the lane.
+/// Selects the deepest points of a manifold, at most as many as the lane has room for.
 fn fitted(manifold: &Manifold, room: usize) -> Manifold {
     if manifold.count <= room {
         return *manifold;
@@ -282,7 +283,7 @@ fn fitted(manifold: &Manifold, room: usize) -> Manifold {
     fitted
 }
 
-/// Rebound speeds are matched by feature; new points get the mean.
+/// Matches rebound speeds by feature; new points get the mean.
 fn carry_rebounds<const N: usize>(
     rebounds: &mut [[f32; WIDTH]; N],
     lane: usize,

@@ -11,12 +11,12 @@ use crate::spatial::Vec6;
 use sinew_math::Vec3;
 use sinew_math::lanes::WIDTH;
 
-/// The vector of a lane.
+/// Returns the vector of a lane.
 fn vector(rows: &[[f32; WIDTH]; 3], lane: usize) -> Vec3 {
     Vec3::new(rows[0][lane], rows[1][lane], rows[2][lane])
 }
 
-/// Impulses that a lane's contact keeps for substeps `times` as long.
+/// Returns the impulses that a lane's contact keeps, converted to substeps `times` as long.
 pub(super) fn memory_of<const N: usize, const T: usize>(
     block: &Block<N, T>,
     memory: &Memory<N>,
@@ -45,14 +45,14 @@ pub(super) fn memory_of<const N: usize, const T: usize>(
 }
 
 impl<const N: usize, const T: usize> Class<N, T> {
-    /// Lanes with contacts: block and lane.
+    /// Lanes with contacts: block and lane of each.
     fn lanes(&self) -> impl Iterator<Item = (usize, usize)> {
         let used =
             move |place: usize| (0..WIDTH).filter(move |&lane| self.memory[place].contacts[lane] != NONE);
         (0..self.count).flat_map(move |place| used(place).map(move |lane| (place, lane)))
     }
 
-    /// Adds to the list of solved contacts.
+    /// Writes the contacts of the class to `room`.
     fn store(
         &self,
         (class, stretch): (u32, f32),
@@ -80,7 +80,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
         }
     }
 
-    /// Subtracts the work of pushes on kinematic bodies.
+    /// Work that kinematic bodies do through the contacts of the class in this substep, J.
     fn work_on_held(&self, rolling: &[Rolling], velocities: &[Vec6], moving: usize) -> f32 {
         let mut given = 0.0;
         for (place, lane) in self.lanes() {
@@ -99,7 +99,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
     }
 }
 
-/// Impulse and torque on one of the two bodies in this substep.
+/// Returns impulse and torque on body A (`end` 0) or B of a lane in this substep.
 fn push_on<const N: usize, const T: usize>(
     block: &Block<N, T>,
     rolling: &[Rolling],
@@ -125,7 +125,8 @@ fn push_on<const N: usize, const T: usize>(
 }
 
 impl Contacts {
-    /// Writes the state that contacts keep for the next step to `room`, from substeps `stretch` times as long as the world's.
+    /// Writes the state that contacts keep for the next step to `room`, from substeps `stretch` times as long as the
+    /// world's.
     pub fn store(&self, stretch: f32, room: &mut [SolvedContact]) {
         let mut room = room.iter_mut();
         self.one.store((0, stretch), self, &mut room);

@@ -15,7 +15,7 @@ pub(super) struct Sweep<'a> {
     pub pass: Pass,
     /// Conjugate step applied to the blocks.
     pub step: Step,
-    /// True if friction takes its loads from the present impulses.
+    /// True if friction is limited by the present impulses.
     pub updates_friction_bound: bool,
     /// Largest change of a velocity component in the sweep so far, lane by lane, m/s or rad/s.
     pub largest: Eight,
@@ -75,7 +75,7 @@ impl Sweep<'_> {
     /// Writes the velocities of moving bodies.
     #[inline(always)]
     fn write<L: Lanes>(&mut self, bodies: &[u32; WIDTH], places: &Places, motion: Motion<L>) {
-        // Work on copies, which writes through them cannot change.
+        // Uses copies, so that writes through the rows cannot change them.
         let (mut velocities, places) = (self.velocities, *places);
         let rows = motion.rows();
         for k in 0..WIDTH {
@@ -100,8 +100,8 @@ pub(super) fn sum<L: Lanes, const N: usize>(rows: &[Eight; N]) -> L {
     sum
 }
 
-/// Limits friction by the final normal impulses of the last substep, unless this is a hit. After few sweeps the impulses of this substep
-/// may be off to one side; the sum of the last substep is not, since it supported the body.
+/// Limits friction by the final normal impulses of the last substep, unless this is a hit. After a few sweeps the impulses of this substep
+/// may still be uneven; the sum of the last substep is not, since it supported the body.
 #[inline(always)]
 fn update_friction_bound<L: Lanes, const N: usize, const T: usize>(block: &mut Block<N, T>) {
     let (now, last) = (sum::<L, N>(&block.impulse), L::load(&block.last_load));
@@ -130,7 +130,7 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
     }
     let old = given;
     let points = Points::new(block, &rates, &given);
-    // Alternate directions: always the same one would leave a small motion toward the first side.
+    // Alternates directions: one direction alone would leave a small motion toward the first side.
     if N == 1 {
         points.visit::<true>(0, &mut given);
     } else {
@@ -162,12 +162,12 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
     energy
 }
 
-/// The points of a block in a visit, each as a linear function for its own impulse: its value without impulses of the other points, and the
-/// share that each of them subtracts. This keeps the dependency between consecutive points to a product, a difference and a maximum,
+/// The points of a block in a visit. Each is a linear function for its own impulse: its value without impulses of the other points, and the
+/// share that each of them subtracts. This reduces the dependency between consecutive points to a product, a difference and a maximum,
 /// without a rate.
 struct Points<L, const N: usize> {
     alone: [L; N],
-    /// Coefficients, row by row; the diagonal is the share of its own impulse that stays.
+    /// Coefficients, row by row; the diagonal is the share of the point's own impulse that stays.
     taken: [[L; N]; N],
     floor: [L; N],
 }
@@ -254,8 +254,8 @@ fn visit_friction<L: Lanes, const N: usize, const T: usize>(
     change[0] * answer[0] + change[1] * answer[1]
 }
 
-/// Visits the twist, after the tangents: a light body turns far about a contact beside its centre, and solving both at once overshoots more
-/// in each sweep. Returns the change.
+/// Visits the twist, after the tangents: a light body turns far about a contact beside its centre, and a joint solve of both overshoots
+/// more in each sweep. Returns the change.
 #[inline(always)]
 fn visit_twist<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,

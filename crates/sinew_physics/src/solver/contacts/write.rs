@@ -9,7 +9,7 @@ use crate::solver::contact_rows::Softness;
 use crate::solver::tuning::{DEAD_ZONE, WEIGHT_EVENLY, WEIGHT_OF_LOAD};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 
-/// Input collected lane by lane before the lanes are written side by side.
+/// Input that is collected lane by lane before all lanes are written together.
 struct Each {
     places: [u32; WIDTH],
     /// 1 if both bodies are moved by contacts.
@@ -19,7 +19,7 @@ struct Each {
     push_speed: Eight,
     /// Separation below which points bear load.
     bearing: Eight,
-    /// Velocity of B's surface less A's, then its spin.
+    /// Velocity of B's surface minus that of A's, then its spin.
     surface: [Eight; 6],
 }
 
@@ -29,7 +29,7 @@ struct Axes<L> {
     tangents: [Vector3<L>; 2],
 }
 
-/// Writes a block except for the responses of its rows. Returns whether any of its contacts may bounce.
+/// Writes a block except for the responses of its rows. Returns true if a contact of the block may bounce.
 #[inline(always)]
 pub(super) fn write<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -98,7 +98,7 @@ impl Each {
     }
 }
 
-/// Writes points, separations, and the point where friction acts.
+/// Writes points, separations, and the point at which friction acts.
 #[inline(always)]
 fn write_shape<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -134,7 +134,7 @@ fn write_shape<L: Lanes, const N: usize, const T: usize>(
             zero.store(&mut memory.total[i]);
         }
     }
-    // Smoothed shares of the load of the points that bear.
+    // Smoothed shares of the load, for the points that bear load.
     let (bearing, mut heirs) = (L::load(&each.bearing), zero);
     for i in 0..N {
         heirs = heirs + one.masked(there[i] & L::le(gaps[i], bearing));
@@ -147,7 +147,7 @@ fn write_shape<L: Lanes, const N: usize, const T: usize>(
         let part = L::select(loaded, now[i] / load, even);
         weights[i] = L::splat(WEIGHT_OF_LOAD) * part + L::splat(WEIGHT_EVENLY) * even;
         center = select3(there[i], center + at[i] * weights[i], center);
-        // Unused points repeat the first one, and are never reached.
+        // Unused points repeat the first point and are too far to touch.
         arms[i] = select3(there[i], at[i] - normal * round_a, arms[0]);
         let gap = L::select(there[i], gaps[i], L::splat(FAR));
         store3(arms[i], &mut block.arms[i]);
@@ -177,7 +177,7 @@ fn write_softness<L: Lanes, const N: usize>(memory: &mut Memory<N>, each: &Each,
     let bias_rate = L::load(&each.bias) * pick::<L>(both_move, moving.bias_rate, fixed.bias_rate);
     bias_rate.store(&mut memory.bias_rate);
     memory.push_speed = each.push_speed;
-    // Softness of the mean response of the points; the division of their sum is done here.
+    // The mean response of the points scales the softness; the division of their sum is done here.
     let softness = L::load(&each.softness) * pick::<L>(both_move, moving.impulse_scale, fixed.impulse_scale)
         / pick::<L>(both_move, moving.mass_scale, fixed.mass_scale)
         / L::splat((N * N) as f32);
@@ -220,7 +220,7 @@ fn write_friction<L: Lanes, const N: usize, const T: usize>(
     launch.store(&mut memory.launch);
 }
 
-/// Centres of eight bodies in the world when the step began, metres.
+/// Centres of eight bodies in the world at the start of the step, metres.
 #[inline(always)]
 fn centers<L: Lanes>(source: &Source<'_>, bodies: &[u32; WIDTH]) -> Vector3<L> {
     let [x, y, z, ..] = gather::<L>(source.centers, bodies);

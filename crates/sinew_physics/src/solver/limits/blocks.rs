@@ -18,9 +18,9 @@ use sinew_math::max;
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct LimitBlocks {
     blocks: Vec<Block>,
-    /// For each tree the last block of its rows.
+    /// Last block of the rows of each tree.
     last: Vec<u32>,
-    /// Number of rows that are in a block; the first ones.
+    /// Number of rows that are in a block: the first rows of the list.
     placed: usize,
 }
 
@@ -30,7 +30,7 @@ pub(in crate::solver) struct LimitBlocks {
 struct Block {
     /// Jacobians on A, then on B.
     rows: [[f32; WIDTH]; 12],
-    /// Rate of each row below which it pushes.
+    /// Rate of each row below which the row pushes.
     threshold: [f32; WIDTH],
     /// Change of all rates by a unit impulse of each row.
     response: [[f32; WIDTH]; WIDTH],
@@ -47,7 +47,7 @@ struct Block {
     pushing: u8,
 }
 
-/// The lanes whose bits are set.
+/// Lanes whose bits are set.
 fn lanes(bits: u8) -> impl Iterator<Item = usize> {
     (0..WIDTH).filter(move |k| bits & 1 << k != 0)
 }
@@ -66,7 +66,7 @@ impl Block {
         pushing: 0,
     };
 
-    /// Adds a row of two bodies, the `limit`th of the island.
+    /// Adds row number `limit` of the island, which acts on two bodies.
     fn push(&mut self, limit: usize, bodies: [u32; 2], row: &LimitRow) {
         let k = self.count;
         for (row, number) in self.rows.iter_mut().zip(row.row.a[..6].iter().chain(&row.row.b[..6])) {
@@ -83,7 +83,7 @@ impl Block {
     }
 
     /// Visits the rows that push until their rates change by less than `tolerance`. Returns the changes of their impulses, the sum of the
-    /// energies of the single changes, and the largest change of a rate in the last round.
+    /// energies of these changes, and the largest change of a rate in the last round.
     fn solve(
         &self,
         limits: &mut [LimitRow],
@@ -146,7 +146,7 @@ impl Kernel for Look<'_> {
 }
 
 impl LimitBlocks {
-    /// Removes all blocks, for an island of so many trees.
+    /// Removes all blocks, for an island of `trees` trees.
     pub fn clear(&mut self, trees: usize) {
         self.blocks.clear();
         self.last.clear();
@@ -154,7 +154,7 @@ impl LimitBlocks {
         self.placed = 0;
     }
 
-    /// Rows that have a place, from the first on.
+    /// Number of rows, from the first on, that are in a block.
     pub fn placed(&self) -> usize {
         self.placed
     }
@@ -164,14 +164,14 @@ impl LimitBlocks {
         self.blocks.len()
     }
 
-    /// Bytes that are filled.
+    /// Size of the data in use, bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.blocks[..])
     }
 }
 
 impl IslandSolver {
-    /// Before the sweeps of a pass: puts new rows into blocks, those with an impulse first, and computes thresholds.
+    /// Prepares the sweeps of a pass: puts new rows into blocks, those with an impulse first, and computes thresholds.
     pub(in crate::solver) fn arrange_limits(&mut self, pass: Pass) {
         for pushing in [true, false] {
             for i in self.limit_blocks.placed..self.limits.len() {
@@ -263,14 +263,14 @@ impl IslandSolver {
         for tree in [trees[0], trees[1].filter(|_| trees[0] != trees[1])].into_iter().flatten() {
             self.dirty.mark(tree, moved);
         }
-        // Their own change needs no other visit.
+        // The block's own change needs no other visit.
         if left < tolerance {
             let now = self.dirty.of(&self.links, a, b);
             self.dirty.see_limits(at, now);
         }
     }
 
-    /// Computes columns for the rows `new` of a block and the responses between them and the rows that push already.
+    /// Computes columns for the rows `new` of a block, and the responses between them and the rows that already push.
     fn respond_to_limits(&mut self, at: usize, new: u8) {
         let Self { limits, limit_blocks, joints, bodies, links, batches, response, response_cache, .. } =
             self;

@@ -1,4 +1,4 @@
-//! Row of a joint limit: its slack, its wanted rate and its impulse.
+//! Row of a joint limit: its slack, its requested rate and its impulse.
 
 use crate::joint::def::Softness;
 use crate::joint::{Row, Stop, turns};
@@ -16,11 +16,12 @@ use sinew_math::{Vec3, clamp, max, min};
 /// Hardness of a limit row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Hardness {
-    /// A stop.
+    /// A hard stop.
     Hard,
-    /// A stop linearised at the predicted pose of the end of the substep, to reach at least this rate. It exists in `solve` only.
+    /// A hard stop linearised at the predicted pose of the end of the substep; the number is the smallest rate of the slack. It exists in
+    /// `solve` only.
     Predicted(f32),
-    /// A spring that pushes without slack, with this share of its damping.
+    /// A spring that acts when no slack is left, with a share of its damping.
     Soft(Softness, f32),
 }
 
@@ -28,20 +29,20 @@ pub(super) enum Hardness {
 #[derive(Clone, Debug)]
 pub(in crate::solver) struct LimitRow {
     pub joint: u32,
-    /// Index of the stop in the joint, and of the limit that keeps its impulse.
+    /// Index of the stop in the joint, and of the limit that stores its impulse.
     pub(super) stop: usize,
     pub(super) limit: usize,
-    /// Room before the stop, radians or metres; negative beyond it.
+    /// Remaining motion before the stop, radians or metres; negative beyond it.
     pub(super) slack: f32,
     pub(super) hardness: Hardness,
     /// Gradient of the slack, world axes.
     pub(super) axis: Vec3,
     pub row: Row,
-    /// Index of the block that it is in.
+    /// Index of the block that contains the row.
     pub block: u32,
     /// Response of the row to its own unit impulse; known once it has a column.
     pub(super) effective: f32,
-    /// Impulse of this substep: ≥ 0 after a visit; a conjugate step may make it negative until the next one.
+    /// Impulse of this substep: ≥ 0 after a visit; a conjugate step may make it negative until the next visit.
     pub impulse: f32,
 }
 
@@ -86,7 +87,7 @@ impl LimitRow {
         self.add_impulses(joints, impulses, 1.0);
     }
 
-    /// Adds its impulse, times `sign`, to those of its bodies.
+    /// Adds the row's impulse, times `sign`, to those of its bodies.
     pub fn add_impulses(&self, joints: &[SolverJoint], impulses: &mut [Vec6], sign: f32) {
         self.add_to(joints, impulses, sign * self.impulse);
     }
@@ -101,7 +102,7 @@ impl LimitRow {
         }
     }
 
-    /// Slack wanted at the end of a substep, radians or metres: 0, or negative if the joint must return from far beyond.
+    /// Required slack at the end of a substep, radians or metres: 0, or negative if the joint must return from far beyond the stop.
     pub(super) fn allowed(&self, h: f32) -> f32 {
         min(self.slack + self.most_push() * h, 0.0)
     }
@@ -116,8 +117,8 @@ impl LimitRow {
         if turns(self.limit) { LIMIT_SLACK_ANGLE } else { LIMIT_SLACK_LENGTH }
     }
 
-    /// False if the velocities cannot exceed the allowed slack by more than the tolerance: along the linearised row they do not, and the bodies
-    /// turn too little for its error to matter.
+    /// False if the velocities cannot exceed the allowed slack by more than the tolerance: the linearised row does not exceed it, and the
+    /// bodies turn too little for the error of the row to matter.
     pub(super) fn may_pass(&self, joint: &SolverJoint, velocities: &[Vec6], h: f32) -> bool {
         if !turns(self.limit) {
             return true;
@@ -128,19 +129,19 @@ impl LimitRow {
         self.allowed(h) - ahead + LIMIT_BEND * turn2 >= LIMIT_SLACK_ANGLE
     }
 
-    /// Stores its response to its own impulse.
+    /// Stores the response of the row to its own impulse.
     pub fn take_response(&mut self, own: f32, joint: &SolverJoint, bodies: &[SolverBody], moving: usize) {
         let Row { a, b } = &self.row;
         self.effective = own + REDUNDANCY * free_response(bodies, moving, [(joint.a, a), (joint.b, b)]);
     }
 
-    /// Adds to the impulse of this substep; the caller applies it to the bodies. Returns the rate that it causes by itself.
+    /// Adds to the impulse of this substep; the caller applies it to the bodies. Returns the rate that the change causes by itself.
     pub fn apply(&mut self, more: f32) -> f32 {
         self.impulse += more;
         more.abs() * self.effective
     }
 
-    /// Rate below which it pushes in a pass, if it has no impulse yet.
+    /// Rate below which the row pushes in a pass, if it has no impulse yet.
     pub fn threshold(&self, pass: Pass, h: f32) -> f32 {
         match self.hardness {
             Hardness::Soft(..) if pass != Pass::Solve => f32::NEG_INFINITY,
@@ -149,7 +150,7 @@ impl LimitRow {
         }
     }
 
-    /// Updates its impulse for a rate and returns the change.
+    /// Updates the impulse for a rate and returns the change.
     pub fn change(&mut self, pass: Pass, rate: f32, h: f32) -> f32 {
         if self.effective < 1e-9 {
             return 0.0;
@@ -175,8 +176,8 @@ impl LimitRow {
         if is_soft { self.impulse * self.row.rate(joint, velocities) } else { 0.0 }
     }
 
-    /// Rate that a stop wants, given the current one. In `relax` a limb on its way to the stop is not accelerated: to take back an impulse
-    /// at another pose than where it acted adds energy.
+    /// Rate that a stop requests at the given rate. In `relax` a limb that approaches the stop is not accelerated: an impulse taken back at
+    /// another pose adds energy.
     pub(super) fn wanted(&self, pass: Pass, rate: f32, h: f32) -> f32 {
         match (pass, self.hardness) {
             (Pass::Solve, Hardness::Predicted(rate)) => rate,

@@ -13,7 +13,7 @@ use sinew_math::{Vec3, max, min};
 impl IslandSolver {
     /// Makes rows for the limits that may be reached within the substep.
     pub(in crate::solver) fn choose_limits(&mut self) {
-        // Impulses of the substep so far go on counting, so that `relax` can take back what `solve` gave too much.
+        // The impulses of the substep so far still count, so that `relax` can take back excess impulses of `solve`.
         for joint in &mut self.joints {
             joint.limit_impulse = [Vec3::ZERO; MAX_LIMITS];
         }
@@ -46,7 +46,7 @@ impl IslandSolver {
                 let zone = zone.filter(|zone| turns(stop.limit) && stop.slack < zone.width);
                 if let (Some(zone), None) = (zone, soft) {
                     let early = Stop { slack: stop.slack - zone.width, ..stop };
-                    // Damping grows with depth: full damping at the edge of the zone would be an impact.
+                    // Damping grows with depth: full damping at the edge of the zone would act like an impact.
                     let depth = min(-early.slack / zone.width, 1.0);
                     let hardness = Hardness::Soft(zone.softness, depth);
                     limits.push(LimitRow::new((index, joint), place, &early, hardness, 0.0));
@@ -67,14 +67,14 @@ impl IslandSolver {
         self.joints.iter().any(|joint| joint.least_slack < joint.slack_before - LIMIT_LEAP)
     }
 
-    /// Checks limits at the predicted poses. A limit row is linear: a limb that turns by much of a radian within the substep may end
-    /// far beyond it, leave a cone on a side that its row does not face, or circle outside it as fast as the row pulls it back. Each such
-    /// limit gets another row, linearised at the [predicted](Self::correct_positions) pose with corrected joints, and the sweeps must
-    /// run again.
+    /// Checks limits at the predicted poses. A limit row is linear: a limb that turns by much of a radian within the substep may end far
+    /// beyond the limit, leave a cone on a side that its row does not face, or circle outside the cone as fast as the row pulls it back.
+    /// Each such limit gets another row, linearised at the [predicted](Self::correct_positions) pose with corrected joints. Returns true if
+    /// there is one: the sweeps must run again.
     pub(in crate::solver) fn tighten_limits(&mut self) -> bool {
         let known = self.limits.len();
         let poses = &self.scratch.predicted;
-        // Rows of a joint are neighbours.
+        // Rows of a joint are contiguous.
         let mut looked_at = NONE;
         let (mut predicted, mut there) = (None, [None; MAX_STOPS]);
         for i in 0..known {
@@ -123,7 +123,7 @@ impl IslandSolver {
         })
     }
 
-    /// True if a joint is beyond a hard stop that pushes back.
+    /// True if a joint is beyond a hard stop that pushes it back.
     pub(in crate::solver) fn stops_push_back(&self) -> bool {
         self.limits.iter().any(|row| {
             let soft = matches!(row.hardness, Hardness::Soft(..));
@@ -131,7 +131,7 @@ impl IslandSolver {
         })
     }
 
-    /// Stores the limit impulses of this substep for the warm start of the next.
+    /// Stores the limit impulses of this substep for the next warm start.
     pub(in crate::solver) fn end_limits(&mut self) {
         for joint in &mut self.joints {
             for limit in &mut joint.limits {

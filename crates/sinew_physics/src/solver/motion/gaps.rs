@@ -17,7 +17,7 @@ pub(in crate::solver) struct FindErrors<'a> {
     /// Poses of all bodies, and the velocities that lead to them.
     pub poses: &'a [Transform],
     pub velocities: &'a [Vec6],
-    /// Substep, seconds.
+    /// Length of the substep, seconds.
     pub h: f32,
     pub residuals: &'a mut [Vec6],
 }
@@ -43,7 +43,7 @@ impl Form {
     }
 }
 
-/// Rows of an anchor, and of a hinge, which has two more for its axis.
+/// Number of rows of an anchor; a hinge has two more for its axis.
 const POINT_ROWS: usize = 3;
 const HINGE_ROWS: usize = 5;
 
@@ -90,8 +90,8 @@ impl Kernel for FindErrors<'_> {
     }
 }
 
-/// Errors of eight joints, row by row: the gap between the anchors and, if any joint is a hinge, the deviation of B's axis from two planes
-/// of A.
+/// Errors of eight joints, row by row: the gap between the anchors and, if any joint is a hinge, the deviation of B's
+/// axis from two planes of A.
 #[inline(always)]
 fn errors_of<L: Lanes>(eight: &[&SolverJoint; WIDTH], poses: &[Transform]) -> [L; WIDTH] {
     let (mut at_a, mut at_b) = ([&Transform::IDENTITY; WIDTH], [&Transform::IDENTITY; WIDTH]);

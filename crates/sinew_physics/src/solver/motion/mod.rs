@@ -16,7 +16,7 @@ pub(crate) use turn::Turn;
 use turn::{MOST_SERIES, vectors};
 pub(super) use turn::{divided, middle_of_spin, narrow, over, times, widen, within};
 
-/// A field of eight bodies, one in each lane.
+/// Loads a field of eight bodies, one in each lane.
 macro_rules! field {
     ($eight:expr, $($path:tt)+) => {{
         let mut row = [0.0; WIDTH];
@@ -27,14 +27,14 @@ macro_rules! field {
     }};
 }
 
-/// A vector of eight bodies, one in each lane.
+/// Loads a vector of eight bodies, one in each lane.
 macro_rules! vector {
     ($eight:expr, $($path:tt)+) => {
         Vector3::<L>::new(field!($eight, $($path)+.x), field!($eight, $($path)+.y), field!($eight, $($path)+.z))
     };
 }
 
-/// The rotations of eight bodies, one in each lane.
+/// Loads the rotations of eight bodies, one in each lane.
 macro_rules! rotation {
     ($eight:expr, $($path:tt)+) => {
         Turn::<L> { vector: vector!($eight, $($path)+), real: field!($eight, $($path)+.w) }
@@ -79,7 +79,7 @@ fn store_velocities<L: Lanes>([linear, angular]: [Vector3<L>; 2], to: &mut [Vec6
 pub(super) struct IntegrateVelocity<'a> {
     pub bodies: &'a mut [SolverBody],
     pub velocities: &'a mut [Vec6],
-    /// Substep, seconds.
+    /// Length of the substep, seconds.
     pub h: f32,
     /// Limits of speed and spin, m/s and rad/s.
     pub max_speed: f32,
@@ -142,7 +142,7 @@ pub(super) struct IntegratePosition<'a> {
     pub bodies: &'a mut [SolverBody],
     pub velocities: &'a mut [Vec6],
     pub before: &'a [Vec6],
-    /// Substep, seconds.
+    /// Length of the substep, seconds.
     pub h: f32,
 }
 
@@ -157,7 +157,7 @@ impl Kernel for IntegratePosition<'_> {
             let [linear, angular] = velocities_from::<L>(velocities, first);
             let [_, unconstrained] = velocities_from::<L>(before, first);
             let (rotation, inertia) = (rotation!(eight, pose.rotation), vector!(eight, inertia));
-            // Momentum added by impulses. Geometric stiffness is no inertia of the body.
+            // Momentum added by impulses. Geometric stiffness does not count as inertia here.
             let given = rotation.angular_momentum(angular - unconstrained, inertia);
             let momentum = vector!(eight, momentum) + given;
             let position = vector!(eight, pose.translation);
@@ -215,7 +215,7 @@ fn rotations_of<L: Lanes>(eight: &[Transform; WIDTH]) -> Turn<L> {
     rotation!(eight, rotation)
 }
 
-/// Eight times [`advance`].
+/// Computes [`advance`] for eight bodies.
 #[inline(always)]
 fn advanced<L: Lanes>(
     position: Vector3<L>,
@@ -332,7 +332,7 @@ impl Kernel for KineticEnergy<'_> {
     }
 }
 
-/// Computes the momentum and angular momentum (about their centres) that bodies gained since the velocities `before`, N·s and N·m·s.
+/// Computes the momentum, N·s, and the angular momentum about their centres, N·m·s, that bodies gained since the velocities `before`.
 pub(super) struct ListGains<'a> {
     pub bodies: &'a [SolverBody],
     pub velocities: &'a [Vec6],

@@ -39,7 +39,7 @@ impl RigidMotion {
     }
 }
 
-/// Momentum of several bodies, N·s and N·m·s; angular momentum about their centre of mass.
+/// Momentum of several bodies, N·s, and angular momentum about their common centre of mass, N·m·s.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::solver) struct Momentum {
     pub(in crate::solver) linear: Vec3,
@@ -53,7 +53,7 @@ impl Momentum {
     }
 }
 
-/// Total mass, kg, and centre of mass.
+/// Returns the total mass, kg, and the centre of mass.
 pub(in crate::solver) fn center_of_mass(bodies: &[SolverBody]) -> (f32, Vec3) {
     let (mut mass, mut center) = (0.0, Vec3::ZERO);
     for body in bodies {

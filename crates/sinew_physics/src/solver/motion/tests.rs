@@ -38,7 +38,7 @@ fn random_body(random: &mut Random) -> SolverBody {
 fn random_island(count: usize) -> (Vec<SolverBody>, Vec<Vec6>) {
     let mut random = Random::new(11);
     let bodies = (0..count).map(|_| random_body(&mut random)).collect();
-    // Some turn by more than the range of the series.
+    // Some bodies turn by more than the range of the series.
     let fastest = |k: usize| if k.is_multiple_of(5) { 1500.0 } else { 30.0 };
     let velocity = |k: usize| join(random_vector(&mut random, 20.0), random_vector(&mut random, fastest(k)));
     (bodies, (0..count).map(velocity).collect())
@@ -114,7 +114,7 @@ fn poses_and_momenta_are_those_of_the_formulas() {
     run_at(Level::best(), kernel);
     for (k, (body, v)) in bodies.iter().zip(&velocities).enumerate() {
         assert!(angular(v).length() <= MAX_SPIN * 1.001, "body {k}");
-        // The spin in the middle keeps the momentum of the beginning: I m + τ m × I m equals it.
+        // The midpoint spin keeps the momentum of the beginning: I m + τ m × I m equals it.
         let r = body.pose.rotation;
         let (m, momentum) = (r.inverse() * angular(v), r.inverse() * body.momentum);
         let l = m * body.inertia;

@@ -4,7 +4,7 @@ use crate::solver::tuning::{MIDPOINT_STEPS, MIDPOINT_TOLERANCE, MOST_HALF_TURN};
 use sinew_math::lanes::{LaneMask, Lanes, Real, Vector3, WIDTH};
 use sinew_math::{Rotation, Vec3};
 
-/// Half of the angle up to which the series of a rotation are accurate, radians. Bodies that turn farther are rotated one by one.
+/// Half of the angle up to which the series of a rotation are accurate, radians. Bodies that turn farther are rotated individually.
 pub const MOST_SERIES: f32 = 1.5;
 
 /// Eight [rotations](Rotation), or one.
@@ -15,14 +15,14 @@ pub struct Turn<R> {
 }
 
 impl<R: Real> Turn<R> {
-    /// This rotation followed by `by`, which is given in this one's own axes.
+    /// Returns this rotation followed by `by`, which is given in this rotation's own axes.
     #[inline(always)]
     pub fn then_own(self, by: Self) -> Self {
         let vector = self.vector * by.real + by.vector * self.real + self.vector.cross(by.vector);
         Self { vector, real: self.real * by.real - self.vector.dot(by.vector) }.normalized()
     }
 
-    /// Product of two rotations without normalisation; `first` is applied first.
+    /// Returns the product of two rotations without normalisation; `first` is applied first.
     #[inline(always)]
     pub fn product(self, first: Self) -> Self {
         let (a, b) = (self.vector, first.vector);
@@ -30,7 +30,7 @@ impl<R: Real> Turn<R> {
         Self { vector, real: self.real * first.real - a.x * b.x - (a.y * b.y + a.z * b.z) }
     }
 
-    /// This rotation followed by `by`, which is given in world axes.
+    /// Returns this rotation followed by `by`, which is given in world axes.
     #[inline(always)]
     pub fn then(self, by: Self) -> Self {
         by.then_own(self)
@@ -74,7 +74,7 @@ impl<R: Real> Turn<R> {
         Self { vector: half * sin_over(angle), real: cos(angle) }
     }
 
-    /// Images of the three axes under the rotation: the columns of its matrix.
+    /// Returns the columns of the rotation matrix: the images of the three axes.
     #[inline(always)]
     fn columns(self) -> [Vector3<R>; 3] {
         let [x, y, z] = self.vector.to_array();
@@ -134,7 +134,7 @@ impl<L: Lanes> Turn<L> {
     }
 }
 
-/// Eight times [`Rotation::turn`], corrected for quaternion lengths that differ from 1.
+/// Computes eight times [`Rotation::turn`], corrected for quaternion lengths that differ from 1.
 #[derive(Clone, Copy)]
 pub struct Exact<L: Lanes> {
     vector: Vector3<L::Wide>,
@@ -168,7 +168,7 @@ pub fn narrow<L: Lanes>(v: Vector3<L::Wide>) -> Vector3<L> {
     Vector3::new(L::narrow(v.x), L::narrow(v.y), L::narrow(v.z))
 }
 
-/// Angular velocity in the middle of a substep of a free body, from that at its beginning; principal axes.
+/// Angular velocity at the midpoint of a substep of a free body, from that at its beginning; principal axes.
 ///
 /// The implicit midpoint `I (m − ω) + τ m × I m = 0` conserves energy and the length of the momentum to rounding. With the Cayley map for
 /// the rotation, `2 atan(τ|m|)` about `m`, it conserves the momentum itself (after Austin, Krishnaprasad and Wang 1993), for any `τ`. With
@@ -206,13 +206,13 @@ pub fn middle_of_spin<L: Lanes>(start: Vector3<L>, i: Vector3<L>, h: L) -> Vecto
     m
 }
 
-/// `sin(x)/x` to 5e-8 for |x| below 1.6.
+/// Computes `sin(x)/x` to 5e-8 for |x| below 1.6.
 #[inline(always)]
 fn sin_over<R: Real>(x: R) -> R {
     series(x * x, [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0, 0.0])
 }
 
-/// Cosine of x to 1e-8 for |x| below 1.6.
+/// Computes the cosine of x to 1e-8 for |x| below 1.6.
 #[inline(always)]
 fn cos<R: Real>(x: R) -> R {
     let last = 1.0 / 479_001_600.0;

@@ -1,5 +1,5 @@
-//! Guesses the loads of new contacts: level by level from the top, each body distributes its load over the bodies that it stands on. A wall
-//! of a hundred rows without guessed loads sank by 0.15 m before the sweeps had found them.
+//! Guesses the loads of new contacts: level by level from the top, each body distributes its load over the bodies that
+//! it stands on. Without guessed loads, a wall of a hundred rows sank by 0.15 m before the sweeps had found them.
 
 use crate::solver::IslandSolver;
 use crate::solver::body::SolverBody;
@@ -7,14 +7,14 @@ use crate::solver::piles::touch::Touch;
 use crate::solver::tuning::STANDING_COSINE;
 use core::cmp::Reverse;
 
-/// A moving body while loads are passed down.
+/// A moving body while loads are distributed downward.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::solver) struct Bearer {
-    /// Its load and its own weight, as an impulse of a substep, N·s.
+    /// Load and weight of the body, as an impulse of a substep, N·s.
     load: f32,
-    /// Number of contacts below that it stands on.
+    /// Number of contacts on which the body stands.
     supports: u32,
-    /// True if one of its contacts has a known load or a joint holds it: the loads below are not guessed.
+    /// True if a contact of the body has a known load or a joint holds the body: the loads below are not guessed.
     is_settled: bool,
 }
 
@@ -35,13 +35,13 @@ impl Scratch {
     }
 }
 
-/// Cosine between the force on a body and the direction from it through a contact, whose normal points to the contact times `sign`.
+/// Cosine between the force on a body and the direction from the body to a contact, which is the contact's normal times `−sign`.
 fn slope(body: &SolverBody, touch: &Touch, sign: f32) -> f32 {
     -sign * touch.normal.dot(body.force) / body.force.length()
 }
 
 impl IslandSolver {
-    /// Guesses the loads of new contacts between bodies when a step begins.
+    /// Guesses the loads of new contacts between bodies at the start of a step.
     pub(in crate::solver) fn guess_loads(&mut self) {
         if !self.touches.iter().any(|touch| touch.is_new) {
             return;
@@ -96,7 +96,8 @@ impl IslandSolver {
         supports.sort_unstable();
     }
 
-    /// The body of a touch nearer to the ground, the other body, and 1 if the normal points to the other body, else −1.
+    /// Returns the body of a touch that is nearer to the ground, the other body, and 1 if the normal points to the
+    /// other body, else −1.
     fn standing(&self, place: u32) -> (u32, u32, f32) {
         let [a, b] = self.touches[place as usize].bodies;
         if self.support.of(a) < self.support.of(b) { (a, b, 1.0) } else { (b, a, -1.0) }

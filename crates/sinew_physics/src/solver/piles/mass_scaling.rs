@@ -1,8 +1,9 @@
 //! Mass scaling for bodies squeezed by loads far above their weight.
 //!
-//! In 32 bits, one ulp of the impulses on such a body, divided by its mass, may exceed any realistic speed: 4 m/s under a tower of ten
-//! cubes, each ten times as heavy as the one below. Loads that press from both sides scale its mass: it responds to forces and impulses as
-//! if it were heavier, while the loads last. Its weight does not change, nor does its response to a hit from one side.
+//! In 32 bits, one ulp of the impulses on such a body, divided by its mass, may exceed any realistic speed: 4 m/s under
+//! a tower of ten cubes, each ten times as heavy as the one below. Loads that press from both sides scale the body's
+//! mass: while the loads last, the body responds to forces and impulses as if it were heavier. Its weight does not
+//! change, nor does its response to a hit from one side.
 
 use crate::solver::IslandSolver;
 use crate::solver::piles::touch::{Pressing, Touch};
@@ -10,7 +11,7 @@ use crate::solver::tuning::MASS_SCALE;
 use sinew_math::max;
 
 impl IslandSolver {
-    /// Computes mass scales from the loads of this substep, where masses are very unequal.
+    /// Computes mass scales from the loads of this substep, if masses are very unequal.
     pub(in crate::solver) fn refresh_mass_scale(&mut self) {
         if self.is_unequal {
             self.touches.clear();

@@ -5,7 +5,7 @@ use crate::solver::piles::touch::Touch;
 /// The level of a body without a known path to the ground.
 const UNSUPPORTED: u32 = u32::MAX;
 
-/// For each body: number of bodies on the shortest path of touches down to a fixed body, itself included.
+/// For each body: number of bodies on the shortest path of touches down to a fixed body, the body itself included.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct SupportDepth {
     of: Vec<u32>,
@@ -17,8 +17,8 @@ impl SupportDepth {
         self.of.clear();
         self.of.resize(moving, UNSUPPORTED);
         self.of.resize(bodies, 0);
-        // Touches with the ground come last. Then alternate directions, since bodies are usually numbered from the bottom up or from the
-        // top down.
+        // Touches with the ground come last. Directions alternate afterwards, since bodies are usually numbered from
+        // the bottom up or from the top down.
         let moves = |touch: &Touch| touch.bodies.iter().all(|&body| (body as usize) < moving);
         self.climb(touches[touches.iter().rposition(moves).map_or(0, |last| last + 1)..].iter());
         while self.climb(touches.iter()) && self.climb(touches.iter().rev()) {}

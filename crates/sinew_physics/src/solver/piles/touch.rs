@@ -12,7 +12,7 @@ pub(in crate::solver) struct Pressing {
     size: f32,
 }
 
-/// Two touching bodies when a step begins.
+/// Two bodies that touch at the start of a step.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Touch {
     /// Local indices of the bodies.
@@ -23,17 +23,18 @@ pub(in crate::solver) struct Touch {
     pub load: f32,
     /// Gap below which points count as touching, metres.
     slop: f32,
-    /// True if they touch but their load is not known yet.
+    /// True if the bodies touch but the load between them is not known yet.
     pub is_new: bool,
 }
 
 impl Touch {
-    /// Two bodies with the load between them in a substep.
+    /// Creates a touch of two bodies with the load between them in a substep.
     pub fn pressing(bodies: [u32; 2], normal: Vec3, load: f32) -> Self {
         Self { bodies, normal, load, slop: 0.0, is_new: false }
     }
 
-    /// A contact in substeps `stretch` times as long as the world's. A fast approach does not count as standing.
+    /// Creates a touch from a contact, for substeps `stretch` times as long as the world's. A body that approaches fast
+    /// does not stand.
     pub fn new(bodies: [u32; 2], contact: &Contact, stretch: f32, slop: f32) -> Self {
         let points = contact.manifold.points();
         let load =
@@ -44,8 +45,8 @@ impl Touch {
         Self { bodies, normal: contact.manifold.normal, load, slop, is_new }
     }
 
-    /// Starting impulses of the contact's points if its load is guessed, in substeps of the world's length: equal parts for the touching
-    /// points.
+    /// Starting impulses of the contact's points if its load is guessed, in substeps of the world's length: equal parts
+    /// for the touching points.
     pub fn started(&self, contact: &Contact, stretch: f32) -> Option<[PointImpulse; MAX_POINTS]> {
         if !self.is_new || self.load == 0.0 {
             return None;
@@ -69,7 +70,7 @@ impl Pressing {
         self.size += size;
     }
 
-    /// The part of the load that cancels itself.
+    /// Returns the part of the load that cancels itself, N·s.
     pub(super) fn scaled_load(&self) -> f32 {
         0.5 * (self.size - self.sum.length())
     }

@@ -2,7 +2,7 @@
 //!
 //! Each piece is a free strand in its own lane. The responses of its two ends to forces at either end make one 3×3 block for each cut joint
 //! and one for the joint that holds the strand. Together they form a tridiagonal system (the Schur complement of the joints within pieces),
-//! which is solved in 64 bits. With the impulses of those joints the pieces move as one strand.
+//! which is solved in 64 bits. With the impulses of those joints, the pieces move as one strand.
 
 use super::super::articulation::elimination::{Matrix, Symmetric, columns, times, transposed_times, zero};
 use super::super::flight::{Eight, ZERO, load, put, store};
@@ -17,9 +17,9 @@ use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 /// The joints between the pieces of a strand, each in the lane of the piece below it; the first lane has the joint that holds the strand.
 #[derive(Clone, Debug)]
 pub(super) struct Cuts {
-    /// From the centre of the last link of each piece to the joint below it, world axes, metres.
+    /// Vector from the centre of the last link of each piece to the joint below it, world axes, metres.
     arm: [Eight; 3],
-    /// The factor: inverses of the pivots, and the share of each joint's remaining rate that it passes to the joint above.
+    /// Factor: inverses of the pivots, and the share of each joint's remaining rate that is added to the joint above.
     inverse: [Symmetric<f64>; WIDTH],
     through: [Matrix<f64>; WIDTH],
     /// Impulses on the pieces' first links by the last solve, and their sums since the last [`take_given`](Self::take_given), N·s.
@@ -36,13 +36,13 @@ impl Cuts {
         given: [ZERO; 3],
     };
 
-    /// From the centre of the last link of each piece to the joint below it.
+    /// Vector from the centre of the last link of each piece to the joint below it.
     #[inline(always)]
     fn arm<L: Lanes>(&self) -> Vector3<L> {
         load(&self.arm)
     }
 
-    /// Arms of the joints' upper bodies at the present pose.
+    /// Computes the arms of the joints' upper bodies at the present pose.
     #[inline(always)]
     pub fn place_arms<L: Lanes>(&mut self, links: &mut [Link], hook: Option<&Hook>, tips: Tips<L>) {
         let [last, before] = tips.of(links).map(|link| &link.rotation);
@@ -64,7 +64,7 @@ impl Cuts {
         keep_gap(gap, link, hook.is_some());
     }
 
-    /// Computes and returns the gaps at the poses that the velocities lead to.
+    /// Computes and returns the gaps at the poses to which the velocities lead.
     #[inline(always)]
     pub fn look_ahead<L: Lanes>(&self, links: &mut [Link], hook: Option<&Hook>, tips: Tips<L>) -> Vector3<L> {
         let [last, before] = tips.of(links);
@@ -155,8 +155,7 @@ impl Cuts {
         }
     }
 
-    /// Closes the joints between pieces, after the pieces have been solved from their ends on as if they were free: each joint gets its
-    /// requested motion.
+    /// Closes the joints between pieces, after the pieces have been solved as free strands: gives each joint its requested motion.
     #[inline(always)]
     pub fn close<L: Lanes>(
         &mut self,
@@ -231,7 +230,7 @@ impl Cuts {
         [force, self.arm::<L>().cross(force)]
     }
 
-    /// From the centre of link `i` to the joint below it.
+    /// Vector from the centre of link `i` to the joint below it.
     #[inline(always)]
     fn arm_below<L: Lanes>(&self, links: &[Link], i: usize, tips: Tips<L>) -> Vector3<L> {
         let below = links.get(i + 1).map_or(zero(), |below| load(&below.parent_arm));
@@ -245,7 +244,7 @@ fn turn_above<L: Lanes>(last: &[Eight; 4], before: &[Eight; 4], tips: Tips<L>) -
     let [last, before] = [load_turn::<L>(last), load_turn::<L>(before)];
     let vector = handed_down(tips.pick(last.vector, before.vector), Vec3::ZERO);
     let real = L::select(tips.full, last.real, before.real);
-    // The first lane has no link above; any rotation will do.
+    // The first lane has no link above; any rotation is valid there.
     let real = handed_down(Vector3::new(real, real, real), Vec3::ONE).x;
     Turn { vector, real }
 }

@@ -9,7 +9,7 @@ use super::pieces::{all, handed_up, masked};
 use super::substep::Pace;
 use sinew_math::lanes::{Lanes, Real, Vector3};
 
-/// Arms of the joints at the present pose.
+/// Computes the arms of the joints at the present pose.
 #[inline(always)]
 pub(super) fn place_arms<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>) {
     for i in 0..links.len() {
@@ -43,8 +43,8 @@ pub(super) fn place_gaps<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>)
     }
 }
 
-/// Computes the factor, from the end of the strand on, with the geometric stiffness `h² k_g` of the joints' forces where it exceeds the
-/// inertia. The links below a link act on it as a direction-dependent mass at the joint.
+/// Computes the factor, from the end of the strand on, with the geometric stiffness `h² k_g` of the joints' forces
+/// where it exceeds the inertia. The links below a link act on it as a direction-dependent mass at the joint.
 #[inline(always)]
 pub(super) fn factor<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, pace: &Pace) {
     factor_pieces::<L>(links, ends, pace);
@@ -85,7 +85,7 @@ fn factor_pieces<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>, pace: &
     }
 }
 
-/// Moments that the pull of a link's joint adds to its parent, kg·m².
+/// Moments that the pull of a link's joint adds to the parent of the link, kg·m².
 #[inline(always)]
 fn stiffness_above<L: Lanes>(link: &Link, h2: L) -> Vector3<L> {
     let pull = L::max(-load::<L>(&link.parent_arm).dot(load(&link.force)), L::splat(0.0)) * h2;
@@ -106,9 +106,9 @@ fn within<L: Lanes>(
 
 /// Inertia of the links below, as it acts on a link.
 struct Below<L: Lanes> {
-    /// At the joint, kg.
+    /// Mass at the joint, kg.
     mass: Symmetric<L::Wide>,
-    /// From the link's centre of mass to the joint, world axes.
+    /// Vector from the link's centre of mass to the joint, world axes.
     arm: Vector3<L>,
     /// Moments that the joint's pull adds to the link, kg·m².
     stiffness: Vector3<L>,

@@ -1,4 +1,4 @@
-//! The exact solve of a strand's joints: up to its first link, and down again.
+//! Exact solve of a strand's joints: an ascent to its first link, and a descent.
 
 use super::super::articulation::elimination::{times, transposed_times, zero};
 use super::super::flight::{Eight, load, store};
@@ -11,20 +11,20 @@ use sinew_math::lanes::{Lanes, Vector3};
 
 /// Ends of strands: fixed bodies that hold them, or the cuts between the pieces of one strand.
 pub(super) struct StrandEnds<'a, L: Lanes> {
-    /// Used in the first lane only, if the strand is cut.
+    /// Fixed bodies that hold the strands; only that in the first lane is used if the strand is cut.
     pub hook: Option<&'a Hook>,
     pub cuts: Option<&'a mut Cuts>,
     pub tips: Tips<L>,
 }
 
 impl<'a, L: Lanes> StrandEnds<'a, L> {
-    /// Returns true if the first link of every lane hangs on a fixed body.
+    /// True if the first link of every lane is jointed to a fixed body.
     #[inline(always)]
     pub fn holds_first(&self) -> bool {
         self.hook.is_some() && self.cuts.is_none()
     }
 
-    /// Returns true if a joint holds the first link of most lanes.
+    /// True if a joint holds the first link of most lanes.
     #[inline(always)]
     pub fn joins_first(&self) -> bool {
         self.hook.is_some() || self.cuts.is_some()
@@ -39,26 +39,26 @@ impl<'a, L: Lanes> StrandEnds<'a, L> {
         }
     }
 
-    /// Bodies on which the first links of all lanes hang.
+    /// Fixed bodies to which the first links of all lanes are jointed.
     #[inline(always)]
     pub fn hooks(&self) -> Option<&'a Hook> {
         if self.cuts.is_none() { self.hook } else { None }
     }
 }
 
-/// Motion requested of the joints.
+/// Motion that the joints are to make.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Asked {
-    /// Stop.
+    /// The anchors stop moving relative to each other.
     Rest,
-    /// Close their gaps within the substep.
+    /// The gaps close within the substep.
     Closed,
-    /// Close the gaps that they will have with the present velocities.
+    /// The gaps at the poses to which the present velocities lead close.
     Corrected,
 }
 
-/// Ascends from the end of the strand to its first link: computes the requested motion of each joint and the impulse that the links below
-/// pass through it.
+/// Ascends from the end of the strand to its first link: computes the requested motion of each joint and the impulse of the links below on
+/// it.
 #[inline(always)]
 pub(super) fn ascend<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, asked: Asked, h: f32) {
     ascend_pieces::<L>(links, ends, asked, h);
@@ -109,7 +109,7 @@ pub(super) fn slide<L: Lanes>(link: &Link, parent: Option<&Link>) -> Vector3<L> 
     }
 }
 
-/// Velocity change of a link, from that of its parent.
+/// Velocity change of a link for the velocity change of its parent.
 #[inline(always)]
 pub(super) fn answer<L: Lanes>(link: &Link, [v, w]: [Vector3<L>; 2]) -> [Vector3<L>; 2] {
     let at = (v + w.cross(load(&link.parent_arm))) + load(&link.asked);
@@ -158,7 +158,7 @@ pub(super) fn descend<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>, go
     left
 }
 
-/// Descends the strand in the lanes of the mask and computes the poses that the velocities lead to. Returns the largest gap there, m.
+/// Descends the strand in the lanes of the mask and computes the poses to which the velocities lead. Returns the largest gap there, m.
 #[inline(always)]
 pub(super) fn descend_ahead<L: Lanes>(
     links: &mut [Link],
@@ -220,7 +220,7 @@ pub(super) fn take_back<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, 
 struct Parent<L> {
     position: Vector3<L>,
     rotation: Turn<L>,
-    /// Arm of a fixed parent to the anchor.
+    /// Vector from a fixed parent to the anchor.
     arm: Vector3<L>,
     is_fixed: bool,
 }
@@ -237,7 +237,7 @@ impl<L: Lanes> Parent<L> {
     }
 }
 
-/// Predicts the pose that a body's velocities lead to, and the gap of its joint there.
+/// Predicts the pose to which a body's velocities lead, and the gap of its joint there.
 #[inline(always)]
 fn look_ahead<L: Lanes>(link: &mut Link, parent: Parent<L>, is_jointed: bool, h: f32) -> Parent<L> {
     let position = load::<L>(&link.position) + load::<L>(&link.velocity) * L::splat(h);
@@ -254,7 +254,7 @@ fn look_ahead<L: Lanes>(link: &mut Link, parent: Parent<L>, is_jointed: bool, h:
     Parent { position, rotation, arm: parent.arm, is_fixed: false }
 }
 
-/// The largest component.
+/// Returns the largest component of a vector.
 #[inline(always)]
 pub(super) fn largest<L: Lanes>(v: Vector3<L>) -> L {
     let v = v.abs();

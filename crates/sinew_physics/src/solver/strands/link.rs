@@ -13,7 +13,7 @@ use sinew_math::{Rotation, Transform, Vec3};
 /// Bodies and the joints that attach them to the previous link or to the body that holds the strand ("parent").
 #[derive(Clone, Debug)]
 pub(super) struct Link {
-    /// Indices in the world.
+    /// Indices of the bodies in the world.
     bodies: [u32; WIDTH],
     pub joints: [u32; WIDTH],
     /// 1 if the body is the joint's second one, −1 if it is the first.
@@ -36,7 +36,7 @@ pub(super) struct Link {
     pub rotation: [Eight; 4],
     pub velocity: [Eight; 3],
     pub spin: [Eight; 3],
-    /// Bit `k`: the body in lane `k` exceeded the world's speed limits.
+    /// Bit set of the lanes whose bodies exceeded the world's speed limits.
     pub limited: u8,
     /// Angular momentum, world axes, N·m·s.
     pub momentum: [Eight; 3],
@@ -45,7 +45,7 @@ pub(super) struct Link {
     /// Impulses of the joint on the body in the substeps so far, torque about the anchor, N·s and N·m·s.
     pub pushed: [Eight; 3],
     pub turned: [Eight; 3],
-    /// From the centres of mass of body and parent to the anchor, world axes; zero for a fixed parent.
+    /// Vectors from the centres of mass of body and parent to the anchor, world axes; zero for a fixed parent.
     pub arm: [Eight; 3],
     pub parent_arm: [Eight; 3],
     /// Anchor of the body minus that of the parent, world axes.
@@ -60,7 +60,8 @@ pub(super) struct Link {
     /// Requested velocity of the anchor relative to the parent's motion, m/s, and the remaining torque on the body, N·m·s.
     pub asked: [Eight; 3],
     pub left: [Eight; 3],
-    /// Reference velocities for impulses: after the forces have acted, then after the bodies have moved.
+    /// Reference velocities for impulses: first those after the forces have acted, then those after the bodies have
+    /// moved.
     pub start_velocity: [Eight; 3],
     pub start_spin: [Eight; 3],
     /// Velocities before the last correction.
@@ -182,7 +183,7 @@ impl Link {
         }
     }
 
-    /// Vectors that are written when a step begins.
+    /// Vectors that are written at the start of a step.
     fn vectors(&mut self) -> [&mut [Eight; 3]; 11] {
         [
             &mut self.inertia,
@@ -252,7 +253,7 @@ pub(super) fn store_turn<L: Lanes>(turn: Turn<L>, [x, y, z, w]: &mut [Eight; 4])
 /// Fixed bodies that hold eight strands.
 #[derive(Clone, Debug)]
 pub(super) struct Hook {
-    /// Centre of the fixed body, and the arm from there to the anchor, world axes.
+    /// Centre of the fixed body, and the vector from the centre to the anchor, world axes.
     pub position: [Eight; 3],
     pub arm: [Eight; 3],
 }
@@ -269,12 +270,12 @@ impl Hook {
         put(rotation * frame.translation, &mut self.arm, lane);
     }
 
-    /// Centre of the fixed body and arm to the anchor in the first lane.
+    /// Centre of the fixed body and vector to the anchor in the first lane.
     pub fn first(&self) -> [Vec3; 2] {
         [take(&self.position, 0), take(&self.arm, 0)]
     }
 
-    /// Fills the unused lanes as [`Link::fill`] does.
+    /// Fills the unused lanes like [`Link::fill`].
     pub fn fill(&mut self, lanes: usize) {
         for row in self.position.iter_mut().chain(&mut self.arm) {
             for lane in lanes..WIDTH {

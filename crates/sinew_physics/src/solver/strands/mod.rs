@@ -33,13 +33,13 @@ use sinew_math::dispatch;
 use sinew_math::lanes::WIDTH;
 use substep::{Advance, Alone, Pace};
 
-/// Number of most recent bundles searched for a free lane. Where all lengths differ, searching more costs more than half-empty bundles do.
+/// Number of most recent bundles searched for a free lane. If all lengths differ, a longer search costs more than half-empty bundles.
 const OPEN: usize = 32;
 
 /// All strands of a step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Strands {
-    /// Bundles in use, followed by the memory of earlier steps.
+    /// Bundles in use, followed by unused bundles whose memory is kept.
     bundles: Vec<Bundle>,
     used: usize,
     order: Order,
@@ -50,17 +50,17 @@ pub(crate) struct Strands {
 struct Bundle {
     /// Indices of the islands, lane by lane.
     islands: Vec<u32>,
-    /// From the held end on.
+    /// Links, from the held end on.
     links: Vec<Link>,
     is_held: bool,
     hook: Hook,
-    /// The lanes are the pieces of one strand.
+    /// True if the lanes are the pieces of one strand.
     is_cut: bool,
-    /// The joints between these pieces.
+    /// Joints between the pieces.
     cuts: Box<Cuts>,
     /// 1 in the lanes whose last place is filled, 0 in the others.
     full: Eight,
-    /// Length of its substeps relative to the world's.
+    /// Length of the bundle's substeps relative to the world's.
     stretch: f32,
     /// Number of used lanes when the unused lanes were last filled.
     filled: usize,
@@ -71,9 +71,9 @@ struct Bundle {
 /// A strand after its step.
 pub(crate) struct SolvedStrand<'a> {
     bundle: &'a Bundle,
-    /// Its lane, or the lanes of its pieces.
+    /// Lane of the strand, or the lanes of its pieces.
     lanes: Range<usize>,
-    /// Index of its island.
+    /// Index of the strand's island.
     pub island: usize,
 }
 
@@ -228,12 +228,12 @@ impl Bundle {
 }
 
 impl SolvedStrand<'_> {
-    /// Poses and velocities after the step.
+    /// Poses and velocities of the links after the step.
     pub fn bodies(&self) -> impl Iterator<Item = SolvedBody> {
         self.links().map(|(link, lane)| link.body(lane))
     }
 
-    /// State that its joints keep for the next step.
+    /// State that the joints keep for the next step.
     pub fn joints(&self) -> impl Iterator<Item = SolvedJoint> {
         self.joint_links().map(|(link, lane)| link.joint(lane))
     }
@@ -242,7 +242,7 @@ impl SolvedStrand<'_> {
         self.links().filter(|(link, lane)| link.joints[*lane] != order::NONE)
     }
 
-    /// Links and their lanes, from the first on.
+    /// Links and their lanes, from the first link on.
     fn links(&self) -> impl Iterator<Item = (&Link, usize)> {
         let bundle = self.bundle;
         self.lanes
@@ -251,7 +251,7 @@ impl SolvedStrand<'_> {
     }
 }
 
-/// Returns true for a joint that locks a point and does nothing else.
+/// True for a joint that only locks a point.
 fn is_plain(joint: &Joint) -> bool {
     use crate::joint::def::JointKind;
     joint.kind == JointKind::Ball { limit: None } && joint.drive.is_limp() && joint.drive.friction == 0.0

@@ -11,12 +11,13 @@ use sinew_math::lanes::{LaneMask, Lanes, Vector3};
 /// Kinetic energies of a strand, J.
 #[derive(Clone, Copy)]
 pub(super) struct Kinetic<L> {
-    /// Before and after the forces have acted.
+    /// Energies before and after the forces have acted.
     pub before: L,
     pub start: L,
 }
 
-/// Integrates forces to velocities, as for [bodies of islands](super::super::motion::IntegrateVelocity).
+/// Integrates forces to velocities, like [`IntegrateVelocity`](super::super::motion::IntegrateVelocity) for bodies of
+/// islands.
 #[inline(always)]
 pub(super) fn integrate_velocity<L: Lanes>(links: &mut [Link], pace: &Pace) -> Kinetic<L> {
     let (h, one) = (L::splat(pace.h), L::splat(1.0));
@@ -102,7 +103,7 @@ pub(super) fn end_substep<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_
     twice * L::splat(0.5)
 }
 
-/// Momentum and angular momentum (about its centre) that a body gained since the `start` velocities.
+/// Momentum and angular momentum (about the centre) that a body gained since the `start` velocities.
 #[inline(always)]
 fn gains<L: Lanes>(link: &Link) -> [Vector3<L>; 2] {
     let exact = load_turn::<L>(&link.rotation).exact();
@@ -121,7 +122,7 @@ fn push<L: Lanes>(link: &mut Link, [force, torque]: [Vector3<L>; 2]) -> [Vector3
     [force, torque + load::<L>(&link.parent_arm).cross(force)]
 }
 
-/// Work of the forces along the displacement that the bodies are about to make, J.
+/// Work of the forces along the coming displacement of the bodies, J.
 #[inline(always)]
 pub(super) fn work_of_forces<L: Lanes>(links: &[Link], pace: &Pace) -> L {
     let mut power = L::splat(0.0);

@@ -6,10 +6,10 @@ use crate::solver::view::View;
 
 /// Marks the absence of a body or joint.
 pub(super) const NONE: u32 = u32::MAX;
-/// Joints of a body that is not in the island.
+/// Marks a body that is not in the island.
 const ABSENT: [u32; 2] = [NONE - 1; 2];
 
-/// A link at its position in the strand; indices of the world.
+/// A link at its position in the strand; the indices are those of the world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
     pub body: u32,
@@ -24,12 +24,12 @@ pub(super) struct Placed {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Order {
     pub links: Vec<Placed>,
-    /// By slot of the world's bodies: the joints of each body of the island.
+    /// Joints of each body of the island, by slot of the world's bodies.
     joints_of: Vec<[u32; 2]>,
 }
 
 impl Order {
-    /// Returns true if a fixed body holds the first link.
+    /// True if a fixed body holds the first link.
     pub fn is_held(&self) -> bool {
         self.links.first().is_some_and(|first| first.joint != NONE)
     }
@@ -59,8 +59,8 @@ impl Order {
         self.links.len() == bodies
     }
 
-    /// Records the joints of each body. Returns the joint and the body that begin the strand, or `None` where links branch, a joint is not
-    /// plain, or the holding body moves.
+    /// Records the joints of each body. Returns the joint and the body at the start of the strand, or `None` if links
+    /// branch, a joint is not plain, or the holding body moves.
     fn join(&mut self, island: &Island<'_>, view: &View<'_>) -> Option<(u32, u32)> {
         let mut held = None;
         for &index in island.joints {

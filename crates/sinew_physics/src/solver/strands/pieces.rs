@@ -11,7 +11,7 @@ use sinew_math::lanes::{LaneMask, Lanes, Real, Vector3, WIDTH};
 pub(super) struct Tips<L: Lanes> {
     /// Lanes whose last place is filled.
     pub full: L::Mask,
-    /// The same mask for 64-bit numbers.
+    /// Mask `full` for 64-bit numbers.
     pub full_wide: <L::Wide as Real>::Mask,
     pub place: usize,
 }
@@ -79,13 +79,13 @@ pub(super) fn handed_up<L: Lanes>(v: Vector3<L>) -> Vector3<L> {
     load(&to)
 }
 
-/// The mask of all lanes.
+/// Returns the mask of all lanes.
 #[inline(always)]
 pub(super) fn all<L: Lanes>() -> L::Mask {
     L::eq(L::splat(0.0), L::splat(0.0))
 }
 
-/// The largest value of the pieces, in all lanes; NaN if one is NaN.
+/// Returns the largest value of the pieces, in all lanes; NaN if one is NaN.
 #[inline(always)]
 pub(super) fn whole_max<L: Lanes>(of_pieces: L) -> L {
     let (mut numbers, mut most) = (ZERO, 0.0);
@@ -98,7 +98,7 @@ pub(super) fn whole_max<L: Lanes>(of_pieces: L) -> L {
     L::splat(most)
 }
 
-/// The sum over the pieces, in all lanes.
+/// Returns the sum over the pieces, in all lanes.
 #[inline(always)]
 pub(super) fn whole_sum<L: Lanes>(of_pieces: L) -> L {
     let (mut numbers, mut sum) = (ZERO, 0.0);
@@ -109,7 +109,7 @@ pub(super) fn whole_sum<L: Lanes>(of_pieces: L) -> L {
     L::splat(sum)
 }
 
-/// True in all lanes if the mask is true in every lane.
+/// Returns true in all lanes if the mask is true in every lane.
 #[inline(always)]
 pub(super) fn whole_all<L: Lanes>(of_pieces: L::Mask) -> L::Mask {
     if of_pieces.all() { of_pieces } else { of_pieces & !of_pieces }

@@ -17,7 +17,7 @@ use sinew_math::lanes::{First, LaneMask, Lanes, WIDTH};
 /// Substep length and limits of the strands' step.
 #[derive(Clone, Copy)]
 pub(super) struct Pace {
-    /// Substep, seconds.
+    /// Length of the substep, seconds.
     pub h: f32,
     pub substeps: u32,
     /// Limits of speed and spin, m/s and rad/s.
@@ -31,7 +31,7 @@ pub(super) struct Advance<'a> {
     pub links: &'a mut [Link],
     /// Fixed bodies that hold the strands, if there are any.
     pub hook: Option<&'a Hook>,
-    /// The joints between the lanes if they are pieces of one strand.
+    /// Joints between the lanes if these are pieces of one strand.
     pub cuts: Option<&'a mut Cuts>,
     /// 1 in the lanes whose last place is filled.
     pub full: &'a Eight,
@@ -40,7 +40,7 @@ pub(super) struct Advance<'a> {
     pub lanes: usize,
 }
 
-/// The step of a single strand, without the other lanes.
+/// Steps a single strand, without the other lanes.
 pub(super) struct Alone<'a>(pub Advance<'a>);
 
 impl Kernel for Alone<'_> {
@@ -91,7 +91,7 @@ impl Kernel for Advance<'_> {
 struct Bounds<L> {
     /// Mass of all links, kg.
     mass: L,
-    /// The largest coordinate, m.
+    /// Largest coordinate, metres.
     reach: L,
 }
 
@@ -107,7 +107,7 @@ impl<L: Lanes> Bounds<L> {
     }
 }
 
-/// Mask of the first `count` lanes.
+/// Returns the mask of the first `count` lanes.
 #[inline(always)]
 fn first_lanes<L: Lanes>(count: usize) -> L::Mask {
     let mut numbers = [0.0; WIDTH];
@@ -118,13 +118,13 @@ fn first_lanes<L: Lanes>(count: usize) -> L::Mask {
 }
 
 impl<L: Lanes> StrandEnds<'_, L> {
-    /// The sum over the lanes of each strand.
+    /// Sum over the lanes of each strand.
     #[inline(always)]
     fn sum(&self, of_lanes: L) -> L {
         if self.cuts.is_some() { whole_sum(of_lanes) } else { of_lanes }
     }
 
-    /// The largest value over the lanes of each strand.
+    /// Largest value over the lanes of each strand.
     #[inline(always)]
     fn largest(&self, of_lanes: L) -> L {
         if self.cuts.is_some() { whole_max(of_lanes) } else { of_lanes }
@@ -184,7 +184,7 @@ fn solve<L: Lanes>(
     sound
 }
 
-/// RATTLE: brings the joint velocities to zero at the new pose. Very unequal masses need more than one solve.
+/// Brings the joint velocities to zero at the new pose (RATTLE). Very unequal masses need more than one solve.
 #[inline(always)]
 fn relax<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, h: f32, used: L::Mask) {
     let mut going = used;
@@ -198,7 +198,7 @@ fn relax<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, h: f32, use
     }
 }
 
-/// Lanes in which every link turns slower than the limit, rad/s.
+/// Lanes in which every link turns more slowly than the limit, rad/s.
 #[inline(always)]
 fn turn_within<L: Lanes>(links: &[Link], most: f32) -> L::Mask {
     let most = L::splat(most * most);
@@ -319,7 +319,7 @@ mod tests {
         (links, full)
     }
 
-    /// The largest gap of all joints, metres; unused lanes have none.
+    /// Largest gap of all joints, metres; unused lanes have none.
     fn widest(links: &[Link]) -> f32 {
         links.iter().flat_map(|link| link.gap.as_flattened()).fold(0.0, |most, gap| f32::max(most, gap.abs()))
     }

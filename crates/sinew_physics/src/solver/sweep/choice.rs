@@ -45,7 +45,8 @@ impl IslandSolver {
             |contacts: usize| SweepPolicy::of_pile(self.support.highest(), self.mass_ratio(), contacts);
         self.policy = match self.coupling {
             Coupling::Free => of_pile(self.touches.len()),
-            // Contacts with jointed bodies need the policy of joints, piles beside and under them that of small piles.
+            // Contacts with jointed bodies need the policy of joints; piles beside and under jointed bodies need that
+            // of small piles.
             _ if self.paired.contains(&true) => self.policy_with_joints().at_least(of_pile(0)),
             _ => self.policy_with_joints(),
         }
@@ -56,7 +57,7 @@ impl IslandSolver {
         if self.coupling == Coupling::Turns { TURNS } else { JOINTED }
     }
 
-    /// Firmness of the contact of two bodies.
+    /// Firmness of a contact between two bodies.
     pub(in crate::solver) fn firmness(&self, [a, b]: [u32; 2]) -> Firmness {
         if self.coupling == Coupling::Free {
             return Firmness::FREE;
@@ -87,7 +88,7 @@ impl IslandSolver {
     }
 }
 
-/// Highest quality that a body of the island asks for.
+/// Highest quality requested by a body of the island.
 fn quality_of(island: &Island<'_>, view: &View<'_>) -> Quality {
     island.bodies.iter().map(|&body| view.quality(body)).max().unwrap_or_default()
 }

@@ -1,6 +1,6 @@
 //! Conjugate steps between sweeps: the change of all impulses in a sweep serves as a gradient (nonsmooth nonlinear conjugate
-//! gradients: Silcowitz, Niebe and Erleben 2010). A hand between the floor and the chest that lies on it needs 12 sweeps instead of
-//! 30 (ADR 0011).
+//! gradients: Silcowitz, Niebe and Erleben 2010). A hand between the floor and the chest on top of it needs 12 sweeps
+//! instead of 30 (ADR 0011).
 
 use crate::solver::articulation::tree::Link;
 use crate::solver::contact_rows::{ContactImpulses, ManifoldRows};
@@ -11,15 +11,15 @@ use crate::spatial::{Vec6, add_scaled, largest};
 /// State of the conjugate steps of a pass. Values of an earlier pass are never used, since the first sweep of a pass has no previous energy.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Conjugate {
-    /// Before the sweep, then its change.
+    /// State before the sweep, then the change in the sweep.
     was: State,
-    /// To go on in.
+    /// Search direction.
     direction: State,
     /// Energy of the changes of the last sweep, J.
     energy: f32,
 }
 
-/// Impulses of all rows, and the velocities that they make.
+/// Impulses of all rows, and the velocities that result from them.
 #[derive(Clone, Debug, Default)]
 struct State {
     manifolds: Vec<ContactImpulses>,
@@ -37,7 +37,8 @@ pub(in crate::solver) struct Rows<'a> {
 }
 
 impl Conjugate {
-    /// For so many of each, also if they have no use for it: memory goes on to the next island, which may have some.
+    /// Reserves memory for `bodies` bodies and `manifolds` manifolds, also if this island has none: the next island may
+    /// use it.
     pub fn make_room(&mut self, bodies: usize, manifolds: usize) {
         for state in [&mut self.was, &mut self.direction] {
             state.manifolds.clear();
@@ -47,12 +48,12 @@ impl Conjugate {
         }
     }
 
-    /// Before the first sweep.
+    /// Starts a pass, before the first sweep.
     pub fn start(&mut self) {
         self.energy = 0.0;
     }
 
-    /// Before a sweep.
+    /// Stores the state before a sweep.
     pub fn before(&mut self, rows: &Rows<'_>) {
         self.was.manifolds.clear();
         self.was.manifolds.extend(rows.manifolds.iter().map(ManifoldRows::impulses));
@@ -62,10 +63,10 @@ impl Conjugate {
         self.was.velocities.extend_from_slice(rows.velocities);
     }
 
-    /// After a sweep whose changes had this energy: goes on in the direction so far. What it asks too much of rows, the
-    /// next sweep takes back.
+    /// Moves along the search direction after a sweep whose changes had this energy. The next sweep corrects rows that
+    /// moved too far.
     pub fn after(&mut self, rows: &mut Rows<'_>, energy: f32) {
-        // Rounding may make an energy negative, where joints hold all that the rows push against.
+        // Rounding may make the energy negative if joints resist everything that the rows push.
         let share = if energy > 0.0 && energy < self.energy { energy / self.energy } else { 0.0 };
         self.energy = energy;
         if share == 0.0 {
@@ -79,7 +80,7 @@ impl Conjugate {
 }
 
 impl State {
-    /// From an earlier state to the change from it to the present one.
+    /// Replaces this earlier state by the change from it to the present state.
     fn set_difference(&mut self, rows: &Rows<'_>) {
         for (was, row) in self.manifolds.iter_mut().zip(rows.manifolds.iter()) {
             *was = row.impulses().plus(was, -1.0);
@@ -94,7 +95,7 @@ impl State {
         }
     }
 
-    /// Adds `share` of this direction to the rows; then it is that share and the change.
+    /// Adds `share` of this direction to the rows. The new direction is that share plus `change`.
     fn go_on(&mut self, rows: &mut Rows<'_>, change: &Self, share: f32) {
         for (i, row) in rows.manifolds.iter_mut().enumerate() {
             let d = &mut self.manifolds[i];

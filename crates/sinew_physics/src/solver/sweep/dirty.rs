@@ -3,17 +3,17 @@
 use crate::solver::articulation::tree::Link;
 use crate::solver::limits::row::LimitRow;
 
-/// Sum of the velocity changes of each tree in a pass, m/s or rad/s. Rows whose trees do not change need no further visit, which in a
-/// heap is most of them after a few sweeps.
+/// Sum of the velocity changes of each tree in a pass, m/s or rad/s. Rows whose trees do not change need no further
+/// visit; in a heap these are most rows after a few sweeps.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct DirtyRows {
-    /// Changes below it are ignored, m/s or rad/s.
+    /// Change below which changes are ignored, m/s or rad/s.
     tolerance: f32,
     trees: Vec<f32>,
-    /// For each manifold and each block of limits: the sum of its trees at its last visit.
+    /// For each manifold and each block of limits: sum of the changes of its trees at the last visit.
     manifolds: Vec<f32>,
     limits: Vec<f32>,
-    /// For each tree: its sum at the time when the pass was resumed.
+    /// Sum of each tree at the time when the pass was resumed.
     corrected: Vec<f32>,
 }
 
@@ -81,13 +81,13 @@ impl DirtyRows {
         wakes(&mut self.limits[block], now, self.tolerance)
     }
 
-    /// Notes that a block of limits needs no visit before its trees change again.
+    /// Records that a block of limits needs no visit before its trees change again.
     pub fn see_limits(&mut self, block: usize, now: f32) {
         self.limits[block] = now;
     }
 }
 
-/// True if the sum grew by the tolerance since the last visit; then this visit becomes the last one.
+/// True if the sum grew by the tolerance since the last visit; then records this visit as the last one.
 fn wakes(seen: &mut f32, now: f32, tolerance: f32) -> bool {
     let wakes = now - *seen >= tolerance;
     if wakes {

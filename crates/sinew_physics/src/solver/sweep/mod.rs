@@ -1,5 +1,6 @@
-//! Sweeps over contact and limit rows in impulse space. During the sweeps only bodies with rows are updated, through the
-//! articulated response; afterwards the trees are solved once with all impulses, so that the joints hold exactly.
+//! Sweeps over contact and limit rows in impulse space. During the sweeps only bodies with rows are updated, through
+//! the articulated response. Afterwards the trees are solved once with all impulses, so that the joints are satisfied
+//! exactly.
 
 pub(in crate::solver) mod choice;
 pub(in crate::solver) mod conjugate;
@@ -37,7 +38,7 @@ impl IslandSolver {
         Corrected::All
     }
 
-    /// Sweeps an island without joints: contacts in lanes.
+    /// Sweeps an island without joints, whose contacts are in lanes.
     fn sweep_free(&mut self, pass: Pass, runner: &dyn TaskRunner) {
         let sweeps = self.policy.of_blocks(pass);
         let done = self.contacts.sweep(pass, sweeps, &mut self.velocities, (self.h, runner));
@@ -87,7 +88,7 @@ impl IslandSolver {
         self.finish_sweep(pass);
     }
 
-    /// Energy change of a sweep below which no other follows, J.
+    /// Energy of the changes in a sweep below which no other sweep follows, J.
     pub(in crate::solver) fn enough_energy(&self) -> f32 {
         let enough = self.policy.enough;
         0.5 * enough * enough * self.mass() / self.links.len() as f32
@@ -132,7 +133,7 @@ impl IslandSolver {
         }
     }
 
-    /// Applies changes of rows to two bodies and their trees.
+    /// Applies impulse changes of rows to two bodies and their trees.
     pub(in crate::solver) fn push(&mut self, bodies: [u32; 2], change: &Change) {
         if change.is_zero() {
             return;
@@ -158,7 +159,7 @@ impl IslandSolver {
         self.impulses.resize(self.links.len(), ZERO6);
     }
 
-    /// Adds the present impulses of all rows, times `sign`, to those of the sweeps.
+    /// Adds the present impulses of all rows, times `sign`, to the impulses of the sweeps.
     pub(in crate::solver) fn add_impulses(&mut self, sign: f32) {
         for rows in &self.manifolds {
             rows.add_impulses(&mut self.impulses, sign);
@@ -177,7 +178,7 @@ impl IslandSolver {
         }
     }
 
-    /// Solves velocities from those before the sweep and all its impulses.
+    /// Computes velocities from those before the sweep and all impulses of the sweep.
     pub(in crate::solver) fn answer_sweep(&mut self) {
         self.add_pushes();
         let moving = self.links.len();

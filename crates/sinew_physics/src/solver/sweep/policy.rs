@@ -1,4 +1,4 @@
-//! Sweep policy of an island: number and end of its sweeps; and firmness of its contacts.
+//! Sweep policy of an island: number of sweeps, and conditions that end them; and firmness of its contacts.
 
 use crate::body::def::Quality;
 use crate::solver::pass::Pass;
@@ -13,13 +13,13 @@ use sinew_math::{max, min};
 pub(in crate::solver) struct SweepPolicy {
     solve: usize,
     relax: usize,
-    /// Velocity change in a sweep below which no other follows, m/s or rad/s. Rows ignore smaller changes.
+    /// Velocity change in a sweep below which no other sweep follows, m/s or rad/s. Rows ignore smaller changes.
     pub tolerance: f32,
-    /// Share of the energy of the largest change in the substep below which no other sweep follows. After a hit this leaves a thirtieth of its
-    /// speed (in a heap a tenth), and the next substep continues from there.
+    /// Share of the energy of the largest change in the substep below which no other sweep follows. After a hit this leaves a
+    /// thirtieth of its speed (in a heap a tenth), and the next substep continues from there.
     pub small: f32,
-    /// Speed, m/s, at which a body of the island's mean mass has the energy below which no other sweep follows; 0: only the tolerance ends
-    /// sweeps. For islands with joints.
+    /// Speed, m/s, at which a body of the island's mean mass has the energy below which no other sweep follows. With 0 only the
+    /// tolerance ends sweeps. For islands with joints.
     pub enough: f32,
     pub order: Order,
     /// First sweep with conjugate steps; for free bodies.
@@ -29,42 +29,42 @@ pub(in crate::solver) struct SweepPolicy {
 /// Hardness of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Firmness {
-    /// Softness as a share of what the contact's frequency says.
+    /// Softness as a share of that from the contact's frequency.
     pub softness: f32,
-    /// Rate with which overlap is corrected, as a multiple of what the contact's frequency says.
+    /// Rate at which overlap is corrected, as a multiple of that from the contact's frequency.
     pub bias: f32,
-    /// Fastest speed with which overlap is pushed apart, m/s.
+    /// Largest speed at which overlap is pushed apart, m/s.
     pub push_speed: f32,
 }
 
 impl Firmness {
-    /// Between bodies that no joint holds. Nearly hard: what is soft sinks by a load that its own mass says nothing of, and a tower
-    /// of 18 levels fell.
+    /// For contacts between bodies without joints. Nearly hard: soft contacts sink under any load, whatever the bodies' own mass,
+    /// and a tower of 18 levels fell.
     pub const FREE: Self = Self { softness: 1e-3, bias: 1.0, push_speed: 3.0 };
-    /// Firmness of contacts of a body that a joint holds. What stands on the edge of a foot must sink in a little, or it never comes
-    /// to rest. What an impact drove in comes out no faster than 5.5 cm/s: that lifts it by 0.009 J/kg a step at most.
+    /// For contacts of jointed bodies. A body on the edge of a foot must sink in slightly; otherwise it never comes to rest. Overlap
+    /// from an impact is pushed out at no more than 5.5 cm/s: that adds at most 0.009 J/kg a step.
     pub const JOINTED: Self = Self { softness: 1.0, bias: 1.0, push_speed: 0.055 };
-    /// Between a jointed body and one that moves by itself: what a pile bears on must be as hard as the pile, or a tower of unequal
-    /// masses falls with a jointed pair on it.
+    /// For contacts between a jointed body and a free one. The support of a pile must be as hard as the pile; otherwise a tower of
+    /// unequal masses falls with a jointed pair on it.
     pub const ON_FREE: Self = Self { softness: 1e-3, bias: 1.0, push_speed: 0.055 };
-    /// Between two bodies of one tree of joints: two legs under a heavy body would pass through each other (43 mm of a spider's
-    /// 1.2 m, against 5 with a hundredth of the softness). Corrected four times as fast as others: joints corrected for the arc of
-    /// a turning limb press it into what it touches by `½ ω² r h`, 5 cm/s at 7 rad/s.
+    /// For contacts between two bodies of one tree of joints. Softer contacts let two legs under a heavy body pass through each other
+    /// (43 mm of a spider's 1.2 m, against 5 with a hundredth of the softness). Corrected four times as fast as others: joint
+    /// corrections for the arc of a turning limb press it into an obstacle by `½ ω² r h`, 5 cm/s at 7 rad/s.
     pub const WITHIN_TREE: Self = Self { softness: 0.01, bias: 4.0, push_speed: 0.5 };
 }
 
 /// Order of the contacts in a pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::solver) enum Order {
-    /// Always forward: what cannot move has the last word in each sweep.
+    /// Always forward: contacts with fixed bodies come last in each sweep.
     #[default]
     Forward,
-    /// Backward in every other sweep, the first among them. If all went one way, tall walls would lean that way.
+    /// Backward in every other sweep, the first among them. With one direction only, tall walls would lean to one side.
     ToAndFro,
 }
 
-/// Sweep policy for islands with joints that are swept with the response of all links. What a sweep changes is soon next to nothing: a quarter of all
-/// passes of falling figures went through all 24 for a thousandth of the first one's energy.
+/// Sweep policy for islands with joints that are swept with the response of all links. Changes soon become negligible: a quarter
+/// of all passes of falling figures went through all 24 sweeps for a thousandth of the first one's energy.
 pub(super) const JOINTED: SweepPolicy = SweepPolicy {
     solve: 24,
     relax: 24,
@@ -74,8 +74,8 @@ pub(super) const JOINTED: SweepPolicy = SweepPolicy {
     order: Order::Forward,
     first_conjugate: 1,
 };
-/// Sweep policy for heaps in which contacts and trees are solved by turns: most sweeps of a heap at rest end with the second, those
-/// of a crash are needed (a chain of 70 links sank 85 mm into a wall with four).
+/// Sweep policy for heaps in which contacts and trees are solved by turns. Most sweeps of a heap at rest end with the second; in
+/// a crash all are needed (a chain of 70 links sank 85 mm into a wall with four).
 pub(super) const TURNS: SweepPolicy = SweepPolicy {
     solve: 6,
     relax: 4,
@@ -85,8 +85,8 @@ pub(super) const TURNS: SweepPolicy = SweepPolicy {
     order: Order::Forward,
     first_conjugate: 1,
 };
-/// Sweep policy for few bodies that weigh about the same: an overhang that all but tips over wants 24 sweeps. In `relax`
-/// two (more, the more unequal masses are), since friction of the first knows only the impulses of `solve` (1.5 % too little).
+/// Sweep policy for few bodies of similar mass: an overhang that almost tips over needs 24 sweeps. In `relax` two (more for
+/// unequal masses), since friction of the first uses only the impulses of `solve` (1.5 % too small).
 const PILE: SweepPolicy = SweepPolicy {
     solve: 24,
     relax: 2,
@@ -96,17 +96,17 @@ const PILE: SweepPolicy = SweepPolicy {
     order: Order::ToAndFro,
     first_conjugate: 4,
 };
-/// Sweep policy for a pile or heap of [`HEAP_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
-/// over some substeps. However unequal masses are, it has many contacts that share what one of them is wrong by.
+/// Sweep policy for a pile or heap of [`HEAP_CONTACTS`] contacts. Known or guessed loads need few sweeps, and the loads of falling
+/// bodies converge over some substeps. However unequal the masses, the many contacts share the error of each one.
 const HEAP: SweepPolicy = SweepPolicy { solve: 5, relax: 4, first_conjugate: 2, ..PILE };
-/// Sweep policy for unequal masses: a light body between heavy ones tosses what they do to each other to and fro, and what cannot move must have the
-/// last word.
+/// Sweep policy for unequal masses: the impulses of heavy bodies on a light one between them alternate from sweep to sweep, and
+/// contacts with fixed bodies must come last.
 const UNEQUAL: SweepPolicy =
     SweepPolicy { solve: 96, tolerance: 2e-3, small: 0.0, order: Order::Forward, first_conjugate: 4, ..PILE };
 
-/// At least, in `relax`, for islands in which springs of particles hold a body that bears a heavy load: they bear all that lies on it by pushing
-/// it alone, and the contacts have to pass that on whole in one pass, or a box of 100 kg on a plank of 5 kg on ropes turns and gains energy.
-/// Twelve sweeps are enough for that.
+/// Smallest policy in `relax` for islands in which particle springs hold a body that bears a heavy load. The springs carry the
+/// whole load by pushing that body alone, and the contacts must transmit all of it in one pass; otherwise a box of 100 kg on a
+/// plank of 5 kg on ropes turns and gains energy. Twelve sweeps are enough for that.
 pub(in crate::solver) const HUNG: SweepPolicy = SweepPolicy {
     solve: 0,
     relax: 24,
@@ -118,10 +118,11 @@ pub(in crate::solver) const HUNG: SweepPolicy = SweepPolicy {
 };
 
 impl SweepPolicy {
-    /// For a pile of so many levels and contacts with a heaviest body `ratio` times as heavy as the lightest.
+    /// Returns the policy for a pile of `levels` levels and `contacts` contacts, with a heaviest body `ratio` times as heavy as the
+    /// lightest.
     ///
-    /// A light body between heavy ones tosses what they do to each other to and fro. Exponents and bounds are what a tower of six
-    /// cubes, each 8 times as heavy as the one below it, stands with.
+    /// Impulses of heavy bodies on a light one between them alternate from sweep to sweep. Exponents and bounds were chosen so that a
+    /// tower of six cubes stands, each 8 times as heavy as the one below it.
     pub(super) fn of_pile(levels: u32, ratio: f32, contacts: usize) -> Self {
         let root = ratio.sqrt();
         if ratio <= GRADED_RATIO {
@@ -141,7 +142,7 @@ impl SweepPolicy {
         }
     }
 
-    /// Fewer or more sweeps, which end later or sooner.
+    /// Returns a policy with fewer or more sweeps, and larger or smaller tolerances.
     pub(super) fn of_quality(self, quality: Quality) -> Self {
         let [sweeps, finer] = match quality {
             Quality::Fast => [0.5, 2.0],
@@ -159,20 +160,20 @@ impl SweepPolicy {
         }
     }
 
-    /// Sweeps of contacts in blocks.
+    /// Sweeps for contacts in blocks.
     pub fn of_blocks(&self, pass: Pass) -> Sweeps {
         let most = self.sweeps(pass);
         let Self { tolerance, small, order, first_conjugate, .. } = *self;
         Sweeps { most, tolerance, small, order, first_conjugate }
     }
 
-    /// Sweeps of contacts and trees by turns.
+    /// Sweeps for contacts and trees by turns.
     pub fn of_turns(&self, pass: Pass) -> Sweeps {
         Sweeps { first_conjugate: 1, ..self.of_blocks(pass) }
     }
 
-    /// As long as the longer of two, in the order of this one: where trees have their turns, backward sweeps let what stands under
-    /// joints creep (a tower of 18 levels under a rope fell).
+    /// Returns the larger numbers of sweeps and the smaller tolerances of both policies, with the order of this one: for trees solved
+    /// by turns, backward sweeps let bodies under joints creep (a tower of 18 levels under a rope fell).
     pub(in crate::solver) fn at_least(self, other: Self) -> Self {
         Self {
             solve: usize::max(self.solve, other.solve),
@@ -193,14 +194,14 @@ impl SweepPolicy {
     }
 }
 
-/// Most sweeps of a pass, the change of a velocity in one below which there is no other, m/s or rad/s, and their order.
+/// Number of sweeps of a pass, the velocity change in a sweep below which no other sweep follows, m/s or rad/s, and their order.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Sweeps {
     pub most: usize,
     pub tolerance: f32,
-    /// Share of the energy of the substep's largest change that is small enough for there to be no other sweep.
+    /// Share of the energy of the substep's largest change below which no other sweep follows.
     pub small: f32,
     pub order: Order,
-    /// The sweep from which on they are conjugate steps.
+    /// First sweep with a conjugate step.
     pub first_conjugate: usize,
 }

@@ -19,7 +19,7 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes};
 use sinew_math::max;
 
-/// Impulse that gives a free body this change of velocity.
+/// Impulse that causes a given velocity change of a free body.
 fn impulse_of(body: &SolverBody, change: &Vec6) -> Vec6 {
     let r = body.pose.rotation;
     let inertia = (body.inertia + body.excess) * body.mass_scale;
@@ -27,14 +27,14 @@ fn impulse_of(body: &SolverBody, change: &Vec6) -> Vec6 {
     join(linear(change) * (body.mass * body.mass_scale), spin)
 }
 
-/// Solves the trees outside batches for the impulses of a sweep, from the velocities before it, and marks how far they moved.
+/// Solves the trees outside batches for the impulses of a sweep, from the velocities before it, and records how far they moved.
 struct TurnOfTrees<'a> {
     links: &'a [Link],
     trees: &'a [Range<usize>],
     batches: &'a Batches,
     impulses: &'a mut [Vec6],
     dv: &'a mut [Vec6],
-    /// Velocities before the sweep; if loops were closed, those that are to be; and those after the limits had their turn.
+    /// Velocities before the sweep; velocities that replace them if loops were closed; velocities after the visits of the limits.
     before: &'a [Vec6],
     solved: &'a [Vec6],
     swept: &'a [Vec6],
@@ -154,7 +154,7 @@ impl IslandSolver {
         self.scratch.limits.extend(self.limits.iter().map(|row| row.impulse));
     }
 
-    /// Visits the limits; the impulses of the sweep start with theirs.
+    /// Visits the limits and stores their impulses as the first ones of the sweep.
     fn take_turn_of_limits(&mut self, pass: Pass) {
         let moving = self.links.len();
         self.scratch.before.clear();
@@ -183,8 +183,8 @@ impl IslandSolver {
         }
     }
 
-    /// Solves velocities exactly from those before the sweep and its impulses. Trees without impulses keep theirs. Returns the largest change
-    /// beside those that contacts made.
+    /// Solves velocities exactly from those before the sweep and its impulses. Trees without impulses keep their velocities. Returns the
+    /// largest change, without the changes by the contacts.
     fn take_turn_of_trees(&mut self) -> f32 {
         let Self { batches, impulses, scratch, velocities, dirty, .. } = self;
         let mut velocities =

@@ -9,8 +9,8 @@ use crate::spatial::Vec6;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::Lanes;
 
-/// Writes columns, `stride` apart: the velocity changes of all links of a tree. Each column is for one row, whose impulse acts on one or
-/// two links, given with their indices in the tree.
+/// Writes columns, `stride` apart: the velocity changes of all links of a tree. Each column is for one row, whose
+/// impulse acts on one or two links, given by their indices in the tree.
 pub(super) struct AnswerRows<'a> {
     pub batch: &'a Batch,
     /// Lane of the tree in the batch.

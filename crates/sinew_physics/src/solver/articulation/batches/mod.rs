@@ -1,8 +1,9 @@
 //! Batches: joint trees of one shape, up to eight side by side, one in each lane.
 //!
-//! Factor and solve are those of [`tree`](crate::solver::articulation::tree), but a joint's elimination is stored as its pivot and coupling
-//! instead of as 6×6 matrices of a link, which needs fewer operations in lanes. Two trees have the same shape if each link has the same
-//! parent and each joint locks the same number of rotations. Figures of one kind therefore share a batch, whatever their sizes and poses.
+//! Factor and solve are those of [`tree`](crate::solver::articulation::tree), but the elimination of a joint is stored as its pivot and
+//! coupling instead of as 6×6 matrices of a link, which needs fewer operations in lanes. Two trees have the same shape if each link has the
+//! same parent and each joint locks the same number of rotations. Figures of one kind therefore share a batch, whatever their sizes and
+//! poses.
 //!
 //! Only islands solved by [turns](crate::solver::Coupling::Turns) use batches. Trees held by fixed bodies, trees with motors, and trees
 //! with joints that do not lock a point are solved one by one.
@@ -27,7 +28,7 @@ use sinew_math::{dispatch, max};
 use solve::{SolveBatch, Way};
 use turn::TurnOfBatch;
 
-/// Number of most recent batches searched for a free lane. Where all shapes differ, a longer search costs more than half-empty batches do.
+/// Number of most recent batches searched for a free lane. If all shapes differ, a longer search costs more than half-empty batches.
 const OPEN: usize = 16;
 /// Largest number of links of a batched tree: the factor keeps their inertias on the stack.
 const MOST_LINKS: usize = 32;
@@ -168,9 +169,9 @@ impl Batches {
         }
     }
 
-    /// Solves the trees for the impulses that limits and contacts applied in this sweep, starting from the velocities before it, and marks
-    /// how far the bodies moved. `impulses` holds those of the limits; the contact impulses are added. Returns the largest velocity change,
-    /// not counting the changes that the contacts made.
+    /// Solves the trees for the impulses that limits and contacts applied in this sweep, starting from the velocities before it, and
+    /// records how far the bodies moved. `impulses` holds those of the limits; the contact impulses are added. Returns the largest velocity
+    /// change, without the changes by the contacts.
     pub fn take_turns(
         &mut self,
         impulses: &mut [Vec6],
@@ -185,7 +186,7 @@ impl Batches {
         most
     }
 
-    /// Writes columns, `stride` apart: the velocity changes of all links of a tree from impulses on one or two links, given with their
+    /// Writes columns, `stride` apart: the velocity changes of all links of a tree from impulses on one or two links, given by their
     /// indices. Returns false if the tree is solved alone.
     pub fn answer(
         &mut self,

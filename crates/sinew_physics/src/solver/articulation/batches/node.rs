@@ -20,7 +20,7 @@ pub(super) enum Kind {
     Axes { held: usize },
 }
 
-/// Position of a link in its tree.
+/// Position of a link in its tree, and its elimination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Site {
     /// Index of the parent link.
@@ -28,7 +28,7 @@ pub(super) struct Site {
     pub kind: Kind,
 }
 
-/// Bodies and the joints to their parents.
+/// A body of each of eight trees, and the joint to its parent.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Node {
@@ -50,8 +50,7 @@ pub(super) struct Node {
     /// (B + G)⁻¹, and rows of C (B + G)⁻¹, see [`Swivel`](crate::solver::articulation::elimination::Swivel).
     pub pivot: [Eight; 6],
     pub coupled: [[Eight; 3]; 3],
-    /// Articulated inertia about the anchor that is passed on to the parent. For a root, `passed_mass` is the inverse of the remaining
-    /// mass.
+    /// Articulated inertia about the anchor that the parent gets. For a root, `passed_mass` is the inverse of the remaining mass.
     pub passed_mass: [Eight; 6],
     pub passed_coupling: [[Eight; 3]; 3],
     pub passed_rotation: [Eight; 6],
@@ -139,8 +138,7 @@ impl Node {
     fn write_axes(&mut self, lane: usize, joint: &SolverJoint, held: usize) {
         let rows = &joint.rows;
         let Ways { way, row, count } = Ways::new(rows, true);
-        // An axis that is nearly dependent on the others has no direction. Joints with such an axis are not asked to correct their rows
-        // here.
+        // An axis that is nearly dependent on the others has no direction. Joints with such an axis do not correct their rows here.
         let is_whole = count >= held && (0..held).all(|k| usize::from(row[k]) == TWIST + k);
         for (k, axis) in self.axes.iter_mut().enumerate() {
             let is_asked = k >= held || is_whole;

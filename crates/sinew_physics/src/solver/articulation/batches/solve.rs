@@ -108,8 +108,8 @@ impl Node {
         [force, torque + view.vector(&self.parent_arm).cross(force)]
     }
 
-    /// Velocity of the child at its centre from the velocity of the parent at the parent's centre. If no impulse came up through the joint,
-    /// only the parent's velocity contributes.
+    /// Computes the velocity of the child at its centre from the velocity of the parent at the parent's centre. If no impulse acted below
+    /// the joint, only the parent's velocity contributes.
     #[inline(always)]
     fn descend<L: Lanes>(&self, view: impl View<L>, [v, w]: Twist<L>, way: &Way, noted: Noted) -> Twist<L> {
         let is_pushed = noted != Noted::Nothing;

@@ -10,8 +10,9 @@ use crate::spatial::Vec6;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
 
-/// Solves the trees of a batch for the impulses that limits and contacts applied in this sweep, starting from the velocities before it, and
-/// marks how far the bodies moved. Returns the largest velocity change, not counting the changes that the contacts made.
+/// Solves the trees of a batch for the impulses that limits and contacts applied in this sweep, starting from the
+/// velocities before it, and records how far the bodies moved. Returns the largest velocity change, without the changes
+/// by the contacts.
 pub(super) struct TurnOfBatch<'a, 'b> {
     pub batch: &'a Batch,
     pub ways: &'a mut [Way],
@@ -82,7 +83,7 @@ fn difference<L: Lanes>(a: Twist<L>, b: Twist<L>) -> Twist<L> {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// The largest component.
+/// Returns the largest component of a twist.
 #[inline(always)]
 fn largest<L: Lanes>([v, w]: Twist<L>) -> L {
     let (v, w) = (v.abs(), w.abs());
