@@ -3,9 +3,9 @@
 use crate::runner::TaskRunner;
 use crate::stage::Profiler;
 
-/// Everything that lives for one step.
+/// Data of one step: its times, its threads and its profiler.
 pub(crate) struct StepContext<'a> {
-    /// Step and substep, seconds.
+    /// Length of the step, and of a substep, seconds.
     pub dt: f32,
     pub h: f32,
     pub substeps: u32,

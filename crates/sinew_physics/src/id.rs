@@ -4,8 +4,8 @@ use core::fmt;
 use std::hash::{BuildHasher, RandomState};
 
 /// World that an id belongs to. Not part of a snapshot or hash. Ids from bits, and ids of a world that has loaded a
-/// snapshot, have an unknown lineage, which matches every world, because a user who loads another world's snapshot
-/// continues to use its ids.
+/// snapshot, have an unknown lineage, which matches every world: a user who loads the snapshot of another world
+/// continues to use the ids of that world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Lineage(u32);
 
@@ -15,7 +15,7 @@ impl Lineage {
         Self(RandomState::new().hash_one(()) as u32 | 1)
     }
 
-    /// True unless both are known and different.
+    /// True unless both lineages are known and different.
     pub fn goes_with(self, other: Self) -> bool {
         self == other || self == Self::default() || other == Self::default()
     }
@@ -43,11 +43,11 @@ macro_rules! id {
         }
 
         impl $name {
-            /// Index and generation in one number, for storage on the user's side.
+            /// Returns index and generation in one number, which the user can store.
             pub fn to_bits(self) -> u64 {
                 u64::from(self.generation) << 32 | u64::from(self.index)
             }
-            /// Id from [`to_bits`](Self::to_bits), usable with any world.
+            /// Returns the id of a number from [`to_bits`](Self::to_bits); any world accepts it.
             pub fn from_bits(bits: u64) -> Self {
                 Self { index: bits as u32, generation: (bits >> 32) as u32, lineage: Lineage::default() }
             }
@@ -145,7 +145,7 @@ id! {
 /// A shape of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ShapeId {
-    /// The body.
+    /// Body of the shape.
     pub body: BodyId,
     /// Number of the shape in its body, counted from 0 as in [`BodyDef::shapes`](crate::BodyDef::shapes).
     pub shape: u32,

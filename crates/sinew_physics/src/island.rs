@@ -5,11 +5,11 @@
 pub(crate) struct Island<'a> {
     pub bodies: &'a [u32],
     pub joints: &'a [u32],
-    /// Positions in the contact array. `color` puts those with static bodies last, so that they are solved last.
+    /// Positions in the contact array. `color` orders contacts with static bodies last, so that they are solved last.
     pub contacts: &'a [u32],
-    /// Particle groups that are attached to its bodies or may touch them.
+    /// Particle groups that are attached to the island's bodies or may touch them.
     pub groups: &'a [u32],
-    /// It is a body in flight or a strand and has been through this step.
+    /// True if the island is a free-flying body or a strand that this step has already solved.
     pub is_flown: bool,
 }
 
@@ -17,7 +17,7 @@ pub(crate) struct Island<'a> {
 const LARGE: usize = 1_024;
 
 impl Island<'_> {
-    /// True if all threads work on it together.
+    /// True if all threads work on the island together.
     pub fn is_large(&self) -> bool {
         self.joints.is_empty() && self.contacts.len() >= LARGE
     }

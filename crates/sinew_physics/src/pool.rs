@@ -1,8 +1,9 @@
 //! Threads that wait for work, for [`Threads`](crate::runner::Threads).
 //!
-//! A batch is on the stack of its caller. Workers reach it by a pointer guarded by one word, the *gate*, which stores
-//! if a batch is open, its number, and the number of workers inside. A worker enters only by incrementing that number
-//! while the gate is open, and the caller does not return before it has closed the gate and the number is 0.
+//! A batch is on the stack of its caller. Workers reach the batch by a pointer guarded by one word, the *gate*. The
+//! gate stores whether a batch is open, the number of the batch, and the number of workers inside. A worker enters only
+//! by incrementing the number of workers while the gate is open. The caller returns only after it has closed the gate
+//! and no worker is inside.
 #![allow(unsafe_code)]
 
 use core::any::Any;
@@ -12,8 +13,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
-/// Number of polls of the gate before a thread sleeps: some 10 to 40 µs, which exceeds the gap between two batches of a
-/// stage and is about the cost of waking.
+/// Number of polls of the gate before a thread sleeps: some 10 to 40 µs. That exceeds the gap between two batches of a
+/// stage, and is about the cost of waking a thread.
 const SPINS: u32 = 1_000;
 
 /// Bits of the gate for the number of workers inside.
@@ -29,14 +30,14 @@ const ONE_BATCH: u64 = 1 << 32;
 struct Batch<'a> {
     task: &'a (dyn Fn() + Sync),
     count: usize,
-    /// Calls that were begun, or more.
+    /// Upper bound of the number of calls that were begun.
     begun: AtomicUsize,
     /// Payload of the first call that panicked.
     panic: Mutex<Option<Box<dyn Any + Send>>>,
 }
 
 impl Batch<'_> {
-    /// Takes calls until none are left. A panic ends the batch.
+    /// Runs calls until none are left. A panic ends the batch.
     fn work(&self) {
         while self.begun.fetch_add(1, Ordering::Relaxed) < self.count {
             if let Err(payload) = catch_unwind(AssertUnwindSafe(self.task)) {
@@ -55,16 +56,16 @@ struct Shared {
     gate: AtomicU64,
     /// Pointer to the batch, while the gate is open or workers are inside.
     batch: AtomicPtr<Batch<'static>>,
-    /// A batch is running: a nested one runs on its caller's thread alone.
+    /// True while a batch runs. A nested batch then runs on its caller's thread alone.
     is_busy: AtomicBool,
-    /// Workers are to end.
+    /// True if the workers must end.
     is_closing: AtomicBool,
-    /// Workers that sleep or are about to.
+    /// Number of workers that sleep or are about to sleep.
     asleep: AtomicUsize,
-    /// Mutex that sleepers hold while they look; nothing is in it.
+    /// Mutex that a worker holds between its last look at the gate and its sleep; guards no data.
     sleep: Mutex<()>,
     wake: Condvar,
-    /// Mutex for waiting until the last worker has left; it holds no data.
+    /// Mutex for waiting until the last worker has left; guards no data.
     wait: Mutex<()>,
     out: Condvar,
 }
@@ -74,15 +75,16 @@ fn lock(mutex: &Mutex<()>) -> MutexGuard<'_, ()> {
 }
 
 impl Shared {
-    /// Opens `batch` to workers, takes calls as well, and waits until all have left.
+    /// Opens `batch` to workers, runs calls on this thread too, and waits until all workers have left.
     fn run(&self, batch: &Batch<'_>, workers: usize) {
         self.batch.store(core::ptr::from_ref(batch).cast_mut().cast(), Ordering::Relaxed);
-        // No thread is inside, and only this one opens.
+        // No thread is inside, and only this thread opens the gate.
         let number = self.gate.load(Ordering::Relaxed) & !(OPEN | AWAITED | INSIDE);
-        // SeqCst, as `asleep`: either this thread sees the sleeper or the sleeper sees the open gate.
+        // SeqCst, like `asleep`: either this thread sees the sleeping worker, or the worker sees the open gate.
         self.gate.store(number.wrapping_add(ONE_BATCH) | OPEN, Ordering::SeqCst);
         if self.asleep.load(Ordering::SeqCst) > 0 {
-            // A thread about to sleep holds it from its last poll of the gate on; it must not wake into a held lock.
+            // A thread about to sleep holds the mutex from its last poll of the gate. It must not wake into a held
+            // lock.
             drop(lock(&self.sleep));
             for _ in 0..workers.min(batch.count - 1) {
                 self.wake.notify_one();
@@ -109,22 +111,22 @@ impl Shared {
         }
     }
 
-    /// The life of a worker.
+    /// Main loop of a worker.
     fn serve(&self) {
         let mut last = 0;
         while let Some(number) = self.enter_next(last) {
             last = number;
             let batch = self.batch.load(Ordering::Relaxed);
-            // SAFETY: we are inside, by a compare-exchange (Acquire) on a gate that was open, so that the pointer is the one
-            // stored before it was opened (SeqCst store), and who runs the batch keeps it alive and where it is until we are
-            // out: it does not leave `run`, whatever panics in a call (`work` catches it), before it has seen nobody inside.
-            // Nothing of the batch is used after `leave`.
+            // SAFETY: this worker is inside, by a compare-exchange (Acquire) on an open gate, so the pointer is the one
+            // stored before the gate was opened (SeqCst store). The caller keeps the batch alive and in place until all
+            // workers have left: it stays in `run`, even if a call panics (`work` catches the panic), until the number
+            // of workers inside is 0. Nothing of the batch is used after `leave`.
             unsafe { &*batch }.work();
             self.leave();
         }
     }
 
-    /// Waits for a batch with a number other than `last` and enters; returns its number, or `None` at shutdown.
+    /// Waits for a batch with a number other than `last` and enters it; returns its number, or `None` at shutdown.
     fn enter_next(&self, last: u64) -> Option<u64> {
         for _ in 0..SPINS {
             if let Some(number) = self.try_enter(last) {
@@ -150,7 +152,7 @@ impl Shared {
         entered
     }
 
-    /// Enters if the gate is open and the batch's number differs from `last`.
+    /// Enters the batch if the gate is open and the batch's number differs from `last`; returns the number.
     fn try_enter(&self, last: u64) -> Option<u64> {
         let mut gate = self.gate.load(Ordering::SeqCst);
         loop {
@@ -174,7 +176,7 @@ impl Shared {
     }
 }
 
-/// Threads that sleep until there is work. They end when the pool is dropped.
+/// Threads that sleep until a batch is opened. They end when the pool is dropped.
 pub(crate) struct Pool {
     shared: Arc<Shared>,
     workers: Vec<JoinHandle<()>>,
@@ -192,12 +194,12 @@ impl Pool {
         Self { shared, workers }
     }
 
-    /// Threads in addition to the caller's.
+    /// Number of threads in addition to the caller's.
     pub fn workers(&self) -> usize {
         self.workers.len()
     }
 
-    /// Calls `task` `count` times. While the pool is busy, on this thread alone.
+    /// Calls `task` `count` times. While the pool is busy, all calls run on the caller's thread.
     ///
     /// # Panics
     /// If a call panics, with its payload, after all running calls have ended; the remaining calls are skipped.
@@ -221,7 +223,7 @@ impl Drop for Pool {
         drop(lock(&self.shared.sleep));
         self.shared.wake.notify_all();
         for worker in self.workers.drain(..) {
-            // It catches panics of calls, and nothing else in it panics.
+            // The worker catches panics of calls, and nothing else in it panics.
             let _ = worker.join();
         }
     }

@@ -1,6 +1,6 @@
 //! User functions, registered by number for snapshots.
 
-/// Ascending by number. Not part of the snapshot: code cannot be saved.
+/// Registered functions, ascending by number. Not part of a snapshot: code cannot be saved.
 #[derive(Clone, Debug)]
 pub(crate) struct Registered<F>(Vec<(u32, F)>);
 
@@ -11,7 +11,7 @@ impl<F> Default for Registered<F> {
 }
 
 impl<F: Copy> Registered<F> {
-    /// Replaces a previous one with this number.
+    /// Registers a function, replacing an earlier one with this number.
     pub fn set(&mut self, number: u32, function: F) {
         match self.0.binary_search_by_key(&number, |&(n, _)| n) {
             Ok(place) => self.0[place].1 = function,

@@ -1,4 +1,4 @@
-//! Threads come from the host: the step only states the number of independent tasks.
+//! Interface to the host's threads: the step only states the number of independent tasks.
 
 use crate::pool::Pool;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ pub trait TaskRunner: Sync {
     fn run(&self, count: usize, task: &(dyn Fn() + Sync));
 }
 
-/// Everything on the calling thread.
+/// Runs all calls on the calling thread.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Serial;
 
@@ -24,24 +24,24 @@ impl TaskRunner for Serial {
     }
 }
 
-/// A fixed number of threads, for hosts without a pool of their own: started once, they wait from one batch to the next,
-/// and end with the last clone.
+/// A fixed number of threads, for hosts without a thread pool. The threads start once, wait between batches, and end
+/// when the last clone is dropped.
 ///
-/// One batch at a time: one that starts while another runs, within a task or on another host thread, runs on its
-/// caller's thread alone. A panic in a task ends its batch, and continues in the caller.
+/// Only one batch uses the threads at a time. A batch that starts while another runs (within a task, or on another host
+/// thread) runs on its caller's thread alone. A panic in a task ends its batch and continues in the caller.
 #[derive(Clone)]
 pub struct Threads {
     pool: Arc<Pool>,
 }
 
 impl Threads {
-    /// `count` threads, including the caller's; 0 counts as 1. If the system provides fewer (wasm: none), it uses
-    /// those.
+    /// Starts threads for `count` in all, including the caller's; 0 counts as 1. If the system provides fewer (wasm:
+    /// none), batches use those.
     pub fn new(count: usize) -> Self {
         Self { pool: Arc::new(Pool::new(count.saturating_sub(1))) }
     }
 
-    /// Number of threads, the caller's included.
+    /// Number of threads, including the caller's.
     pub fn count(&self) -> usize {
         self.pool.workers() + 1
     }

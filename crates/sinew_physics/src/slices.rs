@@ -6,12 +6,12 @@ use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
 use sinew_math::lanes::WIDTH;
 
-/// Most items that a thread claims at once. Two threads that claim one by one spend more on the counter than on a light item.
+/// Largest number of items claimed together: with claims of one light item, threads would mostly wait for the counter.
 const MOST_CLAIMED: usize = 32;
-/// Least number of claims that a few items are divided into, so that no thread waits long for another's last one.
+/// Least number of claims that a list is divided into, so that no thread waits long for the last claim of another.
 const CLAIMS: usize = 16;
 
-/// The items of a slice, shared by threads that each access different ones.
+/// Items of a slice, shared by threads that each access different ones.
 pub(crate) struct SharedRows<'a, T> {
     start: *mut T,
     len: usize,
@@ -26,13 +26,12 @@ impl<T> Clone for SharedRows<'_, T> {
 
 impl<T> Copy for SharedRows<'_, T> {}
 
-// SAFETY: who makes one promises that no item is written by one thread while another reads or writes it, and T may change
-// threads.
+// SAFETY: the caller of `new` promises that no thread writes an item while another reads or writes it, and T is Send.
 unsafe impl<T: Send> Send for SharedRows<'_, T> {}
 // SAFETY: as above.
 unsafe impl<T: Send> Sync for SharedRows<'_, T> {}
 
-/// Eight indices, of which the largest has been compared with a length, for all rows that are as long.
+/// Eight indices that have been checked against a length; valid for all rows of at least that length.
 #[derive(Clone, Copy)]
 pub(crate) struct Places {
     at: [u32; WIDTH],
@@ -40,7 +39,7 @@ pub(crate) struct Places {
 }
 
 impl Places {
-    /// Indices into rows of a length.
+    /// Checks indices into rows of a length.
     ///
     /// # Panics
     /// If any index is out of range.
@@ -63,7 +62,8 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn at(&self, places: &Places, k: usize) -> &T {
         assert!(places.len <= self.len);
-        // SAFETY: all places are below their length, and nobody writes the item meanwhile, as was promised.
+        // SAFETY: all indices are below `len`, and no thread writes the item meanwhile, as the caller of `new`
+        // promised.
         unsafe { &*self.start.add(places.at[k] as usize) }
     }
 
@@ -74,7 +74,7 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn at_mut(&mut self, places: &Places, k: usize) -> &mut T {
         assert!(places.len <= self.len);
-        // SAFETY: all places are below their length, and nobody else reads or writes the item meanwhile, as was promised.
+        // SAFETY: all indices are below `len`, and no other thread accesses the item, as the caller of `new` promised.
         unsafe { &mut *self.start.add(places.at[k] as usize) }
     }
 
@@ -100,7 +100,7 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn get(&self, i: usize) -> &T {
         assert!(i < self.len);
-        // SAFETY: it is inside of the slice, and nobody writes it meanwhile, as was promised.
+        // SAFETY: `i` is within the slice, and no thread writes the item meanwhile, as the caller of `new` promised.
         unsafe { &*self.start.add(i) }
     }
 
@@ -111,20 +111,20 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn get_mut(&mut self, i: usize) -> &mut T {
         assert!(i < self.len);
-        // SAFETY: it is inside of the slice, and nobody else reads or writes it meanwhile, as was promised.
+        // SAFETY: `i` is within the slice, and no other thread accesses the item, as the caller of `new` promised.
         unsafe { &mut *self.start.add(i) }
     }
 }
 
-/// Calls `work` once for every item, spread over `runner`'s threads.
+/// Calls `work` once for every item, on the threads of `runner`.
 ///
 /// DETERMINISM: the thread of an item varies, so `work` must depend on its item alone.
 pub(crate) fn for_each_mut<T: Send>(runner: &dyn TaskRunner, items: &mut [T], work: impl Fn(&mut T) + Sync) {
     let count = items.len();
     let claim = usize::min(usize::max(count / CLAIMS, 1), MOST_CLAIMED);
     let next = AtomicUsize::new(0);
-    // SAFETY: `fetch_add` hands out every index once, so no two calls hold the same item, whatever the runner does; `items`
-    // is borrowed exclusively until `run` has returned.
+    // SAFETY: `fetch_add` returns every index once, so no two calls hold the same item, whatever the runner does;
+    // `items` is borrowed exclusively until `run` has returned.
     let rows = unsafe { SharedRows::new(items) };
     let task = || {
         let mut rows = rows;
@@ -140,14 +140,14 @@ pub(crate) fn for_each_mut<T: Send>(runner: &dyn TaskRunner, items: &mut [T], wo
     }
 }
 
-/// Most items of [`for_each_near`].
+/// Largest number of items that [`for_each_near`] accepts.
 pub(crate) const MOST_NEAR: usize = u64::BITS as usize;
 
-/// Number of threads that take part in such a list.
+/// Largest number of calls per list in [`for_each_near`].
 const MOST_CALLS: usize = 16;
 
-/// As [`for_each_mut`], for at most [`MOST_NEAR`] items of which neighbours share memory: each thread starts where it
-/// started in the previous such list, and continues with free neighbours.
+/// Like [`for_each_mut`], for at most [`MOST_NEAR`] items of which neighbours share memory. Each thread starts at the
+/// place where it started in the previous such list, and continues with free neighbours.
 pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], work: impl Fn(&mut T) + Sync) {
     let count = items.len();
     assert!(count <= MOST_NEAR);
@@ -177,7 +177,7 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
     task();
 }
 
-/// Takes the first of the remaining items.
+/// Takes the first `count` of the remaining items.
 pub(crate) fn split_off<'a, T>(left: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     left.split_off_mut(..count).expect("there is room for each island")
 }

@@ -3,8 +3,8 @@
 use sinew_math::lanes::WIDTH;
 use sinew_math::{Vec3, max};
 
-/// Velocity (m/s, rad/s) or impulse (N·s, N·m·s) of a body at its centre of mass, or one row of a Jacobian: six numbers, and
-/// two zeros that fill a register of eight.
+/// Velocity (m/s, rad/s) or impulse (N·s, N·m·s) of a body at its centre of mass, or one row of a Jacobian: six numbers
+/// and two zeros, which fill a register of eight.
 pub(crate) type Vec6 = [f32; WIDTH];
 /// Rows of a 6×6 matrix.
 pub(crate) type Mat6 = [Vec6; 6];
@@ -27,7 +27,7 @@ pub(crate) fn join(linear: Vec3, angular: Vec3) -> Vec6 {
     [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z, 0.0, 0.0]
 }
 
-/// Spatial impulse of a linear impulse at `arm` from the centre of mass.
+/// Spatial impulse at the centre of mass of a linear impulse at `arm` from it.
 #[inline(always)]
 pub(crate) fn wrench(arm: Vec3, impulse: Vec3) -> Vec6 {
     join(impulse, arm.cross(impulse))
@@ -48,7 +48,7 @@ pub(crate) fn dot(a: &Vec6, b: &Vec6) -> f32 {
     (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
 }
 
-/// The largest component, without its sign: in pairs, as registers hold them.
+/// Largest absolute value of the components; compares in pairs, as registers hold them.
 #[inline(always)]
 pub(crate) fn largest(v: &Vec6) -> f32 {
     let [a, b, c, d, e, f, g, h] = v.map(f32::abs);
@@ -70,8 +70,8 @@ pub(crate) fn add_scaled(a: &mut Vec6, b: &Vec6, k: f32) {
     }
 }
 
-/// Inverse of the leading `n`×`n` block of a symmetric positive definite matrix by LDLᵀ; the rest is zero. `None` if a
-/// pivot is not safely positive (below 1e-7 of its diagonal entry) or not finite.
+/// Inverse of the leading `n`×`n` block of a symmetric positive definite matrix by LDLᵀ; the other entries are zero.
+/// `None` if a pivot is not safely positive (below 1e-7 of its diagonal entry) or not finite.
 #[inline(always)]
 pub(crate) fn spd_inverse(m: &Mat6, n: usize) -> Option<Mat6> {
     match n {
@@ -112,7 +112,7 @@ fn inverse_of<const N: usize>(m: &Mat6) -> Option<Mat6> {
             l[i][k] *= l[k][k];
         }
     }
-    // All columns at once: L D Lᵀ X = 1, row by row of X.
+    // All columns together: L D Lᵀ X = 1, row by row of X.
     let mut inverse = ZERO66;
     for i in 0..N {
         inverse[i][i] = 1.0;

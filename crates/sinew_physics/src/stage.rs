@@ -1,5 +1,5 @@
-//! The stages of a step, under the one name that function, module, profile zone and `docs/step.md` share, and the
-//! quantities counted in them.
+//! Stages of a step, with the names that functions, modules, profile zones and `docs/step.md` use, and the quantities
+//! that each step counts.
 
 /// A stage of the step, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -9,37 +9,37 @@ pub enum Stage {
     Pairs,
     /// Narrow phase: manifolds of near shapes.
     Collide,
-    /// Begin and end of touches; waking.
+    /// Begin and end of touches; wakes bodies.
     Touch,
-    /// Islands: connected bodies.
+    /// Islands: sets of connected bodies.
     Islands,
-    /// Determines the order in which an island's contacts are solved.
+    /// Order in which an island's contacts are solved.
     Color,
-    /// Bodies that nothing touches or holds.
+    /// Bodies without contacts and joints.
     Flight,
     /// Converts bodies, joints and contacts to the solver's own arrays.
     Prepare,
-    /// Forces to velocities.
+    /// Integrates forces to velocities.
     IntegrateVelocity,
-    /// Last substep's contact and limit impulses.
+    /// Applies the impulses of contacts and limits of the last substep.
     WarmStart,
-    /// Joints exactly, contacts and limits with bias.
+    /// Solves joints exactly, contacts and limits with bias.
     Solve,
-    /// Velocities to poses.
+    /// Integrates velocities to poses.
     IntegratePosition,
-    /// Particles against constraints and shapes.
+    /// Projects particles onto constraints and out of shapes.
     Project,
-    /// Joints, contacts and limits without bias; friction.
+    /// Solves joints, contacts and limits without bias, and friction.
     Relax,
-    /// Bounce of bodies hit in the substep.
+    /// Makes bodies bounce that were hit in the substep.
     Restitution,
-    /// Impulses stored for the next step.
+    /// Stores impulses for the next step.
     Store,
-    /// Bodies take their new state; numeric trouble is quarantined.
+    /// Writes the new state to the bodies; quarantines bodies with numeric trouble.
     Finalize,
     /// Stops fast bodies that would pass through static ones.
     Continuous,
-    /// Islands at rest fall asleep.
+    /// Puts islands at rest to sleep.
     Sleep,
     /// Sensor overlaps.
     Sensors,
@@ -47,21 +47,21 @@ pub enum Stage {
     Movers,
 }
 
-/// Quantity that a step counts for a [`Profiler`] that requests it. From [`Bodies`](Self::Bodies) on each is reported
-/// once per island by the thread that solves it, `Bodies` first; a free-flying body only has
-/// [`BodySubsteps`](Self::BodySubsteps) after it.
+/// Quantity that a step counts for a [`Profiler`] that requests counts. The thread that solves an island reports each
+/// quantity from [`Bodies`](Self::Bodies) on, once per island, `Bodies` first. A free-flying body has only `Bodies` and
+/// [`BodySubsteps`](Self::BodySubsteps).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Counter {
     /// Shapes of all bodies, awake or not.
     Shapes,
-    /// Pairs of near shapes of which one is awake.
+    /// Pairs of near shapes of which at least one is awake.
     Pairs,
-    /// Pairs of near shapes, one of them awake, that have contact points.
+    /// Pairs of near shapes, at least one of them awake, that have contact points.
     PairsWithPoints,
     /// Moving bodies of an island: one call per island.
     Bodies,
-    /// Moving bodies, once per substep of their island.
+    /// Moving bodies of an island, counted in each substep.
     BodySubsteps,
     /// Joints of an island.
     Joints,
@@ -71,30 +71,30 @@ pub enum Counter {
     Points,
     /// Rows of joint limits in the island's last substep.
     LimitRows,
-    /// Manifolds and limit rows of a pass, once per substep: the work of one sweep.
+    /// Manifolds and limit rows of one pass, counted in each substep: the work of one sweep.
     PassRows,
-    /// Rows that all sweeps of `solve` went through: over `PassRows`, it is the sweeps of a pass.
+    /// Rows that all sweeps of `solve` visited. Divided by `PassRows`, the number of sweeps of a pass.
     SolveRows,
-    /// Rows that all sweeps of `relax` went through.
+    /// Rows that all sweeps of `relax` visited.
     RelaxRows,
-    /// Rows that sweeps solved, over all passes: inactive rows were only visited.
+    /// Rows that sweeps solved, over all passes; excludes inactive rows, which sweeps only visit.
     Visits,
-    /// Used bytes of the solver's arrays for the island: more than the cache holds comes from memory.
+    /// Used bytes of the solver's arrays for the island. Bytes beyond the size of the cache come from memory.
     ResidentBytes,
-    /// Bytes of these that the step accessed: all of them in `prepare`, twice in each substep (poses change) and in
-    /// `store`, and for each solved row the row and the velocities of its two bodies. Excludes what sweeps write to
-    /// other bodies of a tree.
+    /// Bytes of these arrays that the step accessed: all of them in `prepare`, twice in each substep (poses change) and
+    /// in `store`, and for each solved row the row and the velocities of its two bodies. Excludes the bytes that sweeps
+    /// write to other bodies of a tree.
     TouchedBytes,
 }
 
-/// Receives stage times and counts from the step: the library reads no clock itself. Stages inside an island are reported
-/// by the thread that runs it.
+/// Receives stage times and counts from the step: the library reads no clock. The thread that runs an island reports
+/// the stages inside the island.
 pub trait Profiler: Sync {
     /// A stage starts.
     fn begin(&self, stage: Stage);
     /// The stage last started on this thread ends.
     fn end(&self, stage: Stage);
-    /// True if it requests counts; else none are made.
+    /// True if the profiler requests counts; otherwise the step does not count.
     fn is_counting(&self) -> bool {
         false
     }
@@ -102,7 +102,7 @@ pub trait Profiler: Sync {
     fn count(&self, _counter: Counter, _by: u64) {}
 }
 
-/// Measures nothing.
+/// A profiler that measures nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoProfiler;
 

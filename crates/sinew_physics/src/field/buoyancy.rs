@@ -7,7 +7,7 @@ use crate::body::shape::Shape;
 use sinew_geometry::DefError;
 use sinew_math::{Transform, Vec3};
 
-/// A fluid at rest or in uniform flow below a plane.
+/// A fluid below a plane, at rest or in uniform flow.
 ///
 /// *Buoyancy* (Archimedes): the weight of the displaced fluid, `−ρ V g`, at the centre of the submerged volume, with
 /// `g` the world's gravity. Volume and centre are computed per shape in closed form (ball, box, capsule); overlapping
