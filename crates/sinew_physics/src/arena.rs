@@ -12,7 +12,7 @@ pub(crate) trait Item {
 #[derive(Clone, Debug)]
 pub(crate) struct Arena<T> {
     lineage: Lineage,
-    /// Generation of each slot; stored contiguously, because queries check many items without reading them.
+    /// Generation of each slot; a separate array, because queries check many generations without reading the items.
     generations: Vec<u32>,
     items: Vec<Option<T>>,
     free: Vec<u32>,
@@ -25,14 +25,14 @@ impl<T> Default for Arena<T> {
 }
 
 impl<T> Arena<T> {
-    /// One without items, of a world.
+    /// Returns an empty arena for a world.
     pub fn new(lineage: Lineage) -> Self {
         Self { lineage, generations: Vec::new(), items: Vec::new(), free: Vec::new() }
     }
 }
 
 impl<T: Item> Arena<T> {
-    /// Puts an item in.
+    /// Adds an item, in a free slot if there is one.
     pub fn insert(&mut self, item: T) -> T::Id {
         let index = self.free.pop().unwrap_or_else(|| {
             self.generations.push(0);
@@ -43,7 +43,7 @@ impl<T: Item> Arena<T> {
         self.id(index)
     }
 
-    /// Removes an item; its id is stale from now on.
+    /// Removes an item; its id becomes stale.
     pub fn remove(&mut self, id: T::Id) -> Option<T> {
         let index = id.index();
         let item = self.is_current(id).then(|| self.items[index as usize].take())??;
@@ -52,17 +52,17 @@ impl<T: Item> Arena<T> {
         Some(item)
     }
 
-    /// The item of an id, if it is not stale.
+    /// Returns the item of an id, or `None` if the id is stale.
     pub fn get(&self, id: T::Id) -> Option<&T> {
         if self.is_current(id) { self.items[id.index() as usize].as_ref() } else { None }
     }
 
-    /// The item of an id, if it is not stale, mutable.
+    /// Returns the item of an id, mutable, or `None` if the id is stale.
     pub fn get_mut(&mut self, id: T::Id) -> Option<&mut T> {
         if self.is_current(id) { self.items[id.index() as usize].as_mut() } else { None }
     }
 
-    /// The item of an id from the user.
+    /// Returns the item of an id that the user passed.
     ///
     /// # Panics
     /// At the caller's location, with the reason, if the id is stale or from another world.
@@ -74,7 +74,7 @@ impl<T: Item> Arena<T> {
         }
     }
 
-    /// The item of an id from the user, mutable.
+    /// Returns the item of an id that the user passed, mutable.
     ///
     /// # Panics
     /// At the caller's location, with the reason, if the id is stale or from another world.
@@ -84,7 +84,7 @@ impl<T: Item> Arena<T> {
         self.at_mut(id.index())
     }
 
-    /// Removes the item of an id from the user; the id is stale from now on.
+    /// Removes and returns the item of an id that the user passed; the id becomes stale.
     ///
     /// # Panics
     /// At the caller's location, with the reason, if the id is stale or from another world.
@@ -110,22 +110,22 @@ impl<T: Item> Arena<T> {
         generation == Some(&id.generation()) && id.lineage().goes_with(self.lineage)
     }
 
-    /// Id of the item in a slot, or of the next that will be.
+    /// Id of the item in a slot, or of the next item if the slot is free.
     pub fn id(&self, index: u32) -> T::Id {
         T::Id::new(index, self.generations[index as usize], self.lineage)
     }
 
-    /// The item at an index known to be in use.
+    /// Returns the item at an index, which must be in use.
     pub fn at(&self, index: u32) -> &T {
         self.items[index as usize].as_ref().expect("the index is in use")
     }
 
-    /// The item at an index, if any.
+    /// Returns the item at an index, or `None` if no item is there.
     pub fn try_at(&self, index: u32) -> Option<&T> {
         self.items.get(index as usize)?.as_ref()
     }
 
-    /// The item at an index known to be in use, mutable.
+    /// Returns the item at an index, which must be in use, mutable.
     pub fn at_mut(&mut self, index: u32) -> &mut T {
         self.items[index as usize].as_mut().expect("the index is in use")
     }
@@ -135,7 +135,7 @@ impl<T: Item> Arena<T> {
         self.free.len() == self.items.len()
     }
 
-    /// The same slots with other items; `item` maps id and item.
+    /// Returns an arena with the same slots and other items; `item` converts an id and its item.
     pub fn map<U>(self, mut item: impl FnMut(T::Id, T) -> U) -> Arena<U> {
         let Self { lineage, generations, items, free } = self;
         let slots = items.into_iter().zip(&generations).enumerate();
@@ -149,22 +149,22 @@ impl<T: Item> Arena<T> {
         self.items.len()
     }
 
-    /// Items with their indices, by index.
+    /// Iterates over all items with their indices, by index.
     pub fn iter(&self) -> impl Iterator<Item = (u32, &T)> {
         self.items.iter().enumerate().filter_map(|(i, item)| Some((i as u32, item.as_ref()?)))
     }
 
-    /// Items with their indices, by index, mutable.
+    /// Iterates over all items with their indices, by index, mutable.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = (u32, &mut T)> {
         self.items.iter_mut().enumerate().filter_map(|(i, item)| Some((i as u32, item.as_mut()?)))
     }
 
-    /// Ids of all items, by index.
+    /// Iterates over the ids of all items, by index.
     pub fn ids(&self) -> impl Iterator<Item = T::Id> {
         self.iter().map(|(index, _)| self.id(index))
     }
 
-    /// Items with their ids, by index, mutable.
+    /// Iterates over all items with their ids, by index, mutable.
     pub fn entries_mut(&mut self) -> impl Iterator<Item = (T::Id, &mut T)> {
         let Self { lineage, generations, items, .. } = self;
         let slots = generations.iter().zip(items).enumerate();
@@ -172,7 +172,7 @@ impl<T: Item> Arena<T> {
         slots.filter_map(move |(i, (&generation, item))| Some((id(i, generation), item.as_mut()?)))
     }
 
-    /// Writes slots and free list; `item` writes one item.
+    /// Writes the slots and the free list; `item` writes one item.
     pub fn save(&self, w: &mut Writer, mut item: impl FnMut(&mut Writer, &T)) {
         w.count(self.items.len());
         for (&generation, it) in self.generations.iter().zip(&self.items) {
@@ -188,7 +188,7 @@ impl<T: Item> Arena<T> {
         }
     }
 
-    /// Reads the format of [`save`](Self::save); the lineage is unknown, because any world may have written it.
+    /// Reads the format of [`save`](Self::save). The lineage is unknown, because any world may have written the bytes.
     pub fn load<'a, E: From<ReadError>>(
         r: &mut Reader<'a>,
         mut item: impl FnMut(&mut Reader<'a>) -> Result<T, E>,
