@@ -1,7 +1,7 @@
-//! Boxes, axis-aligned and oriented: points, overlaps, rays, bounds and fits, without a world.
+//! Boxes, axis-aligned and oriented: queries of points, overlaps and rays, bounds and fits, without a world.
 //!
-//! Lengths are metres, all positions are in one common space. Boxes are closed sets: touching boxes overlap, a point on
-//! the surface is contained. Sides may be 0: such a box is a rectangle, a segment or a point.
+//! Lengths are metres; all positions are in one common space. Boxes are closed sets: touching boxes overlap, and a box
+//! contains the points on its surface. Sides may be 0: such a box is a rectangle, a segment or a point.
 //!
 //! ```
 //! use sinew_math::{Rotation, Vec3};
@@ -16,11 +16,11 @@
 //! ```
 //!
 //! # Which file
-//! [`Cuboid`] has the queries of both kinds: points, rays, measures. [`Overlap`] is for pairs. `fit.rs` makes boxes
-//! around points, `frustum.rs` culls and picks.
+//! [`Cuboid`] has the queries of both kinds of boxes: points, rays, measures. [`Overlap`] tests pairs. `fit.rs` fits
+//! boxes around points, `frustum.rs` culls and picks.
 //!
 //! # Separating axes
-//! Separating axes are implemented several times, each for a query that the others would answer more slowly:
+//! Separating axes are implemented several times, because each implementation is the fastest for its query:
 //! - `fifteen.rs` only decides whether two boxes overlap, without a root, for one pair or for eight;
 //! - `separation.rs` finds the best axis of one pair, for manifolds and depths: it stops at the first axis that
 //!   separates, tries the cached one first, and skips edges by an estimate;
@@ -41,14 +41,13 @@
 //! - Rays: slabs (Kay & Kajiya, SIGGRAPH 1986).
 //!
 //! # Precision
-//! Everything is computed relative to a box's centre, so that the error is a few `f32` roundings (6e-8) of the sizes
+//! All results are computed relative to a box's centre, so that the error is a few `f32` roundings (6e-8) of the sizes
 //! and distances. Precision far from the origin is limited by the positions themselves: 0.06 mm at 1 km, 8 mm at 100
 //! km.
 //!
-//! Boxes that are apart by less than 5e-7 of their sizes and distance count as touching. Edges within 0.1° of parallel
-//! define no reliable direction: boxes that are apart along that direction alone, by up to 0.2 % of their sizes and
-//! distance, count as touching, and depths are overestimated by as much. Points, balls and capsules are compared
-//! without tolerance.
+//! Separated boxes closer than 5e-7 of their sizes and distance count as touching. Edges within 0.1° of parallel define
+//! no reliable direction: boxes that only such a direction separates, by up to 0.2 % of their sizes and distance, count
+//! as touching, and depths are overestimated by as much. Points, balls and capsules are compared without tolerance.
 
 use sinew_math::Vec3;
 

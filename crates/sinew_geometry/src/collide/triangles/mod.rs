@@ -1,9 +1,9 @@
-//! A surface of triangles against a convex shape: several manifolds, without contacts at internal edges.
+//! Surface of triangles against a convex shape: several manifolds, without contacts at internal edges.
 //!
 //! Each triangle near the shape is tested by itself ([`round`], [`boxed`], [`other`]). Its contacts are then filtered
 //! ([`claims`]): faces under the shape come first and void their edges and corners, then edges at which the surface
-//! falls away, which void their corners, then corners. So shapes do not catch on edges within a floor. The rest is
-//! merged by normal and reduced to four points each ([`patch`]).
+//! bends down, which void their corners, then corners. So shapes do not catch on edges within a floor. The remaining
+//! contacts are merged by normal and reduced to four points each ([`patch`]).
 
 mod boxed;
 mod claims;
@@ -33,20 +33,20 @@ use solid::Solid;
 pub struct Motion {
     /// Velocity of the shape's centre relative to the surface, world, m/s.
     pub velocity: Vec3,
-    /// Duration of the motion, seconds.
+    /// Time of the motion, seconds.
     pub dt: f32,
-    /// Search distance for points, metres.
+    /// Distance within which points are searched, metres.
     pub margin: f32,
 }
 
-/// Answer of one triangle: points along one normal.
+/// Contact with one triangle: points along one normal.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     /// Normal from the surface to the shape.
     normal: Vec3,
     /// Feature of the triangle that is touched.
     part: Part,
-    /// Time of the contact: now, or once the shape has moved over the triangle.
+    /// Time of the contact: now, or when the shape has moved over the triangle.
     when: When,
     /// Motion of the shape until then, metres.
     shift: Vec3,
