@@ -1,4 +1,4 @@
-//! Deviation of boxes from their mesh.
+//! Deviation of a set of boxes from its mesh.
 
 use super::box_set::BoxSet;
 use super::bvh::MeshBvh;
@@ -7,17 +7,17 @@ use super::sample::sample;
 use crate::boxes::{Aabb, Obb, Overlap};
 use sinew_math::{Random, Vec3, max};
 
-/// Sample points per side.
+/// Number of sample points on the mesh and on the boxes.
 const SAMPLES: usize = 20_000;
 
-/// Distances between two surfaces and a ratio of volumes.
+/// Distances between two surfaces, and a ratio of volumes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
-    /// Volume of the boxes' union over the volume of the mesh; `None` if the mesh is open or encloses nothing.
+    /// Volume of the boxes' union divided by that of the mesh; `None` if the mesh is open or has no volume.
     pub volume_ratio: Option<f32>,
-    /// 95th percentile of the distance between the two surfaces, metres: the larger of both directions.
+    /// 95th percentile of the distance between the two surfaces, metres; the larger of the two directions.
     pub distance_p95: f32,
-    /// The largest distance, metres.
+    /// Largest distance between the two surfaces, metres.
     pub distance_max: f32,
 }
 
