@@ -163,14 +163,14 @@ impl Outline {
         }
     }
 
-    /// The half-edge after this one around its face.
+    /// Returns the half-edge that follows `side` around its face.
     fn next(&self, side: usize) -> usize {
         let Loop { first, count } = self.faces[usize::from(self.half_edges[side].face)];
         let after = side + 1;
         if after == usize::from(first + count) { usize::from(first) } else { after }
     }
 
-    /// Number of faces connected to the first.
+    /// Number of faces connected to the first face, including it.
     fn connected(&self) -> usize {
         let mut met = vec![false; self.faces.len()];
         let (mut open, mut count) = (vec![0], 1);
