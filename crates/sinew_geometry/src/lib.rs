@@ -35,14 +35,14 @@
 //! |---|---|
 //! | [`Shape`] | the kinds of solids and surfaces; volume, [mass properties](Shape::mass_properties), bounds, distances of points |
 //! | [`boxes`] | [`Aabb`] and [`Obb`]: points, overlaps, depths, rays, fits, frustum culling |
-//! | [`boxes::batch`] | the same for thousands of boxes or points, eight side by side |
+//! | [`boxes::batch`] | the same for thousands of boxes or points, eight at a time |
 //! | [`collide`] | contact [manifolds](collide::Manifold) of any two shapes, with feature ids that last from step to step |
 //! | [`convex`] | [gap](convex::gap), overlap and [cast](convex::cast_shape) of any two convex shapes: GJK and EPA in `f64` |
 //! | [`ray`] | rays against every shape, exactly |
 //! | [`hull`] | convex [hulls](Hull) of points: quickhull on a grid, exact decisions |
 //! | [`triangles`] | one-sided triangle [meshes](Mesh) and [height fields](HeightField) |
 //! | [`tree`] | bounding-volume trees with eight boxes in a node: overlaps, rays and sweeps, nearest |
-//! | [`cook`](cook::cook) | from a triangle mesh to a few oriented boxes |
+//! | [`cook`](cook::cook) | conversion of a triangle mesh to a few oriented boxes |
 //! | [`submerged`] | the part of a shape below a plane |
 //! | [`revolved`], [`slabs`] | solids of revolution; lines through boxes, one or eight at a time |
 //!

@@ -26,7 +26,7 @@ const OPEN: u64 = 1 << 31;
 /// Gate field: the number of the batch, in the upper bits, so that no worker enters the same one twice.
 const ONE_BATCH: u64 = 1 << 32;
 
-/// Calls of one task.
+/// A number of calls of one task.
 struct Batch<'a> {
     task: &'a (dyn Fn() + Sync),
     count: usize,

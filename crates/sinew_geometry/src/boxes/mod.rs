@@ -24,20 +24,20 @@
 //! - `fifteen.rs` only decides whether two boxes overlap, without a root, for one pair or for eight;
 //! - `separation.rs` finds the best axis of one pair, for manifolds and depths: it stops at the first axis that
 //!   separates, tries the cached one first, and skips edges by an estimate;
-//! - `batch/separation.rs` finds the best axis of eight pairs side by side: no early exit, everything in the frame of
-//!   A, which is cheaper to set up than axes in the world;
+//! - `batch/separation.rs` finds the best axis of eight pairs with SIMD: without early exit, in the frame of A, which
+//!   is cheaper to set up than axes in the world;
 //! - `collide/polytope.rs` is for hulls: arcs on the Gauss map (Gregorius, GDC 2013) select the pairs of edges that
 //!   count; two boxes have nine pairs, two hulls may have thousands.
 //!
 //! All are tested against brute force in `f64`.
 //!
 //! # Formulas
-//! - A point `p` in a box with centre `c`, axes `aₖ` and half extents `hₖ`: `qₖ = (p − c)·aₖ`, inside where all `|qₖ| ≤ hₖ`;
+//! - A point `p` in a box with centre `c`, axes `aₖ` and half extents `hₖ`: `qₖ = (p − c)·aₖ`, inside if all `|qₖ| ≤ hₖ`;
 //!   the closest point clamps `q` to `±h` (Ericson, "Real-Time Collision Detection", 2005, §5.1.3).
 //! - Two boxes: 15 separating axes, three faces of each and nine crossed edges (Gottschalk, Lin & Manocha, "OBBTree",
 //!   SIGGRAPH 1996); overlap without square roots (Ericson 2005, §4.4.1), depth by the least overlap along one of them.
-//! - A ball: its centre's signed distance less the radius. A capsule: its core's distance to the box; once that has entered,
-//!   the least overlap along three faces and three crossed edges.
+//! - A ball: the signed distance of its centre minus the radius. A capsule: the distance of its core to the box; if the
+//!   core has entered the box, the least overlap along three faces and three crossed edges.
 //! - Rays: slabs (Kay & Kajiya, SIGGRAPH 1986).
 //!
 //! # Precision

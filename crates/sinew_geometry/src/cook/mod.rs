@@ -12,7 +12,7 @@
 //!    takes quadratic time.
 //! 5. Steps that add least to the squared distance between the surfaces, dropping a box or merging two, follow until at
 //!    most the requested number remains.
-//! 6. A box on which one can stand is aligned with its ground: treads stay level, and as high as drawn.
+//! 6. A box with a walkable top is aligned with its ground: treads stay level, and as high as drawn.
 //!
 //! Few triangles give few, coarse boxes. Then all steps are repeated with half the tolerance, as long as boxes remain
 //! and the error decreases.

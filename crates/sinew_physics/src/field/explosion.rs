@@ -35,7 +35,7 @@ pub struct Explosion {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Occlusion {
-    /// Nothing shelters. Default.
+    /// No obstacles shelter. Default.
     #[default]
     None,
     /// Static bodies shelter: a shape gets no impulse if one is between the blast and the shape's centre.

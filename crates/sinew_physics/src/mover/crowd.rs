@@ -34,7 +34,7 @@ impl Crowd {
         self.drift = max(self.drift, (to[self.axis] - from[self.axis]).abs());
     }
 
-    /// Returns the movers that may overlap a region, in their order along the axis; some of them do not.
+    /// Returns all movers that overlap a region and some that do not, in their order along the axis.
     pub fn near(&self, region: &Aabb) -> impl Iterator<Item = u32> {
         let room = self.widest + self.drift;
         let (lo, hi) = (region.min[self.axis] - room, region.max[self.axis] + room);

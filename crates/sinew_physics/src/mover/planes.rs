@@ -2,7 +2,7 @@
 
 use sinew_math::Vec3;
 
-/// Largest number of planes; the nearest are kept.
+/// Largest number of planes; those of farther touches are dropped.
 pub(super) const MOST: usize = 24;
 
 /// Bound on motion along a direction: `normal · x ≥ least`.

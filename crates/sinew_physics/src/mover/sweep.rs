@@ -184,7 +184,7 @@ impl Surroundings<'_> {
     }
 
     /// Returns the planes of the capsule's touches, with `least` as the smallest allowed motion along each normal. A
-    /// slope that is too steep also adds a vertical wall, whose normal `least` gets.
+    /// slope that is too steep also adds a vertical wall; `least` gets the normal of that wall.
     pub fn planes_of(
         &self,
         center: Vec3,

@@ -1,4 +1,4 @@
-//! One move of one mover, in order.
+//! The move of one mover in a step.
 
 use super::crowd::Crowd;
 use super::obstacle::{Obstacle, Owner, Surroundings, gather};
@@ -103,7 +103,7 @@ impl Mover {
         moved + runs.linear * dt
     }
 
-    /// Changes the velocity toward the wanted one, and jumps.
+    /// Accelerates the mover toward the wanted velocity, and starts a requested jump.
     fn accelerate(&mut self, dt: f32) {
         let up = self.def.up;
         if self.jump > 0.0 && self.ground.is_some() {

@@ -1,4 +1,4 @@
-//! A step with objects: all islands run substep by substep, so that objects see a consistent world between the parts.
+//! A step with objects: all islands run substep by substep, so that objects get a consistent world between the parts.
 
 use super::{Corrections, Forces, Objects, Substep};
 use crate::activity::Activity;

@@ -50,7 +50,7 @@ impl World {
     }
 }
 
-/// Each method does the same as the [`World`] method with its name.
+/// Each method has the effect of the [`World`] method with the same name.
 impl<'a> BodyRef<'a> {
     /// Id of the body.
     pub fn id(self) -> BodyId {

@@ -154,7 +154,7 @@ impl World {
         sinew_math::hash::hash_bytes(w.as_bytes())
     }
 
-    /// Marks the current state (everything [`save`](Self::save) writes) for [`reset`](Self::reset).
+    /// Stores the current state, as [`save`](Self::save) writes it, for [`reset`](Self::reset).
     pub fn mark(&mut self) {
         let mut w = Writer::reuse(core::mem::take(&mut self.marked));
         self.save(&mut w);

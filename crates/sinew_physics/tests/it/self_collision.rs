@@ -47,7 +47,7 @@ fn pleated(thickness: f32) -> Cloth {
     cloth
 }
 
-/// Returns the number of pairs of a thread and a triangle of the cloth that it pierces, except at its own triangles.
+/// Returns how often threads pierce triangles of the cloth with which they share no corner.
 fn crossings(positions: &[Vec3]) -> usize {
     let wide = COLUMNS as usize + 1;
     let mut triangles = Vec::new();
