@@ -170,8 +170,7 @@ impl Faceted for Polytope<'_> {
         push_faces::<FACE_CORNERS>(&reference, corners, best, margin, tolerance, out)
     }
 
-    /// Tests the corners and edges that may be as close as the closest so far: those further back along `normal` are
-    /// further from the other solid.
+    /// Tests only corners and edges that may be as close as the closest so far, by their positions along `normal`.
     fn push_closest(&self, b: &Self, normal: Vec3, margin: f32, tolerance: f32, out: &mut Manifold) {
         let a = self;
         let (top, bottom) = (a.reach(normal), -b.reach(-normal));

@@ -18,7 +18,7 @@ fn write(w: &mut Writer, vertices: &[Vec3], loops: impl ExactSizeIterator<Item =
     }
 }
 
-/// Returns the hash of the bytes that [`write`] produces.
+/// Returns the hash of the bytes that `write` produces.
 pub(super) fn hash(vertices: &[Vec3], loops: &[Vec<u8>]) -> u64 {
     let mut w = Writer::new();
     write(&mut w, vertices, loops.iter().cloned());

@@ -75,7 +75,7 @@ impl<'a> Fields<'a> {
         Self { arena, functions, gravity: def.gravity, step, nanoseconds, particles: false }
     }
 
-    /// Returns the fields with a note of whether the world has particle groups.
+    /// Returns the fields, with `particles` set if the world has particle groups.
     pub fn among(self, groups: &Arena<ParticleGroup>) -> Self {
         Self { particles: groups.iter().next().is_some(), ..self }
     }
