@@ -4,18 +4,18 @@ use crate::boxes::{Aabb, HALF_SPACE_REACH};
 use crate::shape::Shape;
 use sinew_math::{Mat3, Transform, Vec3, abs3, max3, min3};
 
-/// Bounds of transformed bounds.
+/// Returns the bounds of a box that is transformed to the world.
 fn turned(bounds: &Aabb, world_from_frame: &Transform) -> Aabb {
     let (m, half) = (world_from_frame.rotation.to_mat3(), bounds.half_extents());
     let reach = abs3(m.x_axis) * half.x + abs3(m.y_axis) * half.y + abs3(m.z_axis) * half.z;
-    // The middle and half sides are rounded.
+    // The centre and the half extents are rounded.
     let rounding = 1e-6 * max3(abs3(bounds.min), abs3(bounds.max)).length();
     Aabb::reaching(world_from_frame.point(bounds.center()), reach).expand(rounding)
 }
 
 impl Shape {
-    /// Bounds of the placed shape, tight except for rounding. A half-space's reach to [`HALF_SPACE_REACH`] on every
-    /// side, except above a level one, whose top is its plane. Bounds of a mesh or height field are its own bounds,
+    /// Bounds of the placed shape, tight except for rounding. Those of a half-space reach to [`HALF_SPACE_REACH`] on
+    /// every side; the top of a level half-space is its plane. Those of a mesh or height field are its own bounds,
     /// rotated.
     pub fn aabb(&self, world_from_shape: &Transform) -> Aabb {
         let (center, rotation) = (world_from_shape.translation, world_from_shape.rotation);
@@ -33,7 +33,7 @@ impl Shape {
                 Aabb::reaching(center, core + Vec3::splat(radius))
             }
             Shape::Hull(ref hull) => {
-                // Computed from the corners relative to the shape's origin, so that nothing is lost far from the
+                // Computed from the corners relative to the shape's origin, so that no digits are lost far from the
                 // world's origin.
                 let m = rotation.to_mat3();
                 let (mut low, mut high) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
@@ -72,8 +72,8 @@ impl Shape {
     }
 }
 
-/// Reach of the unit disk across y along each axis, from the sines themselves: the cosine, near 1, would lose half of
-/// the digits.
+/// Reach of the unit disk across y along each axis. Uses the sines, because the cosine, near 1, would lose half of the
+/// digits.
 fn disk_reach(m: &Mat3) -> Vec3 {
     let reach = |x: f32, z: f32| (x * x + z * z).sqrt();
     Vec3::new(reach(m.x_axis.x, m.z_axis.x), reach(m.x_axis.y, m.z_axis.y), reach(m.x_axis.z, m.z_axis.z))

@@ -1,4 +1,4 @@
-//! Shapes with data (hulls, meshes, height fields) as bytes and by content hash.
+//! Shapes with data (hulls, meshes, height fields): content hashes and conversion to bytes.
 
 use crate::hull::Hull;
 use crate::shape::Shape;
@@ -17,18 +17,18 @@ pub enum DataKind {
     HeightField,
 }
 
-/// Kinds in the order of their tags in bytes, the first of which is [`FIRST_TAG`].
+/// Kinds in the order of their tags; the first tag is [`FIRST_TAG`].
 const KINDS: [DataKind; 3] = [DataKind::Hull, DataKind::Mesh, DataKind::HeightField];
-/// Lower tags are those of shapes that are sizes only.
+/// First tag of a shape with data. Lower tags belong to shapes without data.
 const FIRST_TAG: u8 = 16;
 
 impl DataKind {
-    /// Tag of the kind in bytes, at least 16: lower ones are free for shapes that are sizes only.
+    /// Tag of the kind in bytes, at least 16; lower tags belong to shapes without data.
     pub fn tag(self) -> u8 {
         FIRST_TAG + self as u8
     }
 
-    /// Kind with this tag, if there is one.
+    /// Returns the kind with this tag, if there is one.
     pub fn of_tag(tag: u8) -> Option<Self> {
         KINDS.into_iter().find(|kind| kind.tag() == tag)
     }
@@ -45,7 +45,7 @@ impl core::fmt::Display for DataKind {
 }
 
 impl Shape {
-    /// Hash of a shape's data, the same on every machine; `None` for shapes without data.
+    /// Hash of the shape's data, the same on every machine; `None` for shapes without data.
     pub fn content_hash(&self) -> Option<u64> {
         match self {
             Self::Mesh(mesh) => Some(mesh.content_hash()),
@@ -55,7 +55,7 @@ impl Shape {
         }
     }
 
-    /// Kind of its data; `None` for shapes without data.
+    /// Kind of the shape's data; `None` for shapes without data.
     pub fn data_kind(&self) -> Option<DataKind> {
         match self {
             Self::Hull(_) => Some(DataKind::Hull),
@@ -65,7 +65,7 @@ impl Shape {
         }
     }
 
-    /// Writes the data; nothing of a shape that is sizes only.
+    /// Writes the shape's data; nothing for shapes without data.
     pub fn save_data(&self, w: &mut Writer) {
         match self {
             Self::Hull(hull) => hull.save(w),
@@ -75,10 +75,10 @@ impl Shape {
         }
     }
 
-    /// Reads what [`save_data`](Self::save_data) wrote.
+    /// Reads the format of [`save_data`](Self::save_data).
     ///
     /// # Errors
-    /// Bytes that no shape of this kind was written as.
+    /// If the bytes are not those of a shape of this kind.
     pub fn load_data(kind: DataKind, data: &mut Reader<'_>) -> Result<Self, ReadError> {
         match kind {
             DataKind::Hull => Ok(Self::Hull(Arc::new(Hull::load(data)?))),

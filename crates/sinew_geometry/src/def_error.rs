@@ -1,6 +1,6 @@
 //! Rejection of a definition with invalid numbers.
 
-/// Rejection of a definition, a shape or a setting: the first invalid number and the reason. Its text is one line in
+/// Rejection of a definition, a shape or a setting: the reason for the first invalid number. The text is one line in
 /// lower case without a full stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DefError {
@@ -13,7 +13,7 @@ impl DefError {
         Self { what }
     }
 
-    /// Description of what is wrong, in lower case.
+    /// Returns the reason, in lower case.
     pub const fn what(&self) -> &'static str {
         self.what
     }

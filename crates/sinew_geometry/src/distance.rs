@@ -1,4 +1,4 @@
-//! Signed distance from a point to a shape; particles collide by it, and it decides containment.
+//! Signed distance from a point to a shape, used for containment and for collision of particles.
 
 use crate::boxes::{SurfacePoint, box_distance};
 use crate::revolved::{TaperedCapsule, TruncatedCone};
@@ -6,17 +6,17 @@ use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, clamp, normalize_or};
 
 impl Shape {
-    /// Distance from `point` (world) to the surface, metres, negative inside, and the unit outward normal (world) at
-    /// the closest point of the surface. Exact for every shape. Meshes and height fields are surfaces, which may be
-    /// open: negative is behind the closest triangle, at any distance. If several points are closest (the middle of a
-    /// box, the axis of a capsule), always the same one.
+    /// Returns the distance from the surface to `point` (world), metres, negative inside, and the unit outward normal
+    /// (world) at the closest point of the surface. The distance is exact for every shape. Meshes and height fields are
+    /// surfaces, which may be open: the distance is negative behind the closest triangle, at any distance. If several
+    /// points are closest (for the centre of a box, or the axis of a capsule), the choice is deterministic.
     pub fn signed_distance(&self, world_from_shape: &Transform, point: Vec3) -> (f32, Vec3) {
         let (distance, normal) = self.local_distance(world_from_shape.inverse_point(point));
         (distance, world_from_shape.rotation * normal)
     }
 
-    /// Point of the surface closest to `point` (world), by [`signed_distance`](Self::signed_distance); but nothing is inside of
-    /// a mesh or a height field: from those the distance is 0 or more, and the normal points to where the point is.
+    /// Returns the point of the surface closest to `point` (world), by [`signed_distance`](Self::signed_distance).
+    /// Meshes and height fields have no inside: the distance is then 0 or more, and the normal points to `point`.
     pub fn nearest_surface(&self, world_from_shape: &Transform, point: Vec3) -> SurfacePoint {
         let (distance, normal) = self.signed_distance(world_from_shape, point);
         let behind = distance < 0.0 && self.surface().is_some();
@@ -24,7 +24,7 @@ impl Shape {
         SurfacePoint { point: point - normal * distance, normal, distance }
     }
 
-    /// [`signed_distance`](Self::signed_distance) in the shape's own frame.
+    /// Like [`signed_distance`](Self::signed_distance), in the shape's own frame.
     pub fn local_distance(&self, p: Vec3) -> (f32, Vec3) {
         match *self {
             Shape::Box { half_extents } => box_distance(half_extents, p),
@@ -50,12 +50,12 @@ impl Shape {
     }
 }
 
-/// Distance beyond its radius at which a particle behind a surface counts as being on the other side, metres.
+/// Distance beyond its radius at which a particle behind a surface counts as on the other side, metres.
 const BEHIND: f32 = 0.01;
 
 impl Shape {
-    /// Like [`local_distance`](Self::local_distance), for a ball of this radius: a surface is ignored for points well
-    /// behind it, and distances above `reach` need not be exact.
+    /// Like [`local_distance`](Self::local_distance), for a ball with this radius. A point well behind a surface gets a
+    /// positive distance, and distances above `reach` may be inexact.
     pub fn ball_distance(&self, p: Vec3, radius: f32, reach: f32) -> (f32, Vec3) {
         let Some(surface) = self.surface() else { return self.local_distance(p) };
         let Some(closest) = surface.closest(p, reach) else { return (reach, Vec3::Y) };

@@ -1,7 +1,7 @@
 //! Shapes without a world: masses, distances, contacts and casts, with the same bits on every machine.
 //!
-//! No bodies, materials or steps: everything here is a function of shapes and frames. Lengths are metres, angles
-//! radians, axes right-handed; a frame is a [`Transform`](sinew_math::Transform), and everything is `f32` unless noted.
+//! The crate has no bodies, materials or steps, only functions of shapes and frames. Lengths are metres, angles
+//! radians, axes right-handed; a frame is a [`Transform`](sinew_math::Transform), and numbers are `f32` unless noted.
 //!
 //! ```
 //! use sinew_geometry::collide::{Manifold, collide};
@@ -35,27 +35,27 @@
 //! |---|---|
 //! | [`Shape`] | the kinds of solids and surfaces; volume, [mass properties](Shape::mass_properties), bounds, distances of points |
 //! | [`boxes`] | [`Aabb`] and [`Obb`]: points, overlaps, depths, rays, fits, frustum culling |
-//! | [`boxes::batch`] | the same for thousands of boxes or points, eight side by side |
+//! | [`boxes::batch`] | the same for thousands of boxes or points, eight at a time |
 //! | [`collide`] | contact [manifolds](collide::Manifold) of any two shapes, with feature ids that last from step to step |
 //! | [`convex`] | [gap](convex::gap), overlap and [cast](convex::cast_shape) of any two convex shapes: GJK and EPA in `f64` |
 //! | [`ray`] | rays against every shape, exactly |
 //! | [`hull`] | convex [hulls](Hull) of points: quickhull on a grid, exact decisions |
 //! | [`triangles`] | one-sided triangle [meshes](Mesh) and [height fields](HeightField) |
 //! | [`tree`] | bounding-volume trees with eight boxes in a node: overlaps, rays and sweeps, nearest |
-//! | [`cook`](cook::cook) | from a triangle mesh to a few oriented boxes |
+//! | [`cook`](cook::cook) | conversion of a triangle mesh to a few oriented boxes |
 //! | [`submerged`] | the part of a shape below a plane |
 //! | [`revolved`], [`slabs`] | solids of revolution; lines through boxes, one or eight at a time |
 //!
 //! # Figures
-//! Overlap of two boxes: milliseconds for 4,096 pairs in the cache and for 10,000 pairs from memory, with AVX2, beside
-//! the separating axis test of `parry3d` 0.31 (`obb_tests` and `obb_tests_streamed` of `docs/benchmarks.md`):
+//! Overlap of two boxes, in milliseconds for 4,096 pairs in the cache and for 10,000 pairs from memory, with AVX2, next
+//! to the separating axis test of `parry3d` 0.31 (`obb_tests` and `obb_tests_streamed` of `docs/benchmarks.md`):
 //!
 //! | | Sinew | `parry3d` | |
 //! |---|---:|---:|---:|
 //! | in the cache | 0.029 | 1.00 | 35× |
 //! | from memory | 0.123 | 3.42 | 28× |
 //!
-//! Manifolds of 4,096 random pairs without a cache, nanoseconds a pair, one thread (`cargo run --release --bin
+//! Manifolds of 4,096 random pairs without a cache, in nanoseconds per pair, one thread (`cargo run --release --bin
 //! manifolds` in `bench/kernels`). Hulls and cylinders are slower than Parry's:
 //!
 //! | | Sinew | `parry3d` | |
@@ -72,8 +72,8 @@
 //! | hull and hull | 8,296 | 2,437 | 0.3× |
 //!
 //! # Same bits
-//! Every result has the same bits on every target, at every optimisation level and with any number of lanes, alone or
-//! in a batch. NaN and infinities never cause a panic; each call documents its result for them.
+//! Every result has the same bits on every target, at every optimisation level and with any SIMD width, alone or in a
+//! batch. NaN and infinities never cause a panic; each function documents its result for them.
 #![forbid(unsafe_code)]
 
 mod bounds;

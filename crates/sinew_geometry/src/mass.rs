@@ -6,7 +6,7 @@ use core::f32::consts::PI;
 use sinew_math::{Sym3, Transform, Vec3};
 
 impl Shape {
-    /// Cubic metres; 0 for a half-space, which has no end, and for meshes and height fields, which may be open.
+    /// Volume, m³; 0 for half-spaces, which are unbounded, and for meshes and height fields, which may be open.
     pub fn volume(&self) -> f32 {
         match *self {
             Shape::Box { half_extents: h } => 8.0 * h.x * h.y * h.z,
@@ -24,7 +24,7 @@ impl Shape {
         }
     }
 
-    /// Mass properties in the shape's frame at `density` kg/m³, ≥ 0; zero for what has no volume.
+    /// Mass properties in the shape's frame at `density` (kg/m³, ≥ 0); zero for shapes without volume.
     pub fn mass_properties(&self, density: f32) -> MassProperties {
         let mass = density * self.volume();
         let diagonal = match *self {
@@ -56,7 +56,7 @@ impl Shape {
     }
 }
 
-/// Inertia of a box about its centre and along its axes.
+/// Moments of inertia of a box about its centre, along its axes, kg·m².
 pub(crate) fn box_inertia(h: Vec3, mass: f32) -> Vec3 {
     Vec3::new(h.y * h.y + h.z * h.z, h.x * h.x + h.z * h.z, h.x * h.x + h.y * h.y) * (mass / 3.0)
 }
@@ -69,7 +69,8 @@ fn cylinder_volume(half_height: f32, radius: f32) -> f32 {
     2.0 * PI * half_height * radius * radius
 }
 
-/// Cylinder and two half balls, whose centres of mass lie 3/8 r beyond the cylinder's ends; axis along y.
+/// Moments of inertia of a cylinder and two half balls, whose centres of mass are 3/8 r beyond the cylinder's ends;
+/// axis along y.
 fn capsule_inertia(half_height: f32, radius: f32, density: f32) -> Vec3 {
     let (h2, r2) = (half_height * half_height, radius * radius);
     let cylinder = density * cylinder_volume(half_height, radius);
@@ -80,14 +81,14 @@ fn capsule_inertia(half_height: f32, radius: f32, density: f32) -> Vec3 {
 }
 
 impl MassProperties {
-    /// Combined properties of two objects in the same frame (parallel axis theorem).
+    /// Returns the combined properties of two bodies in the same frame (parallel axis theorem).
     #[must_use]
     pub fn combine(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         if mass <= 0.0 {
             return Self { mass, center: self.center, inertia: self.inertia + other.inertia };
         }
-        // Measure from this centre, not from the origin: a sum of large coordinates would lose the difference.
+        // Measured from this centre, not from the origin, because a sum of large coordinates would lose the difference.
         let apart = other.center - self.center;
         let reduced = self.mass * other.mass / mass;
         Self {
@@ -97,7 +98,7 @@ impl MassProperties {
         }
     }
 
-    /// The same properties in another frame.
+    /// Converts the properties to another frame.
     #[must_use]
     pub fn transformed(&self, frame_from_this: &Transform) -> Self {
         Self {
@@ -107,7 +108,7 @@ impl MassProperties {
         }
     }
 
-    /// The same distribution with another total mass (kg, ≥ 0). Without mass it becomes a point.
+    /// Returns the same distribution with another total mass (kg, ≥ 0). If the mass was 0, the result is a point mass.
     #[must_use]
     pub fn scaled_to(&self, mass: f32) -> Self {
         let factor = if self.mass > 0.0 { mass / self.mass } else { 0.0 };
@@ -115,7 +116,7 @@ impl MassProperties {
     }
 }
 
-/// Inertia of a unit point mass at `r` about the origin: `|r|² − r rᵀ`.
+/// Inertia of a unit point mass at `r` about the origin, m²: `|r|² − r rᵀ`.
 fn point_inertia(r: Vec3) -> Sym3 {
     Sym3::IDENTITY * r.dot(r) - Sym3::outer(r)
 }

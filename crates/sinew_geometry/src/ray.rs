@@ -1,17 +1,17 @@
-//! Rays against shapes, exact for every shape.
+//! Ray casts against shapes, exact for every shape.
 
 use crate::revolved::{TaperedCapsule, TruncatedCone};
 use crate::shape::Shape;
 use crate::slabs::Slabs;
 use sinew_math::{Transform, Vec3, abs3, max, normalize_or};
 
-/// A stretch of a line, from `origin` to `origin + direction`.
+/// A ray: the segment from `origin` to `origin + direction`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(alias = "raycast")]
 pub struct Ray {
     /// Start, metres.
     pub origin: Vec3,
-    /// Displacement to the end, metres; its length is the ray's, so it need not be 1.
+    /// Displacement from start to end, metres; its length is the length of the ray.
     pub direction: Vec3,
 }
 
@@ -22,13 +22,13 @@ impl Ray {
         Self { origin: from, direction: to - from }
     }
 
-    /// Point at `fraction`, 0..=1.
+    /// Point at `fraction`, 0..=1, metres.
     #[inline]
     pub fn at(&self, fraction: f32) -> Vec3 {
         self.origin + self.direction * fraction
     }
 
-    /// True if squares of its length may overflow.
+    /// True if the square of the ray's length may overflow.
     #[inline]
     pub fn is_long(&self) -> bool {
         let way = abs3(self.direction);
@@ -36,26 +36,26 @@ impl Ray {
     }
 }
 
-/// The square of a longer vector may overflow.
+/// Largest component of a direction whose square is safe from overflow.
 const LONG: f32 = 1e15;
-/// 2⁻⁹⁶: factor for longer rays, exact.
+/// Factor for longer directions: 2⁻⁹⁶, exact.
 const SHORTENED: f32 = f32::from_bits((127 - 96) << 23);
 
 /// First point of a ray in a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
-    /// Share of the ray before the hit, 0..=1; for a half-line lengths of its direction, ≥ 0.
+    /// Fraction of the ray before the hit, 0..=1; for a half-line, in lengths of its direction, ≥ 0.
     pub fraction: f32,
-    /// Point in the world, metres.
+    /// Hit point, world, metres.
     pub point: Vec3,
-    /// Unit, out of the shape, in the world.
+    /// Unit normal, out of the shape, world.
     pub normal: Vec3,
 }
 
 impl Shape {
-    /// The first point of the ray inside the shape; `None` if there is none, or a number is not finite.
+    /// Returns the first point of the ray inside the shape; `None` if there is none, or a number is not finite.
     ///
-    /// A ray that starts inside or on the surface hits at fraction 0, with a normal opposite to its direction; if its
+    /// A ray that starts inside or on the surface hits at fraction 0, with a normal opposite to its direction; if the
     /// direction is zero, with the outward normal of the closest surface. This holds for every shape. A ray that starts
     /// outside and points away never hits.
     ///
@@ -65,8 +65,8 @@ impl Shape {
         self.cast_half_line(world_from_shape, ray).filter(|hit| hit.fraction <= 1.0)
     }
 
-    /// As [`cast_ray`](Self::cast_ray) for the ray without an end: the fraction counts lengths of its direction, and may
-    /// exceed 1.
+    /// Like [`cast_ray`](Self::cast_ray), for a ray without an end: the fraction counts lengths of the direction, and
+    /// may exceed 1.
     pub fn cast_half_line(&self, world_from_shape: &Transform, ray: &Ray) -> Option<RayHit> {
         if !(ray.origin.is_finite() && ray.direction.is_finite() && world_from_shape.is_finite()) {
             return None;
@@ -79,7 +79,7 @@ impl Shape {
         Some(RayHit { fraction, point: ray.at(fraction), normal: world_from_shape.rotation * normal })
     }
 
-    /// Fraction (≥ 0, may exceed 1) and normal where a line enters, in the shape's frame.
+    /// Returns the fraction (≥ 0, may exceed 1) and the normal at which a ray enters, in the shape's frame.
     pub(crate) fn cast_local(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         if let Some(surface) = self.surface() {
             return surface.enter(origin, direction);
@@ -97,7 +97,7 @@ impl Shape {
         self.enter(origin, direction).filter(|(fraction, _)| *fraction < f32::INFINITY)
     }
 
-    /// As [`cast_local`](Self::cast_local), of a line from outside, in the shape's frame.
+    /// Like [`cast_local`](Self::cast_local), for a ray that starts outside the shape; in the shape's frame.
     fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         match *self {
             Self::Box { half_extents } => enter_box(half_extents, origin, direction),
@@ -128,10 +128,10 @@ impl Shape {
     }
 }
 
-/// A point further beyond a face than this, metres, is outside without an exact distance.
+/// Distance beyond a face, metres, above which a point counts as outside without an exact distance.
 pub const CLEARLY_OUTSIDE: f32 = 1e-6;
 
-/// The surface of a union is entered where the first of its parts is.
+/// Returns the first entry into any part of a union.
 fn first_of(ends: [Option<(f32, Vec3)>; 2], side: Option<(f32, Vec3)>) -> Option<(f32, Vec3)> {
     ends.into_iter().chain([side]).flatten().reduce(|a, b| if b.0 < a.0 { b } else { a })
 }
@@ -141,8 +141,9 @@ fn enter_box(half: Vec3, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
     slabs.is_entered().then(|| (slabs.enter, Vec3::from_array(slabs.normal().to_array())))
 }
 
-/// By the line's closest point to the centre: the usual quadratic loses the ball's radius over a long distance (Haines
-/// et al., "Precision improvements for ray/sphere intersection", Ray Tracing Gems 2019).
+/// Returns the entry into a ball, from the ray's closest point to the centre: the usual quadratic loses the ball's
+/// radius over a long distance (Haines et al., "Precision improvements for ray/sphere intersection", Ray Tracing Gems
+/// 2019).
 fn enter_ball(center: Vec3, radius: f32, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
     let length_squared = direction.dot(direction);
     if length_squared <= f32::MIN_POSITIVE {
@@ -152,7 +153,7 @@ fn enter_ball(center: Vec3, radius: f32, origin: Vec3, direction: Vec3) -> Optio
     let middle = -offset.dot(direction) / length_squared;
     let closest = offset + direction * middle;
     let depth = radius * radius - closest.dot(closest);
-    // Written so that NaN, from squares that overflow, fails.
+    // This form rejects NaN, which squares that overflow produce.
     if !(depth >= 0.0 && middle >= 0.0) {
         return None;
     }
@@ -160,7 +161,7 @@ fn enter_ball(center: Vec3, radius: f32, origin: Vec3, direction: Vec3) -> Optio
     Some((fraction, normalize_or(offset + direction * fraction, normalize_or(-direction, Vec3::Y))))
 }
 
-/// The side of a cylinder along y, without its ends.
+/// Returns the entry through the side of a cylinder along y, without its ends.
 fn enter_tube(half_height: f32, radius: f32, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
     let flat = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
     let (fraction, normal) = enter_ball(Vec3::ZERO, radius, flat(origin), flat(direction))?;

@@ -8,7 +8,7 @@ use sinew_math::{Sym3, Vec2, Vec3, clamp, max, min};
 /// Truncated cone along y from −`half_height` to `half_height`, with flat ends; metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruncatedCone {
-    /// Half of its length, metres.
+    /// Half the length, metres.
     pub half_height: f32,
     /// Radius of the end at −`half_height`, metres.
     pub bottom: f32,
@@ -16,10 +16,10 @@ pub struct TruncatedCone {
     pub top: f32,
 }
 
-/// Hull of two balls on the y axis, neither inside the other; metres.
+/// Convex hull of two balls on the y axis, neither inside the other; metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaperedCapsule {
-    /// Half the distance of the balls' centres, metres.
+    /// Half the distance between the balls' centres, metres.
     pub half_height: f32,
     /// Radius of the ball at −`half_height`, metres.
     pub bottom: f32,
@@ -27,12 +27,13 @@ pub struct TaperedCapsule {
     pub top: f32,
 }
 
-/// A point in the half-plane through the axis: distance from the axis, and height.
+/// Converts a point to the half-plane through the axis: distance from the axis, and height.
 fn to_profile(p: Vec3) -> Vec2 {
     Vec2::new((p.x * p.x + p.z * p.z).sqrt(), p.y)
 }
 
-/// A direction of the half-plane through the axis and `p`; through x for a point on the axis.
+/// Converts a direction in the half-plane through the axis and `p` to three dimensions; the half-plane contains x if
+/// `p` is on the axis.
 fn from_profile(v: Vec2, p: Vec3) -> Vec3 {
     let out = (p.x * p.x + p.z * p.z).sqrt();
     let (x, z) = if out > 1e-18 { (p.x / out, p.z / out) } else { (1.0, 0.0) };
@@ -40,12 +41,12 @@ fn from_profile(v: Vec2, p: Vec3) -> Vec3 {
 }
 
 impl TruncatedCone {
-    /// Cylinder: equal ends.
+    /// Returns a cylinder: a truncated cone with equal ends.
     pub fn cylinder(half_height: f32, radius: f32) -> Self {
         Self { half_height, bottom: radius, top: radius }
     }
 
-    /// Cone: its base at −`half_height`, its apex at `half_height`.
+    /// Returns a cone with its base at −`half_height` and its apex at `half_height`.
     pub fn cone(half_height: f32, radius: f32) -> Self {
         Self { half_height, bottom: radius, top: 0.0 }
     }
@@ -61,7 +62,8 @@ impl TruncatedCone {
         0.5 * (self.bottom + self.top) + 0.5 * (self.top - self.bottom) * (y / self.half_height)
     }
 
-    /// Signed distance of a point to the surface, metres, and the unit outward normal at the closest point of it.
+    /// Returns the signed distance of a point to the surface, metres, and the unit outward normal at the closest point
+    /// of the surface.
     pub fn distance(&self, p: Vec3) -> (f32, Vec3) {
         let q = to_profile(p);
         let h = self.half_height;
@@ -76,7 +78,7 @@ impl TruncatedCone {
         let along = high - low;
         let t = clamp((q - low).dot(along) / along.dot(along), 0.0, 1.0);
         if beyond_side > 0.0 && t > 0.0 && t < 1.0 {
-            // Close to the side its own normal is exact at any distance.
+            // Near the side, the normal of the side is exact at any distance.
             return (beyond_side, from_profile(side, p));
         }
         let candidates =
@@ -84,7 +86,7 @@ impl TruncatedCone {
         let nearer = |a: Vec2, b: Vec2| if b.dot(b) < a.dot(a) { b } else { a };
         let offset = candidates.into_iter().reduce(nearer).unwrap_or(face);
         let distance = offset.length();
-        // Squares of tiny distances vanish.
+        // Squares of tiny distances underflow.
         if distance > 1e-12 {
             (distance, from_profile(offset / distance, p))
         } else {
@@ -92,15 +94,15 @@ impl TruncatedCone {
         }
     }
 
-    /// First point of a half-line from outside that lies in the solid: fraction of `direction` (≥ 0) and unit normal.
-    /// In `f64`: the quadratic of a cone loses a small radius over a long distance.
+    /// Returns the fraction of `direction` (≥ 0) and the unit normal at which a half-line from outside enters the
+    /// solid. Uses `f64`, because the quadratic of a cone loses a small radius over a long distance.
     pub fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         let [ox, oy, oz] = origin.to_array().map(f64::from);
         let [dx, dy, dz] = direction.to_array().map(f64::from);
         let h = f64::from(self.half_height);
         let mean = 0.5 * (f64::from(self.bottom) + f64::from(self.top));
         let slope = 0.5 * (f64::from(self.top) - f64::from(self.bottom)) / h;
-        // The stretch between the planes of the ends.
+        // Range of the line between the planes of the ends.
         let (mut first, mut last) = (0.0, f64::INFINITY);
         if dy == 0.0 {
             if oy.abs() > h {
@@ -125,8 +127,8 @@ impl TruncatedCone {
         let a = dx * dx + dz * dz - growth * growth;
         let half_b = x * dx + z * dz - radius * growth;
         let root = half_b * half_b - a * c;
-        // The first root after the start, in the form without cancellation; none if the line does not come closer to
-        // the side.
+        // First root after the start, in the form without cancellation; no root if the line does not come closer to the
+        // side.
         let steep = root.sqrt() - half_b;
         if root < 0.0 || steep <= 0.0 {
             return None;
@@ -140,7 +142,7 @@ impl TruncatedCone {
         Some(((first + t) as f32, from_profile(self.side_normal(), at)))
     }
 
-    /// The slices it consists of.
+    /// Returns the slices of the solid.
     pub fn slices(&self) -> [Slice; 1] {
         let h = f64::from(self.half_height);
         let mean = 0.5 * (f64::from(self.bottom) + f64::from(self.top));
@@ -150,19 +152,20 @@ impl TruncatedCone {
 }
 
 impl TaperedCapsule {
-    /// Hull of the ball of radius `bottom` around −`half_height` and the ball of radius `top` around `half_height`.
+    /// Creates the convex hull of a ball of radius `bottom` around −`half_height` and a ball of radius `top` around
+    /// `half_height`.
     pub fn new(half_height: f32, bottom: f32, top: f32) -> Self {
         Self { half_height, bottom, top }
     }
 
-    /// Unit, out of the side, in the half-plane through the axis.
+    /// Unit normal out of the side, in the half-plane through the axis.
     pub fn side_normal(&self) -> Vec2 {
         let sin = (self.bottom - self.top) / (2.0 * self.half_height);
-        // From the product, not the square, which loses precision near 1.
+        // Uses the product, because the square loses precision near 1.
         Vec2::new(max((1.0 - sin) * (1.0 + sin), 0.0).sqrt(), sin)
     }
 
-    /// The part between the circles along which the side touches the balls, and the height of its middle.
+    /// Returns the part between the circles along which the side touches the balls, and the height of its centre.
     pub fn side(&self) -> (TruncatedCone, f32) {
         let n = self.side_normal();
         let (low, high) = (-self.half_height + self.bottom * n.y, self.half_height + self.top * n.y);
@@ -171,16 +174,16 @@ impl TaperedCapsule {
         (side, 0.5 * (low + high))
     }
 
-    /// Centres and radii of the two balls.
+    /// Returns the centres and radii of the two balls.
     pub fn balls(&self) -> [(Vec3, f32); 2] {
         let up = Vec3::new(0.0, self.half_height, 0.0);
         [(-up, self.bottom), (up, self.top)]
     }
 
-    /// Signed distance and outward normal at the closest surface.
+    /// Returns the signed distance and the outward normal at the closest point of the surface.
     pub fn distance(&self, p: Vec3) -> (f32, Vec3) {
         let (q, n) = (to_profile(p), self.side_normal());
-        // Height at which the side's normal through the point meets the axis; times the cosine, which may be 0.
+        // Height at which the normal of the side through the point meets the axis, times the cosine, which may be 0.
         let foot = q.y * n.x - q.x * n.y;
         let reach = self.half_height * n.x;
         if foot.abs() < reach {
@@ -195,13 +198,14 @@ impl TaperedCapsule {
         (length - radius, normal)
     }
 
-    /// The slices it consists of.
+    /// Returns the slices of the solid.
     pub fn slices(&self) -> [Slice; 3] {
         let (h, bottom, top) = (f64::from(self.half_height), f64::from(self.bottom), f64::from(self.top));
         let sin = (bottom - top) / (2.0 * h);
         let (low, high) = (-h + bottom * sin, h + top * sin);
         let ball = |center: f64, radius: f64| [radius * radius - center * center, 2.0 * center, -1.0];
-        // Along the side the radius is linear: that of the ball around the foot of the normal, over the cosine.
+        // Along the side the radius is linear: the radius of the ball around the foot of the normal, divided by the
+        // cosine.
         let cos = ((1.0 - sin) * (1.0 + sin)).sqrt();
         let (start, end) = (bottom * cos, top * cos);
         let slope = (end - start) / (high - low);
@@ -218,11 +222,11 @@ impl TaperedCapsule {
     }
 }
 
-/// A solid of revolution between two heights whose radius at height y is the root of `a + b y + c y²`: parts of balls,
-/// cylinders and cones.
+/// Solid of revolution between two heights whose radius at height y is the root of `a + b y + c y²`: a part of a ball,
+/// cylinder or cone.
 #[derive(Clone, Copy, Debug)]
 pub struct Slice {
-    /// Lowest height, metres.
+    /// Smallest height, metres.
     pub from: f64,
     /// Largest height, metres.
     pub to: f64,
@@ -231,17 +235,17 @@ pub struct Slice {
 }
 
 impl Slice {
-    /// Squared radius at a height, ≥ 0.
+    /// Squared radius at a height, m², ≥ 0.
     pub fn radius_squared_at(&self, y: f64) -> f64 {
         let [a, b, c] = self.radius_squared;
         let squared = a + y * (b + y * c);
         if squared > 0.0 { squared } else { 0.0 }
     }
 
-    /// `∫ r²`, `∫ r² y`, `∫ r² y²` and `∫ r⁴` over its height.
+    /// `∫ r²`, `∫ r² y`, `∫ r² y²` and `∫ r⁴` over the height of the slice.
     fn integrals(&self) -> [f64; 4] {
         let [a, b, c] = self.radius_squared;
-        // Powers of y, integrated.
+        // Integrated powers of y.
         let (mut low, mut high) = (1.0, 1.0);
         let p: [f64; 5] = core::array::from_fn(|k| {
             (low, high) = (low * self.from, high * self.to);

@@ -1,4 +1,4 @@
-//! Shapes with data in serde formats: their source data, from which they are rebuilt.
+//! Shapes with data in serde formats: stores the source data, from which the shape is rebuilt.
 
 use crate::hull::Hull;
 use crate::triangles::{HeightField, HeightFieldDef, Mesh};

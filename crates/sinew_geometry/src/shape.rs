@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub enum Shape {
     /// Box around the origin.
     Box {
-        /// Half of each side.
+        /// Half extents.
         half_extents: Vec3,
     },
     /// Ball around the origin.
@@ -30,10 +30,10 @@ pub enum Shape {
         /// Radius.
         radius: f32,
     },
-    /// The hull of two balls on the y axis, around −`half_height` and `half_height`. Neither may contain the other: the
-    /// radii differ by less than the distance of the centres.
+    /// Convex hull of two balls on the y axis, around −`half_height` and `half_height`. Neither ball may contain the
+    /// other: the radii differ by less than the distance between the centres.
     TaperedCapsule {
-        /// Half the distance of the balls' centres.
+        /// Half the distance between the balls' centres.
         half_height: f32,
         /// Radius of the ball at −`half_height`.
         radius_bottom: f32,
@@ -42,7 +42,7 @@ pub enum Shape {
     },
     /// Flat-ended cylinder along y from −`half_height` to `half_height`.
     Cylinder {
-        /// Half of its length.
+        /// Half the length.
         half_height: f32,
         /// Radius.
         radius: f32,
@@ -54,46 +54,47 @@ pub enum Shape {
         /// Radius of the base.
         radius: f32,
     },
-    /// Everything below the plane y = 0 of its frame. Static bodies only.
+    /// The half-space below the plane y = 0 of its frame. Static bodies only.
     HalfSpace,
-    /// Convex solid with flat faces; its origin need not be inside.
+    /// Convex solid with flat faces; its origin may be outside.
     Hull(#[cfg_attr(feature = "serde", serde(with = "crate::serial::hull"))] Arc<Hull>),
-    /// A surface of one-sided triangles. It has no mass of its own: for static and kinematic bodies, or with a given mass.
+    /// Surface of one-sided triangles. It has no mass of its own: for static and kinematic bodies, or with a given
+    /// mass.
     Mesh(#[cfg_attr(feature = "serde", serde(with = "crate::serial::mesh"))] Arc<Mesh>),
-    /// Terrain over its x and z axes, solid from above. As for meshes.
+    /// Terrain over the x and z axes, solid from above. Like a mesh, it has no mass of its own.
     HeightField(#[cfg_attr(feature = "serde", serde(with = "crate::serial::height_field"))] Arc<HeightField>),
 }
 
-/// Short constructors. None checks its sizes; [`Shape::check`] and `World` do.
+/// Short constructors. They do not check sizes; [`Shape::check`] and `World` do.
 impl Shape {
-    /// Box around the origin, by half of each side, metres.
+    /// Returns a box around the origin by its half extents, metres.
     #[doc(alias = "box")]
     pub fn cuboid(half_extents: Vec3) -> Self {
         Self::Box { half_extents }
     }
 
-    /// Ball around the origin, by its radius, metres.
+    /// Returns a ball around the origin by its radius, metres.
     #[doc(alias = "ball")]
     pub fn sphere(radius: f32) -> Self {
         Self::Sphere { radius }
     }
 
-    /// Capsule along y, by half the length of its segment, which has no caps, and its radius, metres.
+    /// Returns a capsule along y by half the length of its segment, without the caps, and its radius, metres.
     pub fn capsule(half_height: f32, radius: f32) -> Self {
         Self::Capsule { half_height, radius }
     }
 
-    /// Cylinder along y, by half of its length and its radius, metres.
+    /// Returns a cylinder along y by half its length and its radius, metres.
     pub fn cylinder(half_height: f32, radius: f32) -> Self {
         Self::Cylinder { half_height, radius }
     }
 
-    /// Cone along y, by half the distance from base to apex and the radius of its base, metres.
+    /// Returns a cone along y by half the distance from base to apex and the radius of its base, metres.
     pub fn cone(half_height: f32, radius: f32) -> Self {
         Self::Cone { half_height, radius }
     }
 
-    /// Convex hull of points, metres.
+    /// Builds the convex hull of points, metres.
     ///
     /// # Errors
     /// If the points span no solid: see [`Hull::new`].
@@ -102,7 +103,7 @@ impl Shape {
         Hull::new(points).map(|hull| Self::Hull(Arc::new(hull)))
     }
 
-    /// Mesh of triangles: vertices (metres) and three of their indices for each triangle, counter-clockwise seen from outside.
+    /// Builds a mesh from vertices (metres) and three vertex indices per triangle, counter-clockwise seen from outside.
     ///
     /// # Errors
     /// If a number is not finite or an index is out of range: see [`Mesh::new`].
@@ -113,13 +114,13 @@ impl Shape {
 }
 
 impl Shape {
-    /// Checks that its sizes are finite and positive (a capsule's half height may be 0) and form a shape of its kind;
+    /// Checks that the sizes are finite and positive (a capsule's half height may be 0) and form a shape of its kind;
     /// returns the reason otherwise.
     ///
     /// # Errors
     /// The reason, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
-        // Written so that NaN fails.
+        // This form rejects NaN.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         match *self {
             Self::Box { half_extents: h } if !(positive(h.x) && positive(h.y) && positive(h.z)) => {
@@ -152,8 +153,8 @@ impl Shape {
         }
     }
 
-    /// Radius of the largest inscribed ball, metres: half the least width. For a cone slightly less, for a hull that
-    /// around its centre. Infinite for half-spaces, meshes and height fields.
+    /// Radius of the largest inscribed ball, metres: half the least width. For a cone a slightly smaller radius; for a
+    /// hull the ball is around its centre. Infinite for half-spaces, meshes and height fields.
     #[inline]
     pub fn inner_radius(&self) -> f32 {
         match *self {
@@ -161,7 +162,8 @@ impl Shape {
             Self::Sphere { radius } | Self::Capsule { radius, .. } => radius,
             Self::TaperedCapsule { radius_bottom, radius_top, .. } => max(radius_bottom, radius_top),
             Self::Cylinder { half_height, radius } => min(half_height, radius),
-            // Radius for the generating triangle of a cone: twice its area over its perimeter.
+            // Radius of the circle inscribed in the generating triangle of a cone: twice the area divided by the
+            // perimeter.
             Self::Cone { half_height, radius } => {
                 let slant = (radius * radius + 4.0 * half_height * half_height).sqrt();
                 2.0 * half_height * (radius / (radius + slant))
@@ -171,7 +173,8 @@ impl Shape {
         }
     }
 
-    /// Radius of the smallest ball around the shape's origin that holds it, metres. Infinite for a half-space.
+    /// Radius of the smallest ball around the shape's origin that contains the shape, metres. Infinite for a
+    /// half-space.
     #[inline]
     pub fn bounding_radius(&self) -> f32 {
         match *self {
@@ -191,7 +194,7 @@ impl Shape {
         }
     }
 
-    /// True if it has volume, and with it a mass by density.
+    /// True if the shape has a volume, and so a mass by its density.
     #[inline]
     pub fn is_solid(&self) -> bool {
         !matches!(self, Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_))
@@ -205,7 +208,7 @@ impl Shape {
     }
 }
 
-/// Distance from the origin to the farthest corner, metres.
+/// Distance from the origin to the farthest corner of bounds, metres.
 fn reach(bounds: &Aabb) -> f32 {
     max3(abs3(bounds.min), abs3(bounds.max)).length()
 }
@@ -214,7 +217,7 @@ fn reach(bounds: &Aabb) -> f32 {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MassProperties {
-    /// kg.
+    /// Mass, kg.
     pub mass: f32,
     /// Centre of mass in the given frame, metres.
     pub center: Vec3,
@@ -223,7 +226,7 @@ pub struct MassProperties {
 }
 
 impl Shape {
-    /// Surface of the shape, if it consists of triangles.
+    /// Returns the shape as a surface, if it consists of triangles.
     #[inline]
     pub fn surface(&self) -> Option<Surface<'_>> {
         match self {

@@ -1,21 +1,21 @@
-//! Lines through boxes, one at a time or eight: slabs (Kay & Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986).
+//! Lines through boxes, one or eight at a time: slabs (Kay & Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986).
 
 use sinew_math::lanes::{Real, Vector3};
 
-/// A line and the three slabs that a box is the intersection of, in the box's frame.
+/// A line and the three slabs whose intersection is a box, in the box's frame.
 pub struct Slabs<R: Real> {
-    /// Fraction at which the line has entered all slabs that it does not run along.
+    /// Fraction at which the line has entered all slabs to which it is not parallel.
     pub enter: R,
-    /// Fraction at which it leaves the first of them.
+    /// Fraction at which the line leaves the first of these slabs.
     leave: R,
-    /// True if it runs along a slab, outside of it.
+    /// True if the line is parallel to a slab and outside it.
     beside: R::Mask,
-    /// Fraction at which it enters each slab, and from which side.
+    /// Fraction at which the line enters each slab, and the sign of the face that it enters.
     each: [(R, R); 3],
 }
 
 impl<R: Real> Slabs<R> {
-    /// Slabs of the box with these half extents around the origin.
+    /// Computes the slabs of the box with these half extents around the origin.
     #[inline(always)]
     pub fn new(half_extents: Vector3<R>, origin: Vector3<R>, direction: Vector3<R>) -> Self {
         let (half, origin, way) = (half_extents.to_array(), origin.to_array(), direction.to_array());
@@ -43,7 +43,7 @@ impl<R: Real> Slabs<R> {
         R::le(self.enter, self.leave) & R::ge(self.enter, R::splat(0.0)) & !self.beside
     }
 
-    /// Normal of the entry face, unit, in the box's frame; the first of several.
+    /// Unit normal of the entry face, in the box's frame; the first if there are several.
     #[inline(always)]
     pub fn normal(&self) -> Vector3<R> {
         let zero = R::splat(0.0);

@@ -3,8 +3,8 @@
 use super::expect_half_extents;
 use sinew_math::{Vec3, max3, min3};
 
-/// Half-space bounds reach this far from the origin, metres: finite, so that sums and differences stay finite, and
-/// beyond any world.
+/// Distance to which half-space bounds reach from the origin, metres: finite, so that sums and differences stay finite,
+/// and beyond any world.
 pub const HALF_SPACE_REACH: f32 = 1.0e9;
 
 /// Axis-aligned box, metres.
@@ -32,7 +32,7 @@ impl Aabb {
         Self { min, max }
     }
 
-    /// Creates a box from its centre and half of its sides.
+    /// Creates a box from its centre and half extents.
     ///
     /// # Panics
     /// If a number is not finite or a half extent is negative.
@@ -42,8 +42,8 @@ impl Aabb {
         Self::reaching(center, half_extents)
     }
 
-    /// [`around`](Self::around) for computed values: a number that is not finite must reach the check of the bodies
-    /// instead of causing a panic.
+    /// Like [`around`](Self::around), without the check, for computed values: a number that is not finite must reach
+    /// the check of the bodies instead of causing a panic.
     #[inline]
     pub fn reaching(center: Vec3, half_extents: Vec3) -> Self {
         Self { min: center - half_extents, max: center + half_extents }
@@ -55,27 +55,27 @@ impl Aabb {
         self.merge(other) == *self
     }
 
-    /// The smallest box that contains both.
+    /// Returns the smallest box that contains both.
     #[must_use]
     #[inline]
     pub fn merge(&self, other: &Self) -> Self {
         Self { min: min3(self.min, other.min), max: max3(self.max, other.max) }
     }
 
-    /// Larger by `margin` (metres) on every side.
+    /// Returns the box enlarged by `margin` (metres) on every side.
     #[must_use]
     #[inline]
     pub fn expand(&self, margin: f32) -> Self {
         Self { min: self.min - Vec3::splat(margin), max: self.max + Vec3::splat(margin) }
     }
 
-    /// Middle, metres.
+    /// Centre, metres.
     #[inline]
     pub fn center(&self) -> Vec3 {
         (self.min + self.max) * 0.5
     }
 
-    /// Half of its sides, metres.
+    /// Half extents, metres.
     #[inline]
     pub fn half_extents(&self) -> Vec3 {
         (self.max - self.min) * 0.5

@@ -1,4 +1,4 @@
-//! Queries of boxes of either kind.
+//! Queries of axis-aligned and oriented boxes.
 
 use super::{Aabb, Obb, Penetration, PlacedBox, SurfacePoint};
 use crate::boxes::distance_beyond;
@@ -7,12 +7,12 @@ use crate::ray::{Ray, RayHit};
 use crate::shape::{MassProperties, Shape};
 use sinew_math::{Rotation, Sym3, Transform, Vec3, max3, min3};
 
-/// A box: [`Aabb`], [`Obb`] or [`PlacedBox`]. Points, distances and directions are in the space that the box stands in.
+/// A box: [`Aabb`], [`Obb`] or [`PlacedBox`]. Points, distances and directions are in the space that contains the box.
 ///
 /// Every result is computed from [`placed`](Self::placed), in the documented order of operations, so that batch code
 /// can give the same bits.
 pub trait Cuboid {
-    /// The box with its axes computed.
+    /// Returns the box with its axes computed.
     fn placed(&self) -> PlacedBox;
 
     /// True if the point is in the box or on its surface: `|(p − c)·aₖ| ≤ hₖ` along each axis, without tolerance.
@@ -20,34 +20,35 @@ pub trait Cuboid {
         self.placed().holds(point)
     }
 
-    /// Distance from the point to the surface, metres, negative inside, 0 on it.
+    /// Distance from the surface to the point, metres; negative inside, 0 on the surface.
     fn signed_distance(&self, point: Vec3) -> f32 {
         self.nearest_surface(point).distance
     }
 
-    /// The point of the surface that is closest, and how far it is.
+    /// Returns the closest point of the surface, with the distance to it.
     fn nearest_surface(&self, point: Vec3) -> SurfacePoint {
         self.placed().nearest_surface(point)
     }
 
-    /// The closest point of the solid box; except for rounding the point itself if it is inside.
+    /// Returns the closest point of the solid box; for a point inside, the point itself except for rounding.
     fn closest_point(&self, point: Vec3) -> Vec3 {
         self.placed().closest(point)
     }
 
-    /// Depth of a point in the box and direction of the shortest way out; `None` if it is outside.
+    /// Returns the depth of a point in the box and the direction of the shortest way out; `None` if the point is
+    /// outside.
     fn point_penetration(&self, point: Vec3) -> Option<Penetration> {
         let SurfacePoint { distance, normal, .. } = self.nearest_surface(point);
         (distance <= 0.0).then_some(Penetration { depth: -distance, direction: normal })
     }
 
-    /// First point of a segment, from the ray's origin to its end, in the box, with the normal; the rules of
-    /// [`Shape::cast_ray`] hold for a start inside.
+    /// Returns the first point of the ray, from its origin to its end, that is in the box, with the normal. For a start
+    /// inside, the rules of [`Shape::cast_ray`] apply.
     fn cast_ray(&self, ray: &Ray) -> Option<RayHit> {
         self.cast_half_line(ray).filter(|hit| hit.fraction <= 1.0)
     }
 
-    /// As [`cast_ray`](Self::cast_ray) for the ray without an end; the fraction counts lengths of the ray's direction.
+    /// Like [`cast_ray`](Self::cast_ray), for a ray without an end; the fraction counts lengths of the ray's direction.
     fn cast_half_line(&self, ray: &Ray) -> Option<RayHit> {
         if !(ray.origin.is_finite() && ray.direction.is_finite()) {
             return None;
@@ -59,26 +60,26 @@ pub trait Cuboid {
         Some(RayHit { fraction, point: ray.at(fraction), normal: placed.vector(normal) })
     }
 
-    /// The corners: bit k of the index is set on the positive side of axis k.
+    /// Returns the corners: bit k of the index is set on the positive side of axis k.
     fn corners(&self) -> [Vec3; 8] {
         let placed = self.placed();
         core::array::from_fn(|index| placed.vertex(index))
     }
 
-    /// Cubic metres.
+    /// Volume, m³.
     fn volume(&self) -> f32 {
         let h = self.placed().half;
         8.0 * h.x * h.y * h.z
     }
 
-    /// Surface, square metres; both sides of a rectangle.
+    /// Surface area, m²; for a rectangle the area of both sides.
     fn surface_area(&self) -> f32 {
         let h = self.placed().half;
         8.0 * (h.x * h.y + h.y * h.z + h.z * h.x)
     }
 
-    /// Inertia about the centre of a solid box of that mass (kg, ≥ 0), in the axes of its space, kg·m². Boxes without
-    /// volume have one too.
+    /// Inertia of a solid box of this mass (kg, ≥ 0) about its centre, in the axes of its space, kg·m². Boxes without
+    /// volume have inertia too.
     ///
     /// # Panics
     /// If the mass is negative or not finite.
@@ -89,7 +90,7 @@ pub trait Cuboid {
         Sym3::outer(x) * d.x + Sym3::outer(y) * d.y + Sym3::outer(z) * d.z
     }
 
-    /// Mass, centre and inertia of a solid box at `density` kg/m³, in its space.
+    /// Mass, centre and inertia of a solid box of `density` (kg/m³), in its space.
     ///
     /// # Panics
     /// If the density is negative or not finite.
@@ -112,7 +113,7 @@ impl Cuboid for Obb {
     }
 }
 
-/// Points are compared with the corners themselves. Overlaps with other kinds, and rays, use the centre, which is
+/// Points are compared with the stored corners. Overlaps with other kinds of shapes, and rays, use the centre, which is
 /// rounded to `f32`.
 impl Cuboid for Aabb {
     fn placed(&self) -> PlacedBox {

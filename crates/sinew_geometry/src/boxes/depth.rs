@@ -1,4 +1,4 @@
-//! Boxes against oriented boxes, balls and capsules: how deep, and in which direction.
+//! Overlaps of boxes with oriented boxes, balls and capsules: depth and direction.
 
 use super::fifteen::FifteenAxes;
 use super::overlap::{Capsule, Overlap, Sphere};
@@ -111,12 +111,12 @@ impl Penetration {
 
 /// Relative length below which a direction between two points counts as rounding.
 const NOISE: f32 = 1e-4;
-/// A capsule's core in the box's frame.
+/// Returns a capsule's core in the box's frame.
 fn core_in(placed: &PlacedBox, capsule: &Capsule) -> Segment {
     Segment { ends: capsule.ends.map(|p| placed.local_point(p)) }
 }
 
-/// Signed distance along the direction in which the core is the least deep in the box, and that direction.
+/// Returns the signed distance along the direction in which the core is the least deep in the box, and that direction.
 fn way_out_of_core(half: Vec3, core: &Segment) -> (f32, Vec3) {
     let (distance, face) = best_face(half, core);
     match best_edge(half, core, PARALLEL_SINE) {

@@ -1,23 +1,23 @@
-//! Overlap of two boxes, yes or no, for one pair or for eight: fifteen comparisons without a root or a division (Ericson, "Real-Time
-//! Collision Detection", 2005, §4.4.1).
+//! Overlap test of two boxes, for one pair or for eight: fifteen comparisons without a root or a division (Ericson,
+//! "Real-Time Collision Detection", 2005, §4.4.1).
 
 use super::PlacedBox;
 use sinew_math::lanes::{Real, Vector3};
 
-/// Relative distance at which boxes that are apart still count as touching: several roundings.
+/// Relative distance at which separated boxes still count as touching: several roundings.
 const TOUCH: f32 = 5e-7;
 
-/// Two boxes in the frame of the first. They are apart if the offset of their centres exceeds their summed half widths
-/// along one of 15 directions.
+/// Two boxes in the frame of the first. They are apart if, along one of 15 directions, the offset of their centres
+/// exceeds the sum of their half widths.
 ///
-/// With `Rᵢⱼ = aᵢ·bⱼ`, `t` the offset in A's axes, `|t|₁` the sum of its magnitudes and
-/// `slack = TOUCH × (|t|₁ + (|ha|₁ + |hb|₁))`, indices modulo 3, sums from the left, they overlap if for all `i`, `j`
+/// With `Rᵢⱼ = aᵢ·bⱼ`, `t` the offset in A's axes, `|t|₁` the sum of its absolute components and `slack = TOUCH × (|t|₁
+/// + (|ha|₁ + |hb|₁))`, indices modulo 3, sums from the left, the boxes overlap if for all `i`, `j`
 /// - faces of A: `|tᵢ| ≤ (haᵢ + (hb₀|Rᵢ₀| + hb₁|Rᵢ₁| + hb₂|Rᵢ₂|)) + slack`
 /// - faces of B: `|t₀R₀ⱼ + t₁R₁ⱼ + t₂R₂ⱼ| ≤ (hbⱼ + (ha₀|R₀ⱼ| + ha₁|R₁ⱼ| + ha₂|R₂ⱼ|)) + slack`
 /// - edges, with `i1 = i + 1`, `i2 = i + 2`, `j1 = j + 1`, `j2 = j + 2`:
 ///   `|tᵢ₂Rᵢ₁ⱼ − tᵢ₁Rᵢ₂ⱼ| ≤ ((haᵢ₁|Rᵢ₂ⱼ| + haᵢ₂|Rᵢ₁ⱼ|) + (hbⱼ₁|Rᵢⱼ₂| + hbⱼ₂|Rᵢⱼ₁|)) + slack`
 ///
-/// Both sides of the last kind vanish as edges become parallel; the slack keeps rounding from separating boxes there.
+/// Both sides of the last comparison vanish as edges become parallel; the slack prevents a separation by rounding.
 pub(super) struct FifteenAxes<R> {
     half_a: [R; 3],
     half_b: [R; 3],
@@ -25,25 +25,25 @@ pub(super) struct FifteenAxes<R> {
     offset: [R; 3],
     /// `cosine[i][j]` is axis `i` of A times axis `j` of B.
     cosine: [[R; 3]; 3],
-    /// Metres.
+    /// Tolerance of each comparison, metres.
     slack: R,
 }
 
 impl FifteenAxes<f32> {
-    /// Two single boxes.
+    /// Prepares the test of one pair of boxes.
     pub fn of(a: &PlacedBox, b: &PlacedBox) -> Self {
         let parts = |of: &PlacedBox| (of.center.into(), of.axes.map(Into::into), of.half.into());
         Self::new(parts(a), parts(b))
     }
 
-    /// True if no axis separates them.
+    /// True if no axis separates the boxes.
     pub fn overlap(&self) -> bool {
         self.faces() && self.edges()
     }
 }
 
 impl<R: Real> FifteenAxes<R> {
-    /// Boxes by their centres, the unit directions of their sides, and half of those.
+    /// Prepares the test of boxes given by their centres, the unit directions of their sides, and their half extents.
     #[inline(always)]
     pub fn new(
         (center_a, [ax, ay, az], half_a): (Vector3<R>, [Vector3<R>; 3], Vector3<R>),

@@ -1,4 +1,4 @@
-//! Boxes around points.
+//! Construction of boxes around points.
 
 use super::{Aabb, Cuboid, Obb};
 use sinew_math::{
@@ -6,7 +6,7 @@ use sinew_math::{
 };
 
 impl Aabb {
-    /// The smallest box around points; `None` if there are none or a number is not finite.
+    /// Returns the smallest box around points; `None` if there are no points or a number is not finite.
     pub fn from_points(points: &[Vec3]) -> Option<Self> {
         if points.is_empty() || !points.iter().all(|p| p.is_finite()) {
             return None;
@@ -18,27 +18,27 @@ impl Aabb {
 }
 
 impl Obb {
-    /// Box around points along the principal axes of their covariance (Gottschalk, Lin & Manocha 1996), longest spread
-    /// first. It takes linear time and suits points that fill a volume evenly.
+    /// Returns a box around points along the principal axes of their covariance (Gottschalk, Lin & Manocha 1996),
+    /// largest spread first. The time is linear. The box fits well if the points fill a volume evenly.
     ///
-    /// Every point is in the box by [`Cuboid::contains_point`]. Half extents are 0, except for rounding, where the
-    /// points lie in one plane, on one line or in one place. `None` if there are none or a number is not finite.
+    /// Every point is in the box by [`Cuboid::contains_point`]. Half extents are 0, except for rounding, along
+    /// directions in which the points have no extent. `None` if there are no points or a number is not finite.
     pub fn from_points_pca(points: &[Vec3]) -> Option<Self> {
         let cloud = Cloud::new(points)?;
         Some(around(points, principal_axes(&cloud.points)))
     }
 
-    /// Box around points with the least volume that a search finds, or area for flat points. For cooking, not for every
-    /// step: it takes some milliseconds.
+    /// Returns a box around points with the least volume that a search finds, or the least area for flat points. For
+    /// cooking, not for every step: the search takes some milliseconds.
     ///
-    /// The least box has two adjacent faces that each lie on an edge of the convex hull (O'Rourke 1985). The search
-    /// tries all boxes with an axis along the normal of a facet or across two edges, of the hull of up to 52 extreme
-    /// points with up to 64 edges, each with the best rotation about this axis. The best eight, the box of
+    /// The least box has two adjacent faces that each contain an edge of the convex hull (O'Rourke 1985). The search
+    /// uses the hull of up to 52 extreme points and up to 64 of its edges. It tries all boxes with an axis along the
+    /// normal of a facet or across two edges, each with the best rotation about this axis. The best eight, the box of
     /// [`from_points_pca`](Self::from_points_pca) and the axis-aligned one are then rotated about each of their axes
-    /// while that helps. So the result is the least box if that has a face on a facet or two opposite edges in two
-    /// opposite faces (boxes, prisms, a regular tetrahedron), and it is never larger than the other two. Over 10,000
-    /// random clouds of 4 to 63 points it was at most 6 % above the least volume found by random rotations, and below
-    /// it on average.
+    /// until they stop improving. So the result is the least box if that box has a face on a facet, or two opposite
+    /// edges in two opposite faces (boxes, prisms, a regular tetrahedron). The result is never larger than the other
+    /// two. Over 10,000 random clouds of 4 to 63 points it was at most 6 % above the least volume found by random
+    /// rotations, and below that volume on average.
     ///
     /// Guarantees for points and degenerate input are those of [`from_points_pca`](Self::from_points_pca).
     pub fn from_points(points: &[Vec3]) -> Option<Self> {
@@ -53,9 +53,9 @@ impl Obb {
         Some(around(points, best.axes))
     }
 
-    /// Box around two boxes: the one with the least volume along the axes of either, or along the principal axes of
-    /// their corners, each rotated about its axes while that helps. If one box contains the other, it is the result.
-    /// Contains all corners except for rounding.
+    /// Returns a box around two boxes: the one with the least volume along the axes of either, or along the principal
+    /// axes of their corners, each rotated about its axes until it stops improving. If one box contains the other, the
+    /// result is that box. Contains all corners except for rounding.
     #[must_use]
     pub fn merge(&self, other: &Self) -> Self {
         let corners: [Vec3; 16] = core::array::from_fn(|k| [self, other][k / 8].corners()[k % 8]);
@@ -73,11 +73,12 @@ impl Obb {
 
 /// Largest number of rounds about each axis in [`Cloud::improved`].
 const ROUNDS: usize = 12;
-/// Hulls of more points are searched by their extreme ones: the most that [`DIRECTIONS`] can find along two frames.
+/// Number of points above which a hull is searched by its extreme points: the most that [`DIRECTIONS`] find in two
+/// frames.
 const MOST_POINTS: usize = 52;
-/// The cheapest boxes of the search that are improved.
+/// Number of the cheapest boxes of the search that are improved.
 const MOST_STARTS: usize = 8;
-/// Largest number of the longest hull edges whose pairs are tried.
+/// Largest number of hull edges, the longest first, whose pairs are tried.
 const MOST_EDGES: usize = 64;
 /// Relative distance by which a point may be beyond the plane of a facet.
 const FLAT: f32 = 1e-5;
@@ -99,10 +100,10 @@ const DIRECTIONS: [Vec3; 13] = [
     Vec3::new(1.0, -1.0, -1.0),
 ];
 
-/// Points relative to the middle of their bounds.
+/// Points relative to the centre of their bounds.
 struct Cloud {
     points: Vec<Vec3>,
-    /// Diagonal of their bounds, metres.
+    /// Diagonal of the points' bounds, metres.
     size: f32,
 }
 
@@ -114,7 +115,7 @@ struct Candidate {
 }
 
 impl Candidate {
-    /// The first one if they cost the same.
+    /// Returns the cheaper candidate; the first if the costs are equal.
     fn cheaper(self, other: Self) -> Self {
         if other.cost < self.cost { other } else { self }
     }
@@ -128,15 +129,15 @@ impl Cloud {
         Some(Self { points, size: (bounds.max - bounds.min).length() })
     }
 
-    /// Volume of a box with these sides. Each side is lengthened a little, so that flat boxes are compared by area and
+    /// Volume of a box with these sides. Each side is lengthened slightly, so that flat boxes are compared by area and
     /// thin ones by length.
     fn cost(&self, sides: [f32; 3]) -> f32 {
         let [a, b, c] = sides.map(|side| side + FLAT * self.size);
         a * b * c
     }
 
-    /// The points furthest along [`DIRECTIONS`], in the given axes and in the principal ones; all of them if they are
-    /// few.
+    /// Returns the points furthest along [`DIRECTIONS`], in the given axes and in the principal ones; all points if
+    /// they are few.
     fn extreme_points(&self) -> Self {
         if self.points.len() <= MOST_POINTS {
             return Self { points: self.points.clone(), size: self.size };
@@ -162,8 +163,8 @@ impl Cloud {
         Self { points: chosen.into_iter().map(|k| self.points[k]).collect(), size: self.size }
     }
 
-    /// Unit directions that an axis of the least box may have: facet normals of the hull, and cross products of two of
-    /// its edges. For points on a line, one perpendicular to it; for one point, none.
+    /// Returns the unit directions that an axis of the least box may have: facet normals of the hull, and cross
+    /// products of two of its edges. For points on a line, one direction perpendicular to it; for one point, none.
     fn axes_of_hull(&self) -> Vec<Vec3> {
         let (mut axes, mut edges) = (Vec::new(), Vec::new());
         for i in 0..self.points.len() {
@@ -171,7 +172,8 @@ impl Cloud {
                 let before = axes.len();
                 let along = self.points[j] - self.points[i];
                 axes.extend((j + 1..self.points.len()).filter_map(|k| self.facet([i, j, k])));
-                // Facets count once, by their two lowest corners; that a pair is a side of one, any third corner shows.
+                // A facet counts once, by its two lowest corners. A pair of corners is an edge if any third corner
+                // gives a facet.
                 let is_edge =
                     axes.len() > before || (0..j).any(|k| k != i && self.facet([i, j, k]).is_some());
                 if is_edge {
@@ -197,7 +199,7 @@ impl Cloud {
         axes
     }
 
-    /// The normal of the plane through three points if all points are on one side of it.
+    /// Returns the normal of the plane through three points if all points are on one side of the plane.
     fn facet(&self, [i, j, k]: [usize; 3]) -> Option<Vec3> {
         let origin = self.points[i];
         let (u, v) = (self.points[j] - origin, self.points[k] - origin);
@@ -219,8 +221,8 @@ impl Cloud {
         Some(normal)
     }
 
-    /// The cheapest box with an axis along the unit vector `axis`: the rectangle of least area around the projected
-    /// points has a side on an edge of their convex hull (Freeman & Shapira 1975).
+    /// Returns the cheapest box with an axis along the unit vector `axis`: the least-area rectangle around the
+    /// projected points has a side along an edge of their convex hull (Freeman & Shapira 1975).
     fn best_about(&self, axis: Vec3) -> Candidate {
         let u = any_orthonormal(axis);
         let v = axis.cross(u);
@@ -238,7 +240,7 @@ impl Cloud {
         (1..hull.len()).map(of_side).fold(of_side(0), Candidate::cheaper)
     }
 
-    /// Rotates about each axis in turn while that makes the box cheaper.
+    /// Rotates the axes about each axis in turn while that makes the box cheaper.
     fn improved(&self, axes: [Vec3; 3]) -> Candidate {
         let sides = axes.map(|axis| extent(self.points.iter().map(|p| p.dot(axis))));
         let mut best = Candidate { axes, cost: self.cost(sides) };
@@ -255,13 +257,13 @@ impl Cloud {
     }
 }
 
-/// Length of the interval that numbers fill.
+/// Length of the interval that contains the numbers.
 fn extent(numbers: impl Iterator<Item = f32>) -> f32 {
     let (lo, hi) = numbers.fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), x| (min(x, lo), max(x, hi)));
     hi - lo
 }
 
-/// Corners of the convex hull in the plane, counter-clockwise (Andrew 1979). At least one point.
+/// Returns the corners of the convex hull in the plane, counter-clockwise (Andrew 1979); needs at least one point.
 fn flat_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();
@@ -277,7 +279,7 @@ fn flat_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
         }
         hull.push(p);
         if k + 1 == points.len() {
-            // The lower half is finished; the way back does not remove it.
+            // The lower half is finished; the pass back must not remove its corners.
             least = hull.len();
         }
     }
@@ -291,7 +293,7 @@ fn turn(a: Vec2, b: Vec2, c: Vec2) -> f32 {
     u.x * v.y - u.y * v.x
 }
 
-/// Axes of the covariance, the longest spread first.
+/// Axes of the covariance, the largest spread first.
 fn principal_axes(points: &[Vec3]) -> [Vec3; 3] {
     let share = 1.0 / points.len() as f32;
     let mean = points.iter().fold(Vec3::ZERO, |sum, &p| sum + p * share);
@@ -300,7 +302,7 @@ fn principal_axes(points: &[Vec3]) -> [Vec3; 3] {
     [m.x_axis, m.y_axis, m.z_axis]
 }
 
-/// The box along three axes that holds points.
+/// Returns the smallest box along three axes that contains the points.
 fn around(points: &[Vec3], [x, y, _]: [Vec3; 3]) -> Obb {
     let y = normalize_or(y - x * x.dot(y), any_orthonormal(x));
     let rotation = Rotation::from_mat3(&Mat3::from_cols(x, y, x.cross(y)));

@@ -1,23 +1,23 @@
-//! Frustum of an eye: culling and picking.
+//! View frustum: culling and picking.
 
 use super::{Cuboid, PlacedBox, Sphere};
 use crate::ray::{Ray, RayHit};
 use sinew_math::{Transform, Vec2, Vec3, trig};
 
-/// A pyramid of sight without its tip.
+/// View frustum of a camera: a pyramid without its tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frustum {
     /// Frame of the camera: it looks along −z, x is right, y up.
     pub world_from_eye: Transform,
     /// Half width and half height of the view at a distance of 1 m, metres: tangents of half the field of view.
     pub slopes: Vec2,
-    /// Near plane, metres along the line of sight, above 0.
+    /// Distance of the near plane along the line of sight, metres, above 0.
     pub near: f32,
-    /// Nor anything farther, metres.
+    /// Distance of the far plane along the line of sight, metres, above `near`.
     pub far: f32,
 }
 
-/// Position of something relative to a [`Frustum`].
+/// Position of a box or ball relative to a [`Frustum`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
     /// The whole box is visible.
@@ -29,8 +29,8 @@ pub enum Visibility {
 }
 
 impl Frustum {
-    /// From the angle of view between the upper and the lower edge (radians, above 0 and below π) and the width of the
-    /// picture over its height.
+    /// Creates a frustum from the vertical angle of view (radians, above 0 and below π) and the ratio of the picture's
+    /// width to its height.
     ///
     /// # Panics
     /// If a number is not finite or out of its range.
@@ -43,8 +43,8 @@ impl Frustum {
         Self { world_from_eye, slopes: Vec2::new(slope * aspect, slope), near, far }
     }
 
-    /// The segment under a position in the picture, from the near plane to the far one: x from −1 at the left edge to 1
-    /// at the right, y from −1 at the bottom to 1 at the top. For picking.
+    /// Returns the segment under a position in the picture, from the near plane to the far one. x is −1 at the left
+    /// edge and 1 at the right, y is −1 at the bottom and 1 at the top. For picking.
     pub fn ray(&self, screen: Vec2) -> Ray {
         let sight = Vec3::new(screen.x * self.slopes.x, screen.y * self.slopes.y, -1.0);
         Ray::between(
@@ -53,7 +53,7 @@ impl Frustum {
         )
     }
 
-    /// The corners: bit 0 of the index is set on the right, bit 1 above, bit 2 on the far plane.
+    /// Returns the corners: bit 0 of the index is set on the right, bit 1 at the top, bit 2 on the far plane.
     pub fn corners(&self) -> [Vec3; 8] {
         core::array::from_fn(|index| {
             let side = |k: usize| if index >> k & 1 == 1 { 1.0 } else { -1.0 };
@@ -62,9 +62,9 @@ impl Frustum {
         })
     }
 
-    /// Position of a box relative to the frustum, by the box's extent across each plane (Assarsson & Möller 2000), and
-    /// by the frustum's corners over each face of the box. Never `Outside` if a part is visible, nor `Inside` if a part
-    /// is not, except for rounding; a box just past an edge may be reported as intersecting.
+    /// Returns the position of a box relative to the frustum, by the box's extent across each plane (Assarsson & Möller
+    /// 2000), and by the frustum's corners beyond each face of the box. Never `Outside` if a part is visible, nor
+    /// `Inside` if a part is not, except for rounding; a box just outside an edge may be reported as intersecting.
     pub fn sees(&self, cuboid: &impl Cuboid) -> Visibility {
         let placed = cuboid.placed();
         match self.across_planes(placed.center, |normal| placed.half_width(normal)) {
@@ -78,7 +78,7 @@ impl Frustum {
         self.across_planes(sphere.center, |_| sphere.radius)
     }
 
-    /// Visibility of something around a point that reaches so far along a unit normal.
+    /// Returns the visibility of a shape around `center` that extends by `reach` along a unit normal, metres.
     fn across_planes(&self, center: Vec3, reach: impl Fn(Vec3) -> f32) -> Visibility {
         let from_eye = center - self.world_from_eye.translation;
         let mut visibility = Visibility::Inside;
@@ -94,7 +94,7 @@ impl Frustum {
         visibility
     }
 
-    /// Inward unit normals, and the planes' offsets along them from the eye.
+    /// Returns the inward unit normals, and the offsets of the planes along them from the eye, metres.
     fn planes(&self) -> [(Vec3, f32); 6] {
         let Vec2 { x, y } = self.slopes;
         let side = |v: Vec3| (self.world_from_eye.rotation * v.normalize(), 0.0);
@@ -109,7 +109,7 @@ impl Frustum {
         ]
     }
 
-    /// True if all corners are beyond one face of the box.
+    /// True if all corners of the frustum are beyond one face of the box.
     fn is_beyond_a_face(&self, placed: &PlacedBox) -> bool {
         let corners = self.corners().map(|p| placed.local_point(p));
         let beyond = |k: usize, side: f32| corners.iter().all(|q| q[k] * side > placed.half[k]);
@@ -117,8 +117,8 @@ impl Frustum {
     }
 }
 
-/// The first box that a segment hits, by index, and the hit point: the object under a position in the picture, with
-/// [`Frustum::ray`]. The first in the slice wins a tie.
+/// Returns the index of the first box that a segment hits, and the hit: the object under a position in the picture,
+/// with [`Frustum::ray`]. Among equal hits the first in the slice is returned.
 pub fn pick<B: Cuboid>(boxes: &[B], ray: &Ray) -> Option<(usize, RayHit)> {
     let hits = boxes.iter().enumerate().filter_map(|(index, cuboid)| Some((index, cuboid.cast_ray(ray)?)));
     hits.reduce(|first, other| if other.1.fraction < first.1.fraction { other } else { first })

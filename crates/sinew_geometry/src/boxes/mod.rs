@@ -1,7 +1,7 @@
-//! Boxes, axis-aligned and oriented: points, overlaps, rays, bounds and fits, without a world.
+//! Boxes, axis-aligned and oriented: queries of points, overlaps and rays, bounds and fits, without a world.
 //!
-//! Lengths are metres, all positions are in one common space. Boxes are closed sets: touching boxes overlap, a point on
-//! the surface is contained. Sides may be 0: such a box is a rectangle, a segment or a point.
+//! Lengths are metres; all positions are in one common space. Boxes are closed sets: touching boxes overlap, and a box
+//! contains the points on its surface. Sides may be 0: such a box is a rectangle, a segment or a point.
 //!
 //! ```
 //! use sinew_math::{Rotation, Vec3};
@@ -16,39 +16,38 @@
 //! ```
 //!
 //! # Which file
-//! [`Cuboid`] has the queries of both kinds: points, rays, measures. [`Overlap`] is for pairs. `fit.rs` makes boxes
-//! around points, `frustum.rs` culls and picks.
+//! [`Cuboid`] has the queries of both kinds of boxes: points, rays, measures. [`Overlap`] tests pairs. `fit.rs` fits
+//! boxes around points, `frustum.rs` culls and picks.
 //!
 //! # Separating axes
-//! Separating axes are implemented several times, each for a query that the others would answer more slowly:
+//! Separating axes are implemented several times, because each implementation is the fastest for its query:
 //! - `fifteen.rs` only decides whether two boxes overlap, without a root, for one pair or for eight;
 //! - `separation.rs` finds the best axis of one pair, for manifolds and depths: it stops at the first axis that
 //!   separates, tries the cached one first, and skips edges by an estimate;
-//! - `batch/separation.rs` finds the best axis of eight pairs side by side: no early exit, everything in the frame of
-//!   A, which is cheaper to set up than axes in the world;
+//! - `batch/separation.rs` finds the best axis of eight pairs with SIMD: without early exit, in the frame of A, which
+//!   is cheaper to set up than axes in the world;
 //! - `collide/polytope.rs` is for hulls: arcs on the Gauss map (Gregorius, GDC 2013) select the pairs of edges that
 //!   count; two boxes have nine pairs, two hulls may have thousands.
 //!
 //! All are tested against brute force in `f64`.
 //!
 //! # Formulas
-//! - A point `p` in a box with centre `c`, axes `aₖ` and half extents `hₖ`: `qₖ = (p − c)·aₖ`, inside where all `|qₖ| ≤ hₖ`;
+//! - A point `p` in a box with centre `c`, axes `aₖ` and half extents `hₖ`: `qₖ = (p − c)·aₖ`, inside if all `|qₖ| ≤ hₖ`;
 //!   the closest point clamps `q` to `±h` (Ericson, "Real-Time Collision Detection", 2005, §5.1.3).
 //! - Two boxes: 15 separating axes, three faces of each and nine crossed edges (Gottschalk, Lin & Manocha, "OBBTree",
 //!   SIGGRAPH 1996); overlap without square roots (Ericson 2005, §4.4.1), depth by the least overlap along one of them.
-//! - A ball: its centre's signed distance less the radius. A capsule: its core's distance to the box; once that has entered,
-//!   the least overlap along three faces and three crossed edges.
+//! - A ball: the signed distance of its centre minus the radius. A capsule: the distance of its core to the box; if the
+//!   core has entered the box, the least overlap along three faces and three crossed edges.
 //! - Rays: slabs (Kay & Kajiya, SIGGRAPH 1986).
 //!
 //! # Precision
-//! Everything is computed relative to a box's centre, so that the error is a few `f32` roundings (6e-8) of the sizes
+//! All results are computed relative to a box's centre, so that the error is a few `f32` roundings (6e-8) of the sizes
 //! and distances. Precision far from the origin is limited by the positions themselves: 0.06 mm at 1 km, 8 mm at 100
 //! km.
 //!
-//! Boxes that are apart by less than 5e-7 of their sizes and distance count as touching. Edges within 0.1° of parallel
-//! define no reliable direction: boxes that are apart along that direction alone, by up to 0.2 % of their sizes and
-//! distance, count as touching, and depths are overestimated by as much. Points, balls and capsules are compared
-//! without tolerance.
+//! Separated boxes closer than 5e-7 of their sizes and distance count as touching. Edges within 0.1° of parallel define
+//! no reliable direction: boxes that only such a direction separates, by up to 0.2 % of their sizes and distance, count
+//! as touching, and depths are overestimated by as much. Points, balls and capsules are compared without tolerance.
 
 use sinew_math::Vec3;
 

@@ -11,9 +11,9 @@ use sinew_math::{Rotation, Transform, Vec3};
 pub struct Obb {
     /// Centre, metres.
     pub center: Vec3,
-    /// Rotation from the box's axes to those of its space.
+    /// Rotation from the box's axes to the axes of the space that contains it.
     pub rotation: Rotation,
-    /// Half of its sides along its own axes, metres, ≥ 0.
+    /// Half extents along the box's own axes, metres, ≥ 0.
     pub half_extents: Vec3,
 }
 
@@ -28,21 +28,21 @@ impl Obb {
         Self { center, rotation, half_extents }
     }
 
-    /// Creates a box around the origin of a frame, along its axes.
+    /// Creates a box around the origin of a frame, along the axes of the frame.
     ///
     /// # Panics
-    /// As [`new`](Self::new).
+    /// Like [`new`](Self::new).
     pub fn from_transform(frame: &Transform, half_extents: Vec3) -> Self {
         Self::new(frame.translation, frame.rotation, half_extents)
     }
 
-    /// The frame in which the box is axis-aligned around the origin: maps the box's coordinates to those of its space.
+    /// Returns the box's frame: the transform from the box's coordinates to those of the space that contains it.
     pub fn to_transform(&self) -> Transform {
         Transform::new(self.center, self.rotation)
     }
 
-    /// The smallest axis-aligned box around it, except for rounding: half extents `|R| h` (Arvo, "Transforming
-    /// axis-aligned bounding boxes", Graphics Gems 1990).
+    /// Returns the smallest axis-aligned box around this one, except for rounding: half extents `|R| h` (Arvo,
+    /// "Transforming axis-aligned bounding boxes", Graphics Gems 1990).
     pub fn bounds(&self) -> Aabb {
         Shape::Box { half_extents: self.half_extents }.aabb(&self.to_transform())
     }

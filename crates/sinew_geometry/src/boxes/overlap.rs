@@ -1,4 +1,4 @@
-//! Overlap of boxes with boxes, balls and capsules: the trait, and axis-aligned boxes by intervals.
+//! Overlap of boxes with boxes, balls and capsules: the trait, and its implementation for axis-aligned boxes.
 
 use super::aabb::Aabb;
 use super::point::Penetration;
@@ -7,9 +7,9 @@ use sinew_math::Vec3;
 /// A ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// Metres.
+    /// Centre, metres.
     pub center: Vec3,
-    /// Metres, ≥ 0; of radius 0 it is a point.
+    /// Radius, metres, ≥ 0; a ball of radius 0 is a point.
     pub radius: f32,
 }
 
@@ -25,12 +25,12 @@ impl Sphere {
     }
 }
 
-/// All points within a radius of a segment.
+/// A capsule: all points within a radius of a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
     /// Ends of the segment, metres; they may coincide.
     pub ends: [Vec3; 2],
-    /// Metres, ≥ 0; of radius 0 it is a segment.
+    /// Radius, metres, ≥ 0; a capsule of radius 0 is a segment.
     pub radius: f32,
 }
 
@@ -50,18 +50,18 @@ fn expect_radius(radius: f32) {
     assert!((0.0..f32::INFINITY).contains(&radius), "a radius is finite and not negative");
 }
 
-/// Overlap of two convex shapes of which at least one is a box. Touching and containing count as overlap. The order
-/// does not matter except for rounding: swapped arguments give the opposite direction.
+/// Overlap of two convex shapes of which at least one is a box. Touching and containing count as overlap. Swapped
+/// arguments give the same result except for rounding, with the opposite direction.
 pub trait Overlap<Other> {
-    /// True if they have a point in common.
+    /// True if the shapes have a point in common.
     fn overlaps(&self, other: &Other) -> bool;
 
-    /// Shortest displacement of `other` after which they only touch, with its depth. `Some` exactly if
-    /// [`overlaps`](Self::overlaps) is true.
+    /// Returns the shortest displacement of `other` after which the shapes only touch, as direction and depth. `Some`
+    /// exactly if [`overlaps`](Self::overlaps) is true.
     fn penetration(&self, other: &Other) -> Option<Penetration>;
 }
 
-/// Compares intervals, exactly.
+/// Compares the intervals along each axis, exactly.
 impl Overlap<Aabb> for Aabb {
     #[inline]
     fn overlaps(&self, other: &Aabb) -> bool {

@@ -1,4 +1,4 @@
-//! Points in and around boxes.
+//! Nearest surface points and penetration depths of points in boxes.
 
 use super::PlacedBox;
 use sinew_math::{Vec3, abs3, max3};
@@ -8,31 +8,33 @@ use sinew_math::{Vec3, abs3, max3};
 pub struct SurfacePoint {
     /// Point on the surface, metres.
     pub point: Vec3,
-    /// Unit, out of the box: from the surface to an outside point, through the nearest face for an inside one.
+    /// Outward unit normal: for an outside point, from the surface to the point; for an inside one, that of the nearest
+    /// face.
     pub normal: Vec3,
-    /// Distance from the surface to the point along the normal, metres: negative inside.
+    /// Distance from the surface to the query point along the normal, metres; negative inside.
     pub distance: f32,
 }
 
-/// Penetration depth in a box, and the shortest way out.
+/// Penetration depth, and the direction of the shortest way out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penetration {
-    /// Metres, ≥ 0; 0 if they only touch.
+    /// Depth, metres, ≥ 0; 0 if the shapes only touch.
     pub depth: f32,
-    /// Unit, from the queried box to the other shape: moved by `direction * depth`, the other one only touches. If
-    /// several ways are equally short, always the same one.
+    /// Unit vector from the queried box to the other shape: after a displacement by `direction * depth`, the other
+    /// shape only touches. If several ways are equally short, the choice is deterministic.
     pub direction: Vec3,
 }
 
 impl PlacedBox {
-    /// `|d·aₖ| ≤ hₖ` with `d = p − c`, each product summed as `(d.x a.x + d.y a.y) + d.z a.z`.
+    /// True if `|d·aₖ| ≤ hₖ` with `d = p − c`, each product summed as `(d.x a.x + d.y a.y) + d.z a.z`.
     pub(super) fn holds(&self, p: Vec3) -> bool {
         let q = self.local_point(p);
         q.x.abs() <= self.half.x && q.y.abs() <= self.half.y && q.z.abs() <= self.half.z
     }
 
-    /// Outside: the point clamped to the box is closest (Ericson, "Real-Time Collision Detection", 2005, §5.1.3), and
-    /// the normal points from there. Inside: through the nearest face; the lowest axis among equals.
+    /// Returns the nearest surface point. Outside, the point clamped to the box is closest (Ericson, "Real-Time
+    /// Collision Detection", 2005, §5.1.3), and the normal points from there to `p`. Inside, the nearest face gives
+    /// both; the lowest axis among equals.
     pub(super) fn nearest_surface(&self, p: Vec3) -> SurfacePoint {
         let (distance, normal) = box_distance(self.half, self.local_point(p));
         let normal = self.vector(normal);
@@ -40,27 +42,27 @@ impl PlacedBox {
     }
 }
 
-/// Signed distance to the box of the given half extents around the origin, and the outward normal.
+/// Returns the signed distance to the box with these half extents around the origin, and the outward normal.
 pub(crate) fn box_distance(half: Vec3, p: Vec3) -> (f32, Vec3) {
     distance_beyond(abs3(p) - half, p)
 }
 
-/// Signed distance to a box and its outward normal, from the excess beyond the nearer face along each axis, and a
-/// vector whose signs select the faces.
+/// Returns the signed distance to a box and its outward normal. `beyond` is the excess beyond the nearer face along
+/// each axis, and the signs of `p` select the faces.
 pub(crate) fn distance_beyond(beyond: Vec3, p: Vec3) -> (f32, Vec3) {
     let outside = max3(beyond, Vec3::ZERO);
     let distance = outside.length();
     if distance > 0.0 {
         let toward =
             Vec3::new(with_sign(outside.x, p.x), with_sign(outside.y, p.y), with_sign(outside.z, p.z));
-        // Squares of tiny distances underflow: measure them again at a larger scale.
+        // Squares of tiny distances underflow, so the face normal is used.
         return if distance > 1e-12 { (distance, toward / distance) } else { (0.0, face_normal(beyond, p)) };
     }
     let axis = nearest_face(beyond);
     (beyond[axis], face_normal(beyond, p))
 }
 
-/// The axis of the face that is nearest from inside; the lowest among equals.
+/// Axis of the face that is nearest from inside; the lowest axis among equals.
 fn nearest_face(beyond: Vec3) -> usize {
     let mut axis = 0;
     for k in 1..3 {
@@ -78,7 +80,7 @@ fn face_normal(beyond: Vec3, p: Vec3) -> Vec3 {
     normal
 }
 
-/// `magnitude` with the sign of `x`.
+/// Returns `magnitude` with the sign of `x`.
 fn with_sign(magnitude: f32, x: f32) -> f32 {
     if x < 0.0 { -magnitude } else { magnitude }
 }

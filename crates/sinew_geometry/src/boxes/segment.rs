@@ -1,4 +1,4 @@
-//! Segments: closest points, and their position relative to a box.
+//! Segments: their closest points, and their position relative to a box.
 
 use super::placed::sign;
 use sinew_math::{Vec3, clamp, max, max3, min, min3};
@@ -39,7 +39,7 @@ impl Segment {
             return (0.5, other.closest(self.ends[0]));
         }
         let (b, c) = (d1.dot(d2), d1.dot(r));
-        // a e sin²: by the cross product, since a e − b² cancels for long near-parallel segments.
+        // Equals a e sin². Computed by the cross product, since a e − b² cancels for long near-parallel segments.
         let cross = d1.cross(d2);
         let denominator = cross.dot(cross);
         let s =
@@ -49,15 +49,15 @@ impl Segment {
     }
 }
 
-/// Closest points of a box and a segment (a capsule's core) that is outside, in the box's frame.
+/// Closest points of a box and a separated segment (a capsule's core), in the box's frame.
 pub(crate) struct Gap {
     pub on_core: Vec3,
     pub on_box: Vec3,
     pub distance: f32,
 }
 
-/// The closest points of the box of the given half extents around the origin and a segment. `None` if the segment enters the
-/// box.
+/// Returns the closest points of a segment and the box with these half extents around the origin. `None` if the segment
+/// enters the box.
 pub(crate) fn gap(half: Vec3, core: &Segment) -> Option<Gap> {
     let on_core = core.at(closest_to_box(half, core));
     let on_box = max3(min3(on_core, half), -half);
@@ -65,9 +65,9 @@ pub(crate) fn gap(half: Vec3, core: &Segment) -> Option<Gap> {
     (squared > 0.0).then(|| Gap { on_core, on_box, distance: squared.sqrt() })
 }
 
-/// Parameter of the segment's closest point to the box, 0..=1; an end if the ends are as close as the interior.
+/// Parameter of the segment's point closest to the box, 0..=1; an end if the ends are as close as the interior.
 ///
-/// The squared distance is convex along the segment with a piecewise linear slope whose breaks are the crossings of
+/// The squared distance is convex along the segment. Its slope is piecewise linear, with breaks at the crossings of
 /// face planes: the two breaks between which the slope changes sign enclose its zero.
 fn closest_to_box(half: Vec3, core: &Segment) -> f32 {
     let (from, step) = (core.ends[0], core.ends[1] - core.ends[0]);
@@ -109,13 +109,13 @@ fn closest_to_box(half: Vec3, core: &Segment) -> f32 {
 
 /// Closest or deepest points of a box and a segment, in the box's frame.
 pub(crate) struct Meeting {
-    /// Unit, out of the box.
+    /// Unit normal, out of the box.
     pub normal: Vec3,
     pub on_box: Vec3,
     pub on_core: Vec3,
 }
 
-/// The box's edge along `axis`, on the given sides of the other two axes.
+/// Returns the box's edge along `axis`, on the given sides of the other two axes.
 fn edge(half: Vec3, axis: usize, positive: [bool; 2]) -> Segment {
     let mut from = half;
     for (k, positive) in [(axis + 1) % 3, (axis + 2) % 3].into_iter().zip(positive) {
@@ -127,7 +127,7 @@ fn edge(half: Vec3, axis: usize, positive: [bool; 2]) -> Segment {
     Segment { ends: [from, to] }
 }
 
-/// The face with the shortest way out of the box, and the signed distance along its normal.
+/// Returns the signed distance along the normal of the face with the shortest way out of the box, and the points.
 pub(crate) fn best_face(half: Vec3, core: &Segment) -> (f32, Meeting) {
     let mut best = (f32::NEG_INFINITY, 0, 1.0);
     for axis in 0..3 {
@@ -146,7 +146,7 @@ pub(crate) fn best_face(half: Vec3, core: &Segment) -> (f32, Meeting) {
     (gap, Meeting { normal, on_box: on_core - normal * gap, on_core })
 }
 
-/// Like [`best_face`], over the cross products of the segment and an edge; `None` if the segment is parallel to all
+/// Like [`best_face`], for the cross products of the segment and an edge; `None` if the segment is parallel to all
 /// edges (sine at most `parallel_sine`).
 pub(crate) fn best_edge(half: Vec3, core: &Segment, parallel_sine: f32) -> Option<(f32, Meeting)> {
     let along = core.ends[1] - core.ends[0];
@@ -172,7 +172,8 @@ pub(crate) fn best_edge(half: Vec3, core: &Segment, parallel_sine: f32) -> Optio
     Some((gap, Meeting { normal, on_box: edge.at(t), on_core: core.at(s) }))
 }
 
-/// Clips the segment to within `half` of the middle along `axis`; false if nothing is left.
+/// Clips `stretch` to the part of the segment within `half` of the centre along `axis`; returns false if no part is
+/// left.
 pub(crate) fn cut(segment: &Segment, axis: usize, half: f32, stretch: &mut (f32, f32)) -> bool {
     let from = segment.ends[0][axis];
     let step = segment.ends[1][axis] - from;

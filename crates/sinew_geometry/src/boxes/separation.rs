@@ -6,10 +6,10 @@ use super::fifteen::FifteenAxes;
 use super::placed::{PlacedBox, sign};
 use sinew_math::{Vec3, max};
 
-/// Edges with a smaller sine are parallel: their direction adds only rounding to the faces'.
+/// Sine below which edges count as parallel: their direction adds only rounding to that of the faces.
 pub(super) const PARALLEL_SINE: f32 = 1e-5;
 
-/// A candidate normal from A to B and the gap along it.
+/// A candidate normal from A to B, and the gap along it, metres.
 #[derive(Clone, Copy)]
 pub(crate) struct Axis {
     pub normal: Vec3,
@@ -17,7 +17,7 @@ pub(crate) struct Axis {
     pub of: AxisOf,
 }
 
-/// Source of a separating axis of two polytopes: a face of A or of B, or an edge of each, by their numbers.
+/// Source of a separating axis of two polytopes: a face of A, a face of B, or an edge of each, by index.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AxisOf {
     /// Normal of a face of A.
@@ -37,7 +37,7 @@ pub(crate) struct Crossed<'a> {
     cosine: [[f32; 3]; 3],
 }
 
-/// Relative error of the quick estimate of a gap across two edges, times their sine.
+/// Relative error of the quick estimate of the gap across two edges times their sine.
 const ESTIMATE: f32 = 1e-4;
 
 impl<'a> Crossed<'a> {
@@ -45,7 +45,7 @@ impl<'a> Crossed<'a> {
         Self { a, b, offset: b.center - a.center, cosine: a.axes.map(|u| b.axes.map(|v| u.dot(v))) }
     }
 
-    /// The face of A that separates best.
+    /// Returns the face of A that separates best.
     pub fn best_face_of_a(&self) -> Axis {
         let axis = |k: usize| {
             let along = self.offset.dot(self.a.axes[k]);
@@ -54,7 +54,7 @@ impl<'a> Crossed<'a> {
         better(better(axis(0), axis(1)), axis(2))
     }
 
-    /// The face of B that separates best; the normal points from A to B.
+    /// Returns the face of B that separates best; the normal points from A to B.
     pub fn best_face_of_b(&self) -> Axis {
         let axis = |k: usize| {
             let along = -self.offset.dot(self.b.axes[k]);
@@ -64,8 +64,8 @@ impl<'a> Crossed<'a> {
         better(better(axis(0), axis(1)), axis(2))
     }
 
-    /// The best cross product of edges, if it separates by more than `enough` (m); else `None`, or one that does not.
-    /// Parallel edges (sine below `parallel_sine`) are skipped.
+    /// Returns the best cross product of edges if it separates by more than `enough` (metres); otherwise `None` or an
+    /// axis that separates less. Skips parallel edges (sine below `parallel_sine`).
     pub fn best_edges(&self, parallel_sine: f32, enough: f32) -> Option<Axis> {
         let mut best: Option<Axis> = None;
         for (k, may_part) in self.edges_that_may_part(enough).into_iter().enumerate() {
@@ -80,8 +80,8 @@ impl<'a> Crossed<'a> {
         best
     }
 
-    /// Pairs of edges among the nine, the axis of B changing fastest, that may separate by more than `enough` (m): by
-    /// the gap times the sine, as in [`FifteenAxes`].
+    /// Returns the pairs of edges that may separate by more than `enough` (metres), with the axis of B changing
+    /// fastest. Uses the gap times the sine, as in [`FifteenAxes`].
     fn edges_that_may_part(&self, enough: f32) -> [bool; 9] {
         let t = self.a.local_vector(self.offset).to_array();
         let (ha, hb) = (self.a.half.to_array(), self.b.half.to_array());
@@ -104,21 +104,21 @@ impl<'a> Crossed<'a> {
     }
 }
 
-/// The next two axes after each.
+/// The next two axes after each axis, cyclic.
 const AFTER: [(usize, usize); 3] = [(1, 2), (2, 0), (0, 1)];
 
-/// The one that separates better; the first among equals.
+/// Returns the axis that separates better; the first among equals.
 fn better(first: Axis, second: Axis) -> Axis {
     if second.separation > first.separation { second } else { first }
 }
 
-/// Half of a box's width along a direction that has these cosines with its axes.
+/// Half of a box's width along the direction whose cosines with the box's axes are given.
 fn width(half: Vec3, cosines: [f32; 3]) -> f32 {
     half.x * cosines[0].abs() + half.y * cosines[1].abs() + half.z * cosines[2].abs()
 }
 
-/// Face `k` of a box whose centre is `along` in front of the other's, which is half as wide as `width`; `toward_b` is
-/// −1 if it is a face of B.
+/// Axis of face `k` of a box. `along` is the offset of the other box's centre along the face's axis, and `width` the
+/// half width of the other box. `toward_b` is −1 for a face of B.
 fn facing(
     of: &PlacedBox,
     along: f32,
@@ -151,7 +151,7 @@ fn edges(a: &PlacedBox, b: &PlacedBox, (i, j): (usize, usize), parallel_sine: f3
     Some(Axis { normal, separation, of: AxisOf::Edges(i, j) })
 }
 
-/// The axis with that name, with the bits of [`Crossed`]; `None` if there is none.
+/// Returns the axis with this source, with the bits of [`Crossed`]; `None` if the source is not valid.
 pub(crate) fn axis(a: &PlacedBox, b: &PlacedBox, of: AxisOf, parallel_sine: f32) -> Option<Axis> {
     match of {
         AxisOf::FaceA(k) => (k < 3).then(|| face(a, b, 1.0, AxisOf::FaceA, k)),
@@ -161,8 +161,8 @@ pub(crate) fn axis(a: &PlacedBox, b: &PlacedBox, of: AxisOf, parallel_sine: f32)
     }
 }
 
-/// The faces of the Minkowski difference of two boxes have those 15 normals, so the best of them gives the shortest way
-/// out.
+/// Returns the penetration of two boxes. The faces of the Minkowski difference have these 15 normals, so the best of
+/// them gives the shortest way out.
 pub(super) fn penetration(a: &PlacedBox, b: &PlacedBox) -> Option<Penetration> {
     if !FifteenAxes::of(a, b).overlap() {
         return None;

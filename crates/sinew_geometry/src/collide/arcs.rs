@@ -1,4 +1,4 @@
-//! Pairs of edges of two polytopes whose arcs cross on the Gauss map, eight at a time.
+//! Pairs of edges of two polytopes whose arcs cross on the Gauss map, tested eight at a time with SIMD.
 
 use crate::hull::Polytope;
 use sinew_math::Vec3;
@@ -8,10 +8,10 @@ use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 /// Number of edges of one polytope that are compared with eight of the other in one call.
 const CHUNK: usize = 64;
 
-/// An edge with the normals of its faces.
+/// An edge with the normals of its two faces.
 #[derive(Clone, Copy)]
 pub(super) struct Arc {
-    /// Index of the half-edge that represents it.
+    /// Index of the half-edge that represents the edge.
     pub side: usize,
     pub from: Vec3,
     pub along: Vec3,
@@ -31,9 +31,9 @@ impl Arc {
         }
     }
 
-    /// The direction across both edges that points out of this polytope, not of unit length, if the Minkowski
-    /// difference has a face there: if this arc and the reversed other arc cross. The arc of a triangle's edge, between
-    /// opposite normals, is half a circle; its direction selects the half.
+    /// Returns the direction across both edges that points out of this polytope, not of unit length. `Some` only if the
+    /// Minkowski difference has a face there, which means that this arc and the reversed other arc cross. The arc of a
+    /// triangle's edge, between opposite normals, is half a circle; `along` selects the half.
     pub fn crossing(&self, other: &Self) -> Option<Vec3> {
         let [c, d] = other.normals.map(|n| n.dot(self.along));
         if c * d >= 0.0 {
@@ -81,14 +81,14 @@ pub(super) fn for_each_crossing(a: &Polytope<'_>, b: &Polytope<'_>, mut visit: i
     }
 }
 
-/// Eight arcs: directions of the edges, then the normals on both sides.
+/// Eight arcs: directions of the edges, and the normals on both sides.
 struct ArcLanes {
     along: [[f32; WIDTH]; 3],
     normals: [[[f32; WIDTH]; 3]; 2],
 }
 
 impl ArcLanes {
-    /// Arcs without normals cross none.
+    /// Loads eight arcs. Arcs without normals cross no other arc.
     fn new(arcs: &[Arc; WIDTH]) -> Self {
         let lanes = |of: fn(&Arc) -> Vec3| {
             let rows = arcs.each_ref().map(|arc| of(arc).to_array());
@@ -101,7 +101,7 @@ impl ArcLanes {
     }
 }
 
-/// Signs that decide [`Arc::crossing`] for eight arcs and each of some others: bit `k` is lane `k`.
+/// Kernel that evaluates [`Arc::crossing`] for eight arcs and each of some others: bit `k` is lane `k`.
 struct Cross<'a> {
     arcs: &'a ArcLanes,
     others: &'a [Arc],
@@ -142,7 +142,7 @@ mod tests {
     use crate::hull::Hull;
     use sinew_math::Random;
 
-    /// Eight at a time finds the pairs that one by one finds, each once.
+    /// Eight at a time and one by one find the same pairs, each once.
     #[test]
     fn lanes_find_the_arcs_that_cross() {
         let mut random = Random::new(12);

@@ -1,4 +1,4 @@
-//! Code shared by boxes and polytopes: the choice of the separating axis, and its points.
+//! Code shared by boxes and polytopes: the choice of the separating axis, and the contact points for it.
 
 use super::clip::{Incident, Reference, clip};
 use super::feature::{self, pair};
@@ -8,20 +8,20 @@ use super::reduce::{midway, push_best};
 use crate::boxes::separation::{Axis, AxisOf};
 use sinew_math::{Vec3, min};
 
-/// Edges with a smaller sine count as parallel: the face axes suffice then.
+/// Sine below which edges count as parallel; then the face axes suffice.
 pub(super) const PARALLEL_SINE: f32 = 0.005;
 
-/// Breaks ties between the faces of A and B by geometry, so that neither the order of the shapes nor rounding decides.
-/// No common direction of a level (axes, diagonals) is perpendicular to it.
+/// Direction that breaks ties between the faces of A and B by geometry, so that neither the order of the shapes nor
+/// rounding decides. No common direction of a level (axes, diagonals) is perpendicular to it.
 pub(super) const TIE_DIRECTION: Vec3 = Vec3::new(0.331, 0.873, 0.357);
 
-/// Length below which the choice of features does not depend on lengths: 1 % of the thinner shape's half width, at most
-/// 0.5 mm.
+/// Length differences below which the choice of features ignores them, metres: 1 % of the thinner shape's half width,
+/// at most 0.5 mm.
 pub(super) fn tolerance(half_width_a: f32, half_width_b: f32) -> f32 {
     min(0.0005, 0.01 * min(half_width_a, half_width_b))
 }
 
-/// The better of two faces. Faces that lie on each other are equally good, and the choice between them must be stable.
+/// Returns the better of two faces. Two touching faces are equally good, and the choice between them must be stable.
 /// `tie` is [`TIE_DIRECTION`] in the current frame.
 pub(super) fn choose_face(a: Axis, b: Axis, tolerance: f32, tie: Vec3) -> Axis {
     let tied = (a.separation - b.separation).abs() <= tolerance && a.normal.dot(b.normal) > 0.9;
@@ -36,20 +36,20 @@ pub(super) fn choose(face: Axis, edges: Option<Axis>, tolerance: f32) -> Axis {
     edges.filter(|edges| edges.separation > least).unwrap_or(face)
 }
 
-/// Least gap of edges to be preferred over a face, metres.
+/// Gap above which edges are preferred over a face, metres.
 pub(super) fn least_of_edges(face: &Axis, tolerance: f32) -> f32 {
     face.separation + tolerance + 0.05 * face.separation.abs()
 }
 
 /// A solid with flat faces.
 pub(super) trait Faceted {
-    /// The corner furthest along a direction: index and position.
+    /// Returns the index and position of the corner furthest along a direction.
     fn corner(&self, direction: Vec3) -> (usize, Vec3);
 
-    /// The edge that an axis names (if several, the furthest along a direction), and its feature.
+    /// Returns the edge that an axis names (if several, the furthest along a direction), and its feature.
     fn edge_named(&self, number: usize, direction: Vec3) -> (Segment, u16);
 
-    /// The face of `other` that faces this one, clipped to it: [`push_faces`].
+    /// Pushes the face of `other` that faces this solid, clipped to face `face`: see [`push_faces`].
     fn push_faces(
         &self,
         face: usize,
@@ -60,12 +60,12 @@ pub(super) trait Faceted {
         out: &mut Manifold,
     ) -> bool;
 
-    /// The closest points of this solid and a separated one, by trying all corners and edges: slow but reliable, for
-    /// the rare pairs that pass corner by corner or edge by edge. `normal` separates them.
+    /// Pushes the closest points of this solid and a separated one, by testing all corners and edges: slow but
+    /// reliable, for the rare pairs that pass corner by corner or edge by edge. `normal` separates the solids.
     fn push_closest(&self, other: &Self, normal: Vec3, margin: f32, tolerance: f32, out: &mut Manifold);
 }
 
-/// The points of a contact along the axis that was chosen.
+/// Pushes the points of a contact along the chosen axis.
 pub(super) fn push<S: Faceted>(a: &S, b: &S, axis: &Axis, margin: f32, tolerance: f32, out: &mut Manifold) {
     let touched = match axis.of {
         AxisOf::FaceA(k) => a.push_faces(k, b, axis, margin, tolerance, out),
@@ -83,8 +83,8 @@ pub(super) fn push<S: Faceted>(a: &S, b: &S, axis: &Axis, margin: f32, tolerance
     }
 }
 
-/// The closest points of two edges. Returns false and pushes nothing if the solids are apart and these are not their
-/// closest points.
+/// Pushes the closest points of two edges. Returns false and pushes nothing if the solids are apart and their closest
+/// points are elsewhere.
 fn push_edges(
     (edge_a, feature_a): (Segment, u16),
     (edge_b, feature_b): (Segment, u16),
@@ -101,7 +101,7 @@ fn push_edges(
     true
 }
 
-/// B's deepest corner, for overlaps that no face or edge describes.
+/// Pushes B's deepest corner, for overlaps that no face or edge describes.
 fn push_support<S: Faceted>(a: &S, b: &S, axis: &Axis, out: &mut Manifold) {
     let ((of_a, _), (of_b, corner)) = (a.corner(axis.normal), b.corner(-axis.normal));
     out.normal = axis.normal;
@@ -109,8 +109,8 @@ fn push_support<S: Faceted>(a: &S, b: &S, axis: &Axis, out: &mut Manifold) {
     out.push(position, axis.separation, pair(feature::vertex(of_a), feature::vertex(of_b)));
 }
 
-/// The other shape's face clipped to the reference face. Returns false and pushes nothing if that does not give the
-/// distance of the shapes because they pass beside the face.
+/// Pushes the other shape's face, clipped to the reference face. Returns false and pushes nothing if the shapes pass
+/// beside the face, so that the result would not be their distance.
 pub(super) fn push_faces<const N: usize>(
     reference: &impl Reference,
     (incident, corners): (u16, impl Iterator<Item = Incident>),
@@ -156,15 +156,15 @@ impl Bridge {
         self.on_b - self.on_a
     }
 
-    /// The shorter one, the first among equals.
+    /// Returns the shorter bridge; the first among equals.
     pub fn shorter(self, other: Self) -> Self {
         if other.span().length() < self.span().length() { other } else { self }
     }
 }
 
-/// The contact of separated shapes from candidate bridges, of which `best` is the shortest. Parallel edges are equally
-/// close along a line whose ends are corners: `corners` are all bridges from corners. `size` is that of the shapes,
-/// `fallback` the separating direction.
+/// Pushes the contact of separated shapes from candidate bridges, of which `best` is the shortest. Parallel edges are
+/// equally close along a line whose ends are corners: `corners` are all bridges from corners. `size` is the size of the
+/// shapes, `fallback` the separating direction.
 pub(super) fn push_bridges<const N: usize>(
     best: Bridge,
     corners: impl Iterator<Item = Bridge>,
@@ -177,7 +177,7 @@ pub(super) fn push_bridges<const N: usize>(
     if separation > margin {
         return;
     }
-    // The direction between points that all but coincide is noise.
+    // The direction between nearly coincident points is noise.
     let precise = separation > 2e-5 * size;
     out.normal = if precise { best.span() / separation } else { fallback };
     let mut points = [ManifoldPoint::default(); N];

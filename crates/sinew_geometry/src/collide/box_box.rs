@@ -1,4 +1,4 @@
-//! Box against box: separating axes (Gottschalk, Lin & Manocha 1996), then the two faces or the two edges that meet.
+//! Box against box: separating axes (Gottschalk, Lin & Manocha 1996), then the two faces or the two edges in contact.
 
 use super::axes::{
     Bridge, Faceted, PARALLEL_SINE, TIE_DIRECTION, choose, choose_face, least_of_edges, push, push_bridges,
@@ -84,19 +84,19 @@ impl Faceted for PlacedBox {
     }
 }
 
-/// Share of two boxes' size that rounding may add to a distance between them.
+/// Share of the boxes' size by which rounding may change a distance between them.
 const BLUR: f32 = 1e-5;
 
-/// Closest points of two boxes, without the corners and edges that cannot have them.
+/// Closest points of two boxes; skips corners and edges that cannot be closest.
 struct Closest<'a> {
     boxes: [&'a PlacedBox; 2],
     corners: [[Vec3; 8]; 2],
-    /// Reach of each corner of A and of B along the separating direction, metres.
+    /// Coordinate of each corner of A and of B along the separating direction, metres.
     heights: [[f32; 8]; 2],
-    /// Furthest reach of either's corners toward the other box, metres.
+    /// Coordinates of A's furthest corner toward B and of B's toward A, metres.
     tops: [f32; 2],
     normal: Vec3,
-    /// Gap beyond which nothing is reported, metres.
+    /// Gap above which pairs of points are skipped, metres.
     most: f32,
 }
 
@@ -109,7 +109,7 @@ impl<'a> Closest<'a> {
         Self { boxes: [a, b], corners, heights, tops: [highest, lowest], normal, most }
     }
 
-    /// Each corner and the other box's point closest to it.
+    /// Pairs each corner with the other box's point closest to it.
     fn corner_bridges(&self) -> impl Iterator<Item = Bridge> {
         let ([a, b], [corners_a, corners_b]) = (self.boxes, &self.corners);
         let of_a = (0..8).filter(|&k| self.tops[1] - self.heights[0][k] <= self.most).map(|k| {
@@ -123,11 +123,11 @@ impl<'a> Closest<'a> {
         of_a.chain(of_b)
     }
 
-    /// The closest points of a pair of edges, if they are closer than the ones found so far.
+    /// Returns the closest points of a pair of edges if they are closer than `found`, otherwise `found`.
     fn shortest_edge_bridge(&self, found: Option<Bridge>) -> Option<Bridge> {
         let most = found.map_or(self.most, |found| min(found.span().length() * (1.0 + BLUR), self.most));
         let most = most + self.most * BLUR;
-        // Only a few edges are closer along the shortest way so far.
+        // Only a few edges can be closer along the shortest direction so far.
         let toward = found.map_or(self.normal, |found| normalize_or(found.span(), self.normal));
         let reach = self.corners.map(|corners| corners.map(|corner| corner.dot(toward)));
         let mut best = found;
@@ -152,7 +152,7 @@ impl<'a> Closest<'a> {
         best
     }
 
-    /// The closest points of two edges, each by index and ends.
+    /// Returns the closest points of two edges, each given by its index and ends.
     fn edge_bridge(&self, (i, ends): (usize, [usize; 2]), (j, others): (usize, [usize; 2])) -> Bridge {
         let edge_a = Segment { ends: ends.map(|k| self.corners[0][k]) };
         let edge_b = Segment { ends: others.map(|k| self.corners[1][k]) };
@@ -180,7 +180,7 @@ mod tests {
         )
     }
 
-    /// Skipping edges that separate by no more than enough does not change which direction separates best.
+    /// Skipping edges that separate by at most `enough` does not change which direction separates best.
     #[test]
     fn edges_below_the_given_separation_are_skipped() {
         let mut random = Random::new(41);

@@ -8,13 +8,13 @@ use super::placed::{PlacedBox, PlacedCapsule, Segment, largest_axis, sign};
 use crate::boxes::segment::{Gap, Meeting, best_edge, best_face, cut, gap};
 use sinew_math::{Vec3, min};
 
-/// Normals within 0.03° of a face's normal are replaced by it: rounding is below that, and so is the rim of a long box.
+/// Sine below which a normal is replaced by that of the face: 0.03°, more than rounding and than the rim of a long box.
 const FACE_SINE: f32 = 5e-4;
-/// A core within 1.8° of a side's direction runs along it.
+/// Cosine above which a core counts as parallel to a side of the face: 1.8°.
 const ALONG_COSINE: f32 = 0.9995;
-/// A normal within 1.8° of the plane across that side.
+/// Sine below which a normal counts as perpendicular to that side: 1.8°.
 const ACROSS_SINE: f32 = 0.03;
-/// A core with a smaller sine against a side counts as parallel: the face axes suffice then.
+/// Sine below which a core counts as parallel to a side of the box; then the face axes suffice.
 const PARALLEL_SINE: f32 = 0.005;
 
 pub(super) fn collide(
@@ -42,7 +42,7 @@ pub(super) fn collide(
     }
 }
 
-/// The closest points, if the core is clearly outside the box.
+/// Returns the closest points if the core is clearly outside the box.
 fn apart(half: Vec3, core: &Segment) -> Option<Meeting> {
     let Gap { on_core, on_box, distance } = gap(half, core)?;
     // The direction between points closer than rounding is noise.
@@ -50,10 +50,10 @@ fn apart(half: Vec3, core: &Segment) -> Option<Meeting> {
     (distance > 1e-4 * reach).then(|| Meeting { normal: (on_core - on_box) / distance, on_box, on_core })
 }
 
-/// The shortest way out, over the box's faces and the cross products of core and edges.
+/// Returns the shortest way out, over the box's faces and the cross products of core and edges.
 fn pierced(half: Vec3, core: &Segment, radius: f32) -> Meeting {
     let (face_gap, face) = best_face(half, core);
-    // A face can carry two points, so an edge must be clearly better.
+    // A face can give two points, so an edge must be clearly better.
     let preference = 0.05 * face_gap.abs() + 0.01 * min(min(half.x, half.y), min(half.z, radius));
     match best_edge(half, core, PARALLEL_SINE) {
         Some((edge_gap, edge)) if edge_gap > face_gap + preference => edge,
@@ -61,8 +61,8 @@ fn pierced(half: Vec3, core: &Segment, radius: f32) -> Meeting {
     }
 }
 
-/// The two ends of the part of the core over the face or along the edge it touches. Returns false and pushes nothing if
-/// it touches a corner, crosses an edge, or that part is too short.
+/// Pushes the two ends of the part of the core over the face, or along the edge, that it touches. Returns false and
+/// pushes nothing if the core touches a corner, crosses an edge, or that part is too short.
 fn push_line(
     half: Vec3,
     core: &Segment,
@@ -100,7 +100,7 @@ fn push_line(
     line.push_ends(|p| (p - meeting.on_box).dot(normal), margin, out)
 }
 
-/// Number of the corner in the octant of `p`.
+/// Index of the corner in the octant of `p`.
 fn corner_index(p: Vec3) -> usize {
     usize::from(p.x > 0.0) | usize::from(p.y > 0.0) << 1 | usize::from(p.z > 0.0) << 2
 }

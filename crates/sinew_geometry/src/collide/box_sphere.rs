@@ -1,4 +1,4 @@
-//! Box against sphere: the closest point of the box to the centre.
+//! Box against ball: the point of the box closest to the centre of the ball.
 
 use super::feature::{WHOLE, pair};
 use super::manifold::{Manifold, SeparationCache};

@@ -1,15 +1,15 @@
-//! Capsule against capsule: closest points of the cores; two points where the cores run side by side.
+//! Capsule against capsule: closest points of the cores; two points if the cores run side by side.
 
 use super::feature::{WHOLE, end, pair};
 use super::manifold::{Manifold, SeparationCache};
 use super::placed::{PlacedCapsule, direction_or, sign};
 use sinew_math::{Vec3, any_orthonormal, min, normalize_or};
 
-/// Parallel cores touch along a line; its two ends are used while the cores lie within this share of the smaller radius
-/// of each other's plane through the normal.
+/// Parallel cores touch along a line, whose two ends are used. Each core must be within this share of the smaller
+/// radius of the plane that contains the other core and the normal.
 const SIDEWAYS_SHARE: f32 = 0.25;
 
-/// Sine of the angle from which on cores count as crossing: about half a degree.
+/// Sine above which cores count as crossing: about half a degree.
 const LEAST_SINE: f32 = 0.01;
 
 pub(super) fn collide(
@@ -26,8 +26,8 @@ pub(super) fn collide(
     let inside = |share: f32, pill: &PlacedCapsule| {
         0.0 < share && share < 1.0 && pill.core.ends[0] != pill.core.ends[1]
     };
-    // For crossing cores the common perpendicular is exact at any distance; the direction between the two points is
-    // rounding then.
+    // For crossing cores the common perpendicular is exact at any distance, while the direction between the two points
+    // may be rounding.
     let (normal, separation) = if inside(s, a) && inside(t, b) && sine > LEAST_SINE {
         let gap = (pb - pa).dot(cross) / sine;
         (cross * (sign(gap) / sine), gap.abs() - a.radius - b.radius)
@@ -48,14 +48,15 @@ pub(super) fn collide(
     }
 }
 
-/// The two ends of the stretch along which the cores run side by side; false, and nothing pushed, if they don't.
+/// Pushes the two ends of the part along which the cores run side by side. Returns false and pushes nothing if there is
+/// none.
 fn push_side_by_side(a: &PlacedCapsule, b: &PlacedCapsule, margin: f32, out: &mut Manifold) -> bool {
     // The direction uses both cores, so that their order does not matter.
     let common = a.axis + b.axis * sign(a.axis.dot(b.axis));
     let place = |p: Vec3| (p - a.core.ends[0]).dot(common);
     let (end_of_a, [t0, t1]) = (place(a.core.ends[1]), b.core.ends.map(place));
     let (first, last) = if t0 < t1 { ((t0, 0), (t1, 1)) } else { ((t1, 1), (t0, 0)) };
-    // Each end of the overlap is an end of one core, beside the other core.
+    // Each end of the overlap is an end of one core, opposite a point of the other core.
     let beside_a =
         |i: usize| (a.core.at(a.core.closest(b.core.ends[i])), b.core.ends[i], pair(WHOLE, end(i)));
     let beside_b =

@@ -1,5 +1,5 @@
-//! Capsule against sphere: the closest point of the core to the centre. Sphere against sphere is a capsule whose
-//! core is a point.
+//! Capsule against ball: the point of the core closest to the centre of the ball. A ball against a ball is the case of
+//! a capsule whose core is a point.
 
 use super::feature::{WHOLE, pair};
 use super::manifold::{Manifold, SeparationCache};
@@ -20,7 +20,7 @@ pub(super) fn collide(
         parting.gap = separation;
         return;
     }
-    // The centre lies on the core: every way out across the core is equally short.
+    // The centre is on the core: all ways out across the core are equally short.
     out.normal = direction_or(offset, a.radius + b.radius, any_orthonormal(a.axis));
     let position = on_core + out.normal * (a.radius + 0.5 * separation);
     out.push(position, separation, pair(WHOLE, WHOLE));

@@ -1,14 +1,14 @@
-//! Clips a face to the prism over another and names the features that touch.
+//! Clips a face to the prism over another face and names the features in contact.
 
 use super::feature;
 use super::placed::PlacedBox;
 use crate::hull::Polytope;
 use sinew_math::{Vec3, any_orthonormal};
 
-/// A corner of the cut face.
+/// A corner of the clipped face.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Corner {
-    /// Position in the reference face's frame: its normal is z.
+    /// Position in the reference face's frame, whose z axis is the face's normal.
     pub local: Vec3,
     /// Feature of the reference shape.
     pub reference: u16,
@@ -22,7 +22,7 @@ pub(super) struct Corner {
 enum Side {
     /// An edge of the incident face, by its feature.
     Incident(u16),
-    /// A side of the reference face, by its number.
+    /// A side of the reference face, by its index.
     Reference(u16),
     #[default]
     None,
@@ -44,7 +44,7 @@ impl<const N: usize> Polygon<N> {
     }
 
     fn push(&mut self, corner: Corner) {
-        // Rounding could produce one more corner of a sliver; it is dropped.
+        // Rounding could produce one more corner on a sliver; that corner is dropped.
         if self.count < N {
             self.corners[self.count] = corner;
             self.count += 1;
@@ -52,38 +52,38 @@ impl<const N: usize> Polygon<N> {
     }
 }
 
-/// A convex face to clip against. Sides are numbered in clipping order.
+/// A convex face to which another face is clipped. Its sides are numbered in clipping order.
 pub(super) trait Reference {
     /// Name of the face.
     fn feature(&self) -> u16;
-    /// Unit, outward.
+    /// Outward unit normal.
     fn normal(&self) -> Vec3;
     /// Converts a point to the face's frame.
     fn local(&self, p: Vec3) -> Vec3;
     /// Converts a point from the face's frame to the frame of the pair.
     fn point(&self, local: Vec3) -> Vec3;
     fn sides(&self) -> usize;
-    /// A side in the face's frame.
+    /// Returns a side, in the face's frame.
     fn side(&self, number: usize) -> Line;
     /// Name of the edge at a side.
     fn edge(&self, side: usize) -> u16;
-    /// Name of the corner where two sides meet, the later second.
+    /// Name of the corner where two sides meet; `later` is the later of the two.
     fn vertex(&self, earlier: usize, later: usize) -> u16;
 }
 
 /// A line in the plane of a face: `outward · x = offset`.
 #[derive(Clone, Copy)]
 pub(super) struct Line {
-    /// Unit, z is 0.
+    /// Unit vector; z is 0.
     pub outward: Vec3,
     pub offset: f32,
 }
 
-/// A corner of an incident face: where, its name, and the name of the edge from it to the next.
+/// A corner of an incident face: its position, its name, and the name of the edge from it to the next.
 pub(super) type Incident = (Vec3, u16, u16);
 
-/// Clips the incident face to the prism over the reference face, widened by `tolerance` so that corners on its sides
-/// keep their names under rounding (Sutherland & Hodgman 1974).
+/// Clips the incident face to the prism over the reference face (Sutherland & Hodgman 1974). The prism is widened by
+/// `tolerance`, so that corners on its sides keep their names under rounding.
 pub(super) fn clip<const N: usize>(
     reference: &impl Reference,
     face: u16,
@@ -105,7 +105,7 @@ pub(super) fn clip<const N: usize>(
     polygon
 }
 
-/// Removes the part beyond one side of the reference face.
+/// Removes the part of the polygon beyond one side of the reference face.
 fn cut<const N: usize>(
     polygon: &mut Polygon<N>,
     reference: &impl Reference,
@@ -141,7 +141,7 @@ fn cut<const N: usize>(
                 }
                 Side::None => {}
             }
-            // Where the outline leaves, it continues along this side of the reference face.
+            // Where the outline crosses outward, it continues along this side of the reference face.
             if d0 <= 0.0 {
                 corner.side = Side::Reference(side as u16);
             }
@@ -151,7 +151,7 @@ fn cut<const N: usize>(
     *polygon = out;
 }
 
-/// A quadrilateral cut by four planes has at most eight corners.
+/// Largest number of corners of a quadrilateral cut by four planes.
 pub(super) const BOX_CORNERS: usize = 8;
 
 /// A face of a box.
@@ -161,13 +161,13 @@ pub(super) struct BoxFace<'a> {
     sign: f32,
     center: Vec3,
     normal: Vec3,
-    /// The axes along the face's sides.
+    /// Axes of the box along the face's sides.
     sides: [usize; 2],
     along: [Vec3; 2],
 }
 
 impl<'a> BoxFace<'a> {
-    /// Creates a face by its axis and side.
+    /// Creates a face from its axis and sign.
     pub fn new(of: &'a PlacedBox, axis: usize, sign: f32) -> Self {
         let normal = of.axes[axis] * sign;
         let sides = [[1, 2], [2, 0], [0, 1]][axis];
@@ -183,7 +183,7 @@ impl<'a> BoxFace<'a> {
             | usize::from(positive[1]) << v
     }
 
-    /// The four corners in order.
+    /// Returns the four corners, in order around the face.
     pub fn corners(&self) -> impl Iterator<Item = Incident> {
         let [u, v] = self.sides;
         let sides = [([false, false], u), ([true, false], v), ([true, true], u), ([false, true], v)];
@@ -194,7 +194,7 @@ impl<'a> BoxFace<'a> {
     }
 }
 
-/// Sides 0 and 1 are the negative and positive side of the first side axis, 2 and 3 those of the second.
+/// Sides 0 and 1 are the negative and the positive side of the first side axis, 2 and 3 those of the second.
 impl Reference for BoxFace<'_> {
     fn feature(&self) -> u16 {
         feature::face(self.axis, self.sign)
@@ -243,7 +243,7 @@ impl Reference for BoxFace<'_> {
 pub(super) struct PolytopeFace<'a> {
     of: &'a Polytope<'a>,
     face: usize,
-    /// Axes of its frame: along it, along it, outward.
+    /// Axes of the face's frame: two in the plane of the face, and the outward normal.
     axes: [Vec3; 3],
     origin: Vec3,
 }
@@ -256,7 +256,7 @@ impl<'a> PolytopeFace<'a> {
         Self { of, face, axes: [u, normal.cross(u), normal], origin: of.center - normal * height }
     }
 
-    /// Corners in order.
+    /// Returns the corners, in order around the face.
     pub fn corners(&self) -> impl Iterator<Item = Incident> {
         let Polytope { vertices, topology, .. } = *self.of;
         topology.sides(self.face).map(move |side| {
@@ -265,13 +265,13 @@ impl<'a> PolytopeFace<'a> {
         })
     }
 
-    /// Number of the half-edge at a side.
+    /// Index of the half-edge at a side.
     fn half_edge(&self, side: usize) -> usize {
         self.of.topology.sides(self.face).start + side
     }
 }
 
-/// Sides in the order of the half-edges.
+/// Sides are numbered in the order of the half-edges.
 impl Reference for PolytopeFace<'_> {
     fn feature(&self) -> u16 {
         feature::face_number(self.face)
@@ -297,7 +297,7 @@ impl Reference for PolytopeFace<'_> {
     fn side(&self, number: usize) -> Line {
         let [from, to] = self.of.edge(self.half_edge(number)).ends.map(|p| self.local(p));
         let along = to - from;
-        // Counter-clockwise: outside is to the right.
+        // Corners are counter-clockwise, so the outside is to the right.
         let right = Vec3::new(along.y, -along.x, 0.0);
         let outward = right / right.length();
         Line { outward, offset: outward.x * from.x + outward.y * from.y }
@@ -308,7 +308,7 @@ impl Reference for PolytopeFace<'_> {
     }
 
     fn vertex(&self, earlier: usize, later: usize) -> u16 {
-        // The last side meets the first one where that starts.
+        // The last side meets the first one at the start of the first.
         let wraps = earlier == 0 && later + 1 == self.sides() && later > 1;
         let side = self.half_edge(if wraps { 0 } else { later });
         feature::vertex(self.of.topology.ends(side)[0])

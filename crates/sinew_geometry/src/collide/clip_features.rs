@@ -1,19 +1,19 @@
-//! Clips a feature of one solid to the prism over a face of another and names the parts that touch.
+//! Clips a feature of one solid to the prism over a face of another and names the features in contact.
 
 use super::feature::WHOLE;
 use crate::convex::feature::{Corner, Feature, MOST_CORNERS};
 use sinew_math::{Vec3, normalize_or};
 
-/// Each side of the face can add a corner to the clipped feature.
+/// Largest number of points of a clipped feature: each side of the face can add a corner.
 pub(super) const MOST_POINTS: usize = 2 * MOST_CORNERS;
 
-/// A point of the cut feature.
+/// A point of the clipped feature.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Clipped {
     pub point: Vec3,
-    /// Part on the face.
+    /// Name of the feature of the reference solid.
     pub reference: u16,
-    /// Part on the feature.
+    /// Name of the feature of the incident solid.
     pub incident: u16,
 }
 
@@ -35,7 +35,7 @@ enum Side {
     None,
 }
 
-/// The cut feature: a polygon, a segment, a point, or nothing.
+/// The clipped feature: a polygon, a segment, a point, or empty.
 pub(super) struct Cut {
     points: [Clipped; MOST_POINTS],
     count: usize,
@@ -47,8 +47,8 @@ impl Cut {
     }
 }
 
-/// The part over or under the face, widened by `tolerance` so that corners on its sides keep their names under rounding
-/// (Sutherland & Hodgman 1974).
+/// Clips the incident feature to the prism over and under the face (Sutherland & Hodgman 1974). The prism is widened by
+/// `tolerance`, so that corners on its sides keep their names under rounding.
 pub(super) fn clip(face: &Feature, incident: &Feature, tolerance: f32) -> Cut {
     let mut outline = [Outline::default(); MOST_POINTS];
     let mut count = incident.corners().len();
@@ -69,7 +69,7 @@ pub(super) fn clip(face: &Feature, incident: &Feature, tolerance: f32) -> Cut {
     Cut { points: outline.map(|corner| corner.at), count }
 }
 
-/// Removes the part beyond one side of the face; returns the number of remaining corners.
+/// Removes the part of the outline beyond one side of the face; returns the number of remaining corners.
 fn cut(
     outline: &[Outline],
     face: &Feature,
@@ -80,7 +80,7 @@ fn cut(
 ) -> usize {
     let mut count = 0;
     let mut push = |corner: Outline| {
-        // Rounding could produce one more corner of a sliver; it is dropped.
+        // Rounding could produce one more corner on a sliver; that corner is dropped.
         if count < MOST_POINTS {
             out[count] = corner;
             count += 1;
@@ -112,7 +112,7 @@ fn cut(
             }
             Side::None => {}
         }
-        // Where the outline leaves, it continues along this side of the face.
+        // Where the outline crosses outward, it continues along this side of the face.
         if d0 <= 0.0 {
             corner.side = Side::Reference(number);
         }
@@ -121,7 +121,7 @@ fn cut(
     count
 }
 
-/// Name of the face's corner at which two of its sides meet; none if they do not.
+/// Name of the corner of the face at which two sides meet; `WHOLE` if they do not meet.
 fn corner_between(face: &Feature, one: usize, other: usize) -> u16 {
     let sides = face.corners().len();
     if (one + 1) % sides == other {

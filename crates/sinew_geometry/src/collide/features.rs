@@ -1,4 +1,4 @@
-//! Any two convex solids: contact of their supporting features along a known direction.
+//! Contact of any two convex solids, from their supporting features along a known direction.
 
 use super::clip_features::{Clipped, clip};
 use super::feature::{WHOLE, pair};
@@ -10,23 +10,23 @@ use crate::convex::support::{Posed, Support, wide};
 use crate::convex::{Gap, apart_along, meet};
 use sinew_math::{Vec3, min};
 
-/// A face may be in contact if its normal is within about 18° of the direction.
+/// Least cosine between a face's normal and the direction at which the face may be in contact: about 18°.
 const FACING: f32 = 0.95;
-/// Faces give more points and are more stable than edges and corners: those must be better by this share of the gap and
-/// by this share of the thinner solid.
+/// Share of the gap, and share of the thinner solid, by which edges and corners must be better than faces: faces give
+/// more points and are more stable.
 const PREFERENCE: f32 = 0.05;
 const PREFERENCE_OF_SIZE: f32 = 0.01;
-/// Sine of the angle up to which a normal counts as that of a face.
+/// Sine below which a normal counts as that of a face.
 const FACE_SINE: f32 = 2e-3;
-/// Edges with a smaller sine are parallel and touch along a line.
+/// Sine below which edges count as parallel and touch along a line.
 const PARALLEL_SINE: f32 = 0.05;
-/// Parallel edges touch along a line while they lie within this share of the thinner solid of each other's plane
-/// through the normal.
+/// Parallel edges touch along a line if each is near the plane that contains the other edge and the normal: within this
+/// share of the thinner solid.
 const SIDEWAYS_SHARE: f32 = 0.25;
-/// Breaks ties between faces by geometry, so that the order of the solids does not decide: see `box_box`.
+/// Direction that breaks ties between faces by geometry, so that the order of the solids does not decide: see `axes`.
 const TIE_DIRECTION: Vec3 = Vec3::new(0.331, 0.873, 0.357);
 
-/// Any two convex solids: direction and gap by GJK and EPA.
+/// Finds the contact of any two convex solids; direction and gap by GJK and EPA.
 pub(crate) fn collide<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
@@ -42,9 +42,9 @@ pub(crate) fn collide<A: Support, B: Support>(
     }
 }
 
-/// The contact of two solids that are closest, or deepest in each other, along `gap.normal`: a face along it with the
-/// other solid's feature clipped to it, two parallel edges, or the single point of `gap`. Points further apart than
-/// `margin` are dropped.
+/// Finds the contact of two solids that are closest, or overlap deepest, along `gap.normal`. The result is a face with
+/// the other solid's feature clipped to it, the ends of two parallel edges, or the single point of `gap`. Points
+/// further apart than `margin` are dropped.
 pub(crate) fn manifold_of_features<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
@@ -76,7 +76,7 @@ pub(crate) fn manifold_of_features<A: Support, B: Support>(
     }
 }
 
-/// The supporting features of A and B.
+/// Supporting features of A and B, and their gap.
 struct Pairing<'a> {
     features: &'a [Feature; 2],
     roundings: [f32; 2],
@@ -86,7 +86,7 @@ struct Pairing<'a> {
     tolerance: f32,
 }
 
-/// One of the two solids.
+/// Name of one of the two solids.
 #[derive(Clone, Copy, PartialEq)]
 enum Of {
     A,
@@ -100,9 +100,9 @@ impl Of {
 }
 
 impl Pairing<'_> {
-    /// The face to clip the other feature to, if there is one, and the distance of the solids along its normal: the
-    /// face looks nearly along the direction, the other feature is more than a corner, and the gap along the face's own
-    /// normal is as good within `slack`.
+    /// Returns the face to which the other feature is clipped, if there is one, and the distance of the solids along
+    /// its normal. The normal of the face must be near the direction, the other feature must be more than a corner, and
+    /// the gap along the normal must be as good within `slack`.
     fn reference(&self, slack: f32, apart_along: impl Fn(Vec3) -> f32) -> Option<(Of, f32)> {
         let score = |of: Of| {
             let feature = self.feature(of);
@@ -137,13 +137,13 @@ impl Pairing<'_> {
         &self.features[of as usize]
     }
 
-    /// Normal from that solid to the other.
+    /// Normal from solid `of` to the other.
     fn outward(&self, of: Of) -> Vec3 {
         if of == Of::A { self.gap.normal } else { -self.gap.normal }
     }
 
-    /// The other feature clipped to the face, along whose normal the solids are `apart`. Returns false if that does not
-    /// give their distance because they pass beside the face.
+    /// Pushes the other feature clipped to the face; `apart` is the distance of the solids along the normal of the
+    /// face. Returns false if the solids pass beside the face, so that the points do not give their distance.
     fn push_faces(&self, of: Of, apart: f32, out: &mut Manifold) -> bool {
         let other = of.other();
         let (reference, incident) = (self.feature(of), self.feature(other));
@@ -169,7 +169,7 @@ impl Pairing<'_> {
             if apart > 0.0 {
                 return false;
             }
-            // The deepest point lies beside the corners of a round face.
+            // The deepest point of a round face is not among its corners.
             let position = (self.gap.on_a + self.gap.on_b) * 0.5;
             points[count] = ManifoldPoint { position, separation: apart, feature: pair(WHOLE, WHOLE) };
             count += 1;
@@ -179,7 +179,7 @@ impl Pairing<'_> {
         out.count > 0
     }
 
-    /// The two ends of the stretch along which two edges run side by side; false if they don't.
+    /// Pushes the two ends of the part along which two edges run side by side; returns false if there is none.
     fn push_edges(&self, out: &mut Manifold) -> bool {
         let [a, b] = self.features.each_ref().map(Feature::corners);
         let ([a0, a1], [b0, b1]) = (a, b) else { return false };

@@ -1,4 +1,4 @@
-//! Half-space against everything: heights over the plane.
+//! Half-space against any convex shape: heights over the plane.
 
 use super::axes::tolerance;
 use super::feature::{self, WHOLE, end, pair};
@@ -10,7 +10,7 @@ use crate::convex::support::{Posed, Support, narrow, wide};
 use crate::hull::{Hull, MAX_VERTICES};
 use sinew_math::{Transform, Vec3, min};
 
-/// The four corners of the face toward the plane; the deepest corner is always one of them.
+/// Pushes the four corners of the face toward the plane; the deepest corner is always one of them.
 pub(super) fn against_box(a: &Plane, b: &PlacedBox, margin: f32, out: &mut Manifold) {
     let (axis, side) = b.facing(-a.normal);
     out.normal = a.normal;
@@ -22,7 +22,7 @@ pub(super) fn against_box(a: &Plane, b: &PlacedBox, margin: f32, out: &mut Manif
     }
 }
 
-/// The corners of the face toward the plane, starting at the deepest corner or one nearly as deep.
+/// Pushes the corners of the face toward the plane, starting at the deepest corner or one nearly as deep.
 pub(super) fn against_hull(a: &Plane, b: &Hull, frame: &Transform, margin: f32, out: &mut Manifold) {
     let polytope = b.polytope();
     let down = frame.rotation.inverse() * -a.normal;
@@ -33,13 +33,13 @@ pub(super) fn against_hull(a: &Plane, b: &Hull, frame: &Transform, margin: f32, 
     push_deepest::<MAX_VERTICES>(corners, lowest, ROUNDING * b.bounding_radius(), margin, out);
 }
 
-/// Tests both ends of a capsule.
+/// Pushes both ends of a capsule.
 pub(super) fn against_capsule(a: &Plane, b: &PlacedCapsule, margin: f32, out: &mut Manifold) {
     out.normal = a.normal;
     for (index, point) in b.core.ends.into_iter().enumerate() {
         push(a, point, b.radius, margin, end(index), out);
     }
-    // A capsule without a middle is a ball: one point, so that it is not pushed twice.
+    // A capsule of length 0 is a ball: one point, so that it is not pushed twice.
     if out.count == 2 && b.core.ends[0] == b.core.ends[1] {
         out.count = 1;
     }
@@ -50,7 +50,7 @@ pub(super) fn against_sphere(a: &Plane, b: &PlacedSphere, margin: f32, out: &mut
     push(a, b.center, b.radius, margin, WHOLE, out);
 }
 
-/// The corners of the feature toward the plane.
+/// Pushes the corners of the feature toward the plane.
 pub(super) fn against_core<S: Support>(a: &Plane, b: &Posed<'_, S>, margin: f32, out: &mut Manifold) {
     const POINTS: usize = MOST_CORNERS + 1;
     let (feature, radius) = (b.feature(-a.normal), b.solid.rounding());
@@ -60,12 +60,12 @@ pub(super) fn against_core<S: Support>(a: &Plane, b: &Posed<'_, S>, margin: f32,
     push_deepest::<POINTS>(corners, lowest, ROUNDING * b.solid.reach(), margin, out);
 }
 
-/// Relative height difference below which heights over a plane count as equal. Heights are rounded by a few 6e-8 of a
+/// Relative difference below which heights over the plane count as equal. The rounding of heights is a few 6e-8 of a
 /// solid's reach, and a resting solid must keep its points.
 const ROUNDING: f32 = 1e-5;
 
-/// At most four of the given corners that are within the margin. For a tilted or round solid the `lowest` point need
-/// not be among them; it is then added. `N` points at most.
+/// Pushes at most four of the given corners within the margin. For a tilted or round solid the `lowest` point may not
+/// be among them; it is then added. `N` is the largest number of candidates.
 fn push_deepest<const N: usize>(
     corners: impl Iterator<Item = ManifoldPoint>,
     lowest: ManifoldPoint,
@@ -91,7 +91,7 @@ fn push_deepest<const N: usize>(
     push_best(&points[..count], tolerance, out);
 }
 
-/// The point between the plane and a ball, which may be a corner.
+/// Returns the point between the plane and a ball; a ball of radius 0 is a corner.
 fn under(a: &Plane, center: Vec3, radius: f32, feature: u16) -> ManifoldPoint {
     let separation = a.height(center) - radius;
     let position = center - a.normal * (radius + 0.5 * separation);

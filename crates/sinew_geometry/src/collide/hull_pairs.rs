@@ -1,4 +1,4 @@
-//! Hull against everything that has an end, in the frame of the hull.
+//! Hull against any bounded convex shape, in the frame of the hull.
 
 use super::axes::TIE_DIRECTION;
 use super::manifold::{Manifold, SeparationCache};
@@ -9,7 +9,7 @@ use crate::hull::{BoxPolytope, Hull, Room};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3};
 
-/// A hull against a shape of the same or a later rank.
+/// Finds the contact of a hull and a shape of the same or a later rank.
 pub(super) fn collide(
     hull: &Hull,
     pair_from_hull: &Transform,

@@ -1,5 +1,5 @@
-//! Hull against sphere and capsule: closest points of the hull and the core while they are apart, separating axes once
-//! a capsule's core has entered the hull. Computed in the hull's frame.
+//! Hull against ball and capsule: closest points of the hull and the core while they are apart, separating axes once a
+//! capsule's core has entered the hull. Computed in the hull's frame.
 
 use super::axes::{PARALLEL_SINE, choose};
 use super::feature::{self, WHOLE, pair};
@@ -10,11 +10,11 @@ use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{Plane, Polytope};
 use sinew_math::{Vec3, max, min};
 
-/// Normals within 0.03° of a face's are that face's: rounding is below that.
+/// Sine below which a normal is replaced by that of the face: 0.03°, more than rounding.
 const FACE_SINE: f32 = 5e-4;
-/// Share of a core by which rounding moves the ends of a stretch.
+/// Share of a core's length by which rounding moves the ends of a part of it.
 const ROUNDING: f32 = 1e-3;
-/// A core with a smaller sine against an edge runs along it (1.8°).
+/// Sine below which a core counts as parallel to an edge: 1.8°.
 const ALONG_SINE: f32 = 0.03;
 
 pub(super) fn against_sphere(
@@ -36,12 +36,12 @@ pub(super) fn against_sphere(
     out.push(center - normal * (radius + 0.5 * separation), separation, pair(WHOLE, WHOLE));
 }
 
-/// Closest or deepest points of a hull and a core.
+/// Closest or deepest points of a hull and the core of a capsule.
 struct Meeting {
-    /// Unit, out of the hull.
+    /// Unit normal, out of the hull.
     normal: Vec3,
     on_core: Vec3,
-    /// Distance of the core and the hull, metres.
+    /// Distance between core and hull, metres; negative if the core has entered.
     distance: f32,
     /// Half-edge of the hull, if an edge is touched.
     edge: Option<usize>,
@@ -68,7 +68,7 @@ pub(super) fn against_capsule(
     }
 }
 
-/// The closest points, if the core is clearly outside: one is an end of the core, or lies on an edge.
+/// Returns the closest points if the core is clearly outside: one is an end of the core, or on an edge of the hull.
 fn apart(hull: &Polytope<'_>, core: &Segment) -> Option<Meeting> {
     let [from, to] = core.ends;
     let enters = |p: Vec3, way: Vec3| hull.enter(p, way).is_some_and(|(fraction, _)| fraction <= 1.0);
@@ -102,7 +102,7 @@ fn apart(hull: &Polytope<'_>, core: &Segment) -> Option<Meeting> {
     })
 }
 
-/// The shortest way out, over the hull's faces and the cross products of core and edges.
+/// Returns the shortest way out, over the hull's faces and the cross products of core and edges.
 fn pierced(hull: &Polytope<'_>, core: &Segment, radius: f32) -> Meeting {
     let lower = |plane: &Plane| min(plane.height(core.ends[0]), plane.height(core.ends[1]));
     let mut face = Axis { normal: Vec3::Y, separation: f32::NEG_INFINITY, of: AxisOf::FaceA(0) };
@@ -111,7 +111,7 @@ fn pierced(hull: &Polytope<'_>, core: &Segment, radius: f32) -> Meeting {
             face = Axis { normal: plane.normal, separation: lower(plane), of: AxisOf::FaceA(k) };
         }
     }
-    // A face can carry two points, so an edge must be clearly better.
+    // A face can give two points, so an edge must be clearly better.
     let axis = choose(face, best_edge(hull, core), 0.01 * min(hull.thickness, radius));
     let [p, q] = core.ends;
     let (on_core, edge) = match axis.of {
@@ -123,7 +123,7 @@ fn pierced(hull: &Polytope<'_>, core: &Segment, radius: f32) -> Meeting {
     Meeting { normal: axis.normal, on_core, distance: axis.separation, edge }
 }
 
-/// The best cross product of core and edge. The core's arc is the full circle across it.
+/// Returns the best cross product of core and edge. The arc of the core is the full circle across it.
 fn best_edge(hull: &Polytope<'_>, core: &Segment) -> Option<Axis> {
     let along = core.ends[1] - core.ends[0];
     let mut best: Option<Axis> = None;
@@ -148,8 +148,8 @@ fn best_edge(hull: &Polytope<'_>, core: &Segment) -> Option<Axis> {
     best
 }
 
-/// The two ends of the part of the core over the face or along the edge it touches. Returns false and pushes nothing if
-/// it touches a corner, crosses an edge, or that part is too short.
+/// Pushes the two ends of the part of the core over the face, or along the edge, that it touches. Returns false and
+/// pushes nothing if the core touches a corner, crosses an edge, or that part is too short.
 fn push_line(
     hull: &Polytope<'_>,
     core: &Segment,
@@ -187,8 +187,8 @@ fn push_line(
     line.push_ends(|p| p.dot(normal) - height, margin, out)
 }
 
-/// Extends the core's part over a face to include its closest point, unless that part is empty: if two faces hardly
-/// differ, the other one may be below that point.
+/// Extends the part of the core over a face to include its closest point, unless the part is empty. If two faces are
+/// nearly parallel, the other face may be below that point.
 fn reach(core: &Segment, nearest: Vec3, stretch: &mut (f32, f32)) {
     let along = core.ends[1] - core.ends[0];
     let place = (nearest - core.ends[0]).dot(along) / along.length_squared();
@@ -203,7 +203,7 @@ fn runs_along(edge: &Segment, along: Vec3) -> bool {
     side.cross(along).length() <= ALONG_SINE * (side.length() * along.length())
 }
 
-/// Clips the core to one side of the plane through `at`, across `outward` (of any length).
+/// Clips `stretch` of the core to the inner side of the plane through `at`, across `outward` (of any length).
 fn cut(core: &Segment, outward: Vec3, at: Vec3, stretch: &mut (f32, f32)) {
     let [d0, d1] = core.ends.map(|p| (p - at).dot(outward));
     if d0 > 0.0 && d1 > 0.0 {

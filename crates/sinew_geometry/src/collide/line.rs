@@ -5,21 +5,22 @@ use super::manifold::Manifold;
 use super::placed::Segment;
 use sinew_math::Vec3;
 
-/// The stretch of a capsule's core over a face or along an edge.
+/// Part of a capsule's core over a face or along an edge.
 pub(super) struct Line<'a> {
     pub core: &'a Segment,
     pub radius: f32,
-    /// Range of the core's parameter.
+    /// Range of the core's parameter, 0..=1.
     pub stretch: (f32, f32),
-    /// Unit, from the face or edge to the core.
+    /// Unit normal from the face or edge to the core.
     pub normal: Vec3,
     /// Name of the face or edge.
     pub name: u16,
 }
 
 impl Line<'_> {
-    /// Pushes the two ends of the part; A is the solid under the capsule, `height` a point's height over it. Returns
-    /// false and pushes nothing if the part is too short for two points, or neither end is within the margin.
+    /// Pushes the two ends of the part. A is the solid under the capsule; `height` returns the height of a point over
+    /// A. Returns false and pushes nothing if the part is too short for two points, or neither end is within the
+    /// margin.
     pub fn push_ends(&self, height: impl Fn(Vec3) -> f32, margin: f32, out: &mut Manifold) -> bool {
         let &Self { core, radius, stretch: (from, to), normal, name } = self;
         let length = (core.ends[1] - core.ends[0]).length();

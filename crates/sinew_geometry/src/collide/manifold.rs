@@ -9,41 +9,41 @@ pub const MAX_POINTS: usize = 4;
 /// One point of a manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ManifoldPoint {
-    /// Half-way between the two surfaces, in the common frame of the shapes (world), metres.
+    /// Midpoint between the two surfaces, in the common frame of the shapes (world), metres.
     pub position: Vec3,
-    /// Gap along the normal, metres; negative when they overlap.
+    /// Gap along the normal, metres; negative if the surfaces overlap.
     pub separation: f32,
-    /// Features that touch: A's in the low 16 bits, B's in the high ones. Stable across steps while the same features
-    /// touch; swapped shapes exchange the halves (`feature.rotate_left(16)`).
+    /// Features in contact: A's in the low 16 bits, B's in the high ones. The number does not change across steps while
+    /// the same features touch; swapped shapes exchange the halves (`feature.rotate_left(16)`).
     pub feature: u32,
 }
 
-/// Contact of two convex shapes that touch or are about to: a normal and up to four points.
+/// Contact of two convex shapes that touch or are near: a normal and up to four points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Manifold {
-    /// Unit, from A to B.
+    /// Unit normal from A to B.
     pub normal: Vec3,
-    /// The points; only the first `count` count.
+    /// Points; only the first `count` are valid.
     pub points: [ManifoldPoint; MAX_POINTS],
     /// Number of points, 0..=4.
     pub count: usize,
 }
 
 impl Manifold {
-    /// The points that count.
+    /// Returns the valid points.
     #[inline]
     pub fn points(&self) -> &[ManifoldPoint] {
         &self.points[..self.count]
     }
 
-    /// Mean of its points, metres; the origin if there are none.
+    /// Mean of the valid points, metres; the origin if there are none.
     #[inline]
     pub fn center(&self) -> Vec3 {
         let sum = self.points().iter().fold(Vec3::ZERO, |sum, point| sum + point.position);
         if self.count > 0 { sum / self.count as f32 } else { sum }
     }
 
-    /// Appends a point that lies midway between the surfaces.
+    /// Appends a point midway between the surfaces.
     pub(super) fn push(&mut self, position: Vec3, separation: f32, feature: u32) {
         self.points[self.count] = ManifoldPoint { position, separation, feature };
         self.count += 1;
@@ -61,7 +61,7 @@ impl Manifold {
         }
     }
 
-    /// Converts the result of (B, A) to that of (A, B).
+    /// Converts the result for (B, A) to the result for (A, B).
     pub(super) fn flip(&mut self) {
         self.normal = -self.normal;
         for point in &mut self.points[..self.count] {
@@ -69,7 +69,7 @@ impl Manifold {
         }
     }
 
-    /// Back from coordinates relative to `origin`; drops everything if a number is not finite.
+    /// Converts positions relative to `origin` to world positions; drops all points if a number is not finite.
     pub(super) fn finish(&mut self, origin: Vec3) {
         for point in &mut self.points[..self.count] {
             point.position += origin;
@@ -81,25 +81,25 @@ impl Manifold {
     }
 }
 
-/// Cache for two shapes between calls. It never changes the result.
+/// Cache of a pair of shapes between calls. It never changes the result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeparationCache {
-    /// The axis that separated two polytopes in the last call. It is tried first, since separated pairs mostly stay so
-    /// along the same axis.
+    /// Axis that separated two polytopes in the last call. It is tested first, since separated pairs mostly stay
+    /// separated along the same axis.
     pub axis: Option<AxisOf>,
-    /// Lower bound of their gap, metres. Given if no points are found.
+    /// Lower bound of the gap between the shapes, metres. Set if no points are found.
     pub gap: f32,
 }
 
 impl Default for SeparationCache {
-    /// Empty cache.
+    /// Returns an empty cache.
     fn default() -> Self {
         Self { axis: None, gap: f32::NEG_INFINITY }
     }
 }
 
 impl SeparationCache {
-    /// They are separated along an axis.
+    /// Returns the cache of shapes that an axis separates.
     pub(super) fn along(axis: &Axis) -> Self {
         Self { axis: Some(axis.of), gap: axis.separation }
     }

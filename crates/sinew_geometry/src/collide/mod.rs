@@ -1,8 +1,8 @@
-//! Narrow phase: from two placed shapes to a manifold.
+//! Narrow phase: the contact manifold of two placed shapes.
 //!
-//! One file per pair of shapes, each written for one order of its pair; [`collide`] sorts the pair and flips the result
-//! if needed. Positions are computed relative to one of the shapes, so that a contact far from the world's origin is as
-//! precise as one near it.
+//! There is one file per pair of shapes, each written for one order of the pair; [`collide`] sorts the pair and flips
+//! the result if needed. Positions are computed relative to one of the shapes, so that a contact far from the world's
+//! origin is as precise as one near it.
 
 mod arcs;
 mod axes;
@@ -39,12 +39,13 @@ pub use triangles::{
     name_as_hidden,
 };
 
-/// Fills `out` with the contact of two placed shapes: the normal points from `a` to `b`, every point has a separation
-/// of at most `margin` (metres, ≥ 0). No points if the shapes are further apart, if both are half-spaces, one is a mesh
-/// or height field (see [`collide_all`]), or a number is not finite. The previous content of `out` is discarded.
+/// Fills `out` with the contact of two placed shapes: the normal points from `a` to `b`, and every point has a
+/// separation of at most `margin` (metres, ≥ 0). There are no points if the shapes are further apart, if both are
+/// half-spaces, one is a mesh or height field (see [`collide_all`]), or a number is not finite. The previous content of
+/// `out` is discarded.
 ///
-/// The order of the shapes does not matter except for rounding: swapped shapes give the opposite normal, the same
-/// points, and features with their halves exchanged.
+/// Swapping the shapes changes the result only by rounding: it gives the opposite normal, the same points, and features
+/// with their halves exchanged.
 pub fn collide(
     a: &Shape,
     world_from_a: &Transform,
@@ -59,7 +60,7 @@ pub fn collide(
 /// Share of the distance between two frames by which rounding may overestimate a gap.
 const ROUNDING: f32 = 4e-6;
 
-/// [`collide`] with a cache from an earlier call.
+/// Like [`collide`], with a cache from an earlier call.
 pub fn collide_again(
     (a, world_from_a): (&Shape, &Transform),
     (b, world_from_b): (&Shape, &Transform),
@@ -83,8 +84,9 @@ pub fn collide_again(
     parting.gap -= ROUNDING * (world_from_b.translation - world_from_a.translation).length();
 }
 
-/// Calls `visit` with the contacts of two placed shapes, as [`collide`] returns them: a mesh or height field and a
-/// convex shape may have several, each with its own normal. Two surfaces, or a surface and a half-space, have none.
+/// Calls `visit` with the contacts of two placed shapes, in the form of [`collide`]. A mesh or height field and a
+/// convex shape may have several contacts, each with its own normal. Two surfaces, or a surface and a half-space, have
+/// none.
 pub fn collide_all(
     a: &Shape,
     world_from_a: &Transform,
@@ -106,8 +108,8 @@ pub fn collide_all(
     patch.manifolds().iter().for_each(visit);
 }
 
-/// The contacts of two placed shapes of which one is a surface: normals point from `a` to `b`. `ground` are the shapes
-/// beside the surface.
+/// Finds the contacts of two placed shapes of which one is a surface: normals point from `a` to `b`. `ground` has the
+/// shapes beside the surface.
 pub fn collide_pair(
     (a, world_from_a): (&Shape, &Transform),
     (b, world_from_b): (&Shape, &Transform),
@@ -128,7 +130,7 @@ pub fn collide_pair(
     }
 }
 
-/// A capsule without length is a ball: it touches at one point.
+/// Converts a capsule of length 0 to a ball, which touches at one point.
 fn as_ball(shape: &Shape) -> Option<Shape> {
     match *shape {
         Shape::Capsule { half_height: 0.0, radius } => Some(Shape::Sphere { radius }),
@@ -136,7 +138,7 @@ fn as_ball(shape: &Shape) -> Option<Shape> {
     }
 }
 
-/// Order of the shapes in a pair. Those of the pairs with files of their own are in the order of the files' names.
+/// Rank by which the shapes of a pair are sorted. Pairs with files of their own have the order of the files' names.
 fn rank(shape: &Shape) -> u32 {
     match shape {
         Shape::HalfSpace => 0,
@@ -151,7 +153,7 @@ fn rank(shape: &Shape) -> u32 {
     }
 }
 
-/// A half-space and any solid.
+/// Finds the contact of a half-space and any solid.
 fn collide_half_space(a: &Plane, b: &Shape, wb: &Transform, margin: f32, out: &mut Manifold) {
     match *b {
         Shape::Box { half_extents } => {
@@ -172,7 +174,7 @@ fn collide_half_space(a: &Plane, b: &Shape, wb: &Transform, margin: f32, out: &m
     }
 }
 
-/// [`collide`] for `rank(a) <= rank(b)`.
+/// Like [`collide`], for `rank(a) <= rank(b)`.
 fn collide_ranked(
     (a, wa): (&Shape, &Transform),
     (b, wb): (&Shape, &Transform),
@@ -221,7 +223,7 @@ fn collide_ranked(
             capsule_sphere::collide(&pill, &PlacedSphere::new(radius_b, &wb), margin, parting, out);
         }
         (&Shape::Sphere { radius }, &Shape::Sphere { radius: radius_b }) => {
-            // A ball is a capsule without a middle.
+            // A ball is a capsule of length 0.
             let pill = PlacedCapsule::new(0.0, radius, &wa);
             capsule_sphere::collide(&pill, &PlacedSphere::new(radius_b, &wb), margin, parting, out);
         }
@@ -257,7 +259,7 @@ mod tests {
         Shape::Hull(Arc::new(Hull::new(&points).expect("points in general position")))
     }
 
-    /// Contacts of pairs that drift past each other do not depend on the cached axis.
+    /// Results of pairs that drift past each other do not depend on the cached axis.
     #[test]
     fn cached_axes_do_not_change_results() {
         let mut random = Random::new(71);

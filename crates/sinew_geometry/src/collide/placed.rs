@@ -1,14 +1,14 @@
-//! Shapes placed in the frame in which a pair is examined, and the distances that the pairs share.
+//! Shapes placed in the common frame of a pair, and functions that several pairs share.
 
 pub(crate) use crate::boxes::placed::{PlacedBox, largest_axis, sign};
 pub(crate) use crate::boxes::segment::Segment;
 use sinew_math::{Transform, Vec3};
 
-/// Plane with solid matter below it.
+/// Plane of a half-space; the solid is below it.
 pub(crate) struct Plane {
-    /// Unit, out of the solid.
+    /// Unit normal, out of the solid.
     pub normal: Vec3,
-    /// Distance of the plane from the origin along the normal.
+    /// Distance of the plane from the origin along the normal, metres.
     pub offset: f32,
 }
 
@@ -18,13 +18,13 @@ impl Plane {
         Self { normal, offset: normal.dot(frame.translation) }
     }
 
-    /// Height of a point over the plane.
+    /// Height of a point over the plane, metres.
     pub fn height(&self, p: Vec3) -> f32 {
         p.dot(self.normal) - self.offset
     }
 }
 
-/// PlacedSphere.
+/// A ball placed in the frame of the pair.
 pub(crate) struct PlacedSphere {
     pub center: Vec3,
     pub radius: f32,
@@ -39,7 +39,7 @@ impl PlacedSphere {
 /// Capsule: a core segment and a radius.
 pub(crate) struct PlacedCapsule {
     pub core: Segment,
-    /// Unit direction of the core, also where the core is a point.
+    /// Unit direction of the core, defined even if the core is a point.
     pub axis: Vec3,
     pub radius: f32,
 }
@@ -53,8 +53,8 @@ impl PlacedCapsule {
     }
 }
 
-/// Unit direction of the offset between two cores whose radii add up to `radii`, or `fallback` if the cores touch: then
-/// the offset is rounding.
+/// Returns the unit direction of the offset between two cores whose radii add up to `radii`, or `fallback` if the cores
+/// touch: then the offset is rounding.
 pub(crate) fn direction_or(offset: Vec3, radii: f32, fallback: Vec3) -> Vec3 {
     let length = offset.length();
     if length > 1e-3 * radii { offset / length } else { fallback }

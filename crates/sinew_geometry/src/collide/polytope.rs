@@ -1,5 +1,5 @@
 //! Polytope against polytope (hulls, boxes, triangles) by separating axes. Only pairs of edges whose arcs cross on the
-//! Gauss map are faces of the Minkowski difference and count (Gregorius, "The Separating Axis Test between Convex
+//! Gauss map are faces of the Minkowski difference and are tested (Gregorius, "The Separating Axis Test between Convex
 //! Polyhedra", GDC 2013). Then the two faces or edges in contact give the points.
 
 use super::arcs::{Arc, for_each_crossing};
@@ -14,12 +14,13 @@ use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{MAX_VERTICES, Plane, Polytope};
 use sinew_math::{Vec3, max, min};
 
-/// Most corners of two hull faces clipped to each other, except for slivers.
+/// Largest number of corners of two hull faces clipped to each other, except for slivers.
 const FACE_CORNERS: usize = MAX_VERTICES;
-/// Parallel edges and corners that are as close as the closest.
+/// Largest number of parallel edges and corners that are as close as the closest.
 const CLOSEST: usize = 16;
 
-/// `tie` breaks ties between faces of A and B: a direction that does not change when the shapes are swapped.
+/// Finds the contact of two polytopes. `tie` is a direction that breaks ties between faces of A and B; it must not
+/// change when the shapes are swapped.
 pub(super) fn collide(
     a: &Polytope<'_>,
     b: &Polytope<'_>,
@@ -59,8 +60,8 @@ pub(super) fn collide(
     }
 }
 
-/// Adds a point where edges cross: two edges that separate better than the preferred face may cross beside that face,
-/// deeper than all points over it.
+/// Adds the point where two edges cross. Two edges that separate better than the preferred face may cross beside that
+/// face, deeper than all points over it.
 fn push_crossing(
     (a, b): (&Polytope<'_>, &Polytope<'_>),
     face: &Axis,
@@ -83,7 +84,8 @@ fn push_crossing(
     }
 }
 
-/// The axis with that name, with the bits of [`best_face`] and [`best_edges`]; `None` if there is none.
+/// Returns the axis with this source, with the bits of [`best_face`] and [`best_edges`]; `None` if the source is not
+/// valid.
 fn axis(a: &Polytope<'_>, b: &Polytope<'_>, of: AxisOf) -> Option<Axis> {
     match of {
         AxisOf::FaceA(k) => a.planes.get(k).map(|plane| face(plane, b, of)),
@@ -99,7 +101,8 @@ fn face(plane: &Plane, other: &Polytope<'_>, of: AxisOf) -> Axis {
     Axis { normal: plane.normal, separation: -plane.offset - other.reach(-plane.normal), of }
 }
 
-/// The face of `of` that separates best, with its outward normal, or the first one that separates by more than `enough`.
+/// Returns the face of `of` that separates best, with its outward normal, or the first that separates by more than
+/// `enough`.
 fn best_face(of: &Polytope<'_>, other: &Polytope<'_>, enough: f32, name: fn(usize) -> AxisOf) -> Axis {
     let mut best = Axis { normal: Vec3::Y, separation: f32::NEG_INFINITY, of: name(0) };
     for (number, plane) in of.planes.iter().enumerate() {
@@ -114,7 +117,7 @@ fn best_face(of: &Polytope<'_>, other: &Polytope<'_>, enough: f32, name: fn(usiz
     best
 }
 
-/// The best cross product of edges; of equal ones the first by the edges' indices.
+/// Returns the best cross product of edges; among equals the first by the edges' indices.
 fn best_edges(a: &Polytope<'_>, b: &Polytope<'_>) -> Option<Axis> {
     let mut best: Option<Axis> = None;
     for_each_crossing(a, b, |arc, other| {
@@ -131,7 +134,7 @@ fn best_edges(a: &Polytope<'_>, b: &Polytope<'_>) -> Option<Axis> {
     best
 }
 
-/// The direction across two edges; `None` if the Minkowski difference has no face there, or they are parallel.
+/// Returns the axis across two edges; `None` if the Minkowski difference has no face there, or the edges are parallel.
 fn edges(arc: &Arc, other: &Arc, of: AxisOf) -> Option<Axis> {
     let across = arc.crossing(other)?;
     let length = across.length();
@@ -167,13 +170,12 @@ impl Faceted for Polytope<'_> {
         push_faces::<FACE_CORNERS>(&reference, corners, best, margin, tolerance, out)
     }
 
-    /// Tries the corners and edges that may be as close as the closest so far: those further along `normal` are further
-    /// from the other solid.
+    /// Tests only corners and edges that may be as close as the closest so far, by their positions along `normal`.
     fn push_closest(&self, b: &Self, normal: Vec3, margin: f32, tolerance: f32, out: &mut Manifold) {
         let a = self;
         let (top, bottom) = (a.reach(normal), -b.reach(-normal));
         let size = (b.center - a.center).length();
-        // Rounding must not drop one of several that are equally close.
+        // Rounding must not drop one of several equally close pairs.
         let slack = 1e-5 * (size + top.abs() + bottom.abs());
         let from_a = |k: usize| {
             let on_a = a.vertices[k];
@@ -235,7 +237,8 @@ mod tests {
         -b.reach(-n) - a.reach(n)
     }
 
-    /// Two faces and three edges are enough to find the best of all face normals and crossed edges, both ways.
+    /// The polytope of a triangle (two faces, three edges) gives the best of all face normals and crossed edges, both
+    /// ways.
     #[test]
     fn a_triangle_is_a_polytope() {
         let mut random = Random::new(31);
@@ -277,7 +280,7 @@ mod tests {
         assert!(touching > 500 && faces > 100, "{touching} touch, {faces} with three points or more");
     }
 
-    /// The closest of all corners and edges are found, whatever is skipped.
+    /// Skipping never loses the closest of all corners and edges.
     #[test]
     fn the_closest_feature_is_kept() {
         let mut random = Random::new(8);

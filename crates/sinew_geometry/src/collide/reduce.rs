@@ -1,11 +1,11 @@
-//! Reduces many points in one plane to the few that hold as well.
+//! Reduces many points in one plane to a few that support the shape equally well.
 
 use super::manifold::{MAX_POINTS, Manifold, ManifoldPoint};
 use sinew_math::Vec3;
 
-/// Appends at most four of `points` to `out`: the deepest, the one furthest from it, and on each side of the line
-/// between them the one that spans the largest triangle. Separations within `tolerance` count as equal, and the first
-/// of equals is taken, so that rounding does not change the choice from step to step.
+/// Appends at most four of `points` to `out`: the deepest, the one furthest from the deepest, and on each side of the
+/// line between these two the one that spans the largest triangle. Separations within `tolerance` count as equal, and
+/// the first among equals is chosen, so that rounding does not change the choice from step to step.
 pub(super) fn push_best(points: &[ManifoldPoint], tolerance: f32, out: &mut Manifold) {
     if points.len() <= MAX_POINTS {
         for p in points {
@@ -52,7 +52,7 @@ fn best_relative(points: &[ManifoldPoint], score: impl Fn(&ManifoldPoint) -> f32
     best(points, 0.01 * top, score)
 }
 
-/// Middle of a gap, from the point on the surface that `normal` points to.
+/// Returns the midpoint of a gap, from the point on the surface to which `normal` points.
 pub(super) fn midway(on_far_surface: Vec3, normal: Vec3, separation: f32) -> Vec3 {
     on_far_surface - normal * (0.5 * separation)
 }

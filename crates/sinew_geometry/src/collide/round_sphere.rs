@@ -1,4 +1,4 @@
-//! Cone, cylinder and tapered capsule against sphere: the closest point of the surface to the centre.
+//! Cone, cylinder and tapered capsule against ball: the point of the surface closest to the centre of the ball.
 
 use super::feature::{WHOLE, pair};
 use super::manifold::Manifold;

@@ -1,28 +1,28 @@
-//! Seams: the visible faces of solids that abut. A floor of boxes has no edges although each box has some: where two
-//! boxes meet in a plane, each hides the other's side.
+//! Seams: the visible faces of solids that abut. A floor of boxes has no inner edges, although each box has edges:
+//! where two boxes meet in a plane, each hides the side of the other.
 
 use crate::boxes::Aabb;
 use crate::shape::Shape;
 use crate::triangles::{Surface, Triangle, closest_on_triangle};
 use sinew_math::{Transform, Vec3, max, normalize_or};
 
-/// Most faces of a solid examined around a point. If more meet, the result is unknown.
+/// Largest number of faces of a solid around a point. If more faces meet, the result is unknown.
 const MOST: usize = 8;
-/// Faces whose normals have at least this cosine are merged.
+/// Least cosine between the normals of faces that are merged.
 const SAME: f32 = 0.999;
-/// Sine up to which a direction that leads out of a solid counts as leading along it.
+/// Sine up to which a direction out of a solid counts as along its surface.
 const ALONG: f32 = 0.03;
-/// Rounding error of a direction that lies in a face.
+/// Rounding error of a direction that is in the plane of a face.
 const FLAT: f32 = 1e-3;
-/// Least cosine of a face's normal to the queried normal.
+/// Least cosine between a face's normal and the queried normal.
 const AVERSE: f32 = -0.3;
 
-/// The faces of a solid, or of a surface, around a point.
+/// Faces of a solid, or of a surface, around a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Faces {
-    /// World, outward, unit.
+    /// Outward unit normals, world.
     normals: [Vec3; MOST],
-    /// Height of the point over each, metres.
+    /// Height of the point over each face, metres.
     heights: [f32; MOST],
     count: usize,
     /// Mask of faces that other solids hide.
@@ -30,8 +30,8 @@ pub struct Faces {
 }
 
 impl Faces {
-    /// Faces within `reach` (metres) of a point in the world; none if the point is deeper inside than that. `None` if
-    /// the point is further outside, or the shape has no flat faces.
+    /// Returns the faces within `reach` (metres) of a point in the world; no faces if the point is deeper inside.
+    /// `None` if the point is further outside, or the shape has no flat faces.
     pub fn around(shape: &Shape, world_from_shape: &Transform, point: Vec3, reach: f32) -> Option<Self> {
         let mut faces = Self { normals: [Vec3::ZERO; MOST], heights: [0.0; MOST], count: 0, hidden: 0 };
         let p = world_from_shape.inverse_point(point);
@@ -58,7 +58,7 @@ impl Faces {
         self.count
     }
 
-    /// Adds a face if it is near; false if the point is further outside, or there is no room.
+    /// Adds a face if it is near; returns false if the point is further outside, or there is no room.
     fn take(&mut self, normal: Vec3, height: f32, reach: f32) -> bool {
         if height > reach {
             return false;
@@ -73,8 +73,8 @@ impl Faces {
         true
     }
 
-    /// Adds the triangles around a point, and the sides on which the surface ends or falls away there. True if there
-    /// are any.
+    /// Adds the triangles around a point, and the sides at which the surface ends or bends down there. Returns true if
+    /// there are any and there is room.
     fn take_surface(&mut self, surface: &Surface<'_>, p: Vec3, reach: f32) -> bool {
         let mut fits = true;
         surface.overlapping(&Aabb::around(p, Vec3::splat(reach)), |triangle| {
@@ -96,13 +96,13 @@ impl Faces {
         fits
     }
 
-    /// Adds a face unless it merges with one already there.
+    /// Adds a face unless an earlier one has nearly the same normal.
     fn take_new(&mut self, normal: Vec3, height: f32, reach: f32) -> bool {
         let is_known = self.normals[..self.count].iter().any(|known| known.dot(normal) > SAME);
         is_known || self.take(normal, height, reach)
     }
 
-    /// Hides the faces that lie behind another solid around the point: every way along them leads into it.
+    /// Hides the faces that are behind another solid around the point: every way along them leads into that solid.
     pub fn hide_behind(&mut self, other: &Self) {
         for face in 0..self.count {
             if self.is_behind(face, other) {
@@ -114,7 +114,7 @@ impl Faces {
     fn is_behind(&self, face: usize, other: &Self) -> bool {
         let normal = self.normals[face];
         let others = &other.normals[..other.count];
-        // A face that both solids have is visible on both.
+        // A face that both solids share is visible on both.
         if others.iter().any(|out| out.dot(normal) > SAME) {
             return false;
         }
@@ -142,8 +142,8 @@ impl Faces {
         self.hidden != 0
     }
 
-    /// The nearest normal to this one that the visible faces span, and the height of the point over the supporting
-    /// plane with that normal, metres. `None` if all are hidden, or none looks that way.
+    /// Returns the normal nearest to this one that the visible faces span, and the height of the point over the
+    /// supporting plane with that normal, metres. `None` if all faces are hidden, or none faces that direction.
     pub fn shown(&self, normal: Vec3) -> Option<(Vec3, f32)> {
         let shown = |face: &usize| self.hidden >> face & 1 == 0;
         let mut best: Option<(f32, Vec3, f32)> = None;
@@ -190,7 +190,7 @@ mod tests {
         Shape::cuboid(Vec3::splat(0.5))
     }
 
-    /// Two boxes side by side at random poses: their common side is hidden, the protruding part of the other is not.
+    /// Two boxes side by side at random poses hide their common side, but not the protruding part of the higher box.
     #[test]
     fn an_abutting_shape_hides_only_the_common_side() {
         let mut random = Random::new(5);

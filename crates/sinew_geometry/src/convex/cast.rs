@@ -8,26 +8,27 @@ use sinew_math::{Transform, Vec3, min};
 /// First touch of a moving shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeHit {
-    /// Share of the motion before the hit, 0..=1.
+    /// Fraction of the motion before the hit, 0..=1.
     pub fraction: f32,
-    /// Point where the two touch, world, metres.
+    /// Contact point of the two shapes, world, metres.
     pub point: Vec3,
-    /// Unit, out of the other shape and against the moving one, in the world.
+    /// Unit normal, out of the other shape and against the moving one, world.
     pub normal: Vec3,
 }
 
-/// Gap below this share of the smaller shape counts as touching; the motion then continues by [`CLOSE_STEP`].
+/// Gap, as a share of the smaller shape's size, that counts as touching. [`CLOSE_STEP`], a share of the motion, is
+/// added.
 const CLOSE: f32 = 1e-5;
 const CLOSE_STEP: f32 = 1e-7;
-/// Steps are Newton's: only motions that graze a round shape need more than a few.
+/// Most steps of a cast. They are Newton steps: only motions that graze a round shape need more than a few.
 const MOST_STEPS: usize = 64;
 
-/// Moves `a` by `motion` (metres) and returns where it first touches `b`; `None` if it does not, or a number is not
+/// Moves `a` by `motion` (metres) and returns its first touch of `b`; `None` if there is none, or a number is not
 /// finite. `a` may not be a half-space or mesh.
 ///
 /// Shapes that overlap or touch at the start hit at fraction 0: the normal is the shortest way of A out of B, and the
-/// point lies half-way through the overlap. This holds for every pair of shapes. Later hits count once the gap is less
-/// than 1e-5 of the smaller shape; if the gap no longer closes, there is none.
+/// point is at the middle of the overlap. This holds for every pair of shapes. A later hit is reported when the gap is
+/// below 1e-5 of the smaller shape; if the gap stops closing before, there is no hit.
 pub fn cast_shape(
     a: &Shape,
     world_from_a: &Transform,
@@ -45,7 +46,7 @@ pub fn cast_shape(
     })
 }
 
-/// [`cast_shape`] with touch distance `close`; `gap_after` returns the gap after a part of the motion.
+/// Like [`cast_shape`], with touch distance `close`; `gap_after` returns the gap after a part of the motion.
 pub fn advance(motion: Vec3, close: f32, mut gap_after: impl FnMut(Vec3) -> Option<Gap>) -> Option<ShapeHit> {
     let hit_of = |gap: Gap, fraction: f32| ShapeHit {
         fraction,
@@ -57,7 +58,7 @@ pub fn advance(motion: Vec3, close: f32, mut gap_after: impl FnMut(Vec3) -> Opti
         return Some(hit_of(now, 0.0));
     }
     for _ in 0..MOST_STEPS {
-        // No part of B lies in front of the plane across the gap.
+        // No part of B is in front of the plane across the gap.
         let approach = motion.dot(now.normal);
         if approach <= 0.0 {
             return None;
@@ -74,7 +75,7 @@ pub fn advance(motion: Vec3, close: f32, mut gap_after: impl FnMut(Vec3) -> Opti
     Some(hit_of(now, fraction))
 }
 
-/// Gap at which two shapes of which the smaller has this radius count as touching, on such a motion, metres.
+/// Gap at which two shapes count as touching, metres, if the smaller one has this radius and the motion is `motion`.
 pub fn closeness(radius: f32, motion: Vec3) -> f32 {
     CLOSE * radius + CLOSE_STEP * motion.length()
 }

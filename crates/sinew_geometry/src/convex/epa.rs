@@ -1,37 +1,39 @@
-//! Depth of two cores that overlap: the face of their Minkowski difference that is closest to the origin, by a polytope that
-//! grows into it (van den Bergen, "Proximity queries and penetration depth computation on 3D game objects", GDC 2001).
+//! Depth of two overlapping cores: the face of their Minkowski difference that is closest to the origin, by a polytope
+//! that expands toward it (van den Bergen, "Proximity queries and penetration depth computation on 3D game objects",
+//! GDC 2001).
 
 use super::gjk::{self, Bridge, Cores, Simplex, Vertex, support};
 use super::support::{Posed, Support};
 use sinew_math::DVec3;
 
-/// Depth and its lower bound agree to this share of the sizes.
+/// Share of the sizes by which the depth may differ from its lower bound.
 const PRECISION: f64 = 1e-9;
-/// A triangle or tetrahedron with a smaller height relative to the sizes is flat.
+/// Height, as a share of the sizes, below which a triangle or tetrahedron is flat.
 const FLAT: f64 = 1e-9;
-/// A vertex less than this share of the sizes above a face is in its plane.
+/// Height over a face, as a share of the sizes, below which a vertex counts as in the plane of the face.
 const COPLANAR: f64 = 1e-13;
 const MOST_VERTICES: usize = 96;
 const MOST_FACES: usize = 2 * MOST_VERTICES;
-/// Sides of the hole that a new vertex makes.
+/// Largest number of sides of the hole that a new vertex makes.
 const MOST_SIDES: usize = 64;
-/// Most improvements of a round core's direction after the polytope is full.
+/// Largest number of improvements of a round core's direction after the polytope is full.
 const MOST_REFINEMENTS: usize = 32;
 
-/// Most restart directions of a full polytope, further than 25° from each other.
+/// Largest number of restart directions of a full polytope, at least 25° from each other.
 const MOST_STARTS: usize = 8;
 const SAME_START: f64 = 0.9;
-/// Relative distance by which cores are moved apart to find a better direction, so that the gap exceeds rounding.
+/// Distance beyond contact, as a share of the sizes, by which cores are moved apart to find a better direction: it
+/// makes the gap exceed rounding.
 const BEYOND: f64 = 0.05;
-/// Most doublings of each such rotation.
+/// Largest number of doublings of each change of direction.
 const MOST_DOUBLINGS: u32 = 24;
 
 #[derive(Clone, Copy, Default)]
 struct Face {
     corners: [usize; 3],
-    /// Unit, outward; 0 for a face without area, which is kept to close the polytope.
+    /// Unit normal, outward; 0 for a face without area, which only closes the polytope.
     normal: DVec3,
-    /// Distance of its plane from the origin; infinite without area.
+    /// Distance of the face's plane from the origin; infinite for a face without area.
     distance: f64,
 }
 
@@ -44,8 +46,8 @@ struct Polytope {
     size: f64,
 }
 
-/// The shortest way out for two cores whose simplex contains the origin: the distance is 0 or less, and B moved by it
-/// along the normal touches A.
+/// Returns the shortest way out for two cores whose simplex contains the origin: the distance is 0 or negative, and B
+/// moved by the depth along the normal touches A.
 pub(super) fn deepest<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
@@ -73,14 +75,14 @@ pub(super) fn deepest<A: Support, B: Support>(
     }
     let best = best.unwrap_or_else(|| touching(simplex, DVec3::Y));
     if best.distance > -2.0 * gjk::TOUCH * size {
-        // They touch: the points that showed it are as close as possible.
+        // The cores touch: the points that showed this are as close as possible.
         let [on_a, on_b] = simplex.touching_ends();
         return Bridge { on_a, on_b, ..best };
     }
     if -best.distance - bound <= PRECISION * size {
         return best;
     }
-    // Round cores have filled the polytope; its other faces still give directions that might be shorter.
+    // Round cores have filled the polytope. Its other faces still give directions that might be shorter.
     let mut best = refined(a, b, best, size);
     let mut tried = [best.normal; MOST_STARTS];
     for count in 1..MOST_STARTS {
@@ -95,9 +97,10 @@ pub(super) fn deepest<A: Support, B: Support>(
     best
 }
 
-/// Improves the best direction of a full polytope if the cores are round: B is moved out along it and beyond, and a
-/// different shortest way back is a shorter way out. Nearly concentric round cores are nearly equally deep in all
-/// directions, so the rotation is doubled while that shortens the way.
+/// Improves the best direction of a full polytope if the cores are round. B is moved out along the direction and
+/// beyond; if the shortest way back has a different direction, that direction is a shorter way out. Nearly concentric
+/// round cores are nearly equally deep in all directions, so the change of direction is doubled while that shortens the
+/// way.
 fn refined<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
@@ -131,14 +134,14 @@ fn refined<A: Support, B: Support>(
     best
 }
 
-/// Cores without a common inside, which touch: across `normal`.
+/// Returns the contact of cores that touch without common interior: across `normal`.
 fn touching(simplex: &Simplex, normal: DVec3) -> Bridge {
     let Vertex { on_a, on_b, .. } = simplex.vertices[0];
     Bridge { on_a, on_b, distance: 0.0, normal }
 }
 
-/// Four non-coplanar points of the difference: those of the simplex, and others if they are too few. A flat difference
-/// has no depth; its normal direction is returned.
+/// Returns four non-coplanar points of the difference: those of the simplex, and others if there are too few. A flat
+/// difference has no depth; then the error is the contact along its normal.
 fn tetrahedron<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
@@ -163,7 +166,7 @@ fn tetrahedron<A: Support, B: Support>(
     let along = (p1.difference - p0.difference).normalize();
     let (u, v) = across(along);
     let from_line = |p: DVec3| (p - p0.difference).cross(along).length();
-    // Far enough from the line that the triangle has an area (no side is twice as long as the first).
+    // Far enough from the line to make a triangle with an area (no side is twice as long as the first).
     let Some(p2) = furthest(&[u, v, u + v, u - v], 4.0 * flat, &from_line) else {
         return Err(touching(simplex, u));
     };
@@ -175,7 +178,7 @@ fn tetrahedron<A: Support, B: Support>(
     Ok([p0, p1, p2, p3])
 }
 
-/// Two unit vectors perpendicular to a third and to each other.
+/// Returns two unit vectors perpendicular to a unit vector and to each other.
 fn across(n: DVec3) -> (DVec3, DVec3) {
     let (x, y, z) = (n.x.abs(), n.y.abs(), n.z.abs());
     let axis = if x <= y && x <= z {
@@ -200,7 +203,7 @@ impl Polytope {
         };
         polytope.vertices[..4].copy_from_slice(&corners);
         let [a, b, c, d] = corners.map(|vertex| vertex.difference);
-        // Each face runs counter-clockwise seen from outside.
+        // Corners are counter-clockwise seen from outside.
         let turned = (b - a).cross(c - a).dot(d - a) > 0.0;
         for [i, j, k] in [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]] {
             polytope.push_face(if turned { [i, k, j] } else { [i, j, k] });
@@ -222,23 +225,23 @@ impl Polytope {
         self.face_count += 1;
     }
 
-    /// The face whose plane is closest to the origin, or furthest on the other side of it; the first among equals.
-    /// `None` if no face has an area.
+    /// Returns the face whose plane has the smallest signed distance from the origin; the first among equals. `None` if
+    /// no face has an area.
     fn nearest_face(&self) -> Option<Face> {
         let nearer = |x: Face, y: Face| if y.distance < x.distance { y } else { x };
         let faces = self.faces[..self.face_count].iter().copied();
         faces.reduce(nearer).filter(|face| face.distance < f64::INFINITY)
     }
 
-    /// The nearest face whose plane is closer than `distance`, in a direction not yet tried.
+    /// Returns the nearest face whose plane is closer than `distance`, in a direction that has not been tried.
     fn untried(&self, tried: &[DVec3], distance: f64) -> Option<Face> {
         let new = |face: &&Face| tried.iter().all(|other| other.dot(face.normal) < SAME_START);
         let faces = self.faces[..self.face_count].iter().filter(|face| face.distance < distance);
         faces.filter(new).copied().reduce(|x, y| if y.distance < x.distance { y } else { x })
     }
 
-    /// The way out along a face's normal, with the origin's projection as witness: in the coplanar face that contains
-    /// it, or comes closest to it.
+    /// Returns the way out along a face's normal. The points belong to the origin's projection, in the coplanar face
+    /// that contains the projection or comes closest to it.
     fn bridge(&self, face: &Face, height: f64) -> Bridge {
         let image = face.normal * face.distance;
         let plane = |other: &&Face| {
@@ -253,7 +256,7 @@ impl Polytope {
         let weighted = in_plane.map(|other| (other, self.weights(other, image)));
         let holder = weighted.reduce(|x, y| if least(&y.1) > least(&x.1) { y } else { x });
         let (carrier, weights) = holder.unwrap_or((face, [1.0, 0.0, 0.0]));
-        // If the projection is beside all faces, the nearest combination of corners.
+        // If the projection is beside all faces, use the nearest combination of corners.
         let weights = weights.map(|weight| if weight > 0.0 { weight } else { 0.0 });
         let sum = weights[0] + weights[1] + weights[2];
         let mixed = |of: fn(&Vertex) -> DVec3| {
@@ -268,7 +271,7 @@ impl Polytope {
         }
     }
 
-    /// Barycentric weights of a point in the face's plane; negative beyond the side opposite a corner.
+    /// Barycentric weights of a point in the face's plane; a weight is negative beyond the side opposite its corner.
     fn weights(&self, face: &Face, point: DVec3) -> [f64; 3] {
         let [a, b, c] = face.corners.map(|index| self.vertices[index].difference - point);
         let areas = [b.cross(c), c.cross(a), a.cross(b)].map(|area| area.dot(face.normal));
@@ -276,8 +279,8 @@ impl Polytope {
         areas.map(|area| area / sum)
     }
 
-    /// Adds a vertex: the faces that it sees are replaced by faces to their outline. False, with an unusable polytope,
-    /// if there is no room.
+    /// Adds a vertex: the faces visible from it are replaced by faces to their outline. Returns false, with an unusable
+    /// polytope, if there is no room.
     fn grow(&mut self, vertex: Vertex) -> bool {
         if self.vertex_count == MOST_VERTICES {
             return false;

@@ -1,4 +1,4 @@
-//! Supporting features: the faces, edges and corners with which convex solids touch, as polygons with names.
+//! Supporting features: the faces, edges and corners at which convex solids touch, as polygons with names.
 
 use crate::collide::feature::{self, WHOLE};
 use crate::collide::placed::{largest_axis, sign};
@@ -7,10 +7,10 @@ use crate::revolved::TruncatedCone;
 use core::f32::consts::FRAC_1_SQRT_2;
 use sinew_math::{Vec3, normalize_or};
 
-/// A face with more corners is described by this many of them.
+/// Largest number of corners of a feature; a face with more corners is represented by this many.
 pub const MOST_CORNERS: usize = 32;
 
-/// A hull's face whose normal is within about 26° of a direction counts as facing it.
+/// Least cosine between the normal of a hull's face and a direction that the face counts as facing: about 26°.
 const FACES: f32 = 0.9;
 
 /// A corner of a feature.
@@ -24,25 +24,25 @@ pub struct Corner {
     pub side: u16,
 }
 
-/// A convex polygon, counter-clockwise seen from outside, or an edge, or a corner. Names are stable for the same part
-/// of the solid, so that contact points can be matched across steps.
+/// A convex polygon, counter-clockwise seen from outside, or an edge, or a corner. Names do not change for the same
+/// part of the solid, so that contact points can be matched across steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Feature {
     corners: [Corner; MOST_CORNERS],
     count: usize,
     /// Name of the polygon.
     pub name: u16,
-    /// Unit, outward; 0 of an edge or a corner.
+    /// Outward unit normal; 0 for an edge or a corner.
     pub normal: Vec3,
 }
 
 impl Feature {
-    /// A corner without its own name.
+    /// Creates a corner without its own name.
     pub fn of_point(point: Vec3) -> Self {
         Self::new(&[Corner { point, name: WHOLE, side: WHOLE }], WHOLE, Vec3::ZERO)
     }
 
-    /// An edge without its own name.
+    /// Creates an edge without its own name.
     pub fn of_edge(ends: [Vec3; 2]) -> Self {
         let corner = |index: usize| Corner { point: ends[index], name: feature::end(index), side: WHOLE };
         Self::new(&[corner(0), corner(1)], WHOLE, Vec3::ZERO)
@@ -56,19 +56,19 @@ impl Feature {
         feature
     }
 
-    /// Corners in order: one of a corner, two of an edge, up to [`MOST_CORNERS`] of a face.
+    /// Returns the corners in order: one for a corner, two for an edge, up to [`MOST_CORNERS`] for a face.
     #[inline]
     pub fn corners(&self) -> &[Corner] {
         &self.corners[..self.count]
     }
 
-    /// True if it is a polygon, with a normal.
+    /// True if the feature is a polygon, with a normal.
     #[inline]
     pub fn is_face(&self) -> bool {
         self.count > 2
     }
 
-    /// The feature in another frame.
+    /// Converts the feature to another frame.
     pub fn mapped(mut self, point: impl Fn(Vec3) -> Vec3, vector: impl Fn(Vec3) -> Vec3) -> Self {
         for corner in &mut self.corners[..self.count] {
             corner.point = point(corner.point);
@@ -77,12 +77,12 @@ impl Feature {
         self
     }
 
-    /// The face of a box that looks along `direction`.
+    /// Returns the face of a box that faces along `direction`.
     pub fn of_box(half: Vec3, direction: Vec3) -> Self {
         let axis = largest_axis(direction);
         let side = sign(direction[axis]);
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        // Counter-clockwise about the axis; reversed on the negative side.
+        // Counter-clockwise about the axis; reversed for the negative side.
         let mut turns = [(false, false), (true, false), (true, true), (false, true)];
         if side < 0.0 {
             turns.reverse();
@@ -105,8 +105,8 @@ impl Feature {
         Self::new(&corners, feature::face(axis, side), normal)
     }
 
-    /// Feature of a hull that reaches furthest along `direction`: a face that looks nearly that way, else an edge
-    /// across it, else a corner.
+    /// Returns the feature of a hull that extends furthest along `direction`: a face that nearly faces that direction,
+    /// otherwise an edge across it, otherwise a corner.
     pub fn of_hull(hull: &Hull, direction: Vec3) -> Self {
         let (polytope, vertices) = (hull.polytope(), hull.vertices());
         let topology = polytope.topology;
@@ -138,11 +138,11 @@ impl Feature {
         }
     }
 
-    /// The end of a cylinder or cone as an octagon, or the line along its side.
+    /// Returns the end of a cylinder or cone as an octagon, or the line along its side.
     pub fn of_truncated_cone(cone: &TruncatedCone, direction: Vec3) -> Self {
         let side = cone.side_normal();
         let out = normalize_or(Vec3::new(direction.x, 0.0, direction.z), Vec3::X);
-        // Half-way between the side's normal and an end's.
+        // The limit is half-way between the normals of the side and of an end.
         let facing = direction.x * out.x + direction.z * out.z;
         let along_side = facing * side.x + direction.y * side.y;
         let end = sign(direction.y);
@@ -156,15 +156,15 @@ impl Feature {
     }
 }
 
-/// Sine against the axis below which an end is touched flat and its octagon stays fixed on the solid. Otherwise a
-/// corner of the octagon lies where the end reaches furthest, so that a tilted solid rolls on its rim.
+/// Sine of the angle to the axis below which an end touches flat, and its octagon is fixed to the solid. Above it, a
+/// corner of the octagon is where the end extends furthest, so that a tilted solid rolls on its rim.
 const LEANING: f32 = 0.01;
 
-/// Eight points of a rim.
+/// Returns the octagon of an end: eight points of its rim.
 fn end_of_truncated_cone(y: f32, radius: f32, direction: Vec3, out: Vec3) -> Feature {
     let leans = direction.x * direction.x + direction.z * direction.z > LEANING * LEANING;
     let first = if leans { out } else { Vec3::X };
-    // A quarter turn, counter-clockwise seen from outside.
+    // A quarter turn from `first`, counter-clockwise seen from outside.
     let end = sign(y);
     let quarter = Vec3::new(end * first.z, 0.0, -end * first.x);
     let corners: [Corner; 8] = core::array::from_fn(|k| {
@@ -176,7 +176,7 @@ fn end_of_truncated_cone(y: f32, radius: f32, direction: Vec3, out: Vec3) -> Fea
     Feature::new(&corners, feature::face(1, end), Vec3::new(0.0, end, 0.0))
 }
 
-/// Distinguishes the names of the two ends.
+/// Offset that distinguishes the names of the two ends.
 fn end_offset(end: f32) -> u16 {
     if end < 0.0 { 0 } else { 0x10 }
 }

@@ -1,20 +1,21 @@
-//! Gap between two cores: the point of their Minkowski difference that is closest to the origin
-//! (Gilbert, Johnson & Keerthi, "A fast procedure for computing the distance between complex objects in
-//! three-dimensional space", IEEE J. Robotics and Automation 4(2), 1988).
+//! Gap between two cores: the point of their Minkowski difference that is closest to the origin (Gilbert, Johnson &
+//! Keerthi, "A fast procedure for computing the distance between complex objects in three-dimensional space", IEEE J.
+//! Robotics and Automation 4(2), 1988).
 
 use super::support::{Posed, Support};
 use sinew_math::DVec3;
 
-/// Distance and its lower bound agree to this share of the distance: directions are then right to its root, 1e-6.
+/// Share of the squared distance by which it may differ from its lower bound: directions are then accurate to the
+/// square root, 1e-6.
 const PRECISION: f64 = 1e-12;
-/// Cores closer than this share of their sizes touch; `f32` positions are coarser than that.
+/// Distance, as a share of the sizes, below which cores touch; `f32` positions are coarser.
 pub(super) const TOUCH: f64 = 3e-8;
-/// A tetrahedron with a smaller height relative to its edges is flat.
+/// Height, relative to the edges, below which a tetrahedron is flat.
 const THIN: f64 = 1e-12;
-/// Far above what is needed: polytopes take about as many steps as they have nearby faces, round cores some 30.
+/// Most steps, far above the need: polytopes take about as many steps as they have nearby faces, round cores some 30.
 const MOST_STEPS: usize = 128;
 
-/// A point of the Minkowski difference A − B, and the points it comes from.
+/// A point of the Minkowski difference A − B, and the points of A and B that give it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Vertex {
     pub difference: DVec3,
@@ -22,7 +23,7 @@ pub(super) struct Vertex {
     pub on_b: DVec3,
 }
 
-/// The point of A − B that is furthest along `direction`.
+/// Returns the point of A − B that is furthest along `direction`.
 pub(super) fn support<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
@@ -32,7 +33,7 @@ pub(super) fn support<A: Support, B: Support>(
     Vertex { difference: on_a - on_b, on_a, on_b }
 }
 
-/// Up to four points of A − B, and the weights of the point of their hull closest to the origin.
+/// Up to four points of A − B, and their weights for the point of their convex hull closest to the origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Simplex {
     pub vertices: [Vertex; 4],
@@ -40,37 +41,37 @@ pub(super) struct Simplex {
     pub count: usize,
 }
 
-/// The closest points of two separated cores.
+/// Closest points of two separated cores.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bridge {
     pub on_a: DVec3,
     pub on_b: DVec3,
     pub distance: f64,
-    /// Unit, from A to B.
+    /// Unit normal from A to B.
     pub normal: DVec3,
 }
 
-/// Steps without improvement before the search ends.
+/// Number of steps without improvement after which the search ends.
 const MOST_STALLS: u32 = 12;
 
-/// Relation of two cores.
+/// Result of the search for two cores.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::large_enum_variant, reason = "it lives on the stack, for one pair")]
 pub(super) enum Cores {
     Apart(Bridge),
-    /// The simplex holds the origin, or touches it.
+    /// The cores overlap: the simplex contains the origin, or touches it.
     Overlapping(Simplex),
 }
 
-/// The closest points of two cores, unless they touch or overlap.
+/// Finds the closest points of two cores, unless they touch or overlap.
 pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>) -> Cores {
     let size = f64::from(a.solid.reach()) + f64::from(b.solid.reach());
     let offset = b.center - a.center;
     let start = if offset.length() > TOUCH * size { offset } else { DVec3::X };
     let mut simplex = Simplex::of(support(a, b, start));
     let mut nearest = simplex.nearest();
-    // The best separating direction so far, and the closest points so far: at distances small against the sizes,
-    // rounding hides how good one is by the other.
+    // The best separating direction and the closest points so far are kept apart: at distances small against the sizes,
+    // rounding makes neither a measure of the other.
     let (mut apart, mut toward_a) = (f64::NEG_INFINITY, DVec3::X);
     let (mut shortest, mut bridge) = (f64::INFINITY, simplex);
     let mut stalls = 0;
@@ -86,7 +87,7 @@ pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>
             stalls += 1;
         }
         let vertex = support(a, b, -nearest);
-        // Lower bound of the difference along the way to its nearest point.
+        // Lower bound of the difference, along the direction to its nearest point.
         let bound = vertex.difference.dot(nearest);
         if bound / length > apart {
             (apart, toward_a) = (bound / length, nearest / length);
@@ -109,7 +110,7 @@ pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>
     Cores::Apart(Bridge { on_a, on_b, distance: apart, normal: -toward_a })
 }
 
-/// A known separating direction: then no simplex contains the origin, whatever rounding says.
+/// Knowledge of a separating direction. If one is known, no simplex contains the origin, even if rounding suggests it.
 #[derive(Clone, Copy, PartialEq)]
 enum Known {
     Nothing,
@@ -138,18 +139,18 @@ impl Simplex {
         terms.fold(DVec3::ZERO, |sum, (vertex, weight)| sum + of(vertex) * weight)
     }
 
-    /// The point closest to the origin, once reduced.
+    /// Point of a reduced simplex closest to the origin.
     fn nearest(&self) -> DVec3 {
         self.weighted(|vertex| vertex.difference)
     }
 
-    /// Points on A and B that belong to that point.
+    /// Points on A and B that give the point closest to the origin.
     fn ends(&self) -> [DVec3; 2] {
         [self.weighted(|vertex| vertex.on_a), self.weighted(|vertex| vertex.on_b)]
     }
 
-    /// Points on A and B for the point of the simplex's surface closest to the origin: for touching cores their
-    /// distance equals the depth.
+    /// Returns the points on A and B for the point of the simplex's surface closest to the origin. For touching cores
+    /// the distance of these points equals the depth.
     pub fn touching_ends(mut self) -> [DVec3; 2] {
         if self.count == 4 {
             self.reduce(Known::Apart);
@@ -157,8 +158,8 @@ impl Simplex {
         self.ends()
     }
 
-    /// Keeps the vertices that carry the point closest to the origin, with their weights. True, with nothing dropped,
-    /// if the simplex contains the origin.
+    /// Keeps only the vertices that span the point closest to the origin, with their weights. Returns true and keeps
+    /// all if the simplex contains the origin.
     fn reduce(&mut self, known: Known) -> bool {
         let p: [DVec3; 4] = self.vertices.map(|vertex| vertex.difference);
         let (carriers, weights) = match self.count {
@@ -180,10 +181,10 @@ impl Simplex {
     }
 }
 
-/// Three vertices by index, with weights; 0 for those that do not count.
+/// Three vertices by index, with their weights; the weight of an unused vertex is 0.
 type Carriers = ([usize; 3], [f64; 3]);
 
-/// Carriers of the nearest point, the first among equals.
+/// Returns the vertices and weights that give the nearest point; the first among equals.
 fn nearest_of<const N: usize>(p: &[DVec3; 4], all: [Carriers; N]) -> Carriers {
     let squared = |(carriers, weights): &Carriers| {
         let terms = carriers.iter().zip(weights);
@@ -214,8 +215,8 @@ fn on_segment([p, q]: [DVec3; 2], [i, j]: [usize; 2]) -> Carriers {
     }
 }
 
-/// By the areas that the origin's projection spans with the sides: if one is not positive, that side or another carries
-/// the closest point.
+/// Uses the areas that the origin's projection spans with the sides: if one is not positive, the closest point is on a
+/// side.
 fn on_triangle(p: &[DVec3; 4], at: [usize; 3]) -> Carriers {
     let [i, j, k] = at;
     let [a, b, c] = at.map(|index| p[index]);
@@ -242,8 +243,8 @@ fn holds_origin(p: &[DVec3; 4]) -> bool {
     })
 }
 
-/// Takes the face that comes closest. For a flat tetrahedron the side of the origin is rounding, so all faces are
-/// checked.
+/// Returns the vertices of the face that comes closest. Tests all faces, because for a flat tetrahedron rounding
+/// decides on which side of a face the origin is.
 fn on_tetrahedron(p: &[DVec3; 4]) -> Carriers {
     nearest_of(p, FACES.map(|[i, j, k, _]| on_triangle(p, [i, j, k])))
 }

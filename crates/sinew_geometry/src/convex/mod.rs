@@ -1,7 +1,7 @@
-//! Pairs of placed shapes without a world: distance, depth, and casts.
+//! Queries of pairs of placed shapes, without a world: distance, depth, and casts.
 //!
-//! Every query works for every pair of shapes. Solids are cores with a radius; separated cores use GJK, overlapping
-//! ones EPA, both in `f64`, so that a shape of 1 mm against one of 100 m is as precise as equal sizes.
+//! Every query works for every pair of shapes. Solids are cores with a radius. Separated cores use GJK, overlapping
+//! ones EPA, both in `f64`, so that a shape of 1 mm against one of 100 m is as precise as two equal sizes.
 //!
 //! ```
 //! use sinew_math::{Rotation, Transform, Vec3};

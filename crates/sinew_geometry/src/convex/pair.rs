@@ -6,12 +6,12 @@ use super::support::{Core, Posed, Support, narrow, wide};
 use crate::shape::Shape;
 use sinew_math::{DVec3, Transform, Vec3};
 
-/// The closest points of two separated solids; for overlapping ones, the ends of the shortest way out.
+/// Closest points of two separated solids; for overlapping ones, the ends of the shortest way out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
-    /// Metres; negative, the depth, if they overlap; 0 if they touch.
+    /// Distance, metres; 0 if the solids touch, minus the depth if they overlap.
     pub distance: f32,
-    /// Unit, from A to B, in the world: B moved along it by the depth no longer overlaps A.
+    /// Unit normal from A to B, world: after a displacement by the depth along it, B no longer overlaps A.
     pub normal: Vec3,
     /// Point on A's surface, world, metres.
     pub on_a: Vec3,
@@ -19,11 +19,12 @@ pub struct Gap {
     pub on_b: Vec3,
 }
 
-/// Gap between two placed shapes, or their penetration; `None` for two half-spaces, a mesh, or numbers that are not
-/// finite.
+/// Returns the gap between two placed shapes, or their penetration; `None` for two half-spaces, a mesh, or numbers that
+/// are not finite.
 ///
-/// Accurate to a few roundings (6e-8) of the sizes and the distance. If several ways out are shortest, always the same
-/// one; for round, nearly concentric shapes the result may be longer than the shortest by 5e-5 of the sizes.
+/// The result is accurate to a few roundings (6e-8) of the sizes and the distance. If several ways out are shortest,
+/// the choice is deterministic. For round, nearly concentric shapes the result may exceed the shortest way by 5e-5 of
+/// the sizes.
 pub fn gap(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &Transform) -> Option<Gap> {
     if !(world_from_a.is_finite() && world_from_b.is_finite()) {
         return None;
@@ -50,7 +51,7 @@ pub fn overlaps(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &T
         || gap(a, world_from_a, b, world_from_b).is_some_and(|gap| gap.distance <= 0.0)
 }
 
-/// A half-space and a solid over it: along the plane's normal.
+/// Returns the gap between a half-space and a solid, along the plane's normal.
 fn over_plane(world_from_plane: &Transform, core: &Core<'_>, world_from_core: &Transform) -> Option<Gap> {
     let origin = world_from_core.translation;
     let posed = Posed::new(core, world_from_core, origin);
@@ -62,7 +63,7 @@ fn over_plane(world_from_plane: &Transform, core: &Core<'_>, world_from_core: &T
     Some(Gap::from(bridge).placed(origin))
 }
 
-/// The gap between two posed solids, in the frame of the pair.
+/// Returns the gap between two posed solids, in the frame of the pair.
 pub fn meet<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>) -> Gap {
     let bridge = match gjk::closest(a, b) {
         Cores::Apart(bridge) => bridge,
@@ -72,7 +73,7 @@ pub fn meet<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>) -> Gap {
 }
 
 impl Bridge {
-    /// Gap between the surfaces of the rounded cores.
+    /// Returns the gap between the surfaces of the rounded cores with radii `a` and `b`, metres.
     pub(super) fn rounded(self, a: f64, b: f64) -> Self {
         Self {
             on_a: self.on_a + self.normal * a,
@@ -85,7 +86,7 @@ impl Bridge {
 
 impl From<Bridge> for Gap {
     fn from(bridge: Bridge) -> Self {
-        // Witness points of overlapping cores lie on faces, not opposite each other: their mean is used.
+        // The points found for overlapping cores are on faces, not opposite each other, so their mean is used.
         let middle = (bridge.on_a + bridge.on_b) * 0.5;
         let half = bridge.normal * (0.5 * bridge.distance);
         Self {
@@ -98,13 +99,13 @@ impl From<Bridge> for Gap {
 }
 
 impl Gap {
-    /// The same gap from B to A.
+    /// Returns the same gap from B to A.
     #[must_use]
     pub fn flipped(self) -> Self {
         Self { normal: -self.normal, on_a: self.on_b, on_b: self.on_a, ..self }
     }
 
-    /// Converts to coordinates relative to `origin`.
+    /// Converts points relative to `origin` to world points.
     pub fn placed(self, origin: Vec3) -> Self {
         Self { on_a: self.on_a + origin, on_b: self.on_b + origin, ..self }
     }
@@ -114,7 +115,7 @@ impl Gap {
     }
 }
 
-/// Gap between two solids along a unit direction from A to B; negative where they overlap along it.
+/// Gap between two solids along a unit direction from A to B, metres; negative if they overlap along it.
 pub fn apart_along<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>, direction: DVec3) -> f64 {
     -b.extent(-direction) - a.extent(direction)
 }

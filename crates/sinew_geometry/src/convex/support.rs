@@ -1,4 +1,4 @@
-//! Convex cores by their support functions.
+//! Convex cores, defined by their support functions.
 
 use super::feature::Feature;
 use crate::collide::placed::sign;
@@ -7,45 +7,45 @@ use crate::revolved::{TaperedCapsule, TruncatedCone};
 use crate::shape::Shape;
 use sinew_math::{DVec3, Transform, Vec3, max, min};
 
-/// A convex solid as a core and a rounding radius: every point of the solid is within the radius of the core. Every
-/// type with this trait collides with every other. Coordinates are in the solid's own frame.
+/// A convex solid as a core and a rounding radius: the points within the radius of the core. Every type with this trait
+/// collides with every other. Coordinates are in the solid's own frame.
 pub trait Support {
-    /// The point of the core that is furthest along `direction`, which has any length but 0.
+    /// Returns the point of the core that is furthest along `direction`, which has any length but 0.
     fn support(&self, direction: DVec3) -> DVec3;
 
     /// Radius of the rounding, metres, ≥ 0.
     fn rounding(&self) -> f32;
 
-    /// Radius of a ball around the origin that holds the solid, metres.
+    /// Radius of a ball around the origin that contains the solid, metres.
     fn reach(&self) -> f32;
 
-    /// Width where the solid is thinnest, halved, metres; lengths that do not matter for the choice of contact points are
-    /// measured by it.
+    /// Half the width of the solid where it is thinnest, metres; the scale for lengths that are negligible in the
+    /// choice of contact points.
     fn thinnest(&self) -> f32;
 
-    /// Feature of the core's surface that touches another solid along the unit vector `direction`: the face that looks
-    /// that way, else the edge or corner.
+    /// Returns the feature of the core's surface that touches another solid along the unit vector `direction`: the face
+    /// that faces this direction, otherwise the edge or corner.
     fn feature(&self, direction: Vec3) -> Feature;
 }
 
-/// Core of a shape that is convex and has an end. Sizes are metres, frames those of the [`Shape`].
+/// Core of a shape that is convex and bounded. Sizes are metres; frames are those of the [`Shape`].
 #[derive(Clone, Copy, Debug)]
 pub enum Core<'a> {
     /// Core of a ball.
     Point {
-        /// Rounding.
+        /// Rounding radius.
         radius: f32,
     },
     /// Core of a capsule, along y.
     Segment {
-        /// Half of its length.
+        /// Half the length of the segment.
         half_height: f32,
-        /// Rounding.
+        /// Rounding radius.
         radius: f32,
     },
     /// A box.
     Box {
-        /// Half of each side.
+        /// Half extents.
         half: Vec3,
     },
     /// A cylinder or cone.
@@ -57,7 +57,7 @@ pub enum Core<'a> {
 }
 
 impl<'a> Core<'a> {
-    /// Core of a shape; `None` if it is not convex or unbounded.
+    /// Core of a shape; `None` if the shape is not convex or not bounded.
     pub fn of(shape: &'a Shape) -> Option<Self> {
         Some(match *shape {
             Shape::Box { half_extents: half } => Self::Box { half },
@@ -148,10 +148,11 @@ impl Support for Core<'_> {
     }
 }
 
-/// Directions this close to a tapered capsule's side normal touch the side, not an end.
+/// Largest difference between the y components of a direction and a tapered capsule's side normal at which the
+/// direction touches the side, not an end.
 const TAPERED_SIDE: f32 = 0.1;
 
-/// The rim that reaches further, at the azimuth of the direction.
+/// Returns the point of the rim that extends further, at the azimuth of the direction.
 fn truncated_cone_support(cone: &TruncatedCone, d: DVec3) -> DVec3 {
     let across = (d.x * d.x + d.z * d.z).sqrt();
     let [h, bottom, top] = [cone.half_height, cone.bottom, cone.top].map(f64::from);
@@ -160,12 +161,12 @@ fn truncated_cone_support(cone: &TruncatedCone, d: DVec3) -> DVec3 {
     if across > 0.0 {
         DVec3::new(radius * (d.x / across), y, radius * (d.z / across))
     } else {
-        // Flat on an end: its middle reaches as far as its rim.
+        // Flat on an end: the centre extends as far as the rim.
         DVec3::new(0.0, y, 0.0)
     }
 }
 
-/// The corner that reaches furthest, the first among equals.
+/// Returns the corner that extends furthest; the first among equals.
 fn hull_support(hull: &Hull, d: DVec3) -> DVec3 {
     let (mut best, mut reach) = (DVec3::ZERO, f64::NEG_INFINITY);
     for vertex in hull.vertices().iter().copied().map(wide) {
@@ -186,7 +187,7 @@ fn tapered_support(tapered: &TaperedCapsule, d: DVec3) -> DVec3 {
     DVec3::new(0.0, y, 0.0) + d * (radius / length)
 }
 
-/// A convex solid in the frame in which a pair is examined. `f64` resolves small differences at all sizes, since `f32`
+/// A convex solid in the common frame of a pair. Uses `f64` to resolve small differences at all sizes, since `f32`
 /// positions and sizes have few digits.
 pub struct Posed<'a, S> {
     /// Solid in its own frame.
@@ -198,12 +199,12 @@ pub struct Posed<'a, S> {
 }
 
 impl<'a, S: Support> Posed<'a, S> {
-    /// Solid placed by `frame`, in coordinates relative to `origin`.
+    /// Places a solid by `frame`, in coordinates relative to `origin`.
     #[inline]
     pub fn new(solid: &'a S, frame: &Transform, origin: Vec3) -> Self {
         let r = frame.rotation;
         let [x, y, z, w] = [r.x, r.y, r.z, r.w].map(f64::from);
-        // Normalise in `f64` too, because the rotation has length 1 in `f32` only.
+        // Normalised in `f64`, because the rotation has length 1 only to `f32` precision.
         let s = 2.0 / (x * x + y * y + z * z + w * w);
         let axes = [
             DVec3::new(1.0 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)),
@@ -213,7 +214,7 @@ impl<'a, S: Support> Posed<'a, S> {
         Self { solid, axes, center: wide(frame.translation) - wide(origin) }
     }
 
-    /// The point of the core that is furthest along `direction`.
+    /// Returns the point of the core that is furthest along `direction`.
     pub fn support(&self, direction: DVec3) -> DVec3 {
         let [x, y, z] = self.axes;
         let local = DVec3::new(direction.dot(x), direction.dot(y), direction.dot(z));
@@ -221,12 +222,12 @@ impl<'a, S: Support> Posed<'a, S> {
         self.center + x * p.x + y * p.y + z * p.z
     }
 
-    /// Reach of the solid along the unit vector `direction`, from the origin of the frame.
+    /// Extent of the solid along the unit vector `direction`, from the origin of the pair's frame, metres.
     pub fn extent(&self, direction: DVec3) -> f64 {
         self.support(direction).dot(direction) + f64::from(self.solid.rounding())
     }
 
-    /// Feature that touches another solid along the unit vector `direction`, in the frame of the pair.
+    /// Returns the feature that touches another solid along the unit vector `direction`, in the frame of the pair.
     pub fn feature(&self, direction: Vec3) -> Feature {
         let [x, y, z] = self.axes.map(narrow);
         let local = Vec3::new(direction.dot(x), direction.dot(y), direction.dot(z));
@@ -236,13 +237,13 @@ impl<'a, S: Support> Posed<'a, S> {
     }
 }
 
-/// Vector in `f64`.
+/// Converts a vector to `f64`.
 #[inline]
 pub fn wide(v: Vec3) -> DVec3 {
     DVec3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z))
 }
 
-/// Vector in `f32`, rounded.
+/// Converts a vector to `f32`, rounded.
 #[inline]
 pub fn narrow(v: DVec3) -> Vec3 {
     Vec3::new(v.x as f32, v.y as f32, v.z as f32)

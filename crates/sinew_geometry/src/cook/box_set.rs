@@ -1,4 +1,4 @@
-//! A set of boxes: distance to their faces, outer surface and volume of their union.
+//! A set of boxes: distance to the faces of the boxes, outer surface and volume of their union.
 
 use super::fitted::{bounds, sample_surface};
 use crate::boxes::Aabb;
@@ -18,7 +18,7 @@ impl<'a> BoxSet<'a> {
         Self { boxes, placed, bounds: boxes.iter().map(bounds).collect() }
     }
 
-    /// Distance to the nearest face of any box, metres, from inside as from outside. Infinite without boxes.
+    /// Distance to the nearest face of any box, metres, for points inside and outside. Infinite without boxes.
     pub fn distance_to_faces(&self, p: Vec3) -> f32 {
         let mut nearest = f32::INFINITY;
         for (placed, bounds) in self.placed.iter().zip(&self.bounds) {
@@ -30,7 +30,7 @@ impl<'a> BoxSet<'a> {
         nearest
     }
 
-    /// Boxes that hold a point.
+    /// Iterates over the boxes that contain a point.
     fn around(&self, p: Vec3) -> impl Iterator<Item = usize> {
         let holds = move |i: &usize| {
             let Aabb { min, max } = self.bounds[*i];
@@ -41,7 +41,7 @@ impl<'a> BoxSet<'a> {
         (0..self.placed.len()).filter(holds)
     }
 
-    /// Samples about `count` points of all faces, uniform by area, without those inside another box.
+    /// Samples about `count` points of all faces, uniform by area, without points inside another box.
     pub fn outer_surface(&self, count: usize, random: &mut Random) -> Vec<Vec3> {
         let total: f32 = self.boxes.iter().map(Cuboid::surface_area).sum();
         let (mut outer, mut own) = (Vec::new(), Vec::new());
@@ -54,7 +54,7 @@ impl<'a> BoxSet<'a> {
         outer
     }
 
-    /// Volume of the union, m³: each box's volume, divided among boxes that contain the same sample points.
+    /// Volume of the union, m³: each box's volume, with shares divided among boxes that contain the same sample points.
     pub fn volume(&self, random: &mut Random) -> f32 {
         const SAMPLES: usize = 100_000;
         let total: f32 = self.boxes.iter().map(Cuboid::volume).sum();
@@ -64,7 +64,7 @@ impl<'a> BoxSet<'a> {
             let mut share = 0.0;
             for _ in 0..count {
                 let p = placed.point(random.in_cube() * block.half_extents);
-                // The box itself may just miss its own point by rounding.
+                // Rounding may put the sample just outside its own box.
                 share += 1.0 / usize::max(self.around(p).count(), 1) as f32;
             }
             volume += block.volume() * share / count as f32;

@@ -1,34 +1,34 @@
-//! A tree of bounds over triangles: the closest point of a mesh, and how often it winds around a point.
+//! Tree of bounds over triangles, for the closest point of a mesh and its winding number around a point.
 
 use crate::boxes::Aabb;
 use crate::triangles::{Branch, DEPTH, Tree, closest_on_triangle, normal};
 use core::ops::Range;
 use sinew_math::{Vec3, abs3, max3, trig};
 
-/// A cluster counts as one dipole beyond this many of its radii (Barill et al. 2018 use 2).
+/// Distance, in radii of a cluster, beyond which the cluster counts as one dipole (Barill et al. 2018 use 2).
 const FAR: f32 = 2.0;
 
-/// A triangle mesh that answers where its surface is closest, and whether a point is inside.
+/// A triangle mesh with queries for the closest point of its surface, and for whether a point is inside.
 #[derive(Clone, Debug)]
 pub struct MeshBvh {
     tree: Tree,
-    /// Cluster of the triangles below each node of the tree.
+    /// Cluster of the triangles below each tree node.
     clusters: Vec<Cluster>,
-    /// Corners, in leaf order.
+    /// Corners of the triangles, in leaf order.
     triangles: Vec<[Vec3; 3]>,
-    /// Indices of the triangles in the original list.
+    /// Indices of the triangles in the original list, in leaf order.
     numbers: Vec<u32>,
 }
 
-/// Dipoles of the clusters.
+/// Dipole of a cluster of triangles.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cluster {
-    /// Sum of areas times normals.
+    /// Sum of the triangles' areas times their normals, m².
     dipole: Vec3,
     area: f32,
-    /// Mean of the triangles' middles, by area.
+    /// Area-weighted mean of the triangles' centroids.
     center: Vec3,
-    /// Radius of a ball around `center` that holds all triangles.
+    /// Radius of a ball around `center` that contains all triangles, metres.
     radius: f32,
 }
 
@@ -39,14 +39,14 @@ pub struct ClosestPoint {
     pub point: Vec3,
     /// Distance from the query point, metres, ≥ 0.
     pub distance: f32,
-    /// Unit normal of the triangle, to the side from which its corners run counter-clockwise.
+    /// Unit normal of the triangle, on the side from which its corners are counter-clockwise.
     pub normal: Vec3,
-    /// Number of the triangle.
+    /// Index of the triangle.
     pub triangle: u32,
 }
 
 impl MeshBvh {
-    /// Builds the tree from triangles, by their corners in metres.
+    /// Builds the tree from triangles, given by their corners in metres.
     ///
     /// # Panics
     /// If there is no triangle, or a corner is not finite.
@@ -65,18 +65,19 @@ impl MeshBvh {
         self.triangles.len()
     }
 
-    /// Never: a mesh has triangles.
+    /// Always false: a mesh has triangles.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 
-    /// The point of the surface closest to `p`; if several, always the same.
+    /// Returns the point of the surface closest to `p`; if there are several, the choice is deterministic.
     pub fn closest_point(&self, p: Vec3) -> ClosestPoint {
         let (square, point, at) = self.search(p, f32::INFINITY);
         self.answer(square, point, at)
     }
 
-    /// [`closest_point`](Self::closest_point), if it is nearer than `reach`, metres: faster where most is farther.
+    /// Returns [`closest_point`](Self::closest_point) if it is nearer than `reach`, metres; faster if most of the mesh
+    /// is farther.
     pub fn closest_point_within(&self, p: Vec3, reach: f32) -> Option<ClosestPoint> {
         let (square, point, at) = self.search(p, reach * reach);
         (square < reach * reach).then(|| self.answer(square, point, at))
@@ -87,7 +88,8 @@ impl MeshBvh {
         ClosestPoint { point, distance: square.sqrt(), normal, triangle: self.numbers[at as usize] }
     }
 
-    /// The closest point, its squared distance, if that is below `square`, and the triangle's index.
+    /// Returns the squared distance, the closest point and the triangle's index, if that distance is below `square`;
+    /// otherwise `square`, zero and 0.
     fn search(&self, p: Vec3, square: f32) -> (f32, Vec3, u32) {
         let mut best = (square, Vec3::ZERO, 0);
         self.tree.nearest(p, square, |places| {
@@ -103,9 +105,9 @@ impl MeshBvh {
         best
     }
 
-    /// The generalised winding number of the surface around `p`: 1 inside a closed mesh, 0 outside, between them where
-    /// it has holes; negative where its faces look inward (Jacobson, Kavan & Sorkine-Hornung 2013; distant clusters
-    /// as dipoles, Barill, Dickson, Schmidt, Levin & Jacobson 2018, eq. 6).
+    /// Generalised winding number of the surface around `p`: 1 inside a closed mesh, 0 outside, a value between them
+    /// near holes; negative if the faces point inward (Jacobson, Kavan & Sorkine-Hornung 2013; distant clusters as
+    /// dipoles, Barill, Dickson, Schmidt, Levin & Jacobson 2018, eq. 6).
     pub fn winding_number(&self, p: Vec3) -> f32 {
         let mut solid_angle = 0.0;
         let mut open = [0_u32; DEPTH];
@@ -139,10 +141,10 @@ fn triangles_in(triangles: &[[Vec3; 3]], places: Range<u32>) -> &[[Vec3; 3]] {
     &triangles[places.start as usize..places.end as usize]
 }
 
-/// Clusters of each node of a tree over triangles in leaf order.
+/// Returns the clusters of the nodes of a tree over triangles in leaf order.
 fn clusters(tree: &Tree, triangles: &[[Vec3; 3]]) -> Vec<Cluster> {
     let mut clusters = vec![Cluster::default(); tree.len()];
-    // Those below a node have higher numbers.
+    // Nodes below a node have higher numbers.
     for node in (0..tree.len() as u32).rev() {
         let bounds = tree.bounds_below(node);
         clusters[node as usize] = match tree.branch(node) {

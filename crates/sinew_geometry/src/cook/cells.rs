@@ -1,21 +1,21 @@
-//! A grid of cells between planes, full or empty, covered by few boxes.
+//! Grid of full and empty cells between planes, covered by few boxes.
 
 use core::ops::Range;
 
 /// Cells between planes along three axes.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
-    /// Ascending coordinates; cell i of an axis lies between planes i and i + 1.
+    /// Ascending coordinates, metres; cell i of an axis is between planes i and i + 1.
     pub planes: [Vec<f32>; 3],
-    /// Cell (i, j, k) is number `(i * ny + j) * nz + k`.
+    /// True for full cells; cell (i, j, k) has index `(i * ny + j) * nz + k`.
     pub full: Vec<bool>,
 }
 
-/// A box of cells.
+/// A box of cells: a range of cells per axis.
 pub(super) type CellBox = [Range<usize>; 3];
 
 impl Grid {
-    /// Cells between planes; `is_full` decides from the low and high corner.
+    /// Creates the cells between planes; `is_full` decides from the low and the high corner of a cell.
     pub fn new(planes: [Vec<f32>; 3], mut is_full: impl FnMut([f32; 3], [f32; 3]) -> bool) -> Self {
         let mut grid = Self { planes, full: Vec::new() };
         let [nx, ny, nz] = grid.counts();
@@ -34,14 +34,14 @@ impl Grid {
         [0, 1, 2].map(|axis| self.planes[axis].len() - 1)
     }
 
-    /// Low and high corner of a box of cells.
+    /// Returns the low and the high corner of a box of cells.
     pub fn corners(&self, cells: &CellBox) -> ([f32; 3], [f32; 3]) {
         let at = |axis: usize, i: usize| self.planes[axis][i];
         ([0, 1, 2].map(|a| at(a, cells[a].start)), [0, 1, 2].map(|a| at(a, cells[a].end)))
     }
 
-    /// At most `most` boxes of full cells that cover all full cells except for a share `left_out` of their volume.
-    /// Boxes may overlap: each is as large as possible.
+    /// Returns at most `most` boxes of full cells that cover all full cells except for a share `left_out` of their
+    /// volume. Boxes may overlap, because each is as large as possible.
     pub fn cover(&self, left_out: f32, most: usize) -> Vec<CellBox> {
         let filled = Sums::new(self.counts(), |cell| if self.full[cell] { 1.0 } else { 0.0 });
         let volumes = self.volumes();
@@ -94,14 +94,14 @@ impl Grid {
         })
     }
 
-    /// Distance, in cells, of each full cell from an empty one along the nearest axis.
+    /// Distance of each full cell from the nearest empty cell along an axis, in cells.
     fn depths(&self) -> Vec<u32> {
         let counts = self.counts();
         let strides = [counts[1] * counts[2], counts[2], 1];
         let mut depth: Vec<u32> = self.full.iter().map(|&full| if full { u32::MAX } else { 0 }).collect();
         for axis in 0..3 {
             for line in 0..self.full.len() {
-                // The first cell of each line along the axis.
+                // Start at the first cell of each line along the axis.
                 if !(line / strides[axis]).is_multiple_of(counts[axis]) {
                     continue;
                 }
@@ -120,7 +120,7 @@ impl Grid {
         depth
     }
 
-    /// The box grown from a cell as far as possible along one axis after the other.
+    /// Returns the box grown from a cell as far as possible along one axis after the other.
     fn grow(&self, seed: usize, order: [usize; 3], filled: &Sums) -> CellBox {
         let counts = self.counts();
         let place = [seed / (counts[1] * counts[2]), seed / counts[2] % counts[1], seed % counts[2]];

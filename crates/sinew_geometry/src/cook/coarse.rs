@@ -4,8 +4,8 @@ use super::fitted::around;
 use crate::boxes::{Cuboid, Obb};
 use sinew_math::max;
 
-/// At most about `most` boxes: the larger half as they are, the others merged per cell of a grid of cubes, the smallest
-/// that leaves few enough.
+/// Returns at most about `most` boxes. The larger half is kept; the others are merged per cell of a grid of cubes, with
+/// the smallest cubes that leave few enough boxes.
 pub(super) fn at_most(most: usize, mut blocks: Vec<Obb>, thinnest: f32) -> Vec<Obb> {
     if blocks.len() <= most {
         return blocks;
@@ -15,20 +15,20 @@ pub(super) fn at_most(most: usize, mut blocks: Vec<Obb>, thinnest: f32) -> Vec<O
     let farthest = small.iter().flat_map(|block| block.center.to_array()).map(f32::abs).fold(0.0, max);
     let mut size = max(farthest / 1024.0, thinnest);
     let mut cells = by_cell(&small, size);
-    // At most the eight cells around the origin remain once cells are larger than `farthest`.
+    // Once the cells are larger than `farthest`, at most the eight cells around the origin remain.
     while cells.len() > usize::max(most - most / 2, 8) {
         size *= 1.25;
         cells = by_cell(&small, size);
     }
     blocks.extend(cells.iter().map(|cell| {
         let corners = cell.iter().flat_map(|block| block.corners());
-        // Largest ones first.
+        // Boxes are sorted by volume, so the first of a cell is the largest.
         around(corners, cell[0].rotation, thinnest)
     }));
     blocks
 }
 
-/// Boxes by the cell of a grid that their middle is in, in the order of cells.
+/// Groups boxes by the grid cell that contains their centre, in the order of cells.
 fn by_cell(blocks: &[Obb], size: f32) -> Vec<Vec<&Obb>> {
     let key = |block: &Obb| block.center.to_array().map(|x| (x / size).floor() as i64);
     let mut keyed: Vec<_> = blocks.iter().map(|block| (key(block), block)).collect();

@@ -5,14 +5,14 @@ use super::mesh::SurfaceMesh;
 use crate::boxes::{Cuboid, Obb};
 use sinew_math::{Mat3, Rotation, Vec3, any_orthonormal, normalize_or};
 
-/// Normals within this cosine (10°) are one direction.
+/// Cosine (10°) above which normals count as one direction.
 const SAME: f32 = 0.985;
-/// Axes within this cosine (1.8°) of the world's are the world's.
+/// Cosine (1.8°) above which an axis is replaced by that of the world.
 const LEVEL: f32 = 0.9995;
-/// An oriented box must be smaller by this share to replace an axis-aligned one.
+/// Volume of an oriented box, as a share of the axis-aligned box's, below which it replaces the axis-aligned box.
 const GAIN: f32 = 0.92;
 
-/// The smallest of the boxes along the world's axes, along the largest facets, and along those about the vertical.
+/// Returns the smallest of the boxes along the world's axes and along the largest facets of a part of a mesh.
 pub(super) fn fit(mesh: &SurfaceMesh, triangles: &[u32], least: f32) -> Obb {
     let corners = || triangles.iter().flat_map(|&t| mesh.corners(t as usize));
     let boxed = |rotation| around(corners(), rotation, least);
@@ -28,7 +28,7 @@ pub(super) fn fit(mesh: &SurfaceMesh, triangles: &[u32], least: f32) -> Obb {
     best
 }
 
-/// Directions of a part's faces, without sign, weighted by area.
+/// Directions of a part's faces, ignoring sign, weighted by area.
 pub(super) fn facet_directions(mesh: &SurfaceMesh, triangles: &[u32]) -> Vec<(Vec3, f32)> {
     let normals = triangles.iter().map(|&t| mesh.doubled_area(t as usize));
     cluster(normals.map(|doubled| {
@@ -37,12 +37,12 @@ pub(super) fn facet_directions(mesh: &SurfaceMesh, triangles: &[u32]) -> Vec<(Ve
     }))
 }
 
-/// Weighted directions, merged if they agree except for sign, the heaviest first.
+/// Merges weighted directions that agree except for sign; returns them with the heaviest first.
 pub(super) fn cluster(weighted: impl Iterator<Item = (Vec3, f32)>) -> Vec<(Vec3, f32)> {
-    /// Most directions; further ones of a round surface add nothing.
+    /// Largest number of directions; further directions of a round surface do not improve the fit.
     const MOST: usize = 24;
     let mut clusters: Vec<(Vec3, f32)> = Vec::new();
-    // Added weight of directions along the world's axes.
+    // Summed weights of the directions that are along the world's axes.
     let mut along: Vec<Vec3> = Vec::new();
     for (direction, weight) in weighted {
         let same = |(sum, _): &(Vec3, f32)| direction.dot(normalize_or(*sum, Vec3::Y)).abs() > SAME;
@@ -65,7 +65,7 @@ pub(super) fn cluster(weighted: impl Iterator<Item = (Vec3, f32)>) -> Vec<(Vec3,
         }
     }
     for ((sum, total), along) in clusters.iter_mut().zip(along) {
-        // Level treads with worn edges are level.
+        // Level treads with worn edges count as level.
         let axis = (0..3).find(|&axis| along[axis] >= 0.5 * *total);
         let direction = axis.map_or(*sum, |axis| Vec3::AXES[axis] * Vec3::AXES[axis].dot(*sum));
         *sum = normalize_or(direction, Vec3::Y);
@@ -74,32 +74,32 @@ pub(super) fn cluster(weighted: impl Iterator<Item = (Vec3, f32)>) -> Vec<(Vec3,
     clusters
 }
 
-/// Frames with one axis along a heavy direction and another along the heaviest perpendicular to it.
+/// Returns frames with one axis along a heavy direction and another along the heaviest direction perpendicular to it.
 pub(super) fn orientations(directions: &[(Vec3, f32)]) -> impl Iterator<Item = Rotation> {
     const TRIED: usize = 3;
     let first = directions.iter().take(TRIED).map(|&(x, _)| snap(x));
     first.map(|x| {
         let flat = directions.iter().filter(|(d, _)| d.dot(x).abs() < 0.5);
         let y = flat.map(|&(d, _)| snap(normalize_or(d - x * d.dot(x), any_orthonormal(x)))).next();
-        // Where nothing else is at a right angle, level.
+        // If no other direction is perpendicular, use the vertical.
         let y = y.unwrap_or_else(|| normalize_or(Vec3::Y - x * x.y, any_orthonormal(x)));
         let y = normalize_or(y - x * x.dot(y), any_orthonormal(x));
         frame(x, y)
     })
 }
 
-/// The world axis that a direction nearly has, else the direction itself.
+/// Returns the world axis that a direction is close to, otherwise the direction itself.
 fn snap(direction: Vec3) -> Vec3 {
     axis_along(direction).map_or(direction, |axis| Vec3::AXES[axis])
 }
 
-/// Index of the world axis that a direction nearly has.
+/// Index of the world axis that a direction is close to.
 fn axis_along(direction: Vec3) -> Option<usize> {
     (0..3).find(|&axis| direction[axis].abs() > LEVEL)
 }
 
-/// A rotation whose axes are, in some order and sign, x, y and their cross product: the one closest to the identity, so
-/// that a box's second half extent is its height.
+/// Returns the rotation whose axes are, in some order and sign, x, y and their cross product, and which is closest to
+/// the identity. The second half extent of the box is then its height.
 fn frame(x: Vec3, y: Vec3) -> Rotation {
     let axes = [x, y, x.cross(y)];
     let most = |world: Vec3, taken: Option<usize>| {

@@ -1,10 +1,11 @@
-//! Making boxes around points, and points on boxes.
+//! Boxes around points, and sample points on boxes.
 
 use crate::boxes::{Aabb, Cuboid, Obb};
 use crate::shape::Shape;
 use sinew_math::{Random, Rotation, Vec3, max3, min3};
 
-/// The box along the axes of `rotation` around points; half extents below `least` are widened to that.
+/// Returns the box along the axes of `rotation` around points; half extents below `least` (metres) are increased to
+/// that.
 pub(super) fn around(points: impl Iterator<Item = Vec3>, rotation: Rotation, least: f32) -> Obb {
     let (mut low, mut high) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
     for p in points {
@@ -15,13 +16,14 @@ pub(super) fn around(points: impl Iterator<Item = Vec3>, rotation: Rotation, lea
     from_corners(low, high, rotation, least)
 }
 
-/// The box from corner to corner in the axes of `rotation`, widened in the same way.
+/// Returns the box between two corners in the axes of `rotation`; half extents below `least` (metres) are increased to
+/// that.
 pub(super) fn from_corners(low: Vec3, high: Vec3, rotation: Rotation, least: f32) -> Obb {
     let half_extents = max3((high - low) * 0.5, Vec3::splat(least));
     Obb { center: rotation * ((low + high) * 0.5), rotation, half_extents }
 }
 
-/// The box as a shape around its centre.
+/// Returns the box as a shape around its centre.
 pub(super) fn shape(obb: &Obb) -> Shape {
     Shape::Box { half_extents: obb.half_extents }
 }
@@ -30,7 +32,7 @@ pub(super) fn bounds(obb: &Obb) -> Aabb {
     shape(obb).aabb(&obb.to_transform())
 }
 
-/// `count` points of a box's surface, uniform by area, in strata.
+/// Adds `count` points of a box's surface to `out`, uniform by area, in strata.
 pub(super) fn sample_surface(obb: &Obb, count: usize, random: &mut Random, out: &mut Vec<Vec3>) {
     let h = obb.half_extents;
     let faces = [h.y * h.z, h.z * h.x, h.x * h.y];

@@ -1,4 +1,4 @@
-//! Deviation of boxes from their mesh.
+//! Deviation of a set of boxes from its mesh.
 
 use super::box_set::BoxSet;
 use super::bvh::MeshBvh;
@@ -7,22 +7,22 @@ use super::sample::sample;
 use crate::boxes::{Aabb, Obb, Overlap};
 use sinew_math::{Random, Vec3, max};
 
-/// Sample points per side.
+/// Number of sample points on the mesh and on the boxes.
 const SAMPLES: usize = 20_000;
 
-/// Distances between two surfaces and a ratio of volumes.
+/// Distances between two surfaces, and a ratio of volumes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
-    /// Volume of the boxes' union over the volume of the mesh; `None` if the mesh is open or encloses nothing.
+    /// Volume of the boxes' union divided by that of the mesh; `None` if the mesh is open or has no volume.
     pub volume_ratio: Option<f32>,
-    /// 95th percentile of the distance between the two surfaces, metres: the larger of both directions.
+    /// 95th percentile of the distance between the two surfaces, metres; the larger of the two directions.
     pub distance_p95: f32,
-    /// The largest distance, metres.
+    /// Largest distance between the two surfaces, metres.
     pub distance_max: f32,
 }
 
-/// Compares boxes with their mesh by points uniform over either surface: points of the mesh to the nearest box face,
-/// and points of the boxes' outer surface (without faces inside another box) to the mesh.
+/// Compares boxes with their mesh by points uniform over both surfaces: points of the mesh to the nearest box face, and
+/// points of the boxes' outer surface (without faces inside another box) to the mesh.
 pub(super) fn measure(mesh: &SurfaceMesh, bvh: &MeshBvh, blocks: &[Obb], random: &mut Random) -> Deviation {
     let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
     let (points, _) = sample(mesh, &all, SAMPLES, random);
@@ -33,22 +33,22 @@ pub(super) fn measure(mesh: &SurfaceMesh, bvh: &MeshBvh, blocks: &[Obb], random:
     let [p95_back, max_back] = quantiles(outer.iter().map(|&p| bvh.closest_point(p).distance).collect());
     let ratio = mesh.is_closed().then(|| tree.volume(random) / enclosed_volume(mesh, bvh, random));
     Deviation {
-        // Closed shells may cancel; then nothing is enclosed.
+        // Closed shells may cancel; then the enclosed volume is 0.
         volume_ratio: ratio.filter(|ratio| ratio.is_finite()),
         distance_p95: max(p95_there, p95_back),
         distance_max: max(max_there, max_back),
     }
 }
 
-/// The 95th percentile and the largest; zeros of nothing.
+/// Returns the 95th percentile and the maximum; zeros if there are no distances.
 fn quantiles(mut distances: Vec<f32>) -> [f32; 2] {
     distances.sort_unstable_by(f32::total_cmp);
     let Some(&last) = distances.last() else { return [0.0; 2] };
     [distances[(distances.len() * 95).div_ceil(100) - 1], last]
 }
 
-/// Volume of a closed mesh: by the divergence theorem if its parts are apart, else by sample points with a winding
-/// number.
+/// Volume of a closed mesh, m³: by the divergence theorem if its parts are apart, otherwise by sample points with a
+/// winding number.
 fn enclosed_volume(mesh: &SurfaceMesh, bvh: &MeshBvh, random: &mut Random) -> f32 {
     const ACROSS: usize = 48;
     if !parts_meet(mesh) {
@@ -57,7 +57,7 @@ fn enclosed_volume(mesh: &SurfaceMesh, bvh: &MeshBvh, random: &mut Random) -> f3
             let [a, b, c] = mesh.corners(t).map(|p| p - center);
             f64::from(a.dot(b.cross(c)))
         };
-        // Negative for a room, whose faces look inward.
+        // The sum is negative for a room, whose faces point inward.
         return ((0..mesh.triangles.len()).map(sixfold).sum::<f64>() / 6.0).abs() as f32;
     }
     let size = mesh.bounds.max - mesh.bounds.min;

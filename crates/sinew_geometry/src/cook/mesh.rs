@@ -5,38 +5,38 @@ use core::fmt;
 use sinew_math::{Vec3, max3, min3};
 use std::collections::HashMap;
 
-/// Vertices closer than this are one, as a share of the mesh's diagonal.
+/// Distance, as a share of the mesh's diagonal, below which vertices are welded.
 const WELD: f32 = 1e-5;
-/// Most triangles of a mesh.
+/// Largest number of triangles of a mesh.
 pub const MAX_TRIANGLES: usize = 16 << 20;
 
-/// Reason why a mesh cannot be cooked. Indices are those of the given slices.
+/// Reason why a mesh cannot be cooked. Indices refer to the given slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CookError {
-    /// No triangle is left, or none has an area.
+    /// There is no triangle, or none has an area.
     NoTriangles {
         /// Number of triangles without area.
         degenerate: usize,
     },
-    /// A triangle names a missing vertex.
+    /// A triangle refers to a missing vertex.
     IndexOutOfRange {
-        /// Number of the triangle.
+        /// Index of the triangle.
         triangle: usize,
-        /// Vertex that it names.
+        /// Index of the missing vertex.
         index: u32,
         /// Number of vertices.
         vertices: usize,
     },
-    /// A triangle names a vertex whose coordinates are not finite, or beyond 10⁶ m.
+    /// A triangle refers to a vertex whose coordinates are not finite, or beyond 10⁶ m.
     NotFinite {
-        /// Number of the triangle.
+        /// Index of the triangle.
         triangle: usize,
-        /// Number of the vertex.
+        /// Index of the vertex.
         vertex: u32,
     },
     /// More triangles than [`MAX_TRIANGLES`].
     TooMany {
-        /// Number that was given.
+        /// Number of given triangles.
         triangles: usize,
     },
 }
@@ -68,23 +68,23 @@ impl CookError {
     }
 }
 
-/// Repairs of a mesh.
+/// Repairs of a mesh, as counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repairs {
-    /// Triangles without area, dropped.
+    /// Triangles without area, which are dropped.
     pub degenerate: usize,
-    /// Duplicate triangles, dropped.
+    /// Duplicate triangles, which are dropped.
     pub repeated: usize,
-    /// Edges that no second triangle closes: the rims of holes, and of sheets.
+    /// Edges that belong to one triangle only: the rims of holes and of sheets.
     pub open_edges: usize,
 }
 
-/// A mesh without degenerate triangles, its coinciding vertices welded.
+/// A mesh without degenerate triangles, with coinciding vertices welded.
 #[derive(Clone, Debug)]
 pub(crate) struct SurfaceMesh {
     pub positions: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
-    /// Connected part of each triangle: parts share no vertex.
+    /// Connected part of each triangle; two parts share no vertex.
     pub part: Vec<u32>,
     pub parts: usize,
     pub bounds: Aabb,
@@ -101,7 +101,7 @@ impl SurfaceMesh {
         for triangle in triangles {
             let triangle = triangle.map(|i| welded[i as usize]);
             let [a, b, c] = triangle.map(|i| positions[i as usize]);
-            // Height over the longest side, so that slivers of the weld's width are dropped too.
+            // Uses the height over the longest side, so that slivers as narrow as the weld distance are dropped too.
             let doubled_area = (b - a).cross(c - a).length();
             let longest = (b - a).length_squared() + (c - b).length_squared() + (a - c).length_squared();
             if doubled_area > 0.5 * WELD * diagonal * longest.sqrt() {
@@ -123,13 +123,13 @@ impl SurfaceMesh {
         self.triangles[triangle].map(|i| self.positions[i as usize])
     }
 
-    /// Twice the area times the unit normal.
+    /// Returns twice the area times the unit normal.
     pub fn doubled_area(&self, triangle: usize) -> Vec3 {
         let [a, b, c] = self.corners(triangle);
         (b - a).cross(c - a)
     }
 
-    /// Length of the diagonal of its bounds, metres.
+    /// Diagonal of the mesh's bounds, metres.
     pub fn diagonal(&self) -> f32 {
         (self.bounds.max - self.bounds.min).length()
     }
@@ -138,7 +138,7 @@ impl SurfaceMesh {
         self.repairs.open_edges == 0
     }
 
-    /// Triangle indices of each part.
+    /// Returns the triangle indices of each part.
     pub fn triangles_by_part(&self) -> Vec<Vec<u32>> {
         let mut by_part = vec![Vec::new(); self.parts];
         for (triangle, &part) in self.part.iter().enumerate() {
@@ -148,7 +148,7 @@ impl SurfaceMesh {
     }
 }
 
-/// Bounds of the used vertices.
+/// Checks the mesh and returns the bounds of its used vertices.
 fn check(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Aabb, CookError> {
     const FARTHEST: f32 = 1e6;
     if triangles.len() > MAX_TRIANGLES {
@@ -160,7 +160,7 @@ fn check(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Aabb, CookError> 
             let Some(&p) = positions.get(index as usize) else {
                 return Err(CookError::IndexOutOfRange { triangle, index, vertices: positions.len() });
             };
-            // Written so that NaN fails.
+            // This form rejects NaN.
             if !(p.x.abs() <= FARTHEST && p.y.abs() <= FARTHEST && p.z.abs() <= FARTHEST) {
                 return Err(CookError::NotFinite { triangle, vertex: index });
             }
@@ -171,12 +171,12 @@ fn check(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Aabb, CookError> 
     bounds.ok_or(CookError::NoTriangles { degenerate: 0 })
 }
 
-/// Used vertices, each once within `tolerance`, and the new index of each old vertex.
+/// Returns the used vertices, each once within `tolerance`, and the new index of each old vertex.
 fn weld(positions: &[Vec3], triangles: &[[u32; 3]], tolerance: f32) -> (Vec<Vec3>, Vec<u32>) {
     const UNSEEN: u32 = u32::MAX;
     let cell = if tolerance > 0.0 { 8.0 * tolerance } else { 1.0 };
     let key = |p: Vec3| [p.x, p.y, p.z].map(|x| (x / cell).floor() as i64);
-    // Used for lookup only, never iterated: its order decides nothing.
+    // Used for lookup only, never iterated, so its order has no effect.
     let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
     let mut kept: Vec<Vec3> = Vec::new();
     let mut welded = vec![UNSEEN; positions.len()];
@@ -208,7 +208,7 @@ fn weld(positions: &[Vec3], triangles: &[[u32; 3]], tolerance: f32) -> (Vec<Vec3
     (kept, welded)
 }
 
-/// Removes triangles with the corners and orientation of an earlier one; returns their number.
+/// Removes triangles with the corners and orientation of an earlier triangle; returns their number.
 fn remove_repeated(triangles: &mut Vec<[u32; 3]>) -> usize {
     let before = triangles.len();
     for triangle in triangles.iter_mut() {
@@ -220,7 +220,7 @@ fn remove_repeated(triangles: &mut Vec<[u32; 3]>) -> usize {
     before - triangles.len()
 }
 
-/// Directed edges without one in the opposite direction.
+/// Counts the directed edges that have no edge in the opposite direction.
 fn open_edges(triangles: &[[u32; 3]]) -> usize {
     let mut edges: Vec<(u32, u32, bool)> = Vec::with_capacity(3 * triangles.len());
     for &[a, b, c] in triangles {
@@ -236,7 +236,7 @@ fn open_edges(triangles: &[[u32; 3]]) -> usize {
     edges.chunk_by(|p, q| (p.0, p.1) == (q.0, q.1)).map(surplus).sum()
 }
 
-/// The part of each triangle, numbered in triangle order, and the number of parts.
+/// Returns the part of each triangle, numbered in the order of triangles, and the number of parts.
 fn connected_parts(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, usize) {
     let mut parent: Vec<u32> = (0..vertices as u32).collect();
     for &[a, b, c] in triangles {
@@ -260,7 +260,7 @@ fn connected_parts(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, usize)
     (part, parts as usize)
 }
 
-/// The representative of a set, halving the path to it.
+/// Returns the representative of a set, halving the path to it.
 fn find(parent: &mut [u32], mut i: u32) -> u32 {
     while parent[i as usize] != i {
         parent[i as usize] = parent[parent[i as usize] as usize];

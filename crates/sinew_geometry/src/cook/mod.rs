@@ -1,7 +1,7 @@
 //! Converts a triangle mesh to a few oriented boxes.
 //!
-//! Levels are drawn as triangles and collide better as boxes, which are solid, few, and have no internal edges.
-//! [`cook`] converts a mesh, [`Cooked::deviation`] measures the error.
+//! Levels are drawn as triangles, but collide better as boxes, which are solid, few, and have no internal edges.
+//! [`cook`] converts a mesh; [`Cooked::deviation`] measures the error.
 //!
 //! 1. The mesh is checked, welded and split into its connected parts.
 //! 2. A part that is a box within the tolerance becomes that box. Others are divided by the planes of their own facets
@@ -12,10 +12,10 @@
 //!    takes quadratic time.
 //! 5. Steps that add least to the squared distance between the surfaces, dropping a box or merging two, follow until at
 //!    most the requested number remains.
-//! 6. A box on which one can stand is aligned with its ground: treads stay level, and as high as drawn.
+//! 6. A box with a walkable top is aligned with its ground: treads stay level, and as high as drawn.
 //!
-//! Few triangles give few, coarse boxes. Then everything is repeated with half of the tolerance, as long as boxes
-//! remain and the error falls.
+//! Few triangles give few, coarse boxes. Then all steps are repeated with half the tolerance, as long as boxes remain
+//! and the error decreases.
 
 mod box_set;
 mod bvh;
@@ -43,10 +43,10 @@ use sinew_math::{Random, Vec3, max};
 /// Settings of [`cook`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CookOptions {
-    /// Most boxes, at least 1. Default 150.
+    /// Largest number of boxes, at least 1. Default 150.
     pub max_boxes: usize,
-    /// Largest distance of a box from its part of the mesh, as a share of the mesh's diagonal, before more boxes are
-    /// tried. Default 0.01.
+    /// Largest distance of a box from its part of the mesh, as a share of the mesh's diagonal, above which the part
+    /// gets more boxes. Default 0.01.
     pub tolerance: f32,
 }
 
@@ -56,57 +56,57 @@ impl Default for CookOptions {
     }
 }
 
-/// Boxes instead of a mesh.
+/// Boxes that replace a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cooked {
-    /// The boxes, in the mesh's frame.
+    /// Boxes in the mesh's frame.
     pub boxes: Vec<Obb>,
     /// Deviation of the boxes from the mesh.
     pub deviation: Deviation,
     /// Repairs of the mesh.
     pub repairs: Repairs,
-    /// Connected parts of the mesh.
+    /// Number of connected parts of the mesh.
     pub parts: usize,
 }
 
-/// Progress of the cooking, reported during the work.
+/// Progress of the cooking, reported during the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// Boxes of this many triangles are done.
+    /// Number of triangles whose boxes are done.
     Triangles(usize),
-    /// Number of boxes left.
+    /// Number of remaining boxes.
     Boxes(usize),
 }
 
-/// Length thresholds, metres.
+/// Lengths that decide the cooking, metres, and the size of cells.
 #[derive(Clone, Copy, Debug)]
 struct Scale {
-    /// Largest distance of a box from its part.
+    /// Largest distance of a box from its part of the mesh.
     tolerance: f32,
-    /// Least half extent of a box.
+    /// Smallest half extent of a box.
     thinnest: f32,
     /// Thickness of a plate behind a sheet.
     thickness: f32,
-    /// Invisible distances.
+    /// Distance below which a deviation is invisible.
     unseen: f32,
-    /// Distance up to which a part is filled even if that closes its holes: solid boxes are more robust than plates. It
-    /// depends on the requested tolerance only.
+    /// Distance up to which a part is filled even if that closes its holes: solid boxes are more robust than plates.
+    /// Depends only on the requested tolerance.
     filled: f32,
-    /// Share of the usual cell size for slanted parts.
+    /// Cell size for slanted parts, as a share of the usual size.
     finer: f32,
 }
 
 /// [`Scale::filled`], in tolerances.
 const FILLED: f32 = 2.0;
 
-/// Boxes for a mesh of vertices (metres) and triangles, counter-clockwise seen from outside. The same mesh always gives
-/// the same boxes.
+/// Returns boxes for a mesh of vertices (metres) and triangles, counter-clockwise seen from outside. The same mesh
+/// always gives the same boxes.
 ///
 /// # Errors
 /// See [`CookError`].
 ///
 /// # Panics
-/// If the options ask for no box, or the tolerance is not between 0 and 1.
+/// If the options request no box, or the tolerance is not between 0 and 1.
 pub fn cook(
     positions: &[Vec3],
     triangles: &[[u32; 3]],
@@ -136,16 +136,17 @@ pub fn cook(
     Ok(Cooked { boxes, deviation, repairs: mesh.repairs, parts: mesh.parts })
 }
 
-/// Most triangles of a mesh that is cooked again for lack of boxes.
+/// Largest number of triangles of a mesh that is cooked again because it gave few boxes.
 const FEW_TRIANGLES: usize = 4096;
-/// Times that its tolerance is halved.
+/// Number of times that the tolerance is halved.
 const FINER: usize = 2;
-/// Boxes are close enough where 95 % of the surfaces are within this share of the tolerance: a plate is half as thick.
+/// Share of the tolerance within which 95 % of the surfaces must be for the boxes to be close enough: a plate is half
+/// as thick as the tolerance.
 const CLOSE: f32 = 0.55;
-/// More boxes are used only if they reduce the error to this share.
+/// Share to which more boxes must reduce the error to be used.
 const WORTH: f32 = 0.9;
 
-/// Boxes, and their distance from the mesh, with the requested tolerance times `finer`.
+/// Returns boxes, and their deviation from the mesh, for the requested tolerance times `finer`.
 fn cook_once(
     mesh: &SurfaceMesh,
     bvh: &MeshBvh,
@@ -167,16 +168,16 @@ fn cook_once(
     (boxes, deviation)
 }
 
-/// Points of the mesh by which boxes are judged.
+/// Number of sample points of the mesh by which boxes are judged.
 const POINTS: usize = 16_384;
-/// Most boxes at the start of the search for merges, unless nearly as many are to remain.
+/// Largest number of boxes at the start of the search for merges, unless nearly as many are requested.
 const MOST_FIRST: usize = 768;
 
 fn scale(mesh: &SurfaceMesh, options: &CookOptions, finer: f32) -> Scale {
     let diagonal = mesh.diagonal();
     Scale {
         tolerance: finer * options.tolerance * diagonal,
-        // Least thickness that the engine resolves: a box thinner than its slop is no obstacle.
+        // Least thickness that the engine resolves: a box thinner than the contact slop is no obstacle.
         thinnest: max(5e-4 * diagonal, 1e-6),
         thickness: 0.5 * options.tolerance * diagonal,
         unseen: 0.15 * finer * options.tolerance * diagonal,
@@ -185,7 +186,7 @@ fn scale(mesh: &SurfaceMesh, options: &CookOptions, finer: f32) -> Scale {
     }
 }
 
-/// Builds as many boxes as the mesh needs.
+/// Returns as many boxes as the mesh needs.
 fn first_boxes(
     mesh: &SurfaceMesh,
     bvh: &MeshBvh,

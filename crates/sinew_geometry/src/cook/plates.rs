@@ -1,4 +1,4 @@
-//! Plates: flat regions of the mesh far from any box become plates behind their faces.
+//! Plates: boxes behind flat regions of the mesh that are far from all other boxes.
 
 use super::Scale;
 use super::bvh::MeshBvh;
@@ -8,14 +8,14 @@ use super::mesh::SurfaceMesh;
 use crate::boxes::{Cuboid, Obb};
 use sinew_math::{Mat3, Rotation, Vec3, any_orthonormal, max, min, normalize_or};
 
-/// Normals of one region are within this cosine (20°) of the first.
+/// Least cosine (20°) between the normals of a region and its first normal.
 const FLAT: f32 = 0.94;
-/// Cells along the longer side of a region that is no rectangle.
+/// Number of cells along the longer side of a region that is not a rectangle.
 const CELLS: usize = 24;
-/// Most boxes of one region.
+/// Largest number of boxes of one region.
 const MOST_BOXES: usize = 64;
 
-/// Triangles of which a corner region or the middle is farther from all boxes than the tolerance.
+/// Returns the triangles of which the centroid or a corner region is farther from all boxes than the tolerance.
 pub(super) fn uncovered(mesh: &SurfaceMesh, triangles: &[u32], blocks: &[Obb], scale: Scale) -> Vec<u32> {
     let blocks: Vec<_> = blocks.iter().map(Cuboid::placed).collect();
     let near = |p: Vec3| blocks.iter().any(|block| block.signed_distance(p).abs() <= scale.tolerance);
@@ -23,7 +23,7 @@ pub(super) fn uncovered(mesh: &SurfaceMesh, triangles: &[u32], blocks: &[Obb], s
         let corners = mesh.corners(triangle as usize);
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         let size = (corners[1] - corners[0]).length() + (corners[2] - corners[0]).length();
-        // The middle suffices for small triangles.
+        // The centroid suffices for small triangles.
         !near(middle)
             || (size > scale.tolerance
                 && corners.iter().any(|&corner| !near(corner + (middle - corner) * 0.2)))
@@ -31,7 +31,7 @@ pub(super) fn uncovered(mesh: &SurfaceMesh, triangles: &[u32], blocks: &[Obb], s
     triangles.iter().copied().filter(is_bare).collect()
 }
 
-/// Plates over the triangles, region by region.
+/// Returns plates behind the triangles, region by region.
 pub(super) fn plates(mesh: &SurfaceMesh, triangles: &[u32], scale: Scale) -> Vec<Obb> {
     flat_regions(mesh, triangles, scale)
         .iter()
@@ -39,7 +39,7 @@ pub(super) fn plates(mesh: &SurfaceMesh, triangles: &[u32], scale: Scale) -> Vec
         .collect()
 }
 
-/// Connected triangles near a plane, the largest triangle first.
+/// Returns regions of connected triangles near a plane, each from its largest triangle on.
 fn flat_regions(mesh: &SurfaceMesh, triangles: &[u32], scale: Scale) -> Vec<Vec<u32>> {
     let neighbors = neighbors(mesh, triangles);
     let area: Vec<f32> = triangles.iter().map(|&t| mesh.doubled_area(t as usize).length()).collect();
@@ -75,7 +75,7 @@ fn flat_regions(mesh: &SurfaceMesh, triangles: &[u32], scale: Scale) -> Vec<Vec<
     regions
 }
 
-/// Across each edge the next triangle of the list, by place in it; `u32::MAX` where there is none.
+/// Returns the neighbour across each side of each triangle, by position in the list; `u32::MAX` if there is none.
 fn neighbors(mesh: &SurfaceMesh, triangles: &[u32]) -> Vec<[u32; 3]> {
     let mut edges: Vec<(u32, u32, u32, u32)> = Vec::with_capacity(3 * triangles.len());
     for (i, &triangle) in triangles.iter().enumerate() {
@@ -118,7 +118,7 @@ fn plates_of_region(mesh: &SurfaceMesh, region: &[u32], scale: Scale) -> Vec<Obb
     let grid = Grid::new(planes, |low, high| {
         let middle = Vec3::new(0.5 * (low[0] + high[0]), top, 0.5 * (low[2] + high[2]));
         let away = rotation.inverse() * (bvh.closest_point(rotation * middle).point) - middle;
-        // The point is beside the region, not above it.
+        // The point is beside the region, not over it.
         away.x * away.x + away.z * away.z < 0.05 * step * step
     });
     let boxes = grid.cover(0.01, MOST_BOXES);
@@ -129,7 +129,8 @@ fn plates_of_region(mesh: &SurfaceMesh, region: &[u32], scale: Scale) -> Vec<Obb
     boxes.iter().map(block).collect()
 }
 
-/// The frame with y along the region's normal in which its bounds are smallest, an edge of it along x; and the bounds.
+/// Returns the frame with y along the region's normal and x along one of its edges in which its bounds are smallest,
+/// and the low and the high corner of these bounds.
 fn smallest_rectangle(mesh: &SurfaceMesh, region: &[u32]) -> (Rotation, Vec3, Vec3) {
     const TRIED: usize = 8;
     let doubled: Vec3 = region.iter().map(|&t| mesh.doubled_area(t as usize)).sum();

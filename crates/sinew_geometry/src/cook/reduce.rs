@@ -1,4 +1,4 @@
-//! Reduces boxes: drops or merges the cheapest until the requested number remains.
+//! Reduces a set of boxes: drops or merges the cheapest until the requested number remains.
 
 use super::Scale;
 use super::bvh::MeshBvh;
@@ -10,9 +10,9 @@ use super::solid::is_seen_from_inside;
 use crate::boxes::{Aabb, Cuboid, Obb, Overlap, PlacedBox};
 use sinew_math::{Random, Rotation, Vec3, max3, min};
 
-/// Points of a candidate's surface that are held against the mesh.
+/// Number of points of a candidate's surface that are compared with the mesh.
 const SURFACE: usize = 64;
-/// Neighbours that a box may merge with.
+/// Number of neighbours that a box may merge with.
 const NEIGHBORS: usize = 8;
 
 /// A box during the reduction.
@@ -21,12 +21,12 @@ struct Entry {
     block: Obb,
     placed: PlacedBox,
     bounds: Aabb,
-    /// Points of the mesh to which it is the closest.
+    /// Points of the mesh to which this box is the closest.
     points: Vec<u32>,
-    /// Integral of squared distances of and to its surface, m⁴, and the number of boxes when it was computed.
+    /// Integral of squared distances to and from the box's surface, m⁴, and the number of boxes when it was computed.
     cost: f32,
     seen: usize,
-    /// True if it was neither dropped nor merged so far.
+    /// True if the box has been neither dropped nor merged.
     alive: bool,
 }
 
@@ -41,7 +41,7 @@ enum Step {
 
 struct Candidate {
     step: Step,
-    /// Increase of the integral of squared distances when last computed, m⁴.
+    /// Increase of the integral of squared distances at the last computation, m⁴.
     cost: f32,
     /// Number of boxes at that time.
     seen: usize,
@@ -60,7 +60,8 @@ pub(super) struct Reduction<'a> {
 }
 
 impl<'a> Reduction<'a> {
-    /// Reduction of `blocks` for a mesh with sample `points`, each for `area` square metres.
+    /// Prepares the reduction of `blocks` for a mesh with sample `points`, each of which represents `area` square
+    /// metres.
     pub fn new(bvh: &'a MeshBvh, points: &'a [MeshPoint], area: f32, scale: Scale, blocks: &[Obb]) -> Self {
         let entries: Vec<Entry> = blocks.iter().map(|&block| Entry::new(block)).collect();
         let left = entries.len();
@@ -75,10 +76,10 @@ impl<'a> Reduction<'a> {
         reduction
     }
 
-    /// Boxes that remain when at most `most` are left and every further step would be visible. `tick` gets the number
-    /// of boxes after each step.
+    /// Runs the reduction until at most `most` boxes are left and every further step would be visible; returns the
+    /// boxes. `tick` gets the number of boxes after each step.
     pub fn run(mut self, most: usize, tick: &mut dyn FnMut(usize)) -> Vec<Obb> {
-        // Squared distance, times the area concerned, that is invisible.
+        // Squared distance that is invisible; multiplied by the affected area.
         let free = self.scale.unseen * self.scale.unseen;
         while self.left > 1 {
             let cheaper = |a: usize, b: usize| {
@@ -107,7 +108,7 @@ impl<'a> Reduction<'a> {
             .collect()
     }
 
-    /// The area that a step concerns, square metres.
+    /// Surface area that a step affects, m².
     fn extent(&self, step: &Step) -> f32 {
         match *step {
             Step::Drop(i) => self.entries[i].block.surface_area(),
@@ -162,7 +163,7 @@ impl<'a> Reduction<'a> {
         }
     }
 
-    /// Addition of a step to the integral of squared distances, m⁴.
+    /// Increase of the integral of squared distances by a step, m⁴.
     fn cost(&mut self, step: &Step) -> f32 {
         match *step {
             Step::Drop(i) => {
@@ -176,7 +177,7 @@ impl<'a> Reduction<'a> {
             }
             Step::Merge(i, j, block) => {
                 if is_seen_from_inside(self.bvh, &block) && !self.is_inside_another(block.center) {
-                    // The floor and the ceiling of a room are not one box.
+                    // Prevents a merge of the floor and the ceiling of a room.
                     return f32::INFINITY;
                 }
                 let before = self.cost_of(i) + self.cost_of(j);
@@ -186,7 +187,7 @@ impl<'a> Reduction<'a> {
         }
     }
 
-    /// Integral of a box itself, m⁴: cached while nothing has changed.
+    /// Integral of squared distances of one box, m⁴; cached while the set does not change.
     fn cost_of(&mut self, i: usize) -> f32 {
         if self.entries[i].seen != self.left {
             let Entry { block, ref points, .. } = self.entries[i];
@@ -205,7 +206,7 @@ impl<'a> Reduction<'a> {
         }
     }
 
-    /// The box whose faces are closest to `p`, except one, and its distance.
+    /// Returns the box other than `without` whose faces are closest to `p`, and the distance, metres.
     fn nearest(&self, p: Vec3, without: usize) -> (Option<usize>, f32) {
         let mut best = (None, f32::INFINITY);
         for (i, entry) in self.entries.iter().enumerate() {
@@ -223,7 +224,7 @@ impl<'a> Reduction<'a> {
         best
     }
 
-    /// The nearest boxes by the gap between bounds, then by the size of the common bounds.
+    /// Returns the nearest boxes, ordered by the gap between bounds, then by the size of the common bounds.
     fn neighbors(&self, i: usize) -> Vec<usize> {
         let bounds = self.entries[i].bounds;
         let mut near: Vec<(f32, f32, usize)> = Vec::new();
@@ -239,8 +240,8 @@ impl<'a> Reduction<'a> {
         near.into_iter().take(NEIGHBORS).map(|(_, _, j)| j).collect()
     }
 
-    /// Single boxes for two: the smallest around both, along the axes of either, of the world, or of the mesh there;
-    /// and the plate behind their faces.
+    /// Returns two single boxes that could replace two: the smallest around both, along the axes of either, of the
+    /// world, or of the mesh there; and the plate behind their faces.
     fn merged(&self, i: usize, j: usize) -> [Obb; 2] {
         let [a, b] = [&self.entries[i], &self.entries[j]];
         let corners = [a.block.corners(), b.block.corners()].concat();
@@ -254,13 +255,13 @@ impl<'a> Reduction<'a> {
         let around_both = around_both.unwrap_or(a.block);
         let Some(rotation) = along_faces else { return [around_both; 2] };
         let normal: Vec3 = points().map(|p| p.normal).sum();
-        // The box is behind the faces if they look one way; centred if they look all ways.
+        // The box is behind the faces if they face one direction, and centred if they face all directions.
         let behind = normal * (-self.scale.thickness / points().count() as f32);
         let plate = points().flat_map(|p| [p.position, p.position + behind]);
         [around_both, around(plate, rotation, self.scale.thinnest)]
     }
 
-    /// Integral of squared distance from the points' area to a box, m⁴.
+    /// Integral of the squared distance from the points' area to a box, m⁴.
     fn points_cost(&self, block: &Obb, points: &[u32]) -> f32 {
         let placed = block.placed();
         let square = |&point: &u32| {
@@ -270,10 +271,10 @@ impl<'a> Reduction<'a> {
         points.iter().map(square).sum::<f32>() * self.area
     }
 
-    /// Integral of squared distance to the mesh over a box's surface outside all other boxes, m⁴. `own` are the points
-    /// that it represents.
+    /// Integral of the squared distance to the mesh over the part of a box's surface outside all other boxes, m⁴. `own`
+    /// are the boxes that `block` replaces.
     fn surface_cost(&self, block: &Obb, own: [usize; 2]) -> f32 {
-        // The same points for the same box, so that costs can be compared.
+        // Uses the same points for the same box, so that costs can be compared.
         let mut points = Vec::with_capacity(SURFACE);
         sample_surface(block, SURFACE, &mut Random::new(0), &mut points);
         let square = |&p: &Vec3| {
@@ -309,7 +310,7 @@ impl Entry {
         }
     }
 
-    /// True if a point is deeper inside than `least`.
+    /// True if a point is inside the box by more than `least`, metres.
     fn holds(&self, p: Vec3, least: f32) -> bool {
         self.bounds.overlaps(&Aabb { min: p, max: p }) && self.placed.signed_distance(p) < -least
     }

@@ -1,4 +1,4 @@
-//! Points of a mesh, uniform by area.
+//! Sample points of a mesh, uniform by area.
 
 use super::mesh::SurfaceMesh;
 use sinew_math::{Random, Vec3};
@@ -11,7 +11,7 @@ pub(crate) struct MeshPoint {
     pub normal: Vec3,
 }
 
-/// `count` points of the triangles, one in each of as many strata of equal area; and the area, square metres.
+/// Returns `count` points of the triangles, one in each of as many strata of equal area, and the area, m².
 pub(crate) fn sample(
     mesh: &SurfaceMesh,
     triangles: &[u32],
@@ -35,7 +35,7 @@ pub(crate) fn sample(
     (points, total as f32)
 }
 
-/// Uniform on a triangle (Osada et al. 2002, eq. 1).
+/// Returns a random point of a triangle, uniform by area (Osada et al. 2002, eq. 1).
 fn point_on(mesh: &SurfaceMesh, triangle: u32, random: &mut Random) -> MeshPoint {
     let [a, b, c] = mesh.corners(triangle as usize);
     let (r, t) = (random.unit().sqrt(), random.unit());

@@ -1,4 +1,4 @@
-//! Aligns boxes with their ground: a tread is level, and as high as drawn.
+//! Aligns boxes with their ground: treads are level, and as high as drawn.
 
 use super::Scale;
 use super::fit::cluster;
@@ -6,19 +6,19 @@ use super::sample::MeshPoint;
 use crate::boxes::Obb;
 use sinew_math::{Rotation, Vec3};
 
-/// Least height of a unit normal on which one can stand (45°).
+/// Least vertical component of the unit normal of walkable ground (45°).
 const GROUND: f32 = 0.7;
-/// A top represents points whose normals are within this cosine (11°) of its own.
+/// Least cosine (11°) between a point's normal and the top's normal for the top to represent the point.
 const FACING: f32 = 0.98;
-/// Least number of points, least share of them in one plane, and least share of all points of a box on its top, for the
-/// box to be rotated.
+/// A box is rotated only if it has this number of points on its top, this share of them in one plane, and this share of
+/// all its points on its top.
 const LEAST: usize = 4;
 const IN_PLANE: f32 = 0.6;
 const MOSTLY_TOP: f32 = 0.3;
-/// A box is turned if its top is farther from the plane than this cosine (0.1°).
+/// Cosine (0.1°) between the top and the plane below which the box is rotated.
 const TURNED: f32 = 0.999_998_5;
 
-/// A box whose top lies in the plane of its ground, its bottom unchanged.
+/// Returns the box with its top in the plane of its ground and its bottom unchanged.
 pub(super) fn settled(block: Obb, points: &[MeshPoint], scale: Scale) -> Obb {
     let (axis, up) = top(&block);
     if up.y < GROUND {
@@ -45,7 +45,7 @@ pub(super) fn settled(block: Obb, points: &[MeshPoint], scale: Scale) -> Obb {
         laid.rotation = (Rotation::from_arc(up, normal) * block.rotation).normalize();
     }
     let raised = height - (laid.center.dot(normal) + laid.half_extents[axis]);
-    // A top far from the plane represents more than that ground.
+    // A top far from the plane represents more than this ground.
     if raised.abs() > 2.0 * scale.tolerance || laid.half_extents[axis] + 0.5 * raised < scale.thinnest {
         return block;
     }
@@ -54,7 +54,7 @@ pub(super) fn settled(block: Obb, points: &[MeshPoint], scale: Scale) -> Obb {
     laid
 }
 
-/// The axis that is nearest to the vertical, and its upward direction.
+/// Returns the axis of the box nearest to the vertical, and its upward direction.
 fn top(block: &Obb) -> (usize, Vec3) {
     let mut best = (1, block.rotation * Vec3::Y);
     for axis in [1, 0, 2] {

@@ -1,4 +1,4 @@
-//! A connected part of a mesh as boxes: one if it is close enough, else boxes of cells.
+//! Boxes for a connected part of a mesh: a single box if it is close enough, otherwise boxes of cells.
 
 use super::Scale;
 use super::box_set::BoxSet;
@@ -12,19 +12,20 @@ use super::sample::{MeshPoint, sample};
 use crate::boxes::Obb;
 use sinew_math::{Random, Rotation, Vec3, max};
 
-/// Normals within this cosine of an axis are along it (8°).
+/// Cosine (8°) above which a normal counts as along an axis.
 const ALIGNED: f32 = 0.99;
-/// Most planes per axis of a part's grid.
+/// Largest number of planes per axis of a part's grid.
 const MOST_PLANES: usize = 40;
-/// Cells along the longest side, where slanted faces need them.
+/// Number of cells along the longest side, for parts with slanted faces.
 const CELLS: f32 = 24.0;
-/// Most boxes of one part.
+/// Largest number of boxes of one part.
 const MOST_BOXES: usize = 256;
 /// Share of a part's volume that may stay uncovered.
 const LEFT_OUT: f32 = 0.005;
 
-/// Boxes for a connected part: one if the part is nearly a box; else boxes of its inside, or plates behind its faces,
-/// whichever are closer to it. Filling an open shell costs the faces that close its holes.
+/// Returns boxes for a connected part. A part that is nearly a box gives one box. Other parts give boxes of the inside
+/// or plates behind the faces, whichever are closer to the part. Filling an open shell costs the faces that close its
+/// holes.
 pub(super) fn blocks_of_part(
     mesh: &SurfaceMesh,
     bvh: &MeshBvh,
@@ -58,10 +59,11 @@ pub(super) fn blocks_of_part(
     if larger(&shell) < of_filled { shell } else { filled }
 }
 
-/// Points of a part to compare boxes with.
+/// Number of points of a part with which boxes are compared.
 const SAMPLES: usize = 400;
 
-/// Root mean squared distance from points of a part to boxes, and from the boxes' outer surface to the mesh.
+/// Returns the root mean square distances from points of a part to boxes, and from the boxes' outer surface to the
+/// mesh, metres.
 fn rms_distances(bvh: &MeshBvh, points: &[MeshPoint], blocks: &[Obb], random: &mut Random) -> [f32; 2] {
     let set = BoxSet::new(blocks);
     let rms = |distances: Vec<f32>| {
@@ -73,7 +75,7 @@ fn rms_distances(bvh: &MeshBvh, points: &[MeshPoint], blocks: &[Obb], random: &m
     [there, rms(outer.iter().map(|&p| bvh.closest_point(p).distance).collect())]
 }
 
-/// True if the faces around the middle of a box look inward, as in a room.
+/// True if the faces around the centre of a box point inward, as in a room.
 pub(super) fn is_seen_from_inside(bvh: &MeshBvh, block: &Obb) -> bool {
     bvh.winding_number(block.center) < -0.5
 }
@@ -91,7 +93,7 @@ fn boxes_of_cells(
 ) -> Vec<Obb> {
     let planes = planes(mesh, triangles, rotation, scale);
     let grid = Grid::new(planes, |low, high| {
-        // The middle of each eighth.
+        // Centre of each eighth.
         let full = (0..8).filter(|i| {
             let t = |axis: usize| if i >> axis & 1 == 1 { 0.75 } else { 0.25 };
             let local = [0, 1, 2].map(|a| low[a] + (high[a] - low[a]) * t(a));
@@ -107,7 +109,8 @@ fn boxes_of_cells(
     boxes.iter().map(block).collect()
 }
 
-/// Planes of the part's facets along each axis of the frame, with regular ones where much of it is slanted.
+/// Returns the planes of the part's facets along each axis of the frame, and regular planes if much of the part is
+/// slanted.
 fn planes(mesh: &SurfaceMesh, triangles: &[u32], rotation: Rotation, scale: Scale) -> [Vec<f32>; 3] {
     let mut facets: [Vec<(f32, f32)>; 3] = Default::default();
     let (mut slanted, mut area) = (0.0, 0.0);
@@ -135,7 +138,7 @@ fn planes(mesh: &SurfaceMesh, triangles: &[u32], rotation: Rotation, scale: Scal
     })
 }
 
-/// The two ends, and the heaviest coordinates between them, no two closer than `apart`.
+/// Returns the two ends and the heaviest coordinates between them, with gaps of at least `apart`.
 fn distinct(mut weighted: Vec<(f32, f32)>, ends: [f32; 2], apart: f32) -> Vec<f32> {
     weighted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut clusters: Vec<(f32, f32, f32)> = Vec::new();
@@ -160,7 +163,7 @@ fn distinct(mut weighted: Vec<(f32, f32)>, ends: [f32; 2], apart: f32) -> Vec<f3
     planes
 }
 
-/// The planes with regular ones between, so that neighbours are at most `step` apart.
+/// Returns the planes with regular ones between them, so that neighbours are at most `step` apart.
 fn subdivided(planes: &[f32], step: f32) -> Vec<f32> {
     let mut out = vec![planes[0]];
     for pair in planes.windows(2) {

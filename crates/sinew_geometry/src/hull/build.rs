@@ -1,4 +1,4 @@
-//! Builds hulls: corners and faces from points, and derived data from corners and faces.
+//! Builds hulls: the corners and faces from points, and the derived data from corners and faces.
 
 use super::grid::{Grid, SIZES};
 use super::mass::Integrals;
@@ -8,18 +8,18 @@ use super::{Hull, HullError, MAX_FACES, MAX_VERTICES, merge, reach};
 use crate::boxes::Aabb;
 use sinew_math::{Vec3, max, max3, min, min3};
 
-/// Numbers of corners to try. Triangles around 66 corners are [`MAX_FACES`].
+/// Largest numbers of corners, tried in this order. A hull of triangles with 66 corners has [`MAX_FACES`] faces.
 const BUDGETS: [usize; 4] = [usize::MAX, MAX_VERTICES, 128, MAX_FACES / 2 + 2];
-/// Distances from a face's plane, in grid steps, within which a corner counts as on it. The last one merges exact
-/// planes only, and always succeeds.
+/// Distances from a face's plane, in grid steps, within which a corner counts as on the face; tried in this order. The
+/// last one merges only exactly coplanar triangles, and always succeeds.
 const TOLERANCES: [f64; 4] = [8.0, 2.0, 0.5, 0.0];
-/// Share of the size by which merging may leave a corner outside.
+/// Distance by which merging may leave a corner outside, as a share of the size.
 const MOST_LOST: f32 = 4e-6;
 /// Least thickness of a hull, as a share of its size.
 const THINNEST: f32 = 1e-4;
-/// Share of the size by which a corner may lie outside of a face.
+/// Distance by which a corner may be outside a face, as a share of the size.
 const CONVEX: f32 = 1e-5;
-/// Share of the distance from the origin that is lost to rounding in a height over a plane.
+/// Rounding error of a height over a plane, as a share of the distance from the origin.
 const ROUNDING: f32 = 1e-6;
 
 pub(super) fn build(points: &[Vec3]) -> Result<Hull, HullError> {
@@ -32,13 +32,13 @@ pub(super) fn build(points: &[Vec3]) -> Result<Hull, HullError> {
     Err(HullError::TooThin)
 }
 
-/// Longest side.
+/// Longest side of the bounds, metres.
 fn size(bounds: &Aabb) -> f32 {
     let sides = bounds.max - bounds.min;
     max(max(sides.x, sides.y), sides.z)
 }
 
-/// The hull with at most this many points; `None` if it has too many faces.
+/// Builds the hull with at most `budget` corners; `None` if it has too many faces.
 fn with_budget(grid: &Grid, budget: usize) -> Result<Option<Hull>, HullError> {
     let mut corners: Vec<u32> =
         quick::hull(&grid.points, budget)?.iter().flat_map(|triangle| triangle.corners).collect();
@@ -63,7 +63,8 @@ fn with_budget(grid: &Grid, budget: usize) -> Result<Option<Hull>, HullError> {
     Err(HullError::TooThin)
 }
 
-/// The corners that faces use, and the faces by corner index; `None` if there are too many. Both in a canonical order.
+/// Returns the corners that faces use, and the faces by corner index; `None` if there are too many. Both are in a
+/// canonical order.
 fn numbered(places: &[Vec3], faces: &merge::Faces) -> Option<(Vec<Vec3>, Vec<Vec<u8>>)> {
     let mut used: Vec<u32> = faces.iter().flatten().copied().collect();
     used.sort_unstable();
@@ -85,10 +86,10 @@ fn numbered(places: &[Vec3], faces: &merge::Faces) -> Option<(Vec<Vec3>, Vec<Vec
     Some((used.iter().map(|&i| places[i as usize]).collect(), loops))
 }
 
-/// A hull from its corners and the corners of each face, counter-clockwise from outside.
+/// Builds a hull from its corners and the corners of each face, counter-clockwise from outside.
 ///
 /// # Errors
-/// A description of the problem, if they do not form a convex solid.
+/// A description of the problem, if the faces do not form a convex solid.
 pub(super) fn from_faces(vertices: Vec<Vec3>, loops: &[Vec<u8>]) -> Result<Hull, &'static str> {
     let outline = Outline::new(loops, vertices.len())?;
     let low = vertices.iter().copied().fold(Vec3::splat(f32::INFINITY), min3);
@@ -103,7 +104,7 @@ pub(super) fn from_faces(vertices: Vec<Vec3>, loops: &[Vec<u8>]) -> Result<Hull,
     for ring in loops {
         let (normal, area) = newell(&vertices, ring).ok_or("a face of a hull has no area")?;
         let on_face = ring.iter().map(|&i| normal.dot(vertices[usize::from(i)])).fold(f32::INFINITY, min);
-        // The plane is at the furthest corner, so that it bounds the hull up to rounding.
+        // The plane is at the furthest corner, so that the plane bounds the hull up to rounding.
         let offset = reach(&vertices, normal);
         if offset - on_face > CONVEX * size + ROUNDING * bounding_radius {
             return Err("a hull is not convex");
@@ -133,7 +134,8 @@ pub(super) fn from_faces(vertices: Vec<Vec3>, loops: &[Vec<u8>]) -> Result<Hull,
     })
 }
 
-/// Unit normal and area of a polygon (Newell's sum), in `f64`, relative to its first corner; `None` if it has no area.
+/// Returns the unit normal and the area of a polygon (Newell's sum), in `f64`, relative to its first corner; `None` if
+/// it has no area.
 fn newell(vertices: &[Vec3], ring: &[u8]) -> Option<(Vec3, f32)> {
     let corner = |k: usize| vertices[usize::from(ring[k])].to_array().map(f64::from);
     let from = corner(0);

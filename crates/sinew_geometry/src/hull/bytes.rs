@@ -1,10 +1,10 @@
-//! Hulls to bytes and back: corners and faces; everything else follows from them.
+//! Hulls as bytes: corners and faces, from which all other data follows.
 
 use super::build::from_faces;
 use super::{Hull, MAX_FACES, MAX_VERTICES};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
-/// Bytes of a corner and of the smallest face.
+/// Bytes of a corner, and of the smallest face.
 const VERTEX_BYTES: usize = 12;
 const FACE_BYTES: usize = 4 + 3;
 
@@ -18,7 +18,7 @@ fn write(w: &mut Writer, vertices: &[Vec3], loops: impl ExactSizeIterator<Item =
     }
 }
 
-/// Hash of the bytes that are written.
+/// Returns the hash of the bytes that `write` produces.
 pub(super) fn hash(vertices: &[Vec3], loops: &[Vec<u8>]) -> u64 {
     let mut w = Writer::new();
     write(&mut w, vertices, loops.iter().cloned());
@@ -26,13 +26,13 @@ pub(super) fn hash(vertices: &[Vec3], loops: &[Vec<u8>]) -> u64 {
 }
 
 impl Hull {
-    /// Writes corners and faces.
+    /// Writes the corners and the faces.
     pub fn save(&self, w: &mut Writer) {
         let faces = self.faces().map(|face| face.corners().map(|corner| corner as u8).collect());
         write(w, &self.vertices, faces);
     }
 
-    /// Reads what [`save`](Self::save) wrote.
+    /// Reads the format of [`save`](Self::save).
     ///
     /// # Errors
     /// If the bytes end too early or are not those of a convex solid.

@@ -1,15 +1,15 @@
-//! Points as whole numbers: plane sides are exact, and no cloud is too flat or too regular.
+//! Points as whole numbers, so that tests of plane sides are exact, for every cloud.
 
 use super::HullError;
 use sinew_math::{Vec3, max3, min3};
 
-/// Most steps along the longest side of a cloud's bounds: the finest for which every multiple of the step is an `f32`.
+/// Largest number of steps along the longest side of the bounds: with it every multiple of the step is exact in `f32`.
 const STEPS: f64 = 8_388_608.0;
-/// Longest side of a hull, metres: beyond it the inertia leaves the range of `f32`.
+/// Range of the longest side of a hull, metres: beyond it the inertia leaves the range of `f32`.
 pub(super) const SIZES: core::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
-/// A cloud's points on a grid whose step is a power of two, at most 2⁻²² of the longest side; sorted and unique, so
-/// that the input order decides nothing.
+/// Points of a cloud on a grid whose step is a power of two, at most 2⁻²² of the longest side; sorted and unique, so
+/// that the input order has no effect.
 pub(super) struct Grid {
     /// Coordinates in steps from the lowest corner, 0..=2²³.
     pub points: Vec<[i64; 3]>,
@@ -29,7 +29,7 @@ impl Grid {
         };
         let [mut low, mut high] = [low, high].map(wide);
         let mut step = step_for(low, high)?;
-        // Rounding may make the bounds longer than the step allows.
+        // Rounding may lengthen the bounds beyond what the step allows.
         loop {
             [low, high] = [low, high].map(|corner| corner.map(|x| (x / step).round_ties_even() * step));
             let again = step_for(low, high)?;
@@ -48,7 +48,7 @@ impl Grid {
         Ok(Self { points, lowest: low, step })
     }
 
-    /// A point of the grid, exactly.
+    /// Returns a point of the grid as an exact position, metres.
     pub fn place(&self, index: usize) -> Vec3 {
         let [x, y, z] = core::array::from_fn(|k| self.lowest[k] + self.points[index][k] as f64 * self.step);
         Vec3::new(x as f32, y as f32, z as f32)
@@ -59,7 +59,7 @@ fn wide(p: Vec3) -> [f64; 3] {
     p.to_array().map(f64::from)
 }
 
-/// The smallest power of two with which [`STEPS`] steps cover the bounds.
+/// Returns the smallest power of two of which [`STEPS`] steps cover the bounds.
 fn step_for(low: [f64; 3], high: [f64; 3]) -> Result<f64, HullError> {
     let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, |a: f64, b| if b > a { b } else { a });
     if size == 0.0 {

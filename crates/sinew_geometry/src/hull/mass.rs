@@ -4,7 +4,7 @@
 
 use sinew_math::{Sym3, Vec3};
 
-/// Integrals over a solid, from a point inside.
+/// Integrals over a solid, relative to a point inside.
 pub(super) struct Integrals {
     from: [f64; 3],
     /// ∫ dV.
@@ -18,7 +18,8 @@ pub(super) struct Integrals {
 }
 
 impl Integrals {
-    /// Mass of the solid between faces given by the numbers of their corners, counter-clockwise from outside.
+    /// Computes the integrals over the solid between faces given by their corner indices, counter-clockwise from
+    /// outside.
     pub fn new(vertices: &[Vec3], loops: &[Vec<u8>]) -> Self {
         let wide = |v: &Vec3| v.to_array().map(f64::from);
         let mut from = [0.0; 3];
@@ -39,8 +40,8 @@ impl Integrals {
         sum
     }
 
-    /// The tetrahedron between the point inside and three corners. With `d` six times its volume and `s` their sum:
-    /// `∫ x = d s/24`, `∫ x xᵀ = d (s sᵀ + a aᵀ + b bᵀ + c cᵀ)/120`.
+    /// Adds the tetrahedron between the inner point and three corners. With `d` six times its volume and `s` the sum of
+    /// the corners: `∫ x = d s/24`, `∫ x xᵀ = d (s sᵀ + a aᵀ + b bᵀ + c cᵀ)/120`.
     fn add(&mut self, [a, b, c]: [[f64; 3]; 3]) {
         let d = a[0] * (b[1] * c[2] - b[2] * c[1])
             + a[1] * (b[2] * c[0] - b[0] * c[2])
@@ -55,7 +56,7 @@ impl Integrals {
         }
     }
 
-    /// Volume, centre, and inertia about it at density 1; `None` if the volume is zero or not finite.
+    /// Returns volume, centre, and inertia about the centre at density 1; `None` if the volume is zero or not finite.
     pub fn solid(&self) -> Option<(f32, Vec3, Sym3)> {
         let volume = self.volume as f32;
         if !(volume > 0.0 && volume < f32::INFINITY) {

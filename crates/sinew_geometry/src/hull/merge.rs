@@ -1,16 +1,16 @@
-//! Merges a hull's triangles that lie in one plane, within a tolerance, into polygons.
+//! Merges triangles of a hull that are in one plane, within a tolerance, into polygons.
 
 use super::HullError;
 use super::quick::{self, Point, Triangle, side};
 
-/// A hull's faces, each by its corners, counter-clockwise from outside.
+/// Faces of a hull, each by its corner indices, counter-clockwise from outside.
 pub(super) type Faces = Vec<Vec<u32>>;
 
-/// The faces around `points`; corners within `tolerance` (in steps) of a face's plane count as on it. Every corner has
-/// three faces or more; a tolerance of 0 loses nothing.
+/// Returns the faces of the hull of `points`; corners within `tolerance` (grid steps) of a face's plane count as on the
+/// face. Every corner has three faces or more. A tolerance of 0 loses no volume.
 ///
 /// # Errors
-/// If nothing solid is left.
+/// If no solid remains.
 pub(super) fn faces(points: &[Point], tolerance: f64) -> Result<Faces, HullError> {
     let mut used: Vec<u32> = (0..points.len() as u32).collect();
     loop {
@@ -23,22 +23,22 @@ pub(super) fn faces(points: &[Point], tolerance: f64) -> Result<Faces, HullError
             let named = faces.into_iter().map(|face| face.into_iter().map(|i| used[i as usize]).collect());
             return Ok(named.collect());
         }
-        // The other points lie on a face or an edge; they are dropped, and the rest gets a hull of its own.
+        // Drops the other points, which are on a face or an edge, and builds the hull of the rest.
         used = kept.into_iter().map(|i| used[i as usize]).collect();
     }
 }
 
-/// Triangles by the face that they belong to.
+/// Regions of triangles, one per face.
 struct Regions<'a> {
     triangles: &'a [Triangle],
-    /// Region of each triangle, named by its first triangle.
+    /// Region of each triangle, as the index of the region's first triangle.
     region: Vec<u32>,
 }
 
 const NONE: u32 = u32::MAX;
 
 impl<'a> Regions<'a> {
-    /// Start from the largest triangle; each absorbs its neighbours while they lie in its plane.
+    /// Grows regions from the largest triangles; each absorbs its neighbours while they are in its plane.
     fn grow(points: &[Point], triangles: &'a [Triangle], tolerance: f64) -> Self {
         let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
         let area = |i: u32| triangles[i as usize].plane.length;
@@ -67,7 +67,7 @@ impl<'a> Regions<'a> {
         Self { triangles, region }
     }
 
-    /// Number of corners of all triangles, and those where three faces or more meet, ascending.
+    /// Returns the number of corners of all triangles, and the corners where three or more faces meet, ascending.
     fn corners(&self, points: usize) -> (usize, Vec<u32>) {
         let mut meet: Vec<(u32, u32)> = Vec::with_capacity(3 * self.triangles.len());
         for (triangle, &region) in self.triangles.iter().zip(&self.region) {
@@ -83,8 +83,8 @@ impl<'a> Regions<'a> {
         (faces.iter().filter(|&&count| count > 0).count(), kept)
     }
 
-    /// The regions' outlines. A region with a dent deeper than the tolerance, or without a simple outline, stays in
-    /// triangles.
+    /// Returns the outlines of the regions. The triangles of a region with a dent deeper than the tolerance, or without
+    /// a simple outline, stay separate.
     fn faces(&self, points: &[Point], tolerance: f64) -> Faces {
         let mut members: Vec<(u32, u32)> =
             self.region.iter().enumerate().map(|(i, &region)| (region, i as u32)).collect();
@@ -107,7 +107,7 @@ impl<'a> Regions<'a> {
         faces
     }
 
-    /// The outline of a region, if it is one ring that meets each corner once.
+    /// Returns the outline of a region, if it is one ring that contains each corner once.
     fn outline(&self, group: &[(u32, u32)]) -> Option<Vec<u32>> {
         let mut sides: Vec<[u32; 2]> = Vec::new();
         for &(region, t) in group {

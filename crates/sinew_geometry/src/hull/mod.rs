@@ -1,6 +1,7 @@
 //! Convex hulls: solids with flat faces, built from points.
 //!
-//! Immutable; shapes hold them by [`Arc`](std::sync::Arc). Everything is in the hull's own frame, metres.
+//! Hulls are immutable; shapes share them by [`Arc`](std::sync::Arc). All positions are in the hull's own frame,
+//! metres.
 
 mod build;
 mod bytes;
@@ -23,9 +24,9 @@ pub(crate) use solids::TrianglePolytope;
 use topology::Outline;
 pub(crate) use topology::{Plane, Topology};
 
-/// Most faces that a hull has.
+/// Largest number of faces of a hull.
 pub const MAX_FACES: usize = 128;
-/// Most corners of a hull: the maximum for that many faces if three meet in each.
+/// Largest number of corners of a hull: with three faces at each corner, [`MAX_FACES`] faces have this many corners.
 pub const MAX_VERTICES: usize = 2 * MAX_FACES - 4;
 
 /// Reason why points have no hull.
@@ -39,7 +40,7 @@ pub enum HullError {
     Collinear,
     /// All points lie in a plane.
     Coplanar,
-    /// Thinner than 1/10,000 of its longest side.
+    /// The hull is thinner than 1/10,000 of its longest side.
     TooThin,
     /// The longest side is below 1 µm or above 1,000 km.
     Size,
@@ -69,9 +70,9 @@ pub struct Hull {
     areas: Vec<f32>,
     bounds: Aabb,
     volume: f32,
-    /// Centre of mass, of even density.
+    /// Centre of mass at uniform density, metres.
     center: Vec3,
-    /// Inertia about the centre, of density 1.
+    /// Inertia about the centre at density 1, kg·m².
     inertia: Sym3,
     inner_radius: f32,
     bounding_radius: f32,
@@ -86,47 +87,47 @@ pub struct HullFace<'a> {
 }
 
 impl Hull {
-    /// The smallest convex solid that holds all points (metres): quickhull, exactly.
+    /// Builds the smallest convex solid that contains all points (metres), by quickhull with exact decisions.
     ///
     /// Points are snapped to a grid of at most 2⁻²² of the longest side of their bounds, on which all decisions are
-    /// exact. Faces within 2e-6 of that side of one plane become one polygon; no point is left further outside than
-    /// 1e-5 of it. Order and duplicates of the points do not matter.
+    /// exact. Faces within 2e-6 of that side of one plane become one polygon; no point is further outside than 1e-5 of
+    /// that side. Order and duplicates of the points do not matter.
     ///
     /// A hull that would have more than [`MAX_FACES`] faces is **simplified**: it grows from four points by the
-    /// furthest outside point, and ends at 252, 128 or 66 corners, whichever comes first with few enough faces. It then
-    /// lies inside the cloud; [`distance`](Self::distance) tells how far a point is outside (about 5 % of the radius
-    /// for a ball of 10,000 points).
+    /// furthest outside point, and ends at 252, 128 or 66 corners, at the first of these with few enough faces. Then
+    /// points of the cloud may be outside the hull; [`distance`](Self::distance) returns how far (about 5 % of the
+    /// radius for a ball of 10,000 points).
     ///
     /// # Errors
-    /// [`HullError`]: points that span no solid, or numbers that are no lengths.
+    /// [`HullError`], if the points span no solid, or a number is not a valid length.
     pub fn new(points: &[Vec3]) -> Result<Self, HullError> {
         build::build(points)
     }
 
-    /// Corners, sorted by x, then y, then z.
+    /// Returns the corners, sorted by x, then y, then z.
     #[inline]
     pub fn vertices(&self) -> &[Vec3] {
         &self.vertices
     }
 
-    /// Faces, 4..=[`MAX_FACES`].
+    /// Iterates over the faces, 4..=[`MAX_FACES`].
     pub fn faces(&self) -> impl ExactSizeIterator<Item = HullFace<'_>> {
         (0..self.planes.len()).map(|index| HullFace { hull: self, index })
     }
 
-    /// Edges as pairs of corner indices, each once.
+    /// Iterates over the edges as pairs of corner indices, each once.
     pub fn edges(&self) -> impl Iterator<Item = [usize; 2]> {
         let topology = self.topology();
         topology.edge_numbers().map(move |edge| topology.ends(edge))
     }
 
-    /// m³.
+    /// Volume, m³.
     #[inline]
     pub fn volume(&self) -> f32 {
         self.volume
     }
 
-    /// Centre of volume.
+    /// Centre of the volume, metres.
     #[inline]
     pub fn center(&self) -> Vec3 {
         self.center
@@ -137,30 +138,30 @@ impl Hull {
         self.inertia
     }
 
-    /// Bounds in its own frame.
+    /// Bounds in the hull's own frame, metres.
     #[inline]
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// Radius of the largest ball around the centre that is inside, metres.
+    /// Radius of the largest ball around the centre that fits inside, metres.
     #[inline]
     pub fn inner_radius(&self) -> f32 {
         self.inner_radius
     }
 
-    /// Radius of the smallest ball around the origin that holds it, metres.
+    /// Radius of the smallest ball around the origin that contains the hull, metres.
     #[inline]
     pub fn bounding_radius(&self) -> f32 {
         self.bounding_radius
     }
 
-    /// The corner furthest along a direction; the first among equals.
+    /// Index of the corner furthest along a direction; the first among equals.
     pub fn support(&self, direction: Vec3) -> usize {
         support(&self.vertices, direction)
     }
 
-    /// Hash of corners and faces, the same on every machine.
+    /// Hash of the corners and faces, the same on every machine.
     pub fn content_hash(&self) -> u64 {
         self.content_hash
     }
@@ -170,7 +171,7 @@ impl Hull {
     }
 }
 
-/// Compared by content; everything else is derived from corners and faces.
+/// Compares corners and faces; all other data is derived from them.
 impl PartialEq for Hull {
     fn eq(&self, other: &Self) -> bool {
         self.content_hash == other.content_hash
@@ -180,31 +181,31 @@ impl PartialEq for Hull {
 }
 
 impl<'a> HullFace<'a> {
-    /// Unit, outward.
+    /// Outward unit normal.
     #[inline]
     pub fn normal(&self) -> Vec3 {
         self.hull.planes[self.index].normal
     }
 
-    /// Distance of its plane from the origin along the normal, metres.
+    /// Distance of the face's plane from the origin along the normal, metres.
     #[inline]
     pub fn offset(&self) -> f32 {
         self.hull.planes[self.index].offset
     }
 
-    /// m².
+    /// Area, m².
     #[inline]
     pub fn area(&self) -> f32 {
         self.hull.areas[self.index]
     }
 
-    /// Numbers of its corners, counter-clockwise from outside.
+    /// Iterates over the indices of the face's corners, counter-clockwise from outside.
     pub fn corners(&self) -> impl ExactSizeIterator<Item = usize> + Clone + use<'a> {
         self.hull.outline.topology().corners(self.index)
     }
 }
 
-/// The number of the point furthest along a direction; the first among equals.
+/// Index of the point furthest along a direction; the first among equals.
 pub(crate) fn support(vertices: &[Vec3], direction: Vec3) -> usize {
     let (mut best, mut reach) = (0, f32::NEG_INFINITY);
     for (index, vertex) in vertices.iter().enumerate() {
@@ -216,7 +217,7 @@ pub(crate) fn support(vertices: &[Vec3], direction: Vec3) -> usize {
     best
 }
 
-/// Furthest reach of points along a direction.
+/// Largest coordinate of points along a direction.
 pub(crate) fn reach(vertices: &[Vec3], direction: Vec3) -> f32 {
     vertices.iter().fold(f32::NEG_INFINITY, |reach, v| max(v.dot(direction), reach))
 }

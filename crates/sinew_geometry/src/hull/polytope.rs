@@ -1,11 +1,11 @@
-//! A convex polytope wherever its corners are: a hull, a box or a triangle in the frame of a pair.
+//! Convex polytopes with borrowed corners: a hull, a box or a triangle, in any frame.
 
 use super::topology::{Plane, Topology};
 use super::{Hull, MAX_FACES, MAX_VERTICES, reach, support};
 use crate::boxes::segment::Segment;
 use sinew_math::{Transform, Vec3, min};
 
-/// Corners, planes and topology. A triangle has two faces.
+/// Corners, planes and topology of a convex polytope. A triangle has two faces.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Polytope<'a> {
     /// A point inside.
@@ -13,12 +13,12 @@ pub(crate) struct Polytope<'a> {
     pub vertices: &'a [Vec3],
     pub planes: &'a [Plane],
     pub topology: Topology<'a>,
-    /// Radius of an inscribed ball, a reference for lengths. Infinite if the other shape decides.
+    /// Radius of an inscribed ball, the scale of tolerances, metres. Infinite if the other shape sets the scale.
     pub thickness: f32,
 }
 
 impl Hull {
-    /// Polytope in the hull's own frame.
+    /// Returns the polytope in the hull's own frame.
     pub(crate) fn polytope(&self) -> Polytope<'_> {
         Polytope {
             center: self.center,
@@ -30,7 +30,7 @@ impl Hull {
     }
 }
 
-/// Buffer for a hull in another frame.
+/// Buffer for a polytope in another frame.
 pub(crate) struct Room {
     vertices: [Vec3; MAX_VERTICES],
     planes: [Plane; MAX_FACES],
@@ -44,7 +44,7 @@ impl Room {
 }
 
 impl<'a> Polytope<'a> {
-    /// The same polytope in another frame.
+    /// Returns the polytope in another frame.
     pub fn seen_from<'b>(&self, frame_from_this: &Transform, room: &'b mut Room) -> Polytope<'b>
     where
         'a: 'b,
@@ -66,22 +66,22 @@ impl<'a> Polytope<'a> {
         }
     }
 
-    /// The corner furthest along a direction; the first among equals.
+    /// Index of the corner furthest along a direction; the first among equals.
     pub fn support(&self, direction: Vec3) -> usize {
         support(self.vertices, direction)
     }
 
-    /// Reach along a direction, from the origin.
+    /// Largest coordinate along a direction, from the origin.
     pub fn reach(&self, direction: Vec3) -> f32 {
         reach(self.vertices, direction)
     }
 
-    /// The edge of a half-edge.
+    /// Returns the edge of a half-edge.
     pub fn edge(&self, side: usize) -> Segment {
         Segment { ends: self.topology.ends(side).map(|corner| self.vertices[corner]) }
     }
 
-    /// The face whose normal is closest to a direction; the first among equals.
+    /// Index of the face whose normal is closest to a direction; the first among equals.
     pub fn facing(&self, direction: Vec3) -> usize {
         let (mut best, mut most) = (0, f32::NEG_INFINITY);
         for (face, plane) in self.planes.iter().enumerate() {
@@ -93,8 +93,8 @@ impl<'a> Polytope<'a> {
         best
     }
 
-    /// The face whose normal is closest to a direction, among those at the corner furthest along it (within
-    /// `tolerance`).
+    /// Index of the face whose normal is closest to a direction, among the faces at the corners furthest along it
+    /// (within `tolerance`).
     pub fn face_at_support(&self, direction: Vec3, tolerance: f32) -> usize {
         let least = self.reach(direction) - tolerance;
         let reaches = |corner: usize| self.vertices[corner].dot(direction) >= least;
@@ -108,7 +108,7 @@ impl<'a> Polytope<'a> {
         best
     }
 
-    /// The highest plane over a point and the height over it: positive outside.
+    /// Returns the height over the highest plane at a point, positive outside, and the normal of that plane.
     pub fn highest_plane(&self, p: Vec3) -> (f32, Vec3) {
         let (mut highest, mut normal) = (f32::NEG_INFINITY, Vec3::Y);
         for plane in self.planes {
@@ -120,14 +120,16 @@ impl<'a> Polytope<'a> {
         (highest, normal)
     }
 
-    /// The surface point closest to an outside point, on a face toward it; for an inside point the point itself.
+    /// Returns the surface point closest to an outside point, on a face toward it; for an inside point the point
+    /// itself.
     pub fn closest(&self, p: Vec3) -> Vec3 {
         let (mut best, mut closest) = (f32::INFINITY, p);
-        // A point on a face may seem just below it and just above a neighbour, which is elsewhere.
+        // Because of rounding, a point on a face may be just below that face and just above a neighbour that is
+        // elsewhere.
         let lowest = -1e-6 * ((p - self.center).length() + p.length());
         for (face, plane) in self.planes.iter().enumerate() {
             let height = plane.height(p);
-            // The distance to a face is at least that to its plane.
+            // The distance to a face is at least the distance to its plane.
             if height <= lowest || height * height >= best {
                 continue;
             }
@@ -140,7 +142,7 @@ impl<'a> Polytope<'a> {
         closest
     }
 
-    /// Directly above the face, or on one of the edges beyond which the point is.
+    /// Returns the point of a face closest to `p`: its projection, or a point on an edge beyond which `p` is.
     fn closest_on_face(&self, face: usize, p: Vec3) -> Vec3 {
         let plane = &self.planes[face];
         let (mut best, mut closest) = (f32::INFINITY, p - plane.normal * plane.height(p));
@@ -159,7 +161,7 @@ impl<'a> Polytope<'a> {
         closest
     }
 
-    /// Signed distance of a point and the unit outward normal at the closest point of the surface.
+    /// Returns the signed distance of a point, and the unit outward normal at the closest point of the surface.
     pub fn distance(&self, p: Vec3) -> (f32, Vec3) {
         let (highest, normal) = self.highest_plane(p);
         if highest <= 0.0 {
@@ -172,8 +174,8 @@ impl<'a> Polytope<'a> {
         if distance > noise { (distance, span / distance) } else { (distance, normal) }
     }
 
-    /// Entry of a line from outside: fraction (≥ 0) and normal. A convex solid is the intersection of its faces'
-    /// half-spaces.
+    /// Returns the fraction (≥ 0) and the normal at which a ray from outside enters. A convex solid is the intersection
+    /// of the half-spaces of its faces.
     pub fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         let (mut first, mut last) = (f32::NEG_INFINITY, f32::INFINITY);
         let mut normal = Vec3::ZERO;

@@ -1,16 +1,17 @@
-//! Points and rays against a hull, in its own frame.
+//! Distances of points and ray entries for a hull, in its own frame.
 
 use super::Hull;
 use sinew_math::Vec3;
 
 impl Hull {
-    /// Signed distance of a point to the surface, metres, and the unit outward normal at the closest point of it: exact
-    /// for faces, edges and corners. If several points are closest, the one on the first face.
+    /// Returns the signed distance of a point to the surface, metres, and the unit outward normal at the closest point
+    /// of the surface: exact for faces, edges and corners. If several points are closest, the one on the first face is
+    /// used.
     pub fn distance(&self, p: Vec3) -> (f32, Vec3) {
         self.polytope().distance(p)
     }
 
-    /// Entry of a line from outside: fraction (≥ 0) and normal.
+    /// Returns the fraction (≥ 0) and the normal at which a ray from outside enters the hull.
     pub(crate) fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         self.polytope().enter(origin, direction)
     }

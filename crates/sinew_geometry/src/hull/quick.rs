@@ -1,25 +1,26 @@
 //! Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", ACM TOMS 1996) over whole
-//! numbers: exactly convex triangles. Points on a face or an edge are dropped.
+//! numbers: the triangles are exactly convex. Points on a face or an edge are dropped.
 
 use super::HullError;
 use std::collections::BinaryHeap;
 
-/// Coordinates have at most 24 bits: differences, their products and a plane's height then fit in 25, 50 and 77 bits.
+/// Point with coordinates of at most 24 bits: differences, their products and plane heights then fit in 25, 50 and 77
+/// bits.
 pub(super) type Point = [i64; 3];
 
 /// A triangle on the hull, counter-clockwise from outside.
 #[derive(Clone)]
 pub(super) struct Triangle {
     pub corners: [u32; 3],
-    /// Across the side from corner k to the next.
+    /// Index of the neighbour across the side from corner k to the next.
     pub neighbors: [u32; 3],
     pub plane: Plane,
-    /// Outside points assigned to it, the furthest last.
+    /// Outside points assigned to the triangle, the furthest last.
     outside: Vec<u32>,
     alive: bool,
 }
 
-/// `normal · p = offset`, not normalised.
+/// Plane `normal · p = offset`, with a normal of any length.
 #[derive(Clone)]
 pub(super) struct Plane {
     normal: Point,
@@ -29,13 +30,13 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// True if both normals look to the same half-space.
+    /// True if the angle between the normals is below 90°.
     pub fn faces_like(&self, other: &Self) -> bool {
         dot(self.normal, other.normal) > 0
     }
 
-    /// Outward bend of a polygon at b on the way from a to c, in steps; negative if the polygon that looks along the
-    /// normal has a dent at b.
+    /// Outward bend of a polygon at b between a and c, in grid steps; negative if the polygon, seen against the normal,
+    /// has a dent at b.
     pub fn bulge(&self, [a, b, c]: [Point; 3]) -> f64 {
         let chord = sub(c, a);
         let turn = cross(sub(b, a), sub(c, b));
@@ -50,12 +51,12 @@ impl Plane {
         Self { normal, offset: dot(normal, a), length: square.sqrt() }
     }
 
-    /// Height of a point times the normal's length: exact.
+    /// Returns the height of a point times the normal's length; exact.
     fn height(&self, p: Point) -> i128 {
         dot(self.normal, p) - self.offset
     }
 
-    /// Height in steps of the grid.
+    /// Returns the height of a point, in grid steps.
     pub fn distance(&self, p: Point) -> f64 {
         self.height(p) as f64 / self.length
     }
@@ -73,8 +74,8 @@ fn dot(a: Point, b: Point) -> i128 {
     (0..3).map(|k| i128::from(a[k]) * i128::from(b[k])).sum()
 }
 
-/// The triangles around `points`, of which at most `budget` (≥ 4) become corners: always the furthest outside point
-/// next, so that dropped points lie as little outside as possible.
+/// Returns the triangles of the hull of `points`, with at most `budget` (≥ 4) corners. The furthest outside point is
+/// always added next, so that dropped points are as little outside as possible.
 pub(super) fn hull(points: &[Point], budget: usize) -> Result<Vec<Triangle>, HullError> {
     let mut hull = Growing::simplex(points)?;
     for _ in 4..budget {
@@ -87,12 +88,13 @@ pub(super) fn hull(points: &[Point], budget: usize) -> Result<Vec<Triangle>, Hul
 struct Growing<'a> {
     points: &'a [Point],
     triangles: Vec<Triangle>,
-    /// Triangles with points outside by the bits of the distance of the furthest, which order as the numbers do.
+    /// Triangles with outside points, keyed by the bits of the distance of the furthest; the bits sort like the
+    /// distances.
     queue: BinaryHeap<(u64, u32)>,
 }
 
 impl<'a> Growing<'a> {
-    /// Four points that span a large volume.
+    /// Returns four points that span a large volume.
     fn simplex(points: &'a [Point]) -> Result<Self, HullError> {
         if points.len() < 4 {
             return Err(HullError::TooFewPoints);
@@ -101,7 +103,7 @@ impl<'a> Growing<'a> {
             let best = (0..points.len()).max_by_key(|&i| (score(points[i]), core::cmp::Reverse(i)));
             best.filter(|&i| score(points[i]) > 0).map(|i| i as u32)
         };
-        // Points are sorted and differ: the first is a corner of the hull.
+        // Points are sorted and different, so the first is a corner of the hull.
         let from = points[0];
         let along = furthest(&|p| dot(sub(p, from), sub(p, from))).ok_or(HullError::TooFewPoints)?;
         let line = sub(points[along as usize], from);
@@ -122,7 +124,7 @@ impl<'a> Growing<'a> {
         Ok(hull)
     }
 
-    /// Finds the neighbours of the first four triangles by their sides.
+    /// Sets the neighbours of the first four triangles by their sides.
     fn link_simplex(&mut self) {
         for i in 0..4 {
             for k in 0..3 {
@@ -139,7 +141,7 @@ impl<'a> Growing<'a> {
         self.triangles.push(Triangle { corners, neighbors, plane, outside: Vec::new(), alive: true });
     }
 
-    /// Assigns each point to a triangle from `first` on that it is outside of, and drops inner points.
+    /// Assigns each point to a triangle from `first` on that has it outside; drops inner points.
     fn share_out(&mut self, orphans: Vec<u32>, first: usize) {
         let points = self.points;
         for i in orphans {
@@ -160,7 +162,7 @@ impl<'a> Growing<'a> {
         }
     }
 
-    /// The triangle that has the point furthest outside.
+    /// Returns the triangle with the furthest outside point.
     fn next(&mut self) -> Option<u32> {
         while let Some((_, triangle)) = self.queue.pop() {
             if self.triangles[triangle as usize].alive {
@@ -170,7 +172,8 @@ impl<'a> Growing<'a> {
         None
     }
 
-    /// Replaces all triangles that the point sees by those between it and their horizon.
+    /// Replaces all triangles visible from the furthest point of `seed` by triangles between that point and the
+    /// horizon.
     fn take_in_furthest(&mut self, seed: u32) {
         let apex = self.triangles[seed as usize].outside.pop().expect("it was queued for its point");
         let p = self.points[apex as usize];
@@ -196,7 +199,7 @@ impl<'a> Growing<'a> {
         self.share_out(orphans, self.triangles.len() - horizon.len());
     }
 
-    /// A triangle for each side of the horizon, which is one ring.
+    /// Adds a triangle for each side of the horizon, which is one ring.
     fn close(&mut self, apex: u32, horizon: &[([u32; 2], u32)]) {
         let first = self.triangles.len();
         let mut starts: Vec<(u32, u32)> = Vec::with_capacity(horizon.len());
@@ -217,7 +220,7 @@ impl<'a> Growing<'a> {
         }
     }
 
-    /// The remaining triangles, renumbered.
+    /// Returns the remaining triangles, renumbered.
     fn finish(self) -> Vec<Triangle> {
         let mut number = vec![u32::MAX; self.triangles.len()];
         let alive = |t: &&Triangle| t.alive;
@@ -233,7 +236,7 @@ impl<'a> Growing<'a> {
     }
 }
 
-/// The side from corner k to the next.
+/// Returns the corner indices of the side from corner k to the next.
 pub(super) fn side(triangle: &Triangle, k: usize) -> [u32; 2] {
     [triangle.corners[k], triangle.corners[(k + 1) % 3]]
 }

@@ -5,12 +5,12 @@ use super::topology::{HalfEdge, Loop, Plane, Topology};
 use crate::boxes::PlacedBox;
 use sinew_math::Vec3;
 
-/// Corners of the faces −x +x −y +y −z +z; bit k of a corner's number is set on the positive side of axis k.
+/// Corners of the faces −x +x −y +y −z +z; bit k of a corner's index is set on the positive side of axis k.
 const BOX_LOOPS: [[u8; 4]; 6] =
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
 static BOX: Table<6, 24> = table(BOX_LOOPS);
 
-/// Front and back.
+/// Corners of the front and the back face.
 #[cfg(test)]
 const TRIANGLE_LOOPS: [[u8; 3]; 2] = [[0, 1, 2], [0, 2, 1]];
 #[cfg(test)]
@@ -51,7 +51,7 @@ const fn table<const F: usize, const K: usize, const H: usize>(loops: [[u8; K]; 
     Table { faces, half_edges }
 }
 
-/// A box's corners and planes.
+/// Corners and planes of a box.
 pub(crate) struct BoxPolytope {
     center: Vec3,
     vertices: [Vec3; 8],
@@ -85,7 +85,7 @@ impl BoxPolytope {
     }
 }
 
-/// A triangle's corners and its two planes.
+/// Corners of a triangle and its two planes.
 #[cfg(test)]
 pub(crate) struct TrianglePolytope {
     vertices: [Vec3; 3],
@@ -94,7 +94,8 @@ pub(crate) struct TrianglePolytope {
 
 #[cfg(test)]
 impl TrianglePolytope {
-    /// `normal` is the unit normal of the face from which the corners are counter-clockwise.
+    /// Creates the polytope of a triangle. `normal` is the unit normal of the side from which the corners are
+    /// counter-clockwise.
     pub fn new(vertices: [Vec3; 3], normal: Vec3) -> Self {
         let offset = normal.dot((vertices[0] + vertices[1] + vertices[2]) / 3.0);
         Self { vertices, planes: [Plane { normal, offset }, Plane { normal: -normal, offset: -offset }] }

@@ -2,16 +2,16 @@
 
 use sinew_math::Vec3;
 
-/// `normal · x ≤ offset` inside.
+/// Plane of a face: `normal · x ≤ offset` inside.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Plane {
-    /// Unit, outward.
+    /// Outward unit normal.
     pub normal: Vec3,
     pub offset: f32,
 }
 
 impl Plane {
-    /// Metres above the plane.
+    /// Height of a point over the plane, metres.
     pub fn height(&self, p: Vec3) -> f32 {
         self.normal.dot(p) - self.offset
     }
@@ -20,22 +20,22 @@ impl Plane {
 /// A side of a face, counter-clockwise from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct HalfEdge {
-    /// Number of the corner that it starts from.
+    /// Index of the corner at which the half-edge starts.
     pub origin: u8,
-    /// Face that it belongs to.
+    /// Index of the face to which the half-edge belongs.
     pub face: u8,
-    /// The same edge as a side of the other face, in the opposite direction.
+    /// Index of the half-edge of the same edge in the other face, with the opposite direction.
     pub twin: u16,
 }
 
-/// The half-edges of a face: `count` from `first` on.
+/// Half-edges of a face: `count` of them, starting at `first`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Loop {
     pub first: u16,
     pub count: u16,
 }
 
-/// Faces and half-edges of a polytope, wherever its corners are.
+/// Faces and half-edges of a polytope, without the positions of its corners.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Topology<'a> {
     pub faces: &'a [Loop],
@@ -43,23 +43,23 @@ pub(crate) struct Topology<'a> {
 }
 
 impl<'a> Topology<'a> {
-    /// Half-edge indices of a face, in order.
+    /// Indices of the half-edges of a face, in order.
     pub fn sides(self, face: usize) -> core::ops::Range<usize> {
         let Loop { first, count } = self.faces[face];
         usize::from(first)..usize::from(first + count)
     }
 
-    /// Corner indices of a face, in order.
+    /// Iterates over the corner indices of a face, in order.
     pub fn corners(self, face: usize) -> impl ExactSizeIterator<Item = usize> + Clone + use<'a> {
         self.sides(face).map(move |side| usize::from(self.half_edges[side].origin))
     }
 
-    /// Half-edge indices that represent an edge: one per pair.
+    /// Iterates over the half-edges that represent an edge: one per pair.
     pub fn edge_numbers(self) -> impl Iterator<Item = usize> + 'a {
         (0..self.half_edges.len()).filter(move |&side| self.is_first(side))
     }
 
-    /// True if that half-edge exists and represents its edge.
+    /// True if a half-edge exists and represents its edge.
     pub fn has_edge(self, side: usize) -> bool {
         side < self.half_edges.len() && self.is_first(side)
     }
@@ -69,18 +69,18 @@ impl<'a> Topology<'a> {
         side < usize::from(self.half_edges[side].twin)
     }
 
-    /// Index of the half-edge that represents the edge of this one.
+    /// Index of the half-edge that represents the edge of `side`.
     pub fn edge_of(self, side: usize) -> usize {
         usize::min(side, usize::from(self.half_edges[side].twin))
     }
 
-    /// Numbers of the corners where a half-edge starts and ends.
+    /// Indices of the corners where a half-edge starts and ends.
     pub fn ends(self, side: usize) -> [usize; 2] {
         let HalfEdge { origin, twin, .. } = self.half_edges[side];
         [origin, self.half_edges[usize::from(twin)].origin].map(usize::from)
     }
 
-    /// The faces on both sides of a half-edge, its own first.
+    /// Indices of the faces on both sides of a half-edge, its own face first.
     pub fn faces_of(self, side: usize) -> [usize; 2] {
         let HalfEdge { face, twin, .. } = self.half_edges[side];
         [face, self.half_edges[usize::from(twin)].face].map(usize::from)
@@ -95,11 +95,11 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    /// Topology of a polytope from the corners of each face, counter-clockwise from outside.
+    /// Builds the topology of a polytope from the corners of each face, counter-clockwise from outside.
     ///
     /// # Errors
-    /// A description of the problem: not the surface of one solid without holes in which three or more faces meet in
-    /// each corner.
+    /// A description of the problem, if the faces are not the surface of one solid without holes in which three or more
+    /// faces meet at each corner.
     pub fn new(loops: &[Vec<u8>], corners: usize) -> Result<Self, &'static str> {
         let (mut faces, mut half_edges, mut ends) = (Vec::new(), Vec::new(), Vec::new());
         for (face, ring) in loops.iter().enumerate() {
@@ -129,8 +129,8 @@ impl Outline {
         Ok(outline)
     }
 
-    /// Checks that it is one closed surface without handles (Euler: V − E + F = 2), with one fan of faces around each
-    /// corner.
+    /// Checks that the faces form one closed surface without handles (Euler: V − E + F = 2), with one fan of faces
+    /// around each corner.
     fn check(&self, corners: usize) -> Result<(), &'static str> {
         let mut leaving = vec![0_u32; corners];
         let mut start = vec![None; corners];
@@ -151,7 +151,7 @@ impl Outline {
         Ok(())
     }
 
-    /// Half-edges that leave a corner, in order around it.
+    /// Number of half-edges that leave a corner, counted around the corner.
     fn turns_around(&self, start: usize) -> u32 {
         let (mut side, mut count) = (start, 0);
         loop {
@@ -163,14 +163,14 @@ impl Outline {
         }
     }
 
-    /// The half-edge after this one around its face.
+    /// Returns the half-edge that follows `side` around its face.
     fn next(&self, side: usize) -> usize {
         let Loop { first, count } = self.faces[usize::from(self.half_edges[side].face)];
         let after = side + 1;
         if after == usize::from(first + count) { usize::from(first) } else { after }
     }
 
-    /// Number of faces connected to the first.
+    /// Number of faces connected to the first face, including it.
     fn connected(&self) -> usize {
         let mut met = vec![false; self.faces.len()];
         let (mut open, mut count) = (vec![0], 1);

@@ -1,4 +1,4 @@
-//! The part of a shape below a water plane: volume and centre, in closed form.
+//! Volume and centre of the part of a shape below a water plane, in closed form.
 
 mod revolved;
 
@@ -9,33 +9,33 @@ use revolved::revolved_below;
 use sinew_math::trig::{acos, asin};
 use sinew_math::{Transform, Vec3, clamp, max, normalize_or};
 
-/// The surface of the water.
+/// Surface of the water.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WaterPlane {
     /// Unit vector out of the water.
     pub normal: Vec3,
-    /// Height along the normal: the water is where `normal · x ≤ height`, metres.
+    /// Height of the surface along the normal, metres: water is where `normal · x ≤ height`.
     pub height: f32,
 }
 
 impl WaterPlane {
-    /// Metres above the surface, negative below.
+    /// Height of a point above the surface, metres; negative below.
     pub fn above(&self, point: Vec3) -> f32 {
         self.normal.dot(point) - self.height
     }
 }
 
-/// The submerged part.
+/// Submerged part of a shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Submerged {
     /// Volume, m³.
     pub volume: f32,
-    /// Volume times centre, which is additive, m⁴.
+    /// Volume times centre, m⁴; moments of parts add up.
     moment: Vec3,
 }
 
 impl Submerged {
-    /// Computes the centre from volume times centre.
+    /// Creates the part from its volume and its moment.
     fn of_moment(volume: f32, moment: Vec3) -> Self {
         Self { volume, moment }
     }
@@ -44,7 +44,7 @@ impl Submerged {
         Self { volume, moment: center * volume }
     }
 
-    /// Centre of volume, in the frame of the question, metres; the origin if nothing is under water.
+    /// Centre of the submerged volume, in the frame of the query, metres; the origin if nothing is under water.
     pub fn center(&self) -> Vec3 {
         if self.volume > 0.0 { self.moment / self.volume } else { Vec3::ZERO }
     }
@@ -53,7 +53,7 @@ impl Submerged {
         Self { volume: self.volume + other.volume, moment: self.moment + other.moment }
     }
 
-    /// Scaled up by a length and moved.
+    /// Scales the part by a length, then moves it.
     fn placed(self, scale: f32, to: Vec3) -> Self {
         let volume = self.volume * scale * scale * scale;
         Self { volume, moment: self.moment * (scale * scale * scale * scale) + to * volume }
@@ -61,10 +61,10 @@ impl Submerged {
 }
 
 impl Shape {
-    /// The part of the shape below the surface: volume, and its centre in the world. Exact for every shape up to
-    /// rounding (about 1e-5 of the volume); zero for half-spaces, meshes and height fields.
+    /// Returns the part of the shape below the surface: its volume, and its centre in the world. Exact for every shape
+    /// up to rounding (about 1e-5 of the volume); zero for half-spaces, meshes and height fields.
     pub fn submerged(&self, world_from_shape: &Transform, plane: &WaterPlane) -> Submerged {
-        // Compute in the shape's frame, where nothing is far away.
+        // Computed in the shape's frame, where all coordinates are small.
         let normal = world_from_shape.rotation.inverse() * plane.normal;
         let height = -plane.above(world_from_shape.translation);
         let reach = self.bounding_radius();
@@ -105,19 +105,19 @@ impl Shape {
     }
 }
 
-/// Part of the unit ball with `n·x ≤ s`, −1 ≤ s ≤ 1: a cap of height `h = 1 + s` has the volume `π h² (3 − h)/3`, and
-/// its centre lies `3 (2 − h)²/(4 (3 − h))` from the ball's.
+/// Part of the unit ball with `n·x ≤ s`, −1 ≤ s ≤ 1. A cap of height `h = 1 + s` has the volume `π h² (3 − h)/3`, and
+/// its centre is at the distance `3 (2 − h)²/(4 (3 − h))` from the ball's centre.
 fn ball_below(s: f32, normal: Vec3) -> Submerged {
     let h = 1.0 + clamp(s, -1.0, 1.0);
     let down = 0.75 * (2.0 - h) * (2.0 - h) / (3.0 - h);
     Submerged::new(PI / 3.0 * h * h * (3.0 - h), normal * -down)
 }
 
-/// Part of a convex polyhedron below the surface: `faces` are its corners, each in order around the face,
+/// Returns the part of a convex polyhedron below the surface. `faces` are the corners of each face in order,
 /// counter-clockwise seen from outside. The centre is in the frame of the corners.
 ///
-/// Each face is clipped and joined to one point **of the surface** by tetrahedra; the cut itself has no height over
-/// that point and need not be built (divergence theorem).
+/// Each face is clipped and joined to one point **of the surface** by tetrahedra. The cut has no height over that
+/// point, so it is not needed (divergence theorem).
 pub fn submerged_hull<F>(faces: impl Iterator<Item = F>, plane: &WaterPlane) -> Submerged
 where
     F: Iterator<Item = Vec3> + Clone,
@@ -140,7 +140,7 @@ where
     sum
 }
 
-/// Corners of the submerged part of a polygon, in order (Sutherland and Hodgman 1974).
+/// Visits the corners of the submerged part of a polygon, in order (Sutherland and Hodgman 1974).
 fn clip(face: impl Iterator<Item = Vec3> + Clone, plane: &WaterPlane, mut corner: impl FnMut(Vec3)) {
     let Some(last) = face.clone().last() else { return };
     let (mut from, mut above_from) = (last, plane.above(last));
@@ -171,7 +171,7 @@ fn box_below(half: Vec3, plane: &WaterPlane) -> Submerged {
     submerged_hull(faces.into_iter().map(<[Vec3; 4]>::into_iter), plane)
 }
 
-/// Part with `n·x ≤ s` of a capsule of radius 1 along y: its cylinder and its two half balls.
+/// Part of a capsule of radius 1 along y with `n·x ≤ s`: of its cylinder and its two half balls.
 fn capsule_below(half_height: f32, normal: Vec3, s: f32) -> Submerged {
     let cap = Vec3::Y * half_height;
     [Vec3::Y, Vec3::NEG_Y].iter().zip([cap, -cap]).fold(
@@ -182,10 +182,10 @@ fn capsule_below(half_height: f32, normal: Vec3, s: f32) -> Submerged {
     )
 }
 
-/// Part with `n·x ≤ s` of the half of the unit ball on the side `a·x ≥ 0`, by the divergence theorem: with `Ω` the area
-/// of the remaining sphere, `A₁` of the flat side and `A₂` of the cut, `V = (Ω + s A₂)/3`, and the moment is a quarter
-/// of the faces' moments by their distances; that of the sphere is `A₁ a − A₂ n`, since a closed surface has no vector
-/// area. `Ω` is the half sphere less its lens with the cap above the water, by Gauss and Bonnet.
+/// Part with `n·x ≤ s` of the half of the unit ball on the side `a·x ≥ 0`, by the divergence theorem. With `Ω` the area
+/// of the remaining sphere, `A₁` of the flat side and `A₂` of the cut, `V = (Ω + s A₂)/3`. The moment is a quarter of
+/// the sum of each face's moment times its distance; that of the sphere is `A₁ a − A₂ n`, since a closed surface has no
+/// vector area. `Ω` is the half sphere minus its lens with the cap above the water, by Gauss and Bonnet.
 fn half_ball_below(a: Vec3, n: Vec3, s: f32) -> Submerged {
     if s >= 1.0 {
         return Submerged::new(2.0 / 3.0 * PI, a * 0.375);
@@ -217,8 +217,8 @@ fn root(c: f32) -> f32 {
     max(1.0 - c * c, 0.0).sqrt()
 }
 
-/// Part with `n·x ≤ s` of the cylinder of radius 1 along y: where the surface leaves a whole disk, and where it cuts it
-/// at `x = c(y)` along the direction from the axis up to the surface.
+/// Part of a cylinder of radius 1 along y with `n·x ≤ s`: the height range of whole disks, and the range in which the
+/// surface cuts the disks at `x = c(y)`, with x the direction from the axis up to the surface.
 fn cylinder_below(half_height: f32, normal: Vec3, s: f32) -> Submerged {
     // Mirrored so that smaller y is deeper.
     let (mirror, cos) = if normal.y < 0.0 { (-1.0, -normal.y) } else { (1.0, normal.y) };
@@ -243,8 +243,9 @@ fn cylinder_below(half_height: f32, normal: Vec3, s: f32) -> Submerged {
     Submerged { volume, moment: Vec3::new(moment.x, moment.y * mirror, moment.z) }
 }
 
-/// Volume of the cut part between `c = low` and `high`, and its moments along the axis and toward the surface, by the
-/// antiderivatives of the disk's segment `A(c)`, `c A(c)` and its moment `−⅔ (1 − c²)^(3/2)`; `dy = −(sin/cos) dc`.
+/// Returns the volume of the cut part between `c = low` and `high`, and its moments along the axis and toward the
+/// surface. Uses the antiderivatives of the disk's segment `A(c)`, of `c A(c)` and of the segment's moment `−⅔ (1 −
+/// c²)^(3/2)`; `dy = −(sin/cos) dc`.
 fn wedge(s: f32, cos: f32, sin: f32, low: f32, high: f32) -> (f32, f32, f32) {
     let area = |c: f32| FRAC_PI_2 * c + c * asin(c) + root(c) - root(c) * root(c) * root(c) / 3.0;
     let area_moment = |c: f32| {
@@ -258,8 +259,8 @@ fn wedge(s: f32, cos: f32, sin: f32, low: f32, high: f32) -> (f32, f32, f32) {
     (slope * volume, slope * along, slope * (aside(high) - aside(low)))
 }
 
-/// The same from `from` to `to` along the axis where the cut hardly changes and the differences above would be
-/// rounding: the three-point Gauss rule.
+/// Like [`wedge`], from `from` to `to` along the axis, by the three-point Gauss rule: if the cut hardly changes, the
+/// differences in [`wedge`] would be rounding.
 fn wedge_by_rule(from: f32, to: f32, at: impl Fn(f32) -> f32) -> (f32, f32, f32) {
     const NODES: [(f32, f32); 3] =
         [(-0.774_596_67, 0.555_555_56), (0.0, 0.888_888_9), (0.774_596_67, 0.555_555_56)];

@@ -1,10 +1,10 @@
-//! The submerged part of a solid of revolution, disk by disk.
+//! Submerged part of a solid of revolution, disk by disk.
 
 use super::{Submerged, WaterPlane, segment};
 use crate::revolved::Slice;
 use sinew_math::{Vec3, normalize_or};
 
-/// Nodes and weights of the Gauss rule for polynomials up to degree 15, on −1..1; the other half is mirrored.
+/// Nodes and weights of the Gauss rule for polynomials up to degree 15 on −1..1; the negative nodes are not listed.
 const GAUSS: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_3),
@@ -12,9 +12,9 @@ const GAUSS: [(f64, f64); 4] = [
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
 ];
 
-/// Volume and moment below the surface, about the axis y. Exact to about 1e-5 of the whole: the rule runs between the
-/// heights at which the surface starts and stops cutting the disks, smoothed toward both ends, where the cut part grows
-/// with a square root.
+/// Returns the volume and the moment below the surface, for the axis y. Exact to about 1e-5 of the whole. The rule is
+/// applied between the heights at which the surface starts and stops cutting the disks, and smoothed toward both ends,
+/// where the cut part grows with a square root.
 pub(super) fn revolved_below(slices: &[Slice], plane: &WaterPlane) -> Submerged {
     let mut sums = [0.0; 3];
     for slice in slices {
@@ -31,7 +31,7 @@ pub(super) fn revolved_below(slices: &[Slice], plane: &WaterPlane) -> Submerged 
     Submerged::of_moment(volume, Vec3::Y * along + up * aside)
 }
 
-/// Heights of a slice where the surface touches its rim, ascending, and its end.
+/// Heights of a slice at which the surface touches its rim, ascending, and the end of the slice.
 fn crossings(slice: &Slice, plane: &WaterPlane) -> [f64; 3] {
     let [a, b, c] = slice.radius_squared;
     let (cos, height) = (f64::from(plane.normal.y), f64::from(plane.height));
@@ -49,7 +49,7 @@ fn crossings(slice: &Slice, plane: &WaterPlane) -> [f64; 3] {
     if y0 < y1 { [y0, y1, slice.to] } else { [y1, y0, slice.to] }
 }
 
-/// Volume, and moments along the axis and toward the surface, from one height to another.
+/// Volume, and moments along the axis and toward the surface, between two heights.
 fn between(slice: &Slice, plane: &WaterPlane, from: f64, to: f64) -> [f64; 3] {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let (cos, height) = (f64::from(plane.normal.y), f64::from(plane.height));
@@ -60,7 +60,7 @@ fn between(slice: &Slice, plane: &WaterPlane, from: f64, to: f64) -> [f64; 3] {
         let weight = weight * half * 1.5 * (1.0 - node * node);
         let squared = slice.radius_squared_at(y);
         let (radius, depth) = (squared.sqrt(), height - cos * y);
-        // Position where the surface cuts the disk, in units of its radius along the upward direction.
+        // Position at which the surface cuts the disk, in radii along the upward direction.
         let t = if depth >= flat * radius {
             1.0
         } else if depth <= -flat * radius {

@@ -1,4 +1,4 @@
-//! Builds a tree top down; each part is split at the best place by the surface area heuristic, by bins (Wald, "On fast
+//! Builds a tree top down. Each part is split where the surface area heuristic is best, by bins (Wald, "On fast
 //! construction of SAH-based bounding volume hierarchies", RT 2007).
 
 use super::node::{Child, Node, half_area};
@@ -11,24 +11,24 @@ use sinew_math::lanes::WIDTH;
 /// A leaf for the build.
 #[derive(Clone, Copy, Debug)]
 pub struct Item {
-    /// Bounds.
+    /// Bounds of the leaf.
     pub bounds: Aabb,
     /// Number of the leaf.
     pub leaf: u32,
 }
 
 impl Item {
-    /// Twice the middle.
+    /// Twice the centre of the bounds.
     fn middle(&self) -> Vec3 {
         self.bounds.min + self.bounds.max
     }
 }
 
-/// Candidate split positions per axis.
+/// Number of candidate split positions per axis.
 const BINS: usize = 16;
 
 impl Tree {
-    /// Builds a tree of these leaves, each with its own number. Reorders the items.
+    /// Builds a tree of these leaves; their numbers must differ. Reorders the items.
     pub fn build(&mut self, items: &mut [Item]) {
         self.nodes.clear();
         self.parents.clear();
@@ -41,7 +41,7 @@ impl Tree {
         let most = items.iter().fold(0, |most, item| u32::max(most, item.leaf)) as usize;
         self.places.reserve_exact((most + 1).saturating_sub(self.places.len()));
         self.make_room(most as u32);
-        // Nodes of the lowest level are full; those above add about a fifth.
+        // Nodes of the lowest level are full; the levels above add about a fifth.
         let nodes = items.len() / WIDTH + items.len() / (5 * WIDTH) + 1;
         self.nodes.reserve_exact(nodes);
         self.parents.reserve_exact(nodes);
@@ -59,7 +59,7 @@ impl Tree {
         self.build(scratch);
     }
 
-    /// Appends all leaves.
+    /// Appends all leaves to `items`.
     pub fn collect(&self, items: &mut Vec<Item>) {
         let leaves = self.places.iter().enumerate().filter(|(_, place)| **place != Place::NOWHERE);
         items.extend(leaves.map(|(leaf, place)| {
@@ -68,7 +68,7 @@ impl Tree {
         }));
     }
 
-    /// A node that has this many levels below it.
+    /// Builds a node with `below` levels below it; returns its index.
     fn build_node(&mut self, items: &mut [Item], below: usize, parent: Place) -> u32 {
         let index = self.nodes.len() as u32;
         self.nodes.push(Node::EMPTY);
@@ -89,7 +89,7 @@ impl Tree {
     }
 }
 
-/// Orders items so that ranges of at most `most` of them, eight at most, are near each other.
+/// Orders items so that each range of at most `most` items is compact; returns up to eight ranges, and their number.
 fn partition(items: &mut [Item], most: usize) -> ([Range<usize>; WIDTH], usize) {
     let mut parts: [Range<usize>; WIDTH] = core::array::from_fn(|_| 0..0);
     parts[0] = 0..items.len();
@@ -101,7 +101,7 @@ fn partition(items: &mut [Item], most: usize) -> ([Range<usize>; WIDTH], usize) 
             return (parts, count);
         }
         let needed: usize = parts[..count].iter().map(|part| part.len().div_ceil(most)).sum();
-        // If a slot is spare, a part may be split anywhere; else only so that no slot is lost.
+        // With a spare slot, a part may be split at any multiple of eight; otherwise only so that no slot is lost.
         let unit = if needed < WIDTH { WIDTH } else { most };
         let first = split(&mut items[part.clone()], unit);
         parts[largest] = part.start..part.start + first;
@@ -110,7 +110,8 @@ fn partition(items: &mut [Item], most: usize) -> ([Range<usize>; WIDTH], usize) 
     }
 }
 
-/// Orders items so that the first of them, in the returned number (a multiple of `unit`), and the rest are split well.
+/// Orders items so that the first of them and the rest are split well; returns the number of the first, a multiple of
+/// `unit`.
 fn split(items: &mut [Item], unit: usize) -> usize {
     let (axis, count) = best_split(items);
     let most = (items.len() - 1) / unit * unit;
@@ -122,7 +123,7 @@ fn split(items: &mut [Item], unit: usize) -> usize {
     first
 }
 
-/// Axis, and how many items are before the best split across it.
+/// Returns the axis, and the number of items before the best split across it.
 fn best_split(items: &[Item]) -> (usize, usize) {
     let (low, high) = items.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), item| {
         (sinew_math::min3(low, item.middle()), sinew_math::max3(high, item.middle()))
@@ -158,7 +159,7 @@ fn best_split(items: &[Item]) -> (usize, usize) {
     (best.1, best.2)
 }
 
-/// Items between two planes.
+/// Items between two split planes: their bounds and number.
 #[derive(Clone, Copy)]
 struct Bin {
     bounds: Aabb,

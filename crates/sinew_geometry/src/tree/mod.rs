@@ -1,9 +1,10 @@
-//! Bounding-volume tree with eight boxes a node: leaves that overlap a box, lie along a line, or are closest to a
-//! point.
+//! Bounding-volume tree with eight boxes per node: finds the leaves that overlap a box, are along a line, or are
+//! closest to a point.
 //!
 //! All leaves have the same depth. [`build`](Tree::build) makes a tree by the surface area heuristic with full nodes at
-//! the bottom; single leaves are inserted and removed as in an R-tree (Guttman, "R-trees: a dynamic index structure for
-//! spatial searching", SIGMOD 1984). Query results never depend on the tree's shape, only their order does.
+//! the lowest level; single leaves are inserted and removed as in an R-tree (Guttman, "R-trees: a dynamic index
+//! structure for spatial searching", SIGMOD 1984). The set of query results does not depend on the tree's shape; only
+//! their order does.
 
 mod build;
 mod node;
@@ -22,15 +23,15 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, WIDTH};
 pub use traversal::{Stop, Traversal};
 
-/// Most levels of nodes, for the queries' stacks. Full nodes hold 2³² leaves in 11 levels.
+/// Largest number of levels of nodes, for the queries' stacks. Full nodes hold 2³² leaves in 11 levels.
 const MOST_LEVELS: usize = 14;
 
-/// Position of a child: node times eight plus slot.
+/// Position of a child: index of the node times eight, plus slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Place(u32);
 
 impl Place {
-    /// Index that is not in the tree; the parent of the root.
+    /// Position of a leaf that is not in the tree, and of the root in its parent.
     const NOWHERE: Self = Self(u32::MAX);
 
     fn new(node: u32, slot: usize) -> Self {
@@ -42,7 +43,7 @@ impl Place {
     }
 }
 
-/// Leaf numbers are chosen by the user, from 0 on.
+/// Tree of leaves; the user chooses the leaf numbers, from 0 on.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
     nodes: Vec<Node>,
@@ -52,10 +53,10 @@ pub struct Tree {
     /// Position of each leaf, by its number.
     places: Vec<Place>,
     root: Option<u32>,
-    /// Levels of nodes.
+    /// Number of levels of nodes.
     levels: usize,
     len: usize,
-    /// Leaves inserted one by one since the tree was built.
+    /// Number of leaves inserted one by one since the tree was built.
     inserted: usize,
 }
 
@@ -72,7 +73,7 @@ impl Tree {
         self.len == 0
     }
 
-    /// True if there is a leaf with that number.
+    /// True if the tree has a leaf with this number.
     #[inline]
     pub fn contains(&self, leaf: u32) -> bool {
         self.places.get(leaf as usize).is_some_and(|&place| place != Place::NOWHERE)
@@ -85,7 +86,7 @@ impl Tree {
         self.nodes[node as usize].bounds(slot)
     }
 
-    /// Puts a leaf in.
+    /// Adds a leaf.
     pub fn insert(&mut self, leaf: u32, bounds: &Aabb) {
         self.make_room(leaf);
         self.len += 1;
@@ -124,8 +125,8 @@ impl Tree {
         }
     }
 
-    /// Changes the bounds of an existing leaf. It stays in its node while the new bounds fit; otherwise it is inserted
-    /// again.
+    /// Changes the bounds of an existing leaf. The leaf stays in its node while the new bounds fit; otherwise it is
+    /// inserted again.
     pub fn update(&mut self, leaf: u32, bounds: &Aabb) {
         let (node, slot) = self.places[leaf as usize].split();
         let parent = self.parents[node as usize];
@@ -148,7 +149,7 @@ impl Tree {
         (self.inserted > 64 && self.inserted > self.len) || used > self.len / 2 + MOST_LEVELS
     }
 
-    /// Reserves memory for this many leaves, however they change.
+    /// Reserves memory for this many leaves, independent of later changes.
     pub fn reserve(&mut self, leaves: usize) {
         let nodes = leaves + MOST_LEVELS;
         self.nodes.reserve(nodes.saturating_sub(self.nodes.len()));
@@ -156,7 +157,7 @@ impl Tree {
         self.free.reserve(nodes.saturating_sub(self.free.len()));
     }
 
-    /// Reserves an entry in the list of positions for a leaf with that number.
+    /// Reserves an entry for a leaf with this number in the list of positions.
     fn make_room(&mut self, leaf: u32) {
         if self.places.len() <= leaf as usize {
             self.places.resize(leaf as usize + 1, Place::NOWHERE);
@@ -174,7 +175,7 @@ impl Tree {
         self.nodes.len() as u32 - 1
     }
 
-    /// Writes a child into a slot, and with the child where it is.
+    /// Writes a child into a slot, and stores its position.
     fn put(&mut self, node: u32, slot: usize, child: Child, bounds: &Aabb) {
         self.nodes[node as usize].set(slot, child, bounds);
         let place = Place::new(node, slot);
@@ -184,7 +185,7 @@ impl Tree {
         }
     }
 
-    /// Adds a child to a node, which is split if it is full, and then its parents.
+    /// Adds a child to a node. A full node is split, and the new node is added to the parent in the same way.
     fn add(&mut self, mut node: u32, mut child: Child, mut bounds: Aabb) {
         loop {
             if let Some(slot) = self.nodes[node as usize].free_slot() {
@@ -210,7 +211,7 @@ impl Tree {
         }
     }
 
-    /// Splits a full node and one more child into itself and a new node, which it returns.
+    /// Splits a full node and one more child into the node and a new one; returns the new node.
     fn split(&mut self, node: u32, child: Child, bounds: &Aabb) -> u32 {
         let own = &self.nodes[node as usize];
         let mut all = [(*bounds, child); WIDTH + 1];
@@ -229,7 +230,7 @@ impl Tree {
         other
     }
 
-    /// Updates the boxes above a node.
+    /// Updates the boxes of a node in its ancestors.
     fn refit(&mut self, mut node: u32) {
         loop {
             let parent = self.parents[node as usize];
@@ -247,7 +248,7 @@ impl Tree {
     }
 }
 
-/// Descends from the root to the lowest node that has to grow least for new bounds.
+/// Kernel that descends from the root to the lowest node that must grow least for new bounds.
 struct Descent<'a> {
     tree: &'a mut Tree,
     root: u32,
@@ -272,10 +273,11 @@ impl Kernel for Descent<'_> {
     }
 }
 
-/// Fewest children of a node that was split.
+/// Smallest number of children of a node after a split.
 const FEWEST: usize = 3;
 
-/// Orders children so that the first of them, in the returned number, and the rest have the least surface together.
+/// Orders children so that the first of them and the rest have the least surface together; returns the number of the
+/// first.
 fn divide(all: &mut [(Aabb, Child); WIDTH + 1]) -> usize {
     let mut best = (f32::INFINITY, 0, FEWEST);
     for axis in 0..3 {

@@ -1,12 +1,12 @@
-//! A node: eight boxes side by side, and their children.
+//! A node: eight boxes, stored for SIMD, and their children.
 
 use crate::boxes::Aabb;
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
 use sinew_math::{Vec3, max3};
 
-/// Marks a child that is a leaf.
+/// Bit that marks a leaf.
 const LEAF: u32 = 1 << 31;
-/// No child.
+/// Value of an empty slot.
 const NONE: u32 = u32::MAX;
 
 /// Content of a slot of a node: a leaf, a node or nothing.
@@ -26,7 +26,7 @@ impl Child {
         Self(leaf | LEAF)
     }
 
-    /// Converts to one number, for [`from_bits`](Self::from_bits).
+    /// Returns the child as a number, for [`from_bits`](Self::from_bits).
     #[inline(always)]
     pub fn bits(self) -> u32 {
         self.0
@@ -42,24 +42,24 @@ impl Child {
         self == Self::NONE
     }
 
-    /// The number of a leaf, or else the index of a node.
+    /// Returns the number of a leaf, or the index of a node as the error.
     #[inline(always)]
     pub fn get(self) -> Result<u32, u32> {
         if self.0 & LEAF != 0 { Ok(self.0 & !LEAF) } else { Err(self.0) }
     }
 }
 
-/// Eight boxes, row by row, so that a query tests all of them at once. Seven registers of eight lanes: no row crosses a
-/// cache line.
+/// Eight boxes, row by row, so that a query tests all of them together. Seven registers of eight lanes: no row crosses
+/// a cache line.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Node {
-    /// Lowest x, y, z, highest x, y, z.
+    /// Lowest x, y and z, then highest x, y and z, metres.
     rows: [[f32; WIDTH]; 6],
     children: [Child; WIDTH],
 }
 
-/// Overlaps nothing.
+/// Bounds that overlap nothing.
 const EMPTY: Aabb = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
 impl Node {
@@ -101,7 +101,7 @@ impl Node {
         self.set(slot, Child::NONE, &EMPTY);
     }
 
-    /// Bounds of all that it holds.
+    /// Bounds of all children of the node.
     pub fn total(&self) -> Aabb {
         (0..WIDTH).fold(EMPTY, |sum, slot| sum.merge(&self.bounds(slot)))
     }
@@ -114,7 +114,8 @@ impl Node {
         self.children.iter().all(|child| child.is_none())
     }
 
-    /// The slot whose box grows least to contain another, by surface; of equals the one with the least surface.
+    /// Returns the slot whose box grows least in surface to contain another box; among equals the slot with the least
+    /// surface.
     #[inline(always)]
     pub fn least_growth<L: Lanes>(&self, other: &[L; 6]) -> usize {
         let mut low = [L::splat(0.0); 3];
@@ -142,8 +143,8 @@ impl Node {
         best.map_or(0, |(slot, _)| slot)
     }
 
-    /// Children in the slots of a mask, lowest first. Infinite bounds and overflowing sums match empty slots too; these
-    /// are skipped.
+    /// Iterates over the children in the slots of a mask, lowest slot first. Infinite bounds and overflowing sums match
+    /// empty slots too; these are skipped.
     #[inline(always)]
     pub fn held(&self, mut mask: u8) -> impl Iterator<Item = (usize, Child)> {
         let next_slot = move || {
@@ -155,8 +156,8 @@ impl Node {
         children.filter(|(_, child)| !child.is_none())
     }
 
-    /// Mask of the boxes that overlap another one: bit `k` for slot `k`. Bits of empty slots are undefined: see
-    /// [`held`](Self::held).
+    /// Returns the mask of the boxes that overlap another box: bit `k` for slot `k`. Bits of empty slots are undefined:
+    /// see [`held`](Self::held).
     #[inline(always)]
     pub fn overlapping<L: Lanes>(&self, other: &[L; 6]) -> u8 {
         let [x, y, z, u, v, w] = &self.rows;
@@ -169,8 +170,8 @@ impl Node {
         mask.bits()
     }
 
-    /// Mask of the boxes that a line enters before `limit`, and the entry fractions; empty slots as in
-    /// [`overlapping`](Self::overlapping).
+    /// Returns the mask of the boxes that a line enters before `limit`, and writes the entry fractions; bits of empty
+    /// slots are undefined, as in [`overlapping`](Self::overlapping).
     #[inline(always)]
     pub fn entered<L: Lanes>(&self, line: &Line, limit: f32, enter: &mut [f32; WIDTH]) -> u8 {
         let slack = L::splat(1.0 + PAD);
@@ -178,7 +179,7 @@ impl Node {
         let mut last = L::splat(f32::INFINITY);
         for axis in 0..3 {
             let inverse = L::splat(line.inverse[axis]);
-            // NaN, for a line in a face's plane, leaves the value unchanged.
+            // NaN, for a line in the plane of a face, leaves the value unchanged.
             first = L::max(self.beyond::<L>(&line.near, axis) * inverse, first);
             last = L::min(self.beyond::<L>(&line.far, axis) * inverse, last);
         }
@@ -186,14 +187,14 @@ impl Node {
         (L::le(first, last * slack) & L::le(first, L::splat(limit) * slack)).bits()
     }
 
-    /// Distances of faces from the start of a line, along an axis.
+    /// Distances of faces from the start of a line along an axis, metres.
     #[inline(always)]
     fn beyond<L: Lanes>(&self, faces: &Faces, axis: usize) -> L {
         L::load(&self.rows[faces.row[axis]]) - L::splat(faces.origin[axis])
     }
 
-    /// Lower bounds of the squared distances from a point to the boxes; bit `k` of the mask says whether slot `k` is
-    /// within `limit`, empty slots as in [`overlapping`](Self::overlapping).
+    /// Writes lower bounds of the squared distances from a point to the boxes. Returns a mask with bit `k` set if slot
+    /// `k` is within `limit`; bits of empty slots are undefined, as in [`overlapping`](Self::overlapping).
     #[inline(always)]
     pub fn distances<L: Lanes>(&self, point: &[L; 3], pad: L, limit: f32, squares: &mut [f32; WIDTH]) -> u8 {
         let zero = L::splat(0.0);
@@ -209,39 +210,39 @@ impl Node {
     }
 }
 
-/// Half the surface of a box, the cost measure of the surface area heuristic.
+/// Half the surface area of a box, m²: the cost measure of the surface area heuristic.
 pub(super) fn half_area(bounds: &Aabb) -> f32 {
     let Vec3 { x, y, z } = max3(bounds.max - bounds.min, Vec3::ZERO);
     x * y + y * z + z * x
 }
 
-/// [`half_area`] in each lane, for boxes with these sides.
+/// Like [`half_area`], in each SIMD lane, for boxes with these sides.
 #[inline(always)]
 fn half_area_of<L: Lanes>([x, y, z]: &[L; 3]) -> L {
     *x * *y + *y * *z + *z * *x
 }
 
-/// Relative widening of boxes and lines, so that rounding in an exact test never finds a hit that the boxes exclude (as
-/// in Ize, "Robust BVH ray traversal", JCGT 2013, for tests whose error is that of positions, not of boxes).
+/// Relative widening of boxes and lines. With it, an exact test with rounding never finds a hit that the boxes exclude
+/// (as in Ize, "Robust BVH ray traversal", JCGT 2013, for tests whose error is that of positions, not of boxes).
 pub const PAD: f32 = 4e-6;
 
-/// A prepared part of a line: slabs (Kay & Kajiya 1986) with known near and far faces.
+/// A line prepared for the slab test (Kay & Kajiya 1986), with known near and far faces.
 pub(super) struct Line {
     near: Faces,
     far: Faces,
     inverse: [f32; 3],
 }
 
-/// The near or far faces of boxes along each axis.
+/// Near or far faces of boxes, along each axis.
 struct Faces {
-    /// Row of a node that they are.
+    /// Row of a node with these faces.
     row: [usize; 3],
-    /// Start of the line, shifted by the swept extent and by rounding.
+    /// Start of the line, shifted by the half extents of the swept box and by rounding.
     origin: [f32; 3],
 }
 
 impl Line {
-    /// Path of a box with these half extents from `origin` along `direction`, at most `limit` times.
+    /// Prepares the path of a box with these half extents from `origin` along `limit` times `direction`.
     #[inline(always)]
     pub fn new(origin: Vec3, direction: Vec3, half_extents: Vec3, limit: f32) -> Self {
         let end = origin.abs() + direction.abs() * limit + half_extents;

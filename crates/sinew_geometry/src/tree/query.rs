@@ -10,21 +10,21 @@ use sinew_math::Vec3;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, WIDTH};
 
-/// A stretch of a line along which a box moves; of a ray the box is a point.
+/// A line segment along which a box moves; for a ray the box is a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep {
-    /// Metres.
+    /// Centre of the box at the start, metres.
     pub origin: Vec3,
     /// Displacement at fraction 1, metres.
     pub direction: Vec3,
     /// Half extents of the box, metres, ≥ 0.
     pub half_extents: Vec3,
-    /// Fraction at which it ends, ≥ 0.
+    /// Fraction at which the sweep ends, ≥ 0.
     pub limit: f32,
 }
 
 impl Tree {
-    /// Visits every leaf whose bounds overlap or touch these, in no order, until one breaks.
+    /// Visits every leaf whose bounds overlap or touch these bounds, in unspecified order, until `visit` breaks.
     pub fn overlapping<B>(&self, bounds: &Aabb, visit: impl FnMut(u32) -> ControlFlow<B>) -> ControlFlow<B> {
         match self.root {
             Some(root) => dispatch::run(Overlapping { tree: self, root, bounds, visit }),
@@ -32,16 +32,16 @@ impl Tree {
         }
     }
 
-    /// Visits every leaf that a line may hit, nearer boxes of a node first. `visit` returns the new limit of the
-    /// fraction: unchanged, smaller after a hit, or below 0 to stop.
+    /// Visits every leaf that a sweep may hit; within a node the nearer boxes come first. `visit` returns the new limit
+    /// of the fraction: unchanged, smaller after a hit, or below 0 to stop.
     pub fn along(&self, sweep: &Sweep, visit: impl FnMut(u32) -> f32) {
         if let Some(root) = self.root {
             dispatch::run(Along { tree: self, root, sweep, visit });
         }
     }
 
-    /// Visits every leaf whose bounds are within `distance` (m) of a point, nearer boxes of a node first. `visit`
-    /// returns the new limit of the distance.
+    /// Visits every leaf whose bounds are within `distance` (metres) of a point; within a node the nearer boxes come
+    /// first. `visit` returns the new limit of the distance.
     pub fn nearest(&self, point: Vec3, distance: f32, visit: impl FnMut(u32) -> f32) {
         if let Some(root) = self.root {
             dispatch::run(Nearest { tree: self, root, point, distance, visit });
@@ -100,7 +100,7 @@ impl<V: FnMut(u32) -> f32> Kernel for Along<'_, V> {
         let mut waiting = Waiting::new(self.root);
         let mut enter = [0.0; WIDTH];
         while let Some((key, child)) = waiting.pop() {
-            // A leaf as near as the best so far may be as good.
+            // A leaf as near as the best so far may be equally good.
             if key > limit * (1.0 + super::PAD) {
                 continue;
             }
@@ -132,7 +132,7 @@ impl<V: FnMut(u32) -> f32> Kernel for Nearest<'_, V> {
         let far = self.point.abs();
         let pad = super::PAD * sinew_math::max(far.x, sinew_math::max(far.y, far.z));
         let point = self.point.to_array().map(L::splat);
-        // Squares of distances up to this one and a rounding beyond.
+        // Square of a distance, enlarged by rounding.
         let square = |distance: f32| distance * distance * (1.0 + super::PAD);
         let mut limit = square(self.distance);
         let mut waiting = Waiting::new(self.root);

@@ -1,15 +1,15 @@
-//! Trees against trying every leaf.
+//! Tests of trees against a search through all leaves.
 
 use super::*;
 use core::ops::ControlFlow;
 use sinew_math::{Random, Vec3};
 
-/// Cases: a hundredth unless `SINEW_FULL` is set.
+/// Number of cases: a hundredth unless `SINEW_FULL` is set.
 fn cases(all: usize) -> usize {
     if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
 }
 
-/// A random box, near the origin or far off, large or without extent.
+/// Returns a random box, near the origin or far away, large or without extent.
 fn some_box(random: &mut Random, scale: f32) -> Aabb {
     let center = random.in_cube() * scale;
     let size = scale * if random.unit() < 0.1 { 1.0 } else { 0.05 };
@@ -69,7 +69,7 @@ impl Pair {
         }
     }
 
-    /// Checks that leaves are on the same level and each box bounds its content.
+    /// Checks that all leaves are on the same level and that each box bounds its content; returns the number of leaves.
     fn count(&self, node: u32, levels: usize) -> usize {
         let own = &self.tree.nodes[node as usize];
         let slots = (0..WIDTH).filter(|&slot| !own.child(slot).is_none());
@@ -200,7 +200,7 @@ fn a_tree_of_many_is_full_and_finds_them() {
     }
 }
 
-/// Boxes in a row, in order, which makes insertion trees deep.
+/// A row of boxes, inserted in order, does not make a deep tree.
 #[test]
 fn a_row_does_not_make_a_deep_tree() {
     let mut tree = Tree::default();
@@ -213,7 +213,7 @@ fn a_row_does_not_make_a_deep_tree() {
     assert!(used < 10_000 / 3, "{used} nodes");
 }
 
-/// Infinite boxes are found by all queries, and the others as before.
+/// All queries find infinite boxes, and the other boxes as before.
 #[test]
 fn infinite_boxes_are_handled() {
     let mut random = Random::new(3);
@@ -233,7 +233,7 @@ fn infinite_boxes_are_handled() {
     pair.ask(&mut random, 10.0);
 }
 
-/// A query of any reach finds every leaf and no empty slot.
+/// Unbounded queries find every leaf and no empty slot.
 #[test]
 fn infinite_queries_find_every_leaf_once() {
     let mut random = Random::new(4);

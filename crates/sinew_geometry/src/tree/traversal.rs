@@ -1,4 +1,4 @@
-//! Interleaved traversal of one line among several. While one line waits for memory or a branch, the others proceed.
+//! Traversals of lines that can be interleaved: while one line waits for memory or a branch, the others proceed.
 
 use super::node::Line;
 use super::waiting::Waiting;
@@ -6,7 +6,7 @@ use super::{PAD, Sweep, Tree};
 use sinew_math::Vec3;
 use sinew_math::lanes::{Lanes, WIDTH};
 
-/// State of a line: its limit and pending children.
+/// State of one line: its limit and its pending children.
 pub struct Traversal {
     line: Line,
     /// Fraction beyond which hits do not count, ≥ 0.
@@ -25,13 +25,13 @@ pub enum Stop {
 }
 
 impl Traversal {
-    /// True if the traversal is complete.
+    /// Returns a traversal that is complete.
     pub fn ended() -> Self {
         let line = Line::new(Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, 0.0);
         Self { line, limit: 0.0, waiting: Waiting::NONE }
     }
 
-    /// Starts another line.
+    /// Starts the traversal of a tree by another sweep.
     #[inline(always)]
     pub fn start(&mut self, tree: &Tree, sweep: &Sweep) {
         let Sweep { origin, direction, half_extents, limit } = *sweep;

@@ -1,17 +1,17 @@
-//! Nodes of a query that are not visited yet.
+//! Stack of the nodes that a query has not visited yet.
 
 use super::MOST_LEVELS;
 use super::node::{Child, Node};
 use sinew_math::lanes::WIDTH;
 
-/// Capacity for pending children: all but one of a node on each level. A power of two, so that a mask keeps indices in
-/// range.
+/// Capacity for pending children: on each level all children of a node but one. A power of two, so that a mask keeps
+/// indices in range.
 pub(super) const STACK: usize = ((WIDTH - 1) * MOST_LEVELS + 1).next_power_of_two();
 pub(super) const MASK: usize = STACK - 1;
 
-/// Pending children with their sort keys; the last is the next.
+/// Pending children with their sort keys; the last one is visited next.
 pub(super) struct Waiting {
-    /// The key's bits above the child's: for non-negative numbers the bits have the same order.
+    /// Bits of the key above those of the child: for non-negative keys the bits sort like the keys.
     children: [u64; STACK],
     count: usize,
 }
@@ -42,7 +42,7 @@ impl Waiting {
         Some((f32::from_bits((entry >> 32) as u32), Child::from_bits(entry as u32)))
     }
 
-    /// Pushes slots of a node so that the one with the smallest key, ≥ 0, is next.
+    /// Pushes slots of a node so that the slot with the smallest key (≥ 0) is visited next.
     #[inline(always)]
     pub fn push(&mut self, node: &Node, mask: u8, keys: &[f32; WIDTH]) {
         let start = self.count;
@@ -58,8 +58,8 @@ impl Waiting {
         }
     }
 
-    /// Pushes the slots of a mask; up to two slots, the usual case, without a branch, which would be mispredicted every
-    /// other time. An empty slot may be among them.
+    /// Pushes the slots of a mask. Up to two slots, the usual case, are pushed without a branch, which would be
+    /// mispredicted half of the time. An empty slot may be among them.
     #[inline(always)]
     pub fn push_few(&mut self, node: &Node, mask: u8, keys: &[f32; WIDTH]) {
         let rest = mask & mask.wrapping_sub(1);
@@ -70,7 +70,7 @@ impl Waiting {
             let slot = mask.trailing_zeros() as usize % WIDTH;
             entry(keys[slot], node.child(slot))
         });
-        // If there is no second slot, 0 is the least key, and it is beyond the count.
+        // Without a second slot, 0 is the smallest entry, and it is beyond the count.
         let b = if rest != 0 { b } else { 0 };
         self.children[self.count & MASK] = u64::max(a, b);
         self.children[(self.count + 1) & MASK] = u64::min(a, b);

@@ -1,29 +1,29 @@
-//! Prepares triangles for collision: checked, welded, with active edges.
+//! Prepares triangles for collision: checks and welds them, and finds their active edges.
 
 use super::mesh::{MAX_COORDINATE, MAX_TRIANGLES, MeshError};
 use super::triangle;
 use sinew_math::Vec3;
 
-/// Cosine of the angle, 5°, by which a surface falls away at an active edge.
+/// Cosine of the angle (5°) by which a surface bends down at an active edge.
 const FELT_COSINE: f32 = 0.996_194_7;
-/// A triangle with a smaller height relative to its longest side has no area.
+/// Height, relative to the longest side, below which a triangle has no area.
 const THINNEST: f32 = 1e-6;
 
-/// Triangles that were dropped from a mesh.
+/// Numbers of triangles that were dropped from a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dropped {
     /// Triangles without area.
     pub degenerate: usize,
-    /// Duplicates.
+    /// Duplicate triangles.
     pub repeated: usize,
 }
 
-/// Triangles that are kept.
+/// Triangles that are kept, and their edges.
 #[derive(Debug)]
 pub(super) struct Sheet {
     pub vertices: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
-    /// Bit k of each: its edge from corner k on is active.
+    /// Active edges of each triangle: bit k for the edge from corner k to the next.
     pub active: Vec<u8>,
     /// Indices of the triangles in the original list.
     pub numbers: Vec<u32>,
@@ -56,7 +56,7 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     if triangles.len() >= MAX_TRIANGLES || vertices.len() > 3 * MAX_TRIANGLES {
         return Err(MeshError::TooMany { triangles: triangles.len() });
     }
-    // Written so that NaN fails.
+    // This form rejects NaN.
     let sane = |v: &Vec3| v.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
     if let Some(vertex) = vertices.iter().position(|v| !sane(v)) {
         return Err(MeshError::NotFinite { vertex });
@@ -69,7 +69,7 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// Unique positions in order of first use, and the new index of each vertex.
+/// Returns the unique positions in order of first use, and the new index of each vertex.
 fn weld(vertices: &[Vec3]) -> (Vec<Vec3>, Vec<u32>) {
     // Adding 0 turns −0 into 0.
     let key = |i: u32| (vertices[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
@@ -99,7 +99,7 @@ fn has_area([a, b, c]: [Vec3; 3]) -> bool {
     (b - a).cross(c - a).length() > THINNEST * longest * longest
 }
 
-/// Removes triangles with the corners and orientation of an earlier one; returns their number.
+/// Removes triangles with the corners and orientation of an earlier triangle; returns their number.
 fn drop_repeated(kept: &mut Vec<([u32; 3], u32)>) -> usize {
     let before = kept.len();
     let turned = |[a, b, c]: [u32; 3]| {
@@ -117,13 +117,13 @@ fn drop_repeated(kept: &mut Vec<([u32; 3], u32)>) -> usize {
     before - kept.len()
 }
 
-/// A triangle's side, as an edge between two vertices, the smaller first.
+/// A side of a triangle, with its edge: the two vertices, the smaller index first.
 #[derive(Clone, Copy)]
 struct Side {
     edge: (u32, u32),
     triangle: u32,
     corner: u32,
-    /// True if it runs from the smaller vertex to the larger.
+    /// True if the side leads from the smaller vertex index to the larger.
     forward: bool,
 }
 
@@ -141,7 +141,7 @@ fn active_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
     let mut active = vec![0_u8; triangles.len()];
     for around in sides.chunk_by(|p, q| p.edge == q.edge) {
         for side in around {
-            // Among several triangles at an edge, take the one that continues most nearly straight.
+            // Among several triangles at an edge, the one that continues most nearly straight decides.
             let beyond = around.iter().filter(|other| other.forward != side.forward);
             let felt = beyond.map(|other| is_felt(&corners(side.triangle), &corners(other.triangle)));
             if felt.reduce(|a, b| a && b).unwrap_or(true) {
@@ -152,14 +152,14 @@ fn active_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
     active
 }
 
-/// True if the edge between two triangles is active: the surface falls away there.
+/// True if the edge between two triangles is active: the surface bends down there.
 pub(super) fn is_felt(triangle: &[Vec3; 3], beyond: &[Vec3; 3]) -> bool {
     let (n, m) = (triangle::normal(triangle), triangle::normal(beyond));
     let middle = |&[a, b, c]: &[Vec3; 3]| (a + b + c) * (1.0 / 3.0);
-    // The middle of each triangle must lie below the other; both are checked, so that rounding does not decide
-    // differently for the two.
+    // The centroid of each triangle must be below the other triangle; both are tested, so that rounding does not give
+    // different results for the two.
     let below = (middle(beyond) - middle(triangle)).dot(n - m) < 0.0;
-    // The back of the same sheet.
+    // The two triangles are the front and the back of the same sheet.
     let folded = n.dot(m) < -FELT_COSINE;
     folded || (n.dot(m) < FELT_COSINE && below)
 }

@@ -1,16 +1,16 @@
-//! A tree of bounds over triangles.
+//! Binary tree of bounds over triangles.
 
 use super::triangle::bounds;
 use crate::boxes::{Aabb, Overlap};
 use core::ops::Range;
 use sinew_math::{Vec3, max, max3, min};
 
-/// Triangles in a leaf.
+/// Largest number of triangles in a leaf.
 const LEAF: usize = 4;
-/// More levels than a balanced tree of 2³² leaves has.
+/// Stack size: more levels than a balanced tree of 2³² leaves has.
 pub(crate) const DEPTH: usize = 40;
 
-/// Bounds of triangles in a binary tree. Leaves hold index ranges in the triangles' order after [`Tree::new`].
+/// Binary tree of the bounds of triangles. Leaves hold index ranges in the order of triangles after [`Tree::new`].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tree {
     nodes: Vec<Node>,
@@ -19,22 +19,22 @@ pub(crate) struct Tree {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Node {
     bounds: Aabb,
-    /// First triangle of a leaf, else index of the second child; the first follows its parent.
+    /// First triangle of a leaf, or index of the second child of an inner node; the first child follows its parent.
     next: u32,
-    /// Triangles of a leaf, 0 for an inner node.
+    /// Number of triangles of a leaf, 0 for an inner node.
     count: u32,
 }
 
 /// Children of a node.
 pub(crate) enum Branch {
-    /// Two nodes, by number.
+    /// Two nodes, by index.
     Nodes([u32; 2]),
-    /// Triangles, in leaf order.
+    /// Range of triangles, in leaf order.
     Leaf(Range<u32>),
 }
 
 impl Tree {
-    /// Tree over at least one triangle; sorts the indices into leaf order.
+    /// Builds a tree over at least one triangle; sorts the indices into leaf order.
     pub fn new(numbers: &mut [u32], corners: &impl Fn(u32) -> [Vec3; 3]) -> Self {
         let mut nodes = Vec::with_capacity(numbers.len());
         grow(numbers, 0, corners, &mut nodes);
@@ -70,7 +70,7 @@ impl Tree {
         }
     }
 
-    /// Calls `visit` with the leaves whose bounds overlap `region`, always in the same order.
+    /// Calls `visit` with the leaves whose bounds overlap `region`, in a deterministic order.
     pub fn overlapping(&self, region: &Aabb, mut visit: impl FnMut(Range<u32>)) {
         let meets = |bounds: &Aabb| if bounds.overlaps(region) { 0.0 } else { f32::INFINITY };
         self.walk(f32::MAX, meets, |places| {
@@ -79,21 +79,21 @@ impl Tree {
         });
     }
 
-    /// Calls `visit` with leaves that may be within the squared distance of `p` that it returned last (first `square`),
-    /// nearer ones first.
+    /// Calls `visit` with the leaves that may be within a squared distance of `p`, nearer ones first. The squared
+    /// distance is `square` at first, then the last result of `visit`, m².
     pub fn nearest(&self, p: Vec3, square: f32, visit: impl FnMut(Range<u32>) -> f32) {
         let away = |bounds: &Aabb| max3(max3(bounds.min - p, p - bounds.max), Vec3::ZERO).length_squared();
         self.walk(square, away, visit);
     }
 
-    /// Calls `visit` with leaves that a line from `origin` may enter before the share of `direction` that it returned
-    /// last (first `share`), nearer ones first.
+    /// Calls `visit` with the leaves that a line from `origin` may enter before a share of `direction`, nearer ones
+    /// first. The share is `share` at first, then the last result of `visit`.
     pub fn along(&self, origin: Vec3, direction: Vec3, share: f32, visit: impl FnMut(Range<u32>) -> f32) {
         self.walk(share, |bounds| enter(bounds, origin, direction), visit);
     }
 
-    /// Visits the leaves whose key is at most `limit`; each visit may lower it. No node has a key below its parent's;
-    /// an infinite key is never visited.
+    /// Visits the leaves whose key is at most `limit`; each visit may lower the limit. The key of a node must not be
+    /// below that of its parent; leaves with an infinite key are not visited.
     fn walk(&self, mut limit: f32, key: impl Fn(&Aabb) -> f32, mut visit: impl FnMut(Range<u32>) -> f32) {
         let key = |index: u32| (index, key(&self.nodes[index as usize].bounds));
         let mut open = [(0, 0.0); DEPTH];
@@ -102,7 +102,7 @@ impl Tree {
         while count > 0 {
             count -= 1;
             let (index, least) = open[count];
-            // Written so that NaN fails.
+            // This form rejects NaN.
             if !(least <= limit && least < f32::INFINITY) {
                 continue;
             }
@@ -121,7 +121,7 @@ impl Tree {
     }
 }
 
-/// Share of `direction` at which a line enters the bounds, 0 if it starts inside, infinite if it misses. The bounds are
+/// Share of `direction` at which a line enters the bounds: 0 if it starts inside, infinite if it misses. The bounds are
 /// widened by rounding.
 fn enter(bounds: &Aabb, origin: Vec3, direction: Vec3) -> f32 {
     let (mut first, mut last) = (0.0, f32::INFINITY);
@@ -141,7 +141,7 @@ fn enter(bounds: &Aabb, origin: Vec3, direction: Vec3) -> f32 {
     if first * (1.0 - ROUNDING) <= last * (1.0 + ROUNDING) { first * (1.0 - ROUNDING) } else { f32::INFINITY }
 }
 
-/// Appends the tree over the triangles `numbers`, the first of which has index `offset`.
+/// Appends the tree over the triangles `numbers` to `nodes`; `offset` is the index of the first triangle.
 fn grow(numbers: &mut [u32], offset: u32, corners: &impl Fn(u32) -> [Vec3; 3], nodes: &mut Vec<Node>) {
     let place = nodes.len();
     let around = numbers.iter().map(|&i| bounds(&corners(i))).reduce(|a, b| a.merge(&b)).unwrap_or_default();
@@ -154,7 +154,7 @@ fn grow(numbers: &mut [u32], offset: u32, corners: &impl Fn(u32) -> [Vec3; 3], n
         let [a, b, c] = corners(*i);
         a[axis] + b[axis] + c[axis]
     };
-    // Halves by number: the depth stays balanced for every mesh.
+    // Splits into halves by number, so that the tree is balanced for every mesh.
     let half = numbers.len() / 2;
     numbers.select_nth_unstable_by(half, |i, j| middle(i).total_cmp(&middle(j)).then(i.cmp(j)));
     let (low, high) = numbers.split_at_mut(half);

@@ -1,4 +1,4 @@
-//! Height fields as shapes: terrain on a grid.
+//! Height fields as shapes: terrain over a grid.
 
 use super::build::is_felt;
 use super::triangle::{Triangle, bounds, closest_on_triangle, enter_triangle};
@@ -12,27 +12,27 @@ use sinew_math::{StableHasher, Vec3, clamp, max, min};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeightFieldDef {
-    /// Vertices along x, at least 2.
+    /// Number of vertices along x, at least 2.
     pub columns: usize,
-    /// Vertices along z, at least 2.
+    /// Number of vertices along z, at least 2.
     pub rows: usize,
-    /// Metres between neighbours along x and along z, > 0.
+    /// Distance between neighbours along x and along z, metres, > 0.
     pub spacing: [f32; 2],
-    /// Heights, metres: `columns × rows` of them, row after row. That of column i and row j is over (i × spacing.0, j ×
-    /// spacing.1).
+    /// Heights, metres: `columns × rows` of them, row by row. The height of column i and row j is at x = i × spacing.0,
+    /// z = j × spacing.1.
     pub heights: Vec<f32>,
-    /// Missing cells, by `column + row × (columns − 1)`.
+    /// Indices of missing cells: `column + row × (columns − 1)`.
     pub holes: Vec<u32>,
 }
 
 impl HeightFieldDef {
-    /// A field without holes: `columns` × `rows` vertices, `spacing` metres apart along x and z, with heights in
-    /// metres, row by row.
+    /// Returns a field without holes: `columns` × `rows` vertices, `spacing` metres apart along x and z, with heights
+    /// in metres, row by row.
     pub fn new(columns: usize, rows: usize, spacing: f32, heights: Vec<f32>) -> Self {
         Self { columns, rows, spacing: [spacing; 2], heights, holes: Vec::new() }
     }
 
-    /// The same with heights from a function of column and row, metres.
+    /// Like [`new`](Self::new), with heights (metres) from a function of column and row.
     pub fn from_fn(columns: usize, rows: usize, spacing: f32, height: impl Fn(usize, usize) -> f32) -> Self {
         let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
         Self::new(columns, rows, spacing, cells.map(|(column, row)| height(column, row)).collect())
@@ -44,11 +44,11 @@ impl HeightFieldDef {
 pub enum HeightFieldError {
     /// Fewer than 2 vertices along an axis, or more than 2²⁶ cells.
     Size,
-    /// The number of heights is not that of the vertices.
+    /// The number of heights differs from the number of vertices.
     Heights {
-        /// Number that was given.
+        /// Number of given heights.
         heights: usize,
-        /// Number that is needed.
+        /// Number of vertices.
         vertices: usize,
     },
     /// A spacing is not positive and finite, or makes the field larger than [`MAX_COORDINATE`].
@@ -58,11 +58,11 @@ pub enum HeightFieldError {
         /// Index of the height in the list.
         index: usize,
     },
-    /// A hole where no cell is.
+    /// A hole refers to a missing cell.
     Hole {
-        /// Number of the cell.
+        /// Index of the cell.
         hole: u32,
-        /// Number that was given.
+        /// Number of cells.
         cells: usize,
     },
     /// All cells are holes.
@@ -89,12 +89,12 @@ impl fmt::Display for HeightFieldError {
 impl core::error::Error for HeightFieldError {}
 
 /// Terrain: heights on a grid in x and z, solid from above. Each cell is two triangles, split from the corner at lower
-/// x and higher z to the one at higher x and lower z. Edges are active as in a [`Mesh`](super::Mesh).
+/// x and higher z to the corner at higher x and lower z. Edges are active as in a [`Mesh`](super::Mesh).
 #[derive(Clone, Debug)]
 pub struct HeightField {
     def: HeightFieldDef,
-    /// Bits of each cell: active edges of its first triangle in the lowest three bits, of its second in the next;
-    /// `HOLE`.
+    /// Bits of each cell: active edges of its first triangle in the lowest three bits, of its second triangle in the
+    /// next three, and `HOLE`.
     cells: Vec<u8>,
     bounds: Aabb,
     hash: u64,
@@ -104,13 +104,13 @@ const HOLE: u8 = 1 << 7;
 const MAX_CELLS: usize = 1 << 26;
 
 impl HeightField {
-    /// Creates the height field from its numbers.
+    /// Creates the height field from its definition.
     ///
     /// # Errors
-    /// If the numbers are invalid.
+    /// If a number of the definition is invalid.
     pub fn new(mut def: HeightFieldDef) -> Result<Self, HeightFieldError> {
         check(&def)?;
-        // Sorted, so that equal fields are equal.
+        // Sorted, so that the order of holes does not matter.
         def.holes.sort_unstable();
         def.holes.dedup();
         let lowest = def.heights.iter().fold(f32::INFINITY, |y, &h| min(h, y));
@@ -130,23 +130,23 @@ impl HeightField {
         Ok(field)
     }
 
-    /// The definition.
+    /// Returns the definition.
     pub fn def(&self) -> &HeightFieldDef {
         &self.def
     }
 
-    /// Bounds in its own frame.
+    /// Bounds in the field's own frame, metres.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// Corners of its triangles, counter-clockwise seen from above, cell by cell.
+    /// Iterates over the corners of all triangles, counter-clockwise seen from above, cell by cell.
     pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
         let cells = (0..self.cells.len()).filter(|&cell| self.cells[cell] & HOLE == 0);
         cells.flat_map(|cell| [self.corners(2 * cell as u32), self.corners(2 * cell as u32 + 1)])
     }
 
-    /// Hash of the content: equal for equal fields, on every machine.
+    /// Hash of the content: equal for equal fields on every machine.
     pub fn content_hash(&self) -> u64 {
         self.hash
     }
@@ -155,7 +155,7 @@ impl HeightField {
         self.def.columns - 1
     }
 
-    /// Column, row and vertex number of a triangle's corners.
+    /// Returns column and row of each corner of a triangle.
     fn grid(&self, triangle: u32) -> [[usize; 2]; 3] {
         let cell = triangle as usize / 2;
         let (i, j) = (cell % self.width(), cell / self.width());
@@ -179,7 +179,7 @@ impl HeightField {
         Triangle::new(self.corners(number), vertices, active)
     }
 
-    /// The triangle beyond each edge of another, if there is one.
+    /// Returns the triangle beyond each edge of a triangle, if there is one.
     fn beyond(&self, triangle: u32) -> [Option<u32>; 3] {
         let cell = triangle as usize / 2;
         let (i, j) = (cell % self.width(), cell / self.width());
@@ -215,11 +215,11 @@ impl HeightField {
         }
     }
 
-    /// Cells between two positions along an axis.
+    /// Range of the cells between two positions along an axis.
     fn cells_between(&self, axis: usize, from: f32, to: f32) -> Range<usize> {
         let cells = [self.def.columns - 1, self.def.rows - 1][axis];
         let cell = |x: f32| clamp((x / self.def.spacing[axis]).floor(), -1.0, cells as f32) as i64;
-        // One more on either side: a position on a grid line belongs to both.
+        // Adds a cell on either side: a position on a grid line belongs to both cells.
         let first = i64::max(cell(from) - 1, 0) as usize;
         let end = i64::min(cell(to) + 2, cells as i64);
         first..usize::max(i64::max(end, 0) as usize, first)
@@ -231,7 +231,7 @@ impl HeightField {
         cells.filter(|&cell| self.cells[cell] & HOLE == 0)
     }
 
-    /// As [`Surface::overlapping`](super::Surface::overlapping).
+    /// Like [`Surface::overlapping`](super::Surface::overlapping).
     pub(super) fn overlapping(&self, region: &Aabb, mut visit: impl FnMut(Triangle)) {
         if !self.bounds.overlaps(region) {
             return;
@@ -247,8 +247,8 @@ impl HeightField {
         }
     }
 
-    /// Like [`Surface::closest`](super::Surface::closest): searches growing boxes around the point until the closest
-    /// point is nearer than the box's sides.
+    /// Like [`Surface::closest`](super::Surface::closest). Searches growing boxes around the point until the closest
+    /// point is nearer than the sides of the box.
     pub(super) fn closest(&self, p: Vec3, reach: f32) -> Option<Closest> {
         let nearest = sinew_math::max3(sinew_math::min3(p, self.bounds.max), self.bounds.min);
         let least = (nearest - p).length();
@@ -270,7 +270,8 @@ impl HeightField {
         }
     }
 
-    /// Like [`Surface::enter`](super::Surface::enter): column by column, in each the rows that the line crosses.
+    /// Like [`Surface::enter`](super::Surface::enter). Visits the columns in order, and in each column the rows that
+    /// the line crosses.
     pub(super) fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         let span = |low: f32, high: f32, from: f32, along: f32| {
             if along == 0.0 {
@@ -318,7 +319,7 @@ fn sides(def: &HeightFieldDef) -> [f32; 2] {
     [(def.columns - 1) as f32 * def.spacing[0], (def.rows - 1) as f32 * def.spacing[1]]
 }
 
-/// Vector from a point to the corner of the bounds that is farthest.
+/// Absolute distances along each axis from a point to the farthest corner of the bounds, metres.
 fn abs_farthest(bounds: &Aabb, p: Vec3) -> Vec3 {
     sinew_math::max3(sinew_math::abs3(bounds.max - p), sinew_math::abs3(bounds.min - p))
 }
@@ -331,7 +332,7 @@ fn check(def: &HeightFieldDef) -> Result<(), HeightFieldError> {
     if def.heights.len() != vertices {
         return Err(HeightFieldError::Heights { heights: def.heights.len(), vertices });
     }
-    // Written so that NaN fails.
+    // This form rejects NaN.
     if !(def.spacing.iter().all(|&x| x > 0.0) && sides(def).iter().all(|&x| x <= MAX_COORDINATE)) {
         return Err(HeightFieldError::Spacing);
     }
@@ -345,7 +346,7 @@ fn check(def: &HeightFieldDef) -> Result<(), HeightFieldError> {
     }
 }
 
-/// Hash of the numbers; holes by where they are, not by how they were listed.
+/// Hash of the numbers; holes count by their cells, not by their order in the list.
 fn hash(def: &HeightFieldDef, cells: &[u8]) -> u64 {
     let mut hasher = StableHasher::default();
     hasher.write(&(def.columns as u64).to_le_bytes());

@@ -7,7 +7,7 @@ use crate::boxes::Aabb;
 use core::fmt;
 use sinew_math::{StableHasher, Vec3};
 
-/// Most triangles of a mesh.
+/// Largest number of triangles of a mesh.
 pub const MAX_TRIANGLES: usize = 1 << 28;
 /// Largest coordinate of a vertex, metres.
 pub const MAX_COORDINATE: f32 = 1e6;
@@ -15,28 +15,28 @@ pub const MAX_COORDINATE: f32 = 1e6;
 /// Error returned when triangles do not form a valid mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshError {
-    /// No triangle is left, or none has an area.
+    /// There is no triangle, or none has an area.
     NoTriangles {
         /// Number of triangles without area.
         degenerate: usize,
     },
-    /// A triangle names a missing vertex.
+    /// A triangle refers to a missing vertex.
     IndexOutOfRange {
-        /// Number of the triangle.
+        /// Index of the triangle.
         triangle: usize,
-        /// Vertex that it names.
+        /// Index of the missing vertex.
         index: u32,
         /// Number of vertices.
         vertices: usize,
     },
-    /// A vertex whose coordinates are not finite, or beyond [`MAX_COORDINATE`].
+    /// A vertex has coordinates that are not finite, or beyond [`MAX_COORDINATE`].
     NotFinite {
-        /// Number of the vertex.
+        /// Index of the vertex.
         vertex: usize,
     },
-    /// More triangles than [`MAX_TRIANGLES`], or more vertices than three of each.
+    /// More triangles than [`MAX_TRIANGLES`], or more than three vertices for each of that many.
     TooMany {
-        /// Number that was given.
+        /// Number of given triangles.
         triangles: usize,
     },
 }
@@ -57,10 +57,10 @@ impl fmt::Display for MeshError {
 
 impl core::error::Error for MeshError {}
 
-/// A surface of triangles, each solid on the side from which its corners run counter-clockwise; for levels. It may be
-/// open and need not enclose anything.
+/// Surface of triangles for levels; each triangle is solid on the side from which its corners are counter-clockwise.
+/// The surface may be open and need not enclose a volume.
 ///
-/// Internal edges are inactive: only edges at which the surface falls away by more than 5°, and its rim, cause
+/// Internal edges are inactive: only edges at which the surface bends down by more than 5°, and its rim, cause
 /// contacts.
 #[derive(Clone, Debug)]
 pub struct Mesh {
@@ -72,11 +72,11 @@ pub struct Mesh {
     hash: u64,
 }
 
-/// A triangle as stored.
+/// A triangle as the mesh stores it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
     pub vertices: [u32; 3],
-    /// Number in the user's list in the low 28 bits, active edges in the three above.
+    /// Index in the user's list in the low 28 bits, active edges in the three bits above.
     tag: u32,
 }
 
@@ -116,22 +116,22 @@ impl Mesh {
         Self { vertices, faces, tree, dropped, hash }
     }
 
-    /// Unique vertices, metres.
+    /// Returns the unique vertices, metres.
     pub fn vertices(&self) -> &[Vec3] {
         &self.vertices
     }
 
-    /// The kept triangles, by [`vertices`](Self::vertices), in the mesh's own order.
+    /// Iterates over the kept triangles, as indices into [`vertices`](Self::vertices), in the mesh's own order.
     pub fn triangles(&self) -> impl ExactSizeIterator<Item = [u32; 3]> {
         self.faces.iter().map(|face| face.vertices)
     }
 
-    /// The corners of each, metres.
+    /// Iterates over the corners of each triangle, metres.
     pub fn corners_of_all(&self) -> impl ExactSizeIterator<Item = [Vec3; 3]> {
         self.faces.iter().map(|face| face.vertices.map(|v| self.vertices[v as usize]))
     }
 
-    /// The triangles with their numbers in the user's list.
+    /// Iterates over the triangles with their indices in the user's list.
     pub(super) fn numbered(&self) -> impl Iterator<Item = (u32, [u32; 3])> {
         self.faces.iter().map(|face| (face.number(), face.vertices))
     }
@@ -141,7 +141,7 @@ impl Mesh {
         self.faces.len()
     }
 
-    /// Dropped triangles.
+    /// Returns the numbers of dropped triangles.
     pub fn dropped(&self) -> Dropped {
         self.dropped
     }
@@ -151,7 +151,7 @@ impl Mesh {
         self.tree.bounds()
     }
 
-    /// Hash of the content: equal for equal vertices and triangles, on every machine.
+    /// Hash of the content: equal for equal vertices and triangles on every machine.
     pub fn content_hash(&self) -> u64 {
         self.hash
     }
@@ -168,7 +168,7 @@ impl Mesh {
         &self.tree
     }
 
-    /// The triangle at a position of the tree.
+    /// Returns the triangle at a position in leaf order.
     pub(super) fn triangle(&self, place: u32) -> Triangle {
         let face = self.faces[place as usize];
         Triangle::new(self.corners(place), face.vertices, face.active())

@@ -1,6 +1,6 @@
 //! Surfaces of one-sided triangles: meshes and height fields.
 //!
-//! Both implement the same queries (`Surface`): nearby triangles, closest point, entry of a line. `collide/triangles`
+//! Both kinds have the same queries (`Surface`): nearby triangles, closest point, entry of a line. `collide/triangles`
 //! computes contacts.
 
 mod build;
@@ -19,40 +19,40 @@ pub use triangle::{Part, Triangle, closest_on_triangle, normal};
 use crate::boxes::{Aabb, Overlap};
 use sinew_math::Vec3;
 
-/// An edge by its corners, the smaller number first.
+/// Returns an edge as its two vertices, the smaller index first.
 fn ordered(a: u32, b: u32) -> (u32, u32) {
     if a < b { (a, b) } else { (b, a) }
 }
 
-/// A shape of one-sided triangles.
+/// A shape that consists of one-sided triangles.
 #[derive(Clone, Copy, Debug)]
 pub enum Surface<'a> {
-    /// Any triangles.
+    /// Triangle mesh.
     Mesh(&'a Mesh),
-    /// Triangles over a grid.
+    /// Height field: triangles over a grid.
     HeightField(&'a HeightField),
 }
 
-/// The point of a surface that is closest to another.
+/// Point of a surface that is closest to another point.
 #[derive(Clone, Copy, Debug)]
 pub struct Closest {
     /// Square of the distance, m².
     pub square: f32,
     /// Closest point, in the surface's frame, metres.
     pub point: Vec3,
-    /// Feature of the triangle that it lies on.
+    /// Feature of the triangle that contains the point.
     part: Part,
-    /// Triangle that it lies on.
+    /// Triangle that contains the point.
     pub triangle: Triangle,
 }
 
 impl Closest {
-    /// Distance, negative behind the surface, and the unit outward direction.
+    /// Returns the distance, metres, negative behind the surface, and the unit outward direction.
     pub fn signed(&self, p: Vec3) -> (f32, Vec3) {
         let (away, distance) = (p - self.point, self.square.sqrt());
         let height = self.triangle.height(p);
         let sign = if height < 0.0 { -1.0 } else { 1.0 };
-        // Over a face it has the face's own normal. The direction between points that all but coincide is rounding.
+        // Over a face, the normal is that of the face. The direction between nearly coincident points is rounding.
         let precise = distance > 1e-5 * (1.0 + p.length());
         match self.part {
             Part::Face => (height, self.triangle.normal),
@@ -61,8 +61,8 @@ impl Closest {
         }
     }
 
-    /// Takes `other` instead if it is nearer. For a point that several triangles share, the triangle whose plane is
-    /// furthest from `p` decides the side.
+    /// Replaces `best` if the new point is nearer. For a point that several triangles share, the triangle whose plane
+    /// is furthest from `p` decides the side.
     fn improve(
         best: &mut Option<Self>,
         p: Vec3,
@@ -90,7 +90,7 @@ impl Closest {
 }
 
 impl Surface<'_> {
-    /// Calls `visit` with the triangles whose bounds overlap `region`, always in the same order.
+    /// Calls `visit` with the triangles whose bounds overlap `region`, in a deterministic order.
     pub fn overlapping(&self, region: &Aabb, mut visit: impl FnMut(Triangle)) {
         match self {
             Self::Mesh(mesh) => mesh.tree().overlapping(region, |places| {
@@ -104,7 +104,7 @@ impl Surface<'_> {
         }
     }
 
-    /// The point closest to `p`, if it is nearer than `reach`, metres.
+    /// Returns the point closest to `p`, if it is nearer than `reach`, metres.
     pub fn closest(&self, p: Vec3, reach: f32) -> Option<Closest> {
         let limit = reach * reach;
         match self {
@@ -123,8 +123,8 @@ impl Surface<'_> {
         }
     }
 
-    /// Share of `direction` (≥ 0, may exceed 1) at which a line from `origin` enters the surface from its outside, and
-    /// the surface's normal there.
+    /// Returns the share of `direction` (≥ 0, may exceed 1) at which a line from `origin` enters the surface from its
+    /// outside, and the surface's normal there.
     pub fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         match self {
             Self::Mesh(mesh) => {

@@ -1,4 +1,4 @@
-//! Meshes and height fields as bytes, for the library of a world.
+//! Meshes and height fields as bytes, for the shape library of a world.
 
 use super::build::{self, Dropped};
 use super::height_field::{HeightField, HeightFieldDef};
@@ -6,7 +6,7 @@ use super::mesh::{MAX_TRIANGLES, Mesh};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
 impl Mesh {
-    /// Writes vertices, triangles with their numbers, and the number of dropped ones.
+    /// Writes the vertices, the triangles with their indices in the user's list, and the numbers of dropped triangles.
     pub fn save(&self, w: &mut Writer) {
         w.count(self.vertices().len());
         for &vertex in self.vertices() {
@@ -24,10 +24,10 @@ impl Mesh {
         }
     }
 
-    /// Reads what [`save`](Self::save) wrote: an equal mesh, with the same hash.
+    /// Reads the format of [`save`](Self::save) into an equal mesh, with the same hash.
     ///
     /// # Errors
-    /// Bytes that no mesh was written as.
+    /// If the bytes are not those of a mesh.
     pub fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
         let count = r.count(12)?;
         let mut vertices: Vec<Vec3> = Vec::with_capacity(count);
@@ -55,7 +55,7 @@ impl Mesh {
 }
 
 impl HeightField {
-    /// Writes heights, spacing and holes.
+    /// Writes the heights, the spacing and the holes.
     pub fn save(&self, w: &mut Writer) {
         let def = self.def();
         w.u32(def.columns as u32);
@@ -67,10 +67,10 @@ impl HeightField {
         def.holes.iter().for_each(|&hole| w.u32(hole));
     }
 
-    /// Reads what [`save`](Self::save) wrote: an equal height field, with the same hash.
+    /// Reads the format of [`save`](Self::save) into an equal height field, with the same hash.
     ///
     /// # Errors
-    /// Bytes that no height field was written as.
+    /// If the bytes are not those of a height field.
     pub fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
         let (columns, rows) = (r.u32()? as usize, r.u32()? as usize);
         let spacing = [r.f32()?, r.f32()?];

@@ -1,35 +1,35 @@
-//! One triangle of a surface: closest point, entry of a line.
+//! One triangle of a surface: its closest point, and the entry of a line.
 
 use crate::boxes::Aabb;
 use sinew_math::triangle::{Nearest, nearest};
 use sinew_math::{Vec3, max, max3, min3, normalize_or};
 
-/// A one-sided triangle: solid on the side from which its corners run counter-clockwise.
+/// A one-sided triangle: solid on the side from which its corners are counter-clockwise.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Triangle {
     /// Corners, counter-clockwise seen from outside, metres.
     pub corners: [Vec3; 3],
-    /// Unit normal, to the outside.
+    /// Unit normal toward the outside.
     pub normal: Vec3,
     /// Names of the corners, shared by adjacent triangles.
     pub vertices: [u32; 3],
-    /// Bit k is set if the edge from corner k to the next one is active: the surface ends or falls away there.
+    /// Active edges: bit k for the edge from corner k to the next, if the surface ends or bends down there.
     pub active: u8,
 }
 
 /// Feature of a triangle: its face, an edge or a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// Inside of the triangle.
+    /// Interior of the triangle.
     Face,
-    /// Edge from the corner with this number, 0..3, to the next one.
+    /// Edge from the corner with this index, 0..3, to the next one.
     Edge(usize),
-    /// Corner with this number, 0..3.
+    /// Corner with this index, 0..3.
     Corner(usize),
 }
 
 impl Part {
-    /// Feature at a parameter of an edge, 0..=1 from its first corner to its second: its ends are corners.
+    /// Returns the feature at a parameter of an edge, 0..=1 from its first corner to its second; the ends are corners.
     pub fn on_edge(edge: usize, share: f32) -> Self {
         match share {
             t if t <= 0.0 => Self::Corner(edge),
@@ -40,30 +40,30 @@ impl Part {
 }
 
 impl Triangle {
-    /// Triangle with its normal computed.
+    /// Creates a triangle and computes its normal.
     #[inline]
     pub fn new(corners: [Vec3; 3], vertices: [u32; 3], active: u8) -> Self {
         Self { corners, normal: normal(&corners), vertices, active }
     }
 
-    /// Height of a point over its plane, metres.
+    /// Height of a point over the triangle's plane, metres.
     #[inline]
     pub fn height(&self, p: Vec3) -> f32 {
         (p - self.corners[0]).dot(self.normal)
     }
 
-    /// True if the edge with this number, 0..3, can be hit.
+    /// True if the edge with this index, 0..3, can cause contacts.
     #[inline]
     pub fn is_active(&self, edge: usize) -> bool {
         self.active >> edge & 1 == 1
     }
 
-    /// The vertices of an edge, the smaller name first.
+    /// Returns the vertices of an edge, the smaller one first.
     pub fn edge_vertices(&self, edge: usize) -> (u32, u32) {
         super::ordered(self.vertices[edge], self.vertices[(edge + 1) % 3])
     }
 
-    /// The feature that reaches furthest along a direction, within `tolerance`, metres.
+    /// Returns the feature that extends furthest along a direction, within `tolerance`, metres.
     pub fn support(&self, direction: Vec3, tolerance: f32) -> Part {
         let along = self.corners.map(|corner| corner.dot(direction));
         let top = max(max(along[0], along[1]), along[2]);
@@ -78,14 +78,15 @@ impl Triangle {
         }
     }
 
-    /// The triangle in another frame, in which the origin of this one is `offset` away.
+    /// Returns the triangle moved by `offset`, metres.
     #[inline]
     pub fn moved(&self, offset: Vec3) -> Self {
         Self { corners: self.corners.map(|corner| corner + offset), ..*self }
     }
 }
 
-/// Unit normal of a triangle, toward the side from which the corners run counter-clockwise; up if they lie on a line.
+/// Unit normal of a triangle, toward the side from which the corners are counter-clockwise; +y if the corners are
+/// collinear.
 pub fn normal(&[a, b, c]: &[Vec3; 3]) -> Vec3 {
     normalize_or((b - a).cross(c - a), Vec3::Y)
 }
@@ -94,7 +95,7 @@ pub(crate) fn bounds(&[a, b, c]: &[Vec3; 3]) -> Aabb {
     Aabb { min: min3(min3(a, b), c), max: max3(max3(a, b), c) }
 }
 
-/// The point of a triangle closest to `p`, and its feature.
+/// Returns the point of a triangle closest to `p`, and its feature.
 pub fn closest_on_triangle(corners: &[Vec3; 3], p: Vec3) -> (Vec3, Part) {
     let [a, b, c] = *corners;
     match nearest(corners, p) {
@@ -106,10 +107,11 @@ pub fn closest_on_triangle(corners: &[Vec3; 3], p: Vec3) -> (Vec3, Part) {
     }
 }
 
-/// Share of `direction` (≥ 0, may exceed 1) at which a line from `origin` enters a triangle from its outside.
+/// Returns the share of `direction` (≥ 0, may exceed 1) at which a line from `origin` enters a triangle from its
+/// outside.
 ///
-/// By the sign of the line's rotation around each side, which is exactly opposite for the neighbouring triangle: no
-/// line slips through between two triangles.
+/// Uses the sign of the line's rotation around each side. For the neighbouring triangle this sign is exactly opposite,
+/// so no line passes between two triangles.
 pub(crate) fn enter_triangle(corners: &[Vec3; 3], origin: Vec3, direction: Vec3) -> Option<f32> {
     let [a, b, c] = corners.map(|corner| corner - origin);
     let beside = |p: Vec3, q: Vec3| direction.dot(p.cross(q));

@@ -1,4 +1,4 @@
-//! Random cases: their number and sizes.
+//! Number and sizes of random cases.
 
 use sinew_math::{Random, Vec3};
 
@@ -7,7 +7,7 @@ pub fn cases(all: u32) -> u32 {
     if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
 }
 
-/// Half extents between 0.2 and 1 of `scale`, in a quarter of the cases some of them 0.
+/// Returns half extents between 0.2 and 1 of `scale`; in a quarter of the cases some of them are 0.
 pub fn half_extents(scale: f32, random: &mut Random) -> Vec3 {
     let flat = random.index(4) == 0;
     let mut side = || if flat && random.index(2) == 0 { 0.0 } else { scale * random.range(0.2, 1.0) };

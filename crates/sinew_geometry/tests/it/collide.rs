@@ -1,4 +1,4 @@
-//! Narrow phase: pairs with closed forms, and every pair of kinds against brute force.
+//! Narrow phase: pairs with closed forms, and every pair of kinds compared with brute force.
 
 mod brute;
 mod placed;
@@ -91,7 +91,7 @@ fn corners_that_pass_each_other_touch_at_the_corners() {
     assert_eq!(a.collide(&b, 0.017).count, 0);
 }
 
-/// A capsule on a box that hangs over its edge: one point at its end, one where the box ends.
+/// A capsule that overhangs a box: one point at its end, one at the edge of the box.
 #[test]
 fn capsule_on_box_touches_along_a_line() {
     let ground = unit_box(Vec3::ZERO, Rotation::IDENTITY);
@@ -109,7 +109,7 @@ fn capsule_on_box_touches_along_a_line() {
     assert!(m.points().iter().all(|p| (p.separation + 0.001).abs() < 1e-5));
 }
 
-/// Feature ids stay while a box rocks and slides by less than a millimetre.
+/// Feature ids do not change while a box rocks and slides by less than a millimetre.
 #[test]
 fn features_survive_small_motion() {
     let mut random = Random::new(4);
@@ -132,7 +132,7 @@ fn features_survive_small_motion() {
     }
 }
 
-/// For any shapes: a finite unit normal for coincident centres, flat boxes, capsules of length zero.
+/// All shapes with coincident centres, flat boxes, and capsules of length zero have finite unit normals.
 #[test]
 fn degenerate_pairs_have_finite_contacts() {
     let shapes = [

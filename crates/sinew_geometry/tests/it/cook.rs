@@ -1,11 +1,11 @@
-//! Meshes to boxes: closed forms, brute force, bad input.
+//! Cooking of meshes to boxes: closed forms, brute force, invalid input.
 
 use sinew_geometry::boxes::Cuboid;
 use sinew_geometry::cook::{CookError, CookOptions, Cooked, MeshBvh, cook};
 use sinew_geometry::{Obb, Shape};
 use sinew_math::{Mat3, Random, Rotation, Vec3, trig};
 
-/// Vertices and triangles, counter-clockwise from outside.
+/// Vertices and triangles, counter-clockwise seen from outside.
 #[derive(Clone, Default)]
 struct Mesh {
     positions: Vec<Vec3>,
@@ -19,7 +19,7 @@ impl Mesh {
         self.triangles.extend((1..corners.len() as u32 - 1).map(|k| [first, first + k, first + k + 1]));
     }
 
-    /// Returns a box without the faces `left_out` (−x, +x, −y, +y, −z, +z), and its frame.
+    /// Adds a box without the faces `left_out` (−x, +x, −y, +y, −z, +z).
     fn block(&mut self, center: Vec3, half: Vec3, rotation: Rotation, left_out: &[usize]) {
         const FACES: [[usize; 4]; 6] =
             [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
@@ -74,7 +74,7 @@ impl Mesh {
     }
 }
 
-/// Returns a closed flight of steps, each `rise` high and `run` deep, going down along x.
+/// Returns a closed flight of steps, each `rise` high and `run` deep, descending along x.
 fn stairs(steps: usize, rise: f32, run: f32, width: f32) -> Mesh {
     let mut outline = vec![[0.0, 0.0], [steps as f32 * run, 0.0]];
     let mut pieces = Vec::new();
@@ -82,11 +82,11 @@ fn stairs(steps: usize, rise: f32, run: f32, width: f32) -> Mesh {
         let (x, y) = ((steps - step) as f32 * run, (step + 1) as f32 * rise);
         outline.extend([[x, y], [x - run, y]]);
     }
-    // Each step's side as a column; corners on the ground between columns are added to the outline.
+    // The side of each step as a column; corners on the ground between columns are added to the outline.
     let grounds: Vec<[f32; 2]> = (1..steps).map(|k| [k as f32 * run, 0.0]).collect();
     outline.splice(1..1, grounds);
     for k in 0..steps {
-        // The column between ground corners k and k + 1, whose top has two corners of the outline.
+        // Column between ground corners k and k + 1; its top has two corners of the outline.
         let top = 2 * (steps - 1 - k) + steps + 1;
         pieces.push(vec![k, k + 1, top, top + 1]);
     }
@@ -141,7 +141,8 @@ fn every_step_of_a_flight_is_a_box() {
     }
 }
 
-/// Returns a closed flight of steps whose treads are level except for a worn edge: the last `worn` of the run falls by `drop`.
+/// Returns a closed flight of steps whose treads are level except for a worn edge: the last `worn` of the run descends
+/// by `drop`.
 fn worn_stairs(steps: usize, [rise, run, width]: [f32; 3], worn: f32, drop: f32) -> Mesh {
     let mut outline: Vec<[f32; 2]> = (0..=steps).map(|k| [k as f32 * run, 0.0]).collect();
     for step in 0..steps {
@@ -170,7 +171,7 @@ fn a_tread_stays_level_and_as_high_as_it_was_drawn() {
         let cooked = mesh.cook(150);
         for step in 0..6 {
             let height = (6 - step) as f32 * rise;
-            // Behind the worn part.
+            // Behind the worn part of the tread.
             let at = about * Vec3::new((step as f32 + 0.25) * run, height, 0.5 * width);
             let under = cooked.boxes.iter().filter(|block| block.signed_distance(at - Vec3::Y * 0.04) < 0.0);
             let found = under.map(|block| {
@@ -202,7 +203,7 @@ fn few_triangles_use_the_budget() {
     mesh.triangles.extend(roof.triangles.iter().map(|t| t.map(|i| i + first)));
     let [few, many] = [12, 150].map(|most| mesh.cook(most));
     assert!(few.boxes.len() <= 12 && many.boxes.len() > 15, "{} and {}", few.boxes.len(), many.boxes.len());
-    // In 13 boxes, as cells of the usual size give, 0.15 m.
+    // With 13 boxes, which cells of the usual size give, the deviation is 0.15 m.
     let [few, many] = [few, many].map(|cooked| cooked.deviation.distance_p95);
     assert!(many < 0.09 && many < 0.2 * few, "{few} and {many} m");
 }
@@ -237,7 +238,7 @@ fn a_sheet_becomes_a_plate_behind_its_face() {
     let cooked = mesh.cook(150);
     assert_eq!((cooked.boxes.len(), cooked.deviation.volume_ratio), (1, None));
     let plate = cooked.boxes[0];
-    // 1 % of the diagonal of 5 m, or thinner; the face is its top.
+    // 1 % of the diagonal of 5 m, or thinner; the drawn face is the top of the plate.
     assert!(top(&plate).abs() < 1e-3, "{plate:?}");
     assert!(cooked.deviation.distance_max < 0.051, "{cooked:?}");
     assert!(plate.half_extents.y > 1e-3, "{plate:?}");
@@ -275,7 +276,7 @@ fn a_shell_is_filled_only_if_that_is_closer() {
 
 #[test]
 fn the_budget_is_kept_at_least_cost() {
-    // Pairs of blocks with a gap of 1 cm, one of them with a small bump: the least important parts are dropped first.
+    // Pairs of blocks with a gap of 1 cm, one block with a small bump: the least important parts are dropped first.
     let mut mesh = Mesh::default();
     for row in 0..10 {
         for column in 0..10 {
@@ -292,7 +293,7 @@ fn the_budget_is_kept_at_least_cost() {
     assert_eq!(mesh.cook(1).boxes.len(), 1);
 }
 
-/// So many parts that comparing all pairs would take minutes.
+/// A mesh with so many parts that comparing all pairs would take minutes.
 #[test]
 fn thousands_of_parts_finish_quickly() {
     let mut mesh = Mesh::default();
@@ -340,7 +341,7 @@ fn bad_meshes_are_refused_with_their_place() {
     let mut flat = mesh.clone();
     flat.positions.fill(Vec3::X);
     assert_eq!(refuse(&flat).1, "none of the 12 triangles has an area");
-    // A vertex without a triangle does no harm.
+    // An unused vertex has no effect.
     mesh.positions.push(Vec3::splat(f32::INFINITY));
     assert_eq!(mesh.cook(150).boxes.len(), 1);
 }
@@ -355,7 +356,7 @@ fn degenerate_and_repeated_triangles_are_left_out() {
     assert_eq!((repairs.degenerate, repairs.repeated, repairs.open_edges), (2, 1, 0));
 }
 
-/// Random, mostly invalid meshes: each gives boxes or an error.
+/// Each of a few random, mostly invalid meshes gives boxes or an error.
 #[test]
 fn random_meshes_give_boxes_or_errors() {
     let mut random = Random::new(11);
@@ -365,7 +366,7 @@ fn random_meshes_give_boxes_or_errors() {
         let positions: Vec<Vec3> = (0..count)
             .map(|_| {
                 let p = random.in_cube() * scale;
-                // Some of it flat, some on a line.
+                // Some meshes are flat, some are on a line.
                 Vec3::new(p.x, if case % 3 == 0 { 0.0 } else { p.y }, if case % 7 == 0 { 0.0 } else { p.z })
             })
             .collect();
@@ -409,7 +410,7 @@ fn closest_points_equal_brute_force() {
     }
 }
 
-/// Distance to a triangle: to its plane if p is above it, else to the nearest of its edges.
+/// Distance to a triangle: to its plane if p is over the triangle, otherwise to the nearest edge.
 fn brute_distance(&[a, b, c]: &[Vec3; 3], p: Vec3) -> f32 {
     let normal = (b - a).cross(c - a).normalize();
     let above = Mat3::from_cols(b - a, c - a, normal).inverse() * (p - a);
@@ -440,6 +441,6 @@ fn winding_numbers_tell_inside_from_outside() {
             assert!((sphere.winding_number(p) - expected).abs() < 0.06, "{p}: {}", sphere.winding_number(p));
         }
     }
-    // Five of six faces, each a sixth of all directions.
+    // Five of six faces, each of which covers a sixth of all directions.
     assert!((open.winding_number(Vec3::ZERO) - 5.0 / 6.0).abs() < 1e-5);
 }

@@ -1,4 +1,4 @@
-//! Integration tests of the geometry, held against closed forms and brute force.
+//! Integration tests of the geometry, compared with closed forms and brute force.
 
 mod boxes;
 mod cases;

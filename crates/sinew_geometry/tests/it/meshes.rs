@@ -1,4 +1,4 @@
-//! A triangle against shapes, a mesh against rays and points, by brute force.
+//! Triangles against shapes, and meshes against rays and points, compared with brute force.
 
 use crate::cases::cases;
 use sinew_geometry::collide::{Manifold, collide_all};
@@ -45,8 +45,8 @@ fn shape(kind: usize, random: &mut Random) -> Shape {
     }
 }
 
-/// Returns the distance of a convex shape from a triangle, negative for an overlap: its signed distance is a convex function
-/// over the triangle, whose minimum two nested searches find.
+/// Returns the distance of a convex shape from a triangle, negative for an overlap. The signed distance is a convex
+/// function over the triangle; two nested searches find its minimum.
 fn distance(shape: &Shape, frame: &Transform, &[a, b, c]: &[Vec3; 3]) -> f32 {
     let least = |f: &dyn Fn(f32) -> f32| {
         let (mut low, mut high) = (0.0_f32, 1.0_f32);
@@ -74,7 +74,7 @@ fn nearest(manifolds: &[Manifold]) -> f32 {
     points.fold(f32::INFINITY, |least, point| least.min(point.separation))
 }
 
-/// 100,000 cases of each kind with `SINEW_FULL` set, otherwise a hundredth.
+/// Runs 100,000 cases of each kind with `SINEW_FULL` set, otherwise a hundredth.
 #[test]
 fn triangle_distances_match_search() {
     let mut random = Random::new(41);
@@ -91,7 +91,7 @@ fn near_a_triangle(kind: usize, random: &mut Random) {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).normalize();
         let over = a + (b - a) * random.range(-0.2, 0.7) + (c - a) * random.range(-0.2, 0.7);
-        // A triangle is solid from its front only: the centre is in front.
+        // A triangle is solid only from its front, so the centre of the shape is in front.
         let rotation = random.rotation();
         let away = normal * random.range(0.02, 1.0) - rotation * middle(&shape);
         let frame = Transform::new(over + away, rotation);
@@ -99,7 +99,7 @@ fn near_a_triangle(kind: usize, random: &mut Random) {
         let found = contacts(&mesh, &Transform::IDENTITY, &shape, &frame);
         let separation = nearest(&found);
         let place = format!("case {case}: {shape:?} at {frame:?} over {corners:?}: {expected}, {found:?}");
-        // Round ends are octagons here, round sides are lines.
+        // Round ends are represented by octagons, round sides by lines.
         let round =
             matches!(shape, Shape::Cylinder { .. } | Shape::Cone { .. } | Shape::TaperedCapsule { .. });
         let tolerance = 2e-3 + if round { 0.08 * shape.bounding_radius() } else { 0.0 };
@@ -110,11 +110,11 @@ fn near_a_triangle(kind: usize, random: &mut Random) {
             assert!(found.len() == 1 && (separation - expected).abs() < tolerance, "{place}");
         } else if expected < -1e-3 {
             deep += 1;
-            // Moved along the normal, the shape no longer overlaps.
+            // The shape moved along the normal no longer overlaps.
             assert!(found.len() == 1 && separation < 0.0, "{place}");
             let left = distance(&shape, &moved_out(&frame, &found[0]), &corners);
-            // Depths within a twentieth count as deepest. A capsule deeper than half its thickness is measured over the
-            // triangle alone.
+            // Depths within a twentieth count as deepest. The depth of a capsule that is deeper than half its thickness
+            // is measured over the triangle alone.
             let measured = expected > -0.5 * shape.inner_radius() || !matches!(shape, Shape::Capsule { .. });
             assert!(!measured || left > -2e-3 + 0.05 * separation, "{place}, {left}");
         }
@@ -126,13 +126,13 @@ fn near_a_triangle(kind: usize, random: &mut Random) {
     assert!(apart * 5 > cases(100_000) && deep * 10 > cases(100_000), "{apart} apart, {deep} deep");
 }
 
-/// Moves a shape a millimetre further along the normal than its manifold says.
+/// Moves a shape out along the normal of its manifold, a millimetre further than the separation.
 fn moved_out(frame: &Transform, manifold: &Manifold) -> Transform {
     let separation = nearest(core::slice::from_ref(manifold));
     Transform::new(frame.translation - manifold.normal * (separation - 1e-3), frame.rotation)
 }
 
-/// Over the triangle the hull's lowest face is not its deepest part: a steeper face beside it is deeper by 23 mm.
+/// The lowest face over the triangle is not the deepest part of the hull: a steeper face beside it is deeper by 23 mm.
 #[test]
 fn the_deepest_face_beside_the_lowest_counts() {
     let corners =
@@ -159,8 +159,8 @@ fn the_deepest_face_beside_the_lowest_counts() {
     assert!(before < -0.09 && (0.0..2e-3).contains(&after), "{before}, {after}: {found:?}");
 }
 
-/// An edge of a box above the top of a pyramid has its height as distance: no side of the pyramid takes the top for
-/// a point of an edge, which the other sides would reject.
+/// The separation of a box edge above the top of a pyramid is the edge's height: no side of the pyramid treats the top
+/// as a point of an edge, which the other sides would reject.
 #[test]
 fn an_edge_over_a_peak_has_contacts() {
     let peak = Vec3::Y * 0.5;
@@ -204,7 +204,7 @@ fn order_and_place_do_not_matter() {
     }
 }
 
-/// The other order of the shapes gives the same points, opposite normals, and features with exchanged halves.
+/// Swapped shapes give the same points, opposite normals, and features with exchanged halves.
 fn check_exchanged(found: &[Manifold], swapped: &[Manifold]) {
     assert_eq!(found.len(), swapped.len());
     for (one, other) in found.iter().zip(swapped) {
@@ -248,7 +248,7 @@ fn terrain(random: &mut Random, side: usize) -> (Shape, Shape, Vec<[Vec3; 3]>) {
     (mesh, Shape::HeightField(Arc::new(HeightField::new(def).unwrap())), corners)
 }
 
-/// The nearest contact of a shape over terrain is that with the nearest of its triangles, each tested alone.
+/// The nearest contact of a shape over terrain is that of the nearest triangle, each triangle tested alone.
 #[test]
 fn terrain_distance_is_that_of_the_nearest_triangle() {
     let mut random = Random::new(45);
@@ -266,7 +266,7 @@ fn terrain_distance_is_that_of_the_nearest_triangle() {
             if mesh.cast_ray(&still, &down).is_none() {
                 continue;
             }
-            // A triangle of a closed surface is not solid from behind.
+            // A triangle of a closed surface is not solid from its back.
             let reach = shape.aabb(&frame).expand(MARGIN);
             let faces = |&[a, b, c]: &[Vec3; 3]| (b - a).cross(c - a).dot(middle - a) > 0.0;
             let meets = |&[a, b, c]: &[Vec3; 3]| {
@@ -298,13 +298,14 @@ fn terrain_distance_is_that_of_the_nearest_triangle() {
     }
 }
 
-/// Returns a point well inside: in front of or behind a triangle.
+/// Returns a point well inside a shape, which decides if the shape is in front of a triangle.
 fn middle(shape: &Shape) -> Vec3 {
     let centred = matches!(shape, Shape::Hull(_) | Shape::Cone { .. });
     if centred { shape.mass_properties(1.0).center } else { Vec3::ZERO }
 }
 
-/// Returns the point where a ray passes through a triangle from above, by its plane and barycentric coordinates in `f64`.
+/// Returns the parameter at which a ray passes through a triangle from above, by plane and barycentric coordinates in
+/// `f64`.
 fn pierced(&[a, b, c]: &[Vec3; 3], ray: &Ray) -> Option<f64> {
     let wide = |v: Vec3| v.to_array().map(f64::from);
     let sub = |p: [f64; 3], q: [f64; 3]| core::array::from_fn::<f64, 3, _>(|k| p[k] - q[k]);
@@ -345,7 +346,7 @@ fn terrain_rays_match_triangle_rays() {
                     assert!((t - f64::from(found)).abs() < 1e-4, "case {case}: {t} {found}");
                 }
                 (None, None) => {}
-                // An end on the surface.
+                // The ray starts or ends on the surface.
                 (t, found) => {
                     let at = t.map(|t| t as f32).or(found).unwrap();
                     assert!(!(1e-4..=1.0 - 1e-4).contains(&at), "case {case}: {t:?} {found:?}");
@@ -355,7 +356,7 @@ fn terrain_rays_match_triangle_rays() {
         }
     }
     assert!(hits * 4 > cases(100_000), "{hits} hits");
-    // Down through every edge and vertex: nothing passes between two triangles.
+    // Rays down through every edge and vertex: none passes between two triangles.
     for i in 1..40 {
         for j in 1..40 {
             let over = Vec3::new(0.25 * i as f32, 5.0, 0.25 * j as f32);

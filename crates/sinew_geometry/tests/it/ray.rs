@@ -1,4 +1,4 @@
-//! Rays, distances, bounds and masses of shapes, against marching and sampling.
+//! Rays, distances, bounds and masses of shapes, compared with marching and sampling.
 
 use sinew_geometry::ray::Ray;
 use sinew_geometry::{MassProperties, Shape};
@@ -37,14 +37,14 @@ fn holds(shape: &Shape, p: Vec3) -> bool {
             (p.x * p.x + p.z * p.z + beyond * beyond).sqrt() <= radius
         }
         Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
-            // In one of the balls between the two: ρ² + (y − c)² ≤ r², where c and r are linear along the axis.
+            // True in one of the balls between the two ends: ρ² + (y − c)² ≤ r², with c and r linear along the axis.
             let (rho, y) = (f64::from(p.x).hypot(f64::from(p.z)), f64::from(p.y));
             let beyond = |t: f64| {
                 let center = f64::from(half_height) * (2.0 * t - 1.0);
                 let radius = f64::from(radius_bottom) * (1.0 - t) + f64::from(radius_top) * t;
                 rho.hypot(y - center) - radius
             };
-            // It has one minimum: golden section.
+            // The function has one minimum, found by golden section search.
             let (mut low, mut high) = (0.0, 1.0);
             for _ in 0..30 {
                 let (u, v) = (low + 0.382 * (high - low), high - 0.382 * (high - low));
@@ -70,7 +70,7 @@ fn frames(random: &mut Random) -> Transform {
     Transform::new(random.in_cube() * 3.0, random.rotation())
 }
 
-/// Marching along the ray finds the same entry; the normal is the surface's there.
+/// Marching along the ray finds the same entry; the normal is that of the surface there.
 #[test]
 fn rays_enter_where_marching_does() {
     const STEPS: u32 = 4000;
@@ -100,7 +100,7 @@ fn rays_enter_where_marching_does() {
                     }
                     if hit.fraction > 0.0 {
                         assert!(hit.normal.dot(ray.direction) <= 1e-5, "{shape:?} case {case}");
-                        // The whole shape lies behind the plane through the hit.
+                        // The whole shape is behind the plane through the hit.
                         let behind =
                             surface.iter().all(|p| (frame.point(*p) - hit.point).dot(hit.normal) < 2e-4);
                         assert!(behind, "{shape:?} case {case}: {outward} {hit:?}");
@@ -116,7 +116,7 @@ fn rays_enter_where_marching_does() {
     }
 }
 
-/// A ray of 10 km meets a ball of 1 cm where it should.
+/// A ray of 10 km hits a ball of 1 cm at the right point.
 #[test]
 fn long_rays_keep_their_precision() {
     let ball = Shape::Sphere { radius: 0.01 };
@@ -145,7 +145,7 @@ fn degenerate_rays_hit_nothing_outside() {
     }
 }
 
-/// Moving out along the normal by the distance ends on the surface, and no sampled surface point is closer.
+/// A displacement along the normal by the distance ends on the surface, and no sampled surface point is closer.
 #[test]
 fn signed_distance_is_the_closest_surface() {
     let mut random = Random::new(2);
@@ -166,7 +166,7 @@ fn signed_distance_is_the_closest_surface() {
     }
 }
 
-/// Returns a point of the surface by bisection between a point inside and one outside.
+/// Returns a point of the surface, by bisection between a point inside and a point outside.
 fn surface_point(shape: &Shape, random: &mut Random) -> Option<Vec3> {
     let (mut inside, mut outside) = (random.in_cube(), random.direction() * 3.0);
     if !holds(shape, inside) || holds(shape, outside) {
@@ -183,7 +183,7 @@ fn surface_point(shape: &Shape, random: &mut Random) -> Option<Vec3> {
     Some(inside)
 }
 
-/// Volume, mass and inertia by integration over a grid; shifted, rotated and combined.
+/// Volume, mass and inertia equal integration over a grid; also shifted, rotated and combined.
 #[test]
 fn mass_properties_match_integration() {
     const CELLS: i32 = 80;
@@ -193,7 +193,7 @@ fn mass_properties_match_integration() {
     for shape in solids() {
         let (mut mass, mut moment, mut inertia) = (0.0f64, 0.0f64, [0.0f64; 3]);
         for k in 0..CELLS * CELLS * CELLS {
-            // Random within its cell, else whole layers of cells would be in or out.
+            // Random within its cell, otherwise whole layers of cells would be inside or outside.
             let mut at = |i: i32| (i as f32 + random.unit()) * CELL - 1.0;
             let p = Vec3::new(at(k % CELLS), at(k / CELLS % CELLS), at(k / CELLS / CELLS));
             if holds(shape, p) {
@@ -218,7 +218,7 @@ fn mass_properties_match_integration() {
     assert_eq!(Shape::HalfSpace.mass_properties(density), MassProperties::default());
 }
 
-/// A box cut in two and combined again, in a rotated frame.
+/// Two halves of a box, combined in a rotated frame, have the mass properties of the box.
 #[test]
 fn masses_of_two_halves_sum_to_the_box() {
     let whole = Shape::Box { half_extents: Vec3::new(0.4, 0.2, 0.1) }.mass_properties(1000.0);
@@ -237,7 +237,7 @@ fn masses_of_two_halves_sum_to_the_box() {
     assert_eq!(MassProperties::default().combine(&MassProperties::default()), MassProperties::default());
 }
 
-/// Bounds contain every point of the shape, and each of their sides is touched.
+/// Bounds contain every point of the shape, and the shape touches each of their sides.
 #[test]
 fn bounds_are_tight() {
     let mut random = Random::new(3);

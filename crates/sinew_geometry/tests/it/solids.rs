@@ -4,12 +4,12 @@ use sinew_geometry::{Hull, Shape};
 use sinew_math::{Random, Vec3};
 use std::sync::Arc;
 
-/// Hull of points that span a solid.
+/// Returns the hull of points that span a solid.
 pub fn hull_of(points: &[Vec3]) -> Arc<Hull> {
     Arc::new(Hull::new(points).expect("a solid"))
 }
 
-/// Corners of a box around the origin.
+/// Returns the corners of a box around the origin.
 pub fn corners(half: Vec3) -> Vec<Vec3> {
     let side = |bits: u32, k: u32| if bits >> k & 1 == 1 { 1.0 } else { -1.0 };
     (0..8).map(|bits| half * Vec3::new(side(bits, 0), side(bits, 1), side(bits, 2))).collect()

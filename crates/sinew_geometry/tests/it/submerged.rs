@@ -1,15 +1,15 @@
-//! Submerged volumes against brute force: every shape cut into thin disks or small cubes.
+//! Submerged volumes, compared with brute force: every shape is cut into small cubes.
 
 use crate::solids::pebble;
 use sinew_geometry::Shape;
 use sinew_geometry::submerged::{WaterPlane, submerged_hull};
 use sinew_math::{Random, Rotation, Transform, Vec3};
 
-/// Volume and moment of the cells of a fine grid that lie inside the shape and under water.
+/// Returns volume and moment of the cells of a fine grid that are inside the shape and under water.
 fn brute_force(shape: &Shape, at: &Transform, plane: &WaterPlane, cells: i32) -> (f32, Vec3) {
     let reach = shape.bounding_radius();
     let size = 2.0 * reach / cells as f32;
-    // Tilted against all faces, else whole layers of cells would be in or out.
+    // Tilted against all faces, otherwise whole layers of cells would be inside or outside.
     let turned = Rotation::from_axis_angle(Vec3::new(0.6, 0.48, 0.64), 0.7);
     let (mut volume, mut moment) = (0.0f64, [0.0f64; 3]);
     for i in 0..cells * cells * cells {
@@ -42,7 +42,7 @@ fn submerged_volumes_match_brute_force() {
     for shape in shapes {
         let whole = shape.volume();
         for case in 0..40 {
-            // Including upright and lying ones.
+            // Some shapes are upright or lying.
             let rotation = match case {
                 0 | 1 => Rotation::IDENTITY,
                 2 | 3 => Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_2),

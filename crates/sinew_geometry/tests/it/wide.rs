@@ -1,4 +1,4 @@
-//! Vectors in `f64` for brute force.
+//! Vectors in `f64`, for brute force.
 
 use sinew_math::{Rotation, Vec3};
 
@@ -20,7 +20,7 @@ pub fn length(a: Wide) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Columns of the matrix of a rotation, normalised first.
+/// Returns the columns of a rotation's matrix, from the normalised quaternion.
 pub fn axes(r: Rotation) -> [Wide; 3] {
     let q = [r.x, r.y, r.z, r.w].map(f64::from);
     let n = q.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -1,4 +1,4 @@
-//! Water.
+//! Buoyancy and drag of a fluid.
 
 use super::def::not_negative;
 use super::exposed::{exposed, stream_force};
@@ -7,7 +7,7 @@ use crate::body::shape::Shape;
 use sinew_geometry::DefError;
 use sinew_math::{Transform, Vec3};
 
-/// A fluid at rest or in uniform flow below a plane.
+/// A fluid below a plane, at rest or in uniform flow.
 ///
 /// *Buoyancy* (Archimedes): the weight of the displaced fluid, `−ρ V g`, at the centre of the submerged volume, with
 /// `g` the world's gravity. Volume and centre are computed per shape in closed form (ball, box, capsule); overlapping
@@ -22,15 +22,15 @@ use sinew_math::{Transform, Vec3};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct Buoyancy {
-    /// Pose of the surface: the fluid is below y = 0 of it. Default: y = 0 of the world.
+    /// Pose of the surface: the fluid is below y = 0 in this frame. Default: y = 0 of the world.
     pub world_from_surface: Transform,
-    /// ρ, kg/m³, ≥ 0. Default 1000: fresh water.
+    /// Density ρ of the fluid, kg/m³, ≥ 0. Default 1000: fresh water.
     pub density: f32,
     /// Velocity of the fluid, m/s, world. Default 0.
     pub flow: Vec3,
-    /// c, 1/s, ≥ 0. Default 1.
+    /// Linear damping c, 1/s, ≥ 0. Default 1.
     pub damping: f32,
-    /// C_d, ≥ 0. Default 0.5.
+    /// Drag coefficient C_d, ≥ 0. Default 0.5.
     pub drag: f32,
 }
 
@@ -76,7 +76,7 @@ impl Buoyancy {
         });
     }
 
-    /// Drag on a shape of which `volume` is under water, with its centre at `arm` from the centre of mass.
+    /// Adds the drag on a shape with `volume` under water, centred at `arm` from the centre of mass.
     fn brake(
         &self,
         target: &Target<'_>,

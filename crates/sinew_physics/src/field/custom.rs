@@ -8,16 +8,16 @@ use sinew_math::Vec3;
 /// Number of parameters that a user's function is called with.
 pub const PARAMETERS: usize = 8;
 
-/// Input of a user's field function: something that it acts on, and when.
+/// Input of a user's field function: the state of a body or particle, and the time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldPoint {
     /// Centre of mass of a body, or position of a particle, world, metres.
     pub position: Vec3,
-    /// m/s.
+    /// Velocity of the centre of mass, m/s, world.
     pub velocity: Vec3,
-    /// rad/s; 0 of a particle.
+    /// Angular velocity, rad/s, world; 0 for a particle.
     pub angular_velocity: Vec3,
-    /// kg.
+    /// Mass, kg.
     pub mass: f32,
     /// Number of steps taken before this one.
     pub step: u64,
@@ -25,10 +25,10 @@ pub struct FieldPoint {
     pub time: f64,
 }
 
-/// Force and torque on an item at a point, from the field's parameters: a pure function, so that a snapshot of the
-/// parameters contains everything that decides. A function pointer instead of a closure, because it must not have
-/// state. For the same bits everywhere it must use only `+ − × ÷ √` and `sinew_math`. The torque is ignored for a
-/// particle. A non-finite result quarantines the body.
+/// Function for the force and torque on a body or particle at a point, from the field's parameters. It must be pure, so
+/// that a snapshot of the parameters contains all state. It is a function pointer instead of a closure, because it must
+/// not have state. For the same bits everywhere it must use only `+ − × ÷ √` and `sinew_math`. The torque is ignored
+/// for a particle. A non-finite result quarantines the body.
 pub type FieldFunction = fn(&FieldPoint, &[f32; PARAMETERS]) -> Wrench;
 
 /// Field functions of a world.

@@ -13,10 +13,10 @@ use sinew_math::Transform;
 pub struct FieldDef {
     /// Kind of the field.
     pub kind: FieldKind,
-    /// Region in which it acts, tested at a body's centre of mass and a particle's position. Default everywhere.
+    /// Region in which the field acts, tested at a body's centre of mass and a particle's position. Default everywhere.
     pub region: Region,
-    /// Bits of the layers ([`Filter::layers`](crate::Filter)) that it acts on: a body is reached if one of its shapes is on
-    /// one of them, or if it has no shape. Default all.
+    /// Bits of the layers ([`Filter::layers`](crate::Filter)) that the field acts on. The field reaches a body if one
+    /// of its shapes is on one of them, or if the body has no shape. Default all.
     pub layers: u32,
 }
 
@@ -36,12 +36,12 @@ pub enum FieldKind {
     Drag(Drag),
     /// Water below a plane.
     Buoyancy(Buoyancy),
-    /// A function of the user's, by the number under which it was registered
+    /// A function of the user, by the number under which it was registered
     /// ([`World::register_field`](crate::World::register_field)), with parameters.
     Custom {
         /// Number of the function.
         function: u32,
-        /// Parameters that it is called with.
+        /// Parameters with which the function is called.
         parameters: [f32; PARAMETERS],
     },
 }
@@ -51,7 +51,7 @@ impl Item for FieldDef {
 }
 
 impl FieldDef {
-    /// Everywhere, on all layers.
+    /// Returns a field that acts everywhere, on all layers.
     pub fn new(kind: FieldKind) -> Self {
         Self { kind, region: Region::Everywhere, layers: u32::MAX }
     }
@@ -78,7 +78,7 @@ impl FieldDef {
 }
 
 impl FieldKind {
-    /// True if its effect on something at rest changes with time.
+    /// True if the field's effect on a body at rest changes with time.
     pub(crate) fn changes_by_itself(&self) -> bool {
         match self {
             Self::Wind(wind) => wind.gusts.is_some(),
@@ -88,17 +88,17 @@ impl FieldKind {
     }
 }
 
-/// Finite, and its rotation a unit quaternion.
+/// True if the pose is finite and its rotation is a unit quaternion.
 pub(super) fn is_pose(pose: &Transform) -> bool {
     pose.is_finite() && (pose.rotation.length() - 1.0).abs() < 1e-3
 }
 
-/// Finite and not negative; NaN is not.
+/// True if a number is finite and not negative; false for NaN.
 pub(super) fn not_negative(x: f32) -> bool {
     (0.0..f32::INFINITY).contains(&x)
 }
 
-/// Finite and positive; NaN is not.
+/// True if a number is finite and positive; false for NaN.
 pub(super) fn positive(x: f32) -> bool {
     x > 0.0 && x < f32::INFINITY
 }

@@ -1,4 +1,4 @@
-//! A field that acts for an instant.
+//! Explosions: fields that act for an instant.
 
 use super::Fade;
 use super::def::{not_negative, positive};
@@ -9,14 +9,15 @@ use sinew_math::{Transform, Vec3, max, normalize_or};
 
 /// A blast: pressure so short that it acts as an impulse.
 ///
-/// Each shape gets `J = impulse × fade(1 − d/radius) × A` at its centre, in the direction from the blast's centre to
-/// its own. `d` is the distance from the blast to the shape's nearest point (0 inside), `A` its area projected from the
-/// blast (for a ball `π r²`; for a box the facing faces times the cosine of their angle; a particle is a ball). Static
-/// bodies are not affected, and kinematic ones only [report](crate::Events::pushed) it.
+/// Each shape gets `J = impulse × fade(1 − d/radius) × A` at its centre, in the direction from the centre of the blast
+/// to the centre of the shape. `d` is the distance from the blast to the shape's nearest point (0 inside). `A` is the
+/// shape's area projected from the blast (for a ball `π r²`; for a box the facing faces times the cosine of their
+/// angle; a particle is a ball). Static bodies are not affected; for kinematic bodies the next step only
+/// [reports](crate::Events::pushed) the impulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Explosion {
-    /// World, metres.
+    /// Centre of the blast, world, metres.
     pub center: Vec3,
     /// Radius of effect, metres, positive.
     pub radius: f32,
@@ -24,9 +25,9 @@ pub struct Explosion {
     pub impulse: f32,
     /// Decrease of the impulse with distance.
     pub fade: Fade,
-    /// Obstacles that shelter from it.
+    /// Obstacles that shelter shapes from the blast.
     pub occlusion: Occlusion,
-    /// Bits of the layers that it acts on.
+    /// Bits of the layers that the blast acts on.
     pub layers: u32,
 }
 
@@ -34,15 +35,15 @@ pub struct Explosion {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Occlusion {
-    /// Nothing. Default.
+    /// No obstacles shelter. Default.
     #[default]
     None,
-    /// Static bodies: a shape is sheltered if one is between the blast and its centre.
+    /// Static bodies shelter: a shape gets no impulse if one is between the blast and the shape's centre.
     Static,
 }
 
 impl Explosion {
-    /// Linear fall-off, on all layers, without shelter.
+    /// Returns an explosion with linear fall-off, on all layers, without shelter.
     pub fn new(center: Vec3, radius: f32, impulse: f32) -> Self {
         Self { center, radius, impulse, fade: Fade::Linear, occlusion: Occlusion::None, layers: u32::MAX }
     }
@@ -60,7 +61,7 @@ impl Explosion {
         }
     }
 
-    /// Impulse on a shape, N·s, and where it acts.
+    /// Returns the impulse on a shape, N·s, and the point at which it acts, world.
     pub(crate) fn push(&self, shape: &Shape, at: &Transform) -> (Vec3, Vec3) {
         let distance = max(shape.signed_distance(at, self.center).0, 0.0);
         if distance >= self.radius {

@@ -13,19 +13,19 @@ const GAUSS: [f32; 2] = [-0.577_350_26, 0.577_350_26];
 /// A surface panel exposed to a stream.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Panel {
-    /// World, metres.
+    /// Point at which the force acts, world, metres.
     pub point: Vec3,
-    /// m². For a flat panel its own area, for a round one its projected area.
+    /// Area, m²: for a flat panel its own area, for a round one its projected area.
     pub area: f32,
-    /// Outward, for a flat panel; a round one has the same area from all sides.
+    /// Outward unit normal of a flat panel; `None` for a round one, which has the same area from all sides.
     pub normal: Option<Vec3>,
 }
 
-/// Calls `visit` with panels whose projected areas add up to the shape's in every direction. A box: its faces at 2×2
-/// Gauss points each, so that spin is also damped. A ball: its disk. A capsule: its disk and the strip of its cylinder
-/// that faces `stream` (m/s, world); a tapered one in the same way. A cylinder and a cone: their ends, and the part of the
-/// side that faces the stream. A hull: its faces in triangles at three points each. Half-spaces, meshes and height
-/// fields have none.
+/// Calls `visit` with panels whose projected areas add up to the shape's in every direction. A box has its faces at 2×2
+/// Gauss points each, so that spin is also damped. A ball has its disk. A capsule has its disk and the strip of its
+/// cylinder that faces `stream` (m/s, world); a tapered capsule likewise. Cylinders and cones have their ends and the
+/// part of the side that faces the stream. A hull has its faces in triangles at three points each. Half-spaces, meshes
+/// and height fields have none.
 pub(super) fn exposed(shape: &Shape, at: &Transform, stream: Vec3, mut visit: impl FnMut(Panel)) {
     match *shape {
         Shape::Box { half_extents } => box_panels(half_extents, at, &mut visit),
@@ -61,8 +61,8 @@ pub(super) fn exposed(shape: &Shape, at: &Transform, stream: Vec3, mut visit: im
     }
 }
 
-/// The outline seen along the stream consists of two disks and their common tangents: a sector of each disk, and two
-/// right trapezoids between them.
+/// Visits the panels of a tapered capsule. Its outline seen along the stream consists of two disks and their common
+/// tangents: a sector of each disk, and two right trapezoids between them.
 fn tapered_panels(tapered: &TaperedCapsule, at: &Transform, stream: Vec3, visit: &mut impl FnMut(Panel)) {
     let axis = at.rotation * Vec3::Y;
     let along = normalize_or(stream, Vec3::ZERO);
@@ -89,8 +89,8 @@ fn tapered_panels(tapered: &TaperedCapsule, at: &Transform, stream: Vec3, visit:
     }
 }
 
-/// The ends, each at four points that integrate squares exactly; and the vector area of the part of the side whose
-/// normals face the stream.
+/// Visits the panels of a truncated cone: the ends, each at four points that integrate squares exactly, and the vector
+/// area of the part of the side whose normals face the stream.
 fn truncated_cone_panels(cone: &TruncatedCone, at: &Transform, stream: Vec3, visit: &mut impl FnMut(Panel)) {
     let (up, side_x, side_z) = (at.rotation * Vec3::Y, at.rotation * Vec3::X, at.rotation * Vec3::Z);
     for (radius, end) in [(cone.bottom, -1.0), (cone.top, 1.0)] {
@@ -119,7 +119,7 @@ fn truncated_cone_panels(cone: &TruncatedCone, at: &Transform, stream: Vec3, vis
     if length <= 0.0 {
         return;
     }
-    // A ring's area per radian is its radius by the slant.
+    // The area of a ring per radian is the radius times the slant length.
     let slant = 2.0 * cone.half_height / side.x;
     for node in GAUSS {
         let y = node * cone.half_height;
@@ -135,7 +135,7 @@ fn disk(point: Vec3, radius: f32) -> Panel {
     Panel { point, area: PI * radius * radius, normal: None }
 }
 
-/// Each triangle at three points inside, which integrate squares exactly (Strang and Fix 1973).
+/// Visits each triangle of a hull at three interior points, which integrate squares exactly (Strang and Fix 1973).
 fn hull_panels(hull: &Hull, at: &Transform, visit: &mut impl FnMut(Panel)) {
     for face in hull.faces() {
         let normal = Some(at.rotation * face.normal());
@@ -171,8 +171,8 @@ fn box_panels(half: Vec3, at: &Transform, visit: &mut impl FnMut(Panel)) {
     }
 }
 
-/// Force of a stream on a sheet face with this vector area, m², from either side, N, and its damping coefficient,
-/// N·s/m: see [`Wind`](super::Wind).
+/// Returns the force of a stream on a sheet face from either side, N, and the damping coefficient, N·s/m, for a vector
+/// area in m²: see [`Wind`](super::Wind).
 pub(super) fn face_force(area: Vec3, stream: Vec3, density: f32, drag: f32, lift: f32) -> (Vec3, f32) {
     let (size, speed) = (area.length(), stream.length());
     if size <= 0.0 || speed <= 0.0 {
@@ -190,7 +190,7 @@ fn sign(x: f32) -> f32 {
     if x < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// Force of a stream on a panel, N, and its damping coefficient, N·s/m: see [`Wind`](super::Wind).
+/// Returns the force of a stream on a panel, N, and the damping coefficient, N·s/m: see [`Wind`](super::Wind).
 pub(super) fn stream_force(panel: &Panel, stream: Vec3, density: f32, drag: f32, lift: f32) -> (Vec3, f32) {
     let speed = stream.length();
     if speed <= 0.0 {

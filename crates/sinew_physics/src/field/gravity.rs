@@ -11,7 +11,7 @@ use sinew_math::Vec3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct UniformGravity {
-    /// m/s², world axes.
+    /// Acceleration, m/s², world axes.
     pub acceleration: Vec3,
 }
 
@@ -33,17 +33,17 @@ impl UniformGravity {
     }
 }
 
-/// Attraction toward a fixed point: a planet far heavier than everything around it.
+/// Attraction toward a fixed point: a planet far heavier than all bodies around it.
 ///
-/// Newton's law with Plummer's softening: at `d` from the centre `a = μ d / (d² + ε²)^(3/2)` toward it, scaled by the
-/// gravity scale of the body or group. With ε = 0 the force is zero at the centre itself.
+/// Newton's law with Plummer's softening: with `d` the vector to the centre, `a = μ d / (|d|² + ε²)^(3/2)`, scaled by
+/// the gravity scale of the body or group. With ε = 0 the force is zero at the centre itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct PointGravity {
-    /// World, metres.
+    /// Centre of attraction, world, metres.
     pub center: Vec3,
-    /// `μ = G M`, m³/s². Negative: away from it. Default 0.
+    /// `μ = G M`, m³/s². Negative values repel. Default 0.
     pub strength: f32,
     /// ε, metres, ≥ 0: limits the attraction within this distance. Default 0.
     pub softening: f32,
@@ -66,21 +66,21 @@ impl PointGravity {
         pull * (target.mass * target.gravity_scale)
     }
 
-    /// `−μ m / √(d² + ε²)`
+    /// Potential energy, J: `−μ m / √(d² + ε²)`.
     pub(super) fn energy(&self, target: &Target<'_>) -> f32 {
         let depth = potential(self.center - target.center(), self.strength, self.softening);
         depth * (target.mass * target.gravity_scale)
     }
 }
 
-/// Acceleration toward a mass at `apart`, m/s². Divides by the distance one power at a time, so that no factor
-/// overflows before the quotient is small.
+/// Acceleration toward a mass at `apart`, m/s². Divides by the distance one power at a time, so that no intermediate
+/// factor overflows.
 pub(super) fn attraction(apart: Vec3, strength: f32, softening: f32) -> Vec3 {
     let distance = (apart.length_squared() + softening * softening).sqrt();
     if distance > 0.0 { (apart / distance) * (strength / distance / distance) } else { Vec3::ZERO }
 }
 
-/// Energy by mass, m²/s²; 0 far away.
+/// Potential energy per mass, m²/s²; 0 at infinity.
 pub(super) fn potential(apart: Vec3, strength: f32, softening: f32) -> f32 {
     let distance = (apart.length_squared() + softening * softening).sqrt();
     if distance > 0.0 { -strength / distance } else { 0.0 }

@@ -18,7 +18,7 @@ impl Load {
         self.wrench.force += force;
     }
 
-    /// A force at `arm` from the centre of mass that brakes.
+    /// Adds a damping force at `arm` from the centre of mass.
     pub(super) fn push_at(&mut self, arm: Vec3, force: Vec3, resistance: f32) {
         self.wrench.force += force;
         self.wrench.torque += arm.cross(force);
@@ -26,7 +26,7 @@ impl Load {
         self.spin_resistance += resistance * arm.length_squared();
     }
 
-    /// `share` of another load.
+    /// Adds `share` times another load.
     pub(super) fn add(&mut self, other: &Self, share: f32) {
         self.wrench.force += other.wrench.force * share;
         self.wrench.torque += other.wrench.torque * share;
@@ -34,13 +34,14 @@ impl Load {
         self.spin_resistance += other.spin_resistance * share;
     }
 
-    /// Load on a particle that is also pulled by `weight`: its own share of the sum, limited in the same way.
+    /// Returns the field's part of the total force on a particle that `weight` also pulls, N; the total is limited as
+    /// in `with`.
     pub fn beside(&self, weight: Vec3, mass: f32, h: f32) -> Vec3 {
         let share = held_back(h * self.resistance, mass);
         self.wrench.force * share + weight * (share - 1.0)
     }
 
-    /// The sum of this and other loads, limited so that a substep cannot overshoot: see the module.
+    /// Returns the sum of this load and other loads, limited so that a substep cannot overshoot: see the module.
     pub fn with(&self, other: Wrench, mass: f32, least_moment: f32, h: f32) -> Wrench {
         Wrench {
             force: (other.force + self.wrench.force) * held_back(h * self.resistance, mass),
@@ -54,7 +55,7 @@ fn held_back(braking: f32, inertia: f32) -> f32 {
     if braking > inertia { inertia / braking } else { 1.0 }
 }
 
-/// The least of three moments.
+/// Smallest of three moments.
 pub(crate) fn least(moments: Vec3) -> f32 {
     min(moments.x, min(moments.y, moments.z))
 }

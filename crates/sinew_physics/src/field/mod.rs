@@ -6,13 +6,13 @@
 //!
 //! **Stiffness.** A damping field (wind, drag, water) is evaluated at the velocity at the start of the substep, so the
 //! load on a held body is exact, and so is every terminal velocity. That is stable while `h b < m`, with `b = −∂F/∂v`.
-//! If `h b` exceeds `m` (a silk leaf in a storm), the total force on the body is divided by `h b / m`, so that it
+//! If `h b` exceeds `m` (a silk leaf in a storm), the total force on the body is divided by `h b / m`. The body then
 //! approaches its terminal velocity within the substep and never passes it. The same holds for torque.
 //!
-//! **Sleep.** A field acts on awake items. Adding, changing or removing one wakes everything it reaches or reached. A
-//! body at rest in a constant field may fall asleep, as under gravity; in a field that changes by itself (wind with
-//! gusts, a user function) it may not. Bodies that attract each other sleep and wake together, and never sleep if there
-//! are particles; attracted particles do not sleep.
+//! **Sleep.** A field acts on awake bodies and particles. Adding, changing or removing a field wakes all bodies and
+//! particles that it reaches or reached. A body at rest in a constant field may fall asleep, as under gravity; in a
+//! field that changes by itself (wind with gusts, a user function) it may not. Bodies that attract each other sleep and
+//! wake together, and never sleep if there are particles; attracted particles do not sleep.
 //!
 //! A world without fields pays nothing for them.
 
@@ -54,7 +54,7 @@ use crate::body::def::WorldDef;
 use crate::particles::ParticleGroup;
 use sinew_math::Vec3;
 
-/// The fields of a world, for a step.
+/// Fields of a world, for a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fields<'a> {
     pub arena: &'a Arena<FieldDef>,
@@ -63,7 +63,7 @@ pub(crate) struct Fields<'a> {
     pub gravity: Vec3,
     /// Number of steps taken before this one.
     pub step: u64,
-    /// Time at the beginning of the step.
+    /// Time at the beginning of the step, nanoseconds.
     pub nanoseconds: u64,
     /// True if the world has particles.
     particles: bool,
@@ -75,7 +75,7 @@ impl<'a> Fields<'a> {
         Self { arena, functions, gravity: def.gravity, step, nanoseconds, particles: false }
     }
 
-    /// Adds the presence of items other than bodies.
+    /// Returns the fields, with `particles` set if the world has particle groups.
     pub fn among(self, groups: &Arena<ParticleGroup>) -> Self {
         Self { particles: groups.iter().next().is_some(), ..self }
     }
@@ -84,7 +84,7 @@ impl<'a> Fields<'a> {
         self.arena.iter().next().is_none()
     }
 
-    /// Load of all fields that do not couple bodies.
+    /// Load of all fields except mutual attraction.
     pub fn load(&self, target: &Target<'_>) -> Load {
         let mut load = Load::default();
         for (_, field) in self.arena.iter() {
@@ -93,7 +93,7 @@ impl<'a> Fields<'a> {
         load
     }
 
-    /// Fields with mutual attraction of bodies, each with its law.
+    /// Iterates over the fields with mutual attraction, each with its law.
     pub fn mutual(&self) -> impl Iterator<Item = (&'a FieldDef, &'a MutualGravity)> {
         self.arena.iter().filter_map(|(_, field)| match &field.kind {
             FieldKind::Mutual(law) => Some((field, law)),
@@ -101,7 +101,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// True if a body is in a field that changes by itself or attracts particles.
+    /// True if a body is in a field that changes by itself, or in a field that attracts while the world has particles.
     pub fn keep_awake(&self, body: &Body) -> bool {
         let mut fields = self.arena.iter();
         fields.any(|(_, field)| {
@@ -110,7 +110,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// True if a particle of a group is in a field that changes by itself or attracts.
+    /// True if a particle of a group is in a field that changes by itself or in a field with mutual attraction.
     pub fn keep_group_awake(&self, group: &ParticleGroup) -> bool {
         let mut fields = self.arena.iter();
         fields.any(|(_, field)| {
@@ -119,7 +119,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// Next sleeping body to wake, if any: attracting and attracted bodies wake together.
+    /// Next sleeping body to wake, if any: bodies that attract each other wake together.
     pub fn next_to_wake(&self, bodies: &Arena<Body>, activity: &Activity) -> Option<u32> {
         self.mutual().find_map(|(field, _)| {
             let reached =
@@ -132,22 +132,22 @@ impl<'a> Fields<'a> {
 }
 
 impl FieldDef {
-    /// True if it acts on an item at all.
+    /// True if the field has any effect on a body or particle.
     pub(crate) fn reaches(&self, target: &Target<'_>) -> bool {
         target.is_on(self.layers) && self.region.weight(target.center()) > 0.0
     }
 
-    /// True if it acts on a particle of a group.
+    /// True if the field acts on a particle of a group.
     pub(crate) fn reaches_group(&self, group: &ParticleGroup) -> bool {
         (0..group.positions().len()).any(|i| self.reaches(&Target::of_particle(group, i)))
     }
 
-    /// Strength at an item: 0 outside its region and on other layers, 1 at full strength.
+    /// Strength of the field at a body or particle: 0 outside its region and on other layers, 1 at full strength.
     pub(crate) fn weight(&self, target: &Target<'_>) -> f32 {
         if target.is_on(self.layers) { self.region.weight(target.center()) } else { 0.0 }
     }
 
-    /// Adds its load on an item, except mutual attraction.
+    /// Adds the field's load on a body or particle, except mutual attraction.
     pub(crate) fn act(&self, target: &Target<'_>, fields: &Fields<'_>, sum: &mut Load) {
         let weight = self.weight(target);
         if weight <= 0.0 {
@@ -168,7 +168,7 @@ impl FieldDef {
         sum.add(&load, weight);
     }
 
-    /// Potential energy of an item in it, J, if it has one.
+    /// Potential energy of a body or particle in the field, J; 0 if the field has none.
     pub(crate) fn energy(&self, target: &Target<'_>, gravity: Vec3) -> f32 {
         if self.region != Region::Everywhere || !target.is_on(self.layers) {
             return 0.0;

@@ -1,4 +1,4 @@
-//! Bodies and particles attract each other.
+//! Mutual attraction of bodies and particles.
 
 use super::def::{FieldDef, not_negative};
 use super::gravity::{attraction, potential};
@@ -7,18 +7,18 @@ use core::f32::consts::PI;
 use sinew_geometry::DefError;
 use sinew_math::Vec3;
 
-/// Newton's gravitation between all that the field reaches: dynamic bodies, and particles.
+/// Newton's gravitation between all dynamic bodies and particles that the field reaches.
 ///
 /// Two masses at distance `d` pull each other with the **same** force `G m₁ m₂ d / (d² + ε²)^(3/2)` in opposite
-/// directions (Newton's third law). It is computed as `m₁ ((G m₂) / d²)` with `m₂` the heavier, so that masses of stars
-/// in kilograms do not overflow. The moment of inertia of such a body would overflow, so set one explicitly, or use
+/// directions (Newton's third law). The force is computed as `m₁ ((G m₂) / d²)` with `m₂` the heavier, so that masses
+/// of stars in kilograms do not overflow. The moment of inertia of a star would overflow, so set one explicitly, or use
 /// other units: in astronomical units, solar masses and years `G` is [`ASTRONOMICAL`](Self::ASTRONOMICAL).
 ///
 /// Bodies that attract each other form one island. Each substep uses their current positions and applies each pair's
-/// impulse to both, so the sum of momenta is constant up to rounding. Static and kinematic bodies have no mass here;
-/// for a fixed attractor use [`PointGravity`](super::PointGravity). `gravity_scale` is ignored, because it would break
-/// the third law. In a fading region a pair's force is scaled by the product of the strengths at both positions. The
-/// cost is quadratic in the number of bodies.
+/// impulse to both, so the sum of momenta is constant up to rounding. Static and kinematic bodies have no mass for this
+/// field; for a fixed attractor use [`PointGravity`](super::PointGravity). `gravity_scale` is ignored, because it would
+/// break the third law. In a fading region a pair's force is scaled by the product of the strengths at both positions.
+/// The cost is quadratic in the number of bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -35,18 +35,18 @@ impl Default for MutualGravity {
     }
 }
 
-/// A participating body or particle.
+/// A body or particle that takes part in the attraction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Attractor {
     pub position: Vec3,
     pub mass: f32,
-    /// Weight of the field at its position, 0..=1.
+    /// Weight of the field at the attractor's position, 0..=1.
     pub weight: f32,
 }
 
 impl MutualGravity {
-    /// `G = 4π²`, with lengths in astronomical units, masses in those of the Sun and times in years: Kepler's third law
-    /// for the Earth. A step is then 1/60 of a year.
+    /// `G = 4π²`, with lengths in astronomical units, masses in solar masses and times in years: Kepler's third law for
+    /// the Earth. A step is then 1/60 of a year.
     pub const ASTRONOMICAL: f32 = 4.0 * PI * PI;
 
     pub(super) fn check(&self) -> Result<(), DefError> {
@@ -58,7 +58,7 @@ impl MutualGravity {
         }
     }
 
-    /// Force on `a` by `b`, N; that on `b` is the opposite.
+    /// Force on `a` by `b`, N; the force on `b` is the opposite.
     pub(crate) fn force(&self, a: &Attractor, b: &Attractor) -> Vec3 {
         // The heavier first, so that both sides of a pair get the same bits.
         let (heavy, light) = if a.mass > b.mass { (a.mass, b.mass) } else { (b.mass, a.mass) };

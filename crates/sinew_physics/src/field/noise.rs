@@ -2,9 +2,9 @@
 
 use sinew_math::{Random, Vec3};
 
-/// Value noise at a position (in cells) and a time, given as a cell and a fraction (0..1): each component in −1..=1.
+/// Value noise at a position (in cells) and a time (a cell and a fraction, 0..1): each component is in −1..=1.
 pub(super) fn turbulence(place: Vec3, (time, within): (u64, f32), seed: u64) -> Vec3 {
-    // Positions beyond the integer range saturate: constant there, but not undefined.
+    // Positions beyond the integer range saturate: the noise is constant there.
     let floor = Vec3::new(place.x.floor(), place.y.floor(), place.z.floor());
     let cell = [floor.x, floor.y, floor.z].map(|x| x as i64 as u64);
     let between = place - floor;

@@ -4,18 +4,18 @@ use crate::body::shape::Shape;
 use sinew_geometry::DefError;
 use sinew_math::{Transform, Vec3};
 
-/// Fall-off of a field's strength from full to its border, with `u` from 1 to 0.
+/// Fall-off of a field's strength toward the border of its region, by `u`: 1 at full strength, 0 at the border.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Fade {
-    /// Full up to the border. Default.
+    /// Full strength up to the border. Default.
     #[default]
     None,
-    /// `u`.
+    /// Strength `u`.
     Linear,
-    /// `u² (3 − 2u)`: smooth at both ends.
+    /// Strength `u² (3 − 2u)`: smooth at both ends.
     Smooth,
-    /// `u²`.
+    /// Strength `u²`.
     Square,
 }
 
@@ -38,13 +38,15 @@ pub enum Region {
     /// The field acts in the whole world. Default.
     #[default]
     Everywhere,
-    /// Inside a shape: full where it is deeper than `margin` below the surface, fading to 0 at the surface.
+    /// Inside a shape: the field has full strength deeper than `margin` below the surface, and fades to 0 at the
+    /// surface.
     Inside {
-        /// The shape; a half-space, too.
+        /// Shape of the region, or a half-space.
         shape: Shape,
         /// Pose of the shape in the world.
         world_from_shape: Transform,
-        /// Metres, ≥ 0. For a ball that fades from its centre outward, the ball's radius.
+        /// Depth at which the field has full strength, metres, ≥ 0. For a ball that fades from its centre, the ball's
+        /// radius.
         margin: f32,
         /// Decrease of the strength over the margin.
         fade: Fade,
@@ -52,7 +54,7 @@ pub enum Region {
 }
 
 impl Region {
-    /// A ball, fading from its centre to its surface.
+    /// Returns a ball in which the field fades from the centre to the surface.
     pub fn ball(center: Vec3, radius: f32, fade: Fade) -> Self {
         Self::Inside {
             shape: Shape::Sphere { radius },
@@ -79,7 +81,7 @@ impl Region {
         }
     }
 
-    /// Shape that the region is the inside of.
+    /// Shape whose inside is the region; `None` for the whole world.
     pub(crate) fn shape(&self) -> Option<&Shape> {
         match self {
             Self::Everywhere => None,

@@ -20,7 +20,7 @@ pub(crate) struct Target<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Form<'a> {
     Body(&'a Body),
-    /// Ball of a radius, on some layers; for air also the sheet faces at this particle, if its group has any.
+    /// Ball with a radius, metres, on some layers; for air also the sheet faces at this particle, if its group has any.
     Particle {
         radius: f32,
         layers: u32,
@@ -34,7 +34,7 @@ impl<'a> Target<'a> {
         Self::at(body, body.world_from_principal, body.velocity)
     }
 
-    /// A body within its step.
+    /// Returns the target of a body at a pose within its step.
     pub fn at(body: &'a Body, pose: Transform, velocity: Velocity) -> Self {
         let form = Form::Body(body);
         Self { pose, velocity, mass: body.mass, gravity_scale: body.gravity_scale, form }
@@ -59,12 +59,12 @@ impl<'a> Target<'a> {
         self.pose.translation
     }
 
-    /// m/s, of a world point that moves along.
+    /// Velocity of a world point that moves with the body, m/s.
     pub(super) fn velocity_at(&self, point: Vec3) -> Vec3 {
         self.velocity.at(point - self.center())
     }
 
-    /// True if it is on any of these layers. An item without shapes is on all.
+    /// True if the target is on any of these layers. A body without shapes is on all.
     pub(super) fn is_on(&self, layers: u32) -> bool {
         match self.form {
             Form::Body(body) => {
@@ -75,7 +75,7 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// The faces that it is a corner of, if it is a particle of a sheet.
+    /// Returns the parts of the faces around a particle of a sheet, as vector areas, m²; `None` for other targets.
     pub(super) fn face_parts(&self) -> Option<impl Iterator<Item = Vec3> + 'a> {
         match self.form {
             Form::Particle { group, index, .. } if group.has_faces(index) => Some(group.face_parts(index)),
@@ -83,7 +83,7 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// Shapes of the item with their world poses. A particle is a ball, if it has a radius.
+    /// Visits the shapes of the target with their world poses. A particle with a radius is a ball.
     pub(super) fn for_each_shape(&self, mut visit: impl FnMut(&Shape, &Transform)) {
         match self.form {
             Form::Body(body) => {

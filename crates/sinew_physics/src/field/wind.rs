@@ -1,4 +1,4 @@
-//! Moving air.
+//! Wind: moving air.
 
 use super::def::{not_negative, positive};
 use super::exposed::{exposed, face_force, stream_force};
@@ -7,10 +7,10 @@ use super::{Load, Target};
 use sinew_geometry::DefError;
 use sinew_math::Vec3;
 
-/// Air that moves, with drag and lift by the area that shapes expose to it.
+/// Moving air, with drag and lift by the area that shapes expose to the air.
 ///
-/// Each flat panel (the faces of a box, the strip of a capsule's cylinder) that faces the stream `w`, the air's
-/// velocity minus the panel's own, with `ŵ = w/|w|`, outward normal `n`, area `A` and `c = −n·ŵ > 0`:
+/// The formulas hold for each flat panel (the faces of a box, the strip of a capsule's cylinder) that faces the stream
+/// `w`, the air's velocity minus the panel's own, with `ŵ = w/|w|`, outward normal `n`, area `A` and `c = −n·ŵ > 0`:
 ///
 /// ```text
 /// drag  = ½ ρ C_d |w|² A c ŵ        lift = ½ ρ C_l |w|² A c (−n − c ŵ)
@@ -21,46 +21,46 @@ use sinew_math::Vec3;
 /// standard `½ ρ C_d A |w|²`). Lee sides get no force, and bodies do not shelter others. A force acts at its panel, so
 /// a plate turns in the wind, and spin is damped. Terminal velocity of a ball in still air: `√(2 m g / (ρ C_d π r²))`.
 ///
-/// A particle sheet with [faces](crate::particles::GroupDef::faces) is thin: the air presses on either side along its
-/// normal, by the square of the normal velocity, and slides along it without friction. With `n` on the lee side
+/// A particle sheet with [faces](crate::particles::GroupDef::faces) is thin. The air presses on either side along the
+/// normal, by the square of the normal velocity, and slides along the sheet without friction. With `n` on the lee side
 ///
 /// ```text
 /// pressure = ½ ρ C_d (w·n)² A n        lift = ½ ρ C_l |w| (w·n) A (n − c ŵ), c = n·ŵ > 0
 /// ```
 ///
-/// of each face in three equal parts, each moving with one of its corners: a flat sheet at rest carries
-/// `½ ρ C_d A |w|² cos²θ` in a wind at `θ` from its normal, and falls flat through still air at `√(2 m g / (ρ C_d A))`.
+/// for each face in three equal parts, each of which moves with one of its corners. A flat sheet at rest gets `½ ρ C_d
+/// A |w|² cos²θ` in a wind at `θ` from its normal, and falls flat through still air at `√(2 m g / (ρ C_d A))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct Wind {
     /// Velocity of the air, m/s, world. Default 0: still air.
     pub velocity: Vec3,
-    /// ρ, kg/m³, ≥ 0. Default 1.225: air at sea level, 15 °C.
+    /// Density ρ of the air, kg/m³, ≥ 0. Default 1.225: sea level, 15 °C.
     pub density: f32,
-    /// C_d, ≥ 0. Default 1: between a ball (0.47) and a plate (1.2).
+    /// Drag coefficient C_d, ≥ 0. Default 1: between a ball (0.47) and a plate (1.2).
     pub drag: f32,
-    /// C_l, ≥ 0. Default 0.
+    /// Lift coefficient C_l, ≥ 0. Default 0.
     pub lift: f32,
     /// Time-varying gusts. Default none.
     pub gusts: Option<Gusts>,
 }
 
-/// Gusts: a velocity added to the wind's, smooth in space and time, the same for the same seed on every machine.
+/// Gusts: a velocity added to the wind's, smooth in space and time. A seed gives the same gusts on every machine.
 ///
 /// Value noise: random vectors on a lattice of positions and times, blended by `u² (3 − 2u)` along each of the four
-/// axes. Its mean is 0; each component is within ± `speed`, with a standard deviation of about a third of it
-/// (√(0.743⁴/3)). Time is that at the start of the step.
+/// axes. The mean is 0; each component is within ± `speed`, with a standard deviation of about a third of `speed`
+/// (√(0.743⁴/3)). The noise uses the time at the start of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gusts {
-    /// Bound of each component, m/s, ≥ 0.
+    /// Largest absolute value of each component, m/s, ≥ 0.
     pub speed: f32,
-    /// Distance over which gusts differ, metres, positive.
+    /// Distance over which gusts change, metres, positive.
     pub length: f32,
-    /// Time over which they differ, seconds, at least a nanosecond.
+    /// Time over which gusts change, seconds, at least a nanosecond.
     pub time: f32,
-    /// Seed of the noise: the same gusts for the same seed.
+    /// Seed of the noise; equal seeds give equal gusts.
     pub seed: u64,
 }
 

@@ -10,12 +10,12 @@ pub(super) struct Crowd {
     order: Vec<(f32, u32)>,
     /// Largest half extent of a mover along the axis, metres.
     widest: f32,
-    /// Largest motion of one along the axis since, metres.
+    /// Largest motion of a mover along the axis since the sort, metres.
     drift: f32,
 }
 
 impl Crowd {
-    /// Sorts them: the index, centre, and half extents of each.
+    /// Sorts the movers that the iterator gives as index, centre and half extents, metres.
     pub fn sort<M: Iterator<Item = (u32, Vec3, Vec3)>>(&mut self, movers: impl Fn() -> M) {
         let (mut lo, mut hi, mut widest) = (Vec3::INFINITY, Vec3::NEG_INFINITY, Vec3::ZERO);
         for (_, center, half) in movers() {
@@ -29,12 +29,12 @@ impl Crowd {
         self.order.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
     }
 
-    /// One of them has moved in this stage.
+    /// Records the motion of one mover in this stage.
     pub fn note(&mut self, from: Vec3, to: Vec3) {
         self.drift = max(self.drift, (to[self.axis] - from[self.axis]).abs());
     }
 
-    /// Movers that may reach into a region, in the order along the axis; some do not.
+    /// Returns all movers that overlap a region and some that do not, in their order along the axis.
     pub fn near(&self, region: &Aabb) -> impl Iterator<Item = u32> {
         let room = self.widest + self.drift;
         let (lo, hi) = (region.min[self.axis] - room, region.max[self.axis] + room);

@@ -20,28 +20,28 @@ pub struct MoverDef {
     pub radius: f32,
     /// Height of the capsule from end to end, metres, at least twice the radius. Default 1.8.
     pub height: f32,
-    /// Mass in hits and on its ground, kg. Default 80.
+    /// Mass in hits and for the weight on the ground, kg. Default 80.
     pub mass: f32,
-    /// Force with which it pushes obstacles and holds riders, newtons. Default 800.
+    /// Force with which the mover pushes obstacles and holds riders, newtons. Default 800.
     pub push_force: f32,
-    /// Highest step that it climbs, and how far it follows ground that falls away, metres. Default 0.35.
+    /// Height of the highest step that the mover climbs or follows down, metres. Default 0.35.
     pub step_height: f32,
-    /// Steepest ground that it walks on, radians from level, below a right angle. Default 50°.
+    /// Slope of the steepest ground that the mover walks on, radians from level, below a right angle. Default 50°.
     pub slope_limit: f32,
-    /// Change of velocity on the ground, m/s². Default 60.
+    /// Largest acceleration on the ground, m/s². Default 60.
     pub ground_acceleration: f32,
-    /// Acceleration in the air, m/s²; without a wanted velocity it keeps its own. Default 10.
+    /// Largest acceleration in the air, m/s²; without a wanted velocity, a flying mover keeps its velocity. Default 10.
     pub air_acceleration: f32,
     /// Multiple of the world's gravity. Default 1.
     pub gravity_scale: f32,
-    /// Distance kept from obstacles, metres, above 0 and below the radius. Default 5 mm.
+    /// Distance that the mover keeps from obstacles, metres, above 0 and below the radius. Default 5 mm.
     pub skin: f32,
-    /// Filter of the shapes and other movers it collides with. Default all.
+    /// Filter of the shapes and other movers that the mover collides with. Default all.
     pub filter: Filter,
-    /// Momentum up to which flying bodies (faster than 2 m/s) pass through it, N·s: a character leaves them to its
-    /// limbs. Bodies jointed to a static or kinematic body, such as a door, do not fly. Default 0.
+    /// Momentum up to which flying bodies (faster than 2 m/s) pass through the mover, N·s: the limbs of a character
+    /// collide with them instead. Bodies jointed to a static or kinematic body, such as a door, do not fly. Default 0.
     pub lets_pass: f32,
-    /// Number of the user's. Default 0.
+    /// Number for the user's own purposes. Default 0.
     pub user_data: u64,
 }
 
@@ -68,12 +68,12 @@ impl Default for MoverDef {
 }
 
 impl MoverDef {
-    /// A mover of the default size with its feet at a position.
+    /// Returns a mover of the default size with its feet at a position.
     pub fn at(position: Vec3) -> Self {
         Self { position, ..Self::default() }
     }
 
-    /// Checks that its numbers are valid; the error phrase names the problem.
+    /// Checks that the numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
     /// The problem, in lower case.

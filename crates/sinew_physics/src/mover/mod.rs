@@ -31,15 +31,15 @@ use sinew_math::{Vec3, abs3};
 #[derive(Clone, Debug)]
 pub struct Mover {
     pub(crate) def: MoverDef,
-    /// Feet, world.
+    /// Position of the feet, world, metres.
     position: Vec3,
-    /// Feet before the last step, world.
+    /// Position of the feet before the last step, world, metres.
     previous: Vec3,
     /// Velocity, m/s: relative to the ground while on it, in the world while in the air.
     velocity: Vec3,
     /// Wanted velocity relative to the ground, m/s.
     walk: Vec3,
-    /// Angle by which its ground has rotated it, radians.
+    /// Angle by which the ground has rotated the mover, radians.
     yaw: f32,
     /// Speed of the pending jump, m/s; 0: none.
     jump: f32,
@@ -52,7 +52,7 @@ pub(crate) struct Footing {
     on: Bearer,
     point: Vec3,
     normal: Vec3,
-    /// Velocity with which the ground carries the mover, m/s: that of its surface at the end of the step, as far as
+    /// Velocity with which the ground carries the mover, m/s. Follows the velocity of the ground's surface, as far as
     /// friction allows.
     velocity: Vec3,
 }
@@ -68,11 +68,11 @@ enum Bearer {
 pub struct MoverGround {
     /// Body and shape number; `None` on another mover.
     pub shape: Option<crate::ShapeId>,
-    /// The other mover, if it stands on one.
+    /// Other mover, if the mover stands on one.
     pub mover: Option<MoverId>,
     /// Contact point, world, metres.
     pub point: Vec3,
-    /// Unit, from the ground to the mover.
+    /// Unit normal from the ground to the mover, world.
     pub normal: Vec3,
     /// Velocity of the ground's surface there, including that of a belt, m/s.
     pub velocity: Vec3,
@@ -104,7 +104,7 @@ impl Mover {
         self.position
     }
 
-    /// Feet between the last step (`alpha` 0) and this one (1), for drawing.
+    /// Returns the feet's position between the last step (`alpha` 0) and this one (1), for drawing, metres.
     pub fn interpolated(&self, alpha: f32) -> Vec3 {
         self.previous * (1.0 - alpha) + self.position * alpha
     }
@@ -119,12 +119,12 @@ impl Mover {
         0.5 * self.def.height - self.def.radius
     }
 
-    /// Half extents of its bounds, metres.
+    /// Half extents of the mover's bounds, metres.
     fn half_extents(&self) -> Vec3 {
         abs3(self.def.up * self.half_height()) + Vec3::splat(self.def.radius)
     }
 
-    /// Velocity in the world, m/s; that of the ground is in it.
+    /// Velocity in the world, m/s, including the velocity of the ground.
     pub fn velocity(&self) -> Vec3 {
         self.velocity + self.ground.map_or(Vec3::ZERO, |footing| footing.velocity)
     }
@@ -134,12 +134,12 @@ impl Mover {
         self.walk
     }
 
-    /// Total angle about up by which its ground has rotated it, radians.
+    /// Total angle about up by which the ground has rotated the mover, radians.
     pub fn yaw(&self) -> f32 {
         self.yaw
     }
 
-    /// True if walkable ground supports it.
+    /// True if walkable ground supports the mover.
     pub fn is_grounded(&self) -> bool {
         self.ground.is_some()
     }
@@ -163,12 +163,12 @@ impl Item for Mover {
 }
 
 impl Movers {
-    /// An empty set, of a world.
+    /// Returns an empty set of movers for a world.
     pub fn new(lineage: Lineage) -> Self {
         Self { all: Arena::new(lineage), ..Self::default() }
     }
 
-    /// The same movers, for a copy of their world.
+    /// Returns the movers for a copy of their world.
     pub fn copy(&self) -> Self {
         Self { all: self.all.clone(), ..Self::default() }
     }
@@ -207,7 +207,7 @@ pub(crate) fn movers(world: &mut World) {
     world.movers = movers;
 }
 
-/// Velocity of a body's surface at a point, including the surface's own.
+/// Velocity of a body's surface at a point, m/s, including the surface velocity of the shape, such as that of a belt.
 fn surface_velocity(body: &Body, shape: u32, point: Vec3) -> Vec3 {
     body.velocity.at(point - body.center()) + body.surface_velocity(shape as usize, point).linear
 }

@@ -54,7 +54,7 @@ impl Obstacle {
     }
 }
 
-/// A mover's capsule, and its obstacles.
+/// Capsule of a mover, and its possible obstacles.
 pub(super) struct Surroundings<'a> {
     pub bodies: &'a Arena<Body>,
     pub obstacles: &'a [Obstacle],
@@ -63,7 +63,7 @@ pub(super) struct Surroundings<'a> {
     pub up: Vec3,
     pub half: f32,
     pub radius: f32,
-    /// Body to ignore while it carries the mover.
+    /// Body that the sweeps ignore while it carries the mover.
     pub without: Option<u32>,
 }
 
@@ -82,7 +82,7 @@ impl<'a> Surroundings<'a> {
         }
     }
 
-    /// Bounds of the capsule's motion.
+    /// Returns the bounds of the capsule's motion from `center` by `way`, enlarged by `margin`, metres.
     pub fn bounds(&self, center: Vec3, way: Vec3, margin: f32) -> Aabb {
         let half = abs3(self.up * self.half) + Vec3::splat(self.radius + margin);
         let to = center + way;
@@ -93,13 +93,13 @@ impl<'a> Surroundings<'a> {
         self.without.is_none() || obstacle.body() != self.without
     }
 
-    /// Gap from an obstacle to the capsule, unless a neighbour is nearer.
+    /// Returns the gap from an obstacle to the capsule; `None` without one, or if a neighbouring triangle is nearer.
     pub fn gap(&self, obstacle: &Obstacle, center: Vec3) -> Option<Gap> {
         self.look(obstacle, center).filter(|(_, hidden)| !hidden).map(|(gap, _)| gap)
     }
 
-    /// Distance from an obstacle to the capsule, and if it is to a face plane only because the nearest edge is
-    /// internal.
+    /// Returns the gap from an obstacle to the capsule, and true if the gap is to the plane of a face because the
+    /// nearest edge is internal.
     pub fn look(&self, obstacle: &Obstacle, center: Vec3) -> Option<(Gap, bool)> {
         let shown = |gap: Gap| (gap, false);
         match &obstacle.form {
@@ -125,7 +125,7 @@ impl<'a> Surroundings<'a> {
     }
 }
 
-/// Collects the possible obstacles of a mover within `region`; of movers those of `others`.
+/// Collects the possible obstacles of a mover within `region`: shapes, and the movers in `others`.
 pub(super) fn gather(
     world: &World,
     (movers, others): (&Arena<Mover>, impl Iterator<Item = u32>),
@@ -202,14 +202,14 @@ fn gather_shape(
     obstacles.push(obstacle);
 }
 
-/// True if a body is so fast and light that the mover ignores it.
+/// True if a body is so fast and light that it passes through the mover.
 fn flies_past(body: &Body, mover: &Mover) -> bool {
     let speed = body.velocity.linear.length();
     speed > FLYING_SPEED && speed <= mover.def.lets_pass * body.inverse_mass()
 }
 
 /// True if a joint connects a body to a static or kinematic one: a door leaf transfers more than its own momentum, and
-/// returns.
+/// swings back.
 fn hangs(world: &World, index: u32) -> bool {
     world.activity.joints_of.body(index).iter().any(|&joint| {
         let joint = world.joints.at(joint);
@@ -217,7 +217,7 @@ fn hangs(world: &World, index: u32) -> bool {
     })
 }
 
-/// World bounds as bounds in another frame.
+/// Converts world bounds to bounds in another frame.
 fn into_frame(bounds: &Aabb, world_from_frame: &Transform) -> Aabb {
     let to_frame = world_from_frame.rotation.inverse();
     let half = bounds.half_extents();

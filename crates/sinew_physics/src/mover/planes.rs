@@ -1,8 +1,8 @@
-//! The motion closest to a wanted one that no plane forbids.
+//! Finds the motion closest to a wanted one that satisfies a few planes.
 
 use sinew_math::Vec3;
 
-/// Largest number of planes; the nearest are kept.
+/// Largest number of planes; those of farther touches are dropped.
 pub(super) const MOST: usize = 24;
 
 /// Bound on motion along a direction: `normal · x ≥ least`.
@@ -12,17 +12,18 @@ pub(super) struct Plane {
     pub least: f32,
 }
 
-/// A few planes, without memory of their own.
+/// Set of a few planes, in a fixed array.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Planes {
     all: [Plane; MOST],
     count: usize,
 }
 
-/// Rounding that a plane forgives, as a share of the motion's length and in metres.
+/// Violation of a plane that counts as rounding, as a share of the motion's length, and in metres.
 const FORGIVEN: f32 = 1e-5;
 const FORGIVEN_LENGTH: f32 = 1e-7;
-/// Two planes whose normals' cross product is smaller are parallel; three with a smaller determinant have no corner.
+/// Largest cross product of two planes' normals at which the planes count as parallel; three planes whose determinant
+/// is below the square have no corner.
 const PARALLEL: f32 = 1e-3;
 
 impl Planes {
@@ -42,7 +43,7 @@ impl Planes {
         }
     }
 
-    /// Lets nothing approach from now on.
+    /// Forbids every approach to the planes from now on.
     pub fn stop(&mut self) {
         self.all[..self.count].iter_mut().for_each(|plane| plane.least = 0.0);
     }
@@ -52,8 +53,8 @@ impl Planes {
         self.all[..self.count].iter().all(|plane| plane.normal.dot(x) >= plane.least - forgiven)
     }
 
-    /// The allowed motion closest to `wanted`: free, on one plane, along the crease of two or at the corner of three.
-    /// `None` if the planes contradict each other.
+    /// Returns the allowed motion closest to `wanted`: unchanged, on one plane, along the crease of two or at the
+    /// corner of three. `None` if the planes contradict each other.
     pub fn closest(&self, wanted: Vec3) -> Option<Vec3> {
         let scale = wanted.length();
         if self.allow(wanted, scale) {
@@ -83,7 +84,7 @@ impl Planes {
         best.map(|(_, x)| x)
     }
 
-    /// Closest motion with a smaller weight on the vertical: planes reduce the climb first.
+    /// Returns the closest allowed motion, with a smaller weight on the vertical: planes reduce the climb first.
     pub fn closest_level(&self, wanted: Vec3, up: Vec3) -> Option<Vec3> {
         const UP: f32 = 0.03;
         let squeeze = |v: Vec3, by: f32| v + up * (v.dot(up) * (by - 1.0));

@@ -1,4 +1,4 @@
-//! Mutual effect of mover and dynamic bodies: hits by momentum, pushes by limited force, weight.
+//! Mutual effect of a mover and dynamic bodies: hits by momentum, pushes by limited force, weight.
 
 use super::obstacle::{Owner, Surroundings};
 use super::{Bearer, Mover};
@@ -16,19 +16,19 @@ pub(super) struct Press {
     body: u32,
     push: Push,
     point: Vec3,
-    /// True if a body that sleeps wakes of it.
+    /// True if the press wakes a sleeping body.
     wakes: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Push {
-    /// An impulse at once, N·s.
+    /// Impulse, applied immediately, N·s.
     Impulse(Vec3),
-    /// A force in the course of the next step, newtons.
+    /// Force during the next step, newtons.
     Force(Vec3),
 }
 
-/// A mover as a collision body.
+/// State of a mover as a body in a collision.
 struct Hitter {
     velocity: Vec3,
     up: Vec3,
@@ -37,7 +37,8 @@ struct Hitter {
     force: f32,
 }
 
-/// Impulses between a mover at `center` and the dynamic bodies it touches within the step; returns its velocity change.
+/// Computes the impulses between a mover at `center` and the dynamic bodies it touches within the step; returns the
+/// mover's change of velocity, m/s.
 pub(super) fn meet(
     sight: &Surroundings<'_>,
     mover: &Mover,
@@ -82,7 +83,8 @@ pub(super) fn meet(
 }
 
 impl Hitter {
-    /// Impulse that pushes the two apart, N·s.
+    /// Returns the impulse that pushes the mover and a body apart, N·s, and applies it to the mover; `None` if there is
+    /// none.
     fn meet(&mut self, body: &Body, normal: Vec3, point: Vec3, room: f32, dt: f32) -> Option<f32> {
         let arm = point - body.center();
         let (comes, walks) = (body.velocity.at(arm).dot(normal), -self.velocity.dot(normal));
@@ -95,7 +97,7 @@ impl Hitter {
         let turn = body.inverse_inertia_mul(arm.cross(normal)).cross(arm).dot(normal);
         let response = body.inverse_mass() + turn;
         let rise = normal.dot(self.up);
-        // A body held by the ground does not yield downward.
+        // A body between the mover and the ground does not yield downward.
         let braced = self.grounded && rise < 0.0;
         let own = if braced { self.inverse_mass * (1.0 - rise * rise) } else { self.inverse_mass };
         let inelastic = |speed: f32| speed / (response + self.inverse_mass);
@@ -107,12 +109,12 @@ impl Hitter {
     }
 }
 
-/// Weight of a mover on its ground, newtons along its down direction.
+/// Weight of a mover, newtons along its down direction.
 fn weight_of(mover: &Mover, gravity: Vec3) -> f32 {
     max(-(gravity * mover.def.gravity_scale).dot(mover.def.up), 0.0) * mover.def.mass
 }
 
-/// Dynamic body under a mover, and the contact point.
+/// Returns the index of the dynamic body under a mover, the body, and the contact point.
 fn bearer<'a>(bodies: &'a Arena<Body>, mover: &Mover) -> Option<(u32, &'a Body, Vec3)> {
     let footing = mover.ground?;
     let Bearer::Shape { body: id, .. } = footing.on else { return None };
@@ -120,8 +122,8 @@ fn bearer<'a>(bodies: &'a Arena<Body>, mover: &Mover) -> Option<(u32, &'a Body, 
     Some((id.index, body, footing.point))
 }
 
-/// The weight of a mover on its ground is a force: an equally large impulse would throw the hand of a lying character
-/// away.
+/// Adds the weight of a mover on its ground as a force: an impulse of the same size would throw a light body, such as
+/// the hand of a lying character.
 pub(super) fn weigh(
     (bodies, gravity): (&Arena<Body>, Vec3),
     mover: &Mover,
@@ -134,8 +136,8 @@ pub(super) fn weigh(
     }
 }
 
-/// Work (J) of a mover's weight in the last step, from the displacement and rotation of the supporting body: force and
-/// torque were constant.
+/// Returns the work of a mover's weight in the last step, joules, from the displacement and rotation of the supporting
+/// body. Force and torque were constant.
 pub(super) fn work_of_weight(bodies: &Arena<Body>, mover: &Mover, gravity: Vec3) -> f32 {
     let Some((_, body, point)) = bearer(bodies, mover) else { return 0.0 };
     let (from, to) = (body.previous, body.world_from_principal);

@@ -1,28 +1,28 @@
-//! Position of the axis of a capsule to a triangle that is solid from one side.
+//! Gap between the axis of a capsule and a triangle that is solid from one side.
 
 use crate::triangles::{Part, Triangle, closest_on_triangle};
 use sinew_math::{Vec3, clamp, normalize_or};
 
-/// Position of an axis to a triangle.
+/// Gap between a triangle and the axis of a capsule.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AxisGap {
-    /// Distance from the triangle to the axis, metres; negative where the axis is through.
+    /// Distance from the triangle to the axis, metres; negative if the axis crosses the face.
     pub distance: f32,
-    /// Unit, from the triangle to the axis.
+    /// Unit normal from the triangle to the axis.
     pub normal: Vec3,
-    /// Point on the triangle.
+    /// Closest point on the triangle.
     pub point: Vec3,
-    /// The nearest feature is an internal edge, so the neighbour is at least as near. The result is then relative to
-    /// the face's plane.
+    /// True if the nearest feature is an internal edge, so that a neighbouring triangle is at least as near. The gap is
+    /// then relative to the plane of the face.
     pub hidden: bool,
 }
 
-/// A direction from the closest point this near to the face normal counts as the face normal.
+/// Cosine of the angle to the face normal below which a direction counts as the face normal.
 const ALONG_FACE: f32 = 0.9998;
-/// An edge is the nearest feature only if it is nearer than the face by this share.
+/// Share of the squared distance by which an edge must be nearer than the other features to count as nearest.
 const NEARER: f32 = 1e-6;
 
-/// The nearest points of the axis from `p` to `q` and a triangle. `None` from behind.
+/// Returns the gap between a triangle and the axis from `p` to `q`. `None` if the axis is behind the face.
 pub(super) fn axis_to_triangle(triangle: &Triangle, [p, q]: [Vec3; 2]) -> Option<AxisGap> {
     let (above_p, above_q) = (triangle.height(p), triangle.height(q));
     if above_p < 0.0 && above_q < 0.0 {
@@ -77,7 +77,7 @@ fn can_be_hit(triangle: &Triangle, part: Part) -> bool {
     }
 }
 
-/// Crossing of the axis and the face; the exit is through the face's front.
+/// Returns the gap where the axis crosses the face; the shortest exit is through the front of the face.
 fn through(triangle: &Triangle, [p, q]: [Vec3; 2], [above_p, above_q]: [f32; 2]) -> Option<AxisGap> {
     let at = p + (q - p) * (above_p / (above_p - above_q));
     let (closest, _) = closest_on_triangle(&triangle.corners, at);
@@ -88,7 +88,7 @@ fn through(triangle: &Triangle, [p, q]: [Vec3; 2], [above_p, above_q]: [f32; 2])
     Some(AxisGap { distance, normal: triangle.normal, point: at, hidden: false })
 }
 
-/// Shares of two segments at which they are closest (Ericson 2005, §5.1.9).
+/// Fractions along two segments at which the segments are closest (Ericson 2005, §5.1.9).
 fn closest_of_segments([p1, q1]: [Vec3; 2], [p2, q2]: [Vec3; 2]) -> (f32, f32) {
     let (d1, d2, r) = (q1 - p1, q2 - p2, p1 - p2);
     let (a, e, f) = (d1.length_squared(), d2.length_squared(), d2.dot(r));
@@ -112,7 +112,7 @@ fn closest_of_segments([p1, q1]: [Vec3; 2], [p2, q2]: [Vec3; 2]) -> (f32, f32) {
     }
 }
 
-/// Unit vector of the component of `v` perpendicular to `up`, or zero.
+/// Returns the unit vector of the component of `v` perpendicular to `up`, or zero.
 pub(super) fn level(v: Vec3, up: Vec3) -> Vec3 {
     let across = v - up * v.dot(up);
     if across.length_squared() > 1e-12 { normalize_or(across, Vec3::ZERO) } else { Vec3::ZERO }

@@ -7,7 +7,7 @@ use crate::body::snapshot::{load_filter, save_filter};
 use crate::id::{BodyId, MoverId};
 use sinew_math::{ReadError, Reader, Writer};
 
-/// Bit in the ground's number: a pass-through momentum follows.
+/// Bit in the tag of the ground: a pass-through momentum follows.
 const LETS_PASS: u8 = 0x80;
 
 impl Mover {
@@ -34,7 +34,7 @@ impl Mover {
         [self.position, self.previous, self.velocity, self.walk].into_iter().for_each(|v| w.vec3(v));
         w.f32(self.yaw);
         w.f32(self.jump);
-        // Written only where it is used.
+        // The momentum is written only if it is above 0.
         let passes = if def.lets_pass > 0.0 { LETS_PASS } else { 0 };
         let Some(Footing { on, point, normal, velocity }) = self.ground else {
             w.u8(passes);

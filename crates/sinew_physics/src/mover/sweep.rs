@@ -10,19 +10,19 @@ use crate::mover::tuning::{
 };
 use sinew_math::{Vec3, clamp, min};
 
-/// Position of the capsule near an obstacle.
+/// Contact of the capsule with a near obstacle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
-    /// Unit, from the obstacle to the capsule.
+    /// Unit normal from the obstacle to the capsule.
     pub normal: Vec3,
     pub distance: f32,
     /// Point on the obstacle.
     pub point: Vec3,
-    /// Number of the obstacle in the sight.
+    /// Index of the obstacle in `Surroundings`.
     pub obstacle: usize,
 }
 
-/// Touches within a distance, the nearest first.
+/// Touches within a distance, nearest first; at most `MOST`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touches {
     all: [Touch; MOST],
@@ -49,7 +49,7 @@ impl Touches {
     }
 
     /// Removes touches behind the plane of a nearer one: the seam of two adjacent boxes, or the edge of the next
-    /// triangle. They still stop a motion against them.
+    /// triangle. Sweeps still stop at them.
     fn drop_hidden(&mut self, behind: f32) {
         let mut kept = 0;
         for i in 0..self.count {
@@ -67,26 +67,26 @@ impl Touches {
     }
 }
 
-/// Share of a motion by which it may approach the surface it slides along.
+/// Share of a motion by which the motion may approach the surface it slides along.
 const ALONG: f32 = 1e-4;
 const MOST_STEPS: usize = 48;
 const MOST_SLIDES: usize = 8;
 const MOST_PUSHES: usize = 8;
 
-/// Result of planes on a motion.
+/// Rule by which planes change a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Course {
-    /// The motion changes as little as possible: in the air.
+    /// Changes the motion as little as possible: in the air.
     Free,
-    /// Up and down are cheap: on the ground.
+    /// Changes the vertical part first: on the ground.
     Level,
 }
 
-/// Sliding parameters of a mover: its skin, and its slope limit.
+/// Sliding parameters of a mover: its skin, slope limit and course.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Manner {
     pub skin: f32,
-    /// Cosine of the steepest slope that is walked on.
+    /// Cosine of the steepest slope that the mover walks on.
     pub flattest: f32,
     pub course: Course,
 }
@@ -98,7 +98,7 @@ impl Manner {
 }
 
 impl Surroundings<'_> {
-    /// Everything within `reach` of the capsule.
+    /// Returns the touches within `reach` of the capsule, metres.
     fn near(&self, center: Vec3, reach: f32) -> Touches {
         let nothing = Touch { normal: Vec3::ZERO, distance: 0.0, point: Vec3::ZERO, obstacle: 0 };
         let mut touches = Touches { all: [nothing; MOST], count: 0 };
@@ -117,21 +117,22 @@ impl Surroundings<'_> {
         touches
     }
 
-    /// Touches of the capsule: within its skin, and slightly beyond.
+    /// Returns the touches of the capsule within its skin and slightly beyond.
     pub fn touches(&self, center: Vec3, skin: f32) -> Touches {
         let mut touches = self.near(center, skin * (1.0 + TOUCH_SKIN));
         touches.drop_hidden(COPLANAR_SKIN * skin);
         touches
     }
 
-    /// Touches that may support the capsule: slightly farther than those that stop it.
+    /// Returns the touches that may support the capsule, slightly farther away than those that stop it.
     pub fn bearers(&self, center: Vec3, skin: f32) -> Touches {
         let mut touches = self.near(center, skin * (1.0 + BEARING_SKIN));
         touches.drop_hidden(COPLANAR_SKIN * skin);
         touches
     }
 
-    /// Share of a motion until an obstacle is at distance `stop` from the capsule, and the obstacle.
+    /// Returns the share of a motion until an obstacle is at the stop distance from the capsule, and the touch with
+    /// that obstacle.
     pub fn sweep(&self, center: Vec3, way: Vec3, manner: &Manner) -> (f32, Option<Touch>) {
         let length = way.length();
         let (mut first, mut hit) = (1.0, None);
@@ -153,7 +154,7 @@ impl Surroundings<'_> {
                 }
                 let left = gap.distance - manner.stop();
                 if hidden && left <= ARRIVED_SKIN * manner.skin {
-                    // Beside a face, in its plane: the motion may still lead over it.
+                    // The capsule is beside a face, in its plane: the motion may still pass over the face.
                     share += BESIDE_RADIUS * self.radius / length;
                 } else if left <= ARRIVED_SKIN * manner.skin {
                     let touch = Touch {
@@ -175,15 +176,15 @@ impl Surroundings<'_> {
         (first, hit)
     }
 
-    /// Planes that restrict motion at the capsule's position.
+    /// Returns the planes that restrict motion at the capsule's position.
     pub fn planes(&self, center: Vec3, manner: &Manner) -> Planes {
-        // A sweep's stop is ignored within the skin: the next of two adjacent walls would be hit there.
+        // A sweep's stop is ignored within the skin; otherwise the capsule would hit the next of two adjacent walls.
         let away = |touch: &Touch| min(manner.skin - touch.distance, SLIDE_AWAY * manner.skin);
         self.planes_of(center, manner, |touch, wall| if wall.is_some() { 0.0 } else { away(touch) })
     }
 
-    /// Planes of the capsule's touches, with the smallest allowed motion along each normal; a slope that is too steep
-    /// is also a wall, with the returned normal.
+    /// Returns the planes of the capsule's touches, with `least` as the smallest allowed motion along each normal. A
+    /// slope that is too steep also adds a vertical wall; `least` gets the normal of that wall.
     pub fn planes_of(
         &self,
         center: Vec3,
@@ -202,7 +203,7 @@ impl Surroundings<'_> {
         planes
     }
 
-    /// End position of a motion that slides along its obstacles.
+    /// Returns the end position of a motion that slides along the obstacles.
     pub fn slide(&self, mut center: Vec3, way: Vec3, manner: &Manner) -> Vec3 {
         let mut left = way;
         for _ in 0..MOST_SLIDES {
@@ -231,7 +232,8 @@ impl Surroundings<'_> {
         center
     }
 
-    /// Position of the capsule after depenetration, by the shortest displacement that leads into nothing else.
+    /// Returns the position of the capsule after depenetration, by the shortest displacement that causes no other
+    /// overlap.
     pub fn recover(&self, mut center: Vec3, manner: &Manner) -> Vec3 {
         let (stop, reach) = (manner.stop(), 0.5 * self.radius);
         for _ in 0..MOST_PUSHES {

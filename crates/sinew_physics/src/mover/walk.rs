@@ -1,4 +1,4 @@
-//! One move of one mover, in order.
+//! The move of one mover in a step.
 
 use super::crowd::Crowd;
 use super::obstacle::{Obstacle, Owner, Surroundings, gather};
@@ -14,7 +14,7 @@ use crate::ray::Ray;
 use crate::world::World;
 use sinew_math::{Vec3, clamp, max, min, normalize_or, trig};
 
-/// Surroundings of a move, except the mover itself.
+/// Data of one move: the world, the other movers, the obstacles and the sliding parameters.
 struct Move<'a> {
     world: &'a World,
     movers: &'a Arena<Mover>,
@@ -59,15 +59,15 @@ fn look_around(
 }
 
 impl Mover {
-    /// Starts a fall from its ground, with the ground's velocity.
+    /// Makes the mover leave its ground, with the ground's velocity.
     pub(super) fn leave_ground(&mut self) {
         if let Some(footing) = self.ground.take() {
             self.velocity += footing.velocity;
         }
     }
 
-    /// The ground may have been removed or have changed its velocity. A dynamic body carries the mover by friction; if
-    /// it flies off, it slips away under the mover, and this returns true.
+    /// Updates the ground, which may have been removed or have changed its velocity. A dynamic body carries the mover
+    /// by friction. Returns true if the body accelerates more than friction allows, so that the mover slips.
     fn refresh_ground(&mut self, bodies: &Arena<Body>, dt: f32) -> bool {
         let Some(footing) = &mut self.ground else { return false };
         let Bearer::Shape { body, shape } = footing.on else { return false };
@@ -82,7 +82,8 @@ impl Mover {
         slips
     }
 
-    /// Displacement by the ground in this step; the yaw follows unless it slips.
+    /// Returns the displacement by the ground in this step, metres, and turns the yaw with the ground unless the mover
+    /// slips.
     fn carried(&mut self, bodies: &Arena<Body>, slips: bool, dt: f32) -> Vec3 {
         let Some(Footing { on: Bearer::Shape { body, shape }, velocity, .. }) = self.ground else {
             return Vec3::ZERO;
@@ -102,7 +103,7 @@ impl Mover {
         moved + runs.linear * dt
     }
 
-    /// Changes the velocity toward the wanted one, and jumps.
+    /// Accelerates the mover toward the wanted velocity, and starts a requested jump.
     fn accelerate(&mut self, dt: f32) {
         let up = self.def.up;
         if self.jump > 0.0 && self.ground.is_some() {
@@ -137,7 +138,7 @@ impl<'a> Move<'a> {
         Self { world, movers, sight, manner, dt }
     }
 
-    /// The whole move: carry, depenetrate, hits, motion, ground snap.
+    /// Runs the whole move: carry, depenetration, hits, motion, ground snap.
     fn run(mut self, mover: &mut Mover, carried: Vec3, gravity: Vec3, presses: &mut Vec<Press>) {
         let mut center = mover.center();
         let stood = mover.ground.map(|footing| footing.on);
@@ -160,7 +161,7 @@ impl<'a> Move<'a> {
         }
         center = match mover.ground {
             Some(_) => self.walk(mover, center),
-            // In the step of a jump, the ground's displacement is already done.
+            // In the step of a jump, the ground has already moved the mover.
             None => self.fly(mover, center, (gravity, carried, pushed)),
         };
         mover.put(center);
@@ -172,7 +173,7 @@ impl<'a> Move<'a> {
         Manner { course: Course::Level, ..self.manner }
     }
 
-    /// Walks along the ground, up steps, and down to where the ground is.
+    /// Walks along the ground, up steps, and down to the ground; returns the new centre.
     fn walk(&self, mover: &mut Mover, start: Vec3) -> Vec3 {
         let up = mover.def.up;
         let wanted = mover.velocity * self.dt;
@@ -197,7 +198,8 @@ impl<'a> Move<'a> {
         found
     }
 
-    /// The footing with the velocity at which it carries a mover that steps onto it or stays on it.
+    /// Returns the footing with the velocity that the mover gets from it; a dynamic body keeps the velocity of the
+    /// footing before.
     fn taken_along(&self, mover: &Mover, footing: Footing) -> Footing {
         let (Some(before), Bearer::Shape { body, .. }) = (mover.ground, footing.on) else { return footing };
         let is_dynamic = self.sight.bodies.at(body.index).kind == BodyKind::Dynamic;
@@ -205,7 +207,8 @@ impl<'a> Move<'a> {
         Footing { velocity, ..footing }
     }
 
-    /// Up, along and down onto a tread that is no higher than a step over the feet.
+    /// Moves the mover up, forward and down onto a tread at most one step height above the feet; returns the new
+    /// centre.
     fn step_up(&self, mover: &Mover, start: Vec3, blocked: Vec3, missing: Vec3) -> Option<Vec3> {
         let (up, step) = (mover.def.up, mover.def.step_height);
         let length = missing.length();
@@ -215,8 +218,8 @@ impl<'a> Move<'a> {
         let (share, _) = self.sight.sweep(blocked, up * step, &self.manner);
         let raised = blocked + up * (step * share);
         let feet = start - up * (0.5 * mover.def.height);
-        // A smaller step would not bring it over the edge from its skin distance. If it would land on a low flank that
-        // is too steep, the tread may be behind it.
+        // A smaller step would not bring the mover over the edge from its skin distance. If the mover would land on a
+        // low flank that is too steep, the tread may be behind the flank.
         let radius = mover.def.radius;
         for length in [max(length, 2.0 * mover.def.skin), 0.25 * radius, 0.5 * radius] {
             let way = missing * (length / missing.length());
@@ -238,7 +241,7 @@ impl<'a> Move<'a> {
         None
     }
 
-    /// Down to the ground, at most one step height; returns the footing.
+    /// Moves the mover down to the ground, at most one step height; returns the new centre and the footing.
     fn snap(&self, mover: &Mover, center: Vec3) -> (Vec3, Option<Footing>) {
         let up = mover.def.up;
         if let Some(footing) = self.ground_at(mover, center, Edges::Bear) {
@@ -249,14 +252,16 @@ impl<'a> Move<'a> {
         if hit.is_none() {
             return (center, None);
         }
-        // Beside an obstacle that stops it but does not support it, such as the edge of a riser, it may get lower.
+        // Beside an obstacle that stops the mover but does not support it, such as the edge of a riser, the mover may
+        // get lower.
         let below = center - up * (depth * share);
         let beside = || self.sight.slide(below, -up * (depth * (1.0 - share)), &self.manner);
         let stands = |at: Vec3| self.ground_at(mover, at, Edges::Bear).map(|footing| (at, Some(footing)));
         stands(below).or_else(|| stands(beside())).unwrap_or((center, None))
     }
 
-    /// Through the air, under gravity. Part of the motion was already done by carrying and by faster bodies.
+    /// Moves the mover through the air, under gravity. Carrying and faster bodies have already done a part of the
+    /// motion.
     fn fly(&self, mover: &mut Mover, start: Vec3, (gravity, carried, pushed): (Vec3, Vec3, Vec3)) -> Vec3 {
         let (dt, up) = (self.dt, mover.def.up);
         let mut wanted = mover.velocity * dt + gravity * (0.5 * dt * dt) - carried;
@@ -284,14 +289,15 @@ impl<'a> Move<'a> {
         center
     }
 
-    /// Velocities allowed by the touches at a position: none toward an obstacle, unless it recedes.
+    /// Returns the velocities that the touches at a position allow: none toward an obstacle, unless the obstacle
+    /// recedes.
     fn stops(&self, center: Vec3) -> Planes {
         self.sight.planes_of(center, &self.manner, |touch, wall| {
             min(self.footing(touch).velocity.dot(wall.unwrap_or(touch.normal)), 0.0)
         })
     }
 
-    /// Footing of a mover at a position: the flattest touch.
+    /// Returns the footing of a mover at a position: the flattest touch that supports it.
     fn ground_at(&self, mover: &Mover, center: Vec3, edges: Edges) -> Option<Footing> {
         let touches = self.sight.bearers(center, self.manner.skin);
         let rise = |touch: &Touch| touch.normal.dot(mover.def.up);
@@ -309,7 +315,7 @@ impl<'a> Move<'a> {
         best.map(|touch| self.footing(touch))
     }
 
-    /// True if a mover stands on a touch: it is flat, or the edge of a flat tread.
+    /// True if a touch supports the mover: it is flat, or it is the edge of a flat tread.
     fn bears(&self, touch: &Touch, mover: &Mover, center: Vec3) -> bool {
         let up = mover.def.up;
         let rise = touch.normal.dot(up);
@@ -352,6 +358,6 @@ enum Edges {
     Bear,
     /// None: in the air.
     Fall,
-    /// Everything that stops a fall.
+    /// All touches that stop a fall.
     Wedge,
 }

@@ -9,7 +9,7 @@ use crate::world::World;
 use sinew_math::Vec3;
 
 impl World {
-    /// Adds a mover. It moves in steps, from the next one on.
+    /// Adds a mover. It moves from the next step on.
     ///
     /// # Panics
     /// If [`MoverDef::check`] rejects the definition.
@@ -31,7 +31,7 @@ impl World {
         }
     }
 
-    /// A mover.
+    /// Returns a mover.
     #[track_caller]
     pub fn mover(&self, id: MoverId) -> &Mover {
         self.movers.all.expect(id)
@@ -42,12 +42,12 @@ impl World {
         self.movers.all.get(id).is_some()
     }
 
-    /// All movers, by index.
+    /// Iterates over the ids of all movers, by index.
     pub fn mover_ids(&self) -> impl Iterator<Item = MoverId> {
         self.movers.all.ids()
     }
 
-    /// Ground under a mover; `None` in the air and on steep slopes.
+    /// Returns the ground under a mover; `None` in the air and on steep slopes.
     #[track_caller]
     pub fn mover_ground(&self, id: MoverId) -> Option<MoverGround> {
         let footing = self.mover(id).ground?;
@@ -67,7 +67,7 @@ impl World {
         self.expect_mover(id).walk = velocity;
     }
 
-    /// Throws a mover: it leaves the ground with this velocity, m/s.
+    /// Throws a mover: it leaves the ground with this world velocity, m/s.
     #[track_caller]
     pub fn set_mover_velocity(&mut self, id: MoverId, velocity: Vec3) {
         assert!(velocity.is_finite(), "a velocity is finite, not {velocity:?} ({id:?})");
@@ -76,8 +76,8 @@ impl World {
         mover.velocity = velocity;
     }
 
-    /// Makes a mover jump in the next step, if it is then supported, with this upward speed, m/s, relative to the
-    /// ground. It rises by `speed² / 2g`.
+    /// Makes a mover jump in the next step with this upward speed, m/s, relative to the ground, if ground supports the
+    /// mover then. The mover rises by `speed² / 2g`.
     #[track_caller]
     pub fn mover_jump(&mut self, id: MoverId, speed: f32) {
         assert!(
@@ -96,7 +96,7 @@ impl World {
         (mover.ground, mover.velocity) = (None, Vec3::ZERO);
     }
 
-    /// Changes a mover's height, keeping its feet. Returns false, with no change, if there is no space to grow.
+    /// Changes a mover's height, keeping its feet. Returns false and changes nothing if there is no space to grow.
     ///
     /// # Panics
     /// If the height is less than twice the radius, or not finite.
@@ -112,13 +112,13 @@ impl World {
         true
     }
 
-    /// Sets the collision filter.
+    /// Sets the collision filter of a mover.
     #[track_caller]
     pub fn set_mover_filter(&mut self, id: MoverId, filter: Filter) {
         self.expect_mover(id).def.filter = filter;
     }
 
-    /// True if nothing is where a mover would grow to.
+    /// True if no obstacle is in the space into which a mover would grow.
     #[track_caller]
     fn has_room(&self, id: MoverId, height: f32) -> bool {
         let mut grown = self.mover(id).clone();
@@ -131,7 +131,7 @@ impl World {
         gather(self, (all, all.iter().map(|(other, _)| other)), id.index, &bounds, &mut obstacles);
         let sight = Surroundings::new(&self.bodies, &obstacles, &grown);
         let low = Surroundings::new(&self.bodies, &obstacles, self.mover(id));
-        // It may keep touching its present touches.
+        // The mover may keep its present touches.
         obstacles.iter().all(|obstacle| {
             let distance = |sight: &Surroundings<'_>, center| {
                 sight.gap(obstacle, center).map_or(skin, |gap| gap.distance)

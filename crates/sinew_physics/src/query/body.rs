@@ -7,8 +7,8 @@ use crate::world::World;
 use sinew_math::{Transform, Vec3};
 
 impl World {
-    /// Bounds of all shapes of a body at its present pose, sensors among them; of a body without shapes the point where its
-    /// frame is.
+    /// Returns the bounds of all shapes of a body at its current pose, including sensors; for a body without shapes,
+    /// the origin of its frame.
     #[track_caller]
     pub fn bounds(&self, id: BodyId) -> Aabb {
         let place = self.transform(id).translation;
@@ -16,8 +16,8 @@ impl World {
         bounds.reduce(|a, b| a.merge(&b)).unwrap_or(Aabb { min: place, max: place })
     }
 
-    /// Nearest point on the surface of a body to a point (world), over all its shapes; `None` for a body without
-    /// shapes. A point inside several shapes is measured in the one that contains it deepest.
+    /// Returns the nearest point on the surface of a body to a point (world), over all shapes of the body; `None` for a
+    /// body without shapes. A point inside several shapes is measured in the one that contains it deepest.
     #[track_caller]
     pub fn nearest_surface(&self, id: BodyId, point: Vec3) -> Option<SurfacePoint> {
         let of_shape = |(shape, frame): (Shape, Transform)| shape.nearest_surface(&frame, point);
@@ -29,8 +29,8 @@ impl World {
         self.nearest_surface(id, point).is_some_and(|nearest| nearest.distance <= 0.0)
     }
 
-    /// Depth of a point (world) in a body, and the direction of the shortest way out; `None` if it is outside. The way
-    /// leads out of the shape that contains the point deepest.
+    /// Returns the depth of a point (world) in a body, and the direction of the shortest way out; `None` if the point
+    /// is outside. The way leads out of the shape that contains the point deepest.
     #[track_caller]
     pub fn point_penetration(&self, id: BodyId, point: Vec3) -> Option<Penetration> {
         let SurfacePoint { distance, normal, .. } = self.nearest_surface(id, point)?;

@@ -7,7 +7,7 @@ use crate::world::World;
 use core::ops::ControlFlow;
 use sinew_math::{Vec3, abs3, max, max3, min, min3};
 
-/// Region of the shapes that may answer.
+/// Region in which shapes may answer a query.
 #[derive(Clone, Copy, Debug)]
 pub enum Reach {
     /// Shapes whose bounds meet a box.
@@ -18,20 +18,20 @@ pub enum Reach {
     Near(Vec3, f32),
 }
 
-/// Rank beyond which no answer counts; a break ends the search.
+/// Rank beyond which answers do not count; a break ends the search.
 pub(super) type Limit = ControlFlow<(), f32>;
 
 /// Largest distance from the origin at which shapes are found, metres: squares of larger numbers overflow.
 pub(super) const FARTHEST: f32 = 1e18;
 
-/// No sweep is shortened below this fraction.
+/// Smallest fraction to which a sweep is shortened.
 const SHORTEST: f32 = 1e-30;
 
-/// Passes every shape within reach, and possibly others, to `visit`, in any order, until it breaks.
+/// Passes every shape within reach, and possibly others, to `visit`, in any order, until `visit` breaks.
 pub(super) fn candidates(world: &World, reach: &Reach, mut visit: impl FnMut(Owner) -> Limit) {
     let proxies = &world.broad.proxies;
     let mut broken = false;
-    // The remaining limit of searches along a line and around a point, below 0 after the end.
+    // Returns the remaining limit of a search along a line or around a point; below 0 after the end.
     let mut search = |owner: Owner| {
         if !broken && let ControlFlow::Continue(limit) = visit(owner) {
             return limit;
@@ -63,7 +63,7 @@ pub(super) fn candidates(world: &World, reach: &Reach, mut visit: impl FnMut(Own
     }
 }
 
-/// Sweep of a moving box, for the trees; `None` if nothing is searched.
+/// Returns the sweep of a moving box, for the trees; `None` if the box is too far away.
 pub(super) fn sweep(bounds: &Aabb, direction: Vec3) -> Option<Sweep> {
     let (origin, half_extents) = (bounds.center(), bounds.half_extents());
     let limit = min(FARTHEST / largest(direction), 1.0);
@@ -71,9 +71,9 @@ pub(super) fn sweep(bounds: &Aabb, direction: Vec3) -> Option<Sweep> {
     is_near.then_some(Sweep { origin, direction, half_extents, limit })
 }
 
-/// Fraction beyond which the tree search may stop, if answers beyond `limit` do not count.
+/// Returns the fraction beyond which the tree search may stop, if answers beyond `limit` do not count.
 pub(super) fn what_is_left(sweep: &Sweep, limit: f32) -> f32 {
-    // For hits at the start of a very long sweep the fractions underflow, those of their bounds may not.
+    // For hits at the start of a very long sweep the fractions underflow, but those of their bounds may not.
     min(max(limit, SHORTEST), sweep.limit)
 }
 

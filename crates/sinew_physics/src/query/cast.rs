@@ -21,13 +21,13 @@ pub struct BodyHit {
     pub body: BodyId,
     /// Number of the shape in its body.
     pub shape: u32,
-    /// Fraction of the sweep before the hit, 0..=1; 0 if it starts inside.
+    /// Fraction of the sweep before the hit, 0..=1; 0 if the sweep starts inside.
     pub fraction: f32,
-    /// Contact point, world, metres; for a start inside, the ray's start or the middle of the overlap.
+    /// Contact point, world, metres; for a start inside, the start of the ray or the centre of the overlap.
     pub point: Vec3,
     /// Unit outward normal of the hit shape, world; for a start inside, opposite to the sweep.
     pub normal: Vec3,
-    /// Depth of a start inside, and the shortest way out; else `None`.
+    /// Depth and shortest way out for a start inside; otherwise `None`.
     pub start: Option<Penetration>,
 }
 
@@ -35,7 +35,7 @@ impl BodyHit {
     /// Creates a hit from the answer of one shape; `None` if a number is not finite.
     fn new(id: ShapeId, hit: RayHit, start: Option<Penetration>) -> Option<Self> {
         let RayHit { fraction, point, normal } = hit;
-        // Normalises −0.
+        // Changes −0 to 0.
         let fraction = max(fraction, 0.0);
         let finite = fraction.is_finite() && point.is_finite() && normal.is_finite();
         finite.then_some(Self { body: id.body, shape: id.shape, fraction, point, normal, start })
@@ -92,9 +92,9 @@ impl Ask for Ray {
 #[doc(alias = "sweep test")]
 #[doc(alias = "cast_shape")]
 pub struct ShapeCast {
-    /// Probe that is moved, where it starts.
+    /// Probe at the start of its motion.
     pub probe: Probe,
-    /// Displacement of the shape, metres.
+    /// Displacement of the probe, metres.
     pub translation: Vec3,
 }
 
@@ -108,7 +108,7 @@ impl Ask for ShapeCast {
     fn reach(&self) -> Option<Reach> {
         let usable = self.translation.length() < f32::INFINITY && self.probe.is_valid();
         usable.then(|| {
-            // It may stop as much before it touches.
+            // The cast may report a hit up to this distance before contact.
             let early = 2.0 * closeness(self.probe.shape.bounding_radius(), self.translation);
             Reach::Swept(self.probe.aabb().expand(early), self.translation)
         })

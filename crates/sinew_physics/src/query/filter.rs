@@ -1,21 +1,21 @@
-//! Filter of the shapes that a question is about.
+//! Filter of the shapes that a query considers.
 
 use crate::body::def::BodyKind;
 use crate::body::shape::{Filter, Sensing};
 use crate::id::{BodyId, ShapeId};
 use core::ops::BitOr;
 
-/// Filter of the shapes of a world that a [`Query`](super::Query) is about. Default: every shape that is no sensor.
+/// Filter of the shapes of a world that a [`Query`](super::Query) considers. Default: every shape that is no sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[doc(alias = "layer mask")]
 pub struct QueryFilter<'a> {
-    /// Treats the query as a shape with this filter: it accepts those that [`Filter::meets`]. Default: on all layers,
-    /// with all layers in its mask, in no group. A shape with an empty mask collides with nothing, and is not found
-    /// either.
+    /// Filter with which the query acts like a shape: it accepts shapes that [`Filter::meets`] this filter. Default: on
+    /// all layers, with all layers in its mask, in no group. A shape with an empty mask collides with nothing, so no
+    /// query finds it.
     pub meets: Filter,
-    /// Kinds of their bodies. Default: all.
+    /// Kinds of bodies whose shapes are accepted. Default: all.
     pub kinds: BodyKinds,
-    /// Treatment of sensors. Default ignored.
+    /// Treatment of sensors. Default: ignored.
     pub sensors: Sensors,
     /// Excluded bodies: a few, because each shape is compared with all of them. Default none.
     pub except: &'a [BodyId],
@@ -33,17 +33,17 @@ impl Default for QueryFilter<'_> {
 }
 
 impl<'a> QueryFilter<'a> {
-    /// Restricts the query to some kinds of bodies.
+    /// Returns a filter for the shapes of some kinds of bodies.
     pub fn of(kinds: BodyKinds) -> Self {
         Self { kinds, ..Self::default() }
     }
 
-    /// All but a few bodies.
+    /// Returns a filter for all bodies except a few.
     pub fn without(except: &'a [BodyId]) -> Self {
         Self { except, ..Self::default() }
     }
 
-    /// True if a shape of a body of some kind passes.
+    /// True if a shape of a body of this kind passes.
     pub(super) fn passes(&self, id: ShapeId, kind: BodyKind, filter: Filter, sensing: Sensing) -> bool {
         self.kinds.contains(kind)
             && (sensing == Sensing::Solid || self.sensors == Sensors::Included)
@@ -58,7 +58,7 @@ pub enum Sensors {
     /// Sensors are ignored. Default.
     #[default]
     Ignored,
-    /// They answer as solid shapes do.
+    /// Sensors answer like solid shapes.
     Included,
 }
 

@@ -1,4 +1,4 @@
-//! Kinds of queries: each finds one shape's answer, and orders the answers of several.
+//! Kinds of queries: each finds the answer of one shape, and orders the answers of several shapes.
 
 use super::Query;
 use super::candidates::Reach;
@@ -23,7 +23,7 @@ pub(super) mod sealed {
         /// Reach of the query, or `None` if no shape can answer: a number is not finite.
         fn reach(&self) -> Option<Reach>;
 
-        /// The answer of a placed shape, if it has one. No number in it is NaN or infinite.
+        /// Returns the answer of a placed shape, if it has one. No number in the answer is NaN or infinite.
         fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<Self::Found>;
 
         /// The first answer to each of several queries, for kinds with a faster batch algorithm.
@@ -39,7 +39,7 @@ pub(super) mod sealed {
             }
         }
 
-        /// True if it has one; where that is cheaper than the answer itself.
+        /// True if the shape has an answer; may be cheaper than the answer itself.
         fn is_met(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> bool {
             self.ask(id, shape, world_from_shape).is_some()
         }
@@ -50,7 +50,7 @@ pub(super) mod sealed {
         /// Shape that answered.
         fn shape(&self) -> ShapeId;
 
-        /// Rank of the answer: smaller comes first; equal ones are ordered by body and shape.
+        /// Rank of the answer: smaller comes first; equal ranks are ordered by body and shape.
         fn rank(&self) -> f32;
     }
 }

@@ -14,14 +14,15 @@ use sinew_math::{Vec3, max};
 /// Energy, joules.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Kinetic energy of motion and spin, J.
+    /// Kinetic energy of motion and spin, joules.
     pub kinetic: f32,
-    /// Potential energy of height in uniform gravity, 0 at the origin, and of stretched springs, those of joints among them, J.
+    /// Potential energy, joules: of height in uniform gravity (0 at the origin), and of stretched springs, including
+    /// joints.
     pub potential: f32,
 }
 
 impl Energy {
-    /// Sum, joules.
+    /// Sum of both, joules.
     pub fn total(self) -> f32 {
         self.kinetic + self.potential
     }
@@ -30,14 +31,14 @@ impl Energy {
 /// Linear and angular momentum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Momentum {
-    /// N·s.
+    /// Linear momentum, N·s.
     pub linear: Vec3,
     /// Angular momentum about the world's origin, N·m·s.
     pub angular: Vec3,
 }
 
 impl World {
-    /// Energy of one body.
+    /// Kinetic and potential energy of one body, joules.
     #[track_caller]
     pub fn body_energy(&self, id: BodyId) -> Energy {
         let body = self.expect(id);
@@ -45,7 +46,7 @@ impl World {
         Energy { kinetic: body.kinetic_energy(), potential: -weight.dot(body.center()) }
     }
 
-    /// Energy of one particle group.
+    /// Kinetic and potential energy of one particle group, joules.
     #[track_caller]
     pub fn group_energy(&self, id: GroupId) -> Energy {
         let group = self.particles(id);
@@ -59,8 +60,8 @@ impl World {
         sum
     }
 
-    /// Energy of all dynamic bodies, all particles, all springs, and of all these in the world's fields
-    /// ([`field_energy`](Self::field_energy)).
+    /// Energy of all dynamic bodies, particles and springs, and their energy in the world's fields
+    /// ([`field_energy`](Self::field_energy)), joules.
     pub fn energy(&self) -> Energy {
         let bodies = self.body_ids().map(|id| self.body_energy(id));
         let groups = self.group_ids().map(|id| self.group_energy(id));
@@ -126,14 +127,14 @@ impl World {
         keys.into_iter().map(other).map(|index| self.bodies.id(index))
     }
 
-    /// Deepest overlap of a body with static ones, metres, at its present pose. Nothing stops a kinematic body, so this
-    /// is how deep its motion takes it into the static world.
+    /// Depth of the deepest overlap of a body with static bodies, metres, at its current pose. Nothing stops a
+    /// kinematic body, so this is how deep its motion moves it into the static world.
     #[track_caller]
     pub fn penetration(&self, id: BodyId) -> f32 {
         if self.expect(id).kind == BodyKind::Kinematic {
             return self.led_penetration(id);
         }
-        // A pair with several contacts is processed several times, which needs no memory.
+        // A pair with several contacts is tested several times; a list without duplicates would need memory.
         self.contacts_at(id.index)
             .filter(|contact| contact.pushes())
             .map(|contact| contact.key.other(id.index))
@@ -164,7 +165,7 @@ impl World {
         deepest
     }
 
-    /// Shapes of a body with their world poses, for drawing.
+    /// Iterates over the shapes of a body with their world poses, for drawing.
     #[track_caller]
     pub fn shapes(
         &self,

@@ -33,15 +33,16 @@
 //! | [`NearestTo`] | surfaces within a distance of a point | [`BodySurface`], the nearest first |
 //! | [`NearestToShape`] | surfaces within a distance of a shape | [`BodySurface`], the nearest first |
 //!
-//! Each supports the [`first`](Query::first) answer, [`all`](Query::all) answers, [`any`](Query::any) (whether there is
-//! one), and the [`bodies`](Query::bodies) that answer; and batches of queries, with results in the caller's memory:
-//! [`first_each`](Query::first_each), [`all_each`](Query::all_each), [`any_each`](Query::any_each). A shape answers
-//! once. Equal answers are ordered by body index, then by shape number, so that the order is deterministic.
+//! Each query supports the [`first`](Query::first) answer, [`all`](Query::all) answers, [`any`](Query::any) (true if
+//! there is an answer), and the [`bodies`](Query::bodies) that answer; and batches of queries, with results in the
+//! caller's memory: [`first_each`](Query::first_each), [`all_each`](Query::all_each), [`any_each`](Query::any_each). A
+//! shape answers once. Equal answers are ordered by body index, then by shape number, so that the order is
+//! deterministic.
 //!
 //! # Starts inside
 //!
-//! Shapes are closed sets: their surfaces belong to them, and touching counts as inside. This holds for every shape and
-//! every query:
+//! Shapes are closed sets: a surface belongs to its shape, and touching counts as inside. This holds for every shape
+//! and every query:
 //!
 //! | | apart at the start | touching | inside |
 //! |---|---|---|---|
@@ -54,8 +55,8 @@
 //!
 //! A ray that leaves a shape does not hit it again; one without length hits the shapes that contain its start.
 //!
-//! Meshes and height fields are surfaces: only points on their triangles are inside. They are hit from the outside of
-//! their triangles only, and no way out leads through a triangle's back; distances from them are never negative, except
+//! Meshes and height fields are surfaces: only points on their triangles are inside. Queries hit triangles only from
+//! their outside, and no way out leads through the back of a triangle. Distances from them are never negative, except
 //! for shapes that cross a triangle.
 //!
 //! # What is not answered
@@ -94,7 +95,7 @@ use core::ops::ControlFlow;
 use kind::sealed::{Ask, Reply};
 use sinew_math::Transform;
 
-/// Queries a world's shapes that pass a filter and a predicate.
+/// Query of the shapes of a world that pass a filter and a predicate.
 #[derive(Clone, Copy)]
 #[must_use]
 pub struct Query<'a, P> {
@@ -104,8 +105,8 @@ pub struct Query<'a, P> {
 }
 
 impl World {
-    /// Queries every shape except sensors, unless a [`filter`](Query::filter) is set. Bodies are at their current
-    /// poses, from a step or from [`set_transform`](World::set_transform), asleep or awake.
+    /// Starts a query of every shape except sensors, unless a [`filter`](Query::filter) is set. Bodies are at their
+    /// current poses, from a step or from [`set_transform`](World::set_transform), asleep or awake.
     #[doc(alias = "raycast")]
     #[doc(alias = "cast_ray")]
     #[doc(alias = "QueryPipeline")]
@@ -116,25 +117,25 @@ impl World {
 }
 
 impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
-    /// Queries the shapes that pass a filter, replacing a previous one.
+    /// Restricts the query to the shapes that pass a filter, replacing an earlier filter.
     pub fn filter(self, filter: QueryFilter<'a>) -> Self {
         Self { filter, ..self }
     }
 
-    /// Queries only shapes that a predicate accepts in addition to the filter, replacing a previous predicate. It is
-    /// called with the body and the number of the shape, in any order, possibly repeatedly, and possibly for shapes
-    /// that do not answer.
+    /// Restricts the query to shapes that a predicate accepts in addition to the filter, replacing an earlier
+    /// predicate. The predicate gets the body and the number of the shape. It is called in any order, possibly
+    /// repeatedly, and possibly for shapes that do not answer.
     pub fn accept<F: Fn(BodyId, u32) -> bool>(self, accept: F) -> Query<'a, F> {
         Query { world: self.world, filter: self.filter, accept }
     }
 
-    /// The first answer in the question's order: of a ray the nearest hit. Of equal ones that of the body with the lower
-    /// index, then of its shape with the lower number.
+    /// Returns the first answer in the order of the query's kind: for a ray the nearest hit. Equal answers are ordered
+    /// by the index of the body, then by the number of the shape.
     pub fn first<Q: QueryKind>(&self, question: &Q) -> Option<Q::Answer> {
         self.best(question)
     }
 
-    /// True if there is an answer; cheaper than the first one.
+    /// True if there is an answer; cheaper than [`first`](Self::first).
     pub fn any<Q: QueryKind>(&self, question: &Q) -> bool {
         let mut any = false;
         self.shapes(question, |id, shape, frame| {
@@ -144,8 +145,8 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         any
     }
 
-    /// All answers, one per answering shape, in the query's order, equal ones by body and shape. `answers` is cleared
-    /// first, and allocates only to grow.
+    /// Writes all answers to `answers`, one per answering shape, in the order of the query's kind, equal ones by body
+    /// and shape. Clears `answers` first; allocates only if `answers` must grow.
     pub fn all<Q: QueryKind>(&self, question: &Q, answers: &mut Vec<Q::Answer>) {
         answers.clear();
         self.answers(question, |answer| {
@@ -156,7 +157,8 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         answers.sort_unstable_by(|a, b| key(a).partial_cmp(&key(b)).expect("no rank is NaN"));
     }
 
-    /// The bodies that have an answer, each once, by index. `bodies` is cleared first, and allocates only to grow.
+    /// Writes the bodies that answer to `bodies`, each once, by index. Clears `bodies` first; allocates only to grow
+    /// it.
     pub fn bodies<Q: QueryKind>(&self, question: &Q, bodies: &mut Vec<BodyId>) {
         bodies.clear();
         self.shapes(question, |id, shape, frame| {
@@ -169,7 +171,8 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         bodies.dedup();
     }
 
-    /// [`first`](Self::first) of each query; batches of rays are faster than single ones. It does not allocate.
+    /// Writes the [`first`](Self::first) answer of each query. Batches of rays are faster than single rays. Does not
+    /// allocate.
     ///
     /// # Panics
     /// If the number of answers differs from the number of queries.
@@ -178,7 +181,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         Q::first_each(self, questions, answers);
     }
 
-    /// [`any`](Self::any) of each query. It does not allocate.
+    /// Writes the result of [`any`](Self::any) for each query. Does not allocate.
     ///
     /// # Panics
     /// If the number of answers differs from the number of queries.
@@ -189,8 +192,8 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         }
     }
 
-    /// [`all`](Self::all) of each query in turn: `visit` gets the number of the query and its answers. `answers` is
-    /// scratch memory, and allocates only to grow.
+    /// Runs [`all`](Self::all) for each query in turn: `visit` gets the number of the query and its answers. `answers`
+    /// is scratch memory; it allocates only to grow.
     pub fn all_each<Q: QueryKind>(
         &self,
         questions: &[Q],
@@ -203,7 +206,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         }
     }
 
-    /// [`first`](Self::first), for internal use.
+    /// Returns the [`first`](Self::first) answer, for internal use.
     fn best<Q: Ask>(&self, question: &Q) -> Option<Q::Found> {
         let mut best = None;
         self.answers(question, |answer| {
@@ -213,7 +216,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         best
     }
 
-    /// Every answer, in any order, until `visit` breaks.
+    /// Passes every answer to `visit`, in any order, until `visit` breaks.
     fn answers<Q: Ask>(&self, question: &Q, mut visit: impl FnMut(Q::Found) -> Limit) {
         let mut limit = f32::INFINITY;
         self.shapes(question, |id, shape, frame| {
@@ -228,7 +231,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         self.filter.passes(id, kind, filter, sensing) && (self.accept)(id.body, id.shape)
     }
 
-    /// Every shape that may have an answer and passes, in any order, until `visit` breaks.
+    /// Passes every shape that may answer and passes the filter to `visit`, in any order, until `visit` breaks.
     fn shapes<Q: Ask>(&self, question: &Q, mut visit: impl FnMut(ShapeId, &Shape, &Transform) -> Limit) {
         let Some(reach) = question.reach() else { return };
         let mut limit = f32::INFINITY;
@@ -240,12 +243,12 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         });
     }
 
-    /// Passes a shape to `visit`, if it passes the filter.
+    /// Passes a shape to `visit` if the shape passes the filter; returns the result of `visit`.
     #[inline]
     fn meet<T>(&self, owner: Owner, visit: impl FnOnce(ShapeId, &Shape, &Transform) -> T) -> Option<T> {
         let Owner { body: index, shape: number } = owner;
         let id = ShapeId { body: self.world.bodies.id(index), shape: number };
-        // A body spans cache lines that a ray would wait for: a single-shape static body is queried without it.
+        // A body spans several cache lines. A single-shape static body is queried without reading the body.
         if let Some(placed) = self.world.broad.proxies.lone(index) {
             let Placed { shape, world_from_shape, filter, sensing } = placed;
             return self
@@ -259,7 +262,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
     }
 }
 
-/// Replaces an answer by a better one.
+/// Replaces the best answer if `answer` comes before it.
 fn keep_first<A: Reply>(best: &mut Option<A>, answer: A) {
     if best.as_ref().is_none_or(|best| key(&answer) < key(best)) {
         *best = Some(answer);

@@ -1,4 +1,4 @@
-//! A probe against one shape of the world: the interface between queries and shape pairs.
+//! Tests of a probe against one shape of the world: the interface between queries and shape pairs.
 
 use super::probe::Probe;
 use super::triangles;
@@ -7,7 +7,8 @@ use crate::boxes::Penetration;
 use crate::convex::{Gap, ShapeHit, cast_shape, gap};
 use sinew_math::{Transform, Vec3};
 
-/// Gap from the shape to the probe; of a surface only if it is within a distance.
+/// Returns the gap from the shape to the probe. For a mesh or height field, `None` if the gap is beyond `within`,
+/// metres.
 pub(super) fn gap_within(
     shape: &Shape,
     world_from_shape: &Transform,
@@ -20,18 +21,18 @@ pub(super) fn gap_within(
     }
 }
 
-/// True if they have a point in common.
+/// True if the shape and the probe have a point in common.
 pub(super) fn overlap(shape: &Shape, world_from_shape: &Transform, probe: &Probe) -> bool {
     penetration(shape, world_from_shape, probe).is_some()
 }
 
-/// The shortest way of the probe out of the shape, if they overlap.
+/// Returns the depth of the overlap and the shortest way of the probe out of the shape, if they overlap.
 pub(super) fn penetration(shape: &Shape, world_from_shape: &Transform, probe: &Probe) -> Option<Penetration> {
     let gap = gap_within(shape, world_from_shape, probe, 0.0)?;
     (gap.distance <= 0.0).then_some(Penetration { depth: -gap.distance, direction: gap.normal })
 }
 
-/// First touch of a moving probe with the shape.
+/// Returns the first touch of a moving probe with the shape.
 pub(super) fn cast(
     shape: &Shape,
     world_from_shape: &Transform,

@@ -1,4 +1,4 @@
-//! Position queries: shapes that contain a point, that a probe overlaps, with depth, and the nearest ones.
+//! Position queries: shapes that contain a point, shapes that overlap a probe, penetration depths, and nearest shapes.
 
 use super::candidates::Reach;
 use super::kind::QueryKind;
@@ -11,7 +11,7 @@ use crate::convex::Gap;
 use crate::id::{BodyId, ShapeId};
 use sinew_math::{Transform, Vec3};
 
-/// Shapes that hold a point (world, metres), on their surfaces too; by body and shape.
+/// Finds the shapes that contain a point (world, metres), inside or on the surface; by body and shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContainsPoint(pub Vec3);
 
@@ -41,7 +41,7 @@ impl Reply for ShapeId {
     }
 }
 
-/// Shapes that a probe overlaps, including touching and containing ones, by body and shape.
+/// Finds the shapes that a probe overlaps, including touching and containing ones, by body and shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverlapWith(pub Probe);
 
@@ -61,7 +61,7 @@ impl Ask for OverlapWith {
     }
 }
 
-/// Depth of a probe in each shape that it overlaps; the deepest first.
+/// Finds the depth of a probe in each shape that it overlaps; the deepest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PenetrationOf(pub Probe);
 
@@ -72,10 +72,10 @@ pub struct BodyPenetration {
     pub body: BodyId,
     /// Number of the shape in its body.
     pub shape: u32,
-    /// Metres, ≥ 0; 0 if it only touches.
+    /// Depth of the probe, metres, ≥ 0; 0 if it only touches.
     pub depth: f32,
-    /// Unit, world: moved by `direction * depth`, the probe only touches the shape. The shortest way out of this shape
-    /// alone: it may lead into another one.
+    /// Unit direction of the shortest way out, world: after a displacement by `direction * depth`, the probe only
+    /// touches the shape. The way leads out of this shape alone, and may lead into another one.
     pub direction: Vec3,
 }
 
@@ -110,13 +110,13 @@ impl Ask for PenetrationOf {
     }
 }
 
-/// Shapes that have their surface within a distance of a point, or hold it; the nearest first, and before it those that
-/// hold the point, the deepest first.
+/// Finds the shapes that contain a point, or whose surface is within a distance of the point. Shapes that contain it
+/// come first, the deepest first; then the others, the nearest first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestTo {
     /// Point in the world, metres.
     pub point: Vec3,
-    /// Farthest surface that counts, metres, ≥ 0.
+    /// Largest distance of a surface that counts, metres, ≥ 0.
     pub within: f32,
 }
 
@@ -129,7 +129,7 @@ pub struct BodySurface {
     pub shape: u32,
     /// Point on the surface, in the world, metres.
     pub point: Vec3,
-    /// Unit, outward.
+    /// Unit normal, outward, world.
     pub normal: Vec3,
     /// Distance from the surface along the normal to the query's point or probe, metres; negative inside.
     pub distance: f32,
@@ -171,13 +171,13 @@ impl Ask for NearestTo {
     }
 }
 
-/// Shapes that have their surface within a distance of a probe's, or overlap it; the nearest first, and before it those
-/// that overlap, the deepest first.
+/// Finds the shapes that overlap a probe, or whose surface is within a distance of the probe. Overlapping shapes come
+/// first, the deepest first; then the others, the nearest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearestToShape {
-    /// Object from which distances are measured.
+    /// Probe from which distances are measured.
     pub probe: Probe,
-    /// Farthest surface that counts, metres, ≥ 0.
+    /// Largest distance of a surface that counts, metres, ≥ 0.
     pub within: f32,
 }
 

@@ -5,9 +5,10 @@ use crate::boxes::{Aabb, Capsule, Obb, Sphere};
 use crate::convex::support::Core;
 use sinew_math::{Rotation, Transform, Vec3, normalize_or};
 
-/// A shape at a pose, to query a world without being part of it.
+/// A shape at a pose with which a query tests a world; it is not part of the world.
 ///
-/// It must be convex and bounded. Sizes may be 0: a box without height is a rectangle, a ball without radius a point.
+/// The shape must be convex and bounded. Sizes may be 0: a box without height is a rectangle, a ball without radius a
+/// point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// Shape of the probe.
@@ -17,20 +18,20 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// A shape at a pose.
+    /// Returns a probe with a shape at a pose.
     pub fn new(shape: Shape, world_from_shape: Transform) -> Self {
         Self { shape, world_from_shape }
     }
 
-    /// A shape at a position, without rotation.
+    /// Returns a probe with a shape at a position, without rotation.
     pub fn at(shape: Shape, position: Vec3) -> Self {
         Self::new(shape, Transform::from_translation(position))
     }
 
-    /// True if its numbers are valid for a query: finite, and no size negative.
+    /// True if the numbers of the probe are valid for a query: finite, and no size negative.
     ///
     /// # Panics
-    /// If the shape is not convex or not bounded: that is no matter of numbers.
+    /// If the shape is not convex or not bounded.
     pub(super) fn is_valid(&self) -> bool {
         assert!(Core::of(&self.shape).is_some(), "a probe is convex and bounded");
         let reach = self.shape.bounding_radius();
@@ -38,7 +39,7 @@ impl Probe {
         self.world_from_shape.is_finite() && self.shape.inner_radius() >= 0.0 && reach < f32::INFINITY
     }
 
-    /// Bounds.
+    /// Bounds of the probe, world, metres.
     pub(super) fn aabb(&self) -> Aabb {
         self.shape.aabb(&self.world_from_shape)
     }

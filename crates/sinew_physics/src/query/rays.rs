@@ -1,6 +1,6 @@
-//! Batch ray casts for the first hits. The rays traverse the trees in turns, so that memory latencies overlap, and
-//! their leaf boxes are tested eight at a time. Candidates of that test are then tested by the shape itself, so the
-//! answers equal those of single rays.
+//! Batch ray casts for the first hits. The rays traverse the trees in turns, so that memory latencies overlap. Eight
+//! leaf boxes are tested together with SIMD. The shape itself then tests each candidate of that test, so the answers
+//! equal those of single rays.
 
 use super::candidates::{Reach, sweep, what_is_left};
 use super::kind::sealed::{Ask, Reply};
@@ -20,7 +20,7 @@ use sinew_math::{Transform, Vec3};
 /// Number of rays in flight: while eight of them wait at boxes, the others continue.
 const UNDER_WAY: usize = 2 * WIDTH;
 
-/// [`first`](Query::first) of each ray. Fewer than eight are cast one after the other.
+/// Finds the [`first`](Query::first) answer of each ray. Fewer than eight rays are cast one after the other.
 pub(super) fn first_each<P: Fn(BodyId, u32) -> bool>(
     query: &Query<'_, P>,
     rays: &[Ray],
@@ -35,7 +35,7 @@ pub(super) fn first_each<P: Fn(BodyId, u32) -> bool>(
     }
 }
 
-/// [`first`](Query::first) of each ray, as a batch, through the kernel's dispatcher.
+/// Finds the [`first`](Query::first) answer of each ray, as a batch, through the kernel's dispatcher.
 fn first_each_by<P: Fn(BodyId, u32) -> bool>(
     run: impl Fn(Stream<'_, '_, P>),
     query: &Query<'_, P>,
@@ -54,7 +54,7 @@ fn first_each_by<P: Fn(BodyId, u32) -> bool>(
     }
 }
 
-/// Sweep of a ray, if it is one that has answers.
+/// Returns the sweep of a ray; `None` for a ray without answers.
 fn way(ray: &Ray) -> Option<Sweep> {
     match ray.reach()? {
         Reach::Swept(start, direction) => sweep(&start, direction),
@@ -62,7 +62,7 @@ fn way(ray: &Ray) -> Option<Sweep> {
     }
 }
 
-/// Replaces a ray's hit if a shape's is better.
+/// Replaces the hit of a ray if the shape's hit is better.
 fn ask<P: Fn(BodyId, u32) -> bool>(query: &Query<'_, P>, owner: Owner, ray: &Ray, hit: &mut Option<BodyHit>) {
     let answer = query.meet(owner, |id, shape, frame| ray.ask(id, shape, frame));
     if let Some(answer) = answer.flatten() {
@@ -102,7 +102,7 @@ impl<P: Fn(BodyId, u32) -> bool> Kernel for Stream<'_, '_, P> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
         let mut riders: [Rider; UNDER_WAY] = core::array::from_fn(|_| Rider::idle());
-        // The continuing riders are first.
+        // The riders that continue are first.
         let mut order: [usize; UNDER_WAY] = core::array::from_fn(|number| number);
         let mut going = UNDER_WAY;
         let mut nodes = [0; UNDER_WAY];
@@ -145,7 +145,7 @@ impl<P: Fn(BodyId, u32) -> bool> Kernel for Stream<'_, '_, P> {
 }
 
 impl<P: Fn(BodyId, u32) -> bool> Stream<'_, '_, P> {
-    /// Starts the next ray, if there is one.
+    /// Starts the next ray; returns false if there is none.
     #[inline(always)]
     fn begin(&mut self, rider: &mut Rider) -> bool {
         while let Some(ray) = self.rays.get(self.begun) {
@@ -161,7 +161,7 @@ impl<P: Fn(BodyId, u32) -> bool> Stream<'_, '_, P> {
         false
     }
 
-    /// True if a ray at a leaf must wait for a batch test; else it continues.
+    /// Returns true if a ray at a leaf must wait for a batch test; otherwise tests the shape, and the ray continues.
     #[inline(always)]
     fn arrive(&mut self, rider: &mut Rider, number: usize, leaf: u32, meetings: &mut Meetings) -> bool {
         let (owner, ray) = (self.owners[leaf as usize], &self.rays[rider.ray]);
@@ -180,7 +180,7 @@ impl<P: Fn(BodyId, u32) -> bool> Stream<'_, '_, P> {
         waits == Some(true)
     }
 
-    /// Tests the boxes that rays may hit, by the bits of a mask.
+    /// Tests the boxes whose bits are set in a mask.
     fn decide(&mut self, riders: &mut [Rider; UNDER_WAY], possible: u8, meetings: &Meetings) {
         for (place, &(number, owner)) in meetings.who().iter().enumerate() {
             if possible & (1 << place) != 0 {
@@ -204,7 +204,7 @@ fn placed(half_extents: Vec3, frame: &Transform) -> Obb {
     Obb { center: frame.translation, rotation: frame.rotation, half_extents }
 }
 
-/// Rays waiting at boxes, in lanes.
+/// Rays that wait at boxes, one per SIMD lane.
 struct Meetings {
     boxes: [[f32; WIDTH]; NUMBERS],
     origins: [[f32; WIDTH]; 3],
@@ -230,7 +230,7 @@ impl Meetings {
         &self.who[..self.count]
     }
 
-    /// Adds one to fewer than eight.
+    /// Adds a ray and its box; fewer than eight may be waiting.
     #[inline(always)]
     fn add(&mut self, who: (usize, Owner), ray: &Ray, obb: &Obb, limit: f32) {
         let place = self.count % WIDTH;
@@ -245,8 +245,8 @@ impl Meetings {
         self.count += 1;
     }
 
-    /// Bit masks of the rays that may hit their box before their limit: those that do, and those that start so close to
-    /// it that they need an exact test.
+    /// Returns a bit mask of the rays that may hit their box before their limit: rays that enter it in time, and rays
+    /// that start so close to it that they need an exact test.
     #[inline(always)]
     fn possible<L: Lanes>(&self) -> u8 {
         let [[x, y, z], [u, v, w]] = [&self.origins, &self.directions];
@@ -268,7 +268,7 @@ mod tests {
     use sinew_math::Random;
     use sinew_math::dispatch::{Level, run_at};
 
-    /// Mostly boxes, static and moving, one or several per body, some of them filtered out.
+    /// Returns a world of mostly boxes, static and moving, one or several per body, some of them filtered out.
     fn world(random: &mut Random) -> World {
         let mut world = World::new(WorldDef::default());
         let size = |random: &mut Random| random.range(0.1, 0.8);
@@ -294,7 +294,7 @@ mod tests {
         world
     }
 
-    /// Random rays in all directions, including axis-parallel, zero-length, very long and non-finite ones.
+    /// Returns a random ray, sometimes axis-parallel, without length, very long or not finite.
     fn ray(random: &mut Random) -> Ray {
         let (origin, mut direction) = (random.in_cube() * 5.0, random.in_cube() * 9.0);
         match random.index(12) {

@@ -1,4 +1,4 @@
-//! A probe against a surface, triangle by triangle.
+//! Tests of a probe against a surface, triangle by triangle.
 
 use super::candidates::FARTHEST;
 use super::probe::Probe;
@@ -10,8 +10,8 @@ use crate::convex::{Gap, ShapeHit, advance, apart_along, closeness, meet};
 use crate::triangles::{Surface, Triangle, normal};
 use sinew_math::{DVec3, Transform, Vec3, max, min};
 
-/// Gap from the triangles within a distance to the probe: that of the deepest or nearest of them. No way out leads
-/// through a triangle's back.
+/// Returns the gap from the surface to the probe: the gap of the deepest or nearest triangle within a distance. No way
+/// out leads through the back of a triangle.
 pub(super) fn gap_within(
     surface: &Surface<'_>,
     world_from_surface: &Transform,
@@ -29,7 +29,7 @@ pub(super) fn gap_within(
     best
 }
 
-/// First touch of the probe with a triangle from its outside.
+/// Returns the first touch of the probe with the outside of a triangle.
 pub(super) fn cast(
     surface: &Surface<'_>,
     world_from_surface: &Transform,
@@ -55,7 +55,7 @@ pub(super) fn cast(
     first
 }
 
-/// A probe, and the frame of a surface.
+/// A probe, and the pose of a surface.
 struct Placed<'a> {
     core: Core<'a>,
     probe: &'a Probe,
@@ -69,7 +69,7 @@ impl<'a> Placed<'a> {
         Some(Self { core, probe, world_from_surface })
     }
 
-    /// Bounds of the probe in the surface's frame, swept by `way` (world).
+    /// Returns the bounds of the probe in the surface's frame, swept by `way` (world).
     fn region(&self, way: Vec3) -> Aabb {
         let surface_from_probe = self.world_from_surface.inverse() * self.probe.world_from_shape;
         let (start, moved) =
@@ -77,7 +77,7 @@ impl<'a> Placed<'a> {
         thick(&start.merge(&Aabb { min: start.min + moved, max: start.max + moved }))
     }
 
-    /// Gap from a triangle to the probe moved by `way`.
+    /// Returns the gap from a triangle to the probe moved by `way`.
     fn gap(&self, triangle: &Triangle, way: Vec3) -> Gap {
         let origin = self.probe.world_from_shape.translation;
         let flat = Flat(triangle.corners);

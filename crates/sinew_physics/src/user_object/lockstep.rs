@@ -1,4 +1,4 @@
-//! A step with objects: all islands run substep by substep, and objects see a consistent world between the parts.
+//! A step with objects: all islands run substep by substep, so that objects get a consistent world between the parts.
 
 use super::{Corrections, Forces, Objects, Substep};
 use crate::activity::Activity;
@@ -12,12 +12,12 @@ use crate::stage::{Stage, zone};
 use crate::step::islands::Islands;
 use crate::step::phase::{Phase, solve};
 
-/// Slots to islands: bodies and particle groups during a step.
+/// Map from body and group slots to islands during a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Places {
-    /// Island and local index of a moving body.
+    /// Island and local index of each moving body.
     bodies: Vec<Option<(u32, u32)>>,
-    /// Position among the groups taken out of the world.
+    /// Position of each group among the groups taken out of the world.
     groups: Vec<u32>,
 }
 
@@ -39,28 +39,28 @@ impl Places {
         }
     }
 
-    /// Island and local index of a body that moves.
+    /// Island and local index of a moving body.
     pub fn body(&self, id: BodyId) -> Option<(usize, usize)> {
         self.bodies[id.index as usize].map(|(island, local)| (island as usize, local as usize))
     }
 
-    /// Position of a group among those taken.
+    /// Position of a group among the taken groups.
     pub fn group(&self, id: GroupId) -> Option<usize> {
         self.groups.get(id.index as usize).map(|&place| place as usize)
     }
 }
 
-/// A sleeping body that was pushed: it wakes after the step, with its impulses.
+/// A sleeping body that was pushed. It wakes after the step, with its change of velocity.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Roused {
-    /// Index in the world.
+    /// Index of the body in the world.
     pub index: u32,
-    /// Change of velocity.
+    /// Change of velocity, m/s and rad/s.
     pub change: Vec6,
 }
 
-/// All islands phase by phase. Objects act before the two phases of each substep. Strands that no object touched are
-/// solved again as strands, so an object that does nothing changes nothing.
+/// Solves all islands phase by phase. Objects act before the two phases of each substep. Strands that no object touched
+/// are solved again as strands, so an object that does nothing changes nothing.
 pub(crate) fn lockstep(
     objects: &mut Objects,
     islands: &mut Islands,
@@ -111,7 +111,7 @@ impl Objects {
         }
     }
 
-    /// Wakes the bodies that were pushed in their sleep, after the substeps.
+    /// Wakes the bodies that objects pushed while they slept, after the substeps.
     pub fn rouse(&mut self, bodies: &mut Arena<Body>, activity: &mut Activity) {
         for Roused { index, change } in self.roused.drain(..) {
             activity.wake(bodies, index);

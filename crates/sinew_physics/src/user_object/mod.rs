@@ -1,9 +1,9 @@
-//! Kinds of the user's own: objects that push bodies and particles, and hold them where the world's own shapes and
-//! joints cannot.
+//! Objects of the user's own kinds: they push bodies and particles, and hold them where the world's shapes and joints
+//! cannot.
 //!
-//! An object is called twice in each substep, on one thread, in the order of ids: for forces before anything moves, and
-//! for corrections after everything has moved, before velocities are relaxed. It may have state, which is part of
-//! snapshots and so of [`World::hash`], and is restored by [`World::reset`].
+//! An object is called twice in each substep, on one thread, in the order of ids: for forces before bodies move, and
+//! for corrections after all have moved, before velocities are relaxed. An object may have state, which is part of
+//! snapshots and of [`World::hash`], and which [`World::reset`] restores.
 //!
 //! A world without objects executes exactly as if the feature did not exist.
 //!
@@ -68,15 +68,15 @@ use sinew_math::{ReadError, Reader, Writer};
 
 /// User-defined behaviour in a world. See [the module](self) for the call order and an example.
 ///
-/// The object itself must ensure the same bits everywhere: it computes with `sinew_math`, reads no clock, and
-/// [`save`](Self::save)s everything that decides its future. Passing a non-finite number to the world panics.
+/// The object must ensure that it gives the same bits everywhere: it computes with `sinew_math`, reads no clock, and
+/// [`save`](Self::save)s all state that affects its future. The world panics if it gets a non-finite number.
 pub trait PhysicsObject: Any + Send + Sync {
-    /// Name of the kind, the same in every build: it is part of snapshots. Two kinds in a world must have different
-    /// names.
+    /// Name of the kind, the same in every build, because it is part of snapshots. Two kinds in a world must have
+    /// different names.
     fn kind(&self) -> &'static str;
 
-    /// Called when it is added to a world, before anything else, to create its bodies and joints. Not called when a
-    /// snapshot is loaded: the snapshot contains them. Default: nothing.
+    /// Called first when the object is added to a world, to create its bodies and joints. Not called when a snapshot is
+    /// loaded: the snapshot contains them. Default: nothing.
     fn init(&mut self, _world: &mut World) {}
 
     /// Applies forces, at the start of each substep. Default: nothing.
@@ -85,24 +85,25 @@ pub trait PhysicsObject: Any + Send + Sync {
     /// Applies corrections in each substep, after bodies and particles have moved. Default: nothing.
     fn satisfy_constraints(&mut self, _corrections: &mut Corrections<'_>) {}
 
-    /// Draws itself, as part of [`World::draw`]. Default: nothing.
+    /// Draws the object, as part of [`World::draw`]. Default: nothing.
     fn draw(&self, _world: &World, _out: &mut dyn DebugDraw) {}
 
-    /// Writes the state that decides its future.
+    /// Writes all state that affects the future of the object.
     fn save(&self, w: &mut Writer);
 
-    /// Restores everything [`save`](Self::save) wrote. The number of bytes is stored separately, so that a mistake here
-    /// corrupts nothing else.
+    /// Restores the state that [`save`](Self::save) wrote. The number of bytes is stored separately, so that a mistake
+    /// here corrupts nothing else.
     ///
     /// # Errors
-    /// If `save` could not have written the bytes. The state is then unspecified: the world restores it.
+    /// If `save` could not have written the bytes. The state is then unspecified, and the world restores the previous
+    /// state.
     fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError>;
 }
 
-/// Creates an object of some kind, to load a snapshot into.
+/// Function that creates an object of a kind, into which a snapshot is then loaded.
 type Make = fn() -> Box<dyn PhysicsObject>;
 
-/// The objects of a world.
+/// Objects of a world.
 #[derive(Default)]
 pub(crate) struct Objects {
     pub(crate) arena: Arena<Box<dyn PhysicsObject>>,
@@ -117,22 +118,23 @@ impl Item for Box<dyn PhysicsObject> {
 }
 
 impl Objects {
-    /// An empty set, of a world.
+    /// Returns an empty set of objects for a world.
     pub fn new(lineage: Lineage) -> Self {
         Self { arena: Arena::new(lineage), ..Self::default() }
     }
 
-    /// An empty set with the same kinds and world.
+    /// Returns an empty set with the same registered kinds.
     pub fn without_any(&self) -> Self {
         Self { kinds: self.kinds.clone(), ..Self::default() }
     }
 
-    /// They act in every substep of the world, so with objects all islands use the world's substeps.
+    /// Grading of substeps. Objects act in every substep of the world, so with objects all islands use the world's
+    /// substeps.
     pub fn grading(&self) -> Grading {
         if self.is_empty() { Grading::ByContent } else { Grading::None }
     }
 
-    /// Permission of particle groups to sleep: objects see and push them in every substep.
+    /// Permission of particle groups to sleep: off with objects, which may access groups in every substep.
     pub fn let_sleep(&self) -> Sleeping {
         if self.is_empty() { Sleeping::On } else { Sleeping::Off }
     }

@@ -1,11 +1,11 @@
-//! Objects to bytes and back.
+//! Objects in snapshots: saving and loading.
 
 use super::{Objects, PhysicsObject};
 use crate::arena::{Arena, Item};
 use crate::id::ObjectId;
 use sinew_math::{ReadError, Reader, Writer};
 
-/// An object in a snapshot.
+/// Kind and state of an object in a snapshot.
 struct Saved<'a> {
     kind: &'a str,
     state: Reader<'a>,
@@ -70,7 +70,7 @@ impl Objects {
         }
     }
 
-    /// States of all, in the order of ids.
+    /// Returns the states of all objects, in the order of ids.
     fn states(&self) -> Writer {
         let mut w = Writer::new();
         for (_, object) in self.arena.iter() {

@@ -1,4 +1,4 @@
-//! Access of an object to a substep: queries and actions.
+//! Access of an object to the world within a substep: queries and actions.
 
 use super::lockstep::{Places, Roused};
 use crate::body::def::BodyKind;
@@ -15,7 +15,7 @@ use crate::step::tasks::Workspace;
 use core::ops::{Deref, DerefMut};
 use sinew_math::{Transform, Vec3};
 
-/// The world in the course of a step: where bodies and particles are after the substeps so far.
+/// The world within a step: bodies and particles are where the substeps so far have moved them.
 ///
 /// # Panics
 /// Every method that takes an id panics if the id is stale or from another world, and every method that takes a number
@@ -50,7 +50,7 @@ impl<'a> Substep<'a> {
         self.view.pace.h
     }
 
-    /// Simulated time of the current state, seconds: the substep's start for forces, its end for corrections.
+    /// Simulated time of the current state, seconds: the start of the substep for forces, its end for corrections.
     pub fn time(&self) -> f64 {
         self.start + f64::from(self.moved) * f64::from(self.view.pace.h)
     }
@@ -60,7 +60,7 @@ impl<'a> Substep<'a> {
         self.view.def.gravity
     }
 
-    /// All bodies, by index.
+    /// Iterates over all bodies, by index.
     pub fn body_ids(&self) -> impl Iterator<Item = BodyId> + use<'a> {
         self.view.bodies.ids()
     }
@@ -70,27 +70,27 @@ impl<'a> Substep<'a> {
         self.view.bodies.get(id).is_some()
     }
 
-    /// Static, kinematic or dynamic.
+    /// Kind of a body: static, kinematic or dynamic.
     pub fn kind(&self, id: BodyId) -> BodyKind {
         self.expect(id).kind
     }
 
-    /// Mass (0 unless dynamic), centre and inertia in the body's frame.
+    /// Mass (kg; 0 unless dynamic), centre (metres) and inertia (kg·m²) in the body's frame.
     pub fn mass(&self, id: BodyId) -> MassProperties {
         self.expect(id).mass_properties()
     }
 
-    /// Pose of the body's frame.
+    /// Pose of the body's frame, world.
     pub fn transform(&self, id: BodyId) -> Transform {
         self.principal_frame(id) * self.expect(id).principal_from_body
     }
 
-    /// World position of the centre of mass.
+    /// World position of the centre of mass, metres.
     pub fn center_of_mass(&self, id: BodyId) -> Vec3 {
         self.principal_frame(id).translation
     }
 
-    /// Velocity of the centre of mass and angular velocity; zero of a body that sleeps.
+    /// Velocity of the centre of mass (m/s) and angular velocity (rad/s), world; zero for a sleeping body.
     pub fn velocity(&self, id: BodyId) -> Velocity {
         let body = self.expect(id);
         match (self.moving(id), body.kind) {
@@ -103,22 +103,22 @@ impl<'a> Substep<'a> {
         }
     }
 
-    /// Response of a body at a world point: the speed gained in a direction (of length 1) per impulse in it, 1/kg,
-    /// including the joints that hold the body, except those that close loops. 0 for static, kinematic and sleeping
-    /// bodies.
+    /// Response of a body at a world point: the speed gained in a direction (of length 1) per impulse in that
+    /// direction, 1/kg. It includes the joints of the body, except those that close loops. 0 for static, kinematic and
+    /// sleeping bodies.
     ///
-    /// Costs a pass through all connected bodies.
+    /// The cost is a pass through all connected bodies.
     pub fn response(&mut self, id: BodyId, point: Vec3, direction: Vec3) -> f32 {
         let row = self.at(id, direction, point);
         self.moving_mut(id).map_or(0.0, |(solver, local)| solver.response_along(local, &row))
     }
 
-    /// A particle group.
+    /// Returns a particle group.
     pub fn particles(&self, id: GroupId) -> &ParticleGroup {
         &self.taken[self.place(id)].group
     }
 
-    /// A particle group, mutable.
+    /// Returns a particle group, mutable.
     pub fn particles_mut(&mut self, id: GroupId) -> &mut ParticleGroup {
         let place = self.place(id);
         &mut self.taken[place].group
@@ -143,7 +143,7 @@ impl<'a> Substep<'a> {
         }
     }
 
-    /// Solver of a body's island and the body's number there, if it moves.
+    /// Returns the solver of a body's island and the body's number there, if the body moves.
     fn moving(&self, id: BodyId) -> Option<(&IslandSolver, usize)> {
         self.expect(id);
         let (island, local) = self.places.body(id)?;
@@ -156,7 +156,7 @@ impl<'a> Substep<'a> {
         Some((&mut self.workspaces[island].solver, local))
     }
 
-    /// A force or an impulse at a world point, as one at the centre of mass.
+    /// Converts a force or an impulse at a world point to one at the centre of mass.
     fn at(&self, id: BodyId, force: Vec3, point: Vec3) -> Vec6 {
         assert!(
             force.is_finite() && point.is_finite(),
@@ -165,7 +165,8 @@ impl<'a> Substep<'a> {
         join(force, (point - self.center_of_mass(id)).cross(force))
     }
 
-    /// Applies an impulse to a moving body by `give`, or stores it for a sleeping one, which then wakes.
+    /// Applies an impulse to a moving body by `give`; for a sleeping body, stores it, and the body wakes after the
+    /// step.
     fn give(&mut self, id: BodyId, impulse: &Vec6, give: impl FnOnce(&mut IslandSolver, usize, &Vec6)) {
         if let Some((solver, local)) = self.moving_mut(id) {
             give(solver, local, impulse);
@@ -177,7 +178,7 @@ impl<'a> Substep<'a> {
         }
     }
 
-    /// A body that sleeps wakes when the step is over, unless nothing was applied to it.
+    /// Makes a sleeping body wake after the step, unless the applied force or impulse is zero.
     fn rouse(&mut self, id: BodyId, applied: &Vec6, change: &Vec6) {
         let body = self.expect(id);
         if body.kind == BodyKind::Dynamic && !body.is_awake() && !body.quarantined && *applied != ZERO6 {
@@ -186,31 +187,32 @@ impl<'a> Substep<'a> {
     }
 }
 
-/// A substep's beginning: nothing has moved in it.
+/// Access at the start of a substep: nothing has moved yet.
 ///
-/// Actions on a sleeping body wake it after the step; an impulse takes effect then, a force from the next step on, like
-/// gravity. Zero wakes nothing. Static and kinematic bodies are not moved.
+/// Actions on a sleeping body wake it after the step; an impulse then takes effect immediately, a force from the next
+/// step on, like gravity. Zero forces and impulses wake nothing. Static and kinematic bodies do not move.
 pub struct Forces<'a>(pub(super) Substep<'a>);
 
 impl Forces<'_> {
-    /// Force (N) at a world point for this substep.
+    /// Applies a force (N) at a world point for this substep.
     pub fn apply_force(&mut self, id: BodyId, force: Vec3, point: Vec3) {
         let force = self.at(id, force, point);
         self.add(id, &force);
     }
 
-    /// Force (N) at the centre of mass for this substep.
+    /// Applies a force (N) at the centre of mass for this substep.
     pub fn apply_force_at_center(&mut self, id: BodyId, force: Vec3) {
         self.apply_force(id, force, self.center_of_mass(id));
     }
 
-    /// Torque (N·m) for this substep.
+    /// Applies a torque (N·m) for this substep.
     pub fn apply_torque(&mut self, id: BodyId, torque: Vec3) {
         assert!(torque.is_finite(), "a torque is finite, not {torque:?} ({id:?})");
         self.add(id, &join(Vec3::ZERO, torque));
     }
 
-    /// Impulse (N·s) at a world point: changes the velocity at once. Joints respond when the substep is solved.
+    /// Applies an impulse (N·s) at a world point: changes the velocity immediately. Joints respond when the substep is
+    /// solved.
     pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
         let impulse = self.at(id, impulse, point);
         self.give(id, &impulse, IslandSolver::push_loose);
@@ -225,31 +227,31 @@ impl Forces<'_> {
     }
 }
 
-/// A substep's end: everything has moved, and velocities have not been relaxed yet.
+/// Access at the end of a substep: all bodies have moved, and velocities have not been relaxed yet.
 ///
-/// Actions take effect through the joints at once, so each call costs a pass through all connected bodies. A sleeping
-/// body wakes after the step.
+/// Actions take effect through the joints immediately, so each call costs a pass through all connected bodies. A
+/// sleeping body wakes after the step.
 pub struct Corrections<'a>(pub(super) Substep<'a>);
 
 impl Corrections<'_> {
-    /// Impulse (N·s) at a world point: changes velocities.
+    /// Applies an impulse (N·s) at a world point: changes velocities.
     pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
         let impulse = self.at(id, impulse, point);
         self.give(id, &impulse, IslandSolver::push_held);
     }
 
-    /// Impulse (N·s) at a world point that changes velocities, and poses as if it had acted through the whole substep:
-    /// by `h` times the change of velocity. An impulse of `−C / (h w)` along the gradient of an error `C` (m), with the
-    /// [`response`](Substep::response) `w`, removes the error (Müller et al., "Detailed Rigid Body Simulation with
-    /// Extended Position Based Dynamics", SCA 2020).
+    /// Applies an impulse (N·s) at a world point that changes velocities, and poses by `h` times the change of
+    /// velocity, as if it had acted throughout the substep. An impulse of `−C / (h w)` along the gradient of an error
+    /// `C` (metres), with the [`response`](Substep::response) `w`, removes the error (Müller et al., "Detailed Rigid
+    /// Body Simulation with Extended Position Based Dynamics", SCA 2020).
     ///
-    /// Pose changes should be small: contacts and particles are only searched within the predicted motion.
+    /// Pose changes should be small: contacts and particles are searched only within the predicted motion.
     pub fn correct(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
         let impulse = self.at(id, impulse, point);
         self.give(id, &impulse, IslandSolver::correct);
     }
 
-    /// Moves a particle by `by` (m, world), with the velocity that takes it there within the substep.
+    /// Moves a particle by `by` (metres, world) and changes its velocity as if it had moved within the substep.
     ///
     /// # Panics
     /// If there is no such particle.

@@ -9,7 +9,7 @@ use crate::world::World;
 use core::fmt;
 use sinew_math::{Transform, Vec3};
 
-/// A body of a world for queries, from [`World::get`].
+/// Reference to a body of a world, for queries; from [`World::get`].
 #[derive(Clone, Copy)]
 pub struct BodyRef<'a> {
     world: &'a World,
@@ -26,7 +26,7 @@ impl fmt::Debug for BodyRef<'_> {
 }
 
 impl World {
-    /// A body, if the id is not stale.
+    /// Returns a reference to a body, or `None` if the id is stale.
     ///
     /// ```
     /// use sinew_physics::{BodyDef, Shape, World, WorldDef};
@@ -43,21 +43,21 @@ impl World {
         self.contains(id).then_some(BodyRef { world: self, id })
     }
 
-    /// All bodies, by index.
+    /// Iterates over all bodies, by index.
     #[doc(alias = "RigidBodySet")]
     pub fn bodies(&self) -> impl Iterator<Item = BodyRef<'_>> {
         self.body_ids().map(|id| BodyRef { world: self, id })
     }
 }
 
-/// Each method does the same as the [`World`] method with its name.
+/// Each method has the effect of the [`World`] method with the same name.
 impl<'a> BodyRef<'a> {
     /// Id of the body.
     pub fn id(self) -> BodyId {
         self.id
     }
 
-    /// Static, kinematic or dynamic.
+    /// Kind of the body: static, kinematic or dynamic.
     pub fn kind(self) -> BodyKind {
         self.world.kind(self.id)
     }
@@ -67,7 +67,7 @@ impl<'a> BodyRef<'a> {
         self.world.transform(self.id)
     }
 
-    /// Pose between the last step (`alpha` 0) and this one (1), world.
+    /// Pose of the body between the last step (`alpha` 0) and this one (1), world.
     pub fn interpolated(self, alpha: f32) -> Transform {
         self.world.interpolated(self.id, alpha)
     }
@@ -82,23 +82,23 @@ impl<'a> BodyRef<'a> {
         self.world.velocity(self.id)
     }
 
-    /// Velocity of the body's matter at a world point, m/s, world axes.
+    /// Velocity of the body's material at a world point, m/s, world axes.
     #[doc(alias = "velocity_at_point")]
     pub fn velocity_at(self, point: Vec3) -> Vec3 {
         self.velocity().at(point - self.center_of_mass())
     }
 
-    /// Mass (kg; 0 unless dynamic), centre and inertia in the body's frame.
+    /// Mass (kg; 0 unless dynamic), centre (metres) and inertia (kg·m²) in the body's frame.
     pub fn mass(self) -> MassProperties {
         self.world.mass(self.id)
     }
 
-    /// False while it sleeps.
+    /// False while the body sleeps.
     pub fn is_awake(self) -> bool {
         self.world.is_awake(self.id)
     }
 
-    /// Permission to fall asleep.
+    /// Permission of the body to fall asleep.
     pub fn sleeping(self) -> Sleeping {
         self.world.sleeping(self.id)
     }
@@ -118,22 +118,22 @@ impl<'a> BodyRef<'a> {
         self.world.gravity_scale(self.id)
     }
 
-    /// The user's number.
+    /// User data of the body.
     pub fn user_data(self) -> u64 {
         self.world.user_data(self.id)
     }
 
-    /// Bounds of its shapes, world, metres.
+    /// Bounds of the body's shapes, world, metres.
     pub fn bounds(self) -> Aabb {
         self.world.bounds(self.id)
     }
 
-    /// Shapes of the body.
+    /// Iterates over the shapes of the body.
     pub fn shape_ids(self) -> impl Iterator<Item = ShapeId> {
         self.world.shape_ids(self.id)
     }
 
-    /// Joints of the body, by index.
+    /// Iterates over the joints of the body, by index.
     pub fn joints(self) -> impl Iterator<Item = JointId> + use<'a> {
         self.world.joints_of(self.id)
     }

@@ -1,4 +1,4 @@
-//! Bodies become static, kinematic or dynamic.
+//! Changes of a body's kind: static, kinematic or dynamic.
 
 use crate::body::def::BodyKind;
 use crate::body::shape::Shape;
@@ -8,11 +8,11 @@ use crate::world::World;
 use sinew_math::Vec3;
 
 impl World {
-    /// Makes a body static, kinematic or dynamic; it wakes, with its touching and jointed bodies. Pose and velocity do
-    /// not change, except that a static body has none: a kinematic body that becomes dynamic keeps its velocity. While
-    /// it is not dynamic its mass is 0. When it becomes dynamic, it has its previous mass, or the one set by
-    /// [`set_mass`](Self::set_mass) since, or else that of its shapes' densities. Joints between two non-dynamic bodies
-    /// have no effect.
+    /// Makes a body static, kinematic or dynamic; the body wakes, with its touching and jointed bodies. Pose and
+    /// velocity do not change, except that a static body has no velocity: a kinematic body that becomes dynamic keeps
+    /// its velocity. While the body is not dynamic its mass is 0. When it becomes dynamic, it gets its previous mass,
+    /// or the one set by [`set_mass`](Self::set_mass) since, or otherwise the mass by its shapes' densities. Joints
+    /// between two non-dynamic bodies have no effect.
     ///
     /// ```
     /// use sinew_physics::{BodyDef, BodyKind, Shape, World, WorldDef};
@@ -27,7 +27,7 @@ impl World {
     /// ```
     ///
     /// # Panics
-    /// If a body with a half-space shall move, or one without mass shall be dynamic.
+    /// If a body with a half-space would move, or a body without mass would become dynamic.
     #[doc(alias = "set_body_type")]
     #[doc(alias = "motion type")]
     #[track_caller]

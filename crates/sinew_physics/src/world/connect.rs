@@ -1,4 +1,4 @@
-//! Joints made from points and axes in the world.
+//! Joint definitions from points and axes in the world.
 
 use crate::id::{BodyId, JointId};
 use crate::joint::def::{AxisMotion, JointCollision, JointDef, JointKind, SixDof};
@@ -25,12 +25,12 @@ impl LockedAxes {
     pub const ROTATION_Z: Self = Self(1 << 5);
     /// No motion along any axis.
     pub const TRANSLATIONS: Self = Self(0b111);
-    /// No rotation: a body that stays upright.
+    /// No rotation: the body stays upright.
     pub const ROTATIONS: Self = Self(0b111 << 3);
     /// Motion in the world's xy plane only.
     pub const PLANE_XY: Self = Self(Self::TRANSLATION_Z.0 | Self::ROTATION_X.0 | Self::ROTATION_Y.0);
 
-    /// True if all axes of `other` are among these.
+    /// True if all axes of `other` are in this set.
     pub fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
@@ -48,8 +48,8 @@ impl BitOr for LockedAxes {
     }
 }
 
-/// Joints at the bodies' current poses, from points and axes in the world. Change the returned definition's fields for
-/// non-default values, or call [`World::set_joint`] later.
+/// Joint definitions at the bodies' current poses, from points and axes in the world. Change the fields of the returned
+/// definition for non-default values, or call [`World::set_joint`] later.
 ///
 /// ```
 /// use sinew_math::{Range, Vec3};
@@ -69,7 +69,7 @@ impl BitOr for LockedAxes {
 /// # Panics
 /// If an id is stale, a number not finite, or an axis zero.
 impl World {
-    /// Ball joint: the bodies share a world point (metres) and rotate about it freely.
+    /// Ball joint: the bodies share a world point (metres) and rotate freely about it.
     #[doc(alias = "SphericalJoint")]
     #[doc(alias = "point to point")]
     #[track_caller]
@@ -84,7 +84,8 @@ impl World {
         self.joint_at(a, b, anchor, axis, JointKind::Hinge { limit: None })
     }
 
-    /// Universal joint: the bodies share a world point (metres) and swing, but do not twist, about a world axis of any length.
+    /// Universal joint: the bodies share a world point (metres) and swing, but do not twist, about a world axis of any
+    /// length.
     #[doc(alias = "cardan joint")]
     #[track_caller]
     pub fn universal(&self, a: BodyId, b: BodyId, anchor: Vec3, axis: Vec3) -> JointDef {
@@ -98,15 +99,15 @@ impl World {
         self.joint_at(a, b, anchor, axis, JointKind::Slider { limit: None })
     }
 
-    /// Fixed joint: the bodies keep their current relative pose. Its torque is about B's centre of mass.
+    /// Fixed joint: the bodies keep their current relative pose. The reaction torque is about B's centre of mass.
     #[doc(alias = "weld joint")]
     #[track_caller]
     pub fn fixed(&self, a: BodyId, b: BodyId) -> JointDef {
         self.joint_at(a, b, self.center_of_mass(b), Vec3::X, JointKind::Fixed)
     }
 
-    /// Distance joint between a world point (metres) of each body; the distance stays within a range (metres): a rope
-    /// from 0 to its length, a rod if both ends are equal.
+    /// Distance joint between a world point (metres) of each body. The distance stays within a range (metres): a rope
+    /// has a range from 0 to its length, and a rod has two equal ends of the range.
     #[doc(alias = "RopeJoint")]
     #[doc(alias = "rod")]
     #[track_caller]
@@ -117,9 +118,9 @@ impl World {
         JointDef::between(a, b, frame_a, frame_b, JointKind::Distance { range })
     }
 
-    /// Locks a body's motion along and rotation about world axes, by a joint to a static body `ground`; they still
-    /// collide. Rotation is locked at the current orientation; about a single axis, as by a
-    /// [universal joint](Self::universal).
+    /// Locks a body's motion along and rotation about world axes, by a joint to a static body `ground`; the two still
+    /// collide. Rotation is locked at the current orientation. A lock about a single axis acts like a [universal
+    /// joint](Self::universal).
     ///
     /// ```
     /// use sinew_math::Vec3;
@@ -142,7 +143,7 @@ impl World {
     #[track_caller]
     pub fn axis_locks(&self, ground: BodyId, body: BodyId, locks: LockedAxes) -> JointDef {
         let turns = |axis: &usize| locks.motion(LockedAxes::ROTATION_X, *axis) == AxisMotion::Free;
-        // The axis that differs from the other two becomes the frames' x axis, the twist.
+        // The axis that differs from the other two becomes the x axis of the frames, the twist axis.
         let free = (0..3).filter(turns).count();
         let unlike = (0..3).find(|axis| turns(axis) == (free == 1)).unwrap_or(0);
         let axis = |i: usize| (i + unlike) % 3;
@@ -153,7 +154,7 @@ impl World {
             swing_y: turning(1),
             swing_z: turning(2),
         };
-        // X to Y to Z: a rotation by a third of a turn about the diagonal.
+        // Rotation that maps X to Y, Y to Z and Z to X: a third of a turn about the diagonal.
         let cycle = Rotation::from_xyzw(0.5, 0.5, 0.5, 0.5);
         let rotation = [Rotation::IDENTITY, cycle, cycle.inverse()][unlike];
         let world_from_joint = Transform::new(self.center_of_mass(body), rotation);
@@ -190,7 +191,7 @@ impl World {
         self.add_joint(&self.slider(a, b, anchor, axis))
     }
 
-    /// Adds a [fixed joint](Self::fixed) that keeps the bodies' present pose to each other.
+    /// Adds a [fixed joint](Self::fixed) that keeps the current relative pose of the bodies.
     ///
     /// # Panics
     /// As [`add_joint`](Self::add_joint) does.
@@ -199,7 +200,7 @@ impl World {
         self.add_joint(&self.fixed(a, b))
     }
 
-    /// Adds a [rope](Self::distance) of a length (metres) from a world point of one body to one of the other.
+    /// Adds a [rope](Self::distance) of a length (metres) between a world point of body A and a world point of body B.
     ///
     /// # Panics
     /// As [`add_joint`](Self::add_joint) does.

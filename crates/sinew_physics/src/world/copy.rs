@@ -3,8 +3,8 @@
 use crate::world::World;
 use sinew_math::{Reader, Writer};
 
-/// A copy has the same future, bit for bit, and the same future ids. Shapes with data are shared, not copied.
-/// [`World::save`] is smaller if a snapshot suffices.
+/// Copies a world; the copy has the same future, bit for bit, including new ids. Shapes with data are shared, not
+/// copied. [`World::save`] needs less memory if a snapshot suffices.
 ///
 /// ```
 /// use sinew_physics::{BodyDef, Shape, World, WorldDef};

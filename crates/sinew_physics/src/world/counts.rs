@@ -1,12 +1,12 @@
-//! Counts of a step outside of islands, for a profiler that counts.
+//! Counts of the parts of a step outside islands, for a profiler that counts.
 
 use crate::contact::Contact;
 use crate::stage::{Counter, Profiler};
 use crate::world::World;
 
 impl World {
-    /// Reports the counts of the last step from its final contacts; those of bodies that fell asleep in it have been
-    /// put aside by now.
+    /// Reports the counts of the last step from its final contacts, without the contacts of bodies that fell asleep in
+    /// that step.
     pub(crate) fn tell_counts(&self, profiler: &dyn Profiler) {
         if !profiler.is_counting() {
             return;

@@ -1,12 +1,12 @@
-//! Snapshots as values, and deltas between them.
+//! Snapshots as values, and the deltas between them.
 
 use crate::body::library::LoadError;
 use crate::world::World;
 use sinew_math::hash::hash_bytes;
 use sinew_math::{ReadError, Reader, Writer};
 
-/// State of a world as bytes, against which a later one can be stored as a delta: for network rollback, late joiners
-/// and replays.
+/// State of a world as bytes. A later state can be stored as a delta against it: for network rollback, late joiners and
+/// replays.
 ///
 /// ```
 /// use sinew_physics::{BodyDef, Shape, Snapshot, World, WorldDef};
@@ -28,33 +28,33 @@ pub struct Snapshot {
     bytes: Vec<u8>,
 }
 
-/// First bytes of a delta; the last is its version.
+/// First bytes of a delta; the last byte is the version.
 const MAGIC: &[u8; 8] = b"sinew-d\x01";
-/// Length of a byte sequence that is searched elsewhere in the earlier snapshot, and the shortest match worth storing.
+/// Length of a byte sequence that is searched in the earlier snapshot, and the shortest match worth storing, bytes.
 const PIECE: usize = 16;
 const WORTH: usize = 6;
 
 impl Snapshot {
-    /// State of a world: what [`World::save`] writes.
+    /// Returns the state of a world: the bytes that [`World::save`] writes.
     pub fn of(world: &World) -> Self {
         let mut snapshot = Self::default();
         snapshot.take(world);
         snapshot
     }
 
-    /// Stores the state of a world, reusing the memory.
+    /// Stores the state of a world, reusing the memory of the old state.
     pub fn take(&mut self, world: &World) {
         let mut w = Writer::reuse(core::mem::take(&mut self.bytes));
         world.save(&mut w);
         self.bytes = w.into_bytes();
     }
 
-    /// Creates a delta from bytes written before, by a world or other code with the same format.
+    /// Returns a snapshot with bytes written earlier, by a world or other code with the same format.
     pub fn from_bytes(bytes: Vec<u8>) -> Self {
         Self { bytes }
     }
 
-    /// Bytes of the state.
+    /// Returns the bytes of the state.
     pub fn as_bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -62,13 +62,13 @@ impl Snapshot {
     /// Restores the state of a world.
     ///
     /// # Errors
-    /// As [`World::load`].
+    /// Like [`World::load`].
     pub fn load_into(&self, world: &mut World) -> Result<(), LoadError> {
         world.load(&mut Reader::new(&self.bytes))
     }
 
-    /// Bytes from which this snapshot can be rebuilt if the earlier one is available: unchanged parts are referenced,
-    /// not stored.
+    /// Returns bytes from which this snapshot can be rebuilt if the earlier one is available. Unchanged parts are not
+    /// stored, only referenced.
     pub fn delta(&self, earlier: &Self) -> Vec<u8> {
         let (old, new) = (&earlier.bytes[..], &self.bytes[..]);
         let mut w = Writer::new();
@@ -77,7 +77,7 @@ impl Snapshot {
         w.u64(hash_bytes(new));
         number(&mut w, new.len());
         let pieces = Pieces::of(old);
-        // `at` has been written up to `told`; the corresponding byte of the old snapshot is at `with`.
+        // `new` has been written up to `told`; `with` is the position in the old snapshot that corresponds to `at`.
         let (mut at, mut told, mut with) = (0, 0, 0);
         while at < new.len() {
             let here = common(&old[usize::min(with, old.len())..], &new[at..]);
@@ -96,7 +96,7 @@ impl Snapshot {
         w.into_bytes()
     }
 
-    /// The snapshot of a delta.
+    /// Rebuilds a snapshot from an earlier one and a delta.
     ///
     /// # Errors
     /// If the bytes are no delta of this version, are damaged, or were made against another snapshot.
@@ -118,7 +118,7 @@ impl Snapshot {
             with += fresh;
             let (step, copied) = (read_number(&mut r)?, read_number(&mut r)?);
             let from = with as i64 + ((step >> 1) as i64 ^ -((step & 1) as i64));
-            // At the end nothing is copied, from wherever.
+            // At the end nothing is copied, so the offset has no meaning.
             let from = if copied == 0 { 0 } else { from };
             let piece = usize::try_from(from).ok().and_then(|from| old.get(from..from.checked_add(copied)?));
             let Some(piece) = piece.filter(|_| fresh + copied > 0 && bytes.len() + copied <= length) else {
@@ -135,7 +135,7 @@ impl Snapshot {
     }
 }
 
-/// Literal bytes, then a copy from an offset relative to their position in the old snapshot.
+/// Writes literal bytes, then a copy from an offset relative to the current position in the old snapshot.
 fn change(w: &mut Writer, fresh: &[u8], step: i64, copied: usize) {
     number(w, fresh.len());
     w.raw(fresh);
@@ -143,7 +143,7 @@ fn change(w: &mut Writer, fresh: &[u8], step: i64, copied: usize) {
     number(w, copied);
 }
 
-/// A number, seven bits a byte.
+/// Writes a number, seven bits per byte.
 fn number(w: &mut Writer, mut value: usize) {
     while value >= 0x80 {
         w.u8(value as u8 | 0x80);
@@ -158,7 +158,7 @@ fn read_number(r: &mut Reader<'_>) -> Result<usize, ReadError> {
         let byte = r.u8()?;
         value |= u64::from(byte & 0x7f) << shift;
         if byte < 0x80 {
-            // Lengths and offsets are at most the snapshot's length.
+            // Lengths and offsets do not exceed the snapshot's length.
             return Some(value)
                 .filter(|&value| value < 1 << 40)
                 .and_then(|value| usize::try_from(value).ok())
@@ -168,7 +168,7 @@ fn read_number(r: &mut Reader<'_>) -> Result<usize, ReadError> {
     Err(r.error("a number is too long"))
 }
 
-/// Length of the common prefix of both.
+/// Returns the length of the common prefix.
 fn common(p: &[u8], q: &[u8]) -> usize {
     let words = p.chunks_exact(8).zip(q.chunks_exact(8)).take_while(|(p, q)| p == q).count();
     let rest = p[8 * words..].iter().zip(&q[8 * words..]).take_while(|(p, q)| p == q).count();
@@ -177,7 +177,7 @@ fn common(p: &[u8], q: &[u8]) -> usize {
 
 /// Index of a snapshot's byte sequences.
 struct Pieces {
-    /// Position plus one of a sequence with this hash; 0: none.
+    /// Position plus one of a sequence, by its hash; 0 for none.
     places: Vec<u32>,
 }
 
@@ -198,7 +198,7 @@ impl Pieces {
         (mixed >> 32) as usize & (size - 1)
     }
 
-    /// Position and length of a match for the next bytes; length 0 if there is none.
+    /// Returns the position and length of a match for the next bytes; length 0 if there is none.
     fn find(&self, old: &[u8], new: &[u8]) -> (usize, usize) {
         if new.len() < PIECE {
             return (0, 0);

@@ -1,4 +1,4 @@
-//! Debug drawing: the world as lines, for any renderer.
+//! Debug drawing: a world as lines, for any renderer.
 
 use crate::body::def::BodyKind;
 use crate::body::shape::Shape;
@@ -7,9 +7,9 @@ use crate::revolved::{TaperedCapsule, TruncatedCone};
 use crate::world::World;
 use sinew_math::{Transform, Vec3, trig};
 
-/// Straight pieces of a full circle.
+/// Number of line segments of a full circle.
 const SEGMENTS: usize = 16;
-/// Half the side of the square that represents a half-space, metres.
+/// Half side of the square that represents a half-space, metres.
 const PLANE_SIZE: f32 = 10.0;
 
 impl World {
@@ -103,7 +103,7 @@ fn draw_box(h: Vec3, line: &mut dyn FnMut(Vec3, Vec3)) {
     }
 }
 
-/// Rings at both ends, and the outline in two planes through the axis.
+/// Draws rings at both ends, and the outline in two planes through the axis.
 fn draw_capsule(half_height: f32, radius: f32, line: &mut dyn FnMut(Vec3, Vec3)) {
     let at = |i: usize| {
         let (sin, cos) = on_circle(i);
@@ -125,12 +125,12 @@ fn draw_capsule(half_height: f32, radius: f32, line: &mut dyn FnMut(Vec3, Vec3))
     }
 }
 
-/// Sine and cosine of corner `i` of a full circle.
+/// Returns sine and cosine of corner `i` of a full circle.
 fn on_circle(i: usize) -> (f32, f32) {
     trig::sin_cos(i as f32 * (2.0 * core::f32::consts::PI / SEGMENTS as f32))
 }
 
-/// Rings at both ends and four lines between them; `middle` is the height of its middle.
+/// Draws rings at both ends and four lines between them; `middle` is the height of the centre of the cone, metres.
 fn draw_truncated_cone(cone: &TruncatedCone, middle: f32, line: &mut dyn FnMut(Vec3, Vec3)) {
     let ends = [(middle - cone.half_height, cone.bottom), (middle + cone.half_height, cone.top)];
     let corner = |(y, radius): (f32, f32), i: usize| {
@@ -147,7 +147,7 @@ fn draw_truncated_cone(cone: &TruncatedCone, middle: f32, line: &mut dyn FnMut(V
     }
 }
 
-/// The side, and arcs of the two balls beyond it in two planes through the axis.
+/// Draws the side of a tapered capsule, and arcs of its two end balls in two planes through the axis.
 fn draw_tapered(tapered: &TaperedCapsule, line: &mut dyn FnMut(Vec3, Vec3)) {
     let (side, middle) = tapered.side();
     draw_truncated_cone(&side, middle, line);

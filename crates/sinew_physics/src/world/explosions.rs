@@ -1,4 +1,4 @@
-//! Explosions among the bodies and particles of a world.
+//! Explosions: their effect on the bodies and particles of a world.
 
 use crate::body::def::BodyKind;
 use crate::body::shape::Shape;
@@ -10,11 +10,11 @@ use crate::world::World;
 use sinew_math::Vec3;
 
 impl World {
-    /// Applies an explosion: affected dynamic bodies and particles get their new velocity at once, and wake. Impulses
-    /// on kinematic bodies are reported by the next step in [`Events::pushed`](crate::Events::pushed).
+    /// Applies an explosion: the affected dynamic bodies and particles get their new velocity immediately, and wake.
+    /// The next step reports impulses on kinematic bodies in [`Events::pushed`](crate::Events::pushed).
     ///
     /// # Panics
-    /// If [`Explosion::check`] rejects it.
+    /// If [`Explosion::check`] rejects the explosion.
     pub fn explode(&mut self, explosion: &Explosion) {
         if let Err(what) = explosion.check() {
             panic!("{what}");

@@ -10,10 +10,10 @@ use crate::world::World;
 use sinew_math::Vec3;
 
 impl World {
-    /// Adds a field; everything in its reach wakes.
+    /// Adds a field; all bodies and particle groups that it reaches wake.
     ///
     /// # Panics
-    /// If [`FieldDef::check`] rejects it, or a user function is not registered.
+    /// If [`FieldDef::check`] rejects the definition, or a user function is not registered.
     pub fn add_field(&mut self, def: &FieldDef) -> FieldId {
         self.check_field(def);
         self.keep_region(def);
@@ -21,10 +21,10 @@ impl World {
         self.fields.insert(def.clone())
     }
 
-    /// Gives a field another definition; everything in its old or new reach wakes.
+    /// Replaces the definition of a field; all bodies and particle groups that the old or new field reaches wake.
     ///
     /// # Panics
-    /// If [`FieldDef::check`] rejects it, or a user function is not registered.
+    /// If [`FieldDef::check`] rejects the definition, or a user function is not registered.
     #[track_caller]
     pub fn set_field(&mut self, id: FieldId, def: &FieldDef) {
         self.check_field(def);
@@ -35,20 +35,20 @@ impl World {
         *self.fields.expect_mut(id) = def.clone();
     }
 
-    /// Removes a field; everything in its reach wakes.
+    /// Removes a field; all bodies and particle groups that it reached wake.
     #[track_caller]
     pub fn remove_field(&mut self, id: FieldId) {
         let before = self.fields.take(id);
         self.wake_reached(&before);
     }
 
-    /// A field's current definition.
+    /// Returns the current definition of a field.
     #[track_caller]
     pub fn field(&self, id: FieldId) -> &FieldDef {
         self.fields.expect(id)
     }
 
-    /// All fields, by index.
+    /// Iterates over all fields, by index.
     pub fn field_ids(&self) -> impl Iterator<Item = FieldId> {
         self.fields.ids()
     }
@@ -58,17 +58,19 @@ impl World {
         self.fields.get(id).is_some()
     }
 
-    /// Registers a function for [`FieldKind::Custom`] under a number chosen by the user, replacing a previous one.
+    /// Registers a function for [`FieldKind::Custom`] under a number of the user's choice, replacing an earlier
+    /// function.
     ///
-    /// A snapshot contains the number and the parameters, not the code. Before a snapshot is loaded into a world, its
-    /// functions must be registered there, otherwise loading fails. Register the same function under the same number,
-    /// or the future differs.
+    /// A snapshot contains the number and the parameters, not the code. Before a world loads a snapshot, the functions
+    /// in the snapshot must be registered in the world, otherwise loading fails. Register the same function under the
+    /// same number, or the future differs.
     pub fn register_field(&mut self, number: u32, function: FieldFunction) {
         self.functions.set(number, function);
     }
 
-    /// Force and torque about the centre of mass that a field currently applies to a body, N and N·m, world axes. For a
-    /// kinematic body: those that it would apply to it as a dynamic one, without mutual attraction. 0 for static ones.
+    /// Force (N) and torque about the centre of mass (N·m) that a field currently applies to a body, world axes. For a
+    /// kinematic body they are those that the field would apply to a dynamic one, without mutual attraction; for a
+    /// static body 0.
     #[track_caller]
     pub fn field_force(&self, id: FieldId, body: BodyId) -> Wrench {
         let (field, it) = (self.field(id), self.expect(body));
@@ -103,7 +105,7 @@ impl World {
         load.wrench.force
     }
 
-    /// Velocity of the air at a position, m/s, world: the sum of all winds, each scaled by its region; 0 without any.
+    /// Velocity of the air at a position, m/s, world: the sum of all winds, each scaled by its region; 0 without winds.
     /// For effects outside the simulation.
     pub fn air_velocity(&self, point: Vec3) -> Vec3 {
         let nanoseconds = self.fields_now().nanoseconds;
@@ -113,9 +115,9 @@ impl World {
         })
     }
 
-    /// Potential energy in all fields that act everywhere, J: uniform and point gravity, attraction, and displaced
-    /// water. Other fields have none: drag dissipates, and a user function may not be conservative. Fields in a region
-    /// have none either.
+    /// Potential energy of all bodies and particles in a field, J: in uniform and point gravity, attraction, and
+    /// displaced water. Other fields have none: drag dissipates, and a user function may not be conservative. Fields in
+    /// a region have none either.
     #[track_caller]
     pub fn field_energy(&self, id: FieldId) -> f32 {
         let field = self.field(id);
@@ -135,7 +137,7 @@ impl World {
         sum
     }
 
-    /// Attraction on `body` by all others. Coincident ones, including the body itself, add nothing.
+    /// Attraction on `body` by all others, N. Attractors at the same position, including the body itself, add nothing.
     fn attraction_of_all(&self, field: &FieldDef, law: &MutualGravity, body: BodyId) -> Vec3 {
         let own = attractor(field, &Target::of_body(self.expect(body)));
         self.attractors(field).map(|other| law.force(&own, &other)).sum()
@@ -145,7 +147,7 @@ impl World {
         self.targets().map(|target| attractor(field, &target)).filter(|attractor| attractor.weight > 0.0)
     }
 
-    /// All dynamic bodies and all particles.
+    /// Iterates over all dynamic bodies and all particles.
     fn targets(&self) -> impl Iterator<Item = Target<'_>> {
         let bodies = self.bodies.iter().filter(|(_, body)| body.mass > 0.0 && !body.quarantined);
         let particles = self

@@ -1,4 +1,4 @@
-//! Forces and impulses of the user's.
+//! World methods for forces and impulses.
 
 use crate::body::def::BodyKind;
 use crate::body::force::{ForceDef, ForceId, Wrench, finite_change};
@@ -7,9 +7,9 @@ use crate::world::World;
 use sinew_math::{Mat3, Sym3, Vec3, skew};
 
 impl World {
-    /// Impulse (N·s) at a world point: changes the velocity at once, `Δv = J/m`, `Δω = I⁻¹ ((p − c) × J)`. It does not
-    /// move static and kinematic bodies; the next step reports its effect on a kinematic one in
-    /// [`Events::pushed`](crate::Events::pushed).
+    /// Applies an impulse (N·s) at a world point: changes the velocity immediately, `Δv = J/m`, `Δω = I⁻¹ ((p − c) ×
+    /// J)`. An impulse does not move static and kinematic bodies; the next step reports its effect on a kinematic body
+    /// in [`Events::pushed`](crate::Events::pushed).
     #[track_caller]
     pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
         assert!(
@@ -28,13 +28,13 @@ impl World {
             finite_change(impulse, |impulse| body.inverse_inertia_mul(arm.cross(impulse)));
     }
 
-    /// Impulse (N·s) at the centre of mass: `Δv = J/m`, without spin.
+    /// Applies an impulse (N·s) at the centre of mass: `Δv = J/m`, without spin.
     #[track_caller]
     pub fn apply_impulse_at_center(&mut self, id: BodyId, impulse: Vec3) {
         self.apply_impulse(id, impulse, self.center_of_mass(id));
     }
 
-    /// Angular impulse (N·m·s): `Δω = I⁻¹ L`.
+    /// Applies an angular impulse (N·m·s): `Δω = I⁻¹ L`.
     #[track_caller]
     pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Vec3) {
         assert!(impulse.is_finite(), "an impulse is finite, not {impulse:?} ({id:?})");
@@ -47,8 +47,8 @@ impl World {
         body.velocity.angular += finite_change(impulse, |impulse| body.inverse_inertia_mul(impulse));
     }
 
-    /// Force (N) at a world point, constant over the next step and cleared after it. The torque is about the centre of
-    /// mass at its current position.
+    /// Applies a force (N) at a world point; it is constant over the next step and cleared after it. The torque is
+    /// about the centre of mass at its current position.
     #[track_caller]
     pub fn apply_force(&mut self, id: BodyId, force: Vec3, point: Vec3) {
         assert!(
@@ -59,14 +59,14 @@ impl World {
         self.apply_wrench(id, Wrench { force, torque });
     }
 
-    /// Force (N) at the centre of mass for the next step.
+    /// Applies a force (N) at the centre of mass for the next step.
     #[track_caller]
     pub fn apply_force_at_center(&mut self, id: BodyId, force: Vec3) {
         assert!(force.is_finite(), "a force is finite, not {force:?} ({id:?})");
         self.apply_wrench(id, Wrench { force, torque: Vec3::ZERO });
     }
 
-    /// Torque (N·m) for the next step.
+    /// Applies a torque (N·m) for the next step.
     #[track_caller]
     pub fn apply_torque(&mut self, id: BodyId, torque: Vec3) {
         assert!(torque.is_finite(), "a torque is finite, not {torque:?} ({id:?})");
@@ -86,8 +86,8 @@ impl World {
         }
     }
 
-    /// Adds a force that acts on a body until changed or removed; the body wakes. A body that still does not move may
-    /// sleep under it.
+    /// Adds a force that acts on a body until it is changed or removed; the body wakes. A body that does not move under
+    /// the force may fall asleep.
     ///
     /// # Panics
     /// If a number is not finite.
@@ -126,7 +126,7 @@ impl World {
         forces.list.remove(place);
     }
 
-    /// A lasting force's current definition.
+    /// Returns the current definition of a lasting force.
     ///
     /// # Panics
     /// If the force does not exist.
@@ -135,29 +135,29 @@ impl World {
         forces.list[forces.place(id)].1
     }
 
-    /// The lasting forces of a body, in the order of creation.
+    /// Iterates over the lasting forces of a body, in the order of creation.
     #[track_caller]
     pub fn forces_of(&self, body: BodyId) -> impl Iterator<Item = ForceId> {
         self.expect(body).forces.list.iter().map(move |&(number, _)| ForceId::new(body, number))
     }
 
-    /// A bullet of `mass` (kg) and `velocity` (m/s) hits a body at a world point and stays in it: returns the impulse
-    /// (N·s) on the body.
+    /// Applies the impact of a bullet of `mass` (kg) and `velocity` (m/s) that hits a body at a world point and stays
+    /// in it. Returns the impulse (N·s) on the body.
     ///
-    /// The hit is perfectly inelastic: afterwards bullet and hit point have the same velocity. With `r` from the centre
-    /// of mass to the point and `u` the point's velocity before, the relative velocity gained per unit impulse is
-    /// `K = (1/m + 1/M) 1 − [r]× I⁻¹ [r]×`, and the impulse is
+    /// The hit is perfectly inelastic: afterwards the bullet and the hit point have the same velocity. With `r` from
+    /// the centre of mass to the point and `u` the velocity of the point before the hit, the relative velocity per unit
+    /// impulse is `K = (1/m + 1/M) 1 − [r]× I⁻¹ [r]×`, and the impulse is
     ///
     /// ```text
     /// J = K⁻¹ (velocity − u)        through the centre: J = m M / (m + M) (velocity − u)
     /// ```
     ///
-    /// (Mirtich, "Impulse-based Dynamic Simulation", 1996, §3.3, without rebound). It is less than `mass × velocity`,
-    /// because the bullet keeps a part of its momentum and moves on with the body. The total momentum is conserved, so
-    /// a free block leaves at `m v / (m + M)`.
+    /// (Mirtich, "Impulse-based Dynamic Simulation", 1996, §3.3, without rebound). The impulse is less than `mass ×
+    /// velocity`, because the bullet keeps a part of its momentum and moves on with the body. The total momentum is
+    /// conserved, so a free block leaves at `m v / (m + M)`.
     ///
-    /// **The bullet's mass is not added to the body.** If it should be, model the bullet as a body with a fixed joint.
-    /// Joints of the body transmit the blow in the next step; they do not increase its mass here. Static and kinematic
+    /// **The bullet's mass is not added to the body.** For that, model the bullet as a body with a fixed joint. Joints
+    /// of the body transmit the impact in the next step; they do not increase its mass here. Static and kinematic
     /// bodies do not react: the returned impulse is then the one that stops the bullet.
     ///
     /// # Panics
@@ -176,7 +176,7 @@ impl World {
         let arm = point - body.center();
         let turn = skew(arm);
         let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|e| body.inverse_inertia_mul(turn * e));
-        // K times the effective mass of a central hit: of order 1, whatever the masses.
+        // K times the effective mass of a central hit: of order 1 for all masses.
         let reduced = 1.0 / (1.0 / mass + body.inverse_mass());
         let gained = Mat3::IDENTITY - turn * Mat3::from_cols(columns[0], columns[1], columns[2]) * reduced;
         let impulse = Sym3::from_mat3(&gained).inverse() * (velocity - body.velocity.at(arm)) * reduced;

@@ -8,13 +8,13 @@ use crate::spatial::{angular, linear};
 use crate::world::World;
 use sinew_math::{Transform, Vec3};
 
-/// Force and torque that a joint carried in the last step, as means over its time, on body B, world axes. While the bodies
-/// sleep they are those of the step in which the bodies fell asleep.
+/// Mean force and torque of a joint on body B during the last step, world axes. While the bodies sleep, the values are
+/// those of the step in which the bodies fell asleep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reaction {
-    /// N.
+    /// Force, N.
     pub force: Vec3,
-    /// N·m about B's anchor; limits, springs, motors and friction included.
+    /// Torque about B's anchor, N·m, including limits, springs, motors and friction.
     pub torque: Vec3,
 }
 
@@ -46,26 +46,26 @@ impl World {
     /// Removes a joint; both bodies wake.
     ///
     /// # Panics
-    /// If it has an [owner](Self::own_joints): a character detaches its limbs by its own calls.
+    /// If the joint has an [owner](Self::own_joints): a character detaches its limbs by its own methods.
     #[track_caller]
     pub fn remove_joint(&mut self, id: JointId) {
         self.expect_own_joint(id);
         self.take_joint(id);
     }
 
-    /// Removes a joint, whoever owns it.
+    /// Removes a joint, even if it has an owner.
     pub(super) fn take_joint(&mut self, id: JointId) {
         self.joint_changed(id);
         let joint = self.joints.take(id);
         self.activity.joints_of.remove(id.index, &joint);
     }
 
-    /// All joints, by index.
+    /// Iterates over all joints, by index.
     pub fn joint_ids(&self) -> impl Iterator<Item = JointId> {
         self.joints.ids()
     }
 
-    /// The joints of a body, by index.
+    /// Iterates over the joints of a body, by index.
     #[track_caller]
     pub fn joints_of(&self, body: BodyId) -> impl Iterator<Item = JointId> {
         self.expect(body);
@@ -78,7 +78,7 @@ impl World {
         self.joints.get(id).is_some()
     }
 
-    /// The two bodies of a joint.
+    /// Returns body A and body B of a joint.
     #[track_caller]
     pub fn joint_bodies(&self, id: JointId) -> (BodyId, BodyId) {
         let joint = self.expect_joint(id);
@@ -86,7 +86,7 @@ impl World {
         (id(joint.a), id(joint.b))
     }
 
-    /// A joint's current definition.
+    /// Returns the current definition of a joint.
     #[track_caller]
     pub fn joint(&self, id: JointId) -> JointDef {
         let joint = self.expect_joint(id);
@@ -110,10 +110,10 @@ impl World {
         }
     }
 
-    /// Gives a joint another definition; both bodies wake.
+    /// Replaces the definition of a joint; both bodies wake.
     ///
     /// # Panics
-    /// If it names other bodies, or a number is not valid.
+    /// If the definition names other bodies, or a number is not valid.
     #[track_caller]
     pub fn set_joint(&mut self, id: JointId, def: &JointDef) {
         assert!(self.joint_bodies(id) == (def.body_a, def.body_b), "a joint keeps its bodies ({id:?})");
@@ -123,7 +123,7 @@ impl World {
         self.joint_changed(id);
     }
 
-    /// Sets a joint's motor, or none; both bodies wake if it changes. Cheap enough for every step.
+    /// Sets or removes a joint's motor; both bodies wake if the motor changes. Cheap enough for every step.
     ///
     /// # Panics
     /// If a number is not valid.
@@ -139,11 +139,11 @@ impl World {
         }
     }
 
-    /// Sets a joint's friction, N·m ([`JointDef::friction_torque`]); both bodies wake if it changes. Cheap enough for
-    /// every step.
+    /// Sets a joint's friction, N·m ([`JointDef::friction_torque`]); both bodies wake if the friction changes. Cheap
+    /// enough for every step.
     ///
     /// # Panics
-    /// If it is negative or not finite.
+    /// If the friction is negative or not finite.
     #[track_caller]
     pub fn set_joint_friction(&mut self, id: JointId, torque: f32) {
         assert!(
@@ -156,14 +156,14 @@ impl World {
         }
     }
 
-    /// Enables or disables a joint; both bodies wake. A broken joint acts again, with its current gap.
+    /// Enables or disables a joint; both bodies wake. A broken joint that is enabled acts again, from its current gap.
     #[track_caller]
     pub fn set_joint_state(&mut self, id: JointId, state: JointState) {
         self.expect_joint_mut(id).state = state;
         self.joint_changed(id);
     }
 
-    /// Force and torque that a joint carried in the last step, on body B, world axes.
+    /// Mean force and torque of a joint on body B during the last step, world axes.
     #[track_caller]
     pub fn reaction(&self, id: JointId) -> Reaction {
         let reaction = self.expect_joint(id).reaction;
@@ -175,13 +175,13 @@ impl World {
         JointPose::new(&joint.geometry(), pose(joint.a), pose(joint.b))
     }
 
-    /// Frame B of a joint relative to its frame A: angles and travel.
+    /// Pose of frame B of a joint in its frame A: it gives the angles and the travel.
     #[track_caller]
     pub fn joint_transform(&self, id: JointId) -> Transform {
         self.joint_pose(self.expect_joint(id)).a_from_b()
     }
 
-    /// Distance of the joint's anchors from their allowed range, metres: for a ball joint the distance of the two
+    /// Distance of the joint's anchors from their allowed range, metres; for a ball joint the distance between the two
     /// anchors.
     #[track_caller]
     pub fn joint_gap(&self, id: JointId) -> f32 {
@@ -189,15 +189,15 @@ impl World {
         anchor_gap(&joint.kind, &self.joint_pose(joint))
     }
 
-    /// Angle beyond the joint's rotation limits, radians; 0 inside.
+    /// Angle by which the joint exceeds its rotation limits, radians; 0 within them.
     #[track_caller]
     pub fn joint_overshoot(&self, id: JointId) -> f32 {
         let joint = self.expect_joint(id);
         overshoot(&joint.kind, &self.joint_pose(joint))
     }
 
-    /// Potential energy of a joint's spring, its weld, and its soft limits with given stiffness, J. For a spring given
-    /// by its frequency it is known from the first step on.
+    /// Potential energy of a joint's spring, its weld, and its soft limits with given stiffness, J. For a spring
+    /// defined by its frequency the energy is known from the first step on.
     #[track_caller]
     pub fn joint_energy(&self, id: JointId) -> f32 {
         let joint = self.expect_joint(id);

@@ -1,4 +1,4 @@
-//! The shape library as bytes, for other processes.
+//! Shape library as bytes, for other processes.
 
 use crate::body::library::{ENTRY_BYTES, MAGIC};
 use crate::body::shape::Shape;
@@ -7,7 +7,7 @@ use sinew_geometry::DataKind;
 use sinew_math::{ReadError, Reader, Writer};
 
 impl World {
-    /// Writes every shape with data that this world was given, for another process to load before a snapshot.
+    /// Writes every shape with data that this world has received, for another process to load before a snapshot.
     pub fn save_shapes(&self, w: &mut Writer) {
         w.raw(MAGIC);
         w.count(self.library.shapes.len());

@@ -1,4 +1,4 @@
-//! The world: owner of everything that is simulated.
+//! The world: owner of all bodies, joints, particles, fields, movers and objects.
 
 mod body_ref;
 mod body_type;
@@ -61,7 +61,7 @@ use crate::step::step;
 use crate::user_object::Objects;
 use sinew_math::{Transform, Vec3};
 
-/// Bodies and joints, stepped at a fixed rate.
+/// A simulated world: bodies, joints, particles, fields and movers, stepped at a fixed rate.
 ///
 /// # Panics
 /// Every method that takes an id panics if the id is stale or from another world, and every method that takes a number
@@ -73,7 +73,7 @@ pub struct World {
     pub(crate) def: WorldDef,
     pub(crate) bodies: Arena<Body>,
     pub(crate) joints: Arena<Joint>,
-    /// Contacts of awake or moving bodies, in order of their keys; `activity` has the others.
+    /// Contacts of awake or moving bodies, in order of their keys; `activity` has the contacts of the others.
     pub(crate) contacts: Vec<Contact>,
     pub(crate) activity: Activity,
     pub(crate) groups: Arena<ParticleGroup>,
@@ -90,23 +90,23 @@ pub struct World {
     pub(crate) parts: Parts,
     pub(crate) pinches: Pinches,
     pub(crate) islands: Islands,
-    /// Number of islands that fell asleep so far.
+    /// Number of islands that have fallen asleep so far.
     pub(crate) sleepers: u32,
     pub(crate) steps: u64,
     /// Time passed to `update` and not yet simulated, nanoseconds.
     pub(crate) pending_nanoseconds: u64,
     /// External work of the last step; not part of the state.
     pub(crate) work: Work,
-    /// Memory of `wake_neighbors`; it holds nothing from one call to the next.
+    /// Scratch memory of `wake_neighbors`; empty between calls.
     pub(crate) around: Vec<u32>,
     pub(crate) marked: Vec<u8>,
 }
 
 impl World {
-    /// An empty world.
+    /// Creates an empty world.
     ///
     /// # Panics
-    /// If [`WorldDef::check`] rejects it.
+    /// If [`WorldDef::check`] rejects the definition.
     pub fn new(def: WorldDef) -> Self {
         if let Err(what) = def.check() {
             panic!("{what}");
@@ -141,7 +141,7 @@ impl World {
         }
     }
 
-    /// Settings.
+    /// Returns the settings of the world.
     pub fn def(&self) -> &WorldDef {
         &self.def
     }
@@ -165,7 +165,7 @@ impl World {
         self.broad.proxies.add(index, self.bodies.at(index));
         let senses = def.shapes.iter().any(|shape| shape.sensing == Sensing::Sensor);
         if senses || def.kind == BodyKind::Kinematic || self.sleepers > 0 {
-            // It may overlap static bodies.
+            // The body may overlap static bodies.
             self.look_anew(id);
         }
         id
@@ -174,8 +174,8 @@ impl World {
     /// Removes a body with its joints; touching bodies wake.
     ///
     /// # Panics
-    /// If particles are attached to it or have a backstop on it, or it has an [owner](Self::own_bodies): a character
-    /// removes its bodies by its own calls.
+    /// If particles are attached to the body or have a backstop on it, or the body has an [owner](Self::own_bodies): a
+    /// character removes its bodies by its own methods.
     #[track_caller]
     #[doc(alias = "despawn")]
     #[doc(alias = "destroy")]
@@ -204,8 +204,8 @@ impl World {
     }
 
     /// Adds particles with their springs; bodies that hold them or carry their backstops wake. Groups sleep with their
-    /// islands. A sleeping body is a wall to them, unless one hits it faster than
-    /// [`SleepThresholds::speed`](crate::SleepThresholds): then it wakes.
+    /// islands. A sleeping body acts on particles like a static one, unless one hits it faster than
+    /// [`SleepThresholds::speed`](crate::SleepThresholds): then the body wakes.
     ///
     /// # Panics
     /// If the definition is invalid or names a body that does not exist.
@@ -226,24 +226,24 @@ impl World {
         self.activity.wake_borne(&mut self.bodies, &group, 0.0, (&self.broad.proxies, &self.def));
     }
 
-    /// A particle group.
+    /// Returns a particle group.
     #[track_caller]
     pub fn particles(&self, id: GroupId) -> &ParticleGroup {
         self.groups.expect(id)
     }
 
-    /// A particle group, mutable.
+    /// Returns a particle group, mutable.
     #[track_caller]
     pub fn particles_mut(&mut self, id: GroupId) -> &mut ParticleGroup {
         self.groups.expect_mut(id)
     }
 
-    /// All particle groups, by index.
+    /// Iterates over all particle groups, by index.
     pub fn group_ids(&self) -> impl Iterator<Item = GroupId> {
         self.groups.ids()
     }
 
-    /// One step on the calling thread.
+    /// Takes one step on the calling thread.
     #[doc(alias = "CCD")]
     #[doc(alias = "continuous collision detection")]
     #[doc(alias = "simulate")]
@@ -251,7 +251,7 @@ impl World {
         self.step_with(&Serial, &NoProfiler);
     }
 
-    /// One step with the host's threads and profiler. The result does not depend on either.
+    /// Takes one step with the host's threads and profiler. The result does not depend on either.
     pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
         let (dt, substeps) = (self.def.dt(), self.def.substeps);
         let h = dt / substeps as f32;
@@ -263,7 +263,7 @@ impl World {
         self.steps += 1;
     }
 
-    /// Steps taken.
+    /// Number of steps taken.
     pub fn step_count(&self) -> u64 {
         self.steps
     }
@@ -273,19 +273,19 @@ impl World {
         self.steps as f64 * self.def.step_nanoseconds as f64 * 1e-9
     }
 
-    /// Events of the last step.
+    /// Returns the events of the last step.
     pub fn events(&self) -> &Events {
         &self.events
     }
 
-    /// Energy added during the last step; zero after [`load`](Self::load), until a step is taken. The energy of the
+    /// Energy added during the last step, J; zero after [`load`](Self::load), until a step is taken. The energy of the
     /// bodies ([`energy`](Self::energy)) rises by at most this, plus the work of the user's forces, fields, moving
     /// surfaces and impulses between steps.
     pub fn work(&self) -> Work {
         self.work
     }
 
-    /// All bodies, by index.
+    /// Iterates over all bodies, by index.
     pub fn body_ids(&self) -> impl Iterator<Item = BodyId> {
         self.bodies.ids()
     }
@@ -295,13 +295,13 @@ impl World {
         self.bodies.get(id).is_some()
     }
 
-    /// Pose of the body's frame.
+    /// Pose of the body's frame, world.
     #[track_caller]
     pub fn transform(&self, id: BodyId) -> Transform {
         self.expect(id).world_from_body()
     }
 
-    /// Pose between the last step (`alpha` 0) and this one (1), for drawing.
+    /// Pose of the body between the last step (`alpha` 0) and this one (1), for drawing.
     #[track_caller]
     pub fn interpolated(&self, id: BodyId, alpha: f32) -> Transform {
         let body = self.expect(id);
@@ -313,8 +313,7 @@ impl World {
         between * body.principal_from_body
     }
 
-    /// Teleports a body; it wakes, and so do the bodies that touched it there or are jointed to it. It does not sweep
-    /// the space between.
+    /// Teleports a body without a sweep; the body wakes, with the bodies that touched it or are jointed to it.
     #[track_caller]
     #[doc(alias = "teleport")]
     #[doc(alias = "set_position")]
@@ -322,7 +321,7 @@ impl World {
         assert!(world_from_body.is_finite(), "a body's pose is finite, not {world_from_body:?} ({id:?})");
         self.expect_mut(id).set_world_from_body(world_from_body);
         self.mark_changed(id);
-        // Its contact impulses do not apply at the new position.
+        // The contact impulses of the body do not apply at the new position.
         let returned = self.activity.returned_mut();
         for contact in self.contacts.iter_mut().chain(returned).filter(|contact| contact.key.has(id.index)) {
             contact.memory = contact.memory.of_new_step();
@@ -330,13 +329,13 @@ impl World {
         self.broad.proxies.place(id.index, self.bodies.at(id.index));
     }
 
-    /// World position of the centre of mass.
+    /// World position of the centre of mass, metres.
     #[track_caller]
     pub fn center_of_mass(&self, id: BodyId) -> Vec3 {
         self.expect(id).center()
     }
 
-    /// Velocity of the centre of mass and angular velocity.
+    /// Velocity of the centre of mass (m/s) and angular velocity (rad/s), world axes.
     #[track_caller]
     #[doc(alias = "linvel")]
     #[doc(alias = "angvel")]
@@ -344,7 +343,7 @@ impl World {
         self.expect(id).velocity
     }
 
-    /// Sets the velocity of a dynamic or kinematic body; it wakes. Ignored for a static body.
+    /// Sets the velocity of a dynamic or kinematic body; the body wakes. No effect on a static body.
     #[track_caller]
     #[doc(alias = "set_linvel")]
     #[doc(alias = "set_angvel")]
@@ -360,7 +359,7 @@ impl World {
         let stops = velocity.is_zero() && !body.velocity.is_zero();
         body.velocity = velocity;
         match body.kind {
-            // The contacts at its new position are not known yet.
+            // The contacts of the body at its new position are not known yet.
             BodyKind::Kinematic if stops => self.mark_changed(id),
             _ => self.wake_body(id.index),
         }
@@ -369,20 +368,20 @@ impl World {
         }
     }
 
-    /// Static, kinematic or dynamic.
+    /// Kind of a body: static, kinematic or dynamic.
     #[track_caller]
     #[doc(alias = "body_type")]
     pub fn kind(&self, id: BodyId) -> BodyKind {
         self.expect(id).kind
     }
 
-    /// Mass (0 unless dynamic), centre and inertia in the body's frame.
+    /// Mass (kg; 0 unless dynamic), centre (metres) and inertia (kg·m²) in the body's frame.
     #[track_caller]
     pub fn mass(&self, id: BodyId) -> MassProperties {
         self.expect(id).mass_properties()
     }
 
-    /// The user's number on a body.
+    /// User data of a body.
     #[track_caller]
     pub fn user_data(&self, id: BodyId) -> u64 {
         self.expect(id).user_data

@@ -10,9 +10,10 @@ use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Rotation, Transform, Vec3};
 
 impl World {
-    /// Gives a body the velocity that reaches a pose (world) in `seconds`: for platforms and other kinematic bodies
-    /// that shall be at a given pose and push obstacles. It keeps that velocity until changed; call it before each step
-    /// with the length of the step, [`WorldDef::dt`](crate::WorldDef::dt). It rotates the short way.
+    /// Gives a body the velocity with which it reaches a pose (world) in `seconds`: for platforms and other kinematic
+    /// bodies that follow given poses and push obstacles. The body keeps that velocity until you change it; call this
+    /// before each step with the length of the step, [`WorldDef::dt`](crate::WorldDef::dt). The body rotates the short
+    /// way.
     ///
     /// ```
     /// use sinew_math::{Transform, Vec3};
@@ -57,12 +58,12 @@ impl World {
     }
 
     /// Gives many bodies the velocities that continue their motion: body `i` moved from `before[i]` to `now[i]` within
-    /// `seconds`, and shall continue that motion for as long again. Equivalent to [`move_to`](Self::move_to) with the
+    /// `seconds`, and continues that motion for the same time. Equivalent to [`move_to`](Self::move_to) with the
     /// extrapolated pose, bit for bit, at less than half the cost: for characters whose bodies follow a pose before the
-    /// next one is known.
+    /// next pose is known.
     ///
     /// # Panics
-    /// If there is not one pose per body, or `move_to` would panic.
+    /// If there is not one pose per body in each list, or `move_to` would panic.
     #[track_caller]
     pub fn lead_all(&mut self, ids: &[BodyId], before: &[Transform], now: &[Transform], seconds: f32) {
         let all = ids.len() == before.len() && ids.len() == now.len();
@@ -95,7 +96,7 @@ impl World {
         }
     }
 
-    /// Sets a body's velocity. For a kinematic body that keeps moving nothing else changes.
+    /// Sets a body's velocity. A kinematic body that keeps moving does not wake or lose its contacts.
     fn go_on(&mut self, id: BodyId, velocity: Velocity) {
         let body = self.bodies.at_mut(id.index);
         if body.kind == BodyKind::Kinematic && !body.velocity.is_zero() && !velocity.is_zero() {
@@ -106,17 +107,17 @@ impl World {
     }
 }
 
-/// Extrapolated pose of a body that continues its motion.
+/// Returns the extrapolated pose of a body that continues its motion.
 fn ahead(before: &Transform, now: &Transform) -> Transform {
     let turn = now.rotation * before.rotation.inverse();
     Transform::new(now.translation + (now.translation - before.translation), turn * now.rotation)
 }
 
-/// Numbers of a keyed body: its principal frame in the world, its own frame in that, and the targets of the latter
-/// before and now.
+/// Numbers per body: the pose of its principal frame in the world, the pose of its frame in the principal frame, and
+/// the poses `before` and `now`.
 const NUMBERS: usize = 4 * 7;
 
-/// Velocities of eight bodies with which they go on in `seconds`.
+/// Kernel that finds the velocities of eight bodies whose motion continues for `seconds`.
 struct FindVelocities<'a> {
     block: &'a Block<NUMBERS>,
     seconds: f32,
@@ -126,7 +127,7 @@ struct FindVelocities<'a> {
 struct Velocities {
     linear: [[f32; WIDTH]; 3],
     angular: [[f32; WIDTH]; 3],
-    /// Bit `k`: lane `k` is finite, and its rotation is small enough for the series.
+    /// Bit `k` is set if lane `k` is finite and its rotation is small enough for the series.
     plain: u8,
 }
 
@@ -159,7 +160,8 @@ fn is_finite<L: Lanes>(v: Vector3<L>) -> L::Mask {
 impl Kernel for FindVelocities<'_> {
     type Output = Velocities;
 
-    // The operations of `ahead`, `move_to`, `Rotation::normalize` and `Rotation::angular_velocity_to` in their order.
+    // Performs the operations of `ahead`, `move_to`, `Rotation::normalize` and `Rotation::angular_velocity_to` in the
+    // same order.
     #[inline(always)]
     fn run<L: Lanes>(self) -> Velocities {
         let rows = &self.block.0;
@@ -184,7 +186,7 @@ impl Kernel for FindVelocities<'_> {
         );
         let square = vector.dot(vector);
         let angular = vector * (L::splat(2.0) * Rotation::half_angle_over_sine(square) / seconds);
-        // Shorter ones, and those without end, are the identity to `normalize`.
+        // `normalize` returns the identity for shorter and for infinite quaternions.
         let plain = L::gt(length, L::splat(1e-12))
             & L::lt(length, L::splat(f32::INFINITY))
             & L::le(square, L::splat(Rotation::SHORT_TURN))

@@ -4,10 +4,10 @@ use crate::id::BodyId;
 use crate::world::World;
 
 impl World {
-    /// Bodies moved by the last step, each once, in unspecified order: the ones a renderer must update, however many
-    /// rest or sleep. Bodies that fell asleep in it are included for the last time. Bodies teleported by
-    /// [`set_transform`](Self::set_transform) are not included, and the list is empty after [`load`](Self::load), until
-    /// a step is taken.
+    /// Iterates over the bodies that the last step moved, each once, in unspecified order: a renderer must update only
+    /// these. Bodies that fell asleep in the step are included for the last time. Bodies teleported by
+    /// [`set_transform`](Self::set_transform) are not included, and there are none after [`load`](Self::load), until a
+    /// step is taken.
     ///
     /// ```
     /// use sinew_physics::{BodyDef, Shape, World, WorldDef};

@@ -7,22 +7,23 @@ use crate::world::World;
 use core::any::Any;
 
 impl World {
-    /// Adds an object of the user's own: [`init`](PhysicsObject::init) is called at once, the rest from the next step on.
+    /// Adds an object of the user's own kind. Calls [`init`](PhysicsObject::init) now, and the other methods from the
+    /// next step on.
     pub fn add_object(&mut self, mut object: Box<dyn PhysicsObject>) -> ObjectId {
         object.init(self);
         self.objects.arena.insert(object)
     }
 
-    /// Removes an object and returns it; the bodies it created remain.
+    /// Removes an object and returns it; the bodies that it created remain.
     #[track_caller]
     pub fn remove_object(&mut self, id: ObjectId) -> Box<dyn PhysicsObject> {
         self.objects.arena.take(id)
     }
 
-    /// An object.
+    /// Returns an object.
     ///
     /// # Panics
-    /// If it is of another type.
+    /// If the object is of another type.
     #[track_caller]
     pub fn object<T: PhysicsObject>(&self, id: ObjectId) -> &T {
         let object = self.objects.arena.expect(id);
@@ -30,10 +31,10 @@ impl World {
         object.downcast_ref().unwrap_or_else(|| panic!("{id:?} is no {}", core::any::type_name::<T>()))
     }
 
-    /// An object, mutable.
+    /// Returns an object, mutable.
     ///
     /// # Panics
-    /// If it is of another type.
+    /// If the object is of another type.
     #[track_caller]
     pub fn object_mut<T: PhysicsObject>(&mut self, id: ObjectId) -> &mut T {
         let object = self.objects.arena.expect_mut(id);
@@ -41,7 +42,7 @@ impl World {
         object.downcast_mut().unwrap_or_else(|| panic!("{id:?} is no {}", core::any::type_name::<T>()))
     }
 
-    /// All objects, by index.
+    /// Iterates over all objects, by index.
     pub fn object_ids(&self) -> impl Iterator<Item = ObjectId> {
         self.objects.arena.ids()
     }
@@ -57,8 +58,9 @@ impl World {
         }
     }
 
-    /// Allows [`load`](Self::load) to create objects of this kind if a snapshot contains one that the world does not
-    /// have: in a new world, or after an object was removed. A repeated registration replaces the previous one.
+    /// Registers a kind of objects. [`load`](Self::load) can then create an object of this kind if a snapshot contains
+    /// one that the world does not have: in a new world, or after an object was removed. A repeated registration
+    /// replaces the earlier one.
     pub fn register_kind(&mut self, make: fn() -> Box<dyn PhysicsObject>) {
         let kind = make().kind();
         self.objects.kinds.retain(|&(known, _)| known != kind);

@@ -1,4 +1,4 @@
-//! Owners of bodies and joints, which the user cannot remove by world calls.
+//! Owners of bodies and joints. World methods refuse to remove an owned body or joint.
 
 use crate::body::owner::Owner;
 use crate::id::{BodyId, JointId};
@@ -6,9 +6,9 @@ use crate::world::World;
 
 impl World {
     /// Assigns bodies to an owner, `bodies[i]` as its part `parts[i]`. From then on [`remove_body`](Self::remove_body)
-    /// panics for them and names the call to use instead. For code that depends on its bodies, such as characters; it
-    /// releases them by [`disown_body`](Self::disown_body) before it removes them. Ownership does not affect a step,
-    /// and is part of snapshots.
+    /// panics for these bodies and names the method to use instead. For code that depends on its bodies, such as
+    /// characters; it releases them by [`disown_body`](Self::disown_body) before it removes them. Ownership does not
+    /// affect a step, and is part of snapshots.
     ///
     /// ```should_panic
     /// use sinew_physics::{BodyDef, Owner, Shape, World, WorldDef};
@@ -35,8 +35,8 @@ impl World {
         }
     }
 
-    /// Assigns joints to an owner, `joints[i]` holding its part `parts[i]`, as [`own_bodies`](Self::own_bodies) does
-    /// with bodies.
+    /// Assigns joints to an owner, `joints[i]` as the joint of its part `parts[i]`, as [`own_bodies`](Self::own_bodies)
+    /// does with bodies.
     ///
     /// # Panics
     /// If the lists differ in length, or the owner has no such part.
@@ -61,19 +61,19 @@ impl World {
         self.joints.expect_mut(joint).owner = None;
     }
 
-    /// Owner of a body, and the name of its part; `None`: the user's.
+    /// Returns the owner of a body and the name of the part; `None` if the body has no owner.
     #[track_caller]
     pub fn body_owner(&self, body: BodyId) -> Option<(&Owner, &str)> {
         self.expect(body).owner.map(|mark| self.owners.of(mark))
     }
 
-    /// Owner of a joint, and the name of the part that it holds; `None`: the user's.
+    /// Returns the owner of a joint and the name of the joint's part; `None` if the joint has no owner.
     #[track_caller]
     pub fn joint_owner(&self, joint: JointId) -> Option<(&Owner, &str)> {
         self.joints.expect(joint).owner.map(|mark| self.owners.of(mark))
     }
 
-    /// Panics about a body that has an owner.
+    /// Panics if a body has an owner.
     #[track_caller]
     pub(super) fn expect_own_body(&self, body: BodyId) {
         if let Some((owner, part)) = self.body_owner(body) {
@@ -81,7 +81,7 @@ impl World {
         }
     }
 
-    /// Panics about a joint that has an owner.
+    /// Panics if a joint has an owner.
     #[track_caller]
     pub(super) fn expect_own_joint(&self, joint: JointId) {
         if let Some((owner, part)) = self.joint_owner(joint) {

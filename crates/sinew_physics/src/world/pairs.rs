@@ -7,18 +7,18 @@ use crate::id::BodyId;
 use crate::world::World;
 
 impl World {
-    /// Registers a function for [`set_pair_function`](Self::set_pair_function) under a number chosen by the user,
-    /// replacing a previous one.
+    /// Registers a function for [`set_pair_function`](Self::set_pair_function) under a number of the user's choice,
+    /// replacing an earlier function.
     ///
-    /// A snapshot contains the number, not the code. Before a snapshot is loaded into a world, its functions must be
-    /// registered there, otherwise loading fails. Register the same function under the same number, or the future
-    /// differs.
+    /// A snapshot contains the number, not the code. Before a world loads a snapshot, the function in the snapshot must
+    /// be registered in the world, otherwise loading fails. Register the same function under the same number, or the
+    /// future differs.
     pub fn register_pair_function(&mut self, number: u32, function: PairFunction) {
         self.parted.functions.registered.set(number, function);
     }
 
-    /// Lets the registered function with this number decide from now on about shape pairs that pass the other filters;
-    /// `None`, the initial state: no function. All bodies wake.
+    /// Sets the registered function that decides from now on whether shape pairs that pass the other filters collide.
+    /// Initially `None`: no function. All bodies wake.
     ///
     /// # Panics
     /// If the function is not registered.
@@ -34,12 +34,12 @@ impl World {
         }
     }
 
-    /// Number of the active function.
+    /// Number of the active pair function.
     pub fn pair_function(&self) -> Option<u32> {
         self.parted.functions.chosen
     }
 
-    /// Disables collisions between two bodies from now on; if they touch, both wake.
+    /// Disables collisions between two bodies from now on; if the bodies touch, both wake.
     #[track_caller]
     #[doc(alias = "ignore collision")]
     pub fn disable_pair(&mut self, a: BodyId, b: BodyId) {
@@ -52,7 +52,8 @@ impl World {
         self.parted.disable(a.index, b.index);
     }
 
-    /// Reverts [`disable_pair`](Self::disable_pair); both wake. Joints between them may still disable their collision.
+    /// Reverts [`disable_pair`](Self::disable_pair); both bodies wake. A joint between them may still disable their
+    /// collision.
     #[track_caller]
     pub fn enable_pair(&mut self, a: BodyId, b: BodyId) {
         self.expect(a);
@@ -61,7 +62,7 @@ impl World {
         self.parted.enable(a.index, b.index);
     }
 
-    /// Makes the next step test a pair again, through one of its bodies that wakes, or else one of them.
+    /// Makes the next step test a pair again: wakes both bodies, or marks body A as changed if neither can wake.
     fn wake_pair(&mut self, a: BodyId, b: BodyId) {
         self.wake_body(a.index);
         self.wake_body(b.index);
@@ -72,11 +73,12 @@ impl World {
 }
 
 impl World {
-    /// Registers a function for [`ContactRule::Modified`] under a number chosen by the user, replacing a previous one.
+    /// Registers a function for [`ContactRule::Modified`] under a number of the user's choice, replacing an earlier
+    /// function.
     ///
-    /// A snapshot contains the number, not the code. Before a snapshot is loaded into a world, the functions of its
-    /// shapes must be registered there, otherwise loading fails. Register the same function under the same number, or
-    /// the future differs.
+    /// A snapshot contains the number, not the code. Before a world loads a snapshot, the functions of the shapes in
+    /// the snapshot must be registered in the world, otherwise loading fails. Register the same function under the same
+    /// number, or the future differs.
     pub fn register_modifier(&mut self, number: u32, modifier: ContactModifier) {
         self.meetings.modifiers.registered.set(number, modifier);
     }

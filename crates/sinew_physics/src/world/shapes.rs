@@ -9,22 +9,22 @@ use crate::id::{BodyId, ShapeId};
 use crate::world::World;
 use sinew_math::{Transform, Vec3};
 
-/// Mass of a body after a change of its shapes.
+/// Treatment of a body's mass when its shapes change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MassUpdate {
-    /// Mass, centre and inertia are recomputed from the shapes' densities. Default.
+    /// Recomputes mass, centre and inertia from the shapes' densities. Default.
     #[default]
     FromShapes,
-    /// They do not change.
+    /// Leaves mass, centre and inertia unchanged.
     Keep,
 }
 
-/// Mass (kg), principal moments (kg·m²) and frame of a body after a change.
+/// Mass (kg), principal moments (kg·m²) and pose of the body's frame in its principal frame, after a change.
 type Weight = (f32, Vec3, Transform);
 
 impl World {
-    /// Adds a shape to a body, as its last; the body wakes, with touching and jointed bodies. The next step reports its
-    /// touches.
+    /// Adds a shape to a body, as its last shape; the body wakes, with touching and jointed bodies. The next step
+    /// reports the touches of the shape.
     ///
     /// ```
     /// use sinew_math::{Transform, Vec3};
@@ -58,11 +58,10 @@ impl World {
     }
 
     /// Replaces a shape of a body, keeping its id; the body wakes, with touching and jointed bodies. The next step
-    /// reports ended touches, and not those that continue.
+    /// reports touches that end, but not touches that continue.
     ///
-    /// # Panics
-    /// If the body has no such shape, the new one is not valid, is a half-space on a body that is not static, or names a
-    /// modifier that is not registered, or a dynamic body would have no mass.
+    /// If the body has no such shape, the new shape is not valid, is a half-space on a body that is not static, or
+    /// names a modifier that is not registered, or a dynamic body would have no mass.
     #[doc(alias = "set_collider_shape")]
     #[track_caller]
     pub fn set_shape(&mut self, id: ShapeId, def: &ShapeDef, mass: MassUpdate) {
@@ -76,11 +75,11 @@ impl World {
         self.reshape(id, mass, change, |shape| shape == id.shape);
     }
 
-    /// Removes a shape from a body; the body wakes, with touching and jointed bodies. The following shapes move up:
-    /// their numbers decrease by one. The next step reports its ended touches.
+    /// Removes a shape from a body; the body wakes, with touching and jointed bodies. The numbers of the following
+    /// shapes decrease by one. The next step reports the ended touches of the shape.
     ///
     /// # Panics
-    /// If the body has no such shape, or would be dynamic without mass.
+    /// If the body has no such shape, or a dynamic body would have no mass.
     #[doc(alias = "detach collider")]
     #[doc(alias = "destroy fixture")]
     #[track_caller]
@@ -93,7 +92,7 @@ impl World {
         self.reshape(id, mass, change, |shape| shape >= id.shape);
     }
 
-    /// Geometry of a shape.
+    /// Returns the geometry of a shape.
     #[track_caller]
     pub fn shape(&self, id: ShapeId) -> &Shape {
         self.expect_shape(id);
@@ -108,7 +107,7 @@ impl World {
         body.principal_from_body.inverse() * body.shapes[id.shape as usize].principal_from_shape
     }
 
-    /// A shape's current definition.
+    /// Returns the current definition of a shape.
     #[track_caller]
     pub fn shape_def(&self, id: ShapeId) -> ShapeDef {
         let body_from_shape = self.body_from_shape(id);
@@ -141,7 +140,7 @@ impl World {
         self.expect_modifier(def.rule);
     }
 
-    /// Changes the shapes of a body. Contacts of the shapes that go, by their numbers before, are dropped.
+    /// Changes the shapes of a body and drops the contacts of shapes for which `goes` is true, by their old numbers.
     #[track_caller]
     fn reshape(
         &mut self,
@@ -154,7 +153,7 @@ impl World {
         let index = id.index;
         let mut changed = self.expect(id).clone();
         change(&mut changed);
-        // Compute the weight before anything is changed, because it may panic.
+        // The weight is computed before any change, because this may panic.
         let weight = weight(&changed, mass);
         self.mark_changed(id);
         if goes(number) {
@@ -187,7 +186,7 @@ impl World {
     }
 }
 
-/// Mass for a body with changed shapes; `None`: its mass, if any, does not change.
+/// Returns the mass of a body with changed shapes; `None` if the mass does not change.
 #[track_caller]
 fn weight(body: &Body, mass: MassUpdate) -> Option<Weight> {
     if mass == MassUpdate::Keep || body.kind != BodyKind::Dynamic && body.laid_by.is_none() {

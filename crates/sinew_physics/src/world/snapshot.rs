@@ -1,4 +1,4 @@
-//! Snapshots: everything that decides the future, and nothing else, in one order.
+//! Snapshots: all state that affects the future, and no other, in one order.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
@@ -18,13 +18,13 @@ use crate::particles::ParticleGroup;
 use crate::world::World;
 use sinew_math::{ReadError, Reader, Writer};
 
-/// First bytes of a snapshot; the last is its version.
+/// First bytes of a snapshot; the last byte is the version.
 const MAGIC: &[u8; 8] = b"sinew-w\x0a";
-/// A thousand steps a second for 280,000 years.
+/// Largest number of steps in a snapshot: a thousand steps a second for 280,000 years.
 const MOST_STEPS: u64 = 1 << 53;
 
 impl World {
-    /// Writes the state, which [`load`](Self::load) restores bit for bit.
+    /// Writes the state of the world; [`load`](Self::load) restores it bit for bit.
     #[doc(alias = "serialize")]
     #[doc(alias = "snapshot")]
     #[doc(alias = "rollback")]
@@ -43,7 +43,7 @@ impl World {
             joint.save(w);
             joint.owner.into_iter().for_each(|mark| owners.save(&self.owners, mark, w));
         });
-        // The set of pairs without points depends on history.
+        // Idle contacts are omitted: which pairs without points exist depends on the world's history.
         let contacts: Vec<_> = self.contacts_in_order().filter(|contact| !contact.is_idle()).collect();
         w.count(contacts.len());
         contacts.into_iter().for_each(|contact| save_contact(w, contact));
@@ -62,8 +62,8 @@ impl World {
 
     /// Restores a saved state. The events are then empty.
     ///
-    /// User objects restore their state in place: the object that was saved, if it still exists, or else a new one of a
-    /// [registered](Self::register_kind) kind. Objects added since are dropped.
+    /// User objects restore their state in place: into the object that was saved, if it still exists, or else into a
+    /// new one of a [registered](Self::register_kind) kind. Objects added since are dropped.
     ///
     /// # Errors
     /// If the bytes are not a snapshot of this version, a shape with data is missing in the library, a function is not
@@ -154,7 +154,7 @@ impl World {
         sinew_math::hash::hash_bytes(w.as_bytes())
     }
 
-    /// Marks the current state (everything [`save`](Self::save) writes) for [`reset`](Self::reset).
+    /// Stores the current state, as [`save`](Self::save) writes it, for [`reset`](Self::reset).
     pub fn mark(&mut self) {
         let mut w = Writer::reuse(core::mem::take(&mut self.marked));
         self.save(&mut w);
@@ -162,8 +162,8 @@ impl World {
     }
 
     /// Returns to the marked state exactly: the following steps have the same bits as those after the mark, including
-    /// new ids. Items added since are removed, removed ones return, and [`events`](Self::events) are empty. Settings
-    /// outside the state (threads, kinds) do not change.
+    /// new ids. Items added since are removed, removed items return, and [`events`](Self::events) are empty. Settings
+    /// outside the state (threads, registered kinds) do not change.
     ///
     /// # Panics
     /// If no state was marked, or an object of an [unregistered](Self::register_kind) kind was removed since.

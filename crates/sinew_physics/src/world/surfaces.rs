@@ -14,29 +14,29 @@ use sinew_math::Vec3;
 /// A contact of two shapes after the last step. A pair may have several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyContact {
-    /// The shape of the body with the smaller index.
+    /// Shape of the body with the smaller index.
     pub a: ShapeId,
-    /// The other.
+    /// Shape of the other body.
     pub b: ShapeId,
-    /// Normal from A to B, unit length, world axes.
+    /// Unit normal from A to B, world axes.
     pub normal: Vec3,
     /// Effect of the contact.
     pub effect: Effect,
-    /// Contact material of the two shapes, before a modifier.
+    /// Contact material of the two shapes, before a contact modifier changes it.
     pub material: ContactMaterial,
-    /// Total friction impulse on B in the step, N·s, world axes; A got the opposite.
+    /// Total friction impulse on B in the step, N·s, world axes; the impulse on A is the opposite.
     pub friction: Vec3,
     points: [ContactPoint; MAX_POINTS],
     count: usize,
 }
 
 impl BodyContact {
-    /// Contact points, touching or near, at least one.
+    /// Returns the contact points, touching or near; at least one.
     pub fn points(&self) -> &[ContactPoint] {
         &self.points[..self.count]
     }
 
-    /// All that pushed along the normal in the step, N·s.
+    /// Sum of the normal impulses of the points in the step, N·s.
     pub fn impulse(&self) -> f32 {
         self.points().iter().fold(0.0, |sum, point| sum + point.impulse)
     }
@@ -47,21 +47,21 @@ impl BodyContact {
 pub struct ContactPoint {
     /// Midpoint between the surfaces, world, metres, at the last update.
     pub position: Vec3,
-    /// Gap along the normal then, metres; negative if they overlapped.
+    /// Gap along the normal at the last update, metres; negative if the surfaces overlapped.
     pub separation: f32,
     /// Total normal impulse in the step, N·s.
     pub impulse: f32,
 }
 
 impl World {
-    /// Contacts of a body, including near ones that do not touch, in the order of pairs.
+    /// Iterates over the contacts of a body, including near ones that do not touch, in the order of pairs.
     #[track_caller]
     pub fn contacts_of(&self, id: BodyId) -> impl Iterator<Item = BodyContact> {
         self.expect(id);
         self.contacts().filter(move |contact| contact.a.body == id || contact.b.body == id)
     }
 
-    /// All contacts, including near ones that do not touch, in the order of pairs.
+    /// Iterates over all contacts, including near ones that do not touch, in the order of pairs.
     pub fn contacts(&self) -> impl Iterator<Item = BodyContact> {
         let near = |contact: &&Contact| contact.manifold.count > 0;
         self.contacts_in_order().filter(near).map(|contact| self.body_contact(contact))
@@ -86,7 +86,7 @@ impl World {
         }
     }
 
-    /// The shapes of a body.
+    /// Iterates over the shapes of a body.
     #[track_caller]
     pub fn shape_ids(&self, body: BodyId) -> impl Iterator<Item = ShapeId> + use<> {
         (0..self.expect(body).shapes.len() as u32).map(move |shape| ShapeId { body, shape })
@@ -104,7 +104,7 @@ impl World {
         self.expect_surface(id).filter
     }
 
-    /// Effect of a shape on those it touches: solid or sensor.
+    /// Effect of a shape on the shapes it touches: solid or sensor.
     #[track_caller]
     pub fn sensing(&self, id: ShapeId) -> Sensing {
         self.expect_surface(id).sensing
@@ -116,10 +116,11 @@ impl World {
         self.expect_surface(id).rule
     }
 
-    /// Changes a shape's material from the next step on. Its body and touching bodies wake; its mass does not change.
+    /// Changes a shape's material from the next step on. The body and its touching bodies wake; the mass does not
+    /// change.
     ///
     /// # Panics
-    /// If [`Material::check`] rejects it.
+    /// If [`Material::check`] rejects the material.
     #[track_caller]
     pub fn set_material(&mut self, id: ShapeId, material: Material) {
         if let Err(what) = material.check() {
@@ -128,24 +129,24 @@ impl World {
         self.change_surface(id, |surface| surface.material = material);
     }
 
-    /// Changes a shape's filter from the next step on, which also reports ended touches. Its body and touching bodies
-    /// wake.
+    /// Changes a shape's filter from the next step on, which also reports ended touches. The body and its touching
+    /// bodies wake.
     #[track_caller]
     pub fn set_filter(&mut self, id: ShapeId, filter: Filter) {
         self.change_surface(id, |surface| surface.filter = filter);
     }
 
-    /// Makes a shape solid or a sensor from the next step on; its touches end and restart as the other kind of event.
-    /// Its body and touching bodies wake.
+    /// Makes a shape solid or a sensor from the next step on. Its touches end and begin again as the other kind of
+    /// event. The body and its touching bodies wake.
     #[track_caller]
     pub fn set_sensing(&mut self, id: ShapeId, sensing: Sensing) {
         self.change_surface(id, |surface| surface.sensing = sensing);
     }
 
-    /// Changes a shape's contact rule from the next step on. Its body and touching bodies wake.
+    /// Changes a shape's contact rule from the next step on. The body and its touching bodies wake.
     ///
     /// # Panics
-    /// If [`ContactRule::check`] rejects it, or a modifier is not registered.
+    /// If [`ContactRule::check`] rejects the rule, or a modifier is not registered.
     #[track_caller]
     pub fn set_contact_rule(&mut self, id: ShapeId, rule: ContactRule) {
         if let Err(what) = rule.check() {
@@ -171,7 +172,7 @@ impl World {
         self.broad.proxies.refresh(id.body.index, self.bodies.at(id.body.index));
     }
 
-    /// Makes the next step test a body's contacts again even if nothing moves; it and its neighbours wake.
+    /// Makes the next step test a body's contacts again even if nothing moves; the body and its neighbours wake.
     #[track_caller]
     pub(crate) fn mark_changed(&mut self, id: BodyId) {
         self.look_anew(id);

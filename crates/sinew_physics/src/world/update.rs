@@ -1,27 +1,27 @@
-//! Converts frame times to whole steps.
+//! Conversion of frame times to whole steps.
 
 use crate::world::World;
 use core::time::Duration;
 
-/// Result of an update.
+/// Steps taken by an update, the remaining time, and the time dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Update {
-    /// Steps taken.
+    /// Number of steps taken.
     pub steps: u32,
-    /// Time that waits for the next step, as a share of a step, 0..1: for [`World::interpolated`] and
+    /// Remaining time until the next step, as a share of a step, 0..1: for [`World::interpolated`] and
     /// [`ParticleGroup::interpolated`](crate::particles::ParticleGroup::interpolated).
     pub alpha: f32,
-    /// Time dropped because it needed more than [`WorldDef::catch_up_steps`](crate::WorldDef::catch_up_steps) steps:
-    /// the permanent delay of the world. Zero as long as the host keeps up.
+    /// Time dropped because more than [`WorldDef::catch_up_steps`](crate::WorldDef::catch_up_steps) steps were due: the
+    /// world stays behind by this time. Zero while the host keeps up.
     pub dropped: Duration,
 }
 
 impl World {
-    /// Runs the whole steps in the given and the stored time, on the calling thread. Time is counted in whole
+    /// Takes all whole steps that fit in the given and the stored time, on the calling thread. Time is counted in whole
     /// nanoseconds, so the state after step k does not depend on the frame rate.
     ///
-    /// A frame as floating-point seconds is `Duration::from_secs_f32(seconds)`, which panics if they are negative or not
-    /// finite.
+    /// For a frame time as floating-point seconds use `Duration::from_secs_f32(seconds)`, which panics if the seconds
+    /// are negative or not finite.
     ///
     /// ```
     /// use core::time::Duration;
@@ -39,7 +39,7 @@ impl World {
         self.update_with(time, World::step)
     }
 
-    /// Runs the same steps as [`update`](Self::update), each by a call of `step`: for threads and profiling
+    /// Takes the same steps as [`update`](Self::update), each by a call of `step`: for threads and profiling
     /// ([`step_with`](Self::step_with)), for forces in every step instead of a frame's first only, and for the
     /// [`events`](Self::events) of every step instead of the last only.
     ///
@@ -72,7 +72,7 @@ impl World {
     }
 }
 
-/// A whole number of them; saturates at the longest duration.
+/// Converts nanoseconds to a duration; saturates at the longest duration.
 fn nanoseconds(count: u128) -> Duration {
     const SECOND: u128 = 1_000_000_000;
     u64::try_from(count / SECOND).map_or(Duration::MAX, |s| Duration::new(s, (count % SECOND) as u32))

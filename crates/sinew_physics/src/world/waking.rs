@@ -9,13 +9,13 @@ use sinew_math::Vec3;
 use std::collections::BTreeSet;
 
 impl World {
-    /// False while it sleeps.
+    /// False while the body sleeps.
     #[track_caller]
     pub fn is_awake(&self, id: BodyId) -> bool {
         self.expect(id).is_awake()
     }
 
-    /// Wakes a body and its island. For an awake body it restarts the time at rest.
+    /// Wakes a body and its island. Restarts the time at rest of a body that is awake.
     #[track_caller]
     #[doc(alias = "wake_up")]
     #[doc(alias = "activate")]
@@ -24,9 +24,9 @@ impl World {
         self.wake_body(id.index);
     }
 
-    /// Puts a body and its island (by joints and by contacts of the last step) to sleep at once, whatever their
-    /// permissions. The usual causes wake them: a moving kinematic body that touches one of them does so in the next
-    /// step. No effect on sleeping or non-dynamic bodies.
+    /// Puts a body and its island (by joints and by contacts of the last step) to sleep immediately, even if a body has
+    /// no permission to sleep. The usual causes wake the bodies: a moving kinematic body that touches one of them wakes
+    /// it in the next step. No effect on sleeping or non-dynamic bodies.
     #[track_caller]
     #[doc(alias = "sleep")]
     #[doc(alias = "deactivate")]
@@ -35,7 +35,7 @@ impl World {
             let island = self.island_of(id.index);
             self.activity.sleep(&mut self.bodies, &island, self.sleepers);
             self.sleepers = self.sleepers.wrapping_add(1);
-            // The contacts after the last step's motion are not known yet.
+            // The contacts after the motion of the last step are not known yet.
             island.into_iter().for_each(|index| self.look_anew(self.bodies.id(index)));
         }
     }
@@ -46,7 +46,7 @@ impl World {
         self.expect(id).sleeping
     }
 
-    /// Sets a body's permission to fall asleep; it wakes if that is revoked.
+    /// Sets a body's permission to fall asleep; the body wakes if the permission is revoked.
     #[track_caller]
     pub fn set_sleeping(&mut self, id: BodyId, sleeping: Sleeping) {
         self.expect_mut(id).sleeping = sleeping;
@@ -55,27 +55,27 @@ impl World {
         }
     }
 
-    /// Step quality of a body and its island; `None`: the world's.
+    /// Step quality of a body and its island; `None` for the quality of the world.
     #[track_caller]
     pub fn quality(&self, id: BodyId) -> Option<Quality> {
         self.expect(id).quality
     }
 
-    /// Sets the step quality of a body and its island from the next step on; `None`: the world's.
+    /// Sets the step quality of a body and its island from the next step on; `None` for the quality of the world.
     #[track_caller]
     pub fn set_quality(&mut self, id: BodyId, quality: Option<Quality>) {
         self.expect_mut(id).quality = quality;
     }
 
-    /// Sets the step quality of all bodies without their own, from the next step on.
+    /// Sets the step quality of all bodies without a quality of their own, from the next step on.
     pub fn set_world_quality(&mut self, quality: Quality) {
         self.def.quality = quality;
     }
 
-    /// Sets the world's gravity, m/s²; everything wakes if it changes.
+    /// Sets the world's gravity, m/s²; all bodies and particle groups wake if it changes.
     ///
     /// # Panics
-    /// If it is not finite.
+    /// If the gravity is not finite.
     pub fn set_gravity(&mut self, gravity: Vec3) {
         assert!(gravity.is_finite(), "gravity is finite, not {gravity:?}");
         if gravity != core::mem::replace(&mut self.def.gravity, gravity) {
@@ -90,7 +90,7 @@ impl World {
         self.activity.disturb(&mut self.bodies, index);
     }
 
-    /// The active bodies of a body's island, ascending.
+    /// Returns the active bodies of a body's island, ascending.
     fn island_of(&self, index: u32) -> Vec<u32> {
         let pushing = self.contacts.iter().chain(self.activity.contacts()).filter(|contact| contact.pushes());
         let holding = self.joints.iter().filter(|(_, joint)| joint.is_enabled());
@@ -141,13 +141,14 @@ impl World {
         }
     }
 
-    /// The contacts of a body, in no order that means anything.
+    /// Iterates over the contacts of a body, in unspecified order.
     pub(crate) fn contacts_at(&self, index: u32) -> impl Iterator<Item = &Contact> {
         let own = self.contacts.iter().filter(move |contact| contact.key.has(index));
         own.chain(self.activity.contacts_of(index))
     }
 
-    /// All contacts, in order of their keys: those of the step are sorted; the few others are sorted and merged in.
+    /// Iterates over all contacts, in order of their keys. Those of the step are sorted; the few others are sorted and
+    /// merged in.
     pub(crate) fn contacts_in_order(&self) -> impl Iterator<Item = &Contact> {
         let mut aside: Vec<&Contact> = self.activity.contacts().collect();
         aside.sort_unstable_by_key(|contact| contact.key);

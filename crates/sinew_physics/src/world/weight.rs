@@ -1,4 +1,4 @@
-//! Mass, damping and the like of bodies, changed while the world runs.
+//! World methods that change mass, damping, gravity scale and user data of bodies.
 
 use crate::body::def::BodyKind;
 use crate::body::shape::MassProperties;
@@ -10,8 +10,8 @@ use sinew_math::Transform;
 
 impl World {
     /// Sets a body's mass (kg), centre of mass (metres) and inertia (kg·m² about the centre), both in the body's frame.
-    /// Its pose and the velocities of its points do not change; it wakes, with touching and jointed bodies. A
-    /// non-dynamic body has them from when it [becomes](Self::set_kind) dynamic.
+    /// Its pose and the velocities of its points do not change; the body wakes, with touching and jointed bodies. A
+    /// non-dynamic body gets these values when it [becomes](Self::set_kind) dynamic.
     ///
     /// ```
     /// use sinew_physics::{BodyDef, MassProperties, Shape, World, WorldDef};
@@ -46,17 +46,17 @@ impl World {
         self.put_principal_frame(id, body_from_principal.inverse());
     }
 
-    /// Gives a body the mass, centre and inertia of its shapes' densities, as [`set_mass`](Self::set_mass) would.
+    /// Gives a body the mass, centre and inertia by its shapes' densities, like [`set_mass`](Self::set_mass).
     ///
     /// # Panics
-    /// If they have no mass.
+    /// If the shapes have no mass.
     #[doc(alias = "recompute_mass_properties_from_colliders")]
     #[track_caller]
     pub fn set_mass_of_shapes(&mut self, id: BodyId) {
         self.set_mass(id, self.expect(id).mass_of_shapes());
     }
 
-    /// Moves the principal frame of an awake body; data stored in that frame is converted.
+    /// Moves the principal frame of an awake body and converts the data stored in that frame.
     pub(super) fn put_principal_frame(&mut self, id: BodyId, principal_from_body: Transform) {
         let index = id.index;
         let body = self.bodies.at_mut(index);
@@ -79,7 +79,7 @@ impl World {
         self.renew_bounds(id);
     }
 
-    /// Recomputes the bounds of a body's shapes in the trees.
+    /// Recomputes the bounds of a body's shapes in the broad-phase trees.
     pub(super) fn renew_bounds(&mut self, id: BodyId) {
         self.broad.proxies.remove(id.index);
         self.broad.proxies.add(id.index, self.bodies.at(id.index));
@@ -91,10 +91,10 @@ impl World {
         self.expect(id).linear_damping
     }
 
-    /// Sets the damping of linear velocity, 1/s: the share of it that is lost per second.
+    /// Sets the damping of linear velocity, 1/s: the share of the velocity lost per second.
     ///
     /// # Panics
-    /// If it is not finite.
+    /// If the damping is not finite.
     #[track_caller]
     pub fn set_linear_damping(&mut self, id: BodyId, damping: f32) {
         assert!(damping.is_finite(), "a body's damping is finite, not {damping:?} ({id:?})");
@@ -107,10 +107,10 @@ impl World {
         self.expect(id).angular_damping
     }
 
-    /// Sets the damping of angular velocity, 1/s: the share of it that is lost per second.
+    /// Sets the damping of angular velocity, 1/s: the share of the velocity lost per second.
     ///
     /// # Panics
-    /// If it is not finite.
+    /// If the damping is not finite.
     #[track_caller]
     pub fn set_angular_damping(&mut self, id: BodyId, damping: f32) {
         assert!(damping.is_finite(), "a body's damping is finite, not {damping:?} ({id:?})");
@@ -123,10 +123,11 @@ impl World {
         self.expect(id).gravity_scale
     }
 
-    /// Sets the factor on the world's gravity for a body, without unit; it wakes if it changes. 0 disables gravity.
+    /// Sets the factor on the world's gravity for a body, without unit; the body wakes if it changes. 0 disables
+    /// gravity.
     ///
     /// # Panics
-    /// If it is not finite.
+    /// If the factor is not finite.
     #[track_caller]
     pub fn set_gravity_scale(&mut self, id: BodyId, scale: f32) {
         assert!(scale.is_finite(), "a body's gravity scale is finite, not {scale:?} ({id:?})");
@@ -135,7 +136,7 @@ impl World {
         }
     }
 
-    /// Sets the user data of a body: space for an index or an entity's bits. Part of snapshots.
+    /// Sets the user data of a body, such as an index or the bits of an entity. Part of snapshots.
     #[track_caller]
     pub fn set_user_data(&mut self, id: BodyId, user_data: u64) {
         self.expect_mut(id).user_data = user_data;

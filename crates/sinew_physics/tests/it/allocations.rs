@@ -1,6 +1,7 @@
-//! A warm step allocates nothing (specification §5) if it has no more to do than an earlier step.
+//! A warm step allocates nothing (specification §5) if it needs no more memory than an earlier step.
 //!
-//! The crate `allocation_counter` brings a global allocator that counts per thread, so tests on other threads do not count.
+//! The crate `allocation_counter` has a global allocator that counts per thread, so tests on other threads do not
+//! count.
 
 use crate::build::{ball, box_body, capsule_body, floor, joint, sphere_body};
 use crate::humanoid::figure;
@@ -11,10 +12,10 @@ use sinew_physics::particles::{AttachmentDef, AttachmentTarget, RopeDef};
 use sinew_physics::ray::Ray;
 use sinew_physics::*;
 
-/// Steps until the boxes are moved back to their start.
+/// Steps after which the boxes are moved back to their start.
 const CYCLE: usize = 150;
 
-/// Boxes that fall in every cycle, and boxes that fall in the first one only: heaps differ from one fall to the next.
+/// Boxes that fall in every cycle, and boxes that fall only in the first one: heaps differ from one fall to the next.
 const BOXES: usize = 40;
 const MORE_BOXES: usize = 20;
 
@@ -24,8 +25,8 @@ const CYCLES: usize = 6;
 /// Steps until bodies on joints and springs are almost at rest.
 const SETTLE: usize = 400;
 
-/// Returns a world with everything that a step can hold: loose boxes, a figure, a chain, a ring of joints and a rope with a weight,
-/// and the boxes with their first poses.
+/// Returns a world with all that a step can contain (loose boxes, a figure, a chain, a ring of joints and a rope with a
+/// weight), and the boxes with their first poses.
 fn crowded() -> (World, Vec<(BodyId, Transform)>) {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     floor(&mut world);
@@ -39,7 +40,7 @@ fn crowded() -> (World, Vec<(BodyId, Transform)>) {
     (world, boxes)
 }
 
-/// Boxes in layers of four, each a little farther to the side than the one below, so that they tumble.
+/// Adds boxes in layers of four, each layer slightly farther to the side than the one below, so that they tumble.
 fn pile(world: &mut World, count: u32) -> Vec<(BodyId, Transform)> {
     let mut place = |i: u32| {
         let (layer, corner) = ((i / 4) as f32, i % 4);
@@ -59,7 +60,7 @@ fn gate(world: &mut World) {
     world.add_body(&gate);
 }
 
-/// Adds a chain of capsules that hangs from the world, stretched out to the side.
+/// Adds a chain of capsules that hangs from the world and starts stretched to the side.
 fn chain(world: &mut World, links: u32) {
     let mut last = world.add_body(&BodyDef {
         kind: BodyKind::Static,
@@ -100,7 +101,7 @@ fn rope(world: &mut World) {
     world.add_particles(&rope);
 }
 
-/// Joins all moving bodies to one island by joints that hold nothing.
+/// Joins all moving bodies to one island by joints with all axes free.
 fn tie(world: &mut World) -> Vec<JointId> {
     let free = AxisMotion::Free;
     let six = SixDof { linear: [free; 3], twist: free, swing_y: free, swing_z: free };
@@ -112,7 +113,7 @@ fn tie(world: &mut World) -> Vec<JointId> {
     moving.windows(2).map(tie).collect()
 }
 
-/// Returns the counts over the steps of one cycle.
+/// Counts over the steps of one cycle.
 #[derive(Debug, Default)]
 struct Seen {
     allocations: u64,
@@ -132,8 +133,8 @@ fn run(world: &mut World, steps: usize, seen: &mut Seen) {
     }
 }
 
-/// Separates the boxes for a step, so that their contacts are forgotten, and drops them as before: each cycle
-/// needs as much memory as the first.
+/// Separates the boxes for a step, so that their contacts are dropped, and lets them fall as before: each cycle needs
+/// as much memory as the first.
 fn cycle(world: &mut World, boxes: &[(BodyId, Transform)]) -> Seen {
     let mut seen = Seen::default();
     for apart in [true, false] {
@@ -164,7 +165,7 @@ fn a_warm_step_allocates_nothing() {
     for &(id, _) in more {
         world.remove_body(id);
     }
-    // Contacts of an island without joints lie in blocks; the tied world has none.
+    // Contacts of an island without joints are in blocks; the tied world has none.
     cycle(&mut world, boxes);
     for _ in 0..CYCLES {
         let warm = cycle(&mut world, boxes);
@@ -178,7 +179,8 @@ fn a_warm_step_allocates_nothing() {
 fn a_warm_step_with_objects_allocates_nothing() {
     let mut world = inhabited();
     let mut seen = Seen::default();
-    // Each island has its own workspace here, by its number: it takes some steps until each has seen the largest.
+    // Each island has its own workspace here, by its index; after some steps each workspace has grown to its largest
+    // size.
     run(&mut world, SETTLE + CYCLE, &mut seen);
     let before = seen.allocations;
     run(&mut world, CYCLE, &mut seen);

@@ -14,7 +14,7 @@ fn particle(position: Vec3, mass: f32) -> ParticleDef {
     ParticleDef { position, velocity: Vec3::ZERO, mass, radius: RADIUS }
 }
 
-/// Returns a body far away from its backstops.
+/// Returns a body that is far away from its backstops.
 fn far_from_it(kind: BodyKind, frame: Transform) -> BodyDef {
     let body_from_shape = Transform::from_translation(Vec3::new(0.0, -5.0, 1.0));
     let shape = ShapeDef { body_from_shape, ..ShapeDef::new(Shape::Sphere { radius: 0.1 }) };
@@ -27,8 +27,8 @@ fn far_from_it(kind: BodyKind, frame: Transform) -> BodyDef {
     }
 }
 
-/// A particle on a spring beside a frictionless ball comes to rest where spring and gravity act along the normal; a particle without
-/// the ball passes through.
+/// A particle on a spring beside a frictionless ball comes to rest where spring and gravity act along the normal. A
+/// particle without the ball passes through.
 #[test]
 fn a_particle_rests_on_its_backstop() {
     let mut world = World::new(WorldDef::default());
@@ -88,7 +88,8 @@ fn backstops_affect_only_their_particle() {
     assert!(world.transform(ball).translation.y < -1.0);
 }
 
-/// A particle hits the backstop of a free body without restitution: both have one speed along the normal; momentum and angular momentum stay.
+/// A particle hits the backstop of a free body without restitution: both end with one speed along the normal, and
+/// momentum and angular momentum do not change.
 #[test]
 fn backstop_impulses_are_equal_and_opposite() {
     for aside in [0.0, 0.15] {
@@ -136,7 +137,7 @@ fn backstop_impulses_are_equal_and_opposite() {
 fn a_backstop_moves_with_its_body() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let body = world.add_body(&far_from_it(BodyKind::Kinematic, Transform::IDENTITY));
-    // Ahead of it at the start.
+    // The particle starts ahead of the backstop.
     let (linear, angular) = (Vec3::Y * 0.2, Vec3::Y * -2.0);
     let way = linear + angular.cross(Vec3::X - world.center_of_mass(body));
     let ahead = way.normalize();
@@ -159,7 +160,7 @@ fn a_backstop_moves_with_its_body() {
     assert!(pushed > 1 && speed > 0.9 * way.length(), "it pushed for {pushed} steps, to {speed} m/s");
 }
 
-/// Cloth above a heap of bodies, each particle with a backstop on one of them.
+/// Returns cloth above a heap of bodies, each particle with a backstop on one of them.
 fn draped() -> World {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));

@@ -1,4 +1,5 @@
-//! Bobs that hang from stones under a plank: slow swings in an island neither gain nor lose energy by the way it is solved.
+//! Bobs that hang from stones under a plank: the method that solves the island neither adds nor removes energy of slow
+//! swings.
 
 use crate::build::ball;
 use sinew_math::{Range, Rotation, Vec3, trig};
@@ -6,7 +7,7 @@ use sinew_physics::{
     BodyDef, BodyId, BodyKind, JointDef, JointId, JointKind, Shape, ShapeDef, Sleeping, World, WorldDef,
 };
 
-/// Returns stones on the floor under a plank, which makes them one island, with a bob below each.
+/// Stones on the floor under a plank, which makes them one island, with a bob below each stone.
 struct Row {
     world: World,
     bobs: Vec<BodyId>,
@@ -41,7 +42,7 @@ impl Row {
         Self { world, bobs, joints }
     }
 
-    /// Returns the largest displacement of each bob along x, m.
+    /// Returns the largest displacement of each bob along x, metres.
     fn reach(&mut self, steps: usize) -> Vec<f32> {
         let mut most = vec![0.0; self.bobs.len()];
         for _ in 0..steps {
@@ -60,7 +61,7 @@ impl Row {
 
 #[test]
 fn bobs_beneath_stones_keep_their_swing() {
-    // Slower bobs beneath few stones lose a fifth of their swing in 15 s: a known defect without explanation.
+    // Under few stones, slower bobs lose a fifth of their swing in 15 s: a known, unexplained defect.
     let few = [(STONES[0], 0.3)];
     for (stones, tilt) in [0.005, 0.02, 0.1, 0.3].map(|tilt| (STONES[1], tilt)).into_iter().chain(few) {
         let mut row = Row::new(stones, tilt, ball);

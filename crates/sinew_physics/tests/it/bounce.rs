@@ -1,4 +1,4 @@
-//! Restitution: heights, pairs, and bouncing bodies on others.
+//! Restitution: rebound heights, pairs, and bodies that bounce on others.
 
 use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Vec3, max};
@@ -13,7 +13,7 @@ fn bouncy(mut def: BodyDef, restitution: f32) -> BodyDef {
     def
 }
 
-/// Heights above `ground` of the first `count` rebounds of a ball, metres.
+/// Returns the heights above `ground` of the first `count` rebounds of a ball, metres.
 fn rebounds(world: &mut World, ball: BodyId, ground: f32, count: usize) -> Vec<f32> {
     let (mut peaks, mut highest) = (Vec::new(), None);
     while peaks.len() < count {
@@ -33,7 +33,7 @@ fn rebounds(world: &mut World, ball: BodyId, ground: f32, count: usize) -> Vec<f
 
 #[test]
 fn rebound_height_is_restitution_squared() {
-    // Even the last one comes in at 2 m/s.
+    // Even the last impact has 2 m/s.
     for (restitution, count) in [(0.5f32, 2), (0.8, 5), (1.0, 8)] {
         for height in [2.0f32, 5.0, 10.0] {
             let mut world = World::new(WorldDef::default());
@@ -43,7 +43,7 @@ fn rebound_height_is_restitution_squared() {
             let mut expected = height;
             for peak in rebounds(&mut world, ball, 0.0, count) {
                 expected *= restitution * restitution;
-                // A peak between two steps is missed by g dt² / 8, plus the error of a substep.
+                // A peak between two steps is missed by up to g dt² / 8, plus the error of a substep.
                 let tolerance = 2e-3 * expected + 6e-4;
                 assert!((peak - expected).abs() < tolerance, "{restitution}, {height} m: {peak}, {expected}");
             }
@@ -67,7 +67,7 @@ fn a_resting_body_carries_a_bounce() {
     }
 }
 
-/// Velocities along x after the first ball has hit the row of the others.
+/// Returns the velocities along x after the first ball has hit the row of the others, m/s.
 fn collided(masses: &[f32], speed: f32, gap: f32) -> Vec<f32> {
     let mut world =
         World::new(WorldDef { gravity: Vec3::ZERO, sleeping: Sleeping::Off, ..WorldDef::default() });
@@ -100,7 +100,7 @@ fn two_balls_conserve_momentum_and_energy() {
 
 #[test]
 fn the_last_ball_of_a_cradle_leaves() {
-    // The gaps exceed the way of a ball in a substep, so that one hit is over when the next begins.
+    // The gaps exceed the distance that a ball moves in a substep, so that one hit ends before the next begins.
     let speeds = collided(&[1.0; 5], 2.0, 0.01);
     for (speed, expected) in speeds.iter().zip([0.0, 0.0, 0.0, 0.0, 2.0]) {
         assert!((speed - expected).abs() < 1e-4, "{speeds:?}");
@@ -124,8 +124,8 @@ fn bounces_of_a_weightless_heap_add_no_energy() {
     for _ in 0..300 {
         world.step();
         let now = world.energy().kinetic;
-        // Corners of a box that bounce at once, each at its own speed, may gain a little (at most 0.13 % here).
-        // Sums in 32 bits are off by their rounding.
+        // Corners of a box that bounce together, each with its own speed, may gain slightly (at most 0.13 % here). Sums
+        // in 32 bits have rounding errors.
         let no_more = start * (1.0 + 1e-6);
         assert!(now < before * 1.002 && now <= no_more, "step {}: {before} J, {now} J", world.step_count());
         before = now;

@@ -9,7 +9,7 @@ fn body(shapes: Vec<ShapeDef>, position: Vec3, rotation: Rotation) -> BodyDef {
     BodyDef { kind: BodyKind::Static, position, rotation, shapes, ..BodyDef::default() }
 }
 
-/// A ball of radius 1 at the origin and a box of 2 × 1 × 1 m beside it.
+/// Adds a body with a ball of radius 1 m at its origin and a box of 2 × 1 × 1 m beside the ball.
 fn pair_of_shapes(world: &mut World) -> BodyId {
     let ball = ShapeDef::new(Shape::Sphere { radius: 1.0 });
     let beside = ShapeDef {
@@ -41,7 +41,7 @@ fn bodies_answer_over_all_their_shapes() {
     assert!(!world.contains_point(bare, Vec3::ONE));
 }
 
-/// Bodies that a region overlaps have sample points in it; bodies that it misses have none.
+/// Bodies that a region overlaps have sample points in the region; bodies that it misses have none.
 #[test]
 fn regions_find_bodies_with_points_inside() {
     let mut random = Random::new(95);

@@ -23,7 +23,7 @@ pub fn floor(world: &mut World) -> BodyId {
     half_space_tilted(world, 0.0, 0.6)
 }
 
-/// A plane through the origin, turned about z by `angle` radians.
+/// Adds a plane through the origin, tilted about z by `angle` radians.
 pub fn half_space_tilted(world: &mut World, angle: f32, friction: f32) -> BodyId {
     let mut shape = ShapeDef::new(Shape::HalfSpace);
     shape.material.friction = friction;
@@ -35,7 +35,7 @@ pub fn half_space_tilted(world: &mut World, angle: f32, friction: f32) -> BodyId
     })
 }
 
-/// A ball joint at a world point.
+/// Returns a ball joint at a world point.
 pub fn ball(world: &World, a: BodyId, b: BodyId, at: Vec3) -> JointDef {
     joint(world, a, b, Transform::from_translation(at), JointKind::Ball { limit: None })
 }

@@ -27,7 +27,7 @@ fn height(world: &World, id: BodyId) -> f32 {
     world.transform(id).translation.y
 }
 
-/// Returns a world that is loaded from a snapshot of another.
+/// Returns a new world that has loaded a snapshot of the given one.
 fn reborn(world: &World) -> World {
     let (mut w, mut shapes) = (Writer::new(), Writer::new());
     world.save(&mut w);
@@ -38,7 +38,7 @@ fn reborn(world: &World) -> World {
     other
 }
 
-/// Found by random lives: the removed shape's leaf was used again as the first leaf of the body, which had none.
+/// Found by random lives: the leaf of the removed shape was reused as the first leaf of a body without leaves.
 #[test]
 fn a_body_of_a_used_index_loses_its_last_shape() {
     let mut world = world();
@@ -128,7 +128,7 @@ fn changing_the_centre_of_mass_keeps_point_velocities() {
     assert!(world.joint_gap(joint) < 1e-4);
 }
 
-/// A mass that is set later acts as one of the definition.
+/// A mass that is set later acts like a mass in the definition.
 #[test]
 fn mass_set_later_equals_mass_in_the_definition() {
     let properties = MassProperties {
@@ -142,7 +142,7 @@ fn mass_set_later_equals_mass_in_the_definition() {
     let (mut one, mut other) = (world(), world());
     let (a, b) = (one.add_body(&made), other.add_body(&def));
     other.set_mass(b, properties);
-    // The centre of mass of `def` was the origin; the new mass has another.
+    // The centre of mass of `def` was the origin; the new mass has another centre.
     let velocity = one.velocity(a);
     other.set_velocity(b, velocity);
     for world in [&mut one, &mut other] {
@@ -266,7 +266,7 @@ fn shapes_come_and_go_with_their_events() {
     assert_eq!(pairs(&world.events().shapes_begin), [(2, 0)], "the new one is touched");
     run(&mut world, 60);
     assert!((height(&world, balls[2]) - 0.2).abs() < 0.01, "and bears");
-    // The first is removed; the others move up.
+    // The first shape is removed, and the numbers of the others decrease.
     world.remove_shape(ShapeId { body: shelf, shape: 0 }, MassUpdate::FromShapes);
     assert!(world.is_awake(balls[0]));
     let mut other = reborn(&world);
@@ -384,7 +384,7 @@ fn change(world: &mut World, random: &mut Random) {
     }
 }
 
-/// Derived data must follow the changes: the second world is loaded anew before each step and has no older data.
+/// Derived data must follow the changes: the second world is loaded again before each step, so it has no older data.
 #[test]
 fn a_changed_world_equals_a_reloaded_one() {
     let mut random = Random::new(7);
@@ -410,7 +410,7 @@ fn a_changed_world_equals_a_reloaded_one() {
             assert_eq!(world.hash(), other.hash(), "step {step}");
             let (one, two) = (world.events(), other.events());
             assert_eq!((&one.begin, &one.end), (&two.begin, &two.end), "step {step}");
-            // Pairs that touch are those that began and did not end.
+            // A pair touches if its touch has begun and has not ended.
             for pair in &one.begin {
                 assert!(told.insert(*pair), "{pair:?} begins twice");
             }
@@ -431,7 +431,7 @@ fn a_kinematic_body_reaches_its_target() {
         body_from_shape: Transform::from_translation(Vec3::new(0.4, 0.0, 0.1)),
         ..ShapeDef::new(Shape::cuboid(Vec3::new(0.5, 0.1, 0.2)))
     };
-    // Its centre of mass is off its origin.
+    // The paddle's centre of mass is away from its origin.
     let paddle = world.add_body(&BodyDef::dynamic(shape));
     world.set_kind(paddle, BodyKind::Kinematic);
     let mut random = Random::new(5);
@@ -445,7 +445,7 @@ fn a_kinematic_body_reaches_its_target() {
     }
 }
 
-/// Near and far moves, small and large rotations, bodies of every kind, at rest or moving.
+/// Near and far moves, small and large rotations, of bodies of every kind, at rest and moving.
 #[test]
 fn batched_moves_equal_single_moves() {
     let mut random = Random::new(9);
@@ -487,7 +487,7 @@ fn batched_moves_equal_single_moves() {
     }
 }
 
-/// A joint between two bodies about an axis.
+/// Function that returns a joint between two bodies about an axis.
 type Make = fn(&World, BodyId, BodyId, Vec3) -> JointDef;
 
 #[test]
@@ -572,14 +572,14 @@ fn locked_axes_hold_and_free_ones_go_on() {
         let locked = (0..3).filter(|i| locks.contains(all[3 + i])).count();
         for (i, angle) in turned.into_iter().enumerate() {
             let due = if locks.contains(all[3 + i]) { 0.0 } else { [0.3, 0.2, 0.1][i] };
-            // Two free axes are a universal joint's; small swings rotate each other a little.
+            // Two free axes form a universal joint; small swings rotate each other slightly.
             let within = if locked == 1 { 0.02 } else { 2e-3 };
             assert!((angle - due).abs() < within, "{locks:?}, axis {i}: {angle} of {due} rad");
         }
     }
 }
 
-/// Counts its substeps.
+/// Object that counts its substeps.
 struct Count(u32);
 
 impl PhysicsObject for Count {

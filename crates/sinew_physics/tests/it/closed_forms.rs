@@ -1,4 +1,4 @@
-//! Closed forms that the step must meet.
+//! Closed forms that the step must reproduce.
 
 use crate::build::{ball, box_body, floor, half_space_tilted, sphere_body};
 use sinew_math::{Random, Rotation, Vec3};
@@ -44,7 +44,7 @@ fn pendulum_periods() {
         let turn = Rotation::from_axis_angle(Vec3::Z, amplitude.to_radians());
         let radius = 0.04f32;
         let mut def = sphere_body(radius, turn * -Vec3::Y);
-        // The ball is fixed to its massless rod: a compound pendulum, I = (0.4 r² + l²) m.
+        // The ball is fixed to its massless rod: a compound pendulum with I = (0.4 r² + l²) m.
         let period = period * (1.0 + 0.4 * radius * radius).sqrt();
         def.shapes[0].filter.mask = 0;
         let bob = world.add_body(&def);
@@ -54,7 +54,7 @@ fn pendulum_periods() {
     }
 }
 
-/// Returns the time between two passes through the lowest point in the same direction, seconds, interpolated.
+/// Returns the interpolated time between two passes through the lowest point in the same direction, seconds.
 fn swing_period(world: &mut World, bob: BodyId) -> f32 {
     let mut passes = Vec::new();
     let mut before = world.transform(bob).translation.x;
@@ -91,7 +91,7 @@ fn coulomb_friction_holds_below_its_angle_and_slides_above() {
                 let t = 600.0 * world.def().dt();
                 let (sin, cos) = sinew_math::trig::sin_cos(angle);
                 let gain = 9.81 * (sin - friction * cos);
-                // It also slid during the first second: s = a (t₁ t + t²/2).
+                // The block also slid during the first second: s = a (t₁ t + t²/2).
                 let expected = gain * (t + 0.5 * t * t);
                 assert!((moved / expected - 1.0).abs() < 0.02, "μ {friction}: slid {moved} for {expected}");
                 assert!((world.transform(id).translation - start).dot(down) > 0.0);
@@ -143,7 +143,7 @@ fn a_stack_of_ten_boxes_stands() {
         .collect();
     run(&mut world, 600);
     let top = world.transform(ids[9]).translation;
-    // Soft contacts yield under the weight above them: 1 mm of dead zone and up to 5 mm at the bottom.
+    // Soft contacts yield under the weight above them: 1 mm of slop, and up to 5 mm at the bottom.
     assert!(top.x.abs() < 1e-3 && top.z.abs() < 1e-3 && (4.75 - top.y) < 0.04, "top at {top:?}");
     assert!(ids.iter().all(|&id| !world.is_awake(id)));
 }
@@ -179,7 +179,7 @@ fn a_restored_world_steps_like_the_original() {
         copy.step();
         assert_eq!(copy.hash(), world.hash(), "step {step} after the restore");
     }
-    // Every truncation is an error, not a panic.
+    // Every truncated snapshot gives an error, not a panic.
     for end in (0..bytes.len()).step_by(37) {
         assert!(copy.load(&mut sinew_math::Reader::new(&bytes[..end])).is_err());
     }

@@ -14,7 +14,7 @@ fn obstacle(shape: Shape, frame: Transform) -> Obstacle {
     Obstacle { shape, previous: frame, world_from_shape: frame, body: 0, material }
 }
 
-/// Returns solids whose surface passes through the origin, turned by `slope` about z.
+/// Returns solids whose surface passes through the origin, tilted by `slope`.
 fn slopes(slope: Rotation) -> [Obstacle; 4] {
     let below = |depth: f32, turn| Transform::new(slope * Vec3::Y * -depth, turn);
     let along = slope * Rotation::from_axis_angle(Vec3::Z, -90_f32.to_radians());
@@ -49,14 +49,14 @@ fn cloth(slope: Rotation) -> GroupDef {
     group
 }
 
-/// Returns an obstacle and `beside` distant boxes: near more than 16 obstacles, particles are solved one by one.
+/// Returns an obstacle and `beside` distant boxes. With more than 16 obstacles near, particles are solved one by one.
 fn crowded(solid: Obstacle, beside: usize) -> Vec<Obstacle> {
     let far = |k| Transform::from_translation(Vec3::new(1e3, 0.0, 10.0 * k as f32));
     let boxes = (0..beside).map(|k| obstacle(Shape::Box { half_extents: Vec3::ONE }, far(k)));
     core::iter::once(solid).chain(boxes).collect()
 }
 
-/// Returns the mean way of the particles down the slope in `substeps`, metres, with `beside` distant boxes.
+/// Returns the mean displacement of the particles down the slope in `substeps`, metres, with `beside` distant boxes.
 fn way_down(angle: f32, solid: usize, beside: usize, substeps: usize) -> f32 {
     let slope = Rotation::from_axis_angle(Vec3::Z, angle);
     let obstacles = crowded(slopes(slope)[solid].clone(), beside);
@@ -102,8 +102,8 @@ fn cloth_stays_on_a_slope_that_friction_holds() {
     }
 }
 
-/// Returns the mean stretch of the springs and the height of the particles, metres, of a cloth over a ball, with `beside` distant boxes. The folds
-/// depend on the start: some particles begin higher by micrometres.
+/// Returns the mean stretch of the springs and the height of the particles, metres, of a cloth over a ball, with
+/// `beside` distant boxes. The folds depend on the start: some particles start higher by micrometres.
 fn over_a_ball(beside: usize, start: usize) -> [f32; 2] {
     let obstacles = crowded(obstacle(Shape::Sphere { radius: 0.3 }, Transform::IDENTITY), beside);
     let def = ClothDef {
@@ -138,8 +138,8 @@ fn over_a_ball(beside: usize, start: usize) -> [f32; 2] {
     [stretches.sum::<f32>() / group.springs().len() as f32, heights]
 }
 
-/// The plane stops particles in lanes after their springs, others within each spring. Folds alone change the stretch by up to 4 %, so the test compares
-/// means of eight starts.
+/// In SIMD lanes the plane stops particles after their springs; one by one it stops them within each spring. Folds
+/// alone change the stretch by up to 4 %, so the test compares means of eight starts.
 #[test]
 fn cloth_hangs_over_a_ball_alike_in_lanes_and_one_by_one() {
     let [lanes, others] = [0, 16].map(|beside| {

@@ -1,5 +1,5 @@
-//! Events of random worlds against an oracle that computes them from the poses of each step, for every number of threads and across
-//! snapshots, while bodies are added, removed and changed.
+//! Events of random worlds, compared with an oracle that computes them from the poses of each step, for every number of
+//! threads and across snapshots, while bodies are added, removed and changed.
 
 use sinew_math::{Random, Reader, Transform, Vec3, Writer};
 use sinew_physics::stage::NoProfiler;
@@ -7,8 +7,8 @@ use sinew_physics::*;
 use std::collections::BTreeSet;
 
 const STEPS: usize = 120;
-/// Surfaces nearer than this are not judged, metres: rounding decides whether they overlap, and sleeping bodies keep their last
-/// result.
+/// Gap of surfaces, metres, below which a pair is not judged: rounding decides if it overlaps, and sleeping bodies keep
+/// their last result.
 const UNSURE: f64 = 3e-5;
 const UNSURE_ASLEEP: f64 = 0.02;
 
@@ -49,13 +49,13 @@ impl Solid {
         Self { center: wide(frame.translation), axes, half, radius }
     }
 
-    /// Returns half its length along a unit direction.
+    /// Returns half the length of the solid along a unit direction.
     fn reach(&self, along: Three) -> f64 {
         (0..3).map(|i| self.half[i] * dot(self.axes[i], along).abs()).sum::<f64>() + self.radius
     }
 
-    /// Returns the gap between two solids. For overlapping boxes it is the shortest way out, negative; for separate boxes a lower bound of the
-    /// gap.
+    /// Returns the gap between two solids. For overlapping boxes it is minus the depth of the shortest way out; for
+    /// separate boxes it is a lower bound of the gap.
     fn gap(&self, other: &Self) -> f64 {
         let apart = minus(other.center, self.center);
         if self.radius > 0.0 && other.radius > 0.0 {
@@ -86,14 +86,14 @@ impl Solid {
     }
 }
 
-/// Pairs that began and did not end.
+/// Pairs whose touch has begun and has not ended.
 #[derive(Default)]
 struct Told {
     bodies: BTreeSet<(BodyId, BodyId)>,
     shapes: BTreeSet<(ShapeId, ShapeId)>,
 }
 
-/// Checks that nothing begins twice or ends without a begin, and that lists are sorted.
+/// Checks that no touch begins twice or ends without a begin, and that lists are sorted.
 fn follow<T: Ord + Copy + core::fmt::Debug, K: Ord>(
     told: &mut BTreeSet<T>,
     begin: &[T],
@@ -190,7 +190,7 @@ fn disturb(world: &mut World, r: &mut Random, parted: &mut BTreeSet<(BodyId, Bod
         3 => world.set_contact_rule(shape, [ContactRule::Push, ContactRule::Ghost][r.index(2)]),
         4 if id != other => {
             world.disable_pair(id, other);
-            // As bits, which the other worlds use, too.
+            // Ids from bits, so that the other worlds accept them too.
             let [a, b] = [id, other].map(|id| BodyId::from_bits(id.to_bits()));
             parted.insert((BodyId::min(a, b), BodyId::max(a, b)));
         }
@@ -214,19 +214,20 @@ fn disturb(world: &mut World, r: &mut Random, parted: &mut BTreeSet<(BodyId, Bod
     }
 }
 
-/// Pairs of shapes that pushed each other in the last step.
+/// Returns the pairs of shapes that pushed each other in the last step.
 fn pushed(world: &World) -> BTreeSet<(ShapeId, ShapeId)> {
     let pushing = world.contacts().filter(|contact| contact.impulse() > 0.0);
     pushing.map(|contact| (contact.a, contact.b)).collect()
 }
 
-/// Gap below which a touching pair still touches, metres: 0.2 % of the smallest extent, at most 0.5 mm.
+/// Gap up to which a touching pair still touches, metres: 0.2 % of the smallest extent, at most 0.5 mm.
 fn linger(p: &Solid, q: &Solid) -> f64 {
     let extent = |s: &Solid| 2.0 * (s.radius + s.half.into_iter().fold(f64::INFINITY, f64::min));
     (0.002 * extent(p).min(extent(q))).min(5e-4)
 }
 
-/// Judges each pair of shapes once: whether it surely touches, or surely does not, at the current poses. `touched`: pairs that did before.
+/// Judges each pair of shapes once: it surely touches, surely does not touch, or is not judged. `touched` has the pairs
+/// that touched before.
 fn look(
     world: &World,
     parted: &BTreeSet<(BodyId, BodyId)>,
@@ -266,7 +267,7 @@ fn look(
     }
 }
 
-/// A world and the way of running it, compared with the others by their events.
+/// A world and the way in which it runs; the events of all ways must be equal.
 struct Way {
     world: World,
     threads: usize,
@@ -285,7 +286,7 @@ impl Way {
     }
 }
 
-/// Returns the number of judged pairs.
+/// Runs the world of a seed in all ways; returns the number of judged pairs.
 fn check(seed: u64) -> usize {
     let ways = [(1, false), (2, false), (4, false), (1, true)];
     let mut ways = ways.map(|(threads, restores)| {
@@ -334,7 +335,7 @@ fn events_are_what_the_poses_say_for_any_threads_and_across_snapshots() {
     assert!(seen > if full { 100_000 } else { 3_000 }, "{seen} pairs of shapes were looked at");
 }
 
-/// Putting a body to sleep just outside a sensor ends its overlap; just inside keeps it.
+/// Putting a body to sleep just outside a sensor ends its overlap; just inside, the overlap continues.
 #[test]
 fn sleeping_beside_a_sensor_ends_the_overlap() {
     for seed in 0..100 {
@@ -361,7 +362,7 @@ fn sleeping_beside_a_sensor_ends_the_overlap() {
     }
 }
 
-/// The step limits huge speeds, and its events about them are finite.
+/// The step limits huge speeds, and its events for them are finite.
 #[test]
 fn extreme_hits_are_reported_finite() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });

@@ -1,4 +1,4 @@
-//! Fields and forces against closed forms.
+//! Fields and forces, compared with closed forms.
 
 mod closed_forms;
 mod forces;

@@ -1,4 +1,4 @@
-//! NaN and infinity in any number of any setter of the world panic and leave the world unchanged.
+//! NaN and infinity in any number of any setter of the world cause a panic and leave the world unchanged.
 
 use crate::build::{ball, box_body, floor, sphere_body};
 use core::panic::AssertUnwindSafe;
@@ -8,7 +8,7 @@ use sinew_physics::*;
 
 const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
-/// Returns a world with one object of each kind.
+/// A world with one object of each kind.
 struct Fixture {
     world: World,
     body: BodyId,
@@ -231,7 +231,7 @@ fn fields() {
 
 #[test]
 fn joints() {
-    // Both adding and setting refuse it. Caps and ends of ranges may be infinite.
+    // Both adding and setting refuse the number. Caps and ends of ranges may be infinite.
     let set = |f: &mut Fixture, change: &dyn Fn(&mut JointDef)| {
         let mut def = f.world.joint(f.joint);
         change(&mut def);

@@ -1,10 +1,10 @@
-//! Bodies in flight, eight at a time: they move as alone, and as they would as islands.
+//! Bodies in flight, eight at a time: they move like single bodies, and like islands.
 
 use crate::build::box_body;
 use sinew_math::{Random, Transform, Vec3};
 use sinew_physics::*;
 
-/// Returns a spinning box, number `i` of a crowd in which no two meet.
+/// Adds a spinning box, number `i` of a crowd in which no two boxes meet.
 fn spinning(world: &mut World, i: u32) -> BodyId {
     let mut random = Random::new(u64::from(i) + 1);
     let extents = Vec3::new(random.range(0.1, 0.2), random.range(0.2, 0.4), random.range(0.4, 0.8));
@@ -34,7 +34,7 @@ fn bits_are_the_same_alone_and_in_a_crowd() {
 
 #[test]
 fn flight_matches_islands() {
-    // A gravity field makes bodies go through islands.
+    // A gravity field makes the step solve bodies as islands.
     let field = FieldKind::Uniform(UniformGravity { acceleration: WorldDef::default().gravity });
     for i in 0..8 {
         let mut free = World::new(WorldDef::default());
@@ -63,7 +63,7 @@ fn spin_and_speed_stay_within_the_worlds_limits() {
         world.step();
         let v = world.velocity(id);
         assert!((v.linear.length() - 20.0).abs() < 1e-3, "{v:?}");
-        // 0.1 rad in each of 240 substeps a second; the spin of a tumbling body changes by its moments.
+        // At most 0.1 rad in each of 240 substeps per second; the spin of a tumbling body changes with its moments.
         assert!(v.angular.is_finite() && v.angular.length() < 3.0 * 24.0, "{v:?}");
     }
 }

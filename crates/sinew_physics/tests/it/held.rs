@@ -1,4 +1,4 @@
-//! Bodies that hang on ropes and carry others: the ropes feel the whole weight.
+//! Bodies that hang on ropes and carry other bodies: the ropes carry the whole weight.
 
 use crate::build::box_body;
 use sinew_math::{Reader, Vec3, Writer};
@@ -7,9 +7,9 @@ use sinew_physics::*;
 
 const PLANK: Vec3 = Vec3::new(0.6, 0.02, 0.2);
 const PLANK_MASS: f32 = 5.0;
-/// Half an edge of the box, metres.
+/// Half the side of the box, metres.
 const BOX: f32 = 0.1;
-/// Tension of a rope of twice its length, N; its length is 1 m, its mass 0.1 kg.
+/// Force that stretches a rope to twice its length, N; the rope is 1 m long and has 0.1 kg.
 const STIFFNESS: f32 = 4e4;
 const LINKS: u32 = 4;
 const ROPE_MASS: f32 = 0.1;
@@ -21,7 +21,8 @@ struct Laden {
     ropes: Vec<GroupId>,
 }
 
-/// Returns a plank on a rope at each corner, all in one group or each its own, and a box of `mass` at `height` over it.
+/// Returns a plank with a rope at each corner, all in one group or each in its own, and a box of `mass` at `height`
+/// above the plank.
 fn laden(mass: f32, height: f32, apart: bool) -> Laden {
     let mut world = World::new(WorldDef::default());
     let mut def = BodyDef { sleeping: Sleeping::Off, ..box_body(PLANK, Vec3::ZERO) };
@@ -43,7 +44,7 @@ fn laden(mass: f32, height: f32, apart: bool) -> Laden {
         };
         let (rope, first) = (def.build().group, ropes.particles.len() as u32);
         ropes.particles.extend(rope.particles);
-        // Critical damping for a quarter of the load on the whole rope.
+        // Critical damping of a quarter of the load, for the whole rope.
         let damping = LINKS as f32 * (STIFFNESS * (mass + PLANK_MASS)).sqrt();
         ropes.springs.extend(rope.springs.iter().map(|s| SpringDef {
             a: s.a + first,
@@ -71,7 +72,7 @@ fn laden(mass: f32, height: f32, apart: bool) -> Laden {
 }
 
 impl Laden {
-    /// Returns the sum of the ropes' pulls on their hooks, N, in the last substep.
+    /// Returns the sum of the ropes' forces on their hooks in the last substep, N.
     fn tension(&self) -> f32 {
         let per_second = 60.0 * WorldDef::default().substeps as f32;
         let groups = self.ropes.iter().map(|&id| self.world.particles(id));
@@ -80,7 +81,8 @@ impl Laden {
         of_world.map(|(_, impulse)| -impulse.y * per_second).sum()
     }
 
-    /// Runs until everything rests; returns the largest energy gain, J, and the motion up and down in the last second, metres.
+    /// Runs until the bodies rest; returns the largest energy gain, J, and the vertical motion in the last second,
+    /// metres.
     fn run(&mut self, steps: usize) -> (f32, f32) {
         let begin = self.world.energy().total();
         let (mut gain, mut low, mut high) = (0.0_f32, f32::INFINITY, f32::NEG_INFINITY);
@@ -96,13 +98,13 @@ impl Laden {
     }
 }
 
-/// Ropes carry a body and everything on it: stretch and tension are those of the whole weight.
+/// Ropes carry a body and all bodies on it: stretch and tension are those of the whole weight.
 #[test]
 fn ropes_carry_the_load_on_a_plank() {
     are_weighed_on(false);
 }
 
-/// The same where each rope is its own group.
+/// Ropes in separate groups carry the load like ropes in one group.
 #[test]
 fn separate_rope_groups_carry_the_load_on_a_plank() {
     are_weighed_on(true);
@@ -114,7 +116,7 @@ fn are_weighed_on(apart: bool) {
         let mut laden = laden(mass, height, apart);
         let (gain, tremble) = laden.run(900);
         let sag = -laden.world.center_of_mass(laden.plank).y;
-        // Each rope carries half of its own weight on average.
+        // On average each rope carries half of its own weight.
         let due = ((PLANK_MASS + mass) / 4.0 + 0.5 * ROPE_MASS) * 9.81 / STIFFNESS;
         let (tension, weight) = (laden.tension(), (PLANK_MASS + mass + 4.0 * ROPE_MASS) * 9.81);
         let above = laden.world.center_of_mass(laden.load).y + sag - PLANK.y - BOX;
@@ -124,7 +126,7 @@ fn are_weighed_on(apart: bool) {
         assert!((tension / weight - 1.0).abs() < 0.01, "{what}: {tension} N for {weight}");
         assert!(above.abs() < 1e-3, "{what}: {above} m above the plank");
         assert!(gain < 0.01 * weight * (height + due), "{what}: gained {gain} J");
-        // A fall of twenty times the plank's mass oscillates longer than this, by 1.4 mm.
+        // After the fall of a load of twenty times the plank's mass the plank oscillates longer than this, by 1.4 mm.
         if mass * height < 20.0 {
             assert!((sag / due - 1.0).abs() < 0.005, "{what}: sag {sag} for {due}");
             assert!(tremble < 1e-5, "{what}: trembles by {tremble} m");
@@ -132,7 +134,7 @@ fn are_weighed_on(apart: bool) {
     }
 }
 
-/// Snapshots hold the added mass of a body on ropes.
+/// Snapshots contain the added mass of a body on ropes.
 #[test]
 fn a_loaded_plank_restores_equally() {
     for apart in [false, true] {

@@ -8,11 +8,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
 
 thread_local! {
-    /// File that the last panic of this thread named.
+    /// File of the last panic of this thread.
     static PLACE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Returns the message of the panic of `f`, and the file that it named.
+/// Returns the message of the panic of `f`, and the file in it.
 fn panic_of<T>(f: impl FnOnce() -> T) -> (String, String) {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -45,7 +45,7 @@ fn removed_ids_panic_at_the_caller() {
     assert!(!world.contains(gone));
 }
 
-/// For every call that changes or reads a body.
+/// Every method that changes or reads a body names the removed id in its panic.
 #[test]
 fn every_setter_names_the_removed_id() {
     let mut world = world();
@@ -81,7 +81,7 @@ fn every_setter_names_the_removed_id() {
     }
 }
 
-/// Bad numbers are refused before anything changes.
+/// Setters refuse invalid numbers before they change anything.
 #[test]
 fn every_setter_refuses_bad_numbers() {
     let mut world = world();
@@ -129,7 +129,7 @@ fn ids_of_another_world_are_refused() {
     assert_eq!(panic_of(|| one.field(field)).0, "FieldId 0v0 is of another world");
 }
 
-/// The bits of an id do not hold the world, because games store ids in their own files.
+/// The bits of an id do not contain its world, because games store ids in their own files.
 #[test]
 fn ids_from_bits_work_in_any_world() {
     let (mut one, mut other) = (world(), world());
@@ -160,8 +160,8 @@ fn a_snapshot_loads_into_any_world() {
     assert_eq!(panic_of(|| one.transform(mine)).0, "BodyId 0v0 was removed");
 }
 
-/// A body is removed in the moment in which a shape leaves its bounds: both search for pairs at once, and the pairs of the removed body
-/// must not be among them.
+/// A body is removed in the step in which a shape leaves its bounds. Both search for pairs at the same time, and the
+/// result must not contain pairs of the removed body.
 #[test]
 fn removing_a_body_removes_its_pairs() {
     let sensor = |radius: f32| ShapeDef { sensing: Sensing::Sensor, ..ShapeDef::new(Shape::sphere(radius)) };

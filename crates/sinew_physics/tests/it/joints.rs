@@ -1,4 +1,4 @@
-//! Every kind of joint, its springs, motors, limits and strength, against closed forms.
+//! Every kind of joint, with springs, motors, limits and strength, compared with closed forms.
 
 use crate::build::{ball, joint};
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Sym3, Transform, Vec3, trig};
@@ -15,7 +15,7 @@ fn anchor(world: &mut World) -> BodyId {
     world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() })
 }
 
-/// A body without shape.
+/// Adds a body without a shape.
 fn lump(world: &mut World, position: Vec3, mass: f32, inertia: f32) -> BodyId {
     let inertia = Sym3::from_diagonal(Vec3::splat(inertia));
     let mass = Some(MassProperties { mass, center: Vec3::ZERO, inertia });
@@ -29,7 +29,8 @@ fn facing(at: Vec3) -> Transform {
 
 const HINGE: JointKind = JointKind::Hinge { limit: None };
 
-/// An arm of 2 kg whose centre is at x = 0.5, hinged about z at the origin. Moment about the hinge: 0.58 kg m².
+/// Returns an arm of 2 kg with its centre at x = 0.5 m, hinged about z at the origin. Moment about the hinge: 0.58
+/// kg·m².
 fn arm(gravity: f32) -> (World, BodyId, JointDef) {
     let mut world = world(gravity);
     let a = anchor(&mut world);
@@ -130,7 +131,8 @@ fn a_weak_motor_pushes_with_its_cap_and_no_more() {
     near(world.velocity(b).angular.z, -2.0, 0.005, "the other way");
 }
 
-/// The stop's impulse does no work of the motor: with any cap the motor brings its load to the new speed and no faster.
+/// The stop's impulse does no work for the motor: with any cap the motor brings its load to the new speed and no
+/// faster.
 #[test]
 fn a_motor_reversed_at_its_stop_leaves_it_at_its_speed() {
     let mut random = Random::new(57);
@@ -167,7 +169,7 @@ fn a_motor_reversed_at_its_stop_leaves_it_at_its_speed() {
         let way = speed * world.def().dt();
         for step in 1..=20 {
             world.step();
-            // A weak one needs longer; none is faster than its target.
+            // A weak motor needs longer; none moves its load faster than the target.
             let expected = sinew_math::max(stop + way * step as f32, -0.5);
             let gone = at(&world);
             let bar = 2e-4 + 0.01 * way.abs();
@@ -179,12 +181,12 @@ fn a_motor_reversed_at_its_stop_leaves_it_at_its_speed() {
     }
 }
 
-/// Returns a random power of ten from 1 to 10 to `most`.
+/// Returns a random number from 1 to ten to the power of `most`.
 fn decades(random: &mut Random, most: f32) -> f32 {
     trig::exp(random.range(0.0, most) * core::f32::consts::LN_10)
 }
 
-/// Changes of a motor at its stop.
+/// Change of a motor at its stop.
 #[derive(Clone, Copy)]
 enum Change {
     Speed,
@@ -218,7 +220,7 @@ fn a_motor_too_weak_for_the_load_sinks_and_one_strong_enough_holds() {
 
 #[test]
 fn motors_in_a_chain_saturate_only_where_they_are_weak() {
-    // Three horizontal links: the root's motor carries all, the tip's little.
+    // Three horizontal links: the motor at the root carries all of them, the motor at the tip only its own.
     let mut world = world(G);
     let mut last = anchor(&mut world);
     let mut joints = Vec::new();
@@ -245,8 +247,8 @@ fn motors_in_a_chain_saturate_only_where_they_are_weak() {
 
 #[test]
 fn saturated_motors_add_only_their_work() {
-    // A light piece between two heavy ones: the full push of both motors without a joint would spin it a thousand times faster.
-    // fast as it ever does.
+    // A light piece between two heavy ones. Without a joint, the full torque of both motors would spin it a thousand
+    // times as fast as it ever moves.
     let mut world = world(0.0);
     let kilograms = |half: Vec3, kg: f32| kg / (8.0 * half.x * half.y * half.z);
     let block = |world: &mut World, half_extents: Vec3, at: Vec3, kg: f32| {
@@ -289,7 +291,7 @@ fn a_slider_slides_along_its_axis_alone_and_stops_at_its_end() {
     let id = world.add_joint(&def);
     run(&mut world, 0.5);
     let slid = world.joint_transform(id);
-    // Symplectic Euler falls half a substep further.
+    // Symplectic Euler falls as if half a substep longer.
     let expected = 0.5 * G * trig::sin(0.5) * 0.5 * (0.5 + 1.0 / 240.0);
     near(slid.translation.x, expected, 0.005, "travel");
     assert!(slid.translation.y.abs() < 1e-4 && slid.rotation.angle_to(Rotation::IDENTITY) < 1e-3);
@@ -303,7 +305,7 @@ fn a_slider_slides_along_its_axis_alone_and_stops_at_its_end() {
 
 #[test]
 fn distances_are_rods_ropes_and_springs() {
-    // A rod swings with its length.
+    // A rod swings at its length.
     let mut rod = world(G);
     let a = anchor(&mut rod);
     let b = lump(&mut rod, Vec3::X, 1.0, 0.01);
@@ -313,7 +315,7 @@ fn distances_are_rods_ropes_and_springs() {
         rod.step();
         assert!(rod.joint_gap(id) < 1e-4, "the rod keeps its length: {}", rod.joint_gap(id));
     }
-    // A rope lets its end fall freely, then holds it.
+    // A rope lets its end fall freely, then stops it.
     let mut rope = world(G);
     let a = anchor(&mut rope);
     let b = lump(&mut rope, Vec3::X * 0.1, 1.0, 0.01);
@@ -382,7 +384,7 @@ fn a_soft_weld_bends_under_load_by_its_stiffness() {
 #[test]
 fn six_directions_are_free_or_held_as_defined() {
     use AxisMotion::{Free, Limited, Locked};
-    // The joint is free in x and about z only.
+    // The joint is free along x and about z only.
     let six = SixDof {
         linear: [Free, Locked, Limited(Range::new(-0.1, 0.1))],
         twist: Locked,
@@ -425,7 +427,7 @@ fn a_drag_joint_pulls_with_bounded_force() {
     world.set_motor(id, Some(weak));
     let before = world.center_of_mass(b).y;
     run(&mut world, 1.0);
-    // 20 N against 29.43 N.
+    // Pull of 20 N against a weight of 29.43 N.
     near(before - world.center_of_mass(b).y, 0.5 * (G - 20.0 / 3.0), 0.02, "fall under the pull");
 }
 
@@ -469,7 +471,7 @@ fn reactions_equal_the_hanging_weights() {
         let below: f32 = (i..5).map(|k| 1.0 + k as f32).sum();
         near(world.reaction(id).force.y, below * G, 0.001, "weight below");
     }
-    // A beam held at one end: the moment is that of its weight.
+    // Beam fixed at one end: the moment is that of its weight.
     let mut beam = self::world(G);
     let a = anchor(&mut beam);
     let b = lump(&mut beam, Vec3::X * 0.5, 4.0, 0.3);
@@ -521,7 +523,7 @@ fn joints_break_above_their_strength_and_report() {
             assert!((world.center_of_mass(b).y - y).abs() < 1e-3, "attached anew where it is");
         }
     }
-    // By torque.
+    // Breaks by torque.
     let mut world = world(G);
     let a = anchor(&mut world);
     let b = lump(&mut world, Vec3::X, 1.0, 0.1);
@@ -609,8 +611,8 @@ fn limits_hold_against_load_for_every_kind() {
     }
 }
 
-/// Returns a parallelogram of four bars hinged about z, hung by the ends of its upper bar: three moving bars, four hinges, one loop
-/// with redundant rows.
+/// A parallelogram of four bars hinged about z, hung by the ends of its upper bar: three moving bars, four hinges, and
+/// one loop with redundant rows.
 #[test]
 fn a_four_bar_linkage_of_hinges_stays_closed() {
     let mut world = world(G);
@@ -688,7 +690,7 @@ fn a_stiff_spring_that_pulls_beyond_a_stop_rests_at_it() {
 
 #[test]
 fn a_damped_weld_holds_a_body_that_turns() {
-    // The load m ω² r stretches the weld by 1.5 µm; rows along the initial direction would lose 0.1 mm a substep.
+    // The load m ω² r stretches the weld by 1.5 µm; rows along the initial direction would lose 0.1 mm per substep.
     let mut world = world(0.0);
     let anchor = anchor(&mut world);
     let b = lump(&mut world, Vec3::X * 0.3, 0.05, 1e-4);

@@ -1,4 +1,4 @@
-//! Islands so large that several threads solve them, with the bits of one thread.
+//! Islands so large that several threads solve them give the same bits as on one thread.
 
 use sinew_math::{Random, Vec3};
 use sinew_physics::stage::{Counter, NoProfiler, Profiler, Stage};
@@ -7,7 +7,7 @@ use sinew_physics::{
 };
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Returns boxes, capsules and balls that fall on each other in a pit; some bounce, some resist rolling.
+/// Returns a world with boxes, capsules and balls that fall on each other in a pit; some bounce, some resist rolling.
 fn pit(side: usize, layers: usize) -> World {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     let half = 0.55 * side as f32;
@@ -46,7 +46,7 @@ fn pit(side: usize, layers: usize) -> World {
     world
 }
 
-/// Largest contact count of an island.
+/// Profiler that stores the largest number of contacts of an island.
 #[derive(Default)]
 struct Most(AtomicUsize);
 
@@ -63,7 +63,7 @@ impl Profiler for Most {
     }
 }
 
-/// Runner that makes fewer calls than requested, or more.
+/// Runner that makes fewer or more calls than requested.
 struct Careless(usize);
 
 impl TaskRunner for Careless {
@@ -72,7 +72,7 @@ impl TaskRunner for Careless {
     }
 }
 
-/// Hash after each step.
+/// Returns the hash after each step.
 fn course(runner: &dyn TaskRunner, steps: usize) -> Vec<u64> {
     let mut world = pit(15, 6);
     let step = |_| {
@@ -100,6 +100,6 @@ fn the_heap_of_these_tests_is_one_large_island() {
         world.step_with(&Serial, &most);
     }
     let most = most.0.load(Ordering::Relaxed);
-    // Colours of this heap have more than 36 blocks of eight, so they are divided.
+    // Colours of this heap have more than 36 blocks of eight contacts, so they are divided.
     assert!(most > 2_500, "{most} contacts");
 }

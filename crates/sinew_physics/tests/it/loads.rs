@@ -1,4 +1,5 @@
-//! Springs that close loops, solved as a whole: nets with loads many times their own weight, planks on two ropes.
+//! Springs that close loops, solved as one system: nets with loads many times their own weight, and planks on two
+//! ropes.
 
 use sinew_math::{Random, Vec3, max};
 use sinew_physics::particles::{
@@ -12,7 +13,7 @@ const CELLS: u32 = 12;
 const BALL: f32 = 0.3;
 const RADIUS: f32 = 0.02;
 
-/// Returns a net of 2 kg and four square metres at a height of 2 m, held along its border, without friction.
+/// Returns a net of 2 kg and four square metres at a height of 2 m, held at its border, without friction.
 fn net(stretching: f32) -> GroupDef {
     let net = ClothDef {
         corner: Vec3::new(-1.0, 2.0, -1.0),
@@ -44,8 +45,8 @@ fn difference(a: [f64; 3], b: [f64; 3]) -> ([f64; 3], f64) {
     (d, d.iter().map(|x| x * x).sum::<f64>().sqrt())
 }
 
-/// Returns the height of the centre of a ball of `mass` kg at rest without friction in the net, metres: dynamic relaxation with kinetic damping
-/// in 64 bits; the ball is a stiff spring.
+/// Returns the height of the centre of a ball of `mass` kg at rest without friction in the net, metres. Uses dynamic
+/// relaxation with kinetic damping in 64 bits; the ball is a stiff spring.
 fn rest_height(def: &GroupDef, mass: f64) -> f64 {
     const STIFF: f64 = 1e6;
     let mut at: Vec<_> = def.particles.iter().map(|p| p.position.to_array().map(f64::from)).collect();
@@ -153,7 +154,8 @@ fn solved(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     found
 }
 
-/// Random spring networks with some held particles: velocities after a substep solve `(M + h² K + h D) v⁺ = M v + h f`.
+/// Velocities of random spring networks with some held particles, after a substep, solve `(M + h² K + h D) v⁺ = M v + h
+/// f`.
 #[test]
 fn loops_match_the_dense_solution() {
     const H: f32 = 1.0 / 240.0;
@@ -173,7 +175,7 @@ fn loops_match_the_dense_solution() {
             for b in 0..a {
                 if b + 1 == a || random.unit() < 0.3 {
                     let length = (def.particles[a].position - def.particles[b].position).length();
-                    // So little stretched that none is linearised again.
+                    // Stretched so little that no spring is linearised again.
                     let s = SpringDef::new([a as u32, b as u32], length * 0.9999, random.range(10.0, 1e5));
                     def.springs.push(SpringDef { damping: random.range(0.0, 10.0), ..s });
                 }
@@ -199,7 +201,7 @@ fn loops_match_the_dense_solution() {
     }
 }
 
-/// Velocities of all particles but the first `held`, by the dense system.
+/// Returns the velocities of all particles except the first `held`, by the dense system.
 fn whole_matrix(def: &GroupDef, held: usize, h: f64) -> Vec<f64> {
     let count = 3 * (def.particles.len() - held);
     let mut rows = vec![vec![0.0; count + 1]; count];
@@ -239,7 +241,7 @@ fn whole_matrix(def: &GroupDef, held: usize, h: f64) -> Vec<f64> {
     solved(rows)
 }
 
-/// Returns six planks of 4 kg in a row on two ropes of one group, which pass through all of them.
+/// Returns a world with six planks of 4 kg in a row on two ropes of one group, which pass through all planks.
 fn bridge(tension: f32) -> World {
     let mut world = World::new(WorldDef::default());
     let mut ropes = GroupDef::default();
@@ -267,7 +269,7 @@ fn bridge(tension: f32) -> World {
                 }
             };
             ropes.attachments.push(AttachmentDef { particle, target });
-            // From plank to plank; each plank holds its own two points.
+            // Springs connect neighbouring planks; each plank holds its own two points.
             if k % 2 == 1 {
                 let length = x - points[k - 1].0;
                 let spring = SpringDef::new([particle - 1, particle], length, tension / length);
@@ -279,9 +281,11 @@ fn bridge(tension: f32) -> World {
     world
 }
 
-/// Two ropes through the same planks close loops: solved one after the other they threw planks off the bridge with 388 J.
+/// Two ropes through the same planks close loops. Solved one after the other, they threw planks off the bridge with 388
+/// J.
 ///
-/// Planks move before springs act, so a swing back is stretched by `v h` too much: with 10 kN, `k h²/m` is 2.2 at a plank's corner.
+/// Planks move before springs act, so a swing back is stretched by `v h` too much: at 10 kN, `k h²/m` is 2.2 at a
+/// plank's corner.
 #[test]
 fn two_ropes_through_planks_add_little_energy() {
     for (tension, most) in [(1e3, 1.5), (1e4, 15.0)] {

@@ -1,4 +1,4 @@
-//! Integration tests of the world, held against closed forms and brute force.
+//! Integration tests of the world, compared with closed forms and brute force.
 
 mod allocations;
 mod backstops;

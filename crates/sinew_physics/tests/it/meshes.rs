@@ -1,4 +1,4 @@
-//! Meshes and height fields: sliding bodies feel no edge between triangles; falling bodies come to rest.
+//! Meshes and height fields: sliding bodies do not catch on edges between triangles, and falling bodies come to rest.
 
 mod levels;
 
@@ -6,7 +6,7 @@ use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::*;
 use std::sync::Arc;
 
-/// Tiles along a side of the floor.
+/// Number of tiles along a side of the floor.
 const TILES: usize = 100;
 /// Side of a tile, metres: 20 m/s for two seconds is 40 m.
 const TILE: f32 = 0.5;
@@ -14,7 +14,7 @@ const FRICTION: f32 = 0.4;
 
 #[derive(Clone, Copy, Debug)]
 enum Floor {
-    /// All diagonals run the same way.
+    /// All diagonals have the same direction.
     Plain,
     /// Diagonals and the order of the triangles are random; each tile has its own vertices.
     Shuffled,
@@ -87,7 +87,7 @@ fn ground(world: &mut World, shape: Shape, friction: f32) -> BodyId {
     })
 }
 
-/// The largest vertical deviation, metres, and the speed after two seconds.
+/// Returns the largest vertical deviation, metres, and the speed after two seconds, m/s.
 fn slide(floor: &Shape, slider: &Shape, height: f32, speed: f32, friction: f32) -> (f32, f32) {
     let mut world = World::new(WorldDef::default());
     ground(&mut world, floor.clone(), friction);
@@ -103,7 +103,7 @@ fn slide(floor: &Shape, slider: &Shape, height: f32, speed: f32, friction: f32) 
     for step in 0..120 {
         world.step();
         let y = world.transform(id).translation.y;
-        // It first sinks by the slop of contacts.
+        // The body first sinks by the slop of contacts.
         if step == 20 {
             rest = Some(y);
         }
@@ -115,7 +115,7 @@ fn slide(floor: &Shape, slider: &Shape, height: f32, speed: f32, friction: f32) 
     (deviation, world.velocity(id).linear.length())
 }
 
-/// Turned a little, so that no side is parallel to the tiles; a capsule lies down.
+/// Returns a slightly rotated pose, so that no side is parallel to the tiles; a capsule lies down.
 fn lying(slider: &Shape) -> Transform {
     let down = match slider {
         Shape::Capsule { .. } => Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_2),

@@ -16,7 +16,7 @@ fn run(world: &mut World, steps: usize) {
     }
 }
 
-/// Energy that a step may add, as a share of the kinetic energy.
+/// Runs steps and checks that none adds more than a share of the kinetic energy.
 fn run_without_gain(world: &mut World, steps: usize) {
     for step in 0..steps {
         let before = world.energy();
@@ -26,7 +26,8 @@ fn run_without_gain(world: &mut World, steps: usize) {
     }
 }
 
-/// A strand clamped level bends as a chain of elastic corners: each turns by the moment of the weight beyond it.
+/// A strand clamped horizontally bends like a chain of elastic corners: each turns by the moment of the weight beyond
+/// it.
 #[test]
 fn a_strand_bends_as_a_beam() {
     const LINKS: u32 = 8;
@@ -65,7 +66,7 @@ fn a_chain_of_fifty_masses_stretches_by_mg_over_k() {
         particles: (0..=MASSES).map(particle).collect(),
         springs: (0..MASSES).map(|k| SpringDef::new([k, k + 1], 0.2, 1e5)).collect(),
         linear_damping: 4.0,
-        // Measured to a micrometre.
+        // Measured with an accuracy of a micrometre.
         sleeping: Sleeping::Off,
         ..GroupDef::default()
     };
@@ -81,8 +82,8 @@ fn a_chain_of_fifty_masses_stretches_by_mg_over_k() {
     }
 }
 
-/// Half a period of a mass on a spring: at a damping ratio of 0.2 it returns to exp(−π ζ/√(1 − ζ²)) = 0.53 of its height, at
-/// 1 it never passes its rest position, and a string does not push.
+/// Half a period of a mass on a spring: at a damping ratio of 0.2 the mass returns to exp(−π ζ/√(1 − ζ²)) = 0.53 of its
+/// height, at 1 it never passes its rest position, and a string does not push.
 #[test]
 fn springs_are_damped_by_their_ratio_and_may_go_slack() {
     let lowest = |ratio: f32, resists: Resists| {
@@ -135,8 +136,8 @@ fn numbers_that_are_not_finite_panic_in_the_setter() {
     assert!(!panics(&|group| group.apply_impulse(0, Vec3::X)));
 }
 
-/// Particles hit moving and rotating shapes of every kind at up to 100 m/s: on the way from one end of a substep to
-/// the next, in the shape's frame, none is inside.
+/// Particles hit moving and rotating shapes of every kind at up to 100 m/s: on the path between the ends of a substep,
+/// in the shape's frame, none is inside.
 #[test]
 fn particles_never_pass_through_moving_shapes() {
     let mut random = Random::new(7);
@@ -192,7 +193,7 @@ fn particles_never_pass_through_moving_shapes() {
     }
 }
 
-/// A kinematic wall at 50 m/s pushes all particles along, within a step and from step to step.
+/// A kinematic wall at 50 m/s pushes all particles along, within a step and across steps.
 #[test]
 fn a_fast_wall_pushes_all_particles() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -219,7 +220,7 @@ fn a_fast_wall_pushes_all_particles() {
     }
 }
 
-/// A falling blob keeps its volume of air, and comes to rest without gaining energy.
+/// A falling blob keeps its air volume, and comes to rest without gaining energy.
 #[test]
 fn a_blob_falls_and_rests() {
     let mut world = World::new(WorldDef::default());
@@ -246,7 +247,7 @@ fn a_blob_falls_and_rests() {
     assert!((lowest - 0.005).abs() < 1e-3, "{lowest}");
 }
 
-/// Air pressed to half of its height expands to the sides.
+/// Air pressed to half its height expands to the sides.
 #[test]
 fn a_pressed_blob_keeps_its_volume() {
     let mut world = World::new(WorldDef::default());

@@ -1,5 +1,5 @@
-//! Random worlds with ropes, strands, cloth, blobs and grains among bodies: numbers stay finite, no particle is deeper in a fixed
-//! shape than its radius, no world gains energy, and two threads give the bits of one.
+//! Random worlds with ropes, strands, cloth, blobs and grains among bodies: numbers stay finite, no particle is deeper
+//! in a fixed shape than its radius, no world gains energy, and two threads give the same bits as one.
 //!
 //! `SINEW_WORLDS=100..200 cargo test --release -p sinew_physics --test it -- --nocapture worlds_of_particles` runs other seeds.
 
@@ -10,23 +10,23 @@ use sinew_physics::{BodyDef, BodyKind, Shape, ShapeDef, Threads, Velocity, World
 
 const STEPS: usize = 600;
 
-/// Seeds of a plain run: the first ones, and those whose ropes or cloth once gained joules or whose cloth was once pushed into the
-/// ground.
+/// Seeds of a plain run: the first ones, and those in which ropes or cloth once gained joules, or cloth was once pushed
+/// into the ground.
 const SEEDS: [u64; 25] = [
     0, 1, 2, 3, 4, 5, 6, 7, 20, 21, 101, 113, 117, 171, 382, 564, 689, 3271, 3581, 4023, 4087, 6871, 9488,
     9553, 9775,
 ];
 
-/// Depth beyond its radius that a particle is allowed in a fixed shape, metres.
+/// Largest allowed depth of a particle in a fixed shape, beyond its radius, metres.
 const DEPTH: f32 = 1e-4;
 
-/// Energy that each kilogram may gain, J.
+/// Largest allowed energy gain per kilogram, J.
 const GAIN: f32 = 0.01;
 
-/// Steps in which stretched springs release their energy: in these worlds most moves after five.
+/// Steps in which stretched springs release their energy: in these worlds five steps release most of it.
 const RELEASE_STEPS: usize = 30;
 
-/// Cloth at the rope's corner, with its mass and radius.
+/// Returns cloth at the rope's corner, with the rope's mass and radius.
 fn cloth(random: &mut Random, rope: &RopeDef, damping_ratio: f32, hang: bool) -> GroupDef {
     let turn = Rotation::from_axis_angle(Vec3::Y, random.range(-3.0, 3.0));
     let mut cloth = ClothDef {
@@ -50,7 +50,7 @@ fn cloth(random: &mut Random, rope: &RopeDef, damping_ratio: f32, hang: bool) ->
     cloth.group
 }
 
-/// Returns a rope, a strand, cloth, a blob or grains, some of it held in the world.
+/// Returns a rope, a strand, cloth, a blob or grains, partly held in the world.
 fn group(random: &mut Random) -> GroupDef {
     let at = Vec3::new(random.range(-1.0, 1.0), random.range(2.2, 3.5), random.range(-1.0, 1.0));
     let radius = random.range(0.01, 0.04);
@@ -104,12 +104,12 @@ fn group(random: &mut Random) -> GroupDef {
     group
 }
 
-/// `whole`: springs of nets and blobs are also solved as one system.
+/// Returns the world of a seed. `whole`: springs of nets and blobs are also solved as one system.
 fn world(seed: u64, whole: bool) -> World {
     let mut random = Random::new(seed);
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
-    // Nothing overlaps at the start.
+    // No shapes overlap at the start.
     for k in 0..1 + random.index(4) {
         let size = random.range(0.1, 0.3);
         let shape = match random.index(3) {
@@ -135,7 +135,8 @@ fn world(seed: u64, whole: bool) -> World {
     world
 }
 
-/// Returns the depth beyond its radius of the deepest particle in a fixed shape, metres. Attached particles are where they are held.
+/// Returns the depth of the deepest particle in a fixed shape beyond its radius, metres. Ignores attached particles,
+/// which are where they are held.
 fn beyond(world: &World) -> f32 {
     let mut most = f32::NEG_INFINITY;
     for id in world.group_ids() {
@@ -153,15 +154,16 @@ fn beyond(world: &World) -> f32 {
     most
 }
 
-/// Returns the energy of springs, bends and volumes as the group counts it, J.
+/// Returns the energy of springs, bends and volumes as the group computes it, J.
 fn elastic(world: &World) -> f32 {
     world.group_ids().map(|id| world.particles(id).elastic_energy()).sum()
 }
 
-/// Returns the energy that springs, bends and volumes release, J: the largest kinetic energy within [`RELEASE_STEPS`] if everything stops and
-/// nothing has weight.
+/// Returns the energy that springs, bends and volumes release, J: the largest kinetic energy within [`RELEASE_STEPS`]
+/// after all motion is stopped, without gravity.
 ///
-/// [`elastic`] counts what each row releases alone. In a net that is more than all release together (ADR 0027).
+/// [`elastic`] adds the energies that single rows would release. In a net the sum exceeds what all release together
+/// (ADR 0027).
 fn given_back(world: &World) -> f32 {
     let mut stopped = World::new(WorldDef::default());
     let mut state = Writer::new();
@@ -184,7 +186,7 @@ fn given_back(world: &World) -> f32 {
     most
 }
 
-/// Mass of everything that moves, kg.
+/// Returns the mass of all moving bodies and particles, kg.
 fn mass(world: &World) -> f32 {
     let dynamic = world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic);
     let bodies: f32 = dynamic.map(|id| world.mass(id).mass).sum();
@@ -197,7 +199,7 @@ fn worlds_of_particles_stay_finite_and_add_no_energy() {
     are_sound(&asked_seeds().map_or_else(|| SEEDS.to_vec(), Iterator::collect), false);
 }
 
-/// The same without projected springs. Seeds 0 to 199 pass if asked for.
+/// Runs the worlds without projected springs. Seeds 0 to 199 pass if requested.
 #[test]
 fn worlds_of_implicit_nets_stay_finite_and_add_no_energy() {
     are_sound(&asked_seeds().map_or_else(|| SEEDS[..8].to_vec(), Iterator::collect), true);

@@ -1,4 +1,4 @@
-//! Particles and springs against closed forms.
+//! Particles and springs, compared with closed forms.
 
 use crate::build::box_body;
 use sinew_math::{Random, Reader, Rotation, Sym3, Transform, Vec3, Writer, trig};
@@ -89,7 +89,7 @@ fn one_mass_stretches_its_spring_by_mg_over_k() {
     }
 }
 
-/// Every spring of a chain carries the weight below it, also in a chain of a hundred links.
+/// Every spring of a chain carries the weight below it, even in a chain of a hundred links.
 #[test]
 fn a_chain_stretches_by_mg_over_k_link_by_link() {
     let mut masses = [0.1; 10];
@@ -128,8 +128,8 @@ fn a_mass_on_a_spring_swings_at_its_frequency() {
     assert!((period / expected - 1.0).abs() < 0.01, "{period}, {expected}");
 }
 
-/// A rope of 12 m between hooks 10 m apart hangs as a catenary: a = 4.6954 m, sag 2.9234 m, end tension 7.6189 m of
-/// rope.
+/// A rope of 12 m between hooks 10 m apart hangs as a catenary: a = 4.6954 m, sag 2.9234 m, tension at the ends that of
+/// the weight of 7.6189 m of rope.
 #[test]
 fn a_rope_hangs_as_a_catenary() {
     let mut def = RopeDef {
@@ -163,7 +163,7 @@ fn a_rope_hangs_as_a_catenary() {
     assert!((pull / expected - 1.0).abs() < 0.005, "{pull} N at the hook, {expected}");
 }
 
-/// Two parallel springs are a loop: each stretches half as much as one alone.
+/// Two parallel springs form a loop: each stretches half as much as a single one.
 #[test]
 fn a_spring_that_closes_a_loop_shares_the_load() {
     let mut def =
@@ -177,8 +177,8 @@ fn a_spring_that_closes_a_loop_shares_the_load() {
     assert!((pull + 2.0 * 9.81).abs() < 0.2, "{pull} N at the hook");
 }
 
-/// A point body of 1 kg on a spring that would diverge if it acted one substep late: no energy is
-/// gained, and momentum is kept.
+/// A point body of 1 kg on a spring that would diverge if it acted one substep late: it gains no energy and keeps its
+/// momentum.
 #[test]
 fn a_stiff_spring_moves_a_light_body_both_ways() {
     let target = AttachmentTarget::Body { body: BodyId::from_bits(0), point: Vec3::ZERO };
@@ -203,7 +203,7 @@ fn a_stiff_spring_moves_a_light_body_both_ways() {
         let stretch = (group.positions()[1] - position).length() - 1.0;
         assert!(stretch.abs() < 0.02, "{stretch}");
     }
-    // The attached particle's own 10 g move with the body.
+    // The 10 g of the attached particle move with the body.
     let momentum = velocity * 1.01 + group.velocities()[1] * 5.0;
     assert!((momentum - Vec3::new(5.0, 2.5, 0.0)).length() < 0.01 * 5.6, "{momentum}");
 }
@@ -240,7 +240,7 @@ fn nothing_tunnels_at_100_metres_a_second() {
     }
 }
 
-/// The plate moves, not the particle.
+/// A moving plate takes a resting particle along.
 #[test]
 fn a_fast_plate_takes_a_particle_along() {
     let def =
@@ -317,7 +317,8 @@ fn friction_holds_below_its_angle_and_slides_above() {
     }
 }
 
-/// A particle that begins inside a solid leaves at half a metre a second, keeps no velocity from that, and does not stretch its spring.
+/// A particle that starts inside a solid leaves at 0.5 m/s, keeps no velocity from that motion, and does not stretch
+/// its spring.
 #[test]
 fn particles_starting_inside_come_out_slowly() {
     let h = 1.0 / 480.0;
@@ -342,7 +343,8 @@ fn particles_starting_inside_come_out_slowly() {
     assert!(group.velocities().iter().all(|v| v.length() < 0.01), "{:?}", group.velocities());
 }
 
-/// Particles slide on a movable body as on the ground, by gravity less Coulomb friction, though they are up to a hundred million times lighter.
+/// Particles slide on a movable body as on the ground, by gravity minus Coulomb friction, although they are up to a
+/// hundred million times lighter.
 #[test]
 fn particles_slide_on_heavy_bodies_as_on_the_ground() {
     let (angle, friction) = (0.6f32, 0.4);
@@ -369,7 +371,7 @@ fn particles_slide_on_heavy_bodies_as_on_the_ground() {
         };
         let mut group = ParticleGroup::new(&def);
         for _ in 0..480 {
-            // Held from outside: the test resets its velocity in each substep.
+            // The body is held: the test resets its velocity in each substep.
             let inverse_inertia = Sym3::IDENTITY * inverse_mass;
             let mut body = [ObstacleBody { inverse_mass, inverse_inertia, ..STATIC_BODY }];
             group.substep(1.0 / 480.0, GRAVITY, &[], core::slice::from_ref(&slope), &mut body);
@@ -391,7 +393,7 @@ fn a_body_carries_the_weight_of_a_particle() {
         obstacle(Shape::Box { half_extents: Vec3::new(1.0, 0.1, 1.0) }, Transform::IDENTITY, 0.5, 0.0);
     let h = 1.0 / 240.0;
     for step in 0..240 {
-        // Held from outside: the test resets its velocity in each substep.
+        // The body is held: the test resets its velocity in each substep.
         let mut body = [ObstacleBody { inverse_mass: 0.1, inverse_inertia: Sym3::IDENTITY, ..STATIC_BODY }];
         group.substep(h, GRAVITY, &[], core::slice::from_ref(&table), &mut body);
         let impulses = group.body_impulses();
@@ -431,7 +433,7 @@ fn a_rope_over_a_box_rests() {
     assert!(ends.iter().all(|p| p.y < -0.2 && p.y > -0.8), "{ends:?}");
 }
 
-/// A heavy rope lands on a light free box: momentum passes from one to the other, and neither is thrown away.
+/// A heavy rope lands on a light free box: momentum is exchanged, and neither is thrown away.
 #[test]
 fn a_heavy_rope_and_a_light_box_share_momentum() {
     for rope_mass in [0.1, 1.0, 5.0] {
@@ -509,7 +511,7 @@ fn a_rope_over_a_pulley_carries_its_weight_undiminished() {
     let pulley = obstacle(pulley, Transform::new(Vec3::ZERO, along_z), 0.0, 0.0);
     run(&mut group, 1.0 / 480.0, 20.0, &[pulley]);
     let pull = group.attachment_impulses()[0].x * 480.0;
-    // The weight, and the weight of the rope over its height.
+    // The weight at the end, and the weight of the rope over its height.
     let drop = group.positions()[0].y - group.positions()[LINKS as usize].y;
     let expected = 9.81 * (2.0 + 0.02 * drop / link);
     assert!((pull / expected - 1.0).abs() < 0.01, "{pull} N at the hook, {expected} N hang");
@@ -563,22 +565,23 @@ fn a_loaded_group_continues_equally() {
         let mut broken = bytes.clone();
         let at = random.index(broken.len());
         broken[at] = random.bits() as u8;
-        // Errors or a valid group, never a panic.
+        // Damaged bytes give an error or a valid group, never a panic.
         if let Ok(group) = ParticleGroup::load(&mut Reader::new(&broken)) {
             assert_eq!(group.positions().len(), group.masses().len());
         }
     }
 }
 
-/// The place of a particle before a wall stopped it must not affect its next contacts, because snapshots do not hold it.
+/// The position of a particle before a wall stopped it must not affect its next contacts, because snapshots do not
+/// contain it.
 #[test]
 fn an_impact_does_not_change_a_loaded_worlds_future() {
-    // Impacts in each part of a step.
+    // Impacts in different parts of a step.
     for delay in 0..16 {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
         let wall = box_body(Vec3::ONE, Vec3::X);
         world.add_body(&BodyDef { kind: BodyKind::Static, ..wall });
-        // Off the path, too slow to count as moving and too fast to rest.
+        // Beside the path, too slow to count as moving and too fast to rest.
         let trembling = box_body(Vec3::splat(0.05), Vec3::new(-0.13, 0.065, 0.0));
         world.add_body(&BodyDef { linear_velocity: Vec3::Y * 0.03, ..trembling });
         let position = Vec3::X * (-1.0 - 0.03 * delay as f32);
@@ -600,7 +603,7 @@ fn an_impact_does_not_change_a_loaded_worlds_future() {
     }
 }
 
-/// A particle falls through a body that its group ignores and rests on the one beneath, also after loading a snapshot.
+/// A particle falls through a body that its group ignores and rests on the one below, also after a snapshot is loaded.
 #[test]
 fn a_group_passes_through_its_ignored_bodies() {
     let mut world = World::new(WorldDef { gravity: GRAVITY, ..WorldDef::default() });

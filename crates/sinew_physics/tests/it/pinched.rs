@@ -1,4 +1,4 @@
-//! Particles between a body and something fixed: they carry the body, nothing is pushed in, and no energy appears.
+//! Particles between a body and something fixed: they carry the body, are not pushed in, and add no energy.
 
 use crate::build::{floor, joint};
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, trig};
@@ -12,7 +12,7 @@ const ROLLER: f32 = 0.15;
 /// Radius of the particles, metres.
 const RADIUS: f32 = 0.03;
 
-/// A roller on the floor along Z, 40 kg, that comes along X.
+/// Adds a roller of 40 kg above the floor, with its axis along z, moving along x.
 fn roller(world: &mut World, height: f32, speed: f32) -> BodyId {
     let shape = Shape::Capsule { half_height: 0.18, radius: ROLLER };
     let mut def = BodyDef {
@@ -33,7 +33,7 @@ fn world_mass(def: &BodyDef) -> f32 {
     world.mass(id).mass
 }
 
-/// Depth of the deepest particle in the floor, metres.
+/// Returns the depth of the deepest particle in the floor, metres.
 fn sunk(world: &World, id: GroupId) -> f32 {
     let group = world.particles(id);
     let depths = group.positions().iter().zip(group.radii()).map(|(at, radius)| radius - at.y);
@@ -69,7 +69,7 @@ fn a_roller_crosses_a_rope_without_energy_gain() {
     }
 }
 
-/// A roller set down on cloth on the ground rests on it and does not sink in.
+/// A roller placed on cloth on the ground rests on it and does not sink in.
 #[test]
 fn cloth_on_the_ground_carries_a_roller() {
     let mut world = World::new(WorldDef::default());
@@ -109,7 +109,7 @@ fn a_rope_end_starting_in_a_crease_comes_out() {
             let along = Rotation::from_axis_angle(Vec3::X, turn);
             BodyDef {
                 kind: BodyKind::Static,
-                // Their ends are 5 mm apart.
+                // The ends of the limbs are 5 mm apart.
                 position: Vec3::Y + along * (Vec3::Y * 0.1825),
                 rotation: along,
                 shapes: vec![ShapeDef::new(Shape::Capsule { half_height: 0.15, radius: 0.03 })],
@@ -163,7 +163,7 @@ fn carpet(corner: Vec3, cells: [u32; 2], friction: f32) -> GroupDef {
     cloth.group
 }
 
-/// Adds a crate of `mass` kg, half a metre wide, with its lower face at this height.
+/// Adds a crate of `mass` kg, half a metre wide, with its lower face at the height `bottom`.
 fn crate_of(world: &mut World, mass: f32, bottom: f32) -> BodyId {
     let half_extents = Vec3::new(0.25, 0.15, 0.25);
     let mut def = BodyDef {
@@ -175,7 +175,7 @@ fn crate_of(world: &mut World, mass: f32, bottom: f32) -> BodyId {
     world.add_body(&def)
 }
 
-/// A crate rests on light cloth as on the floor: at the thickness of the cloth, still, and asleep.
+/// A crate rests on light cloth as on the floor: raised by the thickness of the cloth, still, and asleep.
 #[test]
 fn crates_lie_and_sleep_on_cloth() {
     for mass in [1.0, 100.0, 2000.0] {
@@ -187,14 +187,14 @@ fn crates_lie_and_sleep_on_cloth() {
             world.step();
         }
         let bottom = world.center_of_mass(id).y - 0.15;
-        // As deep as a crate sinks into the floor: a fifth of the slop, and the softness of the contact.
+        // A crate sinks into the floor as deep: a fifth of the slop, and the softness of the contact.
         assert!((bottom - 2.0 * RADIUS).abs() < 2e-3, "{mass} kg: {bottom} m above the floor");
         assert!(sunk(&world, cloth) < 1e-4, "{mass} kg: {} m in the floor", sunk(&world, cloth));
         assert!(!world.is_awake(id), "{mass} kg: it is awake after 4 s");
     }
 }
 
-/// A crate that settles on cloth over a sleeping crate wakes it and is carried by it; both go to sleep.
+/// A crate that settles on cloth over a sleeping crate wakes that crate, which carries it; both fall asleep.
 #[test]
 fn crates_wake_through_cloth() {
     let mut world = World::new(WorldDef::default());
@@ -208,7 +208,7 @@ fn crates_wake_through_cloth() {
         world.step();
     }
     assert!(!world.is_awake(below), "cloth alone wakes nobody");
-    // Its fall is slower than an impact.
+    // The fall is slower than an impact.
     let above = crate_of(&mut world, 5.0, 0.3 + 2.0 * RADIUS + 0.001);
     let mut woke = false;
     for _ in 0..30 {
@@ -222,11 +222,12 @@ fn crates_wake_through_cloth() {
     assert!(!world.is_awake(below) && !world.is_awake(above), "they lie still");
 }
 
-/// The load on cloth under a crate holds it by friction: it stays for a smaller pull, and comes out for a larger one.
+/// The load on cloth under a crate holds the cloth by friction: a smaller pull does not move it, a larger one pulls it
+/// out.
 #[test]
 fn cloth_under_a_crate_is_held_by_its_friction() {
     let (mass, friction) = (2.0, 0.5);
-    // Floor and crate each hold it by friction, 0.55 times the load.
+    // Floor and crate each hold the cloth by friction, 0.55 times the load.
     for (pull, stays) in [(0.6 * friction * mass * 9.81, true), (4.0 * friction * mass * 9.81, false)] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -252,11 +253,12 @@ fn cloth_under_a_crate_is_held_by_its_friction() {
     }
 }
 
-/// Cloth pulled from under a crate that moves up and down only slides by Coulomb's law: floor and crate each act with the load once.
+/// Cloth pulled from under a crate that can move only vertically slides by Coulomb's law: floor and crate each act once
+/// with the load.
 #[test]
 fn cloth_slides_from_under_a_crate_by_coulombs_law() {
     let (load, friction, mass) = (4.0 * 9.81, 0.5, 0.4 * 0.4);
-    // The geometric mean with 0.6.
+    // Geometric mean with 0.6.
     let rubs = f32::sqrt(0.6 * friction) * (2.0 * load + mass * 9.81);
     for share in [0.9, 1.1, 1.3] {
         let mut world = World::new(WorldDef::default());
@@ -275,7 +277,7 @@ fn cloth_slides_from_under_a_crate_by_coulombs_law() {
         };
         let begin = middle(&world);
         world.set_gravity(Vec3::new(share * rubs / mass, -9.81, 0.0));
-        // It stays under the crate.
+        // Within these steps the cloth stays under the crate.
         for _ in 0..4 {
             world.step();
         }
@@ -290,8 +292,9 @@ fn cloth_slides_from_under_a_crate_by_coulombs_law() {
     }
 }
 
-/// A ball in the wedge between the floor and a hinged slab carries the slab if half the opening angle is below the friction angle,
-/// 16.7°; else the slab comes down and pushes it out along the floor until it does.
+/// A ball in the wedge between the floor and a hinged slab carries the slab if half the opening angle is below the
+/// friction angle, 16.7°. Otherwise the slab sinks and pushes the ball out along the floor until the angle is small
+/// enough.
 #[test]
 fn a_ball_in_a_narrow_wedge_carries_and_in_a_wide_one_slips_out() {
     for (degrees, is_nipped) in [(30.0_f32, true), (80.0, false)] {
@@ -299,7 +302,7 @@ fn a_ball_in_a_narrow_wedge_carries_and_in_a_wide_one_slips_out() {
         floor(&mut world);
         let post = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
         let along = Rotation::from_axis_angle(Vec3::Z, degrees.to_radians());
-        // Its lower face rises from the origin.
+        // The lower face rises from the origin.
         let half_extents = Vec3::new(0.4, 0.02, 0.3);
         let slab = world.add_body(&BodyDef {
             rotation: along,
@@ -357,8 +360,8 @@ fn pinched_contacts_restore_equally() {
     }
 }
 
-/// A tether that the floor keeps from shortening, with one end below the floor and the other on it, pulls the body at its lower end only as hard as it
-/// would pull the upper particle, not with the force that would close it.
+/// A tether with one end below the floor and the other on it, which the floor keeps from shortening, pulls the body at
+/// its lower end only as hard as it would pull the upper particle, not with the force that would close it.
 #[test]
 fn a_tether_through_the_floor_does_not_tear() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -377,7 +380,7 @@ fn a_tether_through_the_floor_does_not_tear() {
     });
     world.step();
     let speed = world.velocity(id).linear.length();
-    // Its error in an iteration as a speed, times a gram over a kilogram.
+    // Error of the tether in an iteration as a speed, times a gram over a kilogram.
     assert!((0.01..0.5).contains(&speed), "{speed} m/s");
 }
 
@@ -405,7 +408,7 @@ fn removed_bodies_leave_no_pinched_contacts() {
     }
 }
 
-/// A crate on cloth on a belt is carried along; a crate whose contact the user's function drops falls through.
+/// A crate on cloth on a belt moves with the belt; a crate whose contact a modifier drops falls through.
 #[test]
 fn surface_velocities_and_modifiers_act_through_cloth() {
     for drops in [false, true] {

@@ -45,7 +45,7 @@ fn omega2(hertz: f32) -> f32 {
     (core::f32::consts::TAU * hertz) * (core::f32::consts::TAU * hertz)
 }
 
-/// Returns `count` links of different masses in a row along x, half a metre apart, with joints between neighbours.
+/// Adds `count` links of different masses in a row along x, half a metre apart, with joints between neighbours.
 fn chain(world: &mut World, count: usize) -> (Vec<BodyId>, Vec<JointId>) {
     let bodies: Vec<BodyId> =
         (0..count).map(|i| lump(world, Vec3::new(0.5 * i as f32, 1.0, 0.0), 1.0 + (i % 3) as f32)).collect();
@@ -143,7 +143,7 @@ fn an_underdamped_pin_on_a_light_end_does_not_shake() {
     let end = lump(&mut world, Vec3::new(2.75, 1.0, 0.0), 0.01);
     let def = ball(&world, bodies[5], end, Vec3::new(2.7, 1.0, 0.0));
     world.add_joint(&def);
-    // It should carry 12 kg, and rotate a ten-thousandth of their inertia.
+    // The pin carries 12 kg, and rotates a ten-thousandth of their inertia.
     pin(&mut world, ground, end, frequency(15.0, 0.3));
     run(&mut world, 0.2);
     for _ in 0..120 {
@@ -286,7 +286,7 @@ fn kinematic_bodies_report_work_on_particles() {
         world.add_particles(&group);
         run(&mut world, 5.0);
         world.set_velocity(plate, Velocity { linear: Vec3::Y * 0.5, ..Velocity::default() });
-        // It has reached that speed, and the oscillation of the start has decayed.
+        // The body has reached the speed, and the oscillation of the start has decayed.
         run(&mut world, 3.0);
         let (before, mut work) = (world.energy().total(), 0.0);
         for _ in 0..120 {
@@ -295,13 +295,13 @@ fn kinematic_bodies_report_work_on_particles() {
         }
         (world.energy().total() - before, work)
     };
-    // m g v t, and the loss to air damping.
+    // m g v t; the loss to air damping is added below.
     let expected = 2.0 * 9.81 * 0.5 * 2.0;
     for held in [true, false] {
         let (rise, work) = lift(held);
         println!("held: {held}, {rise} J of {work}");
         assert!((rise - expected).abs() < 0.01 * expected, "held: {held}, {rise} J");
-        // 2 kg lose 2 v per second to the air.
+        // A body of 2 kg loses 2 v per second to the air.
         let drag = 2.0 * 2.0 * 0.5 * 0.5 * 2.0;
         assert!((work - rise - drag).abs() < 0.03 * expected, "held: {held}, {rise} J of {work}");
     }

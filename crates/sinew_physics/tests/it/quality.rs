@@ -1,4 +1,4 @@
-//! Effects of a step's quality: on substeps, sweeps and errors, never on the firmness of joints and contacts.
+//! Effects of the step quality: on substeps, sweeps and errors, but not on the stiffness of joints and contacts.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use sinew_math::{Reader, Transform, Vec3, Writer};
@@ -13,7 +13,7 @@ fn world(quality: Quality) -> World {
     World::new(WorldDef { quality, sleeping: Sleeping::Off, ..WorldDef::default() })
 }
 
-/// Substeps of all bodies.
+/// Profiler that sums the substeps of all bodies.
 #[derive(Default)]
 struct Substeps(AtomicU64);
 
@@ -36,7 +36,7 @@ fn substeps(world: &mut World) -> u64 {
     counter.0.into_inner()
 }
 
-/// Returns a rod of 1 m that hangs on a fixed point at `hook` and starts level.
+/// Adds a rod of 1 m that hangs on a fixed point at `hook` and starts horizontally.
 fn rod(world: &mut World, hook: Vec3, quality: Option<Quality>) -> BodyId {
     let fixed = world.add_body(&BodyDef::fixed(Shape::Sphere { radius: 0.01 }).at(hook));
     let at = hook + 0.5 * Vec3::X;

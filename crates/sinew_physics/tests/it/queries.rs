@@ -1,4 +1,4 @@
-//! Queries of worlds: against every shape alone, against oracles in `f64`, and with extreme arguments.
+//! Queries of worlds: compared with every shape alone and with oracles in `f64`, and with extreme arguments.
 //!
 //! Each query runs 1,000 times, or 100,000 times with `SINEW_FULL` set, as `cargo xtask ci --full` does.
 

@@ -1,6 +1,5 @@
 //! Random worlds: trees, nets and loops of all kinds of joints, broken, changed and joined while they run.
-//! Numbers stay finite, nothing releases energy that it does not have, and a restored world continues as the saved one
-//! did.
+//! Numbers stay finite, no energy appears from nothing, and a restored world continues like the saved one.
 //!
 //! 100 worlds, or 10,000 with `SINEW_FULL` set, as `cargo xtask ci --full` does. To examine one:
 //! `SINEW_WORLDS=17..18 cargo test --release -p sinew_physics --test it -- --ignored --nocapture survey` runs the seeds of
@@ -23,21 +22,21 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 const STEPS: u32 = 600;
 
-/// Returns true with a probability.
+/// Returns true with the given probability.
 fn chance(random: &mut Random, probability: f32) -> bool {
     random.unit() < probability
 }
 
-/// Returns a power of ten with an exponent between two.
+/// Returns a power of ten with a random exponent between two bounds.
 fn decades(random: &mut Random, lo: f32, hi: f32) -> f32 {
     trig::exp(random.range(lo, hi) * core::f32::consts::LN_10)
 }
 
-/// Worlds of the first hundred that fail, and why. A world that holds again is removed from the list.
+/// Worlds of the first hundred that fail, with the reason. A world that passes again must be removed from the list.
 const KNOWN: &[(&str, &[u64])] =
     &[("eight bodies in fifteen joints with springs and soft limits gain 1.5 % in one step", &[27])];
 
-/// Worlds in a thousand beyond the first hundred that fail: 279 of 9,900, none by a panic or another
+/// Number of failing worlds in a thousand, beyond the first hundred: 279 of 9,900, none by a panic or a different
 /// future.
 const KNOWN_PER_THOUSAND: usize = 28;
 
@@ -46,7 +45,7 @@ type Outcome = (u64, Result<Figures, Failure>);
 /// Number of worlds between progress messages of a long run.
 const PROGRESS: u64 = 500;
 
-/// Runs the worlds of some seeds on all cores; returns outcomes by seed.
+/// Runs the worlds of a range of seeds on all cores; returns the outcomes by seed.
 fn outcomes(seeds: core::ops::Range<u64>) -> Vec<Outcome> {
     let next = AtomicU64::new(seeds.start);
     let failed = AtomicU64::new(0);
@@ -75,7 +74,7 @@ fn outcomes(seeds: core::ops::Range<u64>) -> Vec<Outcome> {
     found
 }
 
-/// Seeds that `SINEW_WORLDS` asks for, if it is set.
+/// Returns the seeds in `SINEW_WORLDS`, if it is set.
 pub fn asked_seeds() -> Option<core::ops::Range<u64>> {
     let range = std::env::var("SINEW_WORLDS").ok()?;
     let (lo, hi) = range.split_once("..").expect("SINEW_WORLDS is lo..hi");
@@ -119,7 +118,7 @@ fn ten_thousand_random_worlds_hold() {
     assert!(!failed.iter().any(|(_, failure)| never(failure)), "panic or another future: {failed:?}");
 }
 
-/// Runs the worlds of the range `SINEW_WORLDS`, prints failing ones shrunk, and the distribution of gaps.
+/// Runs the worlds of the range in `SINEW_WORLDS`, prints failing ones after shrinking, and the distribution of gaps.
 #[test]
 #[ignore = "for people: prints, asserts nothing"]
 fn survey() {

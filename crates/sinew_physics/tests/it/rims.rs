@@ -8,7 +8,8 @@ const RADIUS: f32 = 0.5;
 const HALF_THICKNESS: f32 = 0.02;
 const GRAVITY: f32 = 9.81;
 
-/// Returns a disc that rolls in a circle: its axis goes round the vertical at `rate` rad/s and leans by `lean` radians from the level.
+/// Disc that rolls in a circle: its axis rotates about the vertical at `rate` rad/s and leans by `lean` radians from
+/// the horizontal.
 struct Rolling {
     axis: Vec3,
     angular_velocity: Vec3,
@@ -16,13 +17,13 @@ struct Rolling {
     height: f32,
 }
 
-/// Steady rolling. With the axis `e`, the arm `r` from the centre to the lowest point of the rim, and `ω = Ω y + s e`: the rim
-/// does not slip, `v = −ω × r`; the centre moves in a circle, `a = Ω y × v`; the ground's force `m (a + g y)` turns the angular
-/// momentum, `Ω y × L = r × m (a + g y)`. That is linear in the spin `s`.
+/// Returns steady rolling. With the axis `e`, the arm `r` from the centre to the lowest point of the rim, and `ω = Ω y
+/// + s e`: the rim does not slip, `v = −ω × r`; the centre moves in a circle, `a = Ω y × v`; the ground's force `m (a +
+/// g y)` turns the angular momentum, `Ω y × L = r × m (a + g y)`. These equations are linear in the spin `s`.
 fn rolling(rate: f32, lean: f32) -> Rolling {
     let (sin, cos) = trig::sin_cos(lean);
     let (a, h) = (RADIUS, HALF_THICKNESS);
-    // Moments of inertia over the mass.
+    // Moments of inertia divided by the mass.
     let (across, along) = (a * a / 4.0 + h * h / 3.0, a * a / 2.0);
     let axis = Vec3::new(cos, sin, 0.0);
     let arm = Vec3::new(sin, -cos, 0.0) * a - axis * h;
@@ -33,7 +34,7 @@ fn rolling(rate: f32, lean: f32) -> Rolling {
     Rolling { axis, angular_velocity, velocity: -angular_velocity.cross(arm), height: -arm.y }
 }
 
-/// Returns the mean rate of a disc's axis in the first second over the closed form.
+/// Returns the mean rate of a disc's axis in the first second, divided by that of the closed form.
 fn share_of_rate(ground: impl Fn(&mut World), rate: f32, lean: f32) -> f32 {
     let mut world = World::new(WorldDef::default());
     ground(&mut world);
@@ -62,7 +63,7 @@ fn plane(world: &mut World) {
     floor(world);
 }
 
-/// A slab, which uses the general path from shape to shape.
+/// Adds a slab as ground, for which the collision of two shapes is used instead of that with a plane.
 fn slab(world: &mut World) {
     let half_extents = Vec3::new(10.0, 0.5, 10.0);
     let mut shape = ShapeDef::new(Shape::Box { half_extents });
@@ -75,7 +76,7 @@ fn slab(world: &mut World) {
     });
 }
 
-/// Fast enough to be stable: slower than `√(g a / 3)` a disc falls over.
+/// The rates are high enough to be stable: slower than `√(g a / 3)` a disc falls over.
 #[test]
 fn a_disc_rolls_in_a_circle_at_the_rate_of_its_closed_form() {
     for (rate, lean) in [(0.5, 10.0f32), (1.0, 20.0), (1.5, 30.0), (2.0, 40.0), (3.0, 50.0)] {

@@ -13,7 +13,7 @@ fn run(world: &mut World, steps: usize) {
     }
 }
 
-/// One mass on one spring of 1000 N/m under the origin.
+/// Adds one mass on one spring of 1000 N/m under the origin.
 fn hung_mass(world: &mut World, mass: f32) -> GroupId {
     let particle = |y, mass| ParticleDef { position: Vec3::Y * y, velocity: Vec3::ZERO, mass, radius: 0.01 };
     world.add_particles(&GroupDef {
@@ -64,17 +64,17 @@ fn a_rope_holds_a_body_and_hangs_from_a_beam() {
         |particle, body, point| AttachmentDef { particle, target: AttachmentTarget::Body { body, point } };
     // Without more damping the weight would swing for minutes.
     rope.damp(2.0);
-    // Measured to some micrometres.
+    // Measured with an accuracy of some micrometres.
     rope.sleeping = Sleeping::Off;
     rope.attachments = vec![hold(0, beam, -Vec3::Y * 0.1), hold(10, weight, Vec3::Y * 0.1)];
     world.add_particles(&rope);
     let mass = world.mass(weight).mass;
     run(&mut world, 900);
-    // The weight stretches all of it; the rope's own weight acts on half of it on average.
+    // The weight stretches the whole rope; the rope's own weight acts on half of it on average.
     let sunk = 1.8 - world.transform(weight).translation.y;
     let expected = (mass + 0.1) * 9.81 / 5000.0;
     assert!((sunk / expected - 1.0).abs() < 0.002, "sunk by {sunk} for {expected}");
-    // Between two steps the pull of the last substep counts and the weight of the next does not: g h.
+    // At the end of a step, the pull of the last substep has acted but the weight of the next one has not: g h.
     assert!(world.velocity(weight).linear.length() < 0.05);
 }
 
@@ -203,7 +203,7 @@ fn a_rope_pulls_through_a_body_that_it_holds_twice() {
     }
 }
 
-/// Returns a plank on this many ropes, each of which holds it at two particles and is held at both ends.
+/// Returns a world with a plank on this many ropes, each attached to the plank at two particles and held at both ends.
 fn hung_plank(ropes: usize) -> World {
     const LINK: f32 = 0.15;
     const HALF: Vec3 = Vec3::new(0.13, 0.02, 0.8);
@@ -221,12 +221,12 @@ fn hung_plank(ropes: usize) -> World {
         let ends = [-1.5, 1.5].map(|x| Vec3::X * x * LINK + z);
         let def = RopeDef { from: ends[0], to: ends[1], links: 3, mass: 2.0, stiffness: 4e4, radius: 0.01 };
         let mut group = def.build().group;
-        // Stretched by 400 N, and not damped.
+        // Stretched by 400 N, without damping.
         for spring in &mut group.springs {
             (spring.rest_length, spring.damping) = (LINK - 0.01, 0.0);
         }
         group.sleeping = Sleeping::Off;
-        // Inside the plank.
+        // These particles are inside the plank.
         group.filter.mask = 0;
         group.hold_in_world(&[0, 3]);
         for (knot, x) in [(1, -0.5), (2, 0.5)] {
@@ -250,8 +250,8 @@ fn a_plank_on_taut_ropes_gains_no_energy() {
     }
 }
 
-/// A stiff rope keeps its motion: nothing acts on it, so momentum and energy stay. Its springs pull with many thousand times
-/// its momentum in each substep; lost rounding once made it writhe and change its velocity within a step.
+/// A stiff rope without external forces keeps its momentum and energy. Its springs pull with many thousand times its
+/// momentum in each substep; lost rounding errors once made it writhe and change its velocity within a step.
 #[test]
 fn a_stiff_rope_keeps_its_motion() {
     for (stiffness, velocity) in [(1e3, 1.0), (1e5, 1.0), (1e5, 10.0)] {

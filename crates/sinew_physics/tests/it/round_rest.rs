@@ -10,7 +10,7 @@ const ROUND: [Shape; 5] = [
     Shape::Cylinder { half_height: 0.02, radius: 0.15 },
     Shape::Cone { half_height: 0.25, radius: 0.2 },
     Shape::TaperedCapsule { half_height: 0.3, radius_bottom: 0.2, radius_top: 0.1 },
-    // As thick as a finger.
+    // Cylinder as thick as a finger.
     Shape::Cylinder { half_height: 0.02, radius: 0.01 },
 ];
 
@@ -20,7 +20,7 @@ fn body(shape: &Shape, position: Vec3, rotation: Rotation) -> BodyDef {
     BodyDef { position, rotation, shapes: vec![def], ..BodyDef::default() }
 }
 
-/// A half-space, or a box whose top is at 0.
+/// Adds a half-space, or a box with its top at height 0.
 fn ground(world: &mut World, boxed: bool) {
     if boxed {
         let slab = box_body(Vec3::new(5.0, 0.5, 5.0), Vec3::new(0.0, -0.5, 0.0));
@@ -30,7 +30,7 @@ fn ground(world: &mut World, boxed: bool) {
     }
 }
 
-/// Dropped upright and tilted, they come to rest on the ground without sinking in, and sleep.
+/// Round shapes dropped upright or tilted come to rest on the ground without sinking in, and fall asleep.
 #[test]
 fn round_shapes_settle_and_sleep() {
     for boxed in [false, true] {
@@ -56,7 +56,7 @@ fn round_shapes_settle_and_sleep() {
     }
 }
 
-/// A cylinder put on its end stays there.
+/// A cylinder that stands on its end stays there.
 #[test]
 fn a_standing_cylinder_stands_still() {
     for boxed in [false, true] {

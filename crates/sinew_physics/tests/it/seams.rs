@@ -1,4 +1,4 @@
-//! Seams of the ground: bodies slide and roll over abutting shapes as over one, and real edges stop them.
+//! Seams of the ground: bodies slide and roll over abutting shapes as over a single one, and real edges stop them.
 
 use crate::solids::box_hull;
 use sinew_math::{Random, Rotation, Transform, Vec3, max, trig};
@@ -10,21 +10,21 @@ enum Tiles {
     One,
     Boxes,
     Hulls,
-    /// Shapes of a single body.
+    /// Several shapes of a single body.
     Shapes,
-    /// Raised, lowered and separated by less than a slop.
+    /// Boxes raised, lowered and separated by less than the slop.
     Rough,
-    /// Meshes without sides.
+    /// Open meshes of the upper faces.
     Sheets,
-    /// Meshes of boxes, closed.
+    /// Closed meshes of boxes.
     Blocks,
     /// Height fields.
     Fields,
-    /// All of these and boxes in turn.
+    /// All of these in turn.
     Mixed,
 }
 
-/// All kinds of tiles.
+/// All kinds of tiles except the single one.
 const ALL: [Tiles; 8] = [
     Tiles::Boxes,
     Tiles::Hulls,
@@ -36,7 +36,7 @@ const ALL: [Tiles; 8] = [
     Tiles::Mixed,
 ];
 
-/// Returns a mesh of a tile whose top is at its origin's height and half a metre above.
+/// Returns the mesh of a tile with sides of 1 m around its origin: all six faces, or one if it is open.
 fn block(is_closed: bool) -> Shape {
     let corner =
         |i: u32| Vec3::new(0.5 - (i & 1) as f32, 0.5 - (i >> 1 & 1) as f32, 0.5 - (i >> 2 & 1) as f32);
@@ -55,7 +55,7 @@ fn field() -> Shape {
 
 const SIDE: i32 = 9;
 
-/// Returns ground whose top is at height 0.
+/// Adds ground with its top at height 0.
 fn lay(world: &mut World, tiles: Tiles, material: Material, random: &mut Random) {
     let tile = |shape: Shape| ShapeDef { material, ..ShapeDef::new(shape) };
     let half = Vec3::splat(0.5);
@@ -98,7 +98,7 @@ fn lay(world: &mut World, tiles: Tiles, material: Material, random: &mut Random)
     }
 }
 
-/// A body on the ground, its pose, and whether it rolls.
+/// A body on the ground: its shape, its pose, and how it moves.
 struct Goer {
     shape: Shape,
     height: f32,
@@ -132,7 +132,7 @@ fn goer(kind: usize, way: Vec3, random: &mut Random) -> Goer {
     }
 }
 
-/// Result of a run: level speed at the end, height at the end and largest height, both relative to the start.
+/// Result of a run: horizontal speed at the end, height at the end and largest height, both relative to the start.
 #[derive(Debug)]
 struct Way {
     speed: f32,
@@ -180,7 +180,7 @@ fn sliding_over_seams_matches_one_box() {
     }
 }
 
-/// A step of 5 mm and a gap wider than a slop are hit; walls on the ground and beside it stop bodies.
+/// A step of 5 mm and a gap wider than the slop stop bodies, as do walls on the ground and beside it.
 #[test]
 fn real_edges_stop_bodies() {
     for (name, at, half) in [

@@ -4,17 +4,17 @@ use sinew_math::{Reader, Vec3, Writer, max};
 use sinew_physics::particles::{Cloth, ClothDef, GroupDef, ParticleDef, ParticleGroup, SpringDef};
 use sinew_physics::{BodyDef, GroupId, Shape, ShapeDef, Threads, World, WorldDef};
 
-/// Distance from one particle of the cloth to the next, metres.
+/// Distance between neighbouring particles of the cloth, metres.
 const GRID: f32 = 0.02;
 const THICKNESS: f32 = 0.028;
 const COLUMNS: u32 = 8;
-/// Springs along each layer, and up to the next.
+/// Number of springs along each layer, and between layers.
 const LAYER: u32 = 8;
 const FOLD: u32 = 2;
 const FOLDS: u32 = 5;
 const ROWS: u32 = (LAYER + FOLD) * FOLDS + LAYER;
 
-/// Returns a strip folded five times, its layers a little apart, which will fall.
+/// Returns a strip folded five times, its layers slightly apart, before it falls.
 fn pleated(thickness: f32) -> Cloth {
     let mut cloth = ClothDef {
         corner: Vec3::ZERO,
@@ -47,7 +47,7 @@ fn pleated(thickness: f32) -> Cloth {
     cloth
 }
 
-/// Returns the number of threads that pierce a triangle of the cloth without being its edge.
+/// Returns how often threads pierce triangles of the cloth with which they share no corner.
 fn crossings(positions: &[Vec3]) -> usize {
     let wide = COLUMNS as usize + 1;
     let mut triangles = Vec::new();
@@ -77,7 +77,7 @@ fn pierces([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
     sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0)
 }
 
-/// Returns a world with a floor, a pleated strip and a box of this mass above it; none for 0.
+/// Returns a world with a floor, a pleated strip and a box of mass `load` (kg) above it; no box for 0.
 fn folded(load: f32, thickness: f32) -> (World, GroupId) {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -92,8 +92,8 @@ fn folded(load: f32, thickness: f32) -> (World, GroupId) {
     (world, group)
 }
 
-/// Returns the crossings in `steps` steps, counted every tenth; the energy gain, J; and the height of the
-/// last body, metres.
+/// Returns the crossings in `steps` steps, counted in every tenth; the energy gain, J; and the height of the last body,
+/// metres.
 fn fall(load: f32, thickness: f32, steps: usize) -> (usize, f32, f32) {
     let (mut world, group) = folded(load, thickness);
     let first = world.energy().total();
@@ -111,7 +111,7 @@ fn fall(load: f32, thickness: f32, steps: usize) -> (usize, f32, f32) {
 
 #[test]
 fn folds_do_not_intersect() {
-    // A box as heavy as the cloth, and one thirteen times as heavy as the particles under it.
+    // A box as heavy as the cloth, and a box thirteen times as heavy as the particles under it.
     for load in [0.1, 0.2] {
         let (seen, gain, height) = fall(load, THICKNESS, 240);
         println!("{load} kg: {seen} crossings, {gain} J gained, box at {height} m");
@@ -119,7 +119,7 @@ fn folds_do_not_intersect() {
         assert!(gain < 0.002, "{load} kg: {gain} J");
         assert!(height > 0.03 + 0.01 + 4.0 * THICKNESS, "{load} kg: {height} m");
     }
-    // The count distinguishes them from layers that do not meet.
+    // Without thickness the layers do cross, so the count can detect crossings.
     let (seen, ..) = fall(0.2, 0.0, 240);
     assert!(seen > 50, "{seen} crossings without thickness");
 }
@@ -138,7 +138,7 @@ fn folds_come_to_rest() {
     assert!(top > 0.01 + 4.0 * THICKNESS, "{top} m");
 }
 
-/// Returns particles of these places, velocities and masses that keep a tenth of a metre from each other, without gravity.
+/// Returns two particles with these positions, velocities and masses, which keep 0.1 m apart, without gravity.
 fn pair(particles: [(Vec3, Vec3, f32); 2], joined: bool) -> ParticleGroup {
     let particle = |(position, velocity, mass)| ParticleDef { position, velocity, mass, radius: 0.01 };
     ParticleGroup::new(&GroupDef {
@@ -155,7 +155,7 @@ fn two_colliding_particles_move_on_together() {
     for _ in 0..200 {
         group.substep(1e-3, Vec3::ZERO, &[], &[], &mut []);
     }
-    // As after an inelastic impact: (1 − 3) / 4.
+    // Velocity after an inelastic impact: (1 − 3) / 4.
     for velocity in group.velocities() {
         assert!((velocity.x + 0.5).abs() < 1e-5, "{velocity:?}");
     }

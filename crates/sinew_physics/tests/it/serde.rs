@@ -1,4 +1,4 @@
-//! Definitions to a format of serde and back (feature `serde`; JSON, which has no infinity, is the hardest).
+//! Definitions to a serde format and back (feature `serde`). JSON has no infinity, so it is the hardest format.
 
 use serde_json::{from_str, to_string};
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3};

@@ -1,4 +1,4 @@
-//! Fast spinning rods: they hit balls that fly through their disc, and do not hit balls at places that they have left.
+//! Fast spinning rods hit balls that fly through their disc, and do not hit balls at positions that the rods have left.
 
 use sinew_math::{Random, Rotation, Transform, Vec3, clamp};
 use sinew_physics::*;
@@ -6,11 +6,11 @@ use sinew_physics::*;
 /// Radii of rod and ball, metres.
 const ROD: f32 = 0.03;
 const BALL: f32 = 0.06;
-/// Balls of each rod, and their initial height, metres.
+/// Number of balls of each rod, and their initial height, metres.
 const BALLS: u64 = 80;
 const HEIGHT: f32 = 1.0;
 
-/// Least distance of an unstruck ball from a rod, metres; negative: an overlap.
+/// Returns the smallest distance of a ball that flies freely from the rod, metres; negative for an overlap.
 fn nearest(start: Vec3, speed: f32, spin: f32, phase: f32, half: f32) -> f32 {
     let moments = 20_000;
     let distance = |moment: i32| {
@@ -22,7 +22,7 @@ fn nearest(start: Vec3, speed: f32, spin: f32, phase: f32, half: f32) -> f32 {
     (0..moments).map(distance).fold(f32::INFINITY, sinew_math::min)
 }
 
-/// Returns the balls that a spinning rod misses, and the balls that it strikes from afar.
+/// Returns the number of balls that a spinning rod misses, and of those that it hits from a distance.
 fn misses_and_ghosts(kind: BodyKind, spin: f32, length: f32) -> [u32; 2] {
     let half = 0.5 * length - ROD;
     let (mut missed, mut ghosts) = (0, 0);

@@ -11,7 +11,7 @@ fn tower(world: &mut World, masses: &[f32]) -> Vec<BodyId> {
     masses.iter().enumerate().map(|(i, &mass)| cube(world, place(i), mass)).collect()
 }
 
-/// Position of the centre of a cube of the tower.
+/// Returns the position of the centre of a cube of the tower.
 fn place(i: usize) -> Vec3 {
     Vec3::Y * (HALF * (2 * i + 1) as f32)
 }
@@ -34,7 +34,7 @@ fn run(world: &mut World, steps: usize) {
     }
 }
 
-/// Upward force of the floor (the first body) in the last step, N.
+/// Returns the upward force of the floor (the first body) on a body in the last step, N.
 fn floor_force(world: &World, on: BodyId) -> f64 {
     let of_floor = world.contacts_of(on).filter(|contact| contact.normal.y > 0.9 && contact.b.body == on);
     let impulse = |contact: BodyContact| contact.points().iter().map(|p| f64::from(p.impulse)).sum::<f64>();
@@ -52,7 +52,7 @@ fn towers_of_any_masses_shift_by_a_tenth_of_a_millimetre() {
     towers_of_any_masses_shift_by(1e-4);
 }
 
-/// Builds forty random towers; each cube ends at most this far aside, metres.
+/// Builds forty random towers and checks that each cube ends at most this far to the side, metres.
 fn towers_of_any_masses_shift_by(most_aside: f32) {
     let mut random = Random::new(71);
     for case in 0..40 {
@@ -105,7 +105,7 @@ fn a_light_body_hit_by_a_heavy_one_takes_its_speed() {
     assert!((v - Vec3::X * 10.0).length() < 1e-5, "{v:?}");
 }
 
-/// A wall of 30 rows of cubes: unlike in small piles, sweeps end before the load has settled.
+/// A wall of 30 rows of cubes stays at rest; unlike in small piles, sweeps end before the load has settled.
 #[test]
 fn a_wall_at_rest_stays_at_rest() {
     const ROWS: usize = 30;
@@ -118,7 +118,7 @@ fn a_wall_at_rest_stays_at_rest() {
     for step in 60..160 {
         world.step();
         let energy = world.energy().kinetic;
-        // 1 cm/s for all of them is 2.9 J; one substep without contacts, 48 J.
+        // 1 cm/s of all cubes is 2.9 J; one substep without contacts gives 48 J.
         assert!(energy < 5.0, "{energy} J in step {step}");
     }
 }

@@ -1,4 +1,4 @@
-//! Chains of plain ball joints, up to eight side by side: they move as alone, and as they would as islands.
+//! Chains of plain ball joints, up to eight together with SIMD: they move like single chains, and like islands.
 
 use crate::build::{ball, capsule_body};
 use sinew_math::{Random, ReadError, Reader, Transform, Vec3, Writer};
@@ -6,7 +6,7 @@ use sinew_physics::*;
 
 const LENGTH: f32 = 0.3;
 
-/// Returns a swinging chain of links of 1 to 50 kg, number `i` of a crowd in which no two meet.
+/// A swinging chain of links of 1 to 50 kg, one of a crowd in which no two meet.
 struct Chain {
     bodies: Vec<BodyId>,
     joints: Vec<JointId>,
@@ -15,7 +15,7 @@ struct Chain {
 impl Chain {
     fn new(world: &mut World, i: u32, links: usize, is_held: bool) -> Self {
         let mut random = Random::new(u64::from(i) + 1);
-        // Near the origin: at 40 m the rounding of a position is a millimetre a second.
+        // Near the origin, because at 40 m the rounding of positions is a millimetre per second.
         let origin = Vec3::X * (4.0 * i as f32);
         let mut last = is_held.then(|| {
             world.add_body(&BodyDef { kind: BodyKind::Static, position: origin, ..BodyDef::default() })
@@ -31,7 +31,7 @@ impl Chain {
             let body = world.add_body(&def);
             if let Some(last) = last {
                 let joint = ball(world, last, body, at - Vec3::Z * (0.5 * LENGTH));
-                // Either may be the second body.
+                // The new link may be body A or body B.
                 let flipped = JointDef {
                     body_a: joint.body_b,
                     body_b: joint.body_a,
@@ -56,7 +56,7 @@ impl Chain {
     }
 }
 
-/// Pushes bodies by nearly nothing, so that their islands are solved as such.
+/// Object that pushes bodies by almost nothing, so that their islands are not solved as strands.
 struct Touch(Vec<BodyId>);
 
 impl PhysicsObject for Touch {
@@ -78,7 +78,7 @@ fn run(world: &mut World, steps: usize) {
 
 #[test]
 fn bits_are_the_same_alone_and_beside_others() {
-    // From 24 links on a strand is cut into pieces, one per lane.
+    // A strand of 24 or more links is divided into pieces, one per lane.
     let lengths = |i: u32| [4, 7, 7, 26][i as usize % 4];
     let mut crowd = World::new(WorldDef::default());
     let chains: Vec<_> = (0..15).map(|i| Chain::new(&mut crowd, i, lengths(i), i != 8)).collect();
@@ -221,7 +221,7 @@ fn a_joint_that_is_open_closes_as_in_an_island() {
     island.add_object(Box::new(Touch(b.bodies.clone())));
     run(&mut strand, 1);
     run(&mut island, 1);
-    // The islands' solver takes it: equal to the bit.
+    // The island solver takes over with exactly the same bits.
     assert_eq!(a.state(&strand), b.state(&island));
     run(&mut strand, 30);
     assert!(strand.joint_gap(a.joints[2]) < 1e-5, "{}", strand.joint_gap(a.joints[2]));

@@ -1,4 +1,4 @@
-//! Materials, contact rules and hits against closed forms, and changes of them while the world runs.
+//! Materials, contact rules and hits, compared with closed forms, and their changes while the world runs.
 
 use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, trig};
@@ -41,7 +41,7 @@ fn reloaded(world: &World, into: &mut World) {
     into.load(&mut Reader::new(w.as_bytes())).expect("it is a snapshot");
 }
 
-/// Returns a block on a slope, both of a material, at rest; speed and place are along the slope, downhill.
+/// Returns a block at rest on a slope, both of one material, and the direction down the slope.
 fn on_slope(angle: f32, material: Material) -> (World, BodyId, Vec3) {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     let turn = Rotation::from_axis_angle(Vec3::Z, angle);
@@ -66,7 +66,7 @@ fn a_block_holds_to_the_static_angle_and_slides_with_the_other_coefficient() {
     run(&mut world, 600);
     let crept = (world.transform(block).translation - start).length();
     assert!(crept < 1e-3, "it crept {crept} m in 10 s");
-    // A push makes it slide, and it stops again: the slope is below the angle of sliding.
+    // A push makes the block slide, and it stops again: the slope is below the friction angle.
     world.apply_impulse_at_center(block, down * world.mass(block).mass);
     run(&mut world, 60);
     assert!(world.velocity(block).linear.dot(down) > 1.5, "{:?}", world.velocity(block));
@@ -100,7 +100,7 @@ fn a_belt_carries_a_box_to_its_speed() {
     let belt = Material { friction, surface_velocity: Vec3::X * speed, ..Material::DEFAULT };
     for kind in [BodyKind::Static, BodyKind::Kinematic] {
         let mut world = World::new(WorldDef::default());
-        // Rotated: the velocity is in the shape's frame.
+        // The belt is rotated: its velocity is in the shape's frame.
         let turn = Rotation::from_axis_angle(Vec3::Y, 0.7);
         let mut def = made_of(box_body(Vec3::new(20.0, 0.5, 20.0), Vec3::Y * -0.5), belt);
         (def.kind, def.rotation) = (kind, turn);
@@ -183,13 +183,13 @@ fn rolling_resistance_brakes_a_ball() {
     run(&mut world, 30);
     let before = world.velocity(ball).linear.x;
     run(&mut world, 60);
-    // f = m a + …: a rolling ball has 7/5 of its mass; the torque ρ m g acts at its radius.
+    // f = m a + …: a rolling ball acts with 7/5 of its mass; the torque ρ m g acts at its radius.
     let expected = rolling * G / (1.4 * radius);
     let lost = (before - world.velocity(ball).linear.x) / (60.0 * world.def().dt());
     assert_near(lost, expected, 0.01, "m/s² against rolling");
 }
 
-/// Returns a platform 10 cm thick whose top is at a height.
+/// Adds a platform 10 cm thick with its top at the height `top`.
 fn platform(world: &mut World, top: f32) -> BodyId {
     let slab = fixed(box_body(Vec3::new(2.0, 0.05, 2.0), Vec3::Y * (top - 0.05)));
     world.add_body(&under_rule(slab, ContactRule::OneWay(OneWay::default())))
@@ -218,7 +218,7 @@ fn a_one_way_platform_passes_upward_and_holds_downward() {
 
 #[test]
 fn a_passing_body_keeps_passing_after_a_restore() {
-    // Its apex is inside the platform: it must fall out again, not be put on top.
+    // The apex is inside the platform: the ball must fall out again, not be placed on top.
     let start = || {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -242,7 +242,7 @@ fn a_passing_body_keeps_passing_after_a_restore() {
     assert!((world.transform(ball).translation.y - 0.1).abs() < 3e-3);
 }
 
-/// Returns the speed that reaches a height, m/s.
+/// Returns the speed that is needed to reach a height, m/s.
 fn trig_speed(height: f32) -> f32 {
     (2.0 * G * height).sqrt()
 }
@@ -266,7 +266,7 @@ fn a_ghost_is_reported_without_pushing() {
     assert_near(1.0 - world.transform(ball).translation.y, 0.5 * G * t * (t + h), 1e-3, "it falls freely");
 }
 
-/// Lets only bodies with user data 7 pass; throws those with 8 up at 5 m/s.
+/// Modifier that lets bodies with user data 7 pass, and throws those with 8 up at 5 m/s.
 fn bouncer(found: &FoundContact<'_>, mut material: ContactMaterial) -> Option<ContactMaterial> {
     assert!(!found.points.is_empty());
     let number = found.sides[0].user_data + found.sides[1].user_data;
@@ -311,7 +311,7 @@ fn a_modifier_drops_contacts_and_throws() {
     assert_eq!(world.hash(), other.hash());
 }
 
-/// Bodies whose numbers have an odd sum do not collide.
+/// Pair function: bodies whose user data have an odd sum do not collide.
 fn even(a: &PairSide, b: &PairSide) -> bool {
     (a.user_data + b.user_data).is_multiple_of(2)
 }
@@ -405,9 +405,9 @@ fn a_hit_reports_speed_and_impulse_once() {
             let (mass, speed) = (world.mass(ball).mass, trig_speed(height));
             assert_eq!((hit.a.body, hit.b.body, hit.normal), (ground, ball, Vec3::Y));
             assert_eq!(hit.materials[1].tag, 7);
-            // The approach speed is that of the step's beginning: up to a step of falling is missing.
+            // The approach speed is that at the start of the step, so up to one step of falling is missing.
             assert!(hit.approach < speed * 1.001 && hit.approach > speed - 1.1 * G / 60.0, "{hit:?} {speed}");
-            // The rest of the same step holds the ball up.
+            // In the rest of the step the contact also carries the ball's weight.
             let weight = mass * G * 2.0 / 60.0;
             let expected = mass * speed * (1.0 + restitution);
             let slack = tolerance * expected + weight;
@@ -457,10 +457,10 @@ fn sensors_report_static_moving_sleeping_and_removed_bodies() {
     (door.kind, door.linear_velocity) = (BodyKind::Kinematic, Vec3::Y * -2.0);
     let door = world.add_body(&door);
     world.step();
-    // Floor and gate are static: they do not see each other.
+    // Floor and gate are static, so the gate does not detect the floor.
     assert_eq!(world.events().sensor_begin, [(gate, sleeper)]);
     assert!(!world.events().sensor_begin.iter().any(|pair| pair.0 == ground));
-    // 0.9 m at 2 m/s are 27 steps.
+    // A distance of 0.9 m at 2 m/s takes 27 steps.
     let seen = (1..40).find(|_| {
         world.step();
         world.events().sensor_begin == [(gate, door)]

@@ -1,4 +1,4 @@
-//! The pool behind `Threads`: every call is made for any batch, and nothing is left behind.
+//! The pool of `Threads` makes every call of any batch, and ends its threads.
 
 use core::sync::atomic::{AtomicUsize, Ordering};
 use sinew_math::Random;
@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::thread;
 use std::time::Duration;
 
-/// Returns the calls that a batch of `count` makes.
+/// Returns the number of calls that a batch of `count` makes.
 fn calls(threads: &Threads, count: usize) -> usize {
     let made = AtomicUsize::new(0);
     threads.run(count, &|| _ = made.fetch_add(1, Ordering::Relaxed));
@@ -26,7 +26,7 @@ fn each_batch_makes_every_call() {
     }
 }
 
-/// Batches of all sizes, at once and after pauses in which the workers fall asleep.
+/// Batches of all sizes, immediately and after pauses in which the workers fall asleep.
 #[test]
 fn random_batches_lose_no_call() {
     let threads = Threads::new(4);
@@ -59,7 +59,7 @@ fn work_is_shared() {
     });
 }
 
-/// The caller has no more work and sleeps until the last call has returned.
+/// The caller runs out of calls and sleeps until the last call has returned.
 #[test]
 fn long_calls_are_waited_for() {
     let threads = Threads::new(3);
@@ -86,7 +86,7 @@ fn a_panic_reaches_the_caller_and_the_pool_goes_on() {
         let batch = || {
             threads.run(count, &|| {
                 let piece = next.fetch_add(1, Ordering::Relaxed);
-                // Without the hook's message.
+                // Panics without the message of the hook.
                 if piece == bad {
                     std::panic::resume_unwind(Box::new(piece));
                 }
@@ -127,7 +127,7 @@ fn a_pool_can_be_dropped_at_any_time() {
             assert_eq!(calls(&threads, round), round);
         }
         if round % 20 == 0 {
-            // Its workers are asleep.
+            // The workers of the pool are asleep now.
             thread::sleep(Duration::from_millis(2));
         }
         drop(threads);

@@ -1,4 +1,5 @@
-//! Touches that are easily lost or reported twice: of sleeping, bouncing and slowly rolling bodies, and of many triangles.
+//! Touches that are easily lost or reported twice: those of sleeping, bouncing and slowly rolling bodies, and of many
+//! triangles.
 
 use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer};
@@ -7,7 +8,7 @@ use std::sync::Arc;
 
 type Pair = (BodyId, BodyId);
 
-/// Events of several steps.
+/// Events of several steps, added up.
 #[derive(Debug, Default)]
 struct Seen {
     begin: Vec<Pair>,
@@ -39,7 +40,7 @@ fn reloaded(world: &World) -> World {
     other
 }
 
-/// A crate asleep on a floor, within a sensor.
+/// Returns a world with a crate asleep on a floor, within a sensor.
 fn nap() -> (World, BodyId, BodyId, BodyId) {
     let mut world = World::new(WorldDef::default());
     let floor = floor(&mut world);
@@ -103,7 +104,7 @@ fn disabling_an_untouched_pair_wakes_nothing() {
 
 #[test]
 fn slow_and_bouncing_contacts_are_reported() {
-    // On the floor at 5 cm/s, and from 1 to 20 m/s with high restitution.
+    // On the floor at 5 cm/s, and at 1.5 to 20 m/s with high restitution.
     for (speed, restitution) in [(0.05, 0.0), (1.5, 0.9), (5.0, 0.9), (20.0, 1.0)] {
         let def = WorldDef { sleeping: Sleeping::Off, gravity: Vec3::ZERO, ..WorldDef::default() };
         let mut world = World::new(def);
@@ -137,7 +138,7 @@ fn a_ball_that_rolls_along_touches_each_slab_once() {
     assert_eq!(seen.end, expected[..4]);
 }
 
-/// Returns a trench of two slopes, each of many triangles, with steps at its end that turn the normals from tile to tile.
+/// Returns a trench of two slopes of many triangles. Steps at its end rotate the normals from tile to tile.
 fn trench() -> Shape {
     let (length, width) = (40, 3);
     let vertex = |i: usize, j: usize| {
@@ -169,7 +170,7 @@ fn many_triangles_are_one_touch_and_one_hit() {
     assert_eq!((seen.shapes_begin, seen.shapes_end, seen.hits), (1, 0, 1));
     let parts = world.contacts_of(block).count();
     assert!(parts > 1, "{parts} parts");
-    // Both slopes keep carrying it while it slides: from tile to tile they rise and fall by 10 mm.
+    // Both slopes carry the block while it slides; from tile to tile they rise and fall by 10 mm.
     let lying = world.transform(block).translation.y;
     run(&mut world, 300);
     let lies = world.transform(block).translation.y;

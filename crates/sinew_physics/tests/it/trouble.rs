@@ -1,4 +1,4 @@
-//! Numeric trouble: bodies with numbers that are not finite are stopped and reported, and the rest continues.
+//! Numeric trouble: bodies with numbers that are not finite are stopped and reported, and all others continue.
 
 use crate::build::{floor, sphere_body};
 use sinew_math::{Transform, Vec3};
@@ -6,7 +6,7 @@ use sinew_physics::field::PARAMETERS;
 use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef};
 use sinew_physics::*;
 
-/// Acts on bodies faster than 1 m/s.
+/// Field function that gives bodies faster than 1 m/s a force of NaN.
 fn poison(point: &FieldPoint, _: &[f32; PARAMETERS]) -> Wrench {
     let force = if point.velocity.length() > 1.0 { Vec3::splat(f32::NAN) } else { Vec3::ZERO };
     Wrench { force, ..Wrench::default() }
@@ -109,8 +109,8 @@ fn set_transform_normalizes_the_rotation() {
     assert_eq!(world.transform(ball).rotation.length(), 1.0);
 }
 
-/// A huge velocity is reduced to the world's limit in its direction and reported once, also where its square exceeds
-/// 32 bits.
+/// A huge velocity is reduced to the world's limit in its direction and reported once, even if its square exceeds the
+/// range of `f32`.
 #[test]
 fn extreme_impulses_are_limited_and_reported() {
     for (on_floor, jointed) in [(false, false), (true, false), (false, true)] {
@@ -147,7 +147,7 @@ fn extreme_spins_are_limited_and_reported() {
         world.apply_angular_impulse(body, Vec3::Y * impulse);
         world.step();
         let spin = world.velocity(body).angular;
-        // A quarter of a turn in each of four substeps.
+        // At most a quarter turn in each of four substeps.
         let most = core::f32::consts::FRAC_PI_2 * 240.0;
         assert!(
             (spin.y - most).abs() < 1e-3 * most && spin.x.abs() + spin.z.abs() < 1e-3,
@@ -157,8 +157,8 @@ fn extreme_spins_are_limited_and_reported() {
     }
 }
 
-/// Rows extrapolate the surface of a body that spins this fast along its tangent, to where it never is: they once pushed a cone on a
-/// slider away for good, and reported a touch.
+/// Contact rows extrapolate the surface of a fast spinning body along its tangent, to positions that it never reaches.
+/// They once pushed a cone on a slider away permanently, and reported a touch.
 #[test]
 fn an_extreme_kinematic_spin_pushes_nothing_far_away() {
     for spin in [1e4, 1e6, 1e12] {

@@ -10,7 +10,7 @@ use sinew_physics::*;
 /// Number of compared steps.
 const STEPS: u64 = 180;
 
-/// Returns the hash after every tenth step, taken when no time is left over.
+/// Returns the hash after every tenth step, taken when no time remains.
 fn hashes(mut frame: impl FnMut() -> Duration) -> Vec<u64> {
     let mut world = inhabited();
     let step = world.def().step_nanoseconds;
@@ -18,7 +18,7 @@ fn hashes(mut frame: impl FnMut() -> Duration) -> Vec<u64> {
     for k in (10..=STEPS).step_by(10) {
         let mut left = Duration::from_nanos(step * k) - Duration::from_nanos(step * (k - 10));
         while left > Duration::ZERO {
-            // The last frame has the length that is missing.
+            // The last frame has the remaining length.
             let time = Duration::min(frame(), left);
             assert_eq!(world.update(time).dropped, Duration::ZERO);
             left -= time;
@@ -57,7 +57,7 @@ fn time_beyond_catch_up_steps_is_dropped_and_reported() {
     assert_eq!((late.steps, late.dropped), (4, step * 6));
     assert!((late.alpha - 0.5).abs() < 1e-6, "what is less than a step still waits");
     assert_eq!(world.step_count(), 8);
-    // A host that slept for five hundred years.
+    // Host that slept for five hundred years.
     let late = world.update(Duration::from_secs(500 * 365 * 86_400));
     assert_eq!(late.steps, 4);
     assert_eq!(world.update(Duration::MAX).steps, 4);
@@ -114,7 +114,7 @@ fn interpolated_poses_lie_between_two_steps() {
         let alpha = world.update(frame).alpha;
         time += frame.as_secs_f32();
         if world.step_count() > 0 {
-            // One step behind the time that has passed.
+            // One step behind the elapsed time.
             let expected = time - world.def().dt();
             let of_particle = world.particles(group).interpolated(alpha).next();
             for x in [world.interpolated(body, alpha).translation.x, of_particle.map_or(0.0, |at| at.x)] {

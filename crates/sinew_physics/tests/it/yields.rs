@@ -1,10 +1,10 @@
-//! Shapes that yield: kinematic bodies that push with limited force.
+//! Shapes that yield: kinematic bodies that push with a limited force.
 
 use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Reader, Rotation, Vec3, Writer, max};
 use sinew_physics::*;
 
-/// Returns a kinematic arm, an upright capsule of 10 cm, with a velocity.
+/// Adds a kinematic arm, an upright capsule of radius 0.1 m, with a velocity.
 fn arm(world: &mut World, at: Vec3, velocity: Vec3) -> BodyId {
     let shape = Shape::Capsule { half_height: 0.4, radius: 0.1 };
     let rule = ContactRule::Yields(Yields::default());
@@ -24,7 +24,7 @@ fn level() -> World {
     world
 }
 
-/// Returns a ball of 0.43 kg that bounces.
+/// Adds a ball of 0.43 kg that bounces.
 fn ball(world: &mut World, at: Vec3, velocity: Vec3) -> BodyId {
     let mut def = sphere_body(0.11, at);
     (def.linear_velocity, def.mass) = (velocity, Some(Shape::Sphere { radius: 0.11 }.mass_properties(77.0)));
@@ -77,7 +77,7 @@ fn a_body_jammed_against_a_wall_is_not_crushed() {
     let mut world = level();
     let wall = Shape::Box { half_extents: Vec3::new(0.2, 1.0, 1.0) };
     world.add_body(&BodyDef::fixed(wall).at(Vec3::new(0.45, 1.0, 0.0)));
-    // The motion is slow enough for the force to suffice.
+    // The motion is so slow that the force suffices.
     arm(&mut world, Vec3::new(-0.4, 0.5, 0.0), Vec3::X * 0.05);
     let mut def = box_body(Vec3::splat(0.25), Vec3::Y * 0.25);
     def.mass = Some(Shape::Box { half_extents: Vec3::splat(0.25) }.mass_properties(80.0));
@@ -118,7 +118,7 @@ fn movers_pass_yielding_shapes_and_snapshots_restore_equally() {
     arm(&mut world, Vec3::new(1.0, 0.6, 0.0), Vec3::X * -0.5);
     let mover = world.add_mover(&MoverDef::at(Vec3::ZERO));
     world.set_mover_walk(mover, Vec3::X * 2.0);
-    // Low enough to be stepped over.
+    // Low enough for a step over it.
     let load = world.add_body(&box_body(Vec3::splat(0.15), Vec3::new(0.6, 0.15, 0.1)));
     for _ in 0..30 {
         world.step();

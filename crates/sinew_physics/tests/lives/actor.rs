@@ -1,4 +1,4 @@
-//! A world with names for its objects, so that the same calls can be applied to several worlds.
+//! A world with names for its objects, so that several worlds can get the same calls.
 
 use crate::code::{self, Code, rusty};
 use crate::extension::Extension;
@@ -10,10 +10,11 @@ use sinew_physics::stage::NoProfiler;
 use sinew_physics::*;
 use std::collections::BTreeMap;
 
-/// Objects of a kind that a life has created, by name: a number that stays when earlier deeds are removed.
+/// Objects of a kind that a life has created, each with its name: a number that does not change when earlier deeds are
+/// removed.
 pub type Names<T> = Vec<(u64, T)>;
 
-/// Another world that will continue beside this one.
+/// Kind of another world that will continue next to this one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Twin {
     /// A new world that loads a snapshot.
@@ -32,18 +33,18 @@ pub struct Actor {
     pub movers: Names<MoverId>,
     pub forces: Names<ForceId>,
     pub objects: Names<ObjectId>,
-    /// Answers of the current deed.
+    /// Recorded answers of the current deed.
     pub said: String,
-    /// Calls by name.
+    /// Number of calls by name of the method.
     pub calls: BTreeMap<&'static str, u64>,
-    /// Lines of the equivalent program, if it is recorded.
+    /// Lines of the equivalent program, if one is recorded.
     pub lines: Option<Vec<String>>,
-    /// A twin that the current deed asks for.
+    /// Twin that the current deed requests.
     pub wanted: Option<Twin>,
     pub threads: Option<Threads>,
-    /// Objects beside the world, such as characters.
+    /// Objects next to the world, such as characters.
     pub more: Extension,
-    /// Name of the current deed, and how many objects it has named.
+    /// Name of the current deed, and the number of objects it has named.
     deed: u64,
     named: u64,
 }
@@ -81,17 +82,17 @@ pub fn owner() -> Owner {
     Owner { name: "cart".into(), calls: "`Cart::scrap`".into(), parts: vec!["wheel".into()] }
 }
 
-/// [`owner`] as Rust.
+/// Rust code of [`owner`].
 const OWNER: &str =
     "&Owner { name: \"cart\".into(), calls: \"`Cart::scrap`\".into(), parts: vec![\"wheel\".into()] }";
 
-/// Records an answer, to compare with other worlds.
+/// Records an answer, for the comparison with other worlds.
 pub fn say(said: &mut String, name: &str, answer: &dyn core::fmt::Debug) {
     writeln!(said, "{name}: {answer:?}").expect("memory");
 }
 
 impl Actor {
-    /// Records a call that passes one object to [`owner`].
+    /// Records a call that assigns one object to [`owner`].
     pub fn note_owned(&mut self, name: &'static str, id: &dyn core::fmt::Debug) {
         if self.lines.is_some() {
             self.tell(
@@ -124,7 +125,7 @@ impl Actor {
         }
     }
 
-    /// Returns the same names with another world.
+    /// Returns an actor with the same names and a copy of the world.
     pub fn twin(&self, kind: Twin) -> Self {
         let world = match kind {
             Twin::Clone => self.world.clone(),
@@ -143,7 +144,7 @@ impl Actor {
         }
     }
 
-    /// Begins a deed.
+    /// Starts a deed.
     pub fn begin(&mut self, deed: u64) {
         (self.deed, self.named) = (deed, 0);
         self.said.clear();
@@ -171,7 +172,7 @@ impl Actor {
         }
     }
 
-    /// Names the result of the last line in the program.
+    /// Binds the result of the last line of the program to the name of an id.
     pub fn let_be(&mut self, id: &dyn core::fmt::Debug) {
         if let Some(last) = self.lines.as_mut().and_then(|lines| lines.last_mut()) {
             *last = format!("let {} = {last}", rusty(&format!("{id:?}")));
@@ -196,7 +197,7 @@ impl Actor {
         id
     }
 
-    /// Names a joint that the last call created.
+    /// Stores a joint that the last call created under a new name.
     pub fn name_joint(&mut self, id: JointId) {
         self.let_be(&id);
         let name = self.name();
@@ -244,7 +245,7 @@ impl Actor {
         self.objects.push((name, id));
     }
 
-    /// Returns a body of some kind other than the floor, if there is one.
+    /// Returns a body other than the floor that meets a condition, if there is one.
     pub fn body(&self, numbers: &mut Numbers, is: impl Fn(&World, BodyId) -> bool) -> Option<BodyId> {
         let there = |id: BodyId| self.world.contains(id) && is(&self.world, id);
         pick(&self.bodies, numbers.bits(), there)
@@ -287,7 +288,7 @@ impl Actor {
         pick(&self.forces, numbers.bits(), there)
     }
 
-    /// Returns one of a body's shapes, if it has any.
+    /// Returns one shape of a body, if the body has any.
     pub fn shape(&self, numbers: &mut Numbers, body: BodyId) -> Option<ShapeId> {
         let count = self.world.shape_ids(body).count();
         let number = numbers.index(count.max(1)) as u32;
@@ -320,7 +321,7 @@ impl Actor {
     }
 }
 
-/// True if particles hang on a body or an object needs it, so that it cannot be removed.
+/// True if particles are attached to a body or an object needs it, so that it cannot be removed.
 pub fn is_worn(world: &World, id: BodyId) -> bool {
     let by_particles = world.group_ids().any(|group| {
         let group = world.particles(group);
@@ -352,7 +353,7 @@ pub fn reload(world: &mut World) {
     world.load(&mut Reader::new(state.as_bytes())).expect("a saved world is valid");
 }
 
-/// Returns the object whose name ranks highest for the key: the same one whatever others there are.
+/// Returns the object whose name ranks highest for the key: it does not depend on the other objects.
 pub fn pick<T: Copy>(all: &[(u64, T)], key: u64, is: impl Fn(T) -> bool) -> Option<T> {
     let rank = |name: u64| {
         let mixed = (name ^ key).wrapping_mul(0xff51_afd7_ed55_8ccd);

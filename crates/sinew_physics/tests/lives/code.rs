@@ -1,9 +1,9 @@
-//! Values and calls as Rust, for the program that shows a failure.
+//! Values and calls as Rust code, for the program that reproduces a failure.
 
 use core::fmt::Debug;
 use sinew_physics::*;
 
-/// A value that can be written as Rust.
+/// A value that can be written as Rust code.
 pub trait Code {
     fn code(&self) -> String;
 }
@@ -14,13 +14,13 @@ impl<T: Debug> Code for T {
     }
 }
 
-/// An argument of a call, borrowed where the deed borrows it.
+/// Returns the code of an argument of a call, borrowed if the deed borrows it.
 pub fn argument(written: &str, value: &dyn Debug) -> String {
     let borrowed = if written.starts_with('&') { "&" } else { "" };
     format!("{borrowed}{}", rusty(&format!("{value:?}")))
 }
 
-/// Variants by name, their enum, and what follows the name: nothing, `(` or ` {`.
+/// Names of variants, their enum, and the text that follows the name: nothing, `(` or ` {`.
 const VARIANTS: &[(&str, &str, &str)] = &[
     ("BodyKind", "Static Kinematic Dynamic", ""),
     ("Sleeping", "On Off", ""),
@@ -51,7 +51,7 @@ const VARIANTS: &[(&str, &str, &str)] = &[
     ("particles::Resists", "Both Stretch", ""),
 ];
 
-/// Enums whose variants share names with others, by their field.
+/// Enums whose variants share names with others, by the name of the field.
 const FIELDS: &[(&str, &str)] = &[
     ("state", "JointState"),
     ("collision", "JointCollision"),
@@ -60,11 +60,11 @@ const FIELDS: &[(&str, &str)] = &[
     ("frame", "ForceFrame"),
 ];
 
-/// Fields that are lists, not arrays.
+/// Names of the fields that are lists, not arrays.
 const LISTS: &str =
     " shapes particles springs bends tethers volumes triangles faces attachments backstops passes ";
 
-/// Returns Rust for the output of `Debug`.
+/// Returns Rust code for the output of `Debug`.
 pub fn rusty(text: &str) -> String {
     let mut out = String::new();
     let (mut rest, mut field) = (text, "");
@@ -119,7 +119,7 @@ fn is_id(part: &str) -> bool {
     part.starts_with(|c: char| c.is_ascii_digit())
 }
 
-/// A word that is neither a field nor a number.
+/// Returns the code for a word that is neither a field nor a number.
 fn name(word: &str, field: &str, rest: &str) -> String {
     match word {
         "Vec3" => return "Vec3::new".to_owned(),
@@ -141,7 +141,7 @@ fn name(word: &str, field: &str, rest: &str) -> String {
     variant.map_or_else(|| word.to_owned(), |(kind, ..)| format!("{kind}::{word}"))
 }
 
-/// Returns a shape as the call that makes it.
+/// Returns a shape as a call of its constructor.
 fn shape(shape: &Shape) -> String {
     match shape {
         Shape::Hull(hull) => format!("Shape::hull(&{}).expect(\"a hull\")", hull.vertices().code()),

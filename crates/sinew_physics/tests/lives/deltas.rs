@@ -1,10 +1,10 @@
-//! Deltas of snapshots: exact, small for small changes, and refused if damaged.
+//! Deltas of snapshots are exact, small for small changes, and refused if damaged.
 
 use crate::lies::at_each_step;
 use sinew_math::Random;
 use sinew_physics::*;
 
-/// Returns snapshots of a life, step by step, with objects added and removed between them.
+/// Returns the snapshots of a life, step by step, with objects added and removed between them.
 fn snapshots(seed: u64) -> Vec<Snapshot> {
     let mut all = Vec::new();
     at_each_step(seed, |world| all.push(Snapshot::of(world)));

@@ -1,4 +1,4 @@
-//! Objects kept beside a world, with their own deeds: none here. The lives of the ragdoll crate use the same files and have
+//! Objects next to a world, with their own deeds: none here. The lives of the ragdoll crate use the same files and have
 //! characters in this place.
 
 use crate::actor::Twin;
@@ -10,13 +10,13 @@ use sinew_physics::World;
 
 /// Types whose public methods the lives call.
 pub const CALLED: &[&str] = &["World"];
-/// Deeds besides those of the world, and names of those that begin a life.
+/// Additional deeds, and the names of those that create the initial objects.
 pub const DEEDS: &[&[Deed]] = &[];
 pub const MAKERS: &[&str] = &[];
-/// Steps with deeds.
+/// Range of the number of steps with deeds.
 pub const BUSY: Range<u32> = 20..100;
 
-/// Objects kept beside a world.
+/// Objects kept next to a world.
 pub struct Extension;
 
 impl Extension {
@@ -24,7 +24,7 @@ impl Extension {
         Self
     }
 
-    /// The same beside a copy of the world.
+    /// Returns the objects for a copy of the world.
     pub fn twin(&self, _: Twin) -> Self {
         Self
     }
@@ -33,7 +33,7 @@ impl Extension {
 
     pub fn after_step(&mut self, _: &mut World) {}
 
-    /// Returns the bytes of its state.
+    /// Returns the bytes of the objects' state.
     pub fn state(&self) -> Vec<u8> {
         Vec::new()
     }
@@ -43,12 +43,12 @@ impl Extension {
         String::new()
     }
 
-    /// True if it releases energy that nothing counts.
+    /// True if the objects release energy that the checks do not count.
     pub fn drives(&self) -> bool {
         false
     }
 
-    /// Checks it after a step; `quiet`: steps since the last deed.
+    /// Checks the objects after a step; `quiet` is the number of steps since the last deed.
     ///
     /// # Errors
     /// If a check fails.
@@ -56,6 +56,6 @@ impl Extension {
         Ok(())
     }
 
-    /// Removes all of it from the world.
+    /// Removes all of the objects from the world.
     pub fn empty(&mut self, _: &mut World) {}
 }

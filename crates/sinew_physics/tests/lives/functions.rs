@@ -1,4 +1,4 @@
-//! Functions and objects of the user that lives register.
+//! User functions and objects that lives register.
 
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::field::{FieldPoint, PARAMETERS};
@@ -6,7 +6,7 @@ use sinew_physics::*;
 
 pub const NUMBER: u32 = 1;
 
-/// Registers all of them.
+/// Registers all functions and objects.
 pub fn register(world: &mut World) {
     world.register_pair_function(NUMBER, parity);
     world.register_modifier(NUMBER, slippery);
@@ -28,14 +28,14 @@ fn pull(point: &FieldPoint, parameters: &[f32; PARAMETERS]) -> Wrench {
     Wrench { force: to * (point.mass * parameters[3]), torque: Vec3::ZERO }
 }
 
-/// Pulls a body toward a place.
+/// Object that pulls a body toward a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Tug {
     pub body: BodyId,
     pub place: Vec3,
-    /// N/m.
+    /// Stiffness, N/m.
     pub stiffness: f32,
-    /// Substeps in which it was called.
+    /// Number of substeps in which the object was called.
     pub asked: u32,
 }
 
@@ -53,7 +53,7 @@ impl PhysicsObject for Tug {
         self.asked += 1;
         if forces.contains(self.body) {
             let pull = (self.place - forces.center_of_mass(self.body)) * self.stiffness;
-            // Limits the pull from huge distances.
+            // Pulls from huge distances are skipped.
             if pull.length() < 1e12 {
                 forces.apply_force_at_center(self.body, pull);
             }

@@ -1,11 +1,12 @@
-//! The public calls in the sources of the crate: each needs a deed that makes it.
+//! Public methods in the sources of the crate: each needs a deed that calls it.
 
 use crate::extension::CALLED;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// Returns the names of all public methods of the types that lives call: those of `World` alone, of others after the type's.
+/// Returns the names of all public methods of the types that lives call: methods of `World` by their name, others after
+/// the name of their type.
 pub fn methods() -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src")];
@@ -30,7 +31,8 @@ fn named(of: &str, method: &str) -> String {
     if of == "World" { method.to_owned() } else { format!("{of}::{method}") }
 }
 
-/// Collects the public methods in a file's `impl` blocks of the types, each of which ends at a brace in the first column.
+/// Collects the public methods in a file's `impl` blocks of these types; each block ends at a brace in the first
+/// column.
 fn of_file(source: &str, found: &mut BTreeSet<String>) {
     let mut inside = None;
     for line in source.lines() {
@@ -45,11 +47,13 @@ fn of_file(source: &str, found: &mut BTreeSet<String>) {
     }
 }
 
-/// Checks that the lives call every method.
+/// True if the lives call every method.
 pub fn has_all(calls: &BTreeMap<&'static str, u64>) -> bool {
     methods().iter().all(|name| calls.contains_key(name.as_str()))
 }
 
+/// Checks that the lives call every method.
+///
 /// # Panics
 /// If no life calls a method, or the lives call one that does not exist.
 pub fn expect_all(calls: &BTreeMap<&'static str, u64>) {

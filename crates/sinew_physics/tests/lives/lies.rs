@@ -1,5 +1,5 @@
-//! Damaged snapshots: bytes of a saved world, some of them replaced. Loading refuses them or makes a world that
-//! can be stepped; nothing panics, and nothing takes long.
+//! Damaged snapshots: bytes of a saved world, some of them replaced. Loading refuses them or creates a world that can
+//! be stepped, without a panic and within a short time.
 
 use crate::actor::Actor;
 use crate::functions;
@@ -9,15 +9,15 @@ use sinew_math::{Random, Reader, Writer};
 use sinew_physics::*;
 use std::time::{Duration, Instant};
 
-/// Number of damaged snapshots of each world (a fifth of it unless `SINEW_FULL` is set), and of worlds.
+/// Number of damaged snapshots of each world (a fifth of it unless `SINEW_FULL` is set), and number of worlds.
 const LIES: usize = 500;
 const WORLDS: u64 = 20;
-/// Steps of a world that loads nevertheless.
+/// Number of steps of a world that loads a damaged snapshot.
 const STEPS: usize = 3;
-/// Limit of the time for loading and stepping one.
+/// Longest time for loading and stepping one snapshot.
 const LONG: Duration = Duration::from_secs(5);
 
-/// Returns a world in the middle of a life, as bytes: its shapes and its state.
+/// Returns a world in the middle of a life as bytes: its shapes and its state.
 fn saved(seed: u64) -> (Vec<u8>, Vec<u8>) {
     let mut last = (Vec::new(), Vec::new());
     at_each_step(seed, |world| {
@@ -29,7 +29,7 @@ fn saved(seed: u64) -> (Vec<u8>, Vec<u8>) {
     last
 }
 
-/// Passes a world to a function after each of the first steps of a life.
+/// Passes the world to a function after each of the first steps of a life.
 pub fn at_each_step(seed: u64, mut show: impl FnMut(&World)) {
     let life = Life::of(seed);
     let (world, floor) = life.world();
@@ -59,7 +59,7 @@ fn lie(bytes: &mut Vec<u8>, random: &mut Random) {
             bytes[at..end].copy_from_slice(&number.to_le_bytes()[..end - at]);
         }
         _ => {
-            // Copies a piece of the bytes over another piece.
+            // Copies a range of the bytes over another range.
             let (from, length) = (random.index(bytes.len()), 1 + random.index(32));
             let length = usize::min(length, bytes.len() - usize::max(at, from));
             bytes.copy_within(from..from + length, at);
@@ -67,7 +67,7 @@ fn lie(bytes: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// Loads a snapshot and steps the world; returns whether it was accepted.
+/// Loads a snapshot and steps the world; returns true if the snapshot was accepted.
 fn live_on(shapes: &[u8], state: &[u8]) -> bool {
     let mut world = World::new(WorldDef::default());
     functions::register(&mut world);

@@ -1,4 +1,4 @@
-//! A life: a world's settings and the deeds before each step, from a seed.
+//! A life: the settings of a world and the deeds before each step, from a seed.
 
 use crate::deeds::{self, Deed, MAKERS};
 use crate::extension;
@@ -10,7 +10,7 @@ use sinew_physics::*;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     HalfSpace,
-    /// A thick one: the shortest way out of it is up.
+    /// A thick box: the shortest way out of it is up.
     Box,
     /// Abutting boxes.
     Boxes,
@@ -21,7 +21,7 @@ pub enum Ground {
 #[derive(Clone, Copy)]
 pub struct Act {
     pub step: u32,
-    /// Name of the deed in this life, and the seed of its numbers.
+    /// Name of the deed in this life, which is also the seed of its numbers.
     pub number: u64,
     pub deed: &'static Deed,
 }
@@ -36,10 +36,10 @@ pub struct Life {
     pub steps: u32,
 }
 
-/// Deeds after which energy cannot be checked, and the share of lives without them.
+/// Deeds that prevent the energy check, and the share of lives without them.
 const STIRRING: [&str; 5] = ["add_force", "set_force", "add_field", "add_particles", "add_object"];
 const PLAIN: f32 = 0.3;
-/// Steps after the last deed, in which a life is only checked.
+/// Number of steps after the last deed, in which a life is only checked.
 const QUIET: u32 = 50;
 
 impl Life {
@@ -92,7 +92,8 @@ impl Life {
         life
     }
 
-    /// Returns a calm life that does each deed twice, six of them before each step, so that it has the calls that are rare in others.
+    /// Returns a calm life that does each deed twice, six deeds before each step, so that it has the calls that are
+    /// rare in other lives.
     pub fn of_each_deed(seed: u64) -> Self {
         let mut n = Numbers::new(!seed, Taste::Any, Temper::Calm);
         let all = deeds::all();
@@ -106,12 +107,12 @@ impl Life {
         Self { taste, temper, ground, def: WorldDef::default(), acts, steps }
     }
 
-    /// Returns numbers for one of its deeds.
+    /// Returns the numbers for a deed of this life.
     pub fn numbers(&self, act: &Act) -> Numbers {
         Numbers::new(act.number, self.taste, self.temper)
     }
 
-    /// Returns its first world and its ground.
+    /// Returns the initial world of the life and its ground.
     pub fn world(&self) -> (World, BodyId) {
         let mut world = World::new(self.def.clone());
         crate::functions::register(&mut world);

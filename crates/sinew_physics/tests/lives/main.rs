@@ -1,15 +1,18 @@
-//! Random lives: worlds created and changed by sequences of all public calls, and checked after each step.
+//! Random lives: sequences of all public calls create and change worlds, which are checked after each step.
 //!
-//! A seed draws a life (`life.rs`): a sequence of deeds (`deeds/`), each of which calls the world with numbers that are
-//! round, equal, at their bounds, zero, huge or arbitrary (`numbers.rs`). Several worlds run the same life (`run.rs`): on one thread,
-//! on two, loaded from a snapshot into a new world, and cloned. All of them must return the same answers and events, bit for bit.
-//! Each must pass the checks of `watch.rs`: no panic, finite numbers, one end for every begin, touching shapes near each other, nothing
-//! below the floor, no energy from nothing. A failing life is shrunk (`shrink.rs`) and printed as Rust (`code.rs`).
+//! A seed defines a life (`life.rs`): a sequence of deeds (`deeds/`), each of which calls the world with numbers that
+//! are round, equal, at their bounds, zero, huge or arbitrary (`numbers.rs`). Several worlds run the same life
+//! (`run.rs`): on one thread, on two, loaded from a snapshot into a new world, and cloned. All of them must return the
+//! same answers and events, bit for bit. Each must pass the checks of `watch.rs`: no panic, finite numbers, one end for
+//! every begin, touching shapes near each other, no body below the floor, no energy from nothing. A failing life is
+//! shrunk (`shrink.rs`) and printed as Rust code (`code.rs`).
 //!
-//! 40 lives, or ten minutes of them when `SINEW_FULL` is set. `SINEW_LIVES=17..1000` runs the seeds of the range, `SINEW_LIVES=17.. SINEW_MINUTES=20`
-//! those from one on: `SINEW_LIVES=0..1000 cargo test -p sinew_physics --test lives -- --nocapture lives_hold`.
+//! 40 lives run, or ten minutes of lives if `SINEW_FULL` is set. `SINEW_LIVES=17..1000` runs the seeds of the range,
+//! `SINEW_LIVES=17.. SINEW_MINUTES=20` the seeds from 17 on for 20 minutes: `SINEW_LIVES=0..1000 cargo test -p
+//! sinew_physics --test lives -- --nocapture lives_hold`.
 //!
-//! All but `deltas.rs`, `extension.rs`, `lies.rs`, `planted.rs`, `printed.rs` is also part of the ragdoll crate's tests, where characters live beside the world (`extension.rs`).
+//! All files except `deltas.rs`, `extension.rs`, `lies.rs`, `planted.rs` and `printed.rs` are also part of the ragdoll
+//! crate's tests, where characters live next to the world (`extension.rs`).
 
 #[macro_use]
 mod actor;
@@ -31,7 +34,7 @@ mod watch;
 
 use planted::Plant;
 
-/// Lives of a plain test run: of the first fifty those that take less than a second.
+/// Lives of a plain test run: those of the first fifty that take less than a second.
 const SOME: &[u64] = &[
     0, 1, 2, 4, 5, 6, 7, 8, 9, 11, 13, 14, 15, 16, 18, 19, 20, 21, 22, 24, 25, 26, 27, 29, 31, 32, 33, 34,
     35, 36, 37, 39, 40, 41, 42, 43, 44, 45, 46, 49,
@@ -58,7 +61,7 @@ fn methods_are_read_from_the_sources() {
     assert!(!found.contains("expect_mut"), "what is private is no call");
 }
 
-/// Planted faults with the lives that find them soon.
+/// Injected faults, with the lives that find them soon.
 const FINDERS: [(Plant, &[u64]); 7] = [
     (Plant::ForgottenField, &[5, 12, 17, 68, 11]),
     (Plant::ThreadOrder, &[51, 66, 29, 18, 39]),
@@ -69,7 +72,7 @@ const FINDERS: [(Plant, &[u64]); 7] = [
     (Plant::ThroughTheFloor, &[66, 18, 34, 6, 37]),
 ];
 
-/// Lives that are searched where the listed ones no longer find a fault.
+/// Number of lives that are searched if the listed ones no longer find a fault.
 const LIVES: u64 = 80;
 
 #[test]
@@ -81,7 +84,7 @@ fn planted_faults_of_each_kind_are_found() {
     }
 }
 
-/// Prints which lives find each planted fault, and how soon.
+/// Prints the lives that find each injected fault, and the time they need.
 #[test]
 #[ignore = "for people: prints, asserts nothing"]
 fn finders() {

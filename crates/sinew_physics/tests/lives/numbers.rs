@@ -1,4 +1,4 @@
-//! Numbers of a life: round, equal, at their bounds, zero, huge, or any.
+//! Numbers of a life: round, equal, at their bounds, zero, huge, or arbitrary.
 
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::Velocity;
@@ -6,26 +6,26 @@ use sinew_physics::Velocity;
 /// Kind of numbers of a life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taste {
-    /// Few, such as people write.
+    /// A few round numbers, such as people write.
     Round,
-    /// One for each range.
+    /// One number for each range.
     Equal,
-    /// Least and greatest of each range.
+    /// Smallest and largest number of each range.
     Bounds,
-    /// Any.
+    /// Any number.
     Any,
 }
 
 /// Range of the arguments of a life's calls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Temper {
-    /// Sizes and speeds of games.
+    /// Sizes and speeds that are usual in games.
     Calm,
-    /// Sometimes numbers up to the largest possible ones.
+    /// Like calm, but sometimes numbers up to the largest possible.
     Wild,
 }
 
-/// Numbers for one deed.
+/// Source of the numbers for one deed.
 pub struct Numbers {
     random: Random,
     pub taste: Taste,
@@ -35,7 +35,7 @@ pub struct Numbers {
 const HUGE: [f32; 7] = [1e3, 1e6, 1e9, 1e12, 1e20, 1e30, f32::MAX];
 const TINY: [f32; 4] = [0.0, 1e-3, 1e-12, f32::MIN_POSITIVE];
 const ROUND: [f32; 9] = [0.0, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 100.0];
-/// Share of extreme numbers of a wild life.
+/// Share of extreme numbers in a wild life.
 const WILD_SHARE: f32 = 0.08;
 
 impl Numbers {
@@ -43,7 +43,7 @@ impl Numbers {
         Self { random: Random::new(seed), taste, temper }
     }
 
-    /// Returns any number, by which deeds choose.
+    /// Returns arbitrary bits, by which deeds choose.
     pub fn bits(&mut self) -> u64 {
         self.random.bits()
     }
@@ -60,7 +60,7 @@ impl Numbers {
         all[self.random.index(all.len())]
     }
 
-    /// Returns a number of a range, by the life's kind.
+    /// Returns a number of a range, by the taste of the life.
     pub fn between(&mut self, lo: f32, hi: f32) -> f32 {
         match self.taste {
             Taste::Any => self.random.range(lo, hi),
@@ -84,7 +84,7 @@ impl Numbers {
         if self.chance(0.2) { 0.0 } else { sign * self.between(0.0, most) }
     }
 
-    /// Returns a number of a range that is not negative; in a wild life sometimes extreme.
+    /// Returns a number of a range that is not negative; in a wild life sometimes an extreme one.
     pub fn least(&mut self, lo: f32, hi: f32) -> f32 {
         if self.is_wild() { self.one_of(&HUGE) } else { self.between(lo, hi) }
     }
@@ -124,7 +124,7 @@ impl Numbers {
         }
     }
 
-    /// Returns a place above the floor, near the others.
+    /// Returns a point above the floor, near the other objects.
     pub fn place(&mut self) -> Vec3 {
         let (x, z) = (self.signed(3.0), self.signed(3.0));
         Vec3::new(x, self.between(0.5, 3.0), z)

@@ -1,4 +1,4 @@
-//! Planted faults, each of a kind that the search must find.
+//! Injected faults, each of a kind that the search must find.
 
 use crate::life::Life;
 use crate::run::run;
@@ -8,10 +8,10 @@ use sinew_math::{Transform, Vec3};
 use sinew_physics::*;
 use std::time::{Duration, Instant};
 
-/// Fault that is planted into a world, or into its events.
+/// Fault that is injected into a world or its events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plant {
-    /// A snapshot that forgets times at rest.
+    /// A snapshot without the times at rest.
     ForgottenField,
     /// A race between threads.
     ThreadOrder,
@@ -34,14 +34,14 @@ impl Plant {
     ];
 }
 
-/// Steps at the end of a life with the planted fault.
+/// Number of steps at the end of a life in which the fault is injected.
 pub const LAST: u32 = 15;
 
 impl Plant {
     /// Changes a world that was just created from another.
     pub fn in_twin(self, world: &mut World) {
         if self == Self::ForgottenField {
-            // The result of a snapshot without times at rest: resting bodies begin anew.
+            // Effect of a snapshot without times at rest: the time at rest of bodies starts again.
             let rested: Vec<BodyId> = world.body_ids().filter(|&id| world.is_awake(id)).collect();
             rested.into_iter().for_each(|id| world.wake(id));
         }
@@ -60,7 +60,7 @@ impl Plant {
         }
     }
 
-    /// Changes the world that runs on two threads after a step.
+    /// Changes, after a step, the world that runs on two threads.
     pub fn in_threads(self, is_due: bool, world: &mut World) {
         if self != Self::ThreadOrder || !is_due {
             return;
@@ -68,7 +68,7 @@ impl Plant {
         let moving = world.body_ids().find(|&id| world.kind(id) == BodyKind::Dynamic && world.is_awake(id));
         if let Some(id) = moving {
             let v = world.velocity(id);
-            // The last bit, as a sum in another order would give.
+            // Changes the last bit, as a sum in another order would.
             let x = f32::from_bits(v.linear.x.to_bits() ^ 1);
             world.set_velocity(id, Velocity { linear: Vec3 { x, ..v.linear }, ..v });
         }
@@ -85,7 +85,7 @@ impl Plant {
         more
     }
 
-    /// Replaces a velocity after a step: no call of a world leaves one that is not finite.
+    /// Replaces a velocity after a step, because no method of a world produces one that is not finite.
     pub fn seen(self, is_due: bool, velocity: Velocity) -> Velocity {
         if self == Self::NotANumber && is_due && velocity.linear.y < 0.0 {
             return Velocity { linear: Vec3 { y: f32::NAN, ..velocity.linear }, ..velocity };
@@ -105,7 +105,7 @@ fn sink(world: &mut World) {
 }
 
 impl Plant {
-    /// True if a life has found this fault and not another.
+    /// True if a fault that a life has found is the injected one.
     pub fn is_found(self, fault: &Fault) -> bool {
         match self {
             Self::ForgottenField | Self::ThreadOrder => matches!(fault, Fault::Differs(_)),
@@ -117,7 +117,7 @@ impl Plant {
         }
     }
 
-    /// Returns the lives of `seeds` that find this fault, the fastest first.
+    /// Returns the lives of `seeds` that find this fault, with their times, the fastest first.
     pub fn found_in(self, seeds: Range<u64>) -> Vec<(Duration, u64)> {
         let found = |seed| {
             let began = Instant::now();

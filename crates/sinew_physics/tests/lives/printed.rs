@@ -1,4 +1,4 @@
-//! The program that a life prints does the same.
+//! The program that a life prints has the same effect as the life.
 
 use crate::deeds;
 use crate::life::{Act, Ground, Life};
@@ -17,10 +17,10 @@ mod kept {
     include!("program.txt");
 }
 
-/// Its particles are few.
+/// Seed of a life with few particles.
 const SEED: u64 = 8;
 
-/// A life that does each deed before its first step: the printed text does not depend on steps.
+/// Returns a life that does each deed before its first step, so that the printed text does not depend on steps.
 fn of_each_deed() -> Life {
     let mut n = Numbers::new(SEED, Taste::Any, Temper::Calm);
     let is_maker = |name| deeds::MAKERS.contains(&name) && name != "add_particles";
@@ -31,7 +31,8 @@ fn of_each_deed() -> Life {
     Life { taste, temper, ground, def: WorldDef::default(), acts, steps: 45 }
 }
 
-/// The file `program.txt`, which is compiled, equals the printed text, and does what the life does. `SINEW_BLESS` writes it.
+/// The file `program.txt`, which is compiled, equals the printed text and has the effect of the life. `SINEW_BLESS`
+/// writes it.
 #[test]
 fn a_printed_program_does_what_the_life_did() {
     let life = of_each_deed();

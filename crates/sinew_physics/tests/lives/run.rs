@@ -1,4 +1,4 @@
-//! Runs a life in several worlds that must be equal.
+//! Runs a life in several worlds, which must stay equal.
 
 use crate::actor::{Actor, Twin, is_worn};
 use crate::life::{Ground, Life};
@@ -16,21 +16,21 @@ pub struct Failure {
     pub fault: Fault,
 }
 
-/// Calls of a life by name, and its result.
+/// Result of a life, its calls by name, and its figures.
 pub struct Outcome {
     pub result: Result<(), Failure>,
     pub calls: BTreeMap<&'static str, u64>,
-    /// Deeds that had an object to act on.
+    /// Number of deeds that had an object to act on.
     pub deeds: u64,
-    /// Largest rise of energy, as a share of the allowed one.
+    /// Largest rise of energy, as a share of the allowed rise.
     pub rise: f32,
-    /// Hash of the first world's last state.
+    /// Hash of the last state of the first world.
     pub hash: u64,
     /// The equivalent program, if it was requested.
     pub program: Option<Vec<String>>,
 }
 
-/// Largest number of worlds besides the first two.
+/// Largest number of worlds in addition to the first two.
 const MOST_TWINS: usize = 2;
 
 thread_local! {
@@ -38,7 +38,7 @@ thread_local! {
     static CATCHES: RefCell<bool> = const { RefCell::new(false) };
 }
 
-/// Panics of lives are caught, not printed.
+/// Installs a hook, so that panics of lives are caught, not printed.
 fn catch_panics() {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -76,7 +76,7 @@ struct Run<'a> {
     deeds: u64,
 }
 
-/// Runs a life with an optional planted fault; `told`: also as a program.
+/// Runs a life with an optional injected fault; if `told`, also records it as a program.
 pub fn run(life: &Life, plant: Option<Plant>, told: bool) -> Outcome {
     let (world, floor) = life.world();
     let mut first = Actor::new(world, floor, None);
@@ -112,7 +112,7 @@ impl Run<'_> {
         self.empty()
     }
 
-    /// Does a deed in all worlds.
+    /// Does a deed in all worlds, and compares the answers.
     fn act(&mut self, act: &crate::life::Act) -> Result<(), Fault> {
         let steps = self.actors[0].world.step_count();
         let mut done = false;
@@ -147,7 +147,7 @@ impl Run<'_> {
         }
     }
 
-    /// Adds another world beside the others.
+    /// Adds another world next to the others.
     fn join(&mut self, kind: Twin) -> Result<(), Fault> {
         if self.actors.len() >= 2 + MOST_TWINS {
             return Ok(());
@@ -192,7 +192,7 @@ impl Run<'_> {
         let plant = self.plant;
         let seen = |velocity| plant.map_or(velocity, |plant| plant.seen(is_due, velocity));
         self.watch.look(self.life, &mut self.actors[0], seen)?;
-        // The watch needs both.
+        // The checks need both methods.
         ["events", "work"].into_iter().for_each(|name| self.actors[0].count(name));
         let events = self.actors[0].world.events().clone();
         if let Some(plant) = self.plant {
@@ -233,7 +233,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Removes everything; whatever began must end.
+    /// Removes all objects and checks that every contact and sensor overlap that began has ended.
     fn empty(&mut self) -> Result<(), Fault> {
         for actor in &mut self.actors {
             actor.begin(1);
@@ -256,7 +256,7 @@ impl Run<'_> {
     }
 }
 
-/// Returns the first lines that differ.
+/// Returns the first pair of lines that differ.
 fn differing(p: &str, q: &str) -> (String, String) {
     let lines = p.lines().zip(q.lines()).find(|(p, q)| p != q);
     let (p, q) = lines.unwrap_or((p, q));
@@ -270,7 +270,7 @@ fn unlike(p: &Events, q: &Events) -> String {
     format!("{p} for {q}")
 }
 
-/// Returns the program that does what a life did until it failed.
+/// Returns the program that repeats a life until its failure.
 pub fn program(life: &Life, lines: &[String]) -> String {
     let mut out =
         String::from("use crate::actor::{reload, stranger};\nuse crate::functions::{Tug, register};\n");

@@ -1,4 +1,4 @@
-//! Runs many lives side by side, and reports those that fail.
+//! Runs many lives in parallel, and reports those that fail.
 
 use crate::life::Life;
 use crate::run::{self, Outcome, run};
@@ -13,9 +13,9 @@ use std::time::{Duration, Instant};
 const LONG: Duration = Duration::from_secs(600);
 /// Largest number of additional lives of each deed, for calls that the requested lives do not make.
 const RARE: u64 = 8;
-/// Time after which a life is reported as slow.
+/// Time above which a life is reported as slow.
 const SLOW: Duration = Duration::from_secs(2);
-/// Lives between progress messages.
+/// Number of lives between progress messages.
 const PROGRESS: u64 = 500;
 
 /// Lives that a test run covers.
@@ -27,8 +27,8 @@ struct Asked {
 }
 
 impl Asked {
-    /// Returns a range of seeds (`SINEW_LIVES=17..1000`), those from one on for some time (`SINEW_LIVES=17.. SINEW_MINUTES=20`), all for ten
-    /// minutes (`SINEW_FULL`), or else some.
+    /// Returns the requested lives: a range of seeds (`SINEW_LIVES=17..1000`), the seeds from one on for some time
+    /// (`SINEW_LIVES=17.. SINEW_MINUTES=20`), all seeds for ten minutes (`SINEW_FULL`), or else the listed ones.
     fn of(some: &'static [u64]) -> Self {
         let minutes = std::env::var("SINEW_MINUTES").ok();
         let minutes = minutes.map(|minutes| minutes.parse::<f32>().expect("SINEW_MINUTES is a number"));
@@ -45,14 +45,14 @@ impl Asked {
         }
     }
 
-    /// Returns the seed of a number, if it is one of these.
+    /// Returns the seed with this index, if the index is in the range.
     fn seed(&self, number: u64) -> Option<u64> {
         let listed = self.listed.get(number as usize).copied();
         self.seeds.contains(&number).then(|| listed.unwrap_or(number))
     }
 }
 
-/// Returns a shrunk failure as text.
+/// Returns a failure as text, after shrinking.
 fn told(seed: u64, outcome: &Outcome) -> String {
     let failure = outcome.result.as_ref().expect_err("a failure");
     let (least, failure) = shrink::shrunk(&Life::of(seed), failure);
@@ -74,7 +74,7 @@ struct Sum {
     next: u64,
 }
 
-/// Runs lives until their seeds or their time are used up.
+/// Runs lives until their seeds or their time run out.
 fn all(asked: &Asked, workers: usize) -> Sum {
     let (next, start) = (AtomicU64::new(asked.seeds.start), Instant::now());
     let worker = || {
@@ -121,7 +121,7 @@ fn all(asked: &Asked, workers: usize) -> Sum {
     total
 }
 
-/// Number of lives that run side by side.
+/// Number of lives that run in parallel.
 pub fn workers() -> usize {
     std::env::var("SINEW_WORKERS")
         .ok()
@@ -132,7 +132,7 @@ pub fn workers() -> usize {
 /// Runs lives and reports failures, the first of them as a short program.
 ///
 /// # Panics
-/// If one fails, or if at least as many as `some` lack a call.
+/// If a life fails, or if at least as many lives as in `some` ran and lack a call.
 pub fn search(some: &'static [u64]) {
     let asked = Asked::of(some);
     let mut sum = all(&asked, workers());
@@ -151,7 +151,7 @@ pub fn search(some: &'static [u64]) {
         panic!("{} of {lives} lives fail: {failed:?}\n{}", failed.len(), told(*seed, &outcome));
     }
     if sum.lives >= some.len() as u64 {
-        // Rare calls are in few lives.
+        // Only few lives make rare calls.
         for seed in 0..RARE {
             if interface::has_all(&sum.calls) {
                 break;
@@ -166,7 +166,7 @@ pub fn search(some: &'static [u64]) {
     }
 }
 
-/// Adds a line to the file of `SINEW_LOG`, if it is set.
+/// Adds a line to the file `SINEW_LOG`, if it is set.
 fn log(line: &str) {
     if let Some(path) = std::env::var_os("SINEW_LOG") {
         let file = std::fs::OpenOptions::new().create(true).append(true).open(path);

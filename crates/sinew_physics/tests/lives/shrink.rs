@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 /// Time after which shrinking stops.
 const TIME: Duration = Duration::from_secs(60);
 
-/// A minimal life, and its fault.
+/// Returns a minimal life that fails like the given one, and its failure.
 pub fn shrunk(life: &Life, failure: &Failure) -> (Life, Failure) {
     let start = Instant::now();
     let mut least = (life.clone(), failure.clone());
@@ -43,7 +43,7 @@ fn cut_end(least: &mut (Life, Failure)) {
     least.0.acts.retain(|act| act.step <= last);
 }
 
-/// Accepts a life if it fails as the other does.
+/// Replaces the smallest life by another if that fails in the same way.
 fn fails_alike(less: Life, least: &mut (Life, Failure)) -> bool {
     let Err(found) = run(&less, None, false).result else { return false };
     if !found.fault.is_like(&least.1.fault) {

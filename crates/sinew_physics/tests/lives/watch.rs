@@ -1,4 +1,4 @@
-//! Checks one world after each step: what must hold for any calls.
+//! Checks one world after each step, for conditions that hold for any calls.
 
 use crate::actor::Actor;
 use crate::life::{Ground, Life};
@@ -20,14 +20,15 @@ pub enum Fault {
     /// A limb that flies away, or an open joint.
     #[allow(dead_code, reason = "worlds without characters have none")]
     Limb(String),
-    /// With the rise as a share of the allowed one.
+    /// A rise of energy, as a share of the allowed rise.
     Energy(f32, String),
-    /// Another world that should be equal differs.
+    /// A world that should be equal differs.
     Differs(String),
 }
 
 impl Fault {
-    /// True if the other is the same kind of fault: for panics, with the same words; for energy, at least half as large.
+    /// True if the other fault is of the same kind: a panic with the same words, or a rise of energy at least half as
+    /// large.
     pub fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Panic(p), Self::Panic(q)) => words(p) == words(q),
@@ -50,29 +51,30 @@ pub struct Watch {
     shapes: BTreeSet<ShapePair>,
     sensed: BTreeSet<BodyPair>,
     sensed_shapes: BTreeSet<ShapePair>,
-    /// Steps for which a pair has been far apart.
+    /// Number of steps for which a pair has been far apart.
     apart: BTreeMap<BodyPair, u32>,
-    /// Steps for which a body has been below the floor without rising, and its height.
+    /// Number of steps for which a body has been below the floor without rising, and its height.
     below: BTreeMap<BodyId, (u32, f32)>,
-    /// Steps since the last deed that changes something.
+    /// Number of steps since the last deed that changes something.
     quiet: u32,
     energy: Option<Energy>,
-    /// Largest rise of energy, as a share of the allowed one.
+    /// Largest rise of energy, as a share of the allowed rise.
     pub rise: f32,
 }
 
-/// Steps after a deed from which on energy is checked.
+/// Number of steps after a deed after which energy is checked.
 const SETTLED: u32 = 30;
-/// Allowed rise of energy in a step, as a share of the kinetic energy or of 1 J/kg, and of potential energy: rounding.
+/// Allowed rise of energy in a step, as a share of the kinetic energy or of 1 J/kg, and as a share of the potential
+/// energy, for rounding.
 const RISE: f32 = 0.01;
 const ROUNDING: f32 = 1e-5;
-/// The same while bodies are pressed into each other.
+/// Allowed rise while bodies are pressed into each other, as a share of the kinetic energy or of 1 J/kg.
 const STRAINED: f32 = 2.0;
-/// Overlaps (metres), gaps (metres) and overshoots (radians) from which on that holds.
+/// Overlaps (metres), gaps (metres) and overshoots (radians) above which that limit applies.
 const OVERLAP: f32 = 5e-3;
 const GAP: f32 = 1e-3;
 const OVERSHOOT: f32 = 0.02;
-/// Gap at which bodies surely do not touch, metres, and steps until the end must have been reported.
+/// Gap above which bodies surely do not touch, metres, and steps within which the end must be reported.
 const FAR: f32 = 0.05;
 const LATE: u32 = 3;
 /// Depth of a whole body below the floor, metres, and steps for which it may be pressed there.
@@ -105,7 +107,7 @@ fn noted<T: Ord + Copy + core::fmt::Debug>(
 }
 
 impl Watch {
-    /// Called after a deed.
+    /// Records that a deed has changed the world.
     pub fn disturb(&mut self) {
         self.quiet = 0;
     }
@@ -132,7 +134,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Counts the events of a step.
+    /// Checks and records the events of a step.
     pub fn events(&mut self, events: &Events) -> Result<(), Fault> {
         noted(&mut self.touching, &events.begin, &events.end, "touch")?;
         noted(&mut self.shapes, &events.shapes_begin, &events.shapes_end, "touch of shapes")?;
@@ -171,7 +173,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Checks that no body that the floor carries is below it.
+    /// Checks that no body that the floor can carry is below it.
     fn floor(&mut self, life: &Life, actor: &Actor) -> Result<(), Fault> {
         let world = &actor.world;
         let reach = match life.ground {
@@ -221,10 +223,10 @@ impl Watch {
         Ok(())
     }
 
-    /// Checks an empty world: whatever began has ended.
+    /// Checks that every event that began has ended in an empty world.
     ///
     /// # Errors
-    /// If something did not end.
+    /// If an event did not end.
     pub fn end(&self) -> Result<(), Fault> {
         let open = self.touching.len() + self.shapes.len() + self.sensed.len() + self.sensed_shapes.len();
         if open == 0 {
@@ -257,7 +259,7 @@ fn finite(world: &World, seen: impl Fn(Velocity) -> Velocity) -> Result<(), Faul
     Ok(())
 }
 
-/// True if nothing keeps a body from lying on the floor.
+/// True if nothing prevents a body from resting on the floor.
 fn is_borne(world: &World, id: BodyId, floor: BodyId) -> bool {
     let plain = |shape: ShapeId| {
         world.sensing(shape) == Sensing::Solid
@@ -273,7 +275,7 @@ fn is_borne(world: &World, id: BodyId, floor: BodyId) -> bool {
         && !world.neighbors(id).any(pressed)
 }
 
-/// True if no source of energy is uncounted.
+/// True if the world has no uncounted source of energy.
 fn is_passive(world: &World) -> bool {
     let is_still = |id: BodyId| {
         let runs = |shape: ShapeId| {
@@ -302,7 +304,7 @@ fn is_strained(world: &World) -> bool {
     world.contacts().any(|contact| contact.points().iter().any(|point| point.separation < -OVERLAP))
 }
 
-/// True if joints are open: some cannot close, because a body that nothing moves is elsewhere.
+/// True if joints are open: some cannot close, because a body that nothing can move is elsewhere.
 fn is_torn(world: &World) -> bool {
     let enabled = |id: &JointId| world.joint(*id).state == JointState::Enabled;
     let open = |id: JointId| world.joint_gap(id) > GAP || world.joint_overshoot(id) > OVERSHOOT;

@@ -7,16 +7,16 @@ use crate::boxes::fifteen::FifteenAxes;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Block, Blocks, LaneMask, Lanes, WIDTH};
 
-/// Pairs of boxes, stored for eight at a time: 80 bytes a pair.
+/// Pairs of boxes, stored in groups of eight: 80 bytes per pair.
 #[derive(Clone, Debug, Default)]
 pub struct Pairs(Blocks<{ 2 * NUMBERS }>);
 
-/// Answers of [`Pairs::separations`], in the order of the pairs: 8 bytes a pair.
+/// Results of [`Pairs::separations`], in the order of the pairs: 8 bytes per pair.
 #[derive(Clone, Debug, Default)]
 pub struct Separations(Blocks<2>);
 
 impl Pairs {
-    /// No pairs.
+    /// Creates an empty list.
     pub fn new() -> Self {
         Self::default()
     }
@@ -44,9 +44,9 @@ impl Pairs {
         self.0.clear();
     }
 
-    /// Finds the pairs that overlap, by all fifteen axes, with the result of
-    /// [`Overlap::overlaps`](crate::boxes::Overlap::overlaps) for each, to the bit. Bit `k` of `overlapping[i]` is pair
-    /// `8 i + k`; bits beyond the last pair are 0. A pair with NaN does not overlap.
+    /// Finds the pairs that overlap, by all fifteen axes; the result for each is exactly that of
+    /// [`Overlap::overlaps`](crate::boxes::Overlap::overlaps). Bit `k` of `overlapping[i]` is pair `8 i + k`; bits
+    /// beyond the last pair are 0. A pair with NaN does not overlap.
     ///
     /// # Panics
     /// If `overlapping` does not have one byte for every eight pairs, rounded up.
@@ -54,26 +54,25 @@ impl Pairs {
         dispatch::run(FindOverlaps { pairs: self, overlapping });
     }
 
-    /// Finds, for each pair, the axis among the fifteen with the largest gap or the least overlap:
-    /// [`Separation::between`] of each, to the bit. `found` is resized to the number of pairs and allocates only to
-    /// grow.
+    /// Finds, for each pair, the axis among the fifteen with the largest gap or the least overlap; the result is
+    /// exactly that of [`Separation::between`]. `found` is resized to the number of pairs; it allocates only to grow.
     pub fn separations(&self, found: &mut Separations) {
         dispatch::run(FindSeparations { pairs: self, axes: Axes::Fifteen, found });
     }
 
-    /// Finds the same among the six face axes, at a third of the cost. The result is never more than the true gap where
-    /// the boxes are apart, and at least the true value where they overlap.
+    /// Finds the same among the six face axes, at a third of the cost. The result is at most the true gap if the boxes
+    /// are apart, and at least the true value if they overlap.
     pub fn face_separations(&self, found: &mut Separations) {
         dispatch::run(FindSeparations { pairs: self, axes: Axes::Faces, found });
     }
 }
 
-/// Axes that are tried.
+/// Set of axes to test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
     /// The three axes of each box.
     Faces,
-    /// The three axes of each box, and the cross products of one axis of each.
+    /// The three axes of each box, and the cross products of an axis of A and an axis of B.
     Fifteen,
 }
 
@@ -93,7 +92,7 @@ impl Separations {
         self.0.is_empty()
     }
 
-    /// Answer for pair `index`.
+    /// Result for pair `index`.
     ///
     /// # Panics
     /// If the index is out of range.
@@ -103,18 +102,18 @@ impl Separations {
         Separation { distance, axis: SeparatingAxis::from_index(axis as u8) }
     }
 
-    /// Answers for all pairs, in their order.
+    /// Iterates over the results of all pairs, in order.
     pub fn iter(&self) -> impl Iterator<Item = Separation> + '_ {
         (0..self.len()).map(|index| self.get(index))
     }
 }
 
-/// Kernel of [`Pairs::overlaps`], for callers that choose the registers.
+/// Kernel of [`Pairs::overlaps`], for callers that choose the SIMD type.
 #[derive(Debug)]
 pub struct FindOverlaps<'a> {
-    /// The boxes.
+    /// Pairs of boxes to test.
     pub pairs: &'a Pairs,
-    /// One byte for every eight pairs.
+    /// Output: one byte for every eight pairs.
     pub overlapping: &'a mut [u8],
 }
 
@@ -137,14 +136,14 @@ impl Kernel for FindOverlaps<'_> {
     }
 }
 
-/// Kernel of [`Pairs::separations`], for callers that choose the registers.
+/// Kernel of [`Pairs::separations`], for callers that choose the SIMD type.
 #[derive(Debug)]
 pub struct FindSeparations<'a> {
-    /// The boxes.
+    /// Pairs of boxes to test.
     pub pairs: &'a Pairs,
-    /// Axes that are tried on them.
+    /// Axes to test.
     pub axes: Axes,
-    /// Output.
+    /// Output: one result per pair.
     pub found: &'a mut Separations,
 }
 
@@ -187,7 +186,7 @@ impl<L: Lanes> Best<L> {
     }
 }
 
-/// The first and the second box of eight pairs.
+/// Loads the first and the second box of eight pairs.
 #[inline(always)]
 fn load<L: Lanes>(pair: &Block<{ 2 * NUMBERS }>) -> (Record<L>, Record<L>) {
     let [cx, cy, cz, x, y, z, w, hx, hy, hz, rest @ ..] = &pair.0;

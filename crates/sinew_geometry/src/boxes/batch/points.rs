@@ -5,12 +5,12 @@ use sinew_math::Vec3;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Block, Blocks, LaneMask, Lanes, Real, Vector3, WIDTH};
 
-/// Points, stored for eight at a time.
+/// Points, stored in groups of eight.
 #[derive(Clone, Debug, Default)]
 pub struct Points(Blocks<3>);
 
 impl Points {
-    /// No points.
+    /// Creates an empty list.
     pub fn new() -> Self {
         Self::default()
     }
@@ -74,8 +74,8 @@ impl Obb {
         dispatch::run(ContainsPoints { obb: self, points, inside });
     }
 
-    /// Each point's distance from the box's surface, metres, negative inside; exact except for rounding, for distances
-    /// up to 1e19 m. NaN for a point with NaN.
+    /// Computes each point's distance from the box's surface, metres, negative inside; exact except for rounding, for
+    /// distances up to 1e19 m. NaN for a point with NaN.
     ///
     /// # Panics
     /// If `distances` is not as long as `points`.
@@ -84,10 +84,10 @@ impl Obb {
     }
 }
 
-/// A box as the formulas take it.
+/// A box in the form that the formulas use.
 struct Placed<R> {
     center: Vector3<R>,
-    /// Unit directions of its sides.
+    /// Unit directions of the sides.
     axes: [Vector3<R>; 3],
     half: Vector3<R>,
 }
@@ -103,7 +103,7 @@ impl<R: Real> Placed<R> {
         }
     }
 
-    /// Distances of a point from the box's mid-planes, along each of its axes.
+    /// Absolute coordinates of a point along the axes of the box, from the centre.
     #[inline(always)]
     fn aside(&self, point: Vector3<R>) -> Vector3<R> {
         let offset = point - self.center;
@@ -117,26 +117,27 @@ impl<R: Real> Placed<R> {
         R::le(aside.x, self.half.x) & R::le(aside.y, self.half.y) & R::le(aside.z, self.half.z)
     }
 
-    /// Outside: the length of the excess beyond the faces. Inside: the distance to the nearest face.
+    /// Returns the signed distance: outside, the length of the excess beyond the faces; inside, minus the distance to
+    /// the nearest face.
     #[inline(always)]
     fn signed_distance(&self, point: Vector3<R>) -> R {
         let zero = R::splat(0.0);
         let beyond = self.aside(point) - self.half;
-        // The second argument is returned if one is NaN, so in this order NaN propagates, in each of the three.
+        // `max` returns its second argument if one is NaN, so in this order NaN propagates in each component.
         let outside = Vector3::new(R::max(zero, beyond.x), R::max(zero, beyond.y), R::max(zero, beyond.z));
         let nearest = R::max(R::max(beyond.x, beyond.y), beyond.z);
         outside.length() + R::min(nearest, zero)
     }
 }
 
-/// Kernel of [`Obb::contains_points`], for callers that choose the registers.
+/// Kernel of [`Obb::contains_points`], for callers that choose the SIMD type.
 #[derive(Debug)]
 pub struct ContainsPoints<'a> {
     /// The box.
     pub obb: &'a Obb,
-    /// Points that may be in it.
+    /// Points to test.
     pub points: &'a Points,
-    /// One byte for every eight points.
+    /// Output: one byte for every eight points.
     pub inside: &'a mut [u8],
 }
 
@@ -157,14 +158,14 @@ impl Kernel for ContainsPoints<'_> {
     }
 }
 
-/// Kernel of [`Obb::signed_distances`], for callers that choose the registers.
+/// Kernel of [`Obb::signed_distances`], for callers that choose the SIMD type.
 #[derive(Debug)]
 pub struct SignedDistances<'a> {
     /// The box.
     pub obb: &'a Obb,
     /// Points whose distances are computed.
     pub points: &'a Points,
-    /// As many, metres.
+    /// Output: one distance per point, metres.
     pub distances: &'a mut [f32],
 }
 

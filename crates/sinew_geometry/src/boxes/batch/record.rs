@@ -1,12 +1,12 @@
-//! A box as the batches hold it: centre, rotation, half extents.
+//! A box in the form that batches store: centre, rotation, half extents.
 
 use crate::boxes::Obb;
 use sinew_math::lanes::{Lanes, Real, Vector3, WIDTH};
 
-/// Count of the numbers of a [`Record`].
+/// Number of numbers in a [`Record`].
 pub const NUMBERS: usize = 10;
 
-/// A box as numbers, or one per lane; metres.
+/// A box as numbers, or one box per SIMD lane; metres.
 #[derive(Clone, Copy)]
 pub struct Record<R> {
     /// Centre.
@@ -20,14 +20,14 @@ pub struct Record<R> {
 }
 
 impl Record<f32> {
-    /// One box.
+    /// Returns the record of one box.
     #[inline]
     pub fn of(obb: &Obb) -> Self {
         let q = obb.rotation;
         Self { center: obb.center.into(), vector: q.vector().into(), w: q.w, half: obb.half_extents.into() }
     }
 
-    /// Numbers in the order of the rows of a block.
+    /// Returns the numbers in the order of the rows of a block.
     #[inline]
     pub fn to_array(self) -> [f32; NUMBERS] {
         let ([cx, cy, cz], [x, y, z]) = (self.center.to_array(), self.vector.to_array());
@@ -51,7 +51,7 @@ impl<L: Lanes> Record<L> {
 }
 
 impl<R: Real> Record<R> {
-    /// A direction as the box's frame has it, with the bits of `Rotation`.
+    /// Converts a direction to the box's frame, with the bits of `Rotation`.
     #[inline(always)]
     pub fn inverse_vector(&self, direction: Vector3<R>) -> Vector3<R> {
         let back = -self.vector;
@@ -59,13 +59,13 @@ impl<R: Real> Record<R> {
         direction + t * self.w + back.cross(t)
     }
 
-    /// A point as the box's frame has it, with the bits of `Transform::inverse_point`.
+    /// Converts a point to the box's frame, with the bits of `Transform::inverse_point`.
     #[inline(always)]
     pub fn inverse_point(&self, point: Vector3<R>) -> Vector3<R> {
         self.inverse_vector(point - self.center)
     }
 
-    /// Unit directions of its sides.
+    /// Unit directions of the sides.
     #[inline(always)]
     pub fn axes(&self) -> [Vector3<R>; 3] {
         let [x, y, z] = matrix(self.vector, self.w);
@@ -73,12 +73,12 @@ impl<R: Real> Record<R> {
     }
 }
 
-/// The matrix of a rotation, rows first, with the bits of `Rotation::to_mat3`.
+/// Returns the matrix of a rotation, by rows, with the bits of `Rotation::to_mat3`.
 #[inline(always)]
 pub(super) fn matrix<R: Real>(vector: Vector3<R>, w: R) -> [[R; 3]; 3] {
     let Vector3 { x, y, z } = vector;
     let one = R::splat(1.0);
-    // Twice a product is the product with twice a factor, to the bit.
+    // Twice a product equals the product with twice a factor, exactly.
     let (x2, y2, z2) = (x + x, y + y, z + z);
     let (xx, yy, zz) = (x * x2, y * y2, z * z2);
     let (xy, xz, yz) = (x * y2, x * z2, y * z2);

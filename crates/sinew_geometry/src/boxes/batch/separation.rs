@@ -1,43 +1,43 @@
-//! Gap or depth of two boxes: the separating axis theorem (Gottschalk, Lin & Manocha, "OBBTree", SIGGRAPH 1996), with
-//! the amount along each axis.
+//! Gap or depth of two boxes by the separating axis theorem (Gottschalk, Lin & Manocha, "OBBTree", SIGGRAPH 1996), with
+//! the distance along each axis.
 
 use super::record::{Record, matrix};
 use crate::boxes::Obb;
 use sinew_math::Vec3;
 use sinew_math::lanes::Real;
 
-/// Squared sine below which two edges count as parallel. Without that axis the distance is off by up to the sine times
-/// the boxes' size, with it by rounding divided by the sine: at a thousandth neither exceeds a thousandth.
+/// Squared sine below which two edges count as parallel. Skipping their axis changes the distance by up to the sine
+/// times the boxes' size; using it, by rounding divided by the sine. At a thousandth neither exceeds a thousandth.
 const PARALLEL: f32 = 1e-6;
 
-/// The axis with the largest gap or the least overlap of two boxes, and its amount.
+/// Axis with the largest gap or the least overlap of two boxes, and the distance along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Separation {
-    /// Gap along the axis, metres; 0 if they touch. Negative if the boxes overlap: then it is the shortest way out, by
-    /// moving B along [`direction`](SeparatingAxis::direction). NaN if a number of the boxes is NaN; unreliable if one
-    /// is infinite.
+    /// Gap along the axis, metres; 0 if the boxes touch. Negative if they overlap: the shortest way out is then a
+    /// displacement of B by this length along [`direction`](SeparatingAxis::direction). NaN if a number of the boxes is
+    /// NaN; unreliable if one is infinite.
     ///
-    /// A gap is at most the boxes' distance: less if their closest points are two corners, or a corner and an edge.
-    /// Exact except for rounding, unless edges are within a milliradian of parallel: then it may be off by that angle
-    /// times the boxes' size.
+    /// A gap is at most the boxes' distance: less if their closest points are two corners, or a corner and an edge. It
+    /// is exact except for rounding, unless edges are within a milliradian of parallel: then the error may be that
+    /// angle times the boxes' size.
     pub distance: f32,
-    /// The first of the best axes, in the order in which they are listed at [`SeparatingAxis`].
+    /// First of the best axes, in the order of [`SeparatingAxis`].
     pub axis: SeparatingAxis,
 }
 
 /// One of the fifteen directions that decide whether two boxes overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SeparatingAxis {
-    /// Side 0, 1 or 2 of A.
+    /// Normal of face 0, 1 or 2 of A, by its axis.
     FaceOfA(u8),
-    /// Side 0, 1 or 2 of B.
+    /// Normal of face 0, 1 or 2 of B, by its axis.
     FaceOfB(u8),
-    /// The axis is at right angles to this side of A and to this one of B.
+    /// Cross product of this axis of A and this axis of B.
     Edges(u8, u8),
 }
 
 impl SeparatingAxis {
-    /// Creates an axis from its index: three faces of A, three of B, nine pairs of edges, the axis of B changing
+    /// Returns the axis of an index: three faces of A, three of B, nine pairs of edges, with the axis of B changing
     /// fastest.
     #[inline]
     pub(super) fn from_index(index: u8) -> Self {
@@ -48,7 +48,7 @@ impl SeparatingAxis {
         }
     }
 
-    /// The axis as a unit vector from A toward B, in the common space of the boxes.
+    /// Returns the axis as a unit vector from A toward B, in the common space of the boxes.
     pub fn direction(self, a: &Obb, b: &Obb) -> Vec3 {
         let side = |of: &Obb, k: u8| {
             let m = of.rotation.to_mat3();
@@ -64,16 +64,16 @@ impl SeparatingAxis {
 }
 
 impl Separation {
-    /// Separation of two boxes, by all fifteen axes.
+    /// Returns the separation of two boxes, by all fifteen axes.
     ///
-    /// Swapped boxes give the same distance except for rounding, and the same axis unless another is as good.
+    /// Swapped boxes give the same distance except for rounding, and the same axis unless another one is equally good.
     pub fn between(a: &Obb, b: &Obb) -> Self {
         let found = Relative::new(&Record::of(a), &Record::of(b)).fifteen_axes();
         Self { distance: found.distance, axis: SeparatingAxis::from_index(found.index as u8) }
     }
 }
 
-/// The best separating axis so far.
+/// Best separating axis so far.
 #[derive(Clone, Copy)]
 pub(super) struct Best<R> {
     /// Gap along the axis, or a monotonic function of it.
@@ -88,11 +88,12 @@ impl<R: Real> Best<R> {
         Self { distance, index: R::splat(index as f32) }
     }
 
-    /// Takes the axis if it is better than all before (NaN is not). `index` must be higher than theirs.
+    /// Replaces the axis if this one is better than all before (NaN is not better). `index` must exceed all earlier
+    /// ones.
     #[inline(always)]
     fn try_axis(&mut self, distance: R, index: usize) {
         let is_better = R::gt(distance, self.distance);
-        // Indices rise, so the maximum is the last one taken; that is cheaper than a selection.
+        // Indices rise, so the maximum is the last one chosen; that is cheaper than a selection.
         self.index = R::max(R::splat(index as f32).masked(is_better), self.index);
         self.distance = R::max(distance, self.distance);
     }
@@ -112,10 +113,10 @@ impl<R: Real> Relative<R> {
     #[inline(always)]
     pub fn new(a: &Record<R>, b: &Record<R>) -> Self {
         let (u, v) = (a.vector, b.vector);
-        // The rotation from B to A: conjugate of A's times B's.
+        // Rotation from B to A: the conjugate of A's times B's.
         let w = a.w * b.w + u.x * v.x + (u.y * v.y + u.z * v.z);
         let turn = v * a.w - u * b.w - u.cross(v);
-        // The offset of B's centre, rotated by A's conjugate.
+        // Offset of B's centre, rotated by the conjugate of A's rotation.
         let way = b.center - a.center;
         let t = u.cross(way);
         let t = t + t;
@@ -128,14 +129,15 @@ impl<R: Real> Relative<R> {
         }
     }
 
-    /// The best of the six faces' axes: a lower bound of the gap, and never NaN where the boxes' numbers are finite.
+    /// Returns the best of the six face axes: a lower bound of the gap, never NaN if all numbers of the boxes are
+    /// finite.
     #[inline(always)]
     pub fn six_faces(&self) -> Best<R> {
         let (best, poison) = self.best_face();
         Best { distance: R::select(R::eq(poison, poison), best.distance, poison), ..best }
     }
 
-    /// The best of all axes.
+    /// Returns the best of all fifteen axes.
     #[inline(always)]
     pub fn fifteen_axes(&self) -> Best<R> {
         let (face, poison) = self.best_face();
@@ -150,7 +152,7 @@ impl<R: Real> Relative<R> {
         }
     }
 
-    /// And a number that is NaN if any number of the boxes is.
+    /// Returns the best face axis, and a number that is NaN if any number of the boxes is NaN.
     #[inline(always)]
     fn best_face(&self) -> (Best<R>, R) {
         let (c, t, a, b) = (&self.cosine, &self.offset, &self.half_a, &self.half_b);
@@ -171,8 +173,8 @@ impl<R: Real> Relative<R> {
         (best, of_a[0] + of_a[1] + of_a[2])
     }
 
-    /// The best of the nine pairs of edges, by signed squared distance: the length of the cross product of two axes is
-    /// their sine, and its square needs no root.
+    /// Returns the best of the nine pairs of edges, by signed squared distance: the length of the cross product of two
+    /// axes is their sine, and its square needs no root.
     #[inline(always)]
     fn best_edges(&self) -> Best<R> {
         let mut best = Best::of(R::splat(f32::NEG_INFINITY), 0);
@@ -189,8 +191,8 @@ impl<R: Real> Relative<R> {
         best
     }
 
-    /// Gap along the cross product of edge `I` of A and edge `J` of B: the signed square; NaN if the edges are
-    /// parallel.
+    /// Returns the signed square of the gap along the cross product of edge `I` of A and edge `J` of B; NaN if the
+    /// edges are parallel.
     #[inline(always)]
     fn edges<const I: usize, const J: usize>(&self) -> R {
         let (c, t, a, b) = (&self.cosine, &self.offset, &self.half_a, &self.half_b);

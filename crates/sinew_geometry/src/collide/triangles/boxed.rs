@@ -1,5 +1,5 @@
 //! Box against a triangle: separating axes (one of the triangle, three of the box, nine of edges), then the faces or
-//! edges in contact; the closest points if they pass each other.
+//! edges in contact, or the closest points if the shapes pass beside each other.
 
 use super::{Teller, When};
 use crate::collide::ManifoldPoint;
@@ -8,12 +8,12 @@ use crate::collide::placed::{PlacedBox, Segment, sign};
 use crate::triangles::{Part, closest_on_triangle};
 use sinew_math::{Vec3, max, min};
 
-/// Edges with a smaller sine count as parallel.
+/// Sine below which edges count as parallel.
 const PARALLEL_SINE: f32 = 0.005;
-/// Least cosine of a way out to the triangle's normal, so that none leads through the triangle.
+/// Least cosine between a way out and the triangle's normal, so that no way leads through the triangle.
 const LEAST_COSINE: f32 = -0.02;
 
-/// Cosine between a normal and a face of the box above which the face rests on the feature of that normal.
+/// Cosine between a normal and a face of the box above which the face rests on the feature with that normal.
 const LIES_COSINE: f32 = 0.9;
 
 /// A direction from the triangle to the box and the gap along it.
@@ -32,17 +32,18 @@ enum AxisOf {
     Edges(usize, usize),
 }
 
-/// `gap` is along the triangle's normal, at most the margin.
+/// Tests the box; returns the part of the triangle in contact. `gap` is along the triangle's normal, at most the
+/// margin.
 pub(super) fn meet(placed: &PlacedBox, gap: f32, teller: &mut Teller<'_>) -> Option<Part> {
     let Axes { widest, best } = axes(placed, teller);
     if widest > teller.margin {
         return None;
     }
     let tolerance = teller.solid.tolerance();
-    // The triangle's own face is most stable and represents the surface, so another axis must be clearly better.
+    // The triangle's own face is the most stable and represents the surface, so another axis must be clearly better.
     let told = match best.filter(|best| best.separation > gap + tolerance + 0.05 * max(-gap, 0.0)) {
         None => face(gap, widest, teller),
-        // Separated along a direction that leads through the triangle: they pass each other beside its rim.
+        // The shapes are apart along a direction that leads through the triangle: they pass beside its rim.
         Some(axis) if axis.separation <= 0.0 && widest > 0.0 => None,
         Some(axis) => match axis.of {
             AxisOf::Face(k) => box_face(placed, k, &axis, teller),
@@ -62,8 +63,8 @@ pub(super) fn meet(placed: &PlacedBox, gap: f32, teller: &mut Teller<'_>) -> Opt
     None
 }
 
-/// The part of the box over the triangle. `None`, and nothing reported, if that does not give their distance because
-/// they pass beside the face.
+/// Reports the part of the box over the triangle. `None`, and nothing reported, if the box passes beside the face, so
+/// that the points would not give the distance.
 fn face(gap: f32, widest: f32, teller: &mut Teller<'_>) -> Option<Part> {
     let over = teller.over_face(Vec3::ZERO);
     let nearest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
@@ -73,9 +74,9 @@ fn face(gap: f32, widest: f32, teller: &mut Teller<'_>) -> Option<Part> {
 
 /// Results of the separating axes other than the triangle's own.
 struct Axes {
-    /// The largest gap along any of them.
+    /// The largest gap along any of these axes, metres.
     widest: f32,
-    /// The one with the largest gap among those that lead out of the surface.
+    /// The axis with the largest gap among those that lead out of the surface.
     best: Option<Axis>,
 }
 
@@ -104,7 +105,7 @@ fn axes(placed: &PlacedBox, teller: &Teller<'_>) -> Axes {
             let sine = across.length();
             if sine > PARALLEL_SINE * length {
                 let direction = across / sine;
-                // A way out over two edges must lie between the bounds of both.
+                // A way out over two edges must be between the bounds of both.
                 consider(direction, placed.half_width(direction), AxisOf::Edges(i, j));
             }
         }
@@ -112,7 +113,7 @@ fn axes(placed: &PlacedBox, teller: &Teller<'_>) -> Axes {
     axes
 }
 
-/// The triangle cut to the prism over a face of the box.
+/// Reports the triangle clipped to the prism over a face of the box.
 fn box_face(placed: &PlacedBox, k: usize, axis: &Axis, teller: &mut Teller<'_>) -> Option<Part> {
     let outward = -axis.normal;
     let side = sign(placed.axes[k].dot(outward));
@@ -148,7 +149,7 @@ fn box_face(placed: &PlacedBox, k: usize, axis: &Axis, teller: &mut Teller<'_>) 
     Some(part)
 }
 
-/// Clips a convex polygon to where `beyond` is not positive; returns the number of remaining corners.
+/// Clips a convex polygon to the region where `beyond` is not positive; returns the number of remaining corners.
 fn cut(corners: &mut [Vec3; 8], count: usize, beyond: impl Fn(Vec3) -> f32) -> usize {
     let was = *corners;
     let mut left = 0;
@@ -171,7 +172,7 @@ fn cut(corners: &mut [Vec3; 8], count: usize, beyond: impl Fn(Vec3) -> f32) -> u
     left
 }
 
-/// The closest points of an edge of each.
+/// Reports the closest points of an edge of the triangle and an edge of the box.
 fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Teller<'_>) -> Option<Part> {
     let corners = teller.triangle.corners;
     let edge = Segment { ends: [corners[i], corners[(i + 1) % 3]] };
@@ -179,13 +180,13 @@ fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Telle
     let of_box = Segment { ends: [placed.vertex(index), placed.vertex(index | 1 << j)] };
     let (s, t) = of_box.closest_to_segment(&edge);
     let inside = |x: f32| x > 0.0 && x < 1.0;
-    // The triangle may reach further beside this edge; then the axis is not that of the closest points.
+    // The triangle may reach further beside this edge; then this axis does not belong to the closest points.
     let across = (of_box.at(s) - edge.at(t)).dot(axis.normal) - axis.separation;
     let bound = across.abs() <= teller.solid.tolerance();
     if axis.separation > 0.0 && !(inside(s) && inside(t) && bound) {
         return None;
     }
-    // Two that touch along one direction, and not where these edges are, touch elsewhere.
+    // Shapes that touch along this direction, but not at these edges, touch elsewhere.
     let apart = (of_box.at(s) - edge.at(t)).length();
     let tolerance = teller.solid.tolerance();
     if axis.separation > -tolerance && apart > axis.separation.abs() + tolerance {
@@ -204,7 +205,7 @@ fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Telle
     Some(part)
 }
 
-/// The points within the margin, of two.
+/// Returns those of two points that are within the margin.
 fn within(points: &[ManifoldPoint; 2], margin: f32) -> &[ManifoldPoint] {
     match points.each_ref().map(|point| point.separation <= margin) {
         [true, true] => points,
@@ -214,8 +215,8 @@ fn within(points: &[ManifoldPoint; 2], margin: f32) -> &[ManifoldPoint] {
     }
 }
 
-/// Both ends of the overlap between a box face and an edge of the triangle, if the face lies on the edge: with only the
-/// point where edges cross, the box would rock from one side to the other forever.
+/// Returns both ends of the overlap between a box face and an edge of the triangle, if the face rests on the edge. With
+/// only the point where the edges cross, the box would rock from side to side forever.
 fn under_face(
     placed: &PlacedBox,
     edge: &Segment,
@@ -229,7 +230,7 @@ fn under_face(
         return None;
     }
     let base = usize::from(side > 0.0) << k;
-    // Parameters of the edge, and the box's feature above each.
+    // Parameters of the ends along the edge, and the box's feature above each.
     let mut ends = [(0.0, feature::face(k, side)), (1.0, feature::face(k, side))];
     for u in [(k + 1) % 3, (k + 2) % 3] {
         let along = 3 - k - u;
@@ -238,7 +239,7 @@ fn under_face(
             // Side through which the edge enters or leaves.
             let (comes, steps) = ((from < to) == low, to - from);
             if steps.abs() <= f32::MIN_POSITIVE {
-                // Parallel to the side: all of the edge is beyond it, or none.
+                // Parallel to the side: the whole edge is beyond the side, or no part of it.
                 if from.abs() > placed.half[u] {
                     return None;
                 }
@@ -262,7 +263,7 @@ fn under_face(
     }))
 }
 
-/// The closest points of a separated box and triangle, by trying corners and edges.
+/// Reports the closest points of a separated box and triangle, by testing corners and edges.
 fn closest(placed: &PlacedBox, teller: &mut Teller<'_>) -> Option<Part> {
     let corners = teller.triangle.corners;
     let mut best = (f32::INFINITY, Vec3::ZERO, Vec3::ZERO, Part::Face, WHOLE);
@@ -290,7 +291,7 @@ fn closest(placed: &PlacedBox, teller: &mut Teller<'_>) -> Option<Part> {
     }
     let (square, on_box, on_triangle, part, feature) = best;
     let separation = square.sqrt();
-    // The direction between points that all but coincide is noise.
+    // The direction between nearly coincident points is noise.
     if separation > teller.margin || separation <= 1e-5 * placed.half.length() {
         return None;
     }

@@ -1,23 +1,23 @@
-//! Decides which contacts with edges and corners of a surface are real. A contact is real if every triangle with that
-//! edge or corner has its closest feature there; a triangle whose face is closest voids its edges (voided features:
-//! Box2D's ghost vertices, Bullet's internal edges).
+//! Decides which contacts with edges and corners of a surface are valid. A contact is valid if the edge or corner is
+//! the closest feature of every triangle that has it; a triangle whose face is closest voids its edges (compare Box2D's
+//! ghost vertices and Bullet's internal edges).
 
 use super::patch::{MAX_PARTS, SAME_NORMAL};
 use super::{Candidate, When};
 use crate::triangles::Part;
 use sinew_math::Vec3;
 
-/// Cosine of the angle between a normal and its triangle's normal up to which an inactive edge may give that normal:
-/// slightly more than the 5° by which the surface may bend there.
+/// Cosine between a normal and its triangle's normal above which an inactive edge may have that normal: slightly more
+/// than the 5° by which the surface may bend there.
 const WITHIN_FACE: f32 = 0.995;
 
-/// Cosine of the angle between a normal and its triangle's normal from which the shape counts as lying on the triangle.
+/// Cosine between a normal and its triangle's normal above which the shape counts as resting on the triangle.
 const FACES: f32 = 0.9;
 
-/// Cosine of the angle between two normals up to which they push to the same side.
+/// Cosine between two normals above which the contacts push to the same side.
 const SAME_SIDE: f32 = 0.5;
 
-/// Voided features of one surface: another triangle that has them is touched elsewhere.
+/// Voided features of one surface: another triangle with the feature is touched elsewhere.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Claims {
     edges: Vec<(u32, u32)>,
@@ -37,8 +37,8 @@ impl Claims {
         for candidate in candidates.iter_mut() {
             candidate.holds = self.holds(candidate);
         }
-        // Through rounding a point above a corner may belong to no triangle, and in a steep valley only inactive edges
-        // may be in contact: the best aligned candidate is kept then.
+        // Because of rounding, a point above a corner may belong to no triangle, and in a steep valley only inactive
+        // edges may be in contact: then the best aligned candidate is kept.
         let overlaps = |candidate: &Candidate| candidate.nearest < -tolerance;
         let is_deep = candidates.iter().any(overlaps);
         let counts = |candidate: &Candidate| !is_deep || overlaps(candidate);
@@ -54,8 +54,8 @@ impl Claims {
         hear_what_faces(candidates, &overlaps);
     }
 
-    /// Voids the features at which a triangle is not touched. Edges void the corners at their ends, not the other way
-    /// round: between the two, rounding decides.
+    /// Voids the features at which a triangle is not touched. An edge voids the corners at its ends, but a corner does
+    /// not void its edges, because rounding decides between the two.
     fn deny_others(&mut self, candidate: &Candidate) {
         let triangle = &candidate.triangle;
         let (edges, vertices): (&[usize], &[usize]) = match candidate.part {
@@ -87,8 +87,8 @@ impl Claims {
     }
 }
 
-/// An overlap that faces its triangle is kept if nothing else pushes from that side: along the ridges of a valley each
-/// wall voids the other's corners at the bottom.
+/// Keeps an overlap that faces its triangle if no other contact pushes from that side: along the ridges of a valley
+/// each wall voids the corners of the other at the bottom.
 fn hear_what_faces(candidates: &mut [Candidate], overlaps: &impl Fn(&Candidate) -> bool) {
     let facing = |c: &Candidate| c.normal.dot(c.triangle.normal);
     for _ in 0..MAX_PARTS {
@@ -103,7 +103,7 @@ fn hear_what_faces(candidates: &mut [Candidate], overlaps: &impl Fn(&Candidate) 
     }
 }
 
-/// True if one of the edges is active, or the normal is as good as the face's.
+/// True if one of the edges is active, or the normal is nearly that of the face.
 fn is_felt(candidate: &Candidate, edges: [usize; 2]) -> bool {
     let triangle = &candidate.triangle;
     edges.into_iter().any(|edge| triangle.is_active(edge))

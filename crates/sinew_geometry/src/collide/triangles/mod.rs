@@ -1,9 +1,9 @@
-//! A surface of triangles against a convex shape: several manifolds, without contacts at internal edges.
+//! Surface of triangles against a convex shape: several manifolds, without contacts at internal edges.
 //!
 //! Each triangle near the shape is tested by itself ([`round`], [`boxed`], [`other`]). Its contacts are then filtered
 //! ([`claims`]): faces under the shape come first and void their edges and corners, then edges at which the surface
-//! falls away, which void their corners, then corners. So shapes do not catch on edges within a floor. The rest is
-//! merged by normal and reduced to four points each ([`patch`]).
+//! bends down, which void their corners, then corners. So shapes do not catch on edges within a floor. The remaining
+//! contacts are merged by normal and reduced to four points each ([`patch`]).
 
 mod boxed;
 mod claims;
@@ -33,30 +33,30 @@ use solid::Solid;
 pub struct Motion {
     /// Velocity of the shape's centre relative to the surface, world, m/s.
     pub velocity: Vec3,
-    /// Duration of the motion, seconds.
+    /// Time of the motion, seconds.
     pub dt: f32,
-    /// Search distance for points, metres.
+    /// Distance within which points are searched, metres.
     pub margin: f32,
 }
 
-/// Answer of one triangle: points along one normal.
+/// Contact with one triangle: points along one normal.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     /// Normal from the surface to the shape.
     normal: Vec3,
     /// Feature of the triangle that is touched.
     part: Part,
-    /// Time of the contact: now, or once the shape has moved over the triangle.
+    /// Time of the contact: now, or when the shape has moved over the triangle.
     when: When,
-    /// Motion of the shape until then, metres.
+    /// Displacement of the shape until then, metres.
     shift: Vec3,
     triangle: Triangle,
-    /// First of its points in the list of all.
+    /// Index of the candidate's first point in the list of all points.
     first: u32,
     count: u32,
-    /// Least separation, metres.
+    /// Smallest separation of the points, metres.
     nearest: f32,
-    /// True if it is not overruled.
+    /// True if the candidate is valid: no other contact voids it.
     holds: bool,
 }
 
@@ -66,7 +66,7 @@ enum When {
     Soon,
 }
 
-/// Buffers reused from pair to pair.
+/// Buffers that are reused from pair to pair.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
     candidates: Vec<Candidate>,
@@ -76,7 +76,7 @@ pub struct Scratch {
 }
 
 /// Fills `out` with the contacts of a placed surface and a placed convex shape: normals from the surface to the shape.
-/// `ground` are the shapes beside the surface.
+/// `ground` has the shapes beside the surface.
 pub fn collide_surface(
     surface: &Surface<'_>,
     world_from_surface: &Transform,
@@ -104,7 +104,7 @@ pub fn collide_surface(
     let around = shape.aabb(&frame).expand(motion.margin);
     let around = Aabb { min: around.min + center, max: around.max + center };
     surface.overlapping(&around, |triangle| {
-        // The shape's centre is the origin, so that points near it are precise far from the surface's origin.
+        // The shape's centre is the origin, so that points near it are precise even far from the surface's origin.
         meet(&triangle.moved(-center), &solid, &local, scratch);
     });
     if scratch.candidates.is_empty() {
@@ -120,7 +120,8 @@ pub fn collide_surface(
     out.finish(world_from_surface, center);
 }
 
-/// Well inside of a shape: where a triangle in front of which this is faces it.
+/// Returns a point well inside a shape, in the shape's frame. A triangle faces the shape if this point is in front of
+/// it.
 fn middle(shape: &Shape) -> Vec3 {
     match *shape {
         Shape::Hull(ref hull) => hull.center(),
@@ -129,9 +130,9 @@ fn middle(shape: &Shape) -> Vec3 {
     }
 }
 
-/// Tests a triangle near the shape.
+/// Tests a triangle near the shape and records the contacts.
 fn meet(triangle: &Triangle, solid: &Solid<'_>, motion: &Motion, scratch: &mut Scratch) {
-    // The centre is in front; triangles are one-sided.
+    // The centre must be in front of the triangle, because triangles are one-sided.
     let height = triangle.height(Vec3::ZERO);
     let gap = height - solid.depth(triangle.normal);
     if height <= 0.0 || gap > motion.margin {
@@ -146,14 +147,14 @@ fn meet(triangle: &Triangle, solid: &Solid<'_>, motion: &Motion, scratch: &mut S
     };
     let closing = -motion.velocity.dot(triangle.normal);
     if part != Some(Part::Face) && closing > 0.0 && gap > 0.0 {
-        // Where the shape will come down on the triangle: at the foot of a ramp it must not penetrate before it is over
-        // it.
+        // Adds the contact where the shape will reach the triangle: at the foot of a ramp it must not penetrate before
+        // it is over the ramp.
         let time = min(gap / closing, motion.dt);
         teller.face(motion.velocity * time, When::Soon);
     }
 }
 
-/// A shape whose centre is behind the surface by no more than its thickness is pushed out at the nearest point.
+/// Pushes a shape out at the nearest point if its centre is behind the surface by at most its thickness.
 fn sunk(surface: &Surface<'_>, center: Vec3, shape: &Shape, solid: &Solid<'_>, scratch: &mut Scratch) {
     let Some(closest) = surface.closest(center, shape.inner_radius()) else { return };
     let (distance, _) = closest.signed(center);
@@ -171,7 +172,7 @@ fn sunk(surface: &Surface<'_>, center: Vec3, shape: &Shape, solid: &Solid<'_>, s
     teller.tell(triangle.normal, Part::Face, When::Now, &[point]);
 }
 
-/// Records a triangle's contacts.
+/// Records the contacts of one triangle.
 struct Teller<'a> {
     triangle: &'a Triangle,
     solid: &'a Solid<'a>,
@@ -180,13 +181,14 @@ struct Teller<'a> {
 }
 
 impl Teller<'_> {
-    /// The side of the shape that faces the triangle, cut to the prism over it after it has moved by `shift`.
+    /// Returns the side of the shape that faces the triangle, clipped to the prism over the triangle after a motion by
+    /// `shift`.
     fn over_face(&self, shift: Vec3) -> Outline {
         let outline = self.solid.outline(self.triangle.normal).moved(shift);
         outline.cut(self.triangle, self.solid.tolerance()).moved(-shift)
     }
 
-    /// Records the part of the shape over the triangle, after a motion by `shift`; returns false if there is none.
+    /// Records the part of the shape over the triangle, after a motion by `shift`; returns false if no part is over it.
     fn face(&mut self, shift: Vec3, when: When) -> bool {
         let over = self.over_face(shift);
         let has_points = self.face_points(&over, when);
@@ -215,7 +217,7 @@ impl Teller<'_> {
         count > 0
     }
 
-    /// Records points, if there are any.
+    /// Records points as a candidate, if there are any.
     fn tell(&mut self, normal: Vec3, part: Part, when: When, points: &[ManifoldPoint]) {
         if points.is_empty() {
             return;
@@ -235,22 +237,22 @@ impl Teller<'_> {
         self.scratch.points.extend_from_slice(points);
     }
 
-    /// Records a shape deep in the rim of the triangle whose facing side is not over the triangle: the way out toward
-    /// the outside. It counts for this triangle only.
+    /// Records a shape that is deep in the rim of the triangle while its facing side is not over the triangle: the way
+    /// out along the triangle's normal. The candidate does not void features of other triangles.
     fn lift(&mut self, gap: f32, position: Vec3) {
         let feature = pair(name::FACE, feature::WHOLE);
         let point = ManifoldPoint { position, separation: gap, feature };
         self.tell(self.triangle.normal, Part::Face, When::Soon, &[point]);
     }
 
-    /// Records a single point between the shape and a feature of the triangle.
+    /// Records a single point between a feature of the triangle and the shape.
     fn point(&mut self, normal: Vec3, part: Part, position: Vec3, separation: f32, of_shape: u16) {
         let feature = pair(name::part(self.triangle, part), of_shape);
         self.tell(normal, part, When::Now, &[ManifoldPoint { position, separation, feature }]);
     }
 }
 
-/// Renames the points of a manifold that was computed with a plane in place of a surface to the surface's names.
+/// Gives the surface's names to the points of a manifold that was computed with a plane in place of the surface.
 /// `of_surface` selects the surface's half of a feature.
 pub fn name_as_face(manifold: &mut super::Manifold, of_surface: Half) {
     for point in &mut manifold.points[..manifold.count] {
@@ -258,8 +260,8 @@ pub fn name_as_face(manifold: &mut super::Manifold, of_surface: Half) {
     }
 }
 
-/// Renames the points of a manifold to the name of hidden sides: they report that two shapes touch, but do not push.
-/// `of_surface` selects that side's half of a feature.
+/// Gives the name of hidden sides to the points of a manifold: such points report that two shapes touch, but do not
+/// push. `of_surface` selects the surface's half of a feature.
 pub fn name_as_hidden(manifold: &mut super::Manifold, of_surface: Half) {
     for point in &mut manifold.points[..manifold.count] {
         point.feature &= !(0xffff << of_surface.shift());
@@ -267,13 +269,13 @@ pub fn name_as_hidden(manifold: &mut super::Manifold, of_surface: Half) {
     }
 }
 
-/// True if a manifold was [named](name_as_hidden) as that of a hidden side.
+/// True if a manifold has the [name of hidden sides](name_as_hidden).
 pub fn is_hidden(manifold: &super::Manifold) -> bool {
     let hidden = u32::from(name::HIDDEN);
     manifold.points().iter().any(|point| point.feature & 0xffff == hidden || point.feature >> 16 == hidden)
 }
 
-/// True if all points of a manifold lie on faces of the surface.
+/// True if all points of a manifold are on faces of the surface.
 pub fn is_on_face(manifold: &super::Manifold, of_surface: Half) -> bool {
     manifold.points().iter().all(|point| name::is_face((point.feature >> of_surface.shift()) as u16))
 }

@@ -1,4 +1,4 @@
-//! Any convex shape against a triangle: direction and gap by GJK and EPA, the triangle being a thin solid.
+//! Any convex shape against a triangle: direction and gap by GJK and EPA, with the triangle as a thin solid.
 
 use super::{Teller, When, name};
 use crate::collide::feature::{WHOLE, pair};
@@ -10,21 +10,22 @@ use crate::convex::{advance, apart_along, closeness, meet};
 use crate::triangles::{Part, Triangle};
 use sinew_math::{DVec3, Transform, Vec3, max, min};
 
-/// `gap` is along the triangle's normal, at most the margin.
+/// Tests the shape; returns the part of the triangle in contact. `gap` is along the triangle's normal, at most the
+/// margin.
 pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'_>) -> Option<Part> {
     let thin = Thin(teller.triangle);
     let triangle = Posed::new(&thin, &Transform::IDENTITY, Vec3::ZERO);
     let mut between = meet(&triangle, posed);
     if between.distance < 0.0 {
-        // For a solid without thickness the way out is less accurate than the gap.
+        // For a solid without thickness, EPA's depth is less accurate than the gap along its direction.
         between.distance = apart_along(&triangle, posed, wide(between.normal)) as f32;
     }
     if between.distance > teller.margin {
         return None;
     }
     let tolerance = teller.solid.tolerance();
-    // The way out leads through the triangle, or its own face is as good: the face is most stable and represents the
-    // surface.
+    // The face is used if the way out leads through the triangle, or if the triangle's own normal is as good: the face
+    // is the most stable and represents the surface.
     let outward = between.normal.dot(teller.triangle.normal);
     let backward = outward < 0.0 && between.distance <= 0.0;
     let as_good = gap + tolerance + 0.05 * max(-gap, 0.0);
@@ -32,8 +33,8 @@ pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'
         let over = teller.over_face(Vec3::ZERO);
         let lowest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
         let told = lowest - teller.solid.radius();
-        // Separated shapes may pass beside the face; for overlapping ones the round side may be over the triangle where
-        // its representative line is not.
+        // Separated shapes may pass beside the face. For overlapping ones, a round side may be over the triangle even
+        // if the line that represents it is not.
         let shows = told <= max(between.distance + tolerance, 0.0);
         if shows && teller.face_points(&over, When::Now) {
             if between.distance <= 0.0 && told > as_good {
@@ -56,7 +57,7 @@ pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'
     }
     let nearest = manifold.points().iter().fold(f32::INFINITY, |least, p| min(p.separation, least));
     if nearest > between.distance + tolerance {
-        // Round sides reach further than the corners and lines that represent them.
+        // Round sides extend further than the corners and lines that represent them.
         let feature = pair(name::part(teller.triangle, part), WHOLE);
         let position = (between.on_a + between.on_b) * 0.5;
         if manifold.count == 0 {
@@ -69,9 +70,9 @@ pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'
     Some(part)
 }
 
-/// Records the deepest point of the shape under the triangle, if it is below `told`: it need not be on the facing side
-/// if that reaches down beside the triangle. It is the first point to touch when the shape is lifted out along the
-/// normal and lowered again.
+/// Records the deepest point of the shape under the triangle, if the point is below `told`. The point may not be on the
+/// facing side, if that side extends down beside the triangle. It is the first point to touch when the shape is lifted
+/// out along the normal and lowered again.
 fn deepest(
     triangle: &Posed<'_, Thin<'_>>,
     posed: &Posed<'_, Core<'_>>,
@@ -113,7 +114,7 @@ impl Support for Thin<'_> {
     }
 
     fn thinnest(&self) -> f32 {
-        // A surface bounds no thickness.
+        // A surface has no thickness.
         f32::INFINITY
     }
 

@@ -1,11 +1,11 @@
-//! The side of a shape that faces a triangle, cut to the prism over it.
+//! Side of a shape that faces a triangle, clipped to the prism over the triangle.
 
 use super::name;
 use crate::convex::feature::MOST_CORNERS;
 use crate::triangles::Triangle;
 use sinew_math::Vec3;
 
-/// Most corners of an outline: those of a shape's side, and one more for each side of the triangle.
+/// Largest number of corners of an outline: those of a shape's side, and one more for each side of the triangle.
 pub(super) const MAX_CORNERS: usize = MOST_CORNERS + 3;
 
 /// A corner of an outline.
@@ -25,18 +25,18 @@ pub(super) struct Corner {
 pub(super) enum Side {
     /// An edge of the shape, by its feature.
     Shape(u16),
-    /// An edge of the triangle, by its number.
+    /// An edge of the triangle, by its index.
     Triangle(usize),
     #[default]
     None,
 }
 
-/// A point, a line, or a convex polygon that faces a triangle.
+/// A point, a line, or a convex polygon of a shape that faces a triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Outline {
     corners: [Corner; MAX_CORNERS],
     count: usize,
-    /// Feature of the face of the shape that it is.
+    /// Feature of the shape's face that the outline is.
     pub face: u16,
 }
 
@@ -52,7 +52,7 @@ impl Outline {
     }
 
     pub fn push(&mut self, corner: Corner) {
-        // Rounding could produce one more corner of a sliver; it is dropped.
+        // Rounding could produce one more corner on a sliver; that corner is dropped.
         if self.count < MAX_CORNERS {
             self.corners[self.count] = corner;
             self.count += 1;
@@ -66,14 +66,14 @@ impl Outline {
         self
     }
 
-    /// The part over or under the triangle, widened by `tolerance` so that corners on its edges keep their names under
-    /// rounding (Sutherland & Hodgman 1974).
+    /// Returns the part over and under the triangle (Sutherland & Hodgman 1974). The prism is widened by `tolerance`,
+    /// so that corners on its edges keep their names under rounding.
     pub fn cut(mut self, triangle: &Triangle, tolerance: f32) -> Self {
         for edge in 0..3 {
             let (from, to) = (triangle.corners[edge], triangle.corners[(edge + 1) % 3]);
             let outward = sinew_math::normalize_or((to - from).cross(triangle.normal), Vec3::ZERO);
             let beyond = |p: Vec3| (p - from).dot(outward) - tolerance;
-            // Outlines are long, and usually entirely on one side of an edge.
+            // Outlines are long, and usually all corners are on one side of an edge.
             let kept = self.corners().iter().filter(|corner| beyond(corner.at) <= 0.0).count();
             if kept == 0 {
                 self.count = 0;
@@ -86,7 +86,7 @@ impl Outline {
         self
     }
 
-    /// Removes the part beyond an edge of the triangle.
+    /// Removes the part of the outline beyond an edge of the triangle.
     fn cut_by(&self, triangle: &Triangle, edge: usize, beyond: impl Fn(Vec3) -> f32) -> Self {
         let mut out = Self { face: self.face, ..Self::default() };
         let lines = if self.count == 2 { 1 } else { self.count };
@@ -107,7 +107,7 @@ impl Outline {
                     Side::Triangle(other) => (self.face, name::corner(triangle, other, edge)),
                     Side::None => (self.face, name::edge(triangle, edge)),
                 };
-                // Where the outline leaves, it continues along this edge of the triangle.
+                // Where the outline crosses outward, it continues along this edge of the triangle.
                 let side = if d0 <= 0.0 { Side::Triangle(edge) } else { from.side };
                 out.push(Corner { at, of_shape, of_surface, side });
             }

@@ -5,12 +5,12 @@ use crate::collide::reduce::push_best;
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use sinew_math::{Transform, Vec3};
 
-/// Most manifolds of a shape and a surface; further normals join the nearest one.
+/// Largest number of manifolds of a shape and a surface; contacts with further normals join the nearest manifold.
 pub const MAX_PARTS: usize = 8;
-/// Cosine of the angle, 5°, up to which contacts have one normal.
+/// Cosine between two normals (5°) above which the contacts share one normal.
 pub(super) const SAME_NORMAL: f32 = 0.996;
 
-/// The manifolds of a surface and a shape.
+/// Manifolds of a surface and a shape.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Patch {
     manifolds: [Manifold; MAX_PARTS],
@@ -18,7 +18,7 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// Empties it.
+    /// Removes all manifolds.
     #[inline]
     pub fn clear(&mut self) {
         self.count = 0;
@@ -30,14 +30,14 @@ impl Patch {
         &self.manifolds[..self.count]
     }
 
-    /// Flips all manifolds: the shape comes first.
+    /// Flips all manifolds, so that A is the shape and B the surface.
     pub fn flip(&mut self) {
         for manifold in &mut self.manifolds[..self.count] {
             manifold.flip();
         }
     }
 
-    /// Converts from the surface's axes around the shape's centre to the world; drops what is not finite.
+    /// Converts from the surface's axes around the shape's centre to the world; drops manifolds that are not finite.
     pub fn finish(&mut self, world_from_surface: &Transform, center: Vec3) {
         let mut kept = 0;
         for k in 0..self.count {
@@ -56,16 +56,16 @@ impl Patch {
     }
 }
 
-/// Buffers reused from pair to pair.
+/// Buffers that are reused from pair to pair.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Merging {
-    /// Candidates that hold, the deepest first.
+    /// Indices of the valid candidates, the deepest first.
     order: Vec<u32>,
     /// Points of one manifold.
     points: Vec<ManifoldPoint>,
 }
 
-/// Merges contacts with one normal, the deepest first, and keeps four points of each.
+/// Merges contacts with the same normal, the deepest first, and keeps at most four points per normal.
 pub(super) fn merge(
     candidates: &[Candidate],
     points: &[ManifoldPoint],
@@ -76,7 +76,7 @@ pub(super) fn merge(
     let Merging { order, points: gathered } = merging;
     order.clear();
     order.extend((0..candidates.len() as u32).filter(|&i| candidates[i as usize].holds));
-    // Near ties go to the first, so that rounding does not change which normal represents several.
+    // Nearly equal depths are ordered by index, so that rounding does not change which normal represents several.
     let depth = |i: u32| (candidates[i as usize].nearest / (4.0 * tolerance)).floor();
     order.sort_unstable_by(|&i, &j| depth(i).total_cmp(&depth(j)).then(i.cmp(&j)));
     while let Some(&first) = order.first()
@@ -103,13 +103,13 @@ pub(super) fn merge(
     }
 }
 
-/// Adds a point unless it is there already: adjacent triangles share corners. If there are many, those that are kept
-/// lie far apart.
+/// Adds a point unless it is near a recent one: adjacent triangles share corners. Only the last few points are
+/// compared.
 fn push_once(points: &mut Vec<ManifoldPoint>, point: &ManifoldPoint, tolerance: f32) {
     const FEW: usize = 4 * MAX_POINTS;
     let near = |p: &&mut ManifoldPoint| (p.position - point.position).length() <= 2.0 * tolerance;
     match points.iter_mut().rev().take(FEW).find(near) {
-        // Prefers the name that is the same on other triangles.
+        // Prefers the name of a face, which other triangles share.
         Some(known) => {
             if super::name::is_face(point.feature as u16) {
                 known.feature = point.feature;

@@ -1,4 +1,4 @@
-//! PlacedSphere and capsule against a triangle.
+//! Balls and capsules against a triangle.
 
 use super::{Teller, When};
 use crate::collide::feature::WHOLE;
@@ -6,14 +6,14 @@ use crate::collide::placed::{PlacedCapsule, Segment};
 use crate::triangles::{Part, closest_on_triangle};
 use sinew_math::{Vec3, min};
 
-/// The closest point of the triangle to the centre.
+/// Tests a ball at the origin: the point of the triangle closest to the centre.
 pub(super) fn sphere(radius: f32, teller: &mut Teller<'_>) -> Option<Part> {
     let (point, part) = closest_on_triangle(&teller.triangle.corners, Vec3::ZERO);
     let distance = point.length();
     if distance - radius > teller.margin {
         return None;
     }
-    // On the edge itself its direction is rounding; the centre is in front of the triangle.
+    // At an edge, the direction to the centre is rounding; the centre is in front of the triangle.
     if part == Part::Face || distance <= 1e-3 * radius {
         let height = teller.triangle.height(Vec3::ZERO);
         let separation = height - radius;
@@ -26,12 +26,12 @@ pub(super) fn sphere(radius: f32, teller: &mut Teller<'_>) -> Option<Part> {
     Some(part)
 }
 
-/// The stretch of the core that is over the triangle, or the closest points of the core and an edge.
+/// Tests a capsule: the part of the core over the triangle, or the closest points of the core and an edge.
 pub(super) fn capsule(pill: &PlacedCapsule, teller: &mut Teller<'_>) -> Option<Part> {
     let over = teller.over_face(Vec3::ZERO);
     let lowest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
     let nearest = nearest_rim(pill, teller);
-    // A core that passes the rim is behind the triangle, not inside it.
+    // A core that passes beside the rim is behind the triangle, not inside it.
     let in_front = lowest >= 0.0 || nearest.distance <= teller.solid.tolerance() || pierces(pill, teller);
     if in_front && lowest <= nearest.distance + teller.solid.tolerance() {
         return teller.face_points(&over, When::Now).then_some(Part::Face);

@@ -1,4 +1,4 @@
-//! Contacts at edges where another shape continues a surface: they get a normal that both shapes share.
+//! Contacts at edges where another shape continues a surface get a normal that both shapes share.
 
 use super::solid::Solid;
 use super::{Candidate, name};
@@ -7,14 +7,16 @@ use crate::collide::feature::pair;
 use crate::triangles::{Part, closest_on_triangle};
 use sinew_math::{Transform, Vec3, min};
 
-/// Visible normal of the ground at a point of the surface, in place of the found one, and the height of the point over
-/// the plane with that normal: world, unit, metres. `None` if other shapes hide the surface.
+/// Function of a point of the surface and a normal. Returns the visible unit normal of the ground there, to be used in
+/// place of the normal, and the height of the point over the plane with that normal, metres; world. `None` if other
+/// shapes hide the surface.
 pub type Ground<'a> = dyn Fn(Vec3, Vec3) -> Option<(Vec3, f32)> + 'a;
 
-/// Cosine from which a normal counts as the found one.
+/// Cosine above which the visible normal counts as equal to the candidate's.
 const AS_FOUND: f32 = 0.999_999_9;
 
-/// Changes the valid candidates to the visible normals of the ground. `margin` as in [`Motion`](super::Motion).
+/// Replaces the normals of the valid candidates by the visible normals of the ground. `margin`: see
+/// [`Motion`](super::Motion).
 pub(super) fn mend(
     ground: &Ground<'_>,
     world_from_center: &Transform,
@@ -26,7 +28,7 @@ pub(super) fn mend(
         let own = &points[candidate.first as usize..][..candidate.count as usize];
         let deeper = |p: ManifoldPoint, q: ManifoldPoint| if q.separation < p.separation { q } else { p };
         let Some(deepest) = own.iter().copied().reduce(deeper) else { continue };
-        // Position of the point once the shape is over the triangle.
+        // Position of the point when the shape is over the triangle.
         let on_surface = deepest.position - candidate.normal * (0.5 * deepest.separation) + candidate.shift;
         let (at, _) = closest_on_triangle(&candidate.triangle.corners, on_surface);
         let shown = ground(world_from_center.point(at), world_from_center.rotation * candidate.normal);
@@ -41,7 +43,7 @@ pub(super) fn mend(
     }
 }
 
-/// Moves a candidate onto a plane: a box's points on its edges, or the lowest point of a shape that may roll.
+/// Moves a candidate to a plane: the points of a box on its edges, or the lowest point of a shape that may roll.
 fn put_on(
     (normal, origin): (Vec3, Vec3),
     (solid, margin): (&Solid<'_>, f32),

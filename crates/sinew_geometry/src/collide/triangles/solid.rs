@@ -1,4 +1,4 @@
-//! Solids against a surface: a shape around the origin, in the axes of the surface's frame.
+//! Convex shapes around the origin, in the axes of the surface's frame.
 
 use super::name;
 use super::outline::{Corner, Outline, Side};
@@ -8,9 +8,9 @@ use crate::convex::support::{Core, Posed, Support, narrow, wide};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, min};
 
-/// Spheres, capsules and boxes have special cases; all others use GJK and EPA.
+/// A convex shape. Balls, capsules and boxes have their own tests; all others use GJK and EPA.
 pub(super) enum Solid<'a> {
-    /// PlacedSphere of this radius.
+    /// A ball with this radius.
     PlacedSphere(f32),
     PlacedCapsule(PlacedCapsule),
     Box(PlacedBox),
@@ -29,7 +29,7 @@ impl<'a> Solid<'a> {
         }
     }
 
-    /// Radius of its rounding.
+    /// Rounding radius, metres.
     pub fn radius(&self) -> f32 {
         match self {
             Self::PlacedSphere(radius) => *radius,
@@ -39,7 +39,7 @@ impl<'a> Solid<'a> {
         }
     }
 
-    /// Reach against the unit vector `n`, metres.
+    /// Extent from the origin against the unit vector `n`, metres.
     pub fn depth(&self, n: Vec3) -> f32 {
         match self {
             Self::PlacedSphere(radius) => *radius,
@@ -49,7 +49,7 @@ impl<'a> Solid<'a> {
         }
     }
 
-    /// Lengths below this don't matter for the choice of features, metres.
+    /// Length below which differences do not affect the choice of features, metres.
     pub fn tolerance(&self) -> f32 {
         let thin = match self {
             Self::PlacedSphere(radius) => *radius,
@@ -60,7 +60,7 @@ impl<'a> Solid<'a> {
         min(0.0005, 0.01 * thin)
     }
 
-    /// The side of its core that faces a plane with this normal.
+    /// Returns the side of the core that faces a plane with this normal.
     pub fn outline(&self, normal: Vec3) -> Outline {
         let mut outline = Outline::default();
         let mut push = |at: Vec3, of_shape: u16, side: Side| {
@@ -91,7 +91,7 @@ impl<'a> Solid<'a> {
                     push(corner.point, corner.name, Side::Shape(corner.side));
                 }
                 if !feature.is_face() {
-                    // Round at its lowest point: between the corners of its polygon.
+                    // A round side is lowest between the corners of its polygon.
                     outline = lowest(posed, normal, outline);
                 }
                 outline.face = feature.name;
@@ -101,7 +101,7 @@ impl<'a> Solid<'a> {
     }
 }
 
-/// An edge or corner that represents a round side lies where the side reaches furthest.
+/// Moves an edge or corner that represents a round side to where the side extends furthest.
 fn lowest(posed: &Posed<'_, Core<'_>>, normal: Vec3, outline: Outline) -> Outline {
     let support = narrow(posed.support(-wide(normal)));
     let named = outline.corners().iter().fold(f32::INFINITY, |y, c| min(c.at.dot(normal), y));

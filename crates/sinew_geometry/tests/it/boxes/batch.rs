@@ -1,5 +1,5 @@
-//! Batches of eight boxes: bits equal those of single boxes at every level that the processor has; against enumeration; and against a
-//! hash that is the same on all processors.
+//! Batches of eight boxes: their bits equal those of single boxes at every SIMD level of the processor, their results
+//! equal enumeration, and their hash is the same on all processors.
 
 use super::oracle::WideBox;
 use super::overlap::{check, tolerances};
@@ -14,22 +14,22 @@ use sinew_geometry::boxes::{Cuboid, Overlap, Penetration};
 use sinew_math::dispatch::{self, Level};
 use sinew_math::{Random, StableHasher, Vec3};
 
-/// All cases run always: they take microseconds.
+/// Number of cases, all of which always run: they take microseconds.
 const CASES: usize = 100_000;
 
-/// Hash of the answers for the soup, on x86-64, aarch64 and wasm.
+/// Hash of the results for the soup, on x86-64, aarch64 and wasm.
 const GOLDEN: u64 = 0xeb39_4a58_1e5a_bc31;
 
 fn bit(bytes: &[u8], index: usize) -> bool {
     bytes[index / 8] >> (index % 8) & 1 == 1
 }
 
-/// Makes all NaN equal: their sign and payload are not defined.
+/// Returns the bits of a number, equal for all NaN: their sign and payload are not defined.
 fn bits(number: f32) -> u32 {
     if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() }
 }
 
-/// Returns points in, on, near and far from a box.
+/// Returns a point in, on, near or far from a box.
 fn point_about(of: &Obb, random: &mut Random) -> Vec3 {
     let corner = random.in_cube().map(|x| if x < 0.0 { -1.0 } else { 1.0 });
     let place = match random.index(5) {
@@ -87,7 +87,7 @@ fn many_points_are_answered_like_one() {
             for (k, &point) in points.iter().enumerate() {
                 assert_eq!(bit(&inside, k), of.contains_point(point), "{level:?}: {point} in {of:?}");
                 let (found, one) = (distances[k], of.signed_distance(point));
-                // For single boxes, closer points count as on the surface.
+                // A single box counts closer points as on the surface.
                 let is_same =
                     found.to_bits() == one.to_bits() || (found.abs() <= 1e-12 && one.abs() <= 1e-12);
                 assert!(is_same, "{level:?}: {found:e}, {one:e}: {point} and {of:?}");
@@ -119,7 +119,7 @@ fn many_pairs_are_answered_like_one() {
     }
 }
 
-/// The same depth, direction and gap as by enumeration, in either order.
+/// Depth, direction and gap equal those of an enumeration, in either order.
 #[test]
 fn separations_match_enumeration() {
     let mut random = Random::new(63);
@@ -153,7 +153,7 @@ fn face_axes_never_exceed_all_axes() {
     assert!(edges > CASES / 50, "edges were better {edges} times");
 }
 
-/// Returns two boxes whose number `index` of twenty is `value`.
+/// Returns two boxes in which number `index` of twenty is replaced by `value`.
 fn spoilt(boxes: &[Obb; 2], index: usize, value: f32) -> [Obb; 2] {
     let mut boxes = *boxes;
     let of = &mut boxes[index / 10];
@@ -219,7 +219,7 @@ fn a_point_with_nan_is_nowhere() {
     }
 }
 
-/// Pairs of boxes for which every processor must give the same answer: of all sizes, and NaN.
+/// Returns pairs of boxes of all sizes, and with NaN, for which every processor must give the same result.
 fn soup() -> Vec<[Obb; 2]> {
     let mut random = Random::new(67);
     let mut soup: Vec<[Obb; 2]> = (0..2_000).map(|_| pair(&mut random)).collect();
@@ -242,7 +242,7 @@ fn soup() -> Vec<[Obb; 2]> {
     soup
 }
 
-/// In the order in which the axes are tested.
+/// Index of an axis in the order in which axes are tested.
 fn place(axis: SeparatingAxis) -> u8 {
     match axis {
         SeparatingAxis::FaceOfA(k) => k,

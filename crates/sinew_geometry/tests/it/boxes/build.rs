@@ -32,7 +32,7 @@ fn nonfinite_sizes_and_places_panic() {
     assert_eq!(Aabb::new(Vec3::ONE, Vec3::ONE).half_extents(), Vec3::ZERO);
 }
 
-/// Volume, area and inertia of a box of 2 × 4 × 6 m, by hand; and of a plate without volume.
+/// Volume, area and inertia of a box of 2 × 4 × 6 m, computed by hand, and of a plate without volume.
 #[test]
 fn measures() {
     let obb = Obb::new(Vec3::new(7.0, 0.0, 0.0), Rotation::IDENTITY, Vec3::new(1.0, 2.0, 3.0));
@@ -44,7 +44,7 @@ fn measures() {
     assert_eq!(plate.inertia(3.0).diagonal, Vec3::new(1.0, 2.0, 1.0));
 }
 
-/// A rotated box has the mass of a body's shape in the same frame.
+/// A rotated box has the mass properties of a shape of a body in the same frame.
 #[test]
 fn mass_properties_are_those_of_the_shape() {
     let mut random = Random::new(71);
@@ -61,7 +61,7 @@ fn mass_properties_are_those_of_the_shape() {
     }
 }
 
-/// Corners have the right distance from the centre and lie on the right sides of the axes.
+/// Corners have the right distance from the centre and are on the right sides of the axes.
 #[test]
 fn corners_are_numbered_by_their_sides() {
     let mut random = Random::new(72);

@@ -1,4 +1,4 @@
-//! Rays and segments against boxes.
+//! Ray casts against boxes.
 
 use super::oracle::WideBox;
 use super::random_pairs::{obb, place};
@@ -26,7 +26,8 @@ fn ray_about(obb: &Obb, random: &mut Random) -> Ray {
     Ray { origin: from, direction: (to - from) * random.range(0.3, 2.0) }
 }
 
-/// Returns the share of the segment before it enters the box, by bisection of the remaining distance; `None` if it misses.
+/// Returns the fraction of the segment before it enters the box, by bisection of the remaining distance; `None` if it
+/// misses.
 fn entry(wide_box: &WideBox, ray: &Ray) -> Option<f64> {
     let (origin, along) = (wide(ray.origin), wide(ray.direction));
     let up_to = |t: f64| wide_box.distance_to_segment([origin, add(origin, along, t)]);
@@ -48,7 +49,7 @@ fn check(cuboid: &impl Cuboid, wide_box: &WideBox, of_center: f64, ray: &Ray, ca
     let tolerance = 1e-6 * (wide_box.size() + from_center + length(along)) + of_center;
     let near = |t: f64| wide_box.signed_distance(add(origin, along, t)).abs();
     let Some(hit) = said else {
-        // Rounding lets a grazing ray pass; it then also misses a box that is smaller by as much.
+        // Because of rounding a grazing ray may pass; it then also misses a box that is smaller by that rounding.
         let smaller = WideBox { half: wide_box.half.map(|h| h - tolerance), ..*wide_box };
         let missed = smaller.half.iter().any(|h| *h < 0.0) || entry(&smaller, ray).is_none();
         assert!(missed, "case {case}: {ray:?} enters {wide_box:?}");
@@ -60,7 +61,7 @@ fn check(cuboid: &impl Cuboid, wide_box: &WideBox, of_center: f64, ray: &Ray, ca
             wide_box.signed_distance(origin) <= tolerance,
             "case {case}: {ray:?} starts outside {wide_box:?}"
         );
-        // Without a direction the normal is the surface's.
+        // Without a direction, the normal is that of the surface.
         let still = ray.direction == Vec3::ZERO;
         assert!(
             still || (hit.normal + ray.direction / ray.direction.length()).length() < 1e-5,
@@ -77,7 +78,7 @@ fn check(cuboid: &impl Cuboid, wide_box: &WideBox, of_center: f64, ray: &Ray, ca
     let face = (0..3).find(|k| normal[*k].abs() > 0.999_99).expect("a face's normal");
     let off = (point[face] * normal[face].signum() - wide_box.half[face]).abs();
     assert!(off <= tolerance, "case {case}: {hit:?} is {off} off its face");
-    // Nothing of the ray before the hit is inside by more than rounding.
+    // No part of the ray before the hit is inside by more than rounding.
     let smaller = WideBox { half: wide_box.half.map(|h| (h - 2.0 * tolerance).max(0.0)), ..*wide_box };
     if let Some(first) = entry(&smaller, ray).filter(|_| smaller.half.iter().all(|h| *h > 0.0)) {
         assert!(t <= first + 1e-6 + of_center / length(along), "case {case}: {hit:?}, entered at {first}");
@@ -95,7 +96,7 @@ fn rays_enter_where_bisection_does() {
         hits += u32::from(obb.cast_ray(&ray).is_some());
         let aabb = Aabb::around(place(&mut random), half_extents(1.0, &mut random));
         let ray = ray_about(&Obb::from(aabb), &mut random);
-        // Half of the spacing of numbers along each axis.
+        // Half the spacing of numbers along each axis.
         let of_center = length(wide(aabb.center())) * 1e-7;
         check(&aabb, &WideBox::from(&aabb), of_center, &ray, case);
     }
@@ -103,7 +104,7 @@ fn rays_enter_where_bisection_does() {
     assert!((20..90).contains(&share), "{share} % hit");
 }
 
-/// The half-line continues where the segment ends.
+/// The half-line continues beyond the end of the segment.
 #[test]
 fn half_lines_have_no_end() {
     let obb = Obb::new(Vec3::new(10.0, 0.0, 0.0), Rotation::IDENTITY, Vec3::ONE);

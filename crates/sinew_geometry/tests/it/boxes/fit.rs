@@ -1,4 +1,4 @@
-//! Boxes around points, against known optima and against a search.
+//! Boxes around points, compared with known optima and with a search.
 
 use super::random_pairs::place;
 use crate::cases::{cases, half_extents};
@@ -48,7 +48,7 @@ fn corners_of_a_box_give_the_box_back() {
         let fit = Obb::from_points(&corners).expect("finite points");
         assert!(holds_all(&fit, &corners), "{obb:?} {fit:?}");
         assert!((fit.volume() - obb.volume()).abs() < 1e-5 * (1.0 + obb.volume()), "{obb:?} {fit:?}");
-        // Flat boxes too: their sides are those of the box, in another order.
+        // Flat boxes too: the sides are those of the box, possibly in another order.
         let sorted = |half: Vec3| {
             let mut sides = half.to_array();
             sides.sort_by(f32::total_cmp);
@@ -75,7 +75,7 @@ fn a_tetrahedron_fits_its_cube() {
     }
 }
 
-/// A prism on a regular triangle: the smallest rectangle around a triangle stands on a side and is twice as large.
+/// Prism on a regular triangle: the smallest rectangle around a triangle has a common side with it and twice its area.
 #[test]
 fn a_prism_stands_on_a_side() {
     let height = 0.5 * 3.0f32.sqrt();
@@ -89,7 +89,7 @@ fn a_prism_stands_on_a_side() {
     assert!((fit.volume() - 0.5 * height).abs() < 1e-5, "{fit:?}");
 }
 
-/// Random clouds: never larger than the simpler boxes, and about as small as a random search finds.
+/// Boxes around random clouds are never larger than the simpler boxes, and about as small as a random search finds.
 #[test]
 fn no_box_is_much_smaller() {
     let mut random = Random::new(83);
@@ -114,10 +114,10 @@ fn no_box_is_much_smaller() {
     assert!(worst < 0.06 && sum < 0.0, "{worst}, {sum}");
 }
 
-/// Makes a box around points.
+/// Function that returns a box around points.
 type Fit = fn(&[Vec3]) -> Option<Obb>;
 
-/// One point, points on a line, in a plane, all equal; none; and NaN or infinity.
+/// One point, points on a line, in a plane, all equal; no points; and NaN or infinity.
 #[test]
 fn degenerate_clouds_have_an_answer() {
     let (p, along) = (Vec3::new(3.0, -1.0, 2.0), Vec3::new(0.6, 0.0, 0.8));
@@ -137,7 +137,7 @@ fn degenerate_clouds_have_an_answer() {
         sides.sort_by(f32::total_cmp);
         assert!((sides[2] - 4.0).abs() < 1e-5 && sides[1] < 1e-5, "{obb:?}");
     }
-    // A square of 2 m on its corner, as a sheet.
+    // Square sheet with corners 1 m from its centre.
     let turn = Rotation::from_scaled_axis(Vec3::new(0.3, 0.7, -0.2));
     let square = [Vec3::X, Vec3::Y, -Vec3::X, -Vec3::Y, Vec3::ZERO].map(|q| p + turn * q);
     let obb = Obb::from_points(&square).expect("finite points");
@@ -162,7 +162,7 @@ fn a_merged_box_holds_both() {
         for axes in [a.rotation, b.rotation] {
             assert!(both.volume() <= volume_along(axes, &corners) * 1.0001 + 1e-5, "{a:?} {b:?}");
         }
-        // For flat boxes rounding decides whether one contains the other.
+        // For flat boxes rounding decides if one contains the other.
         let a = Obb { half_extents: a.half_extents + Vec3::splat(0.01), ..a };
         let inner = Obb { half_extents: a.half_extents * 0.5, ..a };
         assert_eq!((a.merge(&inner), inner.merge(&a)), (a, a));
@@ -173,7 +173,7 @@ fn a_merged_box_holds_both() {
     assert_eq!(low.merge(&high), Aabb::new(-Vec3::ONE, Vec3::new(1.0, 4.0, 1.0)));
 }
 
-/// Bounds of a rotated box: `|R| h` about its centre, touched by corners on every side.
+/// Bounds of a rotated box are `|R| h` about its centre, and corners touch every side.
 #[test]
 fn bounds_touch_corners() {
     let mut random = Random::new(85);

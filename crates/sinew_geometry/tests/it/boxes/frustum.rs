@@ -1,4 +1,4 @@
-//! Culling and picking, against points of the box in the eye's own coordinates.
+//! Culling and picking, compared with sampled points of the box in the coordinates of the eye.
 
 use super::oracle::WideBox;
 use crate::cases::{cases, half_extents};
@@ -15,7 +15,7 @@ fn frustum(random: &mut Random) -> Frustum {
     Frustum::new(eye, random.range(0.2, 2.2), random.range(0.5, 2.0), near, near + random.range(1.0, 20.0))
 }
 
-/// Returns roughly the depth of a point inside all six planes: the least of the six heights.
+/// Returns about the depth of a point inside all six planes: the smallest of the six heights.
 fn depth(frustum: &Frustum, eye: &WideBox, p: Wide) -> f64 {
     let [x, y, z] = eye.local(p);
     let ahead = -z;
@@ -92,7 +92,7 @@ fn balls_are_culled_by_their_depth() {
     }
 }
 
-/// A place in the picture, its segment, and back.
+/// A ray passes through its position in the picture, and the position follows from the ray.
 #[test]
 fn rays_go_through_the_picture() {
     let mut random = Random::new(93);
@@ -111,7 +111,7 @@ fn rays_go_through_the_picture() {
     }
 }
 
-/// The first box along the segment is picked; of equal ones, the first in the list.
+/// The first box along the segment is picked; among equals, the first in the list.
 #[test]
 fn the_nearest_box_is_picked() {
     let eye = Transform::from_translation(Vec3::new(0.0, 0.0, 10.0));

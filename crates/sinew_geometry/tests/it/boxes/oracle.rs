@@ -9,7 +9,7 @@ pub fn cross(a: Wide, b: Wide) -> Wide {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// A box in `f64`, its axes from the quaternion itself.
+/// A box in `f64`, with axes from the quaternion.
 #[derive(Clone, Copy, Debug)]
 pub struct WideBox {
     pub center: Wide,
@@ -75,7 +75,7 @@ impl WideBox {
         })
     }
 
-    /// True if a part of a segment is in the box, grown by `grow` on every side.
+    /// True if a part of a segment is in the box, enlarged by `grow` on every side.
     fn meets_segment(&self, ends: [Wide; 2], grow: f64) -> bool {
         let [p, q] = ends.map(|p| self.local(p));
         let (mut first, mut last) = (0.0f64, 1.0f64);
@@ -95,8 +95,7 @@ impl WideBox {
         first <= last
     }
 
-    /// True if two boxes, the first grown by `grow`, have a point in common: then an edge of one enters the
-    /// other.
+    /// True if two boxes, the first enlarged by `grow`, have a point in common: then an edge of one enters the other.
     pub fn meets(&self, other: &Self, grow: f64) -> bool {
         if self.half.iter().any(|h| h + grow < 0.0) {
             return false;
@@ -106,7 +105,7 @@ impl WideBox {
             || grown.edges().any(|edge| other.meets_segment(edge, 0.0))
     }
 
-    /// Returns the distance from the point to the nearest of the six faces, negative inside.
+    /// Returns the distance from a point to the nearest of the six faces, negative inside.
     pub fn signed_distance(&self, p: Wide) -> f64 {
         let q = self.local(p);
         let mut nearest = f64::INFINITY;
@@ -122,7 +121,8 @@ impl WideBox {
         if inside { -nearest } else { nearest }
     }
 
-    /// Returns the distance from the solid box to a segment, by minimising a convex function of the place on the segment.
+    /// Returns the distance from the solid box to a segment, by minimising a convex function of the position on the
+    /// segment.
     pub fn distance_to_segment(&self, ends: [Wide; 2]) -> f64 {
         let along = add(ends[1], ends[0], -1.0);
         let at = |t: f64| self.signed_distance(add(ends[0], along, t)).max(0.0);
@@ -138,7 +138,7 @@ impl WideBox {
         at(0.5 * (lo + hi)).min(at(0.0)).min(at(1.0))
     }
 
-    /// Returns the sine between the two edges, one of each box, that are closest to parallel, without those that are parallel within `f32`.
+    /// Returns the smallest sine between an edge of each box, excluding edges that are parallel within `f32`.
     pub fn least_sine(&self, other: &Self) -> f64 {
         let sines = self.axes.iter().flat_map(|u| other.axes.iter().map(|v| length(cross(*u, *v))));
         sines.filter(|sine| *sine > 1e-6).fold(1.0, f64::min)

@@ -1,4 +1,4 @@
-//! Boxes against boxes, balls and capsules.
+//! Overlaps of boxes with boxes, balls and capsules.
 
 use super::oracle::WideBox;
 use super::random_pairs::{pair, place};
@@ -8,8 +8,8 @@ use sinew_geometry::boxes::{Capsule, Cuboid, Overlap, Penetration, Sphere};
 use sinew_geometry::{Aabb, Obb};
 use sinew_math::{Random, Rotation, Transform, Vec3};
 
-/// Checks the answers for a pair against `meets(shift, grow)`: whether the two, one moved by `shift` and grown
-/// by `grow`, have a point in common.
+/// Checks the results for a pair against `meets(shift, grow)`, which is true if the shapes, one moved by `shift` and
+/// enlarged by `grow`, have a point in common.
 pub fn check(
     found: Option<Penetration>,
     meets: impl Fn(Wide, f64) -> bool,
@@ -48,8 +48,8 @@ pub fn check(
     Ok(())
 }
 
-/// Error bounds for two boxes: rounding of their sizes, their distance, and the centre of an aligned one; and where
-/// edges are nearly parallel, the uncertainty of the direction across them.
+/// Error bounds for two boxes: rounding of their sizes, of their distance, and of the centre of an aligned one; and
+/// near parallel edges, the uncertainty of the direction across them.
 pub fn tolerances(a: &WideBox, b: &WideBox, of_center: f64) -> [f64; 2] {
     let scale = a.size() + b.size() + length(add(a.center, b.center, -1.0));
     let fine = 1e-6 * scale + of_center + 1e-12;
@@ -101,7 +101,7 @@ fn aligned_and_oriented_boxes_match_enumeration() {
         let rotation = frame.rotation * b.rotation;
         let turned =
             Obb::new(aligned.center() + frame.rotation * (b.center - a.center), rotation, b.half_extents);
-        // Half of the spacing of numbers along each axis.
+        // Half the spacing of numbers along each axis.
         let of_center = length(wide(aligned.center())) * 1e-7;
         check_boxes(
             (&aligned, &WideBox::from(&aligned)),
@@ -121,7 +121,7 @@ fn aligned_boxes_match_enumeration() {
     }
 }
 
-/// A ball or a capsule near a box: its two ends.
+/// Returns the two ends of a capsule's core near a box; equal for a ball.
 fn core_about(obb: &Obb, random: &mut Random) -> [Vec3; 2] {
     let reach = obb.half_extents.length() + 1e-3;
     let far = if random.index(6) == 0 { 100.0 } else { 1.0 };
@@ -221,7 +221,7 @@ fn touching_boxes_overlap() {
     let lying = Capsule::new([Vec3::new(-5.0, 1.5, 0.0), Vec3::new(5.0, 1.5, 0.0)], 0.5);
     let way = unit.penetration(&lying).expect("they touch");
     assert_eq!((way.depth, way.direction), (0.0, Vec3::Y));
-    // An edge on an edge, at right angles, each box on its edge.
+    // Edge on edge, at right angles, with each box resting on its edge.
     let eighth = Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_4);
     let above = Rotation::from_axis_angle(Vec3::Z, core::f32::consts::FRAC_PI_4);
     let height = core::f32::consts::SQRT_2;
@@ -232,7 +232,7 @@ fn touching_boxes_overlap() {
     assert!((way.depth - 0.1).abs() < 2e-6 && (way.direction - Vec3::Y).length() < 1e-5, "{way:?}");
 }
 
-/// Boxes that are rectangles, segments and points.
+/// Boxes that are rectangles, segments or points.
 #[test]
 fn flat_boxes_overlap_exactly() {
     let point = |p: Vec3| Obb::new(p, Rotation::from_scaled_axis(Vec3::new(0.3, 0.2, 0.9)), Vec3::ZERO);

@@ -1,4 +1,4 @@
-//! Points in and around boxes.
+//! Queries of points in and around boxes.
 
 use super::oracle::WideBox;
 use super::random_pairs::{obb, place};
@@ -25,7 +25,7 @@ fn point_about(obb: &Obb, random: &mut Random) -> Vec3 {
     }
 }
 
-/// Checks all answers for a point.
+/// Checks all results for a point.
 fn check(cuboid: &impl Cuboid, wide_box: &WideBox, point: Vec3, case: u32) {
     let distance = wide_box.signed_distance(wide(point));
     let tolerance = 1e-6 * (wide_box.size() + distance.abs());
@@ -65,7 +65,7 @@ fn points_match_the_nearest_of_six_faces() {
     }
 }
 
-/// For exact numbers the surface belongs to the box and the next number does not.
+/// For exact numbers the surface belongs to the box, and the next number does not.
 #[test]
 fn the_surface_belongs_to_the_box() {
     let aabb = Aabb::new(Vec3::new(-1.0, 2.0, 4.0), Vec3::new(1.0, 4.0, 4.0));
@@ -82,7 +82,7 @@ fn the_surface_belongs_to_the_box() {
     }
 }
 
-/// A box rotated by half of a right angle: depth and direction by hand.
+/// Box rotated by 45°: depth and direction by hand.
 #[test]
 fn the_way_out_goes_through_the_nearest_face() {
     let turned = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_4);
@@ -97,7 +97,7 @@ fn the_way_out_goes_through_the_nearest_face() {
     assert_eq!(obb.point_penetration(corner), None);
 }
 
-/// Moving both does not change the answers.
+/// Moving the point and the box does not change the results.
 #[test]
 fn answers_move_with_the_box() {
     let mut random = Random::new(43);

@@ -6,7 +6,7 @@ use crate::wide::{add, dot, length, wide};
 use sinew_geometry::Obb;
 use sinew_math::{Random, Rotation, Vec3};
 
-/// A third aligned, a third nearly.
+/// Returns a rotation: a third are the identity, a third nearly.
 pub fn rotation(random: &mut Random) -> Rotation {
     match random.index(3) {
         0 => Rotation::IDENTITY,
@@ -15,7 +15,7 @@ pub fn rotation(random: &mut Random) -> Rotation {
     }
 }
 
-/// Within a metre or, in a quarter of the cases, 10 km away.
+/// Returns a position within a metre of the origin or, in a quarter of the cases, 10 km away.
 pub fn place(random: &mut Random) -> Vec3 {
     if random.index(4) == 0 { random.direction() * 1e4 } else { random.in_cube() }
 }
@@ -46,7 +46,7 @@ pub fn pair(random: &mut Random) -> [Obb; 2] {
     [a, b]
 }
 
-/// Returns the centre of B at which its extent along a separating axis begins where A's ends.
+/// Returns the centre of B at which B's extent along a separating axis begins where A's ends.
 fn touching(a: &Obb, b: &Obb, random: &mut Random) -> Vec3 {
     let (wa, wb) = (WideBox::from(a), WideBox::from(b));
     let (i, j) = (random.index(3), random.index(3));

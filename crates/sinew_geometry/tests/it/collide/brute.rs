@@ -1,5 +1,5 @@
-//! Every pair of kinds against the support functions of both: a search over all directions, in `f64`. 1,000 cases of each
-//! pair, or 100,000 with `SINEW_FULL` set, as `cargo xtask ci --full` does.
+//! Every pair of kinds compared with the support functions of both: a search over all directions, in `f64`. 1,000 cases
+//! of each pair, or 100,000 with `SINEW_FULL` set, as `cargo xtask ci --full` does.
 
 use super::placed::{Kind, Placed, all_pairs, gap, random_rotation, random_shape, unit, wide};
 use crate::cases::cases;
@@ -36,7 +36,8 @@ fn true_gap(a: &Placed, b: &Placed, random: &mut Random) -> f64 {
     refined.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Random steps of decreasing size: the gap has kinks on which a search along fixed directions stops.
+/// Improves the gap by random steps of decreasing size: the gap has kinks on which a search along fixed directions
+/// stops.
 fn refine(a: &Placed, b: &Placed, mut best: f64, mut n: [f64; 3], random: &mut Random) -> f64 {
     let mut step = 0.2;
     while step > 1e-6 {
@@ -76,7 +77,7 @@ fn random_pair(ka: Kind, kb: Kind, random: &mut Random) -> (Placed, Placed) {
     (a, b)
 }
 
-/// By GJK and EPA: intended places of the shapes, and an additional direction to test.
+/// Returns the gap by GJK and EPA, whose direction is also tested.
 fn way(a: &Placed, b: &Placed) -> convex::Gap {
     convex::gap(&a.shape, &a.frame, &b.shape, &b.frame).expect("one of them has an end")
 }
@@ -85,27 +86,28 @@ fn nearest(manifold: &Manifold) -> f64 {
     manifold.points().iter().map(|p| f64::from(p.separation)).fold(f64::INFINITY, f64::min)
 }
 
-/// Allowed difference of the gap along a normal and the largest gap: faces are preferred to slightly better edges,
-/// and their normals to slightly different ones.
+/// Returns the allowed difference between the gap along a normal and the largest gap: faces are preferred to slightly
+/// better edges, and their normals to slightly different ones.
 fn preference(ka: Kind, kb: Kind, a: &Placed, b: &Placed, truth: f64) -> f64 {
     let thinnest = f64::from(a.shape.inner_radius().min(b.shape.inner_radius()));
     match (ka, kb) {
         (Kind::HalfSpace, _) | (Kind::Box | Kind::Sphere, Kind::Sphere) | (Kind::Sphere, Kind::Capsule) => {
             0.0
         }
-        // Rounding rotates the direction between two cores more, the nearer they are, and the gap is measured where they meet.
+        // The nearer two cores are, the more rounding rotates the direction between them; the gap is measured at their
+        // contact.
         (Kind::Capsule, Kind::Capsule) => {
             let cores = truth + f64::from(a.shape.inner_radius() + b.shape.inner_radius());
             let size = f64::from(a.size() + b.size());
             (2e-7 * size * size / cores.max(1e-9 * size)).min(1e-3 * size)
         }
-        // Where a centre is close to a surface, the direction between them is rounding.
+        // Near a surface, the direction from a centre is rounding.
         (Kind::Sphere, _) | (_, Kind::Sphere) => 1e-3 * f64::from(a.size() + b.size()),
         _ => 0.06 * truth.abs() + 0.011 * thinnest + 2e-3 * f64::from(a.size() + b.size()),
     }
 }
 
-/// Result of a check: the fault, if there is one.
+/// Result of a check: a description of the fault, if there is one.
 type Verdict = Result<(), String>;
 
 fn hold(holds: bool, otherwise: impl FnOnce() -> String) -> Verdict {
@@ -131,15 +133,15 @@ fn judge(seed: u64, mut of: impl FnMut(Kind, Kind, &Placed, &Placed, &mut Random
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The normal is the best direction, the separation the gap along it, and there is a manifold exactly when the
-/// shapes are within the margin.
+/// The normal is the best direction, the separation is the gap along it, and there is a manifold exactly if the shapes
+/// are within the margin.
 #[test]
 fn matches_the_support_functions() {
     judge(1, |ka, kb, a, b, random| {
         let size = f64::from(a.size() + b.size());
         let margin = 0.05 * a.size().max(b.size());
         let m = a.collide(b, margin);
-        // Every direction bounds the gap from below: the search may stop short of its best direction, but not of these.
+        // Every direction bounds the gap from below; the search may miss the best direction, so it also uses these.
         let along_of = |normal: Vec3| unit(wide(normal)).map_or(f64::NEG_INFINITY, |n| gap(a, b, n));
         let along = if m.count > 0 { along_of(m.normal) } else { f64::NEG_INFINITY };
         let truth = true_gap(a, b, random).max(along).max(along_of(way(a, b).normal));
@@ -153,7 +155,7 @@ fn matches_the_support_functions() {
         let preference = preference(ka, kb, a, b, truth);
         hold(along > truth - preference - rounding, || context("not the best direction"))?;
         hold(nearest(&m) > along - rounding - 1e-4 * size, || context("too deep"))?;
-        // Over a plane the deepest point is always among them; otherwise only for shapes that do not touch yet.
+        // Over a plane the deepest point is always in the manifold; otherwise only for shapes that do not touch yet.
         if ka == Kind::HalfSpace {
             return hold(nearest(&m) < truth + rounding, || context("not the deepest"));
         }
@@ -162,7 +164,7 @@ fn matches_the_support_functions() {
     });
 }
 
-/// A point lies half-way between the surfaces along the normal, on both shapes, except for nearly parallel edges, ends of
+/// A point is half-way between the surfaces along the normal, on both shapes, except for nearly parallel edges, ends of
 /// tilted capsules, and deep overlaps without face or edge contact.
 #[test]
 fn points_lie_between_the_surfaces() {
@@ -193,7 +195,8 @@ fn points_lie_between_the_surfaces() {
     assert!(off * 100 < points, "{off} of {points} points are off a surface");
 }
 
-/// Returns the number of points, and of those that are off a surface by more than a hundredth and a twentieth of the larger shape.
+/// Number of points, and of those off a surface by more than a hundredth and by more than a twentieth of the larger
+/// shape.
 #[derive(Debug, Default)]
 struct Tally {
     points: u32,
@@ -201,17 +204,17 @@ struct Tally {
     far: u32,
 }
 
-/// True if two answers to one query are equally good: along both normals the shapes are equally far apart, within
-/// [`preference`], and the separations agree. Rounding then decides which one is returned, and the place
-/// along level directions.
+/// True if two results of one query are equally good: the shapes are equally far apart along both normals, within
+/// [`preference`], and the separations agree. Rounding then decides which one is returned, and the position along level
+/// directions.
 fn is_tie(kind: Kind, a: &Placed, b: &Placed, ab: &Manifold, ba: &Manifold) -> bool {
     let slack = preference(kind, kind, a, b, nearest(ab)) + 2e-5 * f64::from(a.size().max(b.size()));
     let along = [ab.normal, -ba.normal].map(|normal| gap(a, b, wide(normal)));
     (along[0] - along[1]).abs() < slack && (nearest(ab) - nearest(ba)).abs() < slack
 }
 
-/// The other order of the shapes gives the opposite normal, the same points, and features with exchanged halves. Two shapes of one
-/// kind may rarely have another answer that is as good.
+/// Swapped shapes give the opposite normal, the same points, and features with exchanged halves. Rarely, two shapes of
+/// one kind may give another result that is equally good.
 #[test]
 fn the_order_of_the_shapes_does_not_matter() {
     let mut ties: BTreeMap<(Kind, Kind), u32> = BTreeMap::new();
@@ -230,11 +233,11 @@ fn the_order_of_the_shapes_does_not_matter() {
     assert!(ties.values().all(|&ties| ties <= 2 + cases(100_000) / 1_000), "{ties:?}");
 }
 
-/// Checks that one manifold is the exchanged other one.
+/// Checks that one manifold is the other with exchanged shapes.
 fn is_exchanged(ka: Kind, kb: Kind, size: f32, ab: &Manifold, ba: &Manifold) -> Verdict {
     let context = |what: &str| format!("{what}\n{ab:?}\n{ba:?}");
     hold((ab.normal + ba.normal).length() < 1e-3, || context("another normal"))?;
-    // Hulls with many corners per face may keep four others: see `hull::pairs`.
+    // Hulls with many corners per face may keep other points: see `hull::pairs`.
     if (ka, kb) == (Kind::Hull, Kind::Hull) {
         return Ok(());
     }
@@ -250,7 +253,7 @@ fn is_exchanged(ka: Kind, kb: Kind, size: f32, ab: &Manifold, ba: &Manifold) -> 
     Ok(())
 }
 
-/// A pair that is moved as one has its contact there.
+/// A pair that moves as one has the moved contact.
 #[test]
 fn contacts_turn_with_the_shapes() {
     let mut other = 0;
@@ -267,7 +270,7 @@ fn contacts_turn_with_the_shapes() {
             let at_margin = |separation: f64| separation > f64::from(margin) - slack;
             return hold(at_margin(near) && at_margin(far), context);
         }
-        // A world direction decides ties, and near a tie rounding does.
+        // A world direction decides ties, and rounding decides near ties.
         other += u32::from((motion.rotation * here.normal - there.normal).length() > 0.05);
         hold((near - far).abs() < slack, context)
     });

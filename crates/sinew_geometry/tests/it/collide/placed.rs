@@ -1,11 +1,11 @@
-//! Kinds of shapes, placed at random, and their support functions in `f64`.
+//! Random placed shapes of all kinds, and their support functions in `f64`.
 
 use crate::solids::pebble;
 use sinew_geometry::Shape;
 use sinew_geometry::collide::{Manifold, collide};
 use sinew_math::{Random, Rotation, Transform, Vec3};
 
-/// One shape, placed.
+/// A shape and its pose.
 #[derive(Clone, Debug)]
 pub struct Placed {
     pub shape: Shape,
@@ -13,7 +13,7 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// Returns the furthest extent along the unit vector `n` (for a half-space: of its plane, if `n` is its normal).
+    /// Returns the furthest extent along the unit vector `n`; for a half-space that of its plane, if `n` is its normal.
     fn support(&self, n: [f64; 3]) -> f64 {
         let m = self.frame.rotation.to_mat3();
         let along = |v: Vec3| f64::from(v.x) * n[0] + f64::from(v.y) * n[1] + f64::from(v.z) * n[2];
@@ -98,7 +98,7 @@ pub enum Kind {
 pub const FINITE: [Kind; 7] =
     [Kind::Box, Kind::Sphere, Kind::Capsule, Kind::TaperedCapsule, Kind::Cylinder, Kind::Cone, Kind::Hull];
 
-/// Returns every two kinds that may meet, in one order. A half-space comes first.
+/// Returns every pair of kinds once. A half-space comes first.
 pub fn all_pairs() -> impl Iterator<Item = (Kind, Kind)> {
     let with_itself_and_later = |(k, a): (usize, Kind)| FINITE[k..].iter().map(move |&b| (a, b));
     let planes = FINITE.into_iter().map(|kind| (Kind::HalfSpace, kind));
@@ -109,7 +109,7 @@ pub fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
     if kind == Kind::Hull {
         return pebble(scale, random);
     }
-    // A ball is also a capsule: heads are fitted by capsules of length zero.
+    // Some capsules are balls, because heads are fitted by capsules of length zero.
     let is_ball = kind == Kind::Capsule && random.index(10) == 0;
     let mut side = || scale * random.range(0.2, 1.0);
     match kind {
@@ -129,7 +129,7 @@ pub fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
 }
 
 pub fn random_rotation(random: &mut Random) -> Rotation {
-    // A third of the cases are aligned, a third nearly, as contacts often are.
+    // A third of the rotations are the identity and a third nearly, as contacts often are.
     match random.index(3) {
         0 => Rotation::IDENTITY,
         1 => Rotation::from_scaled_axis(random.in_cube() * 0.02),

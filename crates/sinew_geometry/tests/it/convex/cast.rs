@@ -1,4 +1,4 @@
-//! Casts of shapes against the gaps on their path.
+//! Casts of shapes, compared with the gaps along their path.
 
 use super::gaps::any_pair;
 use crate::cases::cases;
@@ -23,7 +23,7 @@ fn casts_stop_where_the_gap_closes() {
             };
             let hit = cast_shape(&a.shape, &a.frame, motion, &b.shape, &b.frame);
             let context = || format!("{ka:?} {kb:?} case {case}: {hit:?} along {motion}\n{a:?}\n{b:?}");
-            // The touch tolerance, and rounding of places on the path.
+            // Touch tolerance, and rounding of positions on the path.
             let close = 2e-5 * size + 1e-6 * (a.frame.translation.length() + b.frame.translation.length());
             let before = hit.map_or(1.0, |hit| hit.fraction);
             if along(0.0).distance <= 0.0 {

@@ -1,5 +1,5 @@
-//! Gaps are proved by bounds: points on both surfaces bound a distance from above, the support functions along the normal
-//! from below. Tested directions bound the depth of overlaps.
+//! Gaps are verified by bounds: points on both surfaces bound the distance from above, and the support functions along
+//! the normal bound it from below. Tested directions bound the depth of overlaps.
 
 use crate::cases::cases;
 use crate::collide::{
@@ -13,7 +13,7 @@ fn ask(a: &Placed, b: &Placed) -> Gap {
     gap(&a.shape, &a.frame, &b.shape, &b.frame).expect("one of them has an end")
 }
 
-/// Up to a thousand times as long as thick.
+/// Returns the shape with some sides randomly scaled down, so that it is up to a thousand times as long as thick.
 fn stretched(shape: Shape, random: &mut Random) -> Shape {
     let mut share = || [1.0, 1.0, 0.1, 0.001][random.index(4)];
     match shape {
@@ -31,7 +31,7 @@ fn stretched(shape: Shape, random: &mut Random) -> Shape {
     }
 }
 
-/// Returns shapes of 1 mm to 100 m, of similar size or not; apart, touching, overlapping a little or deeply.
+/// Returns shapes of 1 mm to 100 m, of similar or different size; apart, touching, or overlapping slightly or deeply.
 pub fn any_pair(ka: Kind, kb: Kind, random: &mut Random) -> (Placed, Placed) {
     const SCALES: [f32; 5] = [0.001, 0.02, 1.0, 10.0, 100.0];
     let scale_a = SCALES[random.index(5)];
@@ -56,7 +56,7 @@ pub fn any_pair(ka: Kind, kb: Kind, random: &mut Random) -> (Placed, Placed) {
 /// Checks a gap; returns its largest error as a share of the sizes.
 fn check(a: &Placed, b: &Placed, found: &Gap, random: &mut Random) -> Result<f64, String> {
     let size = f64::from(a.size() + b.size()) + f64::from(found.distance).abs();
-    // Places are known within rounding.
+    // Positions are exact only to rounding.
     let places = f64::from(a.frame.translation.length() + b.frame.translation.length());
     let fine = 2e-6 * size + 2e-7 * places;
     let distance = f64::from(found.distance);
@@ -119,7 +119,7 @@ fn gaps_are_proved_by_points_and_planes() {
     }
 }
 
-/// The other order gives the same gap from the other side; the moved pair has the same gap there.
+/// Exchanged shapes have the same gap from the other side; a moved pair has the same gap, moved.
 #[test]
 fn gaps_are_invariant_under_exchange_and_motion() {
     let mut random = Random::new(12);
@@ -148,7 +148,7 @@ fn gaps_are_invariant_under_exchange_and_motion() {
     }
 }
 
-/// Three methods for the gap of two boxes: separating axes, GJK and EPA, and a search over directions.
+/// Three methods give the same gap of two boxes: separating axes, GJK and EPA, and a search over directions.
 #[test]
 fn three_gap_methods_agree_for_boxes() {
     let mut random = Random::new(13);
@@ -164,7 +164,7 @@ fn three_gap_methods_agree_for_boxes() {
         let thinnest = f64::from(a.shape.inner_radius().min(b.shape.inner_radius()));
         let preference = 0.06 * distance.abs() + 0.011 * thinnest + 2e-3 * f64::from(size);
         assert!(by_axes <= distance + 4e-6 * f64::from(size), "{}", context());
-        // Boxes near each other at corners have no separating axis as good as their distance.
+        // Boxes that are nearest at corners have no separating axis as good as their distance.
         assert!(by_axes >= distance - preference || distance > 0.0, "{}", context());
         if let Err(what) = check(&a, &b, &found, &mut random) {
             panic!("{what}: {}", context());

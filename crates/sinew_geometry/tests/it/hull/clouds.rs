@@ -1,4 +1,4 @@
-//! Quickhull: random clouds, and the hardest ones: flat, regular, duplicated, far away.
+//! Quickhull: random clouds, and the hardest ones: flat, regular, with duplicates, far away.
 
 use super::{cases, corners};
 use sinew_geometry::hull::{MAX_FACES, MAX_VERTICES};
@@ -11,12 +11,12 @@ fn cloud(kind: usize, random: &mut Random) -> Vec<Vec3> {
     let mut points: Vec<Vec3> = match kind {
         0 => (0..count).map(|_| random.in_cube()).collect(),
         1 => (0..count).map(|_| random.direction()).collect(),
-        // Nearly flat.
+        // Nearly flat cloud.
         2 => (0..count).map(|_| turn * (random.in_cube() * Vec3::new(1.0, 1e-3, 1.0))).collect(),
-        // A grid, whole or in part: coplanar and collinear throughout.
+        // Grid, whole or in part: many coplanar and collinear points.
         3 => (0..count).map(|_| (random.in_cube() * 2.5).round()).collect(),
         4 => corners(Vec3::new(0.3, 1.0, 0.7)).into_iter().map(|p| turn * p).collect(),
-        // A rotated prism with points on its faces and edges.
+        // Rotated prism with points on its faces and edges.
         5 => {
             let sides = 3 + random.index(20);
             let rim = (0..sides).flat_map(|k| {
@@ -27,10 +27,10 @@ fn cloud(kind: usize, random: &mut Random) -> Vec<Vec3> {
         }
         // Two dense clusters.
         6 => (0..count).map(|k| random.in_cube() * 1e-4 + Vec3::X * (k % 2) as f32).collect(),
-        // A needle.
+        // Needle.
         _ => (0..count).map(|_| turn * (random.in_cube() * Vec3::new(1.0, 2e-3, 2e-3))).collect(),
     };
-    // Some points twice.
+    // Some points occur twice.
     points.extend_from_within(..points.len() / 3);
     let scale = [0.01, 1.0, 300.0][random.index(3)];
     let shift = random.in_cube() * [0.0, 1.0, 100.0][random.index(3)];
@@ -44,7 +44,8 @@ fn size(points: &[Vec3]) -> f32 {
     max(sides.x, max(sides.y, sides.z))
 }
 
-/// Checks that a hull is closed, flat-faced and convex: Euler's formula, corners on their faces, all others below.
+/// Checks that a hull is closed, flat-faced and convex: Euler's formula, corners on their faces, all other corners
+/// below.
 fn check_solid(hull: &Hull, size: f32, context: &str) {
     let (faces, vertices) = (hull.faces().len(), hull.vertices().len());
     assert!((4..=MAX_FACES).contains(&faces) && (4..=MAX_VERTICES).contains(&vertices), "{context}");
@@ -78,7 +79,7 @@ fn random_clouds_have_hulls_that_hold_them() {
         let hull = match Hull::new(&points) {
             Ok(hull) => hull,
             Err(error) => {
-                // A few points of a grid or of a cluster may lie in a plane.
+                // A few points of a grid or a cluster may be coplanar.
                 assert!(matches!(kind, 0..=3 | 6..), "{error}: {context}");
                 refused += 1;
                 continue;
@@ -120,7 +121,7 @@ fn the_order_of_the_points_does_not_matter() {
     }
 }
 
-/// A cube with all points of a grid on and in it: 8 corners and 6 faces remain.
+/// A cube from all points of a grid on and in it: 8 corners and 6 faces remain.
 #[test]
 fn a_grid_is_a_cube() {
     let line = (0..9).map(|k| k as f32 * 0.125 - 0.5);
@@ -133,7 +134,7 @@ fn a_grid_is_a_cube() {
     assert!((hull.volume() - 0.8).abs() < 1e-6);
 }
 
-/// With more faces than the limit the hull is simplified, and reports the error.
+/// A hull that would exceed the limit of faces is simplified, and points outside it have the returned distance.
 #[test]
 fn a_round_cloud_is_simplified() {
     let mut random = Random::new(13);

@@ -1,4 +1,4 @@
-//! Volume, centre and inertia of hulls against closed forms and a sum over voxels; rays and distances.
+//! Volume, centre and inertia of hulls, compared with closed forms and a sum over voxels; rays and distances.
 
 use super::{box_hull, corners, hull_of, pebble};
 use sinew_geometry::Shape;
@@ -21,7 +21,8 @@ fn closed_forms() {
         (hull.inner_radius() - 0.3).abs() < 1e-6 && (hull.bounding_radius() - half.length()).abs() < 1e-6
     );
 
-    // Tetrahedron between the axes: V = 1/6, centre at 1/4; about it Ixx = 3 V/40, Ixy = V/80 (products with a minus).
+    // Tetrahedron between the axes: V = 1/6, centre at 1/4; about the centre Ixx = 3 V/40, Ixy = V/80 (products with a
+    // minus sign).
     let tetrahedron = hull_of(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]);
     assert!((tetrahedron.volume() - 1.0 / 6.0).abs() < 1e-6);
     assert!((tetrahedron.center() - Vec3::splat(0.25)).length() < 1e-6);
@@ -63,7 +64,7 @@ fn voxels_agree() {
     }
 }
 
-/// Walks along rays in small steps: the first step inside is the hit, and distances decrease along the ray.
+/// Marches along rays in small steps: the first step inside is the hit, and distances decrease along the ray.
 #[test]
 fn rays_and_distances_agree() {
     let mut random = Random::new(15);
@@ -104,7 +105,7 @@ fn rays_and_distances_agree() {
     assert!(hits > 150, "{hits} hits");
 }
 
-/// Water, bounds and regions treat a hull of a box's corners as the box.
+/// Water, bounds and regions treat a hull of a box's corners like the box.
 #[test]
 fn a_hull_of_box_corners_answers_as_the_box() {
     let mut random = Random::new(22);

@@ -1,5 +1,5 @@
-//! Hull against hull: all face normals and all edge pairs in `f64`, and all pairs of corners, edges and faces where the
-//! hulls are apart. Boxes as hulls of their corners against boxes.
+//! Hull against hull, compared with all face normals and edge pairs in `f64`, and, if the hulls are apart, with all
+//! pairs of corners, edges and faces. Boxes as hulls of their corners, compared with boxes.
 
 use super::{box_hull, cases, pebble};
 use sinew_geometry::collide::{Manifold, collide};
@@ -28,7 +28,7 @@ fn unit(a: Wide) -> Option<Wide> {
     (length > 1e-9).then(|| a.map(|x| x / length))
 }
 
-/// A hull's corners, edges and faces in the world, in `f64`.
+/// Corners, edges and faces of a hull in the world, in `f64`.
 struct Oracle {
     corners: Vec<Wide>,
     edges: Vec<[usize; 2]>,
@@ -73,7 +73,7 @@ fn best_axis(a: &Oracle, b: &Oracle) -> f64 {
     best
 }
 
-/// Distance of two segments.
+/// Returns the distance of two segments.
 fn segments([p, q]: [Wide; 2], [r, s]: [Wide; 2]) -> f64 {
     let (u, v, w) = (sub(q, p), sub(s, r), sub(p, r));
     let (a, b, c, d, e) = (dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w));
@@ -150,7 +150,7 @@ impl Case {
         let place = random.in_cube() * scale;
         let frame_a = Transform::new(place, common * turn(random));
         let mut frame_b = Transform::new(place, common * turn(random));
-        // Moved along a random direction until they touch, and a little further or back.
+        // Moves B along a random direction until the hulls touch, then slightly further or back.
         let away = random.direction();
         let (mut low, mut high) = (0.0, 3.0 * scale * (1.0 + ratio));
         let meets = |t: f32, frame_b: &mut Transform| {
@@ -261,7 +261,7 @@ fn neither_order_nor_turning_matters() {
         }
         assert!((found.normal + swapped.normal).length() < 1e-2, "{}", context());
         assert!((nearest(&found) - nearest(&swapped)).abs() < f64::from(tolerance), "{}", context());
-        // A world direction decides ties between faces of A and B; then the normal rotates a little.
+        // A world direction decides ties between faces of A and B; the normal may then rotate slightly.
         let same = (turn * found.normal - turned.normal).length() < 0.05
             && (nearest(&found) - nearest(&turned)).abs() < f64::from(tolerance);
         other += u32::from(!same);
@@ -270,7 +270,7 @@ fn neither_order_nor_turning_matters() {
     assert!(other * 50 <= all, "{other} of {all}");
 }
 
-/// A hull of a box's eight corners has the box's contacts.
+/// A hull of the eight corners of a box has the contacts of the box.
 #[test]
 fn a_hull_of_box_corners_has_box_contacts() {
     let mut random = Random::new(20);

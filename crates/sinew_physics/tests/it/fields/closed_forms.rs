@@ -15,7 +15,7 @@ pub fn run(world: &mut World, steps: usize) {
     }
 }
 
-/// A body of a mass and a moment of inertia without a shape.
+/// Returns a body with a mass and a moment of inertia, without a shape.
 pub fn point_mass(mass: f32, position: Vec3, linear_velocity: Vec3) -> BodyDef {
     let inertia = Sym3::from_diagonal(Vec3::splat(mass * 0.01));
     let mass = Some(MassProperties { mass, center: Vec3::ZERO, inertia });
@@ -98,7 +98,7 @@ fn masses_of_stars_do_not_overflow() {
 
 #[test]
 fn mutual_gravity_is_equal_and_opposite() {
-    // Bodies and particles in one field; nothing touches.
+    // Bodies and particles in one field, without contacts.
     let mut world = weightless();
     let mut random = sinew_math::Random::new(3);
     for i in 0..12 {
@@ -196,7 +196,7 @@ fn wind_force_follows_projected_area() {
 #[test]
 fn a_tilted_plate_gets_lift() {
     let wind = Wind { velocity: Vec3::X * 10.0, density: 1.2, drag: 1.0, lift: 0.8, gusts: None };
-    // Its face looks to −x and up: 30° from the stream's direction.
+    // The face of the plate points to −x and up, 30° from the direction of the stream.
     let rotation = Rotation::from_axis_angle(Vec3::Z, -30f32.to_radians());
     let def = BodyDef { rotation, ..box_body(Vec3::new(1e-6, 0.5, 0.5), Vec3::ZERO) };
     let Wrench { force, torque } = blown(&def, wind);
@@ -355,7 +355,7 @@ fn a_users_function_is_a_field() {
     parameters[0] = 4.0;
     world.add_field(&FieldDef::new(FieldKind::Custom { function: 3, parameters }));
     run(&mut world, 377);
-    // ω = 2 rad/s: two whole turns in 2π s.
+    // With ω = 2 rad/s, two whole turns take 2π s.
     assert!((world.transform(id).translation - Vec3::X).length() < 0.02);
     assert!((world.particles(group).positions()[0] - Vec3::Y).length() < 0.02);
 }

@@ -1,4 +1,4 @@
-//! Forces, impulses and hits from the user.
+//! Forces, impulses and bullet impacts by the user.
 
 use super::closed_forms::{point_mass, run, weightless};
 use crate::build::{ball, box_body, sphere_body};
@@ -66,7 +66,7 @@ fn a_thruster_turns_with_its_body() {
 
 #[test]
 fn a_lasting_force_acts_at_its_point() {
-    // A pendulum pulled along x by a force on its bob instead of gravity hangs along x.
+    // A pendulum pulled along x by a force on its bob, without gravity, hangs along x.
     let mut world = weightless();
     let hook = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
     let mut def = box_body(Vec3::new(0.05, 0.5, 0.05), Vec3::Y * -0.5);
@@ -109,7 +109,7 @@ fn a_bullet_off_centre_moves_on_with_the_point_it_struck() {
     let before = world.momentum();
     let impulse = world.apply_bullet_impact(block, mass, velocity, point);
     let struck = world.velocity(block).at(point);
-    // The rest of the bullet's momentum.
+    // Remaining momentum of the bullet.
     assert!((struck - (velocity - impulse / mass)).length() < 1e-3, "{struck}");
     let after = world.momentum();
     let linear = after.linear + struck * mass - (before.linear + velocity * mass);

@@ -5,7 +5,8 @@ use sinew_math::{Reader, Rotation, Vec3, Writer};
 use sinew_physics::particles::{ClothDef, GroupDef};
 use sinew_physics::*;
 
-/// Returns a square metre of cloth of 0.2 kg in the plane of x and z, turned about z; each particle has a third of its faces' mass.
+/// Returns a square metre of cloth of 0.2 kg in the plane of x and z, tilted about z; each particle has a third of the
+/// mass of its faces.
 fn sheet(angle: f32) -> GroupDef {
     let turn = Rotation::from_axis_angle(Vec3::Z, angle);
     let def = ClothDef {
@@ -40,7 +41,7 @@ fn whole(world: &World, field: FieldId, group: GroupId) -> Vec3 {
     (0..count).map(|i| world.field_force_on_particle(field, group, i)).sum()
 }
 
-/// Returns the force on a square metre at rest.
+/// Returns the force of a wind on a square metre of cloth at rest, N.
 fn blown(angle: f32, wind: Wind) -> Vec3 {
     let mut world = weightless();
     let group = world.add_particles(&sheet(angle));
@@ -53,7 +54,7 @@ fn sheet_force_follows_normal_speed_squared() {
     for degrees in [0.0f32, 25.0, 60.0, 85.0, 120.0, 180.0] {
         let angle = degrees.to_radians();
         let (sin, cos) = sinew_math::trig::sin_cos(angle);
-        // Down from above, and up from below: both sides count.
+        // From above and from below: both sides get the pressure.
         for down in [1.0, -1.0] {
             let force = blown(angle, wind(Vec3::NEG_Y * (8.0 * down)));
             close(force.length(), 0.5 * 1.2 * 1.3 * 64.0 * cos * cos, 1e-4, "pressure");
@@ -88,7 +89,7 @@ fn a_flat_sheet_reaches_terminal_velocity() {
     close(whole(&world, still, group).y, 0.2 * 9.81, 5e-3, "it bears its weight");
 }
 
-/// Silk of a gram in a storm keeps still, where an explicit force would give it a hundred times the storm's speed.
+/// Silk of one gram stays slower than the storm; an explicit force would give it a hundred times the storm's speed.
 #[test]
 fn light_sheets_never_exceed_the_wind() {
     let mut world = weightless();

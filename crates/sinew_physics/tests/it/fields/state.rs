@@ -12,7 +12,7 @@ fn swirl(at: &FieldPoint, parameters: &[f32; field::PARAMETERS]) -> Wrench {
     Wrench { force: turn + Vec3::Y * beat, torque: Vec3::ZERO }
 }
 
-/// All kinds of fields, on bodies of all shapes within `spread` metres and on a rope.
+/// Returns a world with all kinds of fields, bodies of all shapes within `spread` metres, and a rope.
 fn crowded(spread: f32) -> World {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     world.register_field(1, swirl);
@@ -108,7 +108,7 @@ fn threads_do_not_matter() {
 
 #[test]
 fn a_warm_step_with_fields_allocates_nothing() {
-    // Far apart, so that no two meet: another test covers contacts.
+    // Far apart, so that no two bodies meet: another test covers contacts.
     let mut world = crowded(40.0);
     run(&mut world, 20);
     let seen = allocation_counter::measure(|| run(&mut world, 50));
@@ -134,7 +134,7 @@ fn fields_are_added_changed_and_removed() {
     assert!(world.velocity(id).linear.y > 0.4 && world.velocity(id).linear.x.abs() < 1e-5);
 }
 
-/// A box asleep on the floor, 3 m from the origin.
+/// Returns a box asleep on the floor, 3 m from the origin.
 fn sleeper() -> (World, BodyId) {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
@@ -200,7 +200,7 @@ fn attached_particles_pass_forces_to_their_body() {
     assert!((found / gained - 1.0).abs() < 1e-3, "{found} for {gained}");
 }
 
-/// Pulls a body along x.
+/// Object that pulls a body along x.
 struct Puller {
     body: BodyId,
     force: f32,

@@ -1,4 +1,4 @@
-//! The library of shapes, snapshots that refer to it, and damaged bytes.
+//! The shape library, snapshots that refer to it, and damaged bytes.
 
 use super::{box_hull, pebble};
 use crate::build::floor;
@@ -21,7 +21,7 @@ fn body(shape: Shape, position: Vec3) -> BodyDef {
     BodyDef { position, shapes: vec![ShapeDef::new(shape)], ..BodyDef::default() }
 }
 
-/// Returns falling hulls, and a wind inside a hull.
+/// Returns a world with falling hulls, and a wind inside a hull.
 fn pebbles() -> World {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);

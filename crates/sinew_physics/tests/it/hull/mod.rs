@@ -1,4 +1,4 @@
-//! Convex hulls in worlds and in bytes.
+//! Convex hulls in worlds and as bytes.
 
 mod bytes;
 mod stacks;

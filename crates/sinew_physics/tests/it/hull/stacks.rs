@@ -1,12 +1,12 @@
-//! Hulls in worlds: stacks stand and sleep at every size, and a hull of a box's corners acts like the box.
+//! Hulls in worlds: stacks of every size stand and sleep, and a hull of a box's corners acts like the box.
 
 use super::{box_hull, pebble};
 use crate::build::{box_body, capsule_body, floor, sphere_body};
 use sinew_math::{Random, Vec3};
 use sinew_physics::*;
 
-/// Stacks five cubes of half size `half` on the floor. Returns how far they sank and moved after 3 s as shares of their size, and
-/// how many sleep.
+/// Stacks five cubes of half size `half` on the floor. Returns how far they sank and moved in 3 s, as shares of their
+/// size, and how many of them sleep.
 fn stack(shape: &Shape, half: f32) -> (f32, f32, usize) {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
@@ -30,7 +30,7 @@ fn stack(shape: &Shape, half: f32) -> (f32, f32, usize) {
     (sunk, drift, ids.iter().filter(|&&id| !world.is_awake(id)).count())
 }
 
-/// Margins scale with the shape: cubes of 2 cm stand like cubes of 2 m.
+/// Margins scale with the shape, so cubes of 2 cm stand like cubes of 2 m.
 #[test]
 fn small_props_are_as_solid_as_crates() {
     for half in [0.01, 0.1, 1.0] {
@@ -71,7 +71,7 @@ fn a_heap_comes_to_rest() {
     }
 }
 
-/// A warm step with hulls against each other and all other shapes allocates nothing.
+/// A warm step with hulls against each other and against all other shapes allocates nothing.
 #[test]
 fn a_warm_step_allocates_nothing() {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });

@@ -20,7 +20,7 @@ fn thrown(shape: Shape, position: Vec3, velocity: Vec3, friction: f32) -> BodyDe
     }
 }
 
-/// Returns a surface from a grid over x and z, `n` cells to a side, `cell` metres each.
+/// Returns a surface over a grid in x and z, with `n` cells of `cell` metres per side.
 fn grid(n: usize, cell: f32, height: impl Fn(f32, f32) -> f32) -> Shape {
     let mut vertices = Vec::new();
     for j in 0..=n {
@@ -51,7 +51,7 @@ fn bodies_at_rest_on_a_mesh_stay() {
     let half = Vec3::new(0.2, 0.1, 0.3);
     let mut bodies = Vec::new();
     for k in 0..12 {
-        // Over faces, edges and vertices, each turned by another angle.
+        // Over faces, edges and vertices, each body rotated by another angle.
         let place = Vec3::new(1.0 + 0.125 * k as f32, 0.101, 1.5 * k as f32 - 8.0);
         let turn = Rotation::from_axis_angle(Vec3::Y, 0.26 * k as f32);
         let def = thrown(Shape::Box { half_extents: half }, place, Vec3::ZERO, FRICTION);
@@ -140,7 +140,8 @@ fn fast_bodies_do_not_pass() {
 
 #[test]
 fn a_ball_swings_in_a_bowl() {
-    // A bowl of radius 3 m with triangles of 5 cm: a ball without rotation swings as a pendulum of 3 m less the ball's radius.
+    // Bowl of radius 3 m with triangles of 5 cm: a ball without rotation swings like a pendulum of 3 m minus the ball's
+    // radius.
     let (bowl, radius) = (3.0_f32, 0.2);
     let level = grid(80, 0.05, |x, z| bowl - (bowl * bowl - x * x - z * z).sqrt());
     let mut world = sleepless();
@@ -171,7 +172,7 @@ fn a_ball_swings_in_a_bowl() {
 #[test]
 fn events_report_a_pair_once() {
     let mut world = sleepless();
-    // A corner of three walls: three manifolds.
+    // Corner of three walls: three manifolds.
     let vertices = [Vec3::ZERO, Vec3::X * 3.0, Vec3::Y * 3.0, Vec3::Z * 3.0];
     let mesh = Mesh::new(&vertices, &[[0, 3, 1], [0, 1, 2], [0, 2, 3]]).unwrap();
     world.add_body(&fixed(Shape::Mesh(Arc::new(mesh))));
@@ -184,7 +185,7 @@ fn events_report_a_pair_once() {
         begun += world.events().begin.len();
         ended += world.events().end.len();
     }
-    // It may leave once when it bounces.
+    // The ball may leave once, when it bounces.
     assert!(begun == ended + 1 && begun <= 2, "{begun} begun, {ended} ended");
     let p = world.center_of_mass(id);
     assert!((p - Vec3::splat(0.2)).length() < 0.02, "in the corner: {p}");
@@ -196,7 +197,7 @@ fn events_report_a_pair_once() {
     assert_eq!(begun, ended);
 }
 
-/// Many things on terrain with a bump in each cell.
+/// Adds many bodies on terrain with a bump in each cell.
 fn crowd(world: &mut World) {
     let level = grid(30, 0.4, |x, z| 0.15 * sin(7.0 * x) * cos(5.0 * z));
     world.add_body(&fixed(level));
@@ -245,7 +246,7 @@ fn a_height_field_and_holes() {
         rows: 5,
         spacing: [1.0, 1.0],
         heights: vec![0.0; 25],
-        // The cell from (2, 2) to (3, 3).
+        // Cell from (2, 2) to (3, 3).
         holes: vec![10],
     };
     let field = HeightField::new(def.clone()).unwrap();
@@ -318,7 +319,7 @@ fn particles_rest_on_a_mesh_and_slide_down_it() {
     }
     let slid = world.particles(slick).velocities()[0];
     assert!(slid.x < -0.5, "it slides down: {slid}");
-    // From below there is nothing.
+    // The triangles do not stop the particle from below.
     assert!(world.particles(under).positions()[0].y < -5.0);
 }
 

@@ -1,4 +1,5 @@
-//! Random walks among random convex solids: movers are never inside, never pass through, and never get stuck where there is room.
+//! Random walks among random convex solids: movers are never inside a solid, never pass through one, and never get
+//! stuck where there is room.
 
 use super::{cases, depth};
 use sinew_math::trig::{cos, sin};
@@ -6,10 +7,11 @@ use sinew_math::{Random, Transform, Vec3};
 use sinew_physics::ray::Ray;
 use sinew_physics::*;
 
-/// Walls around the clutter are at this distance from its middle, metres.
+/// Distance of the walls around the clutter from its centre, metres.
 const ROOM: f32 = 12.0;
 
-/// Boxes, balls, capsules, cylinders, cones and hulls, turned at random, on a floor and within four walls.
+/// Returns a world with boxes, balls, capsules, cylinders, cones and hulls, rotated at random, on a floor and within
+/// four walls.
 fn clutter(random: &mut Random) -> World {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -66,8 +68,8 @@ fn free_place(world: &World, random: &mut Random, def: &MoverDef) -> MoverDef {
     }
 }
 
-/// Each walk takes 90 steps at up to 50 m/s and turns now and then. After each step the test queries whether the capsule overlaps
-/// anything, and whether a ray from its last centre to the new one hits something.
+/// Each walk takes 90 steps at up to 50 m/s and turns sometimes. After each step the test checks that the capsule
+/// overlaps nothing, and that a ray from its last centre to the new one hits nothing.
 #[test]
 fn random_walks_in_clutter_are_never_inside_and_never_through() {
     let mut random = Random::new(11);
@@ -93,7 +95,7 @@ fn random_walks_in_clutter_are_never_inside_and_never_through() {
                 deepest = if deep > deepest { deep } else { deepest };
                 assert!(deep < 1e-4, "{deep} m inside at {now}");
                 assert!(now.x.abs() < ROOM && now.z.abs() < ROOM && now.y > 0.89, "it got out: {now}");
-                // A step up goes over a corner: up, then along.
+                // A step up passes over a corner: up, then along.
                 let over = before + Vec3::Y * 0.4;
                 let along = |from: Vec3| world.query().any(&Ray { origin: from, direction: now - from });
                 let slides = (now - before).length() < 0.25;
@@ -105,8 +107,8 @@ fn random_walks_in_clutter_are_never_inside_and_never_through() {
     println!("deepest {deepest} m");
 }
 
-/// A mover can move on wherever a capsule of its size, with its skin, fits 10 cm further at the same height or a little lower, if it
-/// is steered there.
+/// A mover can move on wherever a capsule of its size, including its skin, fits 10 cm further at the same height or
+/// slightly lower, if the mover is steered there.
 #[test]
 fn movers_are_never_stuck_where_there_is_room() {
     let mut random = Random::new(12);

@@ -4,7 +4,7 @@ use super::{block, depth, level, settle};
 use sinew_math::Vec3;
 use sinew_physics::*;
 
-/// Twelve steps up along x from 2 m on, a landing, and twelve down again.
+/// Adds twelve steps up along x, starting at 2 m, a landing, and twelve steps down.
 fn stairs(world: &mut World, rise: f32) -> f32 {
     let tread = 0.3;
     for i in 0..24_u8 {
@@ -110,13 +110,13 @@ fn jump_height_follows_jump_speed() {
             if world.mover(id).is_grounded() {
                 break;
             }
-            // In the air there is nothing to jump off.
+            // In the air a jump has no effect.
             world.mover_jump(id, speed);
             assert!(steps < 200);
         }
-        // The step in which it lands must not use up the last jump request.
+        // The step in which the mover lands must not use up the last jump request.
         let expected = speed * speed / (2.0 * 9.81);
-        // The highest point may lie half a step from the nearest step.
+        // The highest point may be half a step away from the nearest step.
         let between = 9.81 * 0.5 * (0.5 * world.def().dt()) * (0.5 * world.def().dt());
         assert!(top <= expected + 1e-4 && top >= expected - between - 1e-4, "{top} of {expected}");
         let seconds = steps as f32 * world.def().dt();

@@ -1,4 +1,4 @@
-//! Movers against closed forms and against queries of the world at their place.
+//! Movers, compared with closed forms and with queries of the world at their positions.
 
 mod clutter;
 mod ground;
@@ -10,27 +10,27 @@ mod walls;
 use sinew_math::{Rotation, Transform, Vec3};
 use sinew_physics::*;
 
-/// A world with a floor at height 0.
+/// Returns a world with a floor at height 0.
 pub fn level() -> World {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
     world
 }
 
-/// A fixed box from corner to corner.
+/// Adds a fixed box between two corners.
 pub fn block(world: &mut World, min: Vec3, max: Vec3) -> BodyId {
     let half_extents = (max - min) * 0.5;
     world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at((min + max) * 0.5))
 }
 
-/// A fixed box that is turned about z around its centre.
+/// Adds a fixed box, rotated about z around its centre.
 pub fn turned(world: &mut World, half_extents: Vec3, at: Vec3, angle: f32) -> BodyId {
     let mut def = BodyDef::fixed(Shape::Box { half_extents }).at(at);
     def.rotation = Rotation::from_axis_angle(Vec3::Z, angle);
     world.add_body(&def)
 }
 
-/// Returns the steps until the mover stands.
+/// Runs two seconds, after which the mover must be on the ground.
 pub fn settle(world: &mut World, id: MoverId) {
     for _ in 0..120 {
         world.step();

@@ -12,7 +12,7 @@ fn crate_of(world: &mut World, mass: f32, at: Vec3, friction: f32) -> BodyId {
     world.add_body(&def)
 }
 
-/// Floor and crate have friction 0.6, so a crate of `m` kg needs `0.6 m g`: 800 N move up to 136 kg.
+/// Floor and crate have friction 0.6, so a crate of `m` kg needs `0.6 m g`: 800 N move crates of up to 136 kg.
 #[test]
 fn push_force_bounds_what_a_mover_moves() {
     for (mass, moves) in [(10.0, true), (60.0, true), (110.0, true), (170.0, false), (1000.0, false)] {
@@ -33,7 +33,8 @@ fn push_force_bounds_what_a_mover_moves() {
     }
 }
 
-/// A ball of 200 kg at 5 m/s hits a standing mover of 80 kg: momentum is shared, and the mover is never faster than after an elastic hit.
+/// A ball of 200 kg at 5 m/s hits a standing mover of 80 kg: they share the momentum, and the mover is never faster
+/// than after an elastic hit.
 #[test]
 fn a_heavy_ball_pushes_a_mover_by_momentum() {
     for speed in [2.0, 5.0, 15.0, 30.0] {
@@ -141,7 +142,7 @@ fn flying_bodies_pass_a_mover_that_lets_them() {
     assert!(after(0.0, 0.5).0 < 1.0 && after(60.0, 5.0).0 < 19.0, "else, and if it is heavy, it is stopped");
 }
 
-/// A door of 16 kg at 3 m/s at its middle has less momentum than the mover lets pass; on its hinge it does not pass.
+/// A door of 16 kg at 3 m/s at its centre has less momentum than the mover lets pass; on its hinge it does not pass.
 #[test]
 fn a_hinged_door_never_passes_a_mover() {
     let swing = |is_hung: bool| {
@@ -171,7 +172,7 @@ fn a_hinged_door_never_passes_a_mover() {
     };
     let (deepest, farthest, moved) = swing(true);
     assert!(deepest < 0.005, "the leaf is {deepest} m inside of the mover");
-    // Without the mover its middle would swing to -0.45 m.
+    // Without the mover, the centre of the door would swing to -0.45 m.
     assert!((-0.85..-0.46).contains(&farthest), "the leaf comes as far as {farthest} m");
     assert!(moved > 0.01, "it pushes the mover by {moved} m");
     let (deepest, ..) = swing(false);
@@ -195,7 +196,7 @@ fn the_work_of_a_push_is_reported() {
     assert!(way > 1.0 && (work / expected - 1.0).abs() < 0.05, "{work} J for {expected} over {way} m");
 }
 
-/// A seesaw: its energy rises by the work of the mover's weight.
+/// The energy of a seesaw rises by the work of the mover's weight.
 #[test]
 fn the_work_of_a_movers_weight_is_reported() {
     let mut world = World::new(WorldDef::default());
@@ -214,7 +215,7 @@ fn the_work_of_a_movers_weight_is_reported() {
         work += world.work().movers;
         let now = world.energy();
         rise = now.kinetic - start.kinetic + now.potential - start.potential;
-        // The first substep moves at the speed of its end.
+        // The first substep already moves at the speed at its end.
         let late = 0.3 * work / step as f32;
         assert!(rise < work + 0.1 && work < rise + late + 0.1, "{rise} J more by {work} J in step {step}");
     }

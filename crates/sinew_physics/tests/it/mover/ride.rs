@@ -1,4 +1,4 @@
-//! Platforms, belts, one-way floors, other movers.
+//! Movers on platforms, belts, one-way floors and other movers.
 
 use super::{block, depth, level, settle};
 use sinew_math::{Random, Vec3};
@@ -12,7 +12,7 @@ fn platform(world: &mut World, half_extents: Vec3, at: Vec3, linear: Vec3, angul
     id
 }
 
-/// Up and down by 4 m, 20 s long.
+/// The lift moves up and down by 4 m for 20 s.
 #[test]
 fn a_lift_carries_a_mover() {
     let mut world = level();
@@ -32,8 +32,8 @@ fn a_lift_carries_a_mover() {
     }
 }
 
-/// A mover that jumps off a lift has the lift's velocity plus the jump's, for either direction and any speed: over the lift it rises by the jump's
-/// own height.
+/// A mover that jumps off a lift has the lift's velocity plus that of the jump, for both directions and any speed:
+/// relative to the lift it rises by the height of the jump.
 #[test]
 fn a_jump_from_a_lift_adds_its_velocity() {
     let mut random = Random::new(3);
@@ -46,7 +46,7 @@ fn a_jump_from_a_lift_adds_its_velocity() {
         let id = world.add_mover(&MoverDef::at(Vec3::Y * 0.005));
         let (mut apex, mut left) = (0.0, Vec3::ZERO);
         for step in 0..420 {
-            // The lift accelerates for 3 s, so that the mover rides all the time.
+            // The lift accelerates for 3 s, so that the mover stays on it.
             let share = sinew_math::min(step as f32 / 180.0, 1.0);
             let linear = Vec3::new(side, speed, 0.0) * share;
             world.set_velocity(lift, Velocity { linear, angular: Vec3::ZERO });
@@ -66,7 +66,7 @@ fn a_jump_from_a_lift_adds_its_velocity() {
         let (g, dt) = (9.81, world.def().dt());
         let expected = Vec3::new(side, speed + jump - g * dt, 0.0);
         assert!((left - expected).length() < 1e-3, "case {case}: {left} for {expected}");
-        // The apex may lie half a step from the nearest step.
+        // The apex may be half a step away from the nearest step.
         let rise = jump * jump / (2.0 * g);
         assert!(
             (apex - rise).abs() < 2e-3 + 0.01 * rise,
@@ -94,7 +94,7 @@ fn a_turntable_carries_and_turns_a_mover() {
     }
     let turned = world.mover(id).yaw() - yaw;
     assert!((turned - 1.5 * 1200.0 * world.def().dt()).abs() < 1e-3, "it turned by {turned}");
-    // It leaves with the table's velocity there.
+    // The mover leaves with the table's velocity at its position.
     let velocity = world.mover(id).velocity();
     let at = world.mover(id).position() - world.transform(table).translation;
     let expected = Vec3::X * 0.1 + spin.cross(at);
@@ -206,7 +206,7 @@ fn a_mover_stands_on_another_and_a_filter_lets_it_through_walls() {
     assert!(world.mover(high).position().x > 2.0);
 }
 
-/// A hand is pulled away from under a mover: the mover slips and stays.
+/// A support is pulled away from under a mover: the mover slips and stays.
 #[test]
 fn a_support_pulled_away_slips_under_a_mover() {
     let mut world = level();

@@ -1,4 +1,4 @@
-//! Snapshots, rollback, threads, frames, memory, and invalid settings.
+//! Movers in snapshots, rollbacks, threads, frames and memory, and invalid settings.
 
 use super::{block, level};
 use sinew_math::trig::{cos, sin};
@@ -6,7 +6,7 @@ use sinew_math::{Reader, Vec3, Writer};
 use sinew_physics::stage::NoProfiler;
 use sinew_physics::*;
 
-/// Crates, steps, a lift, and eight movers that walk in circles among them.
+/// Returns a world with crates, steps, a lift, and eight movers that walk in circles among them.
 fn busy() -> (World, Vec<MoverId>) {
     let mut world = level();
     for i in 0..12_u8 {
@@ -66,7 +66,7 @@ fn a_snapshot_holds_all_mover_state() {
     }
 }
 
-/// Rolls back by eight steps, in which one mover was added and one removed.
+/// Rolls back by eight steps, in which one mover was added and another removed.
 #[test]
 fn rollback_repeats_the_same_path() {
     let (mut world, mut ids) = busy();
@@ -106,7 +106,7 @@ fn threads_change_nothing() {
     assert!(hashes[0] == hashes[1] && hashes[1] == hashes[2], "{hashes:?}");
 }
 
-/// Frames of 30, 60 and 144 a second: movers move in steps, so their place depends on the number of steps alone.
+/// Frames at 30, 60 and 144 Hz: movers move in steps, so their positions depend only on the number of steps.
 #[test]
 fn any_frame_length_gives_the_same_state() {
     let after = |frames: u32| {
@@ -130,7 +130,7 @@ fn any_frame_length_gives_the_same_state() {
     assert_eq!(after(144), expected);
 }
 
-/// The same two seconds are repeated: after the first times nothing more is allocated.
+/// Repeats the same two seconds: after the first repetitions nothing more is allocated.
 #[test]
 fn a_warm_step_with_movers_does_not_allocate() {
     let (mut world, ids) = busy();

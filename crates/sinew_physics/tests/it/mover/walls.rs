@@ -1,4 +1,4 @@
-//! Walls, corners, wedges, seams, and speeds at which a step exceeds a wall's thickness.
+//! Walls, corners, wedges, seams, and speeds at which a step is longer than a wall is thick.
 
 use super::{block, depth, level, settle, turned};
 use sinew_math::trig::{cos, sin};
@@ -49,7 +49,7 @@ fn a_mover_reaches_its_walk_speed() {
     assert!((gone.z - 2.0 * seconds).abs() < 1e-3 && gone.x.abs() < 1e-4 && gone.y.abs() < 1e-3, "{gone}");
 }
 
-/// Two walls meet at an angle from 90 to 5 degrees; the mover presses into the corner and must lie still.
+/// Two walls meet at an angle of 90 to 5 degrees; a mover that presses into the corner does not move.
 #[test]
 fn wedges_hold_a_mover_still() {
     for degrees in [90.0_f32, 60.0, 40.0, 20.0, 10.0, 5.0] {
@@ -57,7 +57,7 @@ fn wedges_hold_a_mover_still() {
             let half = degrees.to_radians() * 0.5;
             let mut world = level();
             for side in [-1.0, 1.0] {
-                // Its inner face passes through the origin, along the wedge's side.
+                // The inner face passes through the origin, along the wedge's side.
                 let along = Vec3::new(-cos(half), 0.0, side * sin(half));
                 let outward = Vec3::new(sin(half), 0.0, side * cos(half));
                 let mut wall = BodyDef::fixed(Shape::Box { half_extents: Vec3::new(20.0, 2.0, 0.25) })
@@ -79,7 +79,7 @@ fn wedges_hold_a_mover_still() {
                 assert_eq!(depth(&world, id), 0.0, "{degrees}° {aside}");
                 last = now;
             }
-            // Where a capsule and its skin fit.
+            // Position at which a capsule and its skin just fit.
             let deepest = -0.3 / sin(half);
             assert!(last.x < deepest + 1e-3, "{degrees}° {aside}: {last} beyond {deepest}");
             assert!(last.x > deepest - 0.02 / sin(half), "{degrees}° {aside}: {last} before {deepest}");
@@ -87,7 +87,7 @@ fn wedges_hold_a_mover_still() {
     }
 }
 
-/// Abutting boxes, below and beside the mover, do not slow it down.
+/// Abutting boxes below and beside the mover do not slow it down.
 #[test]
 fn a_mover_does_not_catch_between_abutting_boxes() {
     let mut world = World::new(WorldDef::default());
@@ -113,7 +113,7 @@ fn a_mover_does_not_catch_between_abutting_boxes() {
     }
 }
 
-/// A floor and a wall of many triangles.
+/// A floor and a wall of many triangles do not slow a mover down.
 #[test]
 fn a_mover_does_not_catch_on_mesh_seams() {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
@@ -152,7 +152,7 @@ fn a_mover_does_not_catch_on_mesh_seams() {
     }
 }
 
-/// 50 m/s is 0.8 m a step; the walls are 1 cm, boxes and one-sided triangles.
+/// At 50 m/s a step is 0.8 m long; the walls, boxes and one-sided triangles, are 1 cm thick.
 #[test]
 fn thin_walls_stop_a_mover_at_50_metres_a_second() {
     for turn in 0..16 {
@@ -194,7 +194,7 @@ fn a_slope_is_walked_on_up_to_the_limit_and_slid_down_beyond_it() {
     for (degrees, walks) in [(10.0_f32, true), (30.0, true), (48.0, true), (52.0, false), (70.0, false)] {
         let angle = degrees.to_radians();
         let mut world = level();
-        // Its upper face begins at the origin.
+        // The upper face starts at the origin.
         let up = Vec3::new(-sin(angle), cos(angle), 0.0);
         let along = Vec3::new(cos(angle), sin(angle), 0.0);
         turned(&mut world, Vec3::new(10.0, 0.5, 4.0), along * 9.0 - up * 0.5, angle);
@@ -212,7 +212,7 @@ fn a_slope_is_walked_on_up_to_the_limit_and_slid_down_beyond_it() {
             assert!(world.mover(id).is_grounded() && at.y > 2.0 * sin(angle), "{degrees}°: {at}");
             let ground = world.mover_ground(id).expect("it stands");
             assert!((ground.normal - up).length() < 1e-3, "{degrees}°: {}", ground.normal);
-            // It stays where it stands.
+            // A mover that does not walk stays in place.
             world.set_mover_walk(id, Vec3::ZERO);
             for _ in 0..30 {
                 world.step();
@@ -224,7 +224,7 @@ fn a_slope_is_walked_on_up_to_the_limit_and_slid_down_beyond_it() {
             assert!((world.mover(id).position() - stood).length() < 1e-4, "{degrees}°");
         } else {
             assert!(at.y < 0.4 && at.x < 0.8, "{degrees}°: it climbed to {at}");
-            // From above it comes down as far as the floor.
+            // Dropped from above, the mover moves down to the floor.
             world.set_mover_walk(id, Vec3::ZERO);
             world.set_mover_position(id, along * 4.0 + up * 0.2);
             for _ in 0..240 {
@@ -235,7 +235,7 @@ fn a_slope_is_walked_on_up_to_the_limit_and_slid_down_beyond_it() {
     }
 }
 
-/// Two walls closer than the skin that lean apart slightly: the skin would fit only high above.
+/// Two walls closer than the skin that lean slightly apart: the skin would fit only high above.
 #[test]
 fn an_upward_cleft_does_not_eject_a_mover() {
     for lean in [0.0006_f32, 0.001, 0.002, 0.005] {

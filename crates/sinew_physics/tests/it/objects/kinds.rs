@@ -1,9 +1,9 @@
-//! Kinds of objects for tests, each with one effect.
+//! Kinds of objects for tests, each with a single effect.
 
 use sinew_math::{ReadError, Reader, Vec3, Writer, max};
 use sinew_physics::*;
 
-/// Has no effect, but counts its calls.
+/// Object that counts its calls and has no other effect.
 #[derive(Default)]
 pub struct Counter {
     pub asked: u32,
@@ -28,11 +28,11 @@ impl PhysicsObject for Counter {
     }
 }
 
-/// Spring of length zero from a place in the world to the centre of a body.
+/// Spring of length zero between a point in the world and the centre of a body.
 pub struct Spring {
     pub body: BodyId,
     pub place: Vec3,
-    /// N/m.
+    /// Stiffness, N/m.
     pub stiffness: f32,
 }
 
@@ -75,11 +75,11 @@ impl PhysicsObject for Thrust {
     }
 }
 
-/// Keeps the centre of a body at a distance from a place.
+/// Rod without mass that keeps the centre of a body at a distance from a point.
 pub struct Leash {
     pub body: BodyId,
     pub place: Vec3,
-    /// Metres.
+    /// Length, metres.
     pub length: f32,
 }
 
@@ -131,7 +131,7 @@ impl PhysicsObject for Bump {
     }
 }
 
-/// Runs a test's function once, in one of the object's two calls.
+/// Object that runs a test's function once, at the start of a substep.
 pub struct Once<F> {
     pub act: Option<F>,
 }
@@ -151,7 +151,7 @@ impl<F: FnOnce(&mut Forces<'_>) + Send + Sync + 'static> PhysicsObject for Once<
     }
 }
 
-/// Runs a test's function once, after everything has moved.
+/// Object that runs a test's function once, after all bodies have moved.
 pub struct OnceMoved<F> {
     pub act: Option<F>,
 }

@@ -1,4 +1,4 @@
-//! Objects of the user: when they are called, what they can do, and that they affect nothing else.
+//! Objects of the user: the order of their calls, their possible effects, and that they affect nothing else.
 
 mod kinds;
 mod state;
@@ -15,7 +15,7 @@ fn weightless() -> World {
     World::new(WorldDef { gravity: Vec3::ZERO, sleeping: Sleeping::Off, ..WorldDef::default() })
 }
 
-/// Loose boxes on the floor, a chain, and a rope.
+/// Returns a world with loose boxes on the floor, a chain, and a rope.
 pub fn mixed() -> World {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
@@ -46,14 +46,14 @@ fn particles(world: &World) -> Vec<Vec3> {
     world.group_ids().flat_map(|id| world.particles(id).positions()).copied().collect()
 }
 
-/// Runs one step with an object that acts once, and removes it.
+/// Runs one step with an object that acts once, and removes the object.
 fn act_once(world: &mut World, act: impl FnOnce(&mut Forces<'_>) + Send + Sync + 'static) {
     let id = world.add_object(Box::new(Once { act: Some(act) }));
     world.step();
     world.remove_object(id);
 }
 
-/// Runs one step with an object that acts once after everything has moved, and removes it.
+/// Runs one step with an object that acts once after all bodies have moved, and removes the object.
 fn act_once_moved(world: &mut World, act: impl FnOnce(&mut Corrections<'_>) + Send + Sync + 'static) {
     let id = world.add_object(Box::new(OnceMoved { act: Some(act) }));
     world.step();
@@ -90,7 +90,7 @@ fn a_force_acts_substep_by_substep() {
     }
 }
 
-/// The force of an object adds to the world's own, once: gravity as a field, and a lasting force.
+/// The force of an object adds once to the world's own forces: gravity as a field, and a lasting force.
 #[test]
 fn an_objects_force_adds_to_fields_and_lasting_forces() {
     let mut world = weightless();
@@ -119,12 +119,12 @@ fn forces_and_impulses_match_newtons_laws() {
         forces.apply_impulse(body, Vec3::new(0.0, 2.0, 0.0), Vec3::ZERO);
         forces.apply_torque(body, Vec3::new(0.0, 0.0, 5.0));
     });
-    // A force lasts for one of the four substeps.
+    // The force acts in one of the four substeps.
     let Velocity { linear, angular } = world.velocity(body);
     assert!((linear - Vec3::new(30.0 * h, 2.0, 0.0) / mass).length() < 1e-6, "{linear}");
     let moment = mass / 3.0 * (0.01 + 0.04);
     assert!((angular - Vec3::Z * (5.0 * h / moment)).length() < 1e-6, "{angular}");
-    // Off the centre it also rotates: p × of an arm of 0.3 m.
+    // Away from the centre the impulse also rotates the body: p × with an arm of 0.3 m.
     act_once_moved(&mut world, move |corrections| {
         let point = corrections.center_of_mass(body) + Vec3::Z * 0.3;
         corrections.apply_impulse(body, Vec3::X, point);
@@ -175,7 +175,7 @@ fn a_leash_is_a_pendulum() {
     }
     assert!(error < 1e-5, "its length is off by {error} m");
     let period = (passes[passes.len() - 1] - passes[0]) / (passes.len() - 1) as f32;
-    // A point on a thread: 2π √(l/g) (1 + θ²/16).
+    // Mass on a thread: 2π √(l/g) (1 + θ²/16).
     let expected = core::f32::consts::TAU * (1.0f32 / 9.81).sqrt() * (1.0 + amplitude * amplitude / 16.0);
     assert!((period / expected - 1.0).abs() < 1e-3, "{period} s for {expected} s");
 }
@@ -191,7 +191,7 @@ fn corrections_act_through_joints() {
         joints.push(world.add_joint(&ball(&world, last, link, at - Vec3::X * 0.1)));
         last = link;
     }
-    // The last link's centre, 1.1 m from the hook, also hangs on a thread of 0.2 m.
+    // The centre of the last link, 1.1 m from the hook, also hangs on a thread of 0.2 m.
     let (place, length) = (Vec3::new(1.1, 0.2, 0.0), 0.2);
     world.add_object(Box::new(Leash { body: last, place, length }));
     let (mut off, mut gap) = (0.0, 0.0);
@@ -216,7 +216,7 @@ fn responses_include_joints() {
         assert_eq!(forces.response(hook, Vec3::ZERO, Vec3::Y), 0.0);
         let of_free = forces.response(free, Vec3::Y * 3.0, Vec3::Y);
         assert!((of_free * free_mass - 1.0).abs() < 1e-5);
-        // At its end, about the hook: l²/I, and next to nothing along it.
+        // At the end of the rod, about the hook: l²/I; along the rod nearly 0.
         let moment = rod_mass / 3.0 * (0.25 + 0.0025) + rod_mass * 0.25;
         let across = forces.response(rod, Vec3::X, Vec3::Y);
         assert!((across * moment - 1.0).abs() < 1e-3, "{across} for {}", 1.0 / moment);
@@ -240,7 +240,7 @@ fn particles_rest_on_an_obstacle_of_the_users_own() {
         }
     }
     assert!(nearest > 0.52 - 1e-5, "none was inside: {nearest} m");
-    // The middle one lies on top, the others slide down.
+    // The middle particle rests on top, the others slide down.
     let middle = world.particles(group).positions()[4];
     assert!((middle - Vec3::Y * 0.52).length() < 1e-3, "{middle}");
 }

@@ -6,7 +6,7 @@ use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::stage::NoProfiler;
 use sinew_physics::*;
 
-/// The mixed world, with objects that push a box, hold a link and block the rope.
+/// Returns the mixed world, with objects that push a box, hold a link and block the rope.
 pub fn inhabited() -> World {
     let mut world = mixed();
     let bodies: Vec<BodyId> = world.body_ids().collect();
@@ -94,7 +94,8 @@ fn snapshots_add_and_remove_objects() {
     assert!(third != first, "the slot is used again, the id is not");
     let other = saved(&world);
 
-    // Back to before the third object, and forward to where it exists again, since its kind is registered.
+    // Loads the state before the third object existed, then the one in which it exists again, since its kind is
+    // registered.
     let unknown = world.load(&mut Reader::new(&both)).expect_err("the first is gone");
     assert!(unknown.to_string().starts_with("an object that is not there, of no known kind"), "{unknown}");
     assert_eq!(saved(&world), other, "nothing has changed");
@@ -113,7 +114,7 @@ fn snapshots_add_and_remove_objects() {
     assert_eq!(new.hash(), { world.hash() });
 }
 
-/// Reads one byte less or more than it wrote.
+/// Object that reads one byte less or more than it wrote.
 struct Careless {
     reads: usize,
 }
@@ -138,7 +139,7 @@ fn a_wrong_load_is_an_error_and_changes_nothing() {
     let bytes = saved(&world);
     world.object_mut::<Counter>(counter).asked = 8;
     let before = saved(&world);
-    // The load of the first object is undone, so the second must be able to load its own state.
+    // The failed load is undone, so the second object must be able to load its own state.
     for cut in (0..bytes.len()).step_by(41).chain(bytes.len() - 40..bytes.len()) {
         assert!(world.load(&mut Reader::new(&bytes[..cut])).is_err());
         assert_eq!(saved(&world), before, "cut at {cut}");
@@ -160,7 +161,7 @@ fn damaged_snapshots_with_objects_give_errors() {
         for flip in [0x01, 0x80, 0xff] {
             let mut wrong = bytes.clone();
             wrong[at] ^= flip;
-            // Many damaged bytes are only other numbers.
+            // Many damaged bytes are only different numbers.
             drop(other.load(&mut Reader::new(&wrong)));
         }
     }

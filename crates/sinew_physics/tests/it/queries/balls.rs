@@ -1,4 +1,4 @@
-//! Balls as probes: results follow from the distance of their centres alone, in `f64`.
+//! Balls as probes: results follow from the distance of their centres, in `f64`.
 
 use super::oracle::WideShape;
 use super::random::{KINDS, frame, shape};
@@ -7,7 +7,7 @@ use crate::wide::wide;
 use sinew_math::Random;
 use sinew_physics::*;
 
-/// Metres. Where round shapes overlap deeply, depths are right to 1e-6 of the sizes.
+/// Tolerance, metres. If round shapes overlap deeply, depths are accurate to 1e-6 of the sizes.
 const NEAR: f64 = 4e-6;
 
 #[test]
@@ -55,7 +55,7 @@ fn ball_queries_follow_centre_distances() {
             Some(hit) => {
                 hits += 1;
                 let fraction = f64::from(hit.fraction);
-                // It may stop short by the touch tolerance, 1e-5 of the smaller one and 1e-7 of the way.
+                // The cast may stop early by the touch tolerance, 1e-5 of the smaller shape and 1e-7 of the motion.
                 let there =
                     wide_shape.signed_distance(wide(center + translation * hit.fraction)) - f64::from(radius);
                 assert!(there.abs() < 1.5e-5, "{}: {hit:?}, {there} from touching", told("hit"));

@@ -4,7 +4,7 @@ use sinew_math::Vec3;
 use sinew_physics::ray::Ray;
 use sinew_physics::*;
 
-/// Balls of radius 0.4 m in a row, one a metre, and a ray through all of them.
+/// Returns balls of radius 0.4 m in a row, one per metre, and a ray through all of them.
 fn row(defs: Vec<(BodyKind, ShapeDef)>) -> (World, Vec<BodyId>, Ray) {
     let mut world = World::new(WorldDef::default());
     let add = |(k, (kind, shape)): (usize, (BodyKind, ShapeDef))| {
@@ -23,7 +23,7 @@ fn filtered(layers: u32, mask: u32, group: i32) -> ShapeDef {
     ShapeDef { filter: Filter { layers, mask, group }, ..ball() }
 }
 
-/// Returns the numbers of the bodies that a ray hits.
+/// Returns the indices of the bodies that a ray hits.
 fn met(world: &World, ids: &[BodyId], ray: &Ray, filter: QueryFilter<'_>) -> Vec<usize> {
     let mut hits = Vec::new();
     world.query().filter(filter).all(ray, &mut hits);

@@ -1,4 +1,4 @@
-//! Queries with extreme numbers, and extreme worlds.
+//! Queries with extreme numbers, and of extreme worlds.
 
 use super::random::{KINDS, Populated, shape};
 use crate::cases::cases;
@@ -8,7 +8,7 @@ use sinew_physics::*;
 
 const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
-/// Sets each component of a vector in turn.
+/// Returns vectors with a bad number in each component in turn.
 fn bad_vectors() -> impl Iterator<Item = Vec3> {
     BAD.into_iter().flat_map(|x| [Vec3::new(x, 0.0, 0.0), Vec3::new(0.1, x, 0.0), Vec3::new(0.0, 0.2, x)])
 }
@@ -55,7 +55,7 @@ fn half_spaces_do_not_ask() {
     world.query().any(&OverlapWith(Probe::at(Shape::HalfSpace, Vec3::ZERO)));
 }
 
-/// A ray of any length hits what is on it.
+/// A ray of any length hits a shape on its path.
 #[test]
 fn long_rays_hit() {
     let mut world = World::new(WorldDef::default());
@@ -67,7 +67,7 @@ fn long_rays_hit() {
             2 | 3 => Shape::Capsule { half_height: 1.0, radius: 0.5 },
             4 => Shape::TaperedCapsule { half_height: 1.0, radius_bottom: 0.5, radius_top: 0.5 },
             5 => Shape::Cylinder { half_height: 1.0, radius: 0.5 },
-            // At this height it is as wide as the others.
+            // At this height the cone is as wide as the other shapes.
             _ => Shape::Cone { half_height: 1.0, radius: 10.0 / 9.0 },
         };
         let def =
@@ -83,7 +83,7 @@ fn long_rays_hit() {
     }
 }
 
-/// Returns a number of any size, sometimes a special one.
+/// Returns a number of any magnitude, sometimes a special one.
 fn wild(random: &mut Random) -> f32 {
     const SPECIAL: [f32; 10] = [
         0.0,
@@ -109,7 +109,7 @@ fn wild3(random: &mut Random) -> Vec3 {
     Vec3::new(wild(random), wild(random), wild(random))
 }
 
-/// Thin, small, large.
+/// Returns a shape that may be thin, small or large.
 fn extreme_shape(random: &mut Random) -> Shape {
     let mut size = || [1e-4f32, 1e-2, 1.0, 1e2, 1e5][random.index(5)] * random.range(0.5, 1.0);
     let (a, b, c) = (size(), size(), size());
@@ -123,7 +123,7 @@ fn extreme_shape(random: &mut Random) -> Shape {
     }
 }
 
-/// Many bodies in one place, tiny beside huge, far away.
+/// Returns a world with many bodies at one place, tiny beside huge, possibly far from the origin.
 fn extreme_world(random: &mut Random) -> World {
     let mut world = World::new(WorldDef::default());
     let far = [0.0f32, 1.0, 1e3, 1e6][random.index(4)];

@@ -1,4 +1,4 @@
-//! Queries use the current poses, whatever changed them.
+//! Queries use the current poses after any change.
 
 use super::random::{Populated, body, filter, frame};
 use crate::build::{box_body, floor};
@@ -10,7 +10,7 @@ use sinew_physics::{
     Sensors, Shape, ShapeDef, ShapeId, Velocity, World, WorldDef,
 };
 
-/// Returns first hit, containing bodies and nearest surface, by testing every shape.
+/// Checks the first hit, the containing bodies and the nearest surface, by testing every shape.
 fn agrees(populated: &Populated, random: &mut Random) {
     let filter = filter(&[], random);
     let query = populated.world.query().filter(filter);
@@ -76,7 +76,7 @@ fn after_every_kind_of_change() {
     }
 }
 
-/// Returns the height at which a ray from above hits a body, metres in the world.
+/// Returns the height at which a ray from above hits a body, world, metres.
 fn top(world: &World, id: BodyId) -> Option<f32> {
     let at = world.center_of_mass(id);
     let ray = Ray { origin: at + Vec3::Y * 5.0, direction: Vec3::Y * -10.0 };
@@ -117,7 +117,7 @@ fn after_a_step_the_new_pose() {
     }
 }
 
-/// True if a ray from above, a box around it, and a ball on it find a body, each alone.
+/// Returns whether a ray from above, a box around the body, and a ball on it each find the body.
 fn met(world: &mut World, id: BodyId, filter: QueryFilter<'_>) -> [bool; 3] {
     let query = world.query().filter(filter).accept(|body, _| body == id);
     let around = OverlapWith(Probe::at(Shape::Box { half_extents: Vec3::splat(2.0) }, Vec3::ZERO));
@@ -135,7 +135,8 @@ fn met(world: &mut World, id: BodyId, filter: QueryFilter<'_>) -> [bool; 3] {
     [seen[0], seen[1], touches]
 }
 
-/// A change of filter acts at once, also for a static body of a single shape, of which the tree keeps a copy.
+/// A change of filter takes effect immediately, also for a static body with a single shape, of which the tree keeps a
+/// copy.
 #[test]
 fn after_a_filter_change() {
     let mut world = World::new(WorldDef::default());

@@ -1,10 +1,10 @@
-//! Shapes in `f64` by their distance functions: hits of rays and moved balls are found by search.
+//! Shapes in `f64`, defined by their distance functions: hits of rays and moved balls are found by search.
 
 use crate::wide::{Wide, add, axes, dot, length, wide};
 use sinew_math::Transform;
 use sinew_physics::Shape;
 
-/// A placed shape.
+/// A shape and its pose.
 pub struct WideShape<'a> {
     shape: &'a Shape,
     center: Wide,
@@ -21,7 +21,7 @@ impl<'a> WideShape<'a> {
         self.axes.map(|axis| dot(d, axis))
     }
 
-    /// Distance from a point to the surface, negative inside.
+    /// Returns the distance from the surface to a point, negative inside.
     pub fn signed_distance(&self, p: Wide) -> f64 {
         let q = self.local(p);
         let flat = q[0].hypot(q[2]);
@@ -50,7 +50,7 @@ impl<'a> WideShape<'a> {
             Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
                 let (h, bottom, top) =
                     (f64::from(half_height), f64::from(radius_bottom), f64::from(radius_top));
-                // Sine and cosine of the side's slope.
+                // Sine and cosine of the slope of the side.
                 let b = (bottom - top) / (2.0 * h);
                 let a = (1.0 - b * b).sqrt();
                 let along = -b * flat + a * (q[1] + h);
@@ -69,7 +69,7 @@ impl<'a> WideShape<'a> {
         }
     }
 
-    /// Returns the least distance along a segment, which is a convex function of the place on it.
+    /// Returns the smallest distance along a segment; the distance is a convex function of the position on the segment.
     pub fn least_distance(&self, origin: Wide, direction: Wide) -> f64 {
         let at = |t: f64| self.signed_distance(add(origin, direction, t));
         let (mut lo, mut hi) = (0.0, 1.0);
@@ -81,7 +81,7 @@ impl<'a> WideShape<'a> {
     }
 }
 
-/// Distance from a point to a segment, both in a plane.
+/// Returns the distance from a point to a segment in a plane.
 fn to_segment(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     let (way, from) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let along = (from[0] * way[0] + from[1] * way[1]) / (way[0] * way[0] + way[1] * way[1]);

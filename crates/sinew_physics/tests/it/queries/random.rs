@@ -54,7 +54,7 @@ pub struct Populated {
 }
 
 impl Populated {
-    /// Returns this many bodies in a cube of `2 spread` above a slope; some were removed and replaced.
+    /// Returns a world with this many bodies in a cube of `2 spread` above a slope; some were removed and replaced.
     pub fn new(bodies: usize, spread: f32, random: &mut Random) -> Self {
         let mut populated = Self { world: World::new(WorldDef::default()), bodies: Vec::new() };
         populated.add(BodyDef {
@@ -79,13 +79,13 @@ impl Populated {
         id
     }
 
-    /// Removes one of them.
+    /// Removes a random body.
     pub fn remove(&mut self, random: &mut Random) {
         let (id, _) = self.bodies.swap_remove(random.index(self.bodies.len()));
         self.world.remove_body(id);
     }
 
-    /// Returns every shape that passes the filter, in its current pose.
+    /// Iterates over every shape that passes the filter, with its current pose.
     pub fn shapes(&self, filter: &QueryFilter<'_>) -> impl Iterator<Item = (ShapeId, Shape, Transform)> {
         self.bodies.iter().flat_map(move |(id, def)| {
             let passes = move |def: &BodyDef, shape: usize| {

@@ -1,4 +1,4 @@
-//! Rays against single shapes: the hit is where a distance function in `f64` becomes 0.
+//! Ray casts against single shapes: the hit is where a distance function in `f64` becomes 0.
 
 use super::oracle::WideShape;
 use super::random::{KINDS, frame, shape};
@@ -56,7 +56,7 @@ fn a_ray_enters_where_the_distance_becomes_zero() {
             continue;
         }
         assert!(off.abs() < 2.0 * NEAR, "case {case}: {shape:?} is met {off} off its surface");
-        // For a grazing ray the hit is rounding: the path there is equally near the surface.
+        // For a grazing ray rounding decides the hit: the whole path is near the surface there.
         let fraction = f64::from(hit.fraction);
         let before = wide_shape.least_distance(start, way.map(|x| x * (fraction - 1e-6).max(0.0)));
         assert!(before > -2.0 * NEAR, "case {case}: {shape:?} is entered {before} before {fraction}");
@@ -66,7 +66,7 @@ fn a_ray_enters_where_the_distance_becomes_zero() {
     assert!(hits > cases(100_000) / 3 && starts > cases(100_000) / 50, "{hits} hits, {starts} starts inside");
 }
 
-/// Two shapes at the same place are ordered by their numbers, two bodies by their indices.
+/// Shapes at the same position are ordered by their numbers, bodies by their indices.
 #[test]
 fn ties_go_by_body_and_shape() {
     let ball = ShapeDef::new(Shape::Sphere { radius: 0.5 });
@@ -75,7 +75,7 @@ fn ties_go_by_body_and_shape() {
     let ids: Vec<_> = (0..9).map(|_| world.add_body(&def)).collect();
     world.remove_body(ids[0]);
     world.remove_body(ids[4]);
-    // It takes the place of the removed one.
+    // The new body gets the index of the removed one.
     let again = world.add_body(&def);
     let ray = Ray { origin: Vec3::X * -2.0, direction: Vec3::X * 4.0 };
     let hit = world.query().first(&ray).expect("all of them are there");
@@ -117,7 +117,7 @@ fn batches_answer_as_single_questions_do() {
     }
 }
 
-/// For any world, any query, and any ends of the rays.
+/// A batch gives the results of single rays, for any world, any query and any ends of the rays.
 #[test]
 fn many_rays_hit_what_each_by_itself_hits() {
     let mut random = Random::new(410);

@@ -5,7 +5,7 @@ use sinew_math::{Random, Transform, Vec3};
 use sinew_physics::ray::Ray;
 use sinew_physics::*;
 
-/// Returns one static body of each kind of shape, each in its own world, and its shape.
+/// Returns each kind of shape, with a world that has one static body of that shape.
 fn each_shape() -> impl Iterator<Item = (World, Shape)> {
     let mut random = Random::new(407);
     let mut shapes: Vec<Shape> = (0..KINDS).map(|kind| shape(kind, &mut random)).collect();
@@ -18,7 +18,7 @@ fn each_shape() -> impl Iterator<Item = (World, Shape)> {
     })
 }
 
-/// A point inside every shape, off all planes of symmetry.
+/// Point inside every shape, off all planes of symmetry.
 const INSIDE: Vec3 = Vec3::new(0.01, -0.03, 0.02);
 
 #[test]
@@ -51,7 +51,7 @@ fn a_ray_that_starts_inside_and_goes_nowhere() {
 #[test]
 fn a_ray_that_starts_on_the_surface() {
     for (world, shape) in each_shape() {
-        // The highest number that is not above the surface.
+        // Largest number that is not above the surface.
         let above = |y: f32| shape.signed_distance(&Transform::IDENTITY, Vec3::Y * y).0 > 0.0;
         let (mut top, mut outside) = (0.0, 4.0);
         for _ in 0..60 {
@@ -105,7 +105,8 @@ fn a_cast_that_starts_inside() {
     }
 }
 
-/// A shape that rests on another touches it, and a cast from there hits in any direction; slightly above it may move away.
+/// A shape that rests on another touches it, and a cast from there hits in any direction; a shape slightly above may
+/// move away.
 #[test]
 fn a_cast_that_starts_on_the_surface() {
     let mut world = World::new(WorldDef::default());

@@ -1,4 +1,4 @@
-//! Queries of meshes and height fields, against trying every triangle.
+//! Queries of meshes and height fields, compared with tests of every triangle.
 
 use super::random::{KINDS, frame, shape};
 use crate::cases::cases;
@@ -8,7 +8,7 @@ use sinew_physics::ray::Ray;
 use sinew_physics::*;
 use std::sync::Arc;
 
-/// Corners of a cube around the origin, and its triangles seen from outside.
+/// Returns the corners of a cube around the origin, and its triangles, counter-clockwise seen from outside.
 fn cube(half: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let corners = Aabb::around(Vec3::ZERO, half).corners().to_vec();
     let sides: [[u32; 4]; 6] =
@@ -23,7 +23,8 @@ fn world_of(shape: Shape, at: &Transform) -> World {
     world
 }
 
-/// A closed mesh answers queries from outside as the box with the same surface; rays from inside do not hit it.
+/// Queries from outside give the same results for a closed mesh as for the box with the same surface; rays from inside
+/// do not hit the mesh.
 #[test]
 fn a_closed_mesh_answers_as_a_box_does() {
     let mut random = Random::new(411);
@@ -58,7 +59,8 @@ fn a_closed_mesh_answers_as_a_box_does() {
             assert!(!meshed.any(&OverlapWith(probe.clone())), "case {case}");
             let translation = at.point(random.in_cube() * 0.5) - probe.world_from_shape.translation;
             let cast = ShapeCast { probe, translation };
-            // The relative speed of the surfaces along the path: the hit is as much less certain.
+            // Relative speed of the surfaces along the path: the uncertainty of the hit is inversely proportional to
+            // it.
             let closing = |hit: BodyHit| -hit.normal.dot(translation) / translation.length();
             match (meshed.first(&cast), solid.first(&cast)) {
                 (Some(a), Some(b)) => {
@@ -73,7 +75,7 @@ fn a_closed_mesh_answers_as_a_box_does() {
                 }
             }
         } else if start.distance < -1e-4 && !meshed.any(&OverlapWith(probe.clone())) {
-            // Wholly inside: no point of the surface is in the probe.
+            // The probe is wholly inside: it contains no point of the surface.
             let middle = at.inverse_point(probe.world_from_shape.translation);
             assert!(middle.abs().cmplt(half).all(), "case {case}: {start:?}");
         }
@@ -81,7 +83,7 @@ fn a_closed_mesh_answers_as_a_box_does() {
     assert!(hits > cases(20_000) / 3 && casts > cases(20_000) / 5, "{hits} hits, {casts} casts");
 }
 
-/// Terrain is hit from above, pushes up, and contains nothing.
+/// Terrain is hit from above, pushes up, and contains no points.
 #[test]
 fn height_fields_are_met_from_above() {
     let (columns, rows, spacing) = (5, 5, [1.0, 1.0]);

@@ -1,4 +1,4 @@
-//! Every query of a whole world, against every shape alone.
+//! Every query of a whole world, compared with queries of every shape alone.
 
 use super::random::{KINDS, Populated, filter, frame, shape};
 use crate::cases::cases;
@@ -14,7 +14,7 @@ use sinew_physics::{
 /// Answer of one shape, with its rank in the order of answers.
 type One<'a, A> = &'a dyn Fn(ShapeId, &Shape, &Transform) -> Option<(f32, A)>;
 
-/// Runs a query in every way, and compares with the answers of all single shapes.
+/// Runs a query in every way, and compares the results with the answers of all single shapes.
 fn check<Q: QueryKind>(populated: &Populated, filter: QueryFilter<'_>, question: &Q, one: One<'_, Q::Answer>)
 where
     Q::Answer: Copy + PartialEq + core::fmt::Debug,
@@ -43,7 +43,7 @@ where
     assert_eq!(found, bodies);
 }
 
-/// A world, with some queries at each of its places, with and without a filter.
+/// Runs queries in random worlds, with and without a filter.
 fn in_random_worlds(seed: u64, mut ask: impl FnMut(&Populated, QueryFilter<'_>, &mut Random)) {
     let mut random = Random::new(seed);
     for case in 0..cases(100_000).div_ceil(50) {

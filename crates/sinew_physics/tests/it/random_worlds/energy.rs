@@ -1,21 +1,22 @@
-//! Energy of a world with that of its springs, soft welds and soft limits.
+//! Energy of a world, including that of springs, soft welds and soft limits.
 
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, limits, min};
 use sinew_physics::*;
 
-/// Joules and kilograms, of all dynamic bodies.
+/// Energies, J, and mass, kg, of all dynamic bodies.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Energies {
     pub kinetic: f64,
-    /// Kinetic, of height, of springs.
+    /// Sum of kinetic energy, potential energy in gravity, and energy of springs.
     pub total: f64,
     /// Energy of springs, soft welds and soft limits.
     pub elastic: f64,
     pub mass: f64,
 }
 
-/// Velocities are half a substep behind positions; heights and springs are measured there. At the end of the
-/// step an undamped spring's energy would seem to rise and fall by the share `ωh/2`.
+/// Returns the energies, with heights and springs measured half a substep back, because velocities are half a substep
+/// behind positions. At the end of the step the energy of an undamped spring would seem to rise and fall by the share
+/// `ωh/2`.
 pub fn energies(world: &World) -> Energies {
     let back = -0.5 * world.def().dt() / world.def().substeps as f32;
     let mut sum = Energies::default();
@@ -35,7 +36,7 @@ pub fn energies(world: &World) -> Energies {
     sum
 }
 
-/// Returns the pose of a body a time away.
+/// Returns the pose of a body after a time, at its current velocity.
 fn moved(world: &World, id: BodyId, time: f32) -> Transform {
     let (pose, v, center) = (world.transform(id), world.velocity(id), world.center_of_mass(id));
     let rotation = pose.rotation.integrate(v.angular, time);
@@ -50,7 +51,7 @@ fn stiffness(softness: Option<Softness>) -> f32 {
     }
 }
 
-/// Returns the energy that a joint stores in stiffnesses that are given as such, with frame B seen from frame A.
+/// Returns the energy of a joint in stiffnesses that are given as such, with frame B in frame A.
 fn elastic(def: &JointDef, seen: &Transform) -> f32 {
     let locks = locks(&def.kind);
     let weld = stiffness(def.weld) * weld_square(&def.kind, &locks, seen);
@@ -61,7 +62,7 @@ fn elastic(def: &JointDef, seen: &Transform) -> f32 {
     0.5 * (weld + limit + spring)
 }
 
-/// Held directions: translations, then twist and swings.
+/// Returns the locked directions: translations, then twist and swings.
 fn locks(kind: &JointKind) -> [bool; 6] {
     match kind {
         JointKind::Ball { .. } => [true, true, true, false, false, false],
@@ -82,7 +83,7 @@ fn masked_square(v: Vec3, mask: &[bool]) -> f32 {
     of(v.x, mask[0]) + of(v.y, mask[1]) + of(v.z, mask[2])
 }
 
-/// Returns the square of the distance from the place of the held directions.
+/// Returns the square of the displacement along the locked directions.
 fn weld_square(kind: &JointKind, locks: &[bool; 6], seen: &Transform) -> f32 {
     let linear = match kind {
         JointKind::Distance { range } if locks[0] => {
@@ -95,7 +96,7 @@ fn weld_square(kind: &JointKind, locks: &[bool; 6], seen: &Transform) -> f32 {
     let angular = match locks[3..] {
         [true, true, true] => seen.rotation.to_scaled_axis().length_squared(),
         [twist, y, z] => {
-            // Twist fades near a swing of half a turn, where it is undefined.
+            // The twist fades out near a swing of half a turn, where it is undefined.
             let (_, turn) = SwingTwistLimit::angles(seen.rotation);
             masked_square(Vec3::new(turn * 0.5 * (1.0 + x_b.x), x_b.z, x_b.y), &[twist, y, z])
         }

@@ -6,7 +6,7 @@ use super::{STEPS, chance, decades};
 use sinew_math::{Random, Rotation, Transform, Vec3, max};
 use sinew_physics::*;
 
-/// Joints of trees connect to earlier bodies: to the last one, which gives chains, or to any.
+/// Growth of trees: joints connect a new body to the last body, which gives chains, or to any earlier body.
 #[derive(Clone, Copy)]
 enum Growth {
     Chain,
@@ -45,7 +45,7 @@ fn gravity(r: &mut Random) -> Vec3 {
     if chance(r, 0.75) { Vec3::new(0.0, -9.81, 0.0) } else { Vec3::ZERO }
 }
 
-/// Returns any shape, `size` metres across.
+/// Returns a random shape, `size` metres across.
 fn shape(r: &mut Random, size: f32) -> Shape {
     let half = 0.5 * size;
     match r.index(3) {
@@ -61,7 +61,7 @@ fn shape(r: &mut Random, size: f32) -> Shape {
     }
 }
 
-/// Ranges of sizes and masses, in powers of ten.
+/// Ranges of sizes and masses, as powers of ten.
 struct Spread {
     size: [f32; 2],
     mass: [f32; 2],
@@ -93,7 +93,7 @@ fn velocity(r: &mut Random, speed: f32) -> Velocity {
     Velocity { linear: r.in_cube() * speed, angular: r.in_cube() * (2.0 * speed) }
 }
 
-/// Returns trees from a fixed, moved or free body.
+/// Adds trees that start at a fixed, moved or free body.
 fn forest(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
     let spread = Spread::random(r);
     let count = if chance(r, 0.1) { 9 + r.index(22) } else { 2 + r.index(7) };
@@ -117,7 +117,7 @@ fn forest(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
             Growth::Chain => i - 1,
             Growth::Bush => r.index(i),
         };
-        // An anchor at a second place of the world: the tree's end is held too.
+        // An anchor at a second point of the world, so that the end of the tree is held too.
         if chance(r, 0.03) && plan.bodies[parent].kind == BodyKind::Dynamic {
             (body.kind, body.velocity) = (BodyKind::Static, Velocity::default());
         }
@@ -128,7 +128,7 @@ fn forest(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
     }
 }
 
-/// Place where a body is joined to another, and its own place then, both in the world.
+/// Returns the point at which a body is joined to another, and the body's own position then, both in the world.
 fn neighbor(r: &mut Random, parent: &BodyPlan, child: &BodyPlan) -> (Vec3, Vec3) {
     let way = r.direction();
     let on = (way + r.in_cube() * 0.5).normalize();
@@ -136,7 +136,7 @@ fn neighbor(r: &mut Random, parent: &BodyPlan, child: &BodyPlan) -> (Vec3, Vec3)
     (at, at + on * (child.shape.bounding_radius() * r.range(0.3, 1.0)))
 }
 
-/// Returns a grid of bodies joined to their neighbours, hung by corners.
+/// Adds a grid of bodies joined to their neighbours, hung by its corners.
 fn net(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
     let (width, height) = (2 + r.index(4), 2 + r.index(4));
     let (size, mass) = (decades(r, -1.5, -0.5), decades(r, -1.0, 1.0));
@@ -175,7 +175,7 @@ fn net(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
     }
 }
 
-/// Raises everything above the floor.
+/// Raises all bodies above the floor.
 fn lift(r: &mut Random, plan: &mut WorldPlan) {
     let mut depth = f32::NEG_INFINITY;
     for body in &plan.bodies {
@@ -187,14 +187,14 @@ fn lift(r: &mut Random, plan: &mut WorldPlan) {
     }
 }
 
-/// Returns two bodies of which one moves.
+/// Returns two bodies, at least one of which is dynamic.
 fn pair(r: &mut Random, plan: &WorldPlan) -> Option<[usize; 2]> {
     let (a, b) = (r.index(plan.bodies.len()), r.index(plan.bodies.len()));
     let moves = |i: usize| plan.bodies[i].kind == BodyKind::Dynamic;
     (a != b && (moves(a) || moves(b))).then_some([a, b])
 }
 
-/// Adds more joints than trees have; some are redundant.
+/// Adds joints beyond those of trees; some are redundant.
 fn loops(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
     if chance(r, 0.6) {
         return;
@@ -215,7 +215,7 @@ fn changes(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
         let step = 1 + r.index(STEPS as usize - 1) as u32;
         if chance(r, 0.2) {
             let Some([a, b]) = pair(r, plan) else { continue };
-            // Its frame is in A's; where A will be then does not matter.
+            // The frame is in A's frame; the later position of A has no effect.
             let at = neighbor(r, &plan.bodies[a], &plan.bodies[b]).0;
             let joint = joints::joint(r, plan, [a, b], at, temper);
             plan.joints.push(JointPlan { born: step, ..joint });

@@ -6,11 +6,11 @@ use core::f32::consts::PI;
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, min};
 use sinew_physics::*;
 
-/// Allowed features of a world's joints.
+/// Allowed features of the joints of a world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Temper {
-    /// Only features that store energy in a way that can be computed from outside, or remove it: stiffnesses given as such
-    /// (one that follows the masses changes with the pose), no motors, no soft zones.
+    /// Only features that remove energy, or store it in a way that can be computed from outside: stiffnesses given as
+    /// such (a stiffness that follows the masses changes with the pose), no motors, no soft zones.
     Passive,
     /// All features.
     Driven,
@@ -57,7 +57,7 @@ pub fn joint(r: &mut Random, plan: &WorldPlan, bodies: [usize; 2], at: Vec3, tem
     joint
 }
 
-/// Returns roughly the smaller of a body's mass and its least moment; `None` where it does not move.
+/// Returns roughly the smaller of a body's mass and its smallest moment; infinite if the body does not move.
 fn lightest(plan: &WorldPlan, body: usize) -> f32 {
     let body = &plan.bodies[body];
     let thin = body.shape.inner_radius();
@@ -70,7 +70,7 @@ fn strength(r: &mut Random) -> Strength {
     Strength { force, torque }
 }
 
-/// Sides of a range about zero.
+/// Returns a random range around zero.
 fn around(r: &mut Random, widest: f32) -> Range {
     let mut side = || if chance(r, 0.1) { 0.0 } else { r.range(0.02, widest) };
     Range::new(-side(), side())
@@ -80,7 +80,7 @@ fn cone(r: &mut Random) -> SwingTwistLimit {
     SwingTwistLimit { swing_y: around(r, 2.5), swing_z: around(r, 2.5), twist: around(r, 3.0) }
 }
 
-/// Returns a range that may exclude zero where that may release energy.
+/// Returns a range that may exclude zero if the joint may release energy.
 fn interval(r: &mut Random, widest: f32, temper: Temper) -> Range {
     if temper == Temper::Driven && chance(r, 0.1) {
         let lo = r.range(-widest, widest);
@@ -112,7 +112,7 @@ fn kind(r: &mut Random, temper: Temper) -> JointKind {
     }
 }
 
-/// In units of the initial distance: a rod, a rope, a band.
+/// Returns a range in units of the initial distance: a rod, a rope, or a band.
 fn distance(r: &mut Random) -> Range {
     match r.index(3) {
         0 => Range::new(1.0, 1.0),
@@ -134,14 +134,14 @@ fn six(r: &mut Random) -> SixDof {
     SixDof { linear, twist: axis(r, 3.0), swing_y: axis(r, 1.5), swing_z: axis(r, 1.5) }
 }
 
-/// True if soft limits are allowed: the energy of a cone's cannot be computed from outside deep beyond it, where its room is
-/// exact to first order only.
+/// True if soft limits are allowed. The energy of a cone limit cannot be computed from outside far beyond the limit,
+/// where its slack is exact to first order only.
 fn stores_limits(kind: &JointKind, temper: Temper) -> bool {
     let turns = matches!(kind, JointKind::Ball { .. } | JointKind::Universal { .. } | JointKind::SixDof(_));
     temper == Temper::Driven || !turns
 }
 
-/// True if springs are allowed: those about only some axes of rotation store no energy.
+/// True if springs are allowed: springs about only some axes of rotation have no potential energy.
 fn stores_springs(kind: &JointKind, temper: Temper) -> bool {
     temper == Temper::Driven || !matches!(kind, JointKind::SixDof(_))
 }
@@ -158,8 +158,9 @@ fn rest(r: &mut Random, kind: &JointKind) -> Transform {
     }
 }
 
-/// Passive ones are damped unless they are slow compared with a substep: an undamped one that swings within a few substeps has
-/// no energy that could be read from positions and velocities half a substep apart.
+/// Returns a random softness. Passive springs are damped unless they are slow compared with a substep: an undamped
+/// spring that swings within a few substeps has no energy that can be computed from positions and velocities half a
+/// substep apart.
 fn softness(r: &mut Random, temper: Temper, light: f32) -> Softness {
     if temper == Temper::Driven && chance(r, 0.5) {
         let damping_ratio = if chance(r, 0.2) { 0.0 } else { decades(r, -2.0, 1.0) };

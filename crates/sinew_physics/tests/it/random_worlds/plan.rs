@@ -1,4 +1,4 @@
-//! A random world as plain data, so that a failing one can be shrunk and printed.
+//! A random world as plain data, so that a failing world can be shrunk and printed.
 
 use sinew_math::{Range, Transform, Vec3};
 use sinew_physics::*;
@@ -7,16 +7,16 @@ use sinew_physics::*;
 pub struct WorldPlan {
     pub gravity: Vec3,
     pub sleeping: Sleeping,
-    /// A half-space at height 0.
+    /// True if the world has a half-space at height 0.
     pub floor: bool,
-    /// Pairs that overlap at the start, or that a joint connects at any time, never collide: contacts that
+    /// True if pairs that overlap at the start, or that a joint connects at any time, never collide: contacts that
     /// separate bodies would raise weights.
     pub parted: bool,
-    /// Nothing in it releases energy but the test's own changes.
+    /// True if nothing in the world releases energy except the test's own changes.
     pub passive: bool,
     pub bodies: Vec<BodyPlan>,
     pub joints: Vec<JointPlan>,
-    /// Step before which it happens, and the change.
+    /// Changes, each with the step before which it happens.
     pub changes: Vec<(u32, Change)>,
     /// Step before which the world is saved.
     pub save_at: u32,
@@ -38,11 +38,11 @@ pub struct JointPlan {
     /// Indices into the plan's bodies.
     pub a: usize,
     pub b: usize,
-    /// Step before which it is created; 0: with the world.
+    /// Step before which the joint is created; 0 for joints of the initial world.
     pub born: u32,
-    /// In A's frame; B's agrees with it in the initial pose, except for distances.
+    /// Frame of the joint in A; the frame in B agrees with it in the initial pose, except for distances.
     pub frame_a: Transform,
-    /// Anchor in B's frame of a distance, whose range and rest length are in units of the initial distance.
+    /// Anchor of a distance joint in B's frame; the range and the rest length are in units of the initial distance.
     pub anchor_b: Vec3,
     pub kind: JointKind,
     pub weld: Option<Softness>,
@@ -60,11 +60,11 @@ pub struct JointPlan {
 pub enum Change {
     RemoveJoint(usize),
     SetState(usize, JointState),
-    /// The joint becomes that of the plan. Its bodies stay; its frames stay too, or start in the current pose.
+    /// Gives the joint another definition. Its bodies stay the same; its frames stay too, or start in the current pose.
     Redefine(usize, Box<JointPlan>, Frames),
     SetMotor(usize, Option<Motor>),
     RemoveBody(usize),
-    /// Adds to a body's velocity, at its centre.
+    /// Adds to the velocity of a body at its centre.
     Kick(usize, Velocity),
     /// Saves the world and loads it again in place.
     Reload,
@@ -124,7 +124,7 @@ impl BodyPlan {
 }
 
 impl JointPlan {
-    /// Returns a joint of this plan between two bodies in their current pose.
+    /// Returns the definition of this joint between two bodies in their current pose.
     pub fn def(&self, world: &World, a: BodyId, b: BodyId) -> JointDef {
         let world_from_joint = world.transform(a) * self.frame_a;
         let (a_pose, b_pose) = (world.transform(a), world.transform(b));
@@ -153,7 +153,7 @@ impl JointPlan {
 }
 
 impl WorldPlan {
-    /// Returns the plan without a body and everything that refers to it.
+    /// Returns the plan without a body and without all parts that refer to it.
     pub fn without_body(&self, body: usize) -> Self {
         let mut plan = self.clone();
         while let Some(j) = plan.joints.iter().position(|joint| joint.a == body || joint.b == body) {
@@ -169,7 +169,7 @@ impl WorldPlan {
         plan
     }
 
-    /// Returns the plan without a joint and everything that refers to it.
+    /// Returns the plan without a joint and without all parts that refer to it.
     pub fn without_joint(&self, joint: usize) -> Self {
         let mut plan = self.clone();
         plan.joints.remove(joint);

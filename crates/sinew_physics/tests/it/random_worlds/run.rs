@@ -1,4 +1,4 @@
-//! Runs a plan and checks it.
+//! Runs a plan and checks the world.
 
 use super::energy::{Energies, energies};
 use super::plan::{Change, Frames, JointPlan, WorldPlan};
@@ -8,20 +8,20 @@ use sinew_physics::*;
 
 /// Largest rise of energy within a step, as a share of max(kinetic energy, 1 J/kg).
 const ENERGY_GAIN: f64 = 0.01;
-/// Share of the springs' energy that rounding of poses may appear to add.
+/// Share of the springs' energy that may seem to appear by rounding of poses.
 const ROUNDING: f64 = 1e-5;
-/// After a change that leaves joints open or beyond their stops, energy is not checked until they
-/// have closed, but for at most this many steps.
+/// Largest number of steps without an energy check after a change that leaves joints open or beyond their stops; the
+/// check resumes when they have closed.
 const SETTLING: u32 = 60;
-/// Closed: metres and radians.
+/// Gap (metres) and overshoot (radians) below which a joint is closed.
 const GAP_CLOSED: f32 = 1e-3;
 const STOP_REACHED: f32 = 0.02;
-/// Joints are not created between bodies further apart, metres: their arms would be a
-/// hundred times the bodies' size.
+/// Largest distance of bodies between which joints are created, metres: beyond it their arms would be a hundred times
+/// the bodies' size.
 const REACH: f32 = 10.0;
-/// Steps after a save when the world is compared with its restored twin.
+/// Steps after a save after which the world is compared with its restored twin.
 const TWIN_STEPS: u32 = 60;
-/// A world is violent while a body is faster, m/s or rad/s.
+/// Speed of a body above which the world is violent, m/s and rad/s.
 const VIOLENT_LINEAR: f32 = 15.0;
 const VIOLENT_ANGULAR: f32 = 30.0;
 
@@ -29,7 +29,7 @@ const VIOLENT_ANGULAR: f32 = 30.0;
 pub enum Fault {
     NotFinite,
     Quarantined,
-    /// Rise of energy in the step, as a share of the present energy.
+    /// Rise of energy in the step, as a share of the current energy.
     EnergyGain(f64),
     Restore,
     Panic(String),
@@ -48,14 +48,14 @@ pub struct Failure {
     pub fault: Fault,
 }
 
-/// Figures of a run without a fault.
+/// Measurements of a run without a fault.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Figures {
-    /// Largest gap of an exact joint while all joints formed trees and nothing was violent, metres.
+    /// Largest gap of an exact joint while all joints formed trees and the world was not violent, metres.
     pub gap: f32,
-    /// Largest rise of energy, as [`Fault::EnergyGain`].
+    /// Largest rise of energy, like that of [`Fault::EnergyGain`].
     pub gain: f64,
-    /// Steps whose energy was checked.
+    /// Number of steps whose energy was checked.
     pub watched: u32,
 }
 
@@ -100,7 +100,7 @@ impl<'a> Run<'a> {
         (w.into_bytes(), self.ids.clone())
     }
 
-    /// In a new world, so that only saved state is kept.
+    /// Loads a saved run into a new world, so that only saved state is kept.
     fn restored(plan: &'a WorldPlan, (bytes, ids): (Vec<u8>, Ids)) -> Self {
         let mut world = World::new(WorldDef::default());
         world.load(&mut Reader::new(&bytes)).expect("a saved world is valid");
@@ -115,7 +115,7 @@ impl<'a> Run<'a> {
         self.ids.joints[joint].filter(|&id| self.world.contains_joint(id))
     }
 
-    /// Applies the plan's changes of a step; returns whether there was one.
+    /// Applies the plan's changes of a step; returns true if there was one.
     fn change(&mut self, step: u32) -> bool {
         let plan = self.plan;
         let mut changed = false;
@@ -134,7 +134,7 @@ impl<'a> Run<'a> {
         changed
     }
 
-    /// Returns `None` if there is nothing left to change.
+    /// Applies a change; returns `None` if its object no longer exists.
     fn apply(&mut self, change: &Change) -> Option<()> {
         match change {
             Change::RemoveJoint(j) => self.world.remove_joint(self.joint(*j)?),
@@ -205,7 +205,7 @@ impl<'a> Run<'a> {
             .any(|v| v.linear.length() > VIOLENT_LINEAR || v.angular.length() > VIOLENT_ANGULAR)
     }
 
-    /// True if no joint closes a loop; all bodies that are not dynamic are one ground.
+    /// True if no joint closes a loop; all bodies that are not dynamic count as one ground.
     fn is_forest(&self) -> bool {
         let bodies: Vec<BodyId> = self.world.body_ids().collect();
         let node = |id: BodyId| match self.world.kind(id) {
@@ -236,12 +236,12 @@ impl<'a> Run<'a> {
 #[derive(Default)]
 struct Meter {
     before: Energies,
-    /// Steps for which changes may still release energy.
+    /// Number of steps in which changes may still release energy.
     settling: u32,
 }
 
 impl Meter {
-    /// Returns the rise of energy in the last step, as a share, if the world itself caused it.
+    /// Returns the rise of energy in the last step as a share, if the world itself caused it.
     fn rise(&mut self, run: &Run<'_>, changed: bool) -> Option<f64> {
         let now = energies(&run.world);
         let before = core::mem::replace(&mut self.before, now);

@@ -5,10 +5,10 @@ use super::run::{Failure, Fault, check};
 use sinew_math::Vec3;
 use sinew_physics::*;
 
-/// Limit on the number of runs.
+/// Largest number of runs.
 const ATTEMPTS: usize = 1000;
 
-/// Returns a minimal plan that fails as the given one does, and its fault.
+/// Returns a minimal plan that fails like the given one, and its fault.
 pub fn shrunk(plan: &WorldPlan, failure: &Failure, steps: u32) -> (WorldPlan, Failure) {
     let mut least = (plan.clone(), failure.clone());
     let (mut steps, mut left) = (steps, ATTEMPTS);
@@ -27,7 +27,7 @@ pub fn shrunk(plan: &WorldPlan, failure: &Failure, steps: u32) -> (WorldPlan, Fa
     }
 }
 
-/// Returns all plans that are one change smaller.
+/// Returns all plans that are smaller by one change.
 fn candidates(plan: &WorldPlan) -> impl Iterator<Item = WorldPlan> {
     let bodies = (0..plan.bodies.len()).map(|i| plan.without_body(i));
     let joints = (0..plan.joints.len()).map(|j| plan.without_joint(j));
@@ -53,7 +53,7 @@ fn candidates(plan: &WorldPlan) -> impl Iterator<Item = WorldPlan> {
     bodies.chain(joints).chain(changes).chain(whole).chain(features).chain(parts)
 }
 
-/// Removes something from a joint or a body; returns false if it is not there.
+/// Function that removes something from a joint or a body; returns false if it has nothing to remove.
 type PartCut = fn(&mut WorldPlan, usize) -> bool;
 
 const JOINT_CUTS: &[PartCut] = &[
@@ -113,7 +113,7 @@ fn without_limits(kind: JointKind) -> JointKind {
     }
 }
 
-/// Returns the plan as Rust, without paths of enum variants.
+/// Returns the plan as Rust code, without paths of enum variants.
 pub fn as_code(plan: &WorldPlan) -> String {
     let mut code = format!("{plan:?}").replace("Vec3(", "Vec3::new(").replace("inf", "f32::INFINITY");
     for list in ["bodies: [", "joints: [", "changes: ["] {
@@ -125,7 +125,7 @@ pub fn as_code(plan: &WorldPlan) -> String {
     code
 }
 
-/// Returns the features of a plan in a line.
+/// Returns the features of a plan in one line.
 pub fn features(plan: &WorldPlan) -> String {
     let mut found = Vec::new();
     let mut note = |there: bool, name: &str| {

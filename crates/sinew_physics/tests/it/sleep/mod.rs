@@ -1,4 +1,4 @@
-//! Sleep: which bodies fall asleep, and what wakes them.
+//! Sleep: the bodies that fall asleep, and the causes that wake them.
 
 mod particles;
 mod rest;
@@ -8,7 +8,7 @@ use crate::build::{box_body, floor};
 use sinew_math::Vec3;
 use sinew_physics::*;
 
-/// Steps within which everything in these worlds comes to rest.
+/// Steps within which all bodies in these worlds come to rest.
 const ENOUGH: usize = 300;
 
 fn run(world: &mut World, steps: usize) {
@@ -21,7 +21,7 @@ fn all_asleep(world: &World) -> bool {
     world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic).all(|id| !world.is_awake(id))
 }
 
-/// Steps until everything sleeps.
+/// Returns the number of steps until all bodies sleep.
 fn steps_to_sleep(world: &mut World) -> usize {
     for step in 0..ENOUGH {
         if all_asleep(world) {
@@ -32,7 +32,7 @@ fn steps_to_sleep(world: &mut World) -> usize {
     panic!("it comes to rest");
 }
 
-/// A crate asleep on a floor.
+/// A world with a crate asleep on a floor.
 struct Nap {
     world: World,
     floor: BodyId,
@@ -47,7 +47,7 @@ fn nap() -> Nap {
     Nap { world, floor, sleeper }
 }
 
-/// A kinematic slab, 0.1 m thick.
+/// Returns a kinematic slab, 0.1 m thick.
 fn slab(half: f32, at: Vec3) -> BodyDef {
     BodyDef { kind: BodyKind::Kinematic, ..box_body(Vec3::new(half, 0.05, half), at) }
 }

@@ -18,7 +18,7 @@ fn grains(height: f32) -> GroupDef {
 
 #[test]
 fn fast_particles_wake_bodies() {
-    // From 1 m above the crate, 0.45 s.
+    // A fall of 1 m to the crate takes 0.45 s.
     let Nap { mut world, sleeper, .. } = nap();
     world.add_particles(&grains(1.41));
     run(&mut world, 24);
@@ -27,7 +27,7 @@ fn fast_particles_wake_bodies() {
     assert!(world.is_awake(sleeper));
 }
 
-/// Bodies wake by contact, not by overlapping bounds: a world loaded from a snapshot has other bounds.
+/// Bodies wake by contact, not by overlapping bounds, because a world loaded from a snapshot has other bounds.
 #[test]
 fn overlapping_bounds_do_not_wake_a_body() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -35,7 +35,7 @@ fn overlapping_bounds_do_not_wake_a_body() {
     let plank = BodyDef::dynamic(Shape::cuboid(Vec3::new(3.0, 0.05, 0.5))).turned(slope);
     let sleeper = world.add_body(&plank);
     world.put_to_sleep(sleeper);
-    // 1.4 m above the plank, in its bounds, toward it at 1 m/s.
+    // Grains 1.4 m from the plank, within its bounds, move toward it at 1 m/s.
     let away = slope * Vec3::Y;
     let mut flying = grains(0.0);
     for grain in &mut flying.particles {
@@ -73,7 +73,7 @@ fn passing_particles_wake_nothing() {
     assert!(!world.is_awake(sleeper));
 }
 
-/// Returns a cloth that hangs by two corners, asleep.
+/// Returns a world with a cloth that hangs by two corners, asleep.
 fn curtain() -> (World, GroupId) {
     let mut cloth = ClothDef {
         corner: Vec3::new(-0.5, 2.0, 0.0),
@@ -102,7 +102,7 @@ fn curtain() -> (World, GroupId) {
     (world, id)
 }
 
-/// Checks that `act` on a sleeping curtain wakes it at once or within `steps` steps.
+/// Checks that `act` on a sleeping curtain wakes it immediately or within `steps` steps.
 fn wakes_curtain(what: &str, steps: usize, act: impl FnOnce(&mut World, GroupId)) {
     let (mut world, id) = curtain();
     act(&mut world, id);
@@ -167,7 +167,7 @@ fn contacts_wake_particles() {
     assert!(!world.particles(id).is_awake(), "what flies past wakes nobody");
 }
 
-/// Returns a box that hangs on a rope, both asleep.
+/// Returns a world with a box that hangs on a rope, both asleep.
 fn hung() -> (World, GroupId, BodyId) {
     let mut world = World::new(WorldDef::default());
     let calm =
@@ -246,7 +246,7 @@ fn a_body_under_a_swinging_rope_sleeps() {
     run(&mut world, 40);
     let group = world.particles(rope);
     let fastest = group.velocities().iter().fold(0.0, |most, v| max(most, v.length()));
-    // Particles may sleep below 0.001 m/s.
+    // Particles may fall asleep below 0.001 m/s.
     assert!(group.is_awake() && fastest > 0.003, "the rope still swings on it, at {fastest} m/s");
     assert!(!world.is_awake(body), "the box sleeps under it");
     run(&mut world, 260);
@@ -272,7 +272,7 @@ fn net(damping_ratio: f32) -> GroupDef {
     net.build().group
 }
 
-/// A ball sleeps on a net that still moves.
+/// Returns a world with a ball asleep on a net that still moves.
 fn netted() -> (World, GroupId, BodyId) {
     let mut world = World::new(WorldDef::default());
     let mut net = net(1.0);

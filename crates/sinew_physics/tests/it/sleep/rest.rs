@@ -1,11 +1,11 @@
-//! Which bodies fall asleep, when, and with which others.
+//! Conditions under which bodies fall asleep, and the bodies that fall asleep together.
 
 use super::{Nap, all_asleep, linear, nap, run, slab, steps_to_sleep};
 use crate::build::{ball, box_body, floor, half_space_tilted, sphere_body};
 use sinew_math::{ReadError, Reader, Vec3, Writer, trig};
 use sinew_physics::*;
 
-/// A second.
+/// Number of steps per second.
 const SECOND: usize = 60;
 
 fn weightless() -> World {
@@ -30,7 +30,7 @@ fn bodies_still_for_half_a_second_sleep() {
 
 #[test]
 fn creeping_bodies_do_not_sleep() {
-    // In half a second 7 mm, or 0.03 rad.
+    // In half a second the body moves by 7 mm, or rotates by 0.03 rad.
     for velocity in [linear(Vec3::X * 0.014), Velocity { angular: Vec3::Y * 0.06, ..Velocity::default() }] {
         let (mut world, id) = adrift(velocity);
         run(&mut world, 10 * SECOND);
@@ -55,7 +55,8 @@ fn bodies_creeping_down_a_slope_do_not_sleep() {
     assert!(world.is_awake(id) && (speed - expected).abs() < 0.03 * expected, "{speed} m/s, not {expected}");
 }
 
-/// At the top of its way up a slope a ball is slow for seconds and still rolls back; a crate held by friction there sleeps.
+/// At the highest point on a slope a ball is slow for seconds and still rolls back; a crate that friction holds there
+/// falls asleep.
 #[test]
 fn a_ball_turning_back_on_a_slope_does_not_sleep() {
     for k in 0..15 {
@@ -77,7 +78,7 @@ fn a_ball_turning_back_on_a_slope_does_not_sleep() {
             &box_body(Vec3::splat(0.1), up * 0.1 - Vec3::Z)
                 .turned(sinew_math::Rotation::from_axis_angle(Vec3::Z, angle)),
         );
-        // Up and down again: twice v / (5/7 g sin θ).
+        // Time up and down: twice v / (5/7 g sin θ).
         let steps = 2.0 * speed / (5.0 / 7.0 * 9.81 * trig::sin(angle)) * 60.0;
         for step in 0..steps as u32 {
             world.step();
@@ -103,7 +104,7 @@ fn slowly_pushed_bodies_do_not_sleep() {
     assert!(steps_to_sleep(&mut world) <= 40);
 }
 
-/// Shakes a body back and forth by `amplitude` metres, ten times a second.
+/// Object that shakes a body back and forth by `amplitude` metres, ten times per second.
 struct Shaker {
     body: BodyId,
     amplitude: f32,
@@ -131,7 +132,7 @@ impl PhysicsObject for Shaker {
 #[test]
 fn trembling_bodies_may_sleep() {
     for (amplitude, sleeps) in [(0.0005, true), (0.005, false)] {
-        // It swings about its start: x = −a cos ωt.
+        // The body swings about its start: x = −a cos ωt.
         let (mut world, body) = adrift(Velocity::default());
         world.add_object(Box::new(Shaker { body, amplitude }));
         let mut slept = false;

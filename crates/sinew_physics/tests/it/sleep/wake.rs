@@ -1,4 +1,4 @@
-//! Waking: what wakes a sleeping body, and what does not.
+//! Causes that wake a sleeping body, and changes that do not.
 
 use super::{ENOUGH, Nap, all_asleep, linear, nap, run, slab, steps_to_sleep};
 use crate::build::{ball, box_body, joint, sphere_body};
@@ -6,7 +6,7 @@ use sinew_math::{Range, Reader, Transform, Vec3, Writer};
 use sinew_physics::ray::Ray;
 use sinew_physics::*;
 
-/// Checks that `act` wakes a crate that sleeps on a floor at once, or within the next step.
+/// Checks that `act` wakes a crate that sleeps on a floor, immediately or within the next step.
 fn wakes(what: &str, act: impl FnOnce(&mut Nap)) {
     let mut nap = nap();
     act(&mut nap);
@@ -14,7 +14,7 @@ fn wakes(what: &str, act: impl FnOnce(&mut Nap)) {
     assert!(nap.world.is_awake(nap.sleeper), "{what} wakes");
 }
 
-/// Checks that `act` leaves a crate that sleeps on a floor asleep, in its place.
+/// Checks that after `act` a crate that sleeps on a floor still sleeps at the same place.
 fn leaves_asleep(what: &str, act: impl FnOnce(&mut Nap)) {
     let mut nap = nap();
     let at = nap.world.transform(nap.sleeper);
@@ -98,7 +98,7 @@ fn an_awake_body_wakes_bodies_on_contact() {
             woke = Some((step, world.transform(ball).translation.y));
         }
     }
-    // It falls 1 m, which takes 27.1 steps.
+    // A fall of 1 m takes 27.1 steps.
     let (step, height) = woke.expect("it was hit");
     assert!((25..=28).contains(&step) && (height - 0.5).abs() < 0.1, "step {step}, at {height} m");
 }
@@ -131,7 +131,7 @@ fn a_moving_kinematic_body_wakes_its_contacts() {
     assert!(ahead > 0.295, "it is pushed along, {ahead} m ahead");
 }
 
-/// Returns a ball that hangs asleep from a kinematic hook by a hinge about z.
+/// Returns a world with a ball that hangs asleep on a kinematic hook, by a hinge about z.
 fn hanging() -> (World, BodyId, BodyId, JointId) {
     let mut world = World::new(WorldDef::default());
     let hook = world.add_body(&slab(0.05, Vec3::ZERO));

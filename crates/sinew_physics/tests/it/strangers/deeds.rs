@@ -1,10 +1,10 @@
-//! Calls that a game makes between two steps, drawn from the world itself, so that equal worlds get equal calls.
+//! Calls of a game between two steps, drawn from the world itself, so that equal worlds get equal calls.
 
 use super::populate;
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3};
 use sinew_physics::*;
 
-/// Share of the steps with a call before them.
+/// Share of the steps that a call precedes.
 const BUSY: f32 = 0.25;
 
 fn never_twins(p: &PairSide, q: &PairSide) -> bool {
@@ -15,7 +15,7 @@ fn slippery(_: &FoundContact<'_>, material: ContactMaterial) -> Option<ContactMa
     Some(ContactMaterial { friction: 0.05, ..material })
 }
 
-/// Functions that snapshots refer to.
+/// Registers the functions that snapshots refer to.
 pub fn register(world: &mut World) {
     world.register_pair_function(1, never_twins);
     world.register_modifier(1, slippery);
@@ -26,7 +26,7 @@ fn any<T: Copy>(random: &mut Random, all: impl Iterator<Item = T>) -> Option<T> 
     (!all.is_empty()).then(|| all[random.index(all.len())])
 }
 
-/// Returns a body that moves or may move, but not the ground.
+/// Returns a random body that is not static.
 fn loose(world: &World, random: &mut Random) -> Option<BodyId> {
     any(random, world.body_ids().filter(|&id| world.kind(id) != BodyKind::Static))
 }
@@ -35,7 +35,7 @@ fn dynamic(world: &World, random: &mut Random) -> Option<BodyId> {
     any(random, world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic))
 }
 
-/// Returns a body and whether a group goes with it.
+/// True if particles are attached to a body.
 fn is_worn(world: &World, id: BodyId) -> bool {
     let attached = |group: &particles::ParticleGroup| {
         group.attachments().iter().any(
@@ -45,7 +45,7 @@ fn is_worn(world: &World, id: BodyId) -> bool {
     world.group_ids().any(|group| attached(world.particles(group)))
 }
 
-/// Returns a joint of any kind between two bodies in their current poses.
+/// Returns a random kind of joint between two bodies in their current poses.
 pub fn joint(world: &World, random: &mut Random, a: BodyId, b: BodyId, at: Vec3) -> JointDef {
     let cone = SwingTwistLimit {
         swing_y: Range::new(-0.5, 0.5),
@@ -103,7 +103,7 @@ pub fn act(world: &mut World, random: &mut Random) {
     };
 }
 
-/// Pushes, places, leads or wakes a body.
+/// Pushes, moves, guides or wakes a body.
 fn push(world: &mut World, random: &mut Random) -> Option<()> {
     let id = loose(world, random)?;
     let speed = random.range(0.0, 8.0);

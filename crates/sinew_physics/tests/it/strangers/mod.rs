@@ -1,8 +1,9 @@
-//! A snapshot loaded into an unrelated world has the same future, also on another number of
-//! threads, for any contents and any calls.
+//! A snapshot loaded into an unrelated world has the same future, also with another number of threads, for any contents
+//! and any calls.
 //!
-//! Worlds of 10 to 300 bodies (500 in a long run) rest, sleep, are pushed, joined, sensed and changed. Each is saved at random moments and continues
-//! beside the worlds that loaded it, which get the same calls. Snapshots and events are equal after each step.
+//! Worlds of 10 to 300 bodies (500 in a long run) rest, sleep, and are pushed, joined, sensed and changed. Each is
+//! saved at random steps and continues next to the worlds that loaded its snapshots, which get the same calls.
+//! Snapshots and events are equal after each step.
 //!
 //! A few worlds, or 300 with `SINEW_FULL` set. `SINEW_WORLDS=17..18 cargo test --release -p sinew_physics --test it -- --nocapture strangers`
 //! runs the seeds of the range and prints progress. `cargo xtask lives --of strangers` goes on from seed to seed, 600 steps each.
@@ -19,16 +20,16 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Steps of each world, and of a long run.
+/// Number of steps of each world, and of a world of a long run.
 const STEPS: usize = 300;
 const MORE_STEPS: usize = 600;
-/// Largest number of bodies of each, and of a long run.
+/// Largest number of bodies of each world, and of a world of a long run.
 const MOST: usize = 300;
 const MORE: usize = 500;
-/// Number of saves of each.
+/// Number of saves of each world.
 const MOMENTS: usize = 5;
 
-/// A world that continues from a snapshot of another.
+/// A world that continues from a snapshot of another world.
 struct Stranger {
     world: World,
     born: usize,
@@ -49,7 +50,7 @@ impl Stranger {
     }
 }
 
-/// Random numbers for the calls before a step.
+/// Returns the random numbers for the calls before a step.
 fn deeds_of(seed: u64, step: usize) -> Random {
     Random::new(seed.wrapping_mul(1_000_003).wrapping_add(step as u64))
 }
@@ -63,7 +64,7 @@ fn moved_on(world: &mut World, seed: u64, step: usize, threads: Option<&Threads>
     world.events().clone()
 }
 
-/// Runs the world of a seed beside those that load it.
+/// Runs the world of a seed next to the worlds that load its snapshots.
 fn meet_strangers(seed: u64, steps: usize, most: usize) {
     let mut random = Random::new(seed);
     let mut world = populate::world(&mut random, most);
@@ -103,7 +104,8 @@ fn unrelated_worlds_have_the_same_future() {
     }
 }
 
-/// Runs worlds from the first seed of `SINEW_LIVES` on for some time, on all cores, and adds a line to the file of `SINEW_LOG`.
+/// Runs worlds for some time on all cores, starting at the first seed of `SINEW_LIVES`, and adds a line to the file
+/// `SINEW_LOG`.
 fn for_minutes(minutes: f32) {
     let first = std::env::var("SINEW_LIVES").ok().and_then(|seeds| seeds.split_once("..")?.0.parse().ok());
     let first: u64 = first.expect("SINEW_LIVES begins with a seed");

@@ -7,7 +7,7 @@ use sinew_physics::particles::{BlobDef, ClothDef, RopeDef, StrandDef};
 use sinew_physics::*;
 use std::sync::Arc;
 
-/// A solid, at most `size` metres from its middle.
+/// Returns a random solid that extends at most `size` metres from its centre.
 pub fn solid(random: &mut Random, size: f32) -> Shape {
     match random.index(8) {
         0..3 => Shape::cuboid(Vec3::new(1.0, random.range(0.3, 1.0), random.range(0.3, 1.0)) * (0.6 * size)),
@@ -68,7 +68,7 @@ pub fn body(random: &mut Random, at: Vec3) -> BodyDef {
     def
 }
 
-/// Adds a plane, abutting boxes, a mesh or a height field.
+/// Adds a plane, abutting boxes, a mesh or a height field as ground.
 fn ground(world: &mut World, random: &mut Random, width: f32) {
     let cells = (width.ceil() as i32).clamp(2, 12);
     match random.index(4) {
@@ -98,12 +98,12 @@ fn ground(world: &mut World, random: &mut Random, width: f32) {
     }
 }
 
-/// Returns a place in a pile of this width, metres.
+/// Returns a position in a pile of this width, metres.
 pub fn place(random: &mut Random, width: f32, height: f32) -> Vec3 {
     Vec3::new(random.range(-width, width), random.range(0.3, height), random.range(-width, width))
 }
 
-/// Adds boxes in rows and layers, which soon sleep.
+/// Adds boxes in rows and layers, which soon fall asleep.
 fn wall(world: &mut World, random: &mut Random, count: usize) {
     let (rows, corner) = (1 + random.index(4), random.in_cube() * Vec3::new(2.0, 0.0, 2.0));
     for i in 0..count {
@@ -113,7 +113,7 @@ fn wall(world: &mut World, random: &mut Random, count: usize) {
     }
 }
 
-/// Adds links that hang on each other, on the first body, or on nothing.
+/// Adds links that hang on each other, and on the first body or on nothing.
 fn chain(world: &mut World, random: &mut Random, ground: BodyId) {
     let start = place(random, 3.0, 4.0);
     let mut last = (random.unit() < 0.6).then_some(ground);

@@ -52,7 +52,7 @@ fn add(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     parts::is_valid(&def).then(|| _ = a.add_body(&def))
 }
 
-/// Adds boxes in layers, which soon sleep.
+/// Adds boxes in layers, which soon fall asleep.
 fn wall(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let (count, corner) = (4 + n.index(9), Vec3::new(n.between(-2.0, 2.0), 0.0, n.between(-2.0, 2.0)));
     for i in 0..count {
@@ -69,7 +69,7 @@ fn remove(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// Removes one and adds another, which takes its index.
+/// Removes a body and adds another, which gets its index.
 fn replace(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.removable(n)?;
     let at = if n.chance(0.5) { a.world.transform(id).translation } else { n.place() };
@@ -78,7 +78,7 @@ fn replace(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     parts::is_valid(&def).then(|| _ = a.add_body(&def))
 }
 
-/// Removes everything near a place.
+/// Removes all bodies near a point.
 fn clear_place(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let at = n.place();
     for (_, id) in a.bodies.clone() {
@@ -104,7 +104,7 @@ fn teleport(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// Returns a small step aside, or none.
+/// Moves a body by a small displacement, or by none.
 fn nudge(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.any_body(n)?;
     let pose = a.world.transform(id);
@@ -127,7 +127,7 @@ fn stop(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// A velocity within the range of `f32` takes it there.
+/// True if a velocity within the range of `f32` moves a body to a pose in this time.
 fn is_near(a: &Actor, id: BodyId, to: &Transform, seconds: f32) -> bool {
     let way = to.translation - a.world.transform(id).translation;
     (way / seconds).is_finite() && way.length() / seconds < 1e30
@@ -344,7 +344,7 @@ fn set_pair_function(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// It cannot be removed until it is disowned.
+/// Assigns a body to an owner; it cannot be removed until it is disowned.
 fn own(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.removable(n)?;
     a.note_owned("own_bodies", &id);

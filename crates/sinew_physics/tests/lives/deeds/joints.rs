@@ -68,7 +68,7 @@ fn motor(n: &mut Numbers) -> Motor {
     }
 }
 
-/// Returns the rest of a definition, with any feature of joints.
+/// Returns a joint definition with random features added.
 fn furnished(n: &mut Numbers, mut def: JointDef) -> JointDef {
     if n.chance(0.3) {
         def.motor = Some(motor(n));
@@ -98,7 +98,7 @@ fn furnished(n: &mut Numbers, mut def: JointDef) -> JointDef {
     def
 }
 
-/// Returns two bodies near each other, one of them dynamic, and a place between them.
+/// Returns two bodies near each other, at least one of them dynamic, and a point between them.
 fn ends(a: &Actor, n: &mut Numbers) -> Option<(BodyId, BodyId, Vec3)> {
     let p = a.dynamic(n)?;
     let q = if n.chance(0.15) { a.floor } else { a.any_body(n)? };
@@ -147,7 +147,7 @@ fn add_by_name(a: &mut Actor, n: &mut Numbers) -> Option<()> {
             return Some(());
         }
     };
-    // The program computes it from its numbers.
+    // The program computes the definition from its numbers.
     if let Some(lines) = &mut a.lines {
         lines.pop();
     }
@@ -167,7 +167,7 @@ fn by_axis_locks(a: &mut Actor, n: &mut Numbers, p: BodyId, q: BodyId) -> Option
     Some(())
 }
 
-/// Adds links that hang on each other and on something.
+/// Adds links that hang on each other and on another body.
 fn chain(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let start = n.place() + Vec3::Y;
     let way = n.direction() * 0.3;
@@ -187,7 +187,7 @@ fn chain(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// A hand pulls a body.
+/// Connects a body to a kinematic or static one by a joint that pulls it.
 fn drag(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let body = a.dynamic(n)?;
     let hand = a.body(n, |world, id| world.kind(id) != BodyKind::Dynamic)?;

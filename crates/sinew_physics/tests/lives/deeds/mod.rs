@@ -1,4 +1,4 @@
-//! Deeds: calls of a game between two steps, each drawn from a few numbers and the present objects.
+//! Deeds: calls of a game between two steps, each drawn from a few numbers and the current objects.
 
 mod bodies;
 mod joints;
@@ -11,7 +11,7 @@ use crate::actor::Actor;
 use crate::extension;
 use crate::numbers::Numbers;
 
-/// Operation on a world, drawn at random; does nothing if the world has no object that it applies to.
+/// Operation on a world, drawn at random; has no effect if the world has no object to which it applies.
 pub struct Deed {
     pub name: &'static str,
     /// Relative frequency.
@@ -29,12 +29,12 @@ impl Deed {
     }
 }
 
-/// All deeds.
+/// Returns all deeds.
 pub fn all() -> Vec<&'static Deed> {
     let of_the_world = [bodies::ALL, joints::ALL, others::ALL, questions::ALL, time::ALL];
     of_the_world.iter().chain(extension::DEEDS).copied().flatten().collect()
 }
 
-/// Deeds that create a world to live in.
+/// Names of the deeds that create the initial world.
 pub const MAKERS: &[&str] =
     &["add_body", "add_body", "wall", "add_joint", "chain", "add_particles", "add_mover", "add_field"];

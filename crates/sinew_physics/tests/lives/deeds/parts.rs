@@ -1,11 +1,11 @@
-//! Definitions that deeds create objects from.
+//! Definitions from which deeds create objects.
 
 use crate::functions::NUMBER;
 use crate::numbers::{Numbers, Temper};
 use sinew_math::{Transform, Vec3};
 use sinew_physics::*;
 
-/// Returns a solid of about the size of a game's objects.
+/// Returns a solid with sizes between `lo` and `hi`, metres.
 pub fn shape(n: &mut Numbers, lo: f32, hi: f32) -> Shape {
     match n.index(9) {
         0..3 => Shape::cuboid(Vec3::new(n.between(lo, hi), n.between(lo, hi), n.between(lo, hi))),
@@ -17,7 +17,7 @@ pub fn shape(n: &mut Numbers, lo: f32, hi: f32) -> Shape {
     }
 }
 
-/// A hull of six corners.
+/// Returns a hull of six corners.
 fn wedge(size: f32) -> Shape {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)];
     let points: Vec<Vec3> =
@@ -148,7 +148,7 @@ pub fn is_valid(def: &BodyDef) -> bool {
     def.shapes.iter().all(|shape| shape.check().is_ok())
 }
 
-/// True if the shapes other than one have mass.
+/// True if a shape other than `without` has mass.
 pub fn weighs(world: &World, id: BodyId, without: Option<u32>) -> bool {
     world.shape_ids(id).filter(|shape| Some(shape.shape) != without).any(|shape| {
         let def = world.shape_def(shape);

@@ -1,4 +1,4 @@
-//! Queries, which change nothing and have equal answers in equal worlds.
+//! Queries, which change nothing and give equal answers in equal worlds.
 
 use super::{Deed, others, parts};
 use crate::actor::{Actor, say};
@@ -105,7 +105,7 @@ fn ask_world(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     ask_all!(a.object_ids());
     ask_all!(a.bodies());
     ask_all!(a.contacts());
-    // Snapshots do not hold the changes since the step.
+    // Snapshots do not contain the changes since the step.
     a.count("bodies_moved");
     _ = a.world.bodies_moved().count();
     Some(())
@@ -170,7 +170,7 @@ fn query(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// Lines in a number.
+/// Renderer that sums all lines in one vector.
 struct Sum(Vec3);
 
 impl DebugDraw for Sum {

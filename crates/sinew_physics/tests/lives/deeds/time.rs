@@ -1,4 +1,4 @@
-//! Deeds with time and state: frames of any length, snapshots, copies.
+//! Deeds for time and state: frames of any length, snapshots, copies.
 
 use super::Deed;
 use crate::actor::{Actor, Twin};
@@ -16,7 +16,7 @@ pub const ALL: &[Deed] = &[
     Deed::new("mark_and_reset", 1, mark_and_reset),
 ];
 
-/// At most one step.
+/// Returns a frame time of at most one step.
 fn frame(a: &Actor, n: &mut Numbers) -> Duration {
     let length = a.world.def().step_nanoseconds;
     Duration::from_nanos(n.one_of(&[0, length / 2, length]))
@@ -40,7 +40,7 @@ fn update_with(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// The world loads its own snapshot.
+/// Makes the world load its own snapshot.
 fn reload(a: &mut Actor, _: &mut Numbers) -> Option<()> {
     crate::actor::reload(&mut a.world);
     ["save", "load", "save_shapes", "load_shapes"].into_iter().for_each(|name| a.count(name));
@@ -61,7 +61,7 @@ fn clone(a: &mut Actor, _: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// Steps ahead, and goes back.
+/// Marks the state, takes some steps, and resets the world.
 fn mark_and_reset(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let steps = 1 + n.index(8);
     ["mark", "reset", "hash"].into_iter().for_each(|name| a.count(name));
