@@ -30,7 +30,7 @@ const PUSH_BEFORE_EDGE: f32 = 0.45;
 const PUSH_AFTER: f32 = 2.5;
 /// Speed that the push gives to the mass of the whole character, m/s: a shove with both hands.
 const SHOVE: f32 = 1.45;
-/// Times after which it begins again: on its feet, and down without getting up, seconds.
+/// Times after which the run begins again, seconds: with the character on its feet, and down without getting up.
 const WALKS_ON: f32 = 4.0;
 const STAYS_DOWN: f32 = 12.0;
 /// Half of the box that a camera keeps in the picture, in heights of the character: enough for a lying body and for
@@ -94,7 +94,7 @@ struct Staged {
     start: Transform,
     colors: Vec<(BodyId, [f32; 3])>,
     character: Character,
-    /// Number of steps since it last stood up or fell.
+    /// Number of steps since the character last stood up or fell.
     since: u32,
     /// Part of the run; `None` until the push.
     was: Option<Part>,
@@ -134,7 +134,7 @@ impl Staged {
         }
     }
 
-    /// The push from behind.
+    /// Pushes the character from behind.
     fn shove(&mut self, world: &mut World) {
         let chest = self.def.body_named("chest").unwrap_or(0);
         let ahead = self.character.world_from_character().rotation * Vec3::Z;

@@ -8,7 +8,7 @@ use sinew::math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, cla
 use sinew::physics::{BodyDef, JointKind, Material, Shape, ShapeDef, Sleeping};
 use sinew::ragdoll::{BuildOptions, RagdollDef, RagdollJointDef, build};
 
-/// Friction of everything in these scenes: that of flesh.
+/// Friction coefficient of all bodies in these scenes: the one of flesh.
 const FRICTION: f32 = 0.7;
 
 /// Initial gap between a figure and the ground, metres.
@@ -59,7 +59,7 @@ enum Limits {
     Common,
 }
 
-/// A figure lies on its back where it was placed, and does not sleep.
+/// A figure that lies on its back; sleeping is off.
 pub fn humanoid_lying() -> Blueprint {
     let mut scene = Blueprint::new("humanoid_lying", Sleeping::Off, 600);
     scene.body(made_of_flesh(floor()));
@@ -150,7 +150,7 @@ fn figure(scene: &mut Blueprint, def: &RagdollDef, stand: Transform, limits: Lim
     scene.apart.extend(def.disabled_pairs.iter().map(|&(a, b)| (first + a, first + b)));
 }
 
-/// The joint in its start pose, with the requested limits.
+/// Returns the joint's kind with its start pose as zero, with the requested limits.
 fn kind(joint: &RagdollJointDef, limits: Limits) -> JointKind {
     let start = start_angle(joint.kind);
     let from_start = |range: Range| Range::new(range.lo - start, range.hi - start);

@@ -50,9 +50,9 @@ pub struct Scene {
     pub chapter: Chapter,
     /// Name of the scene for `sinew run`.
     pub name: &'static str,
-    /// Description of one line for people.
+    /// Description for people, one line.
     pub about: &'static str,
-    /// Steps of 1/60 s after which its expectations hold.
+    /// Steps of 1/60 s after which the scene's expectations hold.
     pub steps: u32,
     pub(crate) settings: &'static [Setting],
     pub(crate) build: fn(&Setup<'_>) -> Instance,

@@ -260,18 +260,24 @@ impl Setup<'_> {
         self.settings.get(key) as usize
     }
 
+    /// Returns the MJCF model of the settings.
+    ///
     /// # Panics
     /// If the model is not set: see [`Settings::check`].
     pub fn model(&self) -> &MjcfModel {
         self.settings.model.as_ref().expect("the model is set")
     }
 
+    /// Returns the level of the settings.
+    ///
     /// # Panics
     /// If the level is not set: see [`Settings::check`].
     pub fn level(&self) -> &TriangleMesh {
         self.settings.level.as_ref().expect("the level is set")
     }
 
+    /// Returns the captured motion of the settings.
+    ///
     /// # Panics
     /// If the motion is not set: see [`Settings::check`].
     pub fn motion(&self) -> &Performance {

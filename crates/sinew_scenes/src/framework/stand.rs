@@ -32,7 +32,7 @@ pub(crate) struct Stand {
     /// Free fall of a body, to verify gravity.
     flight: Flight,
     bars: Bars,
-    /// Bounds around all of them.
+    /// Bounds around all standing bodies.
     bounds: Aabb,
     asleep: Option<f32>,
 }

@@ -10,7 +10,7 @@ use sinew::physics::{BodyId, World};
 pub enum Difference {
     /// The recordings have different scenes or settings.
     Scene,
-    /// The states differ after that many steps, and were equal before.
+    /// The states differ after `step` steps, and were equal before.
     State {
         /// Number of steps taken.
         step: u64,

@@ -22,7 +22,7 @@ const SPEED: f32 = 1.5;
 
 /// Places that a walker can reach, each with the one before it.
 pub struct Room {
-    /// Positions of its feet, metres.
+    /// Positions of the walker's feet, metres.
     places: Vec<Vec3>,
     before: Vec<usize>,
 }

@@ -119,7 +119,7 @@ struct Masonry {
 
 struct Weight {
     newtons: f32,
-    /// Position of its centre along x, metres.
+    /// Position of the weight's centre along x, metres.
     x: f32,
 }
 
@@ -134,8 +134,8 @@ impl Masonry {
         Self { joints, weights }
     }
 
-    /// Farthest that the line of thrust crosses a joint from its middle, as a share of the way to the joint's end. The line is
-    /// known from the first pier. At 1 the joint opens like a hinge.
+    /// Largest distance from the middle of a joint at which the line of thrust crosses the joint, as a share of half the
+    /// joint. The line follows from the reaction of the first pier. At 1 the joint opens like a hinge.
     fn line_of_thrust(&self, pier: Reaction) -> f32 {
         let mut force = pier.force;
         // Moment about the world's z axis.
