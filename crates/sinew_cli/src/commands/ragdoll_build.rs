@@ -116,7 +116,7 @@ impl RagdollBuild {
         Ok(report.finish())
     }
 
-    /// Random falls, with a progress bar.
+    /// Simulates random falls, with a progress bar.
     fn gated(&self, def: &RagdollDef, spawns: u32) -> GateReport {
         let threads = Threads::new(usize::from(self.threads));
         let progress = Progress::new("random falls", spawns as usize);

@@ -76,7 +76,7 @@ fn missing_head_is_restored_from_the_rig() {
     assert!(mended.bodies.iter().any(|body| body.role == "head"));
 }
 
-/// No false alarms: a build from a good rig has no errors.
+/// A build from a good rig has no errors.
 #[needs_data]
 #[test]
 fn foreign_rigs_have_no_errors() {
@@ -126,7 +126,7 @@ fn foreign_models_are_examined() {
     assert!(codes(&object).contains(&"limits-missing"), "{object:#}");
 }
 
-/// Defects put into another author's model.
+/// Defects in another author's model are reported.
 #[needs_data]
 #[test]
 fn defects_in_foreign_models_are_reported() {

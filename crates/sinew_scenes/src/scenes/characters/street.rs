@@ -32,7 +32,7 @@ pub(in crate::scenes) const STREET: Scene = Scene {
     build: street,
 };
 
-/// Width of a lane (half of the street's width for each lane), and half the length of the street, metres.
+/// Width of a lane, and half the length of the street, metres.
 const LANE: f32 = 1.1;
 const HALF_LENGTH: f32 = 9.0;
 /// Range of walking speeds, m/s.
