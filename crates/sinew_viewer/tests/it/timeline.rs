@@ -16,7 +16,7 @@ pub fn recorded(scene: &str, steps: u64, strike: Option<u64>) -> Recording {
     for step in 0..steps {
         if strike == Some(step) {
             let world = recorder.instance().world();
-            // In scenes with particles alone nothing is struck.
+            // In scenes with only particles no body is struck.
             if let Some(body) = world.body_ids().filter(|&id| world.mass(id).mass > 0.0).last() {
                 let (point, mass) = (world.center_of_mass(body), world.mass(body).mass);
                 recorder.apply(Operation::Push { body, impulse: Vec3::new(1.5, 0.5, 0.0) * mass, point });
