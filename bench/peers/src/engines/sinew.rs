@@ -18,7 +18,7 @@ use sinew::physics::{
 use sinew_scenes::blueprint::Blueprint;
 use sinew_scenes::crowd::CrowdScene;
 
-/// Sinew.
+/// Engine Sinew.
 pub struct Sinew;
 
 impl Engine for Sinew {
@@ -170,7 +170,7 @@ impl RayCaster for SinewRays {
     }
 }
 
-/// Eight pairs at a time, stored as users would: the pairs of each step together.
+/// Pairs of boxes, tested eight at a time and stored as users would: the pairs of each step together.
 struct SinewBoxes {
     steps: Vec<Pairs>,
     overlapping: Vec<u8>,

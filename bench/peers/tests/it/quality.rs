@@ -24,7 +24,7 @@ fn body(kind: BodyKind, shape: Shape, position: Vec3) -> BodyDef {
     BodyDef { kind, position, shapes: vec![ShapeDef::new(shape)], ..BodyDef::default() }
 }
 
-/// A cube of side 1 m and 1000 kg.
+/// Returns a cube with sides of 1 m and a mass of 1000 kg.
 fn cube(position: Vec3) -> BodyDef {
     body(BodyKind::Dynamic, Shape::Box { half_extents: Vec3::splat(0.5) }, position)
 }
@@ -54,7 +54,7 @@ fn close(a: f32, b: f32) {
     assert!((a - b).abs() < 1e-5, "{a} is not {b}");
 }
 
-/// A hook at the origin and two level links of 1 m.
+/// Returns a hook at the origin and two level links of 1 m.
 fn two_links() -> Blueprint {
     let ball = JointKind::Ball { limit: None };
     let hook = BodyDef { kind: BodyKind::Static, ..BodyDef::default() };

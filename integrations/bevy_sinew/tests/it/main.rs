@@ -46,7 +46,7 @@ fn mover_goes_through_the_door() {
     door::main();
 }
 
-/// Each update is one fixed step.
+/// Returns an app in which each update is one fixed step.
 fn app() -> App {
     let mut app = App::new();
     app.configure_schedules(ScheduleBuildSettings {
@@ -118,7 +118,7 @@ fn scene_has_the_same_bits_as_in_the_library() {
     }
 }
 
-/// Resident memory of the process, kB, where the system reports it.
+/// Returns the resident memory of the process, kB; `None` if the system does not report it.
 fn memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS"))?;
