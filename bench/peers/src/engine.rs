@@ -147,7 +147,7 @@ pub struct Description {
     pub version: String,
     /// Compiler flags.
     pub flags: String,
-    /// Solver settings, in words; starts with "defaults" if they are the defaults.
+    /// Solver settings, in words; starts with "defaults" if the settings are the defaults.
     pub settings: String,
 }
 

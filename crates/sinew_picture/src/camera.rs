@@ -8,7 +8,7 @@ use sinew::physics::boxes::Aabb;
 pub struct Camera {
     /// Position of the eye, world space, metres.
     pub position: Vec3,
-    /// The point in the middle of the picture, world space, metres. Shadows are sharpest around it.
+    /// Centre of the picture, world space, metres. Shadows are sharpest around this point.
     pub target: Vec3,
     /// Angle between the upper and the lower edge of the picture, radians, above 0 and below π.
     pub fov_y: f32,

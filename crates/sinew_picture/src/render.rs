@@ -22,7 +22,7 @@ pub struct RenderSettings {
     pub antialiasing: Antialiasing,
     /// Texels along a side of the shadow map, 16..=8192. Default 1280.
     pub shadow_texels: u32,
-    /// Number of threads, at least 1 (the default). The picture does not depend on it.
+    /// Number of threads, at least 1 (the default). The picture does not depend on the number.
     pub threads: usize,
 }
 

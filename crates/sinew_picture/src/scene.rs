@@ -103,7 +103,7 @@ pub struct Line {
     pub depth: LineDepth,
 }
 
-/// Depth test of a line: whether surfaces in front of it hide it.
+/// Depth test of a line: whether surfaces in front hide the line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LineDepth {
     /// Surfaces in front of the line hide it.

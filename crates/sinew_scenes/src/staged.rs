@@ -21,11 +21,12 @@ use std::sync::Arc;
 /// metres.
 const MANNEQUIN: f32 = 1.8;
 const FITTING: core::ops::RangeInclusive<f32> = 1.3..=2.3;
-/// Way from the place behind the door to the start, metres: the wall hides a character behind it.
+/// Distance from the place behind the door to the start, metres: the wall hides a character at the start.
 const START_DISTANCE: f32 = 0.45;
 /// Speed of the walk of a character of the mannequin's height, m/s.
 const WALK: f32 = 1.3;
-/// Distance before the edge of the porch at which the push comes, and time until it on flat ground, metres and seconds.
+/// Distance before the edge of the porch at which the character is pushed, metres, and time until the push on flat
+/// ground, seconds.
 const PUSH_BEFORE_EDGE: f32 = 0.45;
 const PUSH_AFTER: f32 = 2.5;
 /// Speed that the push gives to the mass of the whole character, m/s: a shove with both hands.
@@ -141,7 +142,7 @@ impl Staged {
         self.character.hit(world, chest, ahead * (SHOVE * self.def.ragdoll.total_mass));
     }
 
-    /// Puts a new character at the start, and removes what users threw.
+    /// Puts a new character at the start, and removes objects thrown by users.
     fn begin_again(&mut self, world: &mut World) {
         let next = Character::new(self.def.clone(), self.start, 0.0);
         core::mem::replace(&mut self.character, next).despawn(world);
@@ -154,7 +155,7 @@ impl Staged {
         (self.since, self.was) = (0, None);
     }
 
-    /// Middle of all joints' bounds, world space, metres.
+    /// Returns the centre of all joints' bounds, world space, metres.
     fn middle(&self) -> Vec3 {
         let points = self.model.iter().map(|joint| Aabb { min: joint.translation, max: joint.translation });
         let around = points.reduce(|a, b| a.merge(&b)).unwrap_or_default();

@@ -46,7 +46,7 @@ fn curves(instance: &Instance) -> Vec<Line> {
     draw::curves(curves.iter().map(|curve| &curve.pieces[..]))
 }
 
-/// Extends bounds to the ground below them, if it is close enough for a visible fall.
+/// Extends bounds to the ground below them, if the ground is close enough for a visible fall.
 pub(crate) fn with_ground(bounds: &Aabb, world: &World) -> Aabb {
     let size = (bounds.max - bounds.min).length();
     let fall = max(6.0 * size, 1.0);
@@ -265,7 +265,7 @@ mod tests {
             orbit.rise_above(&world);
             assert!(orbit.camera().position.y > 0.01, "{height} {distance}: {:?}", orbit.camera());
         }
-        // From below the ground everything is visible.
+        // A camera whose target is below the ground is not raised.
         let mut below = Orbit { target: Vec3::NEG_Y, yaw: 0.0, pitch: -0.5, distance: 3.0 };
         let before = below;
         below.rise_above(&world);

@@ -50,7 +50,7 @@
 //! Scales are kept, but do not scale shapes. All other features of a world are available through the resource [`Physics`], with the id in
 //! [`BodyHandle`].
 #![forbid(unsafe_code)]
-// Types of queries name what a system reads; a name for each would hide it.
+// The types of queries show what a system reads; type aliases would hide that.
 #![allow(clippy::type_complexity)]
 
 #[cfg(feature = "characters")]

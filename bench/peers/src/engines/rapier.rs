@@ -325,7 +325,7 @@ impl Walker for RapierWalker {
         let change = if !self.is_grounded && wish == Vec3::ZERO { Vec3::ZERO } else { wish - level };
         let length = change.length();
         self.velocity += if length > most { change * (most / length) } else { change };
-        // As in Rapier's examples, the walker falls from rest where the ground carried it.
+        // As in Rapier's examples, the walker starts to fall from rest while the ground carries it.
         self.velocity.y = if self.is_grounded { 0.0 } else { self.velocity.y } - 9.81 * DT;
         let queries = self.world.query_pipeline();
         let wanted = vector(self.velocity * DT);

@@ -81,7 +81,7 @@ enum SexArg {
 }
 
 impl RagdollBuild {
-    /// Builds, drops and reports the ragdoll, and writes it.
+    /// Builds, drops, reports and writes the ragdoll.
     pub fn run(&self) -> Result<Report> {
         let settings = self.settings.path_for(&self.file);
         never_over([self.file.as_path(), &settings], self.output.as_deref())?;

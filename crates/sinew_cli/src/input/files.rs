@@ -26,9 +26,9 @@ pub enum WeightSource {
     Nearest,
 }
 
-/// A character file as a command reads it.
+/// A character file with its analysis.
 pub struct CharacterFile {
-    /// Name of the file as the user gave it.
+    /// Name of the file, as given by the user.
     pub name: String,
     /// Content of the file, and what was recognised in it.
     pub source: CharacterSource,

@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// A file with clips: its content and the analysis of its joints.
 pub struct Motion {
-    /// Name of the file as the user gave it.
+    /// Name of the file, as given by the user.
     pub name: String,
     /// Rig and clips of the file.
     pub file: MotionFile,

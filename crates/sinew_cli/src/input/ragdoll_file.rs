@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// A ragdoll with its source.
 pub struct RagdollFile {
-    /// Name of the file as the user gave it.
+    /// Name of the file, as given by the user.
     pub name: String,
     /// The ragdoll, its springs, and data of its rig.
     pub repair: Repair,
@@ -24,7 +24,7 @@ pub struct RagdollFile {
 }
 
 impl RagdollFile {
-    /// Rejects settings for a finished ragdoll: they only affect a build.
+    /// Rejects settings for a finished ragdoll: settings only affect a build.
     pub fn check_settings(&self, settings: &SettingsArg) -> Result<()> {
         if let Some(option) = settings.given().filter(|_| self.repair.reference.is_none()) {
             let what = "changes how a ragdoll is built: name a character, not a definition or a model";

@@ -115,7 +115,7 @@ fn axis(text: &str) -> Result<Vec3, String> {
 /// Settings and their source.
 #[derive(Debug, Default)]
 pub struct LoadedSettings {
-    /// The file as the user named it, or `""`.
+    /// Name of the file, as given by the user, or `""`.
     pub file: String,
     /// The settings themselves.
     pub settings: Settings,

@@ -52,7 +52,7 @@ fn keeps_its_size(channel: &Channel, rig: &Rig) -> bool {
         && channel.values.chunks_exact(3).all(near)
 }
 
-/// Adds notes on what a bones-only format leaves out: meshes, and the nodes with these names.
+/// Adds notes on the losses of a bones-only format: meshes, and the nodes with these names.
 pub fn lost_meshes(rig: &Rig, dropped: &[String], notes: &mut Vec<String>) {
     if !rig.meshes.is_empty() {
         let (meshes, skins) =

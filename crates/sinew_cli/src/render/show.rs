@@ -1,4 +1,4 @@
-//! Pictures of a file with a skeleton, a skin or a clip: what `view FILE` and `convert --picture` draw.
+//! Pictures of a file with a skeleton, a skin or a clip, for `view FILE` and `convert --picture`.
 
 use crate::failure::{Failure, Result};
 use crate::input::motion::Motion;

@@ -28,7 +28,7 @@ pub struct Life<'a> {
     pub fall: &'a Fall<'a>,
     /// Height of the floor, metres, if the floor is level.
     pub floor: Option<f32>,
-    /// Reason why the character stays down where it should get up, a sentence.
+    /// Reason why the character stays down where it should get up, one sentence.
     pub stays_down: Option<&'a str>,
 }
 

@@ -481,7 +481,7 @@ fn bake_is_judged_by_the_bars_of_a_drop() {
     assert_eq!(baked["verdict"], "good", "{baked:#}");
     assert_eq!(baked["reasons"], serde_json::json!([]));
     let data = shared_data();
-    // While motors roll it over, only they add energy: the gain was once 0.15 in a step.
+    // While motors roll the ogre over, only they add energy: the gain was once 0.15 in a step.
     let ogre = data.join("rigs_wild/ultimate_space_Enemy_Large-transformed.glb").display().to_string();
     let baked = sinew(&["bake", &ogre, "--seconds", "6", "-o", &out, "--json"]).json();
     assert!(baked["energy_gain_max"].as_f64().expect("a number") < 0.01, "{baked:#}");

@@ -1,4 +1,4 @@
-//! GIF: each frame holds only what changed, in a palette of its own.
+//! GIF: each frame holds only the changed pixels, in a palette of its own.
 
 use super::palette::{Histogram, Palette};
 use super::{EncodeError, Rect, bounds};
@@ -24,12 +24,12 @@ pub(super) struct GifWriter {
     frames: u64,
     histogram: Histogram,
     palette: Palette,
-    /// The colour, as in an image, that each pixel had when it was last drawn, before palette and dither.
+    /// Colour of each pixel when it was last drawn, as in the image, before palette and dither.
     drawn: Vec<[u8; 4]>,
     changed: Vec<bool>,
 }
 
-/// Number of pixels compared at once: most stretches of a picture stay unchanged.
+/// Number of pixels in one comparison: most stretches of a picture stay unchanged.
 const STRETCH: usize = 32;
 
 /// Marks the pixels of a stretch that must be drawn, and stores their colours.

@@ -222,7 +222,7 @@ impl Cells for Nearest<'_> {
         let old = L::load(depth);
         let is_nearer = L::gt(z, old) & inside;
         L::select(is_nearer, z, old).store(depth);
-        // Whole numbers are selected by their bits; it does not matter that they are unusual floats.
+        // Selects whole numbers by their bits; as floats the bits may be unusual values, which does no harm.
         let (mut bits, mut chosen) = ([0.0; WIDTH], [0.0; WIDTH]);
         for i in 0..WIDTH {
             bits[i] = f32::from_bits(ids[i]);

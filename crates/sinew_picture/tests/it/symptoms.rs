@@ -20,7 +20,7 @@ const SETTINGS: RenderSettings = RenderSettings {
 /// Linear colour of paths.
 const TRAIL: [f32; 3] = [0.9, 0.75, 0.1];
 
-/// A picture of two worlds in one, `half` metres left and right of the middle.
+/// A picture of two worlds in one, at `half` metres left and right of the centre.
 struct Drawing {
     world: World,
     /// Paths that bodies took, world space, metres.

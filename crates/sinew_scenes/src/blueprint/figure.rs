@@ -79,7 +79,7 @@ pub fn rain() -> Blueprint {
     scene
 }
 
-/// 8 figures with joint friction fall from 15 m on two by two cells of 15 m, each with a tilted box in the middle.
+/// 8 figures with joint friction fall from 15 m on two by two cells of 15 m, each with a tilted box at its centre.
 ///
 /// Modelled on Box3D's falling ragdolls, which verify repeatability by the step at which all sleep. Those fall on meshes, and have springs
 /// in their joints.

@@ -14,7 +14,7 @@ const FRICTION: f32 = 0.7;
 /// Initial gap between a figure and the ground, metres.
 const ABOVE: f32 = 0.05;
 
-/// Half width of the pit of a heap of 100, metres: 16 figures fit in it side by side.
+/// Half width of the pit of a heap of 100, metres: 16 figures fit in the pit side by side.
 const PIT: f32 = 3.6;
 /// Spacing of figures in a heap, metres, limited by the reach of their arms.
 const APART: f32 = 1.8;
@@ -111,7 +111,7 @@ fn made_of_flesh(mut def: BodyDef) -> BodyDef {
     def
 }
 
-/// Adds a figure turned as `stand` says, its lowest point at the height of `stand`.
+/// Adds a figure with the rotation of `stand`, its lowest point at the height of `stand`.
 fn figure(scene: &mut Blueprint, def: &RagdollDef, stand: Transform, limits: Limits) {
     let turned =
         |index: usize| Transform::new(Vec3::ZERO, stand.rotation) * def.bodies[index].character_from_body;

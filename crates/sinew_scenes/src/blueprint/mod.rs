@@ -169,7 +169,8 @@ pub fn in_box(random: &mut Random, lo: f32, hi: f32) -> Vec3 {
     Vec3::new(next(), next(), next())
 }
 
-/// Uniform random rotation (Shoemake 1992). It uses exactly three numbers, without rejection, so that other programs can draw the same.
+/// Returns a uniform random rotation (Shoemake 1992). Uses exactly three numbers, without rejection, so that other programs can draw the
+/// same.
 pub fn rotation(random: &mut Random) -> Rotation {
     let [u, v, w] = [random.unit(), random.unit(), random.unit()];
     let (sin_v, cos_v) = trig::sin_cos(core::f32::consts::TAU * v);

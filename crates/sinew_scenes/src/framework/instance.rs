@@ -28,7 +28,7 @@ pub trait Script: Send {
     /// Writes the script's own state that affects the future, if it has any.
     fn save(&self, _out: &mut Writer) {}
 
-    /// Reads what [`save`](Self::save) wrote.
+    /// Reads the state that [`save`](Self::save) wrote.
     ///
     /// # Errors
     /// If the bytes are not those of the same scene with the same settings.
@@ -208,7 +208,7 @@ impl Instance {
         self.script.save(out);
     }
 
-    /// Reads what [`save`](Self::save) wrote.
+    /// Reads the state that [`save`](Self::save) wrote.
     ///
     /// # Errors
     /// If the bytes are not those of the same scene with the same settings.
@@ -259,7 +259,7 @@ fn mass_of(world: &World) -> f32 {
     of_bodies + of_particles
 }
 
-/// Errors that no scene may show, however long it runs.
+/// Errors that no scene may show, for any length of run.
 #[derive(Default)]
 struct Health {
     /// Energy that drives have put in, J.

@@ -46,7 +46,7 @@ impl Chapter {
 /// A named scenario.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
-    /// Chapter that contains it.
+    /// Chapter that contains the scene.
     pub chapter: Chapter,
     /// Name of the scene for `sinew run`.
     pub name: &'static str,

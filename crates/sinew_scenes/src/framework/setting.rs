@@ -17,13 +17,13 @@ pub enum Domain {
     Number(f32, f32),
     /// Any whole number from the first to the second.
     Whole(u16, u16),
-    /// Path of an MJCF model, which is read when it is set.
+    /// Path of an MJCF model; setting it reads the file.
     Model,
-    /// Path of a level, GLB or OBJ, read when it is set.
+    /// Path of a level, GLB or OBJ; setting it reads the file.
     Level,
-    /// Path of a character, GLB, read when it is set; optional.
+    /// Path of a character, GLB, optional; setting it reads the file.
     Character,
-    /// Path of a captured motion, BVH, read when it is set.
+    /// Path of a captured motion, BVH; setting it reads the file.
     Motion,
 }
 

@@ -18,7 +18,7 @@ const STEPS_OF_BLOCK: usize = 64;
 /// Operations on a scene and their results.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
-    /// Version of Sinew that recorded it: only this one is known to reproduce the bits.
+    /// Version of Sinew that made the recording: only this version is known to reproduce the bits.
     pub made_by: String,
     /// Name of the scene.
     pub scene: String,

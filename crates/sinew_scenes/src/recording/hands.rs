@@ -180,7 +180,7 @@ fn moves(world: &World, body: BodyId) -> bool {
     world.contains(body) && world.kind(body) == BodyKind::Dynamic
 }
 
-/// Mass of a body and of all bodies connected to it by joints, kg.
+/// Returns the mass of a body and of all bodies connected to it by joints, kg.
 fn mass_together(world: &World, body: BodyId) -> f32 {
     let (mut found, mut next) = (vec![body], 0);
     while let Some(&body) = found.get(next) {

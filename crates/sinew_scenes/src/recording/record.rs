@@ -56,7 +56,7 @@ impl Recorder {
         Self { instance, hands: Hands::default(), recording, operations: Vec::new() }
     }
 
-    /// The scene as it runs.
+    /// Returns the running scene.
     pub fn instance(&self) -> &Instance {
         &self.instance
     }
@@ -66,7 +66,7 @@ impl Recorder {
         &self.hands
     }
 
-    /// Applies an operation now; it is recorded for the next step.
+    /// Applies an operation now, and records it for the next step.
     pub fn apply(&mut self, operation: Operation) {
         self.hands.apply(self.instance.world_mut(), &operation);
         operation.apply_to(&mut self.instance);
@@ -157,7 +157,7 @@ impl Replay {
         Ok(Self { instance, hands: Hands::default(), recording })
     }
 
-    /// The scene as it runs.
+    /// Returns the running scene.
     pub fn instance(&self) -> &Instance {
         &self.instance
     }

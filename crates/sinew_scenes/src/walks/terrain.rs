@@ -107,7 +107,7 @@ impl Terrain {
         build(&self.bodies)
     }
 
-    /// A random place for the feet of the walks' capsule, with room around it.
+    /// Returns a random place for the feet of the walks' capsule, with room around it.
     pub fn free_place(&self, random: &mut Random) -> Vec3 {
         loop {
             let mut between = |axis: usize| random.range(self.within.min[axis], self.within.max[axis]);
@@ -119,7 +119,7 @@ impl Terrain {
         }
     }
 
-    /// Depth of the capsule in the body that it is deepest in, metres; 0 if it is outside of all.
+    /// Largest depth of the capsule in a body, metres; 0 if the capsule is outside of all.
     pub fn depth(&self, feet: Vec3) -> f32 {
         let mut found = Vec::new();
         self.world.query().all(&PenetrationOf(probe(feet, 0.0)), &mut found);

@@ -25,7 +25,7 @@ pub enum GpuError {
         /// Reason.
         what: String,
     },
-    /// There is no window system, or it refuses a window.
+    /// There is no window system, or the window system refuses a window.
     #[error("no window can be opened: {0}; `sinew view SCENE --picture OUT.png` needs none")]
     NoWindow(String),
     /// The card did not return a picture.

@@ -284,7 +284,7 @@ fn surface(primitive: &Primitive) -> Model {
     }
 }
 
-/// Returns the joint slots and weights of a primitive; without any, it follows the first slot.
+/// Returns the joint slots and weights of a primitive; without any, the primitive follows the first slot.
 fn skin(gpu: &Gpu, primitive: &Primitive, is_skinned: bool) -> wgpu::Buffer {
     let mut numbers = Vec::with_capacity(SKIN * primitive.positions.len());
     for vertex in 0..primitive.positions.len() {

@@ -20,7 +20,7 @@ pub(super) struct Playback {
     mark_steps: u64,
     /// Figures after each number of steps that has been reached.
     metrics: Vec<Vec<Metric>>,
-    /// Hash of the state after each step, when it was first played.
+    /// Hash of the state after each step, from its first playback.
     hashes: Vec<u64>,
     /// First step whose state differs from the recorded one.
     pub diverged: Option<u64>,

@@ -19,7 +19,8 @@ use std::path::{Path, PathBuf};
 const SIZE: [u32; 2] = [880, 496];
 /// Side of a tile, pixels of a stored picture.
 const TILE: u32 = 12;
-/// Largest difference of the means of a tile, of 255. Another driver's edges and rounding stay below a third of it.
+/// Largest difference of the means of a tile, of 255. Edges and rounding of another driver stay below a third of this
+/// value.
 const MOST_OF_TILE: f64 = 6.0;
 /// Largest share of pixels that differ by more than 40 in one channel.
 const MOST_FAR: f64 = 0.01;
@@ -89,7 +90,7 @@ fn read(name: &str) -> Image {
     Image { width, height, rgba }
 }
 
-/// Compares a picture with the stored one; `changed` has something missing or moved and must differ.
+/// Compares a picture with the stored one; `changed`, in which something is missing or moved, must differ.
 fn check(name: &str, picture: &Image, changed: &Image) {
     let [picture, changed] = [picture, changed].map(halved);
     let png =

@@ -59,7 +59,7 @@ fn seeking_gives_the_same_bits() {
             assert_eq!(session.metrics(), figures[step as usize], "{scene}, step {step}");
             assert_eq!(session.past_metrics().len() as u64, step + 1, "{scene}");
         }
-        // From there it continues as recorded.
+        // From the new step the replay continues as recorded.
         while session.step() {}
         assert_eq!(session.diverged(), None, "{scene}");
         assert_eq!(session.world().hash(), recording.steps[129].hash, "{scene}");

@@ -190,7 +190,7 @@ fn children_follow_their_bodies() {
         let body = physics(&app).transform(id).translation;
         assert!((body - global(&app, entity)).length() < 1e-4);
     }
-    // Another parent, and none: the body stays where it is.
+    // With another parent, and with none, the body keeps its place.
     for parent in [Some(root), None] {
         let before = global(&app, child);
         match parent {
@@ -240,7 +240,7 @@ fn changes_of_components_reach_the_world() {
     app.world_mut().get_mut::<Transform>(ball).expect("it has one").translation = Vec3::X * 7.0;
     run(&mut app, 1);
     assert!((at(&app, ball) - Vec3::X * 7.0).length() < 0.05, "{}", at(&app, ball));
-    // Changes the velocity; gravity changes it in the step.
+    // Changes the velocity, which gravity then changes in the step.
     app.world_mut().get_mut::<Velocity>(ball).expect("it has one").linear = Vec3::Z * 3.0;
     run(&mut app, 1);
     let velocity = app.world().get::<Velocity>(ball).expect("it has one").linear;

@@ -1,4 +1,5 @@
-//! Properties of bodies as components: they reach the world, follow changes, and leave defaults when removed.
+//! Properties of bodies as components: they are applied to the world, follow changes, and leave defaults when
+//! removed.
 
 use super::*;
 use bevy_sinew::physics::{LockedAxes, Motor, Sensing};

@@ -49,7 +49,7 @@ pub fn actor(
     let mut get_ups = def.get_ups_among(&motions.clips);
     get_ups.retain(|&clip| Some(clip) != motions.looped);
     let Motions { clips, looped, ahead, .. } = motions;
-    // Without this, a character that lies in its file would walk along its own axes into the floor.
+    // Otherwise a character that lies in its file would walk along its own axes into the floor.
     let is_lying = lies(&def.ragdoll, analysis.hints.up.unwrap_or(Vec3::Y));
     let locomotion = match ahead {
         _ if is_lying => Locomotion::Exact,

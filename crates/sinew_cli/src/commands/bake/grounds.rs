@@ -31,7 +31,7 @@ pub fn grounds(bounds: &Aabb, height: f32, floors: impl Fn(Vec3, f32) -> Vec<f32
     let (nx, nz) = (count(size.x), count(size.z));
     let cell = Vec3::new(size.x / nx as f32, 0.0, size.z / nz as f32);
     let top = bounds.max.y + height;
-    // The ray also finds a half-space below everything else.
+    // The ray also finds a half-space below all bodies.
     let depth = size.y + 2.0 * height + 1000.0;
     let mut nodes: Vec<Node> = Vec::new();
     let mut first = Vec::with_capacity(nx * nz + 1);

@@ -142,7 +142,7 @@ pub struct Bake {
     picture: Option<PictureFile>,
 }
 
-/// The falling character, and notes about it.
+/// The falling character, and notes about the character.
 struct Cast {
     file: CharacterFile,
     ragdoll: RagdollDef,
@@ -152,7 +152,7 @@ struct Cast {
     notes: Vec<String>,
 }
 
-/// Largest allowed key error, mm: beyond it the clip is no copy of the motion.
+/// Largest allowed key error, mm: with a larger error the clip is no copy of the motion.
 const LARGEST_KEY_ERROR: f32 = 100.0;
 
 /// Parses an allowed key error, mm.

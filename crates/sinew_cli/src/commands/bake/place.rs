@@ -12,7 +12,7 @@ use sinew::physics::{
 const WALKABLE: f32 = 0.766;
 /// Requirements for a position, in heights of the character.
 struct Demand {
-    /// Free distance on each side: to fall, or to stand.
+    /// Free distance on each side, for falling or for standing.
     room: f32,
     /// Free height over the position.
     over: f32,
@@ -70,7 +70,7 @@ pub fn place(bodies: &[BodyDef], height: f32, at: Option<Vec3>, facing: f32) -> 
     }
 }
 
-/// A world to stand on.
+/// A world with bodies to stand on.
 struct Ground {
     world: World,
     /// Bounds of all finite static bodies.

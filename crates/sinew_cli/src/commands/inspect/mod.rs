@@ -38,7 +38,7 @@ pub struct Inspect {
 }
 
 impl Inspect {
-    /// Reads the file and describes it.
+    /// Reads the file and describes its content.
     pub fn run(&self) -> Result<Report> {
         let motion = Motion::load_in(&self.file, self.unit)?;
         let (mut links, mut worn, mut trouble) = (Vec::new(), Vec::new(), Vec::new());
@@ -245,7 +245,7 @@ impl Content<'_> {
         notes
     }
 
-    /// Returns warnings of what could not be read or played.
+    /// Returns warnings of parts that could not be read or played.
     fn warnings(&self) -> Vec<String> {
         let unplayable = self.clips.iter().filter_map(ClipFacts::warning);
         self.motion.file.notes.iter().cloned().chain(unplayable).chain(self.trouble.clone()).collect()

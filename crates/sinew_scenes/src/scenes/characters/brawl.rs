@@ -129,7 +129,7 @@ fn on_stairs(place: Vec3, apart: f32) -> Vec3 {
 
 pub(super) struct Fighter {
     character: Character,
-    /// Wanted velocity, m/s, and seconds until it changes.
+    /// Wanted velocity, m/s, and seconds until the velocity changes.
     way: Vec3,
     keeps: f32,
     /// World from joint.

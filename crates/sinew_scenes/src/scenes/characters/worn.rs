@@ -24,7 +24,7 @@ pub(super) struct Wear {
 }
 
 impl Wear {
-    /// Counts the work of a step, updates the wearer after it, and notes its falls and getting up.
+    /// Adds the work of a step, updates the wearer, and records falls and get-ups.
     pub fn follow(&mut self, world: &mut World, wearer: &mut Character) {
         self.work_in += world.work().total();
         wearer.update(world);

@@ -88,7 +88,7 @@ struct Gimbal {
 
 impl Gimbal {
     fn hang(world: &mut World, frame: BodyId, center: Vec3, pitch: f32) -> Self {
-        // Each ring lies in the plane of its own axis and the next one's.
+        // Each ring is in the plane of its own axis and the next one's.
         let outer = world.add_body(&ring(center, 0.5, Vec3::Z));
         let middle = world.add_body(&ring(center, 0.4, Vec3::Y));
         let body = world.add_body(&round(ghost(ball(0.2, center)), 1.0));
@@ -143,7 +143,7 @@ struct Flyer {
     unsteady: f32,
 }
 
-/// Steps in which the flyer makes its first quarter turn: it comes closest to lock in the middle of a step.
+/// Steps in which the flyer makes its first quarter turn: the flyer comes closest to lock in the middle of a step.
 const QUARTER: f32 = 90.5;
 
 impl Flyer {

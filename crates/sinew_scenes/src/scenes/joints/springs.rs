@@ -85,7 +85,7 @@ fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: &[f32]) -> Instance {
 
 struct Hung {
     group: GroupId,
-    /// Expected stretch of each spring, by the weight below it over `k`, metres.
+    /// Expected stretch of each spring, metres: the weight below it divided by `k`.
     stretches: Vec<f32>,
 }
 

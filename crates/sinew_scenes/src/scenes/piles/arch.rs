@@ -113,7 +113,7 @@ impl Pier {
 struct Masonry {
     /// Joints from −x to +x.
     joints: Vec<Joint>,
-    /// Weights of the stones between them; that of the keystone includes the blocks on it.
+    /// Weights of the stones between the joints; that of the keystone includes the blocks on it.
     weights: Vec<Weight>,
 }
 
@@ -124,7 +124,7 @@ struct Weight {
 }
 
 impl Masonry {
-    /// Masonry of stones and the blocks after them.
+    /// Creates the masonry of stones and of the blocks after them.
     fn new(world: &World, joints: Vec<Joint>, bodies: &[BodyId]) -> Self {
         let newtons = |&id: &BodyId| world.mass(id).mass * GRAVITY;
         let (stones, blocks) = bodies.split_at(joints.len() - 1);

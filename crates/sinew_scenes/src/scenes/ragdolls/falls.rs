@@ -25,7 +25,7 @@ pub(in crate::scenes) const POSES: Scene = Scene {
     build: poses,
 };
 
-/// Distance from one mannequin to the next, metres: they do not touch.
+/// Distance from one mannequin to the next, metres: so large that they do not touch.
 const APART: f32 = 6.0;
 
 fn poses(setup: &Setup<'_>) -> Instance {

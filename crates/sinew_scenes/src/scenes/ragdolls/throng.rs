@@ -82,9 +82,9 @@ struct Member {
     character: Character,
     /// Impulse of its hit, N·s.
     hit: Vec3,
-    /// Step after which it is hit.
+    /// Step after which the member is hit.
     hit_at: u64,
-    /// Step after which it was up again.
+    /// Step after which the member was up again.
     up_at: Option<u64>,
     /// World from joint.
     model: Vec<Affine>,

@@ -31,7 +31,7 @@ const RADIUS: f32 = 0.08;
 const HEIGHT: f32 = 8.0;
 /// Least number of steps for which all balls fall freely.
 const FALLING: u64 = 6;
-/// Distance from a box at which a ball rests on it or has just hit it, metres.
+/// Distance from a box at which a ball rests on the box or has just hit it, metres.
 const TOUCHING: f32 = 1e-3;
 /// Number of steps between two checks of contacts.
 const LOOK_EVERY: u64 = 10;
