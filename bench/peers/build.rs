@@ -5,7 +5,7 @@ const ROOT_MANIFEST: &str = "../../Cargo.toml";
 
 fn main() {
     let variable = |name: &str| std::env::var(name).unwrap_or_default();
-    // The release profile is the one in Cargo.toml; Cargo does not pass its LTO to build scripts.
+    // The release profile is that of Cargo.toml; Cargo does not pass its LTO to build scripts.
     let lto = if variable("PROFILE") == "release" { ", lto=fat, codegen-units=1" } else { "" };
     let flags = variable("CARGO_ENCODED_RUSTFLAGS").replace('\u{1f}', " ");
     let flags = if flags.is_empty() { String::new() } else { format!(", {flags}") };

@@ -256,8 +256,8 @@ fn in_a_word(report: &Value) -> String {
     }
 }
 
-/// For the demo: simulated seconds per processor second of its bake, and the number of conversions of its file, scaled to 6,000 vertices, to a
-/// ragdoll in 100 ms.
+/// Measures the demo: returns the simulated seconds per processor second of its bake, and the number of conversions of its file, scaled to
+/// 6,000 vertices, to a ragdoll in 100 ms.
 fn bake() -> Result<(Option<f64>, Option<f64>)> {
     let sinew = command::build_sinew(Profile::Release)?;
     let folder = std::env::temp_dir().join(format!("sinew-bench-{}", std::process::id()));
@@ -274,7 +274,7 @@ fn bake() -> Result<(Option<f64>, Option<f64>)> {
     Ok((Some(realtime), Some(100.0 / milliseconds * (vertices / 6000.0))))
 }
 
-/// Simulated seconds per processor second of limp characters until they sleep, for the rigs in [`SHARED`]; empty without them.
+/// Returns the simulated seconds per processor second of limp characters until they sleep, for the rigs in [`SHARED`]; empty without them.
 fn limp() -> Result<BTreeMap<String, f64>> {
     let folder = command::root().join(SHARED);
     let Ok(files) = fs::read_dir(&folder) else {
@@ -290,7 +290,7 @@ fn limp() -> Result<BTreeMap<String, f64>> {
     Ok(["median", "slowest_humanoid"].into_iter().filter_map(factor).collect())
 }
 
-/// Speed-up of a step by a second thread for each scene: the median of alternating rounds.
+/// Returns the speed-up of a step by a second thread for each scene: the median of alternating rounds.
 fn two_threads(rounds: u32) -> Result<BTreeMap<String, f64>> {
     let binary = peers::build_ours()?;
     let wall = |scene: &str, steps: u32, threads: u32| -> Result<f64> {
@@ -310,18 +310,18 @@ fn two_threads(rounds: u32) -> Result<BTreeMap<String, f64>> {
     Ok(factors)
 }
 
-/// File with the figures of earlier runs, which is committed, since a full run takes hours.
+/// Returns the file with the figures of earlier runs, which is committed, because a full run takes hours.
 fn file() -> PathBuf {
     command::root().join("bench/benchmarks.json")
 }
 
-/// Figures of earlier runs; empty if none can be read.
+/// Returns the figures of earlier runs; empty if none can be read.
 fn kept() -> Results {
     let earlier = fs::read_to_string(file()).ok().and_then(|text| serde_json::from_str(&text).ok());
     Results::from_json(&earlier.unwrap_or(Value::Null))
 }
 
-/// Charts of the landing page, and the machine of the last measurement as text.
+/// Returns the charts of the landing page, and the machine of the last measurement as text.
 ///
 /// # Errors
 /// If a scene of the charts was not measured.

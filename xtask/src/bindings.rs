@@ -1,4 +1,4 @@
-//! Tests the bindings to C and Python as users have them: library and header with `cc`, the wheel in an empty environment.
+//! Tests the bindings to C and Python like a user: library and header with `cc`, the wheel in an empty environment.
 
 use crate::command;
 use crate::new_user::{blocks, read};
@@ -28,10 +28,10 @@ pub struct Bindings {
 }
 
 impl Bindings {
-    /// Tests both, or the requested one.
+    /// Tests both bindings, or the requested one.
     ///
     /// # Errors
-    /// As [`c`] and [`python`].
+    /// The errors of [`c`] and [`python`].
     pub fn run(&self) -> Result<()> {
         if !self.python {
             c()?;
@@ -50,7 +50,8 @@ fn cargo(arguments: &[&str]) -> Command {
     cargo
 }
 
-/// Runs the library's tests, checks its header, and builds its example and the programs of the pages: plainly, as C++, and with the address sanitizer.
+/// Runs the library's tests, checks its header, and builds and runs its example and the programs of the pages: plainly, as C++, and with the address
+/// sanitizer.
 ///
 /// # Errors
 /// If a program does not build, or its exit status is not 0.
@@ -126,7 +127,7 @@ pub fn python() -> Result<()> {
     let run = |program: &str, arguments: &[&str], place: &Path| {
         command::run(Command::new(user.join("bin").join(program)).args(arguments).current_dir(place))
     };
-    // Run in a folder of its own, so that the installed package is tested and not the sources.
+    // Runs in a folder of its own, so that the tests use the installed package and not the sources.
     let tests = folder.join("tests");
     copy(&source.join("tests"), &tests)?;
     run("pytest", &["-q", "."], &tests)?;
@@ -155,10 +156,10 @@ pub fn pip(venv: &Path) -> Command {
     pip
 }
 
-/// Builds the wheel by the maturin of an environment into a folder, which is emptied before.
+/// Builds the wheel by the maturin of an environment into a folder, which is emptied first.
 ///
 /// # Errors
-/// If it does not build.
+/// If the wheel does not build.
 pub fn wheel(builder: &Path, out: &Path) -> Result<PathBuf> {
     if out.exists() {
         fs::remove_dir_all(out)?;

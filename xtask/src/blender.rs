@@ -26,7 +26,7 @@ impl Blender {
     /// Makes the zip, and tests it on request.
     ///
     /// # Errors
-    /// If it cannot be made, or a test fails.
+    /// If the zip cannot be made, or a test fails.
     pub fn run(&self) -> Result<()> {
         if self.check { check() } else { zip().map(drop) }
     }

@@ -67,7 +67,7 @@ impl Book {
     }
 }
 
-/// Returns the page with a link after the first paragraph that runs a scene, where it has none.
+/// Returns the page with a link after the first paragraph that runs a scene, if that scene has none.
 fn with_links(page: &str) -> String {
     let mut shown: Vec<String> = page.lines().filter_map(link).map(|(scene, _)| scene.to_owned()).collect();
     let mut paragraphs = Vec::new();

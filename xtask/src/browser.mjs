@@ -26,10 +26,10 @@ const KINDS = {
 
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-// Files of the folder alone, on the loopback.
+// Serves the files of the folder alone, on the loopback.
 async function serve() {
   const server = createServer(async (request, response) => {
-    // A URL's path has no '..' left.
+    // The parser has removed any '..' from the path of a URL.
     const name = new URL(request.url, 'http://localhost').pathname.slice(1) || 'index.html';
     try {
       const bytes = await readFile(join(folder, name));
@@ -42,7 +42,7 @@ async function serve() {
   return server;
 }
 
-// A browser with one page, and the messages of its console.
+// Opens a browser with one page, and collects the messages of its console.
 class Browser {
   static async start(flags) {
     const browser = new Browser();
@@ -116,7 +116,7 @@ class Browser {
     return this.said();
   }
 
-  // Value of an expression in the page.
+  // Returns the value of an expression in the page.
   async ask(expression) {
     const { result, exceptionDetails } = await this.send('Runtime.evaluate', { expression, awaitPromise: true, returnByValue: true });
     if (exceptionDetails) throw new Error(`${expression}: ${JSON.stringify(exceptionDetails)}`);
@@ -131,7 +131,7 @@ class Browser {
     return this.send('Input.dispatchMouseEvent', { type, x, y, button: 'left', buttons, clickCount: 1 });
   }
 
-  // A picture of the page, or of a part of it as a JPEG.
+  // Returns a picture of the page, or of a part of it as a JPEG.
   async picture(name, clip) {
     const how = clip ? { format: 'jpeg', quality: 80, clip: { ...clip, scale: 1 } } : {};
     const { data } = await this.send('Page.captureScreenshot', how);
@@ -145,7 +145,7 @@ class Browser {
   }
 }
 
-// Pulls the body in the middle of the picture: of one that falls alone it is there.
+// Drags from the middle of the picture, where a single falling body is.
 async function drag(browser, url) {
   await browser.open(`${url}&scene=free_fall&steps=1`);
   await browser.line('hash');
@@ -176,7 +176,7 @@ async function dropped(browser, url, path) {
   return name;
 }
 
-// A chapter of the book: its pictures are there, and the first one runs its scene at a click.
+// Checks a chapter of the book: its pictures exist, and a click on the first one runs it.
 async function chapter(browser, url) {
   const address = new URL('chapter-1.html', url);
   address.search = new URL(url).search;
@@ -199,7 +199,7 @@ async function tried(way, site) {
   try {
     const { ready } = await browser.open(url);
     const by = await browser.line('drawn by');
-    // Compiled code is kept by the browser from the second time on.
+    // The browser keeps compiled code from the second load on.
     const { ready: again } = await browser.open(url);
     await browser.picture(`${way}-first`);
     const hashes = {};

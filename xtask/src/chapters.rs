@@ -22,7 +22,7 @@ struct Chapter<'a> {
     text: Vec<Event<'a>>,
 }
 
-/// State while pages are written: their scenes and links.
+/// Scenes and links of the pages while they are written.
 #[derive(Default)]
 struct Site {
     /// Sources of all scenes; none in tests.
@@ -67,10 +67,10 @@ pub fn write(root: &Path, folder: &Path) -> Result<(Vec<String>, usize)> {
     Ok((titles, scenes))
 }
 
-/// Text of a page of the guide, with its included files.
+/// Returns the text of a page of the guide, with its included files.
 ///
 /// # Errors
-/// If it or what it includes cannot be read.
+/// If the page or an included file cannot be read.
 pub fn guide_page(root: &Path, name: &str) -> Result<String> {
     let path = root.join(GUIDE).join(format!("{name}.md"));
     let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
@@ -86,7 +86,7 @@ fn file(number: usize) -> String {
     format!("chapter-{}.html", number + 1)
 }
 
-/// Links to all other chapters, and one to the start.
+/// Returns links to all other chapters, and one to the start.
 fn links(titles: &[String], shown: Option<usize>) -> String {
     format!(
         "<a href=\"index.html\">Start</a> · <a href=\"viewer.html\">Viewer</a><ol>{}</ol>",
@@ -94,7 +94,7 @@ fn links(titles: &[String], shown: Option<usize>) -> String {
     )
 }
 
-/// Chapters as list items, with links except for the current one.
+/// Returns the chapters as list items, with links except for the current one.
 pub fn list(titles: &[String], shown: Option<usize>) -> String {
     let link = |(number, title): (usize, &String)| {
         if shown == Some(number) {
@@ -106,7 +106,7 @@ pub fn list(titles: &[String], shown: Option<usize>) -> String {
     titles.iter().enumerate().map(link).collect()
 }
 
-/// Sources of all scenes in one text.
+/// Returns the sources of all scenes in one text.
 ///
 /// # Errors
 /// If they cannot be read.
@@ -123,7 +123,7 @@ pub fn sources(root: &Path) -> Result<String> {
     Ok(text)
 }
 
-/// The one-line description of a scene.
+/// Returns the one-line description of a scene.
 ///
 /// # Errors
 /// If there is no such scene.
@@ -217,8 +217,8 @@ impl Pages {
         self.0.push((source.to_owned(), file.to_owned()));
     }
 
-    /// Converts text from a folder of the repository to HTML. Links to other pages point to them, links to other files
-    /// become plain text, and pictures are copied.
+    /// Converts text from a folder of the repository to HTML. Links to pages in the list point to their output, links
+    /// to other files become plain text, and pictures are copied.
     ///
     /// # Errors
     /// If a picture is missing.
@@ -255,7 +255,7 @@ impl Pages {
         Ok(html(kept))
     }
 
-    /// The page that a link of a text refers to.
+    /// Returns the page that a link of a text refers to.
     fn link(&self, address: &str) -> Option<String> {
         if address.starts_with("https://") || address.starts_with('#') {
             return Some(address.to_owned());
@@ -299,7 +299,7 @@ impl Site {
                 Event::Start(Tag::Image { dest_url, .. }) => {
                     let scene = dest_url.strip_prefix("book/").and_then(|file| file.strip_suffix(".png"));
                     let scene = scene.with_context(|| format!("the picture {dest_url} is not of a scene"))?;
-                    // A picture is a figure of its own, outside paragraphs.
+                    // A picture becomes a figure outside paragraphs.
                     let begins = matches!(out.last(), Some(Event::Start(Tag::Paragraph)));
                     ensure!(begins, "the picture {dest_url} is inside a paragraph");
                     out.pop();
@@ -322,7 +322,7 @@ impl Site {
         Ok(html(out))
     }
 
-    /// Output address of a link of the guide.
+    /// Returns the output address of a link of the guide.
     fn link(&self, address: &str) -> Result<String> {
         if address.starts_with("https://") {
             return Ok(address.to_owned());
@@ -335,7 +335,7 @@ impl Site {
     }
 }
 
-/// A picture that runs its scene on a click, with the scene's description.
+/// Returns a picture that runs its scene on a click, with the scene's description.
 fn figure(scene: &str, about: &str) -> String {
     let about = escaped(about);
     format!(
@@ -344,7 +344,7 @@ fn figure(scene: &str, about: &str) -> String {
     )
 }
 
-/// A page of text.
+/// Returns a page of text.
 pub fn page(title: &str, body: &str) -> String {
     let title = escaped(title);
     format!(

@@ -16,7 +16,7 @@ impl Check {
     /// Runs format, lints, house rules and the tests of changed crates, in this order, up to the first failure.
     ///
     /// # Errors
-    /// If one fails, or git fails.
+    /// If a check fails, or git fails.
     pub fn run(&self) -> Result<()> {
         let changed = self.changed()?;
         ci::fmt()?;

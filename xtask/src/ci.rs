@@ -24,7 +24,7 @@ impl Ci {
     /// Runs every check, also after a failure.
     ///
     /// # Errors
-    /// If one fails, with the names of those that did.
+    /// If a check fails, with the names of the failed ones.
     pub fn run(&self) -> Result<()> {
         let coverage = if self.full { Coverage::All } else { Coverage::Diagonal };
         let mut failed = Vec::new();
@@ -97,8 +97,8 @@ fn peers() -> Result<()> {
     command::run(clippy.args(["--", "-D", "warnings"]))
 }
 
-/// Opens the viewer's window on its own display, drags and edits in it, compares its pictures with the committed ones, and opens all scenes
-/// many times. Without a driver it is skipped with a message.
+/// Opens the viewer's window on its own display, drags and edits in it, compares its pictures with the committed ones, and opens all scenes many
+/// times. Skips this with a message if there is no driver.
 fn window() -> Result<()> {
     command::provide("Xvfb", "xvfb")?;
     command::provide("xdotool", "xdotool")?;
@@ -151,23 +151,23 @@ fn bevy_window(example: &str, at: &str) -> Result<()> {
     Ok(())
 }
 
-/// Checks that crates can be published: metadata, licences, versions of internal crates. Other checks cover compilation.
+/// Checks that crates can be published: metadata, licences, versions of internal crates. Other checks compile them.
 fn packages() -> Result<()> {
-    // These two are not published.
+    // These two crates are not published.
     let not = ["--exclude", "xtask", "--exclude", "needs_data"];
     let mut package = command::cargo(&["package", "--workspace", "--no-verify"]);
     package.args(not);
     let out =
         package.args(["--allow-dirty", "--target-dir"]).arg(command::target().join("packages")).output()?;
     let errors_text = String::from_utf8_lossy(&out.stderr);
-    // A package without a description or a licence is a warning only.
+    // Cargo only warns about a package without a description or a licence.
     if !out.status.success() || errors_text.contains("warning") {
         bail!("{errors_text}");
     }
     Ok(())
 }
 
-/// Scenes that take minutes in a debug build.
+/// Runs the scenes that take minutes in a debug build.
 fn large_scenes() -> Result<()> {
     let test = ["test", "--release", "--package", "sinew_scenes", "--test", "it"];
     command::run(command::cargo(&test).args(["--", "--ignored"]))?;
@@ -196,8 +196,8 @@ fn serde() -> Result<()> {
     command::run(command::cargo(&test).args(["--", "serde::"]))
 }
 
-/// Every random case of tests that otherwise run a hundredth: boxes, every pair of shapes, trees and queries against brute
-/// force, damaged files, rigs in many variants.
+/// Runs every random case of tests that otherwise run a hundredth: boxes, every pair of shapes, trees and queries against brute force, damaged files,
+/// rigs in many variants.
 fn all_cases() -> Result<()> {
     let mut test = command::cargo(&["test", "--release", "--package", "sinew_geometry"]);
     test.args(["--package", "sinew_physics", "--package", "sinew_formats", "--package", "sinew_ragdoll"]);
@@ -284,11 +284,11 @@ fn documentation() -> Result<()> {
 /// Bound on a figure of the demo's report (spec §4).
 #[derive(Clone, Copy, Debug)]
 enum Gate {
-    /// Equal.
+    /// Equal to a value.
     Is(f64),
-    /// Strictly below.
+    /// Strictly below a value.
     Below(f64),
-    /// The value is not null: the event happened.
+    /// Not null: the event happened.
     Happened,
 }
 
@@ -368,7 +368,7 @@ mod tests {
         );
     }
 
-    /// A filter that fits no test would run none, and nobody would notice.
+    /// A filter that fits no test would run none without an error.
     #[test]
     fn every_filter_fits_a_test() {
         let crates = command::root().join("crates");

@@ -29,7 +29,7 @@ pub fn cargo(arguments: &[&str]) -> Command {
 /// Runs `command` with its output on the console.
 ///
 /// # Errors
-/// If it does not start, or does not exit with 0.
+/// If the command does not start, or does not exit with 0.
 pub fn run(command: &mut Command) -> Result<()> {
     eprintln!("$ {}", shown(command));
     let status = command.status().with_context(|| format!("cannot start `{}`", shown(command)))?;
@@ -42,7 +42,7 @@ pub fn run(command: &mut Command) -> Result<()> {
 /// Runs `command` and returns its stdout; stderr goes to the console.
 ///
 /// # Errors
-/// If it does not start, does not exit with 0, or writes something that is not UTF-8.
+/// If the command does not start, does not exit with 0, or writes something that is not UTF-8.
 pub fn output(command: &mut Command) -> Result<String> {
     let output = command
         .stderr(Stdio::inherit())
@@ -57,22 +57,23 @@ pub fn output(command: &mut Command) -> Result<String> {
 /// Runs `command` and parses its stdout as one JSON value.
 ///
 /// # Errors
-/// As [`output`], and if stdout is anything but one JSON value.
+/// The errors of [`output`], and if stdout is anything but one JSON value.
 pub fn output_json(command: &mut Command) -> Result<Value> {
     let text = output(command)?;
     serde_json::from_str(&text).with_context(|| format!("`{}`: stdout is not one JSON value", shown(command)))
 }
 
-/// True if there is a program of that name.
+/// Returns true if there is a program of that name.
 pub fn answers(program: &str) -> bool {
     let mut command = Command::new(program);
     command.arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
 }
 
-/// Installs Debian's `package` unless `program` exists. A fresh machine has no package lists yet.
+/// Installs Debian's `package` unless `program` exists. Reads the package lists first, which a fresh machine
+/// lacks.
 ///
 /// # Errors
-/// If that fails.
+/// If the installation fails.
 pub fn provide(program: &str, package: &str) -> Result<()> {
     if answers(program) {
         return Ok(());
@@ -85,16 +86,16 @@ pub fn provide(program: &str, package: &str) -> Result<()> {
 /// Build profile of the `sinew` binary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Profile {
-    /// Overflow checks and debug assertions on.
+    /// Debug build, with overflow checks and debug assertions.
     Debug,
-    /// The users' profile.
+    /// Release build, the users' profile.
     Release,
 }
 
 /// Builds the command line without its window and returns the path of its binary.
 ///
 /// # Errors
-/// If it does not compile.
+/// If the command line does not compile.
 pub fn build_sinew(profile: Profile) -> Result<PathBuf> {
     let mut command = cargo(&["build", "--package", "sinew_cli"]);
     if profile == Profile::Release {
@@ -106,7 +107,7 @@ pub fn build_sinew(profile: Profile) -> Result<PathBuf> {
 /// Runs `command`, a `cargo build`, and returns the path of the executable `name` in any target folder.
 ///
 /// # Errors
-/// If it does not compile.
+/// If the build fails.
 pub fn build(command: &mut Command, name: &str) -> Result<PathBuf> {
     command.args(["--message-format", "json-render-diagnostics"]);
     eprintln!("$ {}", shown(command));

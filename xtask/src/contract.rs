@@ -9,18 +9,18 @@ pub const PATH: &str = "docs/contract.md";
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
     commands: Vec<String>,
-    /// Path to the value: names with dots between; `[]` after a name goes into each element.
+    /// Path to the value: names with dots between; `[]` after a name selects each element.
     pub key: String,
     kind: String,
     presence: Presence,
-    /// Command and key of an object with the same keys.
+    /// Command and key of another object that has the same keys.
     like: Option<(String, String)>,
     /// Line number, from 1.
     pub line: usize,
 }
 
 impl Row {
-    /// True if both rows give the same key to one command.
+    /// Returns true if both rows give the same key to one command.
     pub fn repeats(&self, other: &Self) -> bool {
         other.key == self.key && other.commands.iter().any(|command| self.commands.contains(command))
     }
@@ -114,7 +114,7 @@ pub fn violations(rows: &[Row], command: &str, output: &Value) -> Vec<String> {
     violations
 }
 
-/// Returns the values reached from `values` along `path`. Skips absent ones, which have rows of their own.
+/// Returns the values reached from `values` along `path`. Skips absent values; other rows check them.
 fn descend<'a>(values: Vec<&'a Value>, path: &[&str]) -> Vec<&'a Value> {
     path.iter().fold(values, |values, step| match step.strip_suffix("[]") {
         Some(name) => values.iter().filter_map(|value| value[name].as_array()).flatten().collect(),

@@ -187,7 +187,7 @@ impl Formula {
                 _ => {
                     out += &self.product()?;
                     self.skip();
-                    // A product ends at a sign, a closing bracket, or the end.
+                    // A product ends at a sign, a closing bracket, or the end of the formula.
                     if !matches!(self.tokens.peek(), Some(Token::Operator(_))) {
                         return Some(out);
                     }
@@ -202,7 +202,7 @@ impl Formula {
         while let Some(&Token::Over(takes_all)) = self.tokens.peek() {
             self.tokens.next();
             let below = self.factors(takes_all)?;
-            // After a sum, a narrow fraction is its term; a wide one contains the sum in its numerator.
+            // After a sum, a narrow fraction is the last term; a wide one has the whole sum as its numerator.
             let after_sum = out.rfind(SUM).map_or(0, |at| if takes_all { 0 } else { at + SUM.len() });
             let above = out.split_off(after_sum);
             out += &format!("<mfrac>{}{}</mfrac>", row(&above), row(&below));
@@ -241,7 +241,7 @@ impl Formula {
         }
     }
 
-    /// True if a bar opens, because no end follows. Inside bars the first bar closes.
+    /// Returns true if a bar opens, because no end follows. Inside bars the first bar closes.
     fn opens(&self) -> bool {
         let mut ahead = self.tokens.clone();
         ahead.next();
@@ -329,7 +329,7 @@ impl Formula {
     }
 }
 
-/// One part of a fraction, without enclosing brackets.
+/// Returns one part of a fraction, without enclosing brackets.
 fn row(content: &str) -> String {
     let bare =
         content.strip_prefix("<mrow><mo>(</mo>").and_then(|rest| rest.strip_suffix("<mo>)</mo></mrow>"));
@@ -342,7 +342,7 @@ fn row(content: &str) -> String {
 mod tests {
     use super::mathml;
 
-    /// Text of a formula without tags, with fractions as `{a|b}`.
+    /// Returns the text of a formula without tags, with fractions as `{a|b}`.
     fn read(code: &str) -> String {
         let html = mathml(code, false).unwrap_or_else(|| panic!("{code} is a formula"));
         let html = html.replace("<mfrac>", "{").replace("</mfrac>", "}").replace("</mrow><mrow>", "|");

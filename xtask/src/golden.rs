@@ -56,7 +56,7 @@ pub enum Coverage {
 /// Runs the scenes and compares with the committed hashes.
 ///
 /// # Errors
-/// As [`Golden::run`].
+/// The errors of [`Golden::run`].
 pub fn check(coverage: Coverage) -> Result<()> {
     verify(match coverage {
         Coverage::Diagonal => DIAGONAL,
@@ -90,7 +90,7 @@ impl std::fmt::Display for GoldenHash {
     }
 }
 
-/// Steps and hash of a scene as committed.
+/// Returns the committed steps and hash of a scene.
 ///
 /// # Errors
 /// If there is no such scene.
@@ -114,7 +114,7 @@ fn parse(text: &str) -> Result<Vec<GoldenHash>> {
     text.lines().enumerate().map(line).collect()
 }
 
-/// Hashes of all scenes listed by the command line, for the steps in `known`.
+/// Returns the hashes of all scenes listed by the command line, for the steps in `known`.
 fn observe(known: &[GoldenHash], variants: &[Variant]) -> Result<Vec<GoldenHash>> {
     let binaries =
         |profile| variants.iter().find(|&&(p, _)| p == profile).map(|_| command::build_sinew(profile));
@@ -162,7 +162,7 @@ fn hash(binary: &Path, scene: &str, steps: u32, threads: u32) -> Result<String> 
     Ok(hash.with_context(|| format!("`sinew run {scene} --json`: no `hash` of 16 digits"))?.to_owned())
 }
 
-/// One line per scene that is new, removed or different.
+/// Returns one line per scene that is new, removed or different.
 fn differences(committed: &[GoldenHash], found: &[GoldenHash]) -> Vec<String> {
     let of = |list: &[GoldenHash], scene: &str| list.iter().find(|golden| golden.scene == scene).cloned();
     let mut lines = Vec::new();

@@ -1,4 +1,4 @@
-//! The start page and the guide's pages around the viewer's.
+//! Writes the start page and the guide's pages around the viewer's.
 
 use crate::bench;
 use crate::chapters::{self, Pages};
@@ -77,7 +77,7 @@ const API: [(&str, &str); 6] = [
     ("World files", "full_world_files.html"),
 ];
 
-/// Texts outside the guide that have a page: file and name.
+/// Texts outside the guide that become pages: file and name.
 const TEXTS: [(&str, &str); 8] = [
     ("docs/python.md", "python"),
     ("docs/python-api.md", "python-api"),
@@ -105,7 +105,7 @@ pub struct Facts<'a> {
     pub chapters: &'a [String],
 }
 
-/// Writes the start page, the viewer's, and those of the guide.
+/// Writes the start page, the viewer's page, and the pages of the guide.
 ///
 /// # Errors
 /// If a text, a picture or a figure is missing.
@@ -157,7 +157,7 @@ pub fn write(root: &Path, folder: &Path, facts: &Facts<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Titles and files of the guide's pages, in their order; the book is elsewhere.
+/// Returns titles and files of the guide's pages, in their order; the book is elsewhere.
 fn contents(root: &Path) -> Result<Vec<(String, String)>> {
     let text = fs::read_to_string(root.join(CONTENTS)).context(CONTENTS)?;
     let page = |line: &str| {
@@ -168,7 +168,7 @@ fn contents(root: &Path) -> Result<Vec<(String, String)>> {
     Ok(text.lines().filter_map(page).collect())
 }
 
-/// The guide's pages, and the texts beside it.
+/// Writes the guide's pages, and the texts beside it.
 fn pages(root: &Path, folder: &Path, guide: &[(String, String)]) -> Result<()> {
     let mut known = Pages::default();
     let last = |path: &str| path.rsplit('/').next().unwrap_or(path).to_owned();
@@ -206,7 +206,7 @@ fn pages(root: &Path, folder: &Path, guide: &[(String, String)]) -> Result<()> {
     Ok(())
 }
 
-/// The cards of the gallery; their pictures are copied.
+/// Returns the cards of the gallery, and copies their pictures.
 fn gallery(root: &Path, folder: &Path) -> Result<String> {
     let mut html = String::new();
     fs::create_dir_all(folder.join("gallery"))?;
@@ -242,7 +242,7 @@ fn ways(source: Option<&str>) -> String {
     html
 }
 
-/// Number of scenes with committed hashes.
+/// Returns the number of scenes in the sources.
 fn scene_count(root: &Path) -> Result<usize> {
     Ok(chapters::sources(root)?.matches("    chapter: Chapter::").count())
 }

@@ -22,7 +22,7 @@ impl NewUser {
     /// Tests the library, and the plugin on request.
     ///
     /// # Errors
-    /// As [`library`] and [`bevy`].
+    /// The errors of [`library`] and [`bevy`].
     pub fn run(&self) -> Result<()> {
         library()?;
         if self.bevy { bevy() } else { Ok(()) }
@@ -32,16 +32,16 @@ impl NewUser {
 /// Builds and runs the programs of README and of the guide's first chapter in release builds.
 ///
 /// # Errors
-/// If one fails.
+/// If a program fails.
 pub fn library() -> Result<()> {
     let dependencies = format!("sinew = {{ path = {:?} }}\n", command::root().join("crates/sinew"));
     PAGES.iter().try_for_each(|&(page, name)| project(name, page, &dependencies, &["--release"]))
 }
 
-/// Builds and runs the program of the plugin's README with the dependencies that it lists, in a debug build, which takes half the time.
+/// Builds and runs the program of the plugin's README with its listed dependencies, in a debug build, which takes half the time.
 ///
 /// # Errors
-/// If it does not build or run, or lists no dependencies.
+/// If the program does not build or run, or lists no dependencies.
 pub fn bevy() -> Result<()> {
     let text = read(BEVY_PAGE)?;
     let printed = blocks(&text, "toml").into_iter().find(|block| block.contains("bevy_app"));
@@ -59,7 +59,7 @@ pub fn read(page: &str) -> Result<String> {
     fs::read_to_string(command::root().join(page)).with_context(|| page.to_owned())
 }
 
-/// Makes a project with each Rust block of a page as a program in an empty folder, and runs all.
+/// Creates a project in an empty folder with each Rust block of a page as a program, and runs all.
 fn project(name: &str, page: &str, dependencies: &str, profile: &[&str]) -> Result<()> {
     let folder = std::env::temp_dir().join(format!("sinew-new-user-{name}-{}", std::process::id()));
     fs::create_dir_all(folder.join("src/bin")).with_context(|| folder.display().to_string())?;
@@ -98,7 +98,7 @@ fn whole(program: &str) -> String {
     if program.contains("fn main()") { program.to_owned() } else { format!("fn main() {{\n{program}}}\n") }
 }
 
-/// Returns fenced blocks of a language as printed, without lines that only tests see.
+/// Returns fenced blocks of a language as printed, without lines that only tests use.
 pub fn blocks(text: &str, language: &str) -> Vec<String> {
     let mut blocks = Vec::new();
     let mut open: Option<(bool, String)> = None;
@@ -140,7 +140,7 @@ mod tests {
         assert!(printed.iter().all(|block| block.contains("bevy_sinew = ")) && printed.len() == 2);
     }
 
-    /// The package `window` compiles the file, the page shows it.
+    /// The page shows the program that the package `window` compiles.
     #[test]
     fn program_with_a_window_is_the_compiled_one() {
         let shown = blocks(&read(BEVY_PAGE).expect("it is there"), "rust,ignore").swap_remove(0);

@@ -1,4 +1,4 @@
-//! The npm package `sinew-physics`: built, packed, and tested as its users have it, in Node and in a browser.
+//! Builds, packs and tests the npm package `sinew-physics`, like its users, in Node and in a browser.
 
 use crate::command;
 use crate::ragdolls;
@@ -51,7 +51,7 @@ impl Npm {
 /// Builds and tests the package, for `cargo xtask ci --full`.
 ///
 /// # Errors
-/// As [`Npm::run`].
+/// The errors of [`Npm::run`].
 pub fn check() -> Result<()> {
     Npm { out: "out/npm".into(), check: true, measure: false }.run()
 }
@@ -67,7 +67,7 @@ fn target() -> PathBuf {
     command::target().join("bindings")
 }
 
-/// The folder with the tools of the tests, installed by their lock file.
+/// Returns the folder with the tools of the tests, installed by their lock file.
 fn tools() -> Result<PathBuf> {
     command::provide("npm", "npm")?;
     let folder = command::target().join("npm");
@@ -128,11 +128,11 @@ fn types(package: &Path, tools: &Path) -> Result<()> {
     command::run(compiler.arg("--project").arg(tools).arg("--outDir").arg(package))
 }
 
-/// Hashes and times of the native library for the same scenes; `flags` are the compiler's.
+/// Returns hashes and times of the native library for the same scenes; `flags` are the compiler's.
 fn native(flags: &str, arguments: &[&str]) -> Result<Value> {
     let mut build =
         command::cargo(&["build", "--locked", "--manifest-path", MANIFEST, "--package", "sinew_web"]);
-    // Separate folders, so that neither rebuilds the other.
+    // Uses separate folders, so that neither build replaces the other.
     let folder = if flags.is_empty() { target() } else { target().join("narrow") };
     build.args(["--release", "--example", "native", "--target-dir"]).arg(folder).env("RUSTFLAGS", flags);
     let program = command::build(&mut build, "native")?;
@@ -151,7 +151,7 @@ fn tried(out: &Path, tarball: &Path) -> Result<()> {
     run_tests("check.mjs", out, tarball, &native("", &[])?)
 }
 
-/// Times of the native library for comparison, as it is and without 256-bit registers.
+/// Measures the package beside the native library, as built by default and without 256-bit registers.
 fn measured(out: &Path, tarball: &Path) -> Result<()> {
     let mut times = native("", &["--measure"])?;
     times["narrow"] = native("--cfg sinew_narrow", &["--measure"])?["times"].take();

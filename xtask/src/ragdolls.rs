@@ -59,7 +59,7 @@ impl Ragdolls {
                 Measured::Built(report) => {
                     rows.row(row(name, report));
                     let reasons_text = report["quality"]["reasons"].as_array().into_iter().flatten();
-                    // Skip the note that no clip is played: the page states it once.
+                    // Skips the note that no clip is played: the page states it once.
                     for reason in reasons_text
                         .filter_map(Value::as_str)
                         .filter(|reason| !reason.starts_with("hand-over"))
@@ -79,11 +79,11 @@ impl Ragdolls {
     }
 }
 
-/// Result of a rig.
+/// Result of building a rig's ragdoll.
 pub enum Measured {
     /// Report of `ragdoll build`.
     Built(Value),
-    /// The error message.
+    /// Error message of a refused file.
     Refused(String),
 }
 

@@ -37,7 +37,7 @@ impl Sample {
     }
 }
 
-/// Returns the lines of a file that have words for people, each with its place.
+/// Returns the lines of a file with words for people, each with its path and number.
 fn lines(file: &File) -> Vec<String> {
     let mut is_code = false;
     let mut lines = Vec::new();
@@ -65,7 +65,7 @@ fn words<'a>(path: &str, line: &'a str) -> Option<&'a str> {
     }
 }
 
-/// Takes `count` of the lines at random.
+/// Returns `count` of the lines, drawn at random.
 fn pick(mut lines: Vec<String>, seed: u64, count: usize) -> Vec<String> {
     let mut state = seed;
     for taken in 0..count.min(lines.len()) {

@@ -12,8 +12,8 @@ const CHUNK: f64 = 5.0;
 
 /// `cargo xtask lives`: random lives of worlds, or of characters in them, from the seed at which the last run ended.
 ///
-/// Each chunk of five minutes adds a line to a file outside the repository: seeds, lives, calls, failures. The search ends at the first chunk with a failure, which it
-/// prints as a short program.
+/// Each chunk of five minutes adds a line to a file outside the repository: seeds, lives, calls, failures. The search ends at the first chunk with a
+/// failure, and prints the failure as a short program.
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask lives --of characters --minutes 60")]
 pub struct Lives {
@@ -43,7 +43,7 @@ enum Of {
 }
 
 impl Of {
-    /// Name of its file, package, test target and test.
+    /// Returns the name of the search's file, its package, test target and test.
     fn test(self) -> (&'static str, [&'static str; 3]) {
         match self {
             Self::Worlds => ("lives", ["sinew_physics", "lives", "lives_hold"]),
@@ -80,7 +80,7 @@ impl Lives {
     }
 }
 
-/// Returns the folder for the state of this user's programs.
+/// Returns the folder for the state of the user's programs.
 fn folder_of_state() -> Result<PathBuf> {
     let home = || env::var_os("HOME").map(|home| PathBuf::from(home).join(".local/state"));
     let state = env::var_os("XDG_STATE_HOME").map(PathBuf::from).or_else(home);

@@ -54,7 +54,7 @@ fn hero(bytes: &[u8]) -> Option<(World, Character)> {
     Some((world, hero))
 }
 /// # Safety
-/// `bytes` points to `length` bytes.
+/// `bytes` must point to `length` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn load(bytes: *const u8, length: usize) -> bool {
     let bytes = unsafe { core::slice::from_raw_parts(bytes, length) };
@@ -95,7 +95,7 @@ impl Sizes {
     }
 }
 
-/// Returns the bytes of a program, and of the same packed by `gzip -9`.
+/// Returns the bytes of a program, and its bytes after `gzip -9`.
 fn measure(name: &str, program: &str, flags: &str, opt: char) -> Result<[usize; 2]> {
     let folder = command::target().join("sizes").join(name);
     fs::create_dir_all(folder.join("src"))?;

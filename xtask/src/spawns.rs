@@ -59,7 +59,8 @@ fn check_in(binary: &Path, folder: &Path, spawns: u32) -> Result<()> {
     Ok(())
 }
 
-/// Returns the number of falls that miss a bar. A report without it, or of another number of falls, is an error.
+/// Returns the number of falls that miss a bar. A report without that number, or of another number of falls, is
+/// an error.
 fn broken(gate: &Value, spawns: u32) -> Result<u64> {
     ensure!(gate["spawns"] == spawns, "the report has {} falls, not {spawns}", gate["spawns"]);
     gate["failed"].as_u64().context("`quality.gate.failed` is missing")

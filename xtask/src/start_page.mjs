@@ -1,4 +1,4 @@
-// Trials of the start page in a browser, and its pictures: called by `browser.mjs`.
+// Tests of the start page in a browser, and its pictures: called by `browser.mjs`.
 import { basename } from 'node:path';
 
 // Width and height: a phone, a tablet, a laptop, a large screen, a small window.
@@ -8,7 +8,7 @@ const SIZES = [[390, 844], [768, 1024], [1280, 800], [1920, 1080], [800, 600]];
 const WATCHED_S = 15;
 const FALL_S = 3.2;
 const MOMENTS_S = [0.6, 1.8, 3, 5, 8, 11, 14];
-// The subject's middle stays this far from the edges, as a share of the picture.
+// Least distance of the subject's middle from the edges, as a share of the picture.
 const EDGE = 0.12;
 // Least contrast of text, by WCAG 2 AA.
 const CONTRAST = 4.5;
@@ -25,7 +25,7 @@ async function opened(browser, url) {
   await browser.until('the demo', async () => (await browser.said()).steps > 1);
 }
 
-// Rectangle of an element in the window.
+// Returns the rectangle of an element in the window.
 function place(browser, element) {
   return browser.ask(`(() => { const { x, y, width, height } = ${element}.getBoundingClientRect(); return { x, y, width, height }; })()`);
 }
@@ -39,7 +39,7 @@ async function clicked(browser, element) {
 
 const button = (order) => `document.querySelector('[data-order=${order}]')`;
 
-// The subject stays in the picture for the whole run, and the picture is in the window without scrolling.
+// Checks that the subject stays in the picture for the whole run, and that the picture is in the window without scrolling.
 async function watched(browser, name, seconds) {
   const { y, height } = await place(browser, canvas);
   const inner = await browser.ask('innerHeight');
@@ -97,7 +97,7 @@ async function wrongScene(browser, site, way) {
   return links;
 }
 
-// Built-in characters, files of the picker, and a scene of the gallery.
+// Checks built-in characters, files of the picker, and a scene of the gallery.
 async function chosen(browser, url, files) {
   await opened(browser, url);
   for (const sample of ['braids', 'cape', 'mannequin']) {
@@ -117,7 +117,7 @@ async function chosen(browser, url, files) {
   await browser.until(scene, async () => { const said = await browser.said(); return said.scene === scene && said.steps > 5; });
 }
 
-// Names, alternative texts, contrast, and a way out by the keyboard.
+// Checks names, alternative texts, contrast, and that the keyboard can leave the picture.
 async function accessible(browser) {
   const nameless = await browser.ask(`[...document.querySelectorAll('a, button, input')].filter((it) =>
     !(it.innerText.trim() || it.ariaLabel || it.querySelector('img')?.alt)).map((it) => it.outerHTML)`);
@@ -167,7 +167,7 @@ async function still(browser, url) {
   await browser.send('Emulation.setEmulatedMedia', { features: [] });
 }
 
-// The start page by one way to draw: all of it by the first, the demo alone by others.
+// Tests the start page with one way to draw: all of it with the first way, the demo alone with others.
 export async function startPage(browser, way, site, drop) {
   const url = `${site}?gpu=${way}`;
   const told = {};
@@ -203,7 +203,7 @@ export async function startPage(browser, way, site, drop) {
   return told;
 }
 
-// The pictures of the start page: the demo as it begins, and the scenes of the gallery.
+// Draws the pictures of the start page: the first frame of the demo, and the scenes of the gallery.
 export async function drawn(browser, site, gallery) {
   const shoot = async (name, address, width, height) => {
     await browser.size(width, height);

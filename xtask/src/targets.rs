@@ -1,4 +1,4 @@
-//! Other processors: the code builds for them, and WebAssembly computes the bits of x86-64.
+//! Other processors: builds the code for them, and checks that WebAssembly computes the bits of x86-64.
 
 use crate::command;
 use anyhow::Result;
@@ -13,7 +13,7 @@ const PROGRAM: &str = "wasm32-wasip1";
 /// Target of phones and of some desktops.
 const ARM: &str = "aarch64-unknown-linux-gnu";
 
-/// Runs such a program in Node.
+/// Script that runs such a program in Node.
 const RUNNER: &str = "xtask/src/wasi.mjs";
 
 /// Tests that compare the eight lanes and their kernels with hashes of all processors. Only these are run here.
@@ -22,7 +22,7 @@ const SOUP: &str = "golden_soup";
 /// Compiles the library for the browser.
 ///
 /// # Errors
-/// If that fails.
+/// If the build fails.
 pub fn browser() -> Result<()> {
     build_for(BROWSER, &["build", "--package", "sinew"])
 }
@@ -30,7 +30,7 @@ pub fn browser() -> Result<()> {
 /// Compiles for aarch64, without running.
 ///
 /// # Errors
-/// If that fails.
+/// If the build fails.
 pub fn arm() -> Result<()> {
     build_for(ARM, &["check", "--package", "sinew_math"])
 }
@@ -47,7 +47,7 @@ fn build_for(target: &str, arguments: &[&str]) -> Result<()> {
 /// Checks that the golden soup has the same bits in Node, with vectors and without.
 ///
 /// # Errors
-/// If the bits differ, or it does not compile.
+/// If the bits differ, or the test does not compile.
 pub fn soup() -> Result<()> {
     if let Err(missing) = add(PROGRAM).and_then(|()| command::provide("node", "nodejs")) {
         eprintln!("{missing:#}");
@@ -73,7 +73,7 @@ fn soup_with(flags: &str, tests: &[&str]) -> Result<()> {
 /// Adds a target to the toolchain.
 ///
 /// # Errors
-/// If that fails.
+/// If the installation fails.
 pub fn add(target: &str) -> Result<()> {
     command::run(Command::new("rustup").args(["target", "add", target]))
 }

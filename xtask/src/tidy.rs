@@ -1,8 +1,8 @@
 //! House rules that no compiler checks. Each rule is one file and one function from the repository to
 //! findings; a test beside it plants a violation and expects its finding.
 //!
-//! The rules read tokens, not types ([`lexer`]): comments and strings never trigger them, but they miss names that are reached
-//! through a macro or an alias. Rules that need types are in `clippy.toml` (`disallowed-methods`).
+//! The rules read tokens, not types ([`lexer`]): comments and strings never trigger a rule, but the rules miss names that are
+//! reached through a macro or an alias. Rules that need types are in `clippy.toml` (`disallowed-methods`).
 
 mod arrows;
 mod bits;
@@ -67,7 +67,7 @@ impl Tidy {
     /// Prints violations of the rules, one line each.
     ///
     /// # Errors
-    /// If there is one, or the repository cannot be read.
+    /// If there is a violation, or the repository cannot be read.
     pub fn run(&self) -> Result<()> {
         let repo = Repo::read()?;
         if self.table {
@@ -109,7 +109,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// `line` counts from 1.
+    /// Creates a finding; `line` counts from 1.
     pub fn new(file: &str, line: usize, message: impl Into<String>) -> Self {
         Self { file: file.to_owned(), line, message: message.into() }
     }
@@ -134,7 +134,7 @@ impl File {
         self.path.ends_with(".rs")
     }
 
-    /// Name of the crate whose `src` folder holds this file.
+    /// Returns the name of the crate whose `src` folder holds this file.
     fn crate_of_source(&self) -> Option<&str> {
         let (name, inside) = self.path.strip_prefix("crates/")?.split_once('/')?;
         (self.is_rust() && inside.starts_with("src/")).then_some(name)
@@ -144,18 +144,18 @@ impl File {
         lexer::tokens(&self.text)
     }
 
-    /// Tokens without `#[cfg(test)]` items; none for a file that is all tests.
+    /// Returns the tokens without `#[cfg(test)]` items; none for a file of tests.
     fn tokens_without_tests(&self) -> Vec<Token<'_>> {
         let is_test = self.path.contains("/tests/") || self.path.ends_with("/tests.rs");
         if is_test { Vec::new() } else { lexer::without_tests(&self.tokens()) }
     }
 }
 
-/// The repository as the rules see it.
+/// The repository as input of the rules.
 pub struct Repo {
     /// Text files, by path.
     pub files: Vec<File>,
-    /// `cargo metadata --no-deps`.
+    /// Output of `cargo metadata --no-deps`.
     metadata: Value,
 }
 
@@ -180,14 +180,14 @@ impl Repo {
         self.files.iter().filter(|file| file.is_rust())
     }
 
-    /// Packages of the workspace.
+    /// Returns the packages of the workspace.
     fn packages(&self) -> impl Iterator<Item = &Value> {
         self.metadata["packages"].as_array().into_iter().flatten()
     }
 }
 
-/// Folders without source files. Build folders are named like `target` or `target-something`; `.git` is a file in a linked
-/// working tree.
+/// Returns true for a folder without source files. Build folders are named like `target` or `target-something`; `.git` is a
+/// file in a linked working tree.
 fn is_foreign(name: &str) -> bool {
     name == ".git" || name == "out" || name == "node_modules" || name.starts_with("target")
 }

@@ -68,7 +68,7 @@ impl Web {
 /// Builds and tests the page, for `cargo xtask ci --full`.
 ///
 /// # Errors
-/// As [`Web::run`].
+/// The errors of [`Web::run`].
 pub fn check() -> Result<()> {
     Web { out: "out/web".into(), address: String::new(), check: true, pictures: false }.run()
 }
@@ -108,7 +108,7 @@ fn build(folder: &Path, address: &str) -> Result<()> {
     Ok(())
 }
 
-/// Public address of the source, if the repository has one.
+/// Returns the public address of the source, if the repository has one.
 fn source() -> Option<String> {
     let mut git = Command::new("git");
     let address =
@@ -142,7 +142,7 @@ pub fn copy(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// `wasm-bindgen`, in the version of the lock file.
+/// Returns the path of `wasm-bindgen`, in the version of the lock file.
 pub fn binder() -> Result<PathBuf> {
     let lock = fs::read_to_string(command::root().join("Cargo.lock")).context("Cargo.lock")?;
     let after =
@@ -158,7 +158,7 @@ pub fn binder() -> Result<PathBuf> {
     Ok(program)
 }
 
-/// Bytes of a file after gzip.
+/// Returns the bytes of a file after gzip.
 pub fn gzipped(path: &Path) -> Result<u64> {
     let out = Command::new("gzip").args(["-9", "-c"]).arg(path).output().context("gzip")?;
     ensure!(out.status.success(), "gzip: {}", String::from_utf8_lossy(&out.stderr));
@@ -194,7 +194,7 @@ fn tried(folder: &Path) -> Result<()> {
     let scenes: Vec<Value> =
         SCENES.iter().zip(&expected).map(|(scene, (steps, _))| json!([scene, steps])).collect();
     let dropped = command::root().join(ragdolls::SHARED).join(DROPPED);
-    // Chromium reads no file by a path with `..`.
+    // Chromium does not read files by a path with `..`.
     let drop: Vec<PathBuf> = dropped.canonicalize().into_iter().collect();
     if drop.is_empty() {
         eprintln!("skipped: {DROPPED} is missing");
@@ -208,7 +208,7 @@ fn tried(folder: &Path) -> Result<()> {
                 bail!("{way}: {scene} has {found} after {steps} steps, elsewhere {hash}");
             }
         }
-        // A single attempt, regardless of other load: the limit is for an idle machine.
+        // Makes a single attempt, regardless of other load: the limit is for an idle machine.
         if answer["ready_again_ms"].as_u64().is_none_or(|ms| ms > MOST_MS) {
             eprintln!("{way}: more than {MOST_MS} ms to the first picture");
         }

@@ -42,7 +42,7 @@ pub struct Wild {
 struct Row {
     /// Path under ../shared/data.
     file: String,
-    /// `{"build","bake","build_s","bake_s"}`, or `{"refused"}`.
+    /// Report `{"build","bake","build_s","bake_s"}`, or `{"refused"}`.
     report: Value,
     /// Picture of the character after the fall.
     picture: PathBuf,
@@ -79,8 +79,8 @@ impl Wild {
     }
 }
 
-/// Correct and total roles per file, from the tests of `sinew_anim`, which have the expected roles. Built with the
-/// program's profile, so that nothing is compiled twice.
+/// Returns correct and total roles per file, from the tests of `sinew_anim`, which have the expected roles. Builds
+/// them with the program's profile, so that nothing is compiled twice.
 fn roles(out: &Path) -> Result<Value> {
     let path = out.join("roles.json");
     let test = [

@@ -1,8 +1,8 @@
 //! Instructions of the kernels, counted under valgrind, which do not depend on other load.
 //!
-//! Six scenes as whole steps (`scene_step`), then kernels, one character in each of its states (`character_step`: the world and its
-//! update), a hundred walkers with and without hit bodies (`walkers_step`), and springs (`springs_step`). `cargo xtask bench --counts` runs these and compares them with
-//! `bench/counts/baseline.txt`. Private code is measured as the step of a world that does little else.
+//! Six scenes as whole steps (`scene_step`), then kernels, one character in each of its states (`character_step`: the world and the character's
+//! update), a hundred walkers with and without hit bodies (`walkers_step`), and springs (`springs_step`). `cargo xtask bench --counts` runs these and
+//! compares them with `bench/counts/baseline.txt`. Private code is measured by the step of a world that does little else.
 
 use gungraun::Callgrind;
 use gungraun::prelude::*;
@@ -30,17 +30,17 @@ fn ragdoll(steps: u32) -> Instance {
     drop
 }
 
-/// The mannequin in the air, 0.2 s after release.
+/// Returns the mannequin in the air, 0.2 s after release.
 fn falling() -> Instance {
     ragdoll(12)
 }
 
-/// Landing: the busiest steps of the fall.
+/// Returns the mannequin while it lands: the busiest steps of the fall.
 fn landing() -> Instance {
     ragdoll(60)
 }
 
-/// A ragdoll at rest on the floor, awake.
+/// Returns a ragdoll at rest on the floor, awake.
 fn lying() -> Instance {
     ragdoll(95)
 }
@@ -54,14 +54,14 @@ fn ragdoll_step(mut drop: Instance) -> Instance {
     drop
 }
 
-/// Ten chains of a hundred links and a weight: factor and solve of long trees.
+/// Returns ten chains of a hundred links and a weight: factor and solve of long trees.
 fn chains() -> World {
     let (mut world, ..) = blueprint::chain_100_links().build();
     world.step();
     world
 }
 
-/// A box on a floor: a manifold of four points, and its complementarity problem.
+/// Returns a box on a floor: a manifold of four points, and its complementarity problem.
 fn lone_box() -> World {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     let cuboid = |half_extents, y| BodyDef {
@@ -79,7 +79,7 @@ fn lone_box() -> World {
 
 /// Returns `awake` balls in flight beside `asleep` boxes that sleep on a floor.
 fn beside_sleepers(awake: u32, asleep: u32) -> World {
-    // Resting bodies sleep at once.
+    // Resting bodies sleep after one step.
     let sleep_thresholds = SleepThresholds { time: 0.0, ..SleepThresholds::default() };
     let mut world = World::new(WorldDef { sleep_thresholds, ..WorldDef::default() });
     let body =
@@ -109,27 +109,27 @@ fn after(steps: u32, blueprint: &blueprint::Blueprint) -> World {
     world
 }
 
-/// Four figures of 15 bodies in a heap, still moving.
+/// Returns four figures of 15 bodies in a heap, still moving.
 fn ragdoll_pile() -> World {
     after(40, &blueprint::ragdoll_column(4))
 }
 
-/// 1,240 cubes, 8,555 manifolds.
+/// Returns a pyramid of 1,240 cubes with 8,555 manifolds.
 fn box_pyramid() -> World {
     after(1, &blueprint::box_pyramid())
 }
 
-/// A layer of 144 boxes that has landed.
+/// Returns a layer of 144 boxes that has landed.
 fn box_rain() -> World {
     after(50, &blueprint::box_rain_of(144))
 }
 
-/// The mannequin's ragdoll on its back, at rest and awake.
+/// Returns the mannequin's ragdoll on its back, at rest and awake.
 fn humanoid_lying() -> World {
     after(90, &blueprint::humanoid_lying())
 }
 
-/// 14 cubes with a figure fallen on them.
+/// Returns 14 cubes with a figure fallen on them.
 fn ragdoll_on_boxes() -> World {
     after(40, &blueprint::ragdoll_on_boxes(3))
 }
@@ -156,7 +156,7 @@ fn step(mut world: World) -> World {
     world
 }
 
-/// Pairs of a box and another shape that touch, or nearly.
+/// Number of pairs of a box and another shape that touch, or nearly.
 const PAIRS: usize = 64;
 
 type Placed = (Shape, Transform);
@@ -200,10 +200,10 @@ fn collide_64(pairs: Vec<(Placed, Placed)>) -> usize {
     points
 }
 
-/// Steps after which no search or allocation happens any more.
+/// Number of steps after which no search or allocation happens any more.
 const WARM: usize = 4;
 
-/// A hundred characters that each blend two clips of 50 joints, warm.
+/// Returns a hundred characters that each blend two clips of 50 joints, warm.
 fn crowd() -> Crowd {
     let mut crowd = Crowd::new(CrowdScene::new(100));
     for step in 0..WARM {
@@ -232,7 +232,7 @@ impl Actor {
     }
 }
 
-/// It walks for a second; then an action follows, and this many steps.
+/// Returns the mannequin after a second of walking, an action, and `steps` more steps.
 fn actor(done: fn(&mut World, &mut Character), steps: u32) -> Actor {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -352,7 +352,7 @@ impl Maned {
     }
 }
 
-/// The mannequin with eight strands around its head, each with a ball for the head as collider.
+/// Returns the mannequin with eight strands around its head, each with a ball for the head as collider.
 fn strands() -> CharacterDef {
     let mut rig = sinew::mannequin::mannequin().rig;
     let head = rig.joints.iter().position(|joint| joint.name == "head").expect("it has a head");
@@ -386,7 +386,7 @@ fn strands() -> CharacterDef {
     CharacterDef::new(rig, ragdoll, &analysis.bind_model)
 }
 
-/// Hair after a second of swinging and this many steps of easing.
+/// Returns hair after a second of swinging and `eased` steps of easing.
 fn maned(eased: u32) -> Maned {
     let mut maned = Maned { def: strands(), swings: vec![SpringSwing::new(); 100], frame: 0 };
     assert_eq!(maned.def.springs().joints().len(), 40);

@@ -10,13 +10,13 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 pub struct Operations {
     /// Number of multiplications.
     pub mul: u64,
-    /// Additions, subtractions, comparisons, minima and maxima: operations of an adder.
+    /// Number of additions, subtractions, comparisons, minima and maxima: operations of an adder.
     pub add: u64,
     /// Number of divisions.
     pub div: u64,
     /// Number of square roots.
     pub sqrt: u64,
-    /// Signs, masks and selections.
+    /// Number of signs, masks and selections.
     pub logic: u64,
 }
 
@@ -34,14 +34,14 @@ fn tick(field: impl Fn(&mut Operations) -> &mut u64) {
     });
 }
 
-/// Operations of a kernel.
+/// Returns the operations of a kernel.
 pub fn count<K: Kernel>(kernel: K) -> Operations {
     COUNT.set(Operations::default());
     kernel.run::<Counted>();
     COUNT.get()
 }
 
-/// One number for all eight lanes, since only the operations count.
+/// One number for all eight lanes, because only the operations count.
 #[derive(Clone, Copy)]
 pub struct Counted(f32);
 
@@ -89,7 +89,7 @@ impl LaneMask for CountedMask {
         if self.0 { u8::MAX } else { 0 }
     }
 
-    /// Always true: among eight lanes nearly always one continues.
+    /// Returns true: among eight lanes nearly always one continues.
     fn any(self) -> bool {
         true
     }

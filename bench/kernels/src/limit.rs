@@ -1,5 +1,5 @@
-//! Limit of the machine's arithmetic: additions, multiplications, both alternately, divisions and roots of eight lanes
-//! per second without dependencies.
+//! Measures the limit of the machine's arithmetic: additions, multiplications, both alternately, divisions and roots
+//! of eight lanes per second without dependencies.
 
 use crate::counted::Operations;
 use crate::seconds;
@@ -7,7 +7,7 @@ use sinew_math::dispatch::{self, Kernel, Level};
 use sinew_math::lanes::{Lanes, WIDTH};
 use std::hint::black_box;
 
-/// Operations of each chain in a run.
+/// Number of operations of each chain in a run.
 const LENGTH: u64 = 256;
 
 /// Repeated operation.
@@ -86,7 +86,7 @@ impl<const N: usize> Kernel for Chains<N> {
     }
 }
 
-/// Seconds of one operation on eight lanes, the smallest that was measured.
+/// Time of each operation on eight lanes, seconds: the smallest measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits([f64; OPERATIONS.len()]);
 
@@ -97,10 +97,10 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Adds a sample of each.
+    /// Adds a sample of each operation.
     pub fn measure(&mut self, level: Level) {
         for (operation, best) in OPERATIONS.into_iter().zip(&mut self.0) {
-            // As many chains as hide the latency and fit the registers; the number depends on the machine.
+            // The best number of chains hides the latency and fits the registers; it depends on the machine.
             let times = [
                 time::<4>(level, operation),
                 time::<6>(level, operation),

@@ -1,7 +1,7 @@
 //! Speed of the eight-lane kernels, beside the limit of the machine's arithmetic measured in the same minute.
 //!
-//! `cargo xtask bench --kernels` runs this and makes a table of it. The output has lines of
-//! `level kernel items_per_second limit_items_per_second`.
+//! `cargo xtask bench --kernels` runs this and prints a table of the output: lines of `level kernel
+//! items_per_second limit_items_per_second`.
 #![forbid(unsafe_code)]
 
 mod counted;
@@ -12,10 +12,11 @@ use limit::Limits;
 use sinew_math::dispatch::Level;
 use std::time::{Duration, Instant};
 
-/// Short samples, so that some run while the processor is free.
+/// Duration of a sample: so short that some samples run while the processor is free.
 const SAMPLE: Duration = Duration::from_micros(400);
 
-/// Samples of each figure. They are interleaved, so that a change of the clock rate affects all.
+/// Number of samples of each figure. They are interleaved, so that a change of the clock rate affects all
+/// figures.
 const ROUNDS: usize = 200;
 
 fn main() {
@@ -38,7 +39,7 @@ fn main() {
     }
 }
 
-/// Returns the time of a call, averaged over as many as fill a sample.
+/// Returns the mean time of a call in a sample, seconds.
 fn seconds(mut call: impl FnMut()) -> f64 {
     let start = Instant::now();
     let mut calls = 0_u32;

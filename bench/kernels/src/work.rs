@@ -1,4 +1,4 @@
-//! The kernels and their data.
+//! Kernels and their data.
 
 use crate::counted::{self, Operations};
 use sinew_geometry::boxes::Obb;
@@ -9,7 +9,7 @@ use sinew_math::dispatch::{self, Level};
 use sinew_math::{Random, Vec3};
 use std::hint::black_box;
 
-/// Number of points: with their answers they fit the second-level cache.
+/// Number of points: with their results they fit the second-level cache.
 const POINTS: usize = 8_192;
 
 /// Number of pairs, for the same reason.
@@ -50,7 +50,7 @@ pub fn all() -> Vec<Work> {
     ]
 }
 
-/// Returns a pose near the origin: about half of the pairs overlap.
+/// Returns a box near the origin: about half of the pairs overlap.
 fn cuboid(random: &mut Random) -> Obb {
     let mut half = || random.range(0.2, 0.8);
     let half_extents = Vec3::new(half(), half(), half());
@@ -58,7 +58,7 @@ fn cuboid(random: &mut Random) -> Obb {
 }
 
 impl Work {
-    /// Items of a run.
+    /// Returns the number of items of a run.
     pub fn items(&self) -> usize {
         match &self.kind {
             Kind::Contains { points, .. } | Kind::Distances { points, .. } => points.len(),

@@ -12,10 +12,10 @@ use sinew_scenes::crowd::CrowdScene;
 ///
 /// If an engine cannot run a scene it returns [`Unsupported`], never a similar scene.
 pub trait Engine: Sync {
-    /// Name, version and settings.
+    /// Returns name, version and settings.
     fn describe(&self) -> Description;
 
-    /// Fields of the engine; other scenes are skipped.
+    /// Returns the fields of the engine; other scenes are skipped.
     fn fields(&self) -> &'static [Field] {
         &[Field::Physics]
     }
@@ -26,7 +26,7 @@ pub trait Engine: Sync {
     /// If the engine lacks a feature.
     fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported>;
 
-    /// A cloth over obstacles.
+    /// Returns a cloth over obstacles.
     ///
     /// # Errors
     /// If the engine lacks a feature.
@@ -61,19 +61,19 @@ pub trait Engine: Sync {
 
 /// A world of bodies.
 pub trait Simulation {
-    /// One step of 1/60 s on the calling thread.
+    /// Takes one step of 1/60 s on the calling thread.
     fn step(&mut self);
 
     /// Replaces `out` by the state of every body, including static ones, in the blueprint's order.
     fn states(&self, out: &mut Vec<BodyState>);
 
-    /// True if a dynamic body is awake.
+    /// Returns true if a dynamic body is awake.
     fn is_awake(&self) -> bool;
 }
 
 /// A cloth and its obstacles.
 pub trait ClothSimulation {
-    /// One step of 1/60 s on the calling thread.
+    /// Takes one step of 1/60 s on the calling thread.
     fn step(&mut self);
 
     /// Replaces `out` by the state of every particle, row by row.
@@ -82,22 +82,23 @@ pub trait ClothSimulation {
 
 /// Static boxes for rays.
 pub trait RayCaster {
-    /// Returns how many of the scene's rays `range` hit a box; for each, the closest hit is found.
+    /// Returns the number of the scene's rays in `range` that hit a box; finds the closest hit of each.
     fn count_hits(&mut self, range: core::ops::Range<usize>) -> usize;
 }
 
 /// Pairs of boxes that may overlap.
 pub trait OverlapTester {
-    /// Returns how many of the pairs in `range` overlap.
+    /// Returns the number of the pairs in `range` that overlap.
     fn count_overlaps(&mut self, range: core::ops::Range<usize>) -> usize;
 }
 
 /// Characters that play clips.
 pub trait Crowd {
-    /// Samples both clips for every character at its times of this step, blends them, and computes model space.
+    /// Samples both clips for every character at its times of this step, blends them, and computes the model
+    /// poses.
     fn step(&mut self, step: usize);
 
-    /// Returns a character's result of the last step, which was `step`.
+    /// Returns a character's result of the last step, number `step`.
     fn pose(&mut self, character: usize, step: usize) -> CharacterPose;
 }
 
@@ -122,7 +123,7 @@ pub struct BodyState {
 }
 
 impl BodyState {
-    /// State of a body at rest.
+    /// Returns the state of a body at rest.
     pub fn at(position: Vec3, rotation: Rotation) -> Self {
         Self { world_from_body: Transform::new(position, rotation), ..Self::default() }
     }
@@ -146,12 +147,12 @@ pub struct Description {
     pub version: String,
     /// Compiler flags.
     pub flags: String,
-    /// Solver settings, in words; "defaults" first where they are.
+    /// Solver settings, in words; starts with "defaults" if the settings are the defaults.
     pub settings: String,
 }
 
 impl Description {
-    /// The description as part of a report.
+    /// Returns the description as part of a report.
     pub fn to_json(&self) -> Value {
         json!({
             "engine": self.name,
@@ -168,16 +169,16 @@ impl Description {
 pub struct Unsupported(String);
 
 impl Unsupported {
-    /// Takes the reason in words, lower case, without a full stop.
+    /// Creates the error from the reason in words, lower case, without a full stop.
     pub fn new(why: impl Into<String>) -> Self {
         Self(why.into())
     }
 }
 
-/// Half-angle of a limit whose swing is a circular cone, radians.
+/// Returns the half-angle of a limit whose swing is a circular cone, radians.
 ///
 /// # Errors
-/// If its sides differ: peers have cones only.
+/// If the limit's sides differ: peers have cones only.
 pub fn circular_cone(limit: &SwingTwistLimit) -> Result<f32, Unsupported> {
     let half = limit.swing_y.hi;
     let sides = [-limit.swing_y.lo, limit.swing_z.hi, -limit.swing_z.lo];
@@ -188,7 +189,7 @@ pub fn circular_cone(limit: &SwingTwistLimit) -> Result<f32, Unsupported> {
     }
 }
 
-/// Frame of a joint in its two bodies in the start pose.
+/// Returns the frames of a joint in its two bodies in the start pose.
 pub fn joint_frames(scene: &Blueprint, joint: &BlueprintJoint) -> [Transform; 2] {
     [joint.a, joint.b].map(|place| {
         let body = &scene.bodies[place];

@@ -1,5 +1,4 @@
-//! Cost of limp characters: each rig falls from random poses until it sleeps, and the processor time is compared with the simulated
-//! time.
+//! Cost of limp characters: each rig falls from random poses until it sleeps; compares the processor time with the simulated time.
 
 use crate::measure::quantile;
 use cpu_time::ProcessTime;
@@ -15,10 +14,10 @@ const HEIGHT: f32 = 0.3;
 /// Largest speed and spin at the start, m/s and rad/s.
 const SPEED: f32 = 2.0;
 const SPIN: f32 = 3.0;
-/// Steps after which an unfinished fall is given up.
+/// Number of steps after which an unfinished fall is given up.
 const MOST_STEPS: u32 = 1_200;
 
-/// Runs `falls` falls of each of the files' characters. Files without one that can be built are listed with the reason.
+/// Runs `falls` falls of each file's character. Lists the files without a character or ragdoll, with the reason.
 pub fn run(files: &[PathBuf], falls: u32) -> Value {
     let (mut factors, mut humanoids) = (Vec::new(), Vec::new());
     let characters: Vec<Value> = files
@@ -46,7 +45,7 @@ pub fn run(files: &[PathBuf], falls: u32) -> Value {
     })
 }
 
-/// The ragdoll of a file's character, and whether it is a humanoid.
+/// Returns the ragdoll of a file's character, and true if the character is a humanoid.
 fn character(file: &Path) -> Result<(RagdollDef, bool), String> {
     let rig = sinew::load(file).map_err(|error| error.to_string())?.rig;
     let analysis = analyze(&rig).map_err(|error| error.to_string())?;
@@ -54,7 +53,7 @@ fn character(file: &Path) -> Result<(RagdollDef, bool), String> {
     Ok((def, analysis.humanoid))
 }
 
-/// Simulated seconds per second of processor time, and the report.
+/// Returns the simulated seconds per second of processor time, and the report.
 fn fall_often(file: &Path, def: &RagdollDef, falls: u32) -> (f64, Value) {
     let (mut simulated, mut took, mut asleep) = (0.0, 0.0, 0);
     let mut random = Random::new(1);

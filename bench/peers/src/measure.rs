@@ -11,7 +11,7 @@ pub struct StepTimes {
 }
 
 impl StepTimes {
-    /// Runs `step` with its number `steps` times.
+    /// Runs `step` `steps` times, with its number as the argument.
     ///
     /// # Panics
     /// If `steps` is 0.
@@ -36,7 +36,8 @@ impl StepTimes {
         quantile(&self.milliseconds, 0.5)
     }
 
-    /// Returns it as part of a report; `last_third` is the median of the last third of the steps, when piles have settled.
+    /// Returns the times as part of a report; `last_third` is the median of the last third of the steps, when piles have
+    /// settled.
     pub fn to_json(&self) -> Value {
         let all = &self.milliseconds;
         json!({

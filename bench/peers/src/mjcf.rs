@@ -6,8 +6,8 @@ use sinew::math::{Transform, Vec3};
 use sinew::physics::{BodyKind, Shape};
 use sinew_scenes::blueprint::{self, Blueprint};
 
-/// Returns one figure as MJCF on a plane, the starts of the first bodies of all figures, and the boxes around, in the
-/// axes of the file: z up. Joints are at 0 in the file's pose as in the blueprint's start.
+/// Returns one figure as MJCF on a plane, the starts of the first bodies of all figures, and the surrounding boxes,
+/// in the axes of the file: z up. Joints are at 0 in the file's pose, as in the blueprint's start.
 pub fn mjcf(scene: &Blueprint) -> Value {
     let place = |at: &Transform| {
         let (p, r) = (at.translation, at.rotation);

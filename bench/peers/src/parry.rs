@@ -34,12 +34,12 @@ pub fn from_pose(pose: &Pose) -> Transform {
     Transform::new(from_vector(pose.translation), Rotation::from_xyzw(q.x, q.y, q.z, q.w))
 }
 
-/// Returns vertices and triangles of a shape that consists of them.
+/// Returns vertices and triangles of a mesh or height field; `None` for other shapes.
 pub fn triangles(shape: &Shape) -> Option<(Vec<Vec3>, Vec<[u32; 3]>)> {
     match shape {
         Shape::Mesh(mesh) => Some((mesh.vertices().to_vec(), mesh.triangles().collect())),
         Shape::HeightField(field) => {
-            // Corners by their places on the grid, so that triangles share them.
+            // Indexes corners by their places on the grid, so that triangles share them.
             let def = field.def();
             let [dx, dz] = def.spacing;
             let at = |i: usize| {
@@ -60,7 +60,7 @@ pub fn triangles(shape: &Shape) -> Option<(Vec<Vec3>, Vec<[u32; 3]>)> {
 /// Converts a shape.
 ///
 /// # Errors
-/// If Parry lacks its kind.
+/// If Parry lacks this kind of shape.
 pub fn shape(shape: &Shape) -> Result<SharedShape, Unsupported> {
     Ok(match *shape {
         Shape::Box { half_extents: h } => SharedShape::cuboid(h.x, h.y, h.z),

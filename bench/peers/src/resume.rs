@@ -1,4 +1,4 @@
-//! Runs of Sinew that start from a saved state: two builds are compared by times or by counts of instructions.
+//! Runs of Sinew that start from a saved state, to compare two builds by times or by counts of instructions.
 
 use crate::measure::StepTimes;
 use crate::run::Start;

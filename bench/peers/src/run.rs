@@ -1,4 +1,4 @@
-//! One scene on one engine: a run for the time, and optionally another for the quality.
+//! Runs one scene on one engine: for the time, and optionally again for the quality.
 
 use crate::engine::{BodyState, Engine, Unsupported};
 use crate::measure::{Memory, StepTimes};
@@ -11,15 +11,15 @@ use sinew_scenes::crowd::CrowdScene;
 /// Interval of the steps at which depths are measured.
 const PENETRATION_EVERY: usize = 10;
 
-/// Divisor of a crowd: one in this many characters is measured, another one after each step.
+/// Divisor of a crowd: one of this many characters is measured, a different one after each step.
 const CHARACTERS_EVERY: usize = 37;
 
-/// True if the run is repeated to measure its quality.
+/// Measurement of the quality by a second run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judging {
     /// Only time is measured.
     Off,
-    /// Another run, which is not timed, and is measured after every step.
+    /// A second run, which is not timed, is measured after every step.
     On,
 }
 
@@ -29,14 +29,14 @@ const ASIDE: f32 = 1e-4;
 /// Start of a scene: its blueprint's, or perturbed by a seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// The blueprint's.
+    /// Start of the blueprint.
     Own,
-    /// Bodies moved by up to 0.1 mm by this seed, equally in every engine.
+    /// Start with bodies moved by up to 0.1 mm by this seed, equally in every engine.
     Perturbed(u64),
 }
 
 impl Start {
-    /// Returns the same work from this start.
+    /// Returns the work with this start.
     pub fn of(self, work: Work) -> Work {
         match (self, work) {
             (Self::Perturbed(seed), Work::Bodies(scene)) => Work::Bodies(scene.perturbed(seed, ASIDE)),
@@ -47,7 +47,7 @@ impl Start {
 
 /// Returns the result as one JSON object; `"unsupported"` gives the reason for missing figures.
 ///
-/// `steps`: number of steps; the scene's own if `None`.
+/// `steps` is the number of steps; `None`: the scene's own.
 pub fn run(
     engine: &dyn Engine,
     scene: &Scene,

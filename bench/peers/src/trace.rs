@@ -16,10 +16,10 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// Share of a step that reading the processor's clock may take; otherwise the wall clock is read, which costs less.
+/// Largest share of a step for reading the processor's clock; above that the wall clock is read, which costs less.
 const CLOCK_SHARE: f64 = 0.02;
 
-/// Steps for the choice of the clock.
+/// Number of steps for the choice of the clock.
 const TRIAL: u32 = 3;
 
 /// Number of reads that measure a clock's cost.
@@ -30,9 +30,9 @@ const READS: u32 = 1_000;
 pub struct Trace<'a> {
     /// A scene of the peers, or else of `sinew scenes`.
     pub scene: &'a str,
-    /// Steps after the warm-up; as many as the scene has left if `None`.
+    /// Number of steps after the warm-up; `None`: the rest of the scene.
     pub steps: Option<u32>,
-    /// Steps before the trace; a third of the scene's if `None`.
+    /// Number of steps before the trace; `None`: a third of the scene's.
     pub warm_up: Option<u32>,
     /// Number of threads; stages and counts need one.
     pub threads: usize,
@@ -148,7 +148,7 @@ impl Trace<'_> {
     }
 }
 
-/// One traced step.
+/// Takes one traced step.
 fn traced(run: &mut Run, clock: Clock) -> Record {
     let recorder = Recorder::new(clock);
     let (wall, cpu) = (Instant::now(), ProcessTime::now());
@@ -158,7 +158,7 @@ fn traced(run: &mut Run, clock: Clock) -> Record {
     Record { cpu, wall, ..record }
 }
 
-/// Processor time, unless there are so many zones that reading it would affect the result.
+/// Chooses processor time, unless there are so many zones that reading it would affect the result.
 fn choose_clock(run: &mut Run, steps: u32) -> Clock {
     let trial: Vec<Record> = (0..steps).map(|_| traced(run, Clock::Wall)).collect();
     let reads: f64 = trial.iter().map(|record| f64::from(record.reads)).sum();
@@ -186,7 +186,7 @@ impl Clock {
         }
     }
 
-    /// Duration of one read of the clock.
+    /// Returns the duration of one read of the clock.
     fn cost(self) -> Duration {
         let start = Instant::now();
         let watch = Watch::start(self);
@@ -233,7 +233,7 @@ struct Record {
 
 #[derive(Clone, Debug, Default)]
 struct StageTime {
-    /// Stage whose time it is.
+    /// Stage to which the time belongs.
     stage: Option<Stage>,
     time: Duration,
 }

@@ -8,18 +8,17 @@ use sinew::math::{Random, Rotation, Vec3};
 use sinew_scenes::walks::{Ours, Tally, Terrain, Walker};
 use std::path::Path;
 
-/// Number of walks that share a seed and a clutter.
+/// Number of walks with the same seed and clutter.
 const SHARE: usize = 20;
-/// Clearance around a capsule that counts as free space, metres: more than the 18 mm that Rapier's controller keeps by
-/// default.
+/// Clearance around a capsule that counts as free space, metres: more than the 18 mm that Rapier's controller keeps by default.
 const MARGIN: f32 = 0.025;
-/// Heights of treads, metres, all below what a capsule climbs, and speeds at which they are walked onto, m/s.
+/// Heights of treads, metres, all below the height that a capsule climbs, and speeds of walking onto them, m/s.
 const TREADS: [f32; 6] = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3];
 const SPEEDS: [f32; 4] = [1.0, 2.0, 4.0, 6.0];
 /// Angles between direction and tread, radians.
 const SKEWS: [f32; 3] = [0.0, 0.5, 1.0];
 
-/// Functions that make walkers with their feet on a terrain.
+/// Function that creates a walker with its feet on a terrain.
 type Maker = fn(&Terrain, Vec3) -> Box<dyn Walker>;
 
 fn ours(on: &Terrain, feet: Vec3) -> Box<dyn Walker> {
@@ -55,8 +54,8 @@ impl Walker for Timed {
     }
 }
 
-/// Runs random walks, `count` on each terrain, and treads, of all walkers of this build. `worlds`: a folder with `house_2story_stairs.glb` and
-/// `kaykit_dungeon`; missing ones are left out.
+/// Runs random walks, `count` on each terrain, and treads, with all walkers of this build. `worlds` is a folder with `house_2story_stairs.glb`
+/// and `kaykit_dungeon`; missing ones are left out.
 ///
 /// # Errors
 /// If a file exists and cannot be read.
@@ -122,7 +121,7 @@ fn walks(name: &str, maker: Maker, ground: &str, terrain: Option<&Terrain>, coun
     })
 }
 
-/// Walks onto treads at all speeds and angles; a tread is climbed if it carries the capsule after two seconds.
+/// Walks onto treads at all speeds and angles; a tread counts as climbed if the capsule stands on it after two seconds.
 fn treads(name: &str, maker: Maker) -> Value {
     let (mut offered, mut climbed, mut missed) = (0, 0, Vec::new());
     for height in TREADS {

@@ -2,7 +2,7 @@
 
 use cpu_time::ProcessTime;
 
-/// Processor seconds that this process spent on `work`, on all its threads, and its result.
+/// Runs `work`; returns its result, and the processor seconds that it took on all threads of this process.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = ProcessTime::now();
     let result = work();

@@ -25,17 +25,17 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// An error in a file without a particular place.
+    /// Creates an error in a file without a particular place.
     pub fn of_file(file: impl Into<String>, what: impl fmt::Display) -> Self {
         Self::File(sinew::formats::Error::unsupported(what.to_string(), "").with_file(file))
     }
 
-    /// As [`of_file`](Self::of_file), with the place.
+    /// Creates an error in a file with its place.
     pub fn at(file: impl Into<String>, what: impl fmt::Display, place: impl Into<String>) -> Self {
         Self::File(sinew::formats::Error::unsupported(what.to_string(), place).with_file(file))
     }
 
-    /// Exit code of the process.
+    /// Returns the exit code of the process.
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Self::File(_) | Self::Missed { .. } => 1,
@@ -43,7 +43,7 @@ impl Failure {
         })
     }
 
-    /// JSON of `--json`: the file, the problem, and its place. Usage errors have none of these.
+    /// Returns the JSON of `--json`: the file, the problem, and its place; `None` for usage errors.
     pub fn to_json(&self) -> Option<Value> {
         match self {
             Self::File(error) => {
@@ -60,12 +60,12 @@ impl fmt::Display for Failure {
             Self::File(error) => error.to_string(),
             Self::Usage(what) | Self::Missed { what, .. } => what.clone(),
         };
-        // The system's error number adds nothing to its text.
+        // The system's error number repeats its text.
         let line = match line.find(" (os error ") {
             Some(at) => line[..at].to_owned() + line[at..].split_once(')').map_or("", |(_, rest)| rest),
             None => line,
         };
-        // Names come from files: a line feed in one must not split this line.
+        // Names come from files: a line feed in a name must not split this line.
         line.chars().try_for_each(|c| {
             if c.is_control() { write!(f, "{}", c.escape_default()) } else { write!(f, "{c}") }
         })

@@ -37,7 +37,7 @@ impl<'a> Fall<'a> {
         Self { input, baked, realtime_factor, verdict, reasons }
     }
 
-    /// The figures of the contract.
+    /// Returns the figures of the contract.
     pub fn to_json(&self, outputs: &[&Path]) -> Value {
         let outputs: Vec<String> = outputs.iter().map(|path| path.display().to_string()).collect();
         let mut object = Map::new();
@@ -60,7 +60,7 @@ impl<'a> Fall<'a> {
         object.into()
     }
 
-    /// Text of the events, the quality and the position.
+    /// Returns the text of the events, the quality and the position.
     pub fn to_text(&self, outputs: &[&Path]) -> String {
         let mut text = String::new();
         for (time, what) in story::moments(self.input, &self.baked.events) {
@@ -84,7 +84,7 @@ impl<'a> Fall<'a> {
         text
     }
 
-    /// Number of the clip's keys, and the error of the key reduction, as text.
+    /// Returns the number of the clip's keys, and the error of the key reduction, as text.
     fn keys_text(&self) -> String {
         let (bound, error, [all, keys]) = (self.input.key_bound, self.baked.key_error, self.baked.keys);
         if keys == all {

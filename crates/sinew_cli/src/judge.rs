@@ -63,7 +63,7 @@ pub fn judge_life(
 /// Bakes a character with the defaults of `bake`: on a floor, with its own clips or the built-in ones.
 ///
 /// # Errors
-/// A clip that cannot be played.
+/// If a clip cannot be played.
 pub fn with_default_life<T>(
     character: &CharacterFile,
     def: &RagdollDef,

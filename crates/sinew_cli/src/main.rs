@@ -68,7 +68,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// The command, with `-1` accepted as a value after every option, so that the parser of that value reports the error.
+/// Returns the command, with `-1` accepted as a value after every option, so that the parser of that value reports
+/// the error.
 fn with_negative_numbers(command: clap::Command) -> clap::Command {
     let accept = |arg: clap::Arg| {
         let takes = arg.get_action().takes_values();
@@ -89,7 +90,7 @@ fn print(text: &str, code: ExitCode) -> ExitCode {
     written(out.write_all(text.as_bytes()).and_then(|()| out.flush()), code)
 }
 
-/// Exit code after a write. A reader that stops reading is not an error of the command.
+/// Returns the exit code after a write. A reader that stops reading is not an error of the command.
 fn written(outcome: io::Result<()>, code: ExitCode) -> ExitCode {
     match outcome {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

@@ -26,7 +26,8 @@ struct Actor<'a> {
 }
 
 impl Actor<'_> {
-    /// The model pose of a moment, in the body's own axes, with the pelvis over `place` and the floor at y = 0.
+    /// The model pose of a moment, in the body's own axes, with the pelvis over `place` and the floor at the height
+    /// `floor`.
     fn at(&self, moment: usize, place: Vec3, floor: f32) -> Vec<Affine> {
         let frame = moment * (self.take.frames() - 1) / (MOMENTS - 1);
         let mut root = self.analysis.character_from_file();

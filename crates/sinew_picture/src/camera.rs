@@ -6,9 +6,9 @@ use sinew::physics::boxes::Aabb;
 /// An upright pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// World space, metres.
+    /// Position of the eye, world space, metres.
     pub position: Vec3,
-    /// The point in the middle of the picture, world space, metres. Shadows are sharpest around it.
+    /// Centre of the picture, world space, metres. Shadows are sharpest around this point.
     pub target: Vec3,
     /// Angle between the upper and the lower edge of the picture, radians, above 0 and below π.
     pub fov_y: f32,
@@ -18,17 +18,16 @@ pub struct Camera {
 const PORTRAIT_FOV: f32 = 0.610_865_24;
 
 impl Camera {
-    /// Looks at a ball from the side `direction` (from the ball to the camera, any length) so that it just fits
-    /// between the upper and the lower edge of the picture, with a field of view of 35°.
+    /// Returns a camera with a field of view of 35° that looks at a ball from `direction` (from the ball to the camera, any length),
+    /// so that the ball just fits between the upper and the lower edge of the picture.
     pub fn framing(center: Vec3, radius: f32, direction: Vec3) -> Self {
         let distance = framing_distance(radius, PORTRAIT_FOV);
         let direction = normalize_or(direction, Vec3::Z);
         Self { position: center + direction * distance, target: center, fov_y: PORTRAIT_FOV }
     }
 
-    /// Looks at the middle of a box (world space, metres) from the side `direction` (toward the camera, any length)
-    /// from just so far that the whole box is on a picture `aspect` times as wide as it is high, with a field of view
-    /// of 35°.
+    /// Returns a camera with a field of view of 35° that looks at the middle of a box (world space, metres) from `direction` (toward
+    /// the camera, any length). Its distance is just enough for the whole box on a picture `aspect` times as wide as high.
     pub fn framing_box(bounds: &Aabb, direction: Vec3, aspect: f32) -> Self {
         let back = normalize_or(direction, Vec3::Z);
         let right = normalize_or(Vec3::Y.cross(back), Vec3::X);
@@ -47,26 +46,26 @@ impl Camera {
     }
 }
 
-/// Axes of a camera's picture, unit length, world space, and its half extents at a distance of 1.
+/// Axes of a camera's picture, unit length, world space, and the picture's half extents at a distance of 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureAxes {
     /// Direction to the right.
     pub right: Vec3,
-    /// Up.
+    /// Direction up on the picture.
     pub up: Vec3,
-    /// Into the picture.
+    /// Direction into the picture.
     pub forward: Vec3,
     /// Half of the picture's width at depth 1.
     pub half_width: f32,
-    /// Half of its height there.
+    /// Half of the picture's height at depth 1.
     pub half_height: f32,
 }
 
 impl Camera {
-    /// Axes of a picture `aspect` times as wide as it is high.
+    /// Returns the axes of a picture `aspect` times as wide as high.
     pub fn axes(&self, aspect: f32) -> PictureAxes {
         let forward = normalize_or(self.target - self.position, -Vec3::Z);
-        // Straight up or down, any right-hand direction is valid.
+        // With a view straight up or down, any right-hand direction is valid.
         let right = normalize_or(forward.cross(Vec3::Y), Vec3::X);
         let up = right.cross(forward);
         let half_height = trig::tan(0.5 * clamp(self.fov_y, 0.01, 3.1));
@@ -74,32 +73,32 @@ impl Camera {
     }
 }
 
-/// Distance from the eye at which a ball just fits into the field of view, metres.
+/// Returns the distance from the eye at which a ball just fits into the field of view, metres.
 fn framing_distance(radius: f32, fov_y: f32) -> f32 {
     radius / trig::sin(0.5 * fov_y)
 }
 
-/// A camera that follows a character smoothly: it stands still while the character stays near the centre of the picture, and otherwise
-/// glides after it.
+/// A camera that follows a character smoothly. The camera stands still while the character stays near the centre of the picture, and
+/// otherwise glides after the character.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FollowCamera {
     /// Direction from the subject to the camera, unit, world space.
     pub direction: Vec3,
-    /// Distance from the point that it looks at to the camera, metres.
+    /// Distance from the centre of the view to the camera, metres.
     pub distance: f32,
-    /// As [`Camera::fov_y`].
+    /// Vertical field of view, as [`Camera::fov_y`].
     pub fov_y: f32,
-    /// Time in which the lag shrinks to 1/e, seconds, above 0. Default 0.35.
+    /// Time in which the lag behind the subject shrinks to 1/e, seconds, above 0. Default 0.35.
     pub time_constant: f32,
     /// Distance that the subject may move from the middle before the camera follows, metres. Default a fifth of the radius.
     pub slack: f32,
-    /// The subject never gets farther than this from the middle, metres. Default 0.7 of the radius.
+    /// Largest distance of the subject from the middle, metres. Default 0.7 of the radius.
     pub reach: f32,
     target: Vec3,
 }
 
 impl FollowCamera {
-    /// Frames a ball of `radius` metres around `subject`, seen from `direction` (toward the camera, any length).
+    /// Returns a camera that frames a ball of `radius` metres around `subject`, seen from `direction` (toward the camera, any length).
     pub fn new(subject: Vec3, radius: f32, direction: Vec3) -> Self {
         Self {
             direction: normalize_or(direction, Vec3::Z),
@@ -112,8 +111,8 @@ impl FollowCamera {
         }
     }
 
-    /// Portrait view: 40° off the facing direction of a character, 16° above, so that its front, side and top are visible. `facing` is
-    /// horizontal, any length.
+    /// Returns a portrait view: 40° off the facing direction of a character, 16° above, so that front, side and top are visible.
+    /// `facing` is horizontal, any length.
     pub fn three_quarter(subject: Vec3, radius: f32, facing: Vec3) -> Self {
         let front = normalize_or(Vec3::new(facing.x, 0.0, facing.z), Vec3::Z);
         let left = Vec3::Y.cross(front);
@@ -123,7 +122,7 @@ impl FollowCamera {
         Self::new(subject, radius, direction)
     }
 
-    /// Goes on by `dt` seconds toward where the subject is now. A subject that is not finite is ignored.
+    /// Moves the camera for `dt` seconds toward the present position of the subject. A subject that is not finite is ignored.
     ///
     /// Exponential decay of the lag, solved exactly over `dt`: two half steps are one whole step.
     pub fn update(&mut self, subject: Vec3, dt: f32) {
@@ -140,7 +139,7 @@ impl FollowCamera {
         self.target = subject - lag * (left_over / distance);
     }
 
-    /// The camera as it stands now.
+    /// Returns the camera at its present position.
     pub fn camera(&self) -> Camera {
         Camera {
             position: self.target + self.direction * self.distance,
@@ -150,16 +149,17 @@ impl FollowCamera {
     }
 }
 
-/// Nearest depth that is drawn, metres.
+/// Smallest depth that is drawn, metres.
 pub const NEAR: f32 = 0.05;
 
 /// A camera prepared for a picture size: world → clip space and pixel → ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub(crate) eye: Vec3,
-    /// Rows of clip from world, without the translation: x and y already divided by the picture's half size at depth 1.
+    /// Rows of the map from world to clip space, without the translation: x and y already divided by the picture's half size at depth
+    /// 1.
     rows: [Vec3; 3],
-    /// The ray through the upper left corner of the picture, and how it changes per pixel to the right and down.
+    /// Ray through the upper left corner of the picture, and change of the ray per pixel to the right and down.
     corner_ray: Vec3,
     ray_per_pixel: [Vec3; 2],
 }
@@ -179,20 +179,20 @@ impl View {
         }
     }
 
-    /// Clip space: the picture spans ±w in x and y, w is the depth in metres.
+    /// Returns clip coordinates: the picture spans ±w in x and y, w is the depth in metres.
     #[inline(always)]
     pub(crate) fn clip_from_world(&self, p: Vec3) -> [f32; 3] {
         let v = p - self.eye;
         [v.dot(self.rows[0]), v.dot(self.rows[1]), v.dot(self.rows[2])]
     }
 
-    /// Direction, at depth 1, through a point of the picture in pixels from the upper left corner.
+    /// Returns the ray, with depth 1, through a point of the picture in pixels from the upper left corner.
     #[inline(always)]
     pub(crate) fn ray(&self, x: f32, y: f32) -> Vec3 {
         self.corner_ray + self.ray_per_pixel[0] * x + self.ray_per_pixel[1] * y
     }
 
-    /// [`Self::ray`] through the middles of pixels side by side, from the one at `x` on.
+    /// Returns [`Self::ray`] through the centres of pixels side by side, the first at `x`.
     #[inline(always)]
     pub(crate) fn rays<L: Lanes>(&self, x: f32, y: f32) -> Vector3<L> {
         let x = L::splat(x) + L::load(&LANE_NUMBERS) + L::splat(0.5);
@@ -200,13 +200,13 @@ impl View {
         Vector3::splat(self.corner_ray) + across * x + down * L::splat(y)
     }
 
-    /// Change of [`Self::ray`] from a pixel to the next, to the right and down.
+    /// Returns the change of [`Self::ray`] from a pixel to the next, to the right and down.
     #[inline(always)]
     pub(crate) fn ray_per_pixel(&self) -> [Vec3; 2] {
         self.ray_per_pixel
     }
 
-    /// Side of a pixel at depth 1, metres.
+    /// Returns the side of a pixel at depth 1, metres.
     pub(crate) fn pixel_size(&self) -> f32 {
         self.ray_per_pixel[1].length()
     }

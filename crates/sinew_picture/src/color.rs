@@ -7,7 +7,7 @@ use sinew::math::{clamp, trig};
 /// Entries of the encoding table: at the steep dark end one entry is 0.8 of a byte's step, so no byte is left out.
 const ENCODE_STEPS: usize = 4096;
 
-/// The two transfer functions as tables: a power per pixel would cost more than its shading.
+/// Tables of the two transfer functions: a power per pixel would cost more than its shading.
 #[derive(Clone, Debug)]
 pub(crate) struct ColorTables {
     linear: [f32; 256],
@@ -28,23 +28,22 @@ impl ColorTables {
         Self { linear, srgb }
     }
 
-    /// Linear value, 0..=1, of an sRGB byte.
+    /// Returns the linear value, 0..=1, of an sRGB byte.
     #[inline(always)]
     pub(crate) fn to_linear(&self, byte: u8) -> f32 {
         self.linear[byte as usize]
     }
 
-    /// sRGB byte of a linear value; limited to 0..=1, NaN gives 0.
+    /// Returns the sRGB byte of a linear value; limited to 0..=1, NaN gives 0.
     #[inline(always)]
     pub(crate) fn to_srgb(&self, linear: f32) -> u8 {
         self.srgb[(clamp(linear, 0.0, 1.0) * (ENCODE_STEPS - 1) as f32 + 0.5) as usize]
     }
 
-    /// Writes [`Self::to_srgb3`] of pixels side by side, given by channel, into as many pixels of red, green, blue and alpha: the same
-    /// bytes.
+    /// Writes pixels side by side, given by linear channels, as red, green, blue and alpha, with the same bytes as [`Self::to_srgb3`].
     #[inline(always)]
     pub(crate) fn write_srgb<L: Lanes>(&self, linear: [L; 3], pixels: &mut [[u8; 4]; WIDTH]) {
-        /// From here on `f32` numbers are whole, and the low bits of theirs are how many more they are.
+        /// From this value on all `f32` numbers are whole, and their low bits are the difference from this value.
         const WHOLE: f32 = 8_388_608.0;
         let mut steps = [[0.0; WIDTH]; 3];
         for (steps, linear) in steps.iter_mut().zip(linear) {
@@ -60,7 +59,7 @@ impl ColorTables {
         }
     }
 
-    /// sRGB bytes of a linear colour.
+    /// Returns the sRGB bytes of a linear colour.
     #[inline(always)]
     pub(crate) fn to_srgb3(&self, [r, g, b]: [f32; 3]) -> [u8; 3] {
         [self.to_srgb(r), self.to_srgb(g), self.to_srgb(b)]

@@ -4,13 +4,13 @@ use crate::scene::{Line, LineDepth, Model, Pattern, RenderMaterial, ShadowCastin
 use sinew::math::{Rotation, Transform, Vec3, normalize_or, trig};
 use sinew::physics::{Hull, Shape};
 
-/// Segments around a ball or capsule: 15° each looks round at the sizes that pictures show.
+/// Segments around a ball or capsule: with 15° each they look round at the sizes in pictures.
 const AROUND: usize = 24;
 /// Segments from the equator to a pole.
 const TO_POLE: usize = 6;
 
-/// The surface of a shape. Boxes, hulls, meshes and height fields have flat faces, the others smooth normals. An infinite half-space has no
-/// model: see [`plane`].
+/// Returns the surface of a shape. Boxes, hulls, meshes and height fields have flat faces, the others smooth normals. An infinite
+/// half-space has no model: see [`plane`].
 pub fn shape(shape: &Shape, world_from_shape: Transform, material: RenderMaterial) -> Model {
     let mut model = match *shape {
         Shape::Box { half_extents } => box_model(half_extents),
@@ -35,7 +35,7 @@ pub fn shape(shape: &Shape, world_from_shape: Transform, material: RenderMateria
     Model { material, ..model }
 }
 
-/// A ball with eight fields in alternating shades, so that its rotation is visible.
+/// Returns a ball with eight fields in alternating shades, so that its rotation is visible.
 pub fn ball(radius: f32, world_from_ball: Transform, material: RenderMaterial) -> Model {
     let mut model = shape(&Shape::Sphere { radius }, world_from_ball, material);
     let shade = |vertex: usize| {
@@ -48,7 +48,7 @@ pub fn ball(radius: f32, world_from_ball: Transform, material: RenderMaterial) -
     model
 }
 
-/// A round rod from one point to another, with round ends, all in metres of the world.
+/// Returns a round rod with round ends from one point to another, world space, metres.
 pub fn rod(from: Vec3, to: Vec3, radius: f32, material: RenderMaterial) -> Model {
     let along = to - from;
     let turn = Rotation::from_arc(Vec3::Y, normalize_or(along, Vec3::Y));
@@ -56,12 +56,14 @@ pub fn rod(from: Vec3, to: Vec3, radius: f32, material: RenderMaterial) -> Model
     shape(&Shape::Capsule { half_height: 0.5 * along.length(), radius }, place, material)
 }
 
-/// A level floor of two colours (linear), `half_size` metres to each side of `center`, in squares of 1 m. It casts no shadow.
+/// Returns a level floor of two colours (linear), `half_size` metres to each side of `center`, in squares of 1 m. The floor casts no
+/// shadow.
 pub fn floor(center: Vec3, half_size: f32, color: [f32; 3], other: [f32; 3]) -> Model {
     plane(Transform::from_translation(center), half_size, 1.0, [color, other])
 }
 
-/// The plane y = 0 of its frame, `half_size` metres to each side, in squares of `tile` metres of two colours (linear). It casts no shadow.
+/// Returns the plane y = 0 of a frame, `half_size` metres to each side, in squares of `tile` metres of two colours (linear). The plane
+/// casts no shadow.
 pub fn plane(world_from_plane: Transform, half_size: f32, tile: f32, colors: [[f32; 3]; 2]) -> Model {
     let [color, other] = colors;
     let corner = |x: f32, z: f32| world_from_plane.point(Vec3::new(x * half_size, 0.0, z * half_size));
@@ -77,8 +79,8 @@ pub fn plane(world_from_plane: Transform, half_size: f32, tile: f32, colors: [[f
     }
 }
 
-/// The edges of a shape: all of a box or hull, and of the triangles of a surface; for ball and capsule three great circles and
-/// the sides; nothing of a half-space.
+/// Returns the edges of a shape: all edges of boxes, hulls and the triangles of surfaces; for balls and capsules three great circles and
+/// the sides; none for a half-space.
 pub fn wire(shape: &Shape, world_from_shape: Transform, color: [f32; 3], depth: LineDepth) -> Vec<Line> {
     let mut segments = Vec::new();
     match *shape {
@@ -110,13 +112,13 @@ pub fn wire(shape: &Shape, world_from_shape: Transform, color: [f32; 3], depth: 
     segments.into_iter().map(line).collect()
 }
 
-/// The axes of a frame, `length` metres each: x red, y green, z blue.
+/// Returns the axes of a frame, `length` metres each: x red, y green, z blue.
 pub fn axes(frame: Transform, length: f32, depth: LineDepth) -> [Line; 3] {
     [(Vec3::X, [0.8, 0.05, 0.05]), (Vec3::Y, [0.05, 0.55, 0.05]), (Vec3::Z, [0.05, 0.15, 0.85])]
         .map(|(axis, color)| Line { from: frame.translation, to: frame.point(axis * length), color, depth })
 }
 
-/// Curves in the colours of [`curve_color`], pieces from and to.
+/// Returns lines of curves in the colours of [`curve_color`]; each curve consists of pieces with two ends.
 pub fn curves<'a>(curves: impl IntoIterator<Item = &'a [[Vec3; 2]]>) -> Vec<Line> {
     let of = |(number, pieces): (usize, &'a [[Vec3; 2]])| {
         let color = curve_color(number);
@@ -125,13 +127,13 @@ pub fn curves<'a>(curves: impl IntoIterator<Item = &'a [[Vec3; 2]]>) -> Vec<Line
     curves.into_iter().enumerate().flat_map(of).collect()
 }
 
-/// The colour (linear) of curve number `number` of several that are compared.
+/// Returns the linear colour of curve number `number` of several that are compared.
 pub fn curve_color(number: usize) -> [f32; 3] {
     CURVES[number % CURVES.len()]
 }
 
-/// Bright and distinct on the sky and on the dark plate of a caption (the colour-blind safe palette of Okabe and Ito): blue, vermilion,
-/// yellow, bluish green, reddish purple.
+/// Colours that are bright and distinct on the sky and on the dark plate of a caption (the colour-blind safe palette of Okabe and Ito):
+/// blue, vermilion, yellow, bluish green, reddish purple.
 const CURVES: [[f32; 3]; 5] =
     [[0.0, 0.17, 0.45], [0.67, 0.11, 0.0], [0.87, 0.78, 0.05], [0.0, 0.34, 0.17], [0.60, 0.19, 0.39]];
 
@@ -185,8 +187,7 @@ struct Ring {
     latitude: f32,
 }
 
-/// Capsules and balls as rings from the lower to the upper pole; the circles where the side begins and ends are there once
-/// for each ball.
+/// Returns capsules and balls as rings from the lower to the upper pole; where the side meets a ball, each of the two has a ring.
 fn round_model(half_height: f32, bottom: f32, top: f32) -> Model {
     let lean = side_latitude(half_height, bottom, top);
     let pole = core::f32::consts::FRAC_PI_2;
@@ -200,12 +201,12 @@ fn round_model(half_height: f32, bottom: f32, top: f32) -> Model {
     lathe(arc(-half_height, bottom, -pole, lean).chain(arc(half_height, top, lean, pole)))
 }
 
-/// Latitude of the normals on the straight side of a tapered capsule, radians.
+/// Returns the latitude of the normals on the straight side of a tapered capsule, radians.
 fn side_latitude(half_height: f32, bottom: f32, top: f32) -> f32 {
     if half_height > 0.0 { trig::asin((bottom - top) / (2.0 * half_height)) } else { 0.0 }
 }
 
-/// Cylinders and cones: flat ends, and a side whose rings have normals of their own.
+/// Returns cylinders and cones: flat ends, and a side whose rings have normals of their own.
 fn frustum_model(half_height: f32, bottom: f32, top: f32) -> Model {
     let pole = core::f32::consts::FRAC_PI_2;
     let lean = trig::atan2(bottom - top, 2.0 * half_height);
@@ -224,7 +225,7 @@ fn frustum_model(half_height: f32, bottom: f32, top: f32) -> Model {
     )
 }
 
-/// The surface through rings around y, from the lowest to the highest.
+/// Returns the surface through rings around y, from the lowest to the highest.
 fn lathe(rings: impl Iterator<Item = Ring>) -> Model {
     let mut model = Model::default();
     for Ring { radius, y, latitude } in rings {
@@ -246,7 +247,7 @@ fn lathe(rings: impl Iterator<Item = Ring>) -> Model {
     model
 }
 
-/// Point `i` of [`AROUND`] on the unit circle, x and z.
+/// Returns point `i` of [`AROUND`] points on the unit circle, x and z.
 fn circle(i: usize) -> [f32; 2] {
     let (sin, cos) = trig::sin_cos(core::f32::consts::TAU * (i % AROUND) as f32 / AROUND as f32);
     [cos, sin]
@@ -272,7 +273,7 @@ fn capsule_edges(half_height: f32, radius: f32, segments: &mut Vec<[Vec3; 2]>) {
     }
 }
 
-/// Rings of the given heights and radii, and four lines between them.
+/// Adds rings of the given heights and radii, and four lines between them.
 fn frustum_edges(ends: [(f32, f32); 2], segments: &mut Vec<[Vec3; 2]>) {
     let at = |(y, radius): (f32, f32), i: usize| {
         let [x, z] = circle(i);
@@ -284,7 +285,7 @@ fn frustum_edges(ends: [(f32, f32); 2], segments: &mut Vec<[Vec3; 2]>) {
     segments.extend((0..AROUND).step_by(AROUND / 4).map(|i| ends.map(|end| at(end, i))));
 }
 
-/// Edges of the side, and the arcs of the balls beyond it in two planes.
+/// Adds edges of the side, and the arcs of the two balls in two planes.
 fn tapered_edges(half_height: f32, bottom: f32, top: f32, segments: &mut Vec<[Vec3; 2]>) {
     let lean = side_latitude(half_height, bottom, top);
     let at = |center: f32, radius: f32, latitude: f32| {
@@ -309,7 +310,7 @@ mod tests {
     use sinew::math::Rotation;
     use std::sync::Arc;
 
-    /// Six times the volume inside, by the divergence theorem: positive where all faces look outward.
+    /// Six times the volume inside, by the divergence theorem: positive if all faces point outward.
     fn volume(model: &Model) -> f32 {
         let point = |i: u32| model.positions[i as usize];
         model.indices.chunks_exact(3).map(|t| point(t[0]).dot(point(t[1]).cross(point(t[2])))).sum::<f32>()

@@ -10,22 +10,23 @@ pub struct Image {
 }
 
 impl Image {
-    /// A picture of one colour.
+    /// Creates a picture of one colour.
     pub fn filled(width: u32, height: u32, rgba: [u8; 4]) -> Self {
         Self { width, height, rgba: rgba.repeat(width as usize * height as usize) }
     }
 
-    /// RGBA of the pixel in column `x` from the left and row `y` from the top.
+    /// Returns RGBA of the pixel in column `x` from the left and row `y` from the top.
     ///
     /// # Panics
-    /// Outside the picture.
+    /// If the pixel is outside the picture.
     pub fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
         assert!(x < self.width && y < self.height, "pixel ({x}, {y}) of {} × {}", self.width, self.height);
         let start = (y as usize * self.width as usize + x as usize) * 4;
         [self.rgba[start], self.rgba[start + 1], self.rgba[start + 2], self.rgba[start + 3]]
     }
 
-    /// Mixes a colour into a pixel: sRGB bytes, `amount` 0..=255 of it. Pixels outside the picture are left out.
+    /// Mixes a colour (sRGB bytes) into a pixel, with the weight `amount`, 0..=255. Ignores pixels outside the
+    /// picture.
     pub(crate) fn blend(&mut self, x: i32, y: i32, srgb: [u8; 3], amount: u8) {
         if x < 0 || y < 0 || x >= self.width as i32 || y >= self.height as i32 {
             return;

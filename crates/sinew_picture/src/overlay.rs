@@ -7,17 +7,17 @@ use crate::pipeline::raster::{Samples, ScreenVertex};
 use crate::scene::{Caption, Line, LineDepth};
 use sinew::math::{clamp, max};
 
-/// Sixteen letters a row of the sheet, from the space on; `#` is ink.
+/// Sheet of letters from the space on, sixteen a row; `#` is ink.
 const GLYPHS: &[u8] = include_bytes!("glyphs.txt");
 const GLYPH_ROWS: usize = 8;
 const GLYPH_COLUMNS: usize = 5;
-/// Letters and the gap between them.
+/// Columns of a letter and the gap after it.
 const ADVANCE: usize = GLYPH_COLUMNS + 1;
 const LETTERS_PER_ROW: usize = 16;
-/// Bytes of a line of the sheet: no gap after the last letter, but a line feed.
+/// Bytes of a line of the sheet: it ends with a line feed instead of the last letter's gap.
 const SHEET_PITCH: usize = LETTERS_PER_ROW * ADVANCE;
 
-/// A line on a surface is drawn this much nearer (as a share of its depth), so that the surface does not hide it.
+/// Factor by which a line is drawn nearer, so that the surface under it does not hide it.
 const LINE_BIAS: f32 = 1.004;
 
 pub(crate) fn draw_lines(
@@ -34,7 +34,7 @@ pub(crate) fn draw_lines(
     }
 }
 
-/// The ends of the part of a line that is before the camera and near the picture.
+/// Returns the ends of the part of a line that is before the camera and near the picture.
 fn on_picture(line: &Line, view: &View, samples: &Samples) -> Option<[ScreenVertex; 2]> {
     let [a, b] = [view.clip_from_world(line.from), view.clip_from_world(line.to)];
     let (mut first, mut last) = (0.0f32, 1.0f32);
@@ -50,7 +50,7 @@ fn on_picture(line: &Line, view: &View, samples: &Samples) -> Option<[ScreenVert
             last = sinew::math::min(last, da / (da - db));
         }
     }
-    // The negation also turns away NaN.
+    // This comparison also rejects NaN.
     let some = first < last;
     some.then(|| {
         [first, last].map(|t| {
@@ -60,8 +60,8 @@ fn on_picture(line: &Line, view: &View, samples: &Samples) -> Option<[ScreenVert
     })
 }
 
-/// Two pixels a step along the longer direction, weighted by how near the line passes (Wu, "An Efficient
-/// Antialiasing Technique", SIGGRAPH 1991), a little wider so that lines stay readable.
+/// Draws two pixels a step along the longer direction, weighted by their distance from the line (Wu, "An
+/// Efficient Antialiasing Technique", SIGGRAPH 1991); the line is a little wider for readability.
 fn draw_line(
     image: &mut Image,
     [a, b]: [ScreenVertex; 2],
@@ -132,7 +132,7 @@ fn fill(image: &mut Image, [left, top]: [i32; 2], [width, height]: [i32; 2], srg
     }
 }
 
-/// Row and column of every dot of a letter.
+/// Returns row and column of every dot of a letter.
 fn ink(letter: char) -> impl Iterator<Item = (usize, usize)> {
     let code = if (' '..='~').contains(&letter) { letter as usize } else { '?' as usize } - ' ' as usize;
     let corner = code / LETTERS_PER_ROW * GLYPH_ROWS * SHEET_PITCH + code % LETTERS_PER_ROW * ADVANCE;

@@ -18,11 +18,11 @@ pub struct RenderSettings {
     pub width: u32,
     /// Pixels down, 1..=8192. Default 360.
     pub height: u32,
-    /// Default four samples.
+    /// Smoothing of edges. Default four samples.
     pub antialiasing: Antialiasing,
     /// Texels along a side of the shadow map, 16..=8192. Default 1280.
     pub shadow_texels: u32,
-    /// Threads that share the work, at least 1 (the default). The picture is the same with any number.
+    /// Number of threads, at least 1 (the default). The picture does not depend on the number.
     pub threads: usize,
 }
 
@@ -31,7 +31,7 @@ pub struct RenderSettings {
 pub enum Antialiasing {
     /// One sample in the middle of each pixel: jagged, twice as fast.
     Off,
-    /// Four samples a pixel on a turned grid: near-vertical and near-horizontal edges get all five steps.
+    /// Four samples a pixel on a rotated grid: near-vertical and near-horizontal edges get all five steps.
     #[default]
     Samples4,
 }
@@ -49,7 +49,7 @@ impl Default for RenderSettings {
 }
 
 impl Antialiasing {
-    /// Places within a pixel, 1/256 pixel from its middle.
+    /// Returns the positions of the samples within a pixel, 1/256 pixel from its middle.
     fn offsets(self) -> &'static [[i64; 2]] {
         match self {
             Self::Off => &[[0, 0]],
@@ -58,10 +58,10 @@ impl Antialiasing {
     }
 }
 
-/// Corners farther out than this (in any coordinate, metres) are not drawn: their squares would leave `f32`'s range.
+/// Largest coordinate of a corner that is drawn, metres: squares of larger ones would exceed the range of `f32`.
 const FARTHEST: f32 = 1e7;
 
-/// Draws scenes. Keeps its buffers from picture to picture.
+/// Draws scenes, and keeps its buffers from picture to picture.
 #[derive(Clone, Debug)]
 pub struct Renderer {
     settings: RenderSettings,
@@ -81,8 +81,10 @@ struct Footprints {
 }
 
 impl Renderer {
+    /// Creates a renderer.
+    ///
     /// # Panics
-    /// If a size lies outside the range that [`RenderSettings`] gives.
+    /// If a size is outside the range that [`RenderSettings`] gives.
     pub fn new(settings: RenderSettings) -> Self {
         let RenderSettings { width, height, antialiasing, shadow_texels, threads } = settings;
         assert!((1..=8192).contains(&width) && (1..=8192).contains(&height), "picture of {width} × {height}");
@@ -100,7 +102,7 @@ impl Renderer {
         }
     }
 
-    /// Size and quality, as given.
+    /// Returns size and quality, as given.
     pub fn settings(&self) -> RenderSettings {
         self.settings
     }
@@ -123,7 +125,7 @@ impl Renderer {
         image
     }
 
-    /// Hands a model's triangles to the shadow map and to the list that is drawn.
+    /// Adds a model's triangles to the shadow map and to the list that is drawn.
     fn add(&mut self, model: &Model, index: usize, view: &View) {
         let material = &model.material;
         let visible = material.opacity > 0.0;
@@ -172,7 +174,7 @@ impl Renderer {
         Image { width: self.settings.width, height: self.settings.height, rgba }
     }
 
-    /// Linear colours, by channel, of pixels side by side that show one flat triangle and nothing else; `None` if they do not.
+    /// Returns linear colours, by channel, of neighbouring pixels that show one flat triangle and nothing else; else `None`.
     #[inline(always)]
     fn span<L: Lanes>(&self, shader: &Shader<'_>, x: usize, y: usize) -> Option<[L; 3]> {
         if !self.footprints.translucent.is_empty() {
@@ -195,7 +197,7 @@ impl Renderer {
         Some(shader.flat_span(id, x, y))
     }
 
-    /// Linear colour of a pixel: every triangle in it is shaded once, in the middle of its samples.
+    /// Returns the linear colour of a pixel: every triangle in it is shaded once, in the middle of its samples.
     fn pixel(&self, shader: &Shader<'_>, x: usize, y: usize) -> [f32; 3] {
         let solid = mean(&self.solid, x, y, |id, sample| {
             let (px, py) = (x as f32 + sample[0], y as f32 + sample[1]);
@@ -254,7 +256,7 @@ impl Kernel for ShadeRow<'_> {
     }
 }
 
-/// Does the work on every item, split over threads by turns: neighbours cost alike, so the shares come out even.
+/// Calls `work` for every item. Threads take the items in turn: neighbours cost about the same, so the loads are even.
 fn share<T: Send>(threads: usize, items: Vec<T>, work: impl Fn(T) + Sync) {
     if threads == 1 {
         items.into_iter().for_each(work);
@@ -271,7 +273,7 @@ fn share<T: Send>(threads: usize, items: Vec<T>, work: impl Fn(T) + Sync) {
     });
 }
 
-/// The corners of a triangle, unless one is missing, not finite or too far out.
+/// Returns the corners of a triangle, unless one is missing, not finite or too far out.
 fn points_of(model: &Model, corners: [u32; 3]) -> Option<[Vec3; 3]> {
     let point = |corner: u32| model.positions.get(corner as usize).copied();
     let points = [point(corners[0])?, point(corners[1])?, point(corners[2])?];
@@ -314,7 +316,7 @@ fn project(
     list.len() > before
 }
 
-/// Mean over a pixel's samples of `shade(id, place in the pixel)`, called once per different id.
+/// Returns the mean over a pixel's samples of `shade(id, position in the pixel)`, which is called once per different id.
 #[inline(always)]
 fn mean(samples: &Samples, x: usize, y: usize, mut shade: impl FnMut(u32, [f32; 2]) -> [f32; 3]) -> [f32; 3] {
     let ids = samples.ids(x, y, 1);
@@ -333,7 +335,7 @@ fn mean(samples: &Samples, x: usize, y: usize, mut shade: impl FnMut(u32, [f32; 
             place = [place[0] + sample[0], place[1] + sample[1]];
             count += 1.0;
         }
-        // Brighter than white would outweigh its neighbours and bring the jagged edge back.
+        // Colours brighter than white would outweigh their neighbours and bring the jagged edge back.
         let color = shade(id, place.map(|p| p / count)).map(|channel| sinew::math::clamp(channel, 0.0, 1.0));
         for i in 0..3 {
             sum[i] += color[i] * count;

@@ -9,55 +9,56 @@ pub struct Scene {
     pub models: Vec<Model>,
     /// Lines over the surfaces: bones, joints, contacts.
     pub lines: Vec<Line>,
-    /// Text over everything.
+    /// Text over all else.
     pub captions: Vec<Caption>,
-    /// The one light with shadows.
+    /// The only light with shadows.
     pub sun: Sun,
-    /// Ambient light, and the background.
+    /// Ambient light, and background.
     pub sky: Sky,
 }
 
-/// Triangles of one material. A vertex array beside `positions` has its length or is empty.
+/// Triangles of one material. A vertex array beside `positions` has the same length or is empty.
 ///
 /// A triangle with an index out of range, or a vertex that is not finite or farther than 10⁷ m from the origin, is
 /// left out.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
-    /// World space, metres.
+    /// Vertices, world space, metres.
     pub positions: Vec<Vec3>,
-    /// World space, any length; empty for flat faces.
+    /// Normals of the vertices, world space, any length; empty for flat faces.
     pub normals: Vec<Vec3>,
     /// Texture coordinates, (0, 0) at the top left; or empty.
     pub uvs: Vec<Vec2>,
     /// Linear colour per vertex, multiplied with the material's; or empty.
     pub colors: Vec<[f32; 3]>,
-    /// Three a triangle, counter-clockwise seen from outside.
+    /// Three indices a triangle, counter-clockwise seen from outside.
     pub indices: Vec<u32>,
-    /// Look of its surface.
+    /// Look of the surface.
     pub material: RenderMaterial,
 }
 
 /// The look of a surface: matt, lit by the sun and the sky.
 #[derive(Clone, Debug)]
 pub struct RenderMaterial {
-    /// Linear share of the reflected light, 0..=1. Default a light grey.
+    /// Linear share of reflected light, 0..=1. Default a light grey.
     pub color: [f32; 3],
-    /// 0 (unseen) to 1 (solid, default). Of several translucent surfaces in a line only the nearest is seen.
+    /// Opacity from 0 (invisible) to 1 (solid, default). Of several translucent surfaces behind each other only the nearest is
+    /// drawn.
     pub opacity: f32,
-    /// Multiplied with `color`; needs `uvs`. Default none.
+    /// Texture, which is multiplied with `color`; needs `uvs`. Default none.
     pub texture: Option<Arc<Texture>>,
-    /// Default plain.
+    /// Pattern. Default plain.
     pub pattern: Pattern,
-    /// Default both.
+    /// Sides that are drawn. Default both.
     pub faces: Faces,
-    /// Default yes.
+    /// Shadow casting. Default yes.
     pub shadow: ShadowCasting,
 }
 
 /// Pattern on a surface beside its colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Pattern {
-    /// Nothing.
+    /// No pattern.
     #[default]
     Plain,
     /// Squares over the world's x and z, for floors.
@@ -72,44 +73,43 @@ pub enum Pattern {
 /// Sides of a triangle that are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Faces {
-    /// Both; the normal is turned to the viewer. Right for cloth, hair and meshes of unknown winding.
+    /// Both sides; the normal is turned to the viewer. Right for cloth, hair and meshes of unknown winding.
     #[default]
     Both,
-    /// The face is visible only where its corners run counter-clockwise, so that a viewer can look into a room from
-    /// outside.
+    /// Only the side on which the corners run counter-clockwise, so that a viewer can look into a room from outside.
     Outside,
 }
 
 /// Shadow casting of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShadowCasting {
-    /// It does.
+    /// The surface casts a shadow.
     #[default]
     Yes,
-    /// It does not: right for floors with nothing below.
+    /// The surface casts no shadow: right for floors with nothing below.
     No,
 }
 
 /// A thin straight line in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
-    /// World space, metres.
+    /// Start of the line, world space, metres.
     pub from: Vec3,
-    /// World space, metres.
+    /// End of the line, world space, metres.
     pub to: Vec3,
-    /// Linear.
+    /// Linear colour.
     pub color: [f32; 3],
-    /// Depth test: whether surfaces hide it.
+    /// Depth test: whether surfaces hide the line.
     pub depth: LineDepth,
 }
 
-/// Depth test of a line: whether surfaces in front of it hide it.
+/// Depth test of a line: whether surfaces in front hide the line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LineDepth {
-    /// Hidden behind surfaces.
+    /// Surfaces in front of the line hide it.
     #[default]
     Tested,
-    /// The lines are always visible.
+    /// The line is always visible.
     OnTop,
 }
 
@@ -118,13 +118,13 @@ pub enum LineDepth {
 pub struct Caption {
     /// Text of the caption.
     pub text: String,
-    /// Column of its left edge; from the right edge of the picture where negative. Pixels.
+    /// Column of the left edge, pixels; negative: from the right edge of the picture.
     pub x: i32,
-    /// Row of its top edge; from the bottom of the picture where negative. Pixels.
+    /// Row of the top edge, pixels; negative: from the bottom of the picture.
     pub y: i32,
     /// Pixels per dot of the 5 × 8 letters, at least 1.
     pub scale: u32,
-    /// Linear.
+    /// Linear colour.
     pub color: [f32; 3],
 }
 
@@ -134,38 +134,38 @@ pub struct Sun {
     /// Direction from the world toward the sun, any length above 0. Default high, over the left shoulder of a viewer
     /// who looks along −z.
     pub direction: Vec3,
-    /// Linear light on a surface that faces it. Default a warm white.
+    /// Linear light on a surface that faces the sun. Default a warm white.
     pub color: [f32; 3],
-    /// Radius in metres around the camera's target in which things throw shadows. Default 7: larger is blurrier.
+    /// Radius around the camera's target in which shadows are drawn, metres. Default 7; larger is blurrier.
     pub shadow_radius: f32,
 }
 
-/// Light from everywhere, and the distance.
+/// Ambient light, and haze.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sky {
-    /// Linear colour straight up, also the light on surfaces that face up.
+    /// Linear colour straight up, and light on surfaces that face up.
     pub zenith: [f32; 3],
-    /// Linear colour at the horizon and of the haze before it.
+    /// Linear colour of the horizon and the haze.
     pub horizon: [f32; 3],
     /// Linear light from below on surfaces that face down.
     pub ground: [f32; 3],
-    /// Metres at which haze hides half of a surface. Default 45.
+    /// Distance at which haze hides half of a surface, metres. Default 45.
     pub haze_distance: f32,
 }
 
 impl Caption {
-    /// White text in the upper left corner, two pixels a dot.
+    /// Creates white text in the upper left corner, two pixels a dot.
     pub fn new(text: impl Into<String>) -> Self {
         Self { text: text.into(), x: 10, y: 10, scale: 2, color: [1.0; 3] }
     }
 }
 
-/// Share of the sky's brightness that falls on things. Less than all, as if much of it were hidden: shadows need to be dark to
-/// be read.
+/// Share of the sky's brightness that lights surfaces. It is below 1, as if much of the sky were hidden: visible shadows must
+/// be dark.
 const SKY_LIGHT: f32 = 0.55;
 
 impl Sky {
-    /// Linear light of the sky on a surface that faces up.
+    /// Returns the linear light of the sky on a surface that faces up.
     pub fn light_from_above(&self) -> [f32; 3] {
         let Self { zenith, horizon, .. } = self;
         core::array::from_fn(|i| (horizon[i] + (zenith[i] - horizon[i]) * 0.6) * SKY_LIGHT)
@@ -173,7 +173,7 @@ impl Sky {
 }
 
 impl RenderMaterial {
-    /// Solid, plain, of one linear colour.
+    /// Creates a solid, plain material of one linear colour.
     pub fn new(color: [f32; 3]) -> Self {
         Self { color, ..Self::default() }
     }

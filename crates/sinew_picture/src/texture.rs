@@ -1,10 +1,10 @@
 use crate::color::ColorTables;
 use sinew::math::Vec2;
 
-/// A picture laid on a surface, with its smaller copies so that it neither shimmers nor crawls at a distance.
+/// An image on a surface, with its smaller copies, so that it does not shimmer at a distance.
 #[derive(Clone, Debug)]
 pub struct Texture {
-    /// Full size first, each next half as large in both directions, the last 1 × 1.
+    /// Levels: full size first, each next half as large in both directions, the last 1 × 1.
     levels: Vec<Level>,
 }
 
@@ -12,21 +12,21 @@ pub struct Texture {
 struct Level {
     width: usize,
     height: usize,
-    /// sRGB with alpha, rows from the top.
+    /// Texels, sRGB with alpha, rows from the top.
     rgba: Vec<u8>,
 }
 
-/// The bytes are no picture.
+/// Error: the number of bytes does not fit the size.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a texture of {width} × {height} needs {needed} bytes and got {got}")]
 pub struct TextureError {
-    /// Pixels across, as asked for.
+    /// Requested width, pixels.
     pub width: u32,
-    /// Pixels down, as asked for.
+    /// Requested height, pixels.
     pub height: u32,
-    /// `width × height × 4`, or 4 where a side is 0.
+    /// Required number of bytes: `width × height × 4`, or 4 if a side is 0.
     pub needed: u64,
-    /// Bytes that were given.
+    /// Number of bytes given.
     pub got: u64,
 }
 
@@ -34,7 +34,7 @@ impl Texture {
     /// Creates a texture from 8-bit sRGB with alpha, `width × height × 4` bytes, rows from the top.
     ///
     /// # Errors
-    /// A side of 0, or a number of bytes that does not fit the sides.
+    /// If a side is 0, or the number of bytes does not fit the sides.
     pub fn new(width: u32, height: u32, rgba: Vec<u8>) -> Result<Self, TextureError> {
         let needed = (u64::from(width) * u64::from(height)).saturating_mul(4);
         let got = rgba.len() as u64;
@@ -49,17 +49,18 @@ impl Texture {
         Ok(Self { levels })
     }
 
-    /// Width, height and bytes of each level, full size first, each next half as large: 8-bit sRGB with alpha, rows from the top.
+    /// Returns width, height and bytes of each level, full size first, each next half as large: 8-bit sRGB with alpha, rows from
+    /// the top.
     pub fn levels(&self) -> impl Iterator<Item = (u32, u32, &[u8])> {
         self.levels.iter().map(|level| (level.width as u32, level.height as u32, level.rgba.as_slice()))
     }
 
-    /// Texels of the full picture.
+    /// Returns the number of texels of the full image.
     pub(crate) fn texels(&self) -> f32 {
         (self.levels[0].width * self.levels[0].height) as f32
     }
 
-    /// The level whose texels are nearest in size to a pixel that covers `texels_per_pixel` of the full picture.
+    /// Returns the level whose texels are nearest in size to a pixel that covers `texels_per_pixel` of the full image.
     pub(crate) fn level_for(&self, texels_per_pixel: f32) -> usize {
         let mut level = 0;
         let mut area = texels_per_pixel;
@@ -71,7 +72,7 @@ impl Texture {
         level
     }
 
-    /// Linear colour at `uv`, bilinear, repeated beyond 0..1.
+    /// Returns the linear colour at `uv`, bilinear, repeated outside 0..1.
     pub(crate) fn sample(&self, uv: Vec2, level: usize, tables: &ColorTables) -> [f32; 3] {
         let level = &self.levels[level];
         let (x0, x1, fx) = texel_pair(uv.x, level.width);
@@ -91,7 +92,7 @@ impl Level {
         [self.rgba[start], self.rgba[start + 1], self.rgba[start + 2], self.rgba[start + 3]]
     }
 
-    /// Each 2 × 2 texels averaged as light, not as bytes; `None` at 1 × 1.
+    /// Returns the level of half the size: averages 2 × 2 texels as light, not as bytes. `None` at 1 × 1.
     fn halved(&self, tables: &ColorTables) -> Option<Self> {
         if self.width == 1 && self.height == 1 {
             return None;
@@ -115,7 +116,7 @@ impl Level {
     }
 }
 
-/// The two texels around coordinate `u` in a row of `count`, and how far it is from the first to the second.
+/// Returns the two texels around coordinate `u` in a row of `count`, and the fraction from the first to the second.
 fn texel_pair(u: f32, count: usize) -> (usize, usize, f32) {
     let wrapped = u - u.floor();
     let position = if (0.0..1.0).contains(&wrapped) { wrapped } else { 0.0 } * count as f32 - 0.5;

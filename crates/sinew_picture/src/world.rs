@@ -13,26 +13,26 @@ use std::collections::{HashMap, HashSet};
 /// Part of a world shown in a picture: thin and small things are drawn thick enough to be visible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<'a> {
-    /// The middle, world space, metres.
+    /// Middle of the frame, world space, metres.
     pub center: Vec3,
-    /// Radius around the middle that it shows, metres, above 0.
+    /// Radius of the frame around its middle, metres, above 0.
     pub radius: f32,
-    /// Way in which kinematic bodies are drawn.
+    /// Drawing mode of kinematic bodies.
     pub kinematic: Kinematic,
-    /// Colours (linear) of bodies that have their own; the others have those of their kind.
+    /// Linear colours of individual bodies; the others have the colours of their kind.
     pub colors: &'a [(BodyId, [f32; 3])],
 }
 
-/// Way in which kinematic bodies are drawn.
+/// Drawing mode of kinematic bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kinematic {
-    /// The bodies are drawn as others are.
+    /// The bodies are drawn like others.
     Solid,
-    /// The bodies are drawn by their edges, so that they do not hide the figure that leads them.
+    /// The edges of the bodies are drawn, so that they do not hide the figure that leads them.
     Wire,
 }
 
-/// Linear, one body after the other.
+/// Linear colours, used for one body after the other.
 const COLORS: [[f32; 3]; 8] = [
     [0.62, 0.10, 0.06],
     [0.06, 0.22, 0.52],
@@ -53,24 +53,24 @@ const SPRING: [f32; 3] = [0.25, 0.22, 0.18];
 const JOINT: [f32; 3] = [0.10, 0.11, 0.12];
 /// Colour of lines that the user's objects draw, linear.
 const OBJECT: [f32; 3] = [0.70, 0.05, 0.30];
-/// Share of the way to [`PALE`] that a body's colour goes when it falls asleep.
+/// Share by which the colour of a sleeping body is mixed with [`PALE`].
 const SLEEP: f32 = 0.3;
 const PALE: [f32; 3] = [0.75, 0.77, 0.80];
 
-/// Smallest radius at which a ball is seen, as a share of the frame's.
+/// Smallest visible radius of a ball, as a share of the frame's.
 const SMALLEST: f32 = 0.012;
 /// Radius of a spring's rod, as a share of the frame's.
 const ROD: f32 = 0.004;
-/// Balls and rods of this many particles and springs are drawn; of more, lines.
+/// Largest number of particles and springs that are drawn as balls and rods; more are drawn as lines.
 const MOST_SOLID: usize = 1500;
 
-/// The colour (linear) of a world's body number `number` in the order of ids, awake.
+/// Returns the linear colour of an awake body by its number in the order of ids.
 pub fn body_color(number: usize) -> [f32; 3] {
     COLORS[number % COLORS.len()]
 }
 
-/// Returns the box around the subject of a picture of the world: movable bodies, anchors of joints, drawings of objects;
-/// without any of these, around all bounded static shapes. `None` in an empty world.
+/// Returns the box around the subject of a picture of the world: movable bodies, anchors of joints, drawings of objects; without
+/// these, all bounded static shapes. `None` for an empty world.
 pub fn subject(world: &World) -> Option<Aabb> {
     let moving = world.body_ids().filter(|&id| world.kind(id) != BodyKind::Static);
     let particles = world.group_ids().map(|id| world.particles(id)).filter(|g| !g.positions().is_empty());
@@ -91,23 +91,23 @@ fn is_solid(shape: &Shape) -> bool {
     !matches!(shape, Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_))
 }
 
-/// Bounds of the centre of mass and all solid shapes.
+/// Returns the bounds of the centre of mass and all solid shapes.
 fn body_bounds(world: &World, id: BodyId) -> Aabb {
     let center = world.center_of_mass(id);
     let shapes = world.shapes(id).filter(|(shape, _)| is_solid(shape));
     shapes.fold(Aabb { min: center, max: center }, |all, (shape, place)| all.merge(&shape.aabb(&place)))
 }
 
-/// Bounds of the particles of a group that has any.
+/// Returns the bounds of the particles of a group that has any.
 fn particle_bounds(group: &ParticleGroup) -> Aabb {
     let ball = |i: usize| Aabb::around(group.positions()[i], Vec3::splat(group.radii()[i]));
     (1..group.positions().len()).fold(ball(0), |all, i| all.merge(&ball(i)))
 }
 
-/// Lines that a joint is drawn as: from the centre of each body that moves to its anchor, and from anchor to anchor.
+/// Returns the lines of a joint: from the centre of each moving body to its anchor, and from anchor to anchor.
 fn links(world: &World, id: JointId) -> [[Vec3; 2]; 3] {
     let JointDef { body_a, body_b, frame_a, frame_b, kind, motor, .. } = world.joint(id);
-    // A pin is drawn to the target of its motor, since its anchor may be anywhere.
+    // A pin is drawn to the target of its motor, because its anchor may be anywhere.
     let is_pin = kind == JointKind::SixDof(SixDof::FREE) && world.kind(body_a) != BodyKind::Dynamic;
     let goal = motor.filter(|_| is_pin).map_or(Vec3::ZERO, |motor| motor.target.translation);
     let a = (world.transform(body_a) * frame_a).point(goal);
@@ -121,15 +121,15 @@ fn links(world: &World, id: JointId) -> [[Vec3; 2]; 3] {
 
 /// Target for drawing a world: a [`Scene`], or a renderer that draws many equal shapes at once. Colours are linear.
 pub trait Canvas {
-    /// The surface of a shape that has an end, in one colour.
+    /// Adds the surface of a bounded shape, in one colour.
     fn solid(&mut self, shape: &Shape, world_from_shape: Transform, color: [f32; 3]);
-    /// A ball of `radius` metres of eight fields, every second one darker, as [`draw::ball`] makes it.
+    /// Adds a ball of `radius` metres with eight fields, every second one darker, like [`draw::ball`].
     fn ball(&mut self, radius: f32, world_from_ball: Transform, color: [f32; 3]);
-    /// A round rod of `radius` between two points, metres, world space.
+    /// Adds a round rod of `radius` between two points, metres, world space.
     fn rod(&mut self, from: Vec3, to: Vec3, radius: f32, color: [f32; 3]);
-    /// Any other surface.
+    /// Adds any other surface.
     fn model(&mut self, model: Model);
-    /// A line over the surfaces.
+    /// Adds a line over the surfaces.
     fn line(&mut self, line: Line);
 }
 
@@ -155,12 +155,13 @@ impl Canvas for Scene {
     }
 }
 
-/// Paints the world's bodies, particles, springs, joints and what its objects draw.
+/// Paints the world's bodies, particles, springs, joints and the drawings of its objects.
 pub fn paint(world: &World, frame: &Frame<'_>, canvas: &mut dyn Canvas) {
     paint_all_but(world, &[], frame, canvas);
 }
 
-/// Paints as [`paint`] does, without bodies shown by other means, and without their joints: those of a character drawn by its skin.
+/// Paints like [`paint`], without the bodies `shown` by other means and without their joints: those of a character drawn by its
+/// skin.
 pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame<'_>, canvas: &mut dyn Canvas) {
     let shown: HashSet<BodyId> = shown.iter().copied().collect();
     let colors: HashMap<BodyId, [f32; 3]> = frame.colors.iter().copied().collect();
@@ -191,17 +192,17 @@ pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame<'_>, canvas:
     lines_of_objects(world).list.into_iter().for_each(|line| canvas.line(line));
 }
 
-/// Lines that the world's objects draw of themselves.
+/// Returns the lines that the world's objects draw.
 fn lines_of_objects(world: &World) -> Lines {
     let mut lines = Lines::default();
-    // The world draws everything; most have no objects, and a crowd many shapes.
+    // `draw` draws the whole world; most worlds have no objects, and a crowd has many shapes.
     if world.object_ids().next().is_some() {
         world.draw(&mut lines);
     }
     lines
 }
 
-/// Rods, or lines where they are too many.
+/// Draws segments as rods, or as lines if there are too many.
 fn thin(segments: &[[Vec3; 2]], color: [f32; 3], frame: &Frame<'_>, canvas: &mut dyn Canvas) {
     let long = segments.iter().filter(|[from, to]| (*to - *from).length() > ROD * frame.radius);
     for &[from, to] in long {
@@ -213,7 +214,7 @@ fn thin(segments: &[[Vec3; 2]], color: [f32; 3], frame: &Frame<'_>, canvas: &mut
     }
 }
 
-/// `color` is the body's own, or else its number.
+/// Draws a body. `color` is the own colour of the body, or as an error its number.
 fn paint_body(
     world: &World,
     id: BodyId,
@@ -250,7 +251,7 @@ fn pale(color: [f32; 3]) -> [f32; 3] {
     core::array::from_fn(|i| color[i] + (PALE[i] - color[i]) * SLEEP)
 }
 
-/// The part of a half-space's plane below the frame, in squares that suit it.
+/// Returns the part of a half-space's plane below the frame, in squares of suitable size.
 fn floor(place: &Transform, squares: [[f32; 3]; 2], frame: &Frame<'_>) -> Model {
     let up = place.rotation * Vec3::Y;
     let below = frame.center - up * (frame.center - place.translation).dot(up);
@@ -258,7 +259,7 @@ fn floor(place: &Transform, squares: [[f32; 3]; 2], frame: &Frame<'_>) -> Model 
     draw::plane(Transform::new(below, place.rotation), half_size, round_length(0.4 * frame.radius), squares)
 }
 
-/// The largest of 1, 2, 5, 10, 20 … metres (or 0.5, 0.2, 0.1 …) that is no more than `length`.
+/// Returns the largest of 1, 2, 5, 10, 20 … metres (or 0.5, 0.2, 0.1 …) up to `length`.
 fn round_length(length: f32) -> f32 {
     let mut decade = 1.0;
     while decade > length && decade > 1e-6 {
@@ -285,7 +286,7 @@ fn paint_group(group: &ParticleGroup, frame: &Frame<'_>, canvas: &mut dyn Canvas
     thin(&springs, SPRING, frame, canvas);
 }
 
-/// Lines of [`World::draw`], or of other drawings, that no surface shows.
+/// Lines of [`World::draw`], or of other drawings, that no surface replaces.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     /// Lines in the order in which they were drawn.
@@ -300,7 +301,7 @@ impl Lines {
     }
 }
 
-/// Kinds without lines here: drawn as surfaces, or, for contacts, not at all.
+/// Kinds that give no lines: surfaces, and contacts, which are not drawn.
 const SURFACES: [DrawKind; 7] = [
     DrawKind::Static,
     DrawKind::Kinematic,

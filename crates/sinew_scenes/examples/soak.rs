@@ -8,7 +8,8 @@ use sinew::physics::{BodyKind, JointState, World};
 use sinew_scenes::scenes::{Instance, find};
 use std::process::ExitCode;
 
-/// A part of the soak: a scene, its settings with `#` for the round's number, and the steps of a round; `None`: one round.
+/// A part of the soak: a scene, its settings with `#` for the round's number, and the steps of a round (`None`: one round for all the
+/// time).
 struct Part {
     name: &'static str,
     scene: &'static str,
@@ -41,7 +42,7 @@ const FAST: f32 = 30.0;
 /// Depth below the floor and distance from the centre at which a body counts as lost, metres.
 const SUNK: f32 = 0.5;
 const FAR: f32 = 60.0;
-/// Largest allowed growth of memory, bytes, and of the step time over a run.
+/// Largest allowed growth of memory, bytes, and largest ratio of the last step time to the first, over a run.
 const GROWTH: f64 = 8e6;
 const SLOWER: f64 = 1.5;
 
@@ -56,7 +57,7 @@ struct Seen {
     speed_at: u64,
     fast: u64,
     lost: u64,
-    /// Memory, bytes, and step time, seconds, in the second and in the last tenth.
+    /// Memory, bytes, and step time, seconds, in the second and in the last tenth of the run.
     memory: [f64; 2],
     seconds: [f64; 2],
 }

@@ -12,7 +12,7 @@ use sinew::physics::shape::{Shape, ShapeDef};
 pub enum Site {
     /// The cabin on its posts, with porch and stairs.
     CabinWithStairs,
-    /// The meadow without the cabin: flat ground at y = 0 where the stairs were.
+    /// The meadow without the cabin: flat ground at y = 0 in place of the stairs.
     Flat,
 }
 
@@ -48,11 +48,11 @@ pub const STAIRS_WIDTH: f32 = 1.6;
 pub const PORCH_HEIGHT: f32 = STEPS as f32 * STEP_RISE;
 
 const PORCH_HALF_WIDTH: f32 = 2.3;
-/// Outer faces of the cabin's walls.
+/// Places of the outer faces of the front and the back wall along z, metres.
 const FRONT: f32 = -2.2;
 const BACK: f32 = -6.4;
 const HALF_WIDTH: f32 = 2.5;
-/// A wall is courses of squared logs.
+/// Number of courses of squared logs in a wall, and height of a course, metres.
 const COURSES: usize = 8;
 const COURSE_HEIGHT: f32 = 0.3;
 const LOG_HALF: f32 = 0.09;
@@ -114,7 +114,7 @@ fn ground() -> Prop {
     fixed("ground", Shape::HalfSpace, Transform::IDENTITY, GRASS)
 }
 
-/// A box along the axes from corner to corner.
+/// Axis-aligned box between two corners.
 fn block(name: &'static str, low: Vec3, high: Vec3, color: [f32; 3]) -> Prop {
     turned(name, (low + high) * 0.5, (high - low) * 0.5, Rotation::IDENTITY, color)
 }
@@ -141,7 +141,7 @@ fn floor_and_porch(props: &mut Vec<Prop>) {
     }
 }
 
-/// Posts and two rails along the open sides of the porch, except at the stairs.
+/// Adds posts and two rails along the open sides of the porch, except at the stairs.
 fn railing(props: &mut Vec<Prop>) {
     let (top, outer, inner) = (PORCH_HEIGHT, PORCH_HALF_WIDTH - 0.06, 0.5 * STAIRS_WIDTH + 0.06);
     let rail = |low: Vec3, high: Vec3| block("rail", low, high, BEAM);
@@ -161,7 +161,7 @@ fn railing(props: &mut Vec<Prop>) {
     }
 }
 
-/// Solid steps down to the ground, so that nothing slips between them, and a stringer on each side.
+/// Adds solid steps down to the ground, so that nothing slips between them, and a stringer on each side.
 fn stairs(props: &mut Vec<Prop>) {
     let half_width = 0.5 * STAIRS_WIDTH;
     for step in 1..STEPS {
@@ -174,14 +174,14 @@ fn stairs(props: &mut Vec<Prop>) {
     let slope = trig::atan2(STEP_RISE, STEP_RUN);
     let length = (run * run + (PORCH_HEIGHT - STEP_RISE) * (PORCH_HEIGHT - STEP_RISE)).sqrt();
     for side in [-1.0, 1.0] {
-        // The stringer's middle line runs through the middles of the steps' noses.
+        // The stringer's centre line runs through the centres of the steps' noses.
         let center = v(side * (half_width + 0.035), 0.5 * PORCH_HEIGHT - 0.04, 0.5 * run);
         let rotation = Rotation::from_axis_angle(Vec3::X, slope);
         props.push(turned("stringer", center, v(0.035, 0.13, 0.5 * length + 0.04), rotation, BEAM));
     }
 }
 
-/// Courses of logs around the cabin; the front ones, except for the topmost, leave room for the door.
+/// Adds courses of logs around the cabin; the front ones, except for the topmost, leave room for the door.
 fn walls(props: &mut Vec<Prop>) {
     for course in 0..COURSES {
         let bottom = PORCH_HEIGHT + course as f32 * COURSE_HEIGHT;
@@ -212,14 +212,14 @@ fn walls(props: &mut Vec<Prop>) {
     }
 }
 
-/// A dark pane in a frame on the front wall.
+/// Adds a dark pane in a frame on the front wall.
 fn window(props: &mut Vec<Prop>, x: f32) {
     let center = v(x, PORCH_HEIGHT + 1.35, FRONT);
     props.push(turned("window frame", center, v(0.42, 0.42, 0.025), Rotation::IDENTITY, BEAM));
     props.push(turned("window", center, v(0.34, 0.34, 0.035), Rotation::IDENTITY, [0.10, 0.16, 0.20]));
 }
 
-/// Shrinking courses that fill the triangles under the roof on both sides.
+/// Adds shrinking courses that fill the triangles under the roof on both sides.
 fn gables(props: &mut Vec<Prop>) {
     let half_depth = 0.5 * (FRONT - BACK);
     let middle = 0.5 * (FRONT + BACK);
@@ -236,7 +236,7 @@ fn gables(props: &mut Vec<Prop>) {
     }
 }
 
-/// Two tilted slabs that meet in the ridge, along x, and a chimney.
+/// Adds two tilted slabs that meet in the ridge, along x, and a chimney.
 fn roof(props: &mut Vec<Prop>) {
     let (sin, cos) = trig::sin_cos(ROOF_PITCH);
     let (half_depth, middle) = (0.5 * (FRONT - BACK), 0.5 * (FRONT + BACK));
@@ -257,7 +257,7 @@ fn roof(props: &mut Vec<Prop>) {
     props.push(block("chimney", low, v(1.65, ridge + 0.75, middle - 0.6), STONE));
 }
 
-/// Props on the grass beside the path: crates, a wood pile, pines.
+/// Adds props on the grass beside the path: crates, a wood pile, pines.
 fn meadow(props: &mut Vec<Prop>) {
     let yaw = |degrees: f32| Rotation::from_axis_angle(Vec3::Y, degrees.to_radians());
     props.push(turned("crate", v(2.95, 0.3, -0.7), v(0.3, 0.3, 0.3), yaw(18.0), CRATE));
@@ -277,7 +277,7 @@ fn meadow(props: &mut Vec<Prop>) {
     }
 }
 
-/// A trunk under four shrinking tiers, each turned a little.
+/// Adds a trunk under four shrinking tiers, each rotated a little.
 fn pine(props: &mut Vec<Prop>, foot: Vec3, height: f32) {
     let trunk = v(0.025 * height, 0.16 * height, 0.025 * height);
     props.push(turned("pine", foot + Vec3::Y * trunk.y, trunk, Rotation::IDENTITY, BEAM));

@@ -14,7 +14,7 @@ const ROW: usize = 10;
 const KEYS: u16 = 61;
 /// Length of both clips, seconds.
 pub const DURATION: f32 = 2.0;
-/// Number of steps in that time.
+/// Number of steps in the duration of a clip.
 const STEPS_PER_LOOP: usize = 120;
 
 /// The characters, their clips and start times.
@@ -60,7 +60,7 @@ impl CrowdScene {
     }
 }
 
-/// The scene as Sinew plays it: cursors and a model pose for each character; intermediate poses are shared.
+/// A [`CrowdScene`] in Sinew: cursors and a model pose for each character; intermediate poses are shared.
 pub struct Crowd {
     scene: CrowdScene,
     skeleton: Skeleton,
@@ -78,7 +78,7 @@ struct Playing {
 }
 
 impl Crowd {
-    /// State before the first pose.
+    /// Creates the state before the first pose.
     pub fn new(scene: CrowdScene) -> Self {
         let joints = scene.rig.joints.len();
         let built =
@@ -94,7 +94,8 @@ impl Crowd {
         }
     }
 
-    /// Samples both clips for every character at its times after `step` steps, blends them, and brings them to model space.
+    /// Samples both clips for every character at its times after `step` steps, blends them, and converts the results to
+    /// model poses.
     pub fn step(&mut self, step: usize) {
         for character in 0..self.characters.len() {
             self.sample(character, step);

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Length in seconds: the walk, the fall, getting up, and a few steps.
 const SECONDS: f32 = 10.5;
-/// Distance before the edge of the porch at which the hit comes, metres.
+/// Distance before the edge of the porch at which the mannequin is hit, metres.
 const HIT_BEFORE_EDGE: f32 = 0.45;
 /// Impulse of the hit in the back, N·s: a shove with both hands.
 const IMPULSE: Vec3 = Vec3::new(0.0, 0.0, 110.0);
@@ -24,16 +24,16 @@ pub struct Demo {
     pub character: Arc<CharacterDef>,
     /// Transform of the character to the world at its start.
     pub world_from_character: Transform,
-    /// Things that stand in the world.
+    /// Props of the world.
     pub props: Vec<Prop>,
     /// The static bodies of `props`.
     pub bodies: Vec<BodyDef>,
-    /// The hit.
+    /// Hits on the mannequin.
     pub hits: Vec<BakeHit>,
 }
 
 impl Demo {
-    /// The demo in one of the worlds; only [`Site::CabinWithStairs`] has stairs to fall down.
+    /// Creates the demo in one of the worlds; only [`Site::CabinWithStairs`] has stairs to fall down.
     pub fn new(site: Site) -> Self {
         let (character, walk_speed) = walking_mannequin();
         let (props, spawn) = (site.props(), site.spawn());
@@ -48,7 +48,7 @@ impl Demo {
         }
     }
 
-    /// Input of [`bake`](sinew::ragdoll::bake()).
+    /// Returns the input of [`bake`](sinew::ragdoll::bake()).
     pub fn input(&self) -> BakeInput<'_> {
         BakeInput {
             world_from_character: self.world_from_character,

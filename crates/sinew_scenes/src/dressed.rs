@@ -11,15 +11,15 @@ use sinew::ragdoll::{BuildOptions, CharacterDef, build};
 pub struct Chains {
     /// Prefix of the joint names.
     pub name: &'static str,
-    /// Joint to which it is attached.
+    /// Name of the joint to which the garment is attached.
     pub on: &'static str,
-    /// Number of chains, and of bones in each.
+    /// Number of chains.
     pub columns: usize,
-    /// Bones in a chain; its joints are one more.
+    /// Number of bones in a chain, which has one joint more.
     pub bones: usize,
     /// True if the last chain is next to the first.
     pub closed: bool,
-    /// Position in the bind pose at fractions of the way across and down, 0..=1, metres.
+    /// Returns the position in the bind pose, metres, at a fraction of the way across and a fraction of the way down, 0..=1.
     pub place: fn(f32, f32) -> Vec3,
     /// Linear RGBA colour.
     pub color: [f32; 4],
@@ -54,13 +54,13 @@ pub const CAPE: Chains = Chains {
     color: [0.05, 0.09, 0.25, 1.0],
 };
 
-/// Skin cells between two joints, across and down.
+/// Number of skin cells between two joints, across and down.
 const PARTS: usize = 4;
 
 /// Rig of the mannequin with these garments.
 ///
 /// # Panics
-/// If the mannequin has no joint of the garment's name.
+/// If the mannequin has no joint with the name [`Chains::on`] of a garment.
 pub fn dressed_rig(garments: &[&Chains]) -> Rig {
     let mut rig = crate::mannequin::mannequin().rig;
     for chains in garments {
@@ -103,7 +103,7 @@ impl Chains {
         }
     }
 
-    /// Adds a skin over the chains, whose joints begin at `first`; each vertex moves with the bones of its two neighbouring chains.
+    /// Adds a skin over the chains, whose joints begin at `first`; each vertex moves with bones of its two neighbouring chains.
     fn add_skin(&self, rig: &mut Rig, first: JointIdx) {
         let joints = self.bones + 1;
         let slot = |column: usize, bone: usize| ((column % self.columns) * joints + bone) as u16;

@@ -20,7 +20,8 @@ const HEIGHT: f32 = 0.4;
 /// Forward lean at the start, radians: an upright character would not fall over.
 const LEAN: f32 = 0.35;
 
-/// A character that falls limp on a floor, and the report on its ragdoll. The fall begins at once, in the rest pose of the file.
+/// A character that falls limp on a floor, and the report on its ragdoll. The fall begins with the first step, in the rest pose
+/// of the file.
 ///
 /// # Errors
 /// If no ragdoll can be built.
@@ -114,7 +115,7 @@ impl Script for Fallen {
         Ok(())
     }
 
-    /// The bars of a drop test.
+    /// Returns the figures with the bars of a drop test.
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let q = self.meter.quality();
         vec![

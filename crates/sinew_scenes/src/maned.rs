@@ -11,7 +11,7 @@ use sinew::ragdoll::{BuildOptions, CharacterDef, build};
 /// Strand of hair.
 struct Strand {
     name: &'static str,
-    /// Position of its root and direction of each link, in the head's axes, metres.
+    /// Position of the strand's root, and vector of each link, in the head's axes, metres.
     root: Vec3,
     link: Vec3,
     links: usize,
@@ -88,7 +88,7 @@ fn grow(rig: &mut Rig, head: JointIdx, strand: &Strand, settings: &SpringBone) -
     SpringChain { name: strand.name.to_owned(), bones, center: None, colliders: vec![0], hits_body: false }
 }
 
-/// A link: two pyramids on a square across its first third.
+/// Mesh of a link: two pyramids on a common square, at 30 % of the link's length.
 fn spindle(way: Vec3) -> Primitive {
     let along = way / way.length();
     let side = sinew::math::any_orthonormal(along) * THIN;

@@ -53,14 +53,15 @@ pub(crate) fn hook() -> BodyDef {
     BodyDef { kind: BodyKind::Static, ..BodyDef::default() }
 }
 
-/// A capsule from x = `start` over `length` along x that collides with nothing.
+/// A capsule along x, from `start` to `start + length`, that collides with nothing.
 pub(crate) fn level_rod(start: f32, length: f32, radius: f32) -> BodyDef {
     let half_height = 0.5 * length - radius;
     let def = body(Shape::Capsule { half_height, radius }, Vec3::X * (start + 0.5 * length));
     BodyDef { rotation: tilt(90.0), ..ghost(def) }
 }
 
-/// A thin rod from x = `start` over `length` along x, with `m l²/12` about its middle, that collides with nothing.
+/// A thin rod along x, from `start` to `start + length`, with the moment `m l²/12` about its middle, that collides
+/// with nothing.
 pub(crate) fn thin_rod(start: f32, length: f32, mass: f32) -> BodyDef {
     let moment = mass * length * length / 12.0;
     // The axis of the rod's own frame is y.

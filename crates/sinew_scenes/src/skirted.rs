@@ -9,7 +9,7 @@ use sinew::ragdoll::{BuildOptions, CharacterDef, build};
 
 /// Name of the skirt's mesh and of its node.
 pub const NAME: &str = "Skirt";
-/// Name of its material.
+/// Name of the skirt's material.
 pub const MATERIAL: &str = "Tartan";
 /// Number of cells of the skirt around and down in the artist's mesh.
 pub const CELLS: [usize; 2] = [72, 20];
@@ -32,7 +32,7 @@ pub fn skirted_rig(cells: [usize; 2]) -> Rig {
     let mut primitive =
         Primitive { base_color: SKIRT.color, material: MATERIAL.to_owned(), ..Primitive::default() };
     let mut add = |place: Vec3| {
-        // Toward the hem, the leg of its side gets more weight.
+        // Toward the hem, the leg on the vertex's side gets more weight.
         let down = clamp((1.0 - place.y) / 0.45, 0.0, 1.0);
         let (leg, side) = (0.7 * down, clamp(0.5 + 3.0 * place.x, 0.0, 1.0));
         primitive.joints.push([hips, left, right, 0]);
@@ -78,7 +78,7 @@ pub fn skirted_rig(cells: [usize; 2]) -> Rig {
 /// Converts the skirt of such a rig to a sheet and returns its index. Particles are at most `spacing` (m) apart if their number allows.
 ///
 /// # Errors
-/// As [`lay_sheet`].
+/// Returns the errors of [`lay_sheet`].
 ///
 /// # Panics
 /// If the rig has no such skirt.
@@ -121,7 +121,7 @@ pub fn skirted(adjust: impl Fn(&mut Garment)) -> CharacterDef {
 /// Joint of the rig of that name.
 ///
 /// # Panics
-/// If the rig has none.
+/// If the rig has no such joint.
 pub fn joint(rig: &Rig, name: &str) -> JointIdx {
     rig.joints.iter().position(|joint| joint.name == name).expect("it has that joint")
 }

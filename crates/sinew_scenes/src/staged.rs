@@ -21,16 +21,17 @@ use std::sync::Arc;
 /// metres.
 const MANNEQUIN: f32 = 1.8;
 const FITTING: core::ops::RangeInclusive<f32> = 1.3..=2.3;
-/// Way from the place behind the door to the start, metres: the wall hides a character behind it.
+/// Distance from the place behind the door to the start, metres: the wall hides a character at the start.
 const START_DISTANCE: f32 = 0.45;
 /// Speed of the walk of a character of the mannequin's height, m/s.
 const WALK: f32 = 1.3;
-/// Distance before the edge of the porch at which the push comes, and time until it on flat ground, metres and seconds.
+/// Distance before the edge of the porch at which the character is pushed, metres, and time until the push on flat
+/// ground, seconds.
 const PUSH_BEFORE_EDGE: f32 = 0.45;
 const PUSH_AFTER: f32 = 2.5;
 /// Speed that the push gives to the mass of the whole character, m/s: a shove with both hands.
 const SHOVE: f32 = 1.45;
-/// Times after which it begins again: on its feet, and down without getting up, seconds.
+/// Times after which the run begins again, seconds: with the character on its feet, and down without getting up.
 const WALKS_ON: f32 = 4.0;
 const STAYS_DOWN: f32 = 12.0;
 /// Half of the box that a camera keeps in the picture, in heights of the character: enough for a lying body and for
@@ -94,7 +95,7 @@ struct Staged {
     start: Transform,
     colors: Vec<(BodyId, [f32; 3])>,
     character: Character,
-    /// Number of steps since it last stood up or fell.
+    /// Number of steps since the character last stood up or fell.
     since: u32,
     /// Part of the run; `None` until the push.
     was: Option<Part>,
@@ -134,14 +135,14 @@ impl Staged {
         }
     }
 
-    /// The push from behind.
+    /// Pushes the character from behind.
     fn shove(&mut self, world: &mut World) {
         let chest = self.def.body_named("chest").unwrap_or(0);
         let ahead = self.character.world_from_character().rotation * Vec3::Z;
         self.character.hit(world, chest, ahead * (SHOVE * self.def.ragdoll.total_mass));
     }
 
-    /// Puts a new character at the start, and removes what users threw.
+    /// Puts a new character at the start, and removes objects thrown by users.
     fn begin_again(&mut self, world: &mut World) {
         let next = Character::new(self.def.clone(), self.start, 0.0);
         core::mem::replace(&mut self.character, next).despawn(world);
@@ -154,7 +155,7 @@ impl Staged {
         (self.since, self.was) = (0, None);
     }
 
-    /// Middle of all joints' bounds, world space, metres.
+    /// Returns the centre of all joints' bounds, world space, metres.
     fn middle(&self) -> Vec3 {
         let points = self.model.iter().map(|joint| Aabb { min: joint.translation, max: joint.translation });
         let around = points.reduce(|a, b| a.merge(&b)).unwrap_or_default();

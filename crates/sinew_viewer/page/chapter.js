@@ -1,4 +1,5 @@
-// A chapter of the book: a click on a picture runs its scene there, and nowhere else at the same time.
+// A chapter of the book: a click on a picture runs its scene in place of the picture; only one scene runs at
+// a time.
 let running = null;
 
 for (const button of document.querySelectorAll('button[data-scene]')) {

@@ -1,8 +1,8 @@
-// The page around the picture: what the address asks for, buttons, files that are chosen or dropped, files to be kept.
+// The page around the picture: parameters of the address, buttons, chosen or dropped files, and files for the user.
 //
-// ?scene=NAME, set=KEY=VALUE (any number), steps=N (steps so far at once, then tells the hash), gpu=webgl2 (not WebGPU),
-// panels=few (without the list of scenes) or none. The page's own panels stand in data-panels of its body.
-// The canvas says what it shows: data-scene, data-steps, data-line (last message), data-subject (its place in the picture, in shares),
+// ?scene=NAME, set=KEY=VALUE (any number), steps=N (taken at full speed, then the hash is shown), gpu=webgl2 (not WebGPU),
+// panels=few (without the list of scenes) or none. A page sets its own panels in data-panels of its body.
+// Attributes of the canvas: data-scene, data-steps, data-line (last message), data-subject (its position in the picture, in shares),
 // data-follows, data-runs; data-ready is the time to the first picture, ms.
 import init, { scenes, show } from './sinew.js';
 
@@ -60,7 +60,7 @@ const page = {
   },
 };
 
-// Text, and elements after it, over the picture.
+// Shows text, and elements after it, over the picture.
 function notice(text, ...more) {
   const box = element('notice');
   box.replaceChildren(Object.assign(document.createElement('p'), { textContent: text }), ...more);
@@ -68,7 +68,7 @@ function notice(text, ...more) {
   canvas.dataset.line = text;
 }
 
-// All scenes by chapter, as links.
+// Shows all scenes by chapter, as links.
 function listed() {
   const chapters = new Map();
   for (const scene of scenes().split('\n')) {
@@ -86,7 +86,7 @@ function listed() {
   });
 }
 
-// The program, with its progress: the server may not know how many bytes it sends.
+// Loads the program, and shows the progress: the server may not report the number of bytes.
 async function program() {
   const response = await fetch('sinew_bg.wasm');
   const total = Number(canvas.dataset.bytes);
@@ -108,7 +108,7 @@ function begin(scene, settings) {
   return show(canvas, page, scene, settings, steps > 0 ? steps : undefined, asked.get('gpu') === 'webgl2', panels);
 }
 
-// Shows what the address asks for; where that cannot be, the demo, and what there is.
+// Shows the subject of the address; if that fails, the demo and a list of the available subjects.
 function beginAsked() {
   const scene = asked.get('scene') ?? undefined;
   try {
@@ -130,7 +130,7 @@ async function start() {
   return shown;
 }
 
-// It stands still while nobody sees it.
+// The simulation pauses while the page is hidden.
 function watch() {
   if (!onStage) return;
   new IntersectionObserver(([entry]) => {
@@ -201,14 +201,14 @@ document.addEventListener('drop', (event) => {
 });
 canvas.addEventListener('pointerdown', () => element('hint')?.remove());
 canvas.addEventListener('keydown', (event) => {
-  // Tab leaves the picture, which takes all other keys.
+  // Tab leaves the picture, which handles all other keys.
   if (event.key === 'Tab') event.stopImmediatePropagation();
   if (!onStage) return;
   if (event.key === 'Enter') act(() => shown.order('push'));
   if (event.key === ' ') event.preventDefault();
 }, { capture: true });
 
-// Those who want no motion, or little data, press a button first.
+// Users who prefer reduced motion, or little data, press a button first.
 const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches || navigator.connection?.saveData;
 if (isStill && onStage && !asked.has('scene')) {
   element('play').hidden = false;

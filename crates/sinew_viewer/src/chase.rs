@@ -1,11 +1,11 @@
-//! A camera that goes along with its subject.
+//! A camera that follows its subject.
 
 use sinew::math::{Vec3, min, trig};
 
-/// Time in which the lag shrinks to 1/e, seconds: swinging limbs do not shake the camera.
+/// Time in which the lag shrinks to 1/e, seconds: so long that swinging limbs do not shake the camera.
 const LAG: f32 = 0.3;
-/// Farthest that the subject gets from the middle, as a share of the camera's distance: a fall down stairs stays in the picture, and
-/// after a jump the camera is there at once.
+/// Largest distance of the subject from the middle, as a share of the camera's distance: a fall down stairs stays in the picture,
+/// and after a jump the camera arrives without a lag.
 const REACH: f32 = 0.16;
 
 /// Point that glides after a subject, metres, world space.
@@ -13,12 +13,12 @@ const REACH: f32 = 0.16;
 pub struct Chase(Vec3);
 
 impl Chase {
-    /// Creates a camera on the subject.
+    /// Creates a camera that points at the subject.
     pub fn at(subject: Vec3) -> Self {
         Self(subject)
     }
 
-    /// Glides on for a time, infinite without lag; returns the way. `distance` is the camera's from its target.
+    /// Moves the point for a time, infinite without lag; returns its displacement. `distance` is that of the camera from its target.
     pub fn go(&mut self, subject: Vec3, seconds: f32, distance: f32) -> Vec3 {
         let lag = subject - self.0;
         let length = lag.length();

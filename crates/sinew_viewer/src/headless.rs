@@ -14,12 +14,12 @@ pub struct Headless {
     size: [u32; 2],
     events: Vec<Event>,
     frames: u32,
-    /// Ctrl is held in the next frame.
+    /// True if Ctrl is held in the next frame.
     holds_ctrl: bool,
 }
 
 impl Headless {
-    /// A viewer with a size in pixels, one pixel per point.
+    /// Creates a viewer with a size in pixels, one pixel per point.
     pub fn new(app: App, gpu: Gpu, size: [u32; 2]) -> Self {
         let painter = Painter::new(gpu, wgpu::TextureFormat::Rgba8Unorm, size);
         Self {
@@ -33,12 +33,12 @@ impl Headless {
         }
     }
 
-    /// The viewer.
+    /// Returns the viewer.
     pub fn app(&self) -> &App {
         &self.app
     }
 
-    /// The viewer, for operations without an event.
+    /// Returns the viewer, for operations without an event.
     pub fn app_mut(&mut self) -> &mut App {
         &mut self.app
     }
@@ -81,7 +81,7 @@ impl Headless {
         self.events.push(Event::PointerMoved(pos2(x, y)));
     }
 
-    /// Presses or releases the left button there.
+    /// Presses or releases the left button at a point, in points from the upper left corner.
     pub fn button(&mut self, x: f32, y: f32, pressed: bool) {
         self.events.push(Event::PointerButton {
             pos: pos2(x, y),

@@ -1,7 +1,7 @@
-//! Scenes, characters and recordings in a window, drawn by the graphics card.
+//! Shows scenes, characters and recordings in a window, drawn by the GPU.
 //!
-//! [`App`] is the viewer without a window: a running [`Session`], input, a camera, panels. [`open`] puts it into a window,
-//! [`Headless`] into pictures. [`Offscreen`] draws a [`Stage`] without any of that.
+//! [`App`] is the viewer without a window: a running [`Session`], input, a camera, panels. [`open`] shows it in a window,
+//! [`Headless`] returns pictures of it. [`Offscreen`] draws a [`Stage`] without input or panels.
 #![forbid(unsafe_code)]
 
 mod app;

@@ -1,4 +1,4 @@
-//! The viewer as pixels: the picture, and the panels over it.
+//! Draws the viewer as pixels: the picture, and the panels over it.
 
 use crate::app::App;
 use crate::gpu::{Gpu, GpuError, StageRenderer, Target, read_back, rows_of, texture};
@@ -12,7 +12,7 @@ pub(crate) struct Painter {
     renderer: StageRenderer,
     panels: egui_wgpu::Renderer,
     target: Target,
-    /// Start of the session whose meshes are on the card.
+    /// Key of the session whose meshes are on the GPU.
     shown: u64,
 }
 
@@ -89,10 +89,10 @@ impl Painter {
         panels.free.iter().for_each(|id| self.panels.free_texture(id));
     }
 
-    /// A picture of the viewer.
+    /// Returns a picture of the viewer.
     ///
     /// # Errors
-    /// If the GPU does not return it.
+    /// If the GPU does not return the picture.
     pub fn picture(&mut self, app: &App, panels: &Panels) -> Result<Image, GpuError> {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let picture = texture(&self.gpu, "screenshot", self.format, self.target.size(), 1, usage);

@@ -1,15 +1,15 @@
-//! User preferences that are kept between starts.
+//! User preferences that are stored between starts.
 
 use crate::layers::Layer;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Choices of a person.
+/// Preferences of a user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preferences {
-    /// Layers that are on.
+    /// Layers that are switched on.
     pub layers: Vec<Layer>,
-    /// Threads that steps run on, at least 1.
+    /// Number of threads for steps, at least 1.
     pub threads: usize,
 }
 
@@ -20,7 +20,8 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// File of the preferences: `sinew/viewer.json` in the system's folder for configuration; `None` without one.
+    /// Returns the file of the preferences: `sinew/viewer.json` in the system's folder for configuration; `None`
+    /// without one.
     pub fn path() -> Option<PathBuf> {
         let folder = |name: &str| std::env::var_os(name).filter(|path| !path.is_empty()).map(PathBuf::from);
         let config = folder("XDG_CONFIG_HOME")
@@ -29,7 +30,7 @@ impl Preferences {
         Some(config.join("sinew").join("viewer.json"))
     }
 
-    /// Reads them; missing or invalid entries have their defaults.
+    /// Reads the preferences from `path`; missing or invalid entries have their defaults.
     pub fn load(path: &Path) -> Self {
         let bytes = std::fs::read(path).unwrap_or_default();
         let value: Value = serde_json::from_slice(&bytes).unwrap_or_default();
@@ -39,7 +40,7 @@ impl Preferences {
         Self { layers, threads }
     }
 
-    /// Writes them, if possible.
+    /// Writes the preferences to `path`; ignores errors.
     pub fn save(&self, path: &Path) {
         let layers: Vec<&str> = self.layers.iter().map(|layer| layer.name()).collect();
         let value = json!({"sinew": "viewer", "version": 1, "layers": layers, "threads": self.threads});

@@ -1,4 +1,5 @@
-//! Content of a picture: bodies by their shapes, characters by their skins, and whatever else a scene draws.
+//! Content of a picture: bodies by their shapes, characters by their skins, and additional drawings of a
+//! scene.
 
 use sinew::math::{Transform, Vec3, normalize_or};
 use sinew::physics::Shape;
@@ -6,12 +7,12 @@ use sinew_picture::world::Canvas;
 use sinew_picture::{Line, Model, Scene};
 use sinew_scenes::scenes::Figure;
 
-/// Everything that a picture shows. Shapes of a kind are drawn at once, however many there are.
+/// Complete content of a picture. All shapes of a kind are drawn by one call.
 #[derive(Debug, Default)]
 pub struct Stage<'a> {
     /// Surfaces, lines, text, sun and sky.
     pub scene: Scene,
-    /// Characters, by their skins.
+    /// Characters, drawn by their skins.
     pub figures: Vec<Figure<'a>>,
     pub(crate) solids: Vec<Solid>,
 }
@@ -23,14 +24,14 @@ impl Stage<'_> {
     }
 }
 
-/// A surface that many have in common.
+/// A surface with a common mesh.
 #[derive(Debug)]
 pub(crate) struct Solid {
     pub form: Form,
     pub place: Transform,
     /// Scale along the axes of `place`.
     pub scale: Vec3,
-    /// Linear.
+    /// Linear colour.
     pub color: [f32; 3],
 }
 
@@ -38,15 +39,15 @@ pub(crate) struct Solid {
 #[derive(Debug)]
 pub(crate) enum Form {
     Shape(Shape),
-    /// A ball of radius 1 of eight fields.
+    /// A ball of radius 1 with eight fields.
     Fields,
     /// A ball of radius 1.
     Ball,
-    /// Half extents of 1.
+    /// A cube with half extents of 1.
     Cube,
-    /// Radius and half height of 1.
+    /// A cylinder with a radius and half height of 1.
     Cylinder,
-    /// Radius of the base and half height of 1.
+    /// A cone with a base radius and half height of 1.
     Cone,
 }
 

@@ -29,7 +29,7 @@ pub const STAGES: [Stage; 20] = [
     Stage::Movers,
 ];
 
-/// Share of the newest step in the mean that is shown: a few tenths of a second to follow.
+/// Weight of the newest step in the shown mean, which follows within a few tenths of a second.
 const NEWEST: f64 = 0.1;
 
 thread_local! {
@@ -39,14 +39,14 @@ thread_local! {
 /// Time of each stage, summed over threads, as a mean that follows the last steps.
 #[derive(Debug, Default)]
 pub struct StageTimes {
-    /// Times of the step on its way, nanoseconds.
+    /// Times of the current step, nanoseconds.
     now: [AtomicU64; STAGES.len()],
-    /// Milliseconds.
+    /// Mean times, milliseconds.
     mean: [f64; STAGES.len()],
 }
 
 impl StageTimes {
-    /// Mean milliseconds of each of [`STAGES`].
+    /// Returns the mean milliseconds of each of [`STAGES`].
     pub fn milliseconds(&self) -> [f64; STAGES.len()] {
         self.mean
     }

@@ -1,4 +1,4 @@
-//! A running scene as a stage, and a camera that a person moves.
+//! Converts a running scene to a stage, and moves the user's camera.
 
 use crate::layers::{self, Layer};
 use crate::session::Session;
@@ -13,7 +13,7 @@ use sinew_scenes::scenes::Instance;
 
 /// Smallest distance between the camera and its target, metres.
 const NEAREST: f32 = 0.1;
-/// Largest, metres.
+/// Largest distance between the camera and its target, metres.
 const FARTHEST: f32 = 20_000.0;
 /// Steepest look up or down, radians: straight down has no horizon.
 const STEEPEST: f32 = 1.54;
@@ -21,12 +21,12 @@ const STEEPEST: f32 = 1.54;
 const FOV: f32 = core::f32::consts::FRAC_PI_4;
 /// Least height of the camera above the ground, as a share of its distance, so that the near plane cuts nothing off.
 const CLEARANCE: f32 = 0.02;
-/// Upward component of a normal from which on a surface is ground and not a wall.
+/// Upward component of a normal from which on a surface counts as ground, not as a wall.
 const LEVEL: f32 = 0.7;
-/// Part of the world that a ray from the eye looks at, metres.
+/// Length of a ray from the eye, metres.
 const SIGHT: f32 = 1e5;
 
-/// Bounds of a scene's subject, world space, metres.
+/// Returns the bounds of a scene's subject, world space, metres.
 pub fn bounds(instance: &Instance) -> Aabb {
     let mut lines = Lines::default();
     instance.draw(&mut lines);
@@ -40,13 +40,13 @@ pub fn bounds(instance: &Instance) -> Aabb {
     if is_sound { all } else { Aabb::around(Vec3::ZERO, Vec3::ONE) }
 }
 
-/// Lines of the curves that a scene compares.
+/// Returns the lines of the curves that a scene compares.
 fn curves(instance: &Instance) -> Vec<Line> {
     let curves = instance.curves();
     draw::curves(curves.iter().map(|curve| &curve.pieces[..]))
 }
 
-/// Extends bounds to the ground below them, if it is close enough for a visible fall.
+/// Extends bounds to the ground below them, if the ground is close enough for a visible fall.
 pub(crate) fn with_ground(bounds: &Aabb, world: &World) -> Aabb {
     let size = (bounds.max - bounds.min).length();
     let fall = max(6.0 * size, 1.0);
@@ -56,21 +56,21 @@ pub(crate) fn with_ground(bounds: &Aabb, world: &World) -> Aabb {
     bounds.merge(&Aabb { min: hit.point, max: hit.point })
 }
 
-/// Camera that turns around a point.
+/// A camera that rotates around a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
-    /// The point, metres, world space.
+    /// Point around which the camera rotates, metres, world space.
     pub target: Vec3,
-    /// Angle from +z toward +x, radians.
+    /// Angle of the direction to the camera from +z toward +x, radians.
     pub yaw: f32,
-    /// Up, radians.
+    /// Angle of the direction to the camera above the horizontal, radians.
     pub pitch: f32,
-    /// Distance from the point to the camera, metres.
+    /// Distance from the target to the camera, metres.
     pub distance: f32,
 }
 
 impl Orbit {
-    /// Frames bounds by a scene's hint, in a picture `aspect` times as wide as it is high.
+    /// Returns a camera that frames bounds from `direction`, in a picture `aspect` times as wide as high.
     pub fn framing(bounds: &Aabb, direction: Vec3, aspect: f32) -> Self {
         let bounds = bounds.expand(max(0.1 * (bounds.max - bounds.min).length(), 0.05));
         let camera = Camera::framing_box(&bounds, direction, aspect);
@@ -87,19 +87,19 @@ impl Orbit {
         }
     }
 
-    /// The camera.
+    /// Returns the camera.
     pub fn camera(&self) -> Camera {
         Camera { position: self.target + self.back() * self.distance, target: self.target, fov_y: FOV }
     }
 
-    /// Direction from the point to the camera, unit.
+    /// Returns the direction from the target to the camera, unit.
     fn back(&self) -> Vec3 {
         let (sin_yaw, cos_yaw) = trig::sin_cos(self.yaw);
         let (sin, cos) = trig::sin_cos(self.pitch);
         Vec3::new(sin_yaw * cos, sin, cos_yaw * cos)
     }
 
-    /// Turns by angles, radians.
+    /// Rotates the camera by angles, radians.
     pub fn turn(&mut self, yaw: f32, pitch: f32) {
         self.yaw += yaw;
         self.pitch = clamp(self.pitch + pitch, -STEEPEST, STEEPEST);
@@ -111,12 +111,12 @@ impl Orbit {
         self.target += (axes.right * by.x + axes.up * by.y + axes.forward * by.z) * self.distance;
     }
 
-    /// Goes nearer (below 1) or farther by a factor.
+    /// Multiplies the camera's distance by a factor: below 1 is nearer.
     pub fn zoom(&mut self, factor: f32) {
         self.distance = clamp(self.distance * factor, NEAREST, FARTHEST);
     }
 
-    /// Pitches the camera further down where it would be in or below the ground.
+    /// Raises the camera if it would be in or below the ground.
     pub fn rise_above(&mut self, world: &World) {
         let way = Ray { origin: self.target, direction: self.back() * self.distance };
         let ground = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&way);
@@ -138,7 +138,7 @@ impl Orbit {
     }
 }
 
-/// The stage of a session as it stands now.
+/// Returns the stage of a session in its present state.
 pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Stage<'a> {
     let instance = session.instance();
     let around = bounds(instance);
@@ -184,7 +184,7 @@ pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Sta
     stage
 }
 
-/// Distance and rotation from which on a ghost is drawn beside the body, metres and radians.
+/// Least displacement and rotation with which a ghost is drawn beside the body, metres and radians.
 const SEEN: f32 = 1e-3;
 /// Linear colour of a ghost.
 const GHOST: [f32; 3] = [0.05, 0.55, 0.50];
@@ -211,7 +211,7 @@ fn add_ghost(ghost: &World, first: &World, stage: &mut Stage<'_>) {
     }
 }
 
-/// True if something endless or wide stands below.
+/// Returns true if the world has a static shape other than balls and capsules.
 fn has_floor(session: &Session) -> bool {
     use sinew::physics::Shape;
     let world = session.world();
@@ -220,7 +220,7 @@ fn has_floor(session: &Session) -> bool {
     shapes.any(|(shape, _)| !matches!(shape, Shape::Sphere { .. } | Shape::Capsule { .. }))
 }
 
-/// Lines of a level grid below floating bodies, which show the vertical and distances.
+/// Adds a level grid below floating bodies, which shows the vertical and distances.
 fn add_grid(around: &Aabb, stage: &mut Stage<'_>) {
     let size = max((around.max - around.min).max_element(), 0.5);
     let mut cell = 0.01;
@@ -265,7 +265,7 @@ mod tests {
             orbit.rise_above(&world);
             assert!(orbit.camera().position.y > 0.01, "{height} {distance}: {:?}", orbit.camera());
         }
-        // From below the ground everything is visible.
+        // A camera whose target is below the ground is not raised.
         let mut below = Orbit { target: Vec3::NEG_Y, yaw: 0.0, pitch: -0.5, distance: 3.0 };
         let before = below;
         below.rise_above(&world);

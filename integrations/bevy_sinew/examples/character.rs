@@ -1,6 +1,7 @@
 //! A character with Bevy: `cargo run --example character`; in a window `cargo run -p window -- character`.
 //!
-//! It walks, is hit, falls, gets up and walks on. The joints that it moves are entities, like those of a loaded scene.
+//! The character walks, is hit, falls, gets up and walks on. The joints that it moves are entities, like those of a
+//! loaded scene.
 
 use bevy_app::{App, FixedUpdate, PostStartup, Startup};
 use bevy_ecs::prelude::*;

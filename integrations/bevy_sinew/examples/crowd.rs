@@ -48,7 +48,7 @@ pub fn plugin(app: &mut App) {
     app.add_systems(Startup, setup).add_systems(FixedUpdate, (faint, choose_detail).chain());
 }
 
-/// Lets them walk for three seconds.
+/// Lets the crowd walk for three seconds.
 pub fn main() {
     let mut app = App::new();
     app.add_plugins((TimePlugin, SinewPlugin::default(), plugin)); // in a game `DefaultPlugins` bring the first

@@ -54,7 +54,7 @@ fn angle(app: &mut App) -> f32 {
     world.resource::<Physics>().joint_transform(hinge).rotation.twist_angle(Vec3::X).to_degrees().abs()
 }
 
-/// Motors are set through the resource: after 2.5 s the door gets one.
+/// Sets a motor through the resource: after 2.5 s the door gets one.
 fn shut(mut physics: ResMut<Physics>, hinges: Query<&JointHandle>) {
     if physics.step_count() != 150 {
         return;

@@ -1,7 +1,7 @@
 //! A shooter with Bevy: `cargo run --example shooter`; in a window `cargo run -p window -- shooter`.
 //!
-//! A ray from the gun finds the limb of a character: a weak shot makes it flinch, a strong one makes it fall. A mover walks behind a wall
-//! and is not hit.
+//! A ray from the gun finds the limb of a character: a weak shot makes the character flinch, a strong one makes it fall. A mover walks
+//! behind a wall and is not hit.
 
 use bevy_app::{App, FixedUpdate, Startup};
 use bevy_ecs::prelude::*;

@@ -11,18 +11,18 @@ use sinew::ragdoll::{CharacterDef, Locomotion, MotionSet, Opening};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 use std::sync::{Arc, Weak};
 
-/// Bevy plays the clips of this character: whatever animates its joints in `AnimationSystems`, usually an `AnimationPlayer`, sets its pose
-/// while it is animated and the target of its muscles while it is powered. Insert it together with [`CharacterBody`](crate::CharacterBody)
-/// or `CharacterScene`; inserted later, it has no effect.
+/// A character whose clips Bevy plays. Any animation of its joints in `AnimationSystems`, usually by an `AnimationPlayer`, sets the pose
+/// of the animated character and the target of the muscles of the powered one. Insert this component together with
+/// [`CharacterBody`](crate::CharacterBody) or `CharacterScene`; inserted later, it has no effect.
 ///
 /// Each fixed step uses the pose of the last frame. [`set_move`](sinew::ragdoll::Character::set_move) sets the character's velocity; the
-/// player sets the speed of clips. It falls like any character and gets up by the get-up clips of its own motions, while the player
+/// player sets the speed of clips. The character falls like any other and gets up by the get-up clips of its own motions, while the player
 /// continues.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 #[require(Given)]
 pub struct BevyAnimation {
-    /// True if its clips move over the ground. The pelvis is then held over its rest position, which removes its sway. Default false: its
+    /// True if the clips move over the ground. The pelvis is then held over its rest position, which removes its sway. Default false: the
     /// clips stay in place.
     pub travels: bool,
 }
@@ -32,7 +32,7 @@ pub struct BevyAnimation {
 pub(crate) struct Given {
     /// Poses of the joints, in the order of the rig; empty before the first frame.
     joints: Vec<Place>,
-    /// Pose with everything above the pelvis at rest.
+    /// Pose with all joints above the pelvis at rest.
     pose: Option<Pose>,
 }
 
@@ -58,7 +58,7 @@ pub(crate) fn led(kinds: &mut LedKinds, def: &Arc<CharacterDef>) -> Arc<Characte
     led
 }
 
-/// Feeds the poses before each step.
+/// Passes the poses to the characters before each step.
 pub(crate) fn feed_characters(mut characters: Query<(&mut CharacterHandle, &Given)>) {
     for (mut handle, given) in &mut characters {
         let Some(pose) = &given.pose else { continue };

@@ -16,16 +16,16 @@ use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
 use sinew_physics::{BodyDef, BodyId, BodyKind, ForceId, JointId, MassProperties, Shape, ShapeDef};
 
-/// A rigid body of a kind.
+/// Kind of a rigid body.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 #[require(Transform, Collider)]
 pub enum RigidBody {
     /// The body never moves.
     Static,
-    /// Moves at its [`Velocity`]; nothing pushes it.
+    /// The body moves at its [`Velocity`]; nothing pushes it.
     Kinematic,
-    /// Moved by forces. Default.
+    /// Forces move the body. Default.
     #[default]
     Dynamic,
 }
@@ -40,7 +40,7 @@ impl From<RigidBody> for BodyKind {
     }
 }
 
-/// The shapes of a body, metres, in its own axes; mass is computed from their densities. On an entity without a [`RigidBody`] they are part of
+/// Shapes of a body, metres, in its own axes; the mass is computed from their densities. Shapes of an entity without a [`RigidBody`] belong to
 /// the nearest body above it. A dynamic body without shapes is a point of 1 kg without contacts.
 #[derive(Component, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -79,7 +79,7 @@ impl From<Velocity> for sinew_physics::Velocity {
     }
 }
 
-/// The body of an entity; there as soon as the entity has a [`RigidBody`].
+/// Body of an entity; exists as soon as the entity has a [`RigidBody`].
 #[derive(Component, Clone, Copy, Debug)]
 #[component(on_remove = take_out)]
 pub struct BodyHandle {
@@ -96,7 +96,7 @@ pub struct BodyHandle {
 }
 
 impl BodyHandle {
-    /// Id of the body in [`Physics`].
+    /// Returns the id of the body in [`Physics`].
     pub fn id(&self) -> BodyId {
         self.id
     }
@@ -121,14 +121,14 @@ pub(crate) fn forget_body(removed: On<Remove<RigidBody>>, mut commands: Commands
 const POINT_MASS: f32 = 1.0;
 const POINT_MOMENT: f32 = 0.1;
 
-/// Mass and moments of a body without shapes.
+/// Returns mass and moments of a body without shapes.
 pub(crate) fn point(mass: Option<f32>) -> MassProperties {
     let mass = mass.unwrap_or(POINT_MASS);
     let inertia = sinew_math::Sym3 { diagonal: Vec3::splat(POINT_MOMENT * mass), off: Vec3::ZERO };
     MassProperties { mass, center: Vec3::ZERO, inertia }
 }
 
-/// What makes the body of an entity.
+/// Components that define the body of an entity.
 pub(crate) type Body = (Entity, &'static RigidBody, Surface, Option<&'static Velocity>, &'static Transform);
 
 fn add_body(
@@ -158,7 +158,7 @@ fn add_body(
     commands.entity(entity).insert(handle);
 }
 
-/// Adds the body of a new entity at once.
+/// Adds the body of a new entity without waiting for the next step.
 pub(crate) fn add_at_once(
     added: On<Add<RigidBody>>,
     mut commands: Commands,

@@ -18,11 +18,11 @@ use sinew_physics::BodyId;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// A character of that kind. Inserted at the root of a scene loaded from the same file, it moves the scene's joints, which it finds by name
-/// among the entity's descendants. It also works without a scene.
+/// Definition of a character. Inserted at the root of a scene loaded from the same file, the component moves the scene's joints, found by
+/// name among the entity's descendants. It also works without a scene.
 ///
-/// The entity's `Transform` sets the initial position, in metres, facing +Z. Later it is written as the transform of the file's own space
-/// (scaled if the file is in centimetres), and read when the user changes it. The entity must have no parent and no
+/// The entity's `Transform` sets the initial position, in metres, facing +Z. Later the plugin writes it as the transform of the file's own
+/// space (scaled if the file is in centimetres), and reads it when the user changes it. The entity must have no parent and no
 /// [`RigidBody`](crate::RigidBody).
 #[derive(Component, Clone, Debug)]
 #[require(Transform)]
@@ -36,7 +36,7 @@ pub struct CharacterHandle {
     character: Character,
     /// The last written or read transform.
     transform: Transform,
-    /// Bodies registered as its limbs.
+    /// Bodies registered as limbs of the character.
     bodies: Vec<BodyId>,
 }
 
@@ -162,8 +162,8 @@ pub(crate) fn find_joints(
     }
 }
 
-/// Entity of each joint: a child of the parent's entity with the joint's name; for a root, the nearest descendant. If a name occurs several
-/// times, each entity is used once.
+/// Returns the entity of each joint: a child of the parent's entity with the joint's name; for a root, the nearest descendant. If a name
+/// occurs several times, each entity is used once.
 fn joints_below(
     root: Entity,
     rig: &Rig,
@@ -214,7 +214,7 @@ pub(crate) fn write_characters(
         let place = handle.character.interpolated(alpha, &mut pose);
         let world_from_model = affine(&handle.def().mapping().world_from_model(place));
         if let Ok(mut transform) = transforms.get_mut(entity)
-            // Changes by the user since the last step have yet to be read.
+            // Changes by the user since the last step must be read first.
             && *transform == handle.transform
         {
             let new = Transform::from_matrix(world_from_model.into());

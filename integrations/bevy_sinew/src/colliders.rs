@@ -1,4 +1,4 @@
-//! Shapes of bodies: those of their own entity and of entities below it, with the surface components of each.
+//! Shapes of bodies: those of their own entity and of the entities below, with the surface components of each.
 
 use crate::bodies::{BodyHandle, Collider, RigidBody, point};
 use crate::properties::{Friction, Layers, Mass, Restitution, Sensor};
@@ -11,7 +11,7 @@ use bevy_transform::components::Transform;
 use sinew_math::{Sym3, Transform as Pose};
 use sinew_physics::{BodyId, Filter, MassProperties, MassUpdate, Sensing, ShapeDef, ShapeId};
 
-/// On an entity with a [`Collider`] and no [`RigidBody`]: the body above it, of which its shapes are part.
+/// Body above an entity with a [`Collider`] and without a [`RigidBody`]: the entity's shapes belong to that body.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct ColliderOf {
     body: Entity,
@@ -19,13 +19,13 @@ pub struct ColliderOf {
 }
 
 impl ColliderOf {
-    /// Entity of the body.
+    /// Returns the entity of the body.
     pub fn body(&self) -> Entity {
         self.body
     }
 }
 
-/// What decides the shapes of an entity.
+/// Components that define the shapes of an entity.
 #[derive(QueryData)]
 pub(crate) struct Surface {
     collider: Ref<'static, Collider>,
@@ -36,7 +36,7 @@ pub(crate) struct Surface {
 }
 
 impl SurfaceItem<'_, '_> {
-    /// The shapes, with what components say of their surfaces.
+    /// Returns the shapes, with the surface properties of the components.
     fn shapes(&self) -> impl Iterator<Item = ShapeDef> + '_ {
         self.collider.0.iter().map(|shape| {
             let mut shape = shape.clone();
@@ -89,12 +89,12 @@ fn mark_owner(removed: On<Remove<ColliderOf>>, owners: Query<&ColliderOf>, physi
     }
 }
 
-/// Without a collider an entity is part of no body.
+/// Removes the body of an entity without a collider.
 fn leave(removed: On<Remove<Collider>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<ColliderOf>();
 }
 
-/// Finds the body above each collider, and its place there.
+/// Finds the body above each collider, and the collider's place on the body.
 pub(crate) fn find_bodies(
     mut commands: Commands,
     mut physics: ResMut<Physics>,
@@ -132,7 +132,7 @@ pub(crate) fn find_bodies(
     }
 }
 
-/// Gives bodies the shapes and the mass that their components ask for; the body keeps its id.
+/// Applies the shapes and the mass of changed components to bodies, which keep their ids.
 pub(crate) fn change_shapes(
     mut physics: ResMut<Physics>,
     mut bodies: Query<(Entity, &mut BodyHandle, &RigidBody, Surface, Option<Ref<Mass>>)>,
@@ -192,7 +192,7 @@ fn replace_shapes(physics: &mut Physics, body: BodyId, shapes: &[ShapeDef]) -> b
     true
 }
 
-/// Gives a body the mass of its shapes, or this mass distributed as theirs. Without shapes it is a point.
+/// Sets the mass of a body: that of its shapes, or `mass` distributed like them. A body without shapes is a point.
 fn set_mass(physics: &mut Physics, body: BodyId, shapes: &[ShapeDef], mass: Option<f32>) {
     if shapes.is_empty() {
         physics.set_mass(body, point(mass));

@@ -12,7 +12,7 @@ use sinew_physics::stage::NoProfiler;
 pub struct TouchBegan {
     /// One of the two bodies.
     pub a: Entity,
-    /// The other.
+    /// The other body.
     pub b: Entity,
 }
 
@@ -21,7 +21,7 @@ pub struct TouchBegan {
 pub struct TouchEnded {
     /// One of the two bodies.
     pub a: Entity,
-    /// The other.
+    /// The other body.
     pub b: Entity,
 }
 
@@ -30,7 +30,7 @@ pub struct TouchEnded {
 pub struct SensorEntered {
     /// One of the two bodies.
     pub a: Entity,
-    /// The other.
+    /// The other body.
     pub b: Entity,
 }
 
@@ -39,7 +39,7 @@ pub struct SensorEntered {
 pub struct SensorLeft {
     /// One of the two bodies.
     pub a: Entity,
-    /// The other.
+    /// The other body.
     pub b: Entity,
 }
 
@@ -48,7 +48,7 @@ pub struct SensorLeft {
 pub struct HitTold {
     /// One of the two bodies.
     pub a: Entity,
-    /// The other.
+    /// The other body.
     pub b: Entity,
     /// Point of the hit, world, metres.
     pub point: Vec3,

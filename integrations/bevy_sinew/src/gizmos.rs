@@ -12,7 +12,7 @@ use bevy_reflect::Reflect;
 use sinew_physics::{DebugDraw, DrawKind};
 
 /// Draws the world: outlines of shapes, joints, contacts, springs. Needs Bevy's `GizmoPlugin`, which `DefaultPlugins` include;
-/// `GizmoConfigStore` enables and disables it as `PhysicsGizmos`.
+/// `GizmoConfigStore` enables and disables the drawing as `PhysicsGizmos`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SinewGizmosPlugin;
 
@@ -65,7 +65,7 @@ impl Default for GizmoColors {
 }
 
 impl GizmoColors {
-    /// Colour of a line of that kind.
+    /// Returns the colour of a line of that kind.
     pub fn of(&self, kind: DrawKind) -> Color {
         match kind {
             DrawKind::Static => self.fixed,

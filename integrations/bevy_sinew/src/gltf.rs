@@ -31,18 +31,19 @@ pub struct CharacterFile {
     pub notes: Vec<String>,
 }
 
-/// Makes the entity a character once the file is loaded: insert it together with `SceneRoot` or `WorldAssetRoot` of the same file.
+/// Makes an entity a character once the file is loaded: insert the component together with `SceneRoot` or `WorldAssetRoot` of the same
+/// file.
 #[derive(Component, Clone, Debug)]
 #[require(bevy_transform::components::Transform)]
 pub struct CharacterScene(pub Handle<CharacterFile>);
 
-/// Names of the clips that a character plays, for `AssetServer::load_with_settings`; an unknown name is an error. What is not named is
-/// chosen among the file's clips as by [`sinew::load_character`]; a humanoid that lacks it has the built-in one.
+/// Names of the clips that a character plays, for `AssetServer::load_with_settings`; an unknown name is an error. The other clips are
+/// chosen among those of the file like by [`sinew::load_character`]; a humanoid without one gets the built-in clip.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct CharacterSettings {
-    /// Clip that loops while it walks.
+    /// Clip that loops while the character walks.
     pub walk: Option<String>,
-    /// Clip that loops while it stands.
+    /// Clip that loops while the character stands.
     pub idle: Option<String>,
     /// Clips that start lying and end standing.
     pub get_ups: Vec<String>,
@@ -93,11 +94,11 @@ impl AssetLoader for CharacterLoader {
     }
 }
 
-/// Makes a kind of character from the bytes of a GLB, as [`sinew::character_of`]. `name` is the file's: errors start with it, and its words
-/// help to classify the character.
+/// Reads a kind of character from the bytes of a GLB, like [`sinew::character_of`]. `name` is the name of the file: errors start with it,
+/// and its words help to classify the character.
 ///
 /// # Errors
-/// If the bytes are no GLB with a skin, or the settings do not fit it.
+/// If the bytes are no GLB with a skin, or the settings do not fit the file.
 pub fn read_character(
     bytes: &[u8],
     name: &str,
@@ -119,7 +120,7 @@ pub fn read_character(
     Ok(CharacterFile { def: Arc::new(def), notes })
 }
 
-/// Motions with the named clips instead of those that were chosen.
+/// Returns motions with the named clips in place of the chosen ones.
 fn chosen(mut motions: MotionSet, settings: &CharacterSettings) -> Result<MotionSet, CharacterFileError> {
     let named = |name: &String| {
         let index = motions.clips.iter().position(|clip| clip.name == *name);

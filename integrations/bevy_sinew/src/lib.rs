@@ -50,7 +50,7 @@
 //! Scales are kept, but do not scale shapes. All other features of a world are available through the resource [`Physics`], with the id in
 //! [`BodyHandle`].
 #![forbid(unsafe_code)]
-// Types of queries name what a system reads; a name for each would hide it.
+// The types of queries show what a system reads; type aliases would hide that.
 #![allow(clippy::type_complexity)]
 
 #[cfg(feature = "characters")]
@@ -145,23 +145,23 @@ pub enum PhysicsSystems {
 pub struct Physics {
     world: World,
     entities: BTreeMap<BodyId, Entity>,
-    /// Bodies of characters.
+    /// Bodies of characters, with the entity of each character.
     limbs: BTreeMap<BodyId, Entity>,
     /// Removed bodies, kept until the step has reported the ends of their contacts.
     gone: Vec<BodyId>,
-    /// Entities of bodies whose shapes or mass are to be looked at, because a component was removed or a child moved.
+    /// Entities of bodies whose shapes or mass must be checked, because a component was removed or a child moved.
     stale: BTreeSet<Entity>,
-    /// A body without shapes that never moves, once axes are locked.
+    /// A static body without shapes; exists once axes are locked.
     ground: Option<BodyId>,
 }
 
 impl Physics {
-    /// The entity of a body, or of the character of a limb; also for bodies removed since the last step.
+    /// Returns the entity of a body, or of the character of a limb; also for bodies removed since the last step.
     pub fn entity(&self, body: BodyId) -> Option<Entity> {
         self.entities.get(&body).or_else(|| self.limbs.get(&body)).copied()
     }
 
-    /// Number of bodies with an entity, including those removed since the last step.
+    /// Returns the number of bodies with an entity, including those removed since the last step.
     pub fn len(&self) -> usize {
         self.entities.len()
     }
@@ -171,7 +171,7 @@ impl Physics {
         self.entities.is_empty()
     }
 
-    /// The body to which locked axes are locked.
+    /// Returns the body to which locked axes are locked.
     fn ground(&mut self) -> BodyId {
         if let Some(ground) = self.ground.filter(|&ground| self.world.contains(ground)) {
             return ground;
@@ -195,12 +195,12 @@ impl DerefMut for Physics {
     }
 }
 
-/// Order in which entities are added to the world: by creation.
+/// Returns a key that orders entities by creation: the order in which they are added to the world.
 pub(crate) fn order(entity: Entity) -> (u32, u64) {
     (entity.index_u32(), entity.to_bits())
 }
 
-/// The plugin. Needs Bevy's `TimePlugin`; sets the length of the fixed step to that of the world.
+/// Plugin of the physics. Needs Bevy's `TimePlugin`; sets the length of the fixed step to that of the world.
 #[derive(Default)]
 pub struct SinewPlugin {
     /// Settings of the world. Default [`WorldDef::default`].

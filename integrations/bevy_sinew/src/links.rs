@@ -27,7 +27,8 @@ pub(crate) mod bits {
     }
 }
 
-/// A joint between two bodies, on its own entity. It is created once both bodies are in the world, and removed with either of them.
+/// A joint between two bodies, on its own entity. The joint is created once both bodies are in the world, and removed with either
+/// of them.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "reflect",
@@ -52,13 +53,13 @@ pub struct Joint {
     pub kind: JointKind,
 }
 
-/// The joint of an entity; available once it is in the world.
+/// Joint of an entity; available once the joint is in the world.
 #[derive(Component, Clone, Copy, Debug)]
 #[component(on_remove = take_out_joint)]
 pub struct JointHandle(JointId);
 
 impl JointHandle {
-    /// Id of the joint in [`Physics`]; stale if one of its bodies was removed.
+    /// Returns the id of the joint in [`Physics`]; stale if one of its bodies was removed.
     pub fn id(&self) -> JointId {
         self.0
     }
@@ -74,13 +75,13 @@ impl JointHandle {
 )]
 pub struct Field(pub FieldDef);
 
-/// The field of an entity; available once it is in the world.
+/// Field of an entity; available once the field is in the world.
 #[derive(Component, Clone, Copy, Debug)]
 #[component(on_remove = take_out_field)]
 pub struct FieldHandle(FieldId);
 
 impl FieldHandle {
-    /// Id of the field in [`Physics`].
+    /// Returns the id of the field in [`Physics`].
     pub fn id(&self) -> FieldId {
         self.0
     }
@@ -131,7 +132,7 @@ pub(crate) fn add_joints(
     }
 }
 
-/// Changes kind or limits of an existing joint; its bodies and frames stay.
+/// Changes kind or limits of an existing joint, which keeps its bodies and frames.
 pub(crate) fn change_joints(
     mut physics: ResMut<Physics>,
     changed: Query<(Entity, &JointHandle, &Joint), Changed<Joint>>,

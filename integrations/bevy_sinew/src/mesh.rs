@@ -19,38 +19,38 @@ impl Plugin for SinewMeshPlugin {
     }
 }
 
-/// Gives its entity a [`Collider`] of its `Mesh3d` once that is loaded, in the scale that the entity then has. A body of triangles has no mass:
-/// use it for what is static, and the hull for what moves.
+/// Gives its entity a [`Collider`] of the `Mesh3d` once the mesh is loaded, in the present scale of the entity. A body of triangles has no
+/// mass: use triangles for static bodies, and the hull for moving ones.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshCollider {
-    /// Its triangles.
+    /// The triangles of the mesh.
     Triangles,
-    /// Its convex hull.
+    /// The convex hull of the mesh.
     Hull,
 }
 
 /// Reason why a mesh gives no collider.
 #[derive(Debug, thiserror::Error)]
 pub enum MeshColliderError {
-    /// It has no positions in the main world.
+    /// The mesh has no positions in the main world.
     #[error("the mesh has no positions")]
     NoPositions,
-    /// It is no list of triangles.
+    /// The mesh is no list of triangles.
     #[error("the mesh is no list of triangles but {0:?}")]
     NoTriangles(PrimitiveTopology),
-    /// Its triangles are not valid.
+    /// The triangles of the mesh are not valid.
     #[error(transparent)]
     Mesh(#[from] sinew_physics::MeshError),
-    /// It spans no solid.
+    /// The mesh spans no solid.
     #[error(transparent)]
     Hull(#[from] sinew_physics::HullError),
 }
 
 impl MeshCollider {
-    /// The collider of a mesh that is scaled by these factors.
+    /// Returns the collider of a mesh that is scaled by these factors.
     ///
     /// # Errors
-    /// If the mesh has no positions or triangles, or they are not valid.
+    /// If the mesh has no positions or triangles, or these are not valid.
     pub fn of(self, mesh: &Mesh, scale: Vec3) -> Result<Collider, MeshColliderError> {
         let positions = mesh.attribute(Mesh::ATTRIBUTE_POSITION);
         let Some(VertexAttributeValues::Float32x3(positions)) = positions else {
@@ -65,7 +65,7 @@ impl MeshCollider {
     }
 }
 
-/// The triangles of a mesh, counter-clockwise from outside also where the scale mirrors.
+/// Returns the triangles of a mesh, counter-clockwise from outside even if the scale mirrors.
 fn triangles(mesh: &Mesh, scale: Vec3, vertices: usize) -> Result<Vec<[u32; 3]>, MeshColliderError> {
     if mesh.primitive_topology() != PrimitiveTopology::TriangleList {
         return Err(MeshColliderError::NoTriangles(mesh.primitive_topology()));
@@ -96,6 +96,6 @@ fn make_colliders(
     }
 }
 
-/// On entities whose [`MeshCollider`] was used.
+/// Marks entities whose [`MeshCollider`] was used.
 #[derive(Component)]
 struct Made;

@@ -15,8 +15,8 @@ use bevy_transform::components::Transform;
 use sinew_math::Rotation;
 use sinew_physics::{MoverDef, MoverId};
 
-/// A mover: an upright capsule that walks, climbs steps, rides and pushes without being a body. Its entity's `Transform` is that of its
-/// feet, in the world; the entity must have no parent and no [`RigidBody`](crate::RigidBody).
+/// A mover: an upright capsule that walks, climbs steps, rides and pushes without being a body. The entity's `Transform` is that of the
+/// mover's feet, in the world; the entity must have no parent and no [`RigidBody`](crate::RigidBody).
 #[derive(Component, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "reflect",
@@ -31,9 +31,9 @@ pub struct Mover(pub MoverDef);
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 pub struct Walk {
-    /// Velocity over the ground, m/s, until it is changed.
+    /// Velocity over the ground, m/s, until you change it.
     pub velocity: Vec3,
-    /// Speed of a jump in the next step, m/s; reset to 0 after it.
+    /// Speed of a jump in the next step, m/s; reset to 0 after the step.
     pub jump: f32,
 }
 
@@ -43,11 +43,11 @@ pub struct Walk {
 pub struct MoverState {
     /// Velocity in the world, m/s.
     pub velocity: Vec3,
-    /// True if ground that is not too steep supports it.
+    /// True if ground that is not too steep supports the mover.
     pub grounded: bool,
 }
 
-/// The mover of an entity; available once it is in the world.
+/// Mover of an entity; available once the mover is in the world.
 #[derive(Component, Clone, Copy, Debug)]
 #[component(on_remove = take_out)]
 pub struct MoverHandle {
@@ -57,7 +57,7 @@ pub struct MoverHandle {
 }
 
 impl MoverHandle {
-    /// Id of the mover in [`Physics`].
+    /// Returns the id of the mover in [`Physics`].
     pub fn id(&self) -> MoverId {
         self.id
     }
@@ -126,7 +126,7 @@ pub(crate) fn write_mover_states(physics: Res<Physics>, mut movers: Query<(&Move
     }
 }
 
-/// Writes the positions of feet, and rotates entities with the ground that they stand on.
+/// Writes the positions of feet, and rotates entities with the ground below them.
 pub(crate) fn write_movers(
     physics: Res<Physics>,
     time: Res<Time<Fixed>>,
@@ -135,7 +135,7 @@ pub(crate) fn write_movers(
 ) {
     let alpha = interpolation.alpha(&time);
     for (mut handle, mut transform) in &mut movers {
-        // Changes by the user since the last step are still to be read.
+        // Changes by the user since the last step must be read first.
         if handle.transform.translation != transform.translation {
             continue;
         }

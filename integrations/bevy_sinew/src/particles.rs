@@ -12,7 +12,7 @@ use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef};
 use sinew_physics::{BodyId, GroupId};
 
 /// A group of particles in the world: a rope, a cape, a blob. [`Physics`] returns their positions, by the id in [`ParticlesHandle`]; the
-/// entity's `Transform` has no effect. The group is created once all bodies that it is attached to exist, and removed with any of them.
+/// entity's `Transform` has no effect. The group is created once all bodies to which it is attached exist, and removed with any of them.
 #[derive(Component, Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "reflect",
@@ -48,13 +48,13 @@ pub struct Hang {
     pub point: Vec3,
 }
 
-/// The particles of an entity; available once they are in the world.
+/// Particles of an entity; available once the group is in the world.
 #[derive(Component, Clone, Copy, Debug)]
 #[component(on_remove = take_out)]
 pub struct ParticlesHandle(GroupId);
 
 impl ParticlesHandle {
-    /// Id of the group in [`Physics`]; stale if a body that it was attached to was removed.
+    /// Returns the id of the group in [`Physics`]; stale if a body to which the group was attached was removed.
     pub fn id(&self) -> GroupId {
         self.0
     }

@@ -17,12 +17,12 @@ pub enum Interpolation {
     /// Interpolates between the last two steps, with a delay of one step: smooth at any frame rate. Default.
     #[default]
     On,
-    /// The pose of the last step.
+    /// Draws the pose of the last step.
     Off,
 }
 
 impl Interpolation {
-    /// Fraction of the drawn pose between the last two steps.
+    /// Returns the fraction of the drawn pose between the last two steps.
     pub(crate) fn alpha(self, time: &Time<Fixed>) -> f32 {
         match self {
             Self::On => time.overstep_fraction(),
@@ -41,7 +41,7 @@ pub(crate) fn to_quat(rotation: Rotation) -> Quat {
     Quat::from_xyzw(rotation.x, rotation.y, rotation.z, rotation.w)
 }
 
-/// Transform from the parent's space to the world, by the present transforms of all ancestors.
+/// Returns the transform from the parent's space to the world, by the present transforms of all ancestors.
 fn world_from_parent(
     parent: Entity,
     parents: &Query<&ChildOf>,
@@ -80,12 +80,12 @@ pub(crate) fn read_transforms(
             Err(_) => to_pose(transform),
         };
         physics.set_transform(handle.id(), pose);
-        // The lock holds the new place.
+        // The next lock holds the new place.
         unlock(&mut handle, &mut physics);
     }
 }
 
-/// Writes the transforms of bodies that moved, and of all with a parent; parents before children.
+/// Writes the transforms of moved bodies, and of all bodies with a parent; parents before children.
 pub(crate) fn write_transforms(
     physics: Res<Physics>,
     time: Res<Time<Fixed>>,
@@ -131,7 +131,7 @@ fn write(
     transform: &mut Mut<Transform>,
     make: impl FnOnce(&Transform) -> Transform,
 ) {
-    // Changes by the user since the last step are still to be read.
+    // Changes by the user since the last step must be read first.
     if handle.transform != **transform {
         return;
     }

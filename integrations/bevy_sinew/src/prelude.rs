@@ -1,4 +1,4 @@
-//! The names that most programs need: `use bevy_sinew::prelude::*`. They do not collide with those of `bevy::prelude`.
+//! Names that most programs need: `use bevy_sinew::prelude::*`. They do not collide with those of `bevy::prelude`.
 
 #[cfg(feature = "mesh")]
 pub use crate::MeshCollider;

@@ -1,4 +1,4 @@
-//! Properties of bodies and joints as components of their own.
+//! Properties of bodies and joints as separate components.
 
 use crate::bodies::BodyHandle;
 use crate::links::JointHandle;
@@ -12,13 +12,13 @@ use bevy_reflect::std_traits::ReflectDefault;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use sinew_physics::{BodyDef, BodyId, ForceDef, LockedAxes, Motor};
 
-/// Friction of all shapes of a body, instead of that of its [`Collider`](crate::Collider): Coulomb's coefficient, ≥ 0.
+/// Coefficient of Coulomb friction, ≥ 0, of all shapes of a body, instead of that of its [`Collider`](crate::Collider).
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Debug, PartialEq))]
 pub struct Friction(pub f32);
 
-/// Restitution of all shapes of a body, instead of that of its [`Collider`](crate::Collider): the share of the approach speed that is given
-/// back, 0..=1.
+/// Restitution, 0..=1, of all shapes of a body, instead of that of its [`Collider`](crate::Collider): ratio of the speed after an impact to the
+/// speed before it.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Debug, PartialEq))]
 pub struct Restitution(pub f32);
@@ -28,9 +28,9 @@ pub struct Restitution(pub f32);
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 pub struct Layers {
-    /// Bits of the layers that it is on. Default 1.
+    /// Bits of the layers of the shapes. Default 1.
     pub layers: u32,
-    /// Bits of the layers that it collides with. Default all.
+    /// Bits of the layers with which the shapes collide. Default all.
     pub mask: u32,
 }
 
@@ -40,13 +40,13 @@ impl Default for Layers {
     }
 }
 
-/// All shapes of the body are sensors: they push nothing and report what they overlap
-/// ([`SensorEntered`](crate::SensorEntered), [`SensorLeft`](crate::SensorLeft)).
+/// Makes all shapes of the body sensors: they push nothing and report overlaps ([`SensorEntered`](crate::SensorEntered),
+/// [`SensorLeft`](crate::SensorLeft)).
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 pub struct Sensor;
 
-/// Mass of a body, kg, above 0, instead of that of its shapes' densities. Its centre of mass stays.
+/// Mass of a body, kg, above 0, instead of that of its shapes' densities. The centre of mass stays.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Debug, PartialEq))]
 pub struct Mass(pub f32);
@@ -55,18 +55,18 @@ pub struct Mass(pub f32);
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 pub struct Damping {
-    /// Of the linear velocity.
+    /// Damping of the linear velocity, 1/s.
     pub linear: f32,
-    /// Of the angular velocity.
+    /// Damping of the angular velocity, 1/s.
     pub angular: f32,
 }
 
-/// Factor on gravity for one body.
+/// Factor on gravity for a body.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Debug, PartialEq))]
 pub struct GravityScale(pub f32);
 
-/// A force and a torque, N and N·m in world axes, that act on a body in each step until they are changed.
+/// A force and a torque in world axes, N and N·m, that act on a body in each step until you change them.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 pub struct ConstantForce {
@@ -76,8 +76,8 @@ pub struct ConstantForce {
     pub torque: Vec3,
 }
 
-/// World axes along or about which a body does not move: [`LockedAxes::ROTATIONS`] keeps it upright. The lock holds the position that the
-/// body has when the component is added or changed, or the body is moved by its `Transform`.
+/// World axes along or about which a body does not move: [`LockedAxes::ROTATIONS`] keeps the body upright. The lock holds the position of the
+/// body at the time when the component is added or changed, or the body is moved by its `Transform`.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "reflect",
@@ -155,7 +155,7 @@ fn remove_motor(removed: On<Remove<JointMotor>>, handles: Query<&JointHandle>, m
     }
 }
 
-/// Releases the locked axes of a body, until [`lock_axes`] locks them where it then is.
+/// Releases the locked axes of a body, until [`lock_axes`] locks them at the new position.
 pub(crate) fn unlock(handle: &mut BodyHandle, physics: &mut Physics) {
     if let Some(joint) = handle.lock.take()
         && physics.contains_joint(joint)
@@ -212,7 +212,7 @@ pub(crate) fn lock_axes(
     }
 }
 
-/// Applies changed motors; [`add_joints`](crate::links::add_joints) gives new joints theirs.
+/// Applies changed motors; [`add_joints`](crate::links::add_joints) sets those of new joints.
 pub(crate) fn change_motors(
     mut physics: ResMut<Physics>,
     changed: Query<(Entity, &JointHandle, &JointMotor), Changed<JointMotor>>,

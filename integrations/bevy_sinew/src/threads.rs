@@ -1,4 +1,4 @@
-//! Bevy's own threads as a runner of tasks.
+//! Runs tasks on Bevy's own threads.
 
 use bevy_ecs::prelude::*;
 #[cfg(feature = "reflect")]
@@ -7,19 +7,19 @@ use bevy_tasks::ComputeTaskPool;
 use core::cell::Cell;
 use sinew_physics::{Serial, TaskRunner};
 
-/// Threads that a step runs on. The result is the same with each.
+/// Threads for a step. The result does not depend on them.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Resource, Default, Debug, PartialEq))]
 pub enum StepThreads {
     /// Threads of Bevy's `ComputeTaskPool`, or one thread without a pool (an app without `TaskPoolPlugin`). Default.
     #[default]
     Bevy,
-    /// The thread that the step's system runs on.
+    /// The thread of the step's system.
     One,
 }
 
 /// Runs tasks on Bevy's `ComputeTaskPool`; the calling thread takes its share. A batch that starts within a task runs on its calling
-/// thread: a thread that waits for one of Bevy's batches executes other tasks meanwhile, and each of these would wait in turn, with growing
+/// thread: a thread that waits for one of Bevy's batches executes other tasks meanwhile, each of which would wait in turn, with growing
 /// stack depth.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BevyTasks;
@@ -29,7 +29,7 @@ thread_local! {
     static BUSY: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Marks this thread as busy until it is dropped.
+/// Marks this thread as busy until the value is dropped.
 struct Busy(bool);
 
 impl Busy {

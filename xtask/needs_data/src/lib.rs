@@ -4,11 +4,11 @@
 use proc_macro::TokenStream;
 use std::path::Path;
 
-/// The data beside a clone; they are not part of the repository.
+/// Folder of the data, beside the repository.
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
 
-/// Ignores a test if the data were absent when it was compiled: `cargo test` then counts it as ignored.
-/// It stands above `#[test]`, which reads the attributes below it.
+/// Ignores a test if the data were absent when the test was compiled: `cargo test` then counts it as ignored.
+/// Write the attribute above `#[test]`, because it reads the attributes below it.
 ///
 /// ```text
 /// #[needs_data]

@@ -36,7 +36,7 @@ pub struct Dot {
     came_apart: bool,
 }
 
-/// Dots of a scene's engines.
+/// Returns the dots of a scene's engines.
 fn dots(scene: &SceneResult) -> Vec<Dot> {
     let dot = |(name, color): &(&'static str, &'static str)| {
         let engine = of(scene, name)?;
@@ -46,22 +46,22 @@ fn dots(scene: &SceneResult) -> Vec<Dot> {
     ENGINES.iter().filter_map(dot).collect()
 }
 
-/// Range in whole powers of ten that contains values.
+/// Returns the range in whole powers of ten that contains values.
 fn decades(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
     let least = values.clone().fold(f64::INFINITY, f64::min).log10();
     let most = values.fold(f64::NEG_INFINITY, f64::max).log10();
     [(least - 0.05).floor(), (most + 0.05).ceil()]
 }
 
-/// Place of a value on a logarithmic axis.
+/// Returns the place of a value on a logarithmic axis.
 fn place(value: f64, [low, high]: [f64; 2], [from, to]: [f64; 2]) -> f64 {
     from + (value.log10() - low) / (high - low) * (to - from)
 }
 
-/// The charts of [`SCENES`] as HTML figures.
+/// Returns the charts of [`SCENES`] as HTML figures.
 ///
 /// # Errors
-/// If one of them was not measured, or has fewer than two engines.
+/// If one of the scenes was not measured, or has fewer than two engines.
 pub fn charts(results: &Results) -> Result<String> {
     let mut html = String::new();
     for name in SCENES {
@@ -112,7 +112,7 @@ fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
         let [x, y] = [place(dot.gap.max(LEAST_GAP), across, xs), place(dot.time, up, ys)];
         let radius = if dot.engine == "Sinew" { 8.0 } else { 6.0 };
         _ = writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{}\"/>", dot.color);
-        // Where names would overlap, one moves down.
+        // A name that would overlap another moves down.
         let is_right = x > 0.5 * width;
         let mut at = y + 4.0;
         while labels.iter().any(|[side, other]| (side - x).abs() < 130.0 && (other - at).abs() < LINE) {
@@ -131,7 +131,7 @@ fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
     out + "</svg>"
 }
 
-/// Lines at powers of ten with their names, and the titles of the axes.
+/// Adds lines at powers of ten with their names, and the titles of the axes.
 fn axes(out: &mut String, (across, xs): ([f64; 2], [f64; 2]), (up, ys): ([f64; 2], [f64; 2])) {
     let ticks = |[low, high]: [f64; 2]| (low as i32..=high as i32).map(|power| 10f64.powi(power));
     let named = |value: f64| match value {

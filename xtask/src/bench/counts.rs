@@ -16,7 +16,7 @@ const MANIFEST: &str = "bench/counts/Cargo.toml";
 /// Share by which a count may differ from the committed one.
 const TOLERANCE: f64 = 0.02;
 
-/// The runner must be of the same version as the crate `gungraun` in the manifest.
+/// Version of the runner, the same as that of the crate `gungraun` in the manifest.
 const RUNNER_VERSION: &str = "0.20.0";
 
 /// Instructions per microsecond of long trees on the reference machine (62 million in 8 ms), for orientation.
@@ -29,17 +29,18 @@ struct Count {
     instructions: u64,
 }
 
-/// Counts and their compiler: counts of different compilers are not comparable.
+/// Counts, with their compiler: counts of different compilers are not comparable.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Counts {
     compiler: String,
     kernels: Vec<Count>,
 }
 
-/// Counts and compares with the committed counts; reports if valgrind or its runner is missing and cannot be installed.
+/// Counts and compares with the committed counts. Prints a message if valgrind or its runner is missing and cannot be
+/// installed.
 ///
 /// # Errors
-/// If a count differs by more than the tolerance, to either side, or nothing can be counted.
+/// If a count differs by more than the tolerance, up or down, or nothing can be counted.
 pub fn check() -> Result<()> {
     if let Err(missing) = provide() {
         eprintln!("{missing:#}");
@@ -124,7 +125,7 @@ fn of<'a>(counts: &'a Counts, kernel: &str) -> Option<&'a Count> {
     counts.kernels.iter().find(|count| count.kernel == kernel)
 }
 
-/// Returns a table for people.
+/// Prints a table for people.
 fn print(found: &Counts, committed: Option<&Counts>) {
     println!("{:<32} {:>14} {:>9} {:>9}", "kernel", "instructions", "about µs", "change");
     for Count { kernel, instructions } in &found.kernels {
@@ -136,7 +137,7 @@ fn print(found: &Counts, committed: Option<&Counts>) {
     }
 }
 
-/// Relative increase of the count.
+/// Returns the relative increase of the count.
 fn change(old: &Count, new: u64) -> f64 {
     new as f64 / old.instructions as f64 - 1.0
 }
@@ -154,7 +155,7 @@ fn grouped(number: u64) -> String {
     grouped
 }
 
-/// One line per kernel that is new, removed or has a different count.
+/// Returns one line per kernel that is new, removed or has a different count.
 fn differences(committed: &Counts, found: &Counts) -> Vec<String> {
     if committed.compiler != found.compiler {
         return vec![format!("{PATH} is of {}, this is {}", committed.compiler, found.compiler)];

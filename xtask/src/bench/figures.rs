@@ -24,19 +24,19 @@ pub struct Figure {
     pub heading: &'static str,
     /// Unit of the figure.
     pub unit: Unit,
-    /// The figure, if measured.
+    /// Returns the figure; `None` if it was not measured.
     pub of: fn(&EngineResult) -> Option<f64>,
 }
 
 /// Largest distance between the two anchors of a joint after any step.
 pub const GAP: Figure = Figure { heading: "gap", unit: Unit::Length, of: |e| number(e, "joint_gap_peak_m") };
-/// Sum of a chain's gaps over its length, after any step.
+/// Sum of a chain's gaps divided by its length, after any step.
 pub const STRETCH: Figure =
     Figure { heading: "stretch", unit: Unit::Share, of: |e| number(e, "stretch_peak") };
-/// Sum of a chain's gaps over its length, after the last step.
+/// Sum of a chain's gaps divided by its length, after the last step.
 pub const STRETCH_END: Figure =
     Figure { heading: "stretch at the end", unit: Unit::Share, of: |e| number(e, "stretch_end") };
-/// Mean gap of the joints of a rope at its worst.
+/// Mean gap of the joints of a rope at its largest.
 pub const GAP_PER_LINK: Figure =
     Figure { heading: "gap per link", unit: Unit::Length, of: |e| number(e, "gap_per_link") };
 /// Number of limits exceeded by more than 0.1 rad after any step.
@@ -57,13 +57,13 @@ pub const DEPTH_P99: Figure =
 /// Displacement of a body that should stay.
 pub const SHIFT: Figure =
     Figure { heading: "shift", unit: Unit::Length, of: |e| number(e, "displacement_max_m") };
-/// Step after which everything sleeps; `None` if something never does.
+/// Step after which all bodies sleep; `None` if one never sleeps.
 pub const ASLEEP: Figure =
     Figure { heading: "asleep at step", unit: Unit::Count, of: |e| number(e, "asleep_step") };
 /// Mean stretch of a cloth's edges.
 pub const CLOTH: Figure =
     Figure { heading: "mean stretch", unit: Unit::Share, of: |e| number(e, "stretch_mean") };
-/// Largest distance of a joint from where its clips say, in model space.
+/// Largest distance of a joint from its place in the clips, in model space.
 pub const POSE: Figure =
     Figure { heading: "pose error", unit: Unit::Length, of: |e| number(e, "model_error_max_m") };
 /// Share of rays or pairs that hit.
@@ -94,7 +94,7 @@ pub const FIGURES: &[Figure] = &[
     HITS,
 ];
 
-/// Figure that shows whether engines did the same work in a scene.
+/// Returns the figure that shows whether engines did the same work in a scene.
 pub fn headline(scene: &str) -> &'static Figure {
     match scene {
         "box_pyramid" | "large_pyramid" => &SHIFT,
@@ -111,7 +111,7 @@ pub fn headline(scene: &str) -> &'static Figure {
     }
 }
 
-/// True if the joints came apart, so that the time is for different work.
+/// Returns true if the joints came apart, so that the time is for different work.
 pub fn came_apart(engine: &EngineResult) -> bool {
     const GAP_MAX: f64 = 0.5;
     const STRETCH_MAX: f64 = 1.0;
@@ -132,17 +132,18 @@ fn over_limits(engine: &EngineResult, key: &str, fold: fn(f64, f64) -> f64) -> O
     })
 }
 
-/// Largest energy above the initial one; nothing adds energy.
+/// Returns the largest energy above the initial one; nothing adds energy.
 fn energy_gained(engine: &EngineResult) -> Option<f64> {
     Some((number(engine, "energy_peak_j")? - number(engine, "energy_start_j")?).max(0.0))
 }
 
-/// Energy lost at the end, by dissipation or error.
+/// Returns the energy lost at the end, by dissipation or error.
 fn energy_lost(engine: &EngineResult) -> Option<f64> {
     Some(number(engine, "energy_start_j")? - number(engine, "energy_end_j")?)
 }
 
-/// Relevant figures of a scene: those measured and not all 0, and the shift of bodies only where they should stay.
+/// Returns the relevant figures of a scene: those measured and not all 0, and the shift of bodies only where they
+/// should stay.
 pub fn telling(scene: &SceneResult) -> Vec<&'static Figure> {
     let is_telling = |figure: &Figure| {
         let mut values = scene.engines.iter().filter_map(figure.of);
@@ -179,7 +180,7 @@ impl Unit {
     }
 }
 
-/// Three significant digits, at most three after the decimal point.
+/// Formats a number with three significant digits, at most three after the decimal point.
 pub fn rounded(value: f64) -> String {
     let decimals = match value.abs() {
         0.0 => 0,

@@ -38,7 +38,7 @@ impl Figure {
 /// Builds the kernels, measures them, and prints a table. Returns a line for each that misses its share.
 ///
 /// # Errors
-/// If they do not build or run.
+/// If the kernels do not build or run.
 pub fn measure() -> Result<Vec<String>> {
     let mut build = command::cargo(&["build", "--release", "--manifest-path", MANIFEST]);
     build.arg("--target-dir").arg(command::target().join("bench/kernels"));
@@ -79,7 +79,7 @@ fn table(figures: &[Figure]) -> String {
     table
 }
 
-/// The widest level is measured last.
+/// Returns a line for each kernel that misses its share; the widest level is measured last.
 fn shortfalls(figures: &[Figure]) -> Vec<String> {
     let widest = |name: &str| figures.iter().rfind(|figure| figure.name == name);
     let line = |&(name, must, goal): &(&str, f64, f64)| match widest(name) {

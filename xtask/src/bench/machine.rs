@@ -16,7 +16,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// The present machine.
+    /// Returns the present machine.
     pub fn this() -> Self {
         let cpu = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let model = cpu.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
@@ -44,7 +44,7 @@ impl fmt::Display for Machine {
     }
 }
 
-/// The commit in the working tree.
+/// Returns the commit in the working tree.
 pub fn revision() -> String {
     let commit = printed("git", &["show", "--no-patch", "--format=%h of %cs", "HEAD"]);
     // The page that is being written does not count as a change.
@@ -54,7 +54,7 @@ pub fn revision() -> String {
     if changes.is_empty() { commit } else { format!("{commit} with changes") }
 }
 
-/// Output of a program; `None` if it is missing.
+/// Returns the output of a program; empty if the program is missing.
 fn printed(program: &str, arguments: &[&str]) -> String {
     let output = Command::new(program).args(arguments).current_dir(crate::command::root()).output();
     output.map_or(String::new(), |output| String::from_utf8_lossy(&output.stdout).trim().to_owned())

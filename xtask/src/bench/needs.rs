@@ -5,10 +5,10 @@ use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Something that has to be installed.
+/// A tool that must be installed.
 struct Need {
     name: &'static str,
-    /// Debian's package.
+    /// Name of the Debian package.
     package: &'static str,
     is_there: fn() -> bool,
 }
@@ -19,7 +19,7 @@ const NEEDS: &[Need] = &[
     Need { name: "libclang", package: "libclang-dev", is_there: has_libclang },
 ];
 
-/// Checks for all of them, so that a build does not fail after minutes.
+/// Checks for all tools, so that a build does not fail after minutes.
 ///
 /// # Errors
 /// One line with the missing tools and how to install them.

@@ -7,10 +7,10 @@ use super::results::{EngineResult, Results, SceneResult};
 use super::table::Table;
 use std::fmt::Write as _;
 
-/// No figure.
+/// Text of a missing figure.
 const NONE: &str = "–";
 
-/// The page for readers; `missing` are the scenes without figures.
+/// Returns the page for readers; `missing` are the scenes without figures.
 pub fn page(results: &Results, missing: &[&str]) -> String {
     let mut page =
         format!("{INTRODUCTION}\n{COUNTED}{} scenes: all of each in {DETAILS}.\n", results.scenes.len());
@@ -28,7 +28,7 @@ pub fn page(results: &Results, missing: &[&str]) -> String {
     page
 }
 
-/// Writes all figures of each scene.
+/// Returns a page with all figures of each scene.
 pub fn scenes(results: &Results) -> String {
     let mut page = format!("# Benchmarks, scene by scene\n\n{SCENES}");
     for scene in &results.scenes {
@@ -37,7 +37,7 @@ pub fn scenes(results: &Results) -> String {
     page
 }
 
-/// Number of scenes of a page; 0 if it names none.
+/// Returns the number of scenes of a page; 0 if the page does not state it.
 pub fn scene_count(page: &str) -> usize {
     let count = page.lines().find_map(|line| line.strip_prefix(COUNTED)?.split(' ').next()?.parse().ok());
     count.unwrap_or(0)
@@ -97,22 +97,22 @@ step. *energy gained* is the largest energy of the world above its start, *energ
 are 0 for all engines are left out.
 ";
 
-/// True if a scene compares animation engines.
+/// Returns true if a scene compares animation engines.
 fn is_animation(scene: &SceneResult) -> bool {
     scene.name == "crowd"
 }
 
-/// True if a scene compares ragdolls with MuJoCo alone.
+/// Returns true if a scene compares ragdolls with MuJoCo alone.
 fn is_of_ragdolls(scene: &SceneResult) -> bool {
     scene.name.starts_with("humanoid_")
 }
 
-/// Scenes with bodies, cloth and shapes.
+/// Returns the scenes with bodies, cloth and shapes.
 fn physics(results: &Results) -> Vec<&SceneResult> {
     results.scenes.iter().filter(|scene| !is_animation(scene) && !is_of_ragdolls(scene)).collect()
 }
 
-/// Engines in the order of the columns.
+/// Returns the engines in the order of the columns.
 fn columns(scenes: &[&SceneResult]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for engine in scenes.iter().flat_map(|scene| &scene.engines) {
@@ -123,7 +123,7 @@ fn columns(scenes: &[&SceneResult]) -> Vec<String> {
     names
 }
 
-/// Display name of an engine.
+/// Returns the display name of an engine.
 pub fn title(engine: &str) -> &str {
     match engine {
         "sinew" => "Sinew",
@@ -142,22 +142,22 @@ fn heading<'a>(before: &[&'a str], engines: &'a [String], after: &[&'a str]) -> 
     Table::new(2, [before, &engines.iter().map(|name| title(name)).collect::<Vec<_>>(), after].concat())
 }
 
-/// An engine's result.
+/// Returns an engine's result.
 pub fn of<'a>(scene: &'a SceneResult, engine: &str) -> Option<&'a EngineResult> {
     scene.engines.iter().find(|result| result.name == engine)
 }
 
-/// One line per scene: time and main figure of each engine.
+/// Returns one line per scene: time and main figure of each engine.
 pub fn glance(results: &Results) -> Table {
     times_and_figures(&physics(results))
 }
 
-/// One line per animation scene: time and main figure of each engine.
+/// Returns one line per animation scene: time and main figure of each engine.
 pub fn animation(results: &Results) -> Table {
     times_and_figures(&results.scenes.iter().filter(|scene| is_animation(scene)).collect::<Vec<_>>())
 }
 
-/// One line per scene of ragdolls beside MuJoCo: time and main figure of each engine.
+/// Returns one line per scene of ragdolls beside MuJoCo: time and main figure of each engine.
 pub fn ragdolls(results: &Results) -> Table {
     times_and_figures(&results.scenes.iter().filter(|scene| is_of_ragdolls(scene)).collect::<Vec<_>>())
 }
@@ -184,7 +184,7 @@ fn factor(speed: Option<f64>) -> String {
     speed.map_or(NONE.to_owned(), |speed| format!("{}×", rounded(speed)))
 }
 
-/// Reason why there is no figure.
+/// Returns the reason why there is no figure.
 fn absence(engine: &EngineResult) -> String {
     if engine.is_failed() { engine.missing_reason().unwrap_or(NONE).to_owned() } else { NONE.to_owned() }
 }
@@ -207,7 +207,7 @@ pub fn holds<'a>(results: &Results, rows: impl IntoIterator<Item = &'a Hold>) ->
     table
 }
 
-/// The specification's table with verdicts.
+/// Returns the specification's table with verdicts.
 pub fn speeds(results: &Results) -> Table {
     let mut table = Table::new(2, ["work", "verdict", "must (goal)", "measured"]);
     for speed in SPEEDS {
@@ -217,7 +217,7 @@ pub fn speeds(results: &Results) -> Table {
             Verdict::Goal => "reaches the goal".to_owned(),
             Verdict::Met => "met".to_owned(),
             Verdict::Missed => "**falls short**".to_owned(),
-            // Without a peer whose joints hold there is no bar.
+            // If no peer's joints hold, there is no bar.
             Verdict::Open(_) if matches!(speed.bar, Bar::Factor { .. }) => continue,
             Verdict::Open(why) => why,
             Verdict::NotRun => continue,
@@ -228,7 +228,7 @@ pub fn speeds(results: &Results) -> Table {
     table
 }
 
-/// Writes the figures of one scene.
+/// Returns the figures of one scene.
 fn details(scene: &SceneResult) -> String {
     let sizes = ["bodies", "particles", "characters", "joints", "steps"].into_iter();
     let sizes = sizes.filter_map(|key| Some((scene.size(key).filter(|&size| size > 0)?, key)));
@@ -261,17 +261,17 @@ fn time_cells(scene: &SceneResult, engine: &EngineResult) -> Option<[String; 8]>
     ])
 }
 
-/// A figure with its unit.
+/// Formats a figure with its unit.
 fn cell(figure: &Figure, engine: &EngineResult) -> String {
     (figure.of)(engine).map_or(NONE.to_owned(), |value| figure.unit.show(value))
 }
 
-/// Warning mark for a time that does not represent the scene.
+/// Returns the warning mark for a time that does not represent the scene.
 fn mark(engine: &EngineResult) -> &'static str {
     if came_apart(engine) { " †" } else { "" }
 }
 
-/// Engines, their versions and compiler flags.
+/// Returns the engines, their versions and compiler flags.
 fn engines(results: &Results) -> Table {
     let mut table = Table::new(4, ["engine", "version", "compiled", "settings"]);
     for name in columns(&results.scenes.iter().collect::<Vec<_>>()) {

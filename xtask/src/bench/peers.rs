@@ -11,13 +11,13 @@ use std::time::{Duration, Instant};
 
 const MANIFEST: &str = "bench/peers/Cargo.toml";
 
-/// MuJoCo, by its Python wheel.
+/// MuJoCo, in its Python wheel.
 const MUJOCO: &str = "mujoco";
 
-/// Program that runs it.
+/// Program that runs MuJoCo.
 const MUJOCO_SCRIPT: &str = "bench/peers/mujoco_run.py";
 
-/// Field of its scenes.
+/// Field of MuJoCo's scenes.
 const FIGURES: &str = "figures";
 
 /// Rapier built with eight lanes.
@@ -29,7 +29,7 @@ const OZZ: &str = "ozz";
 /// Toolchain for ozz-animation-rs, which calls functions of `std::simd` that were renamed in Rust 1.95.
 const OZZ_TOOLCHAIN: &str = "1.94.0";
 
-/// Flags for AVX2, where the machine has it.
+/// Compiler flags for AVX2, if the machine has it.
 const WIDE_FLAGS: &str = "-C target-cpu=x86-64-v3";
 
 /// Interval between checks of a running process.
@@ -62,7 +62,7 @@ pub struct Scene {
     pub is_chaotic: bool,
 }
 
-/// True if a second run measures the quality.
+/// Measurement of the quality by a second run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judging {
     /// Time only.
@@ -78,15 +78,15 @@ pub struct Run {
     pub steps: Option<u32>,
     /// Number of a slightly changed start.
     pub start: Option<u32>,
-    /// True if quality is measured.
+    /// Measurement of the quality.
     pub judging: Judging,
 }
 
-/// Builds the peers as most users have them, and Rapier again for wide registers where this machine has them, because
-/// one binary cannot have both. ozz-animation-rs needs its own compiler. Returns the `wanted` ones, Sinew first.
+/// Builds the peers with common settings, and Rapier again for wide registers if this machine has them, because one
+/// binary cannot have both. ozz-animation-rs needs its own compiler. Returns the `wanted` ones, Sinew first.
 ///
 /// # Errors
-/// If one does not compile.
+/// If a peer does not compile.
 pub fn build(wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Engine>> {
     let plain = build_with("peers", &mut cargo_build("rapier,box3d,jolt"))?;
     let mut engines = engines(&plain)?;
@@ -132,7 +132,8 @@ fn cargo_build(features: &str) -> Command {
     build
 }
 
-/// Build command of ozz: optimised for this machine, without the parts that its older compiler cannot build.
+/// Returns the build command of ozz: optimised for this machine, without the parts that its older compiler cannot
+/// build.
 fn ozz_build() -> Command {
     let mut build = Command::new("rustup");
     build.current_dir(command::root()).args(["run", OZZ_TOOLCHAIN, "cargo"]).args(BUILD);
@@ -146,7 +147,7 @@ fn ozz_build() -> Command {
 /// Builds Sinew alone, which needs only a Rust toolchain.
 ///
 /// # Errors
-/// If it does not compile.
+/// If the binary does not compile.
 pub fn build_ours() -> Result<PathBuf> {
     let build = &BUILD[..BUILD.len() - 1];
     build_with("peers", command::cargo(build).arg("--no-default-features"))
@@ -157,7 +158,7 @@ fn has_mujoco() -> bool {
     import.is_ok_and(|status| status.success())
 }
 
-/// MuJoCo's engine, whose scenes this program lists.
+/// Returns MuJoCo's engine; the binary `peers` lists its scenes.
 fn mujoco(peers: &Path) -> Engine {
     let script = command::root().join(MUJOCO_SCRIPT);
     let arguments = [&script, Path::new("--peers"), peers].map(|part| part.to_string_lossy().into_owned());
@@ -210,16 +211,16 @@ pub fn scenes(engine: &Engine) -> Result<Vec<Scene>> {
 }
 
 impl Engine {
-    /// True if the engine runs this kind of scene.
+    /// Returns true if the engine runs this kind of scene.
     pub fn is_for(&self, scene: &Scene) -> bool {
         self.fields.contains(&scene.field)
     }
 
-    /// Runs a scene. Returns the process's output, or an object with `failed` if it crashed or took too long, which is
-    /// a result, too.
+    /// Runs a scene. Returns the process's output, or, because a failure is a result too, an object with `failed` if
+    /// the process crashed or took too long.
     ///
     /// # Errors
-    /// If it cannot be started, or prints something else.
+    /// If the process cannot be started, or prints something else.
     pub fn run(&self, scene: &str, run: Run, limit: Duration) -> Result<Value> {
         let Run { steps, start, judging } = run;
         let mut run = Command::new(&self.binary);

@@ -69,7 +69,7 @@ const fn factor(work: &'static str, must: f64, goal: f64, measure: Measure) -> S
     Speed { work, bar: Bar::Factor { must, goal, measure } }
 }
 
-/// A chain whose joints hold.
+/// Returns the requirement on a chain whose joints hold.
 const fn together(work: &'static str, scene: &'static str) -> Speed {
     factor(work, 0.8, 1.5, Measure::PeersTogether(scene))
 }
@@ -170,7 +170,7 @@ impl Measure {
     }
 }
 
-/// A scene that Sinew completed. A crash or a timeout misses the requirement; a missing scene is open.
+/// Returns a scene that Sinew completed. A crash or a timeout misses the requirement; a missing scene is open.
 fn raced<'a>(results: &'a Results, scene: &str) -> Result<(&'a SceneResult, &'a EngineResult), Verdict> {
     let scene = results.scene(scene).ok_or(Verdict::NotRun)?;
     let ours = scene.sinew().ok_or(Verdict::NotRun)?;
@@ -181,14 +181,15 @@ fn raced<'a>(results: &'a Results, scene: &str) -> Result<(&'a SceneResult, &'a 
     }
 }
 
-/// Like [`SceneResult::speed`], against peers whose joints stay together.
+/// Returns the speed like [`SceneResult::speed`], against peers whose joints stay together.
 fn speed_together(scene: &SceneResult) -> Result<f64, Verdict> {
     let mut fair = scene.clone();
     fair.engines.retain(|engine| engine.is_sinew() || !came_apart(engine));
     fair.speed().ok_or_else(|| Verdict::Open("no bar: peers come apart".to_owned()))
 }
 
-/// Like [`SceneResult::speed`], against peers with a figure within the bound, which Sinew's must meet, too.
+/// Returns the speed like [`SceneResult::speed`], against peers with a figure within the bound, which Sinew's must
+/// meet, too.
 fn speed_within(scene: &SceneResult, figure: &Figure, most: f64) -> Result<f64, Verdict> {
     let holds = |engine: &EngineResult| (figure.of)(engine).is_some_and(|it| it <= most);
     if !scene.sinew().is_some_and(holds) {
@@ -226,7 +227,7 @@ const fn as_peers(scene: &'static str, figure: &'static Figure) -> Hold {
     Hold { scene, figure, most: Most::BestPeer }
 }
 
-/// Joints that do not stretch.
+/// Requirements on joints: they do not stretch.
 pub const HOLDS: &[Hold] = &[
     hold("chain_swing_1000", &GAP, 1e-3),
     hold("chain_swing_1000_half", &GAP, 1e-3),
@@ -246,7 +247,7 @@ pub const HOLDS: &[Hold] = &[
     hold("crowd_pile", &LIMITS, 0.0),
 ];
 
-/// Stacks that stand and heaps that fall asleep.
+/// Requirements on stacks, which stand, and on heaps, which fall asleep.
 pub const STANDS: &[Hold] = &[
     as_peers("box_pyramid", &SHIFT),
     as_peers("box_pyramid", &DEPTH),
@@ -274,7 +275,7 @@ pub const STANDS: &[Hold] = &[
 ];
 
 impl Hold {
-    /// Verdict on Sinew's figure.
+    /// Returns the verdict on Sinew's figure.
     pub fn judge(&self, results: &Results) -> Verdict {
         let (scene, ours) = match raced(results, self.scene) {
             Ok(raced) => raced,
@@ -290,7 +291,7 @@ impl Hold {
         if holds { Verdict::Met } else { Verdict::Missed }
     }
 
-    /// The requirement in words.
+    /// Returns the requirement in words.
     pub fn must(&self) -> String {
         match self.most {
             Most::Value(0.0) => "0".to_owned(),
@@ -318,7 +319,7 @@ pub fn shortfalls(results: &Results) -> (Vec<String>, Vec<String>) {
 }
 
 impl Bar {
-    /// The required minimum.
+    /// Returns the required minimum.
     pub fn must(&self) -> String {
         match self {
             Self::Factor { must, .. } => format!("≥ {must}×"),
@@ -326,7 +327,7 @@ impl Bar {
         }
     }
 
-    /// Text of the goal, without the comparison sign.
+    /// Returns the text of the goal, without the comparison sign.
     pub fn goal(&self) -> String {
         match self {
             Self::Factor { goal, .. } => format!("{goal}×"),

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// All scenes.
+/// Results of all scenes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Results {
     /// Scenes in the order of the peers' list.
@@ -21,7 +21,7 @@ pub struct Results {
     pub machine: Option<String>,
 }
 
-/// A scene on all engines, their rounds interleaved.
+/// Results of a scene on all engines, with interleaved rounds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneResult {
     /// Name in the peers' list.
@@ -30,11 +30,11 @@ pub struct SceneResult {
     pub about: String,
     /// Commit that was measured.
     pub revision: String,
-    /// Sinew first.
+    /// Results of the engines, Sinew first.
     pub engines: Vec<EngineResult>,
 }
 
-/// A scene on one engine.
+/// Results of a scene on one engine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EngineResult {
     /// Name in the peers' list.
@@ -43,10 +43,10 @@ pub struct EngineResult {
     pub reports: Vec<Value>,
 }
 
-/// Processor time of a step, milliseconds: for each statistic over the steps of a round, the median over the rounds.
+/// Processor time of a step, milliseconds: each field is a statistic over the steps of a round, and its median over the rounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
-    /// Mean step: the time of the whole run over its steps, impacts and sleep included.
+    /// Mean step: the time of the whole run divided by its steps, impacts and sleep included.
     pub mean: f64,
     /// Mean step of the best round.
     pub best: f64,
@@ -61,12 +61,12 @@ pub struct Times {
 }
 
 impl Results {
-    /// The scene of that name, if it was measured.
+    /// Returns the scene of that name, if it was measured.
     pub fn scene(&self, name: &str) -> Option<&SceneResult> {
         self.scenes.iter().find(|scene| scene.name == name)
     }
 
-    /// True if the scene of that name was measured, or the bake, the limp characters or the threads.
+    /// Returns true if the scene of that name was measured, or the bake, the limp characters or the threads.
     pub fn has(&self, name: &str) -> bool {
         self.scene(name).is_some()
             || name == super::BAKE && self.bake.is_some()
@@ -150,22 +150,22 @@ fn scene(value: &Value) -> Option<SceneResult> {
 }
 
 impl SceneResult {
-    /// Sinew's result.
+    /// Returns Sinew's result.
     pub fn sinew(&self) -> Option<&EngineResult> {
         self.engines.iter().find(|engine| engine.is_sinew())
     }
 
-    /// The peers' results.
+    /// Returns the peers' results.
     pub fn peers(&self) -> impl Iterator<Item = &EngineResult> {
         self.engines.iter().filter(|engine| !engine.is_sinew())
     }
 
-    /// Sinew's speed: the mean step of an engine over ours, if both ran.
+    /// Returns Sinew's speed: the mean step of an engine divided by ours, if both ran.
     pub fn speed_against(&self, engine: &EngineResult) -> Option<f64> {
         self.ratio_against(engine, |times| times.mean)
     }
 
-    /// Sinew's speed by the 99th percentile: that of an engine over ours, if both ran.
+    /// Returns Sinew's speed by the 99th percentile: that of an engine divided by ours, if both ran.
     pub fn p99_speed_against(&self, engine: &EngineResult) -> Option<f64> {
         self.ratio_against(engine, |times| times.p99)
     }
@@ -174,17 +174,17 @@ impl SceneResult {
         Some(of(engine.times()?) / of(self.sinew()?.times()?))
     }
 
-    /// Sinew's speed against the fastest peer, by the mean step.
+    /// Returns Sinew's speed against the fastest peer, by the mean step.
     pub fn speed(&self) -> Option<f64> {
         self.peers().filter_map(|peer| self.speed_against(peer)).min_by(f64::total_cmp)
     }
 
-    /// Sinew's speed by the 99th percentile, against the peer with the smallest.
+    /// Returns Sinew's speed by the 99th percentile, against the peer with the smallest.
     pub fn p99_speed(&self) -> Option<f64> {
         self.peers().filter_map(|peer| self.p99_speed_against(peer)).min_by(f64::total_cmp)
     }
 
-    /// A number that is the same for all engines, such as `bodies`.
+    /// Returns a number that is the same for all engines, such as `bodies`.
     pub fn size(&self, key: &str) -> Option<u64> {
         self.engines.iter().find_map(|engine| engine.reports.first()?[key].as_u64())
     }
@@ -196,18 +196,18 @@ impl EngineResult {
         self.name == "sinew"
     }
 
-    /// Returns true if it crashed or timed out.
+    /// Returns true if the engine crashed or timed out.
     pub fn is_failed(&self) -> bool {
         self.reports.iter().any(|report| report["failed"].is_string())
     }
 
-    /// Reason for missing figures.
+    /// Returns the reason for missing figures.
     pub fn missing_reason(&self) -> Option<&str> {
         let report = self.reports.last()?;
         report["unsupported"].as_str().or_else(|| report["failed"].as_str())
     }
 
-    /// Processor times, if it ran.
+    /// Returns the processor times, if the engine ran.
     pub fn times(&self) -> Option<Times> {
         let over_rounds = |key: &str| -> Option<Vec<f64>> {
             let mut values: Vec<f64> =
@@ -226,12 +226,12 @@ impl EngineResult {
         })
     }
 
-    /// Peak of the memory that the scene took, MiB.
+    /// Returns the peak memory of the scene, MiB.
     pub fn memory(&self) -> Option<f64> {
         self.reports.iter().filter_map(|report| report["peak_rss_mib"].as_f64()).min_by(f64::total_cmp)
     }
 
-    /// Median of a figure over the judged runs; `None` if one lacks it.
+    /// Returns the median of a figure over the judged runs; `None` if one lacks it.
     pub fn judged(&self, figure: impl Fn(&Map<String, Value>) -> Option<f64>) -> Option<f64> {
         let runs = self.reports.iter().filter_map(|report| report["quality"].as_object());
         let mut values: Vec<f64> = runs.map(figure).collect::<Option<_>>()?;
@@ -239,12 +239,12 @@ impl EngineResult {
         values.get(values.len() / 2).copied()
     }
 
-    /// A text such as `version`.
+    /// Returns a text such as `version`.
     pub fn text(&self, key: &str) -> Option<&str> {
         self.reports.first()?[key].as_str()
     }
 
-    /// A number listed beside the times.
+    /// Returns a number listed beside the times.
     pub fn number(&self, key: &str) -> Option<f64> {
         self.reports.first()?[key].as_f64()
     }

@@ -18,7 +18,7 @@ impl Table {
     /// Adds a row.
     ///
     /// # Panics
-    /// If it is not as wide as the heading.
+    /// If the row is not as wide as the heading.
     pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
         let row: Vec<String> = cells.into_iter().map(Into::into).collect();
         assert_eq!(row.len(), self.rows[0].len(), "a row is as wide as the heading: {row:?}");

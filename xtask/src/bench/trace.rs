@@ -9,13 +9,13 @@ use serde_json::Value;
 use std::fmt::Write as _;
 use std::process::Command;
 
-/// Bytes of a MiB.
+/// Number of bytes in a MiB.
 const MIB: f64 = (1 << 20) as f64;
 
 /// Traces a scene with its own binary and prints the result.
 ///
 /// # Errors
-/// If it cannot be built, or there is no such scene.
+/// If the binary cannot be built, or there is no such scene.
 pub fn print(scene: &str, steps: Option<u32>, warm_up: Option<u32>) -> Result<()> {
     let mut run = Command::new(peers::build_ours()?);
     run.args(["trace", "--scene", scene]);
@@ -59,7 +59,7 @@ fn shown(trace: &Value) -> String {
     text
 }
 
-/// Medians per step; ratios are those of the medians.
+/// Returns the medians per step; ratios are those of the medians.
 fn counts(counts: &Value) -> Table {
     let of = |key: &str| counts[key].as_f64();
     let ratio = |a: &str, b: &str| Some(of(a)? / of(b).filter(|&b| b > 0.0)?);

@@ -3,8 +3,8 @@
 use super::{Finding, Repo};
 use serde_json::Value;
 
-/// Each crate, and the crates that it may use; their dependencies are allowed, too. One row per crate of the design,
-/// including those that do not exist yet.
+/// Each crate, and the crates that it may use; their dependencies are allowed, too. Has one row per crate of the
+/// design, including crates that do not exist yet.
 const ARROWS: &[(&str, &[&str])] = &[
     ("sinew_math", &[]),
     ("sinew_geometry", &["sinew_math"]),

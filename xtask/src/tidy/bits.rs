@@ -1,8 +1,8 @@
 //! Keeps arithmetic whose bits differ between targets out of the code that decides the state
 //! (docs/adr/0006-glam-and-bits.md has the measurements).
 //!
-//! Types are not known here, so the rule is stricter than needed for shared names: `.max(x)` on integers must
-//! be recognisable, by its argument (`.max(1)`, `.min(list.len())`) or by a path (`usize::max(a, b)`). It misses
+//! The rule does not know types, so it is stricter than needed for shared names: `.max(x)` on integers must be
+//! recognisable, by its argument (`.max(1)`, `.min(list.len())`) or by a path (`usize::max(a, b)`). It misses
 //! methods that a macro defines, or that another crate calls.
 
 use super::lexer::{self, Kind, Token};
@@ -25,7 +25,7 @@ const TYPES: &[&str] = &["Quat", "Vec3A", "Vec4", "Mat4", "Mat3A", "Affine3A", "
 /// Files that convert from and to `glam::Quat`.
 const CONVERSIONS: &str = "crates/sinew_math/src/rotations/rotation.rs";
 
-/// Methods of floats and of glam vectors that are not made of `+ − × ÷ √` alone, or are contracted on some targets.
+/// Methods of floats and of glam vectors that use more than `+ − × ÷ √`, or are contracted on some targets.
 const METHODS: &[(&str, &str)] = &[
     ("sin", TRIGONOMETRY),
     ("cos", TRIGONOMETRY),
@@ -164,7 +164,7 @@ fn forbidden(tokens: &[Token<'_>], at: usize, converts: bool) -> Option<String> 
     None
 }
 
-/// True if the arguments in the bracket at `open` show that the call is on integers or on an iterator.
+/// Returns true if the arguments in the bracket at `open` show that the call is on integers or on an iterator.
 fn is_of_integers(tokens: &[Token<'_>], open: usize) -> bool {
     let arguments = &tokens[open + 1..lexer::closing(tokens, open)];
     let is_integer = |token: &Token<'_>| match token.kind {

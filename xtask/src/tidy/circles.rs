@@ -1,8 +1,8 @@
 //! Files of a crate that name each other in a circle, which a reader must understand together; and the number of files
 //! in one folder.
 //!
-//! A file names another if one of its paths leads to something that the other defines, through any re-exports; a
-//! re-export alone names nothing. Methods are not seen, because tokens do not show their types.
+//! A file names another if one of its paths leads to an item of the other, through any re-exports; a re-export alone
+//! names nothing. Methods do not count, because tokens do not show their types.
 
 use super::lexer::{self, Kind, Token};
 use super::rooms::is_test;
@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Limit on the files of one circle.
 const CIRCLE_FILES_MAX: usize = 10;
-/// Limit on the files beside `lib.rs` without a folder of their own, itself included.
+/// Limit on the number of files in `src/` itself, `lib.rs` included.
 const FLAT_FILES_MAX: usize = 12;
 
 /// Checks the sizes of circles, and the number of files flat in a `src/`.
@@ -43,15 +43,15 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
 /// Figures of a crate's files and names, a row of the table.
 pub struct House<'a> {
     pub name: &'a str,
-    /// Files of its source, tests left out.
+    /// Number of source files, without tests.
     pub files: usize,
-    /// Number of files flat beside `lib.rs`.
+    /// Number of files in `src/` itself.
     pub flat: usize,
-    /// Files of the largest circle; 1 if there is none.
+    /// Number of files of the largest circle; 1 if there is none.
     pub circle: usize,
 }
 
-/// The crates, by name.
+/// Returns the crates, by name.
 pub fn houses(repo: &Repo) -> Vec<House<'_>> {
     let crates: BTreeSet<&str> = repo.rust_files().filter_map(File::crate_of_source).collect();
     let house = |name| {
@@ -63,7 +63,7 @@ pub fn houses(repo: &Repo) -> Vec<House<'_>> {
     crates.into_iter().map(house).collect()
 }
 
-/// The modules of one crate, tests left out.
+/// The modules of one crate, without tests.
 struct Source<'a> {
     modules: Vec<Module<'a>>,
     /// Numbers of modules by their paths from the root.
@@ -77,23 +77,23 @@ struct Module<'a> {
     path: Vec<&'a str>,
     /// Code of the module without imports.
     code: Vec<Token<'a>>,
-    /// Names that it defines.
+    /// Names that the module defines.
     items: BTreeSet<&'a str>,
-    /// Names that it imports, each with its path, and glob imports.
+    /// Names that the module imports, each with its path, and glob imports.
     imports: Vec<Import<'a>>,
 }
 
 /// One name of a `use`.
 pub struct Import<'a> {
-    /// `*` for all of them.
+    /// Imported name; `*` for all names.
     pub name: &'a str,
     /// Path as written.
     pub path: Vec<&'a str>,
-    /// True if it is `pub` to some extent.
+    /// True if the import has any `pub`.
     pub is_public: bool,
 }
 
-/// A definition: its module, and whether it was found there or only expected.
+/// A definition: the module, and whether the name was found there or only expected.
 type Found = Option<(usize, bool)>;
 
 impl<'a> Source<'a> {
@@ -105,7 +105,7 @@ impl<'a> Source<'a> {
         Self { modules, places }
     }
 
-    /// Modules that each module names.
+    /// Returns the modules that each module names.
     fn arrows(&self) -> Vec<BTreeSet<usize>> {
         let of = |at: usize| {
             let module = &self.modules[at];
@@ -205,12 +205,12 @@ impl<'a> Module<'a> {
         Self { inside, path, code, items, imports }
     }
 
-    /// True if a word occurs in its code.
+    /// Returns true if a word occurs in the module's code.
     fn uses(&self, word: &str) -> bool {
         self.code.iter().any(|token| token.text == word)
     }
 
-    /// Paths of more than one word in its code.
+    /// Returns the paths of more than one word in the module's code.
     fn paths(&self) -> Vec<Vec<&'a str>> {
         let text = |at: usize| self.code.get(at).map_or("", |token| token.text);
         let is_word = |at: usize| self.code.get(at).is_some_and(|token| token.kind == Kind::Word);
@@ -271,7 +271,7 @@ fn import<'a>(tree: &[Token<'a>], prefix: &mut Vec<&'a str>, is_public: bool, im
     prefix.truncate(before);
 }
 
-/// Returns circles of more than one: strongly connected components (Tarjan 1972).
+/// Returns circles of more than one module: strongly connected components (Tarjan 1972).
 fn circles(arrows: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
     let mut search =
         Search { arrows, order: vec![None; arrows.len()], low: vec![0; arrows.len()], ..Search::default() };
@@ -283,9 +283,9 @@ fn circles(arrows: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
 #[derive(Default)]
 struct Search<'a> {
     arrows: &'a [BTreeSet<usize>],
-    /// Order in which each was visited.
+    /// Order in which each module was visited.
     order: Vec<Option<usize>>,
-    /// Earliest one that each leads back to.
+    /// Earliest module that each module leads back to.
     low: Vec<usize>,
     stack: Vec<usize>,
     visited: usize,

@@ -1,4 +1,5 @@
-//! Compares the code map of `ARCHITECTURE.md` with the code: everything that it names exists, and it names everything at the top of a crate.
+//! Compares the code map of `ARCHITECTURE.md` with the code: every named file exists, and every file and folder at the top of a crate is
+//! named.
 
 use super::{Finding, Repo};
 
@@ -13,7 +14,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     findings
 }
 
-/// Returns files that a page names and that do not exist.
+/// Returns findings for files that a page names and that do not exist.
 fn missing(repo: &Repo, page: &str) -> Vec<Finding> {
     let text = repo.file(page).map_or("", |file| file.text.as_str());
     let lines = text
@@ -72,7 +73,7 @@ fn check_map(repo: &Repo) -> Vec<Finding> {
     findings
 }
 
-/// Folder or file at the top of `src/`, folders with a slash.
+/// Returns the folder or file at the top of `src/`, folders with a slash.
 fn top(file: &str) -> String {
     match file.split_once('/') {
         Some((folder, _)) => format!("{folder}/"),
@@ -128,7 +129,7 @@ fn is_path(c: char) -> bool {
     c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '_' | '/' | '.')
 }
 
-/// True if a piece of code is a file or a folder of the crate.
+/// Returns true if a piece of code is a file or a folder of the crate.
 fn is_place(name: &str) -> bool {
     let ends = name.ends_with(".rs") || name.ends_with('/');
     let is_of_root = ["crates/", "docs/", "xtask/", "fuzz/", "bench/", "tests/", "out/", "src/"];

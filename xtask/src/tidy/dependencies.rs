@@ -1,12 +1,12 @@
-//! Every external crate is recorded: it has its row in the ADR, and is declared in the root manifest.
+//! Every external crate has its row in the ADR, and is declared in the root manifest.
 
 use super::{Finding, Repo};
 
 const MANIFEST: &str = "Cargo.toml";
 const RECORD: &str = "docs/adr/0007-dependencies.md";
 
-/// Checks that the root manifest's dependencies and the record's rows ("| `name` | …") agree, every one is used, and no crate
-/// declares its own.
+/// Checks that the root manifest's dependencies and the record's rows ("| `name`
+/// …") agree, that every dependency is used, and that no crate declares its own.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
     let Some(manifest) = repo.file(MANIFEST) else { return findings };

@@ -15,8 +15,8 @@ const MOST_LINES: usize = 60;
 /// fight over a network, a character with all its accessories.
 const LONGER: &[&str] = &["door_and_cape", "flock", "pendulum_clock", "probes", "rollback_fight"];
 
-/// Finds public modules of those crates without an example that is compiled and run, and examples that are too long, or use names that the
-/// prelude lacks.
+/// Finds public modules of those crates without an example that is compiled and run, and examples that are too long or use names outside
+/// the prelude.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
     for file in repo.rust_files() {
@@ -65,7 +65,7 @@ fn modules(repo: &Repo, file: &File) -> Vec<Finding> {
     findings
 }
 
-/// True if the documentation at the head of a module has a Rust block that runs.
+/// Returns true if the documentation at the head of a module has a Rust block that runs.
 fn has_example(text: &str) -> bool {
     let mut is_open = false;
     text.lines().filter_map(|line| line.strip_prefix("//! ```")).any(|info| {

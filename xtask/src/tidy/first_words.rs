@@ -10,7 +10,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     repo.rust_files().filter(|file| file.crate_of_source().is_some()).flat_map(fragments).collect()
 }
 
-/// Returns first lines of documentation that begin with such a word.
+/// Returns findings for first lines of documentation that begin with a word of [`FRAGMENTS`].
 fn fragments(file: &File) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut is_first = true;

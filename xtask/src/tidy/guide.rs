@@ -50,7 +50,7 @@ fn links(line: &str) -> impl Iterator<Item = &str> {
     targets.filter(|target| !target.is_empty() && !target.contains("://"))
 }
 
-/// True if a link from a page of the guide has a file as its target.
+/// Returns true if a link from a page of the guide has a file as its target.
 fn has_target(repo: &Repo, link: &str) -> bool {
     let mut path: Vec<&str> = PAGES.trim_end_matches('/').split('/').collect();
     for part in link.split('/') {
@@ -59,11 +59,11 @@ fn has_target(repo: &Repo, link: &str) -> bool {
             part => path.push(part),
         }
     }
-    // Pictures are not among the files that rules see.
+    // Pictures are not among the files of [`Repo`].
     link.ends_with(".png") || repo.file(&path.join("/")).is_some()
 }
 
-/// Last column of a table's row.
+/// Returns the last column of a table's row.
 fn ours(line: &str) -> &str {
     line.trim_end().trim_end_matches('|').rsplit(" | ").next().unwrap_or_default()
 }
@@ -76,7 +76,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     words.filter(|word| word.len() > 1 && !word.starts_with(|c: char| c.is_ascii_digit()))
 }
 
-/// Every word of the libraries' and the plugin's code.
+/// Returns every word of the libraries' and the plugin's code.
 fn names(repo: &Repo) -> BTreeSet<&str> {
     let sources = repo.rust_files().filter(|file| {
         file.crate_of_source().is_some() || file.path.starts_with("integrations/bevy_sinew/src/")

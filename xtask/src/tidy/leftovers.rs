@@ -2,7 +2,7 @@
 
 use super::{Finding, Repo, lexer};
 
-/// Home folders. Split in two, so that this file does not contain them.
+/// Home folders, each split in two, so that this file does not contain them.
 const PATHS: &[(&str, &str)] = &[("/wo", "rk/"), ("/ro", "ot/"), ("/t", "mp/")];
 
 const MACROS: &[&str] = &["dbg !", "todo !", "unimplemented !"];

@@ -9,7 +9,7 @@ pub enum Kind {
     Number,
     /// String, byte string or character, with its quotes.
     Literal,
-    /// `'a`.
+    /// Lifetime, such as `'a`.
     Lifetime,
     /// Punctuation: one character, or `::`.
     Mark,
@@ -22,11 +22,11 @@ pub struct Token<'a> {
     pub kind: Kind,
     /// Text as written.
     pub text: &'a str,
-    /// Line it starts on, from 1.
+    /// Line on which the token starts, from 1.
     pub line: usize,
 }
 
-/// All tokens of `source`, without comments.
+/// Returns all tokens of `source`, without comments.
 pub fn tokens(source: &str) -> Vec<Token<'_>> {
     let mut tokens = Vec::new();
     let (mut at, mut line) = (0, 1);
@@ -41,7 +41,7 @@ pub fn tokens(source: &str) -> Vec<Token<'_>> {
     tokens
 }
 
-/// Kind (`None` for space and comments) and length in bytes of the start of `rest`.
+/// Returns the kind (`None` for space and comments) and the length in bytes of the start of `rest`.
 fn next(rest: &str) -> (Option<Kind>, usize) {
     let first = rest.chars().next().unwrap_or(' ');
     if first.is_whitespace() {
@@ -74,7 +74,7 @@ fn word(rest: &str) -> usize {
     rest.find(|c| !is_word(c)).unwrap_or(rest.len())
 }
 
-/// Length of the comment, nested ones included.
+/// Returns the length of the comment, nested ones included.
 fn block_comment(rest: &str) -> usize {
     let mut depth = 0;
     let mut at = 0;
@@ -93,7 +93,8 @@ fn block_comment(rest: &str) -> usize {
     at
 }
 
-/// Length of a string of any kind, prefix and quotes included; `None` if `rest` does not start with one.
+/// Returns the length of a string of any kind, prefix and quotes included; `None` if `rest` does not start
+/// with one.
 fn string(rest: &str) -> Option<usize> {
     let prefix = ["br", "cr", "b", "c", "r", ""].into_iter().find(|&prefix| {
         let after = rest.strip_prefix(prefix).unwrap_or_default();
@@ -110,7 +111,7 @@ fn string(rest: &str) -> Option<usize> {
     Some(prefix.len() + quoted(body, '"'))
 }
 
-/// Length of `rest` up to and with the closing `quote`; the opening one is its first character.
+/// Returns the length of `rest` up to and with the closing `quote`; the first character is the opening quote.
 fn quoted(rest: &str, quote: char) -> usize {
     let mut escaped = false;
     for (at, c) in rest.char_indices().skip(1) {
@@ -122,7 +123,7 @@ fn quoted(rest: &str, quote: char) -> usize {
     rest.len()
 }
 
-/// A character, or a lifetime.
+/// Returns the kind and the length of a character or a lifetime.
 fn quote(rest: &str) -> (Option<Kind>, usize) {
     let mut following = rest.chars().skip(1);
     let (second, third) = (following.next(), following.next());
@@ -133,7 +134,8 @@ fn quote(rest: &str) -> (Option<Kind>, usize) {
     }
 }
 
-/// Length of a number: `1`, `1.5`, `1.`, `1e-3_f32`, `0x1F`; but only the `1` of `1..2` and of `1.max(2)`.
+/// Returns the length of a number: `1`, `1.5`, `1.`, `1e-3_f32`, `0x1F`; but only the `1` of `1..2` and of
+/// `1.max(2)`.
 fn number(rest: &str) -> usize {
     let mut length = word(rest);
     let after = &rest[length..];
@@ -159,7 +161,7 @@ pub fn find<'a>(tokens: &'a [Token<'_>], pattern: &str) -> impl Iterator<Item = 
     })
 }
 
-/// Index of the bracket that closes the one at `open`; the last token if none does.
+/// Returns the index of the bracket that closes the one at `open`; the last token if none does.
 pub fn closing(tokens: &[Token<'_>], open: usize) -> usize {
     let mut depth = 0_usize;
     for (at, token) in tokens.iter().enumerate().skip(open) {
@@ -175,7 +177,7 @@ pub fn closing(tokens: &[Token<'_>], open: usize) -> usize {
     tokens.len() - 1
 }
 
-/// `tokens` without the items that carry `#[cfg(test)]`.
+/// Returns `tokens` without the items that carry `#[cfg(test)]`.
 pub fn without_tests<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     let mut kept = Vec::with_capacity(tokens.len());
     let mut at = 0;
@@ -192,7 +194,7 @@ pub fn without_tests<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     kept
 }
 
-/// Index of the `;` or closing brace that ends the item at `start`.
+/// Returns the index of the `;` or closing brace that ends the item at `start`.
 pub fn end_of_item(tokens: &[Token<'_>], start: usize) -> usize {
     let mut at = start;
     while at < tokens.len() {

@@ -19,7 +19,7 @@ const LIBRARIES: &[&str] = &[
 /// The only file that reads and writes files.
 const FILE_ACCESS: &str = "crates/sinew_formats/src/fs.rs";
 
-/// Patterns of tokens, and their replacement.
+/// Forbidden patterns of tokens, and advice.
 const FORBIDDEN: &[(&str, &str)] = &[
     ("Instant", "libraries read no clock; stage times come from a Profiler"),
     ("SystemTime", "libraries read no clock"),
@@ -47,7 +47,7 @@ const FORBIDDEN_IN_STD: &[(&str, &str)] = &[
 /// Types whose statics can change.
 const CELLS: &[&str] = &["Mutex", "RwLock", "Cell", "RefCell", "OnceCell", "UnsafeCell"];
 
-/// Checks that no library uses what the tables above forbid.
+/// Checks that no library uses the patterns in the tables above.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let is_library = |file: &&File| file.crate_of_source().is_some_and(|name| LIBRARIES.contains(&name));
     repo.rust_files().filter(is_library).flat_map(check_file).collect()
@@ -79,7 +79,7 @@ fn check_file(file: &File) -> Vec<Finding> {
     findings
 }
 
-/// The modules named in `std::module` and in `std::{module, module::item}`.
+/// Returns the modules named in `std::module` and in `std::{module, module::item}`.
 fn modules_of_std<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     let mut modules = Vec::new();
     for at in lexer::find(tokens, "std ::") {

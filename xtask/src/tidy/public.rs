@@ -5,12 +5,12 @@ use super::lexer;
 use super::{Finding, Repo};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The list: a crate and a name in each line, in order.
+/// File of the list: a crate and a name in each line, in order.
 const LIST: &str = "xtask/public.txt";
 /// Crates that are not used as libraries.
 const BINARIES: &[&str] = &["sinew_cli", "sinew_scenes"];
 
-/// Number of names that a crate offers at its root.
+/// Returns the number of names that a crate offers at its root.
 pub fn offered(repo: &Repo, name: &str) -> usize {
     let of_crate = |line: &&str| line.split_once(' ').is_some_and(|(of, _)| of == name);
     repo.file(LIST).map_or(0, |list| list.text.lines().filter(of_crate).count())

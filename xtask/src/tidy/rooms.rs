@@ -35,7 +35,7 @@ const ROOMS: &[(&str, &[&str])] = &[(
 
 /// Existing upward arrows, by file and room. The list may only shrink.
 const EXCEPTIONS: &[(&str, &str)] = &[
-    // The step gets the whole world, on which the user's objects and the movers act within the step.
+    // The step takes the whole world, because the user's objects and the movers act on it within the step.
     ("crates/sinew_physics/src/step/mod.rs", "world"),
     ("crates/sinew_physics/src/step/mod.rs", "user_object"),
     ("crates/sinew_physics/src/step/mod.rs", "mover"),
@@ -44,7 +44,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     // The world owns its movers, which act on a world.
     ("crates/sinew_physics/src/world/mod.rs", "mover"),
     ("crates/sinew_physics/src/world/snapshot.rs", "mover"),
-    // A ray tests what shelters from a blast.
+    // A ray tests which bodies shelter others from a blast.
     ("crates/sinew_physics/src/world/explosions.rs", "query"),
 ];
 
@@ -52,14 +52,14 @@ const EXCEPTIONS: &[(&str, &str)] = &[
 const EXCEPTIONS_MAX: usize = 10;
 const _: () = assert!(EXCEPTIONS.len() <= EXCEPTIONS_MAX, "too many arrows back up");
 
-/// Number of upward arrows in a crate; `None` if it has no rooms.
+/// Returns the number of upward arrows in a crate; `None` if it has no rooms.
 pub fn arrows_back_up(name: &str) -> Option<usize> {
     let source = format!("crates/{name}/");
     let has_rooms = ROOMS.iter().any(|&(with_rooms, _)| with_rooms == name);
     has_rooms.then(|| EXCEPTIONS.iter().filter(|(file, _)| file.starts_with(&source)).count())
 }
 
-/// Checks that every arrow between rooms goes down, except for the listed ones, which are all needed and few.
+/// Checks that every arrow between rooms goes down, except for the listed ones; every exception must be needed.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     check_rooms(repo, ROOMS, EXCEPTIONS)
 }
@@ -107,7 +107,7 @@ fn room_of(file: &File) -> &str {
     inside.split('/').next().unwrap_or_default().trim_end_matches(".rs")
 }
 
-/// True if a file is compiled for tests alone: its module is declared under `#[cfg(test)]`.
+/// Returns true if a file is compiled for tests alone: its module is declared under `#[cfg(test)]`.
 pub fn is_test(file: &File, repo: &Repo) -> bool {
     let Some((folder, name)) = file.path.trim_end_matches(".rs").rsplit_once('/') else { return false };
     let parent = repo.file(&format!("{folder}/mod.rs"));
@@ -117,7 +117,7 @@ pub fn is_test(file: &File, repo: &Repo) -> bool {
         })
 }
 
-/// Names that `lib.rs` re-exports, each with the room it comes from.
+/// Returns the names that `lib.rs` re-exports, each with its room.
 fn exports(lib: &File) -> Vec<(&str, &str)> {
     let tokens = lib.tokens();
     let mut exports = Vec::new();
@@ -134,7 +134,7 @@ fn exports(lib: &File) -> Vec<(&str, &str)> {
 
 /// Returns the names right below `crate` that a file uses, with the lines.
 fn named(file: &File) -> Vec<(&str, usize)> {
-    // Remove as many `super` as lead to the top.
+    // Removes as many `super` as lead to the top.
     let inside = file.path.splitn(4, '/').nth(3).unwrap_or_default();
     let depth = inside.trim_end_matches("/mod.rs").matches('/').count() + 1;
     let tokens = file.tokens_without_tests();

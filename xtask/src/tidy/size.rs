@@ -12,7 +12,7 @@ const EXCEPTIONS: &str = "xtask/exceptions.txt";
 /// Number of exceptions. May only be lowered.
 const EXCEPTIONS_MAX: usize = 0;
 
-/// Something with a length: a file, or a function in one.
+/// A piece of code with a length: a file, or a function in one.
 struct Piece {
     path: String,
     name: String,
@@ -28,7 +28,8 @@ struct Exception {
     line: usize,
 }
 
-/// Checks that nothing exceeds its limit, except for the exceptions, each with its exact length; and that those are all needed.
+/// Checks that no piece exceeds its limit, except for the exceptions, each with its exact length; and that every exception is
+/// needed.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     check_up_to(repo, EXCEPTIONS_MAX)
 }

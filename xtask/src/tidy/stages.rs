@@ -1,4 +1,4 @@
-//! The code's list of stages equals the manual's.
+//! Checks that the code's list of stages equals the manual's.
 
 use super::lexer::{self, Kind};
 use super::{Finding, Repo};
@@ -47,7 +47,8 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     findings
 }
 
-/// Returns the number of words in the manual's first diagram that are the stages in their order; `None` if it has no diagram.
+/// Returns the number of words in the manual's first diagram that are the stages in their order; `None` if there is no
+/// diagram.
 fn drawn(text: &str, stages: &[(String, usize)]) -> Option<usize> {
     let diagram = text.split("```").nth(1)?.strip_prefix("text\n")?;
     let words = diagram.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty());

@@ -4,11 +4,11 @@ use super::lexer::{self, Kind};
 use super::rooms::is_test;
 use super::{Finding, Repo};
 
-/// Crates whose constants of behaviour have such a file.
+/// Crates whose constants of behaviour are in such files.
 const CRATES: &[&str] = &["sinew_physics", "sinew_anim", "sinew_ragdoll"];
 
-/// Other numbers: bounds of rounding, of representable values, of a series; a unit; sizes that are only drawn;
-/// a table of anatomy, a drop of the contract, the verdict's bars. By file and name; may only shrink.
+/// Other constants: bounds of rounding, of representable values, of a series; a unit; sizes that are only drawn; a table of
+/// anatomy, a drop of the contract, the verdict's bars. Listed by file and name; the list may only shrink.
 const OTHERS: &[(&str, &str)] = &[
     ("sinew_anim/src/animator/advance.rs", "SHORTEST"),
     ("sinew_anim/src/animator/fire.rs", "MOMENT"),

@@ -63,7 +63,7 @@ pub fn page(rows: &[Row], roles: &Value) -> String {
     page
 }
 
-/// Returns the sum over all files of one column of roles: correct, of all.
+/// Returns the sums over all files of one column of roles: correct, and total.
 fn sum(roles: &Value, column: &str) -> (u64, u64) {
     let pairs = roles.as_object().into_iter().flatten().filter_map(|(_, row)| pair(&row[column]));
     pairs.fold((0, 0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1))
@@ -169,12 +169,12 @@ fn reasons(rows: &[Row]) -> String {
         }
         let of_drops = &row.report["build"]["quality"]["reasons"];
         let of_bake = &row.report["bake"]["notes"];
-        // Every file lacks clips in its drops: that reason is left out.
+        // No file has clips in its drops: that reason is left out.
         let reason_texts = of_drops.as_array().into_iter().flatten().filter_map(Value::as_str);
         for reason in reason_texts.filter(|reason| !reason.starts_with("hand-over")) {
             let _ = writeln!(text, "- {}: {reason}", row.file);
         }
-        // The command requested to stay down, so its note is left out.
+        // The command asked for no get-up, so the note on it is left out.
         let noted = of_bake.as_array().into_iter().flatten().filter_map(Value::as_str);
         for note in noted.filter(|note| !note.starts_with("it does not get up")) {
             let _ = writeln!(text, "- {}, baked: {note}", row.file);

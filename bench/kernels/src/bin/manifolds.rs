@@ -14,9 +14,9 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Pairs of each kind.
+/// Number of pairs of each kind.
 const PAIRS: usize = 4_096;
-/// Rounds over all of them.
+/// Number of rounds over all pairs.
 const ROUNDS: usize = 10;
 /// Search distance for points, metres.
 const MARGIN: f32 = 0.02;
@@ -54,7 +54,7 @@ fn pose(frame: &Transform) -> Pose {
     Pose::from_parts(Vector::new(p.x, p.y, p.z), ParryRotation::from_xyzw(q.x, q.y, q.z, q.w))
 }
 
-/// About half of them touch.
+/// Returns random pairs, about half of which touch.
 fn pairs(kinds: [&str; 2]) -> Vec<Pair> {
     let mut random = Random::new(11);
     let pair = |_| {

@@ -1,8 +1,8 @@
 //! Springs of cloth that one core solves per second: 100 by 100 free particles, threads and diagonals, without
 //! contacts.
 //!
-//! The difference of substeps with many and few iterations gives the time of an iteration; cloth with a single spring gives the share
-//! of the particles.
+//! The difference of substeps with many and few iterations gives the time of an iteration; cloth with a single spring gives the
+//! particles' share.
 #![forbid(unsafe_code)]
 
 use sinew_math::Vec3;
@@ -11,16 +11,16 @@ use sinew_physics::particles::{ClothDef, GroupDef};
 use sinew_physics::{World, WorldDef};
 use std::time::Instant;
 
-/// Cells along a side.
+/// Number of cells along a side.
 const CELLS: u32 = 99;
-/// Steps of a sample; the fastest sample counts.
+/// Number of steps of a sample; the fastest sample counts.
 const STEPS: usize = 30;
-/// Iterations of a substep, few and many.
+/// Number of iterations of a substep, few and many.
 const ITERATIONS: [u32; 2] = [2, 42];
-/// Substeps of a step.
+/// Number of substeps of a step.
 const SUBSTEPS: f64 = 4.0;
 
-/// Threads and diagonals, no bends.
+/// Returns a cloth with threads and diagonals, without bends.
 fn cloth() -> GroupDef {
     let side = 0.04 * CELLS as f32;
     ClothDef {
@@ -40,7 +40,7 @@ fn cloth() -> GroupDef {
     .group
 }
 
-/// Length of an iteration, seconds.
+/// Returns the time of an iteration, seconds.
 fn seconds(group: &GroupDef) -> f64 {
     let least = ITERATIONS.map(|iterations| {
         let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });

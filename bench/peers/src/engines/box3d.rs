@@ -16,22 +16,22 @@ use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyKind, JointKind, Sensing, ShapeDef, Sleeping};
 use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
 
-/// Substeps of a step: as in its samples and its manual.
+/// Number of substeps of a step, as in Box3D's samples and manual.
 const SUBSTEPS: i32 = 4;
 
-/// Below this distance Box3D's own overlap tests report an overlap (`B3_OVERLAP_SLOP`), metres.
+/// Distance below which Box3D's own overlap tests report an overlap (`B3_OVERLAP_SLOP`), metres.
 const OVERLAP_SLOP: f32 = 5e-4;
 
 /// Half sizes of the box that replaces a half-space, metres; its upper face is the plane.
 const HALF_SPACE: Vec3 = Vec3::new(1000.0, 10.0, 1000.0);
 
-/// Sides of the hull that replaces a cylinder or a cone.
+/// Number of sides of the hull that replaces a cylinder or a cone.
 const SIDES: usize = 24;
 
-/// x of our joint frames becomes z of Box3D's, whose hinges, cones and twists are about z.
+/// Rotation from our joint frames to Box3D's: x becomes z, because Box3D's hinges, cones and twists are about z.
 const Z_TO_X: Rotation = Rotation { x: 0.5, y: 0.5, z: 0.5, w: 0.5 };
 
-/// Box3D.
+/// Engine Box3D.
 pub struct Box3d;
 
 impl Engine for Box3d {
@@ -39,7 +39,7 @@ impl Engine for Box3d {
         let lanes = if cfg!(target_arch = "x86_64") { "SSE2" } else { "NEON or scalar" };
         Description {
             name: "box3d",
-            // The crate does not state its commit of Box3D.
+            // The crate does not state the commit of its copy of Box3D.
             version: format!("{}, C source in crate box3d-sys 0.1.16", version()),
             flags: format!(
                 "Release: -O3 -DNDEBUG -ffp-contract=off, {lanes} (4 lanes), BOX3D_VALIDATE=OFF, no LTO"
@@ -108,8 +108,8 @@ fn add_body(world: &mut World, def: &BodyDef, sleeping: Sleeping) -> Result<(), 
     Ok(())
 }
 
-/// Box3D multiplies the larger share of two shapes by the larger of their radii, of which only meshes have none: bodies on
-/// large boxes meet more resistance than stated.
+/// Refuses rolling resistance on boxes: Box3D multiplies the larger share of two shapes by the larger of their radii, which all
+/// shapes but meshes have, so bodies on large boxes meet more resistance than stated.
 fn refuse_rolling_on_boxes(scene: &Blueprint) -> Result<(), Unsupported> {
     let mut shapes = scene.bodies.iter().flat_map(|def| def.shapes.iter().map(move |part| (def.kind, part)));
     let rolls = shapes.clone().any(|(_, part)| part.material.rolling != 0.0);
@@ -120,7 +120,7 @@ fn refuse_rolling_on_boxes(scene: &Blueprint) -> Result<(), Unsupported> {
     Ok(())
 }
 
-/// Radius that Box3D uses as the lever of rolling resistance, metres.
+/// Returns the radius that Box3D uses as the lever of rolling resistance, metres.
 fn rolling_radius(shape: &sinew::physics::Shape) -> f32 {
     use sinew::physics::Shape as Ours;
     match *shape {
@@ -233,7 +233,7 @@ impl RayCaster for Box3dRays {
     }
 }
 
-/// Returns the distance of two boxes (GJK): Box3D has no other public test of two boxes without a manifold.
+/// Pairs of boxes whose distance is computed by GJK: Box3D has no other public test of two boxes without a manifold.
 struct Box3dBoxes {
     pairs: Vec<BoxPair>,
 }

@@ -12,12 +12,12 @@ mod sinew;
 
 use crate::engine::Engine;
 
-/// An engine by its name, built into this binary or not.
+/// An engine by its name, which this binary may lack.
 #[derive(Clone, Copy)]
 pub struct Entry {
     /// Name on the command line.
     pub name: &'static str,
-    /// `None` if this binary was built without it.
+    /// The engine; `None` if this binary was built without it.
     pub engine: Option<&'static dyn Engine>,
 }
 

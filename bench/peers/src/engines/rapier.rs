@@ -17,7 +17,7 @@ use sinew_scenes::walks::{Terrain, Walker, capsule};
 /// Name of this build.
 pub const NAME: &str = if cfg!(feature = "simd8") { "rapier_simd8" } else { "rapier" };
 
-/// Rapier.
+/// Engine Rapier.
 pub struct Rapier;
 
 impl Engine for Rapier {
@@ -52,7 +52,7 @@ impl Engine for Rapier {
             world.insert_impulse_joint(bodies[def.a], bodies[def.b], joint(def, scene)?);
         }
         for &(a, b) in &scene.apart {
-            // Without a hook of the user, a joint without locked axes disables a pair.
+            // A joint without locked axes disables a pair without a hook of the user.
             let parted = GenericJointBuilder::new(JointAxesMask::empty()).contacts_enabled(false);
             world.insert_impulse_joint(bodies[a], bodies[b], parted);
         }
@@ -88,7 +88,7 @@ impl Engine for Rapier {
         for place in &scene.boxes {
             world.insert_collider(static_box(place), None);
         }
-        // Builds the tree for rays.
+        // This step builds the tree for rays.
         world.step();
         let rays = scene.rays.iter().map(|ray| Ray::new(vector(ray.origin), vector(ray.direction))).collect();
         Ok(Box::new(RapierRays { world, rays }))
@@ -247,7 +247,7 @@ impl RayCaster for RapierRays {
     }
 }
 
-/// Rapier's collision library, called as its users would.
+/// Pairs of boxes for Rapier's collision library, called like by its users.
 struct ParryBoxes {
     pairs: Vec<[(Pose, Cuboid); 2]>,
 }
@@ -266,13 +266,13 @@ struct RapierWalker {
     world: PhysicsWorld,
     controller: KinematicCharacterController,
     shape: Capsule,
-    /// Centre of the capsule.
+    /// Pose of the capsule's centre.
     pose: Pose,
     velocity: Vec3,
     is_grounded: bool,
 }
 
-/// Returns a walker of Rapier with its feet somewhere on a terrain.
+/// Returns a walker of Rapier with its feet at a point on a terrain.
 ///
 /// # Panics
 /// If Rapier lacks a shape of the terrain.
@@ -288,7 +288,7 @@ pub fn walker(on: &Terrain, feet: Vec3) -> Box<dyn Walker> {
             world.insert_collider(solid.position(place), Some(handle));
         }
     }
-    // Builds the tree for queries.
+    // This step builds the tree for queries.
     world.step();
     let step = CharacterLength::Absolute(def.step_height);
     let controller = KinematicCharacterController {
@@ -325,14 +325,14 @@ impl Walker for RapierWalker {
         let change = if !self.is_grounded && wish == Vec3::ZERO { Vec3::ZERO } else { wish - level };
         let length = change.length();
         self.velocity += if length > most { change * (most / length) } else { change };
-        // As in Rapier's examples, the walker falls from rest where the ground carried it.
+        // As in Rapier's examples, the walker starts to fall from rest while the ground carries it.
         self.velocity.y = if self.is_grounded { 0.0 } else { self.velocity.y } - 9.81 * DT;
         let queries = self.world.query_pipeline();
         let wanted = vector(self.velocity * DT);
         let moved = self.controller.move_shape(DT, &queries, &self.shape, &self.pose, wanted, |_| {});
         self.pose.translation += moved.translation;
         self.is_grounded = moved.grounded;
-        // Obstacles stop its velocity.
+        // Obstacles stop the walker's velocity.
         let went = from_vector(moved.translation) / DT;
         let [before, after] = [self.velocity, went].map(|v| Vec3::new(v.x, 0.0, v.z).length());
         if after < before {

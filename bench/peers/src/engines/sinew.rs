@@ -18,7 +18,7 @@ use sinew::physics::{
 use sinew_scenes::blueprint::Blueprint;
 use sinew_scenes::crowd::CrowdScene;
 
-/// Sinew.
+/// Engine Sinew.
 pub struct Sinew;
 
 impl Engine for Sinew {
@@ -110,7 +110,7 @@ const STRETCHING: f32 = 2e3;
 /// Bending stiffness per width, N·m: a bend then resists as much as a distance over two cells does in Jolt's cloth.
 const BENDING: f32 = 1e-3;
 
-/// Returns the scene as a [`ClothDef`] makes it: both threads, both diagonals of each cell, bends over two cells; two iterations per substep.
+/// Returns the scene as built by [`ClothDef`]: both threads, both diagonals of each cell, bends over two cells; two iterations per substep.
 fn cloth(scene: &ClothScene) -> GroupDef {
     let last = scene.side - 1;
     let cells = last as u32;
@@ -170,7 +170,7 @@ impl RayCaster for SinewRays {
     }
 }
 
-/// Eight pairs at a time, stored as users would: the pairs of each step together.
+/// Pairs of boxes, tested eight at a time and stored as users would: the pairs of each step together.
 struct SinewBoxes {
     steps: Vec<Pairs>,
     overlapping: Vec<u8>,

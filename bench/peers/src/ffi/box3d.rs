@@ -1,7 +1,7 @@
 //! Safe interface to Box3D.
 //!
-//! Safety: ids never leave their [`World`], so none outlives it or is used with another; definitions come
-//! from Box3D's own defaults and are lent for the length of a call, which copies them.
+//! Safety: ids never leave their [`World`], so none is used after or outside it; definitions come from Box3D's own defaults
+//! and are borrowed for a call, which copies them.
 
 #![allow(unsafe_code)]
 
@@ -24,14 +24,14 @@ fn lock_worlds() -> MutexGuard<'static, ()> {
     WORLDS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Version that the library reports.
+/// Returns the version that the library reports.
 pub fn version() -> String {
     // SAFETY: takes nothing, returns a value.
     let b3Version { major, minor, revision } = unsafe { b3GetVersion() };
     format!("{major}.{minor}.{revision}")
 }
 
-/// A world and all its objects. Bodies are named by the order in which they were added.
+/// A world and all its objects. The index of a body is its place in the order of additions.
 pub struct World {
     id: b3WorldId,
     bodies: Vec<b3BodyId>,
@@ -77,14 +77,15 @@ pub struct Surface {
     pub density: f32,
     pub friction: f32,
     pub restitution: f32,
-    /// Share of the shape's radius, which for a box is a quarter of that of the largest ball inside.
+    /// Rolling resistance as a share of the shape's radius; for a box the radius is a quarter of that of the largest ball
+    /// inside.
     pub rolling: f32,
     pub layers: u32,
     pub mask: u32,
     pub group: i32,
 }
 
-/// Free directions of a joint, and the torque that resists. Hinges, cones and twists are about **z** of the joint's
+/// Free directions of a joint, and the torque that resists them. Hinges, cones and twists are about **z** of the joint's
 /// frames.
 #[derive(Clone, Copy, Debug)]
 pub enum Joint {
@@ -94,7 +95,7 @@ pub enum Joint {
 }
 
 impl World {
-    /// An empty world with default settings: continuous collision on, 30 Hz contacts, one worker.
+    /// Creates an empty world with default settings: continuous collision on, 30 Hz contacts, one worker.
     ///
     /// # Panics
     /// If Box3D has no room for another world (it has 128).
@@ -128,7 +129,7 @@ impl World {
     /// Adds a shape to a body, whose mass and inertia grow by those of the shape.
     ///
     /// # Errors
-    /// If Box3D refuses the hull: it has at most 128 corners in all.
+    /// If Box3D refuses the hull, which may have at most 128 corners.
     ///
     /// # Panics
     /// If there is no such body, or Box3D refuses the mesh.
@@ -274,13 +275,13 @@ impl World {
         }
     }
 
-    /// One step of `dt` seconds.
+    /// Takes one step of `dt` seconds.
     pub fn step(&mut self, dt: f32, substeps: i32) {
         // SAFETY: the world lives as long as `self`, which nobody else has now.
         unsafe { b3World_Step(self.id, dt, substeps) }
     }
 
-    /// Pose of a body's origin.
+    /// Returns the pose of a body's origin.
     ///
     /// # Panics
     /// If there is no such body.
@@ -290,7 +291,7 @@ impl World {
         Transform::new(from_vector(p), Rotation::from_xyzw(q.v.x, q.v.y, q.v.z, q.s))
     }
 
-    /// Velocity of a body's centre of mass, and its angular velocity in world axes.
+    /// Returns the velocity of a body's centre of mass, and its angular velocity in world axes.
     ///
     /// # Panics
     /// If there is no such body.
@@ -307,7 +308,7 @@ impl World {
         usize::try_from(count).expect("a count is not negative")
     }
 
-    /// Returns whether a ray hits a shape; the closest is found. A ray that starts inside a shape does not hit it.
+    /// Returns true if a ray hits a shape; finds the closest hit. A ray that starts inside a shape does not hit it.
     pub fn meets_ray(&self, ray: &Ray) -> bool {
         // SAFETY: the world lives as long as `self`, which is on one thread; no callback runs; returns values.
         unsafe {
@@ -373,7 +374,7 @@ pub struct BoxPair {
 }
 
 impl BoxPair {
-    /// A pair with these half extents and poses.
+    /// Creates a pair with these half extents and poses.
     pub fn new(half_extents: [Vec3; 2], world_from_box: [Transform; 2]) -> Self {
         let corners = half_extents.map(|half| {
             core::array::from_fn(|i| {
@@ -385,7 +386,7 @@ impl BoxPair {
         Self { corners, a_from_b: transform(world_from_a.inverse() * world_from_b) }
     }
 
-    /// Returns the distance, metres; 0 for an overlap. Without the library's cache for a pair.
+    /// Returns the distance, metres; 0 for an overlap. Does not use the library's cache for a pair.
     pub fn distance(&self) -> f32 {
         let proxy = |points: &[b3Vec3; 8]| b3ShapeProxy { points: points.as_ptr(), count: 8, radius: 0.0 };
         let input = b3DistanceInput {

@@ -6,16 +6,16 @@ use sinew_scenes::blueprint::Blueprint;
 
 /// Connected dynamic bodies, none with more than two joints.
 pub(super) struct Chain {
-    /// Places of its joints.
+    /// Indices of the chain's joints.
     joints: Vec<usize>,
-    /// Bodies between two joints.
+    /// Number of bodies between two joints.
     links: usize,
     /// Sum of the distances between the two joints of each link in the start pose, metres.
     length: f32,
 }
 
 impl Chain {
-    /// All chains of a scene.
+    /// Returns all chains of a scene.
     pub fn find(scene: &Blueprint) -> Vec<Self> {
         let mut joints_of = vec![Vec::new(); scene.bodies.len()];
         for (place, joint) in scene.joints.iter().enumerate() {
@@ -53,19 +53,19 @@ impl Chain {
         (chain.length > 0.0).then_some(chain)
     }
 
-    /// Sum of the gaps as a share of the length.
+    /// Returns the sum of the gaps as a share of the chain's length.
     pub fn stretch(&self, gaps: &[f32]) -> f32 {
         self.joints.iter().map(|&joint| gaps[joint]).sum::<f32>() / self.length
     }
 
-    /// Largest gap as a share of a link's mean length.
+    /// Returns the largest gap as a share of a link's mean length.
     pub fn gap_per_link(&self, gaps: &[f32]) -> f32 {
         let largest = self.joints.iter().map(|&joint| gaps[joint]).fold(0.0, worse);
         largest * self.links as f32 / self.length
     }
 }
 
-/// Returns dynamic bodies that joints connect, directly or through others.
+/// Returns the dynamic bodies that joints connect to `start`, directly or through others.
 fn together_with(
     start: usize,
     scene: &Blueprint,

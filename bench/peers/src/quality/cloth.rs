@@ -15,9 +15,9 @@ pub struct ClothMeter<'a> {
 /// Quality of cloth at the end of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClothQuality {
-    /// Mean over the structural links of the deviation of their length from the rest length, as a share of that.
+    /// Mean relative deviation of the structural links from their rest length.
     pub stretch_mean: f32,
-    /// The largest of these.
+    /// Largest relative deviation of a structural link from its rest length.
     pub stretch_max: f32,
     /// Kinetic energy of all particles, J.
     pub kinetic_energy: f64,
@@ -26,7 +26,7 @@ pub struct ClothQuality {
 }
 
 impl<'a> ClothMeter<'a> {
-    /// Returns the measurement of this scene.
+    /// Creates the measurement of this scene.
     pub fn new(scene: &'a ClothScene) -> Self {
         Self { scene }
     }
@@ -67,7 +67,7 @@ impl<'a> ClothMeter<'a> {
 }
 
 impl ClothQuality {
-    /// The quality as part of a report.
+    /// Returns the quality as part of a report.
     pub fn to_json(&self) -> Value {
         json!({
             "stretch_mean": self.stretch_mean,

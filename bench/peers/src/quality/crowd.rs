@@ -22,12 +22,12 @@ pub struct CrowdMeter<'a> {
 pub struct CrowdQuality {
     /// Angle between the rotation of a sampled joint and its clip, radians.
     pub rotation_error_max: f32,
-    /// Distance of a joint of the blended pose from its place, model space, metres.
+    /// Distance of a joint of the blended pose from its expected place, model space, metres.
     pub model_error_max: f32,
 }
 
 impl<'a> CrowdMeter<'a> {
-    /// Returns the measurement of this scene.
+    /// Creates the measurement of this scene.
     pub fn new(scene: &'a CrowdScene) -> Self {
         let rest = rest_pose(&scene.rig);
         Self {
@@ -75,7 +75,7 @@ impl<'a> CrowdMeter<'a> {
 }
 
 impl CrowdQuality {
-    /// The quality as part of a report.
+    /// Returns the quality as part of a report.
     pub fn to_json(&self) -> Value {
         json!({
             "rotation_error_max_rad": self.rotation_error_max,
@@ -84,7 +84,7 @@ impl CrowdQuality {
     }
 }
 
-/// Angle in radians, from the chord in `f64`: from the cosine it would be less exact than the errors.
+/// Returns an angle in radians, from the chord in `f64`: the cosine would be less exact than the errors.
 fn angle(a: Rotation, b: Rotation) -> f32 {
     let pairs = [(a.x, b.x), (a.y, b.y), (a.z, b.z), (a.w, b.w)].map(|(a, b)| (f64::from(a), f64::from(b)));
     let sign = if pairs.iter().map(|(a, b)| a * b).sum::<f64>() < 0.0 { -1.0 } else { 1.0 };

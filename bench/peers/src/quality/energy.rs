@@ -14,7 +14,7 @@ pub struct EnergyQuality {
     pub total_start: f64,
     /// Kinetic and potential energy at the end.
     pub total_end: f64,
-    /// The largest total energy, including the start: an excess over the start is an error.
+    /// Largest total energy, including the start: an excess over the start is an error.
     pub total_peak: f64,
 }
 

@@ -9,18 +9,17 @@ use sinew_scenes::blueprint::Blueprint;
 /// Distances between the two anchors of a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointQuality {
-    /// Largest over all joints and steps, metres.
+    /// Largest distance over all joints and steps, metres.
     pub gap_peak: f32,
-    /// Largest at the end, metres.
+    /// Largest distance at the end, metres.
     pub gap_end_max: f32,
-    /// Mean over the joints at the end, metres.
+    /// Mean distance of the joints at the end, metres.
     pub gap_end_mean: f32,
-    /// Largest over all steps of a chain's largest gap, as a share of the mean length of its links. `None` without
-    /// chains.
+    /// Largest gap of a chain over all steps, as a share of the mean length of its links. `None` without chains.
     pub gap_per_link: Option<f32>,
-    /// Largest over all steps of the sum of a chain's gaps, as a share of its length. `None` without chains.
+    /// Largest sum of a chain's gaps over all steps, as a share of the chain's length. `None` without chains.
     pub stretch_peak: Option<f32>,
-    /// The sum of a chain's gaps at the end, as a share of its length.
+    /// Sum of a chain's gaps at the end, as a share of the chain's length.
     pub stretch_end: Option<f32>,
 }
 
@@ -33,7 +32,7 @@ pub(super) struct JointMeter {
     stretch_peak: f32,
 }
 
-/// Bodies of a joint, and its place in each.
+/// Bodies of a joint, and the joint's place in each.
 struct Anchors {
     bodies: [usize; 2],
     local: [Vec3; 2],

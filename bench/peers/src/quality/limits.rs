@@ -11,7 +11,7 @@ use sinew_scenes::blueprint::Blueprint;
 /// Overshoot from which on a joint is counted, radians.
 const TOLERANCE: f32 = 0.1;
 
-/// Limits by kind.
+/// Overshoots of limits by kind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LimitQuality {
     /// Swing cones of balls.
@@ -27,11 +27,11 @@ pub struct LimitQuality {
 /// Overshoots of one kind of limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LimitTally {
-    /// Number of joints with it.
+    /// Number of joints with such a limit.
     pub joints: usize,
-    /// Number of joints more than 0.1 rad beyond it at the end.
+    /// Number of joints more than 0.1 rad beyond the limit at the end.
     pub exceeded_end: usize,
-    /// Number of joints beyond it after any step.
+    /// Number of joints more than 0.1 rad beyond the limit after any step.
     pub exceeded_run: usize,
     /// Largest overshoot at the end, radians.
     pub worst_end: f32,
@@ -40,7 +40,7 @@ pub struct LimitTally {
 }
 
 impl LimitQuality {
-    /// The tally as part of a report.
+    /// Returns the tally as part of a report.
     pub fn to_json(&self) -> Value {
         let tally = |tally: &LimitTally| {
             json!({
@@ -70,7 +70,7 @@ impl LimitTally {
     }
 }
 
-/// NaN counts as exceeded.
+/// Returns true if an excess is beyond the tolerance; NaN is.
 fn is_exceeded(excess: f32) -> bool {
     excess.is_nan() || excess > TOLERANCE
 }
@@ -83,7 +83,7 @@ struct LimitedJoint {
     bodies: [usize; 2],
     frames: [Rotation; 2],
     limit: Limit,
-    /// The largest excess so far.
+    /// Largest excess so far.
     run: Excess,
 }
 
@@ -93,7 +93,7 @@ enum Limit {
     Hinge(Option<Range>),
 }
 
-/// Returns the radians beyond the limits of a joint: swing and twist of a ball, angle and axis of a hinge; 0 inside.
+/// Angles beyond the limits of a joint, radians: swing and twist of a ball, or angle and axis of a hinge; 0 inside.
 type Excess = [f32; 2];
 
 impl LimitMeter {

@@ -44,7 +44,7 @@ pub struct Quality {
     pub joints: Option<JointQuality>,
     /// Quality of limits; `None` without limits.
     pub limits: Option<LimitQuality>,
-    /// `None` if nothing can collide.
+    /// Penetration of shapes; `None` if none can collide.
     pub penetration: Option<PenetrationQuality>,
     /// Energy of the dynamic bodies.
     pub energy: EnergyQuality,
@@ -91,7 +91,7 @@ impl QualityMeter {
 }
 
 impl Quality {
-    /// Returns it as part of a report; `null` where the scene lacks the object or a number is not finite.
+    /// Returns the result as part of a report; `null` if the scene lacks the object or a number is not finite.
     pub fn to_json(&self) -> Value {
         let mut report = Map::new();
         let mut add = |key: &str, value: Value| report.insert(key.into(), value);
@@ -119,12 +119,12 @@ impl Quality {
     }
 }
 
-/// Returns whether anything can touch a shape and be pushed.
+/// Returns true if a body can touch the shape and be pushed.
 fn collides(shape: &ShapeDef) -> bool {
     shape.sensing == Sensing::Solid && shape.filter.mask != 0 && shape.filter.layers != 0
 }
 
-/// Returns the larger of two; NaN has priority, so that it shows.
+/// Returns the larger of two numbers; NaN has priority, so that it shows.
 fn worse(a: f32, b: f32) -> f32 {
     if b.is_nan() || b > a { b } else { a }
 }

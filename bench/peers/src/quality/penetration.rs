@@ -14,11 +14,11 @@ use sinew_scenes::blueprint::Blueprint;
 /// Depths of the pairs of shapes that may collide, metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PenetrationQuality {
-    /// The largest depth at the end.
+    /// Largest depth at the end.
     pub end_max: f32,
     /// 99th percentile of the overlaps at the end.
     pub end_p99: f32,
-    /// Deepest after any measured step.
+    /// Largest depth after any measured step.
     pub run_max: f32,
     /// Interval of measured steps.
     pub every: usize,
@@ -26,7 +26,8 @@ pub struct PenetrationQuality {
 
 pub(super) struct PenetrationMeter {
     shapes: Vec<Solid>,
-    /// Pairs of bodies that joints connect or the scene disables, the smaller index first, sorted: they do not collide.
+    /// Pairs of bodies that do not collide because joints connect them or the scene disables them; the smaller index
+    /// first, sorted.
     apart: Vec<(usize, usize)>,
     every: usize,
     run_max: f32,
@@ -43,7 +44,7 @@ struct Solid {
 
 impl PenetrationMeter {
     pub fn new(scene: &Blueprint, every: usize) -> Self {
-        // Depths need all shapes of the scene: if Parry lacks one, nothing is measured.
+        // Depths need all shapes of the scene: if Parry lacks one, no depth is measured.
         let shapes = Self::solids(scene).unwrap_or_default();
         let mut apart: Vec<_> = scene.joints.iter().map(|joint| ordered(joint.a, joint.b)).collect();
         apart.extend(scene.apart.iter().map(|&(a, b)| ordered(a, b)));
@@ -119,7 +120,7 @@ struct PlacedShape<'a> {
 }
 
 impl PlacedShape<'_> {
-    /// Bodies with NaN count as lost, not as penetrating.
+    /// Returns true if the pose is finite. Bodies with NaN count as lost, not as penetrating.
     fn is_finite(&self) -> bool {
         self.pose.is_finite()
     }
@@ -142,8 +143,8 @@ fn depth_of_shapes(pose_a: &Pose, a: &SharedShape, pose_b: &Pose, b: &SharedShap
     (contact.dist < 0.0).then_some(-contact.dist)
 }
 
-/// Uses the axis of least overlap of two boxes. Parry's `contact` finds the axis too, but measures the depth from the
-/// nearest face to a corner, which may be a face across: 3 m for a cube of 1 m on a slab of 2 m.
+/// Returns the depth along the axis of least overlap of two boxes. Parry's `contact` finds the axis too, but measures
+/// the depth from the nearest face to a corner, which may be at the other side: 3 m for a cube of 1 m on a slab of 2 m.
 fn depth_of_boxes(pose_a: &Pose, a: &Cuboid, pose_b: &Pose, b: &Cuboid) -> Option<f32> {
     let b_in_a = pose_a.inv_mul(pose_b);
     let (faces_of_a, _) = sat::cuboid_cuboid_find_local_separating_normal_oneway(a, b, &b_in_a);

@@ -7,13 +7,13 @@ use sinew::math::{Transform, Vec3};
 use sinew::physics::{BodyKind, Shape};
 use sinew_scenes::blueprint::Blueprint;
 
-/// Depth below all static shapes from which on a body is lost, metres.
+/// Depth below all static shapes at which a body counts as lost, metres.
 const LOST_BELOW: f32 = 1.0;
 
 /// Final places of dynamic bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceQuality {
-    /// Bodies that fell through everything static, or whose numbers are not finite.
+    /// Number of bodies that fell below all static shapes, or whose numbers are not finite.
     pub lost: usize,
     /// Mean height of the bodies' origins, metres.
     pub mean_height: f64,

@@ -15,14 +15,14 @@ pub struct BoxPair {
 
 /// A list of pairs; 51.4 % overlap.
 pub struct BoxPairs {
-    /// Tested from first to last, then again.
+    /// Pairs, tested from first to last, then again.
     pub pairs: Vec<BoxPair>,
-    /// Pairs that share one measured step.
+    /// Number of pairs in one measured step.
     pub per_step: usize,
 }
 
 impl BoxPairs {
-    /// Returns the first `count` of a fixed sequence, of which `per_step` are tested in one step.
+    /// Returns the first `count` pairs of a fixed sequence, of which `per_step` are tested in one step.
     pub fn new(count: usize, per_step: usize) -> Self {
         let mut random = Random::new(42);
         let pairs = (0..count)
@@ -40,7 +40,7 @@ impl BoxPairs {
         Self { pairs, per_step }
     }
 
-    /// Returns the pairs of the measured step number `step`, cyclically.
+    /// Returns the pairs of measured step number `step`, cyclically.
     pub fn pairs_of_step(&self, step: usize) -> core::ops::Range<usize> {
         let start = step * self.per_step % self.pairs.len();
         start..start + self.per_step

@@ -12,7 +12,7 @@ use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 pub struct ClothScene {
     /// Number of particles along a side.
     pub side: usize,
-    /// Distance of neighbours, metres.
+    /// Distance between neighbours, metres.
     pub spacing: f32,
     /// World position of the first particle; rows run along +x, the next row is at +z.
     pub corner: Vec3,
@@ -22,16 +22,16 @@ pub struct ClothScene {
     pub particle_radius: f32,
     /// Damping, 1/s.
     pub damping: f32,
-    /// Coulomb coefficient of cloth and obstacles.
+    /// Coefficient of Coulomb friction between cloth and obstacles.
     pub friction: f32,
-    /// Obstacles.
+    /// Obstacles that are boxes.
     pub boxes: Vec<PlacedBox>,
-    /// Obstacles: centre and radius, metres.
+    /// Obstacles that are balls: centre and radius, metres.
     pub spheres: Vec<(Vec3, f32)>,
 }
 
 impl ClothScene {
-    /// 10,000 particles of 2 g, 4 m by 4 m, pinned by two corners 2.2 m above the floor.
+    /// Returns 10,000 particles of 2 g, 4 m by 4 m, pinned by two corners 2.2 m above the floor.
     pub fn new() -> Self {
         let floor = Transform::from_translation(Vec3::new(0.0, -0.5, 0.0));
         let yaw = Rotation::from_axis_angle(Vec3::Y, 30f32.to_radians());
@@ -52,12 +52,12 @@ impl ClothScene {
         }
     }
 
-    /// World position of a particle at the start.
+    /// Returns the world position of a particle at the start.
     pub fn position(&self, row: usize, column: usize) -> Vec3 {
         self.corner + Vec3::new(column as f32, 0.0, row as f32) * self.spacing
     }
 
-    /// Index of a particle: row by row.
+    /// Returns the index of a particle: row by row.
     pub fn index(&self, row: usize, column: usize) -> usize {
         row * self.side + column
     }
@@ -67,7 +67,7 @@ impl ClothScene {
         [self.index(0, 0), self.index(0, self.side - 1)]
     }
 
-    /// Returns its obstacles as static bodies.
+    /// Returns the obstacles as static bodies.
     pub fn obstacles(&self) -> Vec<BodyDef> {
         let ball = |&(position, radius): &(Vec3, f32)| BodyDef {
             kind: BodyKind::Static,
@@ -83,7 +83,7 @@ impl ClothScene {
         bodies
     }
 
-    /// Neighbours along the grid: structural links.
+    /// Returns the neighbours along the grid: structural links.
     pub fn structural_links(&self) -> Vec<[usize; 2]> {
         let n = self.side;
         let along = (0..n).flat_map(|row| (1..n).map(move |k| (row, k)));

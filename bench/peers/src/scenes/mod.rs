@@ -1,4 +1,4 @@
-//! The scenes: those of bodies come from `sinew_scenes`, the others are here.
+//! Scenes: those of bodies come from `sinew_scenes`, the others are here.
 
 mod boxes;
 mod cloth;
@@ -25,14 +25,14 @@ pub struct Scene {
     pub field: Field,
     /// Sensitivity of the scene to its start.
     pub course: Course,
-    /// Work of an engine.
+    /// Returns the work of an engine.
     pub work: fn() -> Work,
 }
 
 /// Sensitivity of a scene's run to a small change of its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Course {
-    /// The run changes little.
+    /// The run changes little: one run gives the figures.
     Steady,
     /// The run differs: figures are those of several starts.
     Chaotic,
@@ -50,7 +50,7 @@ pub enum Field {
 }
 
 impl Field {
-    /// Name in reports.
+    /// Returns the field's name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Physics => "physics",

@@ -5,7 +5,7 @@ use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew_scenes::blueprint::{in_box, rotation};
 
-/// Rays that share one measured step: enough for the clock.
+/// Number of rays in one measured step: enough for the clock.
 const RAYS_PER_STEP: usize = 1_000;
 
 /// A box in space.
@@ -18,7 +18,7 @@ pub struct PlacedBox {
 }
 
 impl PlacedBox {
-    /// As a static body.
+    /// Returns the box as a static body.
     pub fn fixed(&self) -> BodyDef {
         BodyDef {
             kind: BodyKind::Static,
@@ -61,7 +61,7 @@ impl RayScene {
         Self { boxes, rays }
     }
 
-    /// Returns the rays of the measured step number `step`, cyclically.
+    /// Returns the rays of measured step number `step`, cyclically.
     pub fn rays_of_step(&self, step: usize) -> core::ops::Range<usize> {
         let start = step * RAYS_PER_STEP % self.rays.len();
         start..start + RAYS_PER_STEP

@@ -24,7 +24,7 @@ fn scene(bodies: Vec<BodyDef>, joints: Vec<BlueprintJoint>) -> Blueprint {
     Blueprint { name: "test", gravity, sleeping: Sleeping::Off, steps: 0, bodies, joints, apart: Vec::new() }
 }
 
-/// All bodies after `steps` steps.
+/// Returns the states of all bodies after `steps` steps.
 fn run(engine: &dyn Engine, scene: &Blueprint, steps: usize) -> Vec<BodyState> {
     let name = engine.describe().name;
     let mut simulation = engine.build(scene).unwrap_or_else(|why| panic!("{name}: {why}"));
@@ -95,7 +95,7 @@ fn a_ball_joint_stops_at_its_cone() {
 
 #[test]
 fn a_twist_stops_at_either_limit() {
-    // Beside its axis, which is level, the box rotates about x until it reaches the stop.
+    // The box hangs beside its level axis, so it rotates about x until it reaches the stop.
     let swing = Range::symmetric(0.01);
     let limit = SwingTwistLimit { swing_y: swing, swing_z: swing, twist: Range::new(-0.3, 0.5) };
     for (arm, stop) in [(Vec3::NEG_Z, -0.3), (Vec3::Z, 0.5)] {

@@ -24,7 +24,7 @@ fn body(kind: BodyKind, shape: Shape, position: Vec3) -> BodyDef {
     BodyDef { kind, position, shapes: vec![ShapeDef::new(shape)], ..BodyDef::default() }
 }
 
-/// A cube of side 1 m and 1000 kg.
+/// Returns a cube with sides of 1 m and a mass of 1000 kg.
 fn cube(position: Vec3) -> BodyDef {
     body(BodyKind::Dynamic, Shape::Box { half_extents: Vec3::splat(0.5) }, position)
 }
@@ -54,7 +54,7 @@ fn close(a: f32, b: f32) {
     assert!((a - b).abs() < 1e-5, "{a} is not {b}");
 }
 
-/// A hook at the origin and two level links of 1 m.
+/// Returns a hook at the origin and two level links of 1 m.
 fn two_links() -> Blueprint {
     let ball = JointKind::Ball { limit: None };
     let hook = BodyDef { kind: BodyKind::Static, ..BodyDef::default() };
@@ -147,7 +147,7 @@ fn overshoot_equals_the_rotation_beyond_each_limit() {
 fn depth_is_the_shortest_way_out() {
     let scene = scene(vec![floor(), cube(Vec3::Y * 0.5), cube(Vec3::Y * 1.5)], vec![]);
     let mut states = start(&scene);
-    // 20 mm in the floor, 50 mm in the cube above, whose edge is down there.
+    // The first cube is 20 mm in the floor, and the edge of the second is 50 mm in the first.
     states[1].world_from_body.translation.y = 0.48;
     states[2].world_from_body.translation.y = 0.98 + 0.5f32.sqrt() - 0.05;
     states[2].world_from_body.rotation = Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_4);

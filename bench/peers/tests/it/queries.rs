@@ -6,7 +6,7 @@ use sinew::physics::ray::Ray;
 use sinew_peers::engine::Unsupported;
 use sinew_peers::scenes::{BoxPairs, ClothScene, RayScene};
 
-/// Returns whether an engine supports it, or else its reason.
+/// Returns the feature of an engine; prints the reason if the engine lacks it.
 fn offered<T>(result: Result<T, Unsupported>, name: &str) -> Option<T> {
     match result {
         Ok(offered) => Some(offered),
@@ -44,7 +44,7 @@ fn half_of_the_box_pairs_overlap() {
         let name = engine.describe().name;
         let Some(mut tester) = offered(engine.build_boxes(&pairs), name) else { continue };
         let share = tester.count_overlaps(0..20_000) as f32 / 20_000.0;
-        // 51.4 % of a million.
+        // The expected share is 51.4 %.
         assert!((share - 0.514).abs() < 0.01, "{name}: {share}");
     }
 }

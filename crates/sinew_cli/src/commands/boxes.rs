@@ -42,7 +42,7 @@ pub struct Boxes {
     picture: Option<PictureFile>,
 }
 
-/// A number above 0.
+/// Parses a number above 0.
 fn factor(text: &str) -> Result<f32, String> {
     let number: f32 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be above 0".to_owned()) }
@@ -89,7 +89,7 @@ impl Boxes {
         }
     }
 
-    /// Files that it writes.
+    /// Returns the files that the command writes.
     fn outputs(&self) -> impl Iterator<Item = &Path> {
         std::iter::once(self.output.as_path()).chain(self.picture.iter().map(PictureFile::path))
     }
@@ -142,13 +142,13 @@ impl Boxes {
     }
 }
 
-/// Height from the lowest to the highest vertex, metres.
+/// Returns the height from the lowest to the highest vertex, metres.
 fn height(mesh: &TriangleMesh) -> f32 {
     let used = || mesh.triangles.iter().flatten().map(|&i| mesh.positions[i as usize].y);
     used().fold(f32::MIN, f32::max) - used().fold(f32::MAX, f32::min)
 }
 
-/// Warnings of omissions and repairs.
+/// Returns warnings of omissions and repairs.
 fn warnings(mesh: &TriangleMesh, cooked: &Cooked) -> Vec<String> {
     let repairs = cooked.repairs;
     let mut warnings = mesh.warnings.clone();
@@ -166,7 +166,7 @@ fn warnings(mesh: &TriangleMesh, cooked: &Cooked) -> Vec<String> {
     warnings
 }
 
-/// The mesh on the left, its boxes on the right, each body in its own colour.
+/// Draws the mesh on the left and its boxes on the right, each body in its own colour.
 fn draw(
     mesh: &TriangleMesh,
     bodies: &[BodyDef],
@@ -175,7 +175,7 @@ fn draw(
     let (low, high) = bounds(&mesh.positions);
     let (center, radius) = ((low + high) * 0.5, 0.5 * (high - low).length());
     let toward_camera = Vec3::new(0.6, 0.45, 0.75);
-    // Placed along the picture's lower edge.
+    // The two are placed along the picture's lower edge.
     let right = Vec3::Y.cross(toward_camera).normalize();
     let apart = right * (1.02 * radius);
     let mut models = vec![Model {
@@ -208,7 +208,7 @@ fn draw(
     movie.finish()
 }
 
-/// Linear RGB that distinguishes neighbours.
+/// Linear RGB colours that distinguish neighbours.
 const COLORS: [[f32; 3]; 7] = [
     [0.55, 0.20, 0.14],
     [0.16, 0.34, 0.52],

@@ -6,8 +6,9 @@ use crate::report::table::shown;
 use sinew::anim::Clip;
 use sinew::ragdoll::settings::instead;
 
-/// The clip with that name, or with that index if no clip has the name; else the only clip whose name matches
-/// case-insensitively, has the same words (without those common to all clips), or has words that start so.
+/// Returns the clip with that name, or with that index if no clip has the name; else the only clip whose name
+/// matches case-insensitively, has the same words (without those common to all clips), or has words with
+/// these prefixes.
 pub fn find_clip(clips: &[Clip], name: &str) -> Result<usize, String> {
     let numbered = || name.parse().ok().filter(|&index: &usize| index < clips.len());
     if let Some(found) = clips.iter().position(|clip| clip.name == name).or_else(numbered) {
@@ -47,7 +48,8 @@ pub fn find_clip(clips: &[Clip], name: &str) -> Result<usize, String> {
     })
 }
 
-/// Words of a name: separated by other characters, and by changes from lower case to capitals or digits.
+/// Returns the words of a name: separated by other characters, and by changes from lower case to capitals or
+/// digits.
 fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut last = ' ';
@@ -65,12 +67,12 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// True if each of the wanted words is a prefix of an existing one.
+/// Returns true if each of the wanted words is a prefix of an existing one.
 fn begins_with_all(there: &[String], wanted: &[String]) -> bool {
     wanted.iter().all(|word| there.iter().any(|other| other.starts_with(word.as_str())))
 }
 
-/// The first names of a list, and the number of the others.
+/// Returns the first names of a list, and the number of the others.
 pub fn few(names: &[String]) -> String {
     const SHOWN: usize = 5;
     let first = names[..names.len().min(SHOWN)].join(", ");
@@ -80,12 +82,12 @@ pub fn few(names: &[String]) -> String {
     }
 }
 
-/// Name by which the user may call a clip.
+/// Returns the name by which the user may call a clip.
 fn called(index: usize, name: &str) -> String {
     if name.is_empty() { format!("number {index}, which has no name") } else { shown(name) }
 }
 
-/// Indices of the clips that the user named, in that order; all if none were named.
+/// Returns the indices of the clips that the user named, in that order; all if none were named.
 pub fn choose_clips(motion: &Motion, wanted: &[String]) -> Result<Vec<usize>> {
     let clips = &motion.file.clips;
     if wanted.is_empty() {

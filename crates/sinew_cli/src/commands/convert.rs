@@ -117,7 +117,6 @@ enum PaceArg {
     Froude,
 }
 
-/// A length above 0.
 /// Format of OUT.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Target {
@@ -210,7 +209,7 @@ impl Convert {
         Failure::at(&motion.name, what, "--clip")
     }
 
-    /// The clips on another character: in a copy of its file, or on its skeleton as a BVH.
+    /// Puts the clips on another character: in a copy of its file, or on its skeleton as a BVH.
     fn onto(&self, motion: &Motion, character: &Path, target: Target, outputs: &mut Outputs) -> Result<Told> {
         let CharacterFile { name, source: CharacterSource { document, analysis, .. } } =
             CharacterFile::load(character, Textures::Skip, WeightSource::File)?;
@@ -345,7 +344,7 @@ impl Convert {
     }
 }
 
-/// The movie of the output shows the first of its last `new` clips.
+/// Draws a movie of the first of the output's last `new` clips.
 fn draw(outputs: &Outputs, new: usize, picture: &PictureFile) -> Result<Vec<u8>> {
     let (path, bytes) = outputs.first().expect("something is written");
     let name = path.display().to_string();
@@ -384,7 +383,7 @@ fn sampled(rig: &Rig, clip: &Clip, rate: f64, file: &str) -> Result<Clip> {
     Ok(take(rig, clip, rate, file)?.to_clip(rig, &clip.name))
 }
 
-/// The clip preceded by a frame of the rest pose.
+/// Returns the clip preceded by a frame of the rest pose.
 fn with_rest_frame(rig: &Rig, clip: &Clip, rate: f64, file: &str) -> Result<Clip> {
     let mut take = take(rig, clip, rate, file)?;
     take.poses.splice(0..0, rest_pose(rig));

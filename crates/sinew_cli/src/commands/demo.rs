@@ -12,7 +12,7 @@ use sinew_picture::{PictureFormat, Sun};
 use sinew_scenes::cabin::{Prop, Site};
 use std::path::{Path, PathBuf};
 
-/// Start time of the film, seconds: the mannequin has left the door, which hides it before.
+/// Start time of the film, seconds: by then the mannequin has left the door, which hides it.
 const FILM_FROM: f32 = 0.6;
 /// Half size of the meadow in the file, metres per side; the picture shows it up to the haze.
 const MEADOW_HALF_SIZE: f32 = 12.0;
@@ -66,7 +66,7 @@ impl Demo {
     }
 }
 
-/// The character's rig with the props, so that other programs can show the stairs.
+/// Returns the character's rig with the props, so that other programs can show the stairs.
 fn staged(fall: &Fall<'_>, props: &[Prop]) -> Rig {
     let mut rig = fall.input.character.rig.clone();
     let model_from_world = fall.baked.world_from_model.inverse();
@@ -92,7 +92,7 @@ fn staged(fall: &Fall<'_>, props: &[Prop]) -> Rig {
     rig
 }
 
-/// The stairs from the side, a little from the front.
+/// Returns a film of the stairs from the side, a little from the front.
 fn film<'a>(fall: &'a Fall<'a>, props: &[Prop]) -> Film<'a> {
     let set =
         props.iter().flat_map(|prop| body_models(&prop.body, FLOOR_HALF_SIZE, prop.color, MOWN)).collect();

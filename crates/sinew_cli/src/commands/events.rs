@@ -123,7 +123,7 @@ impl Detect {
     }
 }
 
-/// The steps without an existing event, without repeats.
+/// Returns the steps without an existing event, without repeats.
 fn new_steps(there: &[ClipEvent], steps: Vec<ClipEvent>) -> Vec<ClipEvent> {
     let mut known: Vec<(String, f32)> = there
         .iter()

@@ -81,7 +81,7 @@ enum SexArg {
 }
 
 impl RagdollBuild {
-    /// Builds, drops and reports the ragdoll, and writes it.
+    /// Builds, drops, reports and writes the ragdoll.
     pub fn run(&self) -> Result<Report> {
         let settings = self.settings.path_for(&self.file);
         never_over([self.file.as_path(), &settings], self.output.as_deref())?;
@@ -116,7 +116,7 @@ impl RagdollBuild {
         Ok(report.finish())
     }
 
-    /// Random falls, with a progress bar.
+    /// Simulates random falls, with a progress bar.
     fn gated(&self, def: &RagdollDef, spawns: u32) -> GateReport {
         let threads = Threads::new(usize::from(self.threads));
         let progress = Progress::new("random falls", spawns as usize);

@@ -45,8 +45,8 @@ pub struct RagdollDoctor {
     settings: SettingsArg,
 }
 
-/// Skin flaws of a ragdoll on its rig. A ragdoll that explodes or lacks bodies is not dropped: its skin would show
-/// nothing new.
+/// Returns the skin flaws of a ragdoll on its rig. A ragdoll that explodes or lacks bodies is not dropped: its
+/// skin would show nothing new.
 fn skin_flaws(repair: &Repair, character: &CharacterFile) -> Vec<Flaw> {
     let is_cause = |finding: &Finding| {
         let is_missing = matches!(finding.code, Code::HeadWithoutBody | Code::LimbWithoutBody);

@@ -1,4 +1,4 @@
-//! `sinew ragdoll export`: the definition for other engines.
+//! `sinew ragdoll export`: writes the definition for other engines.
 
 use crate::failure::{Failure, Result};
 use crate::input::files::{CharacterFile, Outputs, WeightSource, must_end_in, never_over};
@@ -44,7 +44,7 @@ enum Format {
 }
 
 impl Format {
-    /// Extensions allowed for the format.
+    /// Returns the extensions allowed for the format.
     fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Khr => &["glb", "vrm"],
@@ -119,7 +119,7 @@ impl RagdollExport {
         Ok((def, text.into_bytes(), notes))
     }
 
-    /// The character with its ragdoll, and notes.
+    /// Returns the character with its ragdoll, and notes.
     fn character(&self) -> Result<(CharacterFile, RagdollDef, Vec<String>)> {
         match &self.ragdoll {
             Some(path) => {

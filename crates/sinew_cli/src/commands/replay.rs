@@ -54,7 +54,7 @@ impl Replay {
             && let Some(step) = player.step()
         {
             progress.step();
-            // A state with the recorded hash but other poses was not recorded that way.
+            // A state with the recorded hash but different poses is also a difference.
             let differs = step.found != step.recorded || player.misplaced().is_some();
             diverged = differs.then_some(step.step);
         }
@@ -84,7 +84,7 @@ impl Replay {
         Ok(Report { json, text })
     }
 
-    /// The first difference between the recording and another.
+    /// Reports the first difference between the recording and another.
     fn against(&self, recording: &Recording, other: &Path) -> Result<Report> {
         let name = name(&self.file);
         let others = load(other)?;

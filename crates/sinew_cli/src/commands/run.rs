@@ -1,4 +1,4 @@
-//! `sinew run`: a named scene without a picture: figures, times, state hash.
+//! `sinew run`: runs a named scene without a picture: figures, times, state hash.
 
 use crate::failure::{Failure, Result};
 use crate::input::scene_choice::choose;
@@ -91,7 +91,7 @@ impl Run {
         Err(Failure::Missed { report: Box::new(report), what })
     }
 
-    /// True if the scene runs with its defaults; expectations apply only then.
+    /// Returns true if the scene runs with its defaults; expectations apply only then.
     fn is_by_default(&self) -> bool {
         self.settings.is_empty() && self.steps.is_none() && matches!(self.quality, QualityName::Balanced)
     }
@@ -162,12 +162,12 @@ struct Outcome<'a> {
     times: StepTimes,
     hash: u64,
     metrics: Vec<Metric>,
-    /// True if figures are compared with the scene's expectations.
+    /// True if the figures are compared with the scene's expectations.
     has_bars: bool,
 }
 
 impl Outcome<'_> {
-    /// Figures that miss the scene's expectations.
+    /// Returns the figures that miss the scene's expectations.
     fn missed(&self) -> Vec<&'static str> {
         let unmet = self.metrics.iter().filter(|metric| self.has_bars && !metric.is_met());
         unmet.map(|metric| metric.name).collect()
@@ -188,7 +188,7 @@ impl Outcome<'_> {
         })
     }
 
-    /// Microseconds per step per item of each kind, in scenes whose work has parts.
+    /// Returns the microseconds per step per item of each kind, in scenes whose work has parts.
     fn costs(&self) -> Map<String, Value> {
         let parts = self.times.costs.iter().filter(|cost| cost.count > 0);
         let of = |cost: &Cost| (cost.name.to_owned(), json!(cost.seconds * 1e6 / cost.count as f64));
@@ -224,7 +224,7 @@ impl Outcome<'_> {
     }
 }
 
-/// Name of a part in a table.
+/// Returns the name of a part in a table.
 fn part_name(name: &str) -> String {
     if name == Instance::WORLD {
         "body, in the world".to_owned()

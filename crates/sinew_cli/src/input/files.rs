@@ -26,11 +26,11 @@ pub enum WeightSource {
     Nearest,
 }
 
-/// A character file as a command reads it.
+/// A character file with its analysis.
 pub struct CharacterFile {
-    /// Name of the file as the user gave it.
+    /// Name of the file, as given by the user.
     pub name: String,
-    /// Its content and what was recognised in it.
+    /// Content of the file, and what was recognised in it.
     pub source: CharacterSource,
 }
 
@@ -90,12 +90,12 @@ impl CharacterFile {
         Ok(file)
     }
 
-    /// The rig without the skin of garments, which covers no body.
+    /// Returns the rig without the skin of garments, which covers no body.
     pub fn body(&self) -> Cow<'_, Rig> {
         Correction { ignored: self.worn.clone(), ..Correction::default() }.seen(&self.document.rig)
     }
 
-    /// True if the file's unit is in doubt.
+    /// Returns true if the file's unit is in doubt.
     pub fn is_in_doubt(&self) -> bool {
         self.analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only)
     }
@@ -106,7 +106,7 @@ impl CharacterFile {
     }
 
     /// Removes the meshes of characters other than the `wanted` one, counted from 1. If there are several and none is
-    /// wanted, keeps the one with the most vertices, with a note.
+    /// wanted, keeps the character with the most vertices, with a note.
     pub fn choose(&mut self, wanted: Option<usize>) -> Result<()> {
         let count = self.characters().len();
         let number = match (wanted, self.largest()) {
@@ -129,7 +129,7 @@ impl CharacterFile {
     }
 }
 
-/// Format of a file, by its first bytes.
+/// Returns the format of a file, by its first bytes.
 fn format_of(path: &Path) -> Result<Option<MotionFormat>> {
     Ok(MotionFormat::of(&read_bytes(path)?).ok())
 }
@@ -150,7 +150,7 @@ pub fn never_over<'a>(
     }
 }
 
-/// Refuses an output whose extension is none of these: the name decides the format.
+/// Rejects an output whose extension is none of these: the name decides the format.
 pub fn must_end_in(output: &Path, extensions: &[&str]) -> Result<()> {
     let extension = output.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     if extensions.iter().any(|known| known.eq_ignore_ascii_case(extension)) {
@@ -172,17 +172,17 @@ impl Outputs {
         self.files.push((path.to_path_buf(), bytes));
     }
 
-    /// The first file.
+    /// Returns the first file.
     pub fn first(&self) -> Option<(&Path, &[u8])> {
         self.files.first().map(|(path, bytes)| (path.as_path(), bytes.as_slice()))
     }
 
-    /// Paths of the files.
+    /// Returns the paths of the files.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
         self.files.iter().map(|(path, _)| path.as_path())
     }
 
-    /// Writes them atomically; none appears before all are on disk.
+    /// Writes the files atomically; none appears before all are on disk.
     pub fn write(&self) -> Result<()> {
         let mut paths: Vec<&Path> = self.paths().collect();
         paths.sort_unstable();

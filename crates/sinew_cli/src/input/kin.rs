@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 const MOST: usize = 6;
 const LARGEST: u64 = 16 << 20;
 
-/// Units, metres, of neighbouring files of the same kind whose unit is unambiguous; the first few by name. Ignores
-/// unreadable files.
+/// Returns the units, metres, of neighbouring files of the same kind whose unit is unambiguous; the first few by
+/// name. Ignores unreadable files.
 pub fn units_beside(path: &Path) -> Vec<f32> {
     let folder = match path.parent() {
         Some(folder) if folder.as_os_str().is_empty() => Path::new("."),

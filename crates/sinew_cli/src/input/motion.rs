@@ -11,11 +11,11 @@ use std::path::Path;
 
 /// A file with clips: its content and the analysis of its joints.
 pub struct Motion {
-    /// Name of the file as the user gave it.
+    /// Name of the file, as given by the user.
     pub name: String,
     /// Rig and clips of the file.
     pub file: MotionFile,
-    /// Analysis of its joints; `None` without a skin or a humanoid skeleton.
+    /// Analysis of the file's joints; `None` without a skin or a humanoid skeleton.
     pub analysis: Option<RigAnalysis>,
 }
 
@@ -42,7 +42,7 @@ impl Motion {
         Ok(motion)
     }
 
-    /// Resolves a doubtful unit by the files next to a glTF, as for its fall.
+    /// Resolves a doubtful unit by the files next to a glTF, as `bake` does.
     fn read_neighbours(&mut self, path: &Path) {
         let Some(analysis) = &self.analysis else { return };
         let in_doubt = analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only);
@@ -64,13 +64,13 @@ impl Motion {
         Self { name, file, analysis }
     }
 
-    /// True if its joints carry a mesh.
+    /// Returns true if the file has a skin.
     pub fn has_skin(&self) -> bool {
         !self.file.rig.skins.is_empty()
     }
 }
 
-/// Adds the option that avoids the error to its text, if there is one.
+/// Adds the option that avoids the error to the error's text, if there is one.
 fn helped(mut error: Error) -> Error {
     if error.what.starts_with("declares ") && error.what.contains(" frames, has ") {
         error.what += "; 'sinew convert --any-rows' accepts the existing ones";
@@ -78,8 +78,8 @@ fn helped(mut error: Error) -> Error {
     error
 }
 
-/// Analyses the skin, or without one the skeleton in its most upright pose. The latter accepts only humans, because any
-/// few nodes resemble some creature.
+/// Analyses the skin, or without one the skeleton in its most upright pose. A skeleton must be human, because any few
+/// nodes resemble some creature.
 fn analyze_any(file: &MotionFile) -> Option<RigAnalysis> {
     let hints = Hints { exporter: file.generator.clone(), ..Hints::of_clips(&file.rig, &file.clips) };
     if let Ok(analysis) = analyze_hinted(&file.rig, &hints) {

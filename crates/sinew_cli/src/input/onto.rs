@@ -12,18 +12,18 @@ pub struct Carried {
     pub clip: Clip,
     /// Events of the clip, at its pace.
     pub events: Vec<ClipEvent>,
-    /// Criterion by which its joints were matched.
+    /// Criterion by which the clip's joints were matched.
     pub by: By,
 }
 
 /// Criterion by which joints were matched.
 pub enum By {
-    /// Both skeletons are the same: keys are copied.
+    /// By name: both skeletons are the same, and keys are copied.
     Name {
-        /// Bones of human bodies of any size.
+        /// Number of matched joints.
         matched: usize,
     },
-    /// Bones of human bodies, of whatever size.
+    /// By role: human bodies of any size.
     Role(Box<Retargeted>),
 }
 
@@ -61,7 +61,7 @@ pub fn carry(
 
 /// Largest angle between equal rest poses of matching joints, radians.
 const SAME_TURN: f32 = 0.02;
-/// Largest difference of their rest positions, as a share of their distance from the parent.
+/// Largest difference of the joints' rest positions, as a share of their distance from the parent.
 const SAME_PLACE: f32 = 0.05;
 
 /// Joints of a rig matched to those of another by name.
@@ -73,7 +73,7 @@ struct Namesakes {
 }
 
 impl Namesakes {
-    /// `None` if most joints that the clips move have no match.
+    /// Returns `None` if most joints that the clips move have no match.
     fn find(other: &Rig, clips: &[Clip], rig: &Rig) -> Option<Self> {
         let find = |name: &str| rig.joints.iter().position(|own| !name.is_empty() && own.name == name);
         let joints: Vec<Option<JointIdx>> = other.joints.iter().map(|joint| find(&joint.name)).collect();
@@ -110,7 +110,7 @@ fn by_name(clip: &Clip, events: &[ClipEvent], same: &[Option<JointIdx>]) -> Opti
 }
 
 impl Carried {
-    /// Line of text that describes the result.
+    /// Returns a line of text that describes the result.
     pub fn to_text(&self) -> String {
         let name = shown(&self.clip.name);
         match &self.by {

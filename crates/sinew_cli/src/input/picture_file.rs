@@ -7,11 +7,11 @@ use std::str::FromStr;
 /// Longest simulation that may be written as a clip or a movie, seconds.
 const LONGEST: f32 = 600.0;
 
-/// File for a picture, of the kind that its extension names.
+/// File for a picture, in the format of its extension.
 #[derive(Clone, Debug)]
 pub struct PictureFile {
     path: PathBuf,
-    /// Format of its bytes.
+    /// Format of the file.
     pub format: PictureFormat,
 }
 
@@ -43,7 +43,7 @@ pub fn seconds(text: &str) -> Result<f32, String> {
     }
 }
 
-/// Limits the length of a movie to the longest allowed.
+/// Limits the length of a movie to the largest allowed.
 pub fn longest(seconds: f32) -> f32 {
     if seconds < LONGEST { seconds } else { LONGEST }
 }

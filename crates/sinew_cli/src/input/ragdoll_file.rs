@@ -11,20 +11,20 @@ use std::path::Path;
 
 /// A ragdoll with its source.
 pub struct RagdollFile {
-    /// Name of the file as the user gave it.
+    /// Name of the file, as given by the user.
     pub name: String,
     /// The ragdoll, its springs, and data of its rig.
     pub repair: Repair,
     /// Notes of reading and building, one sentence each.
     pub notes: Vec<String>,
-    /// The rigged file that it was built from, if it is one.
+    /// The rigged file from which the ragdoll was built, if there is one.
     pub character: Option<CharacterFile>,
-    /// Garments requested by its settings.
+    /// Garments requested by the settings.
     pub garments: Vec<Garment>,
 }
 
 impl RagdollFile {
-    /// Rejects settings for a finished ragdoll: they only affect a build.
+    /// Rejects settings for a finished ragdoll: settings only affect a build.
     pub fn check_settings(&self, settings: &SettingsArg) -> Result<()> {
         if let Some(option) = settings.given().filter(|_| self.repair.reference.is_none()) {
             let what = "changes how a ragdoll is built: name a character, not a definition or a model";
@@ -33,7 +33,7 @@ impl RagdollFile {
         Ok(())
     }
 
-    /// Reads a file of any of the three kinds; for a character it builds the ragdoll.
+    /// Reads a file of any of the three kinds; for a character builds the ragdoll.
     pub fn load(path: &Path, textures: Textures, settings: &SettingsArg) -> Result<Self> {
         let name = name(path);
         let bytes = read_bytes(path)?;
@@ -64,12 +64,12 @@ impl RagdollFile {
     }
 }
 
-/// True if the bytes are a character, not a definition or a model.
+/// Returns true if the bytes are a character, not a definition or a model.
 pub fn is_character(bytes: &[u8]) -> bool {
     matches!(kind_of(bytes), Kind::Character)
 }
 
-/// A definition for a character, with joints matched by name.
+/// Reads a definition for a character, with joints matched by name.
 pub fn read_definition(path: &Path, character: &CharacterFile) -> Result<RagdollDef> {
     let name = name(path);
     let def = read_bytes(path).and_then(|bytes| read_ragdoll(&bytes));
@@ -86,7 +86,7 @@ enum Kind {
     Character,
 }
 
-/// Detects the kind: a glTF is JSON too, but has an `asset` at its top and no key of ours.
+/// Detects the kind: a glTF is JSON too, but has an `asset` at its top and no `sinew` key.
 fn kind_of(bytes: &[u8]) -> Kind {
     let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
     match text.first() {
@@ -96,7 +96,7 @@ fn kind_of(bytes: &[u8]) -> Kind {
     }
 }
 
-/// True if an object's first key is `"sinew"`, or a later one is and there is no `asset`.
+/// Returns true if an object's first key is `"sinew"`, or a later one is and there is no `asset`.
 fn is_ours(text: &[u8]) -> bool {
     text[1..].trim_ascii_start().starts_with(b"\"sinew\"")
         || text.windows(7).any(|word| word == b"\"sinew\"")

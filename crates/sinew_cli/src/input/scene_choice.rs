@@ -4,7 +4,7 @@ use crate::failure::{Failure, Result};
 use sinew::ragdoll::settings::instead;
 use sinew_scenes::scenes::{Scene, SettingError, Settings, find, registry};
 
-/// The scene of that name, ready to be started.
+/// Returns the scene of that name and its settings, ready to be started.
 pub fn choose(name: &str, assignments: &[String]) -> Result<(&'static Scene, Settings)> {
     let unknown = || {
         let instead = instead(name, registry().iter().map(|scene| scene.name));

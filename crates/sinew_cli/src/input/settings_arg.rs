@@ -76,7 +76,7 @@ impl FromStr for RoleArg {
     }
 }
 
-/// A number above 0.
+/// Parses a number above 0.
 fn positive(text: &str) -> Result<f32, String> {
     let number: f32 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be above 0".to_owned()) }
@@ -89,7 +89,7 @@ const MASS: &str = "mass";
 const UNITS: [(&str, f32); 6] =
     [("m", 1.0), ("dm", 0.1), ("cm", 0.01), ("mm", 0.001), ("in", 0.0254), ("ft", 0.3048)];
 
-/// Reads a unit by its name, or as a number: its length in metres.
+/// Parses a unit by its name, or as a number; returns its length in metres.
 pub fn unit(text: &str) -> Result<f32, String> {
     match UNITS.iter().find(|(name, _)| name.eq_ignore_ascii_case(text)) {
         Some(&(_, metres)) => Ok(metres),
@@ -115,7 +115,7 @@ fn axis(text: &str) -> Result<Vec3, String> {
 /// Settings and their source.
 #[derive(Debug, Default)]
 pub struct LoadedSettings {
-    /// The file as the user named it, or `""`.
+    /// Name of the file, as given by the user, or `""`.
     pub file: String,
     /// The settings themselves.
     pub settings: Settings,
@@ -124,7 +124,7 @@ pub struct LoadedSettings {
 }
 
 impl SettingsArg {
-    /// The first option given, as typed.
+    /// Returns the first option given, as typed.
     pub fn given(&self) -> Option<&'static str> {
         let given = [
             ("--settings", self.settings.is_some()),
@@ -142,7 +142,8 @@ impl SettingsArg {
         given.into_iter().find(|(_, is_given)| *is_given).map(|(option, _)| option)
     }
 
-    /// Path of the settings for a character's file: the user's, else next to it, whether or not it exists.
+    /// Returns the path of the settings for a character's file: the user's, else next to the file, whether or not it
+    /// exists.
     pub fn path_for(&self, character: &Path) -> PathBuf {
         self.settings.clone().unwrap_or_else(|| settings_path(character))
     }
@@ -160,13 +161,13 @@ impl SettingsArg {
         Ok(loaded)
     }
 
-    /// A character with its settings applied to roles and unit.
+    /// Reads a character and applies its settings to roles and unit.
     pub fn load_character(&self, path: &Path, textures: Textures) -> Result<(CharacterFile, LoadedSettings)> {
         self.load_into(path, textures, || None, true)
     }
 
-    /// [`Self::load_character`] for a world, whose door height (metres) is requested if the unit is in doubt; with or
-    /// without making the listed meshes garments.
+    /// Reads a character like [`Self::load_character`], for a world, whose door height (metres) is requested if the
+    /// unit is in doubt; with or without making the listed meshes garments.
     pub fn load_into(
         &self,
         path: &Path,
@@ -240,7 +241,7 @@ impl SettingsArg {
     }
 }
 
-/// A note on the guessed unit, with the options that change it.
+/// Returns a note on the guessed unit, with the options that change it.
 pub fn unit_note(guess: &UnitGuess) -> String {
     let flags = if guess.is_scaled {
         "--unit m keeps the file's size, --height sets another"
@@ -250,14 +251,14 @@ pub fn unit_note(guess: &UnitGuess) -> String {
     format!("{}; {flags}", guess.note)
 }
 
-/// Assumptions of the analysis, including the unit, one sentence each.
+/// Returns the assumptions of the analysis, including the unit, one sentence each.
 pub fn assumed(analysis: &RigAnalysis) -> Vec<String> {
     let unit = analysis.unit_guess.as_ref().map(unit_note);
     unit.into_iter().chain(analysis.notes.iter().cloned()).collect()
 }
 
 impl LoadedSettings {
-    /// The ragdoll of a character and its clips, with notes of the build.
+    /// Builds the ragdoll of a character and its clips; returns notes of the build.
     pub fn build(
         &self,
         character: &CharacterFile,
@@ -276,19 +277,19 @@ impl LoadedSettings {
         Ok((def, report))
     }
 
-    /// Springs of the character from that source.
+    /// Returns the character's springs from that source.
     pub fn springs(&self, source: SpringSource, character: &CharacterFile) -> Result<Springs> {
         let springs = character.springs(&self.settings, source);
         springs.map_err(|error| self.failure(&character.name, error))
     }
 
-    /// Garments of the character.
+    /// Returns the garments of the character.
     pub fn garments(&self, character: &CharacterFile) -> Result<Vec<Garment>> {
         let garments = character.garments(&self.settings);
         garments.map_err(|error| self.failure(&character.name, error))
     }
 
-    /// Doubt about the mass, with advice; empty if the user gave the mass or the unit.
+    /// Returns the doubt about the mass, with advice; `None` if the user gave the mass or the unit.
     pub fn doubt(&self, def: &RagdollDef) -> Option<Doubt> {
         let is_given = self.settings.mass.is_some() || self.settings.unit.is_some();
         let mut doubt = Doubt::of(def).filter(|_| !is_given)?;

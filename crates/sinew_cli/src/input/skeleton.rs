@@ -1,11 +1,11 @@
-//! Prepares a rig's skeleton for other programs: metres, their up axis, and only bone nodes.
+//! Prepares a rig's skeleton for other programs: metres, the program's up axis, and only bone nodes.
 
 use crate::report::table::{counted, shown};
 use sinew::anim::{Channel, Clip, Interpolation, Joint, JointIdx, Property, Rig};
 use sinew::math::{Rotation, Vec3};
 
-/// The joints that a skin or the clip uses, with their ancestors and descendants, without meshes; the clip on these;
-/// and the names of the joints that were left out.
+/// Returns the joints that a skin or the clip uses, with their ancestors and descendants, without meshes; the clip
+/// on these; and the names of the joints that were left out.
 pub fn bones_only(rig: &Rig, clip: &Clip) -> (Rig, Clip, Vec<String>) {
     let mut kept = vec![rig.skins.is_empty(); rig.joints.len()];
     let named = rig.skins.iter().flat_map(|skin| skin.joints.iter().copied());
@@ -43,7 +43,7 @@ pub fn bones_only(rig: &Rig, clip: &Clip) -> (Rig, Clip, Vec<String>) {
     (bones, clip, dropped.collect())
 }
 
-/// True if a scale channel only repeats the rest pose, as some exporters write it.
+/// Returns true if a scale channel only repeats the rest pose, as some exporters write it.
 fn keeps_its_size(channel: &Channel, rig: &Rig) -> bool {
     let rest = rig.joints[channel.joint].rest.scale;
     let near = |value: &[f32]| (Vec3::from_slice(value) - rest).length() < 1e-4 * rest.length();
@@ -52,7 +52,7 @@ fn keeps_its_size(channel: &Channel, rig: &Rig) -> bool {
         && channel.values.chunks_exact(3).all(near)
 }
 
-/// Notes on what a bones-only format leaves out: meshes, and the nodes with these names.
+/// Adds notes on the losses of a bones-only format: meshes, and the nodes with these names.
 pub fn lost_meshes(rig: &Rig, dropped: &[String], notes: &mut Vec<String>) {
     if !rig.meshes.is_empty() {
         let (meshes, skins) =
@@ -94,7 +94,7 @@ pub fn transform(rig: &mut Rig, clip: &mut Clip, turn: Rotation, scale: f32) {
     }
 }
 
-/// Estimated frame rate of a clip's keys; 60 if it cannot be estimated.
+/// Returns the estimated frame rate of a clip's keys; 60 if it cannot be estimated.
 pub fn frame_rate(clip: &Clip) -> f64 {
     const USUAL: f64 = 60.0;
     let most = clip.channels.iter().filter(|channel| channel.interpolation != Interpolation::Step);

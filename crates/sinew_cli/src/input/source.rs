@@ -8,17 +8,17 @@ use std::io::Read as _;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// True for the path of standard input.
+/// Returns true for the path of standard input.
 pub fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Name of a file in messages.
+/// Returns the name of a file in messages.
 pub fn name(path: &Path) -> String {
     if is_stdin(path) { "standard input".to_owned() } else { path.display().to_string() }
 }
 
-/// Bytes of standard input, read once and cached.
+/// Returns the bytes of standard input, read once and cached.
 fn stdin() -> Result<&'static [u8]> {
     static BYTES: OnceLock<std::result::Result<Vec<u8>, String>> = OnceLock::new();
     let read = BYTES.get_or_init(|| {
@@ -31,7 +31,7 @@ fn stdin() -> Result<&'static [u8]> {
     }
 }
 
-/// Bytes of a file.
+/// Returns the bytes of a file.
 pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     if is_stdin(path) { stdin().map(<[u8]>::to_vec) } else { sinew::formats::read_bytes(path) }
 }
@@ -44,7 +44,7 @@ pub fn load_gltf(path: &Path, options: ReadOptions) -> Result<Document> {
     read_gltf(stdin()?, options, &mut no_files).map_err(|error| error.with_file(name(path)))
 }
 
-/// Reads a file with clips, in the same way.
+/// Reads a file with clips, like [`load_gltf`].
 pub fn load_motion(path: &Path, options: &MotionOptions<'_>) -> Result<MotionFile> {
     if !is_stdin(path) {
         return sinew::formats::load_motion(path, options);
@@ -52,7 +52,7 @@ pub fn load_motion(path: &Path, options: &MotionOptions<'_>) -> Result<MotionFil
     read_motion(stdin()?, options, &mut no_files).map_err(|error| error.with_file(name(path)))
 }
 
-/// Reads a mesh from a GLB or glTF, in the same way.
+/// Reads a mesh from a GLB or glTF, like [`load_gltf`].
 pub fn load_mesh(path: &Path) -> Result<TriangleMesh> {
     if !is_stdin(path) {
         return sinew::formats::load_mesh(path);

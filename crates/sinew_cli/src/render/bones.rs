@@ -7,13 +7,13 @@ use sinew::math::{Affine, Vec3};
 const WIDTH: f32 = 0.11;
 /// Position of a bone's widest section, as a share of its length.
 const WAIST: f32 = 0.2;
-/// Joints closer together than this coincide, as a share of the farthest joint's distance from the root.
+/// Distance below which joints coincide, as a share of the farthest joint's distance from the root.
 const COINCIDENT: f32 = 0.005;
 /// Colour of bones, linear RGBA.
 const COLOR: [f32; 4] = [0.60, 0.55, 0.45, 1.0];
 
-/// Adds a skin over all joints, and a mesh with a bone from each joint to each child, bound in the body's upright pose,
-/// because many captures have an unusable rest pose.
+/// Adds a skin over all joints, and a mesh with a bone from each joint to each child. Binds it in the body's upright
+/// pose, because many captures have an unusable rest pose.
 pub fn add_bone_models(rig: &mut Rig, analysis: Option<&RigAnalysis>) {
     let mut model = Vec::new();
     match analysis {
@@ -39,8 +39,8 @@ pub fn add_bone_models(rig: &mut Rig, analysis: Option<&RigAnalysis>) {
     rig.meshes.push(RigMesh { name: "bones".into(), joint: 0, skin, primitives: vec![bones] });
 }
 
-/// For each joint, the joint that carries its bones: a joint that coincides with its parent (CMU captures have eleven)
-/// uses the parent's.
+/// Returns, for each joint, the joint that carries its bones: a joint that coincides with its parent (CMU captures have
+/// eleven) uses the parent's.
 fn carriers(rig: &Rig, model: &[Affine]) -> Vec<JointIdx> {
     let reach =
         |from: Vec3| model.iter().map(|joint| (joint.translation - from).length()).fold(0.0, f32::max);
@@ -54,7 +54,7 @@ fn carriers(rig: &Rig, model: &[Affine]) -> Vec<JointIdx> {
     carriers
 }
 
-/// Eight triangles with separate corners for flat shading.
+/// Adds eight triangles with separate corners for flat shading.
 fn add_bone(bones: &mut Primitive, slot: u16, from: Vec3, to: Vec3) {
     let way = to - from;
     let length = way.length();

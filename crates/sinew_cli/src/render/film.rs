@@ -1,4 +1,4 @@
-//! Moving pictures of a fall.
+//! Films of a fall.
 
 use crate::fall::Fall;
 use crate::render::framing::Framing;
@@ -26,7 +26,7 @@ const FPS: u32 = 20;
 const ARROW_SECONDS: f32 = 0.35;
 const ARROW_COLOR: [f32; 3] = [0.85, 0.06, 0.03];
 
-/// Subject of a film, and its camera side.
+/// Subject of a film, and its camera direction.
 pub struct Film<'a> {
     /// The fall.
     pub fall: &'a Fall<'a>,
@@ -36,9 +36,9 @@ pub struct Film<'a> {
     pub set: Vec<Model>,
     /// Direction from the character to the camera.
     pub direction: Vec3,
-    /// View of the camera.
+    /// View of the film's camera.
     pub view: View,
-    /// Light.
+    /// Light of the scene.
     pub sun: Sun,
 }
 
@@ -52,7 +52,7 @@ pub enum View {
 }
 
 impl Film<'_> {
-    /// The bytes of a picture file of this many pixels across and down.
+    /// Returns the bytes of a picture file of this many pixels across and down.
     pub fn shoot(self, format: PictureFormat, [width, height]: [u32; 2]) -> Result<Vec<u8>, EncodeError> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let settings = RenderSettings { width, height, threads, ..RenderSettings::default() };
@@ -80,7 +80,7 @@ enum Shooting {
 struct Shots<'a> {
     fall: &'a Fall<'a>,
     scene: Scene,
-    /// Number of scene models that persist from picture to picture; the character's come after them.
+    /// Number of scene models that persist from picture to picture; the models of the character follow.
     standing: usize,
     looks: Vec<RenderMaterial>,
     phases: Vec<story::Phase>,
@@ -108,7 +108,7 @@ impl<'a> Shots<'a> {
             bodies: Vec::new(),
         };
         if view == View::Whole {
-            // A camera that followed a fall out of the world would be far from everything else.
+            // A camera that followed a fall out of the world would be far from all else.
             let end = fallen_out(fall.input, &fall.baked).map_or(f32::INFINITY, |(time, _)| time);
             let boxes: Vec<Aabb> = (0..frames)
                 .map(|frame| {
@@ -158,7 +158,7 @@ impl<'a> Shots<'a> {
         }
     }
 
-    /// Bounds of all bodies, in the world.
+    /// Returns the bounds of all bodies, in the world.
     fn around(&self) -> Aabb {
         let bodies = &self.fall.input.character.ragdoll.bodies;
         let boxes = bodies.iter().zip(&self.bodies).map(|(body, place)| body.shape.aabb(place));
@@ -169,7 +169,7 @@ impl<'a> Shots<'a> {
         self.scene.models.extend(skin::models(&self.fall.input.character.rig, &self.model, &self.looks));
     }
 
-    /// An arrow for each recent hit, its tip at the hit position.
+    /// Adds an arrow for each recent hit, with its tip at the hit position.
     fn add_arrows(&mut self, time: f32) {
         for hit in self.fall.input.hits {
             let since = time - hit.time;
@@ -181,8 +181,8 @@ impl<'a> Shots<'a> {
     }
 }
 
-/// Camera side with the least occlusion of a moving subject: the first of the best directions in eighths of a turn,
-/// then from higher up.
+/// Returns the camera direction with the least occlusion of a moving subject: the first of the best in eighths of a
+/// turn, then from higher up.
 fn clear_side(bodies: &[BodyDef], framing: &Framing, boxes: &[Aabb], wanted: Vec3) -> Vec3 {
     let mut world = World::new(WorldDef::default());
     for body in bodies.iter().filter(|body| body.kind == BodyKind::Static) {
@@ -210,7 +210,7 @@ fn clear_side(bodies: &[BodyDef], framing: &Framing, boxes: &[Aabb], wanted: Vec
 /// Number of pictures between two occlusion tests.
 const LOOK_EVERY: usize = 4;
 
-/// An arrow (shaft and head) that ends at `tip`, along the unit vector `along`.
+/// Returns an arrow (shaft and head) that ends at `tip`, along the unit vector `along`.
 fn arrow(tip: Vec3, along: Vec3) -> [Model; 2] {
     let turn = Rotation::from_arc(Vec3::Y, along);
     let part = |behind: f32, shape: Shape| {
@@ -225,8 +225,8 @@ fn arrow(tip: Vec3, along: Vec3) -> [Model; 2] {
 /// Half size of the drawn part of an unbounded floor, metres per side: as far as the haze allows.
 pub const FLOOR_HALF_SIZE: f32 = 40.0;
 
-/// The surface of a world body in one colour (linear); half-spaces become floors, `half_size` metres per side, with a
-/// checker of `other`.
+/// Returns the surface of a world body in one colour (linear); half-spaces become floors, `half_size` metres per
+/// side, with a checker of `other`.
 pub fn body_models(body: &BodyDef, half_size: f32, color: [f32; 3], other: [f32; 3]) -> Vec<Model> {
     let world_from_body = Transform::new(body.position, body.rotation);
     let model = |shape: &sinew::physics::ShapeDef| {
@@ -299,7 +299,7 @@ mod tests {
         }
     }
 
-    /// The camera avoids a wall, so that the subject is always visible.
+    /// The camera avoids a wall that would hide the subject.
     #[test]
     fn camera_avoids_a_wall() {
         let block = |center: Vec3, half_extents: Vec3| BodyDef {
@@ -326,7 +326,7 @@ mod tests {
         };
         assert_eq!(hidden(Vec3::Z), boxes.len(), "the wall is in the way");
         assert_eq!(hidden(clear_side(&bodies, &framing, &boxes, Vec3::Z)), 0);
-        // Without a wall it stays at the requested position.
+        // Without a wall the camera stays at the requested position.
         assert_eq!(clear_side(&[], &framing, &boxes, Vec3::Z), Vec3::Z);
     }
 }

@@ -11,7 +11,7 @@ const MARGIN: f32 = 0.08;
 /// The camera does not move if the total extent is at most this many times the largest momentary extent.
 const STILL: f32 = 1.7;
 
-/// Camera poses per picture, always from the same side and distance.
+/// Camera poses of all pictures, with the same direction and distance.
 #[derive(Clone, Debug)]
 pub struct Framing {
     centers: Vec<Vec3>,
@@ -21,7 +21,7 @@ pub struct Framing {
 }
 
 impl Framing {
-    /// Framing of these boxes, one per picture (metres, world), at `fps` pictures per second.
+    /// Creates the framing of these boxes, one per picture (metres, world), at `fps` pictures per second.
     ///
     /// # Panics
     /// If there is no box.
@@ -52,12 +52,12 @@ impl Framing {
         Self { direction, ..self.clone() }
     }
 
-    /// Half the diagonal of a picture's visible area, metres.
+    /// Returns half the diagonal of a picture's visible area, metres.
     pub fn radius(&self) -> f32 {
         self.half.length()
     }
 
-    /// The camera of a picture; it does not move after the last one.
+    /// Returns the camera of a picture; the camera does not move after the last one.
     pub fn camera(&self, frame: usize, aspect: f32) -> Camera {
         let center = self.centers[frame.min(self.centers.len() - 1)];
         let shown = Aabb { min: center - self.half, max: center + self.half };
@@ -69,14 +69,14 @@ impl Framing {
 mod tests {
     use super::*;
 
-    /// Bounds of a body that walks 12 m and lies down.
+    /// Returns the bounds of a body that walks 12 m and lies down.
     fn walk(frame: usize) -> Aabb {
         let height = if frame % 100 > 60 { 0.3 } else { 1.8 };
         let at = Vec3::X * (0.06 * frame as f32);
         Aabb { min: at - Vec3::new(0.4, 0.0, 0.4), max: at + Vec3::new(0.4, height, 0.4) }
     }
 
-    /// True if the camera's picture contains a whole box, by the angles of its corners.
+    /// Returns true if the camera's picture contains a whole box, by the angles of its corners.
     fn shows(camera: &Camera, bounds: &Aabb, aspect: f32) -> bool {
         let back = (camera.position - camera.target).normalize();
         let right = Vec3::Y.cross(back).normalize();

@@ -1,4 +1,4 @@
-//! Pictures of a file with a skeleton, a skin or a clip: what `view FILE` and `convert --picture` draw.
+//! Pictures of a file with a skeleton, a skin or a clip, for `view FILE` and `convert --picture`.
 
 use crate::failure::{Failure, Result};
 use crate::input::motion::Motion;
@@ -36,10 +36,11 @@ pub struct Show {
 }
 
 impl Show {
-    /// The file's rig with that clip, or in its rest pose; bones are drawn for a skeleton without a mesh.
+    /// Creates a view of the file's rig with that clip, or in the rest pose; a skeleton without a mesh gets
+    /// drawn bones.
     ///
     /// # Errors
-    /// A file with nothing to draw.
+    /// If the file has nothing to draw.
     pub fn new(motion: Motion, clip: Option<usize>) -> Result<Self> {
         let Motion { name, file, analysis } = motion;
         let mut rig = file.rig;
@@ -69,12 +70,12 @@ impl Show {
         })
     }
 
-    /// Duration of its motion, seconds; 0 if it does not move.
+    /// Returns the duration of the motion, seconds; 0 if the rig does not move.
     pub fn seconds(&self) -> f32 {
         self.clip.as_ref().map_or(0.0, |clip| clip.duration)
     }
 
-    /// The bytes of a picture at a time.
+    /// Returns the bytes of a picture at a time.
     pub fn picture(
         &self,
         at: f32,
@@ -87,7 +88,7 @@ impl Show {
         sinew_picture::encode::encode(format, &[image], FPS)
     }
 
-    /// The bytes of a movie of the first `seconds`.
+    /// Returns the bytes of a movie of the first `seconds`.
     pub fn movie(
         &self,
         seconds: f32,
@@ -111,7 +112,7 @@ impl Show {
         movie.finish()
     }
 
-    /// Positions of its joints at a time, in the picture's space.
+    /// Returns the transforms of the joints at a time, in the picture's space.
     fn pose(&self, time: f32) -> Vec<Affine> {
         let mut local = rest_pose(&self.rig);
         if let Some(clip) = &self.clip {
@@ -122,12 +123,12 @@ impl Show {
         model
     }
 
-    /// Static scene of every picture.
+    /// Returns the static scene of every picture.
     fn scene(&self, framing: &Framing, whole: &Aabb) -> Scene {
         let radius = framing.radius();
         let lowest = self.floor.filter(|floor| *floor <= whole.min.y + 0.5 * radius).unwrap_or(whole.min.y);
         let ground = Transform::from_translation(Vec3::Y * lowest);
-        // Tiles of a metre if that is visible, else of the subject's own scale.
+        // Tiles of a metre if they are visible, else of the subject's own scale.
         let tile = if (0.2..10.0).contains(&radius) { 1.0 } else { radius };
         let mut scene = Scene {
             sun: Sun { shadow_radius: 1.3 * radius, ..Sun::default() },
@@ -172,7 +173,7 @@ impl<'a> Stage<'a> {
     }
 }
 
-/// Bounds of all finite vertices of an outline; a cubic metre without any.
+/// Returns the bounds of all finite vertices of an outline; a cubic metre without any.
 fn around(outline: &Rig, pose: &[Affine]) -> Aabb {
     let (mut bounds, mut positions, mut normals): (Option<Aabb>, _, _) = (None, Vec::new(), Vec::new());
     for (mesh, of) in outline.meshes.iter().enumerate() {

@@ -6,7 +6,7 @@ use sinew_picture::{Model, RenderMaterial, Texture};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// All primitives of a rig under a pose, one transform per joint; `looks` are those of [`looks`].
+/// Returns all primitives of a rig under a pose, one transform per joint; `looks` are those of [`looks`].
 pub fn models<'a>(
     rig: &'a Rig,
     model: &'a [Affine],
@@ -34,7 +34,7 @@ pub fn pose(rig: &Rig, model: &[Affine], models: &mut [Model]) {
     }
 }
 
-/// Directions in which a skin part can be outermost: along the axes, edges and corners of a cube.
+/// Returns the directions in which a skin part can be outermost: along the axes, edges and corners of a cube.
 fn directions() -> impl Iterator<Item = Vec3> {
     let steps = [-1.0, 0.0, 1.0];
     let all = steps
@@ -43,8 +43,8 @@ fn directions() -> impl Iterator<Item = Vec3> {
     all.filter(|way| *way != Vec3::ZERO)
 }
 
-/// The rig with only the outermost skin vertices of each joint, without normals: enough to compute its extent in any
-/// pose at a small cost.
+/// Returns the rig with only the outermost skin vertices of each joint, without normals: enough to compute its
+/// extent in any pose at a small cost.
 pub fn outline(rig: &Rig) -> Rig {
     let mut rig = Rig { textures: Vec::new(), ..rig.clone() };
     for primitive in rig.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives) {
@@ -92,7 +92,7 @@ fn surface(part: &Primitive, positions: Vec<Vec3>, normals: Vec<Vec3>, material:
     }
 }
 
-/// One material per primitive, in the order of the meshes.
+/// Returns one material per primitive, in the order of the meshes.
 pub fn looks(rig: &Rig) -> Vec<RenderMaterial> {
     // A texture that cannot be decoded leaves its surface in its plain colour.
     let picture = |texture: &sinew::anim::TextureImage| {

@@ -19,7 +19,7 @@ pub struct GarmentsReport {
 }
 
 impl GarmentsReport {
-    /// Garments of a character.
+    /// Creates the report on the garments of a character.
     pub fn of(character: &CharacterDef) -> Self {
         let garments = character.garments();
         let name = |&joint: &JointIdx| character.rig.joints[joint].name.clone();
@@ -31,7 +31,7 @@ impl GarmentsReport {
         }
     }
 
-    /// JSON object that a report has of them.
+    /// Returns the JSON object of the report.
     pub fn to_json(&self) -> Value {
         json!({
             "names": self.names,
@@ -41,7 +41,7 @@ impl GarmentsReport {
         })
     }
 
-    /// Notes, one sentence each.
+    /// Returns notes, one sentence each.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self.bones > 0 {
@@ -62,7 +62,7 @@ impl GarmentsReport {
     }
 }
 
-/// JSON list of the garments inferred from a rig's joint names.
+/// Returns the JSON list of the garments inferred from a rig's joint names.
 pub fn garments_json(rig: &Rig) -> Value {
     let name = |joint: JointIdx| rig.joints[joint].name.as_str();
     let garment = |garment: &Garment| {
@@ -72,7 +72,7 @@ pub fn garments_json(rig: &Rig) -> Value {
     guess_garments(rig).iter().map(garment).collect()
 }
 
-/// Text of the garments inferred from a rig's joint names; empty without any.
+/// Returns the text of the garments inferred from a rig's joint names; empty without any.
 pub fn garments_text(rig: &Rig) -> String {
     let mut text = String::new();
     for garment in guess_garments(rig) {
@@ -85,7 +85,7 @@ pub fn garments_text(rig: &Rig) -> String {
     text
 }
 
-/// JSON list of garments requested by settings.
+/// Returns the JSON list of garments requested by settings.
 pub fn worn_json(garments: &[Garment]) -> Value {
     let garment = |garment: &Garment| {
         let sheet = garment.sheet.as_ref();
@@ -107,12 +107,12 @@ pub fn worn_json(garments: &[Garment]) -> Value {
     garments.iter().map(garment).collect()
 }
 
-/// Number of particles of a sheet that bodies hold.
+/// Returns the number of particles of a sheet that bodies hold.
 fn held(sheet: &MeshSheet) -> usize {
     sheet.held.iter().filter(|held| **held).count()
 }
 
-/// Sentences on garments requested by settings, one or two for each.
+/// Returns sentences on garments requested by settings, one or two for each.
 pub fn worn_notes(garments: &[Garment]) -> Vec<String> {
     garments.iter().enumerate().flat_map(|(index, garment)| worn_note(index, garment)).collect()
 }
@@ -150,11 +150,11 @@ fn worn_note(index: usize, garment: &Garment) -> Vec<String> {
     [format!("{name} is {cloth}; {backstops}")].into_iter().chain(coarse).collect()
 }
 
-/// Ratio of a mesh's longest edge to its particle spacing above which it is visibly drawn coarser than it moves:
-/// slightly more than a square cell's diagonal.
+/// Ratio of a mesh's longest edge to its particle spacing above which the drawn triangles are visibly coarser
+/// than the cloth: slightly more than a square cell's diagonal.
 const DRAWN_COARSER: f32 = 1.5;
 
-/// Advice on garments inferred from joint names; empty if there are none, or ragdoll bodies move them.
+/// Returns advice on garments inferred from joint names; `None` if there are none, or ragdoll bodies move them.
 pub fn proposal(rig: &Rig, ragdoll: &RagdollDef) -> Option<String> {
     let has_body = |joint: JointIdx| ragdoll.bodies.iter().any(|body| body.bone == rig.joints[joint].name);
     let garments = guess_garments(rig);

@@ -21,24 +21,24 @@ pub struct Report {
 }
 
 impl Report {
-    /// Text for stdout.
+    /// Returns the text for stdout.
     pub fn shown(&self, as_json: bool) -> String {
         if as_json { one_object(&self.json) } else { self.text.clone() }
     }
 }
 
-/// An object as text that ends in a line feed.
+/// Returns an object as text that ends in a line feed.
 pub fn one_object(value: &Value) -> String {
     format!("{value:#}\n")
 }
 
-/// The shortest decimal that identifies a number; null for non-finite numbers.
+/// Returns the shortest decimal that identifies a number; null for non-finite numbers.
 pub fn number(x: f32) -> Value {
     // Uses the decimal digits of the f32, not those of its f64 value.
     x.to_string().parse::<f64>().map_or(Value::Null, Value::from)
 }
 
-/// [`number`] for each element.
+/// Returns [`number`] of each element.
 pub fn numbers(xs: &[f32]) -> Value {
     xs.iter().map(|&x| number(x)).collect()
 }

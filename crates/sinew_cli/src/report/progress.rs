@@ -34,7 +34,7 @@ impl Progress {
         self.show();
     }
 
-    /// Shows the bar when due; it stays hidden if stderr is not a terminal.
+    /// Shows the bar after [`PATIENCE`]; it stays hidden if stderr is not a terminal.
     fn show(&self) {
         if self.bar.is_hidden() && self.start.elapsed() > PATIENCE {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());

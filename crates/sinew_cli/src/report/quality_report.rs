@@ -4,7 +4,7 @@ use crate::report::number;
 use serde_json::{Map, Value};
 use sinew::ragdoll::FallQuality;
 
-/// The figures under the keys that `bake` and `ragdoll build` share.
+/// Returns the figures under the keys that `bake` and `ragdoll build` share.
 pub fn quality_json(q: &FallQuality) -> Map<String, Value> {
     let time = |seconds: Option<f32>| seconds.map_or(Value::Null, number);
     let figures = [
@@ -24,7 +24,7 @@ pub fn quality_json(q: &FallQuality) -> Map<String, Value> {
     figures.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }
 
-/// The figures in a few lines.
+/// Returns the figures in a few lines.
 pub fn quality_text(q: &FallQuality) -> String {
     let mm = |meters: f32| 1000.0 * meters;
     format!(

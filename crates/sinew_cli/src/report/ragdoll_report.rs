@@ -15,7 +15,7 @@ use std::fmt::Write;
 
 /// A ragdoll to report.
 pub struct RagdollReport<'a> {
-    /// The file it came from.
+    /// File from which the ragdoll was built.
     pub file: &'a str,
     /// The ragdoll.
     pub def: &'a RagdollDef,
@@ -23,11 +23,11 @@ pub struct RagdollReport<'a> {
     pub build: &'a BuildReport,
     /// Processor time from the file to the definition, milliseconds.
     pub build_ms: f64,
-    /// Eight drops and a wall hit.
+    /// Results of eight drops and a wall hit.
     pub tested: &'a DropReport,
-    /// The drawn skin.
+    /// Report on the drawn skin.
     pub skin: &'a SkinReport,
-    /// Random falls, if requested.
+    /// Results of random falls, if requested.
     pub gated: Option<&'a GateReport>,
 }
 
@@ -140,7 +140,7 @@ impl RagdollReport<'_> {
         object.into()
     }
 
-    /// Reason why a pair does not collide or was thinned.
+    /// Returns the reason why a pair does not collide or was thinned.
     fn overlap_json(&self, overlap: &Overlap) -> Value {
         let (a, b) = overlap.pair;
         let Seen { bind, limits, clips } = overlap.seen;
@@ -242,7 +242,7 @@ fn gate_json(gated: &GateReport) -> Value {
 /// Largest number of listed falls.
 const LISTED: usize = 100;
 
-/// Number of falls that violate a hard requirement.
+/// Returns the number of falls that violate a hard requirement.
 fn failed(gated: &GateReport) -> usize {
     let mut spawns: Vec<u64> = gated.misses.iter().map(|miss| miss.spawn).collect();
     spawns.dedup();
@@ -276,7 +276,7 @@ fn degrees(range: Range) -> [f64; 2] {
     [range.lo, range.hi].map(|angle| (f64::from(angle).to_degrees() * 10.0).round() / 10.0 + 0.0)
 }
 
-/// Type of a joint and its limits, as the report's cells.
+/// Returns the type of a joint and its limits, as the report's cells.
 fn joint_cells(joint: &Value) -> (String, String) {
     let range = |key: &str| {
         let range = &joint["limits_deg"][key];
@@ -287,7 +287,7 @@ fn joint_cells(joint: &Value) -> (String, String) {
     (joint["type"].as_str().unwrap_or_default().to_owned(), limits.join(", "))
 }
 
-/// Full sizes in centimetres.
+/// Returns the full sizes in centimetres.
 fn shape_cell(shape: &Shape) -> String {
     let cm = |meters: f32| format!("{:.0}", 200.0 * meters);
     match *shape {
@@ -311,7 +311,7 @@ fn shape_cell(shape: &Shape) -> String {
     }
 }
 
-/// Name of the axis nearest to a unit vector, such as `+Y`.
+/// Returns the name of the axis nearest to a unit vector, such as `+Y`.
 pub fn axis_name(axis: Vec3) -> &'static str {
     let [x, y, z] = axis.to_array();
     let (ax, ay, az) = (x.abs(), y.abs(), z.abs());

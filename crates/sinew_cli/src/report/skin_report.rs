@@ -26,9 +26,9 @@ pub struct SkinReport {
 #[derive(Clone, Copy)]
 pub struct Life<'a> {
     pub fall: &'a Fall<'a>,
-    /// Height of the floor, metres, if that is constant.
+    /// Height of the floor, metres, if the floor is level.
     pub floor: Option<f32>,
-    /// Why it stays down where it should get up, a sentence.
+    /// Reason why the character stays down where it should get up, one sentence.
     pub stays_down: Option<&'a str>,
 }
 
@@ -98,7 +98,7 @@ impl Life<'_> {
     fn lay(&self, meter: &mut SkinMeter<'_>) {
         let (Some(floor), baked) = (self.floor, &self.fall.baked) else { return };
         let Some(settled) = baked.quality.settled_s else { return };
-        // The last limp state, because a character may be hit again later.
+        // The first limp frame at rest, because a character may be hit again later.
         let mut limp = baked.frames.iter().filter(|frame| frame.state == State::Limp);
         if let Some(frame) = limp.find(|frame| settled <= frame.time) {
             let down = Affine { translation: Vec3::Y * -floor, ..Affine::IDENTITY };
@@ -107,7 +107,7 @@ impl Life<'_> {
     }
 }
 
-/// The figures under the keys of the contract.
+/// Returns the figures under the keys of the contract.
 pub fn skin_json(report: &SkinReport) -> Value {
     let SkinReport { figures: skin, rising, .. } = report;
     let known = |figure: Option<f32>| figure.map_or(Value::Null, number);
@@ -132,7 +132,7 @@ pub fn skin_json(report: &SkinReport) -> Value {
     })
 }
 
-/// The figures in a few lines.
+/// Returns the figures in a few lines.
 pub fn skin_text(report: &SkinReport) -> String {
     let SkinReport { figures: skin, rising, .. } = report;
     let (cm, percent) = (|meters: f32| 100.0 * meters, |share: f32| 100.0 * share);

@@ -23,7 +23,7 @@ pub struct SpringsReport {
 }
 
 impl SpringsReport {
-    /// Springs of a character.
+    /// Creates the report on the springs of a character.
     pub fn of(character: &CharacterDef) -> Self {
         let springs = character.springs();
         let name = |&joint: &JointIdx| character.rig.joints[joint].name.clone();
@@ -35,12 +35,12 @@ impl SpringsReport {
         }
     }
 
-    /// JSON object of the report.
+    /// Returns the JSON object of the report.
     pub fn to_json(&self) -> Value {
         json!({ "chains": self.chains, "bones": self.bones, "links": self.links, "left_out": self.left_out })
     }
 
-    /// Notes, one sentence each.
+    /// Returns notes, one sentence each.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self.bones > 0 {
@@ -64,14 +64,14 @@ impl SpringsReport {
     }
 }
 
-/// The first few names.
+/// Returns the first few names.
 pub fn listed(names: &[String]) -> String {
     let first: Vec<String> = names.iter().take(MOST_NAMES).map(|name| shown(name)).collect();
     let more = names.len().saturating_sub(MOST_NAMES);
     if more == 0 { first.join(", ") } else { format!("{} and {more} more", first.join(", ")) }
 }
 
-/// Springs of a file: each chain with its bones and their settings.
+/// Returns the springs of a file: each chain with its bones and their settings.
 pub fn springs_json(rig: &Rig) -> Value {
     let chain = |chain: &SpringChain| {
         let first = &chain.bones[0];
@@ -107,7 +107,7 @@ fn bone_json(rig: &Rig, bone: &SpringBone) -> Value {
     })
 }
 
-/// Colliders of a file's springs, in the order that chains refer to.
+/// Returns the colliders of a file's springs, in the order that chains refer to.
 pub fn colliders_json(rig: &Rig) -> Value {
     let collider = |collider: &SpringCollider| {
         let it = Described::of(&collider.shape);
@@ -124,7 +124,7 @@ pub fn colliders_json(rig: &Rig) -> Value {
     rig.springs.colliders.iter().map(collider).collect()
 }
 
-/// Links across strands: which joints' tips, and how.
+/// Returns the links across strands: joints, share, and mode.
 pub fn links_json(rig: &Rig, links: &[SpringLink]) -> Value {
     let link = |link: &SpringLink| {
         json!({
@@ -136,7 +136,7 @@ pub fn links_json(rig: &Rig, links: &[SpringLink]) -> Value {
     links.iter().map(link).collect()
 }
 
-/// Text of links across strands; empty without any.
+/// Returns the text of links across strands; empty without any.
 pub fn links_text(rig: &Rig, links: &[SpringLink]) -> String {
     if links.is_empty() {
         return String::new();
@@ -150,8 +150,8 @@ pub fn links_text(rig: &Rig, links: &[SpringLink]) -> String {
     format!("\nLinks of springs\n{}", table.to_text())
 }
 
-/// Text of a file's springs: its chains, with the settings of their joints in the file's units, each as one number or a
-/// range, and their colliders. `format` is the name of their format; empty without springs.
+/// Returns the text of a file's springs: its chains, with the settings of their joints in the file's units, each as one
+/// number or a range, and their colliders. `format` is the name of their format; empty without springs.
 pub fn springs_text(rig: &Rig, format: Option<&str>) -> String {
     let Some(format) = format else { return String::new() };
     let springs = &rig.springs;
@@ -226,7 +226,7 @@ fn colliders_table(rig: &Rig) -> Table {
     table
 }
 
-/// At most four significant digits; no sign for zero.
+/// Formats a number with at most four significant digits, and zero without a sign.
 fn short(x: f32) -> String {
     let x = if x == 0.0 { 0.0 } else { x };
     format!("{x:.3e}").parse::<f32>().unwrap_or(x).to_string()
@@ -236,7 +236,7 @@ fn vector(v: Vec3) -> String {
     format!("({})", v.to_array().map(short).join(", "))
 }
 
-/// One number, or the smallest and the largest.
+/// Formats one number, or the smallest and the largest.
 fn span(values: impl Iterator<Item = f32>) -> String {
     let none = (f32::INFINITY, f32::NEG_INFINITY);
     let (low, high) = values.fold(none, |(low, high), x| (min(low, x), max(high, x)));
@@ -244,7 +244,7 @@ fn span(values: impl Iterator<Item = f32>) -> String {
     if low == high { low } else { format!("{low} to {high}") }
 }
 
-/// Magnitude of the gravity, and its direction unless that is down.
+/// Returns the magnitude of the gravity, and its direction unless that is down.
 fn gravity(chain: &SpringChain) -> String {
     let size = span(chain.bones.iter().map(|bone| bone.gravity.length()));
     let way = |bone: &SpringBone| direction(bone.gravity).map(vector);
@@ -258,7 +258,7 @@ fn gravity(chain: &SpringChain) -> String {
     }
 }
 
-/// Kinds of limits with their angles in degrees, and the number of limited bones if not all are.
+/// Returns the kinds of limits with their angles in degrees, and the number of limited bones if not all are.
 fn limits(chain: &SpringChain) -> String {
     let kinds: Vec<LimitKind> =
         chain.bones.iter().filter_map(|bone| bone.limit.map(|limit| limit.kind)).collect();
@@ -281,7 +281,7 @@ fn limits(chain: &SpringChain) -> String {
     text
 }
 
-/// Collider numbers, with consecutive runs as ranges.
+/// Returns collider numbers, with consecutive runs as ranges.
 fn indices(list: &[usize]) -> String {
     let mut sorted = list.to_vec();
     sorted.sort_unstable();
@@ -295,8 +295,8 @@ fn indices(list: &[usize]) -> String {
     if text.is_empty() { "-".to_owned() } else { text }
 }
 
-/// Advice on joints that could swing according to their names and that no ragdoll body moves, for a rig without
-/// springs; empty without any.
+/// Returns advice on joints that could swing according to their names and that no ragdoll body moves, for a rig without
+/// springs; `None` without any.
 pub fn proposal(rig: &Rig, springs: &Springs, ragdoll: &RagdollDef) -> Option<String> {
     let name = |bone: &SpringBone| rig.joints[bone.joint].name.clone();
     let has_body = |bone: &SpringBone| ragdoll.bodies.iter().any(|body| body.bone == name(bone));
@@ -319,7 +319,7 @@ fn limit_name(kind: LimitKind) -> &'static str {
     }
 }
 
-/// Angles of a limit, radians.
+/// Returns the angles of a limit, radians.
 fn angles(kind: LimitKind) -> Vec<f32> {
     match kind {
         LimitKind::Cone { angle } | LimitKind::Hinge { angle } => vec![angle],

@@ -11,7 +11,7 @@ pub const HIT_SECONDS: f32 = 0.4;
 
 const RESTS: &str = "stands in its rest pose";
 
-/// The phases of a bake, in order of time.
+/// Returns the phases of a bake, in order of time.
 pub fn phases(def: &CharacterDef, events: &[(f32, CharacterEvent)]) -> Vec<Phase> {
     let mut phases = vec![(0.0, at_first(def))];
     let mut add = |time: f32, what: &str| phases.push((time, what.to_owned()));
@@ -42,12 +42,12 @@ pub fn phases(def: &CharacterDef, events: &[(f32, CharacterEvent)]) -> Vec<Phase
             | CharacterEvent::LetGo { .. } => {}
         }
     }
-    // Stable sort: of two events at one time the later entry is used.
+    // The sort is stable: of two events at one time the later entry is used.
     phases.sort_by(|a, b| a.0.total_cmp(&b.0));
     phases
 }
 
-/// The phase before any event.
+/// Returns the phase before any event.
 fn at_first(def: &CharacterDef) -> String {
     match def.motions().opening {
         Opening::Looped => upright(def),
@@ -65,14 +65,14 @@ fn upright(def: &CharacterDef) -> String {
     }
 }
 
-/// The events of a bake as sentences, in order of time.
+/// Returns the events of a bake as sentences, in order of time.
 pub fn moments(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(f32, String)> {
     let def = &input.character;
     let mut moments = vec![(0.0, at_first(def))];
     for &(time, event) in events {
         let sentence = match event {
             CharacterEvent::Hit { body } => hit_sentence(input, time, body),
-            // A hit describes the fall better, and a character that goes limp on its feet touches the ground at once.
+            // A hit describes the fall better. A character that goes limp on its feet already touches the ground.
             CharacterEvent::WentLimp if events.iter().any(|other| is_hit_at(other, time)) => continue,
             CharacterEvent::Touched
             | CharacterEvent::Struck { .. }

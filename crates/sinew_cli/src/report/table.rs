@@ -7,7 +7,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table with a first row of titles.
+    /// Creates a table with a first row of titles.
     pub fn titled(titles: &[&str]) -> Self {
         Self { rows: vec![titles.iter().map(|&title| title.to_owned()).collect()] }
     }
@@ -17,7 +17,7 @@ impl Table {
         self.rows.push(cells.into_iter().collect());
     }
 
-    /// The text, each line indented by two spaces, without spaces at the end.
+    /// Returns the text, each line indented by two spaces, without spaces at the end.
     pub fn to_text(&self) -> String {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let width_of =
@@ -34,12 +34,12 @@ impl Table {
     }
 }
 
-/// A count of things.
+/// Formats a count of items.
 pub fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
-/// A name from a file fit for display: control characters escaped, `-` for none.
+/// Formats a name from a file for display: control characters escaped, `-` for none.
 pub fn shown(name: &str) -> String {
     let escape = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
     if name.is_empty() { "-".to_owned() } else { name.chars().map(escape).collect() }

@@ -79,8 +79,8 @@ fn key_error_bound_removes_keys() {
     assert!((clip.duration - 3.0).abs() < 1e-6);
 }
 
-/// Largest distance of a joint in a BVH from the joint of the same name in the last clip of a file with the given unit
-/// (metres).
+/// Returns the largest distance of a joint in a BVH from the joint of the same name in the last clip of a file with
+/// the given unit (metres).
 fn between(document: &Document, bvh: &BvhDocument, unit: f32) -> f32 {
     let clip = document.clips.last().expect("a clip");
     let named = |(_, joint): &(usize, &Joint)| !joint.name.is_empty();
@@ -481,16 +481,17 @@ fn bake_is_judged_by_the_bars_of_a_drop() {
     assert_eq!(baked["verdict"], "good", "{baked:#}");
     assert_eq!(baked["reasons"], serde_json::json!([]));
     let data = shared_data();
-    // While motors roll it over, only they add energy: the gain was once 0.15 in a step.
+    // While motors roll the ogre over, only they add energy: the gain was once 0.15 in a step.
     let ogre = data.join("rigs_wild/ultimate_space_Enemy_Large-transformed.glb").display().to_string();
     let baked = sinew(&["bake", &ogre, "--seconds", "6", "-o", &out, "--json"]).json();
     assert!(baked["energy_gain_max"].as_f64().expect("a number") < 0.01, "{baked:#}");
-    // In a drop it sits upright for a second before it tips over, and falls asleep late; no other reason is reported.
+    // In a drop the ogre sits upright for a second before it tips over, and falls asleep late; no other reason is
+    // reported.
     let reasons = baked["reasons"].as_array().expect("reasons").iter();
     let reason_list: Vec<&str> = reasons.map(|reason| reason.as_str().expect("a sentence")).collect();
     assert!(reason_list.iter().all(|reason| reason.starts_with("time from calm")), "{baked:#}");
     assert!(baked["up_s"].is_number() && baked["verdict"] != "bad", "{baked:#}");
-    // Its skin rests above the floor, although its bodies touch it.
+    // The skull's skin rests above the floor, although its bodies touch it.
     let skull = data.join("rigs_wild/platformer_game_Skull.glb").display().to_string();
     let baked =
         sinew(&["bake", &skull, "--no-builtin-motions", "--seconds", "4", "-o", &out, "--json"]).json();

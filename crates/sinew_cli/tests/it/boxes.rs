@@ -10,7 +10,7 @@ use sinew::physics::{BodyDef, BodyId, BodyKind, Material, Shape, ShapeDef, World
 use std::fmt::Write;
 use std::fs;
 
-/// An OBJ of boxes, given by lowest and highest corner.
+/// Returns an OBJ of boxes, given by lowest and highest corner.
 fn obj_of_boxes(boxes: &[[[f32; 3]; 2]]) -> String {
     let mut text = String::new();
     for (index, [low, high]) in boxes.iter().enumerate() {
@@ -100,7 +100,7 @@ fn bounce_down(house: &[BodyDef]) {
         shapes: vec![ball],
         ..BodyDef::default()
     });
-    // Each body that it touches, in the order of first contacts.
+    // Bodies that the ball touches, in the order of first contacts.
     let mut met: Vec<BodyId> = Vec::new();
     for _ in 0..240 {
         world.step();

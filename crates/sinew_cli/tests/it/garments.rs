@@ -95,7 +95,7 @@ fn mesh_garment_of_the_settings_becomes_cloth_in_the_bake() {
             "part of the mesh is not cloth"
         );
     }
-    // At rest it is drawn as in the input.
+    // At rest the skirt is drawn as in the input.
     let drawn = |rig: &sinew::anim::Rig| {
         let rest: Vec<_> = rig.joints.iter().map(|joint| joint.rest).collect();
         let (mut model, mut places, mut normals) = (Vec::new(), Vec::new(), Vec::new());

@@ -425,7 +425,7 @@ fn clip_without_a_name_is_chosen_by_number() {
     assert_eq!(bake("0").code, Some(0));
 }
 
-/// What `inspect` says of the unit of a BVH is what `convert` takes it for.
+/// `inspect` and `convert` use the same unit of a BVH.
 #[test]
 fn unit_of_a_bvh_is_the_same_for_all_commands() {
     let folder = Folder::new("bvh-unit");
@@ -478,7 +478,8 @@ fn who_starts_inside_the_world_is_bad() {
     assert!(!bake("0,0,0")["reasons"].to_string().contains("inside the world"));
 }
 
-/// `ragdoll build` and `ragdoll doctor` see the same character: its size, their notes, and whether it can be used.
+/// `ragdoll build` and `ragdoll doctor` report the same character: its size, their notes, and whether it can be
+/// used.
 #[needs_data]
 #[test]
 fn build_and_doctor_agree() {

@@ -9,7 +9,7 @@ use sinew::physics::JointKind;
 use sinew::ragdoll::RagdollDef;
 use sinew_scenes::mannequin::mannequin;
 
-/// The mannequin's definition, as `ragdoll build` writes it.
+/// Writes the mannequin's definition by `ragdoll build`; returns its path and the definition.
 fn built(folder: &Folder) -> (String, RagdollDef) {
     let (file, out) = (folder.mannequin(), folder.path("mannequin.sinew.json"));
     let run = sinew(&["ragdoll", "build", &file, "-o", &out]);
@@ -76,7 +76,7 @@ fn missing_head_is_restored_from_the_rig() {
     assert!(mended.bodies.iter().any(|body| body.role == "head"));
 }
 
-/// No false alarms: a build from a good rig has no errors.
+/// A build from a good rig has no errors.
 #[needs_data]
 #[test]
 fn foreign_rigs_have_no_errors() {
@@ -120,13 +120,13 @@ fn foreign_models_are_examined() {
         let findings = object["findings"].as_array().expect("findings");
         assert!(findings.iter().all(|f| f["severity"] != "error"), "{name}: {object:#}");
     }
-    // Its joints are spherical, and the file gives them no range.
+    // The model's joints are spherical, and the file gives them no range.
     let urdf = data.join("robots/bullet_humanoid.urdf").display().to_string();
     let object = sinew(&["ragdoll", "doctor", &urdf, "--json"]).json();
     assert!(codes(&object).contains(&"limits-missing"), "{object:#}");
 }
 
-/// Defects put into another author's model.
+/// Defects in another author's model are reported.
 #[needs_data]
 #[test]
 fn defects_in_foreign_models_are_reported() {

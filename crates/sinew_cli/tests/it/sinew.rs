@@ -25,13 +25,13 @@ impl Run {
         Self { code: status.code(), stdout: text(stdout), stderr: text(stderr) }
     }
 
-    /// The object of a successful run with `--json`.
+    /// Returns the object of a successful run with `--json`.
     pub fn json(&self) -> Value {
         assert_eq!((self.code, self.stderr.as_str()), (Some(0), ""), "{self:?}");
         serde_json::from_str(&self.stdout).expect("stdout is one JSON object and nothing else")
     }
 
-    /// The line of a run that failed with `code`.
+    /// Returns the line of a run that failed with `code`.
     pub fn refusal(&self, code: i32) -> &str {
         assert_eq!(self.code, Some(code), "{self:?}");
         let line = self.stderr.strip_suffix('\n').expect("the line ends");
@@ -40,7 +40,7 @@ impl Run {
     }
 }
 
-/// `sinew` with arguments.
+/// Returns `sinew` with arguments.
 pub fn command<A: AsRef<std::ffi::OsStr>>(arguments: &[A]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sinew"));
     command.args(arguments);
@@ -72,21 +72,21 @@ impl Folder {
         self.path.join(name).display().to_string()
     }
 
-    /// Writes a file into it.
+    /// Writes a file into the folder.
     pub fn file(&self, name: &str, bytes: impl AsRef<[u8]>) -> String {
         let path = self.path(name);
         fs::write(&path, bytes).expect("a file for the test");
         path
     }
 
-    /// The mannequin with its walk as a user's file.
+    /// Writes the mannequin with its walk as a user's file.
     pub fn mannequin(&self) -> String {
         let mannequin = mannequin();
         let walk = Clip { name: "Walk".into(), ..mannequin.clips[mannequin.motions.walk].clone() };
         self.file("mannequin.glb", glb(&mannequin.rig, &[walk]))
     }
 
-    /// Sorted names of its entries.
+    /// Returns the sorted names of the folder's entries.
     pub fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.path).expect("the folder is there");
         let name = |entry: std::io::Result<fs::DirEntry>| {
@@ -108,12 +108,12 @@ pub fn glb(rig: &Rig, clips: &[Clip]) -> Vec<u8> {
     write_gltf(rig, clips).expect("a rig made by code can be written")
 }
 
-/// The folder of test data beside the workspace, for tests with `needs_data`.
+/// Returns the folder of test data beside the workspace, for tests with `needs_data`.
 pub fn shared_data() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"))
 }
 
-/// Every glTF, GLB, VRM and VRMA file below `folder`, sorted.
+/// Returns every glTF, GLB, VRM and VRMA file below `folder`, sorted.
 pub fn gltf_files(folder: &Path) -> Vec<String> {
     let mut found = Vec::new();
     let mut open = vec![folder.to_path_buf()];

@@ -17,7 +17,7 @@ mod avatar;
 
 use avatar::{Calming, random_avatar, strands, vrm};
 
-/// Largest rotation of a hair joint in a clip, radians.
+/// Returns the largest rotation of a hair joint in a clip, radians.
 fn swings(clip: &Clip, rig: &Rig) -> f32 {
     let mut most = 0.0_f32;
     for channel in &clip.channels {
@@ -270,7 +270,7 @@ fn springs_by_name_are_off_by_default() {
         sinew(&arguments).json()["springs"].clone()
     };
     assert_eq!(springs(&[])["bones"], 0);
-    // Strands protrude and have no skin: without springs of the file they count as props, each with a body.
+    // Strands protrude and have no skin: without springs of the file, they count as props, each with a body.
     let guessed = springs(&["--guess-springs"]);
     assert_eq!(
         (&guessed["bones"], &guessed["left_out"]),

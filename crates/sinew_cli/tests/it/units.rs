@@ -8,7 +8,7 @@ use sinew::math::Vec3;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew_scenes::mannequin::mannequin;
 
-/// A rig in another unit: all lengths times `factor`.
+/// Returns a rig in another unit: all lengths times `factor`.
 fn scaled(mut rig: Rig, factor: f32) -> Rig {
     for joint in &mut rig.joints {
         joint.rest.translation *= factor;
@@ -24,8 +24,8 @@ fn scaled(mut rig: Rig, factor: f32) -> Rig {
     rig
 }
 
-/// A worm of two joints, `length` units long and `girth` times as thick as the mannequin's trunk. It is not human, so
-/// its mass comes from its volume.
+/// Returns a worm of two joints, `length` units long and `girth` times as thick as the mannequin's trunk. A worm is
+/// not human, so its mass comes from its volume.
 fn worm(length: f32, girth: f32) -> Rig {
     let mut rig = mannequin().rig;
     let keep = ["hips", "spine"];
@@ -93,7 +93,7 @@ fn unit_reason_and_alternatives_are_noted() {
     assert!(inches["height_m"].as_f64().expect("a height") > 4.0);
 }
 
-/// The rig below a node with a scale, with all lengths divided by it: the drawing is unchanged.
+/// Returns the rig below a node with a scale, with all lengths divided by the scale: the drawing is unchanged.
 fn below_a_node(rig: &Rig, scale: f32) -> Rig {
     let mut rig = scaled(rig.clone(), 1.0 / scale);
     for joint in &mut rig.joints {

@@ -28,7 +28,7 @@ fn every_command_shows_an_example() {
     }
 }
 
-/// A narrow terminal breaks paragraphs where it must and nowhere else, and leaves the lines of examples whole.
+/// A narrow terminal breaks paragraphs only where a line is full, and does not break the lines of examples.
 #[test]
 fn help_wraps_once() {
     let narrow = 80;
@@ -46,7 +46,7 @@ fn help_wraps_once() {
         for line in examples.lines() {
             assert!(text.lines().any(|other| other == line), "{arguments:?}: {line}");
         }
-        // What follows a break of a paragraph did not fit into the line before it.
+        // The first word after a break did not fit into the line before.
         for paragraph in prose.split("\n\n") {
             let lines: Vec<&str> = paragraph.lines().collect();
             for pair in lines.windows(2) {

@@ -1,4 +1,4 @@
-//! The verdict of `ragdoll build` and `bake`: each fault put into the mannequin must be reported by both.
+//! The verdict of `ragdoll build` and `bake`: both must report each defect put into the mannequin.
 
 use crate::sinew::{Folder, glb, sinew};
 use serde_json::Value;
@@ -10,7 +10,7 @@ use sinew::math::{Affine, Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew_scenes::mannequin::mannequin;
 
-/// Verdict and reasons of `ragdoll build` and of `bake` with these options.
+/// Returns verdict and reasons of `ragdoll build` and of `bake` with these options.
 fn build_and_bake(folder: &Folder, file: &str, extra: &[&str]) -> [(String, String); 2] {
     let out = folder.path("out.glb");
     let built = sinew(&[&["ragdoll", "build", file, "--json"], extra].concat()).json();
@@ -33,7 +33,7 @@ fn mannequin_is_good_in_build_and_bake() {
     }
 }
 
-/// A walk whose feet are at 0 while the rest pose is 1 m lower: the character stands on its floor before and after the
+/// A walk whose feet are at 0 while the rest pose is 1 m lower: the character stands on the floor before and after the
 /// fall, and the baked clip is placed like the walk.
 #[test]
 fn floor_is_at_the_feet_of_the_clip() {
@@ -74,7 +74,7 @@ fn floor_is_at_the_feet_of_the_clip() {
     assert_eq!(object["verdict"], "good", "{object:#}");
 }
 
-/// Skin of the chest that stays behind tears in both, badly enough for the worst verdict.
+/// Chest skin with weights to a foot tears in both, badly enough for the worst verdict.
 #[test]
 fn torn_skin_is_bad_in_build_and_bake() {
     let folder = Folder::new("verdict-torn");
@@ -239,7 +239,7 @@ fn character_lying_in_its_file_starts_lying() {
     assert!(start.y.abs() < 0.05 && start.z < -0.4, "it does not start on its back: {start}");
     assert!(end.y.abs() < 0.15 && end.z < -0.4, "it does not stay on its back: {end}");
     assert!(notes.contains("--up"), "{notes}");
-    // With another up axis it stands, and falls.
+    // With another up axis the character stands, and falls.
     let ([start, end], _) = trunks(&["--up", "-z"], 2.0);
     assert!(start.z < -0.4, "{start}");
     assert!(end.z > -0.3, "it has not fallen: {end}");

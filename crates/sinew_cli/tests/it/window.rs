@@ -198,7 +198,7 @@ fn edited_limit_is_saved() {
     assert!((before - after - 20.0).abs() < 0.1, "{before}° became {after}°; the log said {output_text}");
     display.xdotool(&["key", "F12"]);
     assert_eq!(viewer.wait_for("wrote sinew-"), first, "the test restarts at step 0");
-    // It falls with the new limits, and the written file can be opened.
+    // The ragdoll falls with the new limits, and the written file can be opened.
     for _ in 0..5 {
         display.xdotool(&["key", "n"]);
     }

@@ -6,7 +6,7 @@ use crate::image::Image;
 use png::chunk::{IDAT, fcTL, fdAT};
 use png::{BitDepth, ColorType, Compression, Encoder};
 
-/// Frames are compressed as they arrive; the file is assembled at the end, because its header contains their number.
+/// Writer of a PNG. Frames are compressed as they arrive; the file is assembled at the end, because its header contains their number.
 pub(super) struct ApngWriter {
     width: u32,
     height: u32,
@@ -72,7 +72,8 @@ fn encoder(file: &mut Vec<u8>, width: u32, height: u32) -> Encoder<'static, &mut
     encoder
 }
 
-/// Data of a frame's control chunk: sequence number, rectangle and time. The last two bytes, zeros, mean: keep the frame, and draw over it.
+/// Returns the data of a frame's control chunk: sequence number, rectangle and time. The last two bytes, zeros, mean: keep the frame, and
+/// draw over it.
 fn frame_control(sequence: u32, rect: Rect, fps: u32) -> Vec<u8> {
     let numbers = [sequence, rect.width as u32, rect.height as u32, rect.left as u32, rect.top as u32];
     let mut data: Vec<u8> = numbers.into_iter().flat_map(u32::to_be_bytes).collect();
@@ -82,7 +83,7 @@ fn frame_control(sequence: u32, rect: Rect, fps: u32) -> Vec<u8> {
     data
 }
 
-/// Kind and data of each chunk of a PNG file of our own.
+/// Returns kind and data of each chunk of a PNG file of our own.
 fn chunks(png: &[u8]) -> impl Iterator<Item = ([u8; 4], &[u8])> {
     const SIGNATURE: usize = 8;
     let mut rest = &png[SIGNATURE..];

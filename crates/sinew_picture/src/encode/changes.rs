@@ -3,15 +3,15 @@
 use super::{Rect, bounds};
 use crate::image::Image;
 
-/// Remembers the last image.
+/// Stores the last image.
 #[derive(Default)]
 pub(super) struct Changes {
     previous: Vec<u8>,
 }
 
 impl Changes {
-    /// The rectangle that differs from the last image, with its pixels as RGB; the whole image the first time, one
-    /// pixel where nothing differs. Its left and top are multiples of `grid`.
+    /// Returns the rectangle that differs from the last image, with its pixels as RGB: the whole image the first
+    /// time, one pixel if nothing differs. Its left and top are multiples of `grid`.
     pub(super) fn take(&mut self, image: &Image, grid: usize) -> (Rect, Vec<u8>) {
         let (width, height) = (image.width as usize, image.height as usize);
         let pixel =

@@ -1,4 +1,4 @@
-//! GIF: each frame holds only what changed, in a palette of its own.
+//! GIF: each frame holds only the changed pixels, in a palette of its own.
 
 use super::palette::{Histogram, Palette};
 use super::{EncodeError, Rect, bounds};
@@ -6,11 +6,11 @@ use crate::image::Image;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use std::borrow::Cow;
 
-/// Largest change per channel since a pixel was last drawn at which it is left unchanged: the change is invisible, and long runs of
-/// unchanged pixels keep the file small.
+/// Largest change per channel, since a pixel was last drawn, at which the pixel is left unchanged: the change is invisible, and
+/// long runs of unchanged pixels keep the file small.
 const UNSEEN_CHANGE: u8 = 5;
 
-/// Strength of the dither, in steps of 1/255. Enough to break the bands of a clear sky; more would cost bytes.
+/// Strength of the dither, in steps of 1/255: enough to break the bands of a clear sky; more would cost bytes.
 const DITHER: i32 = 3;
 
 /// Order in which the pixels of a 4 × 4 square get brighter (Bayer 1973).
@@ -24,12 +24,12 @@ pub(super) struct GifWriter {
     frames: u64,
     histogram: Histogram,
     palette: Palette,
-    /// The colour, as in an image, that each pixel had when it was last drawn, before palette and dither.
+    /// Colour of each pixel when it was last drawn, as in the image, before palette and dither.
     drawn: Vec<[u8; 4]>,
     changed: Vec<bool>,
 }
 
-/// Number of pixels compared at once: most stretches of a picture stay unchanged.
+/// Number of pixels in one comparison: most stretches of a picture stay unchanged.
 const STRETCH: usize = 32;
 
 /// Marks the pixels of a stretch that must be drawn, and stores their colours.
@@ -119,7 +119,7 @@ impl GifWriter {
         bounds(self.width, self.height, |pixel| self.changed[pixel]).unwrap_or(first_pixel)
     }
 
-    /// Palette entry of a pixel, after dithering. The pattern is fixed to the picture, so that it does not flicker.
+    /// Returns the palette entry of a pixel, after dithering. The pattern is fixed to the picture, so that it does not flicker.
     fn shown(&mut self, pixel: usize) -> u8 {
         let threshold = BAYER[pixel / self.width % 4][pixel % self.width % 4];
         let shift = (2 * threshold - 15) * DITHER / 15;
@@ -127,7 +127,7 @@ impl GifWriter {
         self.palette.entry([r, g, b].map(|channel| (i32::from(channel) + shift).clamp(0, 255) as u8))
     }
 
-    /// Hundredths of a second to the next frame. Sums stay right where `fps` does not divide 100: 3, 3, 4 at 30.
+    /// Returns the hundredths of a second to the next frame. Sums stay right if `fps` does not divide 100: 3, 3, 4 at 30.
     fn delay(&self) -> u16 {
         let time = |frame: u64| (frame * 100 + u64::from(self.fps) / 2) / u64::from(self.fps);
         (time(self.frames + 1) - time(self.frames)) as u16

@@ -1,4 +1,4 @@
-//! Images → bytes of a GIF, a PNG (animated from the second image on) or a WebP file (likewise).
+//! Encodes images as a GIF, PNG or WebP file; PNG and WebP are animated from the second image on.
 
 mod apng;
 mod changes;
@@ -14,16 +14,16 @@ use webp::WebpWriter;
 /// Kind of picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFormat {
-    /// 256 colours a frame, plays everywhere; the smallest for movies.
+    /// GIF, with 256 colours a frame: every viewer plays it; the smallest for movies.
     Gif,
-    /// Lossless; with several frames an APNG, which browsers play and others show as their first frame.
+    /// Lossless PNG; with several frames an APNG, which browsers play and other viewers show as its first frame.
     Png,
-    /// Lossless; animated with several frames.
+    /// Lossless WebP; animated with several frames.
     WebP,
 }
 
 impl PictureFormat {
-    /// Format by the end of a file name after its last dot, in upper or lower case: `gif`, `png`, `apng`, `webp`.
+    /// Returns the format of a file name's extension, in upper or lower case: `gif`, `png`, `apng`, `webp`.
     pub fn from_extension(extension: &str) -> Option<Self> {
         let is = |name: &str| extension.eq_ignore_ascii_case(name);
         if is("gif") {
@@ -51,42 +51,42 @@ pub enum EncodeError {
         width: u32,
         /// Pixels down.
         height: u32,
-        /// Length of its `rgba`.
+        /// Length of the image's `rgba`, bytes.
         bytes: usize,
     },
-    /// An image has another size than the first.
+    /// An image has a different size from the first.
     #[error("the images differ in size: {first:?} and {other:?}")]
     Size {
         /// Pixels across and down of the first image.
         first: (u32, u32),
-        /// Pixels across and down of this one.
+        /// Pixels across and down of the image.
         other: (u32, u32),
     },
-    /// The format has no room for pictures this large.
+    /// The format does not allow pictures this large.
     #[error("{width} × {height} is more than the format's {most} pixels a side")]
     TooLarge {
         /// Pixels across.
         width: u32,
         /// Pixels down.
         height: u32,
-        /// Pixels a side.
+        /// Largest number of pixels a side.
         most: u32,
     },
-    /// A WebP movie of more than 4 GiB.
+    /// The WebP movie has more than 4 GiB.
     #[error("the movie is longer than a WebP file can be")]
     TooLong,
-    /// An error of the GIF encoder.
+    /// The GIF encoder failed.
     #[error("GIF: {0}")]
     Gif(#[from] ::gif::EncodingError),
-    /// An error of the PNG encoder.
+    /// The PNG encoder failed.
     #[error("PNG: {0}")]
     Png(#[from] png::EncodingError),
-    /// An error of the WebP encoder.
+    /// The WebP encoder failed.
     #[error("WebP: {0}")]
     WebP(#[from] image_webp::EncodingError),
 }
 
-/// A picture file that grows image by image, so that a movie's images need not all be kept.
+/// A picture file that grows image by image, so that a movie need not keep all images.
 pub struct Movie {
     format: PictureFormat,
     fps: u32,
@@ -101,10 +101,11 @@ enum FrameWriter {
 }
 
 impl Movie {
-    /// `fps` images a second, 1..=100 (GIF counts time in 1/100 s). The first image decides the size.
+    /// Starts a file with `fps` images a second, 1..=100 (GIF counts time in 1/100 s). The first image decides
+    /// the size.
     ///
     /// # Panics
-    /// If `fps` lies outside 1..=100.
+    /// If `fps` is outside 1..=100.
     pub fn new(format: PictureFormat, fps: u32) -> Self {
         assert!((1..=100).contains(&fps), "{fps} images a second");
         Self { format, fps, size: None, writer: None }
@@ -113,7 +114,7 @@ impl Movie {
     /// Appends an image. Its alpha is ignored.
     ///
     /// # Errors
-    /// A malformed image, another size than the first image's, or a size beyond the format.
+    /// If an image is malformed, differs in size from the first image, or is too large for the format.
     pub fn push(&mut self, image: &Image) -> Result<(), EncodeError> {
         check(image, self.size, self.format)?;
         self.size = Some((image.width, image.height));
@@ -128,10 +129,10 @@ impl Movie {
         }
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     ///
     /// # Errors
-    /// No image was pushed, or more than the format can hold.
+    /// If no image was pushed, or more than the format can hold.
     pub fn finish(self) -> Result<Vec<u8>, EncodeError> {
         match self.writer.ok_or(EncodeError::Empty)? {
             FrameWriter::Gif(writer) => writer.finish(),
@@ -152,13 +153,13 @@ impl FrameWriter {
     }
 }
 
-/// All images at once; `fps` as in [`Movie::new`].
+/// Encodes all images; `fps` as in [`Movie::new`].
 ///
 /// # Errors
-/// As [`Movie::push`] and [`Movie::finish`].
+/// The errors of [`Movie::push`] and [`Movie::finish`].
 ///
 /// # Panics
-/// If `fps` lies outside 1..=100.
+/// If `fps` is outside 1..=100.
 pub fn encode(format: PictureFormat, images: &[Image], fps: u32) -> Result<Vec<u8>, EncodeError> {
     let mut movie = Movie::new(format, fps);
     for image in images {
@@ -189,7 +190,7 @@ fn check(image: &Image, size: Option<(u32, u32)>, format: PictureFormat) -> Resu
     Ok(())
 }
 
-/// A part of a picture.
+/// Rectangle of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Rect {
     left: usize,
@@ -198,7 +199,7 @@ struct Rect {
     height: usize,
 }
 
-/// The smallest rectangle around all pixels for which `changed(index)` holds; `None` where there are none.
+/// Returns the smallest rectangle around all pixels for which `changed(index)` holds; `None` if there are none.
 fn bounds(width: usize, height: usize, changed: impl Fn(usize) -> bool) -> Option<Rect> {
     let row_changed = |y: &usize| (y * width..(y + 1) * width).any(&changed);
     let top = (0..height).find(row_changed)?;
@@ -210,7 +211,7 @@ fn bounds(width: usize, height: usize, changed: impl Fn(usize) -> bool) -> Optio
 }
 
 impl Rect {
-    /// Indices of its pixels in a picture `pitch` pixels wide, row by row.
+    /// Returns the indices of the rectangle's pixels in a picture `pitch` pixels wide, row by row.
     fn pixels(self, pitch: usize) -> impl Iterator<Item = usize> {
         let rows = self.top..self.top + self.height;
         rows.flat_map(move |y| (y * pitch + self.left..).take(self.width))

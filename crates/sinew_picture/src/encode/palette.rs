@@ -1,19 +1,19 @@
-//! The 255 colours that represent a frame best: boxes in colour space, split along their widest axis.
+//! The 255 colours that best represent a frame: boxes in colour space, split along their widest axis.
 
 /// Bits kept of each channel: boxes and look-ups work on 2¹⁸ cells of colour.
 const BITS: u32 = 6;
 const CELLS: usize = 1 << (3 * BITS);
 const NO_ENTRY: u8 = 255;
 
-/// Up to 255 colours and, for each cell of colour, the nearest of them. Integers only.
+/// A palette of up to 255 colours and, for each cell of colour, the nearest palette entry. Uses integers only.
 pub(super) struct Palette {
-    /// sRGB.
+    /// Colours of the entries, sRGB.
     pub(super) colors: Vec<[u8; 3]>,
-    /// Nearest entry per cell, [`NO_ENTRY`] where no colour was requested yet.
+    /// Nearest entry per cell; [`NO_ENTRY`] if no colour of the cell was requested yet.
     nearest: Vec<u8>,
 }
 
-/// Histogram of the colours: how often each cell occurs.
+/// Histogram of the colours: number of pixels in each cell.
 pub(super) struct Histogram {
     counts: Vec<u32>,
     occupied: Vec<u32>,
@@ -23,9 +23,9 @@ pub(super) struct Histogram {
 struct ColorBox {
     first: usize,
     last: usize,
-    /// Channel along which they vary most.
+    /// Channel along which the colours vary most.
     axis: usize,
-    /// Sum of squared distances from the mean along that channel.
+    /// Sum of squared distances from the mean along `axis`.
     spread: u64,
     mean: [u8; 3],
 }
@@ -35,7 +35,7 @@ fn cell(color: [u8; 3]) -> usize {
     r << (2 * BITS) | g << BITS | b
 }
 
-/// Middle of a cell.
+/// Returns the colour in the middle of a cell.
 fn color_of(cell: u32) -> [u8; 3] {
     let mask = (1 << BITS) - 1;
     [cell >> (2 * BITS), cell >> BITS, cell].map(|part| {
@@ -57,7 +57,7 @@ impl Histogram {
         self.counts[cell] += 1;
     }
 
-    /// Forgets everything.
+    /// Clears the counts.
     pub(super) fn clear(&mut self) {
         for &cell in &self.occupied {
             self.counts[cell as usize] = 0;
@@ -65,10 +65,11 @@ impl Histogram {
         self.occupied.clear();
     }
 
-    /// At most `limit` boxes: the one with the largest spread is split at its mean until there are enough (after
-    /// Heckbert, "Color Image Quantization for Frame Buffer Display", 1982, with Wu's choice of the box by variance).
+    /// Returns at most `limit` boxes: the box with the largest spread is split at its mean until there are enough
+    /// (after Heckbert, "Color Image Quantization for Frame Buffer Display", 1982, with Wu's choice of the box by
+    /// variance).
     fn split(&mut self, limit: usize) -> Vec<ColorBox> {
-        // Sorted: the boxes then depend on the colours alone, not on where they first occur.
+        // Sorts the cells, so that the boxes depend on the colours alone, not on their order of occurrence.
         self.occupied.sort_unstable();
         let mut boxes = vec![ColorBox::around(&self.occupied, &self.counts, 0, self.occupied.len())];
         while boxes.len() < limit {
@@ -100,7 +101,7 @@ impl ColorBox {
             }
         }
         let weight = weight.max(1);
-        // Green counts most and blue least to the eye.
+        // The eye is most sensitive to green and least to blue.
         let spread = |axis: usize| [3, 5, 2][axis] * (squares[axis] - sum[axis] * sum[axis] / weight);
         let axis = (0..3).rev().max_by_key(|&axis| spread(axis)).unwrap_or(1);
         let mean = sum.map(|sum| ((sum + weight / 2) / weight) as u8);
@@ -114,14 +115,14 @@ impl Palette {
         Self { colors: Vec::new(), nearest: vec![NO_ENTRY; CELLS] }
     }
 
-    /// Takes the colours that suit a histogram; black alone for an empty one.
+    /// Chooses the colours for a histogram; black alone for an empty one.
     pub(super) fn fit(&mut self, histogram: &mut Histogram) {
         self.colors.clear();
         self.colors.extend(histogram.split(NO_ENTRY as usize).iter().map(|part| part.mean));
         self.nearest.fill(NO_ENTRY);
     }
 
-    /// Entry nearest to a colour, to the precision of a cell.
+    /// Returns the entry nearest to a colour, to the precision of a cell.
     pub(super) fn entry(&mut self, color: [u8; 3]) -> u8 {
         let cell = cell(color);
         if self.nearest[cell] == NO_ENTRY {

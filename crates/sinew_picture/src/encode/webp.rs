@@ -5,7 +5,8 @@ use super::{EncodeError, Rect};
 use crate::image::Image;
 use image_webp::{ColorType, WebPEncoder};
 
-/// Frames are compressed as they arrive; the file is assembled at the end, because only then it is known whether it is an animation.
+/// Writer of a WebP. Frames are compressed as they arrive; the file is assembled at the end, because only then their number is
+/// known.
 pub(super) struct WebpWriter {
     width: u32,
     height: u32,
@@ -20,11 +21,11 @@ struct CompressedFrame {
     webp: Vec<u8>,
 }
 
-/// `RIFF`, the length of what follows, `WEBP`.
+/// Length of the file header: `RIFF`, the length of the rest, `WEBP`.
 const FILE_HEADER: usize = 12;
-/// Bit of the extended header that says that there are frames.
+/// Bit of the extended header that marks an animation.
 const ANIMATION: u8 = 1 << 1;
-/// Bit of a frame's header that says: drawn over, not blended.
+/// Bit of a frame's header: the frame is drawn over, not blended.
 const DO_NOT_BLEND: u8 = 1 << 1;
 
 impl WebpWriter {
@@ -33,7 +34,7 @@ impl WebpWriter {
     }
 
     pub(super) fn push(&mut self, image: &Image) -> Result<(), EncodeError> {
-        // Frames are placed in steps of two pixels.
+        // The format places frames in steps of two pixels.
         let (rect, rgb) = self.changes.take(image, 2);
         let mut webp = Vec::new();
         WebPEncoder::new(&mut webp).encode(&rgb, rect.width as u32, rect.height as u32, ColorType::Rgb8)?;
@@ -50,7 +51,7 @@ impl WebpWriter {
         extended.extend(uint24(self.width - 1));
         extended.extend(uint24(self.height - 1));
         chunk(&mut body, *b"VP8X", &extended);
-        // Background colour and number of plays; 0 is for ever.
+        // Background colour and number of plays; 0 plays for ever.
         chunk(&mut body, *b"ANIM", &[0; 6]);
         for (number, frame) in self.frames.iter().enumerate() {
             chunk(&mut body, *b"ANMF", &self.frame(number as u64, frame));

@@ -1,16 +1,16 @@
-//! Cuts triangles at the near plane, and far outside the picture where fixed-point coordinates would end.
+//! Clips triangles at the near plane, and far outside the picture at the limits of fixed-point coordinates.
 
 /// Clip space of a [`View`](crate::camera::View): x, y, w; the picture spans ±w.
 pub(crate) type ClipVertex = [f32; 3];
 
-/// Distance from the picture's middle up to which a corner may lie, in half pictures. Corners within are left alone, so that
-/// cutting, which rounds, happens off screen.
+/// Largest distance of a corner from the picture's middle, in half pictures. Nearer corners are not changed, so that
+/// clipping, which rounds, happens off screen.
 const GUARD: f32 = 2.0;
 
 /// A triangle cut by five planes has at most this many corners.
 const MOST_CORNERS: usize = 8;
 
-/// The part of a triangle that the rasteriser can take: a convex polygon of 0 or 3..=8 corners in the same order.
+/// The part of a triangle that the rasteriser can draw: a convex polygon of 0 or 3..=8 corners in the same order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Polygon {
     corners: [ClipVertex; MOST_CORNERS],
@@ -23,7 +23,7 @@ impl Polygon {
     }
 }
 
-/// Cuts a triangle to depths of at least `near` and to the guard band (Sutherland and Hodgman, "Reentrant Polygon
+/// Clips a triangle to depths of at least `near` and to the guard band (Sutherland and Hodgman, "Reentrant Polygon
 /// Clipping", CACM 1974).
 pub(crate) fn clip(triangle: [ClipVertex; 3], near: f32) -> Polygon {
     let mut polygon = Polygon { corners: [[0.0; 3]; MOST_CORNERS], count: 0 };
@@ -40,7 +40,7 @@ pub(crate) fn clip(triangle: [ClipVertex; 3], near: f32) -> Polygon {
     polygon
 }
 
-/// True if one edge of the picture or the near plane has the whole triangle on its far side.
+/// Returns true if the whole triangle is beyond one edge of the picture or before the near plane.
 #[inline]
 pub(crate) fn unseen(triangle: &[ClipVertex; 3], near: f32) -> bool {
     triangle.iter().all(|v| v[0] > v[2])
@@ -50,13 +50,13 @@ pub(crate) fn unseen(triangle: &[ClipVertex; 3], near: f32) -> bool {
         || triangle.iter().all(|v| v[2] < near)
 }
 
-/// True if nothing is cut off a triangle.
+/// Returns true if clipping does not change the triangle.
 #[inline]
 pub(crate) fn is_whole(triangle: &[ClipVertex; 3], near: f32) -> bool {
     (0..5).all(|plane| triangle.iter().all(|&v| distance(plane, v, near) >= 0.0))
 }
 
-/// Distance inside a plane: 0 near, 1–4 the guard band right, left, top, bottom.
+/// Returns the distance inside a plane: 0 near, 1–4 the guard band right, left, top, bottom.
 fn distance(plane: usize, [x, y, w]: ClipVertex, near: f32) -> f32 {
     match plane {
         0 => w - near,

@@ -1,5 +1,5 @@
-//! Rasterizer: the samples of a picture that a triangle covers, in exact integers, so that triangles that share an edge cover every
-//! sample between them once (top-left rule). Eight samples go at once: those of pixels side by side.
+//! Rasteriser: finds the samples of a picture that a triangle covers, in exact integers, so that triangles with a common edge cover
+//! every sample once (top-left rule). Processes eight samples of neighbouring pixels in lanes.
 
 use crate::pipeline::clip::ClipVertex;
 use core::ops::Range;
@@ -9,8 +9,8 @@ use sinew::math::lanes::{LaneMask, Lanes, WIDTH};
 /// Fixed-point units per pixel.
 const UNIT: i64 = 256;
 
-/// The whole number at or below `x`, limited to `i32`. `f32::floor` is a function call on plain x86-64, and this is
-/// wanted several times a pixel.
+/// Returns the largest whole number up to `x`, limited to `i32`. `f32::floor` is a function call on plain x86-64, and each pixel needs
+/// it several times.
 #[inline(always)]
 pub(crate) fn floor(x: f32) -> i32 {
     let toward_zero = x as i32;
@@ -22,17 +22,17 @@ pub(crate) fn floor(x: f32) -> i32 {
 pub(crate) struct Samples {
     pub(crate) width: usize,
     pub(crate) height: usize,
-    /// Places of the samples in a pixel, 1/256 pixel from its middle: one, or four.
+    /// Positions of the samples in a pixel, 1/256 pixel from its middle: one, or four.
     offsets: &'static [[i64; 2]],
-    /// Distance from a row to the next: whole lanes, so that none reaches into another row.
+    /// Number of samples from a row to the next: whole lanes, so that no lane reaches into another row.
     stride: usize,
-    /// `1 / w`: larger is nearer, 0 where nothing is.
+    /// Depth of each sample, `1 / w`: larger is nearer, 0 is empty.
     depth: Vec<f32>,
-    /// Triangle per sample; [`NOTHING`] where none is.
+    /// Triangle of each sample; [`NOTHING`] if there is none.
     ids: Vec<u32>,
 }
 
-/// The id of no triangle.
+/// The id that means no triangle.
 pub(crate) const NOTHING: u32 = u32::MAX;
 
 /// A number that changes linearly over the picture.
@@ -45,10 +45,10 @@ struct Ramp {
     per_y: f32,
 }
 
-/// A triangle on the picture, turned so that its area is positive.
+/// A triangle on the picture, with its corners ordered so that its area is positive.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Footprint {
-    /// 1/256 pixel from the upper left corner of the picture.
+    /// Corners, 1/256 pixel from the upper left corner of the picture.
     corners: [[i64; 2]; 3],
     depth: Ramp,
     id: u32,
@@ -70,7 +70,7 @@ pub(crate) struct ScreenVertex {
 }
 
 impl ScreenVertex {
-    /// Perspective division. `1 / w` is the depth: it alone is linear over the picture.
+    /// Applies the perspective division. The depth is `1 / w`, which is linear over the picture.
     pub(crate) fn from_clip([x, y, w]: ClipVertex, width: usize, height: usize) -> Self {
         let depth = 1.0 / w;
         Self {
@@ -82,7 +82,7 @@ impl ScreenVertex {
 }
 
 impl Footprint {
-    /// `None` where the corners lie on one line once they are rounded to 1/256 pixel.
+    /// Returns `None` if the corners lie on one line after rounding to 1/256 pixel.
     pub(crate) fn new(vertices: [ScreenVertex; 3], id: u32) -> Option<(Self, Winding)> {
         let fixed = |v: ScreenVertex| [v.x, v.y].map(|pixels| i64::from(floor(pixels * UNIT as f32 + 0.5)));
         let [a, b, c] = [fixed(vertices[0]), fixed(vertices[1]), fixed(vertices[2])];
@@ -92,7 +92,7 @@ impl Footprint {
         }
         let depths = [vertices[0].depth, vertices[1].depth, vertices[2].depth];
         let depth = Ramp::through([a, b, c], depths, area);
-        // y runs down on the picture, so a positive area is clockwise to the eye.
+        // y points down on the picture, so a positive area appears clockwise.
         if area > 0 {
             Some((Self { corners: [a, b, c], depth, id }, Winding::Clockwise))
         } else {
@@ -119,8 +119,10 @@ impl Ramp {
 }
 
 impl Samples {
+    /// Creates an empty picture.
+    ///
     /// # Panics
-    /// Where there are neither one nor four samples a pixel.
+    /// If there are neither one nor four samples a pixel.
     pub(crate) fn new(width: usize, height: usize, offsets: &'static [[i64; 2]]) -> Self {
         assert!(matches!(offsets.len(), 1 | 4), "{} samples a pixel", offsets.len());
         let stride = (width * offsets.len()).next_multiple_of(WIDTH);
@@ -128,25 +130,25 @@ impl Samples {
         Self { width, height, offsets, stride, depth: vec![0.0; all], ids: vec![NOTHING; all] }
     }
 
-    /// Triangles of the samples of some pixels side by side.
+    /// Returns the triangles of the samples of neighbouring pixels.
     #[inline(always)]
     pub(crate) fn ids(&self, x: usize, y: usize, pixels: usize) -> &[u32] {
         let (start, count) = (y * self.stride + x * self.offsets.len(), pixels * self.offsets.len());
         &self.ids[start..start + count]
     }
 
-    /// Depth of the first sample of a pixel.
+    /// Returns the depth of the first sample of a pixel.
     pub(crate) fn depth(&self, x: usize, y: usize) -> f32 {
         self.depth[y * self.stride + x * self.offsets.len()]
     }
 
-    /// Place of a sample in its pixel, from its upper left corner, in pixels.
+    /// Returns the position of a sample from the upper left corner of its pixel, in pixels.
     #[inline(always)]
     pub(crate) fn place(&self, sample: usize) -> [f32; 2] {
         self.offsets[sample].map(|o| 0.5 + o as f32 / UNIT as f32)
     }
 
-    /// The whole of it as bands of rows, at most so many.
+    /// Splits the picture into at most `most` bands of rows.
     pub(crate) fn bands(&mut self, most: usize) -> impl Iterator<Item = Band<'_>> {
         let rows = self.height.div_ceil(most.max(1)).max(1);
         let (width, stride, height, offsets) = (self.width, self.stride, self.height, self.offsets);
@@ -180,7 +182,7 @@ impl Band<'_> {
         self.ids.fill(NOTHING);
     }
 
-    /// Draws triangles in order, each where it is nearer than the present content. At equal depths the first one stays.
+    /// Draws triangles in order, each where it is nearer than the present content. At equal depths the first triangle stays.
     pub(crate) fn draw(&mut self, footprints: &[Footprint]) {
         dispatch::run(Draw { band: self, footprints });
     }
@@ -220,7 +222,7 @@ impl Cells for Nearest<'_> {
         let old = L::load(depth);
         let is_nearer = L::gt(z, old) & inside;
         L::select(is_nearer, z, old).store(depth);
-        // Whole numbers are selected by their bits; it does not matter that they are unusual floats.
+        // Selects whole numbers by their bits; as floats the bits may be unusual values, which does no harm.
         let (mut bits, mut chosen) = ([0.0; WIDTH], [0.0; WIDTH]);
         for i in 0..WIDTH {
             bits[i] = f32::from_bits(ids[i]);
@@ -236,12 +238,12 @@ impl Cells for Nearest<'_> {
 /// Column where one edge begins or ends a row, walked down row by row without a division.
 #[derive(Clone, Copy, Debug)]
 struct EdgeWalk {
-    /// `floor(value / pace)`, with the rest, where `value` is the edge function at column 0 of the row.
+    /// Quotient and remainder of `value / pace`, with `value` the edge function at column 0 of the row.
     quotient: i64,
     rest: i64,
     quotient_step: i64,
     rest_step: i64,
-    /// Change of the edge function per column, without its sign; 1 for a horizontal edge.
+    /// Magnitude of the edge function's change per column; 1 for a horizontal edge.
     pace: i64,
     side: Side,
 }
@@ -257,11 +259,11 @@ enum Side {
 }
 
 impl EdgeWalk {
-    /// The edge from `a` to `b`, starting at the row whose samples have height `y`; `x` is the sample of column 0.
+    /// Creates the edge from `a` to `b`, starting at the row whose samples have height `y`; `x` is the sample of column 0.
     fn new(a: [i64; 2], b: [i64; 2], x: i64, y: i64) -> Self {
         let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
         let value = dx * (y - a[1]) - dy * (x - a[0]);
-        // Samples exactly on a left or top edge belong to the triangle, those on others to its neighbour.
+        // Samples exactly on a left or top edge belong to the triangle, samples on other edges to its neighbour.
         let value = if dy < 0 || (dy == 0 && dx > 0) { value } else { value - 1 };
         let (pace, side) = match dy {
             0 => (1, Side::Level),
@@ -279,7 +281,7 @@ impl EdgeWalk {
         }
     }
 
-    /// Narrows the columns `first..=last` to those inside, then goes down one row.
+    /// Narrows the columns `first..=last` to those inside, then moves down one row.
     #[inline(always)]
     fn next_row(&mut self, first: &mut i64, last: &mut i64) {
         match self.side {
@@ -297,7 +299,7 @@ impl EdgeWalk {
     }
 }
 
-/// The edge function of a small triangle at eight samples, from eight to eight: not negative on the inside.
+/// The edge function of a small triangle at eight samples, stepped by eight: not negative on the inside.
 #[derive(Clone, Copy, Debug)]
 struct EdgeSteps {
     values: [i32; WIDTH],
@@ -306,8 +308,8 @@ struct EdgeSteps {
 }
 
 impl EdgeSteps {
-    /// The edge from `a` to `b`, starting at the samples of the pixel with the corner `at`. All lie so near to each other that the
-    /// products fit 32 bits.
+    /// Creates the edge from `a` to `b`, starting at the samples of the pixel with the corner `at`. All three are so near to each
+    /// other that the products fit 32 bits.
     #[inline(always)]
     fn new(a: [i64; 2], b: [i64; 2], at: [i64; 2], lattice: &Lattice) -> Self {
         let (dx, dy) = ((b[0] - a[0]) as i32, (b[1] - a[1]) as i32);
@@ -330,19 +332,19 @@ impl EdgeSteps {
     }
 }
 
-/// Pixels and samples of which eight lanes are, from a pixel on.
+/// Pixels and samples of the eight lanes, relative to a first pixel.
 pub(crate) struct Lattice {
-    /// Pixels of eight samples.
+    /// Number of pixels with eight samples.
     pixels: i64,
-    /// Samples from the corner of the first pixel, 1/256 pixel.
+    /// Positions of the samples from the corner of the first pixel, 1/256 pixel.
     x: [i32; WIDTH],
     y: [i32; WIDTH],
-    /// Columns from that pixel on.
+    /// Columns from the first pixel on.
     columns: [f32; WIDTH],
-    /// Samples in their own pixels, 1/256 pixel: one for each lane.
+    /// Positions of the samples in their own pixels, 1/256 pixel: one for each lane.
     x_in_pixel: [f32; WIDTH],
     y_in_pixel: [f32; WIDTH],
-    /// The same, one for each sample.
+    /// Positions of the samples in a pixel, 1/256 pixel: one for each sample.
     places: [[i64; 2]; 4],
     samples: usize,
 }
@@ -375,17 +377,17 @@ impl Lattice {
     }
 }
 
-/// Rows of a picture, and how they lie in memory.
+/// Rows of a picture, and their layout in memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Area {
-    /// Pixels.
+    /// Width in pixels.
     pub(crate) width: usize,
-    /// Samples from a row to the next.
+    /// Number of samples from a row to the next.
     pub(crate) stride: usize,
     pub(crate) rows: Range<usize>,
 }
 
-/// Column and row of a pixel, and where its first sample is in an area's memory.
+/// Column and row of a pixel, and index of its first sample in an area's memory.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pixel {
     pub(crate) column: usize,
@@ -393,10 +395,10 @@ pub(crate) struct Pixel {
     pub(crate) start: usize,
 }
 
-/// Gets the results of [`scan`].
+/// Receives the results of [`scan`].
 pub(crate) trait Cells {
-    /// Depths of eight samples side by side, from the first of a pixel on, and which of them are covered: at least one. To be marked
-    /// `#[inline(always)]`.
+    /// Receives the depths of eight neighbouring samples, from the first of a pixel on, and the mask of covered ones: at least one is
+    /// covered. Mark it `#[inline(always)]`.
     fn visit<L: Lanes>(&mut self, pixel: Pixel, depth: L, inside: L::Mask);
 }
 
@@ -443,7 +445,7 @@ struct Bounds {
 }
 
 impl Bounds {
-    /// `None` where no sample of the area can be covered.
+    /// Returns `None` if the triangle can cover no sample of the area.
     #[inline(always)]
     fn new([a, b, c]: [[i64; 2]; 3], area: &Area) -> Option<Self> {
         let least = [a[0].min(b[0]).min(c[0]), a[1].min(b[1]).min(c[1])];
@@ -457,8 +459,8 @@ impl Bounds {
     }
 }
 
-/// Triangles that reach over fewer columns and rows than this are found by their edge functions at all samples of their bounds; larger
-/// ones, whose numbers would not fit, by where their edges cross the rows.
+/// Number of columns and rows below which a triangle is small: its edge functions are evaluated at all samples of its bounds. For
+/// larger triangles these numbers would not fit; they are drawn by the crossings of edges and rows.
 const SMALL: i64 = 48;
 
 /// Visits all samples of an area that a triangle covers, row by row.

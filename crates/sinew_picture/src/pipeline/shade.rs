@@ -8,14 +8,14 @@ use crate::scene::{Model, Pattern, RenderMaterial, Scene};
 use sinew::math::lanes::{Lanes, Real, Vector3, WIDTH};
 use sinew::math::{Vec2, Vec3, abs3, clamp, max, normalize_or};
 
-/// Pixels that [`Shader::flat_span`] shades at once.
+/// Number of pixels that [`Shader::flat_span`] shades in one call.
 pub(crate) const SPAN: usize = WIDTH;
 
-/// A drawn triangle: its number among these is its id in the layers.
+/// A drawn triangle; its index is its id in the layers.
 ///
-/// Where a ray from the eye meets it is a quotient of dot products with vectors that belong to the triangle alone
-/// (Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997, with the products regrouped):
-/// `depth = k / (ray·m)`, second and third barycentric coordinate `(ray·p) / (ray·m)` and `(ray·q) / (ray·m)`.
+/// The intersection with a ray from the eye follows from dot products with vectors of the triangle (Möller and Trumbore, "Fast,
+/// Minimum Storage Ray/Triangle Intersection", 1997, with the products regrouped): `depth = k / (ray·m)`, second and third
+/// barycentric coordinate `(ray·p) / (ray·m)` and `(ray·q) / (ray·m)`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle {
     /// Index into the scene's models.
@@ -26,9 +26,9 @@ pub(crate) struct Triangle {
     p: Vec3,
     q: Vec3,
     k: f32,
-    /// Unit normal on the side of the eye.
+    /// Unit normal toward the eye.
     face: Vec3,
-    /// −1 where the eye sees the back: vertex normals must be turned too.
+    /// −1 if the back is visible and vertex normals must be reversed, else 1.
     side: f32,
 }
 
@@ -41,7 +41,7 @@ impl Triangle {
         Self { model, corners, m: -normal, p: ac.cross(from_a), q, k: ac.dot(q), face, side }
     }
 
-    /// Intersection of a ray with the triangle; it is known to hit, or to pass within a pixel.
+    /// Returns the intersection of a ray with the triangle; the ray must hit the triangle or pass within a pixel.
     #[inline(always)]
     fn meet(&self, eye: Vec3, ray: Vec3) -> Hit {
         let det = ray.dot(self.m);
@@ -52,7 +52,7 @@ impl Triangle {
         Hit { point: eye + ray * depth, shares: [second, third], depth, inverse }
     }
 
-    /// Displacement of the place where a ray meets the plane while the ray itself moves by `step`.
+    /// Displacement of the intersection of a ray with the plane when the ray changes by `step`.
     #[inline(always)]
     fn slip(&self, hit: &Hit, ray: Vec3, step: Vec3) -> Vec3 {
         (step - ray * (step.dot(self.m) * hit.inverse)) * hit.depth
@@ -61,25 +61,25 @@ impl Triangle {
 
 /// Intersection of a ray with the plane of a triangle.
 struct Hit {
-    /// World space.
+    /// Intersection, world space, metres.
     point: Vec3,
-    /// Share of the second and the third corner.
+    /// Barycentric coordinates of the second and the third corner.
     shares: [f32; 2],
-    /// Metres along the ray's direction of depth 1.
+    /// Depth, metres.
     depth: f32,
     /// `1 / (ray·m)`, 0 for a ray along the plane.
     inverse: f32,
 }
 
-/// Colour and opacity of a surface as the eye sees it, translucent or solid.
+/// Visible colour and opacity of a surface, translucent or solid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
-    /// Linear.
+    /// Linear colour.
     pub(crate) color: [f32; 3],
     pub(crate) opacity: f32,
 }
 
-/// All that shading needs, for one picture.
+/// Data for shading one picture.
 pub(crate) struct Shader<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) view: &'a View,
@@ -89,7 +89,7 @@ pub(crate) struct Shader<'a> {
 }
 
 impl<'a> Shader<'a> {
-    /// The sky behind a point of the picture, in pixels.
+    /// Returns the linear colour of the sky behind a point of the picture, in pixels.
     pub(crate) fn sky(&self, x: f32, y: f32) -> [f32; 3] {
         let ray = self.view.ray(x, y);
         let height = clamp(ray.y / ray.length(), 0.0, 1.0);
@@ -97,7 +97,7 @@ impl<'a> Shader<'a> {
         mix(self.scene.sky.horizon, self.scene.sky.zenith, height.sqrt())
     }
 
-    /// Opacity of a triangle, 0 for none.
+    /// Returns the opacity of a triangle, 0 for [`NOTHING`].
     pub(crate) fn opacity(&self, id: u32) -> f32 {
         if id == NOTHING { 0.0 } else { self.model(&self.triangles[id as usize]).material.opacity }
     }
@@ -107,7 +107,7 @@ impl<'a> Shader<'a> {
         &self.scene.models[triangle.model as usize]
     }
 
-    /// Colour and opacity of triangle `id` as the eye sees it at a point of the picture, in pixels.
+    /// Returns visible colour and opacity of triangle `id` at a point of the picture, in pixels.
     pub(crate) fn surface(&self, id: u32, x: f32, y: f32) -> Seen {
         let triangle = &self.triangles[id as usize];
         let model = self.model(triangle);
@@ -127,7 +127,7 @@ impl<'a> Shader<'a> {
         Seen { color: mix(lit, self.scene.sky.horizon, haze), opacity: model.material.opacity }
     }
 
-    /// True if a triangle has one normal, and one colour or a checker: [`Self::flat_span`] then shades it.
+    /// Returns true if a triangle has one normal, and one colour or a checker: [`Self::flat_span`] then shades it.
     #[inline(always)]
     pub(crate) fn is_flat(&self, id: u32) -> bool {
         let model = self.model(&self.triangles[id as usize]);
@@ -136,8 +136,8 @@ impl<'a> Shader<'a> {
         !has_picture && model.normals.len() != vertices && model.colors.len() != vertices
     }
 
-    /// [`Self::surface`] of a flat triangle in the middles of pixels side by side, from `x` on in the row `y`: the same numbers, by
-    /// channel.
+    /// Returns the colours of a flat triangle in the middles of neighbouring pixels, from `x` on in row `y`, by channel: the same
+    /// numbers as [`Self::surface`].
     #[inline(always)]
     pub(crate) fn flat_span<L: Lanes>(&self, id: u32, x: usize, y: usize) -> [L; 3] {
         let triangle = &self.triangles[id as usize];
@@ -173,7 +173,7 @@ impl<'a> Shader<'a> {
         seen
     }
 
-    /// Light of the sun on points side by side of a flat triangle.
+    /// Returns the sunlight on neighbouring points of a flat triangle.
     #[inline(always)]
     fn suns<L: Lanes>(&self, face: Vec3, points: Vector3<L>, depths: L) -> L {
         let cos = face.dot(self.shadow.to_sun);
@@ -187,7 +187,7 @@ impl<'a> Shader<'a> {
         lifted.y.store(&mut y);
         lifted.z.store(&mut z);
         depths.store(&mut depth);
-        // Behind the eye the plane is hit in reverse, and the interval between is invalid.
+        // Behind the eye the ray hits the plane in reverse, and the interval between is invalid.
         let is_before = depth[0] > 0.0 && depth[SPAN - 1] > 0.0;
         let (first, last) = (Vec3::new(x[0], y[0], z[0]), Vec3::new(x[SPAN - 1], y[SPAN - 1], z[SPAN - 1]));
         if is_before && self.shadow.is_lit_between(first, last) {
@@ -219,7 +219,7 @@ impl<'a> Shader<'a> {
             let [a, b, c] = triangle.corners.map(|corner| model.uvs[corner as usize]);
             let uv = a + (b - a) * hit.shares[0] + (c - a) * hit.shares[1];
             let pixel = hit.depth * self.view.pixel_size();
-            // At a slant a pixel covers more. The effect is limited, since a sharp texture is worth some shimmer.
+            // At a slant a pixel covers more texels. The effect is limited: a sharp texture is worth some shimmer.
             let cos_view = max(triangle.face.dot(self.view.eye - hit.point) / hit.depth, 0.15);
             let texels = texture.texels() * uv_per_area([a, b, c], triangle.m) * pixel * pixel / cos_view;
             base = multiply(base, texture.sample(uv, texture.level_for(texels), self.tables));
@@ -227,7 +227,7 @@ impl<'a> Shader<'a> {
         base
     }
 
-    /// A matt surface under the sun and a sky that is bright above and dark below.
+    /// Returns the light of a matt surface under the sun and a sky that is bright above and dark below.
     fn light(&self, base: [f32; 3], point: Vec3, normal: Vec3, face: Vec3) -> [f32; 3] {
         let around = self.around(normal);
         let cos = normal.dot(self.shadow.to_sun);
@@ -239,7 +239,7 @@ impl<'a> Shader<'a> {
         core::array::from_fn(|i| base[i] * (around[i] + color[i] * sun))
     }
 
-    /// Light of the sky on a surface.
+    /// Returns the light of the sky on a surface.
     #[inline(always)]
     fn around(&self, normal: Vec3) -> [f32; 3] {
         let sky = &self.scene.sky;
@@ -260,14 +260,15 @@ fn multiply(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     core::array::from_fn(|i| a[i] * b[i])
 }
 
-/// Area of a triangle in texture coordinates over its area in the world, 1/m²; `normal` is twice the latter long.
+/// Returns the area of a triangle in texture coordinates over its area in the world, 1/m²; the length of `normal` is twice the
+/// latter.
 fn uv_per_area([a, b, c]: [Vec2; 3], normal: Vec3) -> f32 {
     let on_texture = ((b - a).x * (c - a).y - (b - a).y * (c - a).x).abs();
     on_texture / max(normal.length(), 1e-12)
 }
 
-/// Share of the second colour in a box of `footprint` around `p`, both along x and z: 0 and 1 within squares, between where the
-/// box covers several. Mean of a product of two square waves, each integrated in closed form.
+/// Returns the share of the second colour in a box of `footprint` around `p`, both along x and z: 0 or 1 within a square, between
+/// these if the box covers several. Mean of a product of two square waves, each integrated in closed form.
 #[inline(always)]
 fn checker<R: Real>(p: [R; 2], footprint: [R; 2], size: R) -> R {
     let half = R::splat(0.5);
@@ -276,7 +277,7 @@ fn checker<R: Real>(p: [R; 2], footprint: [R; 2], size: R) -> R {
         * square_wave_mean(p[1] / size, footprint[1] / size)
 }
 
-/// Mean over `x ± width/2` of the wave that is 1 on [0, 1), −1 on [1, 2), and so on.
+/// Returns the mean over `x ± width/2` of the wave that is 1 on [0, 1), −1 on [1, 2), and so on.
 #[inline(always)]
 fn square_wave_mean<R: Real>(x: R, width: R) -> R {
     let half = R::splat(0.5);
@@ -285,7 +286,7 @@ fn square_wave_mean<R: Real>(x: R, width: R) -> R {
     limited(mean, -1.0, 1.0)
 }
 
-/// Integral of the square wave from 0: up to 1 at odd numbers, 0 at even ones.
+/// Returns the integral of the square wave from 0: it rises to 1 at odd numbers and falls to 0 at even ones.
 #[inline(always)]
 fn triangle_wave<R: Real>(x: R) -> R {
     let two = R::splat(2.0);
@@ -293,18 +294,18 @@ fn triangle_wave<R: Real>(x: R) -> R {
     R::min(phase, two - phase)
 }
 
-/// The whole number at or below `x`, up to 2²²; beyond it nobody sees a checker. Without a conversion to integers, so that several go
-/// at once.
+/// Returns the largest whole number up to `x`, for `x` up to 2²²; beyond that no checker is visible. Avoids integers, so that lanes
+/// can be used.
 #[inline(always)]
 fn whole_below<R: Real>(x: R) -> R {
-    /// Magnitude at which `f32` numbers are whole.
+    /// Magnitude from which `f32` numbers are whole.
     const WHOLE: f32 = 12_582_912.0;
     let x = limited(x, -4_194_304.0, 4_194_304.0);
     let nearest = (x + R::splat(WHOLE)) - R::splat(WHOLE);
     R::select(R::gt(nearest, x), nearest - R::splat(1.0), nearest)
 }
 
-/// [`clamp`], several at a time.
+/// Limits lanes like [`clamp`].
 #[inline(always)]
 pub(crate) fn limited<R: Real>(x: R, least: f32, most: f32) -> R {
     R::min(R::max(x, R::splat(least)), R::splat(most))

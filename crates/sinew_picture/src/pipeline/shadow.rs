@@ -1,4 +1,4 @@
-//! Shadow map: an orthographic depth picture from the sun, which shows where its light does not reach.
+//! Shadow map: an orthographic depth picture from the sun, which finds the points in shadow.
 
 use crate::pipeline::clip::{clip, is_whole, unseen};
 use crate::pipeline::raster::{Area, Cells, Footprint, Lattice, NOTHING, Pixel, ScreenVertex, floor, scan};
@@ -6,24 +6,24 @@ use sinew::math::dispatch::{self, Kernel};
 use sinew::math::lanes::{LaneMask, Lanes, WIDTH};
 use sinew::math::{Vec3, any_orthonormal, clamp, max, min, normalize_or};
 
-/// Depths seen from the sun around one point of the world.
+/// Heights toward the sun, around one point of the world.
 #[derive(Clone, Debug)]
 pub(crate) struct ShadowMap {
     /// Texels along a side.
     size: usize,
-    /// Height toward the sun per texel; −∞ where nothing is. Rows are whole lanes.
+    /// Height toward the sun per texel; −∞ for empty ones. Rows are whole lanes.
     heights: Vec<f32>,
-    /// Greatest height per square of [`BLOCK`] texels: most points lie above all shapes that could shade them.
+    /// Greatest height per square of [`BLOCK`] texels: most points are above all shapes that could shade them.
     highest: Vec<f32>,
-    /// Triangles that are still to be drawn into the map.
+    /// Triangles that [`Self::finish`] draws into the map.
     casting: Vec<Footprint>,
     /// Texels that the triangles may have raised.
     raised: Texels,
     /// Direction toward the sun, unit.
     pub(crate) to_sun: Vec3,
-    /// World to map: the edges of the map are at ±1.
+    /// Axes from world to map: the edges of the map are at ±1.
     axes: [Vec3; 2],
-    /// The focus along the axes, rounded to whole texels: shadows do not crawl when the camera moves.
+    /// The focus along the axes, rounded to whole texels, so that shadows do not crawl when the camera moves.
     center: [f32; 2],
     focus: Vec3,
     /// Side of a texel in the world, metres.
@@ -33,7 +33,7 @@ pub(crate) struct ShadowMap {
 /// Texels along a side of a square of [`ShadowMap::highest`].
 const BLOCK: usize = 16;
 
-/// A rectangle of texels, ends included; empty where the first are beyond the last.
+/// A rectangle of texels, ends included; empty if `first` is beyond `last`.
 #[derive(Clone, Copy, Debug)]
 struct Texels {
     first: [usize; 2],
@@ -66,13 +66,13 @@ impl ShadowMap {
         }
     }
 
-    /// Texels from a row to the next.
+    /// Returns the number of texels from a row to the next.
     #[inline(always)]
     fn stride(&self) -> usize {
         self.size.next_multiple_of(WIDTH)
     }
 
-    /// Starts an empty map that reaches `radius` metres around `focus`.
+    /// Starts an empty map with a radius of `radius` metres around `focus`.
     pub(crate) fn begin(&mut self, to_sun: Vec3, focus: Vec3, radius: f32) {
         self.to_sun = normalize_or(to_sun, Vec3::Y);
         let radius = max(radius, 1e-3);
@@ -94,14 +94,14 @@ impl ShadowMap {
         self.raised = Texels::NONE;
     }
 
-    /// Position on the map, ±1 at its edges, and height toward the sun.
+    /// Returns the position on the map, ±1 at its edges, and the height toward the sun.
     #[inline(always)]
     fn map_from_world(&self, p: Vec3) -> [f32; 3] {
         let [across, up] = self.axes;
         [p.dot(across) - self.center[0], p.dot(up) - self.center[1], (p - self.focus).dot(self.to_sun)]
     }
 
-    /// Lets a triangle throw its shadow, once [`Self::finish`] is called.
+    /// Adds a triangle that casts a shadow after [`Self::finish`].
     pub(crate) fn cast(&mut self, corners: [Vec3; 3]) {
         let place = |i: usize| self.map_from_world(corners[i]);
         let on_map = [place(0), place(1), place(2)];
@@ -132,12 +132,12 @@ impl ShadowMap {
         }
     }
 
-    /// Draws the collected shapes into the map.
+    /// Draws the added triangles into the map.
     pub(crate) fn finish(&mut self) {
         dispatch::run(Raise(self));
     }
 
-    /// Share of the sun's light, 0..=1, that reaches a point of a surface with unit `normal` (turned to the viewer).
+    /// Returns the share of the sun's light, 0..=1, that reaches a point of a surface with unit `normal` (toward the viewer).
     ///
     /// Mean of 3 × 3 bilinear comparisons. The point is first moved off the surface just far enough that the widest
     /// tap cannot hit the surface itself: `d / cos θ ≥ 1.5 √2 · texel · tan θ`.
@@ -146,15 +146,15 @@ impl ShadowMap {
         self.light_off(point + self.lift(normal, cos_to_sun))
     }
 
-    /// Offset by which a point of a surface with unit `normal` (turned to the viewer) is moved off it before [`Self::light_off`].
+    /// Returns the offset that moves a point off its surface, with unit `normal` (toward the viewer), for [`Self::light_off`].
     #[inline(always)]
     pub(crate) fn lift(&self, normal: Vec3, cos_to_sun: f32) -> Vec3 {
         let sin = max(0.0, 1.0 - cos_to_sun * cos_to_sun).sqrt();
         normal * (self.texel * (0.6 + 2.2 * sin))
     }
 
-    /// True if nothing shades any point on the straight way between two points that are moved off their surface already; false where
-    /// that is not plain at a glance.
+    /// Returns true if nothing shades any point on the segment between two points that are already moved off their surface. This is
+    /// a quick test: false is not certain.
     #[inline(always)]
     pub(crate) fn is_lit_between(&self, from: Vec3, to: Vec3) -> bool {
         let half = 0.5 * self.size as f32;
@@ -162,7 +162,8 @@ impl ShadowMap {
         let place = |x: f32, y: f32| [(x + 1.0) * half - 1.5, (1.0 - y) * half - 1.5];
         let (from, to) = (place(x0, y0), place(x1, y1));
         let Texels { first, last } = self.raised;
-        // Points between may be rounded otherwise, by far less than a texel; four of them are looked at from where a point is on.
+        // Points between may be rounded differently, by far less than a texel; the test of a point reads four texels from its own
+        // on.
         let beside = |axis: usize| {
             min(from[axis], to[axis]) > last[axis] as f32 + 1.0
                 || max(from[axis], to[axis]) < first[axis] as f32 - 5.0
@@ -170,11 +171,11 @@ impl ShadowMap {
         first[0] > last[0] || beside(0) || beside(1)
     }
 
-    /// [`Self::light_at`] of a point that is moved off its surface already.
+    /// Returns [`Self::light_at`] of a point that is already moved off its surface.
     #[inline(always)]
     pub(crate) fn light_off(&self, point: Vec3) -> f32 {
         let [x, y, height] = self.map_from_world(point);
-        // The last tenth fades out, so that shadows end softly where the map ends.
+        // The last tenth fades out, so that shadows end softly at the edge of the map.
         let fade = 10.0 * (1.0 - max(x.abs(), y.abs()));
         if fade.is_nan() || fade <= 0.0 {
             return 1.0;
@@ -202,7 +203,7 @@ impl ShadowMap {
         self.share_of_light(height, [left as usize, top as usize], [fx, fy], fade)
     }
 
-    /// Mean of the comparisons from a texel on.
+    /// Returns the share of light by 3 × 3 bilinear comparisons from a texel on.
     fn share_of_light(&self, height: f32, [left, top]: [usize; 2], [fx, fy]: [f32; 2], fade: f32) -> f32 {
         let mut hidden = 0.0;
         for (j, weight_of_row) in [1.0 - fy, 1.0, 1.0, fy].into_iter().enumerate() {
@@ -215,7 +216,7 @@ impl ShadowMap {
     }
 }
 
-/// Draws all collected shapes into a map.
+/// Kernel that draws all added triangles into a map.
 struct Raise<'a>(&'a mut ShadowMap);
 
 impl Kernel for Raise<'_> {
@@ -234,7 +235,7 @@ impl Kernel for Raise<'_> {
     }
 }
 
-/// A map while triangles are drawn into it.
+/// A map into which triangles are drawn.
 struct Rising<'a> {
     size: usize,
     heights: &'a mut [f32],
@@ -253,7 +254,7 @@ impl Cells for Rising<'_> {
         }
         L::select(is_higher, height, old).store(chunk);
         self.raised.include(column, (column + WIDTH - 1).min(self.size - 1), row);
-        // Heights rise or fall all along a row: the greatest is at one of the ends.
+        // Heights change monotonically along a row: the greatest is at one of the ends.
         let (bits, mut heights) = (is_higher.bits(), [0.0; WIDTH]);
         height.store(&mut heights);
         let (first, last) = (bits.trailing_zeros() as usize, 7 - bits.leading_zeros() as usize);

@@ -13,9 +13,9 @@ const WIDTH: u32 = 96;
 const HEIGHT: u32 = 64;
 const CAMERA: Camera = Camera { position: Vec3::ZERO, target: Vec3::NEG_Z, fov_y: 1.2 };
 
-/// The same light from all sides, and a white sky: a surface shows its own colour.
+/// Returns a scene with equal light from all sides, and a white sky: a surface shows its own colour.
 fn plain(models: Vec<Model>) -> Scene {
-    // Objects get 0.55 of the sky's light, and all of the ground's.
+    // Surfaces get 0.55 of the sky's light, and all of the ground's.
     let sky = Sky { zenith: [1.0 / 0.55; 3], horizon: [1.0 / 0.55; 3], ground: [1.0; 3], haze_distance: 1e6 };
     let sun = Sun { color: [0.0; 3], ..Sun::default() };
     Scene { models, sky, sun, ..Scene::default() }
@@ -82,7 +82,7 @@ fn every_pixel_shows_the_nearest_triangle() {
                 None => is_sky(&image, x, y),
                 Some(&(i, ..)) => (f32::from(shown[2]) - srgb(color(i)[2])).abs() < 2.0,
             };
-            // Within 1/256 pixel of an edge rounding decides, and at equal depths either is right.
+            // Within 1/256 pixel of an edge rounding decides, and at equal depths either triangle is right.
             let on_edge = hits.iter().any(|hit| hit.2.abs() < 2e-2);
             let tie =
                 nearest.is_some_and(|n| hits.iter().any(|h| h.0 != n.0 && (h.1 / n.1 - 1.0).abs() < 1e-3));

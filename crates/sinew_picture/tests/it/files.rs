@@ -6,7 +6,7 @@ use std::io::Cursor;
 
 const FPS: u32 = 30;
 
-/// Movement, a repeated frame, one pixel of difference, and odd sides.
+/// Returns frames with movement, a repeated frame, one pixel of difference, and odd sides.
 fn frames() -> Vec<Image> {
     let settings = RenderSettings { width: 161, height: 91, shadow_texels: 256, ..RenderSettings::default() };
     let mut renderer = Renderer::new(settings);

@@ -1,4 +1,4 @@
-//! The same bytes in every build, on every target, with any number of threads.
+//! Pictures have the same bytes in every build, on every target, with any number of threads.
 
 use crate::stairs;
 use sinew::math::hash::hash_bytes;

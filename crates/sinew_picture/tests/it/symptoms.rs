@@ -17,10 +17,10 @@ const SETTINGS: RenderSettings = RenderSettings {
     shadow_texels: 1024,
     threads: 1,
 };
-/// Linear.
+/// Linear colour of paths.
 const TRAIL: [f32; 3] = [0.9, 0.75, 0.1];
 
-/// A picture of two worlds in one, `half` metres left and right of the middle.
+/// A picture of two worlds in one, at `half` metres left and right of the centre.
 struct Drawing {
     world: World,
     /// Paths that bodies took, world space, metres.
@@ -61,7 +61,7 @@ fn ground() -> World {
     world
 }
 
-/// A crate on a lift that is put elsewhere in each step, and on one that moves there.
+/// A crate on a lift that is placed elsewhere in each step, and one on a lift that moves there.
 fn jitters() -> Drawing {
     let mut world = ground();
     let at = |x: f32, y: f32| Vec3::new(x, y, 0.0);

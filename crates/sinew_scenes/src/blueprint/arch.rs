@@ -43,17 +43,17 @@ pub fn arch(stones: usize, blocks: usize) -> Blueprint {
     scene
 }
 
-/// Joint between two stones, or between one and its pier, in the plane z = 0.
+/// Joint between two stones, or between a stone and its pier, in the plane z = 0.
 #[derive(Clone, Copy)]
 pub(crate) struct Joint {
-    /// Midpoint between its ends.
+    /// Midpoint between the joint's ends.
     pub middle: Vec3,
-    /// Vector from the midpoint to its outer end.
+    /// Vector from the midpoint to the joint's outer end.
     pub half: Vec3,
 }
 
 impl Joint {
-    /// The outer and the inner end.
+    /// Returns the outer and the inner end of the joint.
     pub fn ends(&self) -> [Vec3; 2] {
         [self.middle + self.half, self.middle - self.half]
     }
@@ -64,8 +64,8 @@ impl Joint {
     }
 }
 
-/// The joints of `stones` stones, from −x to +x: perpendicular to the catenary and equally spaced along it, except for the level ones at
-/// its feet.
+/// The joints of `stones` stones, from −x to +x: perpendicular to the catenary and equally spaced along it, except for the level joints
+/// at the feet of the arch.
 ///
 /// With `s` along the catenary from its crown `y = −√(a² + s²)`, the outward normal is along `(s, a)`.
 pub(crate) fn joints(stones: usize) -> Vec<Joint> {
@@ -76,7 +76,7 @@ pub(crate) fn joints(stones: usize) -> Vec<Joint> {
         let s = foot * (2.0 * i as f32 / stones as f32 - 1.0);
         let y = (a * a + s * s).sqrt();
         if i == 0 || i == stones {
-            // The width of a horizontal cut through the thickness.
+            // Half the width of a horizontal cut through the thickness.
             let half = Vec3::X * (0.5 * THICKNESS * foot_height / s);
             return Joint { middle: Vec3::X * (HALF_SPAN * s / foot), half };
         }

@@ -48,7 +48,7 @@ pub fn box_rain() -> Blueprint {
     box_rain_of(4000)
 }
 
-/// Falling boxes, `count` of them.
+/// `count` boxes of all sizes fall into a pit.
 pub fn box_rain_of(count: usize) -> Blueprint {
     const SIDE: usize = 12;
     /// Half of the pit's width, metres.
@@ -80,7 +80,8 @@ pub fn boxes_10000() -> Blueprint {
 
 /// A heap with `side` × `side` boxes in each of `layers` layers.
 pub fn box_heap(side: usize, layers: usize) -> Blueprint {
-    /// Spacing of the boxes, metres: with their limited rotation, no box reaches further than half of it along an axis.
+    /// Spacing of the boxes, metres: with their limited rotation, no box extends more than half of the spacing from its
+    /// centre along an axis.
     const APART: f32 = 0.86;
     /// Largest rotation of a box, radians.
     const TURN: f32 = 0.35;

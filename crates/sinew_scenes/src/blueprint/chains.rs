@@ -76,7 +76,7 @@ pub fn hanging_rope() -> Blueprint {
     rope("hanging_rope", 50, Vec3::NEG_Y, Vec3::new(0.25, 0.5, 0.25), 5.0)
 }
 
-/// `count` boxes 1 m apart, the first fixed, the last as wide as `2 weight_half` both ways.
+/// `count` boxes 1 m apart. The first is fixed; the last has half extents `weight_half` along x and y.
 fn rope(name: &'static str, count: usize, along: Vec3, link_half: Vec3, weight_half: f32) -> Blueprint {
     let mut scene = Blueprint::new(name, Sleeping::Off, 600);
     let thickness = link_half.z;

@@ -44,7 +44,7 @@ pub fn ragdoll_column(count: usize) -> Blueprint {
     scene
 }
 
-/// A pyramid of `layers` layers of unit cubes, and a figure that falls down on it.
+/// A pyramid of `layers` layers of unit cubes, and a figure that falls on the pyramid.
 pub fn ragdoll_on_boxes(layers: usize) -> Blueprint {
     let mut scene = Blueprint { name: "ragdoll_on_boxes", steps: 60, ..box_pyramid_of(layers) };
     figure(&mut scene, Vec3::Y * (layers as f32 + 0.05), 0.0);
@@ -79,7 +79,7 @@ pub fn rain() -> Blueprint {
     scene
 }
 
-/// 8 figures with joint friction fall from 15 m on two by two cells of 15 m, each with a tilted box in the middle.
+/// 8 figures with joint friction fall from 15 m on two by two cells of 15 m, each with a tilted box at its centre.
 ///
 /// Modelled on Box3D's falling ragdolls, which verify repeatability by the step at which all sleep. Those fall on meshes, and have springs
 /// in their joints.
@@ -175,14 +175,14 @@ impl Figure<'_> {
         self.scene.body(damped(BodyDef { position: pose.translation, rotation: pose.rotation, ..def }))
     }
 
-    /// A ball joint with a round cone about `axis`, degrees.
+    /// Adds a ball joint with a round cone about `axis`; angles in degrees.
     fn cone(&mut self, a: usize, b: usize, at: [f32; 3], axis: Vec3, cone: f32, twist: f32) {
         let [cone, twist] = [cone, twist].map(|half| Range::symmetric(half.to_radians()));
         let limit = SwingTwistLimit { swing_y: cone, swing_z: cone, twist };
         self.joint(a, b, at, axis, JointKind::Ball { limit: Some(limit) });
     }
 
-    /// A hinge about `axis` with a range of degrees.
+    /// Adds a hinge about `axis` with a range in degrees.
     fn hinge(&mut self, a: usize, b: usize, at: [f32; 3], axis: Vec3, (lo, hi): (f32, f32)) {
         self.joint(a, b, at, axis, JointKind::Hinge { limit: Some(Range::degrees(lo, hi)) });
     }

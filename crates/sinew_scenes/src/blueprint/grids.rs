@@ -62,7 +62,7 @@ pub fn net() -> Blueprint {
     scene
 }
 
-/// Rows and columns of a square net, row by row.
+/// Returns row and column of each knot of a square net, row by row.
 fn cells(side: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..side).flat_map(move |row| (0..side).map(move |column| (row, column)))
 }

@@ -8,13 +8,13 @@ use sinew::math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, cla
 use sinew::physics::{BodyDef, JointKind, Material, Shape, ShapeDef, Sleeping};
 use sinew::ragdoll::{BuildOptions, RagdollDef, RagdollJointDef, build};
 
-/// Friction of everything in these scenes: that of flesh.
+/// Friction coefficient of all bodies in these scenes: the one of flesh.
 const FRICTION: f32 = 0.7;
 
 /// Initial gap between a figure and the ground, metres.
 const ABOVE: f32 = 0.05;
 
-/// Half width of the pit of a heap of 100, metres: 16 figures fit in it side by side.
+/// Half width of the pit of a heap of 100, metres: 16 figures fit in the pit side by side.
 const PIT: f32 = 3.6;
 /// Spacing of figures in a heap, metres, limited by the reach of their arms.
 const APART: f32 = 1.8;
@@ -59,7 +59,7 @@ enum Limits {
     Common,
 }
 
-/// A figure lies on its back where it was placed, and does not sleep.
+/// A figure that lies on its back; sleeping is off.
 pub fn humanoid_lying() -> Blueprint {
     let mut scene = Blueprint::new("humanoid_lying", Sleeping::Off, 600);
     scene.body(made_of_flesh(floor()));
@@ -111,7 +111,7 @@ fn made_of_flesh(mut def: BodyDef) -> BodyDef {
     def
 }
 
-/// Adds a figure turned as `stand` says, its lowest point at the height of `stand`.
+/// Adds a figure with the rotation of `stand`, its lowest point at the height of `stand`.
 fn figure(scene: &mut Blueprint, def: &RagdollDef, stand: Transform, limits: Limits) {
     let turned =
         |index: usize| Transform::new(Vec3::ZERO, stand.rotation) * def.bodies[index].character_from_body;
@@ -150,7 +150,7 @@ fn figure(scene: &mut Blueprint, def: &RagdollDef, stand: Transform, limits: Lim
     scene.apart.extend(def.disabled_pairs.iter().map(|&(a, b)| (first + a, first + b)));
 }
 
-/// The joint in its start pose, with the requested limits.
+/// Returns the joint's kind with its start pose as zero, with the requested limits.
 fn kind(joint: &RagdollJointDef, limits: Limits) -> JointKind {
     let start = start_angle(joint.kind);
     let from_start = |range: Range| Range::new(range.lo - start, range.hi - start);

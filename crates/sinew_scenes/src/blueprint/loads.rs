@@ -7,7 +7,7 @@ use core::f32::consts::FRAC_PI_2;
 use sinew::math::{Rotation, Transform, Vec3, trig};
 use sinew::physics::{BodyDef, JointKind, Shape};
 
-/// Two boxes end to end on a level place, `half` long each way from its middle and of total mass `mass`, with a ball joint where they meet.
+/// Adds two boxes end to end on a level place, with the total length `2 half`, the total mass `mass`, and a ball joint between them.
 pub(crate) fn pair(scene: &mut Blueprint, place: Transform, half: f32, mass: f32) {
     let side = half * Vec3::new(0.45, 0.15, 0.3);
     let [a, b] = [-1.0, 1.0].map(|way| {
@@ -19,7 +19,7 @@ pub(crate) fn pair(scene: &mut Blueprint, place: Transform, half: f32, mass: f32
     scene.ball(a, b, place.point(Vec3::Y * side.y));
 }
 
-/// Adds a rope through these points, with one link between each two and total mass `mass`. Returns its first link.
+/// Adds a rope through these points, with one link between neighbouring points and total mass `mass`. Returns its first link.
 pub(crate) fn rope(scene: &mut Blueprint, points: &[Vec3], radius: f32, mass: f32) -> usize {
     let first = scene.bodies.len();
     let links = points.len() - 1;
@@ -48,15 +48,15 @@ pub(crate) fn over(top: Vec3, half: f32, radius: f32) -> Vec<Vec3> {
     [left.as_slice(), &across, &right].concat()
 }
 
-/// A rope of four links of length `link` that hangs from a point of a body.
+/// Adds a rope of four links of length `link` that hangs from a point of a body.
 pub(crate) fn hanging(scene: &mut Blueprint, from: usize, at: Vec3, link: f32, mass: f32) {
     let points = [0.0, 1.0, 2.0, 3.0, 4.0].map(|down| at - Vec3::Y * (down * link));
     let first = rope(scene, &points, 0.1 * link, mass);
     scene.ball(from, first, at);
 }
 
-/// A plank of two halves welded together that stands on the plane y = 0 and leans by `degrees` from the vertical, toward −x, so that its
-/// upper edge touches a wall at `touch`. Its length follows from that.
+/// Adds a plank of two welded halves. The plank stands on the plane y = 0 and leans toward −x by `degrees` from the vertical, and its upper
+/// edge touches a wall at `touch`; this determines its length.
 pub(crate) fn leaning(scene: &mut Blueprint, touch: Vec3, degrees: f32, mass: f32) {
     let length = touch.y / trig::cos(degrees.to_radians());
     let half = Vec3::new(0.04, 0.25, 0.1) * length;
@@ -76,7 +76,7 @@ pub(crate) fn leaning(scene: &mut Blueprint, touch: Vec3, degrees: f32, mass: f3
     });
 }
 
-/// A limp figure, `scale` times as large as a man, on its back along x, with its centre of mass over the centre of a level place.
+/// Adds a limp figure, `scale` times as large as a man, on its back along x, with its centre of mass over the centre of a level place.
 pub(crate) fn figure(scene: &mut Blueprint, place: Transform, scale: f32) {
     /// Height of the figure's centre of mass above its soles, and half the depth of its chest, metres.
     const CENTER: f32 = 1.04;

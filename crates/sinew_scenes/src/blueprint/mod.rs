@@ -65,7 +65,7 @@ pub struct BlueprintJoint {
     pub friction_torque: f32,
 }
 
-/// Ids of a [`Blueprint`]'s bodies and joints in a world, in its order.
+/// Ids of a [`Blueprint`]'s bodies and joints in a world, in the blueprint's order.
 #[derive(Clone, Debug, Default)]
 pub struct Built {
     /// Ids of the bodies, in the blueprint's order.
@@ -81,7 +81,7 @@ impl Blueprint {
         Self { name, gravity, sleeping, steps, bodies: Vec::new(), joints: Vec::new(), apart: Vec::new() }
     }
 
-    /// Builds a new world with this scene.
+    /// Builds a new world with this scene. Returns the world, its bodies and its joints.
     pub fn build(&self) -> (World, Vec<BodyId>, Vec<JointId>) {
         let Self { gravity, sleeping, .. } = *self;
         let mut world = World::new(WorldDef { gravity, sleeping, ..WorldDef::default() });
@@ -169,7 +169,8 @@ pub fn in_box(random: &mut Random, lo: f32, hi: f32) -> Vec3 {
     Vec3::new(next(), next(), next())
 }
 
-/// Uniform random rotation (Shoemake 1992). It uses exactly three numbers, without rejection, so that other programs can draw the same.
+/// Returns a uniform random rotation (Shoemake 1992). Uses exactly three numbers, without rejection, so that other programs can draw the
+/// same.
 pub fn rotation(random: &mut Random) -> Rotation {
     let [u, v, w] = [random.unit(), random.unit(), random.unit()];
     let (sin_v, cos_v) = trig::sin_cos(core::f32::consts::TAU * v);

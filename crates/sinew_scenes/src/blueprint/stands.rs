@@ -109,7 +109,7 @@ fn middle() -> f32 {
     0.5 * (THICKNESS * sin + LENGTH * cos)
 }
 
-/// Two cards on a plane whose tops touch above its origin.
+/// Returns the transforms of two leaning cards on a plane, whose tops touch above the origin of `foot`.
 fn leaning(foot: Transform) -> [Transform; 2] {
     let (sin, cos) = trig::sin_cos(LEAN);
     let out = 0.5 * (THICKNESS * cos + LENGTH * sin);
@@ -119,7 +119,7 @@ fn leaning(foot: Transform) -> [Transform; 2] {
     })
 }
 
-/// The middle of a card that lies on two points, x from the left to the right one, y up.
+/// Returns the transform of the middle of a card on two points: x from the left to the right point, y up.
 fn lying(left: Vec3, right: Vec3) -> Transform {
     let turn = Rotation::from_arc(Vec3::X, (right - left).normalize());
     Transform::new(0.5 * (left + right) + turn * (Vec3::Y * (0.5 * THICKNESS)), turn)

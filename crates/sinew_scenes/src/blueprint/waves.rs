@@ -80,7 +80,8 @@ fn rock(random: &mut Random) -> Hull {
     Hull::new(&corners).expect("so many points are a solid")
 }
 
-/// Rolling resistance over the radius of a rolling body; for shapes without roundings, a quarter of that of the largest ball inside.
+/// Rolling resistance, as a share of the radius of a rolling body; shapes without roundings take a quarter of the resistance of their
+/// largest inscribed ball.
 const ROLLING: f32 = 0.3;
 
 fn rolling(radius: f32) -> Material {
@@ -110,7 +111,7 @@ impl Waves {
         (0..side).flat_map(move |row| (0..side).map(move |column| self.height(row, column)))
     }
 
-    /// Position of its corner with its centre at the origin, metres.
+    /// Position of the ground's first corner with the ground's centre at the origin, metres.
     fn corner(&self) -> Vec3 {
         Vec3::new(-0.5, 0.0, -0.5) * self.cells as f32
     }

@@ -70,7 +70,7 @@ pub(crate) struct Actor {
     pub local: Vec<LocalTransform>,
     /// World from joint.
     pub model: Vec<Affine>,
-    /// Balls in the world that show joints, each with its joint.
+    /// Ball in the world for each marked joint, and the joint's index.
     marks: Vec<(BodyId, usize)>,
 }
 
@@ -96,7 +96,7 @@ impl Actor {
         }
     }
 
-    /// Moves the balls to their joints in the next step of the world.
+    /// Sets velocities that move the balls to their joints in the next step of the world.
     pub fn lead_marks(&self, world: &mut World) {
         let dt = world.def().dt();
         for &(ball, joint) in &self.marks {
@@ -133,7 +133,7 @@ impl Actor {
 pub(crate) struct Gone(u64);
 
 impl Gone {
-    /// Numbers of the steps up to the next one, each returned once.
+    /// Returns the numbers of the steps up to the next one; each number is returned only once.
     pub fn due(&mut self, world: &World) -> Range<u64> {
         let next = u64::max(self.0, world.step_count() + 1);
         core::mem::replace(&mut self.0, next)..next

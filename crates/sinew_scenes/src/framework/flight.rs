@@ -5,8 +5,8 @@ use crate::parts::GRAVITY;
 use sinew::math::{Vec3, trig};
 use sinew::physics::{BodyId, World};
 
-/// Measures how the momentum of some bodies changes until they hit another body. Only their weight may change it,
-/// whatever forces their joints and contacts exchange.
+/// Measures how the momentum of some bodies changes until a body hits another one. Only the bodies' weight may
+/// change the momentum; forces of joints and contacts between them may not.
 pub(crate) struct Flight {
     bodies: Vec<BodyId>,
     mass: f32,
@@ -18,12 +18,12 @@ pub(crate) struct Flight {
 }
 
 impl Flight {
-    /// Begins with the world's first step.
+    /// Creates the measurement, before the world's first step.
     pub fn new(world: &World, bodies: Vec<BodyId>) -> Self {
         Self::damped(world, bodies, 0.0)
     }
 
-    /// Free fall of bodies at rest that lose a share of their velocity per second.
+    /// Creates the measurement for bodies at rest that lose a share of their velocity per second.
     pub fn damped(world: &World, bodies: Vec<BodyId>, damping: f32) -> Self {
         let mass = bodies.iter().map(|&id| world.mass(id).mass).sum();
         let start = momentum(world, &bodies);
@@ -39,18 +39,19 @@ impl Flight {
         }
     }
 
-    /// Returns true if they have hit another body.
+    /// Returns true if one of the bodies has hit another body.
     pub fn landed(&self) -> bool {
         self.landed
     }
 
-    /// Time in which a fall without damping gains what this one has after `time` seconds: `(1 − e^(−c t)) / c`.
+    /// Returns the time in which an undamped fall reaches the speed of this fall after `time` seconds: `(1 −
+    /// e^(−c t)) / c`.
     fn effective(&self, time: f32) -> f32 {
         let c = self.damping;
         if c > 0.0 { (1.0 - trig::exp(-c * time)) / c } else { time }
     }
 
-    /// Mean acceleration until the first hit, compared to that of gravity.
+    /// Returns the mean acceleration until the first hit, compared with gravity.
     pub fn metric(&self) -> Metric {
         Metric::awaited("fall_m_s2", self.fall, Expected::near(GRAVITY, 1e-3))
     }

@@ -15,8 +15,8 @@ pub trait Script: Send {
     /// depends on the world alone.
     fn before_step(&mut self, _world: &mut World) {}
 
-    /// Runs after each step: measures, and applies impulses for the next step. These depend on the world alone, so that a restored world
-    /// continues as the saved one did.
+    /// Runs after each step: measures, and applies impulses for the next step. The impulses depend on the world alone, so that a restored
+    /// world continues as the saved one did.
     fn after_step(&mut self, _world: &mut World) {}
 
     /// [`after_step`](Self::after_step) for a host that measures time: `done` is called after each part of the work. The work and its order
@@ -28,7 +28,7 @@ pub trait Script: Send {
     /// Writes the script's own state that affects the future, if it has any.
     fn save(&self, _out: &mut Writer) {}
 
-    /// Reads what [`save`](Self::save) wrote.
+    /// Reads the state that [`save`](Self::save) wrote.
     ///
     /// # Errors
     /// If the bytes are not those of the same scene with the same settings.
@@ -62,7 +62,7 @@ pub trait Script: Send {
         Vec::new()
     }
 
-    /// Bodies that these skins replace in a picture.
+    /// Bodies that a picture does not draw, because the skins of [`figures`](Self::figures) replace them.
     fn bodies_of_figures(&self) -> Vec<BodyId> {
         Vec::new()
     }
@@ -72,14 +72,14 @@ pub trait Script: Send {
         &[]
     }
 
-    /// Called when a user pushes a kinematic body, N·s at a point, world space. An impulse does not move such a body,
-    /// but a character falls.
+    /// Called when a user pushes a kinematic body with an impulse, N·s, at a point, world space. An impulse does not move such a body, but
+    /// a character falls.
     fn strike(&mut self, _world: &mut World, _body: BodyId, _impulse: Vec3, _point: Vec3) {}
 
     /// Sets the velocity of the character that a user may control, from the next step on, m/s, world space. Most scenes have none.
     fn steer(&mut self, _way: Vec3) {}
 
-    /// Place of that character, metres, world space.
+    /// Position of the character that a user may control, metres, world space.
     fn steered(&self) -> Option<Vec3> {
         None
     }
@@ -90,11 +90,11 @@ pub trait Script: Send {
 pub struct Part {
     /// Name of the part, such as characters in a state; the parts are always in the same order.
     pub name: &'static str,
-    /// Number of them.
+    /// Number of items in the part, for example characters.
     pub count: u32,
 }
 
-/// Script of a world alone.
+/// Script of a world without measurements.
 struct Unwatched;
 
 impl Script for Unwatched {
@@ -115,7 +115,7 @@ impl Instance {
         Self { world, script: Box::new(script), health: Health::default() }
     }
 
-    /// Instance of a world that no scene created, such as that of a file.
+    /// Creates the instance of a world that no scene created, such as that of a file.
     pub fn of_world(world: World) -> Self {
         Self::new(world, Unwatched)
     }
@@ -140,7 +140,7 @@ impl Instance {
         self.script.figures()
     }
 
-    /// Bodies that these skins replace in a picture.
+    /// Bodies that a picture does not draw, because the skins of [`figures`](Self::figures) replace them.
     pub fn bodies_of_figures(&self) -> Vec<BodyId> {
         self.script.bodies_of_figures()
     }
@@ -177,18 +177,18 @@ impl Instance {
         &mut self.world
     }
 
-    /// One step on the calling thread.
+    /// Takes one step on the calling thread.
     pub fn step(&mut self) {
         self.step_with(&Serial, &NoProfiler);
     }
 
-    /// One step with the host's threads and stage times.
+    /// Takes one step with the host's threads and stage times.
     pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
         self.step_in_parts(runner, profiler, &mut |_| {});
     }
 
-    /// One step, like [`step_with`](Self::step_with). `done` is called after the world's step (a part named [`WORLD`](Self::WORLD), for all
-    /// its bodies) and after each further part of the work, so that a host can measure the time of each.
+    /// Takes one step, like [`step_with`](Self::step_with). `done` is called after the world's step (a part named [`WORLD`](Self::WORLD),
+    /// for all its bodies) and after each further part of the work, so that a host can measure the time of each.
     pub fn step_in_parts(
         &mut self,
         runner: &dyn TaskRunner,
@@ -208,7 +208,7 @@ impl Instance {
         self.script.save(out);
     }
 
-    /// Reads what [`save`](Self::save) wrote.
+    /// Reads the state that [`save`](Self::save) wrote.
     ///
     /// # Errors
     /// If the bytes are not those of the same scene with the same settings.
@@ -223,10 +223,10 @@ impl Instance {
         world.update_with(time, |world| step(world, script.as_mut(), health, &World::step, &mut |_| {}))
     }
 
-    /// Number of figures that every scene has after its own.
+    /// Number of figures that follow the scene's own figures, the same for every scene.
     pub const METRICS_OF_EVERY_SCENE: usize = 2;
 
-    /// The figures so far: those of the scene, then `energy_gain_max` and `nan`, which every scene has.
+    /// Returns the figures so far: those of the scene, then `energy_gain_max` and `nan`, which every scene has.
     pub fn metrics(&self) -> Vec<Metric> {
         let mut metrics = self.script.metrics(&self.world);
         metrics.extend(self.health.metrics());
@@ -259,7 +259,7 @@ fn mass_of(world: &World) -> f32 {
     of_bodies + of_particles
 }
 
-/// Errors that no scene may show, however long it runs.
+/// Errors that no scene may show, for any length of run.
 #[derive(Default)]
 struct Health {
     /// Energy that drives have put in, J.

@@ -30,7 +30,7 @@ impl Expected {
 pub struct Metric {
     /// Name, unique in its scene.
     pub name: &'static str,
-    /// `None` if the measured event has not happened yet.
+    /// Measured value; `None` if the measured event has not happened yet.
     pub value: Option<f64>,
     /// Expectation of the value.
     pub expected: Expected,

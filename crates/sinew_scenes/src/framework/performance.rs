@@ -17,7 +17,7 @@ pub(crate) struct Performance {
 const LONGEST: f32 = 600.0;
 
 impl Performance {
-    /// Reads a performance from a file; returns the reason if it cannot be retargeted.
+    /// Reads a performance from a file; returns the reason if the performance cannot be retargeted.
     pub fn of(document: BvhDocument) -> Result<Self, String> {
         let BvhDocument { rig, clip, rest_pose, .. } = document;
         if clip.duration > LONGEST {

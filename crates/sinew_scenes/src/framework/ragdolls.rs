@@ -21,7 +21,7 @@ pub(crate) fn spawn_at(
     Ragdoll::spawn(world, def, &states, &BodySettings::default())
 }
 
-/// Transforms of the bodies of a rotated pose, with its lowest point at the height of `place`.
+/// Returns the transforms of the bodies of a rotated pose, with its lowest point at the height of `place`.
 pub(crate) fn placed(
     def: &RagdollDef,
     pose: &[Transform],
@@ -47,7 +47,7 @@ pub(crate) fn ragdoll_of_mannequin() -> RagdollDef {
     ragdoll_of(&mannequin().rig).expect("the mannequin has a skin and bones")
 }
 
-/// The ragdoll of a rig; `None` if it has no skin or no bones.
+/// Returns the ragdoll of a rig; `None` if the rig has no skin or no bones.
 pub(crate) fn ragdoll_of(rig: &Rig) -> Option<RagdollDef> {
     let analysis = analyze(rig).ok()?;
     Some(build(rig, &analysis, &BuildOptions::default()).ok()?.0)

@@ -46,13 +46,13 @@ impl Chapter {
 /// A named scenario.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
-    /// Chapter that contains it.
+    /// Chapter that contains the scene.
     pub chapter: Chapter,
     /// Name of the scene for `sinew run`.
     pub name: &'static str,
-    /// Description of one line for people.
+    /// Description for people, one line.
     pub about: &'static str,
-    /// Steps of 1/60 s after which its expectations hold.
+    /// Steps of 1/60 s after which the scene's expectations hold.
     pub steps: u32,
     pub(crate) settings: &'static [Setting],
     pub(crate) build: fn(&Setup<'_>) -> Instance,

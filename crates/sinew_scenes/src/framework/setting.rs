@@ -17,13 +17,13 @@ pub enum Domain {
     Number(f32, f32),
     /// Any whole number from the first to the second.
     Whole(u16, u16),
-    /// Path of an MJCF model, which is read when it is set.
+    /// Path of an MJCF model; setting it reads the file.
     Model,
-    /// Path of a level, GLB or OBJ, read when it is set.
+    /// Path of a level, GLB or OBJ; setting it reads the file.
     Level,
-    /// Path of a character, GLB, read when it is set; optional.
+    /// Path of a character, GLB, optional; setting it reads the file.
     Character,
-    /// Path of a captured motion, BVH, read when it is set.
+    /// Path of a captured motion, BVH; setting it reads the file.
     Motion,
 }
 
@@ -260,18 +260,24 @@ impl Setup<'_> {
         self.settings.get(key) as usize
     }
 
+    /// Returns the MJCF model of the settings.
+    ///
     /// # Panics
     /// If the model is not set: see [`Settings::check`].
     pub fn model(&self) -> &MjcfModel {
         self.settings.model.as_ref().expect("the model is set")
     }
 
+    /// Returns the level of the settings.
+    ///
     /// # Panics
     /// If the level is not set: see [`Settings::check`].
     pub fn level(&self) -> &TriangleMesh {
         self.settings.level.as_ref().expect("the level is set")
     }
 
+    /// Returns the captured motion of the settings.
+    ///
     /// # Panics
     /// If the motion is not set: see [`Settings::check`].
     pub fn motion(&self) -> &Performance {

@@ -32,7 +32,7 @@ pub(crate) struct Stand {
     /// Free fall of a body, to verify gravity.
     flight: Flight,
     bars: Bars,
-    /// Bounds around all of them.
+    /// Bounds around all standing bodies.
     bounds: Aabb,
     asleep: Option<f32>,
 }
@@ -63,7 +63,7 @@ pub(crate) fn shift(from: Transform, to: Transform) -> f32 {
     Vec3::new(moved.x, 0.0, moved.z).length()
 }
 
-/// Deepest overlap of two of these bodies, or of one of them with another, metres.
+/// Returns the deepest overlap of one of these bodies with any other body, metres.
 pub(crate) fn deepest(world: &World, bodies: impl Iterator<Item = BodyId>) -> f32 {
     bodies.fold(0.0, |deepest, id| {
         world.neighbors(id).fold(deepest, |deepest, other| max(deepest, world.overlap(id, other)))

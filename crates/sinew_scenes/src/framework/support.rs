@@ -7,13 +7,13 @@ use sinew::physics::{BodyKind, JointId, World};
 
 /// The joints to static bodies of a world without contacts: they carry its weight and the change of its momentum.
 pub(crate) struct Support {
-    /// Joints to static bodies, and whether the static one is the first.
+    /// Joints to static bodies; true if the joint's first body is the static one.
     joints: Vec<(JointId, bool)>,
     /// Weight of the world, N.
     weight: f32,
     /// Momentum of the world, N·s.
     momentum: Vec3,
-    /// The largest error, as a share of the weight.
+    /// Largest error of the support force, as a share of the weight.
     error: f32,
 }
 

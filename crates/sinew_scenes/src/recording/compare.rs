@@ -10,7 +10,7 @@ use sinew::physics::{BodyId, World};
 pub enum Difference {
     /// The recordings have different scenes or settings.
     Scene,
-    /// The states differ after that many steps, and were equal before.
+    /// The states differ after `step` steps, and were equal before.
     State {
         /// Number of steps taken.
         step: u64,
@@ -24,7 +24,7 @@ pub enum Difference {
     },
 }
 
-/// The first difference of two recordings; `None` if they are equal step by step.
+/// Returns the first difference of two recordings; `None` if all steps are equal.
 pub fn compare(a: &Recording, b: &Recording) -> Option<Difference> {
     if (&a.scene, &a.settings) != (&b.scene, &b.settings) {
         return Some(Difference::Scene);

@@ -18,7 +18,7 @@ const STEPS_OF_BLOCK: usize = 64;
 /// Operations on a scene and their results.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
-    /// Version of Sinew that recorded it: only this one is known to reproduce the bits.
+    /// Version of Sinew that made the recording: only this version is known to reproduce the bits.
     pub made_by: String,
     /// Name of the scene.
     pub scene: String,
@@ -37,7 +37,7 @@ pub struct Recording {
 pub struct RecordedStep {
     /// Operations before the step.
     pub operations: Vec<Operation>,
-    /// Hash of the world's state after it.
+    /// Hash of the world's state after the step.
     pub hash: u64,
 }
 
@@ -149,7 +149,7 @@ impl Recording {
     }
 }
 
-/// A block and the hash of what is in it.
+/// Writes a block, then the hash of its content.
 fn write_checked(out: &mut Writer, write: impl FnOnce(&mut Writer)) {
     let mut content = Writer::new();
     write(&mut content);

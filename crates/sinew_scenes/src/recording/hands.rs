@@ -14,7 +14,7 @@ pub enum Operation {
     Grab {
         /// The body; if it does not exist or does not move, nothing happens.
         body: BodyId,
-        /// Point at which it is grabbed.
+        /// Point at which the body is grabbed.
         point: Vec3,
     },
     /// Pulls the grabbed body toward a point.
@@ -60,10 +60,10 @@ pub enum Operation {
     },
 }
 
-/// Frequency at which connected bodies swing on the hand, Hz. Lower: they lag behind the hand; higher: they jerk.
+/// Frequency at which connected bodies swing on the hand, Hz. Lower: the bodies lag behind the hand. Higher: the bodies jerk.
 const HERTZ: f32 = 2.5;
-/// Force of a hand, in weights of the connected bodies (at 9.81 m/s²). Lower: it cannot lift a body under others; higher: it tears
-/// joints.
+/// Force of a hand, in weights of the connected bodies (at 9.81 m/s²). Lower: the hand cannot lift a body under others. Higher:
+/// the hand tears joints.
 const STRENGTH: f32 = 12.0;
 /// Weight of a kilogram, N.
 const WEIGHT: f32 = 9.81;
@@ -136,7 +136,7 @@ impl Hands {
         }
     }
 
-    /// Ends of the spring: the grab point and its target, metres, world space.
+    /// Returns the ends of the spring: the grab point and its target, metres, world space.
     pub fn spring(&self, world: &World) -> Option<[Vec3; 2]> {
         let grip = self.grip.filter(|grip| world.contains(grip.body) && world.contains_joint(grip.joint))?;
         let to = world.joint(grip.joint).motor?.target.translation;
@@ -180,7 +180,7 @@ fn moves(world: &World, body: BodyId) -> bool {
     world.contains(body) && world.kind(body) == BodyKind::Dynamic
 }
 
-/// Mass of a body and of all bodies connected to it by joints, kg.
+/// Returns the mass of a body and of all bodies connected to it by joints, kg.
 fn mass_together(world: &World, body: BodyId) -> f32 {
     let (mut found, mut next) = (vec![body], 0);
     while let Some(&body) = found.get(next) {

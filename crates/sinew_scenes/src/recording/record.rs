@@ -56,29 +56,29 @@ impl Recorder {
         Self { instance, hands: Hands::default(), recording, operations: Vec::new() }
     }
 
-    /// The scene as it runs.
+    /// Returns the running scene.
     pub fn instance(&self) -> &Instance {
         &self.instance
     }
 
-    /// The user's hands with the bodies that they hold.
+    /// Returns the user's hands, with the body that they hold.
     pub fn hands(&self) -> &Hands {
         &self.hands
     }
 
-    /// Applies an operation now; it is recorded for the next step.
+    /// Applies an operation now, and records it for the next step.
     pub fn apply(&mut self, operation: Operation) {
         self.hands.apply(self.instance.world_mut(), &operation);
         operation.apply_to(&mut self.instance);
         self.operations.push(operation.of_any_world());
     }
 
-    /// One step on the calling thread.
+    /// Takes one step on the calling thread.
     pub fn step(&mut self) {
         self.step_with(&Serial, &NoProfiler);
     }
 
-    /// One step with the host's threads and stage times.
+    /// Takes one step with the host's threads and stage times.
     pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
         self.instance.step_with(runner, profiler);
         let world = self.instance.world();
@@ -116,7 +116,7 @@ pub struct Replay {
     recording: Recording,
 }
 
-/// Saved state in the middle of a replay, to which it can return.
+/// Saved state in the middle of a replay, to which the replay can return.
 #[derive(Clone, Debug)]
 pub struct Mark {
     step: u64,
@@ -151,18 +151,18 @@ impl Replay {
     /// Starts at the recording's first step.
     ///
     /// # Errors
-    /// If this version does not have the scene, or it refuses a setting.
+    /// If this version does not have the scene, or the scene refuses a setting.
     pub fn start(recording: Recording) -> Result<Self, Error> {
         let instance = instance_of(&recording.scene, &recording.settings)?;
         Ok(Self { instance, hands: Hands::default(), recording })
     }
 
-    /// The scene as it runs.
+    /// Returns the running scene.
     pub fn instance(&self) -> &Instance {
         &self.instance
     }
 
-    /// The user's hands with the bodies that they hold.
+    /// Returns the user's hands, with the body that they hold.
     pub fn hands(&self) -> &Hands {
         &self.hands
     }

@@ -14,7 +14,7 @@ use sinew::physics::{MoverDef, MoverId, World};
 /// Number of steps of a random walk, and of steps between turns.
 pub const STEPS: usize = 120;
 const TURNS: usize = 20;
-/// Number of steps in which it comes to rest before its surroundings are checked.
+/// Number of steps in which a walker comes to rest before its surroundings are checked.
 const SETTLES: usize = 60;
 /// Depth from which a capsule counts as inside a body, metres.
 pub const INSIDE: f32 = 0.005;
@@ -23,13 +23,13 @@ const LONG: f32 = 0.25;
 
 /// A walker: Sinew's mover, or the controller of another engine.
 pub trait Walker {
-    /// Lowest point of its capsule, world, metres.
+    /// Lowest point of the walker's capsule, world, metres.
     fn feet(&self) -> Vec3;
 
-    /// Returns true if the ground supports it.
+    /// Returns true if the ground supports the walker.
     fn is_grounded(&self) -> bool;
 
-    /// One step of 1/60 s with a wanted velocity over the ground, m/s.
+    /// Takes one step of 1/60 s with a wanted velocity over the ground, m/s.
     fn step(&mut self, wish: Vec3);
 }
 
@@ -51,7 +51,7 @@ impl Ours {
         Self { world, id }
     }
 
-    /// Returns its world without it.
+    /// Removes the mover and returns its world.
     pub fn leave(mut self) -> World {
         self.world.remove_mover(self.id);
         self.world

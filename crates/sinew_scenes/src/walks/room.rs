@@ -1,4 +1,4 @@
-//! Reachable places of a walker: a flood fill over moves within its step height and slope limit, and walks along it.
+//! Reachable places of a walker: a flood fill over moves within the step height and slope limit, and walks along its paths.
 
 use super::{Terrain, Walker, capsule};
 use sinew::math::{Transform, Vec3, min, trig};
@@ -11,7 +11,7 @@ const CELL: f32 = 0.1;
 const FAR: i32 = 12;
 /// Share of the step height and of the slope limit that the flood uses.
 const SHARE: f32 = 0.9;
-/// Distances behind an edge, and above and below it, at which a tread is searched, metres.
+/// Distances behind an edge, and above and below the edge, at which a tread is searched, metres.
 const BEHIND_EDGE: f32 = 0.02;
 const OVER_EDGE: f32 = 0.04;
 /// Distance at which a place counts as reached, metres, and the largest number of steps for that.
@@ -20,9 +20,9 @@ const PATIENCE: u32 = 60;
 /// Speed of the walk, m/s.
 const SPEED: f32 = 1.5;
 
-/// Places that a walker can reach, each with the one before it.
+/// Places that a walker can reach, each with the previous place.
 pub struct Room {
-    /// Positions of its feet, metres.
+    /// Positions of the walker's feet, metres.
     places: Vec<Vec3>,
     before: Vec<usize>,
 }
@@ -116,7 +116,7 @@ fn step(on: &Terrain, feet: Vec3, way: Vec3, margin: f32) -> Option<Vec3> {
         direction: Vec3::NEG_Y * (2.0 * OVER_EDGE),
     };
     let tread = || on.world.query().accept(|body, _| body == hit.body).first(&looks);
-    // A ray that begins within a solid hits it at once.
+    // A ray that begins within a solid hits it at fraction 0.
     let is_tread = || tread().is_some_and(|tread| tread.fraction > 0.0 && tread.normal.y > steepest);
     let is_low = hit.point.y - feet.y < high.y;
     (hit.normal.y > steepest || is_low && is_tread()).then_some(place)

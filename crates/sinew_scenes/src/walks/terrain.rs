@@ -14,7 +14,7 @@ pub struct Terrain {
     pub bodies: Vec<BodyDef>,
     /// World with these bodies, for queries.
     pub(super) world: World,
-    /// Triangles of its meshes, which are solid from the front only.
+    /// Triangles of the bodies' meshes, which are solid from the front only.
     triangles: Vec<[Vec3; 3]>,
     /// Box in which walks begin, world, metres.
     within: Aabb,
@@ -102,12 +102,12 @@ impl Terrain {
         Self::new(bodies, Vec::new(), [Vec3::new(-5.0, 0.05, -5.0), Vec3::new(-1.0, 1.0, 5.0)])
     }
 
-    /// A world of these bodies.
+    /// Builds a world of these bodies.
     pub fn build(&self) -> World {
         build(&self.bodies)
     }
 
-    /// A random place for the feet of the walks' capsule, with room around it.
+    /// Returns a random place for the feet of the walks' capsule, with room around it.
     pub fn free_place(&self, random: &mut Random) -> Vec3 {
         loop {
             let mut between = |axis: usize| random.range(self.within.min[axis], self.within.max[axis]);
@@ -119,7 +119,7 @@ impl Terrain {
         }
     }
 
-    /// Depth of the capsule inside of anything, metres; 0 if it is outside.
+    /// Largest depth of the capsule in a body, metres; 0 if the capsule is outside of all.
     pub fn depth(&self, feet: Vec3) -> f32 {
         let mut found = Vec::new();
         self.world.query().all(&PenetrationOf(probe(feet, 0.0)), &mut found);
@@ -171,7 +171,7 @@ fn probe(feet: Vec3, margin: f32) -> Probe {
     Probe { shape, world_from_shape: Transform::from_translation(feet + Vec3::Y * (0.5 * def.height)) }
 }
 
-/// Alternately a box, a cylinder, a capsule or a hull.
+/// Returns a solid of random size: by `kind` a box, a cylinder, a capsule or a hull.
 fn solid(kind: u32, random: &mut Random) -> Shape {
     let size = random.range(0.1, 1.2);
     let mut length = || size * random.range(0.2, 1.0);

@@ -85,7 +85,7 @@ fn tampered_hash_is_reported_at_its_step() {
     assert_eq!(wrong.map(|step| step.step), Some(18));
 }
 
-/// A file of format 1 from an earlier version, with an operation of an unknown kind. It must stay readable.
+/// A file of format 1 from an earlier version, with an operation of an unknown kind, which must stay readable.
 const KEPT: &str = "\
     73696e6577726563 01000000 05000000302e302e31 09000000667265655f66616c6c 00000000 8988883c \
     01000000 efcdab8967452301 02000000 01000000 03 03000000 c80102 \

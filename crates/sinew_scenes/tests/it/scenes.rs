@@ -3,9 +3,9 @@
 use sinew::physics::World;
 use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, Settings, find, registry};
 
-/// Figures outside their bars, by scene. One that is met must be removed, or its test fails.
+/// Figures outside their bars, by scene. A figure that is met must be removed, or its test fails.
 const NOT_YET: &[(&str, &[&str])] = &[
-    // 2.07 mm instead of 2; its line of thrust is nearer to the middle than when it met this bar.
+    // 2.07 mm instead of 2; the line of thrust is nearer to the middle than when the scene met this bar.
     ("arch", &["shift_max_m"]),
     // A character that has just got up is lifted by half a metre if it stands on another; walks put feet into stairs
     // and toes into the floor; rest, roll and get-up take 4.3 s.

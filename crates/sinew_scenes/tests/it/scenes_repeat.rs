@@ -6,7 +6,8 @@ use sinew::physics::stage::NoProfiler;
 use sinew::physics::{Threads, World, WorldDef};
 use sinew_scenes::scenes::{Instance, Scene, SettingError, find, registry};
 
-/// Steps in which everything falls, hits and comes to rest; fewer for scenes that are slow in debug builds.
+/// Returns the number of steps in which all bodies fall, hit and come to rest; fewer for scenes that are slow in
+/// debug builds.
 fn steps(scene: &Scene) -> u64 {
     match scene.name {
         "ragdoll_pile" => 4,

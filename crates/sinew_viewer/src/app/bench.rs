@@ -23,23 +23,23 @@ pub(super) const SCALES: [f32; 2] = [0.3, 3.0];
 /// Linear colour of the selection.
 const CHOSEN: [f32; 3] = [1.0, 0.35, 0.05];
 
-/// Selection on the workbench.
+/// Selection and changes on the workbench.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bench {
     /// Selected body, by its index in the definition.
     pub chosen: Option<usize>,
     /// Changes in progress.
     pub draft: BoneSettings,
-    /// Grabbed handle.
+    /// Handle that the mouse holds.
     held: Option<Handle>,
 }
 
 /// Handle in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Handle {
-    /// Edge of a range (0: swing about y, 1: about z, 2: of a hinge); true: its upper end.
+    /// End of a range (0: swing about y, 1: about z, 2: of a hinge); true: its upper end.
     Limit(usize, bool),
-    /// Side of the shape, with the factor on it and its radius (metres) when it was taken.
+    /// Side of the shape, with the shape's factor and radius (metres) when the handle was grabbed.
     Size(f32, f32),
 }
 
@@ -49,7 +49,7 @@ impl Bench {
     }
 }
 
-/// The selected body in the world.
+/// Returns the selected body: its index in the definition, and its id in the world.
 fn body_of(app: &App) -> Option<(usize, BodyId)> {
     let chosen = app.bench.chosen?;
     Some((chosen, *app.session.ragdoll().get(chosen)?))
@@ -81,7 +81,7 @@ pub(super) fn choose_next(app: &mut App, by: isize) {
     choose(app, Some(next));
 }
 
-/// Selects the body at a point, or nothing if it is not one of the ragdoll.
+/// Selects the body at a point, or nothing if the body does not belong to the ragdoll.
 pub(super) fn pick(app: &mut App, body: Option<BodyId>) {
     let found = app.session.ragdoll().iter().position(|&it| Some(it) == body);
     if found.is_some() || app.bench.chosen.is_some() {
@@ -89,7 +89,7 @@ pub(super) fn pick(app: &mut App, body: Option<BodyId>) {
     }
 }
 
-/// Applies the draft: the ragdoll is rebuilt and dropped again.
+/// Applies the draft: rebuilds the ragdoll and drops it again.
 pub(super) fn commit(app: &mut App) {
     let Some(chosen) = app.bench.chosen else { return };
     let draft = app.bench.draft;
@@ -114,7 +114,7 @@ pub(super) fn commit(app: &mut App) {
     app.tell(line);
 }
 
-/// Ranges of the selected body's joint, with the changes in progress, radians.
+/// Returns the ranges of the selected body's joint, with the changes in progress, radians.
 pub(super) fn ranges(app: &App) -> [Option<Range>; 3] {
     let joint = app
         .bench
@@ -171,7 +171,7 @@ fn tell_limits(app: &mut App) {
     app.tell(line);
 }
 
-/// Exports the ragdoll as a file to be written.
+/// Exports the ragdoll as a file, for the host to write.
 pub(super) fn save(app: &mut App) {
     match app.session.workbench().map(crate::session::Workbench::to_file) {
         Some(file) => app.files.push(file),
@@ -189,7 +189,7 @@ pub(super) fn look_at_chosen(app: &mut App) {
     app.orbit.distance = clamp(4.0 * size, 0.3, max(app.orbit.distance, 0.3));
 }
 
-/// The limits of the selected joint, with the changes in progress.
+/// Returns the limits of the selected joint, with the changes in progress.
 fn cone(app: &App) -> Option<Cone> {
     let (_, body) = body_of(app)?;
     let world = app.session.world();
@@ -200,7 +200,7 @@ fn cone(app: &App) -> Option<Cone> {
     Some(Cone { ranges: ranges(app), ..cone })
 }
 
-/// World from shape, shape, and radius, metres, of the selected body.
+/// Returns, for the selected body, the transform from shape to world, the shape, and its radius, metres.
 fn shape(app: &App) -> Option<(Transform, Shape, f32)> {
     let (_, body) = body_of(app)?;
     let (shape, place) = app.session.world().shapes(body).next()?;
@@ -213,7 +213,7 @@ fn shape(app: &App) -> Option<(Transform, Shape, f32)> {
     Some((place, shape, radius))
 }
 
-/// Handles of the selection, each with its position in the world.
+/// Returns the handles of the selection, each with its position in the world.
 fn handles(app: &App) -> Vec<(Handle, Vec3)> {
     let mut list = Vec::new();
     if let Some(cone) = cone(app) {
@@ -237,7 +237,8 @@ fn handles(app: &App) -> Vec<(Handle, Vec3)> {
 }
 
 impl App {
-    /// Handles of the ragdoll's selected body, each with its name and position in the window, points.
+    /// Returns the handles of the ragdoll's selected body, each with its name and position in the window,
+    /// points.
     pub fn handles(&self) -> Vec<(&'static str, Pos2)> {
         let name = |handle: &Handle| match handle {
             Handle::Limit(axis, upper) => [
@@ -252,7 +253,7 @@ impl App {
     }
 }
 
-/// Grabs the handle at a point of the window, if there is one.
+/// Grabs the handle at a point of the window; returns false if there is none.
 pub(super) fn take(app: &mut App, at: Pos2) -> bool {
     let near = handles(app).into_iter().filter_map(|(handle, point)| {
         let distance = (app.on_screen(point)? - at).length();
@@ -263,7 +264,7 @@ pub(super) fn take(app: &mut App, at: Pos2) -> bool {
     nearest.is_some()
 }
 
-/// Drags the grabbed handle to the point of its path that a ray meets.
+/// Drags the grabbed handle to the point of its path that is nearest to a ray.
 pub(super) fn drag(app: &mut App, ray: &Ray) {
     match app.bench.held {
         Some(Handle::Limit(axis, is_upper)) => {
@@ -298,7 +299,7 @@ pub(super) fn release(app: &mut App) {
     }
 }
 
-/// Angle of a range that a ray points at, radians.
+/// Returns the angle of a range at the point that a ray meets, radians.
 fn angle_of(cone: &Cone, axis: usize, ray: &Ray) -> Option<f32> {
     use sinew::math::trig::atan2;
     let local = cone.frame.inverse();
@@ -320,7 +321,7 @@ fn angle_of(cone: &Cone, axis: usize, ray: &Ray) -> Option<f32> {
     angle.is_finite().then_some(angle)
 }
 
-/// Position on a line, metres from its origin, nearest to a ray.
+/// Returns the position on a line, metres from its origin, nearest to a ray.
 fn along_line(origin: Vec3, way: Vec3, ray: &Ray) -> f32 {
     let eye = normalize_or(ray.direction, Vec3::Z);
     let between = ray.origin - origin;

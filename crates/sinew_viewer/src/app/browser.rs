@@ -8,7 +8,7 @@ use sinew_scenes::scenes::{Chapter, Scene, registry};
 /// Width of the panel, points.
 const WIDTH: f32 = 250.0;
 
-/// Shows them; a click opens one.
+/// Shows the list of scenes; a click opens one.
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     let panel = egui::Panel::left("scenes").resizable(true).default_size(WIDTH).frame(style::panel());
     panel.show(ui, |ui| {
@@ -31,13 +31,13 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     });
 }
 
-/// True if each word of the search is in a scene's name, line or chapter.
+/// Returns true if each word of the search is in a scene's name, line or chapter.
 fn matches(scene: &Scene, search: &str) -> bool {
     let text = format!("{} {} {}", scene.name, scene.about, scene.chapter.title()).to_lowercase();
     search.to_lowercase().split_whitespace().all(|word| text.contains(word))
 }
 
-/// Chapters in the order in which they first come.
+/// Returns the chapters in the order of their first scenes.
 fn chapters(found: &[&'static Scene]) -> Vec<Chapter> {
     let mut chapters: Vec<Chapter> = found.iter().map(|scene| scene.chapter).collect();
     chapters.sort_unstable();

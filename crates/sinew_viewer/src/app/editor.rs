@@ -110,7 +110,7 @@ fn fields(app: &mut App, ui: &mut egui::Ui, chosen: usize) -> bool {
     is_done
 }
 
-/// Returns true if a field's value is final: when it was released or lost focus.
+/// Returns true if a field's value is final: the field was released or lost focus.
 fn finished(field: &egui::Response) -> bool {
     field.drag_stopped() || field.lost_focus() || field.changed() && !field.dragged() && !field.has_focus()
 }
@@ -122,7 +122,7 @@ fn row(ui: &mut egui::Ui, name: &str, add: impl FnOnce(&mut egui::Ui)) {
     });
 }
 
-/// Lower and upper end of a range, degrees.
+/// Shows the lower and upper end of a range, degrees; returns true if a change is final.
 fn range(app: &mut App, ui: &mut egui::Ui, axis: usize) -> bool {
     let Some(Range { lo, hi }) = bench::ranges(app)[axis] else { return false };
     let (mut low, mut high, mut is_done) = (lo.to_degrees(), hi.to_degrees(), false);

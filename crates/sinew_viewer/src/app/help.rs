@@ -10,7 +10,7 @@ const HINTS: [&str; 3] = [
     "Choose a scene at the left, or drop a file on the window; ? shows all keys",
 ];
 
-/// Keys and what they do.
+/// Keys, each with its effect.
 const KEYS: [(&str, &str); 22] = [
     ("left drag", "on a body: pull it; on the background: look around"),
     ("right drag", "look around"),

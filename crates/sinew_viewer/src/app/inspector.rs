@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 /// Width of the panel, points.
 const WIDTH: f32 = 290.0;
 
-/// Shows it.
+/// Shows the right panel.
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     let panel = egui::Panel::right("inspector").resizable(true).default_size(WIDTH).frame(style::panel());
     panel.show(ui, |ui| {
@@ -96,7 +96,7 @@ fn settings(app: &mut App, ui: &mut egui::Ui) {
     }
 }
 
-/// Names of the curves that a scene compares, in their colours.
+/// Shows the names of the curves that a scene compares, in their colours.
 fn legend(app: &App, ui: &mut egui::Ui) {
     for (number, curve) in app.session.instance().curves().into_iter().enumerate() {
         let [r, g, b] = draw::curve_color(number);
@@ -112,7 +112,7 @@ fn legend(app: &App, ui: &mut egui::Ui) {
 fn figures(app: &App, ui: &mut egui::Ui) {
     legend(app, ui);
     let metrics = app.session.metrics();
-    // The scene's expectations hold once it has run to its end.
+    // The scene's expectations apply at its end.
     let is_over = match app.session.subject() {
         Subject::Scene(scene, ..) => app.session.world().step_count() >= u64::from(scene.steps),
         _ => true,
@@ -145,7 +145,7 @@ fn figures(app: &App, ui: &mut egui::Ui) {
     }
 }
 
-/// Rounding of a figure that was found in 32 bits, a ratio.
+/// Rounding error of a 32-bit figure, a ratio.
 const ROUNDING: f64 = 1e-6;
 
 /// Plots the history of a figure, and a line at its expected value.
@@ -236,7 +236,7 @@ fn state(app: &App, ui: &mut egui::Ui) {
     }
 }
 
-/// Five digits.
+/// Formats a number with five digits.
 fn digits(x: f64) -> String {
     let size = x.abs();
     if size != 0.0 && !(1e-3..1e5).contains(&size) {

@@ -1,4 +1,4 @@
-//! The viewer without its window: the subject, user operations, and the panels.
+//! The viewer without its window: subject, user operations, and panels.
 
 mod bench;
 mod browser;
@@ -34,7 +34,7 @@ use web_time::{Duration, Instant};
 const MOST_STEPPING: Duration = Duration::from_millis(60);
 /// Longest real time that a frame catches up, seconds.
 const LONGEST_FRAME: f64 = 0.1;
-/// Display time of a message.
+/// Time for which a message is shown.
 const MESSAGE: Duration = Duration::from_secs(6);
 /// Number of metric values in a plot.
 const HISTORY: usize = 600;
@@ -42,11 +42,11 @@ const HISTORY: usize = 600;
 /// Start options of a viewer.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// First subject; the default is the introductory demo.
+    /// First subject; by default the introductory demo.
     pub subject: Option<Subject>,
-    /// True to start without running.
+    /// True to start paused.
     pub paused: bool,
-    /// Number of steps taken at full speed, after which it pauses and shows its hash; `None` runs in real time.
+    /// Number of steps taken at full speed, after which the viewer pauses and shows the hash; `None` runs in real time.
     pub steps: Option<u64>,
     /// True to print each message to stderr as well.
     pub log: bool,
@@ -54,13 +54,13 @@ pub struct Options {
     pub preferences: Option<PathBuf>,
     /// Size of the window, points.
     pub size: Option<[f32; 2]>,
-    /// A second recording of the same scene, which is shown beside the first.
+    /// A second recording of the same scene, shown beside the first.
     pub ghost: Option<PathBuf>,
-    /// True to hide the list of scenes, for a small window on one scene.
+    /// True to hide the list of scenes: for a small window on one scene.
     pub hides_browser: bool,
-    /// True to hide all panels and messages, for a picture in a page that has its own.
+    /// True to hide all panels and messages: for a picture on a page with its own controls.
     pub hides_panels: bool,
-    /// True to hide measured times, for pictures that are compared.
+    /// True to hide measured times: for pictures that are compared.
     pub hides_times: bool,
     /// File to which a picture of the window is written after the steps; then the window closes.
     pub screenshot: Option<PathBuf>,
@@ -69,9 +69,9 @@ pub struct Options {
 /// Number of frames until panels have their final sizes.
 const SETTLING: u8 = 4;
 
-/// Width of a window from which on both panels stand beside the picture, points; in a narrower one they are folded.
+/// Least width of a window in which both panels are beside the picture, points; narrower windows fold them.
 const WIDE: f32 = 860.0;
-/// Width from which on there is room for hints in the picture, points.
+/// Least width of the picture that leaves room for hints, points.
 const ROOMY: f32 = 600.0;
 
 /// A panel beside the picture.
@@ -86,11 +86,11 @@ pub struct App {
     session: Session,
     orbit: Orbit,
     running: bool,
-    /// Step up to which it runs at full speed.
+    /// Step up to which the viewer runs at full speed.
     goal: Option<u64>,
     /// Ratio of simulated to real time.
     speed: f32,
-    /// Real time not yet stepped, in seconds of simulation.
+    /// Real time that is not simulated yet, seconds.
     pending: f64,
     last_frame: Option<Instant>,
     frame_time: f32,
@@ -99,7 +99,7 @@ pub struct App {
     layers: Vec<Layer>,
     search: String,
     focuses_search: bool,
-    /// Scene settings as set by the sliders.
+    /// Values of the sliders for the scene's settings.
     sliders: Vec<(&'static str, f32)>,
     /// Values of each metric so far.
     history: Vec<VecDeque<f64>>,
@@ -111,7 +111,7 @@ pub struct App {
     bench: Bench,
     /// Target step while seeking in a recording.
     seeking: Option<u64>,
-    /// The camera's way of following its subject; `None` where it stands still.
+    /// The following camera; `None` if the camera stands still.
     follows: Option<Chase>,
     /// Velocity of the character controlled by keys, m/s; `None` while keys move the camera.
     leads: Option<Vec3>,
@@ -122,7 +122,7 @@ pub struct App {
     unfolded: Option<Side>,
     is_narrow: bool,
     area: Rect,
-    /// True once the camera has been set for the actual size of the picture.
+    /// True after the camera was set for the actual size of the picture.
     is_framed: bool,
     /// Number of started sessions.
     starts: u64,
@@ -132,15 +132,15 @@ pub struct App {
     files: Vec<NamedFile>,
     wants_screenshot: bool,
     wants_to_close: bool,
-    /// File for a picture of the window, and number of frames until then: panels need the first frames to find their sizes.
+    /// File for a picture of the window, and number of frames until then: panels find their sizes in the first frames.
     screenshot: Option<(PathBuf, u8)>,
 }
 
 impl App {
-    /// A viewer of the subject, or of the demo.
+    /// Creates a viewer of the subject, or of the demo.
     ///
     /// # Errors
-    /// One line: the reason why the subject cannot start.
+    /// The reason why the subject cannot start, one line.
     pub fn new(options: Options) -> Result<Self, String> {
         let preferences = options.preferences.as_deref().map(Preferences::load).unwrap_or_default();
         let shows_hints = options.subject.is_none();
@@ -200,17 +200,17 @@ impl App {
         Ok(app)
     }
 
-    /// Session that is shown.
+    /// Returns the session that is shown.
     pub fn session(&self) -> &Session {
         &self.session
     }
 
-    /// Camera as it stands.
+    /// Returns the camera at its present position.
     pub fn camera(&self) -> Camera {
         self.orbit.camera()
     }
 
-    /// Camera as it turns around a point.
+    /// Returns the position of the camera around its target.
     pub fn orbit(&self) -> Orbit {
         self.orbit
     }
@@ -220,19 +220,19 @@ impl App {
         self.orbit = orbit;
     }
 
-    /// Content of the picture.
+    /// Returns the content of the picture.
     pub fn stage(&self) -> Stage<'_> {
         let mut stage = view::stage(&self.session, &self.camera(), &self.layers);
         bench::draw(self, &mut stage);
         stage
     }
 
-    /// The displayed message, if any.
+    /// Returns the displayed message, if any.
     pub fn message(&self) -> Option<&str> {
         self.message.as_ref().map(|(line, _)| line.as_str())
     }
 
-    /// Window position, points, of a point of the world (metres); `None` behind the camera.
+    /// Returns the window position, points, of a point of the world (metres); `None` behind the camera.
     pub fn on_screen(&self, point: Vec3) -> Option<egui::Pos2> {
         let camera = self.camera();
         let axes = camera.axes(self.area.width() / self.area.height());
@@ -243,28 +243,29 @@ impl App {
         (depth > 0.0).then(|| self.area.min + Vec2::new(x * self.area.width(), y * self.area.height()))
     }
 
-    /// Place of the subject in the picture: from its left and upper edge, as shares of its size; `None` behind the camera.
+    /// Returns the position of the subject in the picture, from the left and upper edge, as shares of the size; `None`
+    /// behind the camera.
     pub fn subject_place(&self) -> Option<[f32; 2]> {
         let at = self.on_screen(view::bounds(self.session.instance()).center())? - self.area.min;
         Some([at.x / self.area.width(), at.y / self.area.height()])
     }
 
-    /// Returns true if the camera goes along with its subject.
+    /// Returns true if the camera follows its subject.
     pub fn is_following(&self) -> bool {
         self.follows.is_some()
     }
 
-    /// Returns true if it runs.
+    /// Returns true if the simulation runs.
     pub fn is_running(&self) -> bool {
         self.running
     }
 
-    /// Key of the subject; each start has a new one.
+    /// Returns the key of the subject; each start has a new one.
     pub(crate) fn subject_key(&self) -> u64 {
         self.starts
     }
 
-    /// Part of the window that is the picture, points.
+    /// Returns the part of the window that is the picture, points.
     pub fn area(&self) -> Rect {
         self.area
     }
@@ -297,12 +298,12 @@ impl App {
         Some(path)
     }
 
-    /// Returns true if the viewer is to end.
+    /// Returns true if the viewer should close.
     pub fn is_closing(&self) -> bool {
         self.wants_to_close
     }
 
-    /// Shows a message for a while.
+    /// Shows a message for some seconds.
     pub fn tell(&mut self, line: impl Into<String>) {
         let line = line.into();
         if self.log {
@@ -401,12 +402,12 @@ impl App {
         }
     }
 
-    /// Returns the files for the user to keep, once.
+    /// Returns the files for the host to write, once.
     pub fn take_files(&mut self) -> Vec<NamedFile> {
         std::mem::take(&mut self.files)
     }
 
-    /// Starts with a new session: its camera, sliders and plots.
+    /// Begins a new session: its camera, sliders and plots.
     fn begin(&mut self) {
         self.begin_again();
         self.bench = Bench::default();
@@ -433,7 +434,7 @@ impl App {
         self.history.clear();
     }
 
-    /// Points the camera at the whole scene.
+    /// Moves the camera so that it shows the whole scene.
     fn frame(&mut self) {
         let instance = self.session.instance();
         let aspect = self.area.width().max(1.0) / self.area.height().max(1.0);
@@ -442,12 +443,12 @@ impl App {
         self.follow(self.follows.is_some());
     }
 
-    /// Has the camera go along with the subject, or stand still.
+    /// Makes the camera follow the subject, or stand still.
     fn follow(&mut self, follows: bool) {
         self.follows = follows.then(|| Chase::at(view::bounds(self.session.instance()).center()));
     }
 
-    /// Moves the camera along with the subject for a time, seconds.
+    /// Moves the camera with the subject for a time, seconds.
     pub fn go_along(&mut self, seconds: f32) {
         if let Some(chase) = &mut self.follows {
             let subject = view::bounds(self.session.instance()).center();
@@ -474,7 +475,7 @@ impl App {
         }
     }
 
-    /// Takes one step, paused or not.
+    /// Takes one step, even when paused.
     pub fn step(&mut self) {
         if !self.session.step() {
             self.running = false;
@@ -638,10 +639,10 @@ impl App {
         self.fly(ctx);
     }
 
-    /// Keys that change a ragdoll, or go through a recording.
+    /// Handles keys that change a ragdoll, or seek in a recording.
     fn bench_keys(&mut self, ctx: &egui::Context) {
         let pressed = |key: Key| ctx.input(|input| input.key_pressed(key));
-        // Ctrl may be released by the end of a slow frame, so the event's own modifiers count.
+        // Ctrl may be released by the end of a slow frame, so this uses the event's own modifiers.
         let is_save = |event: &egui::Event| matches!(event, egui::Event::Key { key: Key::S, pressed: true, modifiers, .. } if modifiers.command);
         let saves = |input: &egui::InputState| input.events.iter().any(is_save);
         if ctx.input(saves) {
@@ -698,7 +699,7 @@ impl App {
         }
     }
 
-    /// Stores the preferences, if they are kept. A failed write is ignored.
+    /// Stores the preferences, if the options name a file. Ignores a failed write.
     pub fn keep_preferences(&self) {
         if let Some(path) = &self.preferences {
             let kept = Preferences { layers: self.layers.clone(), threads: self.session.threads() };
@@ -706,7 +707,7 @@ impl App {
         }
     }
 
-    /// Exports the last run as a GLB to be written.
+    /// Exports the last run as a GLB, for the host to write.
     pub fn save_glb(&mut self) {
         match self.session.to_glb() {
             Ok(file) => self.files.push(file),
@@ -714,7 +715,7 @@ impl App {
         }
     }
 
-    /// Exports the recording of the scene so far to be written.
+    /// Exports the recording of the scene so far, for the host to write.
     fn save_recording(&mut self) {
         let Some(recording) = self.session.recording() else {
             return self.tell("only scenes can be recorded");

@@ -7,19 +7,19 @@ use sinew::physics::ray::Ray;
 use sinew::physics::{BodyHit, BodyId, BodyKind, BodyKinds, QueryFilter};
 use sinew_scenes::recording::Operation;
 
-/// Radius of a ball that is thrown, metres.
+/// Radius of a thrown ball, metres.
 const BALL: f32 = 0.12;
-/// Density of water, kg/m³: such a ball weighs 7 kg.
+/// Density of a thrown ball, that of water, kg/m³: the ball weighs 7 kg.
 const DENSITY: f32 = 1000.0;
 /// Speed of a thrown ball, m/s.
 const THROW: f32 = 14.0;
 /// Rotation of the camera per point of mouse motion, radians.
 const TURN: f32 = 0.0065;
 
-/// Impulse of a push, N·s: a shove with both hands that fells a man. And the largest speed that it gives to a light body, m/s.
+/// Impulse of a push, N·s: a shove with both hands that fells a man; and largest speed of a light body after it, m/s.
 const SHOVE: f32 = 130.0;
 const SHOVE_SPEED: f32 = 6.0;
-/// Share of the view's slope that a push has: it goes along the ground.
+/// Factor on the slope of a push, from the slope of the view: pushes go along the ground.
 const LIFT: f32 = 0.3;
 /// Distance beside a character at which a push still reaches it, as a share of the camera's distance.
 const FINGER: f32 = 0.06;
@@ -95,7 +95,7 @@ pub(super) fn act(app: &mut App, ui: &mut egui::Ui) {
     }
 }
 
-/// Pushes what is at a point of the picture away from the camera.
+/// Pushes the body at a point of the picture away from the camera.
 fn push(app: &mut App, at: Pos2) {
     let ray = ray(app, at);
     let Some((body, point)) = pushed(app, &ray) else { return };
@@ -113,13 +113,14 @@ pub(super) fn push_subject(app: &mut App) {
     push(app, subject(app));
 }
 
-/// Place of the subject in the window, points; the middle of the picture where it cannot be seen.
+/// Returns the position of the subject in the window, points; the middle of the picture if the subject is out of sight.
 fn subject(app: &App) -> Pos2 {
     let place = app.subject_place().map(|[x, y]| app.area.lerp_inside(egui::vec2(x, y)));
     place.filter(|at| app.area.contains(*at)).unwrap_or(app.area.center())
 }
 
-/// The body on a ray, and the point on it; else the nearest of a character's bodies beside the ray, because a finger is wide.
+/// Returns the body on a ray, and the point on it; else the nearest of a character's bodies beside the ray, because a finger
+/// is wide.
 fn pushed(app: &App, ray: &Ray) -> Option<(BodyId, Vec3)> {
     let world = app.session.world();
     let of_figures = app.session.instance().bodies_of_figures();
@@ -157,19 +158,19 @@ fn ray(app: &App, at: Pos2) -> Ray {
     app.orbit.ray(at.x / area.width(), at.y / area.height(), area.width() / area.height())
 }
 
-/// Distance along the view of a point, metres.
+/// Returns the distance along the view of a point, metres.
 fn depth(app: &App, point: Vec3) -> f32 {
     let camera = app.camera();
     (point - camera.position).dot(camera.axes(1.0).forward)
 }
 
-/// Point of a ray at a distance along the view.
+/// Returns the point of a ray at a distance along the view.
 fn at_depth(app: &App, ray: &Ray, depth: f32) -> Vec3 {
     let way = ray.direction.normalize();
     ray.origin + way * (depth / way.dot(app.camera().axes(1.0).forward).max(1e-3))
 }
 
-/// The first body on a ray.
+/// Returns the first body on a ray.
 fn body_at(app: &App, ray: &Ray) -> Option<BodyHit> {
     let world = app.session.world();
     world.query().filter(QueryFilter::of(BodyKinds::DYNAMIC | BodyKinds::STATIC)).first(ray)

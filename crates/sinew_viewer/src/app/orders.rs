@@ -1,4 +1,4 @@
-//! Orders of the page around the viewer: what its buttons do.
+//! Orders from the buttons of the page around the viewer.
 
 use super::{App, mouse};
 use crate::session::Subject;
@@ -10,18 +10,18 @@ pub enum Order {
     Push,
     /// Throws a ball at the subject.
     Throw,
-    /// Has the camera go along with the subject, or stand still.
+    /// Makes the camera follow the subject, or stand still.
     Follow,
-    /// Starts again.
+    /// Restarts the subject.
     Restart,
-    /// Pauses, or goes on.
+    /// Pauses or continues.
     Pause,
     /// Opens another subject.
     Open(Box<Subject>),
 }
 
 impl Order {
-    /// The order of a button's name.
+    /// Returns the order of a button by its name.
     pub fn named(name: &str) -> Option<Self> {
         Some(match name {
             "push" => Self::Push,
@@ -35,7 +35,7 @@ impl Order {
 }
 
 impl App {
-    /// Does what the page asks for.
+    /// Carries out an order.
     pub fn obey(&mut self, order: Order) {
         match order {
             Order::Push => mouse::push_subject(self),

@@ -4,16 +4,16 @@ use egui::{Color32, FontId, Frame, Margin, TextStyle};
 
 /// Background of panels.
 pub(super) const PANEL: Color32 = Color32::from_rgb(27, 30, 36);
-/// Text of less weight.
+/// Colour of secondary text.
 pub(super) const FAINT: Color32 = Color32::from_rgb(150, 158, 170);
 /// Colour of curves and bars.
 pub(super) const ACCENT: Color32 = Color32::from_rgb(88, 166, 255);
-/// Colour of a figure that is as expected.
+/// Colour of a figure that meets its expectation.
 pub(super) const GOOD: Color32 = Color32::from_rgb(96, 200, 130);
-/// Colour of one that is not.
+/// Colour of a figure that misses its expectation.
 pub(super) const BAD: Color32 = Color32::from_rgb(240, 120, 100);
 
-/// Sets it, once.
+/// Sets the style, once.
 pub(super) fn apply(ctx: &egui::Context) {
     let done = egui::Id::unique("sinew style");
     if ctx.data(|data| data.get_temp::<bool>(done)).is_some() {
@@ -31,7 +31,7 @@ pub(super) fn apply(ctx: &egui::Context) {
             style.text_styles.insert(text, FontId::proportional(size));
         }
         style.text_styles.insert(TextStyle::Monospace, FontId::monospace(12.5));
-        // Panels that fade are unread for longer, and a picture of them is of the middle of it.
+        // A panel that fades in delays reading, and a picture might be taken in the middle of the fade.
         style.animation_time = 0.0;
         style.spacing.item_spacing = egui::vec2(8.0, 5.0);
         style.spacing.button_padding = egui::vec2(8.0, 3.0);
@@ -42,7 +42,7 @@ pub(super) fn apply(ctx: &egui::Context) {
     });
 }
 
-/// Frame of a panel.
+/// Returns the frame of a panel.
 pub(super) fn panel() -> Frame {
     Frame::NONE.fill(PANEL).inner_margin(Margin::symmetric(12, 10))
 }

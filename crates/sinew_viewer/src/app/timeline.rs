@@ -9,7 +9,7 @@ const HEIGHT: f32 = 22.0;
 /// Colour of the second run.
 pub(super) const GHOST: Color32 = Color32::from_rgb(80, 200, 190);
 
-/// First step at which the second run differs.
+/// Returns the first step at which the second run differs.
 fn parting(app: &App) -> Option<u64> {
     match app.session.ghost()?.difference()? {
         Difference::State { step, .. } => Some(*step),
@@ -18,7 +18,7 @@ fn parting(app: &App) -> Option<u64> {
     }
 }
 
-/// Shows it; a click or a drag seeks.
+/// Shows the timeline; a click or a drag seeks.
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     let Some(length) = app.session.length() else { return };
     let at = app.seeking.unwrap_or(app.session.world().step_count());
@@ -47,7 +47,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     });
 }
 
-/// Second run: its name, and the first difference.
+/// Shows the second run's name, and the first difference.
 pub(super) fn ghost(app: &mut App, ui: &mut egui::Ui) {
     let Some(ghost) = app.session.ghost() else { return };
     ui.label(RichText::new(ghost.name()).color(GHOST));

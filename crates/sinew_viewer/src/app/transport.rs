@@ -3,7 +3,7 @@
 use super::{App, Side, style, timeline};
 use egui::{RichText, Slider};
 
-/// Shows it.
+/// Shows the bottom bar.
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     egui::Panel::bottom("transport").frame(style::panel()).show(ui, |ui| {
         timeline::show(app, ui);
@@ -35,7 +35,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     });
 }
 
-/// Buttons that open and close the panels of a narrow window, one at a time.
+/// Shows buttons that open and close the panels of a narrow window, one at a time.
 fn folds(app: &mut App, ui: &mut egui::Ui) {
     for (side, name) in [(Side::Scenes, "Scenes"), (Side::Figures, "Figures")] {
         let is_open = app.unfolded == Some(side);
@@ -72,7 +72,7 @@ fn times(app: &App, ui: &mut egui::Ui) {
     }
 }
 
-/// Help, and what can be kept of the run.
+/// Shows buttons for help and for saving the run.
 fn outcome(app: &mut App, ui: &mut egui::Ui) {
     if ui.button("?").on_hover_text("All keys").clicked() {
         app.shows_help = !app.shows_help;

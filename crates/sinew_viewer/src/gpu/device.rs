@@ -1,6 +1,6 @@
-//! A graphics device, or the reason why there is none, in a line.
+//! A graphics device, or the reason why there is none, in one line.
 
-/// A device that draws, with the queue of its work.
+/// A graphics device with its queue.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     pub(crate) adapter: wgpu::Adapter,
@@ -25,10 +25,10 @@ pub enum GpuError {
         /// Reason.
         what: String,
     },
-    /// There is no window system, or it refuses a window.
+    /// There is no window system, or the window system refuses a window.
     #[error("no window can be opened: {0}; `sinew view SCENE --picture OUT.png` needs none")]
     NoWindow(String),
-    /// A picture did not come back from the card.
+    /// The card did not return a picture.
     #[error("the picture did not come back from the card: {0}")]
     Lost(String),
 }
@@ -44,7 +44,7 @@ impl Gpu {
         wait(Self::open_for(&wgpu::Instance::new(descriptor), None))
     }
 
-    /// A device for a window's surface.
+    /// Opens a device for a window's surface.
     pub(crate) async fn open_for(
         instance: &wgpu::Instance,
         surface: Option<&wgpu::Surface<'_>>,
@@ -53,7 +53,7 @@ impl Gpu {
         let adapter = instance.request_adapter(&options).await;
         let adapter = adapter.map_err(|error| GpuError::NoDriver(one_line(&error)))?;
         let name = adapter.get_info().name;
-        // Only WebGL2's limits are used, so that a page draws the same as a window.
+        // Uses only WebGL2's limits, so that a page draws the same as a window.
         let limits = wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits());
         let limits = wgpu::Limits { max_buffer_size: adapter.limits().max_buffer_size, ..limits };
         let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
@@ -62,7 +62,7 @@ impl Gpu {
         Ok(Self { adapter, device, queue })
     }
 
-    /// Name of the card and kind of its driver.
+    /// Returns the name of the card and the kind of its driver.
     pub fn name(&self) -> String {
         let info = self.adapter.get_info();
         format!("{} ({})", info.name, info.backend)
@@ -73,7 +73,8 @@ fn one_line(error: &dyn std::fmt::Display) -> String {
     error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ")
 }
 
-/// Result of work that the driver completes at once: on the desktop, none of the awaited calls suspends.
+/// Returns the result of work that the driver completes without delay: on the desktop, none of the awaited
+/// calls suspends.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn wait<T>(work: impl Future<Output = T>) -> T {
     use std::task::{Context, Poll, Waker};

@@ -1,4 +1,4 @@
-//! Draw lists of one picture, as numbers for the card.
+//! Draw lists of one picture, as numbers for the GPU.
 
 use super::device::Gpu;
 use super::meshes::{RigMeshes, Solids, push_vertices};
@@ -10,7 +10,7 @@ use sinew_picture::{Faces, Line, LineDepth, Model, Pattern, ShadowCasting};
 use sinew_scenes::scenes::Figure;
 use std::ops::Range;
 
-/// Numbers of one picture. Buffers are kept from picture to picture.
+/// Draw lists of one picture. The buffers are reused from picture to picture.
 #[derive(Debug, Default)]
 pub(crate) struct Lists {
     pub instances: Vec<f32>,
@@ -48,7 +48,7 @@ pub(crate) struct FigureDraw {
     pub instances: Range<u32>,
 }
 
-/// Address of a rig, by which its meshes are found again.
+/// Returns the address of a rig, the key of its meshes.
 pub(crate) fn address(rig: &Rig) -> usize {
     std::ptr::from_ref(rig).addr()
 }
@@ -204,7 +204,7 @@ impl Lists {
     }
 }
 
-/// Three rows of a matrix.
+/// Appends the three rows of a matrix.
 fn push_rows(numbers: &mut Vec<f32>, affine: &Affine) {
     let (m, t) = (&affine.linear, affine.translation);
     for row in 0..3 {

@@ -1,4 +1,4 @@
-//! Meshes and textures on the card.
+//! Meshes and textures on the GPU.
 
 use super::device::Gpu;
 use super::pipelines::{Pipelines, SKIN, VERTEX};
@@ -11,7 +11,7 @@ use sinew_picture::{Model, RenderMaterial, Texture, draw};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Triangles on the card.
+/// Triangles on the GPU.
 #[derive(Debug)]
 pub(crate) struct Mesh {
     pub vertices: wgpu::Buffer,
@@ -24,7 +24,7 @@ pub(crate) struct Mesh {
 pub(crate) struct Solids {
     by_key: HashMap<Key, usize>,
     pub list: Vec<Mesh>,
-    /// Shapes whose address is a key, kept alive for that.
+    /// Shapes whose address is a key; keeping them alive keeps the address unique.
     kept: Vec<Shape>,
 }
 
@@ -37,12 +37,12 @@ enum Key {
     Cone,
     /// Half height and radii of a capsule, bits.
     Round([u32; 3]),
-    /// Address of data of a shape.
+    /// Address of the data of a shape.
     Data(usize),
 }
 
 impl Solids {
-    /// Index of the mesh of a form.
+    /// Returns the index of the mesh of a form.
     pub fn number(&mut self, gpu: &Gpu, form: &Form) -> usize {
         let key = key(form);
         if let Some(&number) = self.by_key.get(&key) {
@@ -134,7 +134,7 @@ impl Mesh {
     }
 }
 
-/// A buffer with these bytes.
+/// Creates a buffer with these bytes.
 fn filled(gpu: &Gpu, label: &str, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
     let size = (bytes.len() as u64).next_multiple_of(4).max(4);
     let usage = usage | wgpu::BufferUsages::COPY_DST;
@@ -161,7 +161,7 @@ impl Stream {
         Self { buffer: filled(gpu, label, usage, &[0; 256]), label, usage }
     }
 
-    /// Writes it; returns true if the buffer was replaced.
+    /// Writes the buffer; returns true if it was replaced.
     pub fn write(&mut self, gpu: &Gpu, bytes: &[u8]) -> bool {
         if bytes.len() as u64 <= self.buffer.size() {
             gpu.queue.write_buffer(&self.buffer, 0, bytes);
@@ -179,7 +179,8 @@ impl Stream {
     }
 }
 
-/// Matrices in a row of the palette's texture, the same as in the shader. Each takes three texels, so that a row fits every card.
+/// Matrices in a row of the palette's texture, the same as in the shader. A matrix takes three texels; rows of this length fit
+/// every card.
 const PALETTE_ROW: usize = 512;
 /// Numbers of a row.
 const PALETTE_NUMBERS: usize = PALETTE_ROW * 12;
@@ -205,7 +206,7 @@ impl Palette {
         self.texture.create_view(&Default::default())
     }
 
-    /// Writes it, with the last row padded; returns true if the texture was replaced.
+    /// Writes the texture, with the last row padded; returns true if it was replaced.
     pub fn write(&mut self, gpu: &Gpu, numbers: &mut Vec<f32>) -> bool {
         numbers.resize(numbers.len().next_multiple_of(PALETTE_NUMBERS), 0.0);
         let rows = (numbers.len() / PALETTE_NUMBERS) as u32;
@@ -227,7 +228,7 @@ impl Palette {
     }
 }
 
-/// A rig on the card: its parts, each with slots and weights.
+/// Meshes of a rig on the GPU: its parts, each with slots and weights.
 #[derive(Debug)]
 pub(crate) struct RigMeshes {
     pub parts: Vec<RigPart>,
@@ -272,7 +273,7 @@ impl RigMeshes {
     }
 }
 
-/// A primitive as it lies in its file.
+/// Returns a primitive as it is in its file.
 fn surface(primitive: &Primitive) -> Model {
     Model {
         positions: primitive.positions.clone(),
@@ -283,7 +284,7 @@ fn surface(primitive: &Primitive) -> Model {
     }
 }
 
-/// Joint slots and weights of a primitive; without any, it follows the first slot.
+/// Returns the joint slots and weights of a primitive; without any, the primitive follows the first slot.
 fn skin(gpu: &Gpu, primitive: &Primitive, is_skinned: bool) -> wgpu::Buffer {
     let mut numbers = Vec::with_capacity(SKIN * primitive.positions.len());
     for vertex in 0..primitive.positions.len() {
@@ -297,7 +298,7 @@ fn skin(gpu: &Gpu, primitive: &Primitive, is_skinned: bool) -> wgpu::Buffer {
     filled(gpu, "skin", wgpu::BufferUsages::VERTEX, bytemuck::cast_slice(&numbers))
 }
 
-/// A texture with its smaller copies.
+/// Uploads a texture with its smaller copies.
 pub(crate) fn upload(gpu: &Gpu, pipelines: &Pipelines, picture: &Texture) -> wgpu::BindGroup {
     let most = gpu.device.limits().max_texture_dimension_2d;
     let levels: Vec<_> = picture.levels().skip_while(|(w, h, _)| *w.max(h) > most).collect();

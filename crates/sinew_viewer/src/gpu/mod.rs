@@ -1,4 +1,4 @@
-//! The graphics card: a device, meshes on it, pictures by it.
+//! Drawing by the GPU: device, meshes, pipelines, pictures.
 
 mod device;
 mod lists;

@@ -16,7 +16,7 @@ pub struct Offscreen {
     renderer: StageRenderer,
     target: Target,
     picture: wgpu::Texture,
-    /// Rows as they come back, each padded.
+    /// Rows of a picture that is read back, each padded.
     rows: wgpu::Buffer,
 }
 
@@ -30,12 +30,12 @@ impl Offscreen {
         Self { renderer: StageRenderer::new(&gpu, FORMAT), gpu, target, picture, rows }
     }
 
-    /// The device that draws.
+    /// Returns the device that draws.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// Draws one picture, captions included.
+    /// Draws one picture with its captions.
     ///
     /// # Errors
     /// If the picture does not come back from the card.
@@ -50,12 +50,12 @@ impl Offscreen {
     }
 }
 
-/// Bytes of a row in a buffer.
+/// Returns the bytes of a row in a buffer.
 fn padded(width: u32) -> u32 {
     (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 
-/// A buffer for the rows of a texture.
+/// Creates a buffer for the rows of a texture.
 pub(crate) fn rows_of(gpu: &Gpu, picture: &wgpu::Texture) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("rows"),
@@ -65,7 +65,8 @@ pub(crate) fn rows_of(gpu: &Gpu, picture: &wgpu::Texture) -> wgpu::Buffer {
     })
 }
 
-/// Reads back a texture of four bytes a pixel after the encoder's work; `rows` must have room for it.
+/// Reads back a texture of four bytes a pixel after the encoder's work; `rows` must have room for the
+/// texture.
 pub(crate) fn read_back(
     gpu: &Gpu,
     picture: &wgpu::Texture,
@@ -84,7 +85,7 @@ pub(crate) fn read_back(
     let lost = |error: &dyn std::fmt::Display| GpuError::Lost(error.to_string());
     let (told, heard) = std::sync::mpsc::channel();
     rows.map_async(wgpu::MapMode::Read, .., move |result| {
-        // If the wait below failed, nobody receives this.
+        // If the wait below failed, there is no receiver.
         let _ = told.send(result);
     });
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| lost(&error))?;

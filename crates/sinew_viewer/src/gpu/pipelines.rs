@@ -1,4 +1,4 @@
-//! Pipelines: which shader with which data into which target.
+//! Pipelines: combinations of shader, data and target.
 
 use super::device::Gpu;
 use super::samples::{DEPTH, SAMPLES};
@@ -28,10 +28,10 @@ pub(crate) struct Pipelines {
     pub line_on_top: wgpu::RenderPipeline,
 }
 
-/// Description of a pipeline by what differs between them.
+/// Parameters in which pipelines differ.
 struct Kind<'a> {
     vertex: &'a str,
-    /// `None` for shadows.
+    /// Name of the fragment shader; `None` for shadows.
     fragment: Option<&'a str>,
     buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     compare: wgpu::CompareFunction,

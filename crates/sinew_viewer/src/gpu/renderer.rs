@@ -1,4 +1,4 @@
-//! Pictures by the card.
+//! Draws pictures on the GPU.
 
 use super::device::Gpu;
 use super::lists::{Lists, address};
@@ -27,10 +27,10 @@ pub struct StageRenderer {
     solids: Solids,
     rigs: HashMap<usize, RigMeshes>,
     white: Arc<wgpu::BindGroup>,
-    /// Textures by address of the image, which is kept alive so that no other gets it.
+    /// Textures by address of the image, which is kept alive so that its address stays unique.
     textures: HashMap<usize, (Arc<Texture>, Arc<wgpu::BindGroup>)>,
     view: wgpu::Buffer,
-    /// The frame, as the sun and as the eye sees it: the same data.
+    /// Data of the frame, for the views of the sun and of the eye.
     frame: wgpu::BindGroup,
     shadow: wgpu::BindGroup,
     shadow_map: wgpu::TextureView,
@@ -77,7 +77,7 @@ impl StageRenderer {
         }
     }
 
-    /// Drops the meshes of the last subject: it is gone, and another may get its addresses.
+    /// Drops the meshes of the last subject, because another may get its addresses.
     pub fn forget(&mut self) {
         self.rigs.clear();
         self.textures.clear();
@@ -276,7 +276,7 @@ fn shadow_group(gpu: &Gpu, pipelines: &Pipelines, map: &wgpu::TextureView) -> wg
 /// Numbers of the shader's view: two matrices and eleven vectors.
 const VIEW: usize = 2 * 16 + 11 * 4;
 
-/// The shader's view, in the order of its fields.
+/// Returns the shader's view, in the order of its fields.
 fn view_numbers(scene: &Scene, camera: &Camera, [width, height]: [f32; 2], encodes: bool) -> Vec<f32> {
     let axes = camera.axes(width / height);
     let eye = camera.position;
@@ -286,7 +286,7 @@ fn view_numbers(scene: &Scene, camera: &Camera, [width, height]: [f32; 2], encod
     let up_sun = across_sun.cross(-to_sun);
     let radius = scene.sun.shadow_radius.max(1e-3);
     let mut numbers = Vec::with_capacity(VIEW);
-    // Depth is NEAR over the distance: 1 at the nearest, 0 infinitely far.
+    // The depth is NEAR over the distance: 1 at the nearest, 0 infinitely far.
     let row = |axis: Vec3, offset: f32| [axis.x, axis.y, axis.z, offset];
     let picture = [
         row(axes.right / axes.half_width, -eye.dot(axes.right) / axes.half_width),

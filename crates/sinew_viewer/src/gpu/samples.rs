@@ -1,19 +1,19 @@
-//! Targets: colours and depths with several samples a pixel.
+//! Render targets: colours and depths with several samples a pixel.
 
 use super::device::Gpu;
 
-/// Samples a pixel.
+/// Number of samples a pixel.
 pub(crate) const SAMPLES: u32 = 4;
 /// Depth of a pixel: 0 infinitely far, 1 at the nearest.
 pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Colours and depths of a picture on its way.
+/// Colours and depths of a picture while it is drawn.
 #[derive(Debug)]
 pub struct Target {
     pub(crate) size: [u32; 2],
     pub(crate) color: wgpu::TextureView,
     pub(crate) depth: wgpu::TextureView,
-    /// Part of it that the picture fills: left, top, width and height, pixels.
+    /// Part of the target that the picture fills: left, top, width and height, pixels.
     pub(crate) area: [f32; 4],
 }
 
@@ -29,12 +29,12 @@ impl Target {
         Self { size, color: view(format), depth: view(DEPTH), area: [0.0, 0.0, width, height] }
     }
 
-    /// Width and height, pixels.
+    /// Returns width and height, pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// Restricts drawing to a part of it: left, top, width and height, pixels.
+    /// Restricts drawing to a part of the target: left, top, width and height, pixels.
     pub fn set_area(&mut self, [left, top, width, height]: [f32; 4]) {
         let most = self.size.map(|side| side as f32);
         let (left, top) = (left.clamp(0.0, most[0] - 1.0), top.clamp(0.0, most[1] - 1.0));
@@ -42,7 +42,7 @@ impl Target {
     }
 }
 
-/// A plain texture without smaller copies.
+/// Creates a plain texture without smaller copies.
 pub(crate) fn texture(
     gpu: &Gpu,
     label: &str,

@@ -1,4 +1,4 @@
-// Surfaces lit by one sun with shadows and by the sky, the sky itself, and lines: what `sinew_picture` draws on the processor.
+// Draws surfaces lit by one sun with shadows and by the sky, the sky itself, and lines, like `sinew_picture` on the processor.
 
 struct View {
     clip_from_world: mat4x4<f32>,
@@ -12,16 +12,17 @@ struct View {
     to_sun: vec4<f32>,
     sun: vec4<f32>,
     zenith: vec4<f32>,
-    // w: square of the distance at which haze hides half
+    // w: square of the distance at which haze hides half of a surface
     horizon: vec4<f32>,
     ground: vec4<f32>,
     above: vec4<f32>,
-    // width and height in pixels, half the width of a line in pixels, 1 if the target wants sRGB bytes from us
+    // width and height in pixels, half the width of a line in pixels, 1 if the shader must write sRGB bytes
     target_size: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> view: View;
-// Three texels for each matrix, its rows; rows of 512 matrices. A texture, since WebGL2 has no storage buffers.
+// Three texels for each matrix, its rows; rows of 512 matrices. The data are in a texture, because WebGL2 has no storage
+// buffers.
 @group(0) @binding(1) var palette: texture_2d<f32>;
 @group(1) @binding(0) var shadow_map: texture_depth_2d;
 @group(1) @binding(1) var shadow_sampler: sampler_comparison;
@@ -36,7 +37,7 @@ struct Instance {
     @location(7) color: vec4<f32>,
     // second colour of a checker; w: side of its squares, 0 for none
     @location(8) other: vec4<f32>,
-    // x: first matrix of its palette; y: 1 if only the outside is seen
+    // x: first matrix of the palette; y: 1 if only the outside is drawn
     @location(9) info: vec4<f32>,
 }
 
@@ -71,7 +72,7 @@ struct Placed {
 
 fn place(position: vec3<f32>, normal: vec3<f32>, rows: mat3x4<f32>) -> Placed {
     let p = vec4(position, 1.0);
-    // Normals turn by the cofactors, with the sign of a mirroring taken out.
+    // Normals are transformed by the cofactors, times the sign of the determinant.
     let x = vec3(rows[0].x, rows[1].x, rows[2].x);
     let y = vec3(rows[0].y, rows[1].y, rows[2].y);
     let z = vec3(rows[0].z, rows[1].z, rows[2].z);
@@ -130,7 +131,7 @@ fn skin_shadow(vertex: Vertex, instance: Instance, skin: Skin) -> @builtin(posit
     return view.sun_from_world * vec4(place(vertex.position, vertex.normal, rows).world, 1.0);
 }
 
-// Integral of the square wave from 0: up to 1 at odd numbers, 0 at even ones.
+// Integral of the square wave from 0: rises to 1 at odd numbers and falls to 0 at even ones.
 fn triangle_wave(x: vec2<f32>) -> vec2<f32> {
     let t = x * 0.5;
     return 1.0 - abs((t - floor(t)) * 2.0 - 1.0);
@@ -143,7 +144,7 @@ fn checker(p: vec2<f32>, covered: vec2<f32>) -> f32 {
     return 0.5 - 0.5 * clamp(mean.x, -1.0, 1.0) * clamp(mean.y, -1.0, 1.0);
 }
 
-// Share of the sun that comes through to a point: nine taps, each of four texels.
+// Share of the sunlight that reaches a point: nine taps, each of four texels.
 fn sunlight(world: vec3<f32>, face: vec3<f32>) -> f32 {
     let slant = 1.0 - clamp(dot(face, view.to_sun.xyz), 0.0, 1.0);
     let lifted = world + face * (view.eye.w * (0.8 + 2.2 * slant));
@@ -219,7 +220,7 @@ struct Stroke {
     @location(0) color: vec3<f32>,
 }
 
-// Two triangles along a line, as wide as the view asks for.
+// Two triangles along a line, of the width in the view.
 @vertex
 fn line_vertex(
     @builtin(vertex_index) index: u32,
@@ -229,7 +230,7 @@ fn line_vertex(
 ) -> Stroke {
     var a = view.clip_from_world * vec4(from_point, 1.0);
     var b = view.clip_from_world * vec4(to_point, 1.0);
-    // Of a line that passes the eye only what is before it.
+    // Clips a line to the part before the eye.
     let near = 0.01;
     if (a.w < near && b.w < near) {
         return Stroke(vec4(0.0, 0.0, -1.0, 1.0), color);
@@ -250,7 +251,7 @@ fn line_vertex(
         end = b;
     }
     let side = select(-1.0, 1.0, is_left);
-    // A line lies on the surface that it belongs to: a little nearer it is not hidden by it.
+    // A line on a surface is drawn a little nearer, so that the surface does not hide it.
     return Stroke(vec4(end.xy + off * side * end.w, end.z * 1.004, end.w), color);
 }
 

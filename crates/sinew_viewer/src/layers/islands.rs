@@ -29,7 +29,7 @@ pub(super) fn add(world: &World, lines: &mut Vec<Line>) {
     }
 }
 
-/// The first body of an island.
+/// Returns the first body of an island, as an index.
 fn root(first: &mut [usize], mut at: usize) -> usize {
     while first[at] != at {
         first[at] = first[first[at]];

@@ -9,48 +9,49 @@ use sinew_picture::{Line, LineDepth};
 const SEGMENTS: usize = 32;
 /// Length of a cone, as a share of the size of the second body.
 const LENGTH: f32 = 0.6;
-/// Linear colours: where the joint may go, where it is, and where it is beyond its limits.
+/// Linear colours: of the cone, of the joint's present axis, and of the cone when the joint is beyond its
+/// limits.
 const CONE: [f32; 3] = [0.95, 0.55, 0.05];
 const AXIS: [f32; 3] = [0.05, 0.65, 0.10];
 const BEYOND: [f32; 3] = [0.95, 0.05, 0.05];
 
-/// Limits of a joint as they stand in the world.
+/// Present limits of a joint in the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cone {
     /// World from the joint's frame on the first body.
     pub frame: Transform,
-    /// Frame on the second body, seen from the first.
+    /// Rotation from the frame on the second body to the frame on the first.
     pub turn: Rotation,
     /// Swing about y, swing about z, twist, radians.
     pub ranges: [Option<Range>; 3],
-    /// True if the angle of the twist range swings the second body: a hinge.
+    /// True for a hinge: the angle of the twist range then swings the second body.
     pub is_hinge: bool,
-    /// Metres.
+    /// Length of the drawn cone, metres.
     pub length: f32,
-    /// Angle by which it is beyond its limits, radians.
+    /// Angle by which the joint is beyond its limits, radians.
     pub beyond: f32,
 }
 
 impl Cone {
-    /// Direction of the edge of a range (0: swing about y, 1: about z), world space, unit.
+    /// Returns the direction of the edge of a range (0: swing about y, 1: about z), world space, unit.
     pub fn edge(&self, axis: usize, angle: f32) -> Vec3 {
         let about = if axis == 0 { Vec3::Y } else { Vec3::Z };
         self.frame.rotation * (Rotation::from_axis_angle(about, angle) * Vec3::X)
     }
 
-    /// Point of the edge of a range, metres, world space.
+    /// Returns the point of the edge of a range, metres, world space.
     pub fn handle(&self, axis: usize, angle: f32) -> Vec3 {
         let way = if self.is_hinge { self.hinge_way(angle) } else { self.edge(axis, angle) };
         self.frame.translation + way * self.length
     }
 
-    /// Direction in which a hinge at an angle is drawn, world space, unit.
+    /// Returns the direction in which a hinge at an angle is drawn, world space, unit.
     pub fn hinge_way(&self, angle: f32) -> Vec3 {
         self.frame.rotation * (Rotation::from_axis_angle(Vec3::X, angle) * Vec3::Y)
     }
 }
 
-/// The limits of a joint; `None` where it has none of rotations.
+/// Returns the limits of a joint; `None` if no rotation is limited.
 pub(crate) fn cone_of(world: &World, joint: &JointDef) -> Option<Cone> {
     let ranges = limits(&joint.kind);
     if ranges == [None; 3] {
@@ -69,7 +70,7 @@ pub(crate) fn cone_of(world: &World, joint: &JointDef) -> Option<Cone> {
     Some(Cone { frame, turn, ranges, is_hinge, length, beyond })
 }
 
-/// Adds the lines of a joint's limits, in a colour of their own if one is given.
+/// Adds the lines of a joint's limits, in `color` if one is given.
 pub(crate) fn add_cone(cone: &Cone, color: Option<[f32; 3]>, lines: &mut Vec<Line>) {
     let color = color.unwrap_or(if cone.beyond > 0.02 { BEYOND } else { CONE });
     let at = cone.frame.translation;
@@ -88,7 +89,7 @@ pub(crate) fn add_cone(cone: &Cone, color: Option<[f32; 3]>, lines: &mut Vec<Lin
         line(at, at + cone.frame.rotation * (cone.turn * Vec3::X) * cone.length, AXIS);
     }
     if let [_, _, Some(twist)] = cone.ranges {
-        // A hinge as a fan; a twist as a smaller one, about where the joint is.
+        // A hinge is drawn as a fan; a twist as a smaller one, about the joint's present axis.
         let (length, base) = if cone.is_hinge {
             (cone.length, cone.frame.rotation)
         } else {
@@ -107,10 +108,10 @@ pub(crate) fn add_cone(cone: &Cone, color: Option<[f32; 3]>, lines: &mut Vec<Lin
     }
 }
 
-/// Direction of a point of the rim of a cone, world space, unit.
+/// Returns the direction of a point of the rim of a cone, world space, unit.
 fn rim(cone: &Cone, ranges: [Option<Range>; 2], i: usize) -> Vec3 {
     let (sin, cos) = sinew::math::trig::sin_cos(i as f32 * (core::f32::consts::TAU / SEGMENTS as f32));
-    // The rim is an ellipse in the plane of the swing's scaled axis, each quarter with its own half axes.
+    // The rim is an ellipse in the plane of the swing's scaled axis; each quarter has its own half axes.
     let half = |range: Option<Range>, sign: f32| {
         let range = range.unwrap_or(Range::new(0.0, 0.0));
         clamp(if sign < 0.0 { -range.lo } else { range.hi }, 0.0, core::f32::consts::PI)

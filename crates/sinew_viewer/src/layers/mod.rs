@@ -55,7 +55,7 @@ impl Layer {
         Self::Springs,
     ];
 
-    /// Name of the layer.
+    /// Returns the name of the layer.
     pub fn name(self) -> &'static str {
         match self {
             Self::Shapes => "shapes",
@@ -73,7 +73,7 @@ impl Layer {
     }
 }
 
-/// Linear colours of the world's debug drawing.
+/// Returns the linear colours of the world's debug drawing.
 fn color(kind: DrawKind) -> [f32; 3] {
     match kind {
         DrawKind::Static => [0.30, 0.32, 0.35],
@@ -87,7 +87,7 @@ fn color(kind: DrawKind) -> [f32; 3] {
     }
 }
 
-/// Time that scales the arrow of a velocity, seconds.
+/// Time for which a velocity's arrow shows the displacement, seconds.
 const WAY: f32 = 0.1;
 /// Length of the axes at a centre of mass, as a share of the body's size.
 const AXES: f32 = 0.35;
@@ -199,7 +199,7 @@ impl DebugDraw for Chosen<'_> {
         let layer = match kind {
             DrawKind::Static | DrawKind::Kinematic | DrawKind::Awake | DrawKind::Asleep => Layer::Shapes,
             DrawKind::Joint => Layer::Joints,
-            // These are always drawn, or drawn with their forces.
+            // These kinds are always drawn, or drawn with their forces.
             DrawKind::Spring | DrawKind::Object | DrawKind::Contact => return,
         };
         if self.layers.contains(&layer) {

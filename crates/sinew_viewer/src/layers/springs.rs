@@ -15,10 +15,10 @@ const BACKSTOP: [f32; 3] = [0.10, 0.65, 0.15];
 const STOPPED: [f32; 3] = [0.95, 0.15, 0.05];
 /// Gap below which a particle rests on its backstop, metres.
 const LIES: f32 = 1e-3;
-/// Half of the square that stands for a plane, in lengths of a file's unit.
+/// Half the side of the square that shows a plane, in lengths of a file's unit.
 const PLANE: f32 = 0.25;
 
-/// Adds the springs that the rigs of figures have.
+/// Adds the springs of the rigs of figures.
 pub(super) fn add_springs(figures: &[Figure<'_>], lines: &mut Vec<Line>) {
     for figure in figures {
         let Springs { chains, colliders, .. } = &figure.rig.springs;
@@ -36,7 +36,7 @@ pub(super) fn add_springs(figures: &[Figure<'_>], lines: &mut Vec<Line>) {
     }
 }
 
-/// Metres that a unit is long in the space of a joint.
+/// Returns the length of a unit of a joint's space, metres.
 fn scale(frame: &Affine) -> f32 {
     frame.vector(Vec3::Y).length()
 }
@@ -46,7 +46,7 @@ fn ball(center: Vec3, radius: f32, color: [f32; 3], lines: &mut Vec<Line>) {
     lines.extend(draw::wire(&Shape::Sphere { radius }, place, color, LineDepth::OnTop));
 }
 
-/// A bone from its joint to its tip, with its hit radius about that.
+/// Adds a bone from its joint to its tip, with its hit radius about the tip.
 fn add_bone(bone: &SpringBone, frame: &Affine, lines: &mut Vec<Line>) {
     let (from, to) = (frame.translation, frame.point(bone.tail));
     lines.push(Line { from, to, color: SWINGS, depth: LineDepth::OnTop });
@@ -80,7 +80,7 @@ fn add_collider(shape: &ColliderShape, frame: &Affine, lines: &mut Vec<Line>) {
     }
 }
 
-/// Adds a line from each particle to its backstop, red where it rests on it.
+/// Adds a line from each particle to its backstop, red if the particle rests on it.
 pub(super) fn add_backstops(world: &World, lines: &mut Vec<Line>) {
     for group in world.group_ids().map(|id| world.particles(id)) {
         for stop in group.backstops() {
@@ -103,7 +103,7 @@ mod tests {
     use sinew::physics::particles::{BackstopDef, GroupDef, ParticleDef};
     use sinew::physics::{BodyDef, WorldDef};
 
-    /// A joint that stands aside, turned and twice as large, with a bone and a collider.
+    /// Returns the lines of a joint that is moved aside, rotated and twice as large, with a bone and a collider.
     fn lines_of(shape: ColliderShape) -> Vec<Line> {
         let joint = Joint { name: "hair".into(), parent: None, rest: LocalTransform::default(), source: 0 };
         let bone = SpringBone {
@@ -141,7 +141,7 @@ mod tests {
         assert!(ends(&lines, COLLIDER).count() > 20);
         let rings = ends(&lines, COLLIDER);
         assert!(rings.map(|at| ((at - middle).length() - 0.6).abs()).fold(0.0, f32::max) < 1e-5);
-        // From that ball to one beyond the joint, and all of it as wide.
+        // A capsule from that ball to one beyond the joint.
         let tail = Vec3::X;
         let lines = lines_of(ColliderShape::Capsule { offset, tail, radius: 0.1, keeps });
         let (low, high) = ends(&lines, COLLIDER)

@@ -35,7 +35,7 @@ pub(super) fn open(path: &Path) -> Result<Opened, Error> {
     of_motion(load_motion(path, &motion_options())?, &title).map_err(|error| error.with_file(name))
 }
 
-/// As [`open`], of files without a folder.
+/// Opens files without a folder, like [`open`].
 pub(super) fn open_dropped(files: &[NamedFile]) -> Result<Opened, Error> {
     let [NamedFile { name, bytes }, beside @ ..] = files else {
         return Err(Error::unsupported("nothing was dropped", ""));
@@ -47,7 +47,8 @@ pub(super) fn open_dropped(files: &[NamedFile]) -> Result<Opened, Error> {
     file.and_then(|file| of_motion(file, name)).map_err(|error| error.with_file(name.clone()))
 }
 
-/// A file dropped with another one, by its path relative to it. Pages give names without folders.
+/// Returns the content of a file dropped with another one, by its path relative to that. Pages give names
+/// without folders.
 fn companion(beside: &[NamedFile], relative: &str) -> Result<Vec<u8>, Error> {
     let last = relative.rsplit('/').next().unwrap_or(relative);
     let found = beside.iter().find(|file| file.name == last);
@@ -55,7 +56,7 @@ fn companion(beside: &[NamedFile], relative: &str) -> Result<Vec<u8>, Error> {
     found.map(|file| file.bytes.clone()).ok_or_else(missing)
 }
 
-/// The character of dropped files on a stage.
+/// Opens the character of dropped files on a stage.
 pub(super) fn stage(files: &[NamedFile]) -> Result<Opened, Error> {
     let [NamedFile { name, bytes }, beside @ ..] = files else {
         return Err(Error::unsupported("nothing was dropped", ""));
@@ -74,7 +75,7 @@ fn motion_options() -> MotionOptions<'static> {
     MotionOptions { gltf, ..MotionOptions::default() }
 }
 
-/// A ragdoll, or a world.
+/// Opens a ragdoll or a world.
 fn of_json(bytes: &[u8], name: &str) -> Result<Opened, Error> {
     let kind = serde_json::from_slice::<serde_json::Value>(bytes);
     if kind.is_ok_and(|value| value["sinew"] == "ragdoll") {
@@ -96,7 +97,7 @@ fn of_motion(file: MotionFile, name: &str) -> Result<Opened, Error> {
     Ok(Opened::Workbench(Box::new(Workbench::of_character(file, name).map_err(refused)?)))
 }
 
-/// The first clip of a skeleton without skin, as motion capture has it.
+/// Opens the first clip of a skeleton without skin, such as motion capture.
 fn of_skeleton(file: MotionFile) -> Result<Opened, String> {
     let MotionFile { rig, mut clips, notes, .. } = file;
     let count = clips.len();

@@ -23,7 +23,7 @@ use sinew_scenes::staged::staged;
 use std::path::Path;
 use web_time::{Duration, Instant};
 
-/// Way in which a subject runs.
+/// Mode in which a subject runs.
 enum Run {
     Live(Box<Recorder>),
     Replay(Box<Playback>),
@@ -39,7 +39,7 @@ fn is_glb(path: &Path) -> bool {
 /// Longest time that a ghost may block the window.
 const LONGEST_WAIT: Duration = Duration::from_secs(5);
 
-/// A subject that runs.
+/// A running subject.
 pub struct Session {
     subject: Subject,
     run: Run,
@@ -53,7 +53,7 @@ pub struct Session {
     /// Bodies of the ragdoll, if no figure lists them.
     bodies: Vec<BodyId>,
     ghost: Option<Box<Ghost>>,
-    /// Poses of the character on the workbench at its start and after each step, world from joint.
+    /// Poses of the workbench's character at its start and after each step, world from joint.
     poses: Vec<Vec<Affine>>,
 }
 
@@ -61,7 +61,7 @@ impl Session {
     /// Starts a subject.
     ///
     /// # Errors
-    /// One line: a file that cannot be read, or a recording of an unknown scene.
+    /// One line: the file cannot be read, or the recording is of an unknown scene.
     pub fn start(subject: Subject) -> Result<Self, Error> {
         let opened = match &subject {
             Subject::Scene(scene, settings, assignments) => {
@@ -107,7 +107,7 @@ impl Session {
         }
     }
 
-    /// A ragdoll that falls.
+    /// Starts the fall of a ragdoll.
     fn on(subject: Subject, workbench: Box<Workbench>) -> Self {
         let (instance, bodies) = workbench.fall();
         let run = Run::Live(Box::new(Recorder::of(instance, &subject.title(), &[])));
@@ -137,10 +137,10 @@ impl Session {
         workbench.to_glb(&self.poses, self.world().def().dt(), original.as_deref())
     }
 
-    /// Restarts it: a scene with its settings, a ragdoll with its edits.
+    /// Restarts the subject: a scene with its settings, a ragdoll with its edits.
     ///
     /// # Errors
-    /// As [`start`](Self::start).
+    /// The errors of [`start`](Self::start).
     pub fn restart(&mut self) -> Result<(), Error> {
         let subject = self.subject.clone();
         let mut started = match self.workbench.take() {
@@ -154,12 +154,12 @@ impl Session {
         Ok(())
     }
 
-    /// The ragdoll that can be edited, if there is one.
+    /// Returns the ragdoll that can be edited, if there is one.
     pub fn workbench(&self) -> Option<&Workbench> {
         self.workbench.as_deref()
     }
 
-    /// Bodies of that ragdoll in the world, in the order of its definition.
+    /// Returns the bodies of that ragdoll in the world, in the order of its definition.
     pub fn ragdoll(&self) -> Vec<BodyId> {
         match &self.workbench {
             Some(workbench) if workbench.has_rig() => self.instance().bodies_of_figures(),
@@ -177,12 +177,12 @@ impl Session {
         self.restart().map_err(|error| error.to_string())
     }
 
-    /// Subject that it shows.
+    /// Returns the subject of the session.
     pub fn subject(&self) -> &Subject {
         &self.subject
     }
 
-    /// The scene as it runs.
+    /// Returns the running scene.
     pub fn instance(&self) -> &Instance {
         match &self.run {
             Run::Live(recorder) => recorder.instance(),
@@ -190,12 +190,12 @@ impl Session {
         }
     }
 
-    /// World of the session.
+    /// Returns the world of the session.
     pub fn world(&self) -> &World {
         self.instance().world()
     }
 
-    /// Hands, and the bodies that they hold.
+    /// Returns the user's hands, with the body that they hold.
     pub fn hands(&self) -> &Hands {
         match &self.run {
             Run::Live(recorder) => recorder.hands(),
@@ -203,12 +203,12 @@ impl Session {
         }
     }
 
-    /// Number of threads that its steps run on.
+    /// Returns the number of threads for the steps.
     pub fn threads(&self) -> usize {
         self.threads
     }
 
-    /// Sets the number of threads for the next steps, at least 1. The bits do not depend on it.
+    /// Sets the number of threads for the next steps, at least 1. The bits do not depend on the number.
     pub fn set_threads(&mut self, threads: usize) {
         self.threads = threads.max(1);
         self.runner = if self.threads == 1 { Box::new(Serial) } else { Box::new(Threads::new(self.threads)) };
@@ -221,12 +221,12 @@ impl Session {
         }
     }
 
-    /// Returns true if it accepts operations.
+    /// Returns true if the session accepts operations.
     pub fn is_live(&self) -> bool {
         matches!(self.run, Run::Live(_))
     }
 
-    /// One step; false at the end of a recording.
+    /// Takes one step; returns false at the end of a recording.
     pub fn step(&mut self) -> bool {
         let start = Instant::now();
         self.times.begin_step();
@@ -244,7 +244,7 @@ impl Session {
         went_on
     }
 
-    /// Figures so far; for a recording, those when the step was first played.
+    /// Returns the figures so far; for a recording, those when the step was first played.
     pub fn metrics(&self) -> Vec<Metric> {
         match &self.run {
             Run::Live(recorder) => recorder.instance().metrics(),
@@ -252,7 +252,7 @@ impl Session {
         }
     }
 
-    /// Figures of a recording up to now, after each number of steps; empty for live subjects.
+    /// Returns the figures of a recording up to now, after each number of steps; empty for live subjects.
     pub fn past_metrics(&self) -> &[Vec<Metric>] {
         match &self.run {
             Run::Live(_) => &[],
@@ -260,7 +260,7 @@ impl Session {
         }
     }
 
-    /// Number of steps in the recording; `None` for live subjects.
+    /// Returns the number of steps in the recording; `None` for live subjects.
     pub fn length(&self) -> Option<u64> {
         match &self.run {
             Run::Live(_) => None,
@@ -268,7 +268,8 @@ impl Session {
         }
     }
 
-    /// Seeks to a step of a recording, in either direction, until a time limit; returns true when it is there.
+    /// Seeks to a step of a recording, in either direction, until a time limit; returns true when the step is
+    /// reached.
     pub fn seek(&mut self, goal: u64, until: Instant) -> bool {
         let Run::Replay(playback) = &mut self.run else { return true };
         let arrived = playback.seek(goal, &*self.runner, until);
@@ -280,13 +281,13 @@ impl Session {
     fn follow(&mut self) {
         let at = self.world().step_count();
         if let Some(ghost) = &mut self.ghost {
-            // It is never far behind, since it follows each step.
+            // The ghost is never far behind, because it follows each step.
             let until = Instant::now() + LONGEST_WAIT;
             ghost.playback.seek(at, &*self.runner, until);
         }
     }
 
-    /// The second run that is shown beside a recording.
+    /// Returns the second run that is shown beside a recording.
     pub fn ghost(&self) -> Option<&Ghost> {
         self.ghost.as_deref()
     }
@@ -294,7 +295,7 @@ impl Session {
     /// Shows a second run of the same scene beside a recording.
     ///
     /// # Errors
-    /// One line: nothing is played, or it is of another scene.
+    /// One line: no recording is played, or the second one is of another scene.
     pub fn set_ghost(&mut self, name: &str, recording: Recording) -> Result<(), Error> {
         let Run::Replay(playback) = &self.run else {
             return Err(Error::unsupported("a ghost goes along with a recording, and none is played", ""));
@@ -305,22 +306,22 @@ impl Session {
         Ok(())
     }
 
-    /// Times of the stages of the last steps.
+    /// Returns the times of the stages of the last steps.
     pub fn times(&self) -> &StageTimes {
         &self.times
     }
 
-    /// Wall time of the last step.
+    /// Returns the wall time of the last step.
     pub fn step_time(&self) -> Duration {
         self.step_time
     }
 
-    /// Lines that describe an opened file.
+    /// Returns lines that describe an opened file.
     pub fn report(&self) -> &[String] {
         self.workbench.as_ref().map_or(&self.report, |workbench| workbench.report())
     }
 
-    /// First step of a recording whose state differs from the recorded one.
+    /// Returns the first step of a recording whose state differs from the recorded one.
     pub fn diverged(&self) -> Option<u64> {
         match &self.run {
             Run::Live(_) => None,
@@ -328,7 +329,8 @@ impl Session {
         }
     }
 
-    /// Recording of the run so far; `None` for subjects not created by a scene, which cannot be restarted elsewhere.
+    /// Returns the recording of the run so far; `None` for subjects not created by a scene, which cannot be
+    /// restarted elsewhere.
     pub fn recording(&self) -> Option<&Recording> {
         match (&self.run, &self.subject) {
             (Run::Live(recorder), Subject::Scene(..)) => Some(recorder.recording()),

@@ -7,12 +7,12 @@ use sinew_scenes::recording::{Difference, Mark, Recording, Replay, compare};
 use sinew_scenes::scenes::Metric;
 use web_time::Instant;
 
-/// Steps between marks at first.
+/// Initial number of steps between marks.
 const MARK_STEPS: u64 = 30;
-/// Largest total size of the marks, bytes; above it, every second one is dropped.
+/// Largest total size of the marks, bytes; above that, every second mark is dropped.
 const MARK_BYTES: usize = 128 << 20;
 
-/// A recording in playback. Steps played before are restored with all their measurements.
+/// A recording in playback. Earlier steps are restored with all their measurements.
 pub(super) struct Playback {
     pub replay: Replay,
     /// Marks by the number of steps taken, in order.
@@ -20,9 +20,9 @@ pub(super) struct Playback {
     mark_steps: u64,
     /// Figures after each number of steps that has been reached.
     metrics: Vec<Vec<Metric>>,
-    /// Hash of the state after each step, when it was first played.
+    /// Hash of the state after each step, from its first playback.
     hashes: Vec<u64>,
-    /// First step that came to another state than was recorded.
+    /// First step whose state differs from the recorded one.
     pub diverged: Option<u64>,
 }
 
@@ -40,22 +40,22 @@ impl Playback {
         })
     }
 
-    /// Number of steps taken.
+    /// Returns the number of steps taken.
     pub fn at(&self) -> u64 {
         self.replay.instance().world().step_count()
     }
 
-    /// Number of steps that were recorded.
+    /// Returns the number of recorded steps.
     pub fn length(&self) -> u64 {
         self.replay.recording().steps.len() as u64
     }
 
-    /// Figures up to now, after each number of steps.
+    /// Returns the figures up to now, after each number of steps.
     pub fn metrics(&self) -> &[Vec<Metric>] {
         &self.metrics[..=(self.at() as usize).min(self.metrics.len() - 1)]
     }
 
-    /// The next step; false at the end.
+    /// Takes the next step; returns false at the end.
     pub fn step(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) -> bool {
         let Some(step) = self.replay.step_with(runner, profiler) else { return false };
         if self.hashes.get(step.step as usize - 1).is_some_and(|&first| first != step.found) {
@@ -87,7 +87,7 @@ impl Playback {
         }
     }
 
-    /// Seeks to a step, in either direction, until a time limit; returns true when it is there.
+    /// Seeks to a step, in either direction, until a time limit; returns true when the step is reached.
     pub fn seek(&mut self, goal: u64, runner: &dyn TaskRunner, until: Instant) -> bool {
         let goal = goal.min(self.length());
         let at = self.at();
@@ -107,7 +107,7 @@ impl Playback {
         self.at() >= goal
     }
 
-    /// Replays from the start, now and always, because the scene cannot be restored.
+    /// Replays from the start, now and for all later seeks, because the scene cannot be restored.
     fn play_anew(&mut self) {
         self.marks.clear();
         self.mark_steps = u64::MAX;
@@ -116,7 +116,7 @@ impl Playback {
 
     fn rewind(&mut self) {
         let recording = self.replay.recording().clone();
-        // It has been started before.
+        // The recording has been started before, so this succeeds.
         if let Ok(replay) = Replay::start(recording) {
             self.replay = replay;
         }
@@ -139,17 +139,17 @@ impl Ghost {
         Ok(Self { name, playback: Playback::start(recording)?, difference })
     }
 
-    /// Name of its file.
+    /// Returns the name of the second run's file.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// First difference of the two; `None` if there is none.
+    /// Returns the first difference of the two runs; `None` if there is none.
     pub fn difference(&self) -> Option<&Difference> {
         self.difference.as_ref()
     }
 
-    /// World of the replay.
+    /// Returns the world of the second run.
     pub fn world(&self) -> &sinew::physics::World {
         self.playback.replay.instance().world()
     }

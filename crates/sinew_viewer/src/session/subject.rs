@@ -10,17 +10,17 @@ use std::sync::Arc;
 /// Content of a session, from which it can be restarted.
 #[derive(Clone, Debug)]
 pub enum Subject {
-    /// A named scene with its settings, and those of them that are not at their defaults, `key=value`.
+    /// A named scene with its settings, and the non-default settings as `key=value`.
     Scene(&'static Scene, Box<Settings>, Vec<String>),
     /// A file: a world, a character, a ragdoll.
     File(PathBuf),
-    /// Files without a folder, as a page receives them: those that [`File`](Self::File) supports, and the files beside it.
+    /// Files without a folder, as a page receives them: one that [`File`](Self::File) supports, and the files beside it.
     Dropped(Arc<[NamedFile]>),
-    /// A recording, and where it comes from.
+    /// A recording, and the path of its file.
     Recording(PathBuf, Box<Recording>),
     /// A built-in character that walks, is pushed, falls and gets up, again and again.
     Sample(Sample),
-    /// The same with the character of files without a folder.
+    /// The character of files without a folder, on the stage of [`Sample`](Self::Sample).
     Staged(Arc<[NamedFile]>),
 }
 
@@ -29,15 +29,15 @@ pub enum Subject {
 pub struct NamedFile {
     /// Name of the file, with its extension.
     pub name: String,
-    /// Content.
+    /// Content of the file.
     pub bytes: Vec<u8>,
 }
 
 impl Subject {
-    /// The scene of that name, with settings `key=value`.
+    /// Returns the scene of that name, with settings `key=value`.
     ///
     /// # Errors
-    /// One line: there is no such scene, or it refuses a setting.
+    /// One line: there is no such scene, or the scene refuses a setting.
     pub fn scene(name: &str, assignments: &[String]) -> Result<Self, String> {
         let scene = find(name).ok_or_else(|| format!("no scene '{name}'"))?;
         let mut settings = scene.settings();
@@ -48,7 +48,7 @@ impl Subject {
         Ok(Self::Scene(scene, Box::new(settings), assignments.to_vec()))
     }
 
-    /// A file by its path, of whatever kind it is.
+    /// Opens a file of any supported kind by its path.
     ///
     /// # Errors
     /// One line that names the file.
@@ -59,7 +59,7 @@ impl Subject {
         Ok(Self::File(path.to_owned()))
     }
 
-    /// Files dropped together. The first that can be shown on its own is shown; the others are its companions.
+    /// Opens files dropped together. The first file that can be shown on its own is shown; the others are its companions.
     ///
     /// # Errors
     /// One line that names the file.
@@ -73,7 +73,7 @@ impl Subject {
         }
     }
 
-    /// As [`dropped`](Self::dropped), but a character walks, is pushed, falls and gets up.
+    /// Opens files like [`dropped`](Self::dropped), but the character walks, is pushed, falls and gets up.
     ///
     /// # Errors
     /// One line that names the file.
@@ -93,12 +93,12 @@ impl Subject {
         Ok(Self::Recording(path.to_owned(), Box::new(recording)))
     }
 
-    /// True for a character on the stage of the demo, which the camera follows and a click pushes.
+    /// Returns true for a character on the stage of the demo, which the camera follows and a click pushes.
     pub fn is_staged(&self) -> bool {
         matches!(self, Self::Sample(_) | Self::Staged(_))
     }
 
-    /// Name to be shown.
+    /// Returns the name for display.
     pub fn title(&self) -> String {
         let file_name =
             |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();

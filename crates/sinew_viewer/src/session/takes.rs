@@ -1,16 +1,17 @@
-//! Steps that were played, as a clip.
+//! Converts played steps to a clip.
 
 use sinew::anim::{Channel, Clip, Interpolation, KeyBound, LocalTransform, Property, Rig, reduce_keys};
 use sinew::math::{Affine, Rotation, Vec3};
 
 /// Name of the clip.
 const NAME: &str = "played";
-/// Bound on the distance of any joint from where it was: a tenth of a millimetre and a hundredth of a degree.
+/// Largest error of the joints of the clip: a tenth of a millimetre and a hundredth of a degree.
 const BOUND: KeyBound = KeyBound { distance: 1e-4, angle: 1.745_329_3e-4 };
-/// Difference from the rest pose that is rounding, as a share of 1 or of a bone's length.
+/// Largest difference from the rest pose that counts as rounding, as a share of 1 or of a bone's length.
 const ROUNDING: f32 = 1e-5;
 
-/// Poses (world from joint, every `dt` seconds) as a clip of the rig, whose model space stands in the world by `world_from_model`.
+/// Converts poses (world from joint, every `dt` seconds) to a clip of the rig, whose model space is placed in the world by
+/// `world_from_model`.
 pub(super) fn clip_of(rig: &Rig, poses: &[Vec<Affine>], world_from_model: &Affine, dt: f32) -> Clip {
     let times: Vec<f32> = (0..poses.len()).map(|i| i as f32 * dt).collect();
     let mut channels = Vec::new();
@@ -38,7 +39,7 @@ pub(super) fn clip_of(rig: &Rig, poses: &[Vec<Affine>], world_from_model: &Affin
     reduce_keys(rig, &clip, world_from_model, BOUND).clip
 }
 
-/// Players that blend keys by component must not go the long way round.
+/// Returns rotations without sign changes: players that blend keys by component would go the long way round.
 fn rotations(locals: &[LocalTransform]) -> Vec<f32> {
     let mut last: Option<Rotation> = None;
     let mut values = Vec::with_capacity(4 * locals.len());

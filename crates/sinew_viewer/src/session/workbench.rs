@@ -12,12 +12,12 @@ use sinew::ragdoll::{BuildOptions, Mapping, RagdollDef, Repair, Settings, build_
 use sinew_scenes::fallen::{fall_of_bodies, fall_with};
 use sinew_scenes::scenes::Instance;
 
-/// A ragdoll that is edited.
+/// A ragdoll that the user edits.
 #[derive(Clone, Debug)]
 pub struct Workbench {
     name: String,
     source: Source,
-    /// Edits so far, by the name of a body's bone.
+    /// Edits so far, by the name of the body's bone.
     wishes: Vec<(String, BoneSettings)>,
     def: RagdollDef,
     findings: Vec<Finding>,
@@ -27,9 +27,9 @@ pub struct Workbench {
 /// Source of a ragdoll.
 #[derive(Clone, Debug)]
 enum Source {
-    /// A rig, from which it is rebuilt after each edit.
+    /// A rig, from which the ragdoll is rebuilt after each edit.
     Rig(Box<Character>),
-    /// A definition, whose numbers are changed.
+    /// A definition, whose numbers the edits change.
     Bodies(Box<RagdollDef>),
 }
 
@@ -42,7 +42,7 @@ struct Character {
 }
 
 impl Workbench {
-    /// The ragdoll of a file's character; one line if none can be built.
+    /// Builds the ragdoll of a file's character; the error is one line.
     pub(super) fn of_character(file: MotionFile, name: &str) -> Result<Self, String> {
         let hints = Hints { exporter: file.generator.clone(), ..Hints::of_clips(&file.rig, &file.clips) };
         let analysis = analyze_hinted(&file.rig, &hints).map_err(|error| error.to_string())?;
@@ -51,7 +51,7 @@ impl Workbench {
         Self::made(source, name, Vec::new())
     }
 
-    /// A ragdoll without its rig.
+    /// Creates the workbench of a ragdoll without its rig.
     pub(super) fn of_bodies(def: RagdollDef, name: &str) -> Self {
         let source = Source::Bodies(Box::new(def));
         Self::made(source, name, Vec::new()).expect("a definition without settings is unchanged")
@@ -85,17 +85,17 @@ impl Workbench {
         &self.findings
     }
 
-    /// Lines that describe it.
+    /// Returns lines that describe the ragdoll.
     pub fn report(&self) -> &[String] {
         &self.report
     }
 
-    /// True if it is built from a rig, whose roles and shapes can be changed too.
+    /// Returns true if the ragdoll is built from a rig, so that roles and shapes can be changed too.
     pub fn has_rig(&self) -> bool {
         matches!(self.source, Source::Rig(_))
     }
 
-    /// Changes to a body that were made so far.
+    /// Returns the edits of a body so far.
     pub fn wish(&self, body: usize) -> BoneSettings {
         let bone = self.def.bodies.get(body).map(|body| &body.bone);
         let found = self.wishes.iter().find(|(name, _)| Some(name) == bone);
@@ -117,7 +117,7 @@ impl Workbench {
         Ok(())
     }
 
-    /// The falling ragdoll, and its bodies if no figure lists them.
+    /// Returns the falling ragdoll, and its bodies if no figure lists them.
     pub(super) fn fall(&self) -> (Instance, Vec<BodyId>) {
         match &self.source {
             Source::Rig(it) => {
@@ -127,8 +127,8 @@ impl Workbench {
         }
     }
 
-    /// Writes poses as a clip in a GLB, `NAME-played.glb`: in the file itself where `original` is one, else with the clips that
-    /// it had. `poses` are world from joint, every `dt` seconds.
+    /// Writes poses as a clip in a GLB, `NAME-played.glb`: into the file itself if `original` is a GLB, else with the clips of
+    /// the file. `poses` are world from joint, every `dt` seconds.
     ///
     /// # Errors
     /// One line: there is no rig, or nothing was played.
@@ -156,13 +156,13 @@ impl Workbench {
         Ok(NamedFile { name: format!("{stem}-played.glb"), bytes })
     }
 
-    /// Name of the file that [`to_file`](Self::to_file) gives.
+    /// Returns the name of the file of [`to_file`](Self::to_file).
     pub fn to_file_name(&self) -> String {
         let stem = self.name.strip_suffix(".sinew.json").or_else(|| Some(self.name.rsplit_once('.')?.0));
         format!("{}.sinew.json", stem.unwrap_or(&self.name))
     }
 
-    /// The ragdoll as a file, `NAME.sinew.json`.
+    /// Returns the ragdoll as a file, `NAME.sinew.json`.
     pub fn to_file(&self) -> NamedFile {
         NamedFile { name: self.to_file_name(), bytes: write_ragdoll(&self.def).into_bytes() }
     }
@@ -179,7 +179,7 @@ impl Character {
     }
 }
 
-/// A definition with other masses and limits, which need no rig.
+/// Returns a definition with other masses and limits, which need no rig.
 fn changed(def: &RagdollDef, wishes: &[(String, BoneSettings)]) -> Result<RagdollDef, String> {
     let mut def = def.clone();
     for (bone, wish) in wishes {
@@ -205,7 +205,8 @@ fn changed(def: &RagdollDef, wishes: &[(String, BoneSettings)]) -> Result<Ragdol
     Ok(def)
 }
 
-/// Ranges of a joint, radians: swing about y, swing about z, twist or the angle of a hinge; `None` where it has none.
+/// Returns the ranges of a joint, radians: swing about y, swing about z, twist or the angle of a hinge; `None` for unlimited
+/// ones.
 pub fn limits(kind: &JointKind) -> [Option<Range>; 3] {
     match *kind {
         JointKind::Ball { limit: Some(limit) } => {
@@ -221,7 +222,7 @@ pub fn limits(kind: &JointKind) -> [Option<Range>; 3] {
     }
 }
 
-/// A joint with other ranges, where it has any.
+/// Returns a joint with these ranges in place of its own.
 fn limited(kind: JointKind, [y, z, twist]: [Option<Range>; 3]) -> JointKind {
     let of = |limit: SwingTwistLimit| SwingTwistLimit {
         swing_y: y.unwrap_or(limit.swing_y),

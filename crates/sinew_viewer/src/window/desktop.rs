@@ -1,4 +1,4 @@
-//! A window of the system.
+//! The window of a desktop.
 
 use super::{Screen, Told, Viewer, ViewerError, no_window};
 use crate::app::{App, Options};
@@ -11,10 +11,10 @@ use winit::dpi::LogicalSize;
 use winit::event_loop::EventLoop;
 use winit::window::{Window, WindowAttributes};
 
-/// Size of the window at first, points.
+/// Initial size of the window, points.
 const SIZE: [f32; 2] = [1280.0, 760.0];
 
-/// Opens a window as the options say, and returns when it is closed.
+/// Opens a window with these options, and returns when it is closed.
 ///
 /// # Errors
 /// If there is no window system, no driver, or the subject cannot be started.
@@ -31,7 +31,7 @@ pub fn open(options: Options) -> Result<(), ViewerError> {
     viewer.error.map_or(Ok(()), |error| Err(error.into()))
 }
 
-/// A desktop, and its services for the window.
+/// The desktop and its services for the window.
 pub(super) struct Host {
     size: [f32; 2],
 }
@@ -42,20 +42,20 @@ impl Host {
         Window::default_attributes().with_inner_size(LogicalSize::new(width, height))
     }
 
-    /// Kinds of cards that it may draw by: the environment may name fewer.
+    /// Returns the graphics interfaces that the window may use: the environment may name fewer.
     pub fn backends(&self) -> wgpu::Backends {
         wgpu::Backends::all()
     }
 
-    /// The screen, which a desktop has at once.
+    /// Returns the screen; on a desktop there is no wait.
     pub fn await_screen(&self, screen: impl Future<Output = Result<Box<Screen>, GpuError>>) -> Option<Told> {
         Some(Told::Screen(wait(screen)))
     }
 
-    /// [`open`] returns the outcome to the caller.
+    /// Does nothing: [`open`] returns the error to the caller.
     pub fn failed(&self, _: &GpuError) {}
 
-    /// Nobody else looks at the frames.
+    /// Does nothing: no page shows the frames.
     pub fn shown(&self, _: &App) {}
 
     /// Writes a picture of the window into the working folder.

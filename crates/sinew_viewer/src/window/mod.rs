@@ -1,4 +1,5 @@
-//! The window: events of the system in, frames out. On the desktop one of the system, in a browser a canvas of the page.
+//! The window: receives events and shows frames, on the desktop in a window of the system, in a browser in a canvas of
+//! the page.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod desktop;
@@ -23,13 +24,13 @@ pub use desktop::open;
 #[cfg(target_arch = "wasm32")]
 use web::Host;
 
-/// Wait between frames where nothing moves by itself.
+/// Time between frames while nothing moves by itself.
 const IDLE: Duration = Duration::from_millis(200);
 
-/// Reason why the viewer could not be shown. One line.
+/// Reason why the viewer could not be shown, in one line.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewerError {
-    /// The card or the window system.
+    /// The GPU or the window system failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
     /// The subject cannot be shown.
@@ -37,7 +38,7 @@ pub enum ViewerError {
     Subject(String),
 }
 
-/// An error as one line, without the place in the source of others at which it came up.
+/// Returns an error as one line, without the source location that other libraries add.
 fn one_line(error: &dyn std::fmt::Display) -> String {
     let line = error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ");
     let said =
@@ -45,21 +46,21 @@ fn one_line(error: &dyn std::fmt::Display) -> String {
     said.unwrap_or(line).trim_end_matches('.').to_owned()
 }
 
-/// The viewer, and whatever surrounds it.
+/// The app with its host, its screen and the last GPU error.
 struct Viewer {
     app: App,
     host: Host,
     screen: Option<Screen>,
-    /// True if the next frame differs from the last one by itself.
+    /// True if the next frame differs from the last one without input.
     moves: bool,
     error: Option<GpuError>,
 }
 
-/// Message that reaches the viewer beside the events of the system.
+/// Message to the viewer beside the events of the system.
 enum Told {
-    /// The card, which a browser hands out later.
+    /// The screen, or the error; a browser provides it later.
     Screen(Result<Box<Screen>, GpuError>),
-    /// Files that were dropped on the page.
+    /// Files dropped on the page.
     #[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "a desktop tells paths"))]
     Files(Vec<NamedFile>),
     /// An order of the page.
@@ -75,9 +76,9 @@ struct Screen {
     painter: Painter,
     ctx: egui::Context,
     input: egui_winit::State,
-    /// Complaints of the driver since the last frame.
+    /// Errors of the driver since the last frame.
     complaints: Arc<Mutex<Vec<String>>>,
-    /// Reason why it could not do its task.
+    /// Reason of a failed drawing.
     failure: Option<String>,
 }
 
@@ -168,7 +169,7 @@ fn no_window(error: &dyn std::fmt::Display) -> GpuError {
 
 impl Screen {
     async fn new(window: Arc<Window>, descriptor: wgpu::InstanceDescriptor) -> Result<Box<Self>, GpuError> {
-        // Where a page has a card for WebGPU it is that, else WebGL2; no desktop has WebGPU.
+        // In a page this is WebGPU if available, else WebGL2; no desktop has WebGPU.
         let instance = wgpu::util::new_instance_with_webgpu_detection(descriptor).await;
         let surface = instance.create_surface(window.clone()).map_err(|error| no_window(&error))?;
         let gpu = Gpu::open_for(&instance, Some(&surface)).await?;
@@ -183,7 +184,7 @@ impl Screen {
         let (width, height) = (size.width.max(1), size.height.max(1));
         let config = surface.get_default_config(&gpu.adapter, width, height);
         let mut config = config.ok_or_else(|| no_window(&"the driver cannot draw into it"))?;
-        // Panels are mixed as bytes of sRGB, so we write those bytes ourselves where the window takes them.
+        // Panels are blended as bytes of sRGB, so the shader writes those bytes if the window accepts them.
         let plain = config.format.remove_srgb_suffix();
         if surface.get_capabilities(&gpu.adapter).formats.contains(&plain) {
             config.format = plain;
@@ -206,7 +207,7 @@ impl Screen {
         self.painter.resize(size);
     }
 
-    /// One frame.
+    /// Runs and draws one frame.
     fn frame(&mut self, app: &mut App, host: &Host) {
         app.advance();
         let input = self.input.take_egui_input(&self.window);

@@ -17,30 +17,30 @@ use winit::window::{Window, WindowAttributes};
 
 #[wasm_bindgen]
 extern "C" {
-    /// An error of the browser's console.
+    /// Writes an error to the browser's console.
     #[wasm_bindgen(js_namespace = console, js_name = error)]
     fn console_error(line: &str);
     /// Page around the canvas, an object with the methods below.
     pub type Page;
-    /// A message of the viewer.
+    /// Shows a message of the viewer.
     #[wasm_bindgen(method)]
     fn tell(this: &Page, line: &str);
-    /// The line why nothing is drawn.
+    /// Shows the reason why nothing is drawn.
     #[wasm_bindgen(method)]
     fn failed(this: &Page, line: &str);
-    /// Subject and number of steps of the frame that is shown, the subject's place in the picture (NaN: not in sight), and whether it
-    /// runs and is followed.
+    /// Reports a frame: subject and number of steps, the subject's position in the picture (NaN: out of sight), and whether the
+    /// simulation runs and the camera follows.
     #[wasm_bindgen(method)]
     fn shown(this: &Page, title: &str, steps: f64, x: f32, y: f32, runs: bool, follows: bool);
-    /// A file to be kept.
+    /// Offers a file to the user.
     #[wasm_bindgen(method)]
     fn keep(this: &Page, name: &str, bytes: &[u8]);
-    /// The canvas should be saved as a picture.
+    /// Saves the canvas as a picture.
     #[wasm_bindgen(method)]
     fn picture(this: &Page, name: &str);
 }
 
-/// A viewer on a page: files can be given to it.
+/// A viewer on a page, which can receive files.
 #[wasm_bindgen]
 pub struct Shown {
     proxy: EventLoopProxy<Told>,
@@ -49,15 +49,15 @@ pub struct Shown {
 
 #[wasm_bindgen]
 impl Shown {
-    /// One of the files that were dropped together.
+    /// Adds one of the files that were dropped together.
     pub fn file(&mut self, name: String, bytes: Vec<u8>) {
         self.files.push(NamedFile { name, bytes });
     }
 
-    /// All of them have been given: the first that can be shown is shown, on the stage of the demo or on the workbench.
+    /// Opens the added files: shows the first one that can be shown, on the stage of the demo or on the workbench.
     ///
     /// # Errors
-    /// One line: none can be shown.
+    /// One line: none of the files can be shown.
     pub fn open(&mut self, on_stage: bool) -> Result<(), String> {
         let files = std::mem::take(&mut self.files);
         if on_stage {
@@ -72,7 +72,7 @@ impl Shown {
     /// Shows a scene.
     ///
     /// # Errors
-    /// One line: there is none of that name.
+    /// One line: there is no scene of that name.
     pub fn scene(&self, name: &str) -> Result<(), String> {
         let subject = Subject::scene(name, &[])?;
         self.send(Told::Order(Order::Open(Box::new(subject))));
@@ -86,7 +86,7 @@ impl Shown {
         self.send(Told::Order(Order::Open(Box::new(subject))));
     }
 
-    /// Acts as the button of that name; an unknown name does nothing.
+    /// Acts like the button of that name; an unknown name does nothing.
     pub fn order(&self, name: &str) {
         if let Some(order) = Order::named(name) {
             self.send(Told::Order(order));
@@ -94,24 +94,24 @@ impl Shown {
     }
 
     fn send(&self, told: Told) {
-        // Nobody hears it if the viewer has ended, which is told on its own.
+        // If the viewer has ended, there is no receiver; the page learns of that separately.
         let _ = self.proxy.send_event(told);
     }
 }
 
-/// All scenes as lines of a name, a chapter and a description, with tabs between them.
+/// Returns all scenes as lines of a name, a chapter and a description, with tabs between them.
 #[wasm_bindgen]
 pub fn scenes() -> String {
     let line = |scene: &Scene| format!("{}\t{}\t{}", scene.name, scene.chapter.title(), scene.about);
     registry().iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// Shows a scene with settings `key=value` in a canvas; without a scene the demo. With `steps` it is stepped so far as fast as it goes,
-/// and tells its hash. `panels` are `all`, `few` (without the list of scenes) or `none`; without panels keys and the wheel move the
+/// Shows a scene with settings `key=value` in a canvas; without a scene the demo. `steps` are taken at full speed, and then the hash is
+/// shown. `panels` are `all`, `few` (without the list of scenes) or `none`; without panels keys and the wheel move the page as well.
 /// page as well.
 ///
 /// # Errors
-/// One line: there is no such scene, it refuses a setting, or the page has no loop of events.
+/// One line: there is no such scene, the scene refuses a setting, or the page has no event loop.
 #[wasm_bindgen]
 pub fn show(
     canvas: HtmlCanvasElement,
@@ -122,7 +122,7 @@ pub fn show(
     webgl: bool,
     panels: &str,
 ) -> Result<Shown, String> {
-    // WebAssembly alone says `unreachable` and no more.
+    // Without this, WebAssembly reports only `unreachable`.
     std::panic::set_hook(Box::new(|what| console_error(&what.to_string())));
     let subject = scene.map(|name| Subject::scene(&name, &settings)).transpose()?;
     let steps = steps.map(u64::from);
@@ -136,16 +136,16 @@ pub fn show(
     Ok(Shown { proxy, files: Vec::new() })
 }
 
-/// A page, and its services for the viewer.
+/// The page and its services for the viewer.
 pub(super) struct Host {
     canvas: HtmlCanvasElement,
     page: Page,
-    /// True to draw by WebGL2 also where there is WebGPU.
+    /// True to draw by WebGL2 even if there is WebGPU.
     webgl: bool,
-    /// True for a canvas that is a part of its page.
+    /// True if the canvas is a part of its page.
     is_part: bool,
     proxy: EventLoopProxy<Told>,
-    /// The last message.
+    /// Last message shown.
     told: RefCell<String>,
 }
 
@@ -155,25 +155,25 @@ impl Host {
         attributes.with_prevent_default(!self.is_part)
     }
 
-    /// Kinds of cards that it may draw by.
+    /// Returns the graphics interfaces that the canvas may use.
     pub fn backends(&self) -> wgpu::Backends {
         if self.webgl { wgpu::Backends::GL } else { wgpu::Backends::all() }
     }
 
-    /// The screen, which is known later.
+    /// Starts to wait for the screen, which arrives as a message.
     pub fn await_screen(
         &self,
         screen: impl Future<Output = Result<Box<Screen>, GpuError>> + 'static,
     ) -> Option<Told> {
         let proxy = self.proxy.clone();
         wasm_bindgen_futures::spawn_local(async move {
-            // Nobody hears it if the page is gone.
+            // If the page is gone, there is no receiver.
             let _ = proxy.send_event(Told::Screen(screen.await));
         });
         None
     }
 
-    /// Has the page say why nothing is drawn.
+    /// Shows the reason why nothing is drawn on the page.
     pub fn failed(&self, error: &GpuError) {
         let line = match error {
             GpuError::NoDriver(why) => {
@@ -185,7 +185,7 @@ impl Host {
         self.page.failed(&line);
     }
 
-    /// Tells the page of a frame.
+    /// Reports a frame to the page.
     pub fn shown(&self, app: &App) {
         let line = app.message().unwrap_or_default();
         if *self.told.borrow() != line {
@@ -198,13 +198,13 @@ impl Host {
         self.page.shown(&session.subject().title(), steps, x, y, app.is_running(), app.is_following());
     }
 
-    /// Has the page keep a picture of the canvas.
+    /// Saves a picture of the canvas through the page.
     pub fn picture(&self, _: &mut Screen, _: &App, _: &Panels, name: &str) -> Result<(), String> {
         self.page.picture(name);
         Ok(())
     }
 
-    /// Has the page keep a file.
+    /// Offers a file to the user through the page.
     pub fn keep(&self, file: &NamedFile) -> Result<(), String> {
         self.page.keep(&file.name, &file.bytes);
         Ok(())

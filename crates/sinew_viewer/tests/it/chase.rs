@@ -1,4 +1,4 @@
-//! The camera goes along with a subject: it stays in the picture, however wide that is and whatever happens to it.
+//! The camera follows a subject, which stays in the picture for every aspect ratio and every motion of the subject.
 
 use sinew::math::Vec3;
 use sinew_scenes::recording::Operation;
@@ -11,10 +11,10 @@ const ASPECTS: [f32; 4] = [0.8, 1.1, 1.5, 2.6];
 const STEPS: u32 = 60 * 25;
 /// Frames a second of a slow machine: two steps a frame.
 const FRAME: f32 = 1.0 / 30.0;
-/// The middle of the subject stays this far from the edges, as a share of the picture.
+/// Least distance of the subject's middle from the edges, as a share of the picture.
 const EDGE: f32 = 0.12;
 
-/// Place of a point in the picture, 0 to 1 from its upper left corner.
+/// Returns the position of a point in the picture, 0 to 1 from the upper left corner.
 fn place(orbit: &Orbit, point: Vec3, aspect: f32) -> [f32; 2] {
     let camera = orbit.camera();
     let axes = camera.axes(aspect);
@@ -26,7 +26,8 @@ fn place(orbit: &Orbit, point: Vec3, aspect: f32) -> [f32; 2] {
     ]
 }
 
-/// Farthest that the subject gets from the middle of a picture, as a share of it, with a camera that follows it or stands.
+/// Returns the largest distance of the subject from the middle of a picture, as a share of the picture, with a camera that
+/// follows or stands.
 fn outermost(sample: Sample, aspect: f32, follows: bool, pushes: bool) -> f32 {
     let mut stage = staged(sample.character());
     let first = bounds(&stage);
@@ -70,7 +71,7 @@ fn the_subject_stays_in_the_picture() {
     }
 }
 
-/// The test above can fail: a camera that stands loses it.
+/// The test above can fail: a camera that stands loses the subject.
 #[test]
 fn a_camera_that_stands_loses_it() {
     assert!(outermost(Sample::Mannequin, 1.5, false, false) > 0.6);

@@ -118,7 +118,7 @@ fn dragging_a_handle_changes_a_limit() {
         (now - goal).length() < (was - goal).length(),
         "it went from {was:?} to {now:?}, asked for {goal:?}"
     );
-    // And the side of the shape, outward: the body grows.
+    // Dragging the side of the shape outward enlarges the body.
     let (_, at) =
         viewer.app().handles().into_iter().find(|(name, _)| *name == "size").expect("it has a size");
     let center = {

@@ -8,7 +8,7 @@ use sinew_scenes::scenes::registry;
 use sinew_viewer::{Offscreen, Session, Stage, Subject, stage};
 use std::time::Instant;
 
-/// Times that each scene is opened. `SINEW_ROUNDS` overrides it.
+/// Number of times that each scene is opened. `SINEW_ROUNDS` overrides it.
 const ROUNDS: usize = 50;
 
 /// Growth of the resident memory from the fifth round to the last that counts as noise, bytes.

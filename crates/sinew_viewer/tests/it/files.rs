@@ -21,7 +21,7 @@ pub fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// The mannequin as a file.
+/// Returns the mannequin as a file.
 pub fn mannequin_glb() -> Vec<u8> {
     let mannequin = sinew::mannequin::mannequin();
     write_gltf(&mannequin.rig, &mannequin.clips).expect("it can be written")
@@ -39,13 +39,13 @@ fn a_character_that_is_dropped_falls() {
     falls(&mut viewer, "dropped");
 }
 
-/// Height of the highest body, metres.
+/// Returns the height of the highest body, metres.
 fn height(viewer: &Headless) -> f32 {
     let world = viewer.app().session().world();
     world.body_ids().map(|id| world.transform(id).translation.y).fold(0.0, f32::max)
 }
 
-/// Runs two seconds of steps, after which standing figures lie.
+/// Runs two seconds of steps, after which standing figures lie on the ground.
 fn falls(viewer: &mut Headless, name: &str) {
     let before = height(viewer);
     for _ in 0..120 {
@@ -58,7 +58,7 @@ fn falls(viewer: &mut Headless, name: &str) {
     assert!(before > 1.2 && after < 0.5 * before, "highest body at {before} m, then at {after} m");
 }
 
-/// A ragdoll without its rig: its bodies fall.
+/// A dropped ragdoll without its rig: its bodies fall.
 #[test]
 fn a_ragdoll_that_is_dropped_falls() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
@@ -100,7 +100,7 @@ fn dropped_bytes_load_as_files_do() {
     assert_eq!(viewer.app().session().subject().title(), "mannequin.gltf");
 }
 
-/// The two chunks of a GLB.
+/// Returns the two chunks of a GLB.
 fn parts(glb: &[u8]) -> (&[u8], &[u8]) {
     let length = |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().expect("four bytes")) as usize;
     let json = 20 + length(12);
@@ -182,7 +182,7 @@ fn the_played_motion_is_saved_as_glb() {
     let clip = document.clips.last().expect("it has clips");
     assert_eq!((document.clips.len(), clip.name.as_str()), (5, "played"));
     assert!((clip.duration - 1.5).abs() < 1e-4, "{} s", clip.duration);
-    // In the file it stands upright at the world's origin with its soles on the floor; the unit is the metre.
+    // In the file the character stands upright at the world's origin with its soles on the floor; the unit is the metre.
     let root = Affine::from(session.workbench().expect("a ragdoll").def().character_from_model);
     let mut model = Vec::new();
     let mut pose = rest_pose(&document.rig);

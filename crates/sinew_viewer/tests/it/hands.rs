@@ -14,7 +14,7 @@ pub fn viewer(scene: &str, size: [u32; 2]) -> Option<Headless> {
     Some(Headless::new(app, gpu()?, size))
 }
 
-/// Frames until the panels have their final sizes.
+/// Draws frames until the panels have their final sizes; returns the last one.
 pub fn settled(viewer: &mut Headless) -> Image {
     (0..3).map(|_| viewer.frame().expect("the card draws")).last().expect("three frames")
 }
@@ -115,7 +115,8 @@ fn a_bad_file_gives_a_message() {
     look("message", &settled(&mut viewer));
 }
 
-/// W walks the scene's character away from the camera, releasing it stops, and the recording replays the same.
+/// W makes the scene's character walk away from the camera, releasing W stops it, and the recording replays
+/// the same.
 #[test]
 fn keys_walk_a_character() {
     let Some(mut viewer) = viewer("street", [640, 360]) else { return };
@@ -155,7 +156,7 @@ fn keys_walk_a_character() {
     assert_eq!(replay.instance().steered(), Some(place(&viewer)));
 }
 
-/// It opens with figures drawn with their skin, which stay in the picture.
+/// The first scene opens with figures drawn with their skin, which stay in the picture.
 #[test]
 fn the_first_scene_stays_in_sight() {
     let Some(gpu) = gpu() else { return };

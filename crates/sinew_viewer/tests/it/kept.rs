@@ -1,5 +1,5 @@
-//! Stored pictures of the viewer: each is compared with one that a person has checked, and again after a change that it
-//! must notice.
+//! Stored pictures of the viewer: each is compared with one that a person has checked, and again after a change that the
+//! comparison must detect.
 //!
 //! Ignored unless asked for: `cargo xtask ci --full` runs them. Without a driver they print that they skip. Drivers round
 //! differently, so pictures may differ a little. `SINEW_BLESS=1` writes them to `tests/pictures`.
@@ -19,7 +19,8 @@ use std::path::{Path, PathBuf};
 const SIZE: [u32; 2] = [880, 496];
 /// Side of a tile, pixels of a stored picture.
 const TILE: u32 = 12;
-/// Largest difference of the means of a tile, of 255. Another driver's edges and rounding stay below a third of it.
+/// Largest difference of the means of a tile, of 255. Edges and rounding of another driver stay below a third of this
+/// value.
 const MOST_OF_TILE: f64 = 6.0;
 /// Largest share of pixels that differ by more than 40 in one channel.
 const MOST_FAR: f64 = 0.01;
@@ -30,7 +31,8 @@ fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures").join(format!("{name}.png"))
 }
 
-/// Half the size; colours in steps of 8, which hides rounding of drivers and keeps files small.
+/// Returns the picture at half the size, with colours in steps of 8, which hides rounding of drivers and keeps files
+/// small.
 fn halved(image: &Image) -> Image {
     let (width, height) = (image.width / 2, image.height / 2);
     let mut rgba = Vec::new();
@@ -88,7 +90,7 @@ fn read(name: &str) -> Image {
     Image { width, height, rgba }
 }
 
-/// Compares a picture with the stored one; `changed` has something missing or moved and must differ.
+/// Compares a picture with the stored one; `changed`, in which something is missing or moved, must differ.
 fn check(name: &str, picture: &Image, changed: &Image) {
     let [picture, changed] = [picture, changed].map(halved);
     let png =
@@ -143,14 +145,14 @@ fn near(viewer: &mut Headless, by: f32) {
     viewer.app_mut().set_orbit(Orbit { distance: by * orbit.distance, ..orbit });
 }
 
-/// Returns the picture now, and after a change.
+/// Checks the picture now against the one after a change.
 fn check_change(name: &str, viewer: &mut Headless, change: impl FnOnce(&mut Headless)) {
     let picture = settled(viewer);
     change(viewer);
     check(name, &picture, &settled(viewer));
 }
 
-/// Compares the scene with a layer, and without it.
+/// Checks the picture with a layer against the one without.
 fn check_layer(name: &str, viewer: &mut Headless, layer: Layer) {
     viewer.app_mut().toggle(layer);
     check_change(name, viewer, |viewer| viewer.app_mut().toggle(layer));

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 const SIZE: [u32; 2] = [480, 270];
 
-/// Returns a device, or a message why there is none.
+/// Returns a device, or prints why there is none.
 pub fn gpu() -> Option<Gpu> {
     match Gpu::open() {
         Ok(gpu) => Some(gpu),
@@ -43,7 +43,7 @@ pub fn look(name: &str, image: &Image) {
     }
 }
 
-/// All shapes, a textured and a translucent surface, lines in front and behind, on a checkered floor.
+/// Paints all shapes, a textured and a translucent surface, lines in front and behind, on a checkered floor.
 pub fn paint(canvas: &mut dyn Canvas) {
     let corners = [[0.0; 3], [0.5, 0.0, 0.0], [0.0, 0.0, 0.5], [0.1, 0.6, 0.1]].map(Vec3::from_array);
     let shapes = [

@@ -16,7 +16,7 @@ pub fn recorded(scene: &str, steps: u64, strike: Option<u64>) -> Recording {
     for step in 0..steps {
         if strike == Some(step) {
             let world = recorder.instance().world();
-            // In scenes with particles alone nothing is struck.
+            // In scenes with only particles no body is struck.
             if let Some(body) = world.body_ids().filter(|&id| world.mass(id).mass > 0.0).last() {
                 let (point, mass) = (world.center_of_mass(body), world.mass(body).mass);
                 recorder.apply(Operation::Push { body, impulse: Vec3::new(1.5, 0.5, 0.0) * mass, point });
@@ -59,7 +59,7 @@ fn seeking_gives_the_same_bits() {
             assert_eq!(session.metrics(), figures[step as usize], "{scene}, step {step}");
             assert_eq!(session.past_metrics().len() as u64, step + 1, "{scene}");
         }
-        // From there it continues as recorded.
+        // From the new step the replay continues as recorded.
         while session.step() {}
         assert_eq!(session.diverged(), None, "{scene}");
         assert_eq!(session.world().hash(), recording.steps[129].hash, "{scene}");

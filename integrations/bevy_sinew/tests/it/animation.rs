@@ -17,7 +17,7 @@ struct Player {
     still: usize,
 }
 
-/// Bevy's animation without curves: it writes joints, regardless of other writers.
+/// Replaces Bevy's animation, without curves: writes joints, regardless of other writers.
 fn play(player: Res<Player>, mut transforms: Query<&mut Transform>) {
     for (index, (&joint, local)) in player.joints.iter().zip(&player.pose).enumerate() {
         let mut transform = transforms.get_mut(joint).expect("it is there");
@@ -29,7 +29,7 @@ fn play(player: Res<Player>, mut transforms: Query<&mut Transform>) {
     }
 }
 
-/// Largest angle between the joints of two poses, radians.
+/// Returns the largest angle between the joints of two poses, radians.
 fn apart(a: &[LocalTransform], b: &[LocalTransform]) -> f32 {
     a.iter().zip(b).map(|(a, b)| a.rotation.angle_to(b.rotation)).fold(0.0, f32::max)
 }
@@ -87,12 +87,13 @@ impl Walker {
         self.app.world().get::<CharacterHandle>(self.entity).expect("it has one")
     }
 
-    /// Angle to the pose of the frame before the last, radians: a step runs before its frame's animation.
+    /// Returns the angle to the pose of the frame before the last, radians: a step runs before its frame's
+    /// animation.
     fn off(&self) -> f32 {
         apart(self.handle().pose_without_springs(), &self.given[self.given.len() - 2])
     }
 
-    /// Angular velocity of each body, rad/s.
+    /// Returns the angular velocity of each body, rad/s.
     fn spins(&self) -> Vec<Vec3> {
         let bodies = self.handle().bodies().iter();
         bodies.map(|&body| physics(&self.app).velocity(body).angular).collect()
@@ -111,14 +112,14 @@ fn character_follows_bevys_animation() {
     let mut most = 0.0f32;
     for step in 0..90 {
         walker.frame();
-        // The scene is found in the first step.
+        // The joints are found in the first step.
         if step > 3 {
             assert!(walker.off() < 0.02, "step {step}: {} rad", walker.off());
             most = most.max(apart(&walker.given[step], &walker.given[0]));
         }
     }
     assert!(most > 0.3, "the walk moves it by {most} rad");
-    // It moves at the requested velocity, not by its clips.
+    // The character moves at the requested velocity, not by its clips.
     assert!(walker.handle().world_from_character().translation.length() < 0.01);
     let mut handle = walker.app.world_mut().get_mut::<CharacterHandle>(walker.entity).expect("it has one");
     handle.set_move(Vec3::Z);
@@ -146,7 +147,8 @@ fn character_animated_by_bevy_falls_and_gets_up() {
         assert!(shown.angle_between(of) < 1e-3);
     }
     assert!(walker.off() > 0.3, "the joints do not show the fall");
-    // After getting up it shows the player's pose, including the head, which nothing has animated since.
+    // After getting up the character shows the player's pose, including the head, which nothing has animated
+    // since.
     for _ in 0..900 {
         walker.frame();
         if walker.handle().state() == State::Animated && walker.off() < 0.02 {

@@ -28,7 +28,8 @@ fn crowd_detail_follows_distance() {
     crowd::main();
 }
 
-/// Joints of a rig as entities, as a loader makes them; a mesh of the same name stands before each joint's children.
+/// Spawns the joints of a rig as entities, like a loader; a mesh of the same name stands before each joint's
+/// children.
 pub fn scene(app: &mut App, root: Entity, rig: &Rig) -> Vec<Entity> {
     let mut joints: Vec<Entity> = Vec::new();
     for joint in &rig.joints {
@@ -103,7 +104,7 @@ fn scene_joints_follow_the_pose() {
     hit(&mut app, entity, Vec3::Z * -120.0);
     run(&mut app, 30);
     assert_eq!(handle(&app, entity).state(), State::Limp);
-    // All matrices from the joints' own transforms, compared with the skinning matrices of the character.
+    // Compares matrices from the joints' own transforms with the skinning matrices of the character.
     let character = handle(&app, entity);
     let root = character.world_from_model();
     let mut model = Vec::new();

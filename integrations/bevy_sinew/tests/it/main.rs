@@ -46,7 +46,7 @@ fn mover_goes_through_the_door() {
     door::main();
 }
 
-/// Each update is one fixed step.
+/// Returns an app in which each update is one fixed step.
 fn app() -> App {
     let mut app = App::new();
     app.configure_schedules(ScheduleBuildSettings {
@@ -118,7 +118,7 @@ fn scene_has_the_same_bits_as_in_the_library() {
     }
 }
 
-/// Resident memory of the process, kB, where the system reports it.
+/// Returns the resident memory of the process, kB; `None` if the system does not report it.
 fn memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS"))?;
@@ -190,7 +190,7 @@ fn children_follow_their_bodies() {
         let body = physics(&app).transform(id).translation;
         assert!((body - global(&app, entity)).length() < 1e-4);
     }
-    // Another parent, and none: the body stays where it is.
+    // With another parent, and with none, the body keeps its place.
     for parent in [Some(root), None] {
         let before = global(&app, child);
         match parent {
@@ -240,7 +240,7 @@ fn changes_of_components_reach_the_world() {
     app.world_mut().get_mut::<Transform>(ball).expect("it has one").translation = Vec3::X * 7.0;
     run(&mut app, 1);
     assert!((at(&app, ball) - Vec3::X * 7.0).length() < 0.05, "{}", at(&app, ball));
-    // Changes the velocity; gravity changes it in the step.
+    // Changes the velocity, which gravity then changes in the step.
     app.world_mut().get_mut::<Velocity>(ball).expect("it has one").linear = Vec3::Z * 3.0;
     run(&mut app, 1);
     let velocity = app.world().get::<Velocity>(ball).expect("it has one").linear;

@@ -4,7 +4,7 @@ use super::*;
 use bevy_asset::{AssetApp, AssetPlugin, Assets};
 use bevy_mesh::{Mesh, Mesh3d, PrimitiveTopology};
 
-/// A square of two triangles that faces up, its sides 2 m.
+/// Returns a square of two triangles that faces up, with sides of 2 m.
 fn square() -> Mesh {
     let corners = vec![[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]];
     let usages = bevy_asset::RenderAssetUsages::default();

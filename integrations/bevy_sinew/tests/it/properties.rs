@@ -1,4 +1,5 @@
-//! Properties of bodies as components: they reach the world, follow changes, and leave defaults when removed.
+//! Properties of bodies as components: they are applied to the world, follow changes, and leave defaults when
+//! removed.
 
 use super::*;
 use bevy_sinew::physics::{LockedAxes, Motor, Sensing};
@@ -19,7 +20,7 @@ fn body_is_there_at_once() {
     assert_eq!(physics(&app).transform(id).translation, Vec3::Y * 3.0);
     app.world_mut().resource_mut::<Physics>().apply_impulse_at_center(id, Vec3::X);
     assert!(physics(&app).velocity(id).linear.x > 0.0);
-    // What commands spawn has its body when they have run.
+    // Entities spawned by commands have their bodies when the commands have run.
     app.add_systems(FixedUpdate, |mut commands: Commands, bodies: Query<(), Added<BodyHandle>>| {
         if bodies.iter().count() == 1 {
             commands.spawn(super::ball(Vec3::Y * 9.0));
@@ -117,7 +118,7 @@ fn locked_axes_hold_until_they_are_removed() {
     push(&mut app);
     run(&mut app, 60);
     assert!(up(&app) > 0.9999);
-    // Moved by the user it is locked where it is put.
+    // A body moved by the user is locked at its new place.
     app.world_mut().get_mut::<Transform>(pawn).expect("it has one").translation = Vec3::new(5.0, 0.8, 0.0);
     run(&mut app, 30);
     assert!(up(&app) > 0.9999 && at(&app, pawn).x > 4.9);

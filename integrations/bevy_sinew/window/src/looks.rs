@@ -48,7 +48,7 @@ pub fn add(app: &mut App, files: Files, camera: Transform) {
     app.add_systems(Update, (dress_bodies, dress_movers, dress_characters, string_ropes, place_ropes));
 }
 
-/// Mesh of a shape, in its own axes; none for shapes that the examples lack.
+/// Returns the mesh of a shape, in its own axes; `None` for shapes that the examples lack.
 fn mesh(shape: &Shape) -> Option<Mesh> {
     Some(match *shape {
         Shape::Box { half_extents } => Cuboid { half_size: half_extents }.into(),
@@ -105,7 +105,7 @@ fn dress_movers(
     }
 }
 
-/// Gives characters the scene of their rig, as Bevy's loader makes it; from then on the plugin moves its joints.
+/// Gives characters the scene of their rig, like Bevy's loader; from then on the plugin moves its joints.
 fn dress_characters(
     mut commands: Commands,
     mut files: ResMut<Files>,

@@ -19,7 +19,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Picture requested by the arguments, if any.
+    /// Returns the picture requested by the arguments, if any.
     ///
     /// # Errors
     /// If an option is unknown or lacks its value.

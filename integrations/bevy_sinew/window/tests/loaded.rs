@@ -21,10 +21,11 @@ use bevy_sinew::{
 use std::path::Path;
 use std::time::Duration;
 
-/// Largest distance of a joint's entity to its place on the body that carries it, metres: a tenth of a millimetre, for rounding.
+/// Largest distance of a joint's entity from its place on the body that carries it, metres: a tenth of a millimetre, for
+/// rounding.
 const OFF: f32 = 1e-4;
 
-/// An app without a window that loads and plays a file; each update is a fixed step.
+/// Returns an app without a window that loads and plays a file; each update is a fixed step.
 fn app() -> App {
     let dir = Dir::default();
     let mannequin = mannequin::mannequin();
@@ -47,7 +48,7 @@ fn app() -> App {
     app
 }
 
-/// The loaded scene as a character, and Bevy's player of it.
+/// The loaded scene as a character, and Bevy's player for it.
 struct Hero {
     app: App,
     entity: Entity,
@@ -56,7 +57,7 @@ struct Hero {
 }
 
 impl Hero {
-    /// Loads it and plays the walk by Bevy's player.
+    /// Loads the scene and plays the walk by Bevy's player.
     fn new() -> Self {
         let mut app = app();
         let server = app.world().resource::<AssetServer>().clone();
@@ -101,12 +102,12 @@ impl Hero {
         self.app.world().get(self.entity).expect("it has one")
     }
 
-    /// Height of the pelvis, metres.
+    /// Returns the height of the pelvis, metres.
     fn height(&self) -> f32 {
         self.app.world().resource::<Physics>().transform(self.handle().bodies()[0]).translation.y
     }
 
-    /// Entities of the skinned mesh's joints that bodies carry, as Bevy draws them, each with its place on that body.
+    /// Returns the joints of the skinned mesh that bodies carry: name, pose as Bevy draws it, and place on the body.
     fn joints_and_bodies(&mut self) -> Vec<(String, Pose, Pose)> {
         let world = self.app.world_mut();
         let mut skins = world.query::<&SkinnedMesh>();
@@ -136,7 +137,7 @@ impl Hero {
         });
     }
 
-    /// Number of remaining entities of the scene.
+    /// Returns the number of remaining entities of the scene.
     fn parts(&mut self) -> usize {
         let world = self.app.world_mut();
         world

@@ -9,14 +9,14 @@ use sinew::physics::{BodyDef, BodyKind, Filter};
 use sinew_scenes::blueprint::Blueprint;
 use std::collections::BTreeMap;
 
-/// Filter that bodies of one layer of Jolt share.
+/// Filter of the bodies of one layer of Jolt.
 #[derive(Clone, Copy, PartialEq)]
 struct Kind {
     filter: Filter,
     is_static: bool,
 }
 
-/// A body's place in a group of bodies, some pairs of which do not collide.
+/// Place of a body in a group of bodies, some pairs of which do not collide.
 #[derive(Clone)]
 struct Member {
     table: GroupFilterTable,
@@ -32,6 +32,8 @@ pub struct Filters {
 }
 
 impl Filters {
+    /// Creates the filters of a scene.
+    ///
     /// # Errors
     /// If a body's shapes have different filters, or more jointed bodies are connected than Jolt's tables hold.
     pub fn new(scene: &Blueprint) -> Result<Self, Unsupported> {
@@ -50,7 +52,7 @@ impl Filters {
         Ok(filters)
     }
 
-    /// All layers: one for each kind.
+    /// Returns all layers: one for each kind.
     pub fn layers(&self) -> CollisionLayers {
         let mut layers = CollisionLayers::new(2);
         for kind in &self.kinds {
@@ -68,12 +70,12 @@ impl Filters {
         layers
     }
 
-    /// Layer of a body.
+    /// Returns the layer of a body.
     pub fn layer(&self, body: usize) -> ObjectLayer {
         ObjectLayer::new(self.kind_of[body] as u32)
     }
 
-    /// Group of a body, if it needs one.
+    /// Returns the group of a body, if the body needs one.
     pub fn group(&self, body: usize) -> Option<Result<CollisionGroup, Unsupported>> {
         let member = self.members[body].as_ref()?;
         Some(CollisionGroup::new(&member.table, member.group, member.place).map_err(refused))
@@ -85,8 +87,8 @@ impl Filters {
     }
 
     /// Puts each set of bodies connected by joints into a group, in which jointed pairs and disabled ones do not
-    /// collide.
-    /// Equal groups, such as ragdolls, share a table. Bodies that would not collide anyway need none.
+    /// collide. Equal groups, such as ragdolls, share a table. Bodies that would not collide in any case need
+    /// none.
     fn keep_jointed_apart(&mut self, scene: &Blueprint) -> Result<(), Unsupported> {
         let meet = |pair: &[usize; 2]| self.kinds_meet(self.kind_of[pair[0]], self.kind_of[pair[1]]);
         let jointed = scene.joints.iter().map(|joint| [joint.a, joint.b]);

@@ -35,7 +35,7 @@ const MAX_CONTACTS: u32 = 65_536;
 /// Scratch memory of a step, bytes; only the used part is touched.
 const SCRATCH: u32 = 256 << 20;
 
-/// Jolt.
+/// Engine Jolt.
 pub struct Jolt;
 
 impl Engine for Jolt {
@@ -89,8 +89,8 @@ impl Engine for Jolt {
         Ok(Box::new(JoltRays { world, rays }))
     }
 
-    // `OrientedBox::Overlaps`, the fastest of all (18 to 24 ns), is C++ only: neither oxijolt nor the C interface below it
-    // has it, nor any other test of two shapes outside a world.
+    // `OrientedBox::Overlaps`, the fastest test of all (18 to 24 ns), is C++ only: neither oxijolt nor the C interface below it has that test,
+    // nor any other test of two shapes outside a world.
 }
 
 fn refused(error: impl core::fmt::Display) -> Unsupported {
@@ -169,6 +169,8 @@ fn add_joint(world: &mut PhysicsWorld, [a, b]: [BodyId; 2], def: &BlueprintJoint
     .map_err(refused)
 }
 
+/// Takes one step.
+///
 /// # Panics
 /// If Jolt had to drop contacts.
 fn step(world: &mut PhysicsWorld) {
@@ -207,7 +209,7 @@ impl Simulation for JoltWorld {
     }
 }
 
-/// oxijolt also looks up the hit's normal and layer: less than a tenth of the time.
+/// Rays in a world of Jolt. oxijolt also looks up the hit's normal and layer: less than a tenth of the time.
 struct JoltRays {
     world: PhysicsWorld,
     rays: Vec<RayCast>,

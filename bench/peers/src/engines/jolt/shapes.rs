@@ -7,7 +7,7 @@ use oxijolt::{BodySettings, CompoundChild, Inertia};
 use sinew::math::{Transform, Vec3, min};
 use sinew::physics::{BodyDef, BodyKind, MassProperties, Shape, ShapeDef};
 
-/// Jolt rounds the edges of boxes by this radius for speed, metres (its default).
+/// Radius by which Jolt rounds the edges of boxes for speed, metres (its default).
 pub const CONVEX_RADIUS: f32 = 0.05;
 
 /// Half sizes of the box that replaces a half-space, metres; its upper face is the plane.
@@ -30,7 +30,7 @@ fn sum(shapes: &[ShapeDef], mass: impl Fn(&ShapeDef) -> MassProperties) -> MassP
     })
 }
 
-/// Returns the mass of a shape as Jolt has it: all have the same density, and a tapered capsule is a box of its mean width.
+/// Returns the mass of a shape in Jolt: all shapes have the same density, and a tapered capsule is a box of its mean width.
 fn mass_in_jolt(part: &ShapeDef) -> MassProperties {
     let Shape::TaperedCapsule { half_height, radius_bottom, radius_top } = part.shape else {
         return part.shape.mass_properties(1.0);
@@ -53,7 +53,7 @@ pub fn shape(def: &BodyDef) -> Result<oxijolt::Shape, Unsupported> {
     let placed = |part: &ShapeDef| Ok((shape_alone(&part.shape)?, body_from_shape(part)));
     let mut parts = def.shapes.iter().map(placed).collect::<Result<Vec<_>, Unsupported>>()?;
     let shape = match parts.len() {
-        // There are no bodies without shapes in Jolt; the layer disables this one's contacts.
+        // Jolt has no bodies without shapes; the layer disables the contacts of this one.
         0 => return oxijolt::Shape::new_sphere(CONVEX_RADIUS).map_err(refused),
         1 if parts[0].1 == Transform::IDENTITY => parts.remove(0).0,
         _ => compound(&parts)?,

@@ -1,19 +1,19 @@
-//! Skeletons and animations as the bytes that ozz-animation reads: it has a format, but no builder.
+//! Writes skeletons and animations as the bytes that ozz-animation reads: the library has a format, but no builder.
 //!
-//! An animation's keys are sorted by the time at which they are needed, that of the key before; each stores how many keys
-//! back that one is. Every track has at least two keys.
+//! An animation's keys are sorted by the time at which they are needed, which is the time of the previous key; each
+//! stores the distance back to that key. Every track has at least two keys.
 
 use core::cmp::Ordering;
 use sinew::anim::{Channel, Clip, LocalTransform, Property, rest_pose};
 use sinew_scenes::crowd::CrowdScene;
 
-/// Joints side by side in ozz's poses; tracks are filled up to a multiple.
+/// Number of joints side by side in ozz's poses; tracks are padded to a multiple.
 const SIDE_BY_SIDE: usize = 4;
 
-/// Magic bytes of a file on machines like this one.
+/// First byte of a file on machines like this one.
 const ENDIAN_TAG: u8 = cfg!(target_endian = "little") as u8;
 
-/// The rig of a crowd, version 2 of the format.
+/// Returns the rig of a crowd, version 2 of the format.
 pub fn skeleton(scene: &CrowdScene) -> Vec<u8> {
     let mut bytes = Bytes::begin("ozz-skeleton", 2);
     let joints = &scene.rig.joints;
@@ -32,7 +32,7 @@ pub fn skeleton(scene: &CrowdScene) -> Vec<u8> {
     bytes.0
 }
 
-/// Returns a clip of a crowd, version 7 of the format: each key of the clip is one, and constant tracks have two.
+/// Returns a clip of a crowd, version 7 of the format, with all keys of the clip; constant tracks have two.
 ///
 /// # Panics
 /// If a channel has other key times than the clip's first channel.
@@ -80,14 +80,14 @@ struct Key {
     track: usize,
     /// Index into the table of times.
     time: usize,
-    /// Time at which it is needed; none for the first one.
+    /// Time at which the key is needed; `None` for the first key.
     needed: Option<usize>,
-    /// Number of keys back to the one before.
+    /// Number of keys back to the previous key of the track.
     back: u16,
     packed: [u16; 3],
 }
 
-/// Keys of all joints, track after track.
+/// Returns the keys of all joints, track after track.
 fn tracks(clip: &Clip, property: Property, times: usize, rest: &[LocalTransform]) -> Vec<Key> {
     let mut keys = Vec::new();
     for (track, local) in rest.iter().enumerate() {
@@ -135,7 +135,8 @@ fn sorted(mut keys: Vec<Key>) -> Vec<Key> {
     keys
 }
 
-/// The three smaller numbers of a unit quaternion, 15 bits each, above them which is missing (two bits) and its sign.
+/// Returns the three smaller numbers of a unit quaternion, 15 bits each; the bits above them hold the index of the
+/// missing number (two bits) and its sign.
 fn rotation(q: &[f32]) -> [u16; 3] {
     let largest = (1..4).fold(0, |best, i| if q[i].abs() > q[best].abs() { i } else { best });
     let step = core::f32::consts::SQRT_2 / 32_767.0;

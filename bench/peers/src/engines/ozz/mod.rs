@@ -1,4 +1,4 @@
-//! ozz-animation-rs: sampling, blending and model space as its own examples run them.
+//! ozz-animation-rs: sampling, blending and model space as in its own examples.
 
 mod archive;
 
@@ -15,7 +15,7 @@ use sinew_scenes::crowd::{CrowdScene, DURATION};
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Ozz.
+/// Engine ozz-animation-rs.
 pub struct Ozz;
 
 impl Engine for Ozz {

@@ -17,14 +17,14 @@ pub enum GetsUpBy {
     Own,
     /// The built-in motions.
     Builtin,
-    /// No clips; the reason, appended to 'it does not get up: '.
+    /// No clips; holds the reason, appended to 'it does not get up: '.
     Nothing(String),
-    /// The built-in ones exist, but none comes out on this body; the reason, as above.
+    /// The built-in motions, none of which works on this body; holds the reason, as above.
     Unfit(String),
 }
 
 impl GetsUpBy {
-    /// The flaw of a human that stays down because no built-in motion fits it.
+    /// Returns the flaw of a human that stays down because no built-in motion fits it.
     pub fn flaw(&self) -> Option<String> {
         let Self::Unfit(why) = self else { return None };
         Some(format!("it does not get up: {why}"))
@@ -34,7 +34,8 @@ impl GetsUpBy {
 /// Advice for a user whose character has no get-up clips.
 const CLIPS_HELP: &str = "--clips adds a file with a get-up clip, named for example 'get up'";
 
-/// The character and its get-up motions; `builtin`: built-in motions may replace missing ones.
+/// Returns the character and the source of its get-up motions; with `builtin`, built-in motions may replace
+/// missing ones.
 pub fn actor(
     file: &CharacterFile,
     ragdoll: RagdollDef,
@@ -48,7 +49,7 @@ pub fn actor(
     let mut get_ups = def.get_ups_among(&motions.clips);
     get_ups.retain(|&clip| Some(clip) != motions.looped);
     let Motions { clips, looped, ahead, .. } = motions;
-    // Without this, a character that lies in its file would walk along its own axes into the floor.
+    // Otherwise a character that lies in its file would walk along its own axes into the floor.
     let is_lying = lies(&def.ragdoll, analysis.hints.up.unwrap_or(Vec3::Y));
     let locomotion = match ahead {
         _ if is_lying => Locomotion::Exact,

@@ -11,7 +11,7 @@ use sinew::ragdoll::{BakeHit, CharacterDef, RagdollBodyDef};
 /// Roles of the spine, from the hips up.
 const SPINE: [Role; 6] = [Role::Hips, Role::Spine, Role::Chest, Role::UpperChest, Role::Neck, Role::Head];
 
-/// Aims at the named body; if the body part has none, at the nearest one, with a note.
+/// Returns the aim at the named body, or at the nearest body with a note if the body part has none.
 pub fn aim(
     hit: &HitArg,
     character: &CharacterDef,
@@ -51,14 +51,14 @@ fn body_with(role: Role, bodies: &[RagdollBodyDef]) -> Option<usize> {
     bodies.iter().position(|body| body.role == name)
 }
 
-/// The body that the joint of a role moves with.
+/// Returns the body that moves the joint of a role.
 fn carrier(role: Role, analysis: &RigAnalysis, bodies: &[RagdollBodyDef]) -> Option<usize> {
     let joint = analysis.joint_with(role)?;
     bodies.iter().position(|body| body.joint == joint || body.merged.contains(&joint))
 }
 
-/// The nearest body along the spine (of two equally near ones the lower); for a limb, the next part toward the trunk. A
-/// creature's spine is scaled to a human's, however many parts it has.
+/// Returns the nearest body along the spine (of two equally near ones the lower); for a limb, the next part toward the
+/// trunk. A creature's spine is scaled to a human's, for any number of parts.
 fn nearest(role: Role, bodies: &[RagdollBodyDef]) -> Option<usize> {
     if let Some(place) = SPINE.iter().position(|other| *other == role) {
         let along = (1..SPINE.len()).flat_map(|away| [place.checked_sub(away), Some(place + away)]);

@@ -22,7 +22,7 @@ pub enum ClipFormat {
 #[derive(Clone, Debug)]
 pub struct ClipFile {
     path: PathBuf,
-    /// Format of its bytes.
+    /// Format of the file.
     pub format: ClipFormat,
 }
 
@@ -32,7 +32,7 @@ impl ClipFile {
         &self.path
     }
 
-    /// The file's bytes, and notes on what the format cannot represent, one sentence each.
+    /// Returns the file's bytes, and notes on what the format cannot represent, one sentence each.
     pub fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<(Vec<u8>, Vec<String>)> {
         let written = match self.format {
             ClipFormat::Copy => append_clip(

@@ -21,7 +21,7 @@ pub struct Motions {
     pub clips: Vec<Clip>,
     /// The clip that plays until the fall.
     pub looped: Option<usize>,
-    /// Speed at which the character goes ahead while that clip plays, m/s; 0: as the clip does.
+    /// Speed at which the character goes ahead while that clip plays, m/s; 0: the clip's own motion.
     pub ahead: f32,
     /// Repairs made on reading the other files, one sentence each.
     pub notes: Vec<String>,
@@ -30,9 +30,9 @@ pub struct Motions {
 /// Speed of a character whose clip walks on the spot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Speed {
-    /// That of the clip's feet.
+    /// Speed of the clip's feet.
     Feet,
-    /// m/s.
+    /// Given speed, m/s.
     Given(f32),
 }
 
@@ -40,7 +40,7 @@ impl FromStr for Speed {
     type Err = String;
 
     fn from_str(text: &str) -> core::result::Result<Self, String> {
-        /// Faster than any runner, m/s.
+        /// Largest accepted speed, m/s: faster than any runner.
         const FASTEST: f32 = 50.0;
         if text == "feet" {
             return Ok(Self::Feet);
@@ -59,7 +59,7 @@ impl FromStr for Speed {
 pub const CLIP_NAME: &str = "sinew";
 
 impl Motions {
-    /// Clips of the character's file and of `others`; `wanted` is the user's choice.
+    /// Returns the clips of the character's file and of `others`; `wanted` is the user's choice.
     pub fn gather(file: &CharacterFile, others: &[PathBuf], wanted: Option<&str>) -> Result<Self> {
         let mut clips = file.document.clips.clone();
         let mut notes = Vec::new();
@@ -75,10 +75,10 @@ impl Motions {
         Ok(Self { clips, looped, ahead: 0.0, notes })
     }
 
-    /// Sets the speed ahead; returns a note if the clip walks on the spot and none is set.
+    /// Sets the speed ahead; returns a note if the clip walks on the spot and no speed is set.
     ///
     /// # Errors
-    /// The speed of feet that do not walk on the spot.
+    /// If `speed` is that of the feet, and the feet do not walk on the spot.
     pub fn go_ahead(&mut self, file: &CharacterFile, speed: Option<Speed>) -> Result<Option<String>> {
         let Some(clip) = self.looped.map(|looped| &self.clips[looped]) else {
             return match speed {
@@ -107,9 +107,9 @@ impl Motions {
     }
 }
 
-/// The clips of another file, retargeted to this character: by joint names, else by roles.
+/// Returns the clips of another file, retargeted to this character: by joint names, else by roles.
 fn read_clips(path: &Path, file: &CharacterFile, notes: &mut Vec<String>) -> Result<Vec<Clip>> {
-    // Plays the rows that exist, even if a BVH header declares more or fewer.
+    // Plays the existing rows, even if a BVH header declares more or fewer.
     let bvh = BvhOptions { rows: BvhRows::AsPresent, ..BvhOptions::default() };
     let motion = Motion::load(path, &MotionOptions { bvh, ..MotionOptions::default() })?;
     let rows = motion.file.notes.iter().filter(|note| note.contains(" frames, has "));

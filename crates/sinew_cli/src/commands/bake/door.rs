@@ -14,12 +14,12 @@ const DOORS: core::ops::Range<f32> = 0.5..0.97;
 /// Free depth behind a door, and largest distance of its wall, in room heights.
 const BEHIND: f32 = 0.3;
 const FARTHEST: f32 = 4.0;
-/// Largest distance of two walls over a door from one plane, as a share of the room's height.
+/// Largest distance of two wall hits over a door from one plane, as a share of the room's height.
 const EVEN: f32 = 0.05;
 /// Plausible heights of rooms, metres.
 const ROOMS: core::ops::Range<f32> = 0.3..60.0;
 
-/// Median free height of the doors of a world, metres; `None` without doors.
+/// Returns the median free height of the doors of a world, metres; `None` without doors.
 pub fn door(bodies: &[BodyDef]) -> Option<f32> {
     let mut world = World::new(WorldDef::default());
     let mut bounds: Option<Aabb> = None;
@@ -60,13 +60,13 @@ impl Rays {
         hits
     }
 
-    /// Free distance from a position, at most `direction` long.
+    /// Returns the free distance from a position along `direction`, at most its length.
     fn way(&self, origin: Vec3, direction: Vec3) -> f32 {
         let hits = self.all(origin, direction);
         hits.iter().map(|hit| (hit.point - origin).length()).fold(direction.length(), min)
     }
 
-    /// Free heights of the doors visible from a ground position in a room.
+    /// Returns the free heights of the doors visible from a ground position in a room.
     fn doors_around(&self, ground: Vec3) -> Vec<f32> {
         let from = ground + Vec3::Y * 0.01;
         let room = self.way(from, Vec3::Y * ROOMS.end) + 0.01;
@@ -79,7 +79,8 @@ impl Rays {
             .collect()
     }
 
-    /// A door has free rays from the ground up to a lintel, then one wall up to the ceiling.
+    /// Returns the free height of a door: free rays from the ground up to a lintel, then one wall up to the
+    /// ceiling.
     fn door(&self, ground: Vec3, toward: Vec3, room: f32) -> Option<f32> {
         let levels: Vec<f32> = (1..LEVELS).map(|level| room * f32::from(level) / f32::from(LEVELS)).collect();
         let see = |&level: &f32| self.way(ground + Vec3::Y * level, toward * (FARTHEST * room));
@@ -94,7 +95,8 @@ impl Rays {
         let is_door = lintel > 0
             && ways[..lintel].iter().all(|&way| is_free(way))
             && ways[lintel..].iter().all(|&way| is_wall(way));
-        // Half-way between the last free height and the first on the wall, then the exact edge of the lintel.
+        // The exact edge of the lintel if it is between the last free height and the first on the wall, else
+        // half-way between them.
         let inside = ground + Vec3::Y * 0.01 + toward * (highest + 0.02 * room);
         let height = self.way(inside, Vec3::Y * room) + 0.01;
         let between = [levels[lintel.saturating_sub(1)], levels[lintel]];

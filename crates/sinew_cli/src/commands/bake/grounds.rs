@@ -22,16 +22,16 @@ struct Node {
     at: Vec3,
 }
 
-/// Grounds by size, largest first, each as its positions, nearest to the middle first. `floors` returns the walkable
-/// heights below a position, down to a depth.
+/// Returns the grounds by size, largest first, each as its positions, nearest to the middle first. `floors` returns the
+/// walkable heights below a position, down to a depth.
 pub fn grounds(bounds: &Aabb, height: f32, floors: impl Fn(Vec3, f32) -> Vec<f32>) -> Vec<Vec<Vec3>> {
     let size = bounds.max - bounds.min;
     let count = |length: f32| ((length / (CELL * height)) as usize).clamp(COLUMNS[0], COLUMNS[1]) | 1;
-    // Odd, so that the middle of the world is on a column.
+    // An odd count, so that the middle of the world is on a column.
     let (nx, nz) = (count(size.x), count(size.z));
     let cell = Vec3::new(size.x / nx as f32, 0.0, size.z / nz as f32);
     let top = bounds.max.y + height;
-    // The ray also finds a half-space below everything else.
+    // The ray also finds a half-space below all bodies.
     let depth = size.y + 2.0 * height + 1000.0;
     let mut nodes: Vec<Node> = Vec::new();
     let mut first = Vec::with_capacity(nx * nz + 1);
@@ -49,7 +49,7 @@ pub fn grounds(bounds: &Aabb, height: f32, floors: impl Fn(Vec3, f32) -> Vec<f32
     by_size(&nodes, parts)
 }
 
-/// Indices of the nodes connected by steps of at most `step`.
+/// Returns the groups of nodes that are connected by steps of at most `step`, as indices.
 fn connected(nodes: &[Node], first: &[usize], nx: usize, step: f32) -> Vec<Vec<usize>> {
     let mut seen = vec![false; nodes.len()];
     let mut parts = Vec::new();
@@ -81,7 +81,7 @@ fn connected(nodes: &[Node], first: &[usize], nx: usize, step: f32) -> Vec<Vec<u
     parts
 }
 
-/// The parts by size; among the largest ones of similar size the lowest first.
+/// Returns the parts by size; of the largest ones of similar size the lowest first.
 fn by_size(nodes: &[Node], mut parts: Vec<Vec<usize>>) -> Vec<Vec<Vec3>> {
     parts.sort_by_key(|part| core::cmp::Reverse(part.len()));
     let mean = |part: &[usize]| {
@@ -106,7 +106,7 @@ fn by_size(nodes: &[Node], mut parts: Vec<Vec<usize>>) -> Vec<Vec<Vec3>> {
 mod tests {
     use super::*;
 
-    /// A field of 20 m with a hut of 4 m on it, whose roof is in the middle: the field is chosen.
+    /// A field of 20 m with a hut of 4 m, whose roof is in the middle: the field is chosen.
     #[test]
     fn larger_field_comes_before_the_roof() {
         let bounds = Aabb::around(Vec3::ZERO, Vec3::new(10.0, 3.0, 10.0));

@@ -36,7 +36,7 @@ impl FromStr for HitArg {
     }
 }
 
-/// Largest number allowed in a hit; far beyond anything that a body survives.
+/// Largest number allowed in a hit; far beyond any that a body survives.
 const LARGEST: f32 = 1e6;
 
 fn finite(text: &str) -> Result<f32, String> {

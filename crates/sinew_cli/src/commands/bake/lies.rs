@@ -11,13 +11,13 @@ const STANDS: f32 = 0.7;
 /// Number of sampled times of the looped clip besides its start: about ten per second.
 const LOOKS: usize = 5;
 
-/// True if a character lies in its file, whose up axis is `up`.
+/// Returns true if a character lies in its file, whose up axis is `up`.
 pub fn lies(ragdoll: &RagdollDef, up: Vec3) -> bool {
     (ragdoll.character_from_model.rotation * up).y <= STANDS
 }
 
-/// Placement of a character from its file: as it `stands`, or rotated and lowered onto the ground there if it lies.
-/// `up` is the file's up axis.
+/// Returns the placement of a character from its file: as it `stands`, or rotated and lowered onto the ground there
+/// if it lies. `up` is the file's up axis.
 pub fn as_in_file(stands: Transform, character: &CharacterDef, up: Vec3) -> Transform {
     let character_from_model = character.mapping().character_from_model();
     if !lies(&character.ragdoll, up) {
@@ -30,8 +30,8 @@ pub fn as_in_file(stands: Transform, character: &CharacterDef, up: Vec3) -> Tran
     Transform::new(stands.translation - Vec3::Y * lowest, stands.rotation * turn)
 }
 
-/// Height of the lowest drawn vertex, metres, in the looped clip until the character goes limp, or in the rest pose,
-/// under a map from model space.
+/// Returns the height of the lowest drawn vertex under a map from model space, metres: in the looped clip until the
+/// character goes limp, or in the rest pose.
 fn lowest_point(character: &CharacterDef, world_from_model: &Affine) -> f32 {
     let motions = character.motions();
     let looped = motions.looped.map(|looped| &motions.clips[looped]);

@@ -142,17 +142,17 @@ pub struct Bake {
     picture: Option<PictureFile>,
 }
 
-/// The falling character, and notes about it.
+/// The falling character, and notes about the character.
 struct Cast {
     file: CharacterFile,
     ragdoll: RagdollDef,
     garments: Vec<Garment>,
-    /// Doubt about its mass.
+    /// Doubt about the character's mass.
     doubt: Option<Doubt>,
     notes: Vec<String>,
 }
 
-/// Largest allowed key error, mm: beyond it the clip is no copy of the motion.
+/// Largest allowed key error, mm: with a larger error the clip is no copy of the motion.
 const LARGEST_KEY_ERROR: f32 = 100.0;
 
 /// Parses an allowed key error, mm.
@@ -227,7 +227,7 @@ impl Bake {
         Ok(report)
     }
 
-    /// Bodies of the world: from the file, and a floor if requested, at y = 0 without a file.
+    /// Returns the bodies of the world: from the file, and a floor if requested, at y = 0 without a file.
     fn bodies(&self) -> Result<Vec<BodyDef>> {
         let mut bodies = self.world.as_ref().map_or(Ok(Vec::new()), load_world)?;
         let level = self.floor.or_else(|| self.world.is_none().then_some(0.0));
@@ -235,7 +235,7 @@ impl Bake {
         Ok(bodies)
     }
 
-    /// Position of a character of this height (metres).
+    /// Returns the position of a character of this height (metres).
     fn place(&self, bodies: &[BodyDef], height: f32) -> Result<Place> {
         let Some(world) = &self.world else {
             let on_floor = self.at.unwrap_or(Vec3::Y * self.floor.unwrap_or(0.0));
@@ -247,7 +247,7 @@ impl Bake {
             .map_err(|what| Failure::at(&name, what, if self.at.is_some() { "--at" } else { "--world" }))
     }
 
-    /// Allowed key error; zero for formats that store every frame.
+    /// Returns the allowed key error; zero for formats that store every frame.
     fn key_bound(&self) -> Result<KeyBound> {
         match (self.output.format, self.key_error) {
             (ClipFormat::Bvh, None) => Ok(KeyBound::ALL_KEYS),
@@ -261,7 +261,7 @@ impl Bake {
         }
     }
 
-    /// The character with the given definition, or a built one.
+    /// Reads the character with the given definition, or builds one.
     fn character(&self, textures: Textures, world: &[BodyDef]) -> Result<Cast> {
         let Some(path) = &self.ragdoll else {
             let door = || self.world.as_ref().and_then(|_| door(world));
@@ -295,7 +295,7 @@ impl Bake {
         Ok(Cast { file, ragdoll, garments: Vec::new(), doubt, notes })
     }
 
-    /// Source of springs: an option, else the settings.
+    /// Returns the source of springs: an option, else the settings.
     fn spring_source(&self, setting: Option<SpringSource>) -> SpringSource {
         match (self.no_springs, self.guess_springs) {
             (true, _) => SpringSource::None,
@@ -304,7 +304,7 @@ impl Bake {
         }
     }
 
-    /// Name of the new clip: the user's, else `sinew`, with a number if the file has that name already.
+    /// Returns the name of the new clip: the user's, else `sinew`, with a number if the file has that name already.
     fn clip_name(&self, file: &CharacterFile) -> Result<String> {
         let is_taken = |name: &str| file.document.clips.iter().any(|clip| clip.name == name);
         match &self.name {
@@ -381,7 +381,7 @@ fn once(notes: Vec<String>) -> Vec<String> {
     said
 }
 
-/// Report on degenerate and duplicate triangles of the world, if any.
+/// Returns a report on degenerate and duplicate triangles of the world, if any.
 fn left_out(bodies: &[BodyDef]) -> Option<String> {
     let shapes = bodies.iter().flat_map(|body| &body.shapes);
     let dropped = shapes.filter_map(|shape| match &shape.shape {
@@ -397,13 +397,13 @@ fn left_out(bodies: &[BodyDef]) -> Option<String> {
     })
 }
 
-/// A static half-space with its surface at height `level`.
+/// Returns a static half-space with its surface at height `level`.
 fn floor(level: f32) -> BodyDef {
     let shapes = vec![ShapeDef::new(Shape::HalfSpace)];
     BodyDef { kind: BodyKind::Static, position: Vec3::Y * level, shapes, ..BodyDef::default() }
 }
 
-/// A film of the whole character from its front left (facing +Z), unless the view is blocked there.
+/// Returns a film of the whole character from its front left (facing +Z), unless the view is blocked there.
 fn film<'a>(fall: &'a Fall<'a>) -> Film<'a> {
     let mut set = Vec::new();
     for (index, body) in fall.input.bodies.iter().enumerate() {

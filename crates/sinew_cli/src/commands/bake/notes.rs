@@ -12,7 +12,7 @@ const DEPTH: f32 = 1000.0;
 /// Depth below the soles from which ground no longer counts as standing ground, metres.
 const GAP: f32 = 0.3;
 
-/// All notes, one sentence each; `world` names the file of the bodies.
+/// Returns all notes, one sentence each; `world` names the file of the bodies.
 pub fn of_bake(
     input: &BakeInput<'_>,
     events: &[(f32, CharacterEvent)],
@@ -28,7 +28,7 @@ pub fn of_bake(
     all.into_iter().flatten().collect()
 }
 
-/// Note on the position of a character without a given one.
+/// Returns a note on the position of a character, if the user gave none.
 pub fn stands_at(place: &Place, world: &str) -> Option<String> {
     let [x, y, z] = place.stands.translation.to_array();
     place.found.then(|| {
@@ -39,7 +39,7 @@ pub fn stands_at(place: &Place, world: &str) -> Option<String> {
     })
 }
 
-/// A push that was not requested.
+/// Returns a note on a push that was not requested.
 pub fn is_pushed(input: &BakeInput<'_>) -> String {
     let time = input.limp_at.unwrap_or(0.0);
     format!(
@@ -49,7 +49,7 @@ pub fn is_pushed(input: &BakeInput<'_>) -> String {
     )
 }
 
-/// Note on motions that do not come from the file.
+/// Returns a note on motions that do not come from the file.
 fn borrows(events: &[(f32, CharacterEvent)], gets_up_by: &GetsUpBy) -> Option<String> {
     let rises = events.iter().any(|(_, event)| matches!(event, CharacterEvent::GettingUp { .. }));
     (rises && *gets_up_by == GetsUpBy::Builtin).then(|| {
@@ -59,14 +59,14 @@ fn borrows(events: &[(f32, CharacterEvent)], gets_up_by: &GetsUpBy) -> Option<St
     })
 }
 
-/// A fall that starts after the clip has ended.
+/// Returns a note on a fall that starts after the clip has ended.
 fn late(input: &BakeInput<'_>) -> Option<String> {
     let time = input.limp_at.filter(|time| *time >= input.seconds)?;
     let end = input.seconds;
     Some(format!("--limp-at {time} s is not before the end, at {end} s (--seconds): it does not go limp"))
 }
 
-/// No ground near below the character.
+/// Returns a note if there is no ground near below the character.
 fn ground(input: &BakeInput<'_>, file: Option<&str>) -> Option<String> {
     let file = file?;
     let mut world = World::new(WorldDef::default());
@@ -81,7 +81,7 @@ fn ground(input: &BakeInput<'_>, file: Option<&str>) -> Option<String> {
     Some(format!("the ground of {file} is {:.2} m below the character", soles.y - hit.point.y))
 }
 
-/// Reason why a fallen character is not up at the end.
+/// Returns the reason why a fallen character is not up at the end.
 fn stays_down(
     input: &BakeInput<'_>,
     events: &[(f32, CharacterEvent)],

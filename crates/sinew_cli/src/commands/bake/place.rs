@@ -12,7 +12,7 @@ use sinew::physics::{
 const WALKABLE: f32 = 0.766;
 /// Requirements for a position, in heights of the character.
 struct Demand {
-    /// Free distance on each side: to fall, or to stand.
+    /// Free distance on each side, for falling or for standing.
     room: f32,
     /// Free height over the position.
     over: f32,
@@ -45,8 +45,8 @@ pub struct Place {
     pub found: bool,
 }
 
-/// The given position, or one searched in the world for a character of that `height`, metres; `facing` is in degrees.
-/// If there is none, returns a one-line error.
+/// Returns the given position, or one searched in the world for a character of that `height`, metres; `facing` is in
+/// degrees. If there is none, returns a one-line error.
 pub fn place(bodies: &[BodyDef], height: f32, at: Option<Vec3>, facing: f32) -> Result<Place, String> {
     let turn = Rotation::from_axis_angle(Vec3::Y, facing.to_radians());
     let ground = Ground::new(bodies);
@@ -70,7 +70,7 @@ pub fn place(bodies: &[BodyDef], height: f32, at: Option<Vec3>, facing: f32) -> 
     }
 }
 
-/// A world to stand on.
+/// A world with bodies to stand on.
 struct Ground {
     world: World,
     /// Bounds of all finite static bodies.
@@ -97,7 +97,7 @@ impl Ground {
         !self.world.body_ids().any(stands)
     }
 
-    /// Hits of a vertical ray, the highest first.
+    /// Returns the hits of a vertical ray, the highest first.
     fn below(&self, from: Vec3, depth: f32) -> Vec<BodyHit> {
         let mut hits = Vec::new();
         let ray = Ray { origin: from, direction: Vec3::Y * -depth };
@@ -105,14 +105,14 @@ impl Ground {
         hits
     }
 
-    /// True if there is ground below a position at any depth.
+    /// Returns true if there is ground below a position at any depth.
     fn is_under(&self, at: Vec3, height: f32) -> bool {
         const DEPTH: f32 = 1000.0;
         !self.below(at + Vec3::Y * (0.5 * height), DEPTH).is_empty()
     }
 
-    /// A flat position with free space above, near the middle of the largest walkable ground; if it has none, on the
-    /// next one. Positions that meet more [demands](DEMANDS) are preferred.
+    /// Returns a flat position with free space above, near the middle of the largest walkable ground; if that has
+    /// none, on the next one. Positions that meet more [demands](DEMANDS) are preferred.
     fn flat_place(&self, height: f32) -> Option<Vec3> {
         let bounds = self.bounds.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::splat(0.5 * height)));
         let grounds = grounds(&bounds, height, |from, depth| self.floors(from, depth, height));
@@ -126,7 +126,7 @@ impl Ground {
         DEMANDS.iter().find_map(places)
     }
 
-    /// Walkable heights below a position: level enough, with head room.
+    /// Returns the walkable heights below a position: level enough, with head room.
     fn floors(&self, from: Vec3, depth: f32, height: f32) -> Vec<f32> {
         let hits = self.below(from, depth);
         let has_room = |hit: &&BodyHit| {
@@ -173,7 +173,7 @@ impl Ground {
     }
 }
 
-/// Three numbers, `X,Y,Z`.
+/// Parses three numbers, `X,Y,Z`.
 pub fn point(text: &str) -> Result<Vec3, String> {
     let numbers = text.split(',').map(metres).collect::<Result<Vec<_>, _>>()?;
     match numbers[..] {
@@ -182,15 +182,15 @@ pub fn point(text: &str) -> Result<Vec3, String> {
     }
 }
 
-/// A height or a coordinate.
+/// Parses a height or a coordinate, metres.
 pub fn metres(text: &str) -> Result<f32, String> {
-    /// Farther from the origin f32 cannot resolve a millimetre, metres.
+    /// Largest distance from the origin at which f32 resolves a millimetre, metres.
     const FARTHEST: f32 = 1e4;
     let number: f32 = text.trim().parse().map_err(|_| format!("'{text}' is not a number"))?;
     if number.abs() <= FARTHEST { Ok(number) } else { Err(format!("'{text}' is out of range")) }
 }
 
-/// A rotation, degrees.
+/// Parses a rotation, degrees.
 pub fn degrees(text: &str) -> Result<f32, String> {
     let number: f32 = text.trim().parse().map_err(|_| format!("'{text}' is not a number"))?;
     if number.abs() <= 360.0 { Ok(number) } else { Err("must lie between -360 and 360".to_owned()) }

@@ -14,7 +14,7 @@ pub struct ClipFacts<'a> {
     clip: &'a Clip,
     events: &'a [ClipEvent],
     keys: usize,
-    /// The playable clip, or the reason why it cannot be played.
+    /// The playable clip, or the reason why the clip cannot be played.
     built: Result<BuiltClip, String>,
     /// Displacement of the body by the clip, if the unit is known.
     way: Option<Way>,
@@ -24,7 +24,7 @@ pub struct ClipFacts<'a> {
 struct Way {
     /// Translation in metres, character axes.
     shift: Vec3,
-    /// Radians about the vertical.
+    /// Rotation about the vertical, radians.
     turn: f32,
 }
 
@@ -64,14 +64,15 @@ impl<'a> ClipFacts<'a> {
         })
     }
 
-    /// The reason why the clip cannot be played, if so.
+    /// Returns the reason why the clip cannot be played, if there is one.
     pub fn warning(&self) -> Option<String> {
         let why = self.built.as_ref().err()?;
         Some(format!("clip {} cannot be played: {why}", shown(&self.clip.name)))
     }
 }
 
-/// Displacement from the first to the last pose of a clip, measured at the joint that carries the body.
+/// Returns the displacement from the first to the last pose of a clip, measured at the joint that carries the
+/// body.
 fn way(motion: &Motion, clip: &Clip, analysis: &RigAnalysis) -> Option<Way> {
     let rig = &motion.file.rig;
     let carrier = analysis.joint_with(Role::Hips).or_else(|| analysis.kept.first().map(|bone| bone.joint))?;
@@ -87,7 +88,7 @@ fn way(motion: &Motion, clip: &Clip, analysis: &RigAnalysis) -> Option<Way> {
     way.shift.is_finite().then_some(way)
 }
 
-/// The clips as a table.
+/// Returns the clips as a table.
 pub fn clip_table(facts: &[ClipFacts<'_>]) -> Table {
     let mut table =
         Table::titled(&["name", "seconds", "channels", "keys", "built", "error (°, units)", "moves"]);
@@ -103,7 +104,7 @@ pub fn clip_table(facts: &[ClipFacts<'_>]) -> Table {
     table
 }
 
-/// Events in the clips, as a table; empty if there are none.
+/// Returns the events in the clips as a table; `None` if there are none.
 pub fn event_table(facts: &[ClipFacts<'_>]) -> Option<Table> {
     let mut table = Table::titled(&["clip", "seconds", "event", "payload"]);
     for ClipFacts { clip, events, .. } in facts {

@@ -38,7 +38,7 @@ pub struct Inspect {
 }
 
 impl Inspect {
-    /// Reads the file and describes it.
+    /// Reads the file and describes its content.
     pub fn run(&self) -> Result<Report> {
         let motion = Motion::load_in(&self.file, self.unit)?;
         let (mut links, mut worn, mut trouble) = (Vec::new(), Vec::new(), Vec::new());
@@ -54,7 +54,7 @@ impl Inspect {
         Ok(Report { json: content.to_json(), text: content.to_text() })
     }
 
-    /// Settings next to the file, if any.
+    /// Reads the settings next to the file, if any.
     fn settings(&self) -> Result<Option<Settings>> {
         let path = settings_path(&self.file);
         if !path.is_file() {
@@ -73,7 +73,7 @@ impl Inspect {
         }
     }
 
-    /// Links across strands requested by the settings.
+    /// Returns the links across strands requested by the settings.
     fn links(&self, motion: &Motion, settings: Option<&Settings>) -> Result<Vec<SpringLink>> {
         let Some(settings) = settings else { return Ok(motion.file.rig.springs.links.clone()) };
         let up = motion.analysis.as_ref().map_or(Vec3::Y, |analysis| analysis.up_axis);
@@ -81,7 +81,7 @@ impl Inspect {
         Ok(springs.map_err(|error| self.failure(error))?.links)
     }
 
-    /// Garments requested by the settings.
+    /// Returns the garments requested by the settings.
     fn worn(&self, motion: &Motion, settings: Option<&Settings>) -> Result<Vec<Garment>> {
         let (Some(settings), Some(analysis)) = (settings, &motion.analysis) else { return Ok(Vec::new()) };
         let mut rig = motion.file.rig.clone();
@@ -94,11 +94,11 @@ impl Inspect {
     }
 }
 
-/// Content of a read file.
+/// Content of an inspected file.
 struct Content<'a> {
     motion: &'a Motion,
     clips: Vec<ClipFacts<'a>>,
-    /// Links of its springs, and errors in the settings for them and for garments.
+    /// Links of the file's springs, and errors in the settings for links and garments.
     links: Vec<SpringLink>,
     /// Garments requested by the settings.
     worn: Vec<Garment>,
@@ -206,7 +206,7 @@ impl Content<'_> {
         }
     }
 
-    /// The joints as a tree, in file order.
+    /// Returns the joints as a tree, in file order.
     fn joint_table(&self) -> Table {
         let joints = &self.motion.file.rig.joints;
         let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
@@ -245,13 +245,13 @@ impl Content<'_> {
         notes
     }
 
-    /// Warnings of what could not be read or played.
+    /// Returns warnings of parts that could not be read or played.
     fn warnings(&self) -> Vec<String> {
         let unplayable = self.clips.iter().filter_map(ClipFacts::warning);
         self.motion.file.notes.iter().cloned().chain(unplayable).chain(self.trouble.clone()).collect()
     }
 
-    /// Vertices and triangles of all meshes.
+    /// Returns the numbers of vertices and triangles of all meshes.
     fn mesh_size(&self) -> (usize, usize) {
         let primitives = self.motion.file.rig.meshes.iter().flat_map(|mesh| &mesh.primitives);
         primitives.fold((0, 0), |(vertices, triangles), primitive| {

@@ -167,7 +167,7 @@ impl View {
     }
 }
 
-/// True if a subject is a file of a character or a motion: no scene, world or recording.
+/// Returns true if a subject is a file of a character or a motion: no scene, world or recording.
 fn is_motion(name: &str) -> bool {
     const OTHERS: [&str; 2] = ["json", "sinewrec"];
     let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
@@ -209,7 +209,7 @@ impl<'a> Subject<'a> {
         Ok(Self::Scene(scene, Box::new(settings)))
     }
 
-    /// A fresh instance of the subject.
+    /// Returns a fresh instance of the subject.
     pub fn start(&self) -> Instance {
         match self {
             Self::Scene(scene, settings) => scene.start(settings),
@@ -230,7 +230,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// Duration of the scene, seconds.
+    /// Returns the duration of the scene, seconds.
     fn seconds(&self) -> f32 {
         match self {
             Self::Scene(scene, settings) => scene.steps as f32 * scene.start(settings).world().def().dt(),

@@ -33,16 +33,16 @@ const MARGIN: f32 = 0.1;
 
 /// Settings of the pictures, and their captions.
 pub struct Reel<'a> {
-    /// Title of the subject.
+    /// Title of the pictures.
     pub title: &'a str,
-    /// Time until which its closed forms hold, seconds.
+    /// Time until which the closed forms of the subject hold, seconds.
     pub ends: f32,
     /// Size and quality.
     pub settings: RenderSettings,
 }
 
 impl Reel<'_> {
-    /// The bytes of a picture `at` seconds from the start.
+    /// Returns the bytes of a picture `at` seconds from the start.
     pub fn picture(
         &self,
         subject: &Subject<'_>,
@@ -61,7 +61,7 @@ impl Reel<'_> {
         sinew_picture::encode::encode(format, &[image], FPS)
     }
 
-    /// The bytes of a movie of its first `seconds`.
+    /// Returns the bytes of a movie of the first `seconds`.
     pub fn movie(
         &self,
         subject: &Subject<'_>,
@@ -114,7 +114,7 @@ impl Take {
         take
     }
 
-    /// The step nearest to a time.
+    /// Returns the step nearest to a time.
     fn step_at(&self, time: f32) -> u64 {
         (f64::from(time) / f64::from(self.run.world().def().dt())).round() as u64
     }
@@ -142,7 +142,7 @@ impl Take {
         self.hint.direction = sides.into_iter().min_by_key(|&side| self.hidden(side)).unwrap_or(sides[0]);
     }
 
-    /// Number of hidden bodies among the first moving ones.
+    /// Returns the number of hidden bodies among the first moving ones.
     fn hidden(&self, direction: Vec3) -> usize {
         let world = self.run.world();
         let size = (self.whole.max - self.whole.min).length();
@@ -153,7 +153,7 @@ impl Take {
         rays.filter(|ray| stands.any(ray)).count()
     }
 
-    /// Current bounds of the subject.
+    /// Returns the current bounds of the subject.
     fn now(&self) -> Aabb {
         let moving = world::subject(self.run.world()).into_iter();
         let figures = self.run.figures().into_iter().filter_map(|figure| around(&figure));
@@ -161,7 +161,7 @@ impl Take {
         self.hint.bounds.or(all).unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE))
     }
 
-    /// Lines that the scene draws in addition to its world.
+    /// Returns the lines that the scene draws in addition to its world.
     fn lines(&self) -> Lines {
         let mut lines = Lines::default();
         self.run.draw(&mut lines);
@@ -197,7 +197,8 @@ impl Take {
         renderer.render(&scene, &Camera::framing_box(&shown, self.hint.direction, aspect))
     }
 
-    /// The visible part of `whole`: all of it unless objects would be too small, and always all current objects.
+    /// Returns the visible part of `whole`: all of it unless objects would be too small, and always all current
+    /// objects.
     fn shown(&self, whole: &Aabb) -> Aabb {
         let now = self.now();
         let limit = WIDEST * self.largest();
@@ -213,7 +214,7 @@ impl Take {
         shown.expand(max(MARGIN * 0.5 * (shown.max - shown.min).length(), 1e-3))
     }
 
-    /// Radius of the largest moving shape, metres; infinite if there is none.
+    /// Returns the radius of the largest moving shape, metres; infinite if there is none.
     fn largest(&self) -> f32 {
         let world = self.run.world();
         let moving = world.body_ids().filter(|&id| world.kind(id) != BodyKind::Static);
@@ -237,7 +238,7 @@ impl Take {
             x: -10,
             y: 10 + 12 * number as i32,
             scale: 1,
-            // Paler than the curve, for contrast on the caption's background.
+            // A paler colour than the curve's, for contrast on the caption's background.
             color: draw::curve_color(number).map(|part| part + 0.4 * (1.0 - part)),
             ..Caption::new(curve.name)
         };
@@ -247,7 +248,7 @@ impl Take {
     }
 }
 
-/// Bounds of a character's joints and its estimated skin.
+/// Returns the bounds of a character's joints and its estimated skin.
 fn around(figure: &Figure<'_>) -> Option<Aabb> {
     let joints = figure.world_from_joint.iter().map(|joint| joint.translation);
     let bones = joints.map(|at| Aabb { min: at, max: at }).reduce(|a, b| a.merge(&b))?;
@@ -278,15 +279,15 @@ impl Trail {
     }
 }
 
-/// State of a scene: running, or at its end, when every expectation applies.
+/// State of a scene: running, or at the end, when every expectation applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Moment {
     OnTheWay,
     AtTheEnd,
 }
 
-/// The main figures of a scene: those with a closed form, else its other measurements, never those common to all
-/// scenes. Expectations apply at the end; before that only the satisfied ones are shown.
+/// Returns the main figures of a scene: those with a closed form, else its other measurements, never those
+/// common to all scenes. Expectations apply at the end; before that only the satisfied ones are shown.
 fn figures(metrics: &[Metric], moment: Moment) -> Vec<String> {
     let own = &metrics[..metrics.len().saturating_sub(Instance::METRICS_OF_EVERY_SCENE)];
     let is_closed = |metric: &&Metric| matches!(metric.expected, Expected::Near { .. });

@@ -45,7 +45,7 @@ impl View {
         Ok(Report { json: json!({"subject": title, "outputs": outputs}), text: String::new() })
     }
 
-    /// Reports that the build has no window, and the command that adds it.
+    /// Returns the error that the build has no window, with the command that adds it.
     #[cfg(not(feature = "viewer"))]
     pub(super) fn open(&self) -> Result<Report> {
         use crate::input::scene_choice::choose;

@@ -26,10 +26,10 @@ pub(in crate::scenes) const ARENA: Scene = Scene {
     build: arena,
 };
 
-/// Radius of the ring for each mannequin's root, and smallest radius of the ring, metres.
+/// Radius of the ring over the root of the number of mannequins, and smallest radius of the ring, metres.
 const ROOM: f32 = 1.1;
 const LEAST: f32 = 3.0;
-/// Walking speed, m/s, and distance from which they push.
+/// Walking speed, m/s, and distance at which a mannequin pushes, metres.
 const SPEED: f32 = 0.9;
 const ARM: f32 = 0.85;
 /// Number of steps between two pushes of one mannequin.
@@ -75,7 +75,7 @@ fn arena(setup: &Setup<'_>) -> Instance {
 
 struct Fighter {
     character: Character,
-    /// Number of steps until its next push.
+    /// Number of steps until the character's next push.
     rests: u32,
     /// World from joint.
     model: Vec<Affine>,
@@ -127,7 +127,8 @@ struct Arena {
 }
 
 impl Arena {
-    /// The nearest standing character, by index and direction.
+    /// Returns the index of the nearest other character that stands, and the horizontal vector to that
+    /// character, metres.
     fn nearest(&self, of: usize) -> Option<(usize, Vec3)> {
         let from = self.fighters[of].place();
         let others = self.fighters[..self.fighters.len() - 1].iter().enumerate();

@@ -1,4 +1,4 @@
-//! Several tracks at once.
+//! Characters that play several tracks at the same time.
 
 use crate::framework::actors::{Actor, Cast, Figure, Gone};
 use crate::framework::camera_hint::CameraHint;
@@ -72,9 +72,9 @@ fn two_tracks(setup: &Setup<'_>) -> Instance {
 }
 
 struct TwoTracks {
-    /// The first track alone, both, the second alone.
+    /// Characters that play the first track alone, both tracks, and the second track alone.
     shown: [Actor; 3],
-    /// The first track alone, and both tracks at the same speed.
+    /// Character that plays both tracks at the same speed.
     same: Actor,
     clip: ClipId,
     /// Weight and speed of the tracks.
@@ -177,7 +177,7 @@ struct Runner {
     actor: Actor,
     /// Requested speed, m/s.
     speed: f32,
-    /// Laps per second at that speed; both clips have the same because they are in phase.
+    /// Laps per second at that speed, the same for both clips, because they are in phase.
     cadence: f32,
     /// Distance along z so far, metres.
     way: f32,

@@ -42,14 +42,14 @@ pub(in crate::scenes) const BRAWL: Scene = Scene {
 const ROOM: f32 = 6.0;
 /// Distance from a wall at which a walker turns back, metres.
 const TURNS_BACK: f32 = 0.9;
-/// Range of walking speeds, m/s, and seconds between changes of direction.
+/// Range of walking speeds, m/s, and range of times between changes of direction, seconds.
 const SPEEDS: (f32, f32) = (0.7, 1.4);
 const KEEPS: (f32, f32) = (1.0, 4.0);
-/// Time after which a fallen character gets up although it still moves, seconds: in a crowd others keep it from lying still.
+/// Time after which a fallen character gets up although it still moves, seconds: in a crowd other characters push it.
 const PATIENCE: f32 = 2.0;
 /// Impulses of blows, N·s.
 const BLOWS: (f32, f32) = (5.0, 90.0);
-/// Steps of the stairs: number, height, depth, half their width, metres.
+/// Stairs: number of steps, their height and depth, half their width, metres.
 const STAIRS: (usize, f32, f32, f32) = (4, 0.18, 0.32, 1.0);
 
 fn brawl(setup: &Setup<'_>) -> Instance {
@@ -129,7 +129,7 @@ fn on_stairs(place: Vec3, apart: f32) -> Vec3 {
 
 pub(super) struct Fighter {
     character: Character,
-    /// Wanted velocity, m/s, and seconds until it changes.
+    /// Wanted velocity, m/s, and seconds until the velocity changes.
     way: Vec3,
     keeps: f32,
     /// World from joint.

@@ -122,8 +122,8 @@ impl Footsteps {
         }
     }
 
-    /// Times at which a foot should have been reported so far: when `T = e + k L` is passed, forward up to the end of a stretch, backward
-    /// down to it.
+    /// Times at which a footfall should have been reported so far: the clip time passes `T = e + k L`, forward up to the end of a
+    /// stretch, backward down to it.
     fn expected(&self, foot: usize, world: &World) -> Vec<f64> {
         let dt = f64::from(world.def().dt());
         let (lap, fall) = (f64::from(self.lap), f64::from(self.falls[foot]));
@@ -192,7 +192,7 @@ impl Script for Footsteps {
 /// Radius, metres, and density, kg/m³, of a football: 0.43 kg.
 const BALL_RADIUS: f32 = 0.11;
 const DENSITY: f32 = 77.0;
-/// Steps of each of the two spans of the flight that are compared.
+/// Number of steps of each of the two compared spans of the flight.
 const SPAN: u64 = 12;
 
 fn punched(setup: &Setup<'_>) -> Instance {

@@ -33,14 +33,14 @@ const NAPE: Vec3 = Vec3::new(0.0, 1.42, -0.09);
 /// Width and length of the cape, metres.
 const WIDE: f32 = 0.36;
 const LONG: f32 = 0.96;
-/// Number of springs along its edges; its particles are less than two radii apart.
+/// Number of springs along the cape's edges; its particles are less than two radii apart.
 const COLUMNS: u32 = 9;
 const ROWS: u32 = 24;
 /// Number of threads that go straight back from the shoulders, clear of the arms, before the cape hangs down.
 const STANDS_OFF: u32 = 2;
 /// Radius of each particle, metres.
 const RADIUS: f32 = 0.02;
-/// Distance before the edge of the porch at which the hit comes, metres.
+/// Distance before the edge of the porch at which the wearer is hit, metres.
 const HIT_BEFORE_EDGE: f32 = 0.45;
 /// Role of the body that carries the cape and is hit.
 const SHOULDERS: &str = "chest";
@@ -106,7 +106,7 @@ fn worn(world: &World, body: BodyId, nape: Vec3, mass: f32) -> GroupDef {
 
 #[derive(Clone, Copy, Default)]
 struct Watch {
-    /// Largest depth of a free particle's centre in a body of the wearer, and in anything else, metres; 0 if it was
+    /// Largest depth of a free particle's centre in a body of the wearer, and in any other body, metres; 0 if all were
     /// outside.
     deepest_in_wearer: f32,
     deepest_in_world: f32,
@@ -137,7 +137,7 @@ impl Worn {
         self.character.def().body_named(SHOULDERS).expect("it has a chest")
     }
 
-    /// Depth of the deepest free particle's middle in one of the bodies, metres; negative: outside.
+    /// Depth of the deepest free particle's centre in one of the bodies, metres; negative: outside.
     fn deepest(&self, world: &World, bodies: impl Iterator<Item = BodyId>) -> f32 {
         let group = world.particles(self.cape);
         let bounds = group.bounds();

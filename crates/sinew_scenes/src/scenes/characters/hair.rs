@@ -81,11 +81,11 @@ struct Runner {
     rate: u64,
     /// Number of frames so far.
     frames: u64,
-    /// Position about which it sways.
+    /// Position about which the runner sways.
     middle: Vec3,
-    /// Tips of its bones relative to the middle, metres.
+    /// Tips of the hair's bones relative to `middle`, metres.
     tips: Vec<Vec3>,
-    /// Path of the ponytail's tip: time, and sideways distance from the head.
+    /// Path of the ponytail's tip: time, seconds, and sideways distance from the head, metres.
     curve: Vec<(f32, f32)>,
 }
 

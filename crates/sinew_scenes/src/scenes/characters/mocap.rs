@@ -24,7 +24,7 @@ pub(in crate::scenes) const RETARGET: Scene = Scene {
     build: retargeted,
 };
 
-/// This scene needs a file of the user's.
+/// Motion of a user's file on three characters.
 pub(in crate::scenes) const MOCAP: Scene = Scene {
     chapter: Chapter::Characters,
     name: "mocap",
@@ -38,7 +38,8 @@ pub(in crate::scenes) const MOCAP: Scene = Scene {
 struct Build {
     /// Height, metres.
     height: f32,
-    /// Lengths of the legs and the arms and size of the head, over those of a mannequin of the same trunk.
+    /// Lengths of the legs and the arms and size of the head, relative to those of a mannequin with the same
+    /// trunk.
     legs: f32,
     arms: f32,
     head: f32,
@@ -53,7 +54,8 @@ const GIANT: Build =
     Build { height: 14.0, legs: 1.15, arms: 0.45, head: 1.6, place: Vec3::new(-4.5, 0.0, -3.0) };
 
 impl Build {
-    /// Factor by which the vector to a joint is longer than the mannequin's, before all is scaled to its height.
+    /// Factor by which the vector to a joint is longer than the mannequin's, before the rig is scaled to
+    /// `height`.
     fn factor(&self, joint: &str) -> f32 {
         let is = |parts: &[&str]| parts.iter().any(|part| joint.ends_with(part));
         if is(&["LowerLeg", "Foot"]) {
@@ -72,7 +74,7 @@ impl Build {
             joint.rest.translation *= self.factor(&joint.name);
         }
         let mut model = bind(&rig);
-        // Puts the feet on the ground again, and the head's top at its height.
+        // Puts the feet on the ground, and the top of the head at the character's height.
         let lift = self.lowest(&model, &rig);
         let head = rig.joints.iter().position(|joint| joint.name == "head").unwrap_or(0);
         let crown = model[head].translation.y - lift + HEAD * self.head;
@@ -144,7 +146,7 @@ fn captured(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Captured { characters, gone: Gone::default() })
 }
 
-/// A character and how its motion fits.
+/// A character and the errors of its motion.
 struct Character {
     actor: Actor,
     fitted: Retargeted,
@@ -156,7 +158,7 @@ struct Character {
 }
 
 impl Character {
-    /// Plays a performance that can be retargeted.
+    /// Creates a character that plays a performance, which can be retargeted.
     fn new(world: &mut World, of: &Performance, rig: &Rig, build: &Build, loop_mode: LoopMode) -> Self {
         let fitted = of.fitted(rig).expect("both are humanoids");
         let mut cast = Cast::of(rig.clone());
@@ -167,7 +169,7 @@ impl Character {
         Self { actor, fitted, height: build.height, way: 0.0, sunk: 0.0 }
     }
 
-    /// Moves against the velocity of the feet on the ground.
+    /// Updates the animation, and moves the character against the velocity of its feet on the ground.
     fn update(&mut self, dt: f32) {
         self.actor.update(dt);
         let step = self.fitted.ground.velocity * -dt;
@@ -180,12 +182,12 @@ impl Character {
         }
     }
 
-    /// Speed at which its feet slide, cm/s for each metre of height.
+    /// Speed at which the character's feet slide, cm/s for each metre of height.
     fn slide(&self) -> f32 {
         100.0 * self.fitted.feet.slide[1].mean / self.height
     }
 
-    /// Length of a clip relative to the actor's: by Froude's law the root of the ratio of their legs.
+    /// Expected length of a clip relative to the actor's: by Froude's law the root of the ratio of leg lengths.
     fn pace(&self) -> Expected {
         Expected::near(self.fitted.scale.sqrt(), 1e-6)
     }

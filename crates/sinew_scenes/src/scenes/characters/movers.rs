@@ -25,9 +25,9 @@ pub(in crate::scenes) const COURSE: Scene = Scene {
     build: course,
 };
 
-/// Number of steps until all stand.
+/// Number of steps until all movers stand.
 const SETTLING: u64 = 60;
-/// Number of steps up, and of as many down again, and the depth of each, metres.
+/// Number of steps up, which equals the number of steps down, and the depth of each, metres.
 const STEPS: u8 = 6;
 const TREAD: f32 = 0.3;
 /// Width of a lane, metres.
@@ -36,7 +36,7 @@ const LANE: f32 = 2.4;
 const BELT: f32 = 0.5;
 /// Angular velocity of the turntable, rad/s.
 const SPIN: f32 = 0.8;
-/// Mass of the crate, kg, and the coefficient with which it slides.
+/// Mass of the crate, kg, and its coefficient of friction.
 const CRATE: f32 = 60.0;
 const FRICTION: f32 = 0.6;
 
@@ -121,15 +121,15 @@ struct Course {
 }
 
 struct Watch {
-    /// Greatest height of each mover's feet since all stand, metres.
+    /// Greatest height of each mover's feet since all movers stand, metres.
     highest: [f32; 6],
     deepest: f32,
     /// Number of steps in which a mover on the stairs, the ramp or the table was off the ground.
     aloft: u32,
-    /// Distance of the mover on the table from where it stood, metres.
+    /// Distance of the mover on the table from its first place on the table, metres.
     drift: f32,
     on_table: Option<Vec3>,
-    /// Way on the belt in the last second so far, and its start, metres.
+    /// Position along x at the start of the last second on the belt, and the displacement since then, metres.
     gone: Option<(f32, f32)>,
 }
 
@@ -181,7 +181,7 @@ impl Script for Course {
         }
     }
 
-    /// Work of the mover behind the crate, J: against friction, and for its motion.
+    /// Work of the mover behind the crate, J: against friction, and for the crate's motion.
     fn work_in(&self, world: &World) -> f32 {
         let pushed = world.transform(self.crate_).translation.x + 2.0;
         let speed = world.velocity(self.crate_).linear.length();

@@ -54,11 +54,11 @@ fn skirt(setup: &Setup<'_>) -> Instance {
 
 #[derive(Clone, Copy, Default)]
 struct Watch {
-    /// Largest depth of a free particle's centre in a body of the wearer, metres; 0 if it was outside.
+    /// Largest depth of a free particle's centre in a body of the wearer, metres; 0 if all were outside.
     deepest_in_wearer: f32,
-    /// Depth of a free particle that is pinched between two bodies, metres.
+    /// Largest depth of a free particle that is pinched between two bodies, metres.
     deepest_pinched: f32,
-    /// Depth of a free particle in a body that is not part of the wearer, metres.
+    /// Largest depth of a free particle in a body that is not part of the wearer, metres.
     deepest_in_world: f32,
     /// Speed of the fastest particle, m/s.
     fastest: f32,
@@ -88,9 +88,9 @@ impl Dressed {
         local_to_model(&self.character.def().rig, self.character.pose(), &root, &mut self.model);
     }
 
-    /// Depth of the deepest free particle's middle in a body of the wearer and in another that it touches, metres; 0:
-    /// outside. The third is that of particles between two bodies: where a clip folds the thigh on the belly, or lays a
-    /// leg on the floor, there is no place outside of both.
+    /// Returns the largest depth of a free particle's centre, metres: in a body of the wearer, in another body, and of
+    /// particles that touch two bodies; 0 if all are outside. Where a clip folds the thigh on the belly, or lays a leg
+    /// on the floor, a particle between the two has no place outside of both.
     fn deepest(&self, world: &World, id: GroupId) -> [f32; 3] {
         let (group, own) = (world.particles(id), self.character.bodies());
         let bounds = group.bounds();

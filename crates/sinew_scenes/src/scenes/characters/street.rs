@@ -32,12 +32,12 @@ pub(in crate::scenes) const STREET: Scene = Scene {
     build: street,
 };
 
-/// Width of a lane, half the length and half the width of the street for each lane, metres.
+/// Width of a lane, and half the length of the street, metres.
 const LANE: f32 = 1.1;
 const HALF_LENGTH: f32 = 9.0;
 /// Range of walking speeds, m/s.
 const SPEEDS: (f32, f32) = (0.8, 1.5);
-/// Steps between turns of the lift, and its speed, m/s.
+/// Number of steps between reversals of the lift, and its speed, m/s.
 const LIFT_TURNS: u64 = 150;
 const LIFT: f32 = 0.8;
 /// Index of the character that a user may control; there is free space around it.

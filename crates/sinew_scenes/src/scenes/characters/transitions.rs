@@ -112,7 +112,7 @@ impl Subject {
 struct Transitions {
     /// Subjects whose motion is cut, crossfaded and inertialised.
     subjects: [Subject; 3],
-    /// Each clip alone, not drawn: the motion of its joints without a transition.
+    /// Characters that play each clip alone, not drawn: the motion of the joints without a transition.
     alone: [(Actor, History); 2],
     clips: [ClipId; 2],
     seconds: f32,
@@ -147,7 +147,8 @@ impl Transitions {
         }
     }
 
-    /// The bound uses the largest distance of the clips, and the largest rate at which they separate, during the transition.
+    /// Updates the bounds. They use the largest distance of the clips, and the largest rate at which they separate, during
+    /// the transition.
     fn watch(&mut self, dt: f32) {
         let [(_, first), (_, second)] = &self.alone;
         let joints = self.subjects[0].actor.animator.pose().len();

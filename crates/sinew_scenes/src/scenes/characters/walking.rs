@@ -38,7 +38,7 @@ pub(in crate::scenes) const UNEVEN_GROUND: Scene = Scene {
     build: uneven_ground,
 };
 
-/// Half of the height of the capsule's axis, and its radius, metres.
+/// Half the length of the capsule's axis, and the capsule's radius, metres.
 const CAPSULE: [f32; 2] = [0.57, 0.3];
 /// Height of the mannequin, metres.
 const HEIGHT: f32 = 1.75;
@@ -70,7 +70,7 @@ struct Ball {
     joint: usize,
     /// Position in the world, and position by the clip alone, in the last step if the foot was down then.
     last: Option<[Vec3; 2]>,
-    /// Places where it touched down, in the world.
+    /// Positions in the world at which the ball touched down.
     prints: Vec<Vec3>,
     /// Total slide, metres, and total contact time, seconds.
     slid: [f32; 2],
@@ -215,7 +215,7 @@ const CORNERS: [usize; 2] = [17, 41];
 const SPACING: f32 = 0.2;
 /// Distance from crest to crest along x and z, metres.
 const WAVES: [f32; 2] = [3.4, 2.2];
-/// Lanes of the two characters, metres to the left, and the place where they begin.
+/// Positions of the two characters along x, and their start along z, metres.
 const LANES: [f32; 2] = [-0.7, 0.7];
 const BEGIN: f32 = -3.2;
 
@@ -275,7 +275,8 @@ struct Uneven {
     gone: Gone,
 }
 
-/// Height of the ankle above the sole, and vectors from there to heel and ball in the axes of the foot, metres.
+/// Height of the ankle above the sole, and vectors from the ankle to heel and ball in the axes of the foot,
+/// metres.
 const ANKLE: f32 = 0.08;
 const SOLE: [Vec3; 2] = [Vec3::new(0.0, -ANKLE, -0.055), Vec3::new(0.0, -ANKLE, 0.135)];
 

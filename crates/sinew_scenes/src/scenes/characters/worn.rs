@@ -9,22 +9,22 @@ use sinew::ragdoll::{Character, CharacterEvent};
 /// Figures of a wearer and its cloth since the start.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Wear {
-    /// Largest mean over the threads of the relative length error.
+    /// Largest value over the steps of the threads' mean relative length error.
     stretch: f32,
-    /// Sum of that mean over the steps.
+    /// Sum over the steps of the threads' mean relative length error.
     stretch_sum: f32,
     /// Largest distance of an attached particle from its attachment, metres.
     pub torn: f32,
     /// Number of times that the wearer went limp.
     falls: u32,
-    /// Time at which it was up again, seconds; 0 if it was not.
+    /// Time at which the wearer was up again, seconds; 0 if it has not got up.
     up: f32,
     /// Work of drives and of bodies that clips move, J.
     pub work_in: f32,
 }
 
 impl Wear {
-    /// Counts the work of a step, updates the wearer after it, and notes its falls and getting up.
+    /// Adds the work of a step, updates the wearer, and records falls and get-ups.
     pub fn follow(&mut self, world: &mut World, wearer: &mut Character) {
         self.work_in += world.work().total();
         wearer.update(world);
@@ -36,7 +36,7 @@ impl Wear {
         }
     }
 
-    /// Adds the stretch of a step.
+    /// Records the stretch of a step.
     pub fn note_stretch(&mut self, mean: f32) {
         self.stretch = max(self.stretch, mean);
         self.stretch_sum += mean;

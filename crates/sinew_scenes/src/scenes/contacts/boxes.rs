@@ -53,15 +53,15 @@ struct Turning {
     /// Sum of the ratio of the bounds' volume to the oriented box's, over all steps.
     ratio_sum: f64,
     ratio_max: f32,
-    /// Largest error of a ratio against its closed form, as a share of it.
+    /// Largest relative error of a ratio against its closed form.
     off: f32,
-    /// Largest change of the oriented box's volume, as a share of it.
+    /// Largest relative change of the oriented box's volume.
     drift: f32,
 }
 
 impl Turning {
-    /// Half extents `a`, `b` rotated by `θ` reach `a |cos θ| + b |sin θ|` and `a |sin θ| + b |cos θ|`: over `a b`, that
-    /// is `1 + (a/b + b/a) |sin θ cos θ|`.
+    /// Returns the ratio of the volumes: half extents `a`, `b` rotated by `θ` reach `a |cos θ| + b |sin θ|` and `a |sin
+    /// θ| + b |cos θ|`; their product over `a b` is `1 + (a/b + b/a) |sin θ cos θ|`.
     fn closed_form(&self, angle: f32) -> f32 {
         let (sin, cos) = trig::sin_cos(angle);
         1.0 + (self.slenderness + 1.0 / self.slenderness) * (sin * cos).abs()
@@ -141,7 +141,7 @@ struct Probe {
     x: f32,
     /// Signed distance to the box in the last step, metres.
     last: Option<f32>,
-    /// Times at which it entered and left, seconds.
+    /// Times at which the probe entered and left, seconds.
     entered: Option<f64>,
     left: Option<f64>,
 }

@@ -56,18 +56,18 @@ fn build(setup: &Setup<'_>) -> Instance {
 /// finite-time singularity").
 fn rate(sin: f32, cos: f32) -> f32 {
     let (a, h) = (RADIUS, HALF_THICKNESS);
-    // Moments of inertia over the mass.
+    // Moments of inertia divided by the mass.
     let (across, along) = (a * a / 4.0 + h * h / 3.0, a * a / 2.0);
     (GRAVITY * (a * cos - h * sin) / (sin * (across * cos - along * (h / a) * sin))).sqrt()
 }
 
 struct Coin {
     coin: BodyId,
-    /// Turn of its axis about the vertical.
+    /// Turn of the coin's axis about the vertical.
     turn: Turn,
     /// Sum of the theoretical rates at the observed tilts, rad/s.
     due: f32,
-    /// Number of tilts in that sum.
+    /// Number of rates in `due`.
     looks: u16,
     /// Time at which the coin fell asleep, seconds.
     asleep: Option<f32>,

@@ -37,7 +37,8 @@ const PAIRS: [(f32, [&str; 2]); 3] = [
     (3.0, ["first_at_3_m_s", "second_at_3_m_s"]),
     (100.0, ["first_at_100_m_s", "second_at_100_m_s"]),
 ];
-/// Gap between balls of a row, metres: more than the fastest moves in a substep, so that the impacts are sequential.
+/// Gap between balls of a row, metres: more than the fastest ball moves in a substep, so that the impacts are
+/// sequential.
 const ROW_GAP: f32 = 0.02;
 
 fn elastic_pairs(_: &Setup<'_>) -> Instance {
@@ -72,7 +73,8 @@ struct ElasticPairs {
 }
 
 impl Pair {
-    /// `v₁' = ((m₁ − m₂) v₁ + 2 m₂ v₂) / (m₁ + m₂)`, and the same for the other: momentum and energy stay.
+    /// Returns the speeds after the hit: `v₁' = ((m₁ − m₂) v₁ + 2 m₂ v₂) / (m₁ + m₂)`, and `v₂'` with 1 and 2
+    /// exchanged; momentum and energy are conserved.
     fn metrics(&self, world: &World) -> [Metric; 2] {
         let after =
             |own: f32, other: f32, [v, u]: [f32; 2]| ((own - other) * v + 2.0 * other * u) / (own + other);
@@ -136,11 +138,11 @@ struct Cradle {
     lift: f32,
     /// Angle of the first ball from hanging straight one step ago, degrees.
     before: f32,
-    /// Time at which it first hung straight, s.
+    /// Time at which the first ball first hung straight, s.
     quarter: Option<f32>,
     /// Largest angle of the last ball from hanging straight, degrees.
     out: f32,
-    /// Largest angle of the other balls from hanging straight at that time, degrees.
+    /// Largest angle of the other balls from hanging straight at the time `quarter`, degrees.
     left_behind: f32,
 }
 

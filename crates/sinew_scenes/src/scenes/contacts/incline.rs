@@ -88,7 +88,7 @@ fn incline(setup: &Setup<'_>, body_at_origin: BodyDef) -> (World, Slope) {
 struct Slope {
     block: BodyId,
     uphill: Vec3,
-    /// Acceleration by the weight along the slope, m/s².
+    /// Component of gravity along the slope, m/s².
     pull: f32,
     /// Largest acceleration that friction can resist, m/s².
     hold: f32,
@@ -152,7 +152,7 @@ impl Script for Holds {
 
 struct Slides {
     slope: Slope,
-    /// Remaining acceleration of the weight along the slope, m/s².
+    /// Component of gravity along the slope less friction, m/s².
     pull: f32,
     settled: Option<Motion>,
 }

@@ -42,7 +42,7 @@ struct SlideToRoll {
     speed: f32,
     friction: f32,
     pushed: Option<Moment>,
-    /// Motion one step ago, while it slides.
+    /// Motion one step ago, while the ball slides.
     sliding: Option<Moment>,
     /// Motion at the start of rolling, between two steps.
     rolling: Option<Moment>,
@@ -153,7 +153,7 @@ fn rolling_balls(setup: &Setup<'_>) -> Instance {
 struct RollingBalls {
     tray: BodyId,
     balls: Vec<BodyId>,
-    /// Sums over the steps of the squared errors of velocity, of the box and of the mean ball, m²/s².
+    /// Sums over the steps of the squared velocity errors of the box and of the mean ball, m²/s².
     squares: [f64; 2],
     steps: u32,
 }
@@ -165,8 +165,8 @@ impl RollingBalls {
         world.apply_force(self.tray, TOWARD * FORCE, center);
     }
 
-    /// Accelerations of the box and of a ball, m/s²: the floor's friction is `f₁`, a ball's `f₂`, and a homogeneous
-    /// ball that is pulled at its foot has 2/7 of the acceleration of the box below it.
+    /// Returns the accelerations of the box and of a ball, m/s²: the floor's friction is `f₁`, a ball's `f₂`, and a
+    /// homogeneous ball that is pulled at its foot has 2/7 of the acceleration of the box below the ball.
     fn accelerations() -> [f32; 2] {
         let balls = BALLS as f32;
         let f1 = ON_FLOOR * (BOX_MASS + balls * BALL_MASS) * GRAVITY;

@@ -94,7 +94,7 @@ struct StaticFriction {
     slides: (BodyId, Vec3),
     /// Remaining acceleration of the weight along the slope, m/s².
     pull: f32,
-    /// Position of the first block, speed of the second, and the time.
+    /// Position of the first block, metres, speed of the second, m/s, and the time, seconds.
     settled: Option<(f32, f32, f32)>,
 }
 
@@ -145,7 +145,7 @@ struct Conveyor {
     work: f32,
     /// Speed of the load in the last step, m/s.
     before: f32,
-    /// Speed of the load after half the needed time, and that time since the start.
+    /// Speed of the load, m/s, after half the needed time, and time since the start, seconds.
     half_way: Option<(f32, f32)>,
 }
 
@@ -245,8 +245,8 @@ struct Gate {
 }
 
 impl Gate {
-    /// Time at which the ball was at a height: events refer to the start of the step, so it was there within the
-    /// previous step.
+    /// Time at which the ball was at a height, seconds: events refer to the start of the step, so the ball was
+    /// there within the previous step.
     fn moment(&self, world: &World, height: f32) -> f32 {
         let Velocity { linear, .. } = world.velocity(self.falling);
         let beyond = height - world.transform(self.falling).translation.y;

@@ -21,7 +21,8 @@ pub(in crate::scenes) const EXPLOSION: Scene = Scene {
 const RADIUS: f32 = 0.1;
 /// Reach of the blast, metres.
 const REACH: f32 = 4.0;
-/// Distance from its centre to the nearest point of the balls beside it and of the one above, metres.
+/// Distance from the centre of the blast to the nearest point of the balls beside the blast and of the ball
+/// above, metres.
 const NEAR: f32 = 1.0;
 const FAR: f32 = 3.0;
 const ABOVE: f32 = 2.0;
@@ -50,12 +51,12 @@ struct Blast {
     /// Bodies behind the wall and out of reach.
     spared: [BodyId; 2],
     impulse: f32,
-    /// Greatest height of the ball above it over its start, metres.
+    /// Greatest rise of the ball above the blast, metres.
     highest: f32,
 }
 
 impl Blast {
-    /// Linear fall-off on a disk: `J = i (1 − d/R) π r²`.
+    /// Returns the expected impulse at a distance: linear fall-off on a disk, `J = i (1 − d/R) π r²`.
     fn expected(&self, gap: f32) -> f32 {
         self.impulse * (1.0 - gap / REACH) * PI * RADIUS * RADIUS
     }

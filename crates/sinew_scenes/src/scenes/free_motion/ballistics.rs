@@ -91,7 +91,7 @@ struct Bounce {
     height: f32,
     restitution: f32,
     flight: Flight,
-    /// Greatest height since its first motion upward, metres.
+    /// Greatest height since the ball first moved upward, metres.
     rebound: Option<f32>,
 }
 

@@ -24,7 +24,7 @@ pub(in crate::scenes) const GIMBAL: Scene = Scene {
     build: gimbal,
 };
 
-/// The outer ring gives heading about y, the middle one pitch about x, the body in the inner one roll about z.
+/// The outer ring gives heading about y, the inner ring pitch about x, the body in the rings roll about z.
 const RINGS: EulerConvention = EulerOrder::Yxz.intrinsic();
 
 /// Pitches of the gimbals, degrees.
@@ -33,7 +33,7 @@ const PITCHES: [f32; 4] = [0.0, 45.0, 80.0, 90.0];
 const PITCHING: u64 = 60;
 /// Inertia of the inner body about any axis, kg·m².
 const INERTIA: f32 = 0.02;
-/// Inertia of each of the two rings that the inner body can turn, relative to its own.
+/// Inertia of each of the two rings that the inner body can turn, relative to the body's.
 const RING: f32 = 0.1;
 /// Angular velocity of a free body after the kick, rad/s.
 const KICK: f32 = 0.1;
@@ -50,7 +50,7 @@ fn gimbal(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Gimbals { gimbals, free, free_spin: None, flyer })
 }
 
-/// Gives a body equal inertia about every axis: a share of that of the inner body.
+/// Gives a body equal inertia about every axis: `share` times that of the inner body.
 fn round(def: BodyDef, share: f32) -> BodyDef {
     let inertia = Sym3::from_diagonal(Vec3::splat(share * INERTIA));
     BodyDef { mass: Some(MassProperties { mass: share, center: Vec3::ZERO, inertia }), ..def }
@@ -82,13 +82,13 @@ struct Gimbal {
     work: f32,
     /// Angular velocity of the body about the kick's axis right after the kick, rad/s.
     answer: Option<f32>,
-    /// Distance from gimbal lock before the kick by the three angles, radians.
+    /// Distance of the three angles from gimbal lock before the kick, radians.
     margin: Option<f32>,
 }
 
 impl Gimbal {
     fn hang(world: &mut World, frame: BodyId, center: Vec3, pitch: f32) -> Self {
-        // Each ring lies in the plane of its own axis and the next one's.
+        // Each ring is in the plane of its own axis and the next one's.
         let outer = world.add_body(&ring(center, 0.5, Vec3::Z));
         let middle = world.add_body(&ring(center, 0.4, Vec3::Y));
         let body = world.add_body(&round(ghost(ball(0.2, center)), 1.0));
@@ -119,9 +119,9 @@ impl Gimbal {
         world.apply_angular_impulse(self.body, Vec3::Z * (KICK * INERTIA));
     }
 
-    /// Share of the kick by which the body moves. Rings turn about `A = (y, x, z″)`, the body with `A q̇`: an impulse L
-    /// gives `A (Aᵀ I A + J)⁻¹ Aᵀ L`. For L along z, with the inertia r of both rings relative to the body's and the
-    /// cosine c of the pitch, it is `c² (1 + r) / (c² + r)`.
+    /// Returns the angular velocity of the body after the kick, as a share of a free body's. Rings turn about `A = (y,
+    /// x, z″)`, the body with `A q̇`: an impulse L gives `A (Aᵀ I A + J)⁻¹ Aᵀ L`. For L along z, with the inertia r of
+    /// both rings relative to the body's and the cosine c of the pitch, it is `c² (1 + r) / (c² + r)`.
     fn expected(&self) -> f32 {
         let c = trig::cos(self.pitch);
         let (square, r) = (c * c, 2.0 * RING);
@@ -139,11 +139,11 @@ struct Flyer {
     /// Largest angle by which the outermost ring would turn within a step, radians.
     heading_step: f32,
     margin: f32,
-    /// Largest deviation of its angular velocity from constant, rad/s.
+    /// Largest deviation of the body's angular velocity from constant, rad/s.
     unsteady: f32,
 }
 
-/// Steps in which the flyer makes its first quarter turn: it comes closest to lock in the middle of a step.
+/// Steps in which the flyer makes its first quarter turn: the flyer comes closest to lock in the middle of a step.
 const QUARTER: f32 = 90.5;
 
 impl Flyer {

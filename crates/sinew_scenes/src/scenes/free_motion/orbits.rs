@@ -30,7 +30,7 @@ pub(in crate::scenes) const KEPLER: Scene = Scene {
     build: kepler,
 };
 
-/// Half of the ellipse's long axis is 1 m, `μ` 1 m³/s².
+/// Eccentricity of the ellipse; its semi-major axis is 1 m, and `μ` is 1 m³/s².
 const ECCENTRICITY: f32 = 0.5;
 
 fn kepler(setup: &Setup<'_>) -> Instance {
@@ -53,9 +53,9 @@ fn kepler(setup: &Setup<'_>) -> Instance {
 struct Orbit {
     position: Vec3,
     velocity: Vec3,
-    /// Steps at which the distance from the centre was largest, between steps.
+    /// Times at which the distance from the centre was largest, in steps, with fractions.
     far: Vec<f32>,
-    /// Directions of the nearest point at the first and the last time of the largest distance.
+    /// Directions of the nearest point when the distance was largest for the first and for the last time.
     axes: Option<[Vec3; 2]>,
 }
 
@@ -97,7 +97,7 @@ struct Kepler {
     /// Angular momentum and energy at the start.
     start: Vec3,
     energy: f32,
-    /// Largest relative deviation from the start.
+    /// Largest relative deviations of energy and of angular momentum from the start.
     drift: f32,
     turned: f32,
 }
@@ -186,10 +186,10 @@ struct SunEarth {
     /// Momentum of the Earth, solar masses × astronomical units per year.
     scale: f32,
     velocities: [Vec3; 2],
-    /// Sums of the changes of their velocities.
+    /// Sum of the changes of each velocity.
     gained: [f32; 2],
     angle: AngleTurned,
-    /// Largest sum of both momenta, as a share of the Earth's.
+    /// Largest sum of both momenta, relative to the Earth's.
     momentum: f32,
 }
 

@@ -202,7 +202,7 @@ fn spinning_top(setup: &Setup<'_>) -> Instance {
     let rate = precession(spin, lean);
     let mut def = disc(axis * STEM, Vec3::NEG_Y * STEM);
     def.rotation = turn;
-    // The component `spin` of the angular velocity is along the axis, whatever the precession.
+    // The component `spin` of the angular velocity is along the axis, for any rate of precession.
     def.angular_velocity = axis * spin + (Vec3::Y - axis * axis.y) * rate;
     def.linear_velocity = def.angular_velocity.cross(axis * STEM);
     let top = world.add_body(&def);

@@ -87,7 +87,8 @@ pub(in crate::scenes) const SPIN_RAGDOLL: Scene = Scene {
 
 const SPIN: Setting = Setting::number("spin", 9.0, (0.1, 30.0), "angular velocity at the start, rad/s");
 
-/// Rods of 1 m and 1 kg, each at an angle to the one before and out of its plane, that start to spin as one rigid body.
+/// Rods of 1 m and 1 kg, each at an angle to the previous rod and out of its plane, that start to spin as one rigid
+/// body.
 fn spinning_rods(setup: &Setup<'_>, count: usize) -> Instance {
     let mut world = weightless_world();
     let bend = tilt(50.0) * Rotation::from_axis_angle(Vec3::Y, 0.4);
@@ -120,13 +121,13 @@ fn spinning_ragdoll(setup: &Setup<'_>) -> Instance {
     Instance::new(world, spin)
 }
 
-/// Connected bodies without anything around them.
+/// Connected bodies in free space.
 struct Spin {
     joints: Vec<JointId>,
     start: Momentum,
     /// Kinetic energy at the start, J.
     energy: f32,
-    /// Largest deviation of the angular momentum from the start, as a share of it.
+    /// Largest relative deviation of the angular momentum from the start.
     turned: f32,
     gap: f32,
     overshoot: f32,

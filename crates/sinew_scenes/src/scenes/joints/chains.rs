@@ -139,7 +139,7 @@ impl Chain {
         firsts.iter().zip(ends).map(chain).collect()
     }
 
-    /// Sum of its gaps as a share of its length.
+    /// Sum of the chain's gaps as a share of its length.
     fn stretch(&self, world: &World) -> f32 {
         self.joints.iter().map(|&joint| world.joint_gap(joint)).sum::<f32>() / self.length
     }
@@ -161,11 +161,11 @@ struct Hung {
     musts: Musts,
     /// Energy at the start, J.
     start: f32,
-    /// Energy of the weights at the height of the horizontal above their lowest points, J.
+    /// Potential energy of the weights with level chains, relative to their lowest points, J.
     depth: f32,
     /// Largest deviation of the energy from the start, J.
     drift: f32,
-    /// Slowest downward acceleration of a weight in the first step, m/s², where the chains are level.
+    /// Smallest downward acceleration of a weight on a level chain in the first step, m/s².
     first: Option<f32>,
     support: Support,
 }

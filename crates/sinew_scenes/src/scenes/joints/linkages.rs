@@ -132,7 +132,7 @@ impl Crank {
             hinge_about_z(world, rod, piston, end),
             world.add_joint(&slider),
         ];
-        // At its dead centre the rod rotates about the piston, which rests.
+        // At the crank's dead centre the rod rotates about the piston, which rests.
         let linear = Vec3::Y * (0.5 * speed * CRANK);
         world.set_velocity(crank, Velocity { linear, angular: Vec3::Z * speed });
         world.set_velocity(rod, Velocity { linear, angular: Vec3::NEG_Z * (speed * CRANK / CONNECTING_ROD) });
@@ -159,7 +159,7 @@ struct Overloaded {
     joint: JointId,
     /// Strength of the joint, N.
     strength: f32,
-    /// Load of the joint by the weight and the pull in the step in which it broke, N.
+    /// Load of the joint by the weight and the pull in the step in which the joint broke, N.
     broken_at: Option<f32>,
 }
 

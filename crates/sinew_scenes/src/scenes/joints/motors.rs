@@ -38,7 +38,7 @@ const GOAL: f32 = 0.2;
 /// Torque limit of the weak motor, N·m: half of the torque that holds its arm.
 const CAP: f32 = 0.5 * LEVEL_TORQUE;
 /// Angle below level to which an arm falls with half of the holding torque, radians: the positive root of `sin x = x /
-/// 2`, at which the work of its weight equals that which the motor absorbed.
+/// 2`, at which the work of the weight equals the work that the motor absorbed.
 const WEAK_FALL: f32 = 1.895_494_3;
 
 fn motor_arm(setup: &Setup<'_>) -> Instance {
@@ -124,7 +124,7 @@ impl Oscillator {
         MOMENT * self.omega * self.omega
     }
 
-    /// Angle below level at which it holds an arm, radians: `k x = m g l/2 cos x`, by Newton's method.
+    /// Angle below level at which the motor holds an arm, radians: `k x = m g l/2 cos x`, by Newton's method.
     fn sag(&self) -> f32 {
         let weight = LEVEL_TORQUE / self.stiffness();
         (0..8).fold(0.0, |x, _| {
@@ -162,7 +162,7 @@ struct Arm {
     held: JointId,
     /// Joint of the arm that swings to its target.
     swung: JointId,
-    /// Largest deviation of the swung arm from the formula, as a share of its way.
+    /// Largest deviation of the swung arm from the formula, as a share of the target angle.
     error: f32,
     found: Peak,
     formula: Peak,
@@ -193,7 +193,7 @@ impl Arm {
         Some([time / right_time - 1.0, (top - 1.0) / (right_top - 1.0) - 1.0])
     }
 
-    /// Energy added by the motors, J: that which a spring would have lost.
+    /// Energy added by the motors, J: the energy that a spring would have lost.
     fn work_in(&self, world: &World) -> f32 {
         let spent = |hinge: JointId, goal: f32| {
             let off = angle(world, hinge) - goal;
@@ -208,7 +208,7 @@ struct Arms {
     weak: JointId,
     /// Largest torque of the weak motor, N·m.
     hardest: f32,
-    /// Smallest angle of its arm, radians.
+    /// Smallest angle of the weak motor's arm, radians.
     lowest: f32,
 }
 

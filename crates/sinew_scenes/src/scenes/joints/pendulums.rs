@@ -38,7 +38,7 @@ fn pendulum(setup: &Setup<'_>) -> Instance {
 }
 
 struct Bob {
-    /// Name of the figure for its period.
+    /// Name of the figure for the pendulum's period.
     name: &'static str,
     id: BodyId,
     joint: JointId,
@@ -58,8 +58,8 @@ struct Bob {
     gap: f32,
 }
 
-/// Period `2π √(l/g) · 2 K(sin(θ/2)) / π` for a rod of 1 m and an amplitude in degrees; the bob of that radius is fixed
-/// to its rod, a compound pendulum of moment `m (l² + 0.4 r²)`.
+/// Period `2π √(l/g) · 2 K(sin(θ/2)) / π` for a rod of 1 m and an amplitude in degrees; the bob of `radius` metres is
+/// fixed to the rod, a compound pendulum of moment `m (l² + 0.4 r²)`.
 pub(in crate::scenes) fn pendulum_period(amplitude: f32, radius: f32) -> f64 {
     let mean = agm(1.0, f64::from(trig::cos(0.5 * amplitude.to_radians())));
     let radius = f64::from(radius);

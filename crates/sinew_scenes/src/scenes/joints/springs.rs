@@ -51,7 +51,7 @@ fn hung_alike(setup: &Setup<'_>) -> Instance {
     hung(setup, setup.number("mass"), &vec![setup.number("stiffness"); setup.whole("masses")])
 }
 
-/// A chain of as many masses as springs, from above.
+/// Creates a hanging chain of as many masses as springs; stiffnesses from above.
 fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: &[f32]) -> Instance {
     let mut world = setup.world();
     let particle = |i: usize| ParticleDef {
@@ -85,7 +85,7 @@ fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: &[f32]) -> Instance {
 
 struct Hung {
     group: GroupId,
-    /// Expected stretch of each spring, by the weight below it over `k`, metres.
+    /// Expected stretch of each spring, metres: the weight below it divided by `k`.
     stretches: Vec<f32>,
 }
 
@@ -126,7 +126,7 @@ const HALF: f32 = 0.25;
 const ROPE_RADIUS: f32 = 0.01;
 /// Height at which the rope starts, metres.
 const HEIGHT: f32 = 0.8;
-/// Least number of steps in which it falls freely.
+/// Least number of steps in which the rope falls freely.
 const FALLING: u64 = 6;
 
 fn rope_on_box(setup: &Setup<'_>) -> Instance {

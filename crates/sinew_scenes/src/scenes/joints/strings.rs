@@ -165,7 +165,7 @@ struct Mode {
     first: Option<f64>,
     last: f64,
     crossings: u32,
-    /// Mean height of the middle since then, times the number of steps.
+    /// Sum over the steps of the depth of the chain's middle mass below the hook, metres.
     lowest: f32,
 }
 

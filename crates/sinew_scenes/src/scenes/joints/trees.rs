@@ -142,8 +142,8 @@ struct Anchors {
 }
 
 impl Tree {
-    /// Adds rods with masses from 0.01 kg to `ratio` times that: the first from `root` on, each other one from the end
-    /// of one of the three before it, in any direction.
+    /// Adds rods with masses from 0.01 kg to `ratio` times that. The first starts at `root`, each other one at the end
+    /// of one of the three rods before, in any direction.
     fn grow(world: &mut World, ratio: f32, links: usize, root: Vec3) -> Self {
         let mut random = Random::new(5);
         let mut tree = Self { bodies: Vec::new(), joints: Vec::new() };

@@ -18,7 +18,7 @@ pub(in crate::scenes) const TRAMPOLINE: Scene = Scene {
     build: trampoline,
 };
 
-/// Half of a box, metres.
+/// Half extents of a box, metres.
 const BOX: Vec3 = Vec3::new(0.3, 0.1, 0.3);
 /// Number of particles along each edge of the mat below a box, and their spacing, metres.
 const SIDE: u32 = 3;
@@ -37,7 +37,7 @@ const KNOT_RADIUS: f32 = 0.02;
 const RELEASE_DEPTH: f32 = 0.12;
 
 fn trampoline(setup: &Setup<'_>) -> Instance {
-    // With sleep they would stop within the few millimetres that count as rest.
+    // With sleep the boxes would stop within the few millimetres that count as rest.
     let mut world = setup.sleepless_world();
     let mass = setup.number("mass");
     let boxes = [(false, -0.8), (true, 0.8)].map(|(is_net, z)| {
@@ -82,7 +82,7 @@ fn mat(mass: f32, is_net: bool, center: Vec3) -> GroupDef {
     group
 }
 
-/// Depth at which `n k (l − l₀) d/l` with `l = √(a² + d²)` supports a weight, metres, by bisection.
+/// Returns the depth at which `n k (l − l₀) d/l` with `l = √(a² + d²)` supports a weight, metres, by bisection.
 fn sag(weight: f32) -> f64 {
     let (span, stiffness) = (f64::from(SPAN), f64::from(STIFFNESS * TIES as f32));
     let (mut low, mut high) = (0.0, 10.0);
@@ -99,8 +99,7 @@ struct Trampoline {
     boxes: [BodyId; 2],
     /// Expected depth, metres.
     sag: f64,
-    /// Height of each box at the end of the last step, metres, and the larger of the displacements of the two from the
-    /// step before.
+    /// Height of each box at the end of the last step, metres, and the larger of the two displacements in that step.
     heights: [f32; 2],
     moved: f32,
 }

@@ -35,7 +35,7 @@ const RADIUS: f32 = 0.12;
 const SKIN: f32 = 0.005;
 /// Initial height of their lowest points, metres.
 const HEIGHT: f32 = 1.0;
-/// Number of steps in which they certainly fall.
+/// Number of steps in which the balls certainly fall.
 const FALLING: u64 = 20;
 
 fn soft(setup: &Setup<'_>, subdivisions: usize) -> BlobDef {
@@ -62,7 +62,7 @@ struct Dropped {
     /// Volume without pressure, m³.
     volume: f32,
     fall: Option<f32>,
-    /// Smallest height relative to the initial one.
+    /// Smallest height of the ball relative to the initial one.
     squeezed: f32,
 }
 
@@ -114,7 +114,7 @@ pub(in crate::scenes) const STEEL_VS_BASKETBALL: Scene = Scene {
         steel.shapes[0].density = 7850.0;
         let steel = world.add_body(&steel);
         let mut basketball = soft(setup, 2).build();
-        // A step of implicit Euler damps a swing by ω h / 2, so bouncing needs short ones.
+        // A step of implicit Euler damps a swing by ω h / 2, so bouncing needs short steps.
         basketball.group.iterations = 32;
         let basketball = world.add_particles(&basketball.group);
         let bounces = [Bounce::default(); 2];
@@ -128,11 +128,11 @@ const STEEL: f32 = 0.8;
 /// Measurements of one ball's bounce.
 #[derive(Clone, Copy, Default)]
 struct Bounce {
-    /// Speed of its middle during the fall, m/s.
+    /// Speed of the ball's middle during the fall, m/s.
     fall: Option<f32>,
-    /// Steps in which it was on the floor.
+    /// Number of steps in which the ball touched the floor.
     contact: u32,
-    /// Greatest height since then of the lowest point of a round ball, metres.
+    /// Greatest height of the lowest point since the bounce, if the ball were round, metres.
     rebound: Option<f32>,
     /// Largest speed just before and just after the bounce, m/s.
     before: f32,
@@ -162,7 +162,7 @@ impl Bounce {
         self.contact as f32 * world.def().dt()
     }
 
-    /// Mean force of the floor over the weight.
+    /// Mean force of the floor divided by the weight.
     fn force(&self, world: &World) -> f32 {
         (self.before + self.after) / (max(self.contact(world), world.def().dt()) * GRAVITY)
     }

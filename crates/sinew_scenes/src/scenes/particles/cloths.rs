@@ -55,7 +55,7 @@ fn level(setup: &Setup<'_>) -> Cloth {
 
 struct Held {
     cloth: GroupId,
-    /// Weight of all that the corners carry, including the cloth, N.
+    /// Weight that the corners carry, including the cloth, N.
     weight: f32,
 }
 

@@ -36,7 +36,7 @@ const FOLDS: u32 = 5;
 const ROWS: u32 = (LAYER + FOLD) * FOLDS + LAYER;
 /// Area density of the cloth, kg/m².
 const DENSITY: f32 = 0.5;
-/// Rise of each spring along a layer as a share of its length: layers lean until they lie.
+/// Rise of each spring along a layer as a share of its length: layers lean until they lie flat.
 const LEAN: f32 = 0.1;
 /// Initial height of the lowest particle, metres.
 const HEIGHT: f32 = 0.1;
@@ -44,7 +44,7 @@ const HEIGHT: f32 = 0.1;
 const BOX: Vec3 = Vec3::new(0.08, 0.03, 0.08);
 /// Middle of the cloth, and the initial height of the box, metres.
 const ABOVE: Vec3 = Vec3::new(0.1, 0.5, 0.12);
-/// Step after which the box is at rest, at whose end its pressure is measured.
+/// Step after which the box is at rest and its pressure is measured.
 const LIES: u64 = 240;
 /// Number of steps in which the box falls freely.
 const FALLS: u64 = 12;
@@ -104,7 +104,7 @@ struct Watch {
     /// Sum over steps of the force on the box, N, and the number of steps.
     pressed: f32,
     steps: u32,
-    /// Distance of the box's free fall before the cloth, relative to the expected one.
+    /// Distance of the box's free fall before it reaches the cloth, relative to the expected distance.
     fall: Option<f32>,
 }
 
@@ -118,14 +118,14 @@ struct Folded {
     watch: Watch,
 }
 
-/// Particles of a cell's two triangles.
+/// Returns the particles of each triangle, two triangles a cell.
 fn triangles() -> impl Iterator<Item = [usize; 3]> {
     let wide = COLUMNS as usize + 1;
     let cells = (0..ROWS as usize).flat_map(move |row| (0..COLUMNS as usize).map(move |c| row * wide + c));
     cells.flat_map(move |a| [[a, a + 1, a + wide], [a + 1, a + wide + 1, a + wide]])
 }
 
-/// Number of threads that pierce a triangle of which they are no edge.
+/// Number of pairs of a thread and a triangle that the thread pierces without being its edge.
 fn crossings(positions: &[Vec3]) -> u32 {
     let wide = COLUMNS as usize + 1;
     let along = (0..positions.len() - wide).map(|i| [i, i + wide]);

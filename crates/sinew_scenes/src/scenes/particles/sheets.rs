@@ -136,7 +136,7 @@ pub(in crate::scenes) const CURTAIN: Scene = Scene {
 
 /// Radius of the ball, metres.
 const BALL: f32 = 0.2;
-/// Density of the ball, kg/m³; it weighs about 5 kg, twenty times the curtain.
+/// Density of the ball, kg/m³; the ball weighs about 5 kg, twenty times the curtain.
 const BALL_DENSITY: f32 = 150.0;
 /// Mass of each particle of the curtain, kg.
 const GRAIN: f32 = 2e-3;

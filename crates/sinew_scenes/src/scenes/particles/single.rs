@@ -26,7 +26,7 @@ const RADIUS: f32 = 0.05;
 /// Height above the box, metres.
 const HEIGHT: f32 = 2.0;
 const FRICTION: f32 = 0.5;
-/// Time after which the first still falls; measurements of its fall end then.
+/// Step at which the first particle still falls; its fall is measured until then.
 const FALLING: u64 = 30;
 
 /// A group of one particle of 1 kg.
@@ -78,9 +78,9 @@ struct Three {
     /// Angle of the slope, degrees.
     angle: f32,
     restitution: f32,
-    /// Speed of the first during its fall, m/s.
+    /// Speed of the first particle during its fall, m/s.
     speed: Option<f32>,
-    /// Its greatest height after the bounce, metres.
+    /// Greatest height of the first particle after the bounce, metres.
     apex: f32,
 }
 

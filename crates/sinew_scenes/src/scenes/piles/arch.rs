@@ -113,18 +113,18 @@ impl Pier {
 struct Masonry {
     /// Joints from −x to +x.
     joints: Vec<Joint>,
-    /// Weights of the stones between them; that of the keystone includes the blocks on it.
+    /// Weights of the stones between the joints; that of the keystone includes the blocks on it.
     weights: Vec<Weight>,
 }
 
 struct Weight {
     newtons: f32,
-    /// Position of its centre along x, metres.
+    /// Position of the weight's centre along x, metres.
     x: f32,
 }
 
 impl Masonry {
-    /// Masonry of stones and the blocks after them.
+    /// Creates the masonry of stones and of the blocks after them.
     fn new(world: &World, joints: Vec<Joint>, bodies: &[BodyId]) -> Self {
         let newtons = |&id: &BodyId| world.mass(id).mass * GRAVITY;
         let (stones, blocks) = bodies.split_at(joints.len() - 1);
@@ -134,8 +134,8 @@ impl Masonry {
         Self { joints, weights }
     }
 
-    /// Farthest that the line of thrust crosses a joint from its middle, as a share of the way to the joint's end. The line is
-    /// known from the first pier. At 1 the joint opens like a hinge.
+    /// Largest distance from the middle of a joint at which the line of thrust crosses the joint, as a share of half the
+    /// joint. The line follows from the reaction of the first pier. At 1 the joint opens like a hinge.
     fn line_of_thrust(&self, pier: Reaction) -> f32 {
         let mut force = pier.force;
         // Moment about the world's z axis.

@@ -77,7 +77,7 @@ fn pile(setup: &Setup<'_>) -> Instance {
 const BODIES_OF_ONE: usize = 15;
 /// Overshoot that counts as exceeded, radians.
 const EXCEEDED: f32 = 0.1;
-/// Number of steps between two checks of all overlaps: they cost more than a step.
+/// Number of steps between two checks of all overlaps: a check costs more than a step.
 const LOOK: u64 = 30;
 
 struct Pile {

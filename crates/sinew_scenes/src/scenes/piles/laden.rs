@@ -1,4 +1,5 @@
-//! Structures with jointed loads on them, hanging from them or leaning on them: they must stand as well as without.
+//! Structures with jointed loads on them, hanging from them or leaning on them: they must stand as well as without
+//! loads.
 
 use crate::blueprint::{self, Blueprint, arch, loads};
 use crate::framework::flight::Flight;
@@ -72,13 +73,13 @@ pub(in crate::scenes) const STACK: Scene = laden(
 /// A structure that carries jointed loads.
 struct Host {
     plan: Blueprint,
-    /// True if its first body is a floor, which all copies share.
+    /// True if the first body of `plan` is a floor, which all copies share.
     on_floor: bool,
-    /// Middle of its level top.
+    /// Middle of the structure's level top.
     top: Transform,
     /// Half of the top's width along x, metres.
     half: f32,
-    /// Size of the figure on it, relative to a man.
+    /// Size of the figure on the structure, relative to a man.
     figure: f32,
     /// Mass of one of the supporting bodies, kg.
     mass: f32,
@@ -86,7 +87,7 @@ struct Host {
     rope: Vec<Vec3>,
     /// Body from which a rope hangs, and the point.
     edge: (usize, Vec3),
-    /// Point at which a plank touches it, and the plank's tilt in degrees.
+    /// Point at which a plank touches the structure, and the plank's tilt in degrees.
     touch: (Vec3, f32),
     /// Mass of the plank, kg.
     plank: f32,
@@ -94,13 +95,13 @@ struct Host {
 
 /// Radius of a rope over its host, as a share of half the host's width.
 const ROPE_RADIUS: f32 = 0.06;
-/// Half of the least width on which a man lies with his trunk, metres: on narrower tops a smaller figure does.
+/// Half of the least width on which a man lies with his trunk, metres: narrower tops get a smaller figure.
 const CHEST: f32 = 0.35;
 /// Mass of the plank, as a share of the lightest body's mass.
 const PLANK: f32 = 0.1;
 
 impl Host {
-    /// Host with a level top, of which the last body has the edge at +x.
+    /// Creates a host with a level top; its last body has the edge at +x.
     fn level(plan: Blueprint, top: Vec3, half: f32, touch: (Vec3, f32)) -> Self {
         let last = plan.bodies.len() - 1;
         let mass = mass_of(&plan, last);
@@ -191,7 +192,7 @@ const LOADS: [Load; 6] = [
 
 fn jenga() -> Host {
     const LEVELS: usize = 18;
-    // The plank touches the outer face of an odd level, half-way up the eighth.
+    // The plank touches the outer face of an odd level, half-way up the eighth level.
     let touch = Vec3::new(0.0377, 0.1125, 0.0);
     Host::level(blueprint::jenga(LEVELS), Vec3::Y * (0.015 * LEVELS as f32), 0.0377, (touch, 20.0))
 }
@@ -211,7 +212,8 @@ fn pyramid() -> Host {
     Host::level(plan, Vec3::Y * 10.0, 0.5, (Vec3::new(5.0, 0.75, 0.0), 20.0))
 }
 
-/// Loads lie on the uppermost ceiling, between the two cards of the last storey, and the rope lies over these.
+/// House of cards: loads lie on the uppermost ceiling, between the two cards of the last storey, and the rope lies
+/// over these cards.
 fn cards() -> Host {
     const PAIRS: usize = 3;
     let plan = blueprint::cards(PAIRS);
@@ -299,7 +301,7 @@ impl Copy {
         self.placed.iter().fold(0.0, |worst, &(id, from)| max(worst, of(from, center(world, id))))
     }
 
-    /// Largest shift, sink and depth.
+    /// Returns the largest shift, sink and depth, metres.
     fn figures(&self, world: &World) -> [f32; 3] {
         let sink = self.worst(world, |a, b| a.translation.y - b.translation.y);
         let depth = deepest(world, self.placed.iter().map(|&(id, _)| id));

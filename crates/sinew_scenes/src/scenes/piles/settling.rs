@@ -46,10 +46,10 @@ pub(in crate::scenes) const ROCKS: Scene = Scene {
     build: |setup| settling(setup, &blueprint::rocks(), 1, 600),
 };
 
-/// Bodies of two figures, which touch from the start.
+/// Number of bodies of two figures, which touch from the start.
 const FIGURES: usize = 30;
 
-/// Scene of a blueprint whose bodies start apart; all must sleep after the given number of steps.
+/// Builds the scene of a blueprint whose bodies start apart; all must sleep after the given number of steps.
 fn settling(setup: &Setup<'_>, plan: &Blueprint, first: usize, asleep_within: u32) -> Instance {
     let mut world = setup.world();
     let built = plan.build_into(&mut world);

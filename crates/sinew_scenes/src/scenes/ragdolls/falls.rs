@@ -25,7 +25,7 @@ pub(in crate::scenes) const POSES: Scene = Scene {
     build: poses,
 };
 
-/// Distance from one mannequin to the next, metres: they do not touch.
+/// Distance from one mannequin to the next, metres: so large that they do not touch.
 const APART: f32 = 6.0;
 
 fn poses(setup: &Setup<'_>) -> Instance {
@@ -98,7 +98,7 @@ impl Script for Falls {
         }
     }
 
-    /// The worst figure of all mannequins.
+    /// Returns the worst figures of all mannequins.
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let all: Vec<_> = self.falls.iter().map(|fall| fall.meter.quality()).collect();
         let worst = |figure: fn(&sinew::ragdoll::FallQuality) -> f32| all.iter().map(figure).fold(0.0, max);

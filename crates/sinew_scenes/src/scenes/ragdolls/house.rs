@@ -11,7 +11,7 @@ use sinew::physics::cook::{CookOptions, cook};
 use sinew::physics::{BodyDef, BodyKind, NearestToShape, Probe, Shape, ShapeDef, World};
 use sinew::ragdoll::RagdollDef;
 
-/// Not listed, because it needs external files.
+/// Fall of a user's character in front of a user's house; not listed, because it needs external files.
 pub(in crate::scenes) const HOUSE: Scene = Scene {
     chapter: Chapter::Ragdolls,
     name: "house",
@@ -61,8 +61,8 @@ fn house(setup: &Setup<'_>) -> Instance {
     Instance::new(world, limp)
 }
 
-/// The first place from `place` on along +z where a character in its bind pose has room around it: the arms of a wide
-/// one would start in the jambs. If there is none within 2 m, `place` itself.
+/// Returns the first place from `place` on along +z where a character in its bind pose has room around it: otherwise
+/// the arms of a wide character would start in the jambs. Returns `place` if there is none within 2 m.
 fn out_of_the_door(world: &World, def: &RagdollDef, place: Vec3) -> Vec3 {
     const ROOM: f32 = 0.03;
     const STRIDE: f32 = 0.05;

@@ -129,13 +129,13 @@ pub(in crate::scenes) struct Limp {
     flight: Flight,
     /// Push on the chest, N·s, at [`PUSH_STEP`].
     pub push: Vec3,
-    /// Longest time until it sleeps, seconds.
+    /// Longest allowed time until the mannequin sleeps, seconds.
     pub asleep_within: f64,
     requirements: Requirements,
     lowest: f32,
     /// Last time before the first contact, seconds, and the kinetic energy then, J.
     struck: (f32, f32),
-    /// Kinetic energy [`IMPACT`] seconds later, as a share of that.
+    /// Kinetic energy [`IMPACT`] seconds after the contact, as a share of the energy before it.
     left: Option<f32>,
 }
 
@@ -145,8 +145,8 @@ const IMPACT: f32 = 0.1;
 const PUSH_STEP: u64 = 12;
 
 impl Limp {
-    /// The mannequin in its bind pose, rotated about its soles and moving as one rigid piece, with its lowest point at
-    /// the height of `place`.
+    /// Spawns the mannequin in its bind pose, rotated about its soles and moving as one rigid piece, with its lowest
+    /// point at the height of `place`.
     fn spawn(world: &mut World, turn: Rotation, place: Vec3, speed: Vec3) -> Self {
         Self::spawn_of(ragdoll_of_mannequin(), world, turn, place, speed)
     }
@@ -203,7 +203,7 @@ impl Script for Limp {
         self.meter.before_step(world);
     }
 
-    /// Limits of the specification for the quality of a ragdoll.
+    /// Returns the figures with the specification's limits for the quality of a ragdoll.
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let q = self.meter.quality();
         let Requirements { gap_p99, gap_max, overshoot_p99, overshoot_max } = self.requirements;

@@ -9,7 +9,7 @@ use sinew::formats::mjcf::{MjcfInstance, MjcfModel};
 use sinew::math::{Transform, Vec3, max};
 use sinew::physics::{BodyId, BodyKind, JointId, World};
 
-/// Not listed, because it needs an external file.
+/// Fall of MuJoCo's humanoid; not listed, because it needs an external file.
 pub(in crate::scenes) const DROP: Scene = Scene {
     chapter: Chapter::Ragdolls,
     name: "mjcf_drop",

@@ -33,8 +33,8 @@ const SPACING: f32 = 0.9;
 /// Time of the first wave, and time between waves, seconds.
 const FIRST_HIT: f32 = 0.75;
 const BETWEEN_WAVES: f32 = 1.5;
-/// Longest time from the hit until it is up, seconds. A body under others has six seconds to come to rest, one and a
-/// half for the roll, and three for the get-up.
+/// Longest time from the hit until the character is up, seconds. A body under others has six seconds to come to
+/// rest, one and a half for the roll, and three for the get-up.
 const UP_WITHIN: f64 = 10.6;
 /// States in the order of updates, with the names of their cost figures.
 const STATES: [(State, &str); 4] = [
@@ -82,9 +82,9 @@ struct Member {
     character: Character,
     /// Impulse of its hit, N·s.
     hit: Vec3,
-    /// Step after which it is hit.
+    /// Step after which the member is hit.
     hit_at: u64,
-    /// Step after which it was up again.
+    /// Step after which the member was up again.
     up_at: Option<u64>,
     /// World from joint.
     model: Vec<Affine>,

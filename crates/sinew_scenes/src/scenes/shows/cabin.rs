@@ -31,7 +31,7 @@ const RADIUS: f32 = 0.08;
 const HEIGHT: f32 = 8.0;
 /// Least number of steps for which all balls fall freely.
 const FALLING: u64 = 6;
-/// Distance from a box at which a ball rests on it or has just hit it, metres.
+/// Distance from a box at which a ball rests on the box or has just hit it, metres.
 const TOUCHING: f32 = 1e-3;
 /// Number of steps between two checks of contacts.
 const LOOK_EVERY: u64 = 10;
@@ -56,7 +56,7 @@ fn is_box(prop: &Prop) -> bool {
     matches!(prop.body.shapes[0].shape, Shape::Box { .. })
 }
 
-/// The triangles as a shape.
+/// Returns a body with the triangles as its shape.
 fn level(triangles: &[[Vec3; 3]]) -> BodyDef {
     let indices: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|t| [0, 1, 2].map(|k| 3 * t + k)).collect();
     let mesh = Mesh::new(triangles.as_flattened(), &indices).expect("the render mesh has triangles");
@@ -77,7 +77,7 @@ fn rain(count: usize) -> GroupDef {
     GroupDef { particles: (0..count).map(ball).collect(), ..GroupDef::default() }
 }
 
-/// The boxes as an artist would model them: each edge rounded.
+/// Returns the triangles of an artist's model of the boxes: each edge rounded.
 fn render_mesh(props: &[Prop], detail: usize) -> Vec<[Vec3; 3]> {
     let mut triangles = Vec::new();
     for prop in props {
@@ -143,7 +143,7 @@ struct Rain {
 }
 
 impl Rain {
-    /// The closest box, the distance of a ball from it, and the direction out of it.
+    /// Returns the distance of a ball from the closest box, and the direction out of that box.
     fn closest_box(world: &World, p: Vec3) -> Option<(f32, Vec3)> {
         let shapes = world.body_ids().flat_map(|id| world.shapes(id));
         let boxes = shapes.filter(|(shape, _)| matches!(shape, Shape::Box { .. }));

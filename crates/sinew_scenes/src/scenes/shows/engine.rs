@@ -73,13 +73,13 @@ enum Frames {
 
 /// A copy of the world at another frame rate.
 struct Other {
-    /// Name of its figure.
+    /// Name of the copy's figure.
     name: &'static str,
     frames: Frames,
     world: World,
-    /// Total time of its frames.
+    /// Total time of the copy's frames.
     time: Duration,
-    /// Number of times that its state differed.
+    /// Number of times that the copy's state differed.
     differed: u32,
 }
 
@@ -189,8 +189,8 @@ impl OnWire {
         Vec3::new(1.0 + cos, sin, 0.0) * CIRCLE
     }
 
-    /// Rolls to the point at which the line through a place along the normal of the bead's old position crosses the
-    /// wire, by Newton's method (SHAKE; with the normal of the new position the bead would lose energy in every bend).
+    /// Rolls to the point at which the line through `place` along the normal at the bead's old position crosses the wire,
+    /// by Newton's method (SHAKE; with the normal at the new position the bead would lose energy in every bend).
     fn follow(&mut self, place: Vec3) {
         let came = self.tangent();
         for _ in 0..4 {
@@ -246,16 +246,16 @@ impl PhysicsObject for Wire {
 /// Measurements of a bead.
 struct Bead {
     id: BodyId,
-    /// Name of the figure that is its period.
+    /// Name of the figure of the bead's period.
     name: &'static str,
-    /// Energy at the start, and the farthest it was from that, J.
+    /// Energy at the start, and largest deviation from it, J.
     start: f32,
     drift: f32,
     /// Position along x in the last step.
     before: f32,
     /// Times of the first and the last pass through the bottom toward −x, s.
     passes: Option<(f64, f64)>,
-    /// Number of periods between them.
+    /// Number of periods between those passes.
     periods: u32,
 }
 

@@ -31,7 +31,7 @@ const NEXT_FLOOR: f32 = 6.5;
 const NEXT_BODY: f32 = 1.5;
 /// Height difference from a floor to the next one, metres.
 const STAIR: f32 = 0.5;
-/// Material that stops rolling bodies, because their way has no closed form.
+/// Material that stops rolling bodies, because their path has no closed form.
 const SURFACE: Material = Material { friction: 0.6, restitution: 0.0, rolling: 0.05, ..Material::DEFAULT };
 
 fn build(setup: &Setup<'_>) -> Instance {
@@ -105,7 +105,7 @@ fn exhibits() -> [Exhibit; 7] {
 
 /// Exhibits on one floor.
 struct Floor {
-    /// Name of its figure.
+    /// Name of the floor's figure.
     figure: &'static str,
     /// Bodies with the expected heights of their centres of mass.
     shown: Vec<(BodyId, f32)>,

@@ -15,9 +15,9 @@ const LOOKS: u64 = 4;
 const BLOW_LASTS: u32 = 30;
 /// Number of steps after which a character that has not got up is stuck.
 const STUCK: u32 = 480;
-/// Speed of the pelvis below which a fallen character lies, m/s.
+/// Speed of the pelvis below which a fallen character counts as lying, m/s.
 const LIES: f32 = 0.3;
-/// Distance from a standing character to a pelvis that leaves room to get up, metres.
+/// Distance of standing characters from a fallen character's pelvis that leaves room to get up, metres.
 const ROOM_TO_RISE: f32 = 0.6;
 /// Depth from which an overlap is visible, metres.
 const SEEN: f64 = 0.02;
@@ -27,10 +27,11 @@ const SEEN: f64 = 0.02;
 pub(super) struct Watched {
     /// Joint positions in the last three frames, the latest first.
     frames: [Vec<Vec3>; 3],
-    /// States after the last two updates, by index, the latest first; and whether a hit came before them.
+    /// States after the last two updates, by index, the latest first; and if a hit came before them.
     states: [u8; 2],
     blows: [bool; 2],
-    /// Steps since the last hit, since the fall, and number of steps in which it lay with room to get up.
+    /// Steps since the last hit, steps since the fall, and number of steps in which the character lay with room to
+    /// get up.
     since_blow: u32,
     down: u32,
     roomy: u32,
@@ -298,7 +299,7 @@ impl Watch {
     }
 }
 
-/// Returns true if another character's body touches one of its bodies.
+/// Returns true if another character's body touches a body of `fighter`.
 fn is_touched(world: &World, fighter: &Fighter) -> bool {
     let own = fighter.character.bodies();
     let owned = |body: BodyId| world.body_owner(body).is_some();
