@@ -36,7 +36,7 @@ pub enum Transition {
     Crossfade {
         /// Duration, seconds, 0 or above.
         seconds: f32,
-        /// Easing of the weights over that time.
+        /// Easing of the weights over `seconds`.
         easing: Easing,
     },
     /// Only the new motion plays from now on; the difference from the old one decays (see [`Inertia`]).

@@ -16,7 +16,7 @@ use sinew_math::{Affine, Rotation, Vec3, clamp, max, min};
 /// measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeyBound {
-    /// Distance of a joint's origin from the original, units of that space. 0 keeps every key.
+    /// Distance of a joint's origin from the original, in units of that space. 0 keeps every key.
     pub distance: f32,
     /// Angle of a joint's rotation from the original one, radians. 0 keeps every key.
     pub angle: f32,

@@ -19,7 +19,7 @@ pub enum AxisExtraction {
     Full,
 }
 
-/// Selection of the extracted motion.
+/// Selection of the motion to extract.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RootMotionOptions {
     /// The joint that carries the body: the hips, or a joint above them.

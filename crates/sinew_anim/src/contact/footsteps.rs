@@ -10,7 +10,7 @@ use crate::roles::{RigAnalysis, Side};
 use crate::tuning::{LAST_FRAMES, LOOP_SEAM, STEP_FRAME_TIME, STEP_SLIDE};
 use sinew_math::{Vec3, min};
 
-/// Footsteps of a clip, and the speed at which it walks on the spot.
+/// Footsteps of a clip, and the speed of its walk on the spot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Footsteps {
     /// An event `footstep` with the payload `left` or `right` at each footfall, by time. A foot that is on the ground
