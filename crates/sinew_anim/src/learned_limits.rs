@@ -24,7 +24,7 @@ pub struct LearnedHinge {
 pub struct LearnedLimit {
     /// Joint of the limit.
     pub joint: JointIdx,
-    /// The joint's local rotation in the middle of its range.
+    /// The joint's local rotation at the centre of its range.
     pub center: Rotation,
     /// Rotation from the axes of the limit to the joint's own: x along the bone, y and z along the axes of the swing's
     /// ellipse.

@@ -59,7 +59,7 @@ impl ClipEvent {
     }
 }
 
-/// An event of an update. Name and payload: [`AnimationSet::event`](crate::AnimationSet::event).
+/// An event fired in an update. Name and payload: [`AnimationSet::event`](crate::AnimationSet::event).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiredEvent {
     /// Time, seconds from the start of the update, 0 to its length.

@@ -24,7 +24,7 @@ pub struct LookAt {
     pub weight: f32,
 }
 
-/// Result of a look.
+/// Result of [`look_at`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     /// Angle by which the joint turned, radians.

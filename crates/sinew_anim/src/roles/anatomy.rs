@@ -719,7 +719,7 @@ fn leg_roles(legs: &Limb, k: usize, side: Side) -> Vec<(usize, Role)> {
     roles
 }
 
-/// Returns the evidence for a role that the shape shows.
+/// Returns the evidence for a role found by shape: whether the name agrees, contradicts, or gives no part.
 fn basis(role: Role, reading: &Reading) -> Basis {
     let Some(part) = reading.part else { return Basis::Shape };
     // Rigify and CesiumMan count the pelvis among the spine.

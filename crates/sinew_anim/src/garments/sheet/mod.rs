@@ -38,7 +38,7 @@ pub enum SheetError {
     /// The mesh is cloth already.
     #[error("that mesh is a garment already")]
     Twice,
-    /// There are no triangles, or all of them lie in a point.
+    /// The part has no triangles, or all of them lie in a point.
     #[error("that mesh has no triangles with an area")]
     Empty,
     /// The whole mesh is held.
