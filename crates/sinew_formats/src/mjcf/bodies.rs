@@ -19,9 +19,9 @@ pub(crate) const MOST_BODIES: usize = 1024;
 pub(super) struct Link<'a> {
     pub name: String,
     pub element: Element<'a>,
-    /// Index of the parent body; the world's body has its own index.
+    /// Index of the parent body; the world is its own parent.
     pub parent: usize,
-    /// The body, itself or above, up to which nothing moves: 0 for the world.
+    /// Nearest body, this one or an ancestor, that is not fixed to its parent: 0 for the world.
     pub weld: usize,
     pub freedom: Freedom,
     pub def: BodyDef,
