@@ -369,7 +369,7 @@ impl World {
         })
     }
 
-    /// Velocity of the common centre of mass of all moving bodies, m/s.
+    /// Linear momentum of all dynamic bodies and all particles, kg·m/s.
     pub fn momentum(&self) -> Outcome<Vec3Out> {
         self.inner.read(|inner| Ok(vector(inner.world.momentum().linear).unchecked_into()))
     }
