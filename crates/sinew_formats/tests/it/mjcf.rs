@@ -393,7 +393,7 @@ fn shapes_meet_where_either_is_affine_to_the_other() {
     assert_eq!(with_last, [true, true, false, false, false]);
 }
 
-/// Returns the error of the reader for contents of a `<mujoco>`, or "" if it accepts them.
+/// Returns the error of the reader for contents of a `<mujoco>`, or "" if they are accepted.
 fn complaint(contents: &str) -> String {
     let text = format!("<mujoco>\n{contents}</mujoco>");
     read_mjcf(text.as_bytes()).err().map(|error| error.to_string()).unwrap_or_default()
@@ -477,7 +477,7 @@ fn assert_one_line(error: &Error) {
     assert!(!error.where_.is_empty(), "{text}");
 }
 
-/// A model can be put into a world in each of its poses, and stepped.
+/// Reads a model, adds it to a world in each of its poses, and steps the world.
 fn read_and_try(bytes: &[u8]) -> Result<(), Error> {
     let model = read_mjcf(bytes)?;
     let poses = model.keyframes.iter().map(|keyframe| model.pose(keyframe));
@@ -500,7 +500,7 @@ fn every_prefix_of_the_humanoid_is_refused() {
     }
 }
 
-/// Random bytes of the humanoid changed, and its numbers replaced by extreme ones: 10,000 cases with `SINEW_FULL`
+/// Changes random bytes of the humanoid, and replaces its numbers by extreme ones: 10,000 cases with `SINEW_FULL`
 /// set, otherwise a hundredth.
 #[needs_data]
 #[test]
@@ -508,7 +508,7 @@ fn mutated_humanoids_do_no_harm() {
     const WORDS: [&str; 10] = ["0", "-1", "1e9", "1e-30", "nan", "1e40", "", "\"", "<body>", "0 0 0 0"];
     let text = humanoid_text();
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 10_000 } else { 100 };
-    // After the comment at its head.
+    // Starts after the comment at the head of the file.
     let start = text.find("<mujoco").expect("the root");
     let mut random = Random::new(5);
     let (mut read, mut refused) = (0, 0);
@@ -544,7 +544,7 @@ fn a_free_body_is_placed_and_its_parts_follow() {
     );
     let pose = model.pose(model.keyframe("k").expect("it is there"));
     assert_close(pose[1].translation, y_up([1.0, 2.0, 3.0]), 1e-6, "a");
-    // Half a turn about the file's z.
+    // The pose after half a turn about the file's z.
     assert_close(pose[2].translation, y_up([0.0, 2.0, 3.0]), 1e-6, "b");
     assert_eq!(model.rest_pose()[2], Transform::from_translation(Vec3::new(1.0, 1.0, 0.0)));
 }
@@ -573,7 +573,7 @@ fn springs_and_slides_match_the_file() {
     assert!(rest.rotation.angle_to(quarter) < 1e-3, "{rest:?}");
 }
 
-/// ζ = 0.2 returns `exp(−0.2π/√0.96)` in either notation.
+/// Checks that ζ = 0.2 gives a restitution of `exp(−0.2π/√0.96)` in both notations.
 #[test]
 fn contact_properties_match_the_file() {
     let material = |attributes: &str| {
