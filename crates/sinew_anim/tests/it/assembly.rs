@@ -317,7 +317,7 @@ fn clavicles_on_the_midline_belong_to_the_arms() {
     let place = Vec3::new(0.0, 1.45, 0.0);
     for (before, arm) in ["leftUpperArm", "rightUpperArm"].map(part).into_iter().enumerate() {
         let arm = arm + before;
-        // The new joint has the index of the neck's joint, so that parents come first.
+        // The parent is the chest instead of the neck, so that parents come first.
         let clavicle = part("chest");
         let twin =
             Joint { name: format!("Bone.1{arm:02}"), parent: Some(clavicle), ..rig.joints[arm].clone() };
