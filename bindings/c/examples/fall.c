@@ -1,4 +1,4 @@
-/* The mannequin that comes with Sinew walks, is hit in the back, falls and gets up; a crate falls beside it.
+/* The built-in mannequin walks, is hit in the back, falls and gets up; a crate falls beside it.
  *
  *   fall [CHARACTER.glb]
  */
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Every call gives a status; a program that cannot go on says why. */
+/* Every call returns a status; on an error the program prints the reason and exits. */
 static void must(SinewStatus status, const char *what) {
     if (status != SINEW_STATUS_OK) {
         fprintf(stderr, "%s: %s\n", what, sinew_last_error());
@@ -105,7 +105,7 @@ int main(int argc, char **argv) {
     int same = hash_of(world) == middle;
     printf("back in the middle of the fall: %s\n", same ? "the same state" : "ANOTHER STATE");
 
-    /* A mistake is told of, and nothing breaks. */
+    /* An invalid call returns an error and changes nothing. */
     SinewBodyId unknown = {UINT64_MAX};
     if (sinew_world_poses(world, &unknown, 1, &at) != SINEW_STATUS_STALE_ID || strlen(sinew_last_error()) == 0) {
         return 1;

@@ -1,10 +1,10 @@
-//! Border to C: pointers in and out, errors, panics.
+//! Border to C: converts pointers, errors and panics.
 
 use sinew_bindings::Failure;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
 
-/// Outcome of a call.
+/// Status of a call.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SinewStatus {
@@ -20,23 +20,23 @@ pub enum SinewStatus {
     BadFile = 4,
     /// The bytes are no snapshot of this version; the world is unchanged.
     BadSnapshot = 5,
-    /// The buffer is too small; the needed count was returned.
+    /// The buffer is too small; the needed count was stored.
     TooSmall = 6,
-    /// A bug in the library. The object being changed is unusable and can only be freed.
+    /// A bug in the library. The object that was being changed is unusable and can only be freed.
     Panic = 7,
 }
 
-/// Error of a call: its status and its sentence.
+/// Error of a call: its status and its text.
 #[derive(Debug)]
 pub struct CallError {
-    /// Status that the caller gets.
+    /// Status that the call returns.
     pub(crate) status: SinewStatus,
     what: String,
 }
 
 pub(crate) type Outcome<T = ()> = Result<T, CallError>;
 
-/// The error of a status, with a sentence.
+/// Makes the error of a status, with a text.
 pub(crate) fn error(status: SinewStatus, what: impl Into<String>) -> CallError {
     CallError { status, what: what.into() }
 }
@@ -59,7 +59,7 @@ pub(crate) fn guard(call: impl FnOnce() -> Outcome) -> SinewStatus {
         Err(CallError { status, what }) => (status, what),
     };
     let what = CString::new(what.replace('\0', "?")).unwrap_or_default();
-    // An ending thread may have lost its error text.
+    // The thread-local text may already be destroyed when a thread ends.
     let _ = LAST.try_with(|last| last.replace(what));
     status
 }
@@ -69,12 +69,12 @@ fn caught<T>(call: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
     sinew_bindings::caught(call).unwrap_or_else(|what| Err(error(SinewStatus::Panic, what)))
 }
 
-/// Runs a library call that panics about its arguments before it changes anything: the panic is the caller's mistake.
+/// Runs a library call that panics about its arguments before it changes any state; the panic becomes `BadArgument`.
 pub(crate) fn refused<T>(call: impl FnOnce() -> T) -> Outcome<T> {
     caught(|| Ok(call())).map_err(|panic| error(SinewStatus::BadArgument, panic.what))
 }
 
-/// An object that a panic during a change makes unusable.
+/// An object that becomes unusable if a change panics.
 pub(crate) struct Handle<T> {
     it: T,
     is_broken: bool,
@@ -85,7 +85,7 @@ impl<T> Handle<T> {
         Self { it, is_broken: false }
     }
 
-    /// The object, for reading.
+    /// Returns the object for reading.
     pub(crate) fn get(&self) -> Outcome<&T> {
         self.check()?;
         Ok(&self.it)
@@ -112,28 +112,28 @@ fn null(name: &str) -> CallError {
     error(SinewStatus::NullPointer, format!("{name} is null"))
 }
 
-/// Reference to a pointer's target.
+/// Returns a reference to a pointer's target.
 ///
 /// # Safety
-/// The pointer is null or points to a `T` that no other thread changes meanwhile.
+/// The pointer is null or points to a `T` that no other thread changes during the borrow.
 pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Outcome<&'a T> {
     // SAFETY: as the caller promises.
     unsafe { pointer.as_ref() }.ok_or_else(|| null(name))
 }
 
-/// Mutable reference to a pointer's target.
+/// Returns a mutable reference to a pointer's target.
 ///
 /// # Safety
-/// The pointer is null or points to a `T` that no other thread uses meanwhile.
+/// The pointer is null or points to a `T` that no other thread uses during the borrow.
 pub(crate) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &str) -> Outcome<&'a mut T> {
     // SAFETY: as the caller promises.
     unsafe { pointer.as_mut() }.ok_or_else(|| null(name))
 }
 
-/// Slice of a pointer's elements; it may be null if there are none.
+/// Returns a slice of a pointer's elements; the pointer may be null if there are none.
 ///
 /// # Safety
-/// The pointer is null or points to `count` elements that no other thread changes meanwhile.
+/// The pointer is null or points to `count` elements that no other thread changes during the borrow.
 pub(crate) unsafe fn elements<'a, T>(pointer: *const T, count: usize, name: &str) -> Outcome<&'a [T]> {
     if count == 0 {
         return Ok(&[]);
@@ -155,7 +155,7 @@ fn check_count<T>(count: usize, name: &str) -> Outcome {
     }
 }
 
-/// Checks that there is memory for a value, before anything is changed.
+/// Checks that the pointer for a result is not null, before any state is changed.
 pub(crate) fn room<T>(pointer: *mut T, name: &str) -> Outcome {
     if pointer.is_null() { Err(null(name)) } else { Ok(()) }
 }
@@ -171,7 +171,7 @@ pub(crate) unsafe fn give<T>(pointer: *mut T, name: &str, value: T) -> Outcome {
     Ok(())
 }
 
-/// Writes values into a buffer, and their number. If the buffer is too small, writes only the number.
+/// Writes values into a buffer, and their number into `count`. If the buffer is too small, writes only the number.
 ///
 /// # Safety
 /// `buffer` is null or has room for `capacity` elements, `count` is null or points to a number.
@@ -196,7 +196,7 @@ pub(crate) unsafe fn fill<T: Copy>(
     Ok(())
 }
 
-/// UTF-8 text of the caller.
+/// Returns UTF-8 text of the caller.
 ///
 /// # Safety
 /// The pointer is null or points to text that ends with a zero.
@@ -209,7 +209,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Outcome<&'a
     text.map_err(|_| error(SinewStatus::BadArgument, format!("{name} is not UTF-8")))
 }
 
-/// Puts a handle on the heap and gives its pointer.
+/// Allocates a handle and writes its pointer.
 ///
 /// # Safety
 /// As [`give`].
@@ -219,10 +219,10 @@ pub(crate) unsafe fn give_handle<T>(pointer: *mut *mut T, name: &str, value: T) 
     unsafe { give(pointer, name, Box::into_raw(Box::new(value))) }
 }
 
-/// Frees a handle; null is fine.
+/// Frees a handle; null is allowed.
 ///
 /// # Safety
-/// The pointer is null or came from [`give_handle`], and is not used any more.
+/// The pointer is null or came from [`give_handle`], and is not used afterwards.
 pub(crate) unsafe fn free<T>(pointer: *mut T) {
     if !pointer.is_null() {
         guard(|| {
@@ -233,14 +233,14 @@ pub(crate) unsafe fn free<T>(pointer: *mut T) {
     }
 }
 
-/// Sentence on the last call of this thread that gave no `SINEW_STATUS_OK`, or "". It names the file and the place. It lives until the
-/// thread's next call.
+/// Returns the error text of the last call of this thread, or "" if it returned `SINEW_STATUS_OK`. The text names the file and the
+/// place. It is valid until the thread's next call.
 #[unsafe(no_mangle)]
 pub extern "C" fn sinew_last_error() -> *const c_char {
     LAST.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
 }
 
-/// Version of the library, such as "0.1.0".
+/// Returns the version of the library, such as "0.1.0".
 #[unsafe(no_mangle)]
 pub extern "C" fn sinew_version() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()

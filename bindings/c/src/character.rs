@@ -1,4 +1,4 @@
-//! Characters: clips until something hits them, bodies while they fall, and up again.
+//! Characters: they play clips until they are hit, fall with their bodies, and get up.
 
 use crate::border::{
     CallError, Handle, Outcome, SinewStatus, elements, error, exclusive, fill, free, give, give_handle,
@@ -13,13 +13,13 @@ use std::ffi::{CString, c_char};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Kind of a character: rig, ragdoll and motions, shared by any number of characters.
+/// Kind of character: rig, ragdoll and motions, shared by any number of characters.
 pub struct SinewCharacterDef {
     def: Arc<CharacterDef>,
     names: Vec<CString>,
 }
 
-/// Character in a world. It is stepped after the world: `sinew_world_step`, then `sinew_character_update`, one for one.
+/// Character in a world. Call `sinew_character_update` once after each `sinew_world_step`.
 pub struct SinewCharacter {
     character: Handle<Character>,
 }
@@ -42,7 +42,7 @@ pub enum SinewCharacterState {
     Powered = 5,
 }
 
-/// Transform of a joint in its parent, in the file's units.
+/// Transform of a joint relative to its parent, in the file's units.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SinewLocalTransform {
@@ -52,8 +52,8 @@ pub struct SinewLocalTransform {
     pub scale: SinewVec3,
 }
 
-/// Reads a character (GLB, glTF, VRM, FBX) and builds its ragdoll. Where the file has no clip to get up by, a humanoid gets those that
-/// come with the library. A null path: the mannequin that comes with the library.
+/// Reads a character (GLB, glTF, VRM, FBX) and builds its ragdoll. If the file has no get-up clip, a humanoid gets the built-in ones. A
+/// null path loads the built-in mannequin.
 ///
 /// # Safety
 /// `path` is null or text, `def` is null or points to room for a pointer.
@@ -82,17 +82,17 @@ pub unsafe extern "C" fn sinew_character_def_load(
     })
 }
 
-/// Frees a kind of character; its characters stay. Null is allowed.
+/// Frees a kind of character; its characters remain valid. Null is allowed.
 ///
 /// # Safety
-/// `def` is null or came from `sinew_character_def_load` and is not used any more.
+/// `def` is null or came from `sinew_character_def_load` and is not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_def_free(def: *mut SinewCharacterDef) {
     // SAFETY: as the caller promises.
     unsafe { free(def) }
 }
 
-/// Number of joints in its rig, and of transforms in a pose.
+/// Stores the number of joints of the rig in `count`; a pose has as many transforms.
 ///
 /// # Safety
 /// `def` is null or a kind of character, `count` is null or points to a number.
@@ -105,7 +105,7 @@ pub unsafe extern "C" fn sinew_character_def_joint_count(
     guard(|| unsafe { give(count, "count", shared(def, "def")?.names.len()) })
 }
 
-/// Name of a joint; valid as long as the kind of character.
+/// Stores the name of a joint in `name`; valid as long as the kind of character.
 ///
 /// # Safety
 /// `def` is null or a kind of character, `name` is null or points to room for a pointer.
@@ -126,7 +126,7 @@ pub unsafe extern "C" fn sinew_character_def_joint_name(
     })
 }
 
-/// Adds an animated character to a world, with bodies that rays can hit, standing at a pose (+Y up, facing +Z).
+/// Adds an animated character to a world at a pose (+Y up, facing +Z). Rays can hit its bodies.
 ///
 /// # Safety
 /// `def` is null or a kind of character, `world` is null or a world that no other thread uses, `character` is null or room for a pointer.
@@ -148,11 +148,11 @@ pub unsafe extern "C" fn sinew_character_spawn(
     })
 }
 
-/// Takes a character out of its world and frees it. If it was in another one, or a body of it was removed, it is freed all the same,
-/// and the status says so.
+/// Removes a character from its world and frees it. If the character is in another world, or one of its bodies was removed, it is freed
+/// anyway, and the status is `SINEW_STATUS_STALE_ID`.
 ///
 /// # Safety
-/// `character` came from `sinew_character_spawn` and is not used any more; `world` is null or a world that no other thread uses.
+/// `character` came from `sinew_character_spawn` and is not used afterwards; `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_despawn(
     character: *mut SinewCharacter,
@@ -173,17 +173,17 @@ pub unsafe extern "C" fn sinew_character_despawn(
     })
 }
 
-/// Frees a character without removing its bodies, for a world that is freed as well. Null is allowed.
+/// Frees a character without removing its bodies, for a world that is freed, too. Null is allowed.
 ///
 /// # Safety
-/// `character` is null or came from `sinew_character_spawn` and is not used any more.
+/// `character` is null or came from `sinew_character_spawn` and is not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_free(character: *mut SinewCharacter) {
     // SAFETY: as the caller promises.
     unsafe { free(character) }
 }
 
-/// Every body of the character is in the world.
+/// Checks that every body of the character is in the world.
 fn is_here(character: &Character, world: &sinew::physics::World) -> Outcome {
     let gone = character.bodies().iter().find(|&&body| !world.contains(body));
     match gone {
@@ -195,7 +195,7 @@ fn is_here(character: &Character, world: &sinew::physics::World) -> Outcome {
     }
 }
 
-/// Changes character and world together.
+/// Changes a character and its world together.
 ///
 /// # Safety
 /// Both are null or used by no other thread.
@@ -229,7 +229,8 @@ pub unsafe extern "C" fn sinew_character_update(
     })
 }
 
-/// Hits a body, by its role ("chest") or its joint's name, with an impulse, N·s, world axes. It falls, or flinches if the hit is weak.
+/// Hits a body, given by its role ("chest") or its joint's name, with an impulse, N·s, world axes. The character falls, or flinches if
+/// the hit is weak.
 ///
 /// # Safety
 /// `character` and `world` are null or used by no other thread, `body` is null or text.
@@ -259,7 +260,7 @@ fn no_body(def: &CharacterDef, name: &str) -> CallError {
     error(SinewStatus::BadArgument, format!("no body is called '{name}'; there are {}", roles.join(", ")))
 }
 
-/// Makes it limp at its present velocity.
+/// Makes the character limp at its present velocity.
 ///
 /// # Safety
 /// `character` and `world` are null or used by no other thread.
@@ -278,7 +279,7 @@ pub unsafe extern "C" fn sinew_character_go_limp(
     })
 }
 
-/// State of the character.
+/// Stores the state of the character in `state`.
 ///
 /// # Safety
 /// `character` is null or one that no other thread changes, `state` is null or points to room.
@@ -302,7 +303,7 @@ pub unsafe extern "C" fn sinew_character_state(
     })
 }
 
-/// Returns the ids of its bodies in the world, in the order of its ragdoll.
+/// Stores the ids of the character's bodies in the world in `ids`, in the order of the ragdoll.
 ///
 /// # Safety
 /// `character` is null or one that no other thread changes; `ids` has room for `capacity`, `count` is null or points to a number.
@@ -322,7 +323,7 @@ pub unsafe extern "C" fn sinew_character_bodies(
     })
 }
 
-/// Returns the transforms of all joints relative to their parents, in the order of the file.
+/// Stores the transforms of all joints relative to their parents in `pose`, in the order of the file.
 ///
 /// # Safety
 /// `character` is null or one that no other thread changes; `pose` has room for `capacity`, `count` is null or points to a number.
@@ -346,7 +347,7 @@ pub unsafe extern "C" fn sinew_character_pose(
     })
 }
 
-/// Returns the matrix from the file's model space to the world, the parent of the pose: 3 rows of 4.
+/// Stores the matrix from the file's model space to the world in `matrix`: 3 rows of 4. It is the parent of the pose.
 ///
 /// # Safety
 /// `character` is null or one that no other thread changes, `matrix` is null or has room for 12 numbers.
@@ -369,7 +370,7 @@ pub unsafe extern "C" fn sinew_character_world_from_model(
     })
 }
 
-/// Saves a character to a buffer, to accompany the snapshot of its world; see `sinew_world_save`.
+/// Saves a character to a buffer, in addition to the snapshot of its world; see `sinew_world_save`.
 ///
 /// # Safety
 /// `character` is null or one that no other thread changes; `bytes` has room for `capacity`, `size` is null or points to a number.
@@ -389,10 +390,10 @@ pub unsafe extern "C" fn sinew_character_save(
     })
 }
 
-/// Restores a saved character of the same kind. If the bytes are invalid, it is unchanged.
+/// Restores a saved character of the same kind. If the bytes are invalid, the character is unchanged.
 ///
 /// # Safety
-/// `character` is null or used by no other thread, `bytes` has `size` of them.
+/// `character` is null or used by no other thread, `bytes` has `size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_load(
     character: *mut SinewCharacter,

@@ -10,19 +10,19 @@ use sinew::physics::{JointDef, JointId, JointKind, Motor, Softness, World};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SinewJointKind {
-    /// Turns freely about the anchor.
+    /// Allows rotation about the anchor.
     Ball = 0,
-    /// Turns about the axis. `range`: radians.
+    /// Allows rotation about the axis. `range`: radians.
     Hinge = 1,
-    /// Slides along the axis. `range`: metres.
+    /// Allows sliding along the axis. `range`: metres.
     Slider = 2,
     /// Locks all motions.
     Fixed = 3,
-    /// Rope or rod from the anchor of A to that of B. `range`: metres.
+    /// Rope or rod from the anchor of A to the anchor of B. `range`: metres.
     Distance = 4,
 }
 
-/// Joint to be added.
+/// Definition of a joint.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct SinewJointDef {
@@ -30,19 +30,19 @@ pub struct SinewJointDef {
     pub kind: u32,
     /// The first body.
     pub a: SinewBodyId,
-    /// The other body; at least one of both must be dynamic.
+    /// The second body; at least one of the two must be dynamic.
     pub b: SinewBodyId,
-    /// Anchor of both bodies, world, metres; of a distance joint its end at A.
+    /// Anchor of both bodies, world, metres; for a distance joint, its end at A.
     pub anchor: SinewVec3,
     /// End of a distance joint at B, world, metres; ignored by other kinds.
     pub anchor_b: SinewVec3,
-    /// Axis of a hinge or a slider, world; not zero.
+    /// Axis of a hinge or a slider, world; must not be zero.
     pub axis: SinewVec3,
-    /// 1 if a hinge or slider has a range, else 0; a distance always has one. The present pose is 0.
+    /// 1 if a hinge or slider has a range, else 0; a distance joint always has one. The present pose is 0.
     pub has_range: u32,
-    /// Least.
+    /// Lower end of the range.
     pub range_lo: f32,
-    /// Most.
+    /// Upper end of the range.
     pub range_hi: f32,
 }
 
@@ -84,7 +84,7 @@ fn joint(world: &World, id: SinewJointId) -> Outcome<JointId> {
     if is_there { Ok(joint) } else { Err(error(SinewStatus::StaleId, format!("no joint {:#x}", id.bits))) }
 }
 
-/// Adds a joint at the present poses of its bodies.
+/// Adds a joint at the present poses of its bodies; stores its id in `id`.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread uses, `def` null or a definition, `id` null or room for one.
@@ -123,8 +123,8 @@ pub unsafe extern "C" fn sinew_world_remove_joint(world: *mut SinewWorld, id: Si
     })
 }
 
-/// Drives a joint toward a rotation of B in A (a hinge: about its axis, x), as a spring with a frequency in Hz and a damping ratio, with no more
-/// than a torque, N·m. 0 Hz: no motor.
+/// Drives a joint toward a rotation of B relative to A, given as a scaled axis (a hinge: along x), by a spring with a frequency in Hz, a
+/// damping ratio and a largest torque, N·m. 0 Hz removes the motor.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread uses.
@@ -150,7 +150,7 @@ pub unsafe extern "C" fn sinew_world_drive_joint(
     })
 }
 
-/// Returns the distance of the joint's two anchors, metres.
+/// Stores the distance between the joint's two anchors in `gap`, metres.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread changes, `gap` is null or points to a number.
@@ -168,7 +168,7 @@ pub unsafe extern "C" fn sinew_world_joint_gap(
     })
 }
 
-/// Returns the pose of B in A in the joint's frames: its rotation and its slide.
+/// Stores the pose of B relative to A, in the joint's frames, in `pose`: rotation and translation.
 ///
 /// # Safety
 /// As `sinew_world_joint_gap`.

@@ -1,8 +1,8 @@
 //! Sinew for C: worlds, bodies, joints, queries, snapshots, ragdolls and characters behind opaque handles.
 //!
-//! The header is `include/sinew.h`, made of this file and those beside it by `cbindgen`; docs/c.md of the repository is its guide. No
-//! panic passes the border: every function gives a [`SinewStatus`], and [`sinew_last_error`] a sentence.
-// `forbid` cannot be lifted; the modules below are the list.
+//! The header `include/sinew.h` is generated from this file and its modules by `cbindgen`; docs/c.md of the repository is its guide.
+//! No panic crosses the border: every function returns a [`SinewStatus`], and [`sinew_last_error`] returns the error text.
+// `forbid` could not be overridden; the modules below that allow unsafe code are the complete list.
 #![deny(unsafe_code)]
 
 #[allow(unsafe_code)]

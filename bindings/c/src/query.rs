@@ -10,17 +10,17 @@ use sinew::physics::{BodyId, OverlapWith, Probe, Shape};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SinewRayHit {
-    /// The body.
+    /// The body that was hit.
     pub body: SinewBodyId,
-    /// World, metres.
+    /// Point of the hit, world, metres.
     pub point: SinewVec3,
-    /// Out of the body, unit length.
+    /// Normal of the surface, outward, unit length.
     pub normal: SinewVec3,
-    /// Fraction of the ray before the hit, 0 to 1.
+    /// Position of the hit as a fraction of the ray, 0 to 1.
     pub fraction: f32,
 }
 
-/// Point of a contact, as the last step left it.
+/// Contact point after the last step.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SinewContact {
@@ -32,9 +32,9 @@ pub struct SinewContact {
     pub position: SinewVec3,
     /// Normal from A to B, unit length.
     pub normal: SinewVec3,
-    /// Gap, metres; negative if they overlap.
+    /// Gap between the surfaces, metres; negative if they overlap.
     pub separation: f32,
-    /// Total impulse of the step, N·s.
+    /// Total impulse of the last step, N·s.
     pub impulse: f32,
 }
 
@@ -52,15 +52,16 @@ pub struct SinewPair {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SinewEventKind {
-    /// Bodies that began to touch.
+    /// The bodies began to touch.
     Begin = 0,
-    /// Bodies that stopped; ids may be stale.
+    /// The bodies stopped touching; ids may be stale.
     End = 1,
-    /// Bodies that hit each other fast.
+    /// The bodies hit each other at high speed.
     Hit = 2,
 }
 
-/// Casts a ray from `origin` along `way`, which also sets its length. If it hits a body, `found` is 1 and `hit` is filled, else `found` is 0.
+/// Casts a ray from `origin` along `way`, whose length is that of the ray. If it hits a body, `found` is 1 and `hit` is filled; else
+/// `found` is 0.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread changes; `hit` and `found` are null or have room.
@@ -88,7 +89,7 @@ pub unsafe extern "C" fn sinew_world_ray(
     })
 }
 
-/// Bodies that a shape at a pose would overlap, ascending.
+/// Stores the ids of the bodies that a shape at a pose would overlap, ascending.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread changes; `ids` has room for `capacity`, `count` is null or points to a number.
@@ -120,7 +121,7 @@ pub unsafe extern "C" fn sinew_world_overlap(
     })
 }
 
-/// Returns the points of all contacts, including those with a gap, in the order of pairs.
+/// Stores the points of all contacts, including contacts with a gap, in the order of pairs.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread changes; `contacts` has room for `capacity`, `count` is null or points to a number.
@@ -150,7 +151,7 @@ pub unsafe extern "C" fn sinew_world_contacts(
     })
 }
 
-/// Events of the last step, of a kind (one of `SinewEventKind`), in the order of pairs.
+/// Stores the pairs of the last step's events of one kind (one of `SinewEventKind`), in the order of pairs.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread changes; `pairs` has room for `capacity`, `count` is null or points to a number.

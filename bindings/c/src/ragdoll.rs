@@ -9,7 +9,7 @@ use sinew_bindings::{Wishes, embedded, load_ragdoll};
 use std::ffi::{CString, c_char};
 use std::path::Path;
 
-/// Ragdoll as data, to be added to worlds.
+/// Ragdoll as data, which can be added to worlds.
 pub struct SinewRagdoll {
     def: RagdollDef,
     roles: Vec<CString>,
@@ -23,8 +23,8 @@ impl SinewRagdoll {
     }
 }
 
-/// Reads a ragdoll: a definition (`.json`), an MJCF model (`.xml`), or a character (GLB, glTF, VRM, FBX), of which it is built. A null
-/// path: that of the mannequin that comes with the library.
+/// Reads a ragdoll definition (`.json`) or an MJCF model (`.xml`), or builds the ragdoll of a character (GLB, glTF, VRM, FBX). A null path
+/// loads that of the built-in mannequin.
 ///
 /// # Safety
 /// `path` is null or text, `ragdoll` is null or points to room for a pointer.
@@ -45,17 +45,17 @@ pub unsafe extern "C" fn sinew_ragdoll_load(
     })
 }
 
-/// Frees a ragdoll; bodies in worlds stay. Null is allowed.
+/// Frees a ragdoll; its bodies in worlds remain. Null is allowed.
 ///
 /// # Safety
-/// `ragdoll` is null or came from `sinew_ragdoll_load` and is not used any more.
+/// `ragdoll` is null or came from `sinew_ragdoll_load` and is not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_ragdoll_free(ragdoll: *mut SinewRagdoll) {
     // SAFETY: as the caller promises.
     unsafe { free(ragdoll) }
 }
 
-/// Number of its bodies.
+/// Stores the number of bodies of the ragdoll in `count`.
 ///
 /// # Safety
 /// `ragdoll` is null or a ragdoll, `count` is null or points to a number.
@@ -68,7 +68,7 @@ pub unsafe extern "C" fn sinew_ragdoll_body_count(
     guard(|| unsafe { give(count, "count", shared(ragdoll, "ragdoll")?.def.bodies.len()) })
 }
 
-/// Role of a body, such as "head" or "leftUpperArm"; valid as long as the ragdoll.
+/// Stores the role of a body in `role`, such as "head" or "leftUpperArm"; valid as long as the ragdoll.
 ///
 /// # Safety
 /// `ragdoll` is null or a ragdoll, `role` is null or points to room for a pointer.
@@ -89,8 +89,8 @@ pub unsafe extern "C" fn sinew_ragdoll_role(
     })
 }
 
-/// Puts a ragdoll into a world, in its bind pose, standing at a pose (+Y up, facing +Z), at rest. Gives its bodies' ids in the order
-/// of the definition; with too little room for them nothing is put into the world.
+/// Adds a ragdoll to a world in its bind pose, standing at a pose (+Y up, facing +Z), at rest. Stores the ids of its bodies in `ids`, in
+/// the order of the definition. If `ids` is too small, the world is unchanged.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread uses, `ragdoll` is null or a ragdoll; `ids` has room for `capacity`, `count` is null or
@@ -108,7 +108,7 @@ pub unsafe extern "C" fn sinew_ragdoll_spawn(
         // SAFETY: as the caller promises.
         let (def, world) = unsafe { (&shared(ragdoll, "ragdoll")?.def, exclusive(world, "world")?) };
         let pose = pose.read("the pose")?;
-        // SAFETY: likewise; stale ids first, so that a lack of room is known before anything is changed.
+        // SAFETY: likewise. Stale ids are written first, so that a lack of room is found before the world is changed.
         unsafe { fill(&vec![SinewBodyId { bits: u64::MAX }; def.bodies.len()], ids, capacity, count) }?;
         let states: Vec<BodyState> = def
             .bodies

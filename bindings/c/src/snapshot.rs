@@ -4,7 +4,7 @@ use crate::border::{SinewStatus, elements, error, exclusive, fill, give, guard, 
 use crate::world::SinewWorld;
 use sinew::math::{Reader, Writer};
 
-/// Hash of the complete state: the same on every machine, for every number of threads.
+/// Stores the hash of the complete state in `hash`: the same on every machine, for every number of threads.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread changes, `hash` is null or points to a number.
@@ -14,7 +14,7 @@ pub unsafe extern "C" fn sinew_world_hash(world: *const SinewWorld, hash: *mut u
     guard(|| unsafe { give(hash, "hash", shared(world, "world")?.world.get()?.hash()) })
 }
 
-/// Saves a world to a buffer; `size` is the number of bytes, also if the capacity is too small.
+/// Saves a world to a buffer; stores the number of bytes in `size`, also if the capacity is too small.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread changes; `bytes` has room for `capacity`, `size` is null or points to a number.
@@ -37,7 +37,7 @@ pub unsafe extern "C" fn sinew_world_save(
 /// Restores a saved world. If the bytes are invalid, the world is unchanged.
 ///
 /// # Safety
-/// `world` is null or a world that no other thread uses, `bytes` has `size` of them.
+/// `world` is null or a world that no other thread uses, `bytes` has `size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_load(
     world: *mut SinewWorld,

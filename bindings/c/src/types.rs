@@ -1,4 +1,4 @@
-//! Plain data that passes the border. Metres, kilograms, seconds, radians; +Y is up, right-handed.
+//! Plain data that crosses the border. Metres, kilograms, seconds, radians; +Y is up, right-handed.
 
 use crate::border::{Outcome, SinewStatus, error};
 use sinew::math::{Rotation, Transform, Vec3};
@@ -58,7 +58,7 @@ pub struct SinewBodyId {
     pub bits: u64,
 }
 
-/// Id of a joint in a world, as for bodies.
+/// Id of a joint in a world; the rules are those of body ids.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SinewJointId {
@@ -74,7 +74,7 @@ pub enum SinewBodyKind {
     Dynamic = 0,
     /// The body never moves.
     Static = 1,
-    /// The body moves at its velocity; nothing pushes it.
+    /// The body moves at its velocity; no force or contact changes it.
     Kinematic = 2,
 }
 
@@ -92,11 +92,11 @@ pub enum SinewShapeKind {
     Cylinder = 3,
     /// Cone along y, the apex up. `size.x`: radius of the base; `size.y`: half the height.
     Cone = 4,
-    /// Everything below y = 0 of its frame, for static bodies. No sizes.
+    /// All points below y = 0 of its frame, for static bodies. No sizes.
     HalfSpace = 5,
 }
 
-/// Shape around its body's origin. `kind` is one of `SinewShapeKind`; a number, so that a wrong one is an error.
+/// Shape around its body's origin. `kind` is a number instead of an enum, so that an invalid one is an error.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SinewShape {
@@ -138,7 +138,7 @@ impl From<JointId> for SinewJointId {
 }
 
 impl SinewVec3 {
-    /// As the library has it.
+    /// Converts to the library's type; `name` is for the error.
     pub(crate) fn read(self, name: &str) -> Outcome<Vec3> {
         let v = Vec3::new(self.x, self.y, self.z);
         if v.is_finite() { Ok(v) } else { Err(bad(format!("{name} is not finite: {v:?}"))) }
@@ -155,27 +155,27 @@ impl SinewRotation {
         if length == 0.0 {
             return Ok(Rotation::IDENTITY);
         }
-        // A unit quaternion keeps its bits, so that a returned value equals the given one.
+        // A unit quaternion keeps its bits, so that setting a pose that was read changes no bits.
         Ok(if (length - 1.0).abs() < 1e-6 { q } else { q.normalize() })
     }
 }
 
 impl SinewPose {
-    /// Returns the library's form.
+    /// Converts to the library's type.
     pub(crate) fn read(self, name: &str) -> Outcome<Transform> {
         Ok(Transform::new(self.position.read(name)?, self.rotation.read(name)?))
     }
 }
 
 impl SinewVelocity {
-    /// As the library has it.
+    /// Converts to the library's type.
     pub(crate) fn read(self, name: &str) -> Outcome<Velocity> {
         Ok(Velocity { linear: self.linear.read(name)?, angular: self.angular.read(name)? })
     }
 }
 
 impl SinewShape {
-    /// As the library has it, with sizes that can be.
+    /// Converts to the library's type; invalid sizes are an error.
     pub(crate) fn read(self) -> Outcome<Shape> {
         use SinewShapeKind as Kind;
         let size = self.size.read("the size of a shape")?;
@@ -194,7 +194,7 @@ impl SinewShape {
     }
 }
 
-/// The kind of a body, from its number.
+/// Returns the kind of a body from its number.
 pub(crate) fn body_kind(kind: u32) -> Outcome<BodyKind> {
     match kind {
         kind if kind == SinewBodyKind::Dynamic as u32 => Ok(BodyKind::Dynamic),

@@ -14,11 +14,11 @@ use sinew::physics::{
 /// World with bodies and joints. One thread at a time may use it.
 pub struct SinewWorld {
     pub(crate) world: Handle<World>,
-    /// Threads of the last step that had more than one.
+    /// Thread pool of the last step that used more than one thread.
     threads: Option<Threads>,
 }
 
-/// Settings of a world; `sinew_world_def_default` fills it.
+/// Settings of a world; `sinew_world_def_default` fills them in.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct SinewWorldDef {
@@ -34,7 +34,7 @@ pub struct SinewWorldDef {
     pub sleeping: u32,
 }
 
-/// Body to be added; `sinew_body_def_default` fills it.
+/// Definition of a body; `sinew_body_def_default` fills it in.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct SinewBodyDef {
@@ -44,21 +44,21 @@ pub struct SinewBodyDef {
     pub pose: SinewPose,
     /// Velocity, m/s and rad/s.
     pub velocity: SinewVelocity,
-    /// Shapes, all of them around the body's origin.
+    /// Shapes, each around the body's origin.
     pub shapes: *const SinewShape,
     /// Number of shapes.
     pub shape_count: usize,
-    /// Mass, kg, distributed over the shapes; 0, the default: computed from `density`.
+    /// Mass, kg, distributed over the shapes; with 0, the default, it is computed from `density`.
     pub mass: f32,
     /// Density, kg/m³. Default 1,000.
     pub density: f32,
-    /// Coulomb's coefficient, at least 0. Default 0.6.
+    /// Coefficient of Coulomb friction, at least 0. Default 0.6.
     pub friction: f32,
-    /// Share of the speed given back, 0 to 1. Default 0.
+    /// Coefficient of restitution, 0 to 1. Default 0.
     pub restitution: f32,
-    /// Bits of the layers that its shapes are on. Default 1.
+    /// Bits of the layers to which the shapes belong. Default 1.
     pub layers: u32,
-    /// Bits of the layers that they collide with. Default all.
+    /// Bits of the layers with which the shapes collide. Default all.
     pub mask: u32,
     /// Data of the user.
     pub user_data: u64,
@@ -164,7 +164,7 @@ impl SinewBodyDef {
         Ok(def)
     }
 
-    /// `mass` as the shapes have theirs.
+    /// Distributes `mass` over the shapes, in proportion to their masses.
     fn spread(&self, def: &BodyDef) -> Outcome<MassProperties> {
         if !(self.mass > 0.0 && self.mass < f32::INFINITY) {
             return Err(error(
@@ -189,7 +189,7 @@ impl SinewWorld {
     }
 }
 
-/// The body of an id, if it is there.
+/// Returns the body of an id, if it exists.
 pub(crate) fn body(world: &World, id: SinewBodyId) -> Outcome<BodyId> {
     let body = BodyId::from_bits(id.bits);
     if world.contains(body) {
@@ -219,14 +219,14 @@ pub unsafe extern "C" fn sinew_world_new(
 /// Frees a world; null is allowed.
 ///
 /// # Safety
-/// `world` is null or came from `sinew_world_new` and is not used any more.
+/// `world` is null or came from `sinew_world_new` and is not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_free(world: *mut SinewWorld) {
     // SAFETY: as the caller promises.
     unsafe { free(world) }
 }
 
-/// Takes steps on the given number of threads; the result does not depend on it. 0 and 1 use the calling thread only.
+/// Takes steps on the given number of threads, which does not affect the result. 0 and 1 use only the calling thread.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread uses.
@@ -252,7 +252,7 @@ pub unsafe extern "C" fn sinew_world_step(world: *mut SinewWorld, steps: u32, th
     })
 }
 
-/// Number of steps since the beginning.
+/// Stores the number of steps since the world was created in `steps`.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread changes, `steps` is null or points to a number.
@@ -262,10 +262,10 @@ pub unsafe extern "C" fn sinew_world_step_count(world: *const SinewWorld, steps:
     guard(|| unsafe { give(steps, "steps", shared(world, "world")?.world.get()?.step_count()) })
 }
 
-/// Adds a body.
+/// Adds a body; stores its id in `id`.
 ///
 /// # Safety
-/// `world` is null or a world that no other thread uses, `def` null or a definition whose shapes are there, `id` null or room for one.
+/// `world` is null or a world that no other thread uses, `def` null or a definition with valid `shapes`, `id` null or room for one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_add_body(
     world: *mut SinewWorld,
@@ -297,7 +297,7 @@ pub unsafe extern "C" fn sinew_world_remove_body(world: *mut SinewWorld, id: Sin
     })
 }
 
-/// Ids of all bodies, ascending by index.
+/// Stores the ids of all bodies in `ids`, ascending by index.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread changes, `ids` has room for `capacity`, `count` is null or points to a number.
@@ -317,7 +317,7 @@ pub unsafe extern "C" fn sinew_world_bodies(
     })
 }
 
-/// Poses of bodies in the world, one for each id.
+/// Stores the poses of bodies in the world in `poses`, one for each id.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread changes; `ids` and `poses` have `count` elements.
@@ -338,7 +338,7 @@ pub unsafe extern "C" fn sinew_world_poses(
     })
 }
 
-/// Velocities of bodies, one for each id.
+/// Stores the velocities of bodies in `velocities`, one for each id.
 ///
 /// # Safety
 /// As `sinew_world_poses`.
@@ -380,7 +380,7 @@ pub unsafe extern "C" fn sinew_world_set_pose(
     })
 }
 
-/// Sets the velocity of a body; ignored for static ones.
+/// Sets the velocity of a body; ignored for static bodies.
 ///
 /// # Safety
 /// `world` is null or a world that no other thread uses.

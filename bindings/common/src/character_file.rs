@@ -1,4 +1,4 @@
-//! Character and ragdoll files, by path.
+//! Reads character and ragdoll files by path.
 
 use crate::Failure;
 use sinew::CharacterSource;
@@ -18,14 +18,14 @@ use sinew::ragdoll::{
 };
 use std::path::Path;
 
-/// A rigged character: the file, and the roles of its joints.
+/// A rigged character: the file, and the roles of the rig's joints.
 #[derive(Clone, Debug)]
 pub struct CharacterFile {
     /// Name given by the user.
     pub name: String,
     /// Rig, clips and bytes of the file. The rig may have added ankles and sheet joints that the file lacks.
     pub document: Document,
-    /// Analysis of its joints.
+    /// Analysis of the rig's joints.
     pub analysis: RigAnalysis,
     /// Settings beside the file or given by the user, if any.
     pub settings: Settings,
@@ -40,15 +40,15 @@ pub struct Corrections {
     pub settings: Option<Settings>,
     /// Joints and their roles.
     pub roles: Vec<(String, String)>,
-    /// Joints that, with all below them, do not belong to the body.
+    /// Joints that, with all their descendants, do not belong to the body.
     pub ignore: Vec<String>,
-    /// Bones, by role or joint, and whether each gets its own body.
+    /// Bones, by role or joint, and true for each that gets its own body.
     pub bodies: Vec<(String, bool)>,
     /// Length of the file's unit, metres.
     pub unit: Option<f32>,
-    /// Height of the whole, metres.
+    /// Height of the character, metres.
     pub height: Option<f32>,
-    /// Mass of the whole, kg.
+    /// Total mass, kg.
     pub mass: Option<f32>,
 }
 
@@ -82,29 +82,29 @@ impl Corrections {
     }
 }
 
-/// Build options that override file and settings; `None` keeps the file's and the settings' values.
+/// Build options that override the file and its settings; `None` keeps their values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wishes {
-    /// Mass of the whole, kg.
+    /// Total mass, kg.
     pub mass: Option<f32>,
-    /// Height of the whole, metres.
+    /// Height of the character, metres.
     pub height: Option<f32>,
-    /// Kind of shapes, whose masses, and the source of limits.
+    /// Kind of shapes, source of masses, and source of limits.
     pub options: BuildOptions,
 }
 
 /// Motions of a character before, during and after a fall.
 #[derive(Clone, Debug)]
 pub struct Motions {
-    /// Name of the clip that plays until it falls; `None`: the file's walk, else its idle, else its first.
+    /// Name of the clip that plays until the fall; `None`: the file's walk, else its idle, else its first clip.
     pub looped: Option<String>,
-    /// Rule by which that clip moves it over the ground. Default by the clip.
+    /// Motion over the ground while that clip plays. Default: by the clip.
     pub locomotion: Locomotion,
     /// Adds Sinew's own get-up motions if the file has none. Default: true.
     pub builtin: bool,
-    /// Action once it lies still. Default get up.
+    /// Action after the character lies still. Default: get up.
     pub after_settling: AfterSettling,
-    /// Drive of its bodies while it falls. Default limp.
+    /// Drive of the bodies during the fall. Default: limp.
     pub falling: DriveMode,
 }
 
@@ -121,8 +121,8 @@ impl Default for Motions {
 }
 
 impl CharacterFile {
-    /// Reads a GLB, glTF, VRM or FBX with a skinned character, and the settings beside it, like the commands of `sinew`. These also use
-    /// neighbouring files to find an uncertain unit.
+    /// Reads a GLB, glTF, VRM or FBX with a skinned character, and the settings beside it, like the commands of `sinew`. The commands also
+    /// use neighbouring files to find an uncertain unit.
     ///
     /// # Errors
     /// If the file is invalid; the error names the file, the problem and its place.
@@ -144,8 +144,8 @@ impl CharacterFile {
         Self::new(name, document, corrections.over(settings)?)
     }
 
-    /// [`load`](Self::load) for bytes in memory. `name` is that of the file: it begins error messages, and its words help to classify the
-    /// character. A glTF must contain its buffers.
+    /// [`load`](Self::load) for bytes in memory. `name` is the name of the file: error messages start with it, and its words help to
+    /// classify the character. A glTF must contain its buffers.
     ///
     /// # Errors
     /// As [`load`](Self::load).
@@ -188,7 +188,7 @@ impl CharacterFile {
         Ok(Self { name, document, analysis, settings, garments })
     }
 
-    /// The ragdoll of the character, and the notes of the build.
+    /// Builds the ragdoll of the character; also returns the report of the build.
     ///
     /// # Errors
     /// If the file or an option is invalid; the error names the file and the problem.
@@ -207,8 +207,8 @@ impl CharacterFile {
             .map_err(|error| failed(&error))
     }
 
-    /// The character with its own clips, as built by `sinew bake`. A humanoid can get Sinew's get-up motions. A character without any stays
-    /// down.
+    /// Returns the character with its own clips, built like in `sinew bake`. A humanoid can get Sinew's get-up motions. A character without
+    /// get-ups stays down.
     ///
     /// # Errors
     /// If the ragdoll belongs to another rig, the clip does not exist, or a clip cannot be played.
@@ -262,7 +262,7 @@ fn of_motion(file: MotionFile, name: &str) -> Result<Document, Failure> {
     Ok(bytes.and_then(read).map_err(|error| error.with_file(name))?)
 }
 
-/// The mannequin of the library, as if it had been read from a file.
+/// Returns the built-in mannequin, as if it had been read from a file.
 pub fn embedded() -> CharacterFile {
     let mannequin = sinew::mannequin::mannequin();
     let bytes = write_gltf(&mannequin.rig, &mannequin.clips).expect("the mannequin is a glTF");
@@ -270,8 +270,8 @@ pub fn embedded() -> CharacterFile {
     CharacterFile::new("mannequin".to_owned(), document, Settings::default()).expect("and has a skin")
 }
 
-/// Any file that a ragdoll comes from, by its name: a definition (`.json`), an MJCF or URDF model (`.xml`, `.urdf`), or a character, of which it
-/// is built.
+/// Reads a ragdoll from a file, by its extension: a definition (`.json`), an MJCF or URDF model (`.xml`, `.urdf`), or a character, whose
+/// ragdoll is built.
 ///
 /// # Errors
 /// If the file is invalid; the error names the file, the problem and its place.

@@ -1,4 +1,4 @@
-//! Code shared by the bindings to C and to Python: files by name, characters with motions, random falls.
+//! Code shared by the bindings to C and Python: files by name, characters with motions, random falls.
 #![forbid(unsafe_code)]
 
 mod character_file;
@@ -19,12 +19,12 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// Error for an invalid argument.
+    /// Makes an error for an invalid argument.
     pub fn argument(what: impl Into<String>) -> Self {
         Self { is_of_file: false, what: what.into() }
     }
 
-    /// Error for a file, by its name.
+    /// Makes an error for a file, with its name.
     pub fn file(name: &str, what: impl core::fmt::Display) -> Self {
         Self { is_of_file: true, what: format!("{name}: {what}") }
     }

@@ -6,14 +6,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::Once;
 
 thread_local! {
-    /// True while a panic of this thread is caught below.
+    /// True while a call whose panics are caught runs in this thread.
     static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Runs `call`; a panic becomes its message, without printed output.
+/// Runs `call`; if it panics, returns the message, without printed output.
 ///
 /// # Errors
-/// If `call` panics: its message.
+/// If `call` panics: the message of the panic.
 pub fn caught<T>(call: impl FnOnce() -> T) -> Result<T, String> {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| {
@@ -30,7 +30,7 @@ pub fn caught<T>(call: impl FnOnce() -> T) -> Result<T, String> {
     outcome.map_err(|payload| text_of_panic(payload.as_ref()))
 }
 
-/// Message of a panic.
+/// Returns the message of a panic.
 fn text_of_panic(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
     text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic".to_owned())

@@ -1,4 +1,4 @@
-//! Random falls for data sets: pose, hit and ground by a seed, the same bits on every machine.
+//! Random falls for data sets: pose, hit and ground from a seed, the same bits on every machine.
 
 use sinew::anim::{Channel, Clip, Interpolation, LocalTransform, Property, Rig};
 use sinew::math::{Random, Transform, Vec3, min};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Options of random falls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallOptions {
-    /// Length, seconds. Default 3.
+    /// Duration, seconds. Default 3.
     pub seconds: f32,
     /// Frames per second of the clip, at least 1. Default 30.
     pub fps: f32,
@@ -32,18 +32,18 @@ impl Default for FallOptions {
 pub struct RandomFall {
     /// The hit.
     pub hit: BakeHit,
-    /// Static bodies that it falls on.
+    /// Static bodies onto which the character falls.
     pub ground: Vec<BodyDef>,
     /// Clip, frames, figures and hash.
     pub baked: Baked,
-    /// Verdict on its fitness for use.
+    /// Verdict on the result: good, usable or bad.
     pub verdict: Verdict,
-    /// Reasons for the verdict, a sentence each.
+    /// Reasons for the verdict, one sentence each.
     pub reasons: Vec<String>,
 }
 
-/// Drops a character from a random pose within its limits, with a random orientation, its lowest point 1.3 m to 2.5 m above the floor, on
-/// random ground. Within the first half it gets a random hit.
+/// Drops a character from a random pose within its limits, with a random orientation and its lowest point 1.3 m to 2.5 m above the floor,
+/// on random ground. The character gets a random hit within the first half.
 ///
 /// # Panics
 /// If an option is not finite or negative, or the frame rate is below 1.
@@ -83,7 +83,7 @@ pub fn random_fall(character: &CharacterDef, seed: u64, options: &FallOptions) -
     RandomFall { hit, ground, baked, verdict, reasons }
 }
 
-/// A constant clip, with bodies at these poses in character space.
+/// Makes a constant clip, with bodies at the given poses in character space.
 fn still(character: &CharacterDef, bodies: &[Transform]) -> Clip {
     let rig: &Rig = &character.rig;
     let mut pose: Vec<LocalTransform> = character.rest().to_vec();

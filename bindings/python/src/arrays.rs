@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::Velocity;
 
-/// An array of that shape with these elements.
+/// Makes an array of `shape` with these elements.
 pub fn array<'py, T: numpy::Element>(
     py: Python<'py>,
     elements: Vec<T>,
@@ -16,7 +16,7 @@ pub fn array<'py, T: numpy::Element>(
     PyArray1::from_vec(py, elements).reshape(shape.to_vec())
 }
 
-/// Elements of a value that numpy converts to an array of this shape; `None` is a free length.
+/// Returns the elements of a value that numpy converts to an array of this shape; `None` is a free length.
 pub fn elements<T: numpy::Element + Copy>(
     given: &Bound<'_, PyAny>,
     shape: &[Option<usize>],
@@ -36,7 +36,7 @@ pub fn elements<T: numpy::Element + Copy>(
     Ok(array.as_slice()?.to_vec())
 }
 
-/// Finite numbers, as [`elements`].
+/// Returns finite numbers, by [`elements`].
 pub fn floats(given: &Bound<'_, PyAny>, shape: &[Option<usize>], name: &str) -> PyResult<Vec<f32>> {
     let numbers = elements::<f32>(given, shape, name)?;
     match numbers.iter().position(|number| !number.is_finite()) {
@@ -45,18 +45,18 @@ pub fn floats(given: &Bound<'_, PyAny>, shape: &[Option<usize>], name: &str) -> 
     }
 }
 
-/// Three finite numbers.
+/// Returns a vector of three finite numbers.
 pub fn vec3(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec3> {
     let v = floats(given, &[Some(3)], name)?;
     Ok(Vec3::new(v[0], v[1], v[2]))
 }
 
-/// Vectors from rows of three.
+/// Converts rows of three numbers to vectors.
 pub fn vectors(numbers: &[f32]) -> Vec<Vec3> {
     numbers.chunks_exact(3).map(|v| Vec3::new(v[0], v[1], v[2])).collect()
 }
 
-/// Poses from rows of seven: position, and quaternion x, y, z, w, which is normalised.
+/// Converts rows of seven numbers to poses: position, and quaternion x, y, z, w, which is normalised.
 pub fn poses(numbers: &[f32], name: &str) -> PyResult<Vec<Transform>> {
     let pose = |p: &[f32]| {
         let rotation = Rotation { x: p[3], y: p[4], z: p[5], w: p[6] };
@@ -64,7 +64,7 @@ pub fn poses(numbers: &[f32], name: &str) -> PyResult<Vec<Transform>> {
         if length.is_nan() || length < 1e-6 {
             return Err(bad(format!("{name}: a quaternion must not be zero")));
         }
-        // A unit quaternion keeps its bits, so that poses that were read can be set again.
+        // A unit quaternion keeps its bits, so that setting poses that were read changes no bits.
         let rotation = if (length - 1.0).abs() < 1e-6 { rotation } else { rotation.normalize() };
         Ok(Transform::new(Vec3::new(p[0], p[1], p[2]), rotation))
     };
@@ -77,7 +77,7 @@ pub fn push_pose(numbers: &mut Vec<f32>, pose: &Transform) {
     numbers.extend([p.x, p.y, p.z, q.x, q.y, q.z, q.w]);
 }
 
-/// Velocities from rows of six: linear and angular.
+/// Converts rows of six numbers to velocities: linear and angular.
 pub fn velocities(numbers: &[f32]) -> Vec<Velocity> {
     let velocity =
         |v: &[f32]| Velocity { linear: Vec3::new(v[0], v[1], v[2]), angular: Vec3::new(v[3], v[4], v[5]) };

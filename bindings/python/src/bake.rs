@@ -30,7 +30,7 @@ pub struct Character {
     pub def: Arc<CharacterDef>,
 }
 
-/// Outcome of a bake: poses, events, figures, and a clip.
+/// Result of a bake: poses, events, figures, and a clip.
 #[pyclass(frozen, module = "sinew")]
 pub struct Bake {
     file: Arc<CharacterFile>,
@@ -42,7 +42,7 @@ pub struct Bake {
     reasons: Vec<String>,
 }
 
-/// Character of a bake with its hits and drives.
+/// Character of a bake, with its hits and drives.
 #[pyclass(frozen, module = "sinew")]
 pub struct Actor {
     file: Arc<CharacterFile>,
@@ -55,7 +55,7 @@ pub struct Actor {
     place: Transform,
     phase: f32,
     name: String,
-    /// True if a limp character that stays upright is pushed over, in a bake of one.
+    /// True if a limp character that stays upright is pushed over; only in a bake of one character.
     topples: bool,
 }
 
@@ -112,7 +112,7 @@ impl Actor {
     }
 }
 
-/// World and length of a bake, from Python's arguments.
+/// World and duration of a bake, from Python's arguments.
 struct Stage {
     colliders: Vec<Collider>,
     fields: Vec<FieldDef>,
@@ -121,7 +121,7 @@ struct Stage {
     fps: f32,
 }
 
-/// Bakes characters in one world; each gets the bits that it would have alone if they never meet.
+/// Bakes characters in one world. A character that meets no other has the same bits as alone.
 #[pyfunction]
 #[pyo3(signature = (actors, *, seconds=10.0, fps=30.0, world=None, wind=None, gravity=None, progress=None))]
 pub fn bake(
@@ -208,7 +208,7 @@ impl Stage {
     }
 }
 
-/// Least wall time between two calls of the user's function, seconds.
+/// Shortest time between two calls of the user's function, seconds of wall time.
 const REPORT_INTERVAL: f32 = 0.05;
 
 /// Reports a bake's progress to Python, and checks whether to continue.
@@ -255,13 +255,14 @@ impl Character {
         self.def.ragdoll.bodies.iter().map(|body| body.role.as_str()).collect()
     }
 
-    /// Names of its joints, in the order of arrays of poses.
+    /// Names of the joints, in the order of arrays of poses.
     #[getter]
     fn joints(&self) -> Vec<&str> {
         self.def.rig.joints.iter().map(|joint| joint.name.as_str()).collect()
     }
 
-    /// Pose at which it stands where its file has it, (7,): the file's place times its unit is then the world's.
+    /// Pose at which the character stands as in its file, (7,): the file's positions times its unit are then
+    /// world positions.
     #[getter]
     fn place_in_file<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         let mut numbers = Vec::new();
@@ -275,7 +276,8 @@ impl Character {
         self.def.raised()
     }
 
-    /// Simulates it: walking, hit, falling, getting up. Without any action, it goes limp after half a second.
+    /// Simulates the character: walking, hit, falling, getting up. Without any action, it goes limp after half a
+    /// second.
     #[pyo3(signature = (*, seconds=10.0, fps=30.0, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, world=None, wind=None, gravity=None, pose=None, phase=0.0, name="sinew", progress=None))]
     fn bake(
         slf: PyRef<'_, Self>,
@@ -315,7 +317,8 @@ impl Character {
         Ok(baked.pop().expect("one for each"))
     }
 
-    /// A random fall: pose within the limits, ground and hit by the seed; the same bits on every machine.
+    /// Simulates a random fall: pose within the limits, ground and hit from the seed; the same bits on every
+    /// machine.
     #[pyo3(signature = (seed, *, seconds=3.0, fps=30.0, impulse=120.0))]
     fn random_fall(&self, py: Python<'_>, seed: u64, seconds: f32, fps: f32, impulse: f32) -> PyResult<Bake> {
         check_length(seconds, fps)?;
@@ -367,7 +370,7 @@ pub fn state_name(state: State) -> &'static str {
     }
 }
 
-/// `WentLimp` becomes `went_limp`.
+/// Converts `WentLimp` to `went_limp`.
 pub fn event_name(event: &CharacterEvent) -> String {
     let text = format!("{event:?}");
     let mut name = String::new();
@@ -394,14 +397,14 @@ impl Bake {
         self.baked.frames.iter().map(|frame| state_name(frame.state)).collect()
     }
 
-    /// Places of all joints in their parents, (frames, joints, 3), units of the file.
+    /// Positions of all joints relative to their parents, (frames, joints, 3), units of the file.
     #[getter]
     fn translations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
         let joints = self.baked.frames.iter().flat_map(|frame| &frame.pose);
         array(py, joints.flat_map(|joint| joint.translation.to_array()).collect(), &self.shape(3))
     }
 
-    /// Rotations of all joints in their parents, (frames, joints, 4), x y z w.
+    /// Rotations of all joints relative to their parents, (frames, joints, 4), x y z w.
     #[getter]
     fn rotations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
         let joints = self.baked.frames.iter().flat_map(|frame| &frame.pose);
@@ -412,7 +415,7 @@ impl Bake {
         array(py, rotations.collect(), &self.shape(4))
     }
 
-    /// Places of all joints in the world, (frames, joints, 3), metres.
+    /// Positions of all joints in the world, (frames, joints, 3), metres.
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
         let mut model: Vec<Affine> = Vec::new();
@@ -424,7 +427,7 @@ impl Bake {
         array(py, numbers, &self.shape(3))
     }
 
-    /// Joint above each, -1 for roots.
+    /// Index of each joint's parent, -1 for roots.
     #[getter]
     fn parents<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
         let joints = self.def.rig.joints.iter();
@@ -444,7 +447,7 @@ impl Bake {
         self.hits.iter().map(|hit| (hit.time, role(hit.body), hit.impulse.to_array())).collect()
     }
 
-    /// Figures, by the names of docs/contract.md.
+    /// Figures, with the names in docs/contract.md.
     #[getter]
     fn quality<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         quality_dict(py, &self.baked.quality)
@@ -456,25 +459,25 @@ impl Bake {
         self.verdict.name()
     }
 
-    /// Reasons for it, a sentence each.
+    /// Reasons for the verdict, one sentence each.
     #[getter]
     fn reasons(&self) -> Vec<&str> {
         self.reasons.iter().map(String::as_str).collect()
     }
 
-    /// Hash of the state at the end.
+    /// Hash of the final state.
     #[getter]
     fn hash(&self) -> u64 {
         self.baked.hash
     }
 
-    /// The file with the clip, or only its bones with the clip if `mesh` is false.
+    /// The file with the clip; if `mesh` is false, only the bones and the clip.
     #[pyo3(signature = (*, mesh=true))]
     fn glb<'py>(&self, py: Python<'py>, mesh: bool) -> PyResult<Bound<'py, PyBytes>> {
         Ok(PyBytes::new(py, &py.detach(|| self.bytes(mesh))?))
     }
 
-    /// The character, its motion and its ragdoll as USD text (.usda), and a sentence on each loss.
+    /// The character, its motion and its ragdoll as USD text (.usda), and notes on losses, one sentence each.
     #[pyo3(signature = (*, physics=true))]
     fn usda(&self, py: Python<'_>, physics: bool) -> PyResult<(String, Vec<String>)> {
         let input = UsdInput {
@@ -488,7 +491,7 @@ impl Bake {
         Ok((text, notes))
     }
 
-    /// Writes that file atomically.
+    /// Writes the file of `glb` atomically.
     #[pyo3(signature = (path, *, mesh=true))]
     fn save(&self, py: Python<'_>, path: PathBuf, mesh: bool) -> PyResult<()> {
         py.detach(|| write_atomic(&path, &self.bytes(mesh)?).map_err(of_file))

@@ -1,4 +1,4 @@
-//! Many worlds with the same figure, stepped together.
+//! Many worlds with the same figure, which are stepped together.
 
 use crate::arrays::{array, elements, floats, poses, push_pose, push_velocity, vectors, velocities};
 use crate::errors::{bad, guarded, refused};
@@ -15,7 +15,7 @@ use sinew::ragdoll::{BodySettings, BodyState, RagdollDef};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Worlds with one figure each, on a floor. Each has the same bits as it would alone, for any number of threads.
+/// Worlds with one figure each, on a floor. Each world has the same bits as alone, for any number of threads.
 #[pyclass(module = "sinew")]
 pub struct BatchWorlds {
     worlds: Vec<Mutex<World>>,
@@ -26,7 +26,7 @@ pub struct BatchWorlds {
     threads: Threads,
 }
 
-/// Adds the figure to a world: its moving bodies, their joints, and their names.
+/// A figure in a world: its moving bodies, their joints, and their names.
 type Figure = (Vec<BodyId>, Vec<JointId>, Vec<String>);
 
 fn spawn_ragdoll(world: &mut World, def: &RagdollDef) -> Figure {
@@ -46,7 +46,7 @@ fn spawn_model(world: &mut World, model: &Model) -> Figure {
 }
 
 impl BatchWorlds {
-    /// Applies an operation to every world, on all threads, without the GIL.
+    /// Runs `work` on every world, on all threads, without the GIL.
     fn each(&self, py: Python<'_>, work: impl Fn(usize, &mut World) + Sync) -> PyResult<()> {
         let next = AtomicUsize::new(0);
         let task = || {
@@ -59,7 +59,7 @@ impl BatchWorlds {
         py.detach(|| guarded(|| self.threads.run(self.threads.count(), &task)))
     }
 
-    /// Numbers of each world, `width` of them, one world after the other.
+    /// Collects `width` numbers of each world, world by world.
     fn gather<T: Copy + Default + Send>(
         &self,
         py: Python<'_>,
@@ -80,7 +80,7 @@ impl BatchWorlds {
         Ok(all)
     }
 
-    /// Indices of the given worlds; all of them if none are given.
+    /// Returns the indices of the given worlds; all if none are given.
     fn chosen(&self, worlds: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<usize>> {
         let count = self.worlds.len();
         let Some(worlds) = worlds else { return Ok((0..count).collect()) };
@@ -94,7 +94,7 @@ impl BatchWorlds {
 
 #[pymethods]
 impl BatchWorlds {
-    /// Makes `count` worlds with a ragdoll or a model in each; `threads` 0 is as many as the machine has.
+    /// Creates `count` worlds with a ragdoll or a model in each; `threads` 0 uses all threads of the machine.
     #[new]
     #[pyo3(signature = (figure, count, *, floor=true, dt=1.0/60.0, substeps=4, quality="balanced", sleeping=false, threads=0))]
     fn new(
@@ -133,7 +133,7 @@ impl BatchWorlds {
         py.detach(|| {
             guarded(|| {
                 let (first, (bodies, joints, names)) = make();
-                // Ids without a world, since those of one world are valid in all.
+                // Ids are stored as bits without a world, because those of one world are valid in all.
                 let bodies = bodies.into_iter().map(|id| BodyId::from_bits(id.to_bits())).collect();
                 let joints = joints.into_iter().map(|id| JointId::from_bits(id.to_bits())).collect();
                 let mut worlds = vec![Mutex::new(first)];
@@ -171,7 +171,7 @@ impl BatchWorlds {
         self.each(py, |_, world| (0..count).for_each(|_| world.step()))
     }
 
-    /// Resets worlds to their beginning; then moves figures to `poses` (m, n, 7) and `velocities` (m, n, 6), if given.
+    /// Resets worlds to their initial states; then moves figures to `poses` (m, n, 7) and `velocities` (m, n, 6), if given.
     #[pyo3(signature = (worlds=None, *, poses=None, velocities=None))]
     fn reset(
         &mut self,
@@ -216,8 +216,8 @@ impl BatchWorlds {
         })
     }
 
-    /// Draws all joints toward turns (worlds, joints, 3), scaled axes, as springs and dampers with a most torque: `stiffness` N·m/rad, `damping`
-    /// N·m·s/rad and `max_torques` N·m are by joint. A spring of no stiffness and no damping drives nothing.
+    /// Drives all joints toward rotations (worlds, joints, 3), scaled axes, by springs with damping and a largest torque: `stiffness`
+    /// N·m/rad, `damping` N·m·s/rad and `max_torques` N·m, per joint. A spring without stiffness and damping applies no torque.
     #[pyo3(signature = (targets, *, stiffness, damping, max_torques))]
     fn drive(
         &mut self,
@@ -269,7 +269,7 @@ impl BatchWorlds {
         array(py, numbers, &[self.worlds.len(), count, 6])
     }
 
-    /// Turns of the joints, (worlds, joints, 3), scaled axes, radians.
+    /// Rotations of the joints, (worlds, joints, 3), scaled axes, radians.
     fn joint_turns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
         let count = self.joints.len();
         let numbers = self.gather(py, 3 * count, |world, out| {
@@ -279,7 +279,7 @@ impl BatchWorlds {
         array(py, numbers, &[self.worlds.len(), count, 3])
     }
 
-    /// Largest distance between the anchors of a joint now, metres, world by world.
+    /// Largest distance between the anchors of a joint, metres, world by world.
     fn joint_gaps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let numbers = self.gather(py, 1, |world, out| {
             out.push(self.joints.iter().fold(0.0, |gap, &joint| f32::max(gap, world.joint_gap(joint))));
@@ -287,7 +287,7 @@ impl BatchWorlds {
         Ok(PyArray1::from_vec(py, numbers))
     }
 
-    /// Deepest overlap of a contact as the last step found it, metres, world by world.
+    /// Deepest overlap of a contact in the last step, metres, world by world.
     fn depths<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let numbers = self.gather(py, 1, |world, out| {
             let mut depth = 0.0;
@@ -306,7 +306,7 @@ impl BatchWorlds {
         Ok(PyArray1::from_vec(py, numbers))
     }
 
-    /// Points of contact of one world, as those of `World`.
+    /// Contact points of one world, as in `World`.
     fn contacts<'py>(&self, py: Python<'py>, world: usize) -> PyResult<Bound<'py, PyDict>> {
         let count = self.worlds.len();
         let world =
@@ -314,7 +314,7 @@ impl BatchWorlds {
         contact_dict(py, &world.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Poses as if each figure were carried by a rigid motion, (worlds, 7), from its beginning: for `reset`.
+    /// Poses of each figure's initial state moved by a rigid motion, (worlds, 7); for `reset`.
     fn carried<'py>(
         &self,
         py: Python<'py>,

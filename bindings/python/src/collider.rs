@@ -12,12 +12,12 @@ use sinew::ragdoll::BakeMover;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Body of a world: a shape or a mesh, static, dynamic, or moved by keys.
+/// Body of a world: a shape or a mesh, static, dynamic, or moved by keyframes.
 #[pyclass(frozen, skip_from_py_object, module = "sinew")]
 #[derive(Clone)]
 pub struct Collider {
     pub def: BodyDef,
-    /// Times and poses of its keys, if it has any.
+    /// Times and poses of the keyframes, if there are any.
     pub keys: Option<(Vec<f32>, Vec<Transform>)>,
 }
 
@@ -48,7 +48,7 @@ fn collider(
 
 #[pymethods]
 impl Collider {
-    /// A shape by its kind and sizes in metres, as `World.add_body` takes it.
+    /// Creates a body from a kind of shape and sizes in metres, as in `World.add_body`.
     #[new]
     #[pyo3(signature = (kind, size, *, pose=None, friction=0.6, restitution=0.0))]
     fn new(
@@ -61,7 +61,7 @@ impl Collider {
         collider(shape(kind, &size)?, pose, friction, restitution)
     }
 
-    /// Everything below a height, metres.
+    /// Creates a floor: all points below a height, metres, are solid.
     #[staticmethod]
     #[pyo3(signature = (height=0.0, *, friction=0.6))]
     fn floor(height: f32, friction: f32) -> PyResult<Self> {
@@ -70,7 +70,8 @@ impl Collider {
         Ok(floor)
     }
 
-    /// A surface of triangles: vertices (v, 3) in metres, triangles (t, 3), counter-clockwise seen from outside.
+    /// Creates a surface of triangles: vertices (v, 3) in metres, triangles (t, 3), counter-clockwise seen from
+    /// outside.
     #[staticmethod]
     #[pyo3(signature = (vertices, triangles, *, pose=None, friction=0.6, restitution=0.0))]
     fn mesh(
@@ -89,7 +90,7 @@ impl Collider {
         collider(Shape::Mesh(Arc::new(mesh)), pose, friction, restitution)
     }
 
-    /// The convex hull of points (n, 3), metres.
+    /// Creates the convex hull of points (n, 3), metres.
     #[staticmethod]
     #[pyo3(signature = (points, *, pose=None, friction=0.6, restitution=0.0))]
     fn hull(
@@ -103,14 +104,14 @@ impl Collider {
         collider(Shape::Hull(Arc::new(hull)), pose, friction, restitution)
     }
 
-    /// All bodies of a world file (.json) or a mesh (.glb, .obj).
+    /// Reads all bodies of a world file (.json) or a mesh (.glb, .obj).
     #[staticmethod]
     fn load(path: PathBuf) -> PyResult<Vec<Self>> {
         let bodies = load_world(&path).map_err(of_file)?;
         Ok(bodies.into_iter().map(|def| Self { def, keys: None }).collect())
     }
 
-    /// A copy moved by forces; density in kg/m³.
+    /// Returns a dynamic copy; density in kg/m³.
     #[pyo3(signature = (*, density=1000.0))]
     fn dynamic(&self, density: f32) -> PyResult<Self> {
         let mut def = BodyDef { kind: BodyKind::Dynamic, ..self.def.clone() };
@@ -121,7 +122,7 @@ impl Collider {
         Ok(Self { def, keys: None })
     }
 
-    /// A copy moved to poses (n, 7) at times (n,) in seconds, regardless of obstacles.
+    /// Returns a copy that moves to poses (n, 7) at times (n,) in seconds, through obstacles.
     fn keyed(&self, times: &Bound<'_, PyAny>, poses: &Bound<'_, PyAny>) -> PyResult<Self> {
         let times = floats(times, &[None], "times")?;
         let keys = crate::arrays::poses(&floats(poses, &[Some(times.len()), Some(7)], "poses")?, "poses")?;
@@ -144,7 +145,7 @@ impl Collider {
     }
 }
 
-/// World of a bake: a file's name or colliders; by default a floor.
+/// Returns the bodies of a bake's world, from a file's name or colliders; by default a floor.
 pub fn world_of(given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Collider>> {
     let Some(given) = given else { return Ok(vec![Collider::floor(0.0, Material::DEFAULT.friction)?]) };
     if let Ok(path) = given.extract::<PathBuf>() {
@@ -155,7 +156,7 @@ pub fn world_of(given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Collider>> {
     Ok(list.iter().map(|collider| Collider::clone(collider)).collect())
 }
 
-/// Static and dynamic bodies, and keyframed bodies.
+/// Separates static and dynamic bodies from keyframed bodies.
 pub fn parted(colliders: &[Collider]) -> (Vec<BodyDef>, Vec<BakeMover<'_>>) {
     let still = colliders.iter().filter(|collider| collider.keys.is_none());
     let keyed = colliders.iter().filter_map(|collider| {

@@ -1,10 +1,10 @@
-//! Drives: what moves the bodies of a character beside gravity and contacts.
+//! Drives, which move the bodies of a character in addition to gravity and contacts.
 
 use crate::errors::bad;
 use pyo3::prelude::*;
 use sinew::ragdoll::{BakeDrive, CharacterDef, DriveMode, Muscle, Part, Pin};
 
-/// Drive of a bone, of a bone and all below it, or of the whole character, from a moment on.
+/// Drive of a bone, of a bone and its descendants, or of the whole character, from a given time on.
 #[pyclass(frozen, module = "sinew")]
 pub struct Drive {
     pub mode: DriveMode,
@@ -21,7 +21,7 @@ pub struct Drive {
 
 #[pymethods]
 impl Drive {
-    /// `mode` is keyed, powered, pinned or limp.
+    /// Creates a drive; `mode` is keyed, powered, pinned or limp.
     #[new]
     #[pyo3(signature = (mode, *, time=0.0, bone=None, below=false, half_life=0.1, hertz=5.0, damping_ratio=1.0, strength=1.0, pin_hertz=3.0, pin_force=400.0, pin_torque=100.0))]
     fn new(
@@ -56,7 +56,7 @@ impl Drive {
         Ok(Self { mode: drive, kind: mode.to_owned(), time, bone, below, half_life })
     }
 
-    /// keyed, powered, pinned or limp.
+    /// Mode: keyed, powered, pinned or limp.
     #[getter]
     fn mode(&self) -> &str {
         &self.kind
@@ -69,20 +69,20 @@ impl Drive {
 }
 
 impl Drive {
-    /// Bodies that it drives.
+    /// Returns the part of the character that the drive moves.
     pub fn part(&self, def: &CharacterDef) -> PyResult<Part<'_>> {
         let Some(bone) = &self.bone else { return Ok(Part::All) };
         body_named(def, bone)?;
         Ok(if self.below { Part::From(bone) } else { Part::Named(bone) })
     }
 
-    /// As a bake has it.
+    /// Converts the drive for a bake.
     pub fn in_bake(&self, def: &CharacterDef) -> PyResult<BakeDrive<'_>> {
         Ok(BakeDrive { time: self.time, part: self.part(def)?, mode: self.mode, half_life: self.half_life })
     }
 }
 
-/// The body of a role or joint.
+/// Returns the index of the body with a role or joint name.
 pub fn body_named(def: &CharacterDef, name: &str) -> PyResult<usize> {
     def.body_named(name).ok_or_else(|| {
         let roles: Vec<&str> = def.ragdoll.bodies.iter().map(|body| body.role.as_str()).collect();

@@ -14,22 +14,22 @@ pyo3::create_exception!(
 
 pyo3::create_exception!(_sinew, Cancelled, SinewError, "A bake that its progress function ended.");
 
-/// The exception of a failure.
+/// Returns the exception for a failure.
 pub fn failed(failure: Failure) -> PyErr {
     if failure.is_of_file { FileError::new_err(failure.what) } else { PyValueError::new_err(failure.what) }
 }
 
-/// The exception of a file that could not be read or written.
+/// Returns the exception for a file that could not be read or written.
 pub fn of_file(error: sinew::formats::Error) -> PyErr {
     failed(Failure::from(error))
 }
 
-/// The exception for an invalid argument.
+/// Returns the exception for an invalid argument.
 pub fn bad(what: impl Into<String>) -> PyErr {
     PyValueError::new_err(what.into())
 }
 
-/// Runs a call that panics about its arguments before it changes anything: the panic becomes a `ValueError`.
+/// Runs a call that panics about its arguments before it changes any state; the panic becomes a `ValueError`.
 pub fn refused<T>(call: impl FnOnce() -> T) -> PyResult<T> {
     caught(call).map_err(bad)
 }

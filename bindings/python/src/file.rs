@@ -1,4 +1,4 @@
-//! Files of characters.
+//! Reads files of characters.
 
 use crate::bake::Character;
 use crate::drive::Drive;
@@ -14,13 +14,13 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Rigged character as it was read.
+/// Rigged character as read from a file.
 #[pyclass(frozen, module = "sinew")]
 pub struct CharacterFile {
     pub file: Arc<sinew_bindings::CharacterFile>,
 }
 
-/// Corrections of a character from the arguments of a loading function.
+/// Makes corrections of a character from the arguments of a loading function.
 fn corrections(
     settings: Option<&Bound<'_, PyAny>>,
     roles: Option<HashMap<String, String>>,
@@ -37,7 +37,7 @@ fn corrections(
         let text: String = py.import("json")?.call_method1("dumps", (whole,))?.extract()?;
         read_ragdoll_settings(text.as_bytes()).map_err(|error| bad(format!("settings: {error}")))
     });
-    // The order of a dictionary has no meaning here: sorted, the same arguments give the same bits.
+    // Sorts the entries, because the order of a dictionary must not affect the bits.
     let sorted = |map: Option<HashMap<String, String>>| {
         let mut list: Vec<_> = map.unwrap_or_default().into_iter().collect();
         list.sort();
@@ -76,7 +76,7 @@ pub fn load(
     Ok(CharacterFile { file: Arc::new(file) })
 }
 
-/// Reads a character from the bytes of a GLB, VRM or FBX, or of a glTF that holds its buffers.
+/// Reads a character from the bytes of a GLB, VRM or FBX, or of a glTF that contains its buffers.
 #[pyfunction]
 #[pyo3(signature = (data, *, name="character", settings=None, roles=None, ignore=None, bodies=None, unit=None, height=None, mass=None))]
 pub fn load_bytes(
@@ -97,7 +97,7 @@ pub fn load_bytes(
     Ok(CharacterFile { file: Arc::new(file) })
 }
 
-/// Makes a character of arrays: joints with their rest pose, skinned meshes, clips.
+/// Makes a character from arrays: joints with their rest pose, skinned meshes, clips.
 #[pyfunction]
 #[pyo3(signature = (joints, parents, translations, rotations, *, scales=None, inverse_bind=None, meshes=None, clips=None, name="character", settings=None, roles=None, ignore=None, bodies=None, unit=None, height=None, mass=None))]
 pub fn load_arrays(
@@ -128,7 +128,7 @@ pub fn load_arrays(
     Ok(CharacterFile { file: Arc::new(file) })
 }
 
-/// The mannequin that comes with Sinew, 1.75 m, with a walk and two ways to get up.
+/// Returns the built-in mannequin, 1.75 m, with a walk and two get-ups.
 #[pyfunction]
 pub fn mannequin(py: Python<'_>) -> PyResult<CharacterFile> {
     let file = py.detach(|| guarded(sinew_bindings::embedded))?;
@@ -155,7 +155,7 @@ impl CharacterFile {
         self.file.document.clips.iter().map(|clip| clip.name.as_str()).collect()
     }
 
-    /// Joint of each role that was found.
+    /// Joint of each role that was recognised.
     #[getter]
     fn roles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let roles = PyDict::new(py);
@@ -167,13 +167,13 @@ impl CharacterFile {
         Ok(roles)
     }
 
-    /// Assumptions about the file, a sentence each.
+    /// Assumptions about the file, one sentence each.
     #[getter]
     fn notes(&self) -> Vec<&str> {
         self.file.analysis.notes.iter().map(String::as_str).collect()
     }
 
-    /// Builds its ragdoll.
+    /// Builds the ragdoll of the character.
     #[pyo3(signature = (*, mass=None, height=None, shapes="auto", sex="male", limits="anatomy"))]
     fn build(
         &self,
@@ -211,7 +211,7 @@ impl CharacterFile {
         Ok(Ragdoll::built(def, report))
     }
 
-    /// The character with its motions, ready to be baked or to live in a world.
+    /// Returns the character with its motions, for bakes and worlds.
     #[pyo3(signature = (ragdoll=None, *, clip=None, exact=false, builtin_motions=true, gets_up=true, falling=None))]
     fn character(
         &self,
@@ -242,7 +242,8 @@ impl CharacterFile {
         Ok(Character { file: self.file.clone(), def: Arc::new(made.map_err(failed)?) })
     }
 
-    /// The file as a GLB, with the files that it names in it; of arrays, the file that they were made.
+    /// Returns the file as a GLB that includes the files it refers to; for a character from arrays, the GLB
+    /// made of them.
     fn glb<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let written = py.detach(|| append_clips(&self.file.document, &[]));
         Ok(PyBytes::new(py, &written.map_err(|error| of_file(error.with_file(&self.file.name)))?))

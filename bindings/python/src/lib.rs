@@ -1,5 +1,5 @@
-//! Sinew for Python: the module `sinew._sinew`, which the package `sinew` is made of. docs/python.md of the repository is the guide.
-// `forbid` would refuse the macros of PyO3, whose code is `unsafe`; no source of ours is.
+//! Sinew for Python: the module `sinew._sinew` of the package `sinew`. docs/python.md of the repository is the guide.
+// `forbid` would reject the macros of PyO3, whose code is `unsafe`; our own sources have no unsafe code.
 #![deny(unsafe_code)]
 
 mod arrays;

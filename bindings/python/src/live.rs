@@ -1,4 +1,4 @@
-//! Characters that live in a world of Python's.
+//! Characters in a world of Python.
 
 use crate::arrays::{array, floats, poses, push_pose, vec3};
 use crate::bake::{event_name, state_name};
@@ -12,17 +12,17 @@ use sinew::physics::BodyId;
 use sinew::ragdoll::{CharacterDef, Detail, Grab, Grip, Preset};
 use std::sync::Arc;
 
-/// Character in a world; it follows every step.
+/// Character in a world; it is updated after every step.
 #[pyclass(frozen, module = "sinew")]
 pub struct LiveCharacter {
     pub world: Py<World>,
-    /// Place in the world's list.
+    /// Index in the world's list of characters.
     pub index: usize,
     pub def: Arc<CharacterDef>,
 }
 
 impl LiveCharacter {
-    /// Reads the character; `ValueError` after it was removed.
+    /// Reads the character; fails with `ValueError` after its removal.
     fn read<T>(&self, py: Python<'_>, read: impl FnOnce(&sinew::ragdoll::Character) -> T) -> PyResult<T> {
         let world = self.world.borrow(py);
         let character = world.characters[self.index].as_ref();
@@ -65,13 +65,13 @@ impl LiveCharacter {
         self.read(py, |character| state_name(character.state()))
     }
 
-    /// Events of the last step, and of calls since.
+    /// Events of the last step, and of calls after it.
     #[getter]
     fn events(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         self.read(py, |character| character.events().iter().map(event_name).collect())
     }
 
-    /// Place of the character, (7,).
+    /// Pose of the character, (7,).
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let mut numbers = Vec::new();
@@ -79,7 +79,7 @@ impl LiveCharacter {
         Ok(PyArray1::from_vec(py, numbers))
     }
 
-    /// Places of all joints in their parents, (joints, 3), units of the file.
+    /// Positions of all joints relative to their parents, (joints, 3), units of the file.
     #[getter]
     fn translations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
         let numbers = self.read(py, |character| {
@@ -88,7 +88,7 @@ impl LiveCharacter {
         self.joints(py, numbers, 3)
     }
 
-    /// Rotations of all joints in their parents, (joints, 4), x y z w.
+    /// Rotations of all joints relative to their parents, (joints, 4), x y z w.
     #[getter]
     fn rotations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
         let numbers = self.read(py, |character| {
@@ -98,7 +98,7 @@ impl LiveCharacter {
         self.joints(py, numbers, 4)
     }
 
-    /// Places of all joints in the world, (joints, 3), metres.
+    /// Positions of all joints in the world, (joints, 3), metres.
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
         let numbers = self.read(py, |character| {
@@ -110,7 +110,8 @@ impl LiveCharacter {
         self.joints(py, numbers, 3)
     }
 
-    /// Matrices of a skin, (joints of the skin, 3, 4): from the mesh's bind pose to the world, `alpha` between the last step and this.
+    /// Matrices of a skin, (joints of the skin, 3, 4): from the mesh's bind pose to the world, interpolated by `alpha` between the last
+    /// two steps.
     #[pyo3(signature = (skin=0, *, alpha=1.0))]
     fn skin_matrices<'py>(
         &self,
@@ -127,14 +128,14 @@ impl LiveCharacter {
         array(py, palette.into_iter().flatten().collect(), &[count, 3, 4])
     }
 
-    /// Ids of its bodies in the world, in the order of `Ragdoll.roles`; empty while it has none there.
+    /// Ids of the character's bodies in the world, in the order of `Ragdoll.roles`; empty while it has none.
     #[getter]
     fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u64>>> {
         let ids = self.read(py, |character| character.bodies().iter().map(|id| id.to_bits()).collect())?;
         Ok(PyArray1::from_vec(py, ids))
     }
 
-    /// Sets its velocity over the ground, m/s; `None`: it follows its clips.
+    /// Sets the character's velocity over the ground, m/s; with `None` the character follows its clips.
     #[pyo3(signature = (velocity))]
     fn set_move(&self, py: Python<'_>, velocity: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let velocity = velocity.map(|velocity| vec3(velocity, "velocity")).transpose()?;
@@ -144,24 +145,24 @@ impl LiveCharacter {
         })
     }
 
-    /// Makes it turn to face a direction.
+    /// Makes the character turn to face a direction.
     fn face(&self, py: Python<'_>, direction: &Bound<'_, PyAny>) -> PyResult<()> {
         let direction = vec3(direction, "direction")?;
         self.act(py, |character, _| character.face(direction))
     }
 
-    /// Makes it jump in the next step, if it is on the ground.
+    /// Makes the character jump in the next step, if it is on the ground.
     fn jump(&self, py: Python<'_>) -> PyResult<()> {
         self.act(py, |character, world| character.jump(world))
     }
 
-    /// Hits a body, by role or joint, with an impulse in N·s; gives its work, J.
+    /// Hits a body, given by role or joint, with an impulse in N·s; returns the work of the impulse, J.
     fn hit(&self, py: Python<'_>, bone: &str, impulse: &Bound<'_, PyAny>) -> PyResult<f32> {
         let (body, impulse) = (body_named(&self.def, bone)?, vec3(impulse, "impulse")?);
         self.act(py, |character, world| character.hit(world, body, impulse))
     }
 
-    /// Makes it limp.
+    /// Makes the character limp.
     fn go_limp(&self, py: Python<'_>) -> PyResult<()> {
         self.act(py, |character, world| character.go_limp(world))
     }
@@ -180,13 +181,13 @@ impl LiveCharacter {
         self.act(py, |character, world| character.set_preset(world, preset))
     }
 
-    /// Changes the drive of a part from now on; the drive's time is ignored.
+    /// Changes the drive of a part immediately; the drive's time is ignored.
     fn set_drive(&self, py: Python<'_>, drive: &Drive) -> PyResult<()> {
         let part = drive.part(&self.def)?;
         self.act(py, |character, world| character.set_drive(world, part, drive.mode, drive.half_life))
     }
 
-    /// Blends it back to its looped clip at `phase` seconds, at a pose, within `seconds`.
+    /// Blends the character back to its looped clip at `phase` seconds, at a pose, within `seconds`.
     #[pyo3(signature = (pose, *, phase=0.0, seconds=0.5))]
     fn return_to_clip(
         &self,
@@ -199,13 +200,13 @@ impl LiveCharacter {
         self.act(py, |character, world| character.return_to_clip(world, place, phase, seconds))
     }
 
-    /// Teleports it.
+    /// Teleports the character.
     fn teleport(&self, py: Python<'_>, pose: &Bound<'_, PyAny>) -> PyResult<()> {
         let place = one_pose(pose)?;
         self.act(py, |character, world| character.teleport(world, place))
     }
 
-    /// Moves a limp character out of static shapes that it is deep in; false if it is in none.
+    /// Moves a limp character out of static shapes; returns false if it is in none.
     fn clear(&self, py: Python<'_>) -> PyResult<bool> {
         self.act(py, |character, world| character.clear(world))
     }
@@ -227,7 +228,8 @@ impl LiveCharacter {
         Ok(self.act(py, |character, world| character.hold(world, bone, body, &grip))?.to_bits())
     }
 
-    /// Makes a bone grab a body within reach, also one of another character; returns the joint's id, or None out of reach.
+    /// Makes a bone grab a body within reach, also one of another character; returns the joint's id, or None if the body is out of
+    /// reach.
     #[pyo3(signature = (bone, body, *, max_force=1300.0, reach=0.25))]
     fn grab(
         &self,
@@ -244,26 +246,27 @@ impl LiveCharacter {
         Ok(joint.map(|joint| joint.to_bits()))
     }
 
-    /// Releases a held body; false if it does not hold it.
+    /// Releases a held body; returns false if the character does not hold it.
     fn release(&self, py: Python<'_>, body: u64) -> PyResult<bool> {
         self.act(py, |character, world| character.release(world, BodyId::from_bits(body)))
     }
 
-    /// Ids of bodies that it holds.
+    /// Ids of the bodies that the character holds.
     #[getter]
     fn held<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u64>>> {
         let ids = self.read(py, |character| character.held().map(BodyId::to_bits).collect())?;
         Ok(PyArray1::from_vec(py, ids))
     }
 
-    /// Detaches a limb with everything below it; returns the ids of its bodies, which stay in the world. None if it was detached before.
+    /// Detaches a limb with all its descendants; returns the ids of its bodies, which stay in the world. None if it was already
+    /// detached.
     fn detach<'py>(&self, py: Python<'py>, bone: &str) -> PyResult<Option<Bound<'py, PyArray1<u64>>>> {
         body_named(&self.def, bone)?;
         let limb = self.act(py, |character, world| character.detach(world, bone))?;
         Ok(limb.map(|limb| PyArray1::from_vec(py, limb.bodies().iter().map(|id| id.to_bits()).collect())))
     }
 
-    /// Detail: full, hit bodies, keyed or frozen.
+    /// Sets the level of detail: full, hit bodies, keyed or frozen.
     #[pyo3(signature = (detail))]
     fn set_level_of_detail(&self, py: Python<'_>, detail: &str) -> PyResult<()> {
         let detail = match detail {
@@ -278,17 +281,17 @@ impl LiveCharacter {
         self.act(py, |character, world| character.set_level_of_detail(world, detail))
     }
 
-    /// Restarts its springs at rest.
+    /// Resets the character's springs to rest.
     fn reset_springs(&self, py: Python<'_>) -> PyResult<()> {
         self.act(py, |character, _| character.reset_springs())
     }
 
-    /// Restarts its garments at rest.
+    /// Resets the character's garments to rest.
     fn reset_garments(&self, py: Python<'_>) -> PyResult<()> {
         self.act(py, |character, world| character.reset_garments(world))
     }
 
-    /// Removes it from the world.
+    /// Removes the character from the world.
     fn despawn(&self, py: Python<'_>) -> PyResult<()> {
         let mut world = self.world.borrow_mut(py);
         let World { world, characters, .. } = &mut *world;

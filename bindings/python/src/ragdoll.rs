@@ -16,7 +16,7 @@ use sinew::ragdoll::{
 };
 use std::path::PathBuf;
 
-/// Ragdoll: bodies and joints, parents before children; joint `i` holds body `i + 1`.
+/// Ragdoll: bodies and joints, parents before children; joint `i` attaches body `i + 1` to its parent.
 #[pyclass(frozen, module = "sinew")]
 pub struct Ragdoll {
     pub repair: Repair,
@@ -24,20 +24,20 @@ pub struct Ragdoll {
     mean_error: Option<f32>,
 }
 
-/// Model of bodies and joints of MuJoCo's format, with all of its shapes.
+/// Model of bodies and joints, as in MuJoCo's format, with all its shapes.
 #[pyclass(frozen, module = "sinew")]
 pub struct Model {
     pub model: MjcfModel,
 }
 
-/// Reads a ragdoll: a definition (.json), an MJCF or URDF model (.xml, .urdf), or a character, of which it is built.
+/// Reads a ragdoll definition (.json) or an MJCF or URDF model (.xml, .urdf), or builds the ragdoll of a character.
 #[pyfunction]
 pub fn load_ragdoll(py: Python<'_>, path: PathBuf) -> PyResult<Ragdoll> {
     let repair = py.detach(|| guarded(|| sinew_bindings::load_ragdoll(&path)))?.map_err(failed)?;
     Ok(Ragdoll { repair, notes: Vec::new(), mean_error: None })
 }
 
-/// Reads an MJCF model (.xml), a URDF (.urdf) or the physics of a glTF (.gltf, .glb): bodies, joints, and a floor where it has one.
+/// Reads an MJCF model (.xml), a URDF (.urdf) or the physics of a glTF (.gltf, .glb): bodies, joints, and a floor if it has one.
 #[pyfunction]
 pub fn load_model(py: Python<'_>, path: PathBuf) -> PyResult<Model> {
     let read = || {
@@ -54,7 +54,7 @@ impl Ragdoll {
     }
 }
 
-/// Figures of a fall, by the names of docs/contract.md.
+/// Figures of a fall, with the names in docs/contract.md.
 pub fn quality_dict<'py>(py: Python<'py>, q: &FallQuality) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (key, value) in [
@@ -94,7 +94,7 @@ fn scaled_shape(shape: &Shape, factor: f32) -> PyResult<Shape> {
     })
 }
 
-/// Requested changes of one body and the joint above it.
+/// Requested changes of one body and of the joint to its parent.
 struct Edit {
     mass: Option<f32>,
     shape: Option<Shape>,
@@ -189,14 +189,14 @@ impl Ragdoll {
         PyArray1::from_vec(py, self.repair.def.bodies.iter().map(|body| body.mass.mass).collect())
     }
 
-    /// Body above each, -1 for the first.
+    /// Index of each body's parent, -1 for the first.
     #[getter]
     fn parents<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
         let joints = self.repair.def.joints.iter().map(|joint| joint.parent as i64);
         PyArray1::from_vec(py, std::iter::once(-1).chain(joints).collect())
     }
 
-    /// Most that the muscles of each joint can do, N·m, joint by joint.
+    /// Largest torque of the muscles at each joint, N·m, joint by joint.
     #[getter]
     fn torques<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         PyArray1::from_vec(py, torque_caps(&self.repair.def).into_iter().skip(1).collect())
@@ -211,7 +211,7 @@ impl Ragdoll {
         array(py, numbers, &[bodies.len(), 7])
     }
 
-    /// Frames of the joints in their parents, (n - 1, 7): the first axis is the twist's or the hinge's.
+    /// Frames of the joints relative to their parent bodies, (n - 1, 7); the first axis is that of the twist or the hinge.
     #[getter]
     fn joint_frames<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
         let mut numbers = Vec::new();
@@ -232,27 +232,27 @@ impl Ragdoll {
         self.repair.def.height
     }
 
-    /// Metres of a unit of the file.
+    /// Metres per unit of the file.
     #[getter]
     fn unit_scale(&self) -> f32 {
         self.repair.def.unit_scale
     }
 
-    /// Copy with the doctor's cures applied, and the doctor's findings.
+    /// Returns a copy with the doctor's cures applied, and the doctor's findings.
     fn cured<'py>(&self, py: Python<'py>) -> PyResult<(Self, Bound<'py, PyDict>)> {
         let (repair, found) = py.detach(|| guarded(|| cure(&self.repair)))?;
         let ragdoll = Self { repair, notes: self.notes.clone(), mean_error: self.mean_error };
         Ok((ragdoll, findings_dict(py, found)?))
     }
 
-    /// The definition as a MuJoCo model, and a sentence on each loss.
+    /// Converts the definition to a MuJoCo model; also returns notes on losses, one sentence each.
     #[pyo3(signature = (name="ragdoll"))]
     fn to_mjcf(&self, py: Python<'_>, name: &str) -> PyResult<(String, Vec<String>)> {
         let MjcfText { text, notes } = py.detach(|| guarded(|| write_mjcf(&self.repair.def, name)))?;
         Ok((text, notes))
     }
 
-    /// Report of the build: notes, and the mean distance between skin and shapes in metres, if it was built.
+    /// Report of the build: notes, and, if the ragdoll was built, the mean distance between skin and shapes in metres.
     #[getter]
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -271,7 +271,7 @@ impl Ragdoll {
         findings_dict(py, found)
     }
 
-    /// Drops it and throws it at a wall: `{"verdict", "reasons", "drop", "wall"}`.
+    /// Drops the ragdoll and throws it at a wall: `{"verdict", "reasons", "drop", "wall"}`.
     fn drop_test<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let tested = py.detach(|| guarded(|| drop_test(&self.repair.def)))?;
         let dict = PyDict::new(py);
@@ -282,14 +282,14 @@ impl Ragdoll {
         Ok(dict)
     }
 
-    /// The ragdoll of a definition's text, as `to_json` gives it.
+    /// Reads the ragdoll from the text of a definition, as returned by `to_json`.
     #[staticmethod]
     fn from_json(text: &str) -> PyResult<Self> {
         let def = read_ragdoll(text.as_bytes()).map_err(of_file)?;
         Ok(Self { repair: Repair::new(def), notes: Vec::new(), mean_error: None })
     }
 
-    /// A copy with changes of one body and its joint: omitted values stay. Ranges in radians.
+    /// Returns a copy with changes of one body and its joint: omitted values stay. Ranges are in radians.
     #[pyo3(signature = (bone, *, mass=None, shape=None, size=None, scale=None, swing_y=None, swing_z=None, twist=None, friction_torque=None))]
     fn edited(
         &self,
@@ -314,18 +314,18 @@ impl Ragdoll {
         };
         let wanted = Edit { mass, shape: new_shape, scale, swing_y, swing_z, twist, friction_torque };
         wanted.apply(&mut def, index)?;
-        // Written and read again, so that invalid definitions are refused with the reader's message.
+        // Writes and reads the definition, so that invalid ones are rejected with the reader's message.
         let def = read_ragdoll(write_ragdoll(&def).as_bytes()).map_err(|error| bad(error.to_string()))?;
         let repair = Repair { reference: self.repair.reference.clone(), ..Repair::new(def) };
         Ok(Self { repair, notes: self.notes.clone(), mean_error: self.mean_error })
     }
 
-    /// Text of its definition, as a .sinew.json file has it.
+    /// Returns the text of the definition, as in a .sinew.json file.
     fn to_json(&self) -> String {
         write_ragdoll(&self.repair.def)
     }
 
-    /// Writes its definition to a .sinew.json file, whole or not at all.
+    /// Writes the definition to a .sinew.json file atomically.
     fn save(&self, path: PathBuf) -> PyResult<()> {
         write_atomic(&path, self.to_json().as_bytes()).map_err(of_file)
     }
@@ -342,13 +342,13 @@ impl Ragdoll {
 
 #[pymethods]
 impl Model {
-    /// Name in the file.
+    /// Name of the model in the file.
     #[getter]
     fn name(&self) -> &str {
         &self.model.name
     }
 
-    /// Names of the bodies; the first is the world, which stands.
+    /// Names of the bodies; the first is the world, which is static.
     #[getter]
     fn bodies(&self) -> Vec<&str> {
         self.model.bodies.iter().map(|body| body.name.as_str()).collect()
@@ -360,7 +360,7 @@ impl Model {
         self.model.joints.iter().map(|joint| joint.name.as_str()).collect()
     }
 
-    /// Notes on what was left out or changed, a sentence each.
+    /// Notes on omissions and changes, one sentence each.
     #[getter]
     fn notes(&self) -> Vec<&str> {
         self.model.notes.iter().map(String::as_str).collect()

@@ -9,10 +9,10 @@ use sinew::anim::{
 };
 use sinew::math::{Affine, Mat3, Rotation, Vec3};
 
-/// Largest number of influences of a vertex.
+/// Largest number of influences per vertex.
 const INFLUENCES: usize = 4;
 
-/// A rig without skin: names, parents (-1 for a root), and the rest pose.
+/// Makes a rig without skin from names, parents (-1 for a root), and the rest pose.
 pub fn skeleton(
     names: Vec<String>,
     parents: &Bound<'_, PyAny>,
@@ -60,7 +60,7 @@ fn unit(q: &[f32], name: &str) -> PyResult<Rotation> {
     Ok(rotation.normalize())
 }
 
-/// Gives a rig one skin of all joints, and its meshes.
+/// Adds one skin of all joints and the meshes to a rig.
 pub fn skin(
     rig: &mut Rig,
     inverse_bind: Option<&Bound<'_, PyAny>>,
@@ -85,7 +85,7 @@ pub fn skin(
     Ok(())
 }
 
-/// Rest pose of each joint in model space.
+/// Returns the rest pose of each joint in model space.
 fn rest_model(rig: &Rig) -> Vec<Affine> {
     let mut model: Vec<Affine> = Vec::new();
     for joint in &rig.joints {
@@ -95,7 +95,7 @@ fn rest_model(rig: &Rig) -> Vec<Affine> {
     model
 }
 
-/// The upper three rows of a 4×4 matrix, row after row.
+/// Makes a map from a 4×4 matrix, given row by row; the last row is ignored.
 fn affine(m: &[f32]) -> Affine {
     let column = |k: usize| Vec3::new(m[k], m[4 + k], m[8 + k]);
     Affine { linear: Mat3::from_cols(column(0), column(1), column(2)), translation: column(3) }
@@ -143,7 +143,8 @@ fn mesh(given: &Bound<'_, PyDict>, index: usize, joint_count: usize) -> PyResult
     Ok(RigMesh { name, joint: 0, skin: Some(0), primitives: vec![primitive] })
 }
 
-/// Clips by their names: times (f,), translations (f, n, 3), rotations (f, n, 4), scales (f, n, 3).
+/// Makes clips from a dictionary by name: times (f,), translations (f, n, 3), rotations (f, n, 4), scales (f,
+/// n, 3).
 pub fn clips(rig: &Rig, given: &Bound<'_, PyDict>) -> PyResult<Vec<Clip>> {
     let mut clips = Vec::new();
     for (name, clip) in given {
@@ -194,7 +195,7 @@ fn one_clip(rig: &Rig, name: String, given: &Bound<'_, PyDict>) -> PyResult<Clip
     Ok(Clip { duration: times[times.len() - 1], name, channels })
 }
 
-/// Unit quaternions, each with the sign nearest to the previous one.
+/// Returns unit quaternions, each with the sign nearest to the previous one.
 fn near<'a>(rows: impl Iterator<Item = &'a [f32]>, name: &str) -> PyResult<Vec<f32>> {
     let mut values = Vec::new();
     let mut last: Option<Rotation> = None;

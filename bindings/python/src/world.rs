@@ -24,7 +24,7 @@ use sinew::ragdoll::BodyState;
 #[pyclass(module = "sinew")]
 pub struct World {
     pub world: sinew::physics::World,
-    /// Characters that follow it; `None`: removed.
+    /// Characters that are updated with the world; `None`: removed.
     pub characters: Vec<Option<sinew::ragdoll::Character>>,
     threads: Threads,
     /// Keyframed bodies.
@@ -37,7 +37,7 @@ type Ids<'py> = Bound<'py, PyArray1<u64>>;
 /// Body id of a ray without a hit.
 const NO_BODY: u64 = u64::MAX;
 
-/// Settings of a world, from Python's arguments.
+/// Makes the settings of a world from Python's arguments.
 pub fn world_def(
     gravity: Option<Vec3>,
     dt: f64,
@@ -66,7 +66,7 @@ pub fn world_def(
     Ok(def)
 }
 
-/// A shape by its name and sizes, in metres.
+/// Makes a shape from its name and sizes, in metres.
 pub fn shape(kind: &str, size: &[f32]) -> PyResult<Shape> {
     let shape = match (kind, size) {
         ("box", &[x, y, z]) => Shape::Box { half_extents: Vec3::new(x, y, z) },
@@ -84,7 +84,7 @@ pub fn shape(kind: &str, size: &[f32]) -> PyResult<Shape> {
     Ok(shape)
 }
 
-/// Points of contact as arrays.
+/// Returns contact points as arrays.
 pub fn contact_dict<'py>(py: Python<'py>, world: &sinew::physics::World) -> PyResult<Bound<'py, PyDict>> {
     let (mut a, mut b) = (Vec::new(), Vec::new());
     let (mut positions, mut normals, mut separations, mut impulses) = (vec![], vec![], vec![], vec![]);
@@ -120,7 +120,7 @@ impl World {
         if self.world.contains_joint(id) { Ok(id) } else { Err(bad(format!("there is no joint {bits:#x}"))) }
     }
 
-    /// Bodies of these ids; all of them if none are given.
+    /// Returns the bodies with these ids; all bodies if none are given.
     fn bodies(&self, ids: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<BodyId>> {
         match ids {
             None => Ok(self.world.body_ids().collect()),
@@ -131,7 +131,7 @@ impl World {
         }
     }
 
-    /// State of the world, followed by that of its characters.
+    /// Returns the state of the world, followed by the states of its characters.
     fn state(&self) -> Writer {
         let mut w = Writer::new();
         self.world.save(&mut w);
@@ -146,7 +146,7 @@ impl World {
 
 #[pymethods]
 impl World {
-    /// Creates a world; `threads` affects the time of a step, not its result.
+    /// Creates a world; `threads` affects the duration of a step, not its result.
     #[new]
     #[pyo3(signature = (*, gravity=None, dt=1.0/60.0, substeps=4, quality="balanced", sleeping=true, threads=1))]
     fn new(
@@ -164,7 +164,7 @@ impl World {
         Ok(Self { world, characters: Vec::new(), threads, keyed: Vec::new() })
     }
 
-    /// Adds a body of one shape and gives its id.
+    /// Adds a body with one shape and returns its id.
     #[pyo3(signature = (kind, size, *, pose=None, velocity=None, body="dynamic", density=1000.0, friction=0.6, restitution=0.0))]
     fn add_body(
         &mut self,
@@ -199,14 +199,14 @@ impl World {
         Ok(refused(|| self.world.add_body(&def))?.to_bits())
     }
 
-    /// A static plane, y = height, solid below.
+    /// Adds a static plane, y = height, solid below; returns its id.
     #[pyo3(signature = (height=0.0))]
     fn add_floor(&mut self, height: f32) -> PyResult<u64> {
         let def = BodyDef::fixed(Shape::HalfSpace).at(Vec3::Y * height);
         Ok(refused(|| self.world.add_body(&def))?.to_bits())
     }
 
-    /// Adds a collider and returns its id; a keyed one follows its keys from the world's time 0 on.
+    /// Adds a collider and returns its id; a keyframed one follows its keys from the world's time 0 on.
     fn add_collider(&mut self, collider: &Collider) -> PyResult<u64> {
         let id = match parted(std::slice::from_ref(collider)).1.first() {
             Some(mover) => refused(|| mover.enter(&mut self.world))?,
@@ -218,7 +218,7 @@ impl World {
         Ok(id.to_bits())
     }
 
-    /// Adds wind, m/s, and gives its id: gusts of a speed (m/s), a length (m) and a time (s) may be added to it.
+    /// Adds wind, m/s, and returns its id; gusts with a speed (m/s), a length (m) and a time (s) may be added.
     #[pyo3(signature = (velocity, *, gust_speed=0.0, gust_length=3.0, gust_time=1.0, seed=0))]
     fn add_wind(
         &mut self,
@@ -244,8 +244,8 @@ impl World {
         refused(|| self.world.remove_field(id))
     }
 
-    /// Puts a ragdoll into the world and gives the ids of its bodies and joints. `poses` (n, 7) are those of its bodies; without them it
-    /// stands at `pose` in its bind pose.
+    /// Adds a ragdoll to the world and returns the ids of its bodies and joints. `poses` (n, 7) are those of its bodies; without them the
+    /// ragdoll stands at `pose` in its bind pose.
     #[pyo3(signature = (ragdoll, *, pose=None, poses=None, velocities=None))]
     fn add_ragdoll<'py>(
         &mut self,
@@ -278,7 +278,7 @@ impl World {
         Ok((Self::bits(py, &spawned.bodies), PyArray1::from_vec(py, joints)))
     }
 
-    /// Adds a character, standing at a pose, `phase` seconds into its looped clip; it follows every step.
+    /// Adds a character that stands at a pose, `phase` seconds into its looped clip; it is updated after every step.
     #[pyo3(signature = (character, *, pose=None, phase=0.0))]
     fn add_character(
         slf: &Bound<'_, Self>,
@@ -306,7 +306,7 @@ impl World {
         refused(|| self.world.remove_body(body))
     }
 
-    /// Joins two bodies where they are: `ball`, `hinge`, `slider`, `fixed`; a hinge or slider may have a range.
+    /// Joins two bodies at their present poses: `ball`, `hinge`, `slider`, `fixed`; a hinge or slider may have a range.
     #[pyo3(signature = (kind, a, b, anchor, *, axis=None, range=None))]
     fn add_joint(
         &mut self,
@@ -343,7 +343,8 @@ impl World {
         guarded(|| self.world.remove_joint(joint))
     }
 
-    /// Drives a joint toward a rotation (scaled axis) by a spring of a frequency in Hz with a largest torque in N·m; 0 Hz: no drive.
+    /// Drives a joint toward a rotation (scaled axis) by a spring with a frequency in Hz and a largest torque in N·m; 0 Hz removes the
+    /// drive.
     #[pyo3(signature = (joint, target, *, hertz, damping_ratio=1.0, max_torque=f32::INFINITY))]
     fn drive_joint(
         &mut self,
@@ -375,13 +376,13 @@ impl World {
         py.detach(|| guarded(|| std::iter::repeat_with(one).take(count as usize).for_each(drop)))
     }
 
-    /// Number of steps since the beginning.
+    /// Number of steps since the world was created.
     #[getter]
     fn step_count(&self) -> u64 {
         self.world.step_count()
     }
 
-    /// Seconds since the beginning.
+    /// Seconds since the world was created.
     #[getter]
     fn time(&self) -> f64 {
         self.world.time()
@@ -399,7 +400,7 @@ impl World {
         PyArray1::from_vec(py, self.world.joint_ids().map(JointId::to_bits).collect())
     }
 
-    /// Poses of bodies, (n, 7): place, and quaternion x y z w.
+    /// Poses of bodies, (n, 7): position, and quaternion x y z w.
     #[pyo3(signature = (bodies=None))]
     fn poses<'py>(
         &self,
@@ -412,7 +413,7 @@ impl World {
         array(py, numbers, &[bodies.len(), 7])
     }
 
-    /// Velocities of bodies, (n, 6): of the centre of mass, m/s, and angular, rad/s.
+    /// Velocities of bodies, (n, 6): of the centre of mass, m/s, and angular velocity, rad/s.
     #[pyo3(signature = (bodies=None))]
     fn velocities<'py>(
         &self,
@@ -445,7 +446,7 @@ impl World {
         })
     }
 
-    /// Applies an impulse to a body, N·s, at a point in the world, or else at its centre of mass.
+    /// Applies an impulse to a body, N·s, at a point in the world; by default at its centre of mass.
     #[pyo3(signature = (body, impulse, *, point=None))]
     fn push(
         &mut self,
@@ -459,7 +460,7 @@ impl World {
         guarded(|| self.world.apply_impulse(body, impulse, point))
     }
 
-    /// First hit of each ray: arrays `body`, `fraction`, `point`, `normal`. Where there is none the body is 2**64 - 1 and the fraction 1.
+    /// First hit of each ray: arrays `body`, `fraction`, `point`, `normal`. Without a hit the body is 2**64 - 1 and the fraction 1.
     fn ray<'py>(
         &self,
         py: Python<'py>,
@@ -503,12 +504,12 @@ impl World {
         Ok(Self::bits(py, &bodies))
     }
 
-    /// Points of contact of the last step: arrays `a`, `b`, `position`, `normal`, `separation`, `impulse`.
+    /// Contact points of the last step: arrays `a`, `b`, `position`, `normal`, `separation`, `impulse`.
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         contact_dict(py, &self.world)
     }
 
-    /// Events of the last step: arrays (n, 2) of bodies that `begin` and `end` to touch, and `hit`.
+    /// Events of the last step: arrays (n, 2) of pairs of bodies: `begin` and `end` of touching, and `hit`.
     fn events<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let events = self.world.events();
         let hits: Vec<(BodyId, BodyId)> = events.hits.iter().map(|hit| (hit.a.body, hit.b.body)).collect();
@@ -520,12 +521,12 @@ impl World {
         Ok(dict)
     }
 
-    /// Distance of a joint's anchors, metres.
+    /// Distance between the anchors of a joint, metres.
     fn joint_gap(&self, joint: u64) -> PyResult<f32> {
         Ok(self.world.joint_gap(self.joint(joint)?))
     }
 
-    /// Turn of a joint, as a scaled axis, radians.
+    /// Rotation of a joint, as a scaled axis, radians.
     fn joint_turn<'py>(&self, py: Python<'py>, joint: u64) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let turn = self.world.joint_transform(self.joint(joint)?).rotation.to_scaled_axis();
         Ok(PyArray1::from_vec(py, turn.to_array().to_vec()))
@@ -539,7 +540,7 @@ impl World {
         hash_bytes(self.state().as_bytes())
     }
 
-    /// The state as bytes, with that of the characters.
+    /// The state as bytes, with the states of the characters.
     fn save<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, self.state().as_bytes())
     }
@@ -565,7 +566,7 @@ impl World {
     }
 }
 
-/// A motor toward a turn, scaled axis.
+/// Makes a motor toward a rotation, given as a scaled axis.
 pub fn motor(target: Vec3, softness: Softness, max_torque: f32) -> Motor {
     let target = Transform::new(Vec3::ZERO, Rotation::from_scaled_axis(target));
     Motor { max_force: 0.0, max_torque, ..Motor::toward(target, softness) }

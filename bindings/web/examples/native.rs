@@ -1,5 +1,5 @@
-//! Prints hashes and times of the native library for the scenes of `tests/scenes.mjs`, which compares the package with them. Arguments: the folder of
-//! rigs, their names, and `--measure` for times. Prints JSON.
+//! Prints hashes and times of the native library as JSON, for the scenes of `tests/scenes.mjs`, which compares the package with them.
+//! Arguments: the folder of rigs, their names, and `--measure` for times.
 
 use sinew::formats::{ReadOptions, no_files, read_gltf, write_gltf};
 use sinew::prelude::*;
@@ -30,7 +30,7 @@ fn step(world: &mut World, characters: &mut [Character], count: u32) {
     }
 }
 
-/// Two copies of a character, one shoved after a second: the hash after ten seconds.
+/// Simulates two copies of a character, one shoved after a second; returns the hash after ten seconds.
 fn fall(def: &Arc<CharacterDef>) -> u64 {
     let mut world = ground();
     let place = |x: f32| Transform::from_translation(Vec3::new(x, 0.0, 0.0));
@@ -41,7 +41,7 @@ fn fall(def: &Arc<CharacterDef>) -> u64 {
     world.hash()
 }
 
-/// A wall of boxes, a thrown ball, a hanging chain: the hash after ten seconds.
+/// Simulates a wall of boxes, a thrown ball and a hanging chain; returns the hash after ten seconds.
 fn boxes() -> u64 {
     let mut world = ground();
     let cube = Shape::cuboid(Vec3::new(0.25, 0.25, 0.25));
@@ -66,8 +66,8 @@ fn boxes() -> u64 {
     world.hash()
 }
 
-/// Milliseconds per step of a limp character, and of 30 walking and 10 falling ones: the best of several rounds,
-/// because of other load.
+/// Milliseconds per step of a limp character, and of 30 walking and 10 falling ones: the best of several rounds, because other programs may
+/// run.
 fn times(def: &Arc<CharacterDef>) -> [f64; 2] {
     let mut limp = Vec::new();
     for _ in 0..9 {

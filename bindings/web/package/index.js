@@ -8,7 +8,7 @@ let loading;
 /** @type {WebAssembly.Memory | undefined} */
 let memory;
 
-/** True in Node, where `fetch` opens no files. */
+/** True in Node, where `fetch` cannot read files. */
 function isNode() {
   const { process } = /** @type {any} */ (globalThis);
   return Boolean(process?.versions?.node) && import.meta.url.startsWith('file:');
@@ -37,7 +37,7 @@ async function start({ wasm, warm = true }) {
  */
 
 /**
- * Loads the program. All calls wait for the same load; a failed one is retried.
+ * Loads the program. All calls wait for the same load; a failed load is retried.
  * @param {InitOptions} [options]
  * @returns {Promise<void>}
  */

@@ -16,29 +16,29 @@ import { SinewGeometry } from './three/particles.js';
 
 export { SinewBody, SinewCharacter, SinewDebug, SinewDrag, SinewGeometry, SinewInstances };
 
-/** Longest frame, seconds: a page that was in the background goes on from where it was. */
+/** Longest frame, seconds: a page that was in the background continues from its last state. */
 const LONGEST_FRAME = 0.25;
-/** Length of the ray of a pick, metres. */
+/** Length of a pick's ray, metres. */
 const FAR = 1000;
 
 /**
  * The hit of a ray.
  * @typedef {object} Picked
  * @property {bigint} body Id of the body.
- * @property {Vector3} point World.
- * @property {Vector3} normal Out of the body, unit.
+ * @property {Vector3} point Position in the world.
+ * @property {Vector3} normal Outward unit normal.
  * @property {number} distance Metres from the origin of the ray.
- * @property {SinewBody} [object] The body that moves an object, if it is one.
- * @property {SinewCharacter} [character] The character that it is a part of.
+ * @property {SinewBody} [object] The body, if it moves an object.
+ * @property {SinewCharacter} [character] The character to which the body belongs.
  * @property {string} [bone] Name of the character's body.
- * @property {SinewInstances} [instances] The bodies that move instances, if it is one of them.
+ * @property {SinewInstances} [instances] The bodies of instances to which the body belongs.
  * @property {number} [instance] Index of the instance.
  */
 
 /**
  * Physics of a scene of three.js. Metres and seconds; +Y is up.
  *
- * Events are those of `PhysicsEvent`; `event.a` and `event.b` are ids, `event.targets` the objects that they belong to.
+ * Events are those of `PhysicsEvent`; `event.a` and `event.b` are ids, `event.targets` the objects to which the bodies belong.
  * @extends {EventDispatcher<Record<string, any>>}
  */
 export class Sinew extends EventDispatcher {
@@ -52,9 +52,9 @@ export class Sinew extends EventDispatcher {
   #geometries = new Set();
   /** @type {Set<SinewDrag>} */
   #drags = new Set();
-  /** @type {Map<bigint, { object: SinewBody } | { instances: SinewInstances, instance: number }>} What bodies belong to, but for those of characters. */
+  /** @type {Map<bigint, { object: SinewBody } | { instances: SinewInstances, instance: number }>} Objects to which bodies belong, except characters. */
   #owners = new Map();
-  /** Types of events that somebody has listened for. */
+  /** Types of events that have listeners. */
   #heard = /** @type {Set<string>} */ (new Set());
   /** @type {SinewDebug | undefined} */
   #debug;
@@ -70,17 +70,17 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * A world, once `init` is done.
+   * Creates a world; `init` must be done.
    * @param {WorldOptions} [options]
    */
   constructor(options) {
     super();
-    /** The world of bodies, with all its calls. */
+    /** World of the bodies, with all its methods. */
     this.world = new World(options);
   }
 
   /**
-   * Steps the physics and moves all objects to their poses. Call it once a frame.
+   * Steps the physics and moves all objects to their poses. Call it once per frame.
    * @param {number} seconds Time since the last frame.
    */
   update(seconds) {
@@ -123,7 +123,7 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * The object or character that a body belongs to.
+   * Returns the object or character to which a body belongs.
    * @param {bigint} body
    * @returns {{ object?: SinewBody, character?: SinewCharacter, bone?: string, instances?: SinewInstances, instance?: number }}
    */
@@ -232,7 +232,7 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * First body on a ray, for example on that of a raycaster set from the pointer.
+   * Returns the first body on a ray, for example of a raycaster set from the pointer.
    * @param {Ray | Raycaster} ray
    * @param {QueryOptions & { far?: number }} [options] `far`: metres, 1000 by default.
    * @returns {Picked | undefined}
@@ -262,7 +262,7 @@ export class Sinew extends EventDispatcher {
     return drag;
   }
 
-  /** What the physics sees, as lines: add it to your scene. */
+  /** Shapes, joints and contacts as lines: add them to your scene. */
   get debug() {
     this.#debug ??= new SinewDebug(this.world);
     return this.#debug;
@@ -280,7 +280,7 @@ export class Sinew extends EventDispatcher {
     member.dispose();
   }
 
-  /** Frees the world and all that is in it; models and meshes stay where they are. */
+  /** Frees the world with all its objects; models and meshes stay in place. */
   dispose() {
     for (const set of [this.#drags, this.#characters, this.#bodies, this.#instances, this.#geometries]) {
       for (const member of /** @type {Set<any>} */ (set)) this.remove(member);

@@ -1,4 +1,4 @@
-//! Border to JavaScript: errors, panics, and shared handles.
+//! Border to JavaScript: converts errors, panics, and shared handles.
 
 use std::cell::{Cell, RefCell};
 use std::panic::{PanicHookInfo, set_hook};
@@ -26,12 +26,12 @@ impl From<Failure> for JsValue {
 
 #[wasm_bindgen(module = "/src/attempt.js")]
 extern "C" {
-    /// Calls back; returns the thrown value, or `undefined`.
+    /// Calls `call`; returns the thrown value, or `undefined`.
     fn attempt(call: &mut dyn FnMut()) -> JsValue;
 }
 
 thread_local! {
-    /// Message of the last panic, and its place in the sources.
+    /// Message of the last panic, and its source location.
     static LAST_PANIC: Cell<Option<(String, String)>> = const { Cell::new(None) };
 }
 
@@ -46,8 +46,8 @@ pub fn keep_panics() {
     }));
 }
 
-/// Runs `call`; a panic or any other trap becomes its message and its place in the sources. Frames in between are not unwound: their memory
-/// is not freed, and their changes stay.
+/// Runs `call`; a panic or any other trap becomes its message and its source location. Frames in between are not unwound: their memory is
+/// not freed, and their changes stay.
 pub fn caught<T>(call: impl FnOnce() -> T) -> Result<T, (String, String)> {
     let (mut call, mut outcome) = (Some(call), None);
     let thrown = attempt(&mut || {
@@ -61,12 +61,12 @@ pub fn caught<T>(call: impl FnOnce() -> T) -> Result<T, (String, String)> {
     }
 }
 
-/// Runs a call that may panic about its arguments before it changes anything.
+/// Runs a call that may panic about its arguments before it changes any state.
 pub fn refused<T>(call: impl FnOnce() -> T) -> Outcome<T> {
     caught(call).map_err(|(what, _)| Failure(what))
 }
 
-/// A value shared by several JavaScript objects. A panic during a change breaks it, and every later call reports that.
+/// A value shared by several JavaScript objects. A panic during a change makes it unusable, and every later call reports this.
 pub struct Shared<T>(Rc<Handle<T>>);
 
 struct Handle<T> {
@@ -101,14 +101,14 @@ impl<T> Shared<T> {
         refused(|| call(&value))?
     }
 
-    /// Changes the value by a call that may panic about its arguments before it changes anything.
+    /// Changes the value by a call that may panic about its arguments before it changes any state.
     pub fn change<R>(&self, call: impl FnOnce(&mut T) -> Outcome<R>) -> Outcome<R> {
         self.check()?;
         let mut value = self.0.value.try_borrow_mut().map_err(|_| in_use())?;
         refused(|| call(&mut value))?
     }
 
-    /// Changes the value by a call that must not panic; a panic breaks it.
+    /// Changes the value by a call that must not panic; a panic makes the value unusable.
     pub fn run<R>(&self, call: impl FnOnce(&mut T) -> Outcome<R>) -> Outcome<R> {
         self.check()?;
         let mut value = self.0.value.try_borrow_mut().map_err(|_| in_use())?;

@@ -18,7 +18,7 @@ use sinew::physics::{BodyHit, BodyId, Strength};
 use sinew::ragdoll::{Detail, Grab, Grip, Part, Preset, State};
 use wasm_bindgen::prelude::*;
 
-/// A character in a world: it plays clips until it is hit, then its bodies fall, and it gets up.
+/// A character in a world: it plays clips until it is hit, falls with its bodies, and gets up.
 #[wasm_bindgen]
 pub struct Character {
     inner: Shared<Inner>,
@@ -48,7 +48,7 @@ fn place_of(position: Option<Vec3Like>, turn: Option<QuatLike>) -> Outcome<Trans
 
 #[wasm_bindgen]
 impl World {
-    /// Adds a character of a kind to the world, standing at a position, facing +Z unless it is rotated.
+    /// Adds a character of a kind to the world, standing at a position; it faces +Z without a rotation.
     pub fn spawn(
         &self,
         def: &CharacterDef,
@@ -68,7 +68,7 @@ fn gone() -> Failure {
     Failure::new("this character was removed from its world")
 }
 
-/// The body of a character by role or bone.
+/// Returns the body of a character by role or bone.
 fn named(character: &sinew::ragdoll::Character, bone: &str) -> Outcome<usize> {
     character.def().body_named(bone).ok_or_else(|| {
         let names: Vec<String> = character.def().ragdoll.bodies.iter().map(bone_name).collect();
@@ -76,7 +76,7 @@ fn named(character: &sinew::ragdoll::Character, bone: &str) -> Outcome<usize> {
     })
 }
 
-/// A grip with options that override `usual`.
+/// Makes a grip from options that override `usual`.
 pub fn grab_of(value: Option<GrabOptions>, usual: Grab) -> Outcome<Grab> {
     let value: JsValue = value.map(JsValue::from).unwrap_or_default();
     let options = Options::of(&value, "options", &["maxForce", "reach", "slip", "speed"])?;
@@ -112,9 +112,9 @@ impl Character {
 
 #[wasm_bindgen]
 impl Character {
-    // What it is
+    // State
 
-    /// Index in its world, which events use.
+    /// Index of the character in its world, used by events.
     #[wasm_bindgen(getter)]
     pub fn index(&self) -> usize {
         self.place
@@ -136,26 +136,26 @@ impl Character {
         })
     }
 
-    /// Pose on the ground, facing +Z. While it is limp, the pose at which it went limp.
+    /// Pose on the ground, facing +Z. For a limp character, the pose at which it went limp.
     #[wasm_bindgen(getter)]
     pub fn place(&self) -> Outcome<PoseOut> {
         self.ask(|_, member| Ok(pose(member.character.world_from_character()).unchecked_into()))
     }
 
-    /// Pose between the last two steps, ten numbers for each joint of the kind, in the order of its `nodes`: position, rotation x, y, z, w
-    /// and scale, relative to the parent and in the file's unit; then the sixteen of the matrix from the file to the world, column after
-    /// column. The array is a view of memory: request it again in each frame.
+    /// Pose between the last two steps: ten numbers for each joint of the kind, in the order of its `nodes` (position, rotation x, y, z, w
+    /// and scale, relative to the parent and in the file's unit), then the sixteen numbers of the matrix from the file to the world, column
+    /// by column. The array is a view of memory: request it again in each frame.
     #[wasm_bindgen(getter)]
     pub fn pose(&self) -> Outcome<Float32Array> {
         self.ask(|_, member| Ok(member.view.of(&member.pose)))
     }
 
-    /// Ids of its bodies, in the order of the kind's `bones`.
+    /// Ids of the character's bodies, in the order of the kind's `bones`.
     pub fn bodies(&self) -> Outcome<Vec<u64>> {
         self.ask(|_, member| Ok(member.character.bodies().iter().map(|body| body.to_bits()).collect()))
     }
 
-    /// Id of a body, by role or bone; `undefined` for a detached one.
+    /// Id of a body, by role or bone; `undefined` for a detached body.
     pub fn body(&self, bone: &str) -> Outcome<Option<u64>> {
         self.ask(|_, member| {
             let index = named(&member.character, bone)?;
@@ -163,7 +163,7 @@ impl Character {
         })
     }
 
-    /// Name of one of its bodies, for example of a ray hit; `undefined` for other bodies.
+    /// Name of one of the character's bodies, for example of a ray hit; `undefined` for other bodies.
     pub fn bone(&self, body: u64) -> Outcome<Option<String>> {
         self.ask(|_, member| {
             let index = member.character.body_index(BodyId::from_bits(body));
@@ -171,9 +171,9 @@ impl Character {
         })
     }
 
-    // Where it goes
+    // Motion
 
-    /// Sets its velocity over the ground, m/s.
+    /// Sets the character's velocity over the ground, m/s.
     #[wasm_bindgen(js_name = setMove)]
     pub fn set_move(&self, velocity: Vec3Like) -> Outcome {
         let velocity = vec3(&velocity, "velocity")?;
@@ -183,7 +183,7 @@ impl Character {
         })
     }
 
-    /// Makes it follow its clips again, the initial mode.
+    /// Makes the character follow its clips again, as at the start.
     #[wasm_bindgen(js_name = followClips)]
     pub fn follow_clips(&self) -> Outcome {
         self.change(|character, _| {
@@ -192,7 +192,7 @@ impl Character {
         })
     }
 
-    /// Makes it turn to face a direction.
+    /// Makes the character turn to face a direction.
     pub fn face(&self, direction: Vec3Like) -> Outcome {
         let direction = vec3(&direction, "direction")?;
         self.change(|character, _| {
@@ -201,7 +201,7 @@ impl Character {
         })
     }
 
-    /// Makes it jump in the next step, if it is on the ground.
+    /// Makes the character jump in the next step, if it is on the ground.
     pub fn jump(&self) -> Outcome {
         self.change(|character, world| {
             character.jump(world);
@@ -209,7 +209,7 @@ impl Character {
         })
     }
 
-    /// Teleports it.
+    /// Teleports the character.
     pub fn teleport(&self, position: Vec3Like, turn: Option<QuatLike>) -> Outcome {
         let place = place_of(Some(position), turn)?;
         self.change(|character, world| {
@@ -218,7 +218,7 @@ impl Character {
         })
     }
 
-    /// Plays one of the kind's clips instead of the current one.
+    /// Plays one of the kind's clips instead of the current clip.
     pub fn play(&self, clip: &str, options: Option<PlayOptions>) -> Outcome {
         let value: JsValue = options.map(JsValue::from).unwrap_or_default();
         let options = Options::of(&value, "options", &["fade", "speed", "loop"])?;
@@ -240,9 +240,9 @@ impl Character {
         })
     }
 
-    // What moves it
+    // Hits and drives
 
-    /// Hits a body, by role or bone, with an impulse, N·s. It falls, or flinches if the hit is weak.
+    /// Hits a body, given by role or bone, with an impulse, N·s. The character falls, or flinches if the hit is weak.
     pub fn hit(&self, bone: &str, impulse: Vec3Like) -> Outcome {
         let impulse = vec3(&impulse, "impulse")?;
         self.change(|character, world| {
@@ -252,7 +252,7 @@ impl Character {
         })
     }
 
-    /// Hits a body at a point in the world, for example that of a ray hit; returns false if the body is not its own.
+    /// Hits a body at a point in the world, for example of a ray hit; returns false if the body is not the character's.
     #[wasm_bindgen(js_name = hitAt)]
     pub fn hit_at(&self, body: u64, point: Vec3Like, impulse: Vec3Like) -> Outcome<bool> {
         let (point, impulse) = (vec3(&point, "point")?, vec3(&impulse, "impulse")?);
@@ -263,7 +263,7 @@ impl Character {
         })
     }
 
-    /// Makes it limp at its present pose and velocity.
+    /// Makes the character limp at its present pose and velocity.
     #[wasm_bindgen(js_name = goLimp)]
     pub fn go_limp(&self) -> Outcome {
         self.change(|character, world| {
@@ -272,7 +272,7 @@ impl Character {
         })
     }
 
-    /// Changes the drive of all of it: clips, muscles toward its clips, or none.
+    /// Changes the drive of the whole character: clips, muscles toward its clips, or none.
     #[wasm_bindgen(js_name = setPreset)]
     pub fn set_preset(&self, preset: PresetName) -> Outcome {
         let name = preset.as_string().unwrap_or_default();
@@ -286,8 +286,8 @@ impl Character {
         })
     }
 
-    /// Changes the drive of a body, or with `below` of all below it; half of the change is made within `half_life` seconds. Without a bone:
-    /// of all of it.
+    /// Changes the drive of a body, or with `below` also of all its descendants; half of the change is made within `half_life` seconds.
+    /// Without a bone, changes the drive of the whole character.
     #[wasm_bindgen(js_name = setDrive)]
     pub fn set_drive(
         &self,
@@ -310,9 +310,9 @@ impl Character {
         })
     }
 
-    // What it holds
+    // Holding and grabbing
 
-    /// Makes a body, by role or bone, hold a dynamic body of the world, which is moved there.
+    /// Makes a body, given by role or bone, hold a dynamic body of the world, which is moved there.
     pub fn hold(&self, bone: &str, held: u64, options: Option<HoldOptions>) -> Outcome {
         let value: JsValue = options.map(JsValue::from).unwrap_or_default();
         let known = ["position", "rotation", "drops", "breakForce", "breakTorque"];
@@ -336,8 +336,8 @@ impl Character {
         })
     }
 
-    /// Makes a body grab another one at its present pose, for example another character's limb, and drag it; returns false if it is out of
-    /// reach.
+    /// Makes a body grab another body at its present pose, for example another character's limb, and drag it; returns false if the other
+    /// body is out of reach.
     pub fn grab(&self, bone: &str, held: u64, options: Option<GrabOptions>) -> Outcome<bool> {
         let grab = grab_of(options, Grab::HAND)?;
         self.change(|character, world| {
@@ -347,19 +347,19 @@ impl Character {
         })
     }
 
-    /// Releases a held body; returns false if it does not hold it.
+    /// Releases a held body; returns false if the character does not hold it.
     pub fn release(&self, held: u64) -> Outcome<bool> {
         self.change(|character, world| Ok(character.release(world, BodyId::from_bits(held))))
     }
 
-    /// Ids of the bodies that it holds.
+    /// Ids of the bodies that the character holds.
     pub fn held(&self) -> Outcome<Vec<u64>> {
         self.ask(|_, member| Ok(member.character.held().map(|body| body.to_bits()).collect()))
     }
 
-    // What it wears
+    // Springs, garments and detail
 
-    /// Restarts its springs and garments at rest, for example after a camera cut.
+    /// Resets the character's springs and garments to rest, for example after a camera cut.
     #[wasm_bindgen(js_name = resetSprings)]
     pub fn reset_springs(&self) -> Outcome {
         self.change(|character, world| {
@@ -369,7 +369,7 @@ impl Character {
         })
     }
 
-    /// Sets its level of detail: at once if its clips move it, else once they do again.
+    /// Sets the level of detail: immediately if clips move the character, else as soon as they do.
     #[wasm_bindgen(js_name = setDetail)]
     pub fn set_detail(&self, detail: DetailName) -> Outcome {
         let name = detail.as_string().unwrap_or_default();
@@ -383,7 +383,7 @@ impl Character {
         })
     }
 
-    /// Removes it from the world.
+    /// Removes the character from the world.
     pub fn remove(&self) -> Outcome {
         self.inner.change(|inner| {
             let is_it = inner.characters.get(self.place).and_then(Option::as_ref);

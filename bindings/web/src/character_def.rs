@@ -11,7 +11,7 @@ use sinew::ragdoll::{AfterSettling, Locomotion, MotionSet, RagdollBodyDef, Setti
 use std::sync::Arc;
 use wasm_bindgen::prelude::*;
 
-/// A kind of character built from a GLB, glTF or VRM file. Characters share it: create one for each file.
+/// A kind of character, built from a GLB, glTF or VRM file. Characters share it: create one per file.
 #[wasm_bindgen]
 pub struct CharacterDef {
     pub(crate) def: Arc<sinew::ragdoll::CharacterDef>,
@@ -33,7 +33,7 @@ const KNOWN: [&str; 12] = [
     "tellsContacts",
 ];
 
-/// Name of a body for JavaScript: its role, else its bone's.
+/// Returns the name of a body for JavaScript: its role, or else its bone's name.
 pub fn bone_name(body: &RagdollBodyDef) -> String {
     if body.role.is_empty() { body.bone.clone() } else { body.role.clone() }
 }
@@ -96,7 +96,7 @@ fn adjust(def: &mut sinew::ragdoll::CharacterDef, options: &Options<'_>) -> Outc
     Ok(())
 }
 
-/// Bytes of a glTF's companion file, from the object that maps paths to bytes.
+/// Returns the bytes of a glTF's companion file from the object that maps paths to bytes.
 fn file_of(files: &JsValue, path: &str) -> Result<Vec<u8>, Error> {
     let found = Reflect::get(files, &JsValue::from_str(path)).unwrap_or_default();
     found.dyn_ref::<Uint8Array>().map_or_else(|| no_files(path), |bytes| Ok(bytes.to_vec()))
@@ -105,7 +105,7 @@ fn file_of(files: &JsValue, path: &str) -> Result<Vec<u8>, Error> {
 #[wasm_bindgen]
 impl CharacterDef {
     /// Reads a GLB, glTF or VRM, finds the roles of its joints, builds the ragdoll, and chooses walk, idle and get-ups among its clips.
-    /// Humans that lack one of these get the built-in ones.
+    /// A human that lacks one of these gets the built-in one.
     pub fn load(bytes: &[u8], options: Option<CharacterOptions>) -> Outcome<CharacterDef> {
         let value: JsValue = options.map(JsValue::from).unwrap_or_default();
         let options = Options::of(&value, "options", &KNOWN)?;
@@ -141,13 +141,13 @@ impl CharacterDef {
         self.def.rig.joints.iter().map(|joint| node(joint.source)).collect()
     }
 
-    /// Names of the bodies for `hit`, `hold` and others: roles such as "chest", or else bones.
+    /// Names of the bodies for `hit`, `hold` and others: roles such as "chest", or else names of bones.
     #[wasm_bindgen(getter)]
     pub fn bones(&self) -> Names {
         names(self.def.ragdoll.bodies.iter().map(bone_name))
     }
 
-    /// Joint that carries each body, by index.
+    /// Index of the joint that carries each body.
     #[wasm_bindgen(getter, js_name = boneJoints)]
     pub fn bone_joints(&self) -> Vec<u32> {
         self.def.ragdoll.bodies.iter().map(|body| body.joint as u32).collect()
@@ -177,7 +177,7 @@ impl CharacterDef {
         self.def.rig.springs.chains.len()
     }
 
-    /// Joints that swing, by index.
+    /// Indices of the joints that swing.
     #[wasm_bindgen(getter, js_name = springJoints)]
     pub fn spring_joints(&self) -> Vec<u32> {
         let bones = self.def.rig.springs.chains.iter().flat_map(|chain| &chain.bones);
@@ -191,7 +191,7 @@ impl CharacterDef {
     }
 }
 
-/// A GLB of the library's mannequin, 1.75 m, with a walk and two ways to get up, for tests without a file.
+/// Returns a GLB of the built-in mannequin, 1.75 m, with a walk and two get-ups, for tests without a file.
 #[wasm_bindgen(js_name = mannequinGlb)]
 pub fn mannequin_glb() -> Outcome<Vec<u8>> {
     let mannequin = sinew::mannequin::mannequin();

@@ -1,4 +1,4 @@
-//! Definitions of shapes, bodies and joints from objects of JavaScript.
+//! Reads definitions of shapes, bodies and joints from JavaScript objects.
 
 use crate::border::{Failure, Outcome, refused};
 use crate::values::{Options, object};
@@ -15,7 +15,7 @@ use wasm_bindgen::{JsCast, JsValue};
 const QUALITIES: [(&str, Quality); 3] =
     [("fast", Quality::Fast), ("balanced", Quality::Balanced), ("exact", Quality::Exact)];
 
-/// Fields that a shape and, for all of its shapes, a body may have.
+/// Fields that a shape may have, and a body for all its shapes.
 const SURFACE: [&str; 6] = ["density", "friction", "restitution", "sensor", "layers", "mask"];
 
 fn failed(error: impl core::fmt::Display) -> Failure {
@@ -31,7 +31,7 @@ fn quality(options: &Options<'_>) -> Outcome<Option<Quality>> {
     Ok(chosen.map(|index| QUALITIES[index].1))
 }
 
-/// Settings of a world.
+/// Reads the settings of a world.
 pub fn world_def(value: &JsValue) -> Outcome<WorldDef> {
     let known = ["gravity", "stepSeconds", "substeps", "quality", "sleeping", "catchUpSteps", "hitSpeed"];
     let options = Options::of(value, "options", &known)?;
@@ -64,7 +64,7 @@ const SHAPES: [&str; 10] = [
     "heightField",
 ];
 
-/// A shape by its `type` and sizes.
+/// Reads a shape from its `type` and sizes.
 fn shape(options: &Options<'_>) -> Outcome<Shape> {
     let number = |key: &str| options.needed_number(key);
     Ok(match SHAPES[options.needed_word("type", &SHAPES)?] {
@@ -115,7 +115,7 @@ const SIZES: [&str; 15] = [
     "rotation",
 ];
 
-/// A shape without a surface, for queries.
+/// Reads a shape without surface fields, for queries.
 pub fn probe_shape(value: &JsValue) -> Outcome<Shape> {
     let shape = shape(&Options::of(value, "shape", &SIZES)?)?;
     if shape.is_solid() && shape != Shape::HalfSpace {
@@ -125,7 +125,7 @@ pub fn probe_shape(value: &JsValue) -> Outcome<Shape> {
     Err(Failure::new("the shape of a query must be convex and bounded"))
 }
 
-/// Surface and filter of a shape; missing fields are taken from `default`.
+/// Reads surface and filter of a shape; missing fields are taken from `default`.
 fn surfaced(options: &Options<'_>, default: &ShapeDef) -> Outcome<ShapeDef> {
     let friction = options.number("friction")?.unwrap_or(default.material.friction);
     let restitution = options.number("restitution")?.unwrap_or(default.material.restitution);
@@ -163,7 +163,7 @@ fn shape_def(value: &JsValue, default: &ShapeDef) -> Outcome<ShapeDef> {
 pub const KINDS: [(&str, BodyKind); 3] =
     [("dynamic", BodyKind::Dynamic), ("static", BodyKind::Static), ("kinematic", BodyKind::Kinematic)];
 
-/// A body to be added.
+/// Reads the definition of a body.
 pub fn body_def(value: &JsValue) -> Outcome<BodyDef> {
     let own = [
         "kind",
@@ -214,7 +214,7 @@ pub fn body_def(value: &JsValue) -> Outcome<BodyDef> {
     Ok(def)
 }
 
-/// Distributes a mass over the shapes.
+/// Distributes a mass over the shapes; returns the mass properties.
 fn spread(mass: f32, def: &BodyDef) -> Outcome<MassProperties> {
     if mass.is_nan() || mass <= 0.0 {
         return Err(Failure(format!("body.mass must be positive, not {mass}")));
@@ -228,13 +228,13 @@ fn spread(mass: f32, def: &BodyDef) -> Outcome<MassProperties> {
     Ok(MassProperties { mass, inertia: by_density.inertia * (mass / by_density.mass), ..by_density })
 }
 
-/// The body of an id, if it exists.
+/// Returns the body of an id, if it exists.
 pub fn body(world: &World, bits: u64) -> Outcome<BodyId> {
     let id = BodyId::from_bits(bits);
     if world.contains(id) { Ok(id) } else { Err(Failure(format!("there is no body {bits} in this world"))) }
 }
 
-/// The joint of an id, if it exists.
+/// Returns the joint of an id, if it exists.
 pub fn joint(world: &World, bits: u64) -> Outcome<JointId> {
     let id = JointId::from_bits(bits);
     if world.contains_joint(id) {
@@ -246,7 +246,7 @@ pub fn joint(world: &World, bits: u64) -> Outcome<JointId> {
 
 const JOINTS: [&str; 5] = ["ball", "hinge", "slider", "fixed", "distance"];
 
-/// A joint definition at the present poses of its bodies.
+/// Reads a joint definition, at the present poses of its bodies.
 pub fn joint_def(value: &JsValue, world: &World) -> Outcome<JointDef> {
     let known = [
         "type",
@@ -281,7 +281,7 @@ pub fn joint_def(value: &JsValue, world: &World) -> Outcome<JointDef> {
             let cone = cone(&options)?;
             let def = match options.vec3("axis")? {
                 None => world.ball(a, b, options.needed_vec3("anchor")?),
-                // The axis of the twist.
+                // The axis is that of the twist.
                 Some(_) => axial().map(|(anchor, axis)| world.hinge(a, b, anchor, axis))?,
             };
             JointDef { kind: JointKind::Ball { limit: cone }, ..def }
@@ -325,7 +325,7 @@ fn range(options: &Options<'_>, key: &str) -> Outcome<Option<Range>> {
     }
 }
 
-/// Limits of a ball joint: half angles of its cone, and the range of its twist.
+/// Reads the limits of a ball joint: half angle of its cone, and range of its twist.
 fn cone(options: &Options<'_>) -> Outcome<Option<SwingTwistLimit>> {
     let (swing, twist) = (options.number("swing")?, range(options, "twist")?);
     if swing.is_none() && twist.is_none() {
@@ -348,7 +348,7 @@ fn spring(value: &JsValue) -> Outcome<Spring> {
     Ok(Spring { softness: softness(&options, 1.0)?, rest: Transform::IDENTITY })
 }
 
-/// A motor: toward a speed, or a pose.
+/// Reads a motor toward a speed or a pose.
 pub fn motor(value: &JsValue) -> Outcome<Motor> {
     let known = ["speed", "target", "turn", "hertz", "dampingRatio", "maxForce", "maxTorque"];
     let options = Options::of(value, "motor", &known)?;
@@ -365,7 +365,7 @@ pub fn motor(value: &JsValue) -> Outcome<Motor> {
     Ok(Motor { max_force: force, max_torque: torque, ..toward })
 }
 
-/// Mass and its distribution as a JavaScript object.
+/// Converts mass and centre of mass to a JavaScript object.
 pub fn mass(properties: MassProperties) -> JsValue {
     object([("mass", properties.mass.into()), ("center", crate::values::vector(properties.center))])
 }

@@ -1,11 +1,11 @@
-//! Drives of a character's bodies from objects of JavaScript.
+//! Reads the drives of a character's bodies from JavaScript objects.
 
 use crate::border::{Failure, Outcome};
 use crate::values::Options;
 use sinew::ragdoll::{DriveMode, Muscle, Pin};
 use wasm_bindgen::JsValue;
 
-/// A mode: "limp", "keyed", or a muscle with or without a pin.
+/// Reads a mode: "limp", "keyed", or a muscle with or without a pin.
 pub fn drive_mode(value: &JsValue) -> Outcome<DriveMode> {
     match value.as_string().as_deref() {
         Some("limp") => return Ok(DriveMode::Limp),

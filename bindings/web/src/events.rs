@@ -9,13 +9,13 @@ use wasm_bindgen::JsValue;
 
 /// An event of a step.
 pub enum Told {
-    /// Two bodies began or stopped touching, or being inside a sensor.
+    /// Two bodies began or stopped touching, or one entered or left a sensor.
     Pair(&'static str, BodyId, BodyId),
-    /// Two bodies hit each other fast.
+    /// Two bodies hit each other at high speed.
     Hit { bodies: [BodyId; 2], point: Vec3, normal: Vec3, speed: f32, impulse: f32 },
     /// A joint broke.
     Broken(JointId),
-    /// The state of a body became non-finite, and it was removed from the simulation.
+    /// The state of a body became non-finite, so it was removed from the simulation.
     Quarantined(BodyId),
     /// An event of a character, by its index in the world, with name and payload of a clip event.
     Character(usize, CharacterEvent, Option<Box<(String, String)>>),
@@ -58,7 +58,7 @@ pub fn of_character(index: usize, character: &Character, told: &mut Vec<Told>) {
     }));
 }
 
-/// The events as objects.
+/// Converts the events to objects.
 pub fn to_js(told: &[Told], characters: impl Fn(usize) -> Option<Vec<String>>) -> Array {
     told.iter().map(|told| one(told, &characters)).collect()
 }

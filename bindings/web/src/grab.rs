@@ -1,4 +1,4 @@
-//! Grab points: of a mouse or a crane.
+//! Grab points, such as for a mouse or a crane.
 
 use crate::border::{Outcome, Shared};
 use crate::character::grab_of;
@@ -19,7 +19,8 @@ pub struct GrabPoint {
 
 #[wasm_bindgen]
 impl World {
-    /// Grabs a dynamic body at a point in the world; `undefined` if that is out of reach, or no force moves the body.
+    /// Grabs a dynamic body at a point in the world; `undefined` if the point is out of reach, or no force moves the
+    /// body.
     pub fn grab(&self, id: u64, point: Vec3Like, options: Option<GrabOptions>) -> Outcome<Option<GrabPoint>> {
         let (point, grab) = (vec3(&point, "point")?, grab_of(options, Grab::POINT)?);
         let serial = self.inner.change(|inner| {
@@ -33,7 +34,7 @@ impl World {
 
 #[wasm_bindgen]
 impl GrabPoint {
-    /// Moves it to a point in the world.
+    /// Moves the target of the grab point.
     #[wasm_bindgen(js_name = setTarget)]
     pub fn set_target(&self, point: Vec3Like) -> Outcome {
         let point = vec3(&point, "point")?;
@@ -45,7 +46,7 @@ impl GrabPoint {
         })
     }
 
-    /// Returns true while it holds something.
+    /// True while the grab point holds a body.
     #[wasm_bindgen(getter)]
     pub fn holds(&self) -> Outcome<bool> {
         self.inner.read(|inner| Ok(inner.grab_place(self.serial).is_some()))

@@ -1,4 +1,5 @@
-//! A world with everything that is stepped with it: characters, grab points, and the data that JavaScript reads after each frame.
+//! A world with the objects that are stepped with it: characters, grab points, and the data that JavaScript reads after each
+//! frame.
 
 use crate::border::{Failure, Outcome};
 use crate::events::Told;
@@ -9,12 +10,12 @@ use sinew::physics::{BodyId, DebugDraw, DrawKind, GroupId, World};
 use sinew::ragdoll::{Character, GrabPoint};
 use std::time::Duration;
 
-/// First bytes of a state; the last is the version.
+/// First bytes of a saved state; the last one is the version.
 const MAGIC: &[u8; 8] = b"sinewwb\x01";
-/// Numbers of a body in the list of poses: position, rotation.
+/// Count of numbers per body in the list of poses: position, rotation.
 const BODY_NUMBERS: usize = 7;
 
-/// World and its companions.
+/// World, and the objects stepped with it.
 pub struct Inner {
     pub world: World,
     pub characters: Vec<Option<Member>>,
@@ -53,7 +54,7 @@ pub struct Drawn {
     pub view: View,
 }
 
-/// Lines of a world, with their colours.
+/// Lines of a world for debug drawing, with their colours.
 #[derive(Default)]
 pub struct Lines {
     pub positions: Vec<f32>,
@@ -181,7 +182,7 @@ impl Inner {
         }
     }
 
-    /// Remaining time as a share of a step.
+    /// Remaining time as a share of a step, 0 to 1.
     pub fn alpha(&self) -> f32 {
         self.alpha
     }
@@ -196,7 +197,7 @@ impl Inner {
         place
     }
 
-    /// Stops exporting a pose.
+    /// Stops exporting the pose with an index.
     pub fn untrack(&mut self, place: usize) {
         if let Some(tracked) = self.tracked.get_mut(place) {
             *tracked = None;
@@ -208,7 +209,7 @@ impl Inner {
         self.poses_view.of(&self.poses)
     }
 
-    /// Adds a character; returns its index and its number.
+    /// Adds a character; returns its index and its serial number.
     pub fn settle_character(&mut self, character: Character) -> (usize, u64) {
         self.serial += 1;
         let mut member = Member {
@@ -222,19 +223,19 @@ impl Inner {
         (settle(&mut self.characters, member), self.serial)
     }
 
-    /// Adds a grab point; returns its number.
+    /// Adds a grab point; returns its serial number.
     pub fn settle_grab(&mut self, point: GrabPoint) -> u64 {
         self.serial += 1;
         settle(&mut self.grabs, Gripped { serial: self.serial, point });
         self.serial
     }
 
-    /// The index of a grab point, while it holds something.
+    /// Returns the index of a grab point while it exists.
     pub fn grab_place(&self, serial: u64) -> Option<usize> {
         self.grabs.iter().position(|grab| grab.as_ref().is_some_and(|grab| grab.serial == serial))
     }
 
-    /// State of world, characters and grab points.
+    /// Saves the state of world, characters and grab points.
     pub fn save(&self) -> Vec<u8> {
         let mut w = Writer::new();
         w.raw(MAGIC);
@@ -252,7 +253,7 @@ impl Inner {
         w.into_bytes()
     }
 
-    /// Restores a state; if the bytes are invalid, nothing changes.
+    /// Restores a saved state; if the bytes are invalid, the world is unchanged.
     pub fn load(&mut self, bytes: &[u8]) -> Outcome {
         let failed = |what: &dyn core::fmt::Display| Failure(format!("not a state of this world: {what}"));
         let mut r = Reader::new(bytes);

@@ -1,5 +1,5 @@
 //! Sinew for JavaScript: the WebAssembly module of the npm package `sinew-physics`. docs/guide/src/three.md is the guide.
-// `forbid` would refuse the macros of wasm-bindgen, whose code is `unsafe`; no source of ours is.
+// `forbid` would reject the macros of wasm-bindgen, whose code is `unsafe`; our own sources have no unsafe code.
 #![deny(unsafe_code)]
 
 mod border;
@@ -20,13 +20,13 @@ mod world;
 
 use wasm_bindgen::prelude::*;
 
-/// Called once, when the module is instantiated.
+/// Initialises the module; called once, when it is instantiated.
 #[wasm_bindgen(start)]
 fn start() {
     border::keep_panics();
 }
 
-/// Version of the library.
+/// Returns the version of the library.
 #[wasm_bindgen]
 #[must_use]
 pub fn version() -> String {

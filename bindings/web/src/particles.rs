@@ -13,7 +13,7 @@ use sinew::physics::GroupId;
 use sinew::physics::particles::{AttachmentTarget, BlobDef, ClothDef, GroupDef, ParticleGroup, RopeDef};
 use wasm_bindgen::prelude::*;
 
-/// A rope, a piece of cloth or a soft ball in a world. To attach it to a body or the world, attach its particles.
+/// A rope, a piece of cloth or a soft ball in a world. Attach its particles to attach it to a body or the world.
 #[wasm_bindgen]
 pub struct Particles {
     inner: Shared<Inner>,
@@ -21,7 +21,7 @@ pub struct Particles {
     triangles: Vec<u32>,
 }
 
-/// Runs a constructor that may panic about its numbers.
+/// Runs a constructor that may panic about its arguments.
 fn built<T>(make: impl FnOnce() -> T) -> Outcome<T> {
     crate::border::refused(make)
 }
@@ -88,7 +88,7 @@ impl World {
         self.add_group(&cloth.group, triangles)
     }
 
-    /// Adds a soft ball: a skin filled with air.
+    /// Adds a soft ball: an elastic skin filled with air.
     #[wasm_bindgen(js_name = addSoftBall)]
     pub fn add_soft_ball(&self, options: SoftBallOptions) -> Outcome<Particles> {
         let options = Options::of(&options, "ball", &["center", "radius", "mass"])?;
@@ -101,7 +101,7 @@ impl World {
         self.add_group(&blob.group, triangles)
     }
 
-    /// Holder of a particle at a position: the world, or the body of an id.
+    /// Reads the target of an attachment at a position: the world, or the body of an id.
     fn holder(&self, holder: &JsValue, place: Vec3, name: &str) -> Outcome<AttachmentTarget> {
         if holder.as_string().as_deref() == Some("world") {
             return Ok(AttachmentTarget::World(place));
@@ -169,7 +169,7 @@ impl Particles {
         })
     }
 
-    /// Triangles of the surface, three particles each; empty for a rope.
+    /// Triangles of the surface, three particle indices each; empty for a rope.
     #[wasm_bindgen(getter)]
     pub fn triangles(&self) -> Vec<u32> {
         self.triangles.clone()
@@ -189,7 +189,7 @@ impl Particles {
         self.change(particle, |group| group.set_position(particle, position))
     }
 
-    /// Removes them from the world.
+    /// Removes the particles from the world.
     pub fn remove(&self) -> Outcome {
         self.inner.change(|inner| {
             let place = inner.groups.iter().position(|drawn| drawn.group == self.group);

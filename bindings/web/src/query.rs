@@ -92,7 +92,8 @@ impl World {
 
 #[wasm_bindgen]
 impl World {
-    /// First hit of a ray from `origin` along `way`, which also sets its length; `undefined` without a hit.
+    /// Returns the first hit of a ray from `origin` along `way`, whose length is that of the ray; `undefined`
+    /// without a hit.
     #[wasm_bindgen(js_name = castRay)]
     pub fn cast_ray(
         &self,
@@ -103,7 +104,7 @@ impl World {
         self.first(&ray(&origin, &way)?, options)
     }
 
-    /// All hits of a ray, the first of each shape, in order.
+    /// Returns all hits of a ray in order, one per shape.
     #[wasm_bindgen(js_name = castRayAll)]
     pub fn cast_ray_all(
         &self,
@@ -119,7 +120,7 @@ impl World {
         })
     }
 
-    /// First hit of a shape moved along `way` from a pose.
+    /// Returns the first hit of a shape that moves along `way` from a pose.
     #[wasm_bindgen(js_name = castShape)]
     pub fn cast_shape(
         &self,
@@ -133,7 +134,7 @@ impl World {
         self.first(&ShapeCast { probe, translation: way }, options)
     }
 
-    /// Ids of the bodies that a shape at a pose would overlap, ascending.
+    /// Returns the ids of the bodies that a shape at a pose would overlap, ascending.
     pub fn overlap(
         &self,
         shape: ShapeOptions,

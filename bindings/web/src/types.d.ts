@@ -1,6 +1,6 @@
-/** A vector, metres where it is a place: of three.js, plain, or an array. */
+/** A vector, of three.js, as a plain object, or as an array; metres for positions. */
 export type Vec3Like = { readonly x: number; readonly y: number; readonly z: number } | readonly [number, number, number] | Float32Array;
-/** A quaternion: of three.js, plain, or an array x, y, z, w. */
+/** A quaternion, of three.js, as a plain object, or as an array x, y, z, w. */
 export type QuatLike =
   | { readonly x: number; readonly y: number; readonly z: number; readonly w: number }
   | readonly [number, number, number, number]
@@ -12,155 +12,155 @@ export interface Velocity { linear: Vec3; angular: Vec3 }
 export type Quality = 'fast' | 'balanced' | 'exact';
 
 export interface WorldOptions {
-  /** m/s². Default (0, -9.81, 0). */
+  /** Gravity, m/s². Default (0, -9.81, 0). */
   gravity?: Vec3Like;
   /** Length of a step, seconds. Default 1/60. */
   stepSeconds?: number;
   /** Substeps of a step, at least 1. Default 4. */
   substeps?: number;
-  /** Work that a step does. Default balanced. */
+  /** Quality of a step. Default balanced. */
   quality?: Quality;
   /** True if bodies at rest may fall asleep. Default true. */
   sleeping?: boolean;
-  /** Most steps that one update takes. Default 15. */
+  /** Largest number of steps per update. Default 15. */
   catchUpSteps?: number;
-  /** Least speed of which a hit is told, m/s. Default 1. */
+  /** Smallest speed of a reported hit, m/s. Default 1. */
   hitSpeed?: number;
 }
 
 /** Surface and filter of a shape. */
 export interface SurfaceOptions {
-  /** kg/m³. Default 1000. */
+  /** Density, kg/m³. Default 1000. */
   density?: number;
-  /** Coulomb's coefficient, at least 0. Default 0.6. */
+  /** Coefficient of Coulomb friction, at least 0. Default 0.6. */
   friction?: number;
-  /** Share of the speed given back, 0 to 1. Default 0. */
+  /** Coefficient of restitution, 0 to 1. Default 0. */
   restitution?: number;
-  /** True if it only reports what it meets. Default false. */
+  /** True if the shape only reports overlaps. Default false. */
   sensor?: boolean;
-  /** Bits of the layers that it is on. Default 1. */
+  /** Bits of the layers to which the shape belongs. Default 1. */
   layers?: number;
-  /** Bits of the layers that it meets. Default all. */
+  /** Bits of the layers with which the shape collides. Default all. */
   mask?: number;
 }
 
-/** A shape by its sizes, metres. */
+/** A shape with its sizes, metres. */
 export type Geometry =
   | { type: 'box'; halfExtents: Vec3Like }
   | { type: 'sphere'; radius: number }
-  /** Along y; `halfHeight`: half of the segment without its caps. */
+  /** Capsule along y; `halfHeight`: half of the segment without its caps. */
   | { type: 'capsule'; halfHeight: number; radius: number }
   | { type: 'taperedCapsule'; halfHeight: number; radiusBottom: number; radiusTop: number }
   | { type: 'cylinder'; halfHeight: number; radius: number }
   | { type: 'cone'; halfHeight: number; radius: number }
-  /** All below y = 0 of its frame; static bodies only. */
+  /** All points below y = 0 of its frame; static bodies only. */
   | { type: 'halfSpace' }
   /** The convex hull of points. */
   | { type: 'hull'; points: ArrayLike<number> }
-  /** One-sided triangles; for bodies that are not dynamic. */
+  /** One-sided triangles; not for dynamic bodies. */
   | { type: 'mesh'; vertices: ArrayLike<number>; indices: ArrayLike<number> }
-  /** Heights of a grid, row after row along x, centred on its origin; for bodies that are not dynamic. */
+  /** Heights of a grid, row by row along x, centred on its origin; not for dynamic bodies. */
   | { type: 'heightField'; columns: number; rows: number; spacing: number; heights: ArrayLike<number> };
 
-/** A shape, and where it is in its body. */
+/** A shape with its pose in the body. */
 export type ShapeOptions = Geometry & SurfaceOptions & { position?: Vec3Like; rotation?: QuatLike };
 
 export type BodyKind = 'dynamic' | 'static' | 'kinematic';
 
-/** A body to be added; surface and filter are those of shapes that do not say their own. */
+/** Definition of a body; surface and filter apply to shapes that have none of their own. */
 export interface BodyOptions extends SurfaceOptions {
-  /** Default dynamic. */
+  /** Kind of the body. Default dynamic. */
   kind?: BodyKind;
   position?: Vec3Like;
   rotation?: QuatLike;
-  /** m/s. */
+  /** Linear velocity, m/s. */
   linearVelocity?: Vec3Like;
-  /** rad/s. */
+  /** Angular velocity, rad/s. */
   angularVelocity?: Vec3Like;
-  /** 1/s. Default 0. */
+  /** Linear damping, 1/s. Default 0. */
   linearDamping?: number;
-  /** 1/s. Default 0. */
+  /** Angular damping, 1/s. Default 0. */
   angularDamping?: number;
-  /** Default 1. */
+  /** Factor of gravity. Default 1. */
   gravityScale?: number;
   shape?: ShapeOptions;
   shapes?: ShapeOptions[];
-  /** kg, distributed as the shapes are; by default their densities say. */
+  /** Mass, kg, distributed over the shapes; by default computed from their densities. */
   mass?: number;
-  /** True if it may fall asleep. Default true. */
+  /** True if the body may fall asleep. Default true. */
   sleeping?: boolean;
   quality?: Quality;
 }
 
-/** Drives a joint toward a speed, else toward a pose. */
+/** Motor of a joint, toward a speed or else toward a pose. */
 export interface MotorOptions {
-  /** rad/s of a hinge, m/s of a slider. */
+  /** Speed, rad/s for a hinge, m/s for a slider. */
   speed?: number;
-  /** Angle of a hinge, radians; place of a slider, metres. */
+  /** Angle of a hinge, radians; position of a slider, metres. */
   target?: number;
-  /** Turn of a ball joint, as a scaled axis, radians. */
+  /** Rotation of a ball joint, as a scaled axis, radians. */
   turn?: Vec3Like;
   /** Frequency of the spring toward a pose, Hz. Default 5. */
   hertz?: number;
-  /** 1, the default, is critical. */
+  /** Damping ratio; 1, the default, is critical. */
   dampingRatio?: number;
-  /** N. Default no bound. */
+  /** Largest force, N. Default unlimited. */
   maxForce?: number;
-  /** N·m. Default no bound. */
+  /** Largest torque, N·m. Default unlimited. */
   maxTorque?: number;
 }
 
-/** A joint to be added, where its bodies are now. */
+/** Definition of a joint at the present poses of its bodies. */
 export interface JointOptions {
   type: 'ball' | 'hinge' | 'slider' | 'fixed' | 'distance';
   a: bigint;
   b: bigint;
-  /** World; of a distance joint its end at A. Every type but fixed needs it. */
+  /** Anchor in the world; for a distance joint, its end at A. Every type but fixed needs it. */
   anchor?: Vec3Like;
-  /** World: end of a distance joint at B. */
+  /** End of a distance joint at B, in the world. */
   anchorB?: Vec3Like;
-  /** World: axis of a hinge or a slider, twist axis of a ball joint. */
+  /** Axis of a hinge or a slider, twist axis of a ball joint; in the world. */
   axis?: Vec3Like;
-  /** Radians of a hinge, metres of a slider or a distance joint. A distance joint without one is a rod. */
+  /** Range, radians for a hinge, metres for a slider or a distance joint. A distance joint without a range is a rod. */
   range?: readonly [number, number];
-  /** Half angle of a ball joint's cone, radians. */
+  /** Half angle of the cone of a ball joint, radians. */
   swing?: number;
-  /** Twist of a ball joint, radians. */
+  /** Range of the twist of a ball joint, radians. */
   twist?: readonly [number, number];
-  /** True if its bodies collide with each other. Default false. */
+  /** True if the two bodies collide with each other. Default false. */
   collide?: boolean;
-  /** N·m of rotations, N of translations. Default 0. */
+  /** Friction, N·m for rotations, N for translations. Default 0. */
   friction?: number;
-  /** N. Default unbreakable. */
+  /** Force at which the joint breaks, N. Default unbreakable. */
   breakForce?: number;
-  /** N·m. Default unbreakable. */
+  /** Torque at which the joint breaks, N·m. Default unbreakable. */
   breakTorque?: number;
-  /** Pulls what is free back to where it was when the joint was made. */
+  /** Spring that pulls the free motions back to the pose at which the joint was made. */
   spring?: { hertz?: number; dampingRatio?: number };
   motor?: MotorOptions;
 }
 
 export interface QueryOptions {
-  /** Bits of the layers that are asked. Default all. */
+  /** Bits of the layers that are included. Default all. */
   mask?: number;
-  /** Kinds of bodies that are asked. Default all. */
+  /** Kinds of bodies that are included. Default all. */
   kinds?: BodyKind[];
-  /** True if sensors answer as well. Default false. */
+  /** True if sensors are included. Default false. */
   sensors?: boolean;
-  /** Bodies that are left out. */
+  /** Bodies that are excluded. */
   except?: bigint[];
 }
 
-/** First contact of a ray or a moved shape with a body. */
+/** First contact of a ray or a moving shape with a body. */
 export interface Hit {
   body: bigint;
-  /** Number of the shape in its body. */
+  /** Index of the shape in its body. */
   shape: number;
-  /** Share of the way before the hit, 0 to 1. */
+  /** Position of the hit as a fraction of the way, 0 to 1. */
   fraction: number;
-  /** World. */
+  /** Point of the hit, in the world. */
   point: Vec3;
-  /** Out of the body, unit. */
+  /** Normal of the surface, outward, unit length. */
   normal: Vec3;
 }
 
@@ -187,109 +187,109 @@ export type CharacterEvent = { character: number } & (
 export interface RopeOptions {
   from: Vec3Like;
   to: Vec3Like;
-  /** Number of its springs. Default one for each 0.1 m. */
+  /** Number of springs of the rope. Default one per 0.1 m. */
   links?: number;
-  /** kg. Default 0.1 kg a metre. */
+  /** Mass, kg. Default 0.1 kg per metre. */
   mass?: number;
-  /** Metres. Default 0.01. */
+  /** Radius, metres. Default 0.01. */
   radius?: number;
-  /** What holds its first end where it is: the world, or a body by its id. Default nothing. */
+  /** Holder of the first end at its position: the world, or a body by its id. Default none. */
   holdFrom?: 'world' | bigint;
-  /** What holds its last end. */
+  /** Holder of the last end. */
   holdTo?: 'world' | bigint;
 }
 
 export interface ClothOptions {
-  /** World. */
+  /** Position in the world. */
   corner: Vec3Like;
-  /** From the corner along the first row. */
+  /** Vector from the corner along the first row. */
   across: Vec3Like;
-  /** From the corner along the first column, at right angles to `across`. */
+  /** Vector from the corner along the first column, perpendicular to `across`. */
   down: Vec3Like;
-  /** Number of springs in a row. Default one for each 0.1 m. */
+  /** Number of springs in a row. Default one per 0.1 m. */
   columns?: number;
   /** Number of springs in a column. */
   rows?: number;
-  /** kg. Default 0.2 kg/m². */
+  /** Mass, kg. Default 0.2 kg/m². */
   mass?: number;
-  /** What holds it: its corners by number (0 and 1 of the first row, 2 and 3 of the last), or all of the first row. Default nothing. */
+  /** Held part of the cloth: its corners by number (0 and 1 of the first row, 2 and 3 of the last), or all of the first row. Default none. */
   hang?: 'firstRow' | readonly number[];
 }
 
 export interface SoftBallOptions {
   center: Vec3Like;
-  /** Metres. */
+  /** Radius, metres. */
   radius: number;
-  /** kg. Default 100 kg/m³. */
+  /** Mass, kg. Default 100 kg/m³. */
   mass?: number;
 }
 
-/** Spring toward the pose of the clips: by name, or by numbers. */
+/** Spring toward the pose of the clips, by name or by numbers. */
 export type MuscleOptions = 'relaxed' | 'alive' | 'stiff' | { hertz: number; dampingRatio?: number; strength?: number };
-/** Spring that holds a body near its place in the clips: by name, or by numbers. */
+/** Spring that holds a body near its position in the clips, by name or by numbers. */
 export type PinOptions = 'soft' | 'firm' | { hertz: number; dampingRatio?: number; maxForce: number; maxTorque: number };
 export type DriveMode = 'limp' | 'keyed' | { muscle: MuscleOptions; pin?: PinOptions };
 
 export interface CharacterOptions {
-  /** Name of the file, for messages; its words are hints on the character's kind. */
+  /** Name of the file, for messages; its words help to classify the character. */
   name?: string;
-  /** Ragdoll settings, as `NAME.ragdoll.json` has them. */
+  /** Ragdoll settings, as in `NAME.ragdoll.json`. */
   settings?: string | object;
-  /** Files beside a glTF that is not in one piece, by their paths in it. */
+  /** Files to which a glTF refers, by their paths in it. */
   files?: Record<string, Uint8Array>;
-  /** Height in the bind pose, metres. By default it is told from the file. */
+  /** Height in the bind pose, metres. By default derived from the file. */
   height?: number;
-  /** kg. By default it is told from the size. */
+  /** Mass, kg. By default derived from the size. */
   mass?: number;
-  /** Source of the springs of hair and the like: the file's, those and else by names of joints, or none. Default file. */
+  /** Source of springs, such as of hair: the file, the file or else joint names, or none. Default file. */
   springs?: 'file' | 'names' | 'none';
-  /** Garments by names of joints, or none. Default none. */
+  /** Garments by joint names, or none. Default none. */
   garments?: 'names' | 'none';
-  /** Name of the clip that loops until something happens, and by which it goes. By default a walk, else an idle. */
+  /** Name of the clip that loops by default and sets the locomotion. Default a walk, else an idle. */
   looped?: string;
-  /** What it does once it lies still. Default it gets up, if it has a clip to get up by. */
+  /** Action after the character lies still. Default get up, if it has a get-up clip. */
   afterSettling?: 'getUp' | 'stayDown';
-  /** How its bodies are driven while it falls. Default limp. */
+  /** Drive of the bodies during a fall. Default limp. */
   falling?: DriveMode;
-  /** N·s of a blow that fells it; 0: every blow does. Default 0.6 m/s times its mass. */
+  /** Impulse of a hit that makes the character fall, N·s; 0: every hit does. Default 0.6 m/s times its mass. */
   toughness?: number;
-  /** True if events report what its bodies touch. Default false. */
+  /** True if events report contacts of the character's bodies. Default false. */
   tellsContacts?: boolean;
 }
 
 export type CharacterState = 'animated' | 'limp' | 'preparing' | 'gettingUp' | 'flinching' | 'powered';
 export type CharacterPreset = 'animated' | 'flinching' | 'powered' | 'limp';
-/** Full; bodies that give no way; a mover and clips alone; nothing at all. */
+/** Full; bodies that can be hit but not pushed; only mover and clips; frozen. */
 export type CharacterDetail = 'full' | 'hitBodies' | 'keyed' | 'frozen';
 
 export interface HoldOptions {
-  /** Place of what is held in the frame of the hand's body. */
+  /** Position of the held body in the frame of the hand's body. */
   position?: Vec3Like;
   rotation?: QuatLike;
-  /** True if it is dropped when the character goes limp. Default false. */
+  /** True if the held body is dropped when the character goes limp. Default false. */
   drops?: boolean;
-  /** N. Default unbreakable. */
+  /** Force at which the grip breaks, N. Default unbreakable. */
   breakForce?: number;
-  /** N·m. Default unbreakable. */
+  /** Torque at which the grip breaks, N·m. Default unbreakable. */
   breakTorque?: number;
 }
 
 export interface GrabOptions {
-  /** N. Default 1300. */
+  /** Largest force, N. Default 1300. */
   maxForce?: number;
-  /** Metres. Default 0.25. */
+  /** Largest distance at which a body can be grabbed, metres. Default 0.25. */
   reach?: number;
-  /** Distance by which it slips at full force before it lets go, metres. Default 0.4 of a hand, no bound of a point. */
+  /** Slip at full force after which the grip opens, metres. Default 0.4 for a hand, unlimited for a point. */
   slip?: number;
-  /** m/s. Default 1 of a hand, 2.5 of a point. */
+  /** Largest speed of the drag, m/s. Default 1 for a hand, 2.5 for a point. */
   speed?: number;
 }
 
 export interface PlayOptions {
-  /** Seconds of the crossfade. Default 0.25. */
+  /** Duration of the crossfade, seconds. Default 0.25. */
   fade?: number;
-  /** Clip seconds a second. Default 1. */
+  /** Clip seconds per second. Default 1. */
   speed?: number;
-  /** True if it plays on and on. Default true. */
+  /** True if the clip loops. Default true. */
   loop?: boolean;
 }

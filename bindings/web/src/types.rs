@@ -1,4 +1,4 @@
-//! TypeScript types of the objects that cross the border.
+//! TypeScript types of the objects exchanged with JavaScript.
 
 use wasm_bindgen::prelude::*;
 

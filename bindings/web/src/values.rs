@@ -1,4 +1,4 @@
-//! Converts JavaScript values, and back.
+//! Converts values from and to JavaScript.
 
 use crate::border::{Failure, Outcome};
 use js_sys::{Array, Float32Array, Object, Reflect, Uint32Array};
@@ -9,7 +9,7 @@ fn bad(name: &str, wanted: &str, found: &JsValue) -> Failure {
     Failure(format!("{name} must be {wanted}, not {}", shown(found)))
 }
 
-/// A value as an error message shows it.
+/// Formats a value for an error message.
 fn shown(value: &JsValue) -> String {
     match value.as_string() {
         Some(text) => format!("'{text}'"),
@@ -18,13 +18,13 @@ fn shown(value: &JsValue) -> String {
     }
 }
 
-/// A string, or an object as JSON.
+/// Returns a string, or an object as JSON.
 pub fn json_text(value: &JsValue) -> Outcome<String> {
     let text = value.as_string().or_else(|| js_sys::JSON::stringify(value).ok()?.as_string());
     text.ok_or_else(|| Failure::new("settings must be a string of JSON or an object"))
 }
 
-/// A finite number.
+/// Reads a finite number.
 pub fn number(value: &JsValue, name: &str) -> Outcome<f32> {
     let number = value.as_f64().filter(|number| number.is_finite());
     number.map(|number| number as f32).ok_or_else(|| bad(name, "a finite number", value))
@@ -47,12 +47,12 @@ fn numbers<const N: usize>(value: &JsValue, name: &str, keys: [&str; N]) -> Outc
     Ok(out)
 }
 
-/// `{x, y, z}` or an array of three.
+/// Reads `{x, y, z}` or an array of three.
 pub fn vec3(value: &JsValue, name: &str) -> Outcome<Vec3> {
     numbers(value, name, ["x", "y", "z"]).map(Vec3::from_array)
 }
 
-/// `{x, y, z, w}` or an array of four, of any length but 0; it is normalised.
+/// Reads `{x, y, z, w}` or an array of four, of any length but 0, and normalises it.
 pub fn rotation(value: &JsValue, name: &str) -> Outcome<Rotation> {
     let [x, y, z, w] = numbers(value, name, ["x", "y", "z", "w"])?;
     let rotation = Rotation { x, y, z, w };
@@ -60,17 +60,17 @@ pub fn rotation(value: &JsValue, name: &str) -> Outcome<Rotation> {
     if length.is_nan() || length < 1e-6 {
         return Err(Failure(format!("{name} must be a quaternion that is not 0")));
     }
-    // A unit quaternion keeps its bits, so that a pose that was read can be set again.
+    // A unit quaternion keeps its bits, so that setting a pose that was read changes no bits.
     Ok(if (length - 1.0).abs() < 1e-6 { rotation } else { rotation.normalize() })
 }
 
-/// A bigint as the bits of an id.
+/// Reads a bigint as the bits of an id.
 pub fn id(value: &JsValue, name: &str) -> Outcome<u64> {
     let bits = value.clone().dyn_into::<js_sys::BigInt>().ok();
     bits.and_then(|bits| u64::try_from(bits).ok()).ok_or_else(|| bad(name, "an id (a bigint)", value))
 }
 
-/// A `Float32Array` or an array of numbers.
+/// Reads a `Float32Array` or an array of numbers.
 pub fn floats(value: &JsValue, name: &str) -> Outcome<Vec<f32>> {
     let wanted = "a Float32Array or an array of numbers";
     let numbers = match value.dyn_ref::<Float32Array>() {
@@ -84,7 +84,7 @@ pub fn floats(value: &JsValue, name: &str) -> Outcome<Vec<f32>> {
     }
 }
 
-/// Rows of three of [`floats`].
+/// Reads rows of three numbers, by [`floats`].
 pub fn points(value: &JsValue, name: &str) -> Outcome<Vec<Vec3>> {
     let numbers = floats(value, name)?;
     if numbers.len() % 3 != 0 {
@@ -93,7 +93,7 @@ pub fn points(value: &JsValue, name: &str) -> Outcome<Vec<Vec3>> {
     Ok(numbers.chunks_exact(3).map(|p| Vec3::new(p[0], p[1], p[2])).collect())
 }
 
-/// A typed array of whole numbers, or an array.
+/// Reads a typed array of whole numbers, or an array.
 pub fn indices(value: &JsValue, name: &str) -> Outcome<Vec<u32>> {
     match value.dyn_ref::<Uint32Array>() {
         Some(indices) => Ok(indices.to_vec()),
@@ -102,22 +102,22 @@ pub fn indices(value: &JsValue, name: &str) -> Outcome<Vec<u32>> {
     }
 }
 
-/// `{x, y, z}`.
+/// Makes `{x, y, z}`.
 pub fn vector(v: Vec3) -> JsValue {
     object([("x", v.x.into()), ("y", v.y.into()), ("z", v.z.into())])
 }
 
-/// `{x, y, z, w}`.
+/// Makes `{x, y, z, w}`.
 pub fn quaternion(q: Rotation) -> JsValue {
     object([("x", q.x.into()), ("y", q.y.into()), ("z", q.z.into()), ("w", q.w.into())])
 }
 
-/// `{position, rotation}`.
+/// Makes `{position, rotation}`.
 pub fn pose(pose: Transform) -> JsValue {
     object([("position", vector(pose.translation)), ("rotation", quaternion(pose.rotation))])
 }
 
-/// An object of these fields.
+/// Makes an object with these fields.
 pub fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsValue {
     let object = Object::new();
     for (key, value) in fields {
@@ -127,14 +127,14 @@ pub fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsValue {
     object.into()
 }
 
-/// An object of options from the user: reads its fields, and rejects unknown ones.
+/// An object of options from the user. Reads its fields, and rejects unknown ones.
 pub struct Options<'a> {
     object: &'a JsValue,
     what: &'a str,
 }
 
 impl<'a> Options<'a> {
-    /// `what`: name of the object, for messages. `undefined` and `null` have no fields.
+    /// Checks the fields of `object`; `what` is its name for messages. `undefined` and `null` have no fields.
     pub fn of(object: &'a JsValue, what: &'a str, known: &[&str]) -> Outcome<Self> {
         if !(object.is_undefined() || object.is_null() || object.is_object()) {
             return Err(bad(what, "an object", object));
@@ -155,7 +155,7 @@ impl<'a> Options<'a> {
         format!("{}.{key}", self.what)
     }
 
-    /// A field that is neither `undefined` nor `null`.
+    /// Returns a field that is neither `undefined` nor `null`.
     pub fn get(&self, key: &str) -> Option<JsValue> {
         let value = Reflect::get(self.object, &JsValue::from_str(key)).ok()?;
         (!value.is_undefined() && !value.is_null()).then_some(value)
@@ -173,7 +173,7 @@ impl<'a> Options<'a> {
         self.read(key, number)
     }
 
-    /// A finite number in double precision: for times.
+    /// Reads a finite number in double precision, for times.
     pub fn double(&self, key: &str) -> Outcome<Option<f64>> {
         self.read(key, |value, name| number(value, name).map(|_| value.as_f64().unwrap_or_default()))
     }
@@ -248,7 +248,7 @@ impl<'a> Options<'a> {
         self.must(key, found)
     }
 
-    /// The index of one of some words.
+    /// Reads a word in a list; returns its index.
     pub fn word(&self, key: &str, words: &[&str]) -> Outcome<Option<usize>> {
         self.read(key, |value, name| {
             let found = value.as_string().and_then(|text| words.iter().position(|word| *word == text));

@@ -1,4 +1,4 @@
-//! Views of memory: arrays that JavaScript reads without a copy.
+//! Views of memory: arrays that JavaScript reads without copying.
 
 use js_sys::{Float32Array, Object, WebAssembly};
 use std::cell::RefCell;
@@ -9,7 +9,7 @@ use wasm_bindgen::JsCast;
 pub struct View(RefCell<Option<Float32Array>>);
 
 impl View {
-    /// The array over `numbers`, valid until the next call that may allocate.
+    /// Returns the array over `numbers`, valid until the next call that may allocate.
     pub fn of(&self, numbers: &[f32]) -> Float32Array {
         let memory: WebAssembly::Memory = wasm_bindgen::memory().unchecked_into();
         let buffer = memory.buffer();

@@ -22,15 +22,15 @@ pub struct World {
 
 #[wasm_bindgen]
 impl World {
-    /// An empty world.
+    /// Creates an empty world.
     #[wasm_bindgen(constructor)]
     pub fn new(options: Option<WorldOptions>) -> Outcome<World> {
         let def = world_def(&options.map(JsValue::from).unwrap_or_default())?;
         Ok(World { inner: Shared::new(Inner::new(sinew::physics::World::new(def))) })
     }
 
-    /// Advances by `seconds`: takes all whole steps, including the remainder of earlier calls, then interpolates the
-    /// shown pose between the last two. Returns the number of steps. Call it once per frame with the elapsed time.
+    /// Advances by `seconds`: takes all whole steps, including the remainder of earlier calls, then interpolates the shown pose
+    /// between the last two steps. Returns the number of steps. Call it once per frame with the elapsed time.
     pub fn update(&self, seconds: f64) -> Outcome<u32> {
         let time = Duration::try_from_secs_f64(seconds)
             .map_err(|_| Failure(format!("seconds must be finite and not negative, not {seconds}")))?;
@@ -51,13 +51,13 @@ impl World {
         self.inner.read(|inner| Ok(inner.alpha()))
     }
 
-    /// Number of steps since the beginning.
+    /// Number of steps since the world was created.
     #[wasm_bindgen(getter, js_name = stepCount)]
     pub fn step_count(&self) -> Outcome<f64> {
         self.inner.read(|inner| Ok(inner.world.step_count() as f64))
     }
 
-    /// Simulated time since the beginning, seconds.
+    /// Simulated time since the world was created, seconds.
     #[wasm_bindgen(getter)]
     pub fn time(&self) -> Outcome<f64> {
         self.inner.read(|inner| Ok(inner.world.time()))
@@ -132,7 +132,7 @@ impl World {
         })
     }
 
-    /// Poses of tracked bodies: a view of memory. Request it again in each frame, since memory may have moved.
+    /// Poses of tracked bodies: a view of memory. Request it again in each frame, because memory may have moved.
     #[wasm_bindgen(getter)]
     pub fn poses(&self) -> Outcome<Float32Array> {
         self.inner.read(|inner| Ok(inner.poses()))
@@ -178,7 +178,7 @@ impl World {
         })
     }
 
-    /// Teleports a body. Without a rotation it keeps its own.
+    /// Teleports a body. Without a rotation the body keeps its own.
     #[wasm_bindgen(js_name = setPose)]
     pub fn set_pose(&self, id: u64, position: Vec3Like, turn: Option<QuatLike>) -> Outcome {
         let (position, turn) = read_pose(&position, turn)?;
@@ -303,7 +303,7 @@ impl World {
         self.inner.read(|inner| Ok(inner.world.joint_ids().map(|id| id.to_bits()).collect()))
     }
 
-    /// Sets the motor of a joint, or removes it.
+    /// Sets the motor of a joint; without options, removes it.
     #[wasm_bindgen(js_name = setMotor)]
     pub fn set_motor(&self, id: u64, options: Option<MotorOptions>) -> Outcome {
         let motor = options.map(|options| motor(&options)).transpose()?;
@@ -325,14 +325,14 @@ impl World {
         })
     }
 
-    /// Pose of body B relative to body A in the joint's frame: a hinge turns about x, a slider moves along x.
+    /// Pose of body B relative to body A in the joint's frame: a hinge rotates about x, a slider moves along x.
     #[wasm_bindgen(js_name = jointPose)]
     pub fn joint_pose(&self, id: u64) -> Outcome<PoseOut> {
         self.inner
             .read(|inner| Ok(pose(inner.world.joint_transform(joint(&inner.world, id)?)).unchecked_into()))
     }
 
-    /// Distance of the joint's two anchors, metres.
+    /// Distance between the joint's two anchors, metres.
     #[wasm_bindgen(js_name = jointGap)]
     pub fn joint_gap(&self, id: u64) -> Outcome<f32> {
         self.inner.read(|inner| Ok(inner.world.joint_gap(joint(&inner.world, id)?)))
@@ -345,7 +345,7 @@ impl World {
         self.inner.read(|inner| Ok(format!("{:016x}", inner.world.hash())))
     }
 
-    /// State of the world as bytes, with its characters and grab points.
+    /// Saves the state of the world as bytes, with its characters and grab points.
     pub fn save(&self) -> Outcome<Vec<u8>> {
         self.inner.read(|inner| Ok(inner.save()))
     }
@@ -369,7 +369,7 @@ impl World {
         })
     }
 
-    /// Velocity of the common centre of mass of all moving bodies, m/s.
+    /// Linear momentum of all dynamic bodies and all particles, kg·m/s.
     pub fn momentum(&self) -> Outcome<Vec3Out> {
         self.inner.read(|inner| Ok(vector(inner.world.momentum().linear).unchecked_into()))
     }

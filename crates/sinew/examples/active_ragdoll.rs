@@ -1,11 +1,12 @@
 //! An active ragdoll: `cargo run -p sinew --example active_ragdoll`.
 //!
-//! Its muscles follow its clips while it walks. Light pushes move it, and it steps to catch itself; a hard push fells it, and it gets up.
+//! Muscles follow the clips of a walking ragdoll. It recovers from light pushes by steps; a hard push makes it fall,
+//! and it gets up.
 
 use sinew::prelude::*;
 use std::sync::Arc;
 
-/// Returns the largest distance of its chest from its feet while it walks for some seconds, metres.
+/// Lets the ragdoll walk for `seconds`; returns the largest horizontal distance of its chest from its feet, metres.
 fn walk(world: &mut World, puppet: &mut Character, seconds: f32) -> f32 {
     let chest = puppet.def().body_named("chest").expect("it has a chest");
     let mut sway = 0.0;
@@ -19,7 +20,7 @@ fn walk(world: &mut World, puppet: &mut Character, seconds: f32) -> f32 {
     sway
 }
 
-/// Pushes it, first lightly, then hard.
+/// Pushes the ragdoll, first lightly, then hard.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));

@@ -1,11 +1,11 @@
 //! A character: `cargo run -p sinew --example character_get_up`.
 //!
-//! It walks, is struck, falls, lies, gets up and walks on. The drawn pose never jumps.
+//! The character walks, is struck, falls, lies, gets up and walks on. The drawn pose never jumps.
 
 use sinew::prelude::*;
 use std::sync::Arc;
 
-/// Knocks a walker down.
+/// Knocks a walking character down.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));

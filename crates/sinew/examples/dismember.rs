@@ -29,7 +29,7 @@ fn main() {
     let def = Arc::new(sinew::mannequin::character());
     let mut knight = Character::spawn(&mut world, &def, Transform::IDENTITY);
     play(&mut world, &mut knight, 1.0);
-    // Without an arm it walks on. The limb falls, and knows its joints of the skin.
+    // Without an arm the knight walks on. The limb falls, and has its joints of the skin.
     let mut arm = knight.detach(&mut world, "leftUpperArm").expect("it has two arms");
     println!(
         "the arm has {} bodies and {} joints of the skin",
@@ -38,11 +38,11 @@ fn main() {
     );
     play(&mut world, &mut knight, 1.0);
     assert_eq!(knight.state(), State::Animated);
-    // Without a leg it falls, and stays down.
+    // Without a leg the knight falls, and stays down.
     let leg = knight.detach(&mut world, "rightLowerLeg").expect("it has two legs");
     play(&mut world, &mut knight, 8.0);
     assert_eq!(knight.state(), State::Limp);
-    // A limb can be cut again.
+    // A detached limb can be cut again.
     let hand = arm.detach(&mut world, "leftHand").expect("the arm has a hand");
     assert!(knight.detach(&mut world, "leftHand").is_none(), "the hand went with the arm");
 

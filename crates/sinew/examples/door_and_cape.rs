@@ -1,6 +1,7 @@
 //! A door and a cape: `cargo run -p sinew --example door_and_cape`.
 //!
-//! A walker pushes a door open and goes through; when it falls it drops its sword. The cape hangs on the chest's body in every state.
+//! A walker pushes a door open and walks through, falls, and drops its sword. The cape hangs on the chest's body in
+//! every state.
 
 use sinew::prelude::*;
 use std::sync::Arc;
@@ -17,7 +18,7 @@ fn door(world: &mut World) -> BodyId {
     leaf
 }
 
-/// Adds a cape that hangs from a body by its first row.
+/// Adds a cape whose first row is attached to a body.
 fn cape(world: &mut World, chest: BodyId, shoulders: Vec3) -> GroupId {
     let mut cloth = ClothDef {
         corner: shoulders + Vec3::X * 0.2,
@@ -42,7 +43,7 @@ fn cape(world: &mut World, chest: BodyId, shoulders: Vec3) -> GroupId {
     world.add_particles(&cloth.group)
 }
 
-/// Walks through the door and falls behind it.
+/// Lets a character walk through the door and fall behind it.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));

@@ -12,7 +12,7 @@ fn main() {
     let body = |name: &str| def.body_named(name).expect("it has that body");
     let mut puppet = Character::spawn(&mut world, &def, Transform::IDENTITY);
     puppet.go_limp(&mut world);
-    // The mouse takes the hand where it is and pulls it along, with at most `Grab::speed` and `Grab::max_force`.
+    // The mouse takes the hand at its position and pulls with at most `Grab::speed` and `Grab::max_force`.
     let hand = puppet.bodies()[body("rightHand")];
     let at = world.center_of_mass(hand);
     let mut mouse = GrabPoint::take(&mut world, hand, at, &Grab::POINT).expect("the hand is there");
@@ -49,7 +49,7 @@ fn main() {
     let way = world.transform(puppet.bodies()[0]).translation.z;
     println!("it was dragged {way:.1} m");
     assert!(world.contains_joint(grip) && way > 3.0);
-    // Once it is let go, it gets up.
+    // After its release the character gets up.
     hero.release(&mut world, hand);
     for _ in 0..900 {
         world.step();

@@ -1,10 +1,11 @@
 //! Events: `cargo run -p sinew --example events`.
 //!
-//! A ball rolls through a sensor, onto a plate, and against a wall: the sensor and the wall report it once.
+//! A ball rolls through a sensor, onto a plate, and against a wall; the sensor and the wall report one event
+//! each.
 
 use sinew::prelude::*;
 
-/// Rolls a ball through all of them.
+/// Rolls a ball through the sensor, onto the plate and against the wall.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));

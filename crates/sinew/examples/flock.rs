@@ -1,21 +1,21 @@
 //! A flock: `cargo run -p sinew --example flock`.
 //!
 //! Birds are bodies: they bounce off each other and off the tower in their way. A custom object makes them a flock
-//! (Reynolds, "Flocks, Herds, and Schools", SIGGRAPH 1987): each bird avoids near ones,
-//! matches its neighbours' velocity, and stays with them. All are attracted to a place that changes now and
-//! then, and none leaves the aviary.
+//! (Reynolds, "Flocks, Herds, and Schools", SIGGRAPH 1987): each bird avoids near birds, matches its neighbours'
+//! velocity, and stays with them. All birds are attracted to a place that changes from time to time, and none leaves
+//! the aviary.
 
 use sinew::prelude::*;
 use std::time::Duration;
 
 const BIRDS: usize = 40;
-/// kg.
+/// Mass of a bird, kg.
 const MASS: f32 = 0.05;
 /// Cruising speed, m/s.
 const SPEED: f32 = 5.0;
 /// Largest acceleration of a wing, m/s².
 const AGILITY: f32 = 25.0;
-/// Distance that a bird sees, m, and the distance that it keeps.
+/// Distance at which a bird sees others, and distance that it keeps, m.
 const SIGHT: f32 = 3.0;
 const CLEARANCE: f32 = 0.8;
 /// Radius of the aviary, m.
@@ -26,10 +26,10 @@ const PATIENCE: f32 = 4.0;
 /// Birds that fly together.
 struct Flock {
     birds: Vec<BodyId>,
-    /// The attracting place, and its remaining time, s.
+    /// Attracting place, and seconds until it changes.
     goal: Vec3,
     patience: f32,
-    /// Seed of the next places.
+    /// Seed of the next attracting place.
     seed: u64,
     /// Position and velocity of each bird in the current substep.
     seen: Vec<(Vec3, Vec3)>,
@@ -110,7 +110,7 @@ impl PhysicsObject for Flock {
         }
     }
 
-    /// The aviary's net is not a shape: a bird outside is put back, with the velocity of that motion.
+    /// Moves birds outside of the aviary's net, which is not a shape, back inside, with the velocity of that motion.
     fn satisfy_constraints(&mut self, corrections: &mut Corrections<'_>) {
         for &id in &self.birds {
             let place = corrections.center_of_mass(id);
@@ -151,7 +151,8 @@ impl PhysicsObject for Flock {
     }
 }
 
-/// Flies for some seconds in frames of 1/30 s; returns the largest distance of a bird beyond the net, and the least distance of two, m.
+/// Simulates `seconds` in frames of 1/30 s; returns the largest distance of a bird beyond the net and the smallest
+/// distance between two birds, m.
 fn fly(world: &mut World, flock: ObjectId, seconds: u32) -> (f32, f32) {
     let (mut outside, mut apart) = (0.0, f32::INFINITY);
     for _ in 0..seconds * 30 {
@@ -166,7 +167,7 @@ fn fly(world: &mut World, flock: ObjectId, seconds: u32) -> (f32, f32) {
     (outside, apart)
 }
 
-/// Lets the flock form, and shows that a snapshot holds its whole state.
+/// Lets the flock form, and checks that a snapshot has its whole state.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     let tower = Shape::Capsule { half_height: AVIARY, radius: 0.5 };

@@ -1,6 +1,6 @@
 //! A level: `cargo run -p sinew --example level`.
 //!
-//! Triangles of a level: a mesh to roll on, terrain as a height field, and a hull of points.
+//! Shapes of a level: a mesh to roll on, terrain as a height field, and a hull of points.
 
 use sinew::prelude::*;
 use std::sync::Arc;

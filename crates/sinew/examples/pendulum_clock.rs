@@ -1,9 +1,9 @@
 //! A pendulum clock: `cargo run -p sinew --example pendulum_clock`.
 //!
-//! The pendulum is a body on a hinge. The escapement is a custom object: near the plumb line it pushes the
-//! pendulum in its direction, which makes up for the air's drag, and it counts the swings for the hands. A push that is
-//! symmetric about the plumb line does not change the period (Airy 1826), so the clock has the period of the free pendulum,
-//! `T = 2π √(I/(m g l)) (1 + A²/16)` at an amplitude of `A` radians.
+//! The pendulum is a body on a hinge. The escapement is a custom object: near the plumb line it pushes the pendulum in
+//! its direction, which compensates the drag of the air, and it counts the swings for the hands. A push that is
+//! symmetric about the plumb line does not change the period (Airy 1826), so the clock has the period of the free
+//! pendulum, `T = 2π √(I/(m g l)) (1 + A²/16)` at an amplitude of `A` radians.
 
 use core::f32::consts::{PI, TAU};
 use sinew::prelude::*;
@@ -11,28 +11,28 @@ use std::time::Duration;
 
 /// Gravity of the Earth, m/s².
 const GRAVITY: f32 = 9.81;
-/// Period, s: each swing takes a second.
+/// Period, s; each swing takes one second.
 const PERIOD: f32 = 2.0;
 /// Amplitude of the pendulum, radians.
 const AMPLITUDE: f32 = 0.06;
-/// The escapement pushes within this angle of the plumb line, radians.
+/// Angle from the plumb line within which the escapement pushes, radians.
 const REACH: f32 = 0.02;
 /// Share of its speed that the pendulum would lose in a second without a push.
 const DRAG: f32 = 0.02;
-/// The bob, metres.
+/// Radius of the bob, metres.
 const RADIUS: f32 = 0.06;
 
-/// Side of the plumb line.
+/// Side of the pendulum relative to the plumb line.
 #[derive(Clone, Copy, PartialEq)]
 enum Side {
     Left,
     Right,
 }
 
-/// An escapement: it keeps a pendulum swinging, and counts its swings.
+/// An escapement, which keeps a pendulum swinging and counts its swings.
 struct Escapement {
     pendulum: BodyId,
-    /// N·m, in the pendulum's direction.
+    /// Torque in the direction of motion, N·m.
     torque: f32,
     /// Last side of the pendulum.
     side: Side,
@@ -46,12 +46,12 @@ impl Escapement {
         Self { pendulum, torque, side: Side::Right, ticks: 0 }
     }
 
-    /// Radians from the plumb line. The clock's axle is at the world's origin.
+    /// Returns the angle from the plumb line, radians. The clock's axle is at the world's origin.
     fn angle(bob: Vec3) -> f32 {
         trig::atan2(bob.x, -bob.y)
     }
 
-    /// Returns a hand that turns once in this many seconds, from its axle.
+    /// Returns the vector of a hand from its axle; the hand makes one turn in `seconds`.
     fn hand(&self, seconds: u32, length: f32) -> Vec3 {
         let angle = TAU * (self.ticks % seconds) as f32 / seconds as f32;
         Vec3::new(trig::sin(angle), trig::cos(angle), 0.1) * length
@@ -119,7 +119,7 @@ fn clock() -> (World, ObjectId) {
     let poses = [case, pendulum].map(|id| world.transform(id));
     world.add_joint(&JointDef::new(case, pendulum, poses[0], poses[1], at, hinge));
 
-    // In a period the drag takes π I ω A² DRAG; the escapement adds its torque over 4 REACH.
+    // In a period the drag takes the energy π I ω A² DRAG; the escapement adds its torque times 4 REACH.
     let inertia = world.mass(pendulum).mass * length * thread;
     let torque = PI * inertia * (TAU / PERIOD) * AMPLITUDE * AMPLITUDE * DRAG / (4.0 * REACH);
     let escapement = world.add_object(Box::new(Escapement::new(pendulum, torque)));
@@ -154,7 +154,7 @@ fn run(world: &mut World, escapement: ObjectId, minutes: u32) -> (f64, f32) {
     ((passed[passed.len() - 1] - passed[0]) / periods, swing)
 }
 
-/// Starts the clock, compares it with theory, and shows that a snapshot holds its whole state.
+/// Starts the clock, compares it with theory, and checks that a snapshot has its whole state.
 pub fn main() {
     let (mut world, escapement) = clock();
     world.mark();
@@ -165,7 +165,7 @@ pub fn main() {
         "three minutes: {ticks} ticks of a second; {fast:+.1} s a day; it swings to {swing:.4} rad for {AMPLITUDE}"
     );
     assert_eq!(ticks, 180);
-    // It reads the pendulum 240 times a second, so it pushes half a substep late: that alone is 2 s a day.
+    // The escapement reads the pendulum 240 times a second, so it pushes half a substep late, which causes 2 s a day.
     assert!(fast.abs() < 5.0, "within 5 s a day");
     assert!((swing / AMPLITUDE - 1.0).abs() < 0.01);
 
@@ -178,7 +178,7 @@ pub fn main() {
     let mut snapshot = Writer::new();
     world.save(&mut snapshot);
     let mut other = World::new(WorldDef::default());
-    // An escapement without a pendulum: its state names the pendulum.
+    // A new escapement without a pendulum: the saved state has the id of the pendulum.
     other.register_kind(|| Box::new(Escapement::new(BodyId::from_bits(0), 0.0)));
     other.load(&mut Reader::new(snapshot.as_bytes())).expect("it was just saved");
     let goes_on = [&mut world, &mut other].map(|world| {

@@ -1,12 +1,12 @@
 //! A player: `cargo run -p sinew --example player`.
 //!
-//! It walks over a floor, pushes a crate, climbs a step, rides a lift and jumps off. A game needs three calls per frame:
-//! set the velocity, step the world, update the character.
+//! A character walks over a floor, pushes a crate, climbs a step, rides a lift and jumps off. A game needs three calls
+//! per frame: set the velocity, step the world, update the character.
 
 use sinew::prelude::*;
 use std::sync::Arc;
 
-/// Walks in a direction for this many seconds.
+/// Walks with a velocity for `seconds`.
 fn go(world: &mut World, player: &mut Character, velocity: Vec3, seconds: f32) {
     player.set_move(velocity);
     player.face(velocity);

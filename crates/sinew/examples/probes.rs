@@ -1,7 +1,7 @@
 //! Queries of a game: `cargo run -p sinew --example probes`.
 //!
-//! A laser finds the first thing in its way, a grenade finds the people in sight, a foot finds the ground below it, and a
-//! door checks whether it may close.
+//! A laser finds the first body in its way, a grenade finds the people in sight, a foot finds the ground below it, and
+//! a door checks whether it may close.
 
 use sinew::prelude::*;
 
@@ -35,7 +35,7 @@ fn laser(world: &World, from: Vec3, to: Vec3) -> Option<BodyHit> {
     world.query().first(&Ray::between(from, to))
 }
 
-/// Returns the people within `radius` of a blast that the level does not hide.
+/// Returns the people within `radius` of a blast who are not hidden by the level.
 fn hurt_by_grenade(world: &World, blast: Vec3, radius: f32) -> Vec<BodyId> {
     let people = QueryFilter {
         meets: Filter { mask: PEOPLE, ..QueryFilter::default().meets },
@@ -48,16 +48,16 @@ fn hurt_by_grenade(world: &World, blast: Vec3, radius: f32) -> Vec<BodyId> {
     hurt
 }
 
-/// Returns the height and slope of the ground under a foot, radians, by casting a ball, which cracks do not catch.
+/// Returns the height of the ground under a foot and its slope, radians. Casts a ball, because cracks do not catch it.
 fn ground_below(world: &World, owner: BodyId, foot: Vec3) -> Option<(f32, f32)> {
     let sole = Probe::at(Shape::Sphere { radius: 0.08 }, foot + Vec3::Y * 0.5);
     let step = ShapeCast { probe: sole, translation: Vec3::Y * -1.5 };
     let hit = world.query().filter(QueryFilter::without(&[owner])).first(&step)?;
-    // A start inside a shape says nothing about the ground.
+    // A cast that starts inside a shape gives no information about the ground.
     hit.start.is_none().then(|| (hit.point.y, sinew::math::trig::acos(hit.normal.y)))
 }
 
-/// Returns true if the door's place is free.
+/// True if the doorway is free.
 fn may_close(world: &World, doorway: Aabb) -> bool {
     !world.query().filter(QueryFilter::of(BodyKinds::DYNAMIC)).any(&OverlapWith(doorway.into()))
 }

@@ -1,7 +1,7 @@
 //! A ragdoll: `cargo run -p sinew --example ragdoll_from_file -- character.glb`.
 //!
-//! A rigged file becomes bodies and joints, falls, and returns the pose for a renderer. Without a file it is the
-//! embedded mannequin.
+//! A rigged file becomes bodies and joints, falls, and returns the pose for a renderer. Without a file, the
+//! built-in mannequin is used.
 
 use sinew::prelude::*;
 

@@ -1,6 +1,6 @@
 //! Time travel: `cargo run -p sinew --example rewind`.
 //!
-//! A snapshot brings back the state bit for bit; a clone looks into the future.
+//! A snapshot restores the state bit for bit; a clone predicts the future.
 
 use sinew::prelude::*;
 

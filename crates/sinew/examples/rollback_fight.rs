@@ -1,6 +1,7 @@
 //! A fight with rollback: `cargo run -p sinew --example rollback_fight`.
 //!
-//! One player's inputs come eight frames late. Wrongly guessed frames are repeated, with the bits of a machine that had all inputs in time.
+//! One player's inputs come eight frames late. Frames with wrong guesses are repeated, with the bits of a machine that
+//! got all inputs in time.
 
 use sinew::prelude::*;
 use std::collections::VecDeque;
@@ -29,7 +30,7 @@ impl Fight {
         Self { world, fighters }
     }
 
-    /// One frame: a strike hits the other's chest.
+    /// Advances by one frame: a strike hits the chest of the other fighter.
     fn frame(&mut self, strikes: [bool; 2]) {
         for (who, side) in [(0, 1.0), (1, -1.0)] {
             if strikes[who] {
@@ -58,7 +59,7 @@ fn strikes(frame: usize) -> [bool; 2] {
     [frame % 50 == 20, frame % 90 == 65]
 }
 
-/// Runs a fight with one player's inputs in time and the other's late.
+/// Runs two copies of a fight: one with all inputs in time, and one that gets the inputs of one player late.
 pub fn main() {
     let (mut known, mut guessed, mut past, mut again) = (Fight::new(), Fight::new(), VecDeque::new(), 0);
     for frame in 0..300 {

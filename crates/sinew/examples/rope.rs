@@ -1,6 +1,6 @@
 //! A rope: `cargo run -p sinew --example rope`.
 //!
-//! Particles between a hook and a load: it swings, and the hook moves away.
+//! Particles between a hook and a load: the load swings, and the hook moves away.
 
 use sinew::prelude::*;
 

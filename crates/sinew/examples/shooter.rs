@@ -1,12 +1,12 @@
 //! A shooter: `cargo run -p sinew --example shooter`.
 //!
-//! A ray finds the bone. A weak hit makes the walker flinch, a strong one fells it, and it gets up again; a thrown ball
-//! bounces off it.
+//! A ray finds the bone. A weak hit makes the walker flinch, a strong one makes it fall, and it gets up again; a thrown
+//! ball bounces off it.
 
 use sinew::prelude::*;
 use std::sync::Arc;
 
-/// Shoots at a drawn bone from in front; returns the bone that was hit.
+/// Shoots at a bone from in front; returns the bone that was hit.
 fn shoot(world: &mut World, target: &mut Character, bone: &str, impulse: f32) -> Option<String> {
     let def = target.def().clone();
     let aim = world.center_of_mass(target.bodies()[def.body_named(bone)?]);

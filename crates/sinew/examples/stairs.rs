@@ -1,12 +1,13 @@
 //! Stairs: `cargo run -p sinew --example stairs`.
 //!
-//! A character climbs a flight of stairs, crosses a landing and walks down a ramp. Foot placement keeps its feet on the ground
-//! (`InWorld::foot_planting`): the example measures the distance of its lower foot from the ground under heel or toes.
+//! A character climbs a flight of stairs, crosses a landing and walks down a ramp. Foot placement keeps its feet on the
+//! ground (`InWorld::foot_planting`); the example measures the distance of its lower foot from the ground at heel and
+//! toes.
 
 use sinew::prelude::*;
 use std::sync::Arc;
 
-/// Steps of 17 by 30 cm that rise toward +Z, a landing, and a ramp that falls by 15°.
+/// Builds steps of 17 by 30 cm that rise toward +Z, a landing, and a ramp that falls by 15°.
 fn build(world: &mut World) {
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
     for step in 0..8 {
@@ -20,14 +21,14 @@ fn build(world: &mut World) {
     world.add_body(&BodyDef { rotation: turn, ..ramp.at(middle) });
 }
 
-/// Returns the height of the ground there, metres.
+/// Returns the height of the ground at `z`, metres.
 fn ground(z: f32) -> f32 {
     let stairs = 0.17 * (((z - 1.0) / 0.3).floor() + 1.0).clamp(0.0, 8.0);
     let ramp = 1.36 - (z - 5.1) * 0.268; // tan 15°
     if z < 5.1 { stairs } else { ramp.max(0.0) }
 }
 
-/// Walks up and down.
+/// Lets a character walk up and down.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     build(&mut world);

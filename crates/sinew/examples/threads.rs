@@ -1,6 +1,6 @@
 //! Threads: `cargo run --release -p sinew --example threads`.
 //!
-//! The same pile on one thread and on all of them: as many steps, the same bits.
+//! Steps the same pile on one thread and on all threads: equal numbers of steps give equal bits.
 
 use sinew::prelude::*;
 

@@ -1,6 +1,7 @@
-//! Your own file: `cargo run --release -p sinew --example your_character -- hero.glb`; without one, the mannequin's.
+//! Your own file: `cargo run --release -p sinew --example your_character -- hero.glb`; without a file, the mannequin.
 //!
-//! One call reads the file, builds the ragdoll and chooses walk, idle and get-ups among its clips. The notes say what was chosen.
+//! One call reads the file, builds the ragdoll and chooses walk, idle and get-ups among its clips. The notes list the
+//! choices.
 
 use sinew::prelude::*;
 use std::sync::Arc;
@@ -14,7 +15,7 @@ pub fn mannequin() -> sinew::LoadedCharacter {
     sinew::character_of(file, "mannequin.glb", &Default::default()).expect("it has a skin")
 }
 
-/// Runs the given file, or the mannequin's.
+/// Runs the given file, or the mannequin.
 pub fn main() {
     match std::env::args_os().nth(1) {
         Some(path) => run(sinew::load_character(path).unwrap_or_else(|error| panic!("{error}"))),
@@ -22,7 +23,7 @@ pub fn main() {
     }
 }
 
-/// Walks, is hit, gets up, walks on.
+/// Lets the character walk, hits it, and lets it get up and walk on.
 pub fn run(hero: sinew::LoadedCharacter) {
     for note in &hero.notes {
         println!("{note}");

@@ -26,7 +26,8 @@
 //! Start with [`World`](physics::World) and [`Character`](ragdoll::Character). The guide
 //! (`docs/guide` in the repository) has characters, joints, cloth, cost, rollback and tuning by symptom.
 //!
-//! The crate to depend on. Each module is one of its member crates; [`prelude`] has the names that most programs need.
+//! This is the crate to depend on. Each module is one of its member crates; [`prelude`] has the names that most
+//! programs need.
 //!
 //! | feature | brings | default |
 //! |---|---|---|
@@ -76,13 +77,13 @@ pub use source::CharacterSource;
 /// ```
 ///
 /// # Errors
-/// Names the file, the problem, and its place; see [`formats::read_gltf`].
+/// Returns an error that names the file, the problem, and its place; see [`formats::read_gltf`].
 #[cfg(feature = "formats")]
 pub fn load(path: impl AsRef<std::path::Path>) -> formats::Result<formats::Document> {
     formats::load_gltf(path, formats::ReadOptions::default())
 }
 
-/// Runs a step on all hardware threads: for `World::step_with`. The result does not depend on it.
+/// Makes a thread pool of all hardware threads, for `World::step_with`. The result of a step does not depend on it.
 #[cfg(feature = "parallel")]
 pub fn all_threads() -> physics::Threads {
     physics::Threads::new(std::thread::available_parallelism().map_or(1, core::num::NonZero::get))

@@ -15,11 +15,11 @@ use std::path::Path;
 pub struct LoadedCharacter {
     /// Definition for [`Character::spawn`](crate::ragdoll::Character::spawn), which takes it in an `Arc`.
     pub def: CharacterDef,
-    /// Roles of its joints, its unit and its axes.
+    /// Roles of the rig's joints, its unit and its axes.
     pub analysis: RigAnalysis,
-    /// Assumptions, chosen clips, and missing ones, one sentence each.
+    /// Assumptions, chosen clips, and missing motions, one sentence each.
     pub notes: Vec<String>,
-    /// Remarks of the build on single bodies.
+    /// Remarks of the ragdoll builder on single bodies.
     pub report: BuildReport,
 }
 
@@ -58,7 +58,7 @@ pub enum LoadCharacterError {
 /// Makes a character from a GLB, glTF or VRM file: reads it, finds the roles of its joints, builds the ragdoll, and
 /// chooses walk, idle and get-ups among its clips ([`own_motions`]). A human that lacks one of these gets the built-in
 /// ones ([`set_motions_with_builtin`]); any other character without a get-up stays down. If the file has several
-/// characters, it takes the one with the most vertices. Settings in `NAME.ragdoll.json` next to the file are applied.
+/// characters, the one with the most vertices is used. Settings in `NAME.ragdoll.json` next to the file are applied.
 ///
 /// ```no_run
 /// use sinew::prelude::*;
@@ -76,7 +76,7 @@ pub enum LoadCharacterError {
 /// ```
 ///
 /// # Errors
-/// A file that cannot be read, has no skin, or gives no ragdoll; settings that do not fit; an unplayable clip.
+/// If the file cannot be read, has no skin, or gives no ragdoll; if the settings do not fit; if a clip is unplayable.
 pub fn load_character(path: impl AsRef<Path>) -> Result<LoadedCharacter, LoadCharacterError> {
     let path = path.as_ref();
     let document = crate::load(path)?;
@@ -91,8 +91,8 @@ pub fn load_character(path: impl AsRef<Path>) -> Result<LoadedCharacter, LoadCha
     character_of(document, &path.display().to_string(), &settings)
 }
 
-/// Makes a character from a file in memory, as [`load_character`] does from one on disk. `name` is the file's: errors
-/// start with it, and its words help to classify the character.
+/// Makes a character from a file in memory, like [`load_character`] from one on disk. `name` is the file's name:
+/// errors start with it, and its words help to classify the character.
 ///
 /// # Errors
 /// As [`load_character`].
@@ -122,7 +122,7 @@ pub fn character_of(
     Ok(LoadedCharacter { def, analysis, notes, report })
 }
 
-/// Gives a character its own clips and, if it is a human, the built-in ones for the missing ones; returns notes.
+/// Gives a character its own clips and, if it is a human, built-in ones for the motions that they lack; returns notes.
 fn set_motions(
     def: &mut CharacterDef,
     analysis: &RigAnalysis,

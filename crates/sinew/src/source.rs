@@ -9,21 +9,21 @@ use crate::ragdoll::settings::{SpringSource, analyze_with};
 use crate::ragdoll::{BuildError, BuildOptions, RagdollDef, Settings, SettingsError, build_moving};
 use std::path::Path;
 
-/// A character file and what was recognised in it: the stages of [`load_character`](crate::load_character) one by one. First
+/// A character file and its analysis, for running the stages of [`load_character`](crate::load_character) one by one:
 /// [`new`](Self::new), then [`hint`](Self::hint) and [`keep`](Self::keep) as needed, [`correct`](Self::correct), and
 /// [`build`](Self::build).
 #[derive(Clone, Debug)]
 pub struct CharacterSource {
     /// Rig, clips and JSON of the file.
     pub document: Document,
-    /// Analysis of its joints.
+    /// Analysis of the rig's joints.
     pub analysis: RigAnalysis,
-    /// Joints of the garments in the settings: not part of the body.
+    /// Joints of the garments in the settings, which are not part of the body.
     pub worn: Vec<JointIdx>,
 }
 
 impl CharacterSource {
-    /// Analyses a file. The words of its name, a path or a name, help to classify the character.
+    /// Analyses a file. `name` is its name or path, whose words help to classify the character.
     ///
     /// # Errors
     /// If no vertex is bound to a joint.
@@ -40,7 +40,7 @@ impl CharacterSource {
         Ok(Self { document, analysis, worn: Vec::new() })
     }
 
-    /// Takes other evidence into account.
+    /// Repeats the analysis with other hints, if they differ from the current ones.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -51,7 +51,7 @@ impl CharacterSource {
         Ok(())
     }
 
-    /// Vertices of each character in the file.
+    /// Returns the number of vertices of each character in the file.
     pub fn characters(&self) -> Vec<usize> {
         let rig = &self.document.rig;
         let vertices = |own: Vec<usize>| {
@@ -61,13 +61,13 @@ impl CharacterSource {
         characters(rig).into_iter().map(vertices).collect()
     }
 
-    /// The character with the most vertices, if there is one; of equal ones the first.
+    /// Returns the index of the character with the most vertices; of equal ones, the first. `None` without characters.
     pub fn largest(&self) -> Option<usize> {
         let vertices = self.characters();
         (0..vertices.len()).reduce(|a, b| if vertices[b] > vertices[a] { b } else { a })
     }
 
-    /// Removes the meshes of all characters but one, by its index.
+    /// Removes the meshes of all characters but the one with this index.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -101,7 +101,7 @@ impl CharacterSource {
         Ok(Some(format!("there are {count} characters in the file; the one with the most vertices is taken")))
     }
 
-    /// Applies settings to roles and unit, makes cloth of the meshes that they call garments, and gives legs without feet an ankle.
+    /// Applies settings to roles and unit, makes cloth of the meshes listed as garments, and gives legs without feet an ankle.
     ///
     /// # Errors
     /// If the settings do not fit the rig.
@@ -129,7 +129,7 @@ impl CharacterSource {
         Ok(())
     }
 
-    /// The ragdoll, with limits learned from the clips if the options ask for them.
+    /// Builds the ragdoll, with limits learned from the clips if the options ask for them.
     ///
     /// # Errors
     /// If the rig allows no ragdoll, or the settings do not fit it.
@@ -142,7 +142,7 @@ impl CharacterSource {
         build_moving(&self.document.rig, &self.analysis, &moves, options, settings)
     }
 
-    /// Springs from a source, as the settings change them.
+    /// Returns the springs of a source, changed by the settings.
     ///
     /// # Errors
     /// If the settings do not fit the rig.
@@ -150,7 +150,7 @@ impl CharacterSource {
         settings.springs_of(source, &self.document.rig, self.analysis.up_axis)
     }
 
-    /// Garments of the settings.
+    /// Returns the garments of the settings.
     ///
     /// # Errors
     /// If the settings do not fit the rig.

@@ -8,12 +8,12 @@ use sinew_math::{
     Mat3, Range, Rotation, SwingTwistLimit, Sym3, Vec3, any_orthonormal, clamp, direction, max, min, trig,
 };
 
-/// A joint that turns about one axis alone.
+/// A joint that rotates about only one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LearnedHinge {
-    /// Unit, in the joint's own axes.
+    /// Unit axis, in the joint's own axes.
     pub axis: Vec3,
-    /// Angle about it, radians from [`LearnedLimit::center`].
+    /// Range of the angle about the axis, radians from [`LearnedLimit::center`].
     pub range: Range,
     /// Remaining rotation about other axes, radians.
     pub off_axis: f32,
@@ -24,30 +24,30 @@ pub struct LearnedHinge {
 pub struct LearnedLimit {
     /// Joint of the limit.
     pub joint: JointIdx,
-    /// The joint's local rotation in the middle of its range.
+    /// The joint's local rotation at the centre of its range.
     pub center: Rotation,
     /// Rotation from the axes of the limit to the joint's own: x along the bone, y and z along the axes of the swing's
     /// ellipse.
     pub frame: Rotation,
     /// Half-angles of the ellipse: swing about y, swing about z, radians.
     pub swing: [f32; 2],
-    /// Rotation about the bone, radians from the centre.
+    /// Range of the rotation about the bone, radians from the centre.
     pub twist: Range,
-    /// Range of a joint that rotates about only one axis; else `None`.
+    /// Axis and range of a hinge; `None` for other joints.
     pub hinge: Option<LearnedHinge>,
     /// Number of frames that were used.
     pub samples: usize,
 }
 
 impl LearnedLimit {
-    /// The rotation away from the centre, in the axes of the limit.
+    /// Returns the rotation away from the centre, in the axes of the limit.
     fn away(&self, local: Rotation) -> Rotation {
         let own = self.center.inverse() * local;
         (self.frame.inverse() * own * self.frame).normalize()
     }
 
-    /// The nearest local rotation within the limit: swing moved toward the centre, twist clamped. For a hinge, the
-    /// rotation about its axis alone.
+    /// Returns the nearest local rotation within the limit: swing moved toward the centre, twist clamped. For a hinge,
+    /// returns only the rotation about its axis.
     pub fn project(&self, local: Rotation) -> Rotation {
         if let Some(hinge) = self.hinge {
             let angle = (self.center.inverse() * local).twist_angle(hinge.axis);
@@ -65,16 +65,17 @@ impl LearnedLimit {
         (self.center * self.frame * kept * self.frame.inverse()).normalize()
     }
 
-    /// Converts to the limit of a joint whose frames are `center * frame` on the parent and `frame` on the joint
-    /// itself.
+    /// Converts the limit to a swing-twist limit for a joint whose frames are `center * frame` on the parent and
+    /// `frame` on the joint itself.
     pub fn swing_twist(&self) -> SwingTwistLimit {
         let [y, z] = self.swing.map(Range::symmetric);
         SwingTwistLimit { swing_y: y, swing_z: z, twist: self.twist }
     }
 }
 
-/// Limits of every rotating joint of a rig, from its motion in `takes`, any number of frames each; one frame in two
-/// hundred may be outside. Angles are radians, of local rotations; sorted by joint, without joints that have no limit.
+/// Learns the limits of every rotating joint of a rig from its motion in `takes`. One frame in two hundred may be
+/// outside the limits. Angles are radians, of local rotations; the result is sorted by joint, without joints that have
+/// no limit.
 ///
 /// # Panics
 /// If a take does not fit the rig.
@@ -99,8 +100,8 @@ fn bone(rig: &Rig, joint: JointIdx) -> Vec3 {
     farthest.and_then(direction).unwrap_or(Vec3::X)
 }
 
-/// The limit of one joint from any number of its rotations, or of any two frames that rotate against each other. `bone`
-/// is unit, in the joint's own axes. `None` if it does not rotate.
+/// Learns the limit of one joint from any number of its rotations, or of any two frames that rotate against each other.
+/// `bone` is a unit vector in the joint's own axes. `None` if the joint does not rotate.
 pub fn learn_limit(joint: JointIdx, bone: Vec3, turns: &[Rotation]) -> Option<LearnedLimit> {
     let mean = mean(turns)?;
     let across = any_orthonormal(bone);
@@ -115,7 +116,7 @@ pub fn learn_limit(joint: JointIdx, bone: Vec3, turns: &[Rotation]) -> Option<Le
         hinge: None,
         samples: turns.len(),
     };
-    // The mean is where the joint mostly is; the middle of its range is found from there.
+    // The mean rotation is the start of the search for the centre of the range.
     limit.hinge = hinge(turns, mean);
     if let Some(hinge) = &mut limit.hinge {
         let middle = hinge.range.center();
@@ -131,7 +132,7 @@ pub fn learn_limit(joint: JointIdx, bone: Vec3, turns: &[Rotation]) -> Option<Le
 }
 
 impl LearnedLimit {
-    /// Twist about x, swing about y and z of every rotation, radians from the centre.
+    /// Returns twist about x and swing about y and z of every rotation, radians from the centre.
     fn angles(&self, turns: &[Rotation]) -> Vec<[f32; 3]> {
         let angles = |&turn: &Rotation| {
             let (swing, twist) = SwingTwistLimit::angles(self.away(turn));
@@ -140,7 +141,7 @@ impl LearnedLimit {
         turns.iter().map(angles).collect()
     }
 
-    /// Puts the centre in the middle of the ranges of twist and swing.
+    /// Moves the centre to the middle of the ranges of twist and swing.
     fn find_center(&mut self, turns: &[Rotation]) {
         for _ in 0..3 {
             let angles = self.angles(turns);
@@ -150,7 +151,7 @@ impl LearnedLimit {
         }
     }
 
-    /// Rotates the frame about the bone so that y and z are the main axes of the swing.
+    /// Rotates the frame about the bone so that y and z are the principal axes of the swing.
     fn turn_to_main_axes(&mut self, turns: &[Rotation]) {
         let (mut yy, mut zz, mut yz) = (0.0, 0.0, 0.0);
         for [_, y, z] in self.angles(turns) {
@@ -160,7 +161,7 @@ impl LearnedLimit {
         self.frame = (self.frame * Rotation::from_axis_angle(Vec3::X, angle)).normalize();
     }
 
-    /// Half-axes of an ellipse with the proportions of the swing's spread, and the range of the twist.
+    /// Measures the half-axes of an ellipse with the proportions of the swing's spread, and the range of the twist.
     fn measure(&mut self, turns: &[Rotation]) {
         let angles = self.angles(turns);
         let reach = [1, 2].map(|k| {
@@ -179,7 +180,7 @@ impl LearnedLimit {
     }
 }
 
-/// The range of the central [`COVERAGE`] of all numbers.
+/// Returns the range of the central [`COVERAGE`] of all numbers.
 ///
 /// # Panics
 /// If there are no numbers.
@@ -193,7 +194,7 @@ fn at_share(count: usize, share: f32) -> usize {
     ((count - 1) as f32 * share).round() as usize
 }
 
-/// The mean of rotations: the rotations from it to all sum to zero (Karcher mean).
+/// Returns the mean of rotations: the rotations from the mean to all of them sum to zero (Karcher mean).
 fn mean(turns: &[Rotation]) -> Option<Rotation> {
     let mut mean = *turns.first()?;
     for _ in 0..8 {
@@ -203,8 +204,8 @@ fn mean(turns: &[Rotation]) -> Option<Rotation> {
     Some(mean)
 }
 
-/// The single axis of a joint, if there is one: the main axis of its rotations from their mean. The range is from
-/// there.
+/// Returns the single axis of a joint, or `None` if there is no such axis. The axis is the principal axis of the
+/// rotations from `mean`; the range is measured from there.
 fn hinge(turns: &[Rotation], mean: Rotation) -> Option<LearnedHinge> {
     let own: Vec<Rotation> = turns.iter().map(|&turn| (mean.inverse() * turn).normalize()).collect();
     let mut spread = Sym3::from_diagonal(Vec3::ZERO);

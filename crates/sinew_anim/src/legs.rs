@@ -1,4 +1,4 @@
-//! Legs with pelvis and soles, and joints that anatomy places elsewhere in the hierarchy.
+//! Legs with pelvis and soles, and joints whose parent in anatomy differs from that in the rig.
 
 use crate::ik::{TwoBone, set_rotation, shift};
 use crate::rig::{Joint, JointIdx, LocalTransform, Rig};
@@ -13,14 +13,14 @@ pub struct Foot {
     pub side: Side,
     /// Joints of hip, knee and ankle.
     pub leg: TwoBone,
-    /// Points of the sole under the ankle and under the ball (where the toes begin), relative to the ankle in the axes
+    /// Points of the sole under the ankle and under the ball (where the toes begin), relative to the ankle, in the axes
     /// of its joint without scale, metres.
     pub sole: [Vec3; 2],
     /// Length from hip to knee to ankle to the floor, metres.
     pub length: f32,
-    /// Rotation from the axes of the ankle's joint to the body's own, in the standing pose.
+    /// Rotation from the axes of the ankle's joint to the body's axes, in the standing pose.
     pub stance: Rotation,
-    /// Forward in the axes of the thigh's joint: where a straight knee bends to. Unit.
+    /// Forward direction in the axes of the thigh's joint, to which a straight knee bends. Unit vector.
     pub forward: Vec3,
 }
 
@@ -51,7 +51,7 @@ impl Foot {
         })
     }
 
-    /// Heel and ball in a pose, in the space of `model` (one transform per joint), whose unit is the metre.
+    /// Returns heel and ball in a pose, in the space of `model` (one transform per joint), whose unit is the metre.
     pub fn points(&self, model: &[Affine]) -> [Vec3; 2] {
         let ankle = model[self.leg.end].to_rigid();
         self.sole.map(|point| ankle.translation + ankle.rotation * point)
@@ -63,14 +63,14 @@ impl Foot {
 pub struct Legs {
     /// The joint that carries the body.
     pub pelvis: JointIdx,
-    /// The left and the right foot.
+    /// Left and right foot.
     pub feet: [Foot; 2],
     /// Joints with another parent in anatomy than in the rig. Rigs baked from inverse kinematics parent feet to the
     /// root.
     strays: Vec<Stray>,
 }
 
-/// A joint, its anatomical parent, and its position in that one's axes, file units.
+/// A joint, its anatomical parent, and its position in that parent's axes, file units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Stray {
     joint: JointIdx,
@@ -79,7 +79,7 @@ struct Stray {
 }
 
 impl Legs {
-    /// The legs of a humanoid in its bind pose; `None` without hips, or if a side lacks thigh, shank or foot.
+    /// Returns the legs of a humanoid in its bind pose; `None` without hips, or if a side lacks thigh, shank or foot.
     ///
     /// # Panics
     /// If the analysis does not fit the rig.
@@ -90,7 +90,7 @@ impl Legs {
         Some(Self { pelvis, feet, strays: strays(rig, analysis) })
     }
 
-    /// Moves strayed joints to their anatomical place, keeping rotations. Call it after their anatomical parents moved.
+    /// Moves stray joints to their anatomical place; rotations stay. Call it after moving their anatomical parents.
     pub fn gather(&self, rig: &Rig, local: &mut [LocalTransform], model: &mut [Affine]) {
         for stray in &self.strays {
             let by = model[stray.carrier].point(stray.at) - model[stray.joint].translation;
@@ -98,13 +98,13 @@ impl Legs {
         }
     }
 
-    /// Moves the whole body, in the axes of the model pose.
+    /// Moves the whole body by `by`, in the axes of the model pose.
     pub fn carry(&self, rig: &Rig, by: Vec3, local: &mut [LocalTransform], model: &mut [Affine]) {
         shift(rig, self.pelvis, by, local, model);
         self.gather(rig, local, model);
     }
 
-    /// Restores a foot's rotation after its leg moved.
+    /// Sets a foot's rotation after its leg moved.
     pub fn plant(
         &self,
         rig: &Rig,
@@ -134,9 +134,9 @@ fn strays(rig: &Rig, analysis: &RigAnalysis) -> Vec<Stray> {
 
 /// Adds ankle joints to a humanoid whose legs end with the shank, so that motions with feet fit low-poly figures.
 ///
-/// Each is a new joint at the end of the rig, without skin, a child of the shank, in the middle of the shank's lowest
-/// skin. Its [`Joint::source`] is beyond the file's nodes. The analysis treats it as a foot. Returns the number of
-/// joints added: 0 if thigh or shank is missing.
+/// Each is a new joint at the end of the rig, without skin, a child of the shank, at the centre of the shank's lowest
+/// skin. Its [`Joint::source`] is beyond the file's nodes. The analysis treats the joint as a foot. Returns the number
+/// of joints added; a side without thigh or shank gets none.
 ///
 /// # Panics
 /// If the analysis does not fit the rig.
@@ -163,7 +163,7 @@ pub fn add_ankles(rig: &mut Rig, analysis: &mut RigAnalysis) -> usize {
     rig.joints.len() - before
 }
 
-/// Middle of the lowest skin that a shank moves most, raised to where an ankle is; model space, file units.
+/// Mean of the lowest skin that a shank moves most, raised to ankle height; model space, file units.
 fn end_of_shank(rig: &Rig, analysis: &RigAnalysis, shank: JointIdx) -> Option<Vec3> {
     let (character, bound) = (analysis.character_from_file(), Bound::of(rig)?);
     let skin = bound.vertices.iter().zip(&bound.movers).filter(|(_, mover)| **mover == shank);
@@ -175,7 +175,7 @@ fn end_of_shank(rig: &Rig, analysis: &RigAnalysis, shank: JointIdx) -> Option<Ve
         .filter(|at| at.y <= sole)
         .fold((Vec3::ZERO, 0.0_f32), |(sum, count), &at| (sum + at, count + 1.0));
     let knee = character.point(analysis.bind_model[shank].translation);
-    // A foot reaches forward from its ankle, which is under the knee.
+    // A foot extends forward from its ankle, which is under the knee.
     let middle = sum / count;
     let ankle = Vec3::new(middle.x, sole, sinew_math::min(middle.z, knee.z));
     (knee.y > sole).then(|| character.inverse().point(ankle))

@@ -19,11 +19,11 @@
 //! assert_eq!(pose[0].translation.y, 0.5);
 //! ```
 //!
-//! A [`Rig`] has joints, skins and meshes, a [`Clip`] moves its joints; [`analyze`] finds which joint is which part of a body, and an
-//! [`Animator`] plays clips with transitions and layers.
+//! A [`Rig`] has joints, skins and meshes, and a [`Clip`] moves its joints; [`analyze`] finds the body part of each
+//! joint, and an [`Animator`] plays clips with transitions and layers.
 //!
-//! This crate depends on no physics, files or renderer. Rotations are [`sinew_math::Rotation`], times are seconds, lengths
-//! are **file units** until [`roles`] gives metres per unit.
+//! This crate depends on no physics, files or renderer. Rotations are [`sinew_math::Rotation`], times are seconds,
+//! lengths are **file units** until [`roles`] gives metres per unit.
 #![forbid(unsafe_code)]
 
 pub mod animator;

@@ -1,4 +1,4 @@
-//! Riders: skinned joints outside the body part that they belong to.
+//! Riders: skinned joints that belong to a body part but are not below it in the rig.
 
 use crate::clip::Clip;
 use crate::pose::{local_to_model, rest_pose};
@@ -7,20 +7,20 @@ use crate::roles::RigAnalysis;
 use crate::{Wrap, sample};
 use sinew_math::{Affine, Transform};
 
-/// A joint, the body joint that it follows, and its transform relative to that.
+/// A joint, the body joint that it follows, and the joint's transform relative to the body joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Rider {
     joint: JointIdx,
     carrier: JointIdx,
-    /// Rigid, in file units: a pose may have another scale than the bind pose.
+    /// Rigid transform in file units, because the scale of a pose may differ from the bind pose's.
     carrier_from_joint: Transform,
 }
 
-/// The joints of a rig that move skin of a part of the body without being below it: a second bone of the trunk above
-/// the hips, halves of a pelvis, the root of a coat, eyes with their own skeleton, a hat beside the skeleton.
+/// Joints of a rig that move skin of a body part without being below it: a second bone of the trunk above the hips,
+/// halves of a pelvis, the root of a coat, eyes with their own skeleton, a hat beside the skeleton.
 ///
-/// The file's clips move them as authored. Motions from other bodies do not include them: [`carry`](Self::carry) moves
-/// them with their part, as a ragdoll does.
+/// The file's clips move riders as authored. Motions from other bodies do not include them: [`carry`](Self::carry)
+/// moves them with their body part, as a ragdoll does.
 ///
 /// ```
 /// use sinew_anim::{LocalTransform, Rig, RigAnalysis, riders::Riders};
@@ -39,7 +39,7 @@ pub struct Riders {
 }
 
 impl Riders {
-    /// The riders of a rig.
+    /// Finds the riders of a rig.
     ///
     /// # Panics
     /// If the analysis does not fit the rig.
@@ -55,12 +55,12 @@ impl Riders {
             let carrier = (*carrier)?;
             let [from, to] = [carrier, joint].map(|at| analysis.bind_model[at].to_rigid());
             let carrier_from_joint = from.inverse() * to;
-            // Feet beside the body have a role: the motion places them.
+            // Feet beside the body have a role, so the motion places them.
             let rides = body_above(joint) != Some(carrier) && analysis.roles[joint].is_none();
             (rides && carrier_from_joint.is_finite()).then_some(Rider { joint, carrier, carrier_from_joint })
         };
         let mut list: Vec<Rider> = analysis.merge_into.iter().enumerate().filter_map(rider).collect();
-        // Props have their own bodies, which no motion places if they hang elsewhere: a hat beside the skeleton.
+        // Props have their own bodies, which no motion places if their parent is elsewhere: a hat beside the skeleton.
         list.extend(analysis.kept.iter().filter(|bone| bone.is_prop).filter_map(|bone| {
             let carrier = analysis.kept[bone.parent?].joint;
             let carrier_from_joint =
@@ -72,8 +72,8 @@ impl Riders {
         Self { list, has_body }
     }
 
-    /// Creates riders with the transforms that a clip gives at its start: an author who moves a hat by the clip alone
-    /// may have left it anywhere in the bind pose.
+    /// Uses the transforms at the start of a clip: an author who moves a hat only by clips may have left it anywhere
+    /// in the bind pose.
     ///
     /// # Panics
     /// If the clip or the riders are not of the rig.
@@ -100,7 +100,7 @@ impl Riders {
         self
     }
 
-    /// True if every joint hangs on its own part.
+    /// True if every skinned joint is below its own body part.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }

@@ -10,7 +10,7 @@ pub type JointIdx = usize;
 /// Translation, rotation and scale of a joint relative to its parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalTransform {
-    /// File units, parent's axes.
+    /// Translation, file units, parent's axes.
     pub translation: Vec3,
     /// Rotation, of unit length.
     pub rotation: Rotation,
@@ -25,7 +25,7 @@ impl Default for LocalTransform {
 }
 
 impl LocalTransform {
-    /// The map from the joint's space to its parent's.
+    /// Returns the map from the joint's space to its parent's.
     pub fn to_affine(self) -> Affine {
         Affine::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
     }
@@ -36,7 +36,7 @@ impl LocalTransform {
 pub struct Joint {
     /// Name in the file, or `""`.
     pub name: String,
-    /// Parent, always of a smaller index. `None` for a root.
+    /// Parent, always with a smaller index. `None` for a root.
     pub parent: Option<JointIdx>,
     /// Rest pose of the file (the node's own transform).
     pub rest: LocalTransform,
@@ -60,23 +60,23 @@ pub struct Skin {
 pub struct Primitive {
     /// Positions in mesh space, file units.
     pub positions: Vec<Vec3>,
-    /// Unit, or empty: then flat.
+    /// Unit normals, or empty for flat shading.
     pub normals: Vec<Vec3>,
     /// Texture coordinates, (0, 0) at the top left; or empty.
     pub uvs: Vec<Vec2>,
     /// Linear RGBA per vertex, 0..=1; or empty.
     pub colors: Vec<[f32; 4]>,
-    /// Skin slots, up to four a vertex; empty for a rigid mesh.
+    /// Skin slots, up to four per vertex; empty for a rigid mesh.
     pub joints: Vec<[u16; 4]>,
     /// Weights of the slots, their sum 1; empty for a rigid mesh.
     pub weights: Vec<[f32; 4]>,
-    /// Vertex indices, three a triangle, counter-clockwise seen from outside.
+    /// Vertex indices, three per triangle, counter-clockwise seen from outside.
     pub indices: Vec<u32>,
     /// Base colour, linear RGBA.
     pub base_color: [f32; 4],
     /// Index into [`Rig::textures`] of the base colour texture.
     pub texture: Option<usize>,
-    /// Name of its material in the file, or `""`.
+    /// Name of the material in the file, or `""`.
     pub material: String,
 }
 
@@ -85,7 +85,7 @@ pub struct Primitive {
 pub struct RigMesh {
     /// Name in the file, or `""`.
     pub name: String,
-    /// The node that carries it. Ignored when skinned (glTF 2.0 §3.7.3.3).
+    /// The node that carries the mesh. Ignored for a skinned mesh (glTF 2.0 §3.7.3.3).
     pub joint: JointIdx,
     /// Index into [`Rig::skins`]; `None` for a mesh that moves rigidly with `joint`.
     pub skin: Option<usize>,

@@ -7,24 +7,24 @@ use crate::playback::sync::Markers;
 use crate::pose::{Mask, Skeleton};
 use sinew_math::StableHasher;
 
-/// A clip of an [`AnimationSet`].
+/// Id of a clip of an [`AnimationSet`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ClipId(pub(crate) u32);
 
-/// A mask of an [`AnimationSet`].
+/// Id of a mask of an [`AnimationSet`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MaskId(pub(crate) u32);
 
 /// A clip with its metadata.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AnimatedClip {
-    /// The poses. A clip built with [`Fill::Identity`] is additive, with [`Fill::Rest`] blended.
+    /// The poses. A clip built with [`Fill::Identity`] is additive; one with [`Fill::Rest`] is blended.
     pub clip: BuiltClip,
     /// Events of the clip, in any order.
     pub events: Vec<ClipEvent>,
-    /// Markers that keep it in phase with other clips.
+    /// Markers that keep the clip in phase with other clips.
     pub markers: Markers,
-    /// Motion of its character, if it was extracted from the poses.
+    /// Motion of the character, if it was extracted from the poses.
     pub motion: Option<MotionTrack>,
 }
 
@@ -59,11 +59,11 @@ impl AnimationSet {
         &self.skeleton
     }
 
-    /// Adds a clip.
+    /// Adds a clip; returns its id.
     ///
     /// # Panics
-    /// If it has another number of joints than the skeleton, an event or marker outside of its length, or an event's least
-    /// weight is not in 0..=1.
+    /// If the clip has another number of joints than the skeleton, an event or marker is outside of its duration, or an
+    /// event's least weight is not in 0..=1.
     pub fn add_clip(&mut self, clip: AnimatedClip) -> ClipId {
         assert_eq!(clip.clip.joints(), self.skeleton.len(), "a clip of the same rig");
         let duration = clip.clip.duration();
@@ -78,10 +78,10 @@ impl AnimationSet {
         ClipId(u32::try_from(self.clips.len() - 1).expect("fewer than 2^32 clips"))
     }
 
-    /// Adds a mask.
+    /// Adds a mask; returns its id.
     ///
     /// # Panics
-    /// If it has another number of joints than the skeleton.
+    /// If the mask has another number of joints than the skeleton.
     pub fn add_mask(&mut self, mask: Mask) -> MaskId {
         assert_eq!(mask.len(), self.skeleton.len(), "a mask of the same rig");
         self.masks.push(mask);
@@ -91,7 +91,7 @@ impl AnimationSet {
     /// Returns a clip.
     ///
     /// # Panics
-    /// If the id is from another set and this one has fewer clips.
+    /// If the id is from another set and this set has fewer clips.
     pub fn clip(&self, id: ClipId) -> &AnimatedClip {
         &self.clips[id.0 as usize]
     }
@@ -99,20 +99,20 @@ impl AnimationSet {
     /// Returns a mask.
     ///
     /// # Panics
-    /// If the id is from another set and this one has fewer masks.
+    /// If the id is from another set and this set has fewer masks.
     pub fn mask(&self, id: MaskId) -> &Mask {
         &self.masks[id.0 as usize]
     }
 
-    /// Ids of all clips, in the order in which they were added.
+    /// Iterates over the ids of all clips, in the order in which they were added.
     pub fn clips(&self) -> impl ExactSizeIterator<Item = ClipId> {
         (0..self.clips.len() as u32).map(ClipId)
     }
 
-    /// Name, payload and policy of an event that an animator of this set fired.
+    /// Returns name, payload and policy of an event that an animator of this set fired.
     ///
     /// # Panics
-    /// If an animator of another set fired it and it is not in this one.
+    /// If an animator of another set fired the event and this set does not have it.
     pub fn event(&self, fired: &FiredEvent) -> &ClipEvent {
         &self.clip(fired.clip).events[fired.event]
     }
@@ -125,7 +125,7 @@ impl AnimationSet {
         ((id as usize) < self.masks.len()).then_some(MaskId(id))
     }
 
-    /// Distinguishes sets between which animators cannot be moved.
+    /// Hash that differs between sets whose animators are not interchangeable.
     pub(crate) fn fingerprint(&self) -> u64 {
         let mut hasher = StableHasher::default();
         for number in [self.skeleton.len(), self.masks.len(), self.clips.len()] {

@@ -1,11 +1,11 @@
-//! Vertices of a posed mesh, for pictures.
+//! Computes the vertices of a posed mesh, for pictures.
 
 use crate::rig::{JointIdx, Primitive, Rig, Skin};
 use sinew_math::{Affine, Mat3, Vec3, normalize_or};
 
-/// Matrix per skin slot from mesh space (bind pose, file units) to the space of `model`: joint × inverse bind. `model`
-/// has one transform per joint of the rig. `palette` is cleared and gets one entry per joint of the skin; once warm it
-/// does not allocate.
+/// Computes the matrix per skin slot from mesh space (bind pose, file units) to the space of `model`: joint × inverse
+/// bind. `model` has one transform per joint of the rig. `palette` is cleared and gets one entry per joint of the
+/// skin; it allocates only when it must grow.
 ///
 /// # Panics
 /// If a joint of the skin is not in `model`.
@@ -15,14 +15,14 @@ pub fn skin_palette(skin: &Skin, model: &[Affine], palette: &mut Vec<Affine>) {
         .extend(skin.joints.iter().zip(&skin.inverse_bind).map(|(&joint, inverse)| model[joint] * *inverse));
 }
 
-/// Positions and normals of one primitive in model space under the model pose `model`: linear blend skinning, or rigid
-/// with its joint if the mesh has no skin or the primitive no weights. `model` has one transform per joint of the rig;
-/// both buffers are cleared and get one entry per vertex, in the space and unit of `model`, normals of length 1;
-/// `normals` stays empty if the primitive has none. Allocates a palette.
+/// Computes positions and normals of one primitive under the model pose `model`: linear blend skinning, or rigid
+/// motion with its joint if the mesh has no skin or the primitive no weights. `model` has one transform per joint of
+/// the rig. Both buffers are cleared and get one entry per vertex, in the space and unit of `model`, normals of length
+/// 1; `normals` stays empty if the primitive has none. Allocates a palette.
 ///
 /// # Panics
-/// If `mesh` or `primitive` is out of range, `model` is shorter than the rig, or a vertex names a slot that its skin
-/// does not have.
+/// If `mesh` or `primitive` is out of range, `model` is shorter than the rig, or a vertex refers to a slot that its
+/// skin does not have.
 pub fn skin_vertices(
     rig: &Rig,
     mesh: usize,
@@ -84,8 +84,8 @@ fn blended(palette: &[Affine], slots: [u16; 4], weights: [f32; 4]) -> Affine {
     sum
 }
 
-/// Matrix for normals under a linear map, up to length: its cofactors (inverse transpose times determinant), with the
-/// sign of the determinant removed so that a mirrored part keeps its outside.
+/// Returns the matrix for normals under a linear map, up to length: its cofactors (inverse transpose times
+/// determinant), without the sign of the determinant, so that the outside of a mirrored part stays outside.
 fn normal_matrix(m: &Mat3) -> Mat3 {
     let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
     let sign = if x.dot(y.cross(z)) < 0.0 { -1.0 } else { 1.0 };

@@ -5,38 +5,38 @@
 
 // animator/mod.rs
 
-/// Sum of weights in layer 0 below which the rest pose fills up (see [`crate::BlendOptions`]), 0 to 1.
+/// Sum of weights in layer 0 below which the rest pose is blended in (see [`crate::BlendOptions`]), 0 to 1.
 ///
-/// Larger: a track that fades in begins at the rest pose. Smaller: the remainder of a faded track is scaled up to a
-/// whole pose. Shown by the tests of `animators`.
+/// Larger: a track that fades in starts at the rest pose. Smaller: the pose of a nearly faded track keeps full effect.
+/// Shown by the tests of `animators`.
 pub(crate) const FILL_BELOW: f32 = 0.1;
 
 // animator/fed.rs
 
-/// Longest extrapolation of a pose from outside, seconds.
+/// Longest extrapolation of a fed pose, seconds.
 ///
-/// Larger: a character without new poses swings out. Smaller: an animator that predicts several steps has limbs that
-/// stop. Shown by the tests of `feeding`.
+/// Larger: limbs of a character without new poses move on too far. Smaller: limbs stop in an animator that predicts
+/// several steps. Shown by the tests of `feeding`.
 pub(crate) const LONGEST_EXTRAPOLATION: f32 = 0.1;
 
 // animator/track.rs
 
 /// Largest track speed, forward or backward, clip seconds per second.
 ///
-/// It bounds the laps and events of an update. Larger: an update may take very long. Smaller: a clip cannot be played
-/// as fast. Shown by the tests of `animators`.
+/// It bounds the laps and events of an update. Larger: an update may take very long. Smaller: clips cannot be played as
+/// fast. Shown by the tests of `animators`.
 pub const MAX_SPEED: f32 = 1_000.0;
 
 // contact/mod.rs
 
-/// Least share of a clip's frames in which a foot is low, for a walk on the spot: one in this number.
+/// Least share of a clip's frames in which a foot is low in a walk on the spot: one frame in this number.
 ///
 /// Larger: a sliding dance counts as a walk. Smaller: a walk with high steps counts as standing. Shown by the tests of
 /// `retarget` and by `loaded` of `sinew`.
 pub(crate) const WALK_STANDS: usize = 3;
 
-/// Least share of a clip's frames in which a foot is low, for a run: one in this number, because a run is mostly in the
-/// air.
+/// Least share of a clip's frames in which a foot is low in a run: one frame in this number, because a runner is mostly
+/// in the air.
 ///
 /// Larger: a kick counts as a run. Smaller: cartoon runs count as jumps. Shown by `loaded` of `sinew`.
 pub(crate) const RUN_STANDS: usize = 8;
@@ -45,11 +45,11 @@ pub(crate) const RUN_STANDS: usize = 8;
 
 /// Time between the frames of a clip that are searched for footfalls, seconds.
 ///
-/// Larger: footfalls are later and less exact. Smaller: slower. Shown by `sinew_cli` `convert`.
+/// Larger: footfalls are later and less exact. Smaller: the search is slower. Shown by `sinew_cli` `convert`.
 pub(crate) const STEP_FRAME_TIME: f64 = 1.0 / 60.0;
 
-/// Largest slide of a standing foot, as a share of the body's speed, 0 to 1: runs are seldom drawn or captured to the
-/// speed of a foot.
+/// Largest slide of a standing foot, as a share of the body's speed, 0 to 1. In most drawn or captured runs, the feet
+/// do not match the speed of the body.
 ///
 /// Larger: a low swinging foot counts as standing. Smaller: runs have no footsteps. Shown by `sinew_cli` `convert`.
 pub(crate) const STEP_SLIDE: f32 = 0.2;
@@ -57,84 +57,86 @@ pub(crate) const STEP_SLIDE: f32 = 0.2;
 /// Largest rotation of a joint from the last pose of a loop to its first, radians, and largest displacement, as a share
 /// of the leg.
 ///
-/// Larger: a clip that ends near its start counts as a loop. Smaller: a loop that does not quite close loses the
+/// Larger: a clip that ends near its start counts as a loop. Smaller: a loop that does not quite close lacks the
 /// footfall at its seam. Shown by `sinew_cli` `convert`.
 pub(crate) const LOOP_SEAM: f32 = 0.1;
 
-/// Frames before the end of a loop whose motion is added to [`LOOP_SEAM`]: many loops end one frame before their first
-/// pose.
+/// Number of frames before the end of a loop whose motion is added to [`LOOP_SEAM`]: many loops end one frame before
+/// their first pose.
 ///
 /// Larger or smaller: like [`LOOP_SEAM`], for fast clips. Shown by `sinew_cli` `convert`.
 pub(crate) const LAST_FRAMES: usize = 4;
 
 // cleanup/foot_slide.rs
 
-/// Largest share of its length that a leg is stretched to, below 1.
+/// Largest share of its length to which a leg is stretched, below 1.
 ///
-/// Larger: a knee snaps straight. Smaller: the pelvis is lowered although the leg would reach. Shown by the tests of
+/// Larger: knees snap straight. Smaller: the pelvis is lowered although the leg would reach. Shown by the tests of
 /// `cleanup`.
 pub(crate) const LEG_REACH: f32 = 0.996;
 
 /// Time over which the pelvis moves down and up again for an unreachable foot, seconds.
 ///
-/// Larger: it is low for long. Smaller: it jerks. Shown by the tests of `cleanup`.
+/// Larger: the pelvis stays low for long. Smaller: the pelvis jerks. Shown by the tests of `cleanup`.
 pub(crate) const PELVIS_TIME: f32 = 0.1;
 
 // clip/reduce.rs
 
-/// Share of the bound on the error, 0 to 1, that is good enough to stop looking for fewer keys.
+/// Share of the error bound, 0 to 1, at which the search for fewer keys stops.
 ///
-/// Larger: more rounds for a few keys less. Smaller: more keys than the bound needs. Shown by the tests of `reduce`.
+/// Larger: more rounds save a few more keys. Smaller: more keys remain than the bound needs. Shown by the tests of
+/// `reduce`.
 pub(crate) const REDUCED_ENOUGH: f32 = 0.75;
 
 /// Initial share of the error bound per channel, 0 to 1.
 ///
-/// Errors of different joints rarely add up. Larger or smaller: one more round until the share is found. Shown by the
-/// tests of `reduce`.
+/// Errors of different joints rarely add up. Larger or smaller: the search needs one more round. Shown by the tests of
+/// `reduce`.
 pub(crate) const CHANNEL_SHARE: f32 = 0.55;
 
-/// Share of the bound on the error that the next round aims at, from [`REDUCED_ENOUGH`] to 1.
+/// Share of the error bound that the next round aims at, from [`REDUCED_ENOUGH`] to 1.
 ///
-/// Larger: rounds that overshoot are lost. Smaller: more keys. Shown by the tests of `reduce`.
+/// Larger: rounds that exceed the bound are wasted. Smaller: more keys remain. Shown by the tests of `reduce`.
 pub(crate) const REDUCTION_AIM: f32 = 0.9;
 
 // clip/root_motion.rs
 
 /// Longest time between samples of root motion, seconds; linear in between.
 ///
-/// Larger: turns are cut short. Smaller: longer tracks. Shown by the tests of `root_motion`.
+/// Larger: turns are cut short. Smaller: motion tracks are longer. Shown by the tests of `root_motion`.
 pub(crate) const ROOT_SAMPLING: f32 = 1.0 / 60.0;
 
 // learned_limits.rs
 
-/// Share of the frames that learned limits take in, 0 to 1.
+/// Share of the frames that learned limits include, 0 to 1.
 ///
-/// Larger: single frames widen the limits. Smaller: real motion is cut off. Shown by the tests of `learned_limits`.
+/// Larger: single frames widen the limits. Smaller: real motion is excluded. Shown by the tests of `learned_limits`.
 pub const COVERAGE: f32 = 0.995;
 
-/// Least rotation that shows a hinge, radians.
+/// Least rotation of a hinge, radians.
 ///
-/// Larger: hinges that hardly move are balls. Smaller: noise is a hinge. Shown by the tests of `learned_limits`.
+/// Larger: hinges that hardly move count as balls. Smaller: noise counts as a hinge. Shown by the tests of
+/// `learned_limits`.
 pub(crate) const LEAST_HINGE: f32 = 0.2;
 
 /// Largest rotation of a hinge about other axes, as a share of its range.
 ///
-/// Larger: a ball that swings one way counts as a hinge. Smaller: captured knees count as balls. Shown by the tests of
-/// `learned_limits`.
+/// Larger: a ball joint that swings one way counts as a hinge. Smaller: captured knees count as balls. Shown by the
+/// tests of `learned_limits`.
 pub(crate) const HINGE_PLAY: f32 = 0.1;
 
 // legs.rs
 
-/// Position of the ball of a foot in front of an ankle without toes, in leg lengths.
+/// Distance of the ball of a foot in front of the ankle if the foot has no toes, in leg lengths.
 ///
 /// A human's is 0.13 to 0.16. Larger: heels lift too early. Smaller: feet stand on their heels. Shown by the tests of
 /// `retarget`.
 pub(crate) const BALL_AHEAD: f32 = 0.14;
 
-/// Height of an added ankle over the lowest skin of the shank, body heights.
+/// Height of an added ankle above the lowest skin of the shank, in body heights.
 ///
-/// Larger: shanks are short, and soles hang in the air. Smaller: knees bend where a foot would roll. Shown by the tests
-/// of `retarget`.
+/// Larger: shanks are short, and soles are above the ground. Smaller: knees bend where a foot would roll. Shown by the
+/// tests of `retarget`.
 pub(crate) const ANKLE_HEIGHT: f32 = 0.04;
 
 /// Confidence of the role of an added joint.
@@ -144,19 +146,20 @@ pub(crate) const MADE_UP: f32 = 0.5;
 
 // playback/inertial.rs
 
-/// Least share of its time that an offset may die away in, 0 to 1.
+/// Shortest decay of an offset, as a share of the transition's duration, 0 to 1.
 ///
-/// Smaller: an offset that already runs home stops with a jerk. Larger: it swings past. Shown by the tests of `transitions`.
+/// Larger: the offset overshoots. Smaller: an offset that already shrinks fast stops with a jerk. Shown by the tests of
+/// `transitions`.
 pub(crate) const SHORTEST_DECAY: f32 = 1.0 / 3.0;
 
 // garments/columns.rs
 
 /// Share of the last bone's length beyond which the skin of a chain's last joint gets its own hem, a ratio.
 ///
-/// Larger: hems stay stiff, as long as a bone. Smaller: a bone for a seam. Shown by the tests of `garments`.
+/// Larger: hems as long as a bone stay stiff. Smaller: a seam gets a bone. Shown by the tests of `garments`.
 pub(crate) const HEM_SHARE: f32 = 0.25;
 
-/// Gap between the last column and the first, over the widest between neighbours, up to which a garment is closed, a
+/// Largest gap between the last column and the first in a closed garment, over the widest gap between neighbours, a
 /// ratio.
 ///
 /// Larger: an open coat is sewn up. Smaller: a skirt with uneven columns has a slit. Shown by the tests of `garments`.
@@ -166,8 +169,8 @@ pub(crate) const RING_GAP: f32 = 1.5;
 
 /// Default limit of particles of a mesh sheet, a number.
 ///
-/// Each is a joint of the written file and of the GPU skin. Larger: slower, and old viewers lose joints. Smaller: a
-/// long coat has coarse folds. Shown by the tests of `sheets`.
+/// Each particle is a joint of the written file and of the GPU skin. Larger: the simulation is slower, and old viewers
+/// lose joints. Smaller: a long coat has coarse folds. Shown by the tests of `sheets`.
 pub const MOST_PARTICLES: usize = 400;
 
 /// Default share of a sheet's height, from its top, in which bodies hold it, 0 to 1.
@@ -178,59 +181,62 @@ pub(crate) const HELD_SHARE: f32 = 0.1;
 
 /// Growth factor of the particle distance until there are few enough, a ratio.
 ///
-/// Larger: coarser sheets than need be. Smaller: more tries. Shown by the tests of `sheets`.
+/// Larger: sheets are coarser than necessary. Smaller: the search needs more tries. Shown by the tests of `sheets`.
 pub(crate) const COARSER: f32 = 1.1;
 
-/// Cosine of the angle, 75°, from which a corner is that of a cell, so that the side opposite is a diagonal, a ratio.
+/// Cosine of the angle, 75°, above which a corner counts as that of a square cell, so that the opposite side is a
+/// diagonal, a ratio.
 ///
-/// Larger: equal triangles are split like halves of cells, and lie further apart. Smaller: slightly skewed cells are
-/// split across. Shown by the tests of `sheets`.
+/// Larger: equilateral triangles are split like halves of cells, and particles are farther apart. Smaller: slightly
+/// skewed cells are split across. Shown by the tests of `sheets`.
 pub(crate) const SQUARE_CORNER: f32 = 0.26;
 
-/// Length of a diagonal over the spacing up to which it is not split, a ratio: that of a square cell, and a little.
+/// Longest diagonal that is not split, over the spacing, a ratio: slightly above that of a square cell.
 ///
 /// Larger: limbs pass between particles. Smaller: cells are split across, and threads run diagonally. Shown by the
 /// tests of `sheets`.
 pub(crate) const DIAGONAL: f32 = 1.45;
 
-/// Share of a sheet's extent below which no distance between particles is tried, a ratio.
+/// Smallest particle distance that is tried, as a share of a sheet's extent, a ratio.
 ///
-/// Larger: coarser sheets for long, narrow meshes. Smaller: more tries if the spacing is tiny. Shown by the tests of
+/// Larger: sheets of long, narrow meshes are coarser. Smaller: a tiny spacing needs more tries. Shown by the tests of
 /// `sheets`.
 pub(crate) const FINEST: f32 = 1e-4;
 
 // retarget/align.rs
 
-/// Cosine of the angle between two reference poses, 30°, up to which both count as upright.
+/// Cosine of the largest angle between two reference poses, 30°, that both count as upright.
 ///
-/// A larger angle: an A-pose is bent to a slouch. A smaller one: the actor's calibration pose remains in stances.
+/// A larger angle: an A-pose is bent to a slouch. A smaller angle: the actor's calibration pose remains in stances.
 /// Shown by the tests of `mocap`.
 pub(crate) const SAME_UPRIGHT: f32 = 0.866;
 
-/// Cosine of the angle of a leg's bones to the vertical, 25°, up to which it stands and its foot is flat on the floor.
+/// Cosine of the largest angle of a leg's bones to the vertical, 25°, at which the leg stands and its foot is flat on
+/// the floor.
 ///
-/// A larger angle: feet of crouching rest poses are turned flat. A smaller one: those of standing ones are not. Shown by the tests of
-/// `retarget`.
+/// A larger angle: feet of crouching rest poses are turned flat. A smaller angle: feet of standing rest poses are not
+/// turned flat. Shown by the tests of `retarget`.
 pub(crate) const LEG_STANDS: f32 = 0.906;
 
 // retarget/mod.rs
 
-/// Time by which a foot is held longer than the actor's at either end, seconds.
+/// Time by which a foot is held longer than the actor's at each end of a contact, seconds.
 ///
-/// A foot on its way down hardly moves forward. Larger: steps stick. Smaller: feet slide as they land. Shown by the
-/// tests of `retarget`.
+/// A foot that comes down hardly moves forward. Larger: feet stick at each step. Smaller: feet slide as they land.
+/// Shown by the tests of `retarget`.
 pub(crate) const FOOT_HOLD: f32 = 0.02;
 
 /// Time over which the height of the body is matched to the floor, seconds.
 ///
-/// Larger: feet sink as a step begins. Smaller: the body bobs. Shown by the tests of `retarget`.
+/// Larger: feet sink at the start of a step. Smaller: the body bobs. Shown by the tests of `retarget`.
 pub(crate) const FLOOR_TIME: f32 = 0.12;
 
 // retarget/reference.rs
 
 /// Cosine of the largest angle, 32°, of trunk and legs to the vertical in a clearly standing pose.
 ///
-/// A larger angle: a crouch is the reference. A smaller one: no frame of a capture is. Shown by the tests of `mocap`.
+/// A larger angle: a crouch becomes the reference. A smaller angle: no frame of a capture does. Shown by the tests of
+/// `mocap`.
 pub(crate) const CLEARLY_STANDING: f32 = 0.85;
 
 /// Least cosine of trunk, thighs and shanks with the vertical for a standing frame of a clip.
@@ -242,7 +248,7 @@ pub(crate) const STANDS_IN_CLIP: f32 = 0.5;
 
 /// Radius of a spring's tip over the mean length of its chain's bones, a ratio.
 ///
-/// Larger: hair stands off the head. Smaller: it sinks into surfaces. Shown by the tests of `springs`.
+/// Larger: hair stands off the head. Smaller: hair sinks into surfaces. Shown by the tests of `springs`.
 pub(crate) const SPRING_RADIUS: f32 = 0.15;
 
 // springs/mod.rs
@@ -255,14 +261,15 @@ pub(crate) const SPRING_LINK_SHARE: f32 = 0.5;
 
 // weights.rs
 
-/// Fewest joints of a skeleton whose weights can have been lost: a lid on a hinge has less.
+/// Fewest joints of a skeleton whose weights can have been lost; a lid on a hinge has fewer.
 ///
-/// Larger: a small skeleton that moves as one piece counts as rigid. Smaller: a hinge is refused. Shown by the tests of `weights`.
+/// Larger: a small skeleton that moves as one piece counts as rigid. Smaller: a hinge is rejected. Shown by the tests
+/// of `weights`.
 pub(crate) const FEWEST_OF_A_SKELETON: usize = 4;
 
 /// Most comparisons of loose vertices with others per mesh part.
 ///
-/// Larger: reading takes longer. Smaller: for large meshes fewer vertices are compared, and the nearest is less exact.
+/// Larger: reading takes longer. Smaller: in large meshes fewer vertices are compared, and the nearest is less exact.
 /// Only shown by the time of huge meshes.
 pub(crate) const MOST_COMPARED: usize = 50_000_000;
 

@@ -1,4 +1,4 @@
-//! Skin weights: vertices without a bone, and skins whose weights were lost.
+//! Repairs skin weights: of vertices without a bone, and of skins whose weights were lost.
 
 use crate::rig::{JointIdx, Primitive, Rig, RigMesh};
 use crate::roles::bind_pose;
@@ -7,7 +7,7 @@ use crate::tuning::{FEWEST_OF_A_SKELETON, MOST_COMPARED, NEAREST_FALLOFF};
 use sinew_math::{Affine, Vec3, clamp};
 use std::collections::BTreeMap;
 
-/// Name of the bone to which Blender's glTF exporter weights unweighted vertices.
+/// Name of the bone to which Blender's glTF exporter assigns unweighted vertices.
 const NEUTRAL_BONE: &str = "neutral_bone";
 
 /// Part of a rig's skin whose weights are replaced.
@@ -21,14 +21,14 @@ pub struct SkinPart {
     pub vertices: Vec<usize>,
 }
 
-/// Gives unweighted vertices the weights of the nearest skin in the bind pose.
+/// Gives unweighted vertices the weights of the nearest skin in the bind pose; returns the changed parts.
 ///
-/// Loose vertices are those of `without`, whose weights the file does not state, and those weighted to nothing but
-/// `neutral_bone`, as Blender exports them. A connected piece of the mesh of which every vertex is loose moves as one,
-/// with the joint that moves the nearest skin most: a hat with the head. Weights come from a vertex whose joints all
-/// belong to the mesh's own skin; without one, vertices stay as they are.
+/// Loose vertices are those of `without`, whose weights the file does not state, and those weighted only to
+/// `neutral_bone`, as Blender exports them. A connected piece of the mesh whose vertices are all loose moves rigidly,
+/// with the joint that moves the nearest skin most: a hat with the head. Weights are copied from a vertex whose joints
+/// all belong to the mesh's own skin; if there is none, vertices stay unchanged.
 ///
-/// Returns the changed parts, by mesh and primitive. For very large meshes not every vertex is compared.
+/// The changed parts are sorted by mesh and primitive. For very large meshes not every vertex is compared.
 ///
 /// # Panics
 /// If the rig's indices or those of `without` are out of range.
@@ -55,7 +55,7 @@ pub fn weigh_loose_vertices(rig: &mut Rig, without: &[SkinPart]) -> Vec<SkinPart
         let nearest: Vec<(&Donor, f32)> = part.vertices.iter().map(nearest).collect();
         let primitive = &mut rig.meshes[part.mesh].primitives[part.primitive];
         let piece_of = pieces(primitive);
-        // The nearest donor of each piece that is loose as a whole; `None` for the others.
+        // The nearest donor of each piece whose vertices are all loose; `None` for other pieces.
         let mut of_piece: BTreeMap<usize, Option<(&Donor, f32)>> = BTreeMap::new();
         for (&vertex, &found) in part.vertices.iter().zip(&nearest) {
             let best = of_piece.entry(piece_of[vertex]).or_insert(Some(found));
@@ -100,15 +100,15 @@ fn loose_vertices(rig: &Rig, without: &[SkinPart]) -> Vec<SkinPart> {
     loose
 }
 
-/// Slots and weights above 0 of a vertex.
+/// Returns slots and weights of a vertex, for weights above 0.
 fn influences(primitive: &Primitive, vertex: usize) -> impl Iterator<Item = (usize, f32)> {
     let slots = primitive.joints[vertex].into_iter().map(usize::from);
     slots.zip(primitive.weights[vertex]).filter(|&(_, weight)| weight > 0.0)
 }
 
-/// A vertex whose weights others may copy.
+/// A vertex whose weights may be copied.
 struct Donor {
-    /// Model space in the bind pose, file units.
+    /// Position in model space in the bind pose, file units.
     at: Vec3,
     /// Joints and their weights.
     weights: Vec<(JointIdx, f32)>,
@@ -129,7 +129,7 @@ impl Donor {
     }
 }
 
-/// Vertices that are not loose.
+/// Returns the vertices that are not loose.
 fn donors(rig: &Rig, loose: &[SkinPart], model: &[Affine]) -> Vec<Donor> {
     let mut donors = Vec::new();
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
@@ -155,7 +155,8 @@ fn nearest<'d>(donors: &[&'d Donor], stride: usize, at: Vec3) -> (&'d Donor, f32
     all.min_by(|a, b| a.1.total_cmp(&b.1)).expect("there are donors")
 }
 
-/// Number of each vertex's piece: the least vertex connected to it by triangles. Vertices in one place are connected.
+/// Returns the piece of each vertex: the smallest index connected to it by triangles. Vertices in one place are
+/// connected.
 fn pieces(primitive: &Primitive) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..primitive.positions.len()).collect();
     let root = |parent: &mut Vec<usize>, mut at: usize| {
@@ -180,8 +181,9 @@ fn pieces(primitive: &Primitive) -> Vec<usize> {
     (0..parent.len()).map(|vertex| root(&mut parent, vertex)).collect()
 }
 
-/// The only skinned joint of a rig whose skins name several: its vertex weights were lost, and it would move as one
-/// piece. `None` if more than one moves skin, or if rigid meshes hang on bones, as on a machine.
+/// Returns the only joint that moves skin in a rig whose skins have several joints: the vertex weights were lost, and
+/// the skin would move as one piece. `None` if more than one joint moves skin, or if rigid meshes are attached to
+/// bones, as in a machine.
 ///
 /// # Panics
 /// If the rig's indices are out of range.
@@ -217,8 +219,9 @@ pub fn lost_weights(rig: &Rig) -> Option<JointIdx> {
 /// weights were [lost](lost_weights).
 ///
 /// A bone runs from a joint of the skin to each of its children in the skin; a childless joint is a point. A vertex is
-/// weighted to the nearest bone and those that meet it, by the inverse fourth power of the distance, so that an arm at
-/// the side does not pull the trunk. A root with a single chain is no bone: it stands on the ground between the feet.
+/// weighted to the nearest bone and the bones that meet it, by the inverse fourth power of the distance, so that an
+/// arm at the side does not pull the trunk. A root with a single chain is no bone, because it is on the ground between
+/// the feet.
 ///
 /// Returns the changed parts, all vertices of each.
 ///
@@ -249,7 +252,7 @@ pub fn weigh_by_nearness(rig: &mut Rig) -> Vec<SkinPart> {
 /// Bone of a skin, in the bind pose.
 struct Bone {
     slot: u16,
-    /// Slots of the joint above and of those below.
+    /// Slots of the joints above and below the bone.
     meets: Vec<u16>,
     from: Vec3,
     to: Vec3,

@@ -2,8 +2,8 @@
 //! Physics-Based Character Skills", SIGGRAPH 2018): JSON, metres, +Y up, the body faces +X.
 //!
 //! A frame is a row of numbers: its duration; position and orientation (w, x, y, z) of the root; then per joint four
-//! numbers for a ball joint, one angle about z for a hinge, none for a fixed joint. Only the character, a separate
-//! file, defines the joints.
+//! numbers for a ball joint, one angle about z for a hinge, none for a fixed joint. The joints are defined only in
+//! the character, a separate file.
 //!
 //! ```
 //! use sinew_formats::{read_deepmimic, read_deepmimic_character};
@@ -28,20 +28,20 @@ use sinew_math::{EulerOrder, Rotation, Vec3};
 /// Motion of a joint of a DeepMimic character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeepMimicJoint {
-    /// The root: three numbers for its position, four for its orientation.
+    /// Root: three numbers for its position, four for its orientation.
     Root,
-    /// A ball: a quaternion w, x, y, z.
+    /// Ball joint: a quaternion w, x, y, z.
     Spherical,
-    /// A hinge about z: an angle, radians.
+    /// Hinge about z: an angle, radians.
     Revolute,
-    /// A slide along x: metres.
+    /// Slide along x: metres.
     Prismatic,
-    /// None.
+    /// Fixed joint, without numbers.
     Fixed,
 }
 
 impl DeepMimicJoint {
-    /// Numbers of a row.
+    /// Count of the joint's numbers in a row.
     fn width(self) -> usize {
         match self {
             Self::Root => 7,
@@ -66,15 +66,15 @@ pub struct DeepMimicCharacter {
 pub struct DeepMimicClip {
     /// The motion.
     pub clip: Clip,
-    /// Behaviour outside the clip's time range: the file says whether it loops.
+    /// Behaviour outside the clip's time range, by the loop flag of the file.
     pub wrap: Wrap,
 }
 
 /// Reads a character: joints and their attachment. Ignores bodies, limits and gains.
 ///
 /// # Errors
-/// Names the place: invalid JSON, a missing key or one of another type, a parent that does not precede its child, a
-/// joint of an unknown type, no joint, a second root.
+/// Returns an error that names the place: invalid JSON, a missing key or one of another type, a parent that does not
+/// precede its child, a joint of an unknown type, no joint, a second root.
 pub fn read_deepmimic_character(bytes: &[u8]) -> Result<DeepMimicCharacter> {
     let json = json::parse(bytes)?;
     let joints_at = At::root(&json).need("Skeleton")?.need("Joints")?;
@@ -116,13 +116,13 @@ fn joint_kind(at: At<'_>, parent: Option<JointIdx>) -> Result<DeepMimicJoint> {
     })
 }
 
-/// Three numbers under keys that end in X, Y, Z.
+/// Reads three numbers whose keys are `key` with X, Y and Z appended.
 fn triple(at: At<'_>, key: &str) -> Result<Vec3> {
     let number = |axis: &str| at.need(&format!("{key}{axis}"))?.f32();
     Ok(Vec3::new(number("X")?, number("Y")?, number("Z")?))
 }
 
-/// Rotation of a joint against its parent at rest: about fixed x, then y, then z.
+/// Reads the rotation of a joint relative to its parent at rest: about fixed x, then y, then z.
 fn attached(at: At<'_>) -> Result<Rotation> {
     let angles = triple(at, "AttachTheta")?;
     Ok(Rotation::from_euler(EulerOrder::Xyz.extrinsic(), angles.to_array()))
@@ -131,8 +131,8 @@ fn attached(at: At<'_>) -> Result<Rotation> {
 /// Reads a clip of a character.
 ///
 /// # Errors
-/// Names the place: invalid JSON, no frame, a row whose length does not match the character, a non-finite number, a
-/// frame other than the last with no duration.
+/// Returns an error that names the place: invalid JSON, no frame, a row whose length does not match the character, a
+/// non-finite number, a frame without duration (other than the last).
 pub fn read_deepmimic(bytes: &[u8], character: &DeepMimicCharacter) -> Result<DeepMimicClip> {
     let json = json::parse(bytes)?;
     let root = At::root(&json);
@@ -170,7 +170,7 @@ fn read_rows(frames_at: At<'_>, width: usize) -> Result<Vec<Vec<f32>>> {
     Ok(rows)
 }
 
-/// Start time of each frame, seconds. The last frame's duration is not used.
+/// Returns the start time of each frame, seconds. The last frame's duration is not used.
 fn times(frames_at: At<'_>, rows: &[Vec<f32>]) -> Result<Vec<f32>> {
     let mut times = vec![0.0_f32];
     let mut sum = 0.0;
@@ -184,7 +184,7 @@ fn times(frames_at: At<'_>, rows: &[Vec<f32>]) -> Result<Vec<f32>> {
     Ok(times)
 }
 
-/// Keys of one joint: its animated properties, and their values frame by frame.
+/// Returns the animated properties of one joint, each with its values frame by frame.
 fn keys(kind: DeepMimicJoint, rest: LocalTransform, part: &[&[f32]]) -> Vec<(Property, Vec<f32>)> {
     let turns = |turn: &dyn Fn(&[f32]) -> Rotation| {
         let mut last = rest.rotation;

@@ -1,11 +1,11 @@
-//! This crate's error: the problem, the file and the place in it.
+//! Error of this crate: the problem, the file, and the place in the file.
 
 use core::fmt;
 
-/// Kind of trouble that a file is in.
+/// Kind of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// The operating system refused to read or write.
+    /// The operating system rejected reading or writing.
     Io,
     /// The bytes break the rules of their format.
     Malformed,
@@ -17,9 +17,9 @@ pub enum ErrorKind {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{what}{}", Prefix(.file), Suffix(.where_))]
 pub struct Error {
-    /// Sort of trouble.
+    /// Kind of the error.
     pub kind: ErrorKind,
-    /// Name of the file as the user gave it, or `""` for bytes without a name.
+    /// Name of the file as given by the user, or `""` for bytes without a name.
     pub file: String,
     /// One-line description of the problem.
     pub what: String,
@@ -27,26 +27,26 @@ pub struct Error {
     pub where_: String,
 }
 
-/// Shorthand of this crate.
+/// Result with this crate's error.
 pub type Result<T, E = Error> = core::result::Result<T, E>;
 
 impl Error {
-    /// An error of the operating system. `what` is one line.
+    /// Makes an error of the operating system. `what` is one line.
     pub fn io(what: impl Into<String>) -> Self {
         Self { kind: ErrorKind::Io, file: String::new(), what: what.into(), where_: String::new() }
     }
 
-    /// Invalid bytes at `place`.
+    /// Makes an error for invalid bytes at `place`.
     pub fn malformed(what: impl Into<String>, place: impl Into<String>) -> Self {
         Self { kind: ErrorKind::Malformed, file: String::new(), what: what.into(), where_: place.into() }
     }
 
-    /// The file needs an unsupported feature at `place`.
+    /// Makes an error for an unsupported feature at `place`.
     pub fn unsupported(what: impl Into<String>, place: impl Into<String>) -> Self {
         Self { kind: ErrorKind::Unsupported, file: String::new(), what: what.into(), where_: place.into() }
     }
 
-    /// The same error with the name of its file, unless it has one already.
+    /// Adds the name of the file, unless the error already has one.
     #[must_use]
     pub fn with_file(mut self, file: impl Into<String>) -> Self {
         if self.file.is_empty() {
@@ -56,7 +56,7 @@ impl Error {
     }
 }
 
-/// Text from a file made fit for a message: a single line of limited length.
+/// Shortens text from a file to a single line of limited length for a message.
 pub(crate) fn quoted(text: &str) -> String {
     const LONGEST: usize = 60;
     let mut out: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();

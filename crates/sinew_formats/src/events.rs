@@ -1,5 +1,5 @@
 //! Events of clips in files: `NAME.events.json` beside `NAME.bvh` (or `.glb`, …), and `extras.sinew_events` of a glTF
-//! animation. Both hold the same events:
+//! animation. Both have the same events:
 //!
 //! ```json
 //! {"sinew": "events", "version": 1, "clips": [
@@ -8,8 +8,8 @@
 //!     {"time": 0.5, "name": "hit", "min_weight": 0.9, "fired_by": "leader", "on_interrupt": true}]}]}
 //! ```
 //!
-//! `clip` is a name, or an index from 0 if clips have no names; times are seconds. In `extras` there is no list of
-//! clips: `"sinew_events": {"version": 1, "events": […]}`, or the bare list.
+//! `clip` is a name, or an index from 0 if clips have no names; times are seconds. `extras` have no list of clips, but
+//! `"sinew_events": {"version": 1, "events": […]}`, or only the list.
 //!
 //! ```
 //! use sinew_anim::ClipEvent;
@@ -31,17 +31,19 @@ use sinew_anim::{Clip, ClipEvent, EventPolicy, FiredBy};
 /// Version of both forms.
 const VERSION: usize = 1;
 
-/// Key of an animation's `extras` under which its events are.
+/// Key of the events in an animation's `extras`.
 const EXTRAS_KEY: &str = "sinew_events";
 
 const FIRED_BY: [(&str, FiredBy); 3] =
     [("every", FiredBy::Every), ("leader", FiredBy::Leader), ("one_per_group", FiredBy::OnePerGroup)];
 
-/// Reads an events file: for each of `clips` its events by time, `None` for a clip that the file does not mention.
+/// Reads an events file; returns the events of each of `clips` by time, `None` for a clip that the file does not
+/// mention.
 ///
 /// # Errors
-/// Names the place: invalid JSON, another kind of file or a newer version, an unknown key, a clip that does not exist,
-/// is ambiguous or is listed twice, an event without a name or outside its clip, a weight outside 0..=1.
+/// Returns an error that names the place: invalid JSON, another kind of file or a newer version, an unknown key, a
+/// clip that does not exist, is ambiguous or is listed twice, an event without a name or outside its clip, a weight
+/// outside 0..=1.
 pub fn read_events(bytes: &[u8], clips: &[Clip]) -> Result<Vec<Option<Vec<ClipEvent>>>> {
     let json = json::parse(bytes)?;
     let root = At::root(&json);
@@ -60,7 +62,7 @@ pub fn read_events(bytes: &[u8], clips: &[Clip]) -> Result<Vec<Option<Vec<ClipEv
     Ok(found)
 }
 
-/// The clip that is called so; a number counts them.
+/// Returns the index of the clip with that name, or the number itself.
 fn find_clip(at: At<'_>, clips: &[Clip]) -> Result<usize> {
     let Some(name) = at.value().as_str() else { return at.index(clips.len(), "clips") };
     let mut called = (0..clips.len()).filter(|&index| clips[index].name == name);
@@ -73,7 +75,7 @@ fn find_clip(at: At<'_>, clips: &[Clip]) -> Result<usize> {
     }
 }
 
-/// Writes the format of [`read_events`]; clips without events are left out.
+/// Writes the events in the format of [`read_events`]; clips without events are omitted.
 ///
 /// # Panics
 /// If there is not one list of events per clip, or a number is not finite.
@@ -89,8 +91,8 @@ pub fn write_events(clips: &[Clip], events: &[Vec<ClipEvent>]) -> String {
     json::to_text(&json!({"sinew": "events", "version": VERSION, "clips": entries}))
 }
 
-/// The `extras` of a glTF animation with these events, for [`append_clip`](crate::append_clip); `None` if there are
-/// none.
+/// Makes the `extras` of a glTF animation with these events, for [`append_clip`](crate::append_clip); `None` if there
+/// are none.
 ///
 /// # Panics
 /// If a number is not finite.
@@ -99,7 +101,7 @@ pub fn events_extras(events: &[ClipEvent]) -> Option<Value> {
     (!events.is_empty()).then(list)
 }
 
-/// Events of a glTF animation of `duration` seconds. `extras` may be any value; only our key is read.
+/// Reads the events of a glTF animation of `duration` seconds. `extras` may be any value; only Sinew's key is read.
 pub(crate) fn read_extras(animation: At<'_>, duration: f32) -> Result<Vec<ClipEvent>> {
     let Some(extras) = animation.get("extras")?.filter(|extras| extras.value().is_object()) else {
         return Ok(Vec::new());
@@ -116,7 +118,7 @@ pub(crate) fn read_extras(animation: At<'_>, duration: f32) -> Result<Vec<ClipEv
 fn read_list(list: At<'_>, duration: f32) -> Result<Vec<ClipEvent>> {
     let mut events =
         list.items()?.into_iter().map(|at| read_event(at, duration)).collect::<Result<Vec<ClipEvent>>>()?;
-    // Stable: events at one time keep the file's order.
+    // The sort is stable, so events at one time keep the file's order.
     events.sort_by(|a, b| a.time.total_cmp(&b.time));
     Ok(events)
 }
@@ -155,7 +157,7 @@ fn read_policy(at: At<'_>) -> Result<EventPolicy> {
     Ok(policy)
 }
 
-/// Events as JSON, without defaults.
+/// Converts events to JSON, without default values.
 fn write_list(events: &[ClipEvent]) -> Value {
     let usual = EventPolicy::default();
     let write = |event: &ClipEvent| {

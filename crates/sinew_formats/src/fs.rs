@@ -1,4 +1,4 @@
-//! The only file IO of the libraries: reading, atomic writing, and reading files next to a file within its folder.
+//! File IO of the libraries, only here: reading, atomic writing, and reading files next to a file within its folder.
 //!
 //! ```
 //! use sinew_formats::{load_world, write_atomic};
@@ -26,10 +26,10 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// The bytes of a file.
+/// Reads the bytes of a file.
 ///
 /// # Errors
-/// Names the file: it is missing, is no regular file, or may not be read.
+/// Returns an error that names the file: it is missing, is no regular file, or may not be read.
 pub fn read_bytes(path: impl AsRef<Path>) -> Result<Vec<u8>> {
     let path = path.as_ref();
     read_regular(path).map_err(|what| Error::io(what).with_file(path.display().to_string()))
@@ -44,7 +44,7 @@ fn read_regular(path: &Path) -> Result<Vec<u8>, String> {
     fs::read(path).map_err(|e| reason(path, &e))
 }
 
-/// One-line text of an operating-system error, the same on every system where it matters.
+/// Returns a one-line text of an operating-system error, equal on all systems where it matters.
 fn reason(path: &Path, error: &io::Error) -> String {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match error.kind() {
@@ -59,21 +59,21 @@ fn reason(path: &Path, error: &io::Error) -> String {
     }
 }
 
-/// Writes a file atomically: into a temporary file in the same folder, then renamed. For a symbolic link it writes the
-/// target. Only regular files are replaced.
+/// Writes a file atomically: into a temporary file in the same folder, which is then renamed. If the path is a symbolic
+/// link, its target is written. Only regular files are replaced.
 ///
 /// # Errors
-/// Names the file: its folder is missing, full or write-protected; it is a folder, a device, a pipe. The temporary file is
-/// removed.
+/// Returns an error that names the file: its folder is missing, full or write-protected; it is a folder, a device or a
+/// pipe. The temporary file is removed.
 pub fn write_atomic(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
     write_all_atomic(&[(path, bytes)])
 }
 
-/// Writes files that belong together, each as [`write_atomic`] does; none is renamed before the bytes of all are on
+/// Writes files that belong together, like [`write_atomic`]; a file is renamed only after the bytes of all files are on
 /// disk.
 ///
 /// # Errors
-/// Names the first file that could not be written. Files already renamed stay.
+/// Returns an error that names the first file that could not be written. Files already renamed stay.
 pub fn write_all_atomic(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)]) -> Result<()> {
     let mut staged = Vec::with_capacity(files.len());
     for (path, bytes) in files {
@@ -88,9 +88,9 @@ fn cannot_write(path: &Path, error: &io::Error) -> Error {
     Error::io(format!("cannot write: {}", reason(path, error))).with_file(path.display().to_string())
 }
 
-/// Target path of an output: symbolic links are resolved, and anything but a regular file is refused.
+/// Returns the target path of an output: symbolic links are resolved; all but regular files are rejected.
 fn place_of(path: &Path) -> io::Result<PathBuf> {
-    // Limit of links, the same as Linux has.
+    // Largest number of links, the same as on Linux.
     const MOST_LINKS: usize = 40;
     let mut place = path.to_path_buf();
     for _ in 0..MOST_LINKS {
@@ -110,9 +110,9 @@ fn place_of(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("is a link in a circle of links"))
 }
 
-/// A file's bytes under a temporary name next to the target; deleted on drop if not renamed.
+/// Bytes of a file under a temporary name next to the target; the file is deleted on drop if it was not renamed.
 struct Staged<'a> {
-    /// Path as the user named it.
+    /// Path as given by the user.
     path: &'a Path,
     place: PathBuf,
     temporary: PathBuf,
@@ -139,7 +139,7 @@ impl<'a> Staged<'a> {
 
 impl Drop for Staged<'_> {
     fn drop(&mut self) {
-        // Renamed files no longer exist here; for others the first error is the one to report, not this one.
+        // Renamed files no longer exist here; for others the first error is the one to report.
         let _ = fs::remove_file(&self.temporary);
     }
 }
@@ -147,7 +147,7 @@ impl Drop for Staged<'_> {
 /// Reads a GLB, glTF, VRM or VRMA with the files next to it.
 ///
 /// # Errors
-/// As [`read_gltf`], naming the file; also for a URI that leaves the file's folder, by `..` or through a link.
+/// As [`read_gltf`], with the file name; also for a URI that leaves the file's folder, by `..` or through a link.
 pub fn load_gltf(path: impl AsRef<Path>, options: ReadOptions) -> Result<Document> {
     let path = path.as_ref();
     let bytes = read_bytes(path)?;
@@ -156,13 +156,13 @@ pub fn load_gltf(path: impl AsRef<Path>, options: ReadOptions) -> Result<Documen
     read_gltf(&bytes, options, &mut resolve).map_err(|e| e.with_file(path.display().to_string()))
 }
 
-/// Reads any file with clips, and the events file `NAME.events.json` next to it, which overrides the events of the
-/// clips it names. Clips of formats without clip names are named after the file.
+/// Reads any file with clips. The events file `NAME.events.json` next to it overrides the events of the clips that it
+/// lists. Clips of formats without clip names are named after the file.
 ///
 /// Without a character in `options`, a DeepMimic clip uses the first character in its folder, by name, that matches it.
 ///
 /// # Errors
-/// As [`read_motion`] and [`read_events`], naming the file.
+/// As [`read_motion`] and [`read_events`], with the file name.
 pub fn load_motion(path: impl AsRef<Path>, options: &MotionOptions<'_>) -> Result<MotionFile> {
     let path = path.as_ref();
     let mut file = read_any(path, options).map_err(|e| e.with_file(path.display().to_string()))?;
@@ -184,12 +184,12 @@ pub fn load_motion(path: impl AsRef<Path>, options: &MotionOptions<'_>) -> Resul
     Ok(file)
 }
 
-/// Path of the events of a clip file: `walk.events.json` for `walk.bvh`.
+/// Returns the path of the events of a clip file: `walk.events.json` for `walk.bvh`.
 pub fn events_path(clip_file: impl AsRef<Path>) -> PathBuf {
     clip_file.as_ref().with_extension("events.json")
 }
 
-/// Path of the settings of a character's ragdoll: `hero.ragdoll.json` for `hero.glb`.
+/// Returns the path of the settings of a character's ragdoll: `hero.ragdoll.json` for `hero.glb`.
 pub fn settings_path(character_file: impl AsRef<Path>) -> PathBuf {
     character_file.as_ref().with_extension("ragdoll.json")
 }
@@ -215,9 +215,9 @@ fn read_any(path: &Path, options: &MotionOptions<'_>) -> Result<MotionFile> {
     })
 }
 
-/// DeepMimic characters in the folder of a clip, by name.
+/// Returns the DeepMimic characters in the folder of a clip, by name.
 fn characters_beside(path: &Path) -> Vec<(String, DeepMimicCharacter)> {
-    // A character is a page or two of text; a folder may hold anything.
+    // A character is a page or two of text, but a folder may contain any files.
     const LARGEST: u64 = 1 << 20;
     const MOST_FILES: usize = 1000;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -235,10 +235,10 @@ fn characters_beside(path: &Path) -> Vec<(String, DeepMimicCharacter)> {
     files.into_iter().filter_map(read).collect()
 }
 
-/// Reads the triangles of a mesh file: an OBJ by its name, else the formats of [`load_gltf`].
+/// Reads the triangles of a mesh file: an OBJ by its extension, else a file that [`load_gltf`] reads.
 ///
 /// # Errors
-/// As [`load_gltf`] and [`read_obj`], naming the file.
+/// As [`load_gltf`] and [`read_obj`], with the file name.
 pub fn load_mesh(path: impl AsRef<Path>) -> Result<TriangleMesh> {
     let path = path.as_ref();
     let name = path.display().to_string();
@@ -251,7 +251,7 @@ pub fn load_mesh(path: impl AsRef<Path>) -> Result<TriangleMesh> {
 /// Reads the bodies of a level: a world file, or a mesh file (GLB, glTF, VRM or OBJ), which becomes one static body.
 ///
 /// # Errors
-/// As [`read_world`] and [`load_mesh`], naming the file.
+/// As [`read_world`] and [`load_mesh`], with the file name.
 pub fn load_world(path: impl AsRef<Path>) -> Result<Vec<BodyDef>> {
     let path = path.as_ref();
     let name = || path.display().to_string();
@@ -264,7 +264,7 @@ pub fn load_world(path: impl AsRef<Path>) -> Result<Vec<BodyDef>> {
     read_world(&read_bytes(path)?).map_err(|e| e.with_file(name()))
 }
 
-/// Reads `relative` inside `folder`; refuses links that lead out of it.
+/// Reads `relative` inside `folder`; rejects links out of the folder.
 fn read_beside(folder: &Path, relative: &str) -> Result<Vec<u8>> {
     let fail = |what: String| Error::io(format!("{}: {what}", quoted(relative)));
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };

@@ -1,4 +1,4 @@
-//! Bytes to plain data and back: glTF, worlds, ragdolls, motion capture, MJCF, ragdolls of Jolt.
+//! Reads and writes files as plain data: glTF, worlds, ragdolls, motion capture, MJCF, ragdolls of Jolt.
 //!
 //! ```
 //! use sinew_formats::{ReadOptions, no_files, read_gltf, write_gltf};
@@ -11,9 +11,10 @@
 //! # Ok::<(), sinew_formats::Error>(())
 //! ```
 //!
-//! [`load_gltf`] reads a character from disk, [`load_motion`] clips of any format, and [`Document`] writes a clip back into the same file.
+//! [`load_gltf`] reads a character from disk, [`load_motion`] reads clips of any format, and [`append_clip`] writes a
+//! clip back into the same file.
 //!
-//! Everything takes bytes, and a closure for external files; only the feature `fs` (on by default) accesses the file
+//! All functions take bytes, and a closure for external files; only the feature `fs` (on by default) accesses the file
 //! system. Input is untrusted: the result is a value or an [`Error`] with a place, never a panic, and memory is
 //! proportional to the input.
 #![forbid(unsafe_code)]

@@ -1,4 +1,4 @@
-//! Properties of shapes in a world file besides geometry: materials, filters, contact rules.
+//! Properties of shapes in a world file in addition to geometry: materials, filters, contact rules.
 
 use crate::container::json::{At, number, numbers};
 use crate::error::{Result, quoted};
@@ -27,7 +27,7 @@ const RULES: [(&str, Combine); 5] = [
     ("maximum", Combine::Maximum),
 ];
 
-/// A material itself, or the name of one.
+/// Reads a material, given as an object or by name.
 pub(crate) fn read_material(at: At<'_>, materials: Option<At<'_>>) -> Result<Material> {
     let at = match at.value().as_str() {
         None => at,
@@ -87,7 +87,7 @@ fn read_bits(at: At<'_>) -> Result<u32> {
     u32::try_from(at.usize()?).map_err(|_| at.malformed("must fit 32 bits"))
 }
 
-/// A material as JSON, without defaults.
+/// Converts a material to JSON, without default values.
 pub(crate) fn write_material(material: &Material) -> Value {
     let default = Material::DEFAULT;
     let mut object = Map::new();
@@ -144,7 +144,7 @@ pub(crate) fn read_filter(at: At<'_>) -> Result<Filter> {
     Ok(Filter { layers: bits("layers", default.layers)?, mask: bits("mask", default.mask)?, group })
 }
 
-/// `"push"`, `"ghost"`, `{ "one_way": … }`, or `{ "yields": … }`.
+/// Reads a contact rule: `"push"`, `"ghost"`, `{ "one_way": … }`, or `{ "yields": … }`.
 pub(crate) fn read_rule(at: At<'_>) -> Result<ContactRule> {
     match at.value().as_str() {
         Some("push") => return Ok(ContactRule::Push),
@@ -172,10 +172,10 @@ pub(crate) fn read_rule(at: At<'_>) -> Result<ContactRule> {
     Ok(rule)
 }
 
-/// `None` for the default.
+/// Converts a contact rule to JSON; `None` for the default.
 ///
 /// # Panics
-/// If it has a modifier: a file cannot hold functions.
+/// If the rule has a modifier, because a file cannot store functions.
 pub(crate) fn write_rule(rule: ContactRule) -> Option<Value> {
     match rule {
         ContactRule::Push => None,

@@ -1,4 +1,4 @@
-//! Render meshes as plain triangles, the input of `sinew boxes`: from a glTF scene in its rest pose, or an OBJ.
+//! Render meshes as plain triangles, the input of `sinew boxes`: a glTF scene in its rest pose, or an OBJ.
 //!
 //! ```
 //! use sinew_formats::{ReadOptions, TriangleMesh, no_files, read_gltf, write_gltf};
@@ -16,7 +16,7 @@ use crate::gltf::Document;
 use sinew_anim::{Primitive, Rig, local_to_model, rest_pose, skin_vertices};
 use sinew_math::{Affine, Mat3, Vec3};
 
-/// Triangles in one list of vertices.
+/// Triangles with a common list of vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
     /// Vertices in file units: metres in a glTF; undefined in an OBJ.
@@ -25,16 +25,16 @@ pub struct TriangleMesh {
     pub colors: Vec<[f32; 3]>,
     /// Vertex indices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Warnings of omissions and their reasons, one sentence each.
+    /// Omissions with their reasons, one sentence each.
     pub warnings: Vec<String>,
 }
 
 impl TriangleMesh {
-    /// All meshes of a glTF's scene at their nodes' transforms, skinned ones in the rest pose. Parts mirrored by a node
-    /// keep their outside.
+    /// Collects all meshes of a glTF's scene at their nodes' transforms, skinned ones in the rest pose. The outside of
+    /// parts mirrored by a node stays outside.
     ///
     /// # Errors
-    /// More vertices than an index can name.
+    /// If there are more vertices than an index can address.
     pub fn from_document(document: &Document) -> Result<Self> {
         let mut mesh = Self { warnings: document.warnings.clone(), ..Self::default() };
         let rig = &document.rig;

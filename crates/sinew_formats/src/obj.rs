@@ -14,19 +14,20 @@ use crate::mesh::TriangleMesh;
 use sinew_math::Vec3;
 use std::borrow::Cow;
 
-/// Most corners of a face: to cut a larger one would take too long.
+/// Largest number of corners of a face; triangulating a larger one would take too long.
 const MOST_CORNERS: usize = 1024;
-/// Corner tests allowed per corner of a face while cutting it: enough for any real outline, and few enough that a
-/// malicious file ends.
+/// Number of corner tests per corner while triangulating a face: enough for any real outline, and few enough that the
+/// reader also ends on a malicious file.
 const WORK: usize = 256;
 /// Colour of surfaces, because materials are not read.
 const GREY: [f32; 3] = [0.6; 3];
 
-/// The triangles of an OBJ file. Faces with more than three corners are cut, concave ones too;
-/// of one so jagged or twisted that this would take too long, the rest is cut as a fan from one corner.
+/// Reads the triangles of an OBJ file. Faces with more than three corners are triangulated, also concave ones. For a
+/// face so jagged or twisted that this would take too long, the rest becomes a fan from one corner.
 ///
 /// # Errors
-/// Names the line: an invalid or non-finite number, an index out of range, a face with fewer than three corners.
+/// Returns an error that names the line: an invalid or non-finite number, an index out of range, a face with fewer than
+/// three corners.
 pub fn read_obj(bytes: &[u8]) -> Result<TriangleMesh> {
     let text = core::str::from_utf8(bytes).map_err(|error| {
         Error::malformed("not an OBJ file: not text in UTF-8", format!("byte {}", error.valid_up_to()))
@@ -103,7 +104,7 @@ const KNOWN: [&str; 34] = [
     "call",
 ];
 
-/// Lines with their numbers, those that end in `\` joined with the next.
+/// Iterates over lines with their numbers; a line that ends in `\` is joined with the next.
 fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let mut lines = text.lines().enumerate();
     core::iter::from_fn(move || {
@@ -122,7 +123,8 @@ fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     })
 }
 
-/// A line without the `\` that continues it on the next; a `\` that ends a comment line continues nothing.
+/// Returns a line without the `\` that continues it on the next; `None` if it is not continued. A `\` at the end of a
+/// comment continues nothing.
 fn continued(line: &str) -> Option<&str> {
     if line.trim_start().starts_with('#') { None } else { line.trim_end().strip_suffix('\\') }
 }
@@ -139,7 +141,8 @@ fn read_vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<Vec3, Str
     Ok(Vec3::from_array(p))
 }
 
-/// Vertex indices of a face, from 0. In the file they count from 1, or from −1 backwards from the last vertex so far.
+/// Returns the vertex indices of a face, from 0. In the file they count from 1, or from −1 backward from the last
+/// vertex so far.
 fn read_face<'a>(words: impl Iterator<Item = &'a str>, vertices: usize) -> Result<Vec<u32>, String> {
     let mut face = Vec::new();
     for word in words.take_while(|word| !word.starts_with('#')) {
@@ -161,12 +164,12 @@ fn read_face<'a>(words: impl Iterator<Item = &'a str>, vertices: usize) -> Resul
     }
 }
 
-/// Cuts a polygon into triangles by ear clipping (Meisters 1975): an ear is a convex corner with no other corner in its
-/// triangle. If a twisted polygon has none left, the next corner is taken; after [`WORK`] tests the rest is cut as a
-/// fan.
+/// Triangulates a polygon by ear clipping (Meisters 1975): an ear is a convex corner without another corner in its
+/// triangle. If a twisted polygon has no ear left, the next corner is used; after [`WORK`] tests per corner the rest
+/// becomes a fan.
 fn cut(positions: &[Vec3], mut face: Vec<u32>, triangles: &mut Vec<[u32; 3]>) {
     let at = |i: u32| positions[i as usize];
-    // Newell's normal, relative to the first corner so that far-away polygons keep their digits.
+    // Newell's normal, relative to the first corner so that polygons far from the origin keep their precision.
     let origin = at(face[0]);
     let normal: Vec3 =
         (0..face.len()).map(|k| (at(face[k]) - origin).cross(at(face[(k + 1) % face.len()]) - origin)).sum();
@@ -175,7 +178,7 @@ fn cut(positions: &[Vec3], mut face: Vec<u32>, triangles: &mut Vec<[u32; 3]>) {
         let [a, b, c] = around(face, k).map(at);
         !is_left(a, b, c)
     };
-    // Only reflex corners can prevent an ear.
+    // Only reflex corners can be inside an ear.
     let mut inward: Vec<u32> = (0..face.len()).filter(|&k| turns_inward(&face, k)).map(|k| face[k]).collect();
     let mut work = WORK * face.len();
     let mut start = 0;
@@ -209,7 +212,7 @@ fn cut(positions: &[Vec3], mut face: Vec<u32>, triangles: &mut Vec<[u32; 3]>) {
     triangles.extend((1..face.len() - 1).map(|k| [face[0], face[k], face[k + 1]]));
 }
 
-/// The corner before, a corner, and the one after it.
+/// Returns a corner between the corner before it and the corner after it.
 fn around(face: &[u32], k: usize) -> [u32; 3] {
     let n = face.len();
     [face[(k + n - 1) % n], face[k], face[(k + 1) % n]]

@@ -11,19 +11,19 @@ use std::sync::Arc;
 /// Keys of a pose, for the key list of its object.
 pub(crate) const POSE_KEYS: [&str; 2] = ["position", "rotation"];
 
-/// `position` and `rotation` of an object; the identity if both are absent.
+/// Reads `position` and `rotation` of an object; the identity if both are absent.
 pub(crate) fn read_pose(at: At<'_>) -> Result<Transform> {
     let translation = read_vector(at, "position")?;
     let rotation = at.get("rotation")?.map_or(Ok(Rotation::IDENTITY), read_rotation)?;
     Ok(Transform { translation, rotation })
 }
 
-/// The vector under an optional key; zero if absent.
+/// Reads the vector under an optional key; zero if absent.
 pub(crate) fn read_vector(at: At<'_>, key: &str) -> Result<Vec3> {
     Ok(Vec3::from_array(at.numbers_or(key, [0.0; 3])?))
 }
 
-/// A quaternion `[x, y, z, w]` of length 1, or `{"axis": [x, y, z], "degrees": d}`.
+/// Reads a quaternion `[x, y, z, w]` of length 1, or `{"axis": [x, y, z], "degrees": d}`.
 fn read_rotation(at: At<'_>) -> Result<Rotation> {
     if at.value().is_object() {
         at.only(&["axis", "degrees"])?;
@@ -41,14 +41,14 @@ fn read_rotation(at: At<'_>) -> Result<Rotation> {
     if (square - 1.0).abs() >= 1e-2 {
         return Err(at.malformed("quaternion must have length 1"));
     }
-    // Numbers that we wrote read back unchanged.
+    // A rotation that Sinew wrote is unchanged.
     Ok(if (square - 1.0).abs() < 1e-6 { rotation } else { rotation.normalize() })
 }
 
 /// Writes the format of [`read_pose`]; nothing for the identity.
 pub(crate) fn write_pose(pose: Transform, object: &mut Map<String, Value>) {
     let r = pose.rotation;
-    // Bit by bit: −0 is not 0 in a snapshot.
+    // Compares bits, because −0 differs from 0 in a snapshot.
     let bits = |numbers: &[f32]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
     let (position, rotation) = (pose.translation.to_array(), [r.x, r.y, r.z, r.w]);
     if bits(&position) != bits(&[0.0; 3]) {
@@ -77,7 +77,7 @@ pub(crate) const SHAPE_KEYS: [&str; 14] = [
     "holes",
 ];
 
-/// A shape by its `type` and sizes.
+/// Reads a shape by its `type` and sizes.
 pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
     let kind = at.need("type")?;
     let (shape, needed): (Shape, &[&str]) = match kind.str()? {
@@ -144,7 +144,7 @@ fn read_half_extents(at: At<'_>) -> Result<Vec3> {
     Ok(Vec3::from_array(sizes))
 }
 
-/// A hull by points that it is to hold.
+/// Reads a hull from points that it must contain.
 fn read_hull(at: At<'_>) -> Result<Hull> {
     let at = at.need("points")?;
     let points = at.items()?.into_iter().map(|item| item.numbers().map(Vec3::from_array));
@@ -195,12 +195,13 @@ pub(crate) fn write_shape(shape: &Shape, object: &mut Map<String, Value>) {
     }
 }
 
-/// `{"kg": m, "center": [x, y, z], "inertia": [xx, yy, zz, yz, xz, xy]}`, the last in kg·m² about the centre.
+/// Reads `{"kg": m, "center": [x, y, z], "inertia": [xx, yy, zz, yz, xz, xy]}`, the inertia in kg·m² about
+/// the centre.
 pub(crate) fn read_mass(at: At<'_>) -> Result<MassProperties> {
     at.only(&["kg", "center", "inertia"])?;
     let inertia_at = at.need("inertia")?;
     let [xx, yy, zz, yz, xz, xy] = inertia_at.numbers()?;
-    // Leading minors (Sylvester) in f64, where the products of small numbers do not vanish.
+    // Leading minors (Sylvester) in f64, in which products of small numbers do not underflow.
     let [a, b, c, d, e, f] = [xx, yy, zz, yz, xz, xy].map(f64::from);
     let minors = [a, a * b - f * f, a * (b * c - d * d) - f * (f * c - d * e) + e * (f * d - b * e)];
     if minors.iter().any(|&m| m <= 0.0) {

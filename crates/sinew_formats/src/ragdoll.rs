@@ -44,7 +44,7 @@
 //! ```
 //!
 //! Metres, kilograms; angles in degrees. `position` and `rotation` of a body are those of its frame in character space
-//! at the bind pose (+Y up, facing +Z, feet at y = 0); its shape is at that frame. Every body but the first has a
+//! at the bind pose (+Y up, facing +Z, feet at y = 0); the shape is at this frame. Every body but the first has a
 //! `joint` to a `parent` that precedes it. The x axis of the joint's frames is the axis of a hinge and of twist:
 //! - `ball`: `limits_deg` of `swing_y`, `swing_z` (zero lies inside) and `twist`;
 //! - `universal`: the same, without `twist`;
@@ -75,13 +75,13 @@ use sinew_ragdoll::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 
 const VERSION: usize = 1;
 
-/// Most bodies: those of the largest joint tree. Pairs of bodies grow with the square.
+/// Most bodies: those of the largest joint tree. The number of pairs grows with the square of this number.
 const MOST_BODIES: usize = 1024;
 /// Largest distance and largest size, metres.
 const FARTHEST: f32 = 1e6;
 /// Smallest size, metres.
 const SMALLEST: f32 = 1e-6;
-/// Range of masses, kg; moments range over its square in kg·m².
+/// Range of masses, kg. Moments are from the square of the smallest mass to the largest, kg·m².
 const LIGHTEST: f32 = 1e-9;
 const HEAVIEST: f32 = 1e12;
 
@@ -105,11 +105,12 @@ const BODY_KEYS: [&str; 9] =
 const JOINT_KEYS: [&str; 7] =
     ["parent", "type", "limits_deg", "friction_torque", "frame_in_parent", "frame_in_child", "comment"];
 
-/// The ragdoll of a ragdoll file. Rig joints are indices that only the rig can check.
+/// Reads the ragdoll of a ragdoll file. Rig joints are indices that only the rig can check.
 ///
 /// # Errors
-/// Names the place, such as `bodies[3].joint.limits_deg.twist`: no bodies, a parent that does not precede its child,
-/// reversed limits, sizes and masses that are not positive, unknown keys and names, a later version.
+/// Returns an error that names the place, such as `bodies[3].joint.limits_deg.twist`: no bodies, a parent that does
+/// not precede its child, reversed limits, sizes and masses that are not positive, unknown keys and names, a later
+/// version.
 pub fn read_ragdoll(bytes: &[u8]) -> Result<RagdollDef> {
     let value = json::parse(bytes)?;
     let root = At::root(&value);
@@ -170,7 +171,7 @@ fn read_frame(at: At<'_>) -> Result<Transform> {
     read_pose(at)
 }
 
-/// A pose within [`FARTHEST`]: sums and squares of its numbers stay finite.
+/// Reads a pose within [`FARTHEST`], so that sums and squares of its numbers stay finite.
 fn read_pose(at: At<'_>) -> Result<Transform> {
     let pose = parts::read_pose(at)?;
     if sinew_math::abs3(pose.translation).max_element() > FARTHEST {
@@ -207,7 +208,7 @@ fn read_mass(at: At<'_>) -> Result<MassProperties> {
     Ok(mass)
 }
 
-/// A length between positive limits, so that its square is in range too.
+/// Reads a length between positive limits, so that its square is in range, too.
 fn read_scale(at: At<'_>) -> Result<f32> {
     let scale = at.positive()?;
     if !(SMALLEST..=FARTHEST).contains(&scale) {
@@ -235,7 +236,7 @@ fn read_body(at: At<'_>) -> Result<RagdollBodyDef> {
     })
 }
 
-/// The joint of the body `child`, whose parent has been read before it.
+/// Reads the joint of the body `child`; its parent must have been read already.
 fn read_joint(at: At<'_>, child: usize, bodies: &[RagdollBodyDef]) -> Result<RagdollJointDef> {
     at.only(&JOINT_KEYS)?;
     let parent_at = at.need("parent")?;
@@ -262,7 +263,7 @@ fn read_torque(at: At<'_>) -> Result<f32> {
     Ok(torque)
 }
 
-/// A body by the name of its bone, or by its number.
+/// Reads a reference to a body: the name of its bone, or its number.
 fn read_reference(at: At<'_>, bodies: &[RagdollBodyDef]) -> Result<usize> {
     let Some(name) = at.value().as_str() else { return at.index(bodies.len(), "bodies before") };
     let mut named = (0..bodies.len()).filter(|&i| bodies[i].bone == name);
@@ -310,7 +311,7 @@ fn read_hinge_range(at: At<'_>) -> Result<Range> {
     read_range(at.need("twist")?)
 }
 
-/// Two angles in degrees, in ascending order, within half a turn.
+/// Reads two angles in degrees, in ascending order, within half a turn.
 fn read_range(at: At<'_>) -> Result<Range> {
     let items = at.items()?;
     let [lo, hi] = items[..] else { return Err(at.malformed("must be [lowest, highest]")) };
@@ -329,7 +330,7 @@ fn read_range(at: At<'_>) -> Result<Range> {
     Ok(Range::new(angles[0], angles[1]))
 }
 
-/// The text of a ragdoll file. Reads back as an equal ragdoll.
+/// Returns the text of a ragdoll file, which reads back as an equal ragdoll.
 ///
 /// # Panics
 /// If a number is not finite, or the joints are not in the order of the bodies (`joints[i].child == i + 1`).
@@ -400,7 +401,7 @@ fn write_joint(def: &RagdollDef, joint: &RagdollJointDef) -> Value {
     object.into()
 }
 
-/// JSON value of `limits_deg`; `None` for a joint without limits.
+/// Returns the JSON value of `limits_deg`; `None` for a joint without limits.
 pub(crate) fn write_limits(kind: &JointKind) -> Option<Value> {
     match kind {
         JointKind::Ball { limit } | JointKind::Universal { limit } => limit.map(|limit| {
@@ -418,7 +419,7 @@ fn write_frame(frame: Transform) -> Value {
     object.into()
 }
 
-/// The bone name of a body where it is the only one with it, else its number.
+/// Returns the bone name of a body if it is unique, else the body's number.
 fn write_reference(def: &RagdollDef, body: usize) -> Value {
     let name = &def.bodies[body].bone;
     let same = def.bodies.iter().filter(|other| other.bone == *name).count();
@@ -429,7 +430,7 @@ fn write_range(range: Range) -> Value {
     json!([write_degrees(range.lo), write_degrees(range.hi)])
 }
 
-/// The shortest decimal in degrees that reads back as the same radians.
+/// Converts to the shortest decimal in degrees that reads back as the same radians.
 fn write_degrees(radians: f32) -> Value {
     let exact = f64::from(radians).to_degrees();
     let mut unit = 1.0;

@@ -1,4 +1,4 @@
-//! Meshes and height fields in world files, and mesh files as worlds.
+//! Meshes and height fields in world files, and mesh files as levels.
 
 use crate::container::json::{At, number, numbers};
 use crate::error::{Error, Result};
@@ -8,7 +8,7 @@ use sinew_math::Vec3;
 use sinew_physics::{BodyDef, BodyKind, HeightField, HeightFieldDef, Mesh, Shape, ShapeDef};
 use std::sync::Arc;
 
-/// `vertices`, a list of `[x, y, z]`, and `triangles`, a list of three indices each.
+/// Reads `vertices`, a list of `[x, y, z]`, and `triangles`, a list of three indices each.
 pub(crate) fn read_mesh(at: At<'_>) -> Result<Shape> {
     let vertices_at = at.need("vertices")?;
     let mut vertices = Vec::new();
@@ -28,7 +28,7 @@ pub(crate) fn read_mesh(at: At<'_>) -> Result<Shape> {
     Ok(Shape::Mesh(Arc::new(mesh)))
 }
 
-/// `columns` and `rows` of vertices, `spacing` `[x, z]`, `heights` row after row, `holes` by cell.
+/// Reads `columns` and `rows` of vertices, `spacing` `[x, z]`, `heights` row after row, and `holes` by cell.
 pub(crate) fn read_height_field(at: At<'_>) -> Result<Shape> {
     let mut heights = Vec::new();
     for height in at.need("heights")?.items()? {
@@ -73,10 +73,10 @@ pub(crate) fn write_height_field(field: &HeightField, object: &mut Map<String, V
 }
 
 impl TriangleMesh {
-    /// The mesh as a level: one static body with a mesh for its shape.
+    /// Converts the mesh to a level: one static body with a mesh shape.
     ///
     /// # Errors
-    /// No triangle with an area, coordinates that are not finite.
+    /// If no triangle has an area, or coordinates are not finite.
     pub fn to_body(&self) -> Result<BodyDef> {
         let mesh = Mesh::new(&self.positions, &self.triangles);
         let mesh = mesh.map_err(|error| Error::malformed(error.to_string(), ""))?;

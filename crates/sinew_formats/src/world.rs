@@ -1,5 +1,5 @@
-//! World files, version 1: a level or a set-up of bodies, written by hand or by `sinew boxes`. `docs/world.md` is the
-//! reference.
+//! World files, version 1: a level or a set-up of bodies, written by hand or by `sinew boxes`. The reference is
+//! `docs/world.md`.
 //!
 //! ```json
 //! {
@@ -90,11 +90,11 @@ const BODY_KEYS: [&str; 13] = [
 
 const SURFACE_KEYS: [&str; 6] = ["density", "material", "filter", "sensor", "contacts", "comment"];
 
-/// The bodies of a world file, in file order.
+/// Reads the bodies of a world file, in file order.
 ///
 /// # Errors
-/// Names the place, such as `bodies[3].shapes[0].half_extents[1]`: sizes that are not positive, non-finite numbers,
-/// unknown keys, types and materials, a half-space on a moving body, a later version.
+/// Returns an error that names the place, such as `bodies[3].shapes[0].half_extents[1]`: sizes that are not positive,
+/// non-finite numbers, unknown keys, types and materials, a half-space on a moving body, a later version.
 pub fn read_world(bytes: &[u8]) -> Result<Vec<BodyDef>> {
     let value = json::parse(bytes)?;
     let root = At::root(&value);
@@ -151,7 +151,7 @@ fn read_body(at: At<'_>, materials: Option<At<'_>>) -> Result<BodyDef> {
     })
 }
 
-/// Words for qualities in files.
+/// Words for the qualities in files.
 const QUALITIES: [(&str, Quality); 3] =
     [("fast", Quality::Fast), ("balanced", Quality::Balanced), ("exact", Quality::Exact)];
 
@@ -181,10 +181,10 @@ fn read_shape(at: At<'_>, materials: Option<At<'_>>) -> Result<ShapeDef> {
     })
 }
 
-/// The text of a world file with these bodies, without defaults. Reads back as equal bodies.
+/// Returns the text of a world file with these bodies, without default values. It reads back as equal bodies.
 ///
 /// # Panics
-/// If a number is not finite, or a shape has a modifier: a file cannot hold functions.
+/// If a number is not finite, or a shape has a modifier, because a file cannot store functions.
 pub fn write_world(bodies: &[BodyDef]) -> String {
     let bodies: Vec<Value> = bodies.iter().map(write_body).collect();
     json::to_text(&json!({"sinew": "world", "version": VERSION, "bodies": bodies}))

@@ -27,7 +27,7 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Empty.
+    /// Creates an empty writer.
     pub fn new() -> Self {
         Self::default()
     }
@@ -48,7 +48,7 @@ impl Writer {
     pub fn raw(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
     }
-    /// One byte.
+    /// Writes one byte.
     pub fn u8(&mut self, v: u8) {
         self.bytes.push(v);
     }
@@ -56,11 +56,11 @@ impl Writer {
     pub fn bool(&mut self, v: bool) {
         self.u8(u8::from(v));
     }
-    /// Four bytes.
+    /// Writes four bytes.
     pub fn u32(&mut self, v: u32) {
         self.raw(&v.to_le_bytes());
     }
-    /// Eight bytes.
+    /// Writes eight bytes.
     pub fn u64(&mut self, v: u64) {
         self.raw(&v.to_le_bytes());
     }
@@ -68,7 +68,7 @@ impl Writer {
     pub fn f32(&mut self, v: f32) {
         self.u32(v.to_bits());
     }
-    /// Three numbers.
+    /// Writes three numbers.
     pub fn vec3(&mut self, v: Vec3) {
         self.f32(v.x);
         self.f32(v.y);
@@ -79,12 +79,12 @@ impl Writer {
         self.vec3(r.vector());
         self.f32(r.w);
     }
-    /// Translation, rotation.
+    /// Writes translation, then rotation.
     pub fn transform(&mut self, t: Transform) {
         self.vec3(t.translation);
         self.rotation(t.rotation);
     }
-    /// Diagonal, off-diagonal.
+    /// Writes diagonal, then off-diagonal.
     pub fn sym3(&mut self, s: Sym3) {
         self.vec3(s.diagonal);
         self.vec3(s.off);
@@ -99,7 +99,7 @@ impl Writer {
     /// Writes a byte count, then what `write` writes, so that a reader cannot read too much or too little.
     ///
     /// # Panics
-    /// If it is 4 GiB or more.
+    /// If the block is 4 GiB or larger.
     pub fn block(&mut self, write: impl FnOnce(&mut Self)) {
         let at = self.bytes.len();
         self.u32(0);
@@ -114,7 +114,7 @@ impl Writer {
     }
 }
 
-/// Reads what [`Writer`] wrote.
+/// Reads bytes that a [`Writer`] wrote.
 #[derive(Clone, Debug)]
 pub struct Reader<'a> {
     bytes: &'a [u8],
@@ -152,7 +152,7 @@ impl<'a> Reader<'a> {
         out.copy_from_slice(self.raw(N)?);
         Ok(out)
     }
-    /// One byte.
+    /// Reads one byte.
     pub fn u8(&mut self) -> Result<u8, ReadError> {
         Ok(self.array::<1>()?[0])
     }
@@ -164,11 +164,11 @@ impl<'a> Reader<'a> {
             _ => Err(ReadError { at: self.at - 1, what: "truth value is neither 0 nor 1" }),
         }
     }
-    /// Four bytes.
+    /// Reads four bytes.
     pub fn u32(&mut self) -> Result<u32, ReadError> {
         Ok(u32::from_le_bytes(self.array()?))
     }
-    /// Eight bytes.
+    /// Reads eight bytes.
     pub fn u64(&mut self) -> Result<u64, ReadError> {
         Ok(u64::from_le_bytes(self.array()?))
     }
@@ -176,7 +176,7 @@ impl<'a> Reader<'a> {
     pub fn f32(&mut self) -> Result<f32, ReadError> {
         Ok(f32::from_bits(self.u32()?))
     }
-    /// Three numbers.
+    /// Reads three numbers.
     pub fn vec3(&mut self) -> Result<Vec3, ReadError> {
         Ok(Vec3::new(self.f32()?, self.f32()?, self.f32()?))
     }
@@ -185,11 +185,11 @@ impl<'a> Reader<'a> {
         let v = self.vec3()?;
         Ok(Rotation::from_xyzw(v.x, v.y, v.z, self.f32()?))
     }
-    /// Translation, rotation.
+    /// Reads translation, then rotation.
     pub fn transform(&mut self) -> Result<Transform, ReadError> {
         Ok(Transform::new(self.vec3()?, self.rotation()?))
     }
-    /// Diagonal, off-diagonal.
+    /// Reads diagonal, then off-diagonal.
     pub fn sym3(&mut self) -> Result<Sym3, ReadError> {
         Ok(Sym3 { diagonal: self.vec3()?, off: self.vec3()? })
     }

@@ -30,8 +30,8 @@ pub trait Kernel {
     /// Result of the loop.
     type Output;
 
-    /// Runs the kernel with `L` as its eight lanes. Implementations and everything they call need `#[inline(always)]`:
-    /// see [`lanes`](crate::lanes).
+    /// Runs the kernel with `L` as its eight lanes. Implementations and every function they call need
+    /// `#[inline(always)]`: see [`lanes`](crate::lanes).
     fn run<L: Lanes>(self) -> Self::Output;
 }
 
@@ -42,7 +42,7 @@ pub enum Level {
     Scalar,
     /// Two SSE2 registers: every x86-64.
     Sse2,
-    /// One AVX register: x86-64 since about 2013, if the operating system saves it.
+    /// One AVX register: x86-64 since about 2013, if the operating system saves the register.
     Avx2,
     /// Two NEON registers: every aarch64.
     Neon,
@@ -51,10 +51,10 @@ pub enum Level {
 }
 
 impl Level {
-    /// All levels, the widest of each architecture last.
+    /// All levels; of each architecture, the widest comes last.
     pub const ALL: [Self; 5] = [Self::Scalar, Self::Sse2, Self::Avx2, Self::Neon, Self::Simd128];
 
-    /// True if this processor and this build support it.
+    /// True if this processor and this build support the level.
     #[inline]
     pub fn is_available(self) -> bool {
         match self {
@@ -111,7 +111,7 @@ pub fn run<K: Kernel>(kernel: K) -> K::Output {
 /// Runs a kernel at a given level, for tests and measurements.
 ///
 /// # Panics
-/// If they are not [available](Level::is_available).
+/// If the level is not [available](Level::is_available).
 #[inline]
 pub fn run_at<K: Kernel>(level: Level, kernel: K) -> K::Output {
     assert!(level.is_available(), "{level:?} is not available on this processor");

@@ -7,8 +7,8 @@ pub fn hash_bytes(bytes: &[u8]) -> u64 {
     hasher.finish()
 }
 
-/// Streaming hash: eight bytes at a time are mixed into the state by a folded 64×64→128-bit product. Splitting the
-/// input differently gives the same hash. It does not resist adversaries.
+/// Streaming hash: mixes eight bytes at a time into the state by a folded 64×64→128-bit product. Splitting the
+/// input differently gives the same hash. The hash does not resist adversaries.
 #[derive(Clone, Debug)]
 pub struct StableHasher {
     state: u64,
@@ -32,7 +32,7 @@ impl Default for StableHasher {
 }
 
 impl StableHasher {
-    /// Adds bytes.
+    /// Adds bytes to the hash.
     pub fn write(&mut self, bytes: &[u8]) {
         self.length += bytes.len() as u64;
         for &byte in bytes {
@@ -51,7 +51,7 @@ impl StableHasher {
         self.filled = 0;
     }
 
-    /// The hash of everything written.
+    /// Returns the hash of all bytes written.
     pub fn finish(&self) -> u64 {
         let mut last = self.clone();
         if last.filled > 0 {

@@ -1,8 +1,8 @@
 //! Mathematics whose bits are the same on every target.
 //!
 //! Vectors and 3×3 matrices are [`glam::Vec3`] and [`glam::Mat3`], plain scalar structs whose `+ − × ÷ √` are
-//! IEEE-exact everywhere. Everything whose bits differ between targets in `glam` or in std (quaternion algebra,
-//! trigonometry, `min`/`max` with NaN) lives here instead. See `docs/adr/0006-glam-and-bits.md`.
+//! IEEE-exact everywhere. Quaternion algebra, trigonometry and `min`/`max` with NaN have different bits on different
+//! targets in `glam` and std, so this crate has its own. See `docs/adr/0006-glam-and-bits.md`.
 //!
 //! **Conventions.** Right-handed axes, +Y up, SI units, radians. Vectors are columns: `m * v` and `r * v` rotate a
 //! vector, `a * b` applies `b` first, and the columns of a rotation matrix are the images of the axes.
@@ -11,7 +11,7 @@
 //!
 //! **Ways to write a rotation:**
 //!
-//! | as | type | good for | look out for |
+//! | as | type | good for | watch for |
 //! |---|---|---|---|
 //! | four numbers of length 1 | [`Rotation`] | everything: products, blends, integration | q and −q are the same turn |
 //! | axis × angle | [`Vec3`], by [`Rotation::to_scaled_axis`] | rates, small turns, averages | at most half a turn |
@@ -49,19 +49,19 @@ pub use rotations::rotation::Rotation;
 pub use symmetric::Sym3;
 pub use transform::{Affine, Transform, inverse3};
 
-/// The smaller of two numbers by explicit selection: `b` if either is NaN (like x86 `minps`), on every target.
+/// Returns the smaller of two numbers by explicit selection: `b` if either is NaN (like x86 `minps`), on every target.
 #[inline(always)]
 pub fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The larger of two numbers by explicit selection: `b` if either is NaN (like x86 `maxps`), on every target.
+/// Returns the larger of two numbers by explicit selection: `b` if either is NaN (like x86 `maxps`), on every target.
 #[inline(always)]
 pub fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// `x` limited to `lo..=hi`; NaN gives `lo`, so that NaN cannot spread.
+/// Limits `x` to `lo..=hi`; NaN gives `lo`, so that NaN cannot spread.
 #[inline(always)]
 pub fn clamp(x: f32, lo: f32, hi: f32) -> f32 {
     min(max(x, lo), hi)
@@ -85,14 +85,14 @@ pub fn abs3(v: Vec3) -> Vec3 {
     Vec3::new(v.x.abs(), v.y.abs(), v.z.abs())
 }
 
-/// `v` at length 1, or `fallback` when its length is below 1e-12 or not finite.
+/// Scales `v` to length 1; returns `fallback` when the length is not above 1e-12 or not finite.
 #[inline]
 pub fn normalize_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let length = v.length();
     if length > 1e-12 && length < f32::INFINITY { v / length } else { fallback }
 }
 
-/// `v` at length 1, for any length; `None` if it is zero or not finite.
+/// Scales `v` to length 1, for any length; `None` if `v` is zero or not finite.
 #[inline]
 pub fn direction(v: Vec3) -> Option<Vec3> {
     let a = abs3(v);
@@ -102,8 +102,8 @@ pub fn direction(v: Vec3) -> Option<Vec3> {
     (largest > 0.0 && v.is_finite()).then(|| scaled / scaled.length())
 }
 
-/// A unit vector perpendicular to the unit vector `n`, continuous except for one jump (Duff et al., "Building an
-/// Orthonormal Basis, Revisited", JCGT 2017).
+/// Returns a unit vector perpendicular to the unit vector `n`, continuous except for one jump (Duff et al., "Building
+/// an Orthonormal Basis, Revisited", JCGT 2017).
 #[inline]
 pub fn any_orthonormal(n: Vec3) -> Vec3 {
     let sign = if n.z >= 0.0 { 1.0 } else { -1.0 };
@@ -111,7 +111,7 @@ pub fn any_orthonormal(n: Vec3) -> Vec3 {
     Vec3::new(1.0 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x)
 }
 
-/// The matrix whose product with `v` is `r × v`.
+/// Returns the matrix whose product with `v` is `r × v`.
 #[inline]
 pub fn skew(r: Vec3) -> Mat3 {
     Mat3::from_cols(Vec3::new(0.0, r.z, -r.y), Vec3::new(-r.z, 0.0, r.x), Vec3::new(r.y, -r.x, 0.0))

@@ -2,7 +2,7 @@
 
 use crate::{Rotation, Vec3, trig};
 
-/// A closed interval, radians unless said otherwise.
+/// A closed interval, in radians unless stated otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Range {
@@ -25,7 +25,7 @@ impl Range {
     pub fn degrees(lo: f32, hi: f32) -> Self {
         Self { lo: lo.to_radians(), hi: hi.to_radians() }
     }
-    /// Distance of `x` from the range; 0 inside.
+    /// Returns the distance of `x` from the range; 0 inside.
     pub fn excess(self, x: f32) -> f32 {
         if x < self.lo {
             self.lo - x
@@ -35,7 +35,7 @@ impl Range {
             0.0
         }
     }
-    /// Middle.
+    /// Returns the middle of the range.
     pub fn center(self) -> f32 {
         0.5 * (self.lo + self.hi)
     }
@@ -56,24 +56,24 @@ pub struct SwingTwistLimit {
     pub twist: Range,
 }
 
-/// One limit near or past its stop.
+/// State of one limit near or past its stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitState {
     /// Distance to the stop, radians; negative when violated.
     pub slack: f32,
-    /// Gradient of `slack` in frame A's axes: `slack` grows at the rate `axis · ω`, ω the angular velocity of B relative
-    /// to A. Of length 1 for small swings, longer for large ones.
+    /// Gradient of `slack` in frame A's axes: `slack` grows at the rate `axis · ω`, with ω the angular velocity of B
+    /// relative to A. Its length is 1 for small swings and greater for large ones.
     pub axis: Vec3,
 }
 
 impl SwingTwistLimit {
-    /// The swing (scaled axis; its x is 0) and twist angle of a joint rotation `a⁻¹ b`, radians.
+    /// Splits a joint rotation `a⁻¹ b` into the swing (scaled axis with x = 0) and the twist angle, radians.
     pub fn angles(joint: Rotation) -> (Vec3, f32) {
         let (swing, twist) = joint.swing_twist(Vec3::X);
         (swing.to_scaled_axis(), twist.twist_angle(Vec3::X))
     }
 
-    /// Half-angle of the cone along the unit direction (`y`, `z`) of the swing's scaled axis, radians.
+    /// Returns the half-angle of the cone along the unit direction (`y`, `z`) of the swing's scaled axis, radians.
     pub fn cone_angle(&self, y: f32, z: f32) -> f32 {
         let a = if y < 0.0 { -self.swing_y.lo } else { self.swing_y.hi };
         let b = if z < 0.0 { -self.swing_z.lo } else { self.swing_z.hi };
@@ -82,22 +82,22 @@ impl SwingTwistLimit {
         1.0 / crate::max((ya * ya + zb * zb).sqrt(), 1e-6)
     }
 
-    /// State of the swing cone for the joint rotation `a⁻¹ b`. The slack is the distance to the ellipse in the plane of
-    /// the swing's scaled axis, to first order; its gradient is exact at the stop.
+    /// Returns the state of the swing cone for the joint rotation `a⁻¹ b`. The slack is the distance to the ellipse in
+    /// the plane of the swing's scaled axis, to first order; its gradient is exact at the stop.
     ///
     /// With swing angle φ about unit `u`, the ellipse's outward normal `n` and the tangent `τ` perpendicular to `u`:
-    /// `φ̇ = ω·u`, and the axis itself turns at `−ω·(u × x_b)/sin φ`, because a swung body that spins about the axis of
-    /// A moves to another side of the cone.
+    /// `φ̇ = ω·u`. The axis itself turns at `−ω·(u × x_b)/sin φ`, because a swung body that spins about the axis of A
+    /// moves to another side of the cone.
     pub fn swing_state(&self, joint: Rotation) -> LimitState {
         self.state_of_swing(joint.swing_twist(Vec3::X).0)
     }
 
-    /// State of the swing cone for the swing of the joint rotation, see [`swing_state`](Self::swing_state).
+    /// Returns the state of the swing cone for the swing of the joint rotation, see [`swing_state`](Self::swing_state).
     pub fn state_of_swing(&self, swing: Rotation) -> LimitState {
         self.place_in_cone(swing).state()
     }
 
-    /// State of the swing stop if it has less slack than `reach`, radians.
+    /// Returns the state of the swing stop if its slack is less than `reach`, radians.
     pub fn swing_within(&self, swing: Rotation, reach: f32) -> Option<LimitState> {
         let place = self.place_in_cone(swing);
         (place.slack < reach).then(|| place.state())
@@ -115,24 +115,25 @@ impl SwingTwistLimit {
         PlaceInCone { half, cos: swing.w, angle, u, normal, slack }
     }
 
-    /// States of the lower and the upper twist stop for the joint rotation `a⁻¹ b`.
+    /// Returns the states of the lower and the upper twist stop for the joint rotation `a⁻¹ b`.
     pub fn twist_states(&self, joint: Rotation) -> [LimitState; 2] {
         let (swing, twist) = joint.swing_twist(Vec3::X);
         self.states_of_twist(swing, twist)
     }
 
-    /// States of the twist stops for the swing and the twist of the joint rotation.
+    /// Returns the states of the lower and the upper twist stop for the swing and the twist of the joint rotation.
     pub fn states_of_twist(&self, swing: Rotation, twist: Rotation) -> [LimitState; 2] {
         twist_states(self.slack_of_twist(twist), swing)
     }
 
-    /// States of the lower and the upper twist stop if one of them has less slack than `reach`, radians.
+    /// Returns the states of the lower and the upper twist stop if the slack of one of them is less than `reach`,
+    /// radians.
     pub fn twist_within(&self, swing: Rotation, twist: Rotation, reach: f32) -> Option<[LimitState; 2]> {
         let slack = self.slack_of_twist(twist);
         (slack[0] < reach || slack[1] < reach).then(|| twist_states(slack, swing))
     }
 
-    /// Distance to the lower and the upper twist stop, radians.
+    /// Returns the distances to the lower and the upper twist stop, radians.
     fn slack_of_twist(&self, twist: Rotation) -> [f32; 2] {
         // Measured from the middle of the range and wrapped, so that ranges near ±π have no jump inside.
         let middle = self.twist.center();
@@ -141,7 +142,8 @@ impl SwingTwistLimit {
         [angle + half, half - angle]
     }
 
-    /// Angle by which the joint rotation `a⁻¹ b` is beyond the limits, radians: the larger of swing and twist excess.
+    /// Returns the angle by which the joint rotation `a⁻¹ b` exceeds the limits, radians: the larger of swing and twist
+    /// excess.
     pub fn overshoot(&self, joint: Rotation) -> f32 {
         let mut worst = -self.swing_state(joint).slack;
         for state in self.twist_states(joint) {
@@ -151,8 +153,8 @@ impl SwingTwistLimit {
     }
 }
 
-/// States of the twist stops within `slack`. The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b); the divisor is bounded away
-/// from 0 near a swing of half a turn.
+/// Returns the states of the twist stops for the given slacks. The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b); the
+/// divisor is bounded away from 0 near a swing of half a turn.
 fn twist_states([below, above]: [f32; 2], swing: Rotation) -> [LimitState; 2] {
     let x_b = swing * Vec3::X;
     let axis = (Vec3::X + x_b) / crate::max(1.0 + x_b.x, 0.05);
@@ -161,11 +163,11 @@ fn twist_states([below, above]: [f32; 2], swing: Rotation) -> [LimitState; 2] {
 
 /// Position of a swing in the cone of its limit.
 struct PlaceInCone {
-    /// Sine and cosine of half its angle.
+    /// Sine and cosine of half the swing angle.
     half: f32,
     cos: f32,
     angle: f32,
-    /// Unit axis of the swing, at right angles to x.
+    /// Unit axis of the swing, perpendicular to x.
     u: Vec3,
     /// Outward normal of the cone's ellipse in the direction of the swing.
     normal: Vec3,
@@ -185,7 +187,7 @@ impl PlaceInCone {
     }
 }
 
-/// `angle` wrapped into −π..=π, radians.
+/// Wraps `angle` into −π..=π, radians; `angle` is off by one turn at most.
 pub fn wrap(angle: f32) -> f32 {
     const TURN: f32 = 2.0 * core::f32::consts::PI;
     if angle > core::f32::consts::PI {
@@ -197,7 +199,7 @@ pub fn wrap(angle: f32) -> f32 {
     }
 }
 
-/// Angle of a hinge about its x axis for the joint rotation `a⁻¹ b`, radians, −π..=π.
+/// Returns the angle of a hinge about its x axis for the joint rotation `a⁻¹ b`, radians, −π..=π.
 pub fn hinge_angle(joint: Rotation) -> f32 {
     let q = joint.positive();
     2.0 * trig::atan2(q.x, q.w)
@@ -208,7 +210,7 @@ mod tests {
     use super::*;
     use crate::Random;
 
-    /// Rate of `slack` by differences, for angular velocity `w` of B in A's axes.
+    /// Rate of `slack` by central differences, for angular velocity `w` of B in A's axes.
     fn rate(slack: impl Fn(Rotation) -> f32, joint: Rotation, w: Vec3) -> f32 {
         let h = 1e-3;
         let at = |h: f32| slack(Rotation::from_scaled_axis(w * h) * joint);
@@ -229,7 +231,7 @@ mod tests {
             let w = random.direction();
             let swing = limit.swing_state(joint);
             let (axis, _) = SwingTwistLimit::angles(joint);
-            // The normal jumps where the sides of the cone meet, and the distance is exact at the stop only.
+            // The normal jumps where the sides of the cone meet, and the distance is exact only at the stop.
             if swing.slack.abs() < 0.02 && axis.y.abs() > 0.05 && axis.z.abs() > 0.05 {
                 let measured = rate(|q| limit.swing_state(q).slack, joint, w);
                 assert!((measured - swing.axis.dot(w)).abs() < 0.06, "{measured} for {}", swing.axis.dot(w));

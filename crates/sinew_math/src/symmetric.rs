@@ -12,17 +12,17 @@ pub struct Sym3 {
 }
 
 impl Sym3 {
-    /// All zero.
+    /// The zero matrix.
     pub const ZERO: Self = Self { diagonal: Vec3::ZERO, off: Vec3::ZERO };
     /// The unit matrix.
     pub const IDENTITY: Self = Self { diagonal: Vec3::ONE, off: Vec3::ZERO };
 
-    /// Diagonal matrix.
+    /// Makes a diagonal matrix.
     pub const fn from_diagonal(diagonal: Vec3) -> Self {
         Self { diagonal, off: Vec3::ZERO }
     }
 
-    /// `v vᵀ`.
+    /// Returns `v vᵀ`.
     pub fn outer(v: Vec3) -> Self {
         Self {
             diagonal: Vec3::new(v.x * v.x, v.y * v.y, v.z * v.z),
@@ -30,7 +30,7 @@ impl Sym3 {
         }
     }
 
-    /// `R D Rᵀ`: principal values `d` in a frame turned by `rotation`.
+    /// Returns `R D Rᵀ`: principal values `d` in a frame turned by `rotation`.
     #[inline]
     pub fn from_rotated_diagonal(rotation: Rotation, d: Vec3) -> Self {
         let m = rotation.to_mat3();
@@ -49,13 +49,13 @@ impl Sym3 {
         }
     }
 
-    /// `R S Rᵀ`: the same tensor seen from axes turned by `rotation`.
+    /// Returns `R S Rᵀ`: the same tensor in axes turned by `rotation`.
     pub fn rotated(self, rotation: Rotation) -> Self {
         let r = rotation.to_mat3();
         Self::from_mat3(&(r * self.to_mat3() * r.transpose()))
     }
 
-    /// The symmetric part of a matrix.
+    /// Returns the symmetric part of a matrix.
     pub fn from_mat3(m: &Mat3) -> Self {
         Self {
             diagonal: Vec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z),
@@ -74,13 +74,13 @@ impl Sym3 {
         self.diagonal.is_finite() && self.off.is_finite()
     }
 
-    /// Determinant.
+    /// Returns the determinant.
     pub fn determinant(self) -> f32 {
         let (d, o) = (self.diagonal, self.off);
         d.x * (d.y * d.z - o.x * o.x) - o.z * (o.z * d.z - o.x * o.y) + o.y * (o.z * o.x - d.y * o.y)
     }
 
-    /// Inverse; zero if the determinant is zero.
+    /// Returns the inverse; zero if the determinant is zero.
     pub fn inverse(self) -> Self {
         let (d, o) = (self.diagonal, self.off);
         let det = self.determinant();
@@ -94,8 +94,8 @@ impl Sym3 {
         }
     }
 
-    /// Eigenvalues, largest first, and the rotation whose columns are their eigenvectors
-    /// (cyclic Jacobi, Golub & Van Loan §8.5, until the off-diagonal part is below 1e-9 of the trace).
+    /// Returns the eigenvalues, largest first, and the rotation whose columns are their eigenvectors (cyclic
+    /// Jacobi, Golub & Van Loan §8.5, until the off-diagonal part is below 1e-9 of the trace).
     pub fn eigen(self) -> (Vec3, Rotation) {
         let (d, o) = (self.diagonal, self.off);
         let (values, vectors) = jacobi([[d.x, o.z, o.y], [o.z, d.y, o.x], [o.y, o.x, d.z]]);
@@ -116,8 +116,8 @@ impl Sym3 {
     }
 }
 
-/// Eigenvalues of a symmetric matrix, and the matrix whose columns are their eigenvectors, in no order
-/// (cyclic Jacobi, Golub & Van Loan §8.5, until the off-diagonal part is below 1e-9 of the trace).
+/// Returns the eigenvalues of a symmetric matrix, and the matrix whose columns are their eigenvectors, in no
+/// order (cyclic Jacobi, Golub & Van Loan §8.5, until the off-diagonal part is below 1e-9 of the trace).
 pub(crate) fn jacobi<const N: usize>(mut a: [[f32; N]; N]) -> ([f32; N], [[f32; N]; N]) {
     let mut v = [[0.0; N]; N];
     for i in 0..N {

@@ -12,7 +12,7 @@ pub struct Transform {
 }
 
 impl Transform {
-    /// No motion.
+    /// The identity: no motion.
     pub const IDENTITY: Self = Self { translation: Vec3::ZERO, rotation: Rotation::IDENTITY };
 
     /// Creates a transform from rotation and translation.
@@ -21,26 +21,26 @@ impl Transform {
         Self { translation, rotation }
     }
 
-    /// A pure translation.
+    /// Makes a pure translation.
     #[inline(always)]
     pub const fn from_translation(translation: Vec3) -> Self {
         Self { translation, rotation: Rotation::IDENTITY }
     }
 
-    /// The inverse motion.
+    /// Returns the inverse motion.
     #[inline]
     pub fn inverse(self) -> Self {
         let rotation = self.rotation.inverse();
         Self { translation: -(rotation * self.translation), rotation }
     }
 
-    /// Image of a point.
+    /// Returns the image of a point.
     #[inline]
     pub fn point(self, p: Vec3) -> Vec3 {
         self.rotation * p + self.translation
     }
 
-    /// Point that the motion maps to `p`: `self.inverse().point(p)`.
+    /// Returns the point that the motion maps to `p`: `self.inverse().point(p)`.
     #[inline]
     pub fn inverse_point(self, p: Vec3) -> Vec3 {
         self.rotation.inverse() * (p - self.translation)
@@ -60,7 +60,7 @@ impl Mul for Transform {
     }
 }
 
-/// Image of a point, as [`Transform::point`]; for directions and velocities use `transform.rotation * v`.
+/// Image of a point, like [`Transform::point`]; for directions and velocities use `transform.rotation * v`.
 impl Mul<Vec3> for Transform {
     type Output = Vec3;
     #[inline]
@@ -72,7 +72,7 @@ impl Mul<Vec3> for Transform {
 /// A linear map followed by a translation: joints of a rig may scale and shear. `a * b` applies `b` first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine {
-    /// The linear part, column vectors.
+    /// The linear part; its columns are the images of the axes.
     pub linear: Mat3,
     /// Translation: image of the origin.
     pub translation: Vec3,
@@ -85,10 +85,10 @@ impl Default for Affine {
 }
 
 impl Affine {
-    /// No change.
+    /// The identity map.
     pub const IDENTITY: Self = Self { linear: Mat3::IDENTITY, translation: Vec3::ZERO };
 
-    /// Scale (per axis), then rotate, then translate.
+    /// Makes a map that scales (per axis), then rotates, then translates.
     pub fn from_scale_rotation_translation(scale: Vec3, rotation: Rotation, translation: Vec3) -> Self {
         let m = rotation.to_mat3();
         Self {
@@ -97,32 +97,33 @@ impl Affine {
         }
     }
 
-    /// The inverse map; not finite if the linear part has no inverse.
+    /// Returns the inverse map; not finite if the linear part has no inverse.
     pub fn inverse(&self) -> Self {
         let linear = inverse3(&self.linear);
         Self { linear, translation: -(linear * self.translation) }
     }
 
-    /// Image of a point.
+    /// Returns the image of a point.
     #[inline]
     pub fn point(&self, p: Vec3) -> Vec3 {
         self.linear * p + self.translation
     }
 
-    /// Image of a direction (no translation).
+    /// Returns the image of a direction (no translation).
     #[inline]
     pub fn vector(&self, v: Vec3) -> Vec3 {
         self.linear * v
     }
 
-    /// The rigid part: translation, and the rotation nearest to the linear part without scale and shear. Of a mirrored
-    /// linear part it is the rotation of its negative: a change of rotation then reads the same in both spaces.
+    /// Returns the rigid part: the translation, and the rotation of the linear part without scale and shear
+    /// (Gram-Schmidt). A mirrored linear part is negated first, so that a change of rotation is the same in both
+    /// spaces.
     pub fn to_rigid(&self) -> Transform {
         let linear = if self.is_mirrored() { -self.linear } else { self.linear };
         Transform::new(self.translation, Rotation::from_mat3_lossy(&linear))
     }
 
-    /// True if the linear part turns a right hand into a left one.
+    /// True if the linear part maps a right-handed frame to a left-handed one.
     fn is_mirrored(&self) -> bool {
         let m = &self.linear;
         m.x_axis.cross(m.y_axis).dot(m.z_axis) < 0.0
@@ -146,9 +147,10 @@ impl Mul for Affine {
         Self { linear: self.linear * b.linear, translation: self.point(b.translation) }
     }
 }
-/// Inverse of a 3×3 matrix by its cofactors; not finite if there is none.
+/// Returns the inverse of a 3×3 matrix by its cofactors; not finite if it has none.
 ///
-/// glam's own inverse has another order of operations since 0.33, and other bits. This one keeps its bits whatever glam does.
+/// The inverse of glam has another order of operations since 0.33, and other bits. This function keeps its bits for
+/// every version of glam.
 pub fn inverse3(m: &Mat3) -> Mat3 {
     let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
     let cofactors = [y.cross(z), z.cross(x), x.cross(y)];

@@ -14,7 +14,7 @@ pub enum Nearest {
 }
 
 impl Nearest {
-    /// Weights of the three corners, which sum to 1.
+    /// Returns the weights of the three corners, which sum to 1.
     pub fn shares(self) -> [f32; 3] {
         match self {
             Self::Corner(0) => [1.0, 0.0, 0.0],
@@ -28,7 +28,8 @@ impl Nearest {
     }
 }
 
-/// The point of a triangle nearest to `p`, by the region of its plane that p lies over (Ericson, "Real-Time Collision Detection", 2005, §5.1.5).
+/// Returns the point of a triangle nearest to `p`, with the feature that it lies on, by the region of the plane that
+/// `p` projects into (Ericson, "Real-Time Collision Detection", 2005, §5.1.5).
 #[inline]
 pub fn nearest(&[a, b, c]: &[Vec3; 3], p: Vec3) -> Nearest {
     let (ab, ac, ap) = (b - a, c - a, p - a);
@@ -67,7 +68,7 @@ mod tests {
     use super::*;
     use crate::{Random, max, min};
 
-    /// No sampled point of the triangle is nearer than the computed one.
+    /// Checks that no sampled point of the triangle is nearer than the computed one.
     #[test]
     fn closest_points_are_nearest() {
         let mut random = Random::new(3);

@@ -24,7 +24,7 @@ pub fn asin(x: f32) -> f32 {
 pub fn acos(x: f32) -> f32 {
     libm::acosf(crate::clamp(x, -1.0, 1.0))
 }
-/// Angle in radians, −π..=π, of the point (`x`, `y`).
+/// Angle in radians, −π..=π, of the point (`x`, `y`) from the x axis.
 pub fn atan2(y: f32, x: f32) -> f32 {
     libm::atan2f(y, x)
 }
@@ -32,11 +32,11 @@ pub fn atan2(y: f32, x: f32) -> f32 {
 pub fn exp(x: f32) -> f32 {
     libm::expf(x)
 }
-/// `e` to the power `x`, less 1, with all its digits near 0.
+/// Returns `e` to the power `x`, minus 1, accurate near 0.
 pub fn exp_m1(x: f32) -> f32 {
     libm::expm1f(x)
 }
-/// Natural logarithm.
+/// Natural logarithm of `x`.
 pub fn ln(x: f32) -> f32 {
     libm::logf(x)
 }
@@ -44,7 +44,7 @@ pub fn ln(x: f32) -> f32 {
 pub fn pow(x: f32, y: f32) -> f32 {
     libm::powf(x, y)
 }
-/// Third root.
+/// Cube root of `x`.
 pub fn cbrt(x: f32) -> f32 {
     libm::cbrtf(x)
 }

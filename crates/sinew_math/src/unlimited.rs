@@ -1,8 +1,8 @@
-//! Serialises infinite numbers as none, for formats without infinity. Used in `serde(with)` of fields.
+//! Serialises infinite numbers as `None`, for formats without infinity. For `serde(with)` of fields.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Writes a number, or none if it is infinite.
+/// Writes a number, or `None` if it is infinite.
 ///
 /// # Errors
 /// Errors of the serializer.
@@ -10,7 +10,7 @@ pub fn serialize<S: Serializer>(x: &f32, serializer: S) -> Result<S::Ok, S::Erro
     x.is_finite().then_some(*x).serialize(serializer)
 }
 
-/// Reads a number; none is infinite.
+/// Reads a number; `None` is infinite.
 ///
 /// # Errors
 /// Errors of the deserializer.

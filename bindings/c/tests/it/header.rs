@@ -1,4 +1,4 @@
-//! The committed header equals the generated one.
+//! Checks that the committed header equals the generated one.
 
 use std::fs;
 use std::path::Path;

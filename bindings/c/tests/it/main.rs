@@ -1,4 +1,4 @@
-//! Tests of the library by its C functions, and of its header.
+//! Tests of the C functions, and of the header.
 
 mod header;
 mod misuse;

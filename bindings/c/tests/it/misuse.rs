@@ -4,7 +4,7 @@ use sinew_c::*;
 use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};
 
-/// Text of the last error.
+/// Returns the text of the last error.
 fn sentence() -> String {
     // SAFETY: the pointer is always a valid string.
     unsafe { CStr::from_ptr(sinew_last_error()) }.to_str().expect("UTF-8").to_owned()
@@ -21,7 +21,7 @@ impl Drop for Owned {
 
 fn world() -> Owned {
     let mut world = null_mut();
-    // SAFETY: null selects the defaults.
+    // SAFETY: null selects the defaults, and `world` has room for a pointer.
     assert_eq!(unsafe { sinew_world_new(null(), &mut world) }, SinewStatus::Ok);
     Owned(world)
 }
@@ -32,7 +32,7 @@ fn ball() -> SinewShape {
 
 fn def(shapes: &[SinewShape]) -> SinewBodyDef {
     let mut def = std::mem::MaybeUninit::uninit();
-    // SAFETY: the buffer holds one.
+    // SAFETY: the buffer has room for one definition.
     let mut def = unsafe {
         assert_eq!(sinew_body_def_default(def.as_mut_ptr()), SinewStatus::Ok);
         def.assume_init()
@@ -110,7 +110,7 @@ fn invalid_numbers_leave_the_world_unchanged() {
     let id = add(&world);
     let hash = || {
         let mut hash = 0;
-        // SAFETY: both are valid.
+        // SAFETY: both pointers are valid.
         assert_eq!(unsafe { sinew_world_hash(world.0, &mut hash) }, SinewStatus::Ok);
         hash
     };
@@ -177,7 +177,7 @@ fn small_buffers_return_the_needed_size() {
     add(&world);
     add(&world);
     let (mut one, mut count) = ([SinewBodyId { bits: 42 }], 0);
-    // SAFETY: the capacity is the buffer's.
+    // SAFETY: the capacity is that of the buffer.
     unsafe {
         assert_eq!(sinew_world_bodies(world.0, one.as_mut_ptr(), 1, &mut count), SinewStatus::TooSmall);
         assert_eq!((one[0].bits, count), (42, 2), "nothing is written");

@@ -1,4 +1,5 @@
-//! A world stepped from C has the bits of one stepped from Rust, on any number of threads, and after a snapshot.
+//! Checks that a world stepped from C has the bits of one stepped from Rust, on any number of threads, and after
+//! a snapshot.
 
 use sinew::physics::{BodyDef, Shape, World, WorldDef};
 use sinew_c::*;

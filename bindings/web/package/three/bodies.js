@@ -6,7 +6,7 @@ import { shapesOf, worldPose } from './shapes.js';
 /** @import { BodyKind, BodyOptions, ShapeOptions, Vec3Like, World } from '../index.js' */
 /** @import { FittedShape } from './shapes.js' */
 
-/** Numbers of a place in the world's list of poses. */
+/** Count of numbers per index in the world's list of poses. */
 const POSE = 7;
 const ONE = new Vector3(1, 1, 1);
 const position = new Vector3();
@@ -88,7 +88,7 @@ export class SinewBody extends EventDispatcher {
     place(this.object, position.copy(pose.position), rotation.copy(/** @type {Quaternion} */ (pose.rotation)));
   }
 
-  /** Takes the body out of the world; the object stays where it is. */
+  /** Removes the body from the world; the object stays in place. */
   dispose() {
     if (this.#place !== undefined) this.world.untrack(this.#place);
     if (this.world.hasBody(this.id)) this.world.removeBody(this.id);
@@ -97,7 +97,7 @@ export class SinewBody extends EventDispatcher {
 }
 
 /**
- * Sets an object's world pose, whatever its parents are.
+ * Sets an object's world pose, for any parents.
  * @param {Object3D} object
  * @param {Vector3} at
  * @param {Quaternion} turn
@@ -114,7 +114,7 @@ function place(object, at, turn) {
   }
 }
 
-/** Bodies that move the instances of a mesh, one each. */
+/** Bodies that move the instances of a mesh, one per instance. */
 export class SinewInstances {
   /** @type {number[]} */
   #places = [];
@@ -162,7 +162,7 @@ export class SinewInstances {
     this.object.instanceMatrix.needsUpdate = true;
   }
 
-  /** Takes the bodies out of the world; the instances stay where they are. */
+  /** Removes the bodies from the world; the instances stay in place. */
   dispose() {
     this.#places.forEach((placed) => this.world.untrack(placed));
     this.ids.filter((id) => this.world.hasBody(id)).forEach((id) => this.world.removeBody(id));
@@ -177,7 +177,7 @@ export class SinewInstances {
  * @param {Vector3} size
  */
 function instanceShapes(object, fitted, size) {
-  // A mesh of the same geometry that stands at the origin, with the instance's scale.
+  // A mesh of the same geometry at the origin, with the scale of the instance.
   const one = /** @type {any} */ ({
     isMesh: true, geometry: object.geometry, matrixWorld: new Matrix4().makeScale(size.x, size.y, size.z),
     updateWorldMatrix() {}, traverse(/** @type {(part: any) => void} */ visit) { visit(one); }, name: object.name, type: object.type,

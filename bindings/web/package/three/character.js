@@ -7,7 +7,7 @@ import { CharacterDef } from '../index.js';
 /** @import { GLTF } from 'three/addons/loaders/GLTFLoader.js' */
 /** @import { Character, CharacterDetail, CharacterOptions, CharacterPreset, CharacterState, DriveMode, HoldOptions, PlayOptions, QuatLike, Vec3Like, World } from '../index.js' */
 
-/** Numbers of a joint in a pose. */
+/** Count of numbers per joint in a pose. */
 const JOINT = 10;
 const matrix = new Matrix4();
 const parentFromWorld = new Matrix4();
@@ -38,7 +38,7 @@ class Kind {
     this.objects = Array.from(this.def.nodes, (node) => byNode.get(node));
   }
 
-  /** A scene for one more character: the one that was loaded, else a copy with a skeleton of its own; and its objects. */
+  /** Returns a scene for one more character, the loaded one or else a copy with its own skeletons, and the scene's objects. */
   scene() {
     const { scene } = this.gltf;
     if (!this.inUse.has(scene)) return { scene, objects: this.objects };
@@ -52,7 +52,7 @@ class Kind {
   }
 }
 
-/** Kinds by what the loader gave, so that a definition is built once. */
+/** Kinds of characters by the loader's result, so that a definition is built once. */
 /** @type {WeakMap<GLTF, Map<string, Kind>>} */
 const kinds = new WeakMap();
 
@@ -81,7 +81,7 @@ function kindOf(gltf, bytes, options) {
  */
 
 /**
- * A character that moves a model which three's loader has loaded. Add `object` to your scene.
+ * A character that moves a model loaded by three's loader. Add `object` to your scene.
  *
  * Events have the names of `CharacterEvent`: `limp`, `landed`, `settled`, `gettingUp`, `up`, `struck`, `flinched`, `clip` and others.
  * @extends {EventDispatcher<Record<string, any>>}
@@ -105,7 +105,7 @@ export class SinewCharacter extends EventDispatcher {
     this.core = world.spawn(this.#kind.def, position, rotation);
     /** Root of its model. @type {Object3D} */
     this.object = scene;
-    /** Objects of its joints, in the order of poses; `undefined` of joints that are no node. */
+    /** Objects of the joints, in the order of poses; `undefined` for joints that are no node. */
     this.joints = objects;
     this.#kind.inUse.add(scene);
     this.#take(gltf);
@@ -119,7 +119,7 @@ export class SinewCharacter extends EventDispatcher {
     this.object.matrixAutoUpdate = false;
     this.object.traverse((part) => {
       if (/** @type {{ isSkinnedMesh?: boolean }} */ (part).isSkinnedMesh) {
-        // Its bounds were computed for its first pose only, so culling is off.
+        // The bounds were computed only for the first pose, so culling is off.
         this.#wasCulled.set(part, part.frustumCulled);
         part.frustumCulled = false;
       }
@@ -132,7 +132,7 @@ export class SinewCharacter extends EventDispatcher {
     }
   }
 
-  /** Moves the bones to where the physics has them. */
+  /** Moves the bones to their poses in the physics. */
   write() {
     const { pose } = this.core;
     const { joints } = this;
@@ -154,28 +154,28 @@ export class SinewCharacter extends EventDispatcher {
     this.object.matrixWorldNeedsUpdate = true;
   }
 
-  /** Where its first body is, the pelvis of a human, in the world: for cameras that follow it. The vector is the character's own. */
+  /** Position of the first body, the pelvis of a human, in the world; for cameras that follow the character. The vector is the character's own. */
   get position() {
     const joint = this.joints[this.#kind.def.boneJoints[0]];
     return (joint ?? this.object).getWorldPosition(this.#position);
   }
 
-  /** What decides its pose. @returns {CharacterState} */
+  /** State, which determines the source of the pose. @returns {CharacterState} */
   get state() {
     return this.core.state;
   }
 
-  /** Its kind, with the names and sizes of all that it has. */
+  /** Kind of the character, with its names and sizes. */
   get def() {
     return this.#kind.def;
   }
 
-  /** Assumptions about the file, and the clips that were chosen, one sentence each. */
+  /** Assumptions about the file, and chosen clips, one sentence each. */
   get notes() {
     return this.#kind.def.notes;
   }
 
-  /** Names of its bodies, by which `hit`, `hold` and others know them. */
+  /** Names of the bodies for `hit`, `hold` and others. */
   get bones() {
     return this.#kind.def.bones;
   }
@@ -185,18 +185,18 @@ export class SinewCharacter extends EventDispatcher {
     return this.#kind.def.clips;
   }
 
-  /** Metres. */
+  /** Height, metres. */
   get height() {
     return this.#kind.def.height;
   }
 
-  /** kg. */
+  /** Mass, kg. */
   get mass() {
     return this.#kind.def.mass;
   }
 
   /**
-   * Hits a body, by role or bone, with an impulse, N·s: it falls, or flinches if the hit is weak.
+   * Hits a body, given by role or bone, with an impulse, N·s. The character falls, or flinches if the hit is weak.
    * @param {string} bone
    * @param {Vec3Like} impulse
    */
@@ -204,13 +204,13 @@ export class SinewCharacter extends EventDispatcher {
     this.core.hit(bone, impulse);
   }
 
-  /** Lets its bodies take over, at the pose and the speed that it has. */
+  /** Makes the character limp at its present pose and velocity. */
   goLimp() {
     this.core.goLimp();
   }
 
   /**
-   * Makes it move at a velocity over the ground, m/s, and face that way.
+   * Sets the velocity over the ground, m/s, and turns the character in that direction.
    * @param {Vec3Like} velocity
    */
   move(velocity) {
@@ -218,23 +218,23 @@ export class SinewCharacter extends EventDispatcher {
     this.core.face(velocity);
   }
 
-  /** Has it stand, by its idle clip, until it is to move. */
+  /** Makes the character stand, by its idle clip, until it moves again. */
   stand() {
     this.core.setMove([0, 0, 0]);
   }
 
-  /** Has it go as its clips go, which it does to begin with. */
+  /** Makes the character follow its clips, as at the start. */
   followClips() {
     this.core.followClips();
   }
 
-  /** Has it jump, if it has ground. */
+  /** Makes the character jump, if it is on the ground. */
   jump() {
     this.core.jump();
   }
 
   /**
-   * Plays one of its clips.
+   * Plays one of the character's clips.
    * @param {string} clip
    * @param {PlayOptions} [options]
    */
@@ -243,7 +243,7 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Drives all of it by clips, by muscles toward its clips, or not at all.
+   * Drives the whole character by clips, by muscles toward its clips, or not at all.
    * @param {CharacterPreset} preset
    */
   setPreset(preset) {
@@ -279,7 +279,7 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Teleports it.
+   * Teleports the character.
    * @param {Vec3Like} position
    * @param {QuatLike} [rotation]
    */
@@ -288,14 +288,14 @@ export class SinewCharacter extends EventDispatcher {
   }
 
   /**
-   * Lowers its level of detail in the distance.
+   * Lowers the level of detail of the character in the distance.
    * @param {CharacterDetail} detail
    */
   setDetail(detail) {
     this.core.setDetail(detail);
   }
 
-  /** Takes it out of the world, and its model out of the scene. */
+  /** Removes the character from the world, and its model from the scene. */
   dispose() {
     this.core.remove();
     this.core.free();

@@ -3,7 +3,7 @@ import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from
 
 /** @import { World } from '../index.js' */
 
-/** Draws what the physics sees: add it to the scene. It costs nothing while it is invisible. */
+/** Draws shapes, joints and contacts: add it to the scene. It costs no time while it is invisible. */
 export class SinewDebug extends LineSegments {
   /** @param {World} world */
   constructor(world) {
@@ -13,7 +13,7 @@ export class SinewDebug extends LineSegments {
     this.renderOrder = 1;
   }
 
-  /** Takes the lines of the present state; `Sinew.update` calls it. */
+  /** Reads the lines of the present state; `Sinew.update` calls this method. */
   update() {
     if (!this.visible) return;
     const { positions, colors } = this.world.debugLines();

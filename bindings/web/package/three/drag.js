@@ -1,9 +1,9 @@
 // Dragging with the pointer.
 import { Plane, Raycaster, Vector2, Vector3 } from 'three';
 
-/** Pixels that the pointer moves before it drags: less is a click. */
+/** Distance in pixels that the pointer moves before a drag starts; a shorter one is a click. */
 const CLICK = 4;
-/** Metres that a body may have moved between the press and the first motion of the pointer. */
+/** Largest distance that a body may move between the press and the first motion of the pointer, metres. */
 const REACH = 0.5;
 
 /** @import { Camera } from 'three' */
@@ -11,7 +11,7 @@ const REACH = 0.5;
 /** @import { Picked, Sinew } from '../three.js' */
 
 /**
- * Lets the pointer drag bodies and limbs by a spring with a bounded force. A character that clips move goes limp when
+ * Lets the pointer drag bodies and limbs by a spring with a bounded force. A character moved by clips goes limp when
  * grabbed, which happens once the pointer moves: a click grabs nothing. After a press on a body, the pointer's events
  * do not reach other listeners of the element, so that camera controls stay idle; `click` still does.
  */
@@ -22,7 +22,7 @@ export class SinewDrag {
   #target = new Vector3();
   /** @type {GrabPoint | undefined} */
   #grab;
-  /** What the pointer was pressed on, and where on the page. @type {{ hit: Picked, x: number, y: number } | undefined} */
+  /** Hit on which the pointer was pressed, and position on the page. @type {{ hit: Picked, x: number, y: number } | undefined} */
   #pressed;
   /** @type {number | undefined} */
   #pointerId;
@@ -38,7 +38,7 @@ export class SinewDrag {
     this.camera = camera;
     this.element = element;
     this.options = options;
-    /** False: the pointer drags nothing. */
+    /** False: dragging is disabled. */
     this.enabled = true;
     element.addEventListener('pointerdown', this.#down, { capture: true });
     element.addEventListener('pointermove', this.#move, { capture: true });
@@ -46,7 +46,7 @@ export class SinewDrag {
     element.addEventListener('pointercancel', this.#up, { capture: true });
   }
 
-  /** True while something is dragged. */
+  /** True while a body is dragged. */
   get isDragging() {
     return this.#grab !== undefined;
   }
@@ -74,7 +74,7 @@ export class SinewDrag {
     return hit.character !== undefined || this.physics.world.kind(hit.body) === 'dynamic';
   }
 
-  /** Takes hold of what the pointer was pressed on. */
+  /** Grabs the body on which the pointer was pressed. */
   #take() {
     if (!this.#pressed) return;
     const { hit } = this.#pressed;
@@ -111,7 +111,7 @@ export class SinewDrag {
     this.#pressed = undefined;
   }
 
-  /** Lets go and listens no more. */
+  /** Releases the body and removes the listeners. */
   dispose() {
     this.#release();
     for (const [type, listener] of /** @type {const} */ ([

@@ -3,12 +3,12 @@ import { BufferAttribute, BufferGeometry, DynamicDrawUsage } from 'three';
 
 /** @import { Particles } from '../index.js' */
 
-/** Geometry of particles: the surface of cloth and soft balls, the line of a rope. Make a `Mesh` or a `Line` of it, with frustum culling off. */
+/** Geometry of particles: the surface of cloth and soft balls, the line of a rope. Use it in a `Mesh` or a `Line`, with frustum culling off. */
 export class SinewGeometry extends BufferGeometry {
   /** @param {Particles} particles */
   constructor(particles) {
     super();
-    /** Particles in the world, with all their calls. */
+    /** Particles in the world, with all their methods. */
     this.particles = particles;
     this.setAttribute('position', new BufferAttribute(new Float32Array(particles.positions), 3).setUsage(DynamicDrawUsage));
     const { triangles } = particles;
@@ -19,7 +19,7 @@ export class SinewGeometry extends BufferGeometry {
     }
   }
 
-  /** Takes the present positions; `Sinew.update` calls it. */
+  /** Reads the present positions; `Sinew.update` calls this method. */
   write() {
     const { position } = this.attributes;
     /** @type {Float32Array} */ (position.array).set(this.particles.positions);
@@ -27,7 +27,7 @@ export class SinewGeometry extends BufferGeometry {
     if (this.isSurface) this.computeVertexNormals();
   }
 
-  /** Takes the particles out of the world and frees the geometry. */
+  /** Removes the particles from the world and frees the geometry. */
   dispose() {
     super.dispose();
     this.particles.remove();

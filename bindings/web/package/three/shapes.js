@@ -10,7 +10,7 @@ import { Matrix4, Quaternion, Vector3 } from 'three';
  * @typedef {'auto' | 'box' | 'sphere' | 'capsule' | 'cylinder' | 'cone' | 'hull' | 'mesh'} FittedShape
  */
 
-/** Share by which the three scales of a round shape may differ. */
+/** Largest relative difference of the three scales of a round shape. */
 const ROUND = 1e-3;
 
 /**
@@ -23,7 +23,7 @@ export function isMesh(object) {
 }
 
 /**
- * Pose of an object in the world, and its scale.
+ * Returns the pose of an object in the world, and its scale.
  * @param {Object3D} object
  */
 export function worldPose(object) {
@@ -34,7 +34,7 @@ export function worldPose(object) {
 }
 
 /**
- * Shapes of an object and all its descendants, in the frame of a body at the object's pose without scale.
+ * Returns the shapes of an object and all its descendants, in the frame of a body at the object's pose without scale.
  * @param {Object3D} object
  * @param {FittedShape} fitted
  * @param {boolean} isStatic
@@ -78,7 +78,7 @@ function shapeOf(mesh, bodyFromMesh, fitted, isStatic) {
 /** @typedef {{ shape: Geometry, center: Vector3 }} Fitted */
 
 /**
- * The shape of one of three's own geometries, if scaling keeps its kind.
+ * Returns the shape of one of three's own geometries, if scaling keeps its kind.
  * @param {BufferGeometry} geometry
  * @param {Vector3} scale
  * @returns {Fitted | undefined}
@@ -105,7 +105,7 @@ function ownShape(geometry, scale) {
 }
 
 /**
- * A shape around the bounds of a geometry.
+ * Returns a shape around the bounds of a geometry.
  * @param {BufferGeometry} geometry
  * @param {FittedShape} fitted
  * @param {Vector3} scale
@@ -130,7 +130,7 @@ function fittedShape(geometry, fitted, scale) {
 }
 
 /**
- * Vertices in another frame.
+ * Returns the vertices of a geometry in another frame.
  * @param {BufferGeometry} geometry
  * @param {Matrix4} matrix
  */
@@ -143,7 +143,7 @@ function transformed(geometry, matrix) {
 }
 
 /**
- * Triangles; those of a mirrored mesh are reversed.
+ * Returns the triangles; those of a mirrored mesh are reversed.
  * @param {BufferGeometry} geometry
  * @param {boolean} isMirrored
  */

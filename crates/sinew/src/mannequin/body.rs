@@ -1,4 +1,4 @@
-//! The mannequin's surface: an artist's wooden figure; each part is a closed loft.
+//! Surface of the mannequin, in the style of an artist's wooden figure; each part is a closed loft.
 //!
 //! Sections are tables of measurements in metres: height, width, depth.
 
@@ -14,7 +14,7 @@ const JOINT: [f32; 4] = [0.085, 0.050, 0.032, 1.0];
 /// Linear RGBA of shoes, cuffs and visor, which distinguish front from back.
 const ACCENT: [f32; 4] = [0.030, 0.170, 0.260, 1.0];
 
-/// The one mesh of the mannequin, carried by the root, a primitive for each colour.
+/// Returns the mannequin's only mesh, carried by the root, with one primitive for each colour.
 pub(super) fn mesh() -> RigMesh {
     RigMesh {
         name: "mannequin".to_owned(),
@@ -28,7 +28,7 @@ pub(super) fn mesh() -> RigMesh {
     }
 }
 
-/// A part: its surface and the bones that move it.
+/// Function that returns a part: its surface and the bones that move it.
 type Part = fn() -> (Loft, Chain);
 
 fn primitive(color: [f32; 4], left: &[Part], middle: &[Part]) -> Primitive {
@@ -206,7 +206,7 @@ fn knee() -> (Loft, Chain) {
     (loft, Chain::rigid(Bone::LeftLowerLeg))
 }
 
-/// Sections along the shoe: z, half-width, height of the top of the sole's curve, height above that.
+/// Builds the shoe from sections along it: z, half-width, height of the top of the sole's curve, height above that.
 fn shoe() -> (Loft, Chain) {
     const TABLE: [[f32; 4]; 9] = [
         [-0.066, 0.027, 0.030, 0.036],
@@ -303,7 +303,7 @@ fn elbow() -> (Loft, Chain) {
     (loft, Chain::rigid(Bone::LeftLowerArm))
 }
 
-/// The collar: from the base of the neck out to the shoulder ball.
+/// The collar, from the base of the neck to the shoulder ball.
 fn clavicle() -> (Loft, Chain) {
     let (start, end) = (bind_position(Bone::LeftShoulder), bind_position(Bone::LeftUpperArm));
     let section = |t: f32, up: f32, deep: f32| {
@@ -321,7 +321,7 @@ fn clavicle() -> (Loft, Chain) {
     (Loft { sections, start_tip: -tip, end_tip: tip, sides: 16, rings_per_span: 2 }, chain)
 }
 
-/// Shows in the gap between collar and arm when the arm is raised.
+/// The ball of the shoulder, visible in the gap between collar and arm when the arm is raised.
 fn shoulder_ball() -> (Loft, Chain) {
     let center = bind_position(Bone::LeftUpperArm);
     let loft = Loft::ellipsoid(center, Vec3::X * 0.046, Vec3::Z * 0.054, Vec3::Y * 0.050, 16);

@@ -8,7 +8,7 @@ use super::walk::{self, RUN, WALK};
 use crate::anim::{Channel, Clip, Interpolation, Property};
 use crate::math::Vec3;
 
-/// A cycle of two steps that gets on: its clip moves the joint above the hips along a path.
+/// A cycle of two steps with locomotion: its clip moves the joint above the hips along a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cycle {
     /// Linear keys at 30 Hz, starting at the left heel strike.
@@ -19,9 +19,9 @@ pub struct Cycle {
     pub speed: f32,
     /// Times of the left and right heel strike, clip seconds.
     pub strikes: [f32; 2],
-    /// Range of its own cycle in which a foot's ball does not move.
+    /// Range of a foot's own cycle in which its ball does not move.
     pub ball_down: [f32; 2],
-    /// Share of its own cycle from which a foot's whole sole does not move, and until which.
+    /// Range of a foot's own cycle in which its whole sole does not move.
     pub sole_down: [f32; 2],
 }
 
@@ -30,12 +30,12 @@ pub fn walking(path: Path) -> Cycle {
     carried(walk::walk_along(path), path, &WALK)
 }
 
-/// Running straight on, at [`RUN_SPEED`](super::RUN_SPEED).
+/// Running straight ahead, at [`RUN_SPEED`](super::RUN_SPEED).
 pub fn running() -> Cycle {
     carried(walk::run(), Path::Straight, &RUN)
 }
 
-/// The cycle of a clip on the spot.
+/// Adds the motion along `path` to a clip on the spot.
 fn carried(mut clip: Clip, path: Path, gait: &Gait) -> Cycle {
     let times: Vec<f32> = (0..=gait.frames).map(|k| k as f32 / RATE).collect();
     let (mut places, mut turns) = (Vec::new(), Vec::new());
@@ -56,7 +56,7 @@ fn carried(mut clip: Clip, path: Path, gait: &Gait) -> Cycle {
 /// Time at which the fist of [`punch`] arrives, clip seconds.
 pub const PUNCH_ARRIVES: f32 = 0.4;
 
-/// A straight right from a boxer's guard, and back: 1 s.
+/// A straight right from a boxer's guard, and back to the guard: 1 s.
 pub fn punch() -> Clip {
     let postures = [
         (0.0, guard()),
@@ -74,7 +74,7 @@ fn fist(x: f32, y: f32, z: f32) -> Hand {
     Hand { wrist: Vec3::new(x, y, z), flat: 0.0, fingers_out: 0.0, elbow_out: 12.0 }
 }
 
-/// Left foot in front, both fists in front of the chin.
+/// Guard: left foot in front, both fists in front of the chin.
 fn guard() -> Posture {
     Posture {
         pelvis: Vec3::new(0.0, 0.865 + HIPS_ABOVE_HIP, 0.0),
@@ -90,7 +90,7 @@ fn guard() -> Posture {
     }
 }
 
-/// The right side back, the weight on the right leg.
+/// Posture before the punch: the right side back, the weight on the right leg.
 fn wound_up() -> Posture {
     let guard = guard();
     Posture {
@@ -104,7 +104,7 @@ fn wound_up() -> Posture {
     }
 }
 
-/// The right side forward, its arm nearly straight, the weight over the left foot.
+/// Posture at the hit: the right side forward, its arm nearly straight, the weight over the left foot.
 fn struck() -> Posture {
     let guard = guard();
     Posture {

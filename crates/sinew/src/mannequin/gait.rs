@@ -34,17 +34,17 @@ pub(super) struct Gait {
     pub speed: f32,
     /// Frames of a cycle.
     pub frames: usize,
-    /// Share of the cycle that a foot is on the ground.
+    /// Fraction of the cycle in which a foot is on the ground.
     pub stance: f32,
-    /// Position of the landing heel, metres in front of the hips, and its lateral offset.
+    /// Distance of the landing heel in front of the hips and its lateral offset, metres.
     pub heel_strike: f32,
     pub aside: f32,
-    /// Pitch of the landing foot, toes up if negative, and of the leaving foot, heel up; degrees.
+    /// Pitch of the landing foot (negative: toes up) and of the leaving foot (positive: heel up), degrees.
     pub landing_pitch: f32,
     pub leaving_pitch: f32,
-    /// Phase at which the sole is down, and at which the heel rises.
+    /// Phases at which the sole is down and at which the heel rises.
     pub flat: [f32; 2],
-    /// Toes outward, degrees.
+    /// Angle by which the toes point outward, degrees.
     pub toe_out: f32,
     pub swing: Swing,
 }
@@ -56,7 +56,7 @@ pub(super) struct Swing {
     pub aside: f32,
     pub height: [f32; 3],
     pub ahead: [f32; 3],
-    /// Pitch of the foot, heel up, and of the toes against it; degrees.
+    /// Pitch of the foot (positive: heel up), and angle by which the toes bend up relative to it; degrees.
     pub pitch: [f32; 3],
     pub toes: [f32; 3],
 }
@@ -75,12 +75,13 @@ impl Gait {
         self.frames as f32 / RATE
     }
 
-    /// A foot at its own phase: 0 at heel strike.
+    /// Returns a foot at its own phase; phase 0 is its heel strike.
     pub fn foot(&self, side: Side, phase: f32) -> Foot {
         if phase < self.stance { self.planted(side, phase) } else { self.swinging(side, phase) }
     }
 
-    /// Heel rocker, flat, then rolling over the ball with the toes flat: the contact moves back at the gait's speed.
+    /// Returns a foot on the ground: first heel rocker, then flat, then rolling over the ball with flat toes. The
+    /// contact moves back at the gait's speed.
     fn planted(&self, side: Side, phase: f32) -> Foot {
         let pitch = if phase < self.flat[1] {
             self.landing_pitch * (1.0 - smoothstep(phase / self.flat[0]))
@@ -98,7 +99,7 @@ impl Gait {
         Foot { ankle, turn: turn_now, toes: if pitch > 0.0 { pitch } else { 0.0 }, knee_out: 4.0 }
     }
 
-    /// Motion from toe-off to heel strike: interpolates smoothly between the ends of the stances.
+    /// Returns a foot from toe-off to heel strike: interpolates smoothly between the ends of the stances.
     fn swinging(&self, side: Side, phase: f32) -> Foot {
         let (leave, land) = (self.planted(side, self.stance), self.planted(side, 0.0));
         let before = self.planted(side, self.stance - 0.03);
@@ -120,8 +121,8 @@ impl Gait {
     }
 }
 
-/// A foot of a straight gait transferred to another path: it stays planted, because the path and the foot are both
-/// extended rigidly, and the foot follows the path point of its ball.
+/// Transfers a foot of a straight gait to another path. The path and the foot are both extended rigidly, and the
+/// foot follows the path point of its ball; so a planted foot stays planted.
 pub(super) fn laid_on(path: Path, foot: Foot) -> Foot {
     let Path::Circle(radius) = path else { return foot };
     let ball = bind_position(Bone::LeftToes) - bind_position(Bone::LeftFoot);

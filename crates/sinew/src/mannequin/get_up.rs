@@ -1,7 +1,7 @@
 //! Getting up, from the back and from the face: key postures and the curves between them.
 //!
-//! Both end in [`Posture::standing`] at the origin, facing +Z. Lying on the back the feet point along +Z, lying on the
-//! face the head does, so the lying pose defines the final facing.
+//! Both end in [`Posture::standing`] at the origin, facing +Z. The lying pose defines the final facing: on the back
+//! the feet point along +Z, on the face the head does.
 
 use super::keys::{Key, RATE, between, record};
 use super::posture::{Foot, Hand, Hanging, Posture};
@@ -24,7 +24,7 @@ fn clip(name: &str, keys: &[Key], steps: &[Step]) -> Clip {
     })
 }
 
-/// A foot that is moved elsewhere: it goes up, over and down without sliding.
+/// A step of a foot to another place: the foot goes up, over and down without sliding.
 struct Step {
     side: Side,
     /// Seconds.
@@ -49,22 +49,22 @@ fn v(x: f32, y: f32, z: f32) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
-/// A rotation that only leans forward.
+/// Returns a turn that only leans forward, by `degrees`.
 fn lean(degrees: f32) -> Vec3 {
     v(degrees, 0.0, 0.0)
 }
 
-/// A palm on the floor.
+/// Returns a hand with its palm on the floor.
 fn palm(x: f32, z: f32, fingers_out: f32, elbow_out: f32) -> Hand {
     Hand { wrist: v(x, 0.032, z), flat: 1.0, fingers_out, elbow_out }
 }
 
-/// A hand in the air or on a knee.
+/// Returns a hand in the air or on a knee.
 fn hand(x: f32, y: f32, z: f32, elbow_out: f32) -> Hand {
     Hand { wrist: v(x, y, z), flat: 0.0, fingers_out: 0.0, elbow_out }
 }
 
-/// A foot in the air.
+/// Returns a foot in the air.
 fn lifted(ankle: Vec3, pitch: f32, knee_out: f32) -> Foot {
     Foot { ankle, turn: lean(pitch), toes: 0.0, knee_out }
 }

@@ -8,7 +8,7 @@ use crate::math::Rotation;
 /// Keys per second of the clips.
 pub(super) const RATE: f32 = 30.0;
 
-/// A clip of `frames + 1` linear keys at [`RATE`], with postures sampled by time in seconds.
+/// Makes a clip of `frames + 1` linear keys at [`RATE`]; `posture_at` takes a time in seconds.
 pub(super) fn record(name: &str, frames: usize, posture_at: impl Fn(f32) -> Posture) -> Clip {
     let times: Vec<f32> = (0..=frames).map(|k| k as f32 / RATE).collect();
     let poses: Vec<Vec<LocalTransform>> = times.iter().map(|&t| posture_at(t).solve()).collect();
@@ -27,7 +27,7 @@ pub(super) fn record(name: &str, frames: usize, posture_at: impl Fn(f32) -> Post
     Clip { name: name.to_owned(), duration: times[frames], channels }
 }
 
-/// Key values of a joint's rotation, each on the hemisphere of the previous one.
+/// Returns the key values of a joint's rotation, each on the hemisphere of the previous one.
 fn rotations(poses: &[Vec<LocalTransform>], bone: Bone) -> Vec<f32> {
     let mut last = Rotation::IDENTITY;
     let mut values = Vec::with_capacity(4 * poses.len());
@@ -44,8 +44,8 @@ pub(super) struct Key {
     pub(super) posture: Posture,
 }
 
-/// The posture at `time` between keys in order of time, every number interpolated by [`monotone`], so that equal values
-/// of two keys (a planted hand) stay constant between them.
+/// Returns the posture at `time`. `keys` are in order of time. Every number is interpolated by [`monotone`], so that
+/// equal values of two keys (a planted hand) stay constant between them.
 pub(super) fn between(keys: &[Key], time: f32) -> Posture {
     let times: Vec<f32> = keys.iter().map(|key| key.at).collect();
     let mut result = keys[0].posture;
@@ -59,7 +59,7 @@ pub(super) fn between(keys: &[Key], time: f32) -> Posture {
     result
 }
 
-/// Smooth curve through points that never overshoots them (Fritsch and Butland 1984); flat at both ends.
+/// Evaluates a smooth curve through points that never overshoots them (Fritsch and Butland 1984); flat at both ends.
 pub(super) fn monotone(times: &[f32], values: &[f32], time: f32) -> f32 {
     let last = times.len() - 1;
     if time >= times[last] {
@@ -77,7 +77,7 @@ pub(super) fn monotone(times: &[f32], values: &[f32], time: f32) -> f32 {
     a + (b - a) * (3.0 * t2 - 2.0 * t3) + from * (t3 - 2.0 * t2 + t) + to * (t3 - t2)
 }
 
-/// Slope of the monotone curve at key `i`: the weighted harmonic mean of the slopes beside it, 0 at an extremum.
+/// Slope of the monotone curve at key `i`: weighted harmonic mean of the two adjacent slopes, 0 at an extremum.
 fn slope(times: &[f32], values: &[f32], i: usize) -> f32 {
     if i == 0 || i + 1 == times.len() {
         return 0.0;

@@ -1,4 +1,4 @@
-//! Closed surfaces from cross-sections, with skin weights that pass from bone to bone along an axis.
+//! Closed surfaces from cross-sections, with skin weights that blend from bone to bone along an axis.
 
 use super::skeleton::Bone;
 use crate::anim::{Primitive, smoothstep};
@@ -14,7 +14,7 @@ pub(super) struct Section {
     pub(super) v: Vec3,
     /// Half-depth on the back as a multiple of the front's.
     pub(super) back: f32,
-    /// 1 is an ellipse; smaller is squarer (exponent of the superellipse's sine and cosine).
+    /// Exponent of the superellipse's sine and cosine: 1 gives an ellipse, a smaller value a squarer section.
     pub(super) roundness: f32,
 }
 
@@ -23,7 +23,7 @@ impl Section {
         Self { center, u, v, back: 1.0, roundness: 1.0 }
     }
 
-    /// The point at `turn` of a full revolution, 0..1.
+    /// Returns the point at `turn` of a full revolution, 0..1.
     fn point(&self, turn: f32) -> Vec3 {
         let (sin, cos) = trig::sin_cos(turn * core::f32::consts::TAU);
         let v = if sin < 0.0 { self.v * self.back } else { self.v };
@@ -60,7 +60,7 @@ fn catmull_rom(t: f32) -> [f32; 4] {
     ]
 }
 
-/// Chain of bones that move vertices along an axis, in order, with the blend zone between neighbours.
+/// Chain of bones along an axis, in order, that move vertices, with the blend zone between neighbours.
 pub(super) struct Chain {
     first: Bone,
     borders: Vec<Border>,
@@ -68,7 +68,7 @@ pub(super) struct Chain {
 
 struct Border {
     origin: Vec3,
-    /// Unit, toward the next bone.
+    /// Unit vector toward the next bone.
     axis: Vec3,
     half_width: f32,
     next: Bone,
@@ -78,12 +78,13 @@ struct Border {
 type Influences = [(Bone, f32); 4];
 
 impl Chain {
-    /// One bone moves all of it.
+    /// Chain of a single bone, which moves all vertices.
     pub(super) fn rigid(bone: Bone) -> Self {
         Self { first: bone, borders: Vec::new() }
     }
 
-    /// Beyond the plane through `origin` perpendicular to `axis`, `next` takes over within ± `half_width` metres.
+    /// Adds `next` beyond the plane through `origin` perpendicular to `axis`; weights blend within ± `half_width`
+    /// metres.
     pub(super) fn then(mut self, origin: Vec3, axis: Vec3, half_width: f32, next: Bone) -> Self {
         self.borders.push(Border { origin, axis: normalize_or(axis, Vec3::Y), half_width, next });
         self
@@ -113,9 +114,9 @@ pub(super) struct Loft {
     pub(super) start_tip: Vec3,
     /// Vector from the last section's centre to the top of its dome.
     pub(super) end_tip: Vec3,
-    /// Vertices round a ring.
+    /// Number of vertices round a ring.
     pub(super) sides: usize,
-    /// Rings from one section to the next.
+    /// Number of rings from one section to the next.
     pub(super) rings_per_span: usize,
 }
 
@@ -123,7 +124,7 @@ pub(super) struct Loft {
 const DOME_RINGS: usize = 3;
 
 impl Loft {
-    /// An ellipsoid with the given half-axes.
+    /// Makes an ellipsoid with the given half-axes.
     pub(super) fn ellipsoid(center: Vec3, u: Vec3, v: Vec3, tip: Vec3, sides: usize) -> Self {
         let section = Section::ellipse(center, u, v);
         Self { sections: vec![section; 2], start_tip: -tip, end_tip: tip, sides, rings_per_span: 0 }
@@ -147,7 +148,7 @@ impl Loft {
         rings
     }
 
-    /// Adds the surface to `primitive`, its vertices weighted by `chain`.
+    /// Adds the surface to `primitive`, with vertices weighted by `chain`.
     pub(super) fn build(&self, chain: &Chain, primitive: &mut Primitive) {
         let rings = self.rings();
         let base = primitive.positions.len();
@@ -170,19 +171,19 @@ impl Loft {
     }
 }
 
-/// Skin slot of a bone: the root has none.
+/// Skin slot of a bone; the root has none.
 pub(super) fn slot(bone: Bone) -> u16 {
     bone as u16 - 1
 }
 
-/// Ring `k` of a dome over `base`: 0 is the base, `DOME_RINGS + 1` would be the pole.
+/// Returns ring `k` of a dome over `base`: 0 is the base, `DOME_RINGS + 1` would be the pole.
 fn dome_ring(base: &Section, tip: Vec3, k: usize) -> Section {
     let angle = k as f32 / (DOME_RINGS + 1) as f32 * core::f32::consts::FRAC_PI_2;
     let (sin, cos) = trig::sin_cos(angle);
     Section { center: base.center + tip * sin, u: base.u * cos, v: base.v * cos, ..*base }
 }
 
-/// Triangles of `rings` rings of `sides` vertices between two poles, the first vertex and the last.
+/// Returns the triangles of `rings` rings of `sides` vertices between two poles (the first and the last vertex).
 fn tube_triangles(rings: usize, sides: usize) -> Vec<[usize; 3]> {
     let vertex = |ring: usize, side: usize| 1 + ring * sides + side % sides;
     let (start, end) = (0, 1 + rings * sides);
@@ -204,14 +205,14 @@ fn flipped(triangles: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
     triangles.into_iter().map(|[a, b, c]| [a, c, b]).collect()
 }
 
-/// True if the enclosed volume is positive: the triangles are counter-clockwise seen from outside.
+/// True if the enclosed volume is positive, so that the triangles are counter-clockwise seen from outside.
 fn encloses_positive(positions: &[Vec3], triangles: &[[usize; 3]]) -> bool {
     let volume: f32 =
         triangles.iter().map(|&[a, b, c]| positions[a].cross(positions[b]).dot(positions[c])).sum();
     volume > 0.0
 }
 
-/// Vertex normals: the sum of the adjacent triangles' area vectors.
+/// Returns vertex normals: the sum of the adjacent triangles' area vectors.
 fn smooth_normals(positions: &[Vec3], triangles: &[[usize; 3]]) -> Vec<Vec3> {
     let mut sums = vec![Vec3::ZERO; positions.len()];
     for &[a, b, c] in triangles {
@@ -223,7 +224,7 @@ fn smooth_normals(positions: &[Vec3], triangles: &[[usize; 3]]) -> Vec<Vec3> {
     sums.into_iter().map(|n| normalize_or(n * 1e6, Vec3::Y)).collect()
 }
 
-/// Adds the mirror image of all vertices and triangles in the plane x = 0; left bones become right ones.
+/// Adds the mirror image of all vertices and triangles in the plane x = 0; left bones become right bones.
 pub(super) fn mirror(primitive: &mut Primitive) {
     let count = primitive.positions.len();
     let flip = |v: Vec3| Vec3::new(-v.x, v.y, v.z);

@@ -4,7 +4,7 @@ use super::skeleton::{ANKLE_HEIGHT, Bone, HIPS_ABOVE_HIP, Side, bind_offset, bin
 use crate::anim::LocalTransform;
 use crate::math::{Mat3, Rotation, Vec3, clamp, normalize_or, trig};
 
-/// Distance from the middle of the knee to its skin in front, metres.
+/// Distance from the centre of the knee to its skin in front, metres.
 const KNEE_RADIUS: f32 = 0.056;
 
 /// A rotation in degrees: x leans forward, y turns left, z tips right. Applied in the order z, x, y.
@@ -35,13 +35,13 @@ pub(super) struct Foot {
     pub(super) ankle: Vec3,
     /// Rotation of the foot relative to the world; zero is flat and points along +Z.
     pub(super) turn: Turn,
-    /// Toes bent up against the foot.
+    /// Angle by which the toes bend up relative to the foot, degrees.
     pub(super) toes: f32,
-    /// Hinge of the knee turned outward against the pelvis.
+    /// Angle by which the knee's hinge turns outward relative to the pelvis, degrees.
     pub(super) knee_out: f32,
 }
 
-/// Position of the wrist and pose of the hand. The arm follows.
+/// Position of the wrist and pose of the hand. The arm follows by inverse kinematics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hand {
     /// Position of the wrist.
@@ -50,29 +50,30 @@ pub(super) struct Hand {
     pub(super) flat: f32,
     /// Direction of the fingers of a flat hand, degrees: 0 along +Z, 90 outward.
     pub(super) fingers_out: f32,
-    /// Elbow turned outward and up from behind the body, about the line from shoulder to wrist.
+    /// Angle by which the elbow turns outward and up from behind the body, about the line from shoulder to wrist,
+    /// degrees.
     pub(super) elbow_out: f32,
 }
 
 /// Angles of an arm that hangs from the chest, degrees.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hanging {
-    /// Upper arm forward of straight down.
+    /// Angle of the upper arm forward of straight down.
     pub(super) forward: f32,
-    /// Upper arm away from the body.
+    /// Angle of the upper arm away from the body.
     pub(super) out: f32,
-    /// Bend of the elbow.
+    /// Bend angle of the elbow.
     pub(super) elbow: f32,
 }
 
 impl Foot {
-    /// Flat on the floor, toes a little outward.
+    /// Returns a foot flat on the floor, toes a little outward.
     pub(super) fn flat(side: Side, x: f32, z: f32, out: f32) -> Self {
         let turn = Vec3::new(0.0, out * side.sign(), 0.0);
         Self { ankle: Vec3::new(x, ANKLE_HEIGHT, z), turn, toes: 0.0, knee_out: out }
     }
 
-    /// As [`flat`](Self::flat), then heel lifted by `pitch` degrees about the ball, the toes staying down.
+    /// Like [`flat`](Self::flat), with the heel lifted by `pitch` degrees about the ball; the toes stay down.
     pub(super) fn on_ball(side: Side, x: f32, z: f32, out: f32, pitch: f32) -> Self {
         let flat = Self::flat(side, x, z, out);
         let ball = bind_position(Bone::LeftToes) - bind_position(Bone::LeftFoot);
@@ -82,7 +83,7 @@ impl Foot {
     }
 }
 
-/// Rotation of a turn.
+/// Converts a turn to a rotation.
 pub(super) fn turn(degrees: Turn) -> Rotation {
     let about = |axis: Vec3, angle: f32| Rotation::from_axis_angle(axis, angle.to_radians());
     about(Vec3::Y, degrees.y) * about(Vec3::X, degrees.x) * about(Vec3::Z, degrees.z)
@@ -112,7 +113,7 @@ impl Placed {
 }
 
 impl Posture {
-    /// Upright on both feet, arms hanging: the end of every clip that ends on its feet.
+    /// Upright posture on both feet with hanging arms: the end of every clip that ends on its feet.
     pub(super) fn standing() -> Self {
         let hand = Hand { wrist: Vec3::ZERO, flat: 0.0, fingers_out: 0.0, elbow_out: 0.0 };
         let posture = Self {
@@ -130,12 +131,12 @@ impl Posture {
         posture.with_arms(Hanging { forward: 2.0, out: 7.0, elbow: 16.0 })
     }
 
-    /// Both arms hanging symmetrically.
+    /// Returns the posture with both arms hanging symmetrically.
     pub(super) fn with_arms(self, hanging: Hanging) -> Self {
         self.with_arm(Side::Left, hanging).with_arm(Side::Right, hanging)
     }
 
-    /// One arm hanging from the current chest.
+    /// Returns the posture with one arm hanging from the current chest.
     pub(super) fn with_arm(mut self, side: Side, hanging: Hanging) -> Self {
         let placed = self.place_trunk();
         let (shoulder, _) = placed.at(Bone::LeftUpperArm.on(side));
@@ -150,7 +151,8 @@ impl Posture {
         self
     }
 
-    /// One knee on the floor behind the hip, the shank behind it: ankle `height` above the floor, `x` to the left.
+    /// Returns the posture with one knee on the floor behind the hip, and the ankle behind the knee, `height` above
+    /// the floor and `x` to the left.
     pub(super) fn with_knee_down(mut self, side: Side, x: f32, height: f32, pitch: f32, toes: f32) -> Self {
         let hip = self.place_trunk().at(Bone::LeftUpperLeg.on(side)).0;
         let leg = Limb::leg(side);
@@ -286,8 +288,9 @@ impl Limb {
         })
     }
 
-    /// World rotations of the two bones that bring the limb's end to `target` (relative to its root), with the hinge's
-    /// axis as near to `hinge` as possible. A target out of reach is approached; the limb never stretches fully.
+    /// Returns the world rotations of the two bones that bring the limb's end to `target` (relative to its root), with
+    /// the hinge's axis as near to `hinge` as possible. A target out of reach is approached; the limb never stretches
+    /// fully.
     fn reach(&self, target: Vec3, hinge: Vec3) -> (Rotation, Rotation) {
         let (a, b) = (self.upper.length(), self.lower.length());
         let along = normalize_or(target, Vec3::NEG_Y);

@@ -1,4 +1,4 @@
-//! The mannequin's joints: names, parents, where they are in the bind pose.
+//! Joints of the mannequin: names, parents, and positions in the bind pose.
 //!
 //! Metres, +Y up, facing +Z, left is +X. Every joint's rest rotation is the identity, so a local rotation is the
 //! rotation from the bind pose about the world's axes. Segment lengths are those of de Leva 1996 (J. Biomechanics 29)
@@ -72,12 +72,12 @@ impl Bone {
         self as JointIdx
     }
 
-    /// The joint at an index of the rig.
+    /// Returns the joint at an index of the rig.
     pub(super) fn from_index(index: JointIdx) -> Self {
         JOINTS[index].0
     }
 
-    /// The same joint on the other side; itself on the midline.
+    /// Returns the same joint on the other side, or `self` on the midline.
     pub(super) fn mirrored(self) -> Self {
         let index = self.index();
         match index {
@@ -91,18 +91,18 @@ impl Bone {
         JOINTS[self.index()].2
     }
 
-    /// All joints, parents first.
+    /// Iterates over all joints, parents first.
     pub(super) fn all() -> impl Iterator<Item = Self> {
         JOINTS.iter().map(|&(bone, ..)| bone)
     }
 
-    /// This joint on the given side; `self` is the left one.
+    /// Returns this joint on the given side; `self` is the left joint.
     pub(super) fn on(self, side: Side) -> Self {
         if side == Side::Left { self } else { self.mirrored() }
     }
 }
 
-/// Left is +X.
+/// Side of the body; left is +X.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     Left,
@@ -117,15 +117,15 @@ impl Side {
         if self == Self::Left { 1.0 } else { -1.0 }
     }
 
-    /// A left-side vector on this side.
+    /// Mirrors a left-side vector to this side.
     pub(super) fn vector(self, left: Vec3) -> Vec3 {
         Vec3::new(left.x * self.sign(), left.y, left.z)
     }
 }
 
-/// Shoulder joint to elbow, metres (de Leva 1996).
+/// Distance from the shoulder joint to the elbow, metres (de Leva 1996).
 pub(super) const UPPER_ARM: f32 = 0.2817;
-/// Elbow to wrist, metres (de Leva 1996).
+/// Distance from the elbow to the wrist, metres (de Leva 1996).
 pub(super) const FOREARM: f32 = 0.2689;
 /// Angle by which the arms of the A-pose hang below the horizontal, radians (40°).
 pub(super) const ARM_DROP: f32 = 0.698_131_7;
@@ -143,7 +143,8 @@ pub(super) struct ArmAxes {
     pub(super) palm: Vec3,
 }
 
-/// Left arm in the A-pose: with hanging arms the palms face the thighs, thumbs point forward, the elbow bends forward.
+/// Returns the left arm in the A-pose. With hanging arms the palms face the thighs, thumbs point forward, elbows bend
+/// forward.
 pub(super) fn left_arm_axes() -> ArmAxes {
     let (sin, cos) = trig::sin_cos(ARM_DROP);
     let upper = Vec3::new(cos, -sin, 0.0);
@@ -179,7 +180,7 @@ pub(super) fn bind_offset(bone: Bone) -> Vec3 {
     bind_position(bone) - origin
 }
 
-/// The rig's joints and its one skin; no mesh yet. Skin slot = joint index − 1: the root moves no vertex.
+/// Returns the rig's joints and its one skin, without a mesh. Skin slot = joint index − 1: the root moves no vertex.
 pub(super) fn skeleton() -> Rig {
     let joints = JOINTS
         .iter()

@@ -32,7 +32,7 @@ pub(super) const WALK: Gait = Gait {
     },
 };
 
-/// Both feet are in the air for a tenth of a cycle after each step.
+/// Gait of the run. Both feet are in the air for a tenth of a cycle after each step.
 pub(super) const RUN: Gait = Gait {
     speed: RUN_SPEED,
     frames: 22,
@@ -58,7 +58,7 @@ pub(super) fn walk() -> Clip {
     cycle("walk", &WALK, |phase| walking(phase, Path::Straight))
 }
 
-/// The same on a circle, relative to the character.
+/// One cycle of walking along a path, relative to the character.
 pub(super) fn walk_along(path: Path) -> Clip {
     cycle("walk", &WALK, |phase| walking(phase, path))
 }
@@ -84,7 +84,7 @@ fn half_on(phase: f32) -> f32 {
     if phase < 0.5 { phase + 0.5 } else { phase - 0.5 }
 }
 
-/// Posture at a phase of the cycle, 0..1.
+/// Posture of the walk at a phase of the cycle, 0..1.
 fn walking(phase: f32, path: Path) -> Posture {
     // +1 with the left foot forward; +1 with the weight on the left leg.
     let (stride, weight) = (wave(phase + 0.25), wave(phase - 0.05));
@@ -110,7 +110,8 @@ fn walking(phase: f32, path: Path) -> Posture {
     posture
 }
 
-/// Posture at a phase of the cycle, 0..1: lowest in the middle of each stance, leaning forward, elbows bent.
+/// Posture of the run at a phase of the cycle, 0..1: lowest in the middle of each stance, leaning forward,
+/// elbows bent.
 fn running(phase: f32) -> Posture {
     let (stride, weight) = (wave(phase + 0.21), wave(phase - 0.02));
     let rise = -0.032 * wave(2.0 * (phase - 0.17) + 0.25);
@@ -133,7 +134,7 @@ fn running(phase: f32) -> Posture {
     posture
 }
 
-/// Frames of one breath.
+/// Number of frames of one breath.
 const BREATH_FRAMES: usize = 96;
 
 /// Standing and breathing, starting from [`Posture::standing`].

@@ -1,5 +1,5 @@
-//! Adapts motions to another body: lifts what lies, kneels or rolls over its toes out of the floor, and puts standing
-//! feet on it.
+//! Adapts motions to another body: lifts lying, kneeling and rolling parts out of the floor, and puts standing feet on
+//! it.
 
 use crate::anim::cleanup::raise;
 use crate::anim::contact::FootContact;
@@ -17,10 +17,10 @@ const BLEND: f32 = 0.07;
 const TREAD: f32 = 0.1;
 /// Largest distance by which a standing foot is lowered, in leg lengths.
 const REACH: f32 = 0.3;
-/// Largest distance by which the body is raised, in heights of the character: raising does not fix deeper penetration.
+/// Largest height by which the body is raised, in heights of the character; deeper penetration remains.
 const MOST: f32 = 0.3;
 
-/// A body whose shapes measure its depth in the floor.
+/// Body whose shapes measure how deep it is in the floor.
 pub(super) struct Clearing<'a> {
     def: &'a CharacterDef,
     root: Affine,
@@ -122,8 +122,8 @@ impl<'a> Clearing<'a> {
         }
     }
 
-    /// Moves a foot to its position before the body was raised, by the share `stands`, then onto the floor or out of
-    /// it.
+    /// Moves a foot by the share `stands` back to its position before the body was raised, then onto the floor or out
+    /// of the floor.
     fn tread(
         &self,
         k: usize,
@@ -162,7 +162,7 @@ impl<'a> Clearing<'a> {
         for prop in &self.props {
             local_to_model(&self.def.rig, pose, &Affine::IDENTITY, model);
             let parent = self.def.rig.joints[prop.joint].parent.map_or(Affine::IDENTITY, |p| model[p]);
-            // Rigid: a pose may have another scale than the bind pose.
+            // Uses a rigid transform, because the scale of a pose may differ from the bind pose's.
             let place = model[prop.carrier].to_rigid() * prop.at;
             let translation = parent.inverse().point(place.translation);
             if translation.is_finite() {
@@ -172,8 +172,8 @@ impl<'a> Clearing<'a> {
         }
     }
 
-    /// Largest depth of these bodies in the floor beyond their depth in the bind pose, metres; negative above it, −∞
-    /// without bodies.
+    /// Returns the largest depth of `bodies` in the floor beyond their depth in the bind pose, metres; negative above
+    /// the floor, −∞ without bodies.
     fn depth(&self, bodies: &[usize], pose: &[LocalTransform]) -> f32 {
         let (mut model, mut places) = (Vec::new(), Vec::new());
         local_to_model(&self.def.rig, pose, &Affine::IDENTITY, &mut model);
@@ -185,7 +185,7 @@ impl<'a> Clearing<'a> {
     }
 }
 
-/// Standing weight of a foot at a time, 0 to 1, with a blend of `blend` seconds at both ends.
+/// Standing weight of a foot at a time, 0 to 1, which blends over `blend` seconds at both ends of a contact.
 fn standing(contacts: &[FootContact], side: Side, time: f32, blend: f32) -> f32 {
     let own = contacts.iter().filter(|contact| contact.foot == side);
     let share = own.map(|contact| {
@@ -211,7 +211,7 @@ fn props(def: &CharacterDef, analysis: &RigAnalysis) -> Vec<Prop> {
     strays.map(|joint| prop((bodies[joint.child].joint, bodies[joint.parent].joint))).collect()
 }
 
-/// The farthest descendant of a joint.
+/// The descendant of a joint that is farthest from it in the bind pose; `None` if it has none.
 fn tip(def: &CharacterDef, analysis: &RigAnalysis, top: JointIdx) -> Option<JointIdx> {
     let place = |joint: JointIdx| analysis.bind_model[joint].translation;
     let away = |joint: &JointIdx| (place(*joint) - place(top)).length();
@@ -219,7 +219,7 @@ fn tip(def: &CharacterDef, analysis: &RigAnalysis, top: JointIdx) -> Option<Join
     hanging.max_by(|a, b| away(a).total_cmp(&away(b))).filter(|&joint| joint != top)
 }
 
-/// True if a joint is `top` or its descendant.
+/// True if `joint` is `top` or its descendant.
 fn hangs(def: &CharacterDef, joint: JointIdx, top: JointIdx) -> bool {
     core::iter::successors(Some(joint), |&i| def.rig.joints[i].parent).any(|i| i == top)
 }

@@ -21,7 +21,7 @@ use clearing::Clearing;
 pub struct BuiltinMotions {
     /// A cycle of two steps on the spot.
     pub walk: Clip,
-    /// Speed forward at which the feet of `walk` do not slide, m/s: of the size of the character.
+    /// Forward speed of this character at which the feet of `walk` do not slide, m/s.
     pub walk_speed: f32,
     /// Footfalls of `walk`: events `footstep` with the payload `left` or `right`.
     pub footsteps: Vec<ClipEvent>,
@@ -36,26 +36,25 @@ pub struct BuiltinMotions {
 /// Reason why a character was not given the built-in motions.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BuiltinError {
-    /// They are a human's, and the character is not human.
+    /// The built-in motions are a human's, and the character is not human.
     #[error("the built-in motions are a human's: {0}")]
     Retarget(#[from] RetargetError),
     /// A clip cannot be played.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// No get-up works on its body.
+    /// No built-in get-up works on the character's body.
     #[error(
         "the built-in get-ups do not fit its build: it, or what it holds, would be {0:.2} m in the floor"
     )]
     InFloor(f32),
 }
 
-/// Depth in the floor above which a get-up is rejected, as a share of the character's height: raising and bending limbs
-/// cannot fix it.
+/// Depth in the floor above which a get-up is rejected, as a share of the character's height. Raising the body and
+/// bending its limbs cannot correct greater depths.
 const LEFT_OUT: f32 = 0.2;
 
 /// Retargets the built-in motions to a humanoid, by the roles of its joints. Where its bodies would be in the floor,
-/// the body or the hands are raised. Durations grow with the square root of the leg length (Froude), so that a giant
-/// walks like a giant.
+/// the body or the hands are raised. Durations are proportional to the square root of the leg length (Froude).
 ///
 /// ```
 /// use sinew::anim::RigAnalysis;
@@ -68,7 +67,7 @@ const LEFT_OUT: f32 = 0.2;
 /// ```
 ///
 /// # Errors
-/// A body without the roles of a humanoid, without hips or with fewer than two complete legs.
+/// If the character lacks the roles of a humanoid or hips, or has fewer than two complete legs.
 ///
 /// # Panics
 /// If the analysis does not belong to the rig.
@@ -76,7 +75,7 @@ pub fn builtin_motions(def: &CharacterDef, analysis: &RigAnalysis) -> Result<Bui
     carried_over(def, analysis, None)
 }
 
-/// [`builtin_motions`], with props moved along where a clip of the character `holds` them.
+/// As [`builtin_motions`], with props moved along where a clip of the character `holds` them.
 fn carried_over(
     def: &CharacterDef,
     analysis: &RigAnalysis,
@@ -125,9 +124,9 @@ fn carried_over(
 }
 
 impl BuiltinMotions {
-    /// Adds motions that a character's own clips lack: get-ups, idle, and the walk if no clip loops. The walk starts
-    /// after getting up; until then the character stands in its rest pose. The walk has events `footstep` with the
-    /// payload `left` or `right`.
+    /// Adds the motions that a character's own clips lack: get-ups, idle, and the walk if no clip loops. The walk
+    /// starts after the first get-up; until then the character stands in its rest pose. The walk has events `footstep`
+    /// with the payload `left` or `right`.
     pub fn fill_in(self, own: MotionSet) -> MotionSet {
         let mut set = own;
         if set.get_ups.is_empty() {
@@ -150,11 +149,11 @@ impl BuiltinMotions {
     }
 }
 
-/// Gives a character motions, and adds the missing built-in ones: it will get up, and continue with its own looped
-/// clip, or the walk if it has none. A get-up that would be deep in the floor on its body is left out.
+/// Gives a character motions, and adds the missing built-in ones. The character then gets up, and continues with its
+/// own looped clip, or with the walk if it has none. A get-up that would be deep in the floor on its body is left out.
 ///
 /// # Errors
-/// A character that is not humanoid, an unplayable clip, or no get-up that works on its body; its motions are then
+/// If the character is not humanoid, a clip is unplayable, or no get-up works on its body; its motions are then
 /// unchanged.
 ///
 /// # Panics
@@ -184,9 +183,9 @@ pub fn set_motions_with_builtin(
     Ok(())
 }
 
-/// Adds to the clips from `first` on the pose at the start of the looped clip for every joint they do not animate:
-/// fingers, a jaw, or a weapon, which need not be in the hand in the rig's rest pose. Joints that carry something which
-/// a clip moves stay unchanged.
+/// For every joint that the clips from `first` on do not animate, adds its pose at the start of the looped clip:
+/// fingers, a jaw, or a weapon, which need not be in the hand in the rig's rest pose. Ancestors of joints that a clip
+/// moves stay unchanged.
 fn hold_as_looped(rig: &Rig, motions: &mut MotionSet, first: usize) {
     let Some(looped) = motions.looped.filter(|&index| index < first) else { return };
     let held = motions.clips[looped].channels.clone();
@@ -209,12 +208,12 @@ fn hold_as_looped(rig: &Rig, motions: &mut MotionSet, first: usize) {
     }
 }
 
-/// Frames of the actor a second.
+/// Frames per second of the retargeted motions, at the mannequin's pace.
 const RATE: f64 = 30.0;
 /// Number of repetitions of a cycle, so that the middle one has both neighbours.
 const PLAYED: usize = 3;
 
-/// Options at the pace of the character, in the actor's own frames.
+/// Returns the retargeting options: pace of `body` relative to `actor`, floor, and frame time.
 fn options(actor: Body<'_>, body: Body<'_>) -> RetargetOptions {
     let legs = |body: Body<'_>| {
         Legs::of(body.rig, body.analysis).map(|legs| legs.feet[0].length + legs.feet[1].length)
@@ -224,7 +223,7 @@ fn options(actor: Body<'_>, body: Body<'_>) -> RetargetOptions {
     RetargetOptions { pace: Pace::Times(pace), floor: Some(0.0), frame_time, ..RetargetOptions::default() }
 }
 
-/// The round in the middle of a cycle that is repeated; its last pose is its first.
+/// Cuts the middle repetition out of a repeated cycle; its last pose equals its first.
 fn one_round(mut fitted: Retargeted, clip: &Clip) -> Retargeted {
     let joints = fitted.take.joints;
     let frames = (f64::from(clip.duration) * RATE).round() as usize;
@@ -240,7 +239,7 @@ fn one_round(mut fitted: Retargeted, clip: &Clip) -> Retargeted {
     fitted
 }
 
-/// A clip of linear keys, repeated this many times.
+/// Repeats a clip of linear keys `times` times.
 fn repeated(clip: &Clip, times: usize) -> Clip {
     let mut whole = Clip { duration: clip.duration * times as f32, ..clip.clone() };
     for (channel, one) in whole.channels.iter_mut().zip(&clip.channels) {

@@ -9,11 +9,11 @@ use crate::ragdoll::{CharacterDef, Locomotion, MotionSet};
 const WALK: &str = "walk";
 const IDLE: &str = "idle";
 const FASTER: [&str; 3] = ["jog", "run", "sprint"];
-/// Words of clips that do not move forward, or do more than that.
+/// Words in the names of clips that do not move forward, or that contain further motions.
 const NOT_AHEAD: [&str; 11] =
     ["back", "left", "right", "strafe", "turn", "stop", "start", "jump", "shoot", "attack", "aim"];
 const GET_UP: [&str; 3] = ["getup", "standup", "gettingup"];
-/// Name of the clips that `sinew bake` adds, with or without a number: falls that were simulated before.
+/// Name of clips that `sinew bake` adds (falls simulated before), with or without a number.
 const BAKED: &str = "sinew";
 
 /// Motions of a file's own clips.
@@ -29,12 +29,12 @@ pub struct OwnMotions {
 ///
 /// | motion | clip |
 /// |---|---|
-/// | `looped` | as [`looped_among`] |
-/// | `faster` | of those whose names contain `jog`, `run` or `sprint` one each, the one with the shortest name that runs ahead |
-/// | `idle` | of those whose names contain `idle` the one with the shortest name, unless it is the looped one |
-/// | `get_ups` | those of [`CharacterDef::get_ups_among`] that are neither |
-/// | `events` | footfalls of the looped clip and of faster ones ([`footsteps`]) |
-/// | `locomotion` | by the clip if it gets on; at the speed of its feet if it walks on the spot |
+/// | `looped` | the clip of [`looped_among`] |
+/// | `faster` | for each of `jog`, `run` and `sprint`, the clip with the shortest name that contains the word and runs ahead |
+/// | `idle` | the clip with the shortest name that contains `idle`, unless it is the looped one |
+/// | `get_ups` | the clips of [`CharacterDef::get_ups_among`] that are neither looped nor idle |
+/// | `events` | footfalls of the looped and the faster clips ([`footsteps`]) |
+/// | `locomotion` | forward at the speed of the feet if the looped clip walks on the spot, else by the clip |
 ///
 /// # Panics
 /// If the analysis or a clip does not belong to the character's rig.
@@ -90,7 +90,7 @@ pub fn own_motions(def: &CharacterDef, analysis: &RigAnalysis, clips: Vec<Clip>)
     OwnMotions { motions, notes }
 }
 
-/// Clips that go forward, one for each word: the one with the shortest name.
+/// Returns the clips that go forward: for each word the one with the shortest name.
 fn faster_among(clips: &[Clip]) -> Vec<usize> {
     let ahead = |clip: &usize| {
         let name = plain(&clips[*clip].name);
@@ -105,7 +105,8 @@ fn faster_among(clips: &[Clip]) -> Vec<usize> {
     found
 }
 
-/// True if a word of a name starts with `word`: after a non-letter, or with a capital after a lower-case letter.
+/// True if a word of `name` starts with `word`. A word starts after a non-letter, or with a capital after a small
+/// letter.
 fn has_word(name: &str, word: &str) -> bool {
     let mut last = ' ';
     name.char_indices().any(|(at, c)| {
@@ -115,9 +116,9 @@ fn has_word(name: &str, word: &str) -> bool {
     })
 }
 
-/// Index of the clip that a character plays by default: the first one named a walk that moves (preferably one in which
-/// both feet land); else the first whose name contains `idle`; else the first that is neither a get-up nor a baked
-/// fall. `None` if there is none of these.
+/// Index of the clip that a character plays by default. Returns the first moving clip named a walk (preferably one in
+/// which both feet land); else the first whose name contains `idle`; else the first that is neither a get-up nor a
+/// baked fall. `None` if there is none of these.
 ///
 /// # Panics
 /// If the analysis or a clip does not belong to the rig.
@@ -143,10 +144,10 @@ pub fn looped_among(rig: &Rig, analysis: &RigAnalysis, clips: &[Clip]) -> Option
     walk.or_else(idle).or_else(first)
 }
 
-/// Least change of a key against the first for a clip that moves, as a share of the largest number in the channel.
+/// Smallest difference of a key from the first key that counts as motion, as a share of the channel's largest number.
 const MOVES: f32 = 0.01;
 
-/// True if any joint of a clip moves: a static pose is no walk, whatever its name.
+/// True if any joint of a clip moves. A static pose is no walk, even if its name says so.
 fn moves(clip: &Clip) -> bool {
     clip.channels.iter().any(|channel| {
         let width = channel.property.width();
@@ -160,7 +161,7 @@ fn moves(clip: &Clip) -> bool {
     })
 }
 
-/// A name in small letters, without blanks, `-` and `_`.
+/// Returns a name in small letters, without blanks, `-` and `_`.
 fn plain(name: &str) -> String {
     name.chars().filter(|c| !matches!(c, ' ' | '_' | '-')).flat_map(char::to_lowercase).collect()
 }

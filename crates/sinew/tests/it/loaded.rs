@@ -19,7 +19,7 @@ fn loaded(rig: &Rig, clips: &[Clip]) -> LoadedCharacter {
 #[test]
 fn the_clips_of_a_file_are_recognised() {
     let Mannequin { rig, clips, motions } = mannequin();
-    // In another order, as files have them.
+    // Another order of the clips, as files may have it.
     let order = [motions.get_up_prone, motions.idle, motions.walk, motions.get_up_supine];
     let shuffled: Vec<Clip> = order.map(|clip| clips[clip].clone()).to_vec();
     let hero = loaded(&rig, &shuffled);

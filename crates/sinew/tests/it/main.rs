@@ -1,4 +1,4 @@
-//! The examples run, and what they assert holds.
+//! Runs the examples; their assertions must hold.
 
 mod loaded;
 

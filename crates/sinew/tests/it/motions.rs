@@ -1,4 +1,4 @@
-//! The built-in motions on other bodies.
+//! Tests of the built-in motions on other bodies.
 
 use sinew::anim::contact::sole_points;
 use sinew::anim::legs::Legs;
@@ -20,7 +20,7 @@ fn character(rig: Rig) -> (CharacterDef, RigAnalysis) {
     (CharacterDef::new(rig, ragdoll, &analysis.bind_model), analysis)
 }
 
-/// The mannequin, and the humanoids of the shared data, if they are there.
+/// Returns the mannequin, and the humanoids of the shared data if they are present.
 fn humanoids() -> Vec<(String, CharacterDef, RigAnalysis)> {
     let data = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let mut files: Vec<PathBuf> = ["rigs", "rigs_wild"]
@@ -45,7 +45,7 @@ fn humanoids() -> Vec<(String, CharacterDef, RigAnalysis)> {
     own.chain(files.into_iter().filter_map(read)).collect()
 }
 
-/// Lowest point of all bodies in a pose that `counts` says yes to (by the joint), metres over the floor.
+/// Lowest point of all bodies accepted by `counts` in a pose, metres above the floor.
 fn lowest(def: &CharacterDef, pose: &[LocalTransform], counts: impl Fn(&RagdollBodyDef) -> bool) -> f32 {
     let (mut model, mut places) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, pose, &Affine::IDENTITY, &mut model);
@@ -54,7 +54,8 @@ fn lowest(def: &CharacterDef, pose: &[LocalTransform], counts: impl Fn(&RagdollB
     bodies.map(|(body, place)| body.shape.aabb(place).min.y).fold(f32::INFINITY, f32::min)
 }
 
-/// Largest distance of a standing foot from the floor, metres: above it with its sole and its body, or in it with its body.
+/// Largest distance of a standing foot from the floor, metres: of its sole or body above the floor, or of its body in
+/// the floor.
 fn worst_stance(def: &CharacterDef, analysis: &RigAnalysis, fit: &Retargeted) -> f32 {
     let legs = Legs::of(&def.rig, analysis).expect("legs");
     let points = sole_points(&def.rig, &analysis.character_from_file(), &legs.feet, &fit.take);
@@ -83,7 +84,7 @@ fn feet_stand_on_the_floor_and_nothing_of_the_trunk_is_in_it() {
         let motions = builtin_motions(def, analysis).unwrap_or_else(|error| panic!("{name}: {error}"));
         for (fit, what) in motions.fits.iter().zip(["walk", "idle", "supine", "prone"]) {
             assert!(!fit.contacts.is_empty(), "{name}: no foot ever stands in {what}");
-            // A giant's error is scaled; a body with very short legs may miss.
+            // The error is scaled for a giant; a body with very short legs may miss.
             let size = def.ragdoll.height / 1.8;
             let off = worst_stance(def, analysis, fit);
             let is_stub = fit.scale < 0.3 * size;
@@ -108,7 +109,7 @@ fn a_cycle_closes_and_goes_at_the_pace_of_the_legs() {
         let take = &fit.take;
         assert_eq!(take.pose(0), take.pose(take.frames() - 1), "{}", clip.name);
     }
-    // The ankle moves back under the body at the stated speed.
+    // The ankle moves backward under the body at the stated speed.
     let take = &motions.fits[0].take;
     let ankle = analysis.joint_with(Role::Foot(Side::Left)).expect("a foot");
     let at = |frame: usize| {
@@ -135,14 +136,14 @@ fn only_what_is_missing_is_filled_in() {
     assert_eq!(own.locomotion, Locomotion::InPlace);
 }
 
-/// A get-up that says nothing of a joint leaves it as the looped clip has it, not as the rig's rest pose does.
+/// A joint that a get-up does not animate keeps its pose of the looped clip, not the rig's rest pose.
 #[test]
 fn what_a_get_up_says_nothing_of_stays_as_in_the_loop() {
     let mannequin = mannequin();
     let mut rig = mannequin.rig.clone();
     let hand = rig.joints.iter().position(|joint| joint.name == "rightHand").expect("a hand");
     let sword = rig.joints.len();
-    // At rest the sword lies two metres away; the clip has it in the hand.
+    // In the rest pose the sword is two metres away; in the clip it is in the hand.
     let rest = LocalTransform { translation: Vec3::Y * 2.0, ..LocalTransform::default() };
     rig.joints.push(Joint { name: "sword".into(), parent: Some(hand), rest, source: sword });
     let mut walk = mannequin.clips[mannequin.motions.walk].clone();
@@ -166,7 +167,8 @@ fn what_a_get_up_says_nothing_of_stays_as_in_the_loop() {
     }
 }
 
-/// The rig under a node that mirrors it in x, its mesh bound there: left and right are named the wrong way round.
+/// Returns the rig under a node that mirrors it in x, with its mesh bound there, so that left and right are named in
+/// reverse.
 fn mirrored(rig: &Rig) -> Rig {
     let mut rig = rig.clone();
     let half_turn = Rotation::from_axis_angle(Vec3::X, core::f32::consts::PI);
@@ -191,7 +193,7 @@ fn mirrored(rig: &Rig) -> Rig {
     rig
 }
 
-/// A negative scale above the skeleton: get-ups come out on it as on any body.
+/// With a negative scale above the skeleton, get-ups work as on any body.
 #[test]
 fn a_mirrored_skeleton_gets_up() {
     let rig = mannequin().rig;
@@ -205,7 +207,7 @@ fn a_mirrored_skeleton_gets_up() {
     assert!((plain - mirrored).abs() < 0.01, "{mirrored} m in the floor, {plain} m without the mirror");
 }
 
-/// The rig with a box skinned to a joint, its centre `off` the joint (model space, metres).
+/// Adds a box skinned to a joint to the rig, its centre `off` from the joint (model space, metres).
 fn with_box(mut rig: Rig, role: Role, off: Vec3, half: Vec3) -> Rig {
     let analysis = analyze(&rig).expect("a skin");
     let joint = analysis.joint_with(role).expect("the role");
@@ -228,7 +230,7 @@ fn with_box(mut rig: Rig, role: Role, off: Vec3, half: Vec3) -> Rig {
     rig
 }
 
-/// The rig with all joints as roots, as exporters of deform bones write it.
+/// Returns the rig with all joints as roots, as written by exporters of deform bones.
 fn flat(mut rig: Rig) -> Rig {
     let mut model = Vec::new();
     let pose: Vec<LocalTransform> = rig.joints.iter().map(|joint| joint.rest).collect();
@@ -241,7 +243,7 @@ fn flat(mut rig: Rig) -> Rig {
     rig
 }
 
-/// A staff as long as its bearer, across the palm: the hand turns about its wrist, and the get-ups are not lost.
+/// With a staff as long as its bearer, across the palm, the hand turns about its wrist, and no get-up is lost.
 #[test]
 fn a_human_with_a_staff_gets_up() {
     let hand = Role::Hand(Side::Right);

@@ -1,4 +1,4 @@
-//! Pictures of the documentation, which are SVG drawings: redrawn, they must equal the committed ones.
+//! Checks the SVG pictures of the documentation: redrawn, they must equal the committed ones.
 //! `SINEW_BLESS=1 cargo test -p sinew --test it pictures` writes them.
 
 use sinew::anim::local_to_model;
@@ -7,10 +7,11 @@ use sinew::prelude::*;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// Pixels of a metre.
+/// Pixels per metre.
 const METRE: f32 = 100.0;
 
-/// A drawing in the colour of the page's text, of a width and a height in metres; the ground is 0.1 m above its lower edge.
+/// A drawing in the colour of the page's text, with width and height in metres; the ground is 0.1 m above its lower
+/// edge.
 struct Drawing {
     text: String,
     height: f32,
@@ -28,12 +29,12 @@ impl Drawing {
         Self { text, height }
     }
 
-    /// Pixels of a point, x to the right and y up, metres.
+    /// Converts a point (x to the right and y up, metres) to pixels.
     fn place(&self, [x, y]: [f32; 2]) -> [i32; 2] {
         [x * METRE, (self.height - 0.1 - y) * METRE].map(|at| at.round() as i32)
     }
 
-    /// Lines of a thickness in metres.
+    /// Draws lines with a thickness in metres.
     fn lines(&mut self, thickness: f32, opacity: f32, lines: impl Iterator<Item = [[f32; 2]; 2]>) {
         let mut path = String::new();
         for [from, to] in lines {
@@ -45,7 +46,7 @@ impl Drawing {
             .expect("a string takes it");
     }
 
-    /// A ball with a radius in metres.
+    /// Draws a disc with a radius in metres.
     fn ball(&mut self, at: [f32; 2], radius: f32) {
         let ([x, y], radius) = (self.place(at), (radius * METRE).round() as i32);
         writeln!(
@@ -61,10 +62,10 @@ impl Drawing {
     }
 }
 
-/// Steps of the fall at which a figure is drawn, and where its pelvis is drawn, metres from the left.
+/// Steps of the fall at which a figure is drawn, and position of its pelvis from the left edge, metres.
 const FALL: [(u32, f32); 7] = [(40, 0.5), (58, 1.3), (66, 2.3), (74, 3.4), (82, 4.6), (92, 6.0), (180, 7.7)];
 
-/// The mannequin, hit while it walks, from the side; the figures one beside the other.
+/// Draws the mannequin, hit while it walks, from the side; the figures are side by side.
 fn fall() -> String {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -89,7 +90,7 @@ fn fall() -> String {
     drawing.end()
 }
 
-/// Bones and head of a figure, seen from its left: +Z to the right.
+/// Draws bones and head of a figure, seen from its left: +Z to the right.
 fn figure(drawing: &mut Drawing, def: &CharacterDef, model: &[Affine], way: Vec3) {
     let at = |joint: usize| {
         let place = model[joint].translation + way;
@@ -103,7 +104,7 @@ fn figure(drawing: &mut Drawing, def: &CharacterDef, model: &[Affine], way: Vec3
     drawing.ball([middle.z, middle.y], 0.11);
 }
 
-/// The mannequin's skeleton, and the bodies that were made for it, from the front.
+/// Draws the mannequin's skeleton, and the bodies of its ragdoll, from the front.
 fn ragdoll() -> String {
     let def = sinew::mannequin::character();
     let mut drawing = Drawing::new("A skeleton with the shapes of its ragdoll", 1.9, 2.0);
@@ -125,7 +126,7 @@ fn ragdoll() -> String {
     drawing.end()
 }
 
-/// Lines of shapes.
+/// Collects the debug lines of shapes.
 #[derive(Default)]
 struct Wires(Vec<[Vec3; 2]>);
 

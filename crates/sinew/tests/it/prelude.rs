@@ -34,7 +34,7 @@ fn a_hill_of_few_words_carries_a_ball() {
     assert!(world.transform(ball).translation.y > 0.2, "it lies on the field");
 }
 
-/// Every name here comes from the prelude alone.
+/// Checks that the prelude alone has every name used here.
 #[test]
 fn joints_and_contacts_are_named() {
     let _: Option<(JointState, JointCollision, SixDof, ContactRule, OneWay, Detail)> = None;

@@ -1,17 +1,18 @@
-//! Costs of snapshots, as a table: `cargo test --release -p sinew --test it -- --ignored --nocapture cost_of_snapshots`.
+//! Measures the costs of snapshots:
+//! `cargo test --release -p sinew --test it -- --ignored --nocapture cost_of_snapshots`.
 //!
-//! Bytes of a snapshot, and of its delta against that of the step before; microseconds to save, load and clone a world and to make a delta
-//! and take it; milliseconds to go back by eight ticks and do them again.
+//! Prints a table with the bytes of a snapshot, and of its delta from the previous step's; microseconds to save, load
+//! and clone a world and to make and apply a delta; milliseconds to go back eight ticks and repeat them.
 
 use sinew::physics::Snapshot;
 use sinew::prelude::*;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Ticks that a rollback does again.
+/// Number of ticks that a rollback repeats.
 const TICKS: usize = 8;
 
-/// A world, and its characters.
+/// A world with its characters.
 struct Match {
     world: World,
     characters: Vec<Character>,
@@ -41,7 +42,7 @@ impl Match {
     }
 }
 
-/// Boxes apart from each other: falling, or lying on the ground asleep.
+/// Makes separate boxes that fall, or lie on the ground asleep.
 fn boxes(count: usize, height: f32, steps: usize) -> Match {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -53,7 +54,7 @@ fn boxes(count: usize, height: f32, steps: usize) -> Match {
     Match::of(world)
 }
 
-/// Walls of boxes that settle: contacts.
+/// Makes walls of boxes with contacts.
 fn walls(count: usize) -> Match {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -65,7 +66,7 @@ fn walls(count: usize) -> Match {
     Match::of(world)
 }
 
-/// Characters that play a clip, or have just been knocked down.
+/// Makes characters that play a clip, or have just been knocked down.
 fn characters(count: usize, falling: bool) -> Match {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -83,7 +84,7 @@ fn characters(count: usize, falling: bool) -> Match {
     them
 }
 
-/// Median time of a call, microseconds.
+/// Returns the median duration of a call, microseconds.
 fn median(times: usize, mut call: impl FnMut()) -> f64 {
     let mut all: Vec<f64> = (0..times)
         .map(|_| {
@@ -122,7 +123,7 @@ fn row(name: &str, mut it: Match, times: usize) {
     );
 }
 
-/// Prints the table: each figure the median of so many, with so many characters.
+/// Prints the table; each figure is the median of `times` runs.
 fn table(times: usize, counts: &[usize]) {
     println!(
         "| world | bodies | contacts | bytes | per body | delta, bytes | save, µs | load, µs | clone, µs | delta, µs | its snapshot, µs | 8 ticks again, ms |"

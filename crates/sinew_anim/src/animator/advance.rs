@@ -9,11 +9,11 @@ use crate::playback::sync::match_place;
 use crate::set::{AnimatedClip, AnimationSet};
 use sinew_math::Transform;
 
-/// Shortest clip or span that is looped, seconds: a shorter one stands still, because an update over it would not end.
-/// Poses from outside that are closer together give no velocity.
+/// Shortest clip or span that is looped, seconds: a shorter one would repeat too often in an update, so it stands
+/// still. Fed poses closer together in time give no velocity.
 pub(super) const SHORTEST: f64 = 1e-4;
 
-/// Part of an update in which a track plays without a break.
+/// Part of an update in which a track plays without interruption.
 #[derive(Clone, Copy)]
 struct Stretch {
     /// Seconds since the update began.
@@ -47,8 +47,8 @@ impl Animator {
         self.events.sort_by(|a, b| a.seconds.total_cmp(&b.seconds).then(order(a).cmp(&order(b))));
     }
 
-    /// Laps per second of a group: the mean of its tracks, weighted so that the blended stride of travelling clips
-    /// gives the blended speed: `Σ w s r / Σ w s` with the stride `s` of a lap and its rate `r`.
+    /// Laps per second of a sync group: the mean of its tracks, weighted so that the blended stride of travelling
+    /// clips gives the blended speed: `Σ w s r / Σ w s` with the stride `s` of a lap and its rate `r`.
     fn group_rate(&self, set: &AnimationSet, group: u8, leader: usize) -> f64 {
         let of_group = |slot: &&Slot| slot.track.def.sync_group == Some(group) && !slot.track.is_paused;
         let rate = |track: &Track| f64::from(track.def.speed) / track.playhead.length();
@@ -65,7 +65,7 @@ impl Animator {
         if total > 0.0 { sum / total } else { rate(&self.slots[leader].track) }
     }
 
-    /// The leader plays at the group's rate, the others follow its phase.
+    /// Advances a sync group: the leader plays at the group's rate, and the other tracks follow its phase.
     fn advance_group(&mut self, set: &AnimationSet, group: u8, leader: usize, seconds: f64) {
         let speed = self.group_rate(set, group, leader) * self.slots[leader].track.playhead.length();
         let mut ahead = self.slots[leader].track.playhead;
@@ -90,7 +90,7 @@ impl Animator {
             let start = track.playhead.place();
             slot.motion = moved(own, LoopMode::Loop, start, to, own_length);
             let passage = track.playhead.move_to(to, speed < 0.0);
-            // A follower's moment is the leader's at the same phase.
+            // A follower's time equals the leader's at the same phase.
             let moment = |at: Place| {
                 let at = if i == leader {
                     at
@@ -112,7 +112,7 @@ impl Animator {
         }
     }
 
-    /// Advances ramps; tracks whose ramp or clip ends within the update perform their end action.
+    /// Advances ramps, and performs the end action of tracks whose ramp or clip ends within the update.
     fn end_finished_tracks(&mut self, set: &AnimationSet, seconds: f64) {
         self.room.ended.clear();
         for (i, slot) in self.slots.iter_mut().enumerate() {
@@ -149,7 +149,7 @@ impl Animator {
     }
 }
 
-/// Seconds until a track's time stops for good.
+/// Seconds until a ramp that stops or pauses the track ends; infinite without such a ramp.
 fn stops_after(track: &Track) -> f64 {
     match track.ramp {
         Some(ramp) if matches!(ramp.then, EndAction::Stop | EndAction::Pause) => ramp.left(),
@@ -157,8 +157,8 @@ fn stops_after(track: &Track) -> f64 {
     }
 }
 
-/// Advances a track without a leader: to the end of its ramp, and on if it restarts; to the end of its clip, and on if
-/// it repeats.
+/// Advances a track without a leader. A track that restarts continues after the end of its ramp, a repeated clip after
+/// its end.
 fn advance_alone(
     set: &AnimationSet,
     slot: &mut Slot,
@@ -194,7 +194,7 @@ fn go_on(
     run(set, slot, i, stretch, crossings);
 }
 
-/// Seconds until a repeated clip starts again.
+/// Seconds until a clip that restarts at its end begins again; `None` if it does not.
 fn to_end(track: &Track) -> Option<f64> {
     let (playhead, speed) = (&track.playhead, f64::from(track.def.speed));
     let begins_again =
@@ -217,7 +217,7 @@ fn run(set: &AnimationSet, slot: &mut Slot, i: usize, stretch: Stretch, out: &mu
     }
 }
 
-/// A moment clamped to the update, against rounding.
+/// Clamps a time to the update, because it is rounded.
 fn within(moment: f64, seconds: f64) -> f64 {
     let inside = if moment > 0.0 { moment } else { 0.0 };
     if inside < seconds { inside } else { seconds }

@@ -18,14 +18,14 @@ pub(super) struct WeightedMotion {
 }
 
 impl WeightedMotion {
-    /// Sorted like poses: by weight, then by content, so that the order of tracks does not change the bits.
+    /// Sorts motions like poses: by weight, then by content, so that the order of tracks does not change the bits.
     fn order(&self, other: &Self) -> Ordering {
         let numbers = |m: &Self| [m.way.x, m.way.y, m.way.z, m.turn.x, m.turn.y, m.turn.z].map(f32::to_bits);
         other.weight.total_cmp(&self.weight).then_with(|| numbers(self).cmp(&numbers(other)))
     }
 }
 
-/// An empty list that reuses another's memory.
+/// Makes an empty list that reuses the memory of `layers`.
 fn recycled<'a>(layers: Vec<BlendLayer<'_>>) -> Vec<BlendLayer<'a>> {
     layers.into_iter().map_while(|_| None).collect()
 }
@@ -53,7 +53,7 @@ fn layers_of<'a>(
 }
 
 impl Animator {
-    /// The pose of all tracks, before transitions are added.
+    /// Computes the pose of all tracks, before transitions are added.
     pub(super) fn compose(&mut self, set: &AnimationSet, pose: &mut Pose) {
         for slot in self.slots.iter_mut().filter(|slot| slot.track.def.weight > 0.0) {
             let (clip, time) = (slot.track.def.clip, slot.track.playhead.clip_time());
@@ -95,8 +95,8 @@ impl Animator {
         room.layers = recycled(layers);
     }
 
-    /// Blends a layer with crossfades: the tracks that they lead away from, then each target track in the order of its
-    /// start.
+    /// Blends a layer with crossfades: first the tracks that crossfades replace, then each target track in the order
+    /// of its start.
     fn crossfade_layer(&mut self, set: &AnimationSet, layer: u8, pose: &mut Pose) {
         let room = &mut self.room;
         room.below.copy_from(if layer == 0 { set.skeleton().rest() } else { pose });
@@ -117,7 +117,7 @@ impl Animator {
         crossfade::fill(&room.below, if layer == 0 { FILL_BELOW } else { 1.0 }, &room.weights, pose);
     }
 
-    /// Turns a crossfaded track into an ordinary one once everything it replaces is gone.
+    /// Turns a crossfaded track into an ordinary one when no track that it replaces remains.
     pub(super) fn settle_crossfades(&mut self, set: &AnimationSet) {
         for i in 0..self.slots.len() {
             let layer = self.slots[i].track.def.layer;
@@ -133,8 +133,8 @@ impl Animator {
         }
     }
 
-    /// The pose after an update of `seconds`. `begins` is the time of a transition that starts with it: then
-    /// `room.start` holds the new motion before the update.
+    /// Computes the pose after an update of `seconds`. `begins` is the time of a transition that starts with this
+    /// update; `room.start` then holds the new motion before the update.
     pub(super) fn finish_pose(&mut self, set: &AnimationSet, seconds: f32, begins: Option<f32>) {
         let mut now = core::mem::take(&mut self.room.now);
         self.compose(set, &mut now);
@@ -152,8 +152,8 @@ impl Animator {
         self.room.now = now;
     }
 
-    /// The mean step of the root in an update of `seconds`, plus what a transition leaves of the old speed; a
-    /// transition that starts with the update has its own time.
+    /// Computes the mean step of the root in an update of `seconds`, plus the remaining velocity of the old motion in
+    /// a transition. `begins` is the time of a transition that starts with this update.
     pub(super) fn move_root(&mut self, seconds: f32, begins: Option<f32>) {
         let (mut way, mut turn) = self.mean_motion();
         if seconds > 0.0 {
@@ -169,7 +169,7 @@ impl Animator {
         self.root_motion = Transform::new(way, Rotation::from_scaled_axis(turn));
     }
 
-    /// Translation and rotation (scaled axis) of the tracks of layer 0.
+    /// Returns the mean translation and rotation (scaled axis) of the tracks of layer 0.
     fn mean_motion(&mut self) -> (Vec3, Vec3) {
         let motions = &mut self.room.motions;
         motions.clear();

@@ -3,11 +3,11 @@
 use super::{Animator, Slot};
 
 impl Animator {
-    /// Becomes a copy of another animator of the same set, for looking ahead. Unlike `clone`, it does not allocate once
-    /// warm.
+    /// Makes this animator a copy of another one of the same set, for looking ahead. Unlike `clone`, it allocates only
+    /// for more tracks or joints than before.
     ///
     /// # Panics
-    /// If their rigs have different numbers of joints.
+    /// If the rigs of the two animators have different numbers of joints.
     pub fn copy_from(&mut self, other: &Self) {
         self.room.spare.extend(self.slots.drain(..).map(Slot::emptied));
         for from in &other.slots {
@@ -30,7 +30,7 @@ impl Animator {
         }
         self.events.clone_from(&other.events);
         self.root_motion = other.root_motion;
-        // The buffer holds nothing between updates.
+        // The buffer is empty between updates.
     }
 }
 

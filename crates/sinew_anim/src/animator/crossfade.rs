@@ -1,10 +1,10 @@
-//! Crossfades between two playing motions, also for distant poses.
+//! Crossfades between two playing motions, which may be far apart.
 //!
 //! The mean of two opposite rotations is undefined, and every choice of hemispheres jumps there. A crossfade has
-//! memory, unlike a blend: the direction from the old pose to the new one is chosen at the start, by the shorter way,
-//! and followed from then on. The joint turns about one axis at the speed of the easing (Shoemake, "Animating rotation
-//! with quaternion curves", 1985), so its acceleration is at most `6 |x₀|/t₁²` by the distance plus `3 |v₀|/t₁` by the
-//! relative speed.
+//! memory, unlike a blend: at the start it chooses the shorter way from the old pose to the new one, and keeps that
+//! way. The joint turns about one axis at the speed of the easing (Shoemake, "Animating rotation with quaternion
+//! curves", 1985), so its acceleration is at most `6 |x₀|/t₁² + 3 |v₀|/t₁` for a distance `x₀` and a relative speed
+//! `v₀`.
 
 use crate::playback::inertial::logarithm;
 use crate::pose::{Mask, Pose};
@@ -14,12 +14,12 @@ use sinew_math::{ReadError, Reader, Rotation, Vec3, Writer};
 /// Rotations from a track's pose to the pose that it replaces, joint by joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Crossfade {
-    /// Rotations from the track's pose to the other one, each with the sign closest to that of the update before; empty
-    /// before both have been seen.
+    /// Rotations from the track's pose to the other pose, each with the sign closest to that of the previous update;
+    /// empty before the first update.
     turns: Vec<Rotation>,
 }
 
-/// Weights of the pose so far, joint by joint.
+/// Sums of the weights blended so far, joint by joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Weights(Vec<f32>);
 
@@ -35,7 +35,7 @@ impl Weights {
         }
     }
 
-    /// Share of `full` that the joint's sum of weights lacks.
+    /// Share of `full` that is missing from the joint's sum of weights.
     fn missing(&self, joint: usize, full: f32) -> f32 {
         let sum = self.0[joint];
         if sum < full { 1.0 - sum / full } else { 0.0 }
@@ -43,17 +43,18 @@ impl Weights {
 }
 
 impl Crossfade {
-    /// Becomes a copy of another, in its own memory.
+    /// Copies another crossfade into existing memory.
     pub fn copy_from(&mut self, other: &Self) {
         self.turns.clone_from(&other.turns);
     }
 
-    /// Resets it for reuse by another track.
+    /// Resets the crossfade for use by another track.
     pub fn clear(&mut self) {
         self.turns.clear();
     }
 
-    /// Moves `shown`, which has these weights, toward a track's pose by the share of the track's weight in the sum.
+    /// Moves `shown`, whose joints have the sums `weights`, toward a track's pose by the share of the track's weight in
+    /// the sum.
     pub fn mix(
         &mut self,
         to: &Pose,
@@ -84,7 +85,7 @@ impl Crossfade {
         self.turns.iter().for_each(|&turn| out.rotation(turn));
     }
 
-    /// Reads what [`save`](Self::save) wrote, for a rig of `joints`.
+    /// Reads a crossfade that [`save`](Self::save) wrote, for a rig of `joints` joints.
     pub fn load(bytes: &mut Reader<'_>, joints: usize) -> Result<Self, ReadError> {
         let count = bytes.count(16)?;
         if count != 0 && count != joints {
@@ -99,7 +100,7 @@ impl Crossfade {
     }
 }
 
-/// Interpolates from `a` to `b` by a share, exact at both ends; `turn` leads from `b` to `a`.
+/// Interpolates from `a` to `b` by a share, exact at both ends; `turn` is the rotation from `b` to `a`.
 fn toward(a: &LocalTransform, b: &LocalTransform, turn: Rotation, share: f32) -> LocalTransform {
     if share >= 1.0 || a == b {
         return *b;
@@ -113,7 +114,7 @@ fn toward(a: &LocalTransform, b: &LocalTransform, turn: Rotation, share: f32) ->
     }
 }
 
-/// Blends in another pose where the sum of weights is below `full`, on its hemisphere.
+/// Blends in another pose where the sum of weights is below `full`, on the hemisphere of `shown`.
 pub(super) fn fill(from: &Pose, full: f32, weights: &Weights, shown: &mut Pose) {
     for joint in 0..shown.len() {
         let missing = weights.missing(joint, full);

@@ -1,4 +1,4 @@
-//! A clip whose pose comes from outside.
+//! A clip whose pose comes from the user.
 
 use super::Animator;
 use super::advance::SHORTEST;
@@ -8,29 +8,29 @@ use crate::set::{AnimationSet, ClipId};
 use crate::tuning::LONGEST_EXTRAPOLATION;
 use sinew_math::{Rotation, min};
 
-/// The clip, and the last two poses that it was given.
+/// A fed clip, with the last two poses that it got.
 #[derive(Clone, Debug)]
 pub(super) struct Fed {
     pub clip: ClipId,
     pub now: Pose,
-    /// The pose before; equal to the first one at the start.
+    /// The previous pose; equal to `now` at the start.
     pub before: Pose,
-    /// Seconds between the two.
+    /// Seconds between both poses.
     pub seconds: f32,
-    /// Seconds since the update that `now` was given for.
+    /// Seconds since the update for which `now` was given.
     pub age: f32,
-    /// True until that update.
+    /// True until the first update with `now`.
     pub is_new: bool,
 }
 
 impl Animator {
-    /// Sets a clip's pose from outside, from the next update on: its tracks then show that pose, whatever its channels
-    /// say. For another engine's animation or hand tracking: use a clip without channels, and call this before each
-    /// update.
+    /// Sets a clip's pose from outside, from the next update on: its tracks then show that pose instead of their
+    /// channels. For another engine's animation or hand tracking: use a clip without channels, and call this method
+    /// before each update.
     ///
     /// Events and root motion remain those of the clip. In an update without a new pose, as in an animator that looks
     /// ahead, joints continue at their last velocity for at most 0.1 s. Only one clip at a time can have such a pose.
-    /// Allocates in the first call only.
+    /// Only the first call allocates.
     ///
     /// # Panics
     /// If the clip is not in the set, or the pose has another number of joints.

@@ -1,4 +1,4 @@
-//! Turns passed events into fired ones, by their policies.
+//! Selects the passed events that fire, by their policies.
 
 use super::{Animator, Slot, Track};
 use crate::event::{FiredBy, FiredEvent};
@@ -6,7 +6,7 @@ use crate::playback::playhead::Place;
 use crate::playback::sync::Phase;
 use crate::set::{AnimatedClip, AnimationSet, ClipId};
 
-/// An event passed by a track; whether it fires depends on the others.
+/// An event passed by a track; whether it fires depends on the other crossings.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TrackCrossing {
     pub slot: usize,
@@ -18,19 +18,20 @@ pub(super) struct TrackCrossing {
     pub is_backward: bool,
 }
 
-/// The last time that a sync group fired one of the events that its clips have in common.
+/// The last time that a sync group fired an event that its clips share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LastFired {
     pub group: u8,
     /// The clip and event; the name identifies the same event in other clips.
     pub clip: ClipId,
     pub event: usize,
-    /// Number of the marker that it was next to, through all laps.
+    /// Number of the event's nearest marker, counted through all laps.
     pub marker: i64,
     pub is_backward: bool,
 }
 
-/// Position of an event: its nearest marker over all laps, and the distance from it as a share of the way to the next.
+/// Position of an event: its nearest marker, counted through all laps, and the distance from the marker as a share of
+/// the way to the next.
 #[derive(Clone, Copy)]
 struct Beside {
     marker: i64,
@@ -48,16 +49,16 @@ impl Beside {
     }
 }
 
-/// Two moments of an update at most this far apart, seconds, count as one: those of a group's tracks are rounded.
+/// Largest difference of two times that count as one, seconds: the times of a group's tracks are rounded.
 const MOMENT: f64 = 1e-9;
 
 impl Animator {
-    /// Turns passed events into fired ones.
+    /// Converts passed events to fired ones.
     pub(super) fn fire(&mut self, set: &AnimationSet) {
         let slots = &self.slots;
         let is_there = |group: u8| slots.iter().any(|slot| slot.track.def.sync_group == Some(group));
         self.last_fired.retain(|last| is_there(last.group));
-        // Sort by time; at the same moment the events of the leader come first.
+        // Sorts by time; at the same time, events of the leader come first.
         let key = |crossing: &TrackCrossing| {
             let moment = (crossing.seconds / MOMENT) as i64;
             let follows = leader_of(set, slots, crossing) != Some(crossing.slot);
@@ -86,9 +87,9 @@ impl Animator {
         }
     }
 
-    /// True if an event that the group's clips share fires now: when its leader passes it, or when the leader no longer
-    /// will, because another track led at that time. Each belongs to one marker in every clip and fires once per
-    /// passage of the group; if markers do not distinguish events of one name, the leader's own fires.
+    /// True if an event that the group's clips share fires now: the leader passes it, or no longer passes it because
+    /// another track led at that time. Each such event belongs to one marker in every clip and fires once per passage
+    /// of the group. If markers do not distinguish events of one name, the leader's event fires.
     fn is_first_of_group(&mut self, set: &AnimationSet, crossing: &TrackCrossing) -> bool {
         let track = &self.slots[crossing.slot].track;
         let Some(group) = track.def.sync_group else { return true };
@@ -123,8 +124,8 @@ impl Animator {
     }
 }
 
-/// Offset from its marker of a clip's event with the same name at the same marker; `None` if there is none, or more
-/// than one, or the clips have different numbers of markers.
+/// Offset of an event from its marker in clip `of`, for the event with the same name at the same marker. `None` if
+/// there is none, or more than one, or the clips have different numbers of markers.
 fn same_event(set: &AnimationSet, event: (ClipId, usize), of: ClipId, marker: i64) -> Option<f64> {
     let name = &set.clip(event.0).events[event.1].name;
     let (clip, count) = (set.clip(of), set.clip(of).markers.times().len());
@@ -139,7 +140,7 @@ fn same_event(set: &AnimationSet, event: (ClipId, usize), of: ClipId, marker: i6
     beside.next().is_none().then_some(only.offset)
 }
 
-/// The heaviest track, in the group of one that passed an event, whose clip has an event of that name.
+/// Returns the heaviest track in the sync group of the crossing's track whose clip has an event of the same name.
 fn leader_of(set: &AnimationSet, slots: &[Slot], crossing: &TrackCrossing) -> Option<usize> {
     let track = &slots[crossing.slot].track;
     let name = &set.clip(track.def.clip).events[crossing.event].name;
@@ -147,12 +148,12 @@ fn leader_of(set: &AnimationSet, slots: &[Slot], crossing: &TrackCrossing) -> Op
     heaviest(slots, track.def.sync_group?, crossing.seconds, has_one)
 }
 
-/// The heaviest of a sync group's tracks now, the first one of several.
+/// Returns the heaviest track of a sync group; of equal ones, the first.
 pub(super) fn leader(slots: &[Slot], group: u8) -> Option<usize> {
     heaviest(slots, group, 0.0, |_| true)
 }
 
-/// The heaviest of those tracks of a sync group that count, `seconds` from now.
+/// Returns the heaviest track of a sync group that `counts` accepts, by the weights `seconds` from now.
 fn heaviest(slots: &[Slot], group: u8, seconds: f64, counts: impl Fn(&Track) -> bool) -> Option<usize> {
     let mut best: Option<(usize, f32)> = None;
     for (i, slot) in slots.iter().enumerate() {

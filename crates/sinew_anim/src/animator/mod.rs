@@ -31,14 +31,15 @@ use track::{Ramp, check_speed, check_weight};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transition {
     /// Both motions play for a while with opposite ramps. Each joint turns from the old pose to the new one about one
-    /// axis by the share of their weights. The shorter way at the start of the crossfade is kept until its end.
+    /// axis by the share of their weights. The direction chosen at the start of the crossfade, the shorter one, is kept
+    /// until its end.
     Crossfade {
         /// Duration, seconds, 0 or above.
         seconds: f32,
-        /// Easing of the weights over that time.
+        /// Easing of the weights over `seconds`.
         easing: Easing,
     },
-    /// The new motion plays alone at once; the difference to the old one decays (see [`Inertia`]).
+    /// Only the new motion plays from now on; the difference from the old one decays (see [`Inertia`]).
     Inertial {
         /// Longest duration, seconds, 0 or above; joints that already move toward the new motion take less.
         seconds: f32,
@@ -47,9 +48,9 @@ pub enum Transition {
 
 /// Plays clips of an [`AnimationSet`] on one character.
 ///
-/// An animator is plain data: its tracks, their times, and the last two poses. Every call gets the same set. `update`
-/// advances time; then read pose, events and root motion. It does not allocate once it has seen as many tracks and
-/// events.
+/// An animator is plain data: its tracks, their times, and the last two poses. Pass the same set to every call.
+/// `update` advances time; then read pose, events and root motion. `update` allocates only for more tracks or events
+/// than before.
 #[derive(Clone, Debug)]
 pub struct Animator {
     slots: Vec<Slot>,
@@ -58,18 +59,18 @@ pub struct Animator {
     interrupted: Vec<FiredEvent>,
     /// Last event fired, by sync group and event name.
     last_fired: Vec<LastFired>,
-    /// Seconds of an inertial transition that starts with the next update.
+    /// Duration of an inertial transition that starts with the next update, seconds.
     awaits_transition: Option<f32>,
     inertia: Inertia,
     root_inertia: RootInertia,
     /// Velocity of the root in the last update with a positive duration.
     root_velocity: RootVelocity,
     pose: Pose,
-    /// The pose of the previous update, and its age; 0 if there was none.
+    /// Pose of the previous update, and its age in seconds; 0 if there was none.
     previous: Pose,
     previous_seconds: f32,
     has_pose: bool,
-    /// Pose of a clip that comes from outside.
+    /// Pose of a clip that the user feeds.
     fed: Option<Fed>,
     events: Vec<FiredEvent>,
     root_motion: Transform,
@@ -84,7 +85,8 @@ struct Slot {
     pose: Pose,
     /// Motion of the track's root in this update.
     motion: Transform,
-    /// True if a crossfade started it and what it replaces still plays: then it is applied on top of the layer's blend.
+    /// True if a crossfade started the track and replaced tracks still play; the track is then applied on top of the
+    /// layer's blend.
     is_crossfaded: bool,
     crossfade: Crossfade,
 }
@@ -94,7 +96,7 @@ struct Slot {
 struct Room {
     blender: Blender,
     cover: Blender,
-    /// Blend options without a rest-pose share, for tracks that a crossfade leads away from.
+    /// Blend options without a rest-pose share, for tracks that a crossfade replaces.
     pure: Blender,
     weights: Weights,
     layers: Vec<BlendLayer<'static>>,
@@ -110,7 +112,7 @@ struct Room {
 }
 
 impl Animator {
-    /// Plays nothing, in the rest pose.
+    /// Creates an animator without tracks, in the rest pose.
     pub fn new(set: &AnimationSet) -> Self {
         let rest = set.skeleton().rest();
         let covering = BlendOptions { fill_below: 1.0, ..BlendOptions::default() };
@@ -153,14 +155,14 @@ impl Animator {
         &self.pose
     }
 
-    /// Events passed in the last update, by time; simultaneous ones in the order of the tracks.
+    /// Events passed in the last update, by time; simultaneous ones are in the order of the tracks.
     pub fn events(&self) -> &[FiredEvent] {
         &self.events
     }
 
-    /// Motion of the root in the last update, in its previous frame: the mean of the tracks of layer 0 with their
-    /// weights after it; model space, file units. Tracks without motion count as standing. During an inertial
-    /// transition its speed changes as smoothly as the joints'.
+    /// Motion of the root in the last update, relative to its previous frame; model space, file units. It is the mean
+    /// of the tracks of layer 0, weighted after the update. A track without motion counts as zero. During an inertial
+    /// transition the root's velocity changes as smoothly as the joints'.
     pub fn root_motion(&self) -> Transform {
         self.root_motion
     }
@@ -170,12 +172,12 @@ impl Animator {
         self.slots.iter().map(|slot| &slot.track)
     }
 
-    /// A track; `None` after its removal.
+    /// Returns a track; `None` after its removal.
     pub fn track(&self, id: TrackId) -> Option<&Track> {
         self.tracks().find(|track| track.id == id)
     }
 
-    /// Starts a track.
+    /// Starts a track and returns its id.
     ///
     /// # Panics
     /// If a number of `def` is not finite, the weight is negative, a sync group is joined without looping, or clip or mask
@@ -200,7 +202,7 @@ impl Animator {
         id
     }
 
-    /// Starts a track that replaces all blended (not additive) tracks of its layer.
+    /// Starts a track that replaces all blended (not additive) tracks of its layer; returns the new track's id.
     ///
     /// # Panics
     /// As [`play`](Self::play), and if the transition's time is negative or not finite.
@@ -238,8 +240,8 @@ impl Animator {
         }
     }
 
-    /// Removes a track at once. The next update fires its remaining [`on_interrupt`](crate::EventPolicy::on_interrupt)
-    /// events of the lap. No effect after its removal.
+    /// Removes a track immediately. The next update fires the remaining
+    /// [`on_interrupt`](crate::EventPolicy::on_interrupt) events of its lap. Does nothing if the track was removed.
     pub fn stop(&mut self, set: &AnimationSet, id: TrackId) {
         if let Some(i) = self.slots.iter().position(|slot| slot.track.id == id) {
             self.remove(set, i);
@@ -252,8 +254,8 @@ impl Animator {
         self.room.spare.push(slot.emptied());
     }
 
-    /// Ramps a track's weight to another value in `seconds`, then does `then`: the book's timed transition. Replaces a
-    /// running ramp. No effect after the track's removal.
+    /// Ramps a track's weight to another value in `seconds`, then performs `then`. Replaces a running ramp. Does
+    /// nothing if the track was removed.
     ///
     /// # Panics
     /// If `weight` or `seconds` is negative or not finite.
@@ -263,7 +265,7 @@ impl Animator {
         }
     }
 
-    /// Sets a track's weight at once and ends its ramp. No effect after its removal.
+    /// Sets a track's weight immediately and ends its ramp. Does nothing if the track was removed.
     ///
     /// # Panics
     /// If `weight` is negative or not finite.
@@ -274,7 +276,7 @@ impl Animator {
         }
     }
 
-    /// Sets a track's speed, clip seconds per second. No effect after its removal.
+    /// Sets a track's speed, clip seconds per second. Does nothing if the track was removed.
     ///
     /// # Panics
     /// If `speed` is not finite, or beyond [`MAX_SPEED`](crate::MAX_SPEED).
@@ -285,15 +287,16 @@ impl Animator {
         }
     }
 
-    /// Pauses or resumes a track. No effect after its removal.
+    /// Pauses or resumes a track. Does nothing if the track was removed.
     pub fn set_paused(&mut self, id: TrackId, is_paused: bool) {
         if let Some(track) = self.track_mut(id) {
             track.is_paused = is_paused;
         }
     }
 
-    /// Moves a track to `time`, clip seconds, without firing events in between; one exactly there is still to come. The
-    /// leader of a sync group takes the others along. No effect after its removal.
+    /// Moves a track to `time`, clip seconds, without firing events in between; an event exactly at `time` has not been
+    /// passed yet. If the track leads a sync group, the other tracks of the group follow. Does nothing if the track was
+    /// removed.
     ///
     /// # Panics
     /// If `time` is not finite.
@@ -309,10 +312,10 @@ impl Animator {
         self.slots.iter_mut().map(|slot| &mut slot.track).find(|track| track.id == id)
     }
 
-    /// Takes two poses from outside, such as those of bodies, as its last motion; the difference to the tracks then
-    /// decays within `transition` seconds from the next update on (see [`Inertia`]). The poses are of the set's rig,
-    /// `earlier` is `seconds` before `now`; 0 means that there is none, and the motion counts as standing. The root
-    /// counts as standing, too.
+    /// Uses two poses from outside, such as those of bodies, as the animator's last motion. Their difference to the
+    /// tracks decays within `transition` seconds from the next update on (see [`Inertia`]). The poses are of the set's
+    /// rig; `earlier` is `seconds` before `now`. If `seconds` is 0, the initial velocity is zero. The initial velocity
+    /// of the root is zero, too.
     ///
     /// # Panics
     /// If a pose is of another rig, or a time is negative or not finite.
@@ -334,8 +337,9 @@ impl Animator {
 
     /// Advances time by `seconds`, 0 or above.
     ///
-    /// The result equals any number of shorter updates: what ends within this one ends at its exact time, and an event
-    /// has the weight of its own moment. Only the leader of a sync group and its speed are chosen once per update.
+    /// The result equals any number of shorter updates: a ramp or clip that ends within this update ends at its exact
+    /// time, and an event has the weight at its own time. Only the leader of a sync group and its speed are chosen once
+    /// per update.
     ///
     /// # Panics
     /// If `seconds` is negative or not finite.
@@ -347,7 +351,7 @@ impl Animator {
         self.events.clear();
         self.events.append(&mut self.interrupted);
         if seconds == 0.0 && self.awaits_transition.is_some() {
-            // Neither motion has advanced: the pose stays until one does.
+            // Neither motion has advanced, so the pose stays.
             self.root_motion = Transform::IDENTITY;
             return;
         }
@@ -363,7 +367,7 @@ impl Animator {
         self.finish_pose(set, seconds, begins);
     }
 
-    /// Calls [`update`](Self::update), then `on_event` for each event, in order.
+    /// Calls [`update`](Self::update), then `on_event` for each event, in order of time.
     ///
     /// # Panics
     /// As [`update`](Self::update), and if `on_event` panics.
@@ -390,7 +394,7 @@ impl Slot {
         }
     }
 
-    /// Memory for reuse by another track.
+    /// Resets a slot, whose memory another track can reuse.
     fn emptied(mut self) -> Self {
         self.crossfade.clear();
         Self { motion: Transform::IDENTITY, is_crossfaded: false, ..self }

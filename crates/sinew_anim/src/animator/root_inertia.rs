@@ -1,4 +1,4 @@
-//! The speed of the root through an inertial transition.
+//! Velocity of the root during an inertial transition.
 
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
@@ -11,9 +11,9 @@ pub(super) struct RootVelocity {
     pub angular: Vec3,
 }
 
-/// Excess of the old root's velocity over the new one's. It decays like the pose's offsets,
-/// `x₀ (1 − 10 τ³ + 15 τ⁴ − 6 τ⁵)`, the quintic of [`Decay`](crate::Decay) without initial velocity, and covers half of
-/// the distance of a constant excess.
+/// Excess of the old root's velocity over the new one's. It decays like the offsets of the pose,
+/// `x₀ (1 − 10 τ³ + 15 τ⁴ − 6 τ⁵)`, the quintic of [`Decay`](crate::Decay) without initial velocity. The root moves
+/// half as far as with a constant excess.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct RootInertia {
     offset: RootVelocity,
@@ -27,7 +27,7 @@ impl RootInertia {
         Self { offset, seconds, elapsed: 0.0 }
     }
 
-    /// Advances time and returns translation and rotation (scaled axis) of the offset in it.
+    /// Advances time by `seconds`; returns translation and rotation (scaled axis) that the offset adds in this time.
     pub fn advance(&mut self, seconds: f32) -> (Vec3, Vec3) {
         let before = self.lasted();
         self.elapsed += seconds;
@@ -35,7 +35,7 @@ impl RootInertia {
         (self.offset.linear * time, self.offset.angular * time)
     }
 
-    /// Integral of the decay, seconds: the time for which the full offset would cover the same distance.
+    /// Integral of the decay, seconds: time in which the full offset would cover the same distance.
     fn lasted(&self) -> f32 {
         if self.seconds <= 0.0 {
             return 0.0;

@@ -1,4 +1,4 @@
-//! The state of an animator as bytes, and back: exactly.
+//! Saves the state of an animator as bytes, and restores it exactly.
 
 use super::{Animator, Easing, EndAction, Slot, Track, TrackDef, TrackId};
 use crate::animator::crossfade::Crossfade;
@@ -17,12 +17,12 @@ use sinew_math::{ReadError, Reader, Writer};
 /// Magic bytes and format version.
 const HEADER: &[u8; 8] = b"SNWANIM\x02";
 
-/// Largest distance of tracks in a sync group, laps: one that was paused catches up in one update, and fires what it
-/// passes.
+/// Largest difference of laps within a sync group: a track that was paused catches up in one update, and fires all
+/// events that it passes.
 const FARTHEST: u64 = 10_000;
 
 impl Animator {
-    /// Writes everything that decides the future; the events and root motion of the last update are not included.
+    /// Writes all state that affects later updates; the events and root motion of the last update are not included.
     pub fn save(&self, set: &AnimationSet, out: &mut Writer) {
         out.raw(HEADER);
         out.u64(set.fingerprint());
@@ -50,7 +50,8 @@ impl Animator {
         }
     }
 
-    /// Reads what [`save`](Self::save) wrote, for the same set; continues with the same bits.
+    /// Reads an animator that [`save`](Self::save) wrote, for the same set. The animator continues with the same
+    /// bits.
     ///
     /// # Errors
     /// If the bytes are of another set, end too early, or hold an impossible state. Never panics.

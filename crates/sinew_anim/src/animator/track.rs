@@ -4,17 +4,17 @@ use crate::set::{ClipId, MaskId};
 use crate::tuning::MAX_SPEED;
 use sinew_math::clamp;
 
-/// A track of an [`Animator`](super::Animator); ids are never reused.
+/// Id of a track of an [`Animator`](super::Animator); ids are never reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TrackId(pub(crate) u64);
 
 impl TrackId {
-    /// Converts to a number, for saving an animator and its users.
+    /// Converts to a number, for saving an animator and data that refers to its tracks.
     pub fn to_bits(self) -> u64 {
         self.0
     }
 
-    /// Restores an id from that number; it refers to no track if the animator lacks it.
+    /// Restores an id from [`to_bits`](Self::to_bits); it refers to no track if the animator lacks the track.
     pub fn from_bits(bits: u64) -> Self {
         Self(bits)
     }
@@ -23,14 +23,14 @@ impl TrackId {
 /// Action of a track at the end of a ramp, or of a clip that plays once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EndAction {
-    /// Continues: with its new weight, or holding its last pose.
+    /// The track continues with its new weight, or holds its last pose.
     #[default]
     Hold,
-    /// The track is removed.
+    /// The animator removes the track.
     Stop,
     /// The track pauses.
     Pause,
-    /// Starts again at [`TrackDef::start`]. A track of a sync group keeps the group's time.
+    /// The track starts again at [`TrackDef::start`]. A track of a sync group keeps the group's time.
     Restart,
 }
 
@@ -39,17 +39,17 @@ pub enum EndAction {
 pub enum Easing {
     /// Interpolation at constant speed.
     Linear,
-    /// `3x² − 2x³`: no jump of speed at either end.
+    /// `3x² − 2x³`: zero speed at both ends.
     #[default]
     Smooth,
-    /// `x²`: slow at first.
+    /// `x²`: slow at the start.
     In,
     /// `x (2 − x)`: slow at the end.
     Out,
 }
 
 impl Easing {
-    /// Eased share at share `x` of the time; both 0 to 1.
+    /// Eased share at share `x` of the time; both are 0 to 1.
     pub fn at(self, x: f32) -> f32 {
         let x = clamp(x, 0.0, 1.0);
         match self {
@@ -66,27 +66,28 @@ impl Easing {
 pub struct TrackDef {
     /// The clip that is played.
     pub clip: ClipId,
-    /// Share in the blend, ≥ 0; shares of a layer need not add up to 1.
+    /// Weight in the blend, ≥ 0; weights of a layer need not add up to 1.
     pub weight: f32,
     /// Clip seconds per second, at most [`MAX_SPEED`]; backward if negative.
     pub speed: f32,
-    /// Clip seconds at which it starts; in a sync group that plays already, the group's phase counts instead.
+    /// Clip seconds at which the track starts. In a sync group that already plays, the track starts at the group's
+    /// phase.
     pub start: f32,
     /// Continuation after the clip's end.
     pub loop_mode: LoopMode,
     /// Action at the end of a clip that plays once.
     pub at_end: EndAction,
-    /// Layer 0 is blended with the rest pose; tracks of higher layers cover those below, as far as the sum of their
-    /// weights times masks reaches 1.
+    /// Layer of the track. Layer 0 is blended with the rest pose; tracks of higher layers cover the layers below,
+    /// in proportion to the sum of their weights times masks, up to 1.
     pub layer: u8,
-    /// Mask of the joints that it moves; all of them by default.
+    /// Mask of the joints that the track moves; all joints by default.
     pub mask: Option<MaskId>,
-    /// Tracks of one group are kept in phase by the markers of their clips; they loop.
+    /// Sync group. Tracks of one group loop, and are kept in phase by the markers of their clips.
     pub sync_group: Option<u8>,
 }
 
 impl TrackDef {
-    /// A track that loops its clip from the start at its own speed, with weight 1, on all joints.
+    /// Creates a track that loops its clip from the start at its own speed, with weight 1, on all joints.
     pub fn new(clip: ClipId) -> Self {
         Self {
             clip,
@@ -177,12 +178,12 @@ impl Track {
         self.is_paused
     }
 
-    /// True if its weight is ramping.
+    /// True if the track's weight is ramping.
     pub fn is_ramping(&self) -> bool {
         self.ramp.is_some()
     }
 
-    /// Weight `seconds` later than now.
+    /// Weight in `seconds` from now.
     pub(super) fn weight_in(&self, seconds: f64) -> f32 {
         self.ramp.map_or(self.def.weight, |ramp| ramp.at(ramp.elapsed + seconds))
     }

@@ -10,10 +10,10 @@ use sinew_math::lanes::WIDTH;
 use sinew_math::{StableHasher, Vec3, max};
 use thiserror::Error;
 
-/// Content of a built clip where the raw clip has no channel.
+/// Value of joints and properties where the raw clip has no channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Fill {
-    /// The rig's rest pose: for clips that are shown or blended.
+    /// The rig's rest pose, for clips that are shown or blended.
     #[default]
     Rest,
     /// No change, for additive clips: see [`Clip::difference_from`].
@@ -23,10 +23,10 @@ pub enum Fill {
 /// Options for building a clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipBuildOptions {
-    /// Content where the clip has no channel.
+    /// Value where the clip has no channel.
     pub fill: Fill,
-    /// Largest error of straight lines against arcs and splines, radians; more keys are inserted where it would be
-    /// exceeded.
+    /// Largest error of straight lines against arcs and splines, radians. Where the error would be larger, keys are
+    /// inserted.
     pub rotation_tolerance: f32,
     /// Largest error of translations and scales, as a share of the diagonal of the channel's bounding box.
     pub relative_tolerance: f32,
@@ -44,7 +44,7 @@ pub enum ClipBuildError {
     /// The rig has no joints.
     #[error("the rig has no joints")]
     NoJoints,
-    /// The clip's length is negative or not finite. A length of 0 is that of a pose.
+    /// The clip's duration is negative or not finite. A duration of 0 is allowed: a pose.
     #[error("the clip lasts {duration} s; it has to last 0 or longer")]
     Duration {
         /// Duration in the clip, seconds.
@@ -66,17 +66,17 @@ pub enum ClipBuildError {
         /// Index of the channel in the clip.
         channel: usize,
     },
-    /// A channel whose values do not fit its keys.
+    /// The number of a channel's values does not fit its keys.
     #[error("channel {channel} has {values} numbers where its keys take {needed}")]
     ValueCount {
         /// Index of the channel in the clip.
         channel: usize,
         /// Count of numbers in the channel.
         values: usize,
-        /// Count of numbers that its keys take.
+        /// Count of numbers that the channel's keys need.
         needed: usize,
     },
-    /// A key's time is negative, not finite, or not after that of the key before.
+    /// A key's time is negative, not finite, or not after the previous key's.
     #[error(
         "channel {channel}, key {key}: its time, {time} s, is not after the one before it, or not a time"
     )]
@@ -104,7 +104,7 @@ pub enum ClipBuildError {
         /// Index of the key in the channel.
         key: usize,
     },
-    /// More than 65,536 different times.
+    /// The clip has more than 65,536 different key times.
     #[error("the keys are at {times} different times; a built clip has room for 65,536")]
     TooManyTimes {
         /// Number of different times.
@@ -115,13 +115,13 @@ pub enum ClipBuildError {
 impl BuiltClip {
     /// Quantises a clip for a rig.
     ///
-    /// Rotations keep 47 bits (the three smallest numbers of the quaternion), translations and scales 48, in the bounds
-    /// of their own channel. Splines and wide arcs get extra keys; a step becomes two keys at neighbouring times. If
-    /// two channels move the same property, the later one counts, as in [`sample`](crate::clip::sample::sample()). A
-    /// constant channel takes no keys.
+    /// Rotations have 47 bits (the three smallest numbers of the quaternion). Translations and scales have 48, in the
+    /// bounds of their own channel. Splines and wide arcs get extra keys; a step becomes two keys at neighbouring
+    /// times. If two channels move the same property, the later one counts, as in
+    /// [`sample`](crate::clip::sample::sample()). A constant channel has no keys.
     ///
     /// # Errors
-    /// If the clip violates what [`Clip`] promises, with channel and key; see [`ClipBuildError`].
+    /// If the clip violates the rules of [`Clip`]. The error names channel and key; see [`ClipBuildError`].
     pub fn build(clip: &Clip, rig: &Rig, options: &ClipBuildOptions) -> Result<Self, ClipBuildError> {
         check(clip, rig)?;
         let mut base = match options.fill {
@@ -198,7 +198,7 @@ impl BuiltClip {
         let bounds = |b: &Bounds| [b.low[0], b.low[1], b.low[2], b.step[0], b.step[1], b.step[2]];
         self.translations.hash(&mut hasher, bounds);
         self.scales.hash(&mut hasher, bounds);
-        // 0 is the hash of a cursor without a clip.
+        // 0 marks a cursor without a clip.
         hasher.finish() | 1
     }
 }
@@ -260,7 +260,7 @@ fn all_times(curves: &[(JointIdx, Property, Curve)]) -> Result<Vec<f32>, ClipBui
     Ok(times)
 }
 
-/// Largest error of a channel that quantisation, straight lines and rounding can cause.
+/// Largest error of a channel through quantisation, straight lines and rounding.
 fn bound_of(channel: &Channel, options: &ClipBuildOptions) -> ClipError {
     if channel.property == Property::Rotation {
         return ClipError { rotation: ROTATION_BOUND + options.rotation_tolerance, ..ClipError::default() };
@@ -315,7 +315,7 @@ fn check_channel(index: usize, channel: &Channel, joints: usize) -> Result<(), C
         if !value.iter().all(|x| x.abs() < 1e18) {
             return Err(ClipBuildError::Value { channel: index, key });
         }
-        // A key of a spline has three values; the middle one is its value.
+        // A key of a spline has in-tangent, value and out-tangent.
         let value = if per_key == width { value } else { &value[width..2 * width] };
         if channel.property == Property::Rotation && value.iter().all(|x| x.abs() < 1e-6) {
             return Err(ClipBuildError::ZeroRotation { channel: index, key });

@@ -7,25 +7,25 @@ use sinew_math::{Rotation, clamp, max, min};
 pub(super) struct Key {
     /// Index into the clip's table of times.
     pub time: u16,
-    /// The value, as the track's [`Code`] has it.
+    /// The value, encoded by the track's [`Code`].
     pub packed: [u16; 3],
 }
 
-/// Decoder of the numbers of a track's keys from their bits.
+/// Decoder of the values of a track's keys.
 pub(super) trait Code<const N: usize>: Copy {
     fn decode(&self, packed: [u16; 3]) -> [f32; N];
 }
 
-/// Three numbers within their own bounds, 16 bits each.
+/// Bounds of three numbers, with 16 bits for each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Bounds {
     pub low: [f32; 3],
-    /// Value of one of the 65,535 steps, axis by axis.
+    /// Width of one of the 65,535 steps, axis by axis.
     pub step: [f32; 3],
 }
 
 impl Bounds {
-    /// The smallest bounds that contain all values.
+    /// Returns the smallest bounds that contain all values.
     pub fn around(values: &[[f32; 3]]) -> Self {
         let fold = |i: usize, pick: fn(f32, f32) -> f32| values.iter().map(|v| v[i]).fold(values[0][i], pick);
         let low = core::array::from_fn(|i| fold(i, min));
@@ -51,7 +51,7 @@ impl Code<3> for Bounds {
     }
 }
 
-/// A unit quaternion without its largest number, which follows from the other three: those are at most √½, and have 15
+/// A unit quaternion without its largest number, which follows from the other three. These are at most √½ and have 15
 /// bits each, with 0 exact. Of the three remaining bits, two name the largest number and one is its sign, so that keys
 /// of a track stay on one hemisphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -64,8 +64,8 @@ const STEP: f32 = core::f32::consts::FRAC_1_SQRT_2 / HALF;
 /// The highest of the 16 bits.
 const FLAG: u16 = 0x8000;
 
-/// Largest angle, radians, between a unit quaternion and its quantized form: each of the three numbers is off by at
-/// most half a step, the fourth by three times that, since it is the largest; an angle is twice the chord.
+/// Largest angle, radians, between a unit quaternion and its quantised form. Each of the three numbers is off by at
+/// most half a step, the fourth (the largest) by three times that; an angle is twice the chord.
 pub(super) const ROTATION_BOUND: f32 = 1.51e-4;
 
 impl SmallestThree {
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
     use sinew_math::{Random, trig};
 
-    /// Angle between rotations, radians, in `f64`: the error of `angle_to` itself exceeds the tolerance.
+    /// Angle between rotations, radians, in `f64`, because the error of `angle_to` exceeds the tolerance.
     fn angle(a: Rotation, b: Rotation) -> f64 {
         let pairs =
             [(a.x, b.x), (a.y, b.y), (a.z, b.z), (a.w, b.w)].map(|(a, b)| (f64::from(a), f64::from(b)));
@@ -119,7 +119,7 @@ mod tests {
         let mut worst: f64 = 0.0;
         for i in 0..200_000 {
             let half = f32::from(i % 3 == 0);
-            // Every third one near equal numbers, the worst case.
+            // Every third rotation is near equal numbers, the worst case.
             let q = random.rotation();
             let q = Rotation::from_xyzw(q.x, q.y + half, q.z + half, q.w + half).normalize();
             let [x, y, z, w] = SmallestThree.decode(SmallestThree::encode(q));

@@ -1,4 +1,4 @@
-//! Samples a clip with cached keys around the time.
+//! Samples a clip with cached keys around the current time.
 
 use super::code::{Code, Key};
 use super::{BuiltClip, TrackBlock, Tracks};
@@ -7,15 +7,15 @@ use sinew_math::clamp;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
-/// Index before any key is loaded: every key counts as later.
+/// Index before a key is loaded: every key counts as later.
 const UNSET: u32 = u32::MAX / 2;
-/// The left key is before the first, so that the first follows it.
+/// Index of a left key before the first key, so that the first key follows it.
 const BEFORE: u32 = u32::MAX;
 
-/// Beyond all times, in either sign. Finite, so that interpolation with it stays finite.
+/// Time beyond all times, in either sign. Finite, so that interpolation with it stays finite.
 const FOREVER: f32 = 1e30;
 
-/// The two keys around a time, of eight tracks side by side.
+/// The two keys around a time, for eight tracks side by side.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 struct Span<const N: usize> {
@@ -30,7 +30,7 @@ struct Span<const N: usize> {
 }
 
 impl<const N: usize> Span<N> {
-    /// Contains no time, so that it is filled first.
+    /// Returns a span that contains no time, so that the first access fills it.
     fn unset() -> Self {
         let nothing = [[0.0; WIDTH]; N];
         Self {
@@ -43,10 +43,10 @@ impl<const N: usize> Span<N> {
     }
 }
 
-/// Playback state of a character in a clip: the keys around its last time, unpacked.
+/// Playback state of a character in a clip: the decoded keys around its last time.
 ///
-/// A cursor is a cache. A stale one, after another clip or a jump, costs time but never changes the pose. It takes 360
-/// bytes per eight animated rotations, and 296 per eight translations or scales.
+/// A cursor is a cache. A stale one, after another clip or a jump, costs time but never changes the pose. Its size is
+/// 360 bytes per eight animated rotations, and 296 per eight translations or scales.
 #[derive(Clone, Debug, Default)]
 pub struct Cursor {
     fingerprint: u64,
@@ -56,12 +56,12 @@ pub struct Cursor {
 }
 
 impl Cursor {
-    /// Cursor without a clip.
+    /// Creates a cursor without a clip.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Becomes a copy of another, in its own memory.
+    /// Copies another cursor into existing memory.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.fingerprint = other.fingerprint;
         self.rotations.clone_from(&other.rotations);
@@ -85,13 +85,13 @@ fn unset<const N: usize>(spans: &mut Vec<Span<N>>, len: usize) {
 }
 
 impl BuiltClip {
-    /// Local transforms of all joints at `time`, seconds, limited to the clip's length (see [`Wrap`](crate::Wrap) and
-    /// [`Playhead`](crate::Playhead) for times beyond it); NaN is 0. Within [`error_bound`](Self::error_bound) of
-    /// [`sample`](crate::clip::sample::sample()) for the raw clip. Values between keys are linear; rotations are
-    /// normalised (`nlerp`; keys are close enough for that).
+    /// Writes the local transforms of all joints at `time`, seconds, to `out`. `time` is limited to the clip's
+    /// duration (see [`Wrap`](crate::Wrap) and [`Playhead`](crate::Playhead) for times beyond it); NaN is 0. The
+    /// result is within [`error_bound`](Self::error_bound) of [`sample`](crate::clip::sample::sample()) for the raw
+    /// clip. Values between keys are linear; rotations are normalised (`nlerp`; keys are close enough for that).
     ///
-    /// Any `cursor` works; it saves the key search when time moves by small steps, forward or backward, and allocates
-    /// for a clip larger than any before.
+    /// Any `cursor` works. Keeping one saves the key search while time moves by small steps, forward or backward. The
+    /// cursor allocates for a clip larger than any before.
     ///
     /// # Panics
     /// If `out` is not as long as [`joints`](Self::joints).
@@ -133,7 +133,7 @@ impl Kernel for Sample<'_> {
     }
 }
 
-/// Moves a block's keys to `time`; returns the position between left and right key, 0 to 1.
+/// Moves a block's keys to `time`; returns the position between left and right key in each lane, 0 to 1.
 #[inline(always)]
 fn advance<L: Lanes, C: Code<N>, const N: usize>(
     clip: &BuiltClip,
@@ -175,7 +175,8 @@ fn store_between<L: Lanes>(span: &Span<3>, share: L, row: usize, block: &mut Blo
     z.store(&mut block.0[row + 2]);
 }
 
-/// Loads the keys around `time` into one lane: mostly the right key becomes the left one, and the next one follows.
+/// Loads the keys around `time` into one lane. Usually the right key becomes the left one, and the next key the right
+/// one.
 fn refill<C: Code<N>, const N: usize>(
     clip: &BuiltClip,
     all: &Tracks<C>,
@@ -185,7 +186,7 @@ fn refill<C: Code<N>, const N: usize>(
     span: &mut Span<N>,
     lane: usize,
 ) {
-    // Shows the bound to the compiler.
+    // Shows the compiler that the index is in bounds.
     let lane = lane % WIDTH;
     let track = &tracks.tracks[lane];
     let keys = &all.keys[track.first as usize..][..track.count as usize];
@@ -205,7 +206,7 @@ fn refill<C: Code<N>, const N: usize>(
     search(clip, keys, (tracks, row), time, span, lane);
 }
 
-/// Finds the keys around `time` from scratch.
+/// Finds the keys around `time` by a full search.
 #[cold]
 fn search<C: Code<N>, const N: usize>(
     clip: &BuiltClip,
@@ -244,7 +245,7 @@ fn last_not_after(keys: &[Key], time: f32, time_of: impl Fn(&Key) -> f32) -> u32
 }
 
 impl<const N: usize> Span<N> {
-    /// Sets one value from `start` to `end`.
+    /// Holds one value from `start` to `end`.
     fn hold(&mut self, lane: usize, value: [f32; N], start: f32, end: f32) {
         self.set_left(lane, value);
         self.set_right(lane, value);

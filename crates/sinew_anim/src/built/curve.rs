@@ -1,4 +1,4 @@
-//! Keys of a channel such that straight lines between them are accurate enough.
+//! Chooses the keys of a channel such that straight lines between them are accurate enough.
 
 use super::build::ClipBuildOptions;
 use super::error::angle_between;
@@ -6,7 +6,7 @@ use crate::clip::sample::channel_at;
 use crate::clip::{Channel, Interpolation, Property};
 use sinew_math::{Rotation, Vec3, abs3, max, trig};
 
-/// Values of a channel at times, straight lines between them; rotations on one hemisphere, of length 1.
+/// Values of a channel at times, with straight lines between them; rotations have length 1 and share a hemisphere.
 pub(super) struct Curve {
     pub times: Vec<f32>,
     pub values: Vec<[f32; 4]>,
@@ -24,7 +24,7 @@ impl Curve {
         let mut times = vec![channel.times[0]];
         for pair in channel.times.windows(2) {
             match channel.interpolation {
-                // The earlier value holds until the last number before the key.
+                // The earlier value holds until the last representable time before the key.
                 Interpolation::Step => times.extend([pair[1].next_down(), pair[1]]),
                 Interpolation::Linear if channel.property == Property::Rotation => {
                     split_turn(channel, pair[0], pair[1], tolerance, &mut times);
@@ -49,7 +49,7 @@ impl Curve {
         curve
     }
 
-    /// True if it is constant except for rounding.
+    /// True if the curve is constant except for rounding.
     pub fn is_constant(&self) -> bool {
         let first = self.values[0];
         let size = first.iter().fold(0.0, |size, x| max(size, x.abs()));
@@ -57,7 +57,7 @@ impl Curve {
         self.values.iter().all(same)
     }
 
-    /// The first three numbers of each value.
+    /// Returns the first three numbers of each value.
     pub fn vectors(&self) -> Vec<[f32; 3]> {
         self.values.iter().map(|&[x, y, z, _]| [x, y, z]).collect()
     }
@@ -84,7 +84,7 @@ fn rotation([x, y, z, w]: [f32; 4]) -> Rotation {
     Rotation::from_xyzw(x, y, z, w)
 }
 
-/// A channel's value at a time, rotations of length 1.
+/// Returns a channel's value at a time; rotations have length 1.
 fn straight(channel: &Channel, time: f32) -> [f32; 4] {
     let value = channel_at(channel, time);
     if channel.property == Property::Rotation {
@@ -94,8 +94,8 @@ fn straight(channel: &Channel, time: f32) -> [f32; 4] {
     value
 }
 
-/// Number of equal parts of a turn at constant speed such that `nlerp` is off by at most `tolerance` radians in each:
-/// for turns up to a sixth of a circle the error is 0.0037 times the cube of the angle, from the series of both.
+/// Splits a turn at constant speed into equal parts such that `nlerp` is off by at most `tolerance` radians in each.
+/// For turns up to a sixth of a circle the error is 0.0037 times the cube of the angle, from the series of both.
 fn split_turn(channel: &Channel, from: f32, to: f32, tolerance: f32, times: &mut Vec<f32>) {
     let ends = [from, to].map(|time| rotation(straight(channel, time)));
     let angle = angle_between(ends[0], ends[1]);
@@ -108,7 +108,7 @@ fn split_turn(channel: &Channel, from: f32, to: f32, tolerance: f32, times: &mut
     times.push(to);
 }
 
-/// Halves a piece of a spline until a straight line is within `tolerance` of it.
+/// Halves a piece of a spline until a straight line is within `tolerance` of the spline.
 fn split_cubic(channel: &Channel, from: f32, to: f32, tolerance: f32, depth: u32, times: &mut Vec<f32>) {
     let middle = 0.5 * (from + to);
     let splittable = depth < DEEPEST && from < middle && middle < to;
@@ -120,7 +120,8 @@ fn split_cubic(channel: &Channel, from: f32, to: f32, tolerance: f32, depth: u32
     }
 }
 
-/// Checks seven positions, and keeps half of the tolerance for the rest.
+/// True if a straight line is accurate at seven positions, within half of the tolerance; the other half is for the
+/// positions between.
 fn is_straight(channel: &Channel, from: f32, to: f32, tolerance: f32) -> bool {
     let (a, b) = (straight(channel, from), straight(channel, to));
     (1..8).all(|i| {
@@ -130,7 +131,7 @@ fn is_straight(channel: &Channel, from: f32, to: f32, tolerance: f32) -> bool {
             Property::Rotation => angle_between(rotation(a).nlerp(rotation(b), share), rotation(curve)),
             Property::Translation | Property::Scale => {
                 let line = vector(a) + (vector(b) - vector(a)) * share;
-                // The diagonal of the difference is no shorter than its length.
+                // The length of the difference is at least its largest component.
                 abs3(line - vector(curve)).length()
             }
         };

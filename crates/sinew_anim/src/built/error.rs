@@ -10,14 +10,14 @@ use sinew_math::{Rotation, max};
 pub struct ClipError {
     /// Angle between rotations, radians.
     pub rotation: f32,
-    /// Distance of a joint from where it should be in its parent's space, file units.
+    /// Distance of a joint from its exact position in its parent's space, file units.
     pub translation: f32,
     /// Length of the difference between scales.
     pub scale: f32,
 }
 
 impl ClipError {
-    /// The component-wise maximum.
+    /// Returns the component-wise maximum.
     pub fn merged(self, other: Self) -> Self {
         Self {
             rotation: max(self.rotation, other.rotation),
@@ -40,7 +40,7 @@ impl ClipError {
     }
 }
 
-/// Angle between two rotations, radians; unlike `Rotation::angle_to` exact for small angles.
+/// Angle between two rotations, radians; unlike `Rotation::angle_to`, exact for small angles.
 pub(super) fn angle_between(a: Rotation, b: Rotation) -> f32 {
     let difference = a.inverse() * b;
     let (sin, cos) = (difference.vector().length(), difference.w.abs());
@@ -48,8 +48,9 @@ pub(super) fn angle_between(a: Rotation, b: Rotation) -> f32 {
 }
 
 impl BuiltClip {
-    /// Largest difference from the poses of the source clip, measured at each key time and at `between` times between
-    /// each two. `rig` is the one used to build it; for a clip that fills with identities its rest pose is that.
+    /// Returns the largest difference from the poses of the source clip, measured at each key time and at `between`
+    /// times between each two. `rig` is the rig that the clip was built for. A clip that fills with identities needs a
+    /// rig with an identity rest pose.
     ///
     /// # Panics
     /// If the rig has another number of joints, or `raw` is not fit to be sampled (see [`sample`](crate::clip::sample::sample())).

@@ -1,4 +1,4 @@
-//! Clips for playback: quantized, and read with a cursor.
+//! Clips for playback: quantised, and sampled with a cursor.
 //!
 //! A key has 8 bytes: an index into the clip's time table and a value of 48 bits. Constant tracks have no keys. A
 //! [`BuiltClip`] is built once by [`BuiltClip::build`] and then only read; each character has its own [`Cursor`].
@@ -25,14 +25,14 @@ pub struct BuiltClip {
     duration: f32,
     /// All times of keys, seconds, increasing.
     times: Vec<f32>,
-    /// Pose of everything that is not animated: constant tracks, and the rest pose elsewhere.
+    /// Pose of all joints and properties that are not animated: constant tracks, and the rest pose elsewhere.
     base: Pose,
     rotations: Tracks<SmallestThree>,
     translations: Tracks<Bounds>,
     scales: Tracks<Bounds>,
     fill: Fill,
     bound: ClipError,
-    /// Hash of everything that decides a pose, so that a cursor recognises its clip.
+    /// Hash of all data that affects a pose, so that a cursor recognises its clip.
     fingerprint: u64,
 }
 
@@ -52,7 +52,7 @@ struct TrackBlock<C> {
     tracks: [Track<C>; WIDTH],
 }
 
-/// Keys of one property of one joint; no keys where it is not animated.
+/// Range of the keys of one property of one joint; empty where the property is not animated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Track<C> {
     first: u32,
@@ -66,12 +66,12 @@ impl BuiltClip {
         &self.name
     }
 
-    /// Length, seconds; 0 is a pose.
+    /// Duration, seconds; 0 for a pose.
     pub fn duration(&self) -> f32 {
         self.duration
     }
 
-    /// Number of joints of the rig that it was built for.
+    /// Number of joints of the rig that the clip was built for.
     pub fn joints(&self) -> usize {
         self.base.len()
     }
@@ -89,17 +89,17 @@ impl BuiltClip {
         self.keys() * size_of::<Key>() + self.times.len() * size_of::<f32>() + tables + base
     }
 
-    /// Upper bound of the difference between a sampled pose and the raw clip's.
+    /// Upper bound of the difference between a sampled pose and the raw clip's pose.
     pub fn error_bound(&self) -> ClipError {
         self.bound
     }
 
-    /// Value for joints without a channel; it differs between blended and added clips.
+    /// Value of joints without a channel; it differs between blended and additive clips.
     pub fn fill(&self) -> Fill {
         self.fill
     }
 
-    /// A number that differs between clips with different poses.
+    /// Hash that differs between clips with different poses.
     pub fn fingerprint(&self) -> u64 {
         self.fingerprint
     }

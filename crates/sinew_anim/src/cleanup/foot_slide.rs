@@ -15,17 +15,17 @@ use sinew_math::{Affine, Vec3, max, min};
 pub struct FootSlideReport {
     /// Number of contacts that were held in place.
     pub contacts: usize,
-    /// Slide before, and after.
+    /// Foot slide before and after.
     pub slide: [FootSlide; 2],
     /// Largest shift of an ankle, metres.
     pub shifted: f32,
     /// Largest lowering of the pelvis so that the legs reach, metres.
     pub lowered: f32,
-    /// Largest remaining distance of an ankle from its goal, metres.
+    /// Largest remaining distance of an ankle from its target, metres.
     pub miss: f32,
 }
 
-/// Holds the ball of each foot on one spot of the floor through each of its contacts, by inverse kinematics of the
+/// Holds the ball of each foot at one point of the floor through each of its contacts, by inverse kinematics of the
 /// legs; between contacts the correction blends over. Feet keep their rotations, no sole goes below the floor, and the
 /// pelvis is lowered if a leg is too short.
 ///
@@ -73,7 +73,7 @@ pub fn remove_foot_slide(
     report
 }
 
-/// Shift of a foot to its contact spot, frame by frame, metres.
+/// Returns the shift of a foot to its contact point in each frame, metres.
 fn shifts_of(
     take: &Take,
     foot: &Foot,
@@ -105,14 +105,15 @@ fn shifts_of(
     shifts
 }
 
-/// Vertical shift of a ball that is `below` the floor (negative: above it), metres: all the way to it within a sixtieth
-/// of the leg, none from three times that distance. A foot that is about to leave is not pressed down again.
+/// Vertical shift of a ball that is `below` the floor (negative: above it), metres. The shift is full within a sixtieth
+/// of the leg and zero from three times that distance, so that a foot that is about to leave is not pressed down again.
 fn down_to(below: f32, leg: f32) -> f32 {
     let near = leg / 60.0;
     below * (1.0 - smoothstep((-below - near) / (2.0 * near)))
 }
 
-/// Fills in between the end of one contact and the start of the next; before the first one, its start holds.
+/// Blends between the end of one contact and the start of the next; before the first contact, the shift at its start
+/// holds.
 fn blend_over(shifts: &mut [Vec3], from: Option<usize>, to: usize) {
     let next = shifts[to];
     let Some(from) = from else { return shifts[..to].fill(next) };
@@ -123,8 +124,8 @@ fn blend_over(shifts: &mut [Vec3], from: Option<usize>, to: usize) {
     }
 }
 
-/// Distance by which the pelvis must be lowered for a foot to reach its ankle's goal, metres; 0 if it reaches, or if
-/// that would not help.
+/// Distance by which the pelvis must be lowered so that a foot reaches its ankle's target, metres; 0 if it reaches
+/// already, or if lowering would not help.
 fn pelvis_need(model: &[Affine], foot: &Foot, shift: Vec3) -> f32 {
     let [hip, knee, ankle] =
         [foot.leg.upper, foot.leg.lower, foot.leg.end].map(|joint| model[joint].translation);

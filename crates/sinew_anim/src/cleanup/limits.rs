@@ -10,14 +10,14 @@ use sinew_math::max;
 pub struct JointExcess {
     /// Joint that exceeded its limit.
     pub joint: JointIdx,
-    /// Number of frames.
+    /// Number of frames beyond the limit.
     pub frames: usize,
     /// Largest excess, radians.
     pub largest: f32,
 }
 
-/// Rotates every joint beyond its limit to the nearest rotation within. Joints that never exceeded it are not in the
-/// report.
+/// Rotates every joint that is beyond its limit to the nearest rotation within it. Returns the joints that exceeded
+/// their limits.
 ///
 /// # Panics
 /// If the take lacks the joint of a limit.

@@ -1,6 +1,6 @@
-//! Repairs of motion capture. Every function changes a [`Take`](crate::Take) in place, all frames and joints, and
-//! returns a report; none keeps state. Rotations are local, radians; joint lengths are in the unit of the rig, those of
-//! feet and floors in metres of the space of `root`, y up.
+//! Repairs of motion capture. Every function changes a [`Take`](crate::Take) in place, in all frames and joints, and
+//! returns a report; none keeps state. Rotations are local, in radians; joint lengths are in the unit of the rig.
+//! Lengths of feet and floors are metres in the space of `root`, y up.
 //!
 //! Recommended order: [`despike`], [`smooth`], [`project_limits`], [`remove_penetration`], [`remove_foot_slide`].
 
@@ -18,7 +18,7 @@ pub use spikes::{Spike, SpikeSettings, despike};
 
 use sinew_math::max;
 
-/// A smoothed curve nowhere below `least`: the maximum within `reach` frames, averaged over as many.
+/// Returns a smooth curve that is nowhere below `least`: the maximum within `reach` frames, averaged over as many.
 fn smooth_above(least: &[f32], reach: usize) -> Vec<f32> {
     let around = |i: usize, of: &[f32]| i.saturating_sub(reach)..(i + reach + 1).min(of.len());
     let tops: Vec<f32> =

@@ -11,7 +11,7 @@ use sinew_math::{Affine, Vec3, max, min};
 /// Result of raising a body out of the floor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PenetrationReport {
-    /// Number of frames.
+    /// Number of frames in which the body was raised.
     pub frames: usize,
     /// Largest depth below the floor, metres.
     pub deepest: f32,
@@ -44,11 +44,11 @@ pub fn remove_penetration(
     raise(rig, root, legs, &depth, blend, take)
 }
 
-/// Raises the whole body by at least the given amount in each frame (metres, in the space of `root`, y up; 0 or more),
-/// smoothly over `blend` seconds before and after.
+/// Raises the whole body by at least `least` in each frame (metres, in the space of `root`, y up; 0 or more), smoothly
+/// over `blend` seconds before and after.
 ///
 /// # Panics
-/// If the take does not fit the rig, or the number of amounts is not that of the frames.
+/// If the take does not fit the rig, or `least` does not have one entry per frame.
 pub fn raise(
     rig: &Rig,
     root: &Affine,

@@ -9,15 +9,15 @@ use sinew_math::{Rotation, Vec3, max, trig};
 pub struct SmoothReport {
     /// Largest rotation of a joint, radians.
     pub largest_turn: f32,
-    /// Mean over all joints and frames, radians.
+    /// Mean rotation over all joints and frames, radians.
     pub mean_turn: f32,
     /// Largest shift of a joint, units of the rig.
     pub largest_shift: f32,
 }
 
-/// Gaussian mean over time with standard deviation `sigma` seconds, cut at three of them; no delay, since it is
-/// symmetric. A periodic motion at frequency f keeps `exp(−2 (π f σ)²)` of its amplitude: at 20 ms a tenth is lost at
-/// 3.7 Hz and nine tenths at 17 Hz. No effect if `sigma` is below a fifth of a frame.
+/// Smooths a take by a Gaussian mean over time with standard deviation `sigma` seconds, cut off at 3 sigma. The mean
+/// is symmetric, so it adds no delay. A periodic motion at frequency f keeps `exp(−2 (π f σ)²)` of its amplitude: at
+/// 20 ms a tenth is lost at 3.7 Hz and nine tenths at 17 Hz. Does nothing if `sigma` is below a fifth of a frame.
 pub fn smooth(take: &mut Take, sigma: f32) -> SmoothReport {
     let mut report = SmoothReport::default();
     let frames = f64::from(sigma) / take.frame_time;

@@ -7,18 +7,18 @@ use sinew_math::max;
 /// Thresholds for a spike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpikeSettings {
-    /// Least turn of a spike, away and back, radians.
+    /// Smallest rotation of a spike, away and back, radians.
     pub least_turn: f32,
-    /// Least shift away and back, units of the rig.
+    /// Smallest shift of a spike, away and back, units of the rig.
     pub least_shift: f32,
-    /// Least ratio of a spike's step to the usual step of the frames around it.
+    /// Smallest ratio of a spike's step to the usual step of the joint.
     pub times_usual: f32,
     /// Longest spike, seconds.
     pub longest: f32,
 }
 
 impl Default for SpikeSettings {
-    /// Removes spikes from 5° or 2 cm (of a rig in metres) on, of 6 times the usual step, up to 50 ms.
+    /// Thresholds of 5°, 2 cm (of a rig in metres), 6 times the usual step, and 50 ms.
     fn default() -> Self {
         Self { least_turn: 0.0873, least_shift: 0.02, times_usual: 6.0, longest: 0.05 }
     }
@@ -31,7 +31,7 @@ pub struct Spike {
     pub joint: JointIdx,
     /// First frame of the spike.
     pub frame: usize,
-    /// Number of frames.
+    /// Number of frames of the spike.
     pub frames: usize,
     /// Angle by which the joint turned away, radians.
     pub turn: f32,
@@ -39,7 +39,7 @@ pub struct Spike {
     pub shift: f32,
 }
 
-/// Removes spikes: where a joint jumps by a step far larger than those around and returns within a few frames, these
+/// Removes spikes: where a joint jumps by far more than its usual step and returns within a few frames, these frames
 /// are interpolated. Spikes at the first or last frame have only one side, and stay.
 pub fn despike(take: &mut Take, settings: &SpikeSettings) -> Vec<Spike> {
     let mut found = Vec::new();
@@ -66,12 +66,12 @@ pub fn despike(take: &mut Take, settings: &SpikeSettings) -> Vec<Spike> {
     found
 }
 
-/// Turn and shift from one transform to another.
+/// Returns rotation (radians) and shift from one transform to another.
 fn step(a: LocalTransform, b: LocalTransform) -> [f32; 2] {
     [a.rotation.angle_to(b.rotation), (a.translation - b.translation).length()]
 }
 
-/// Upper quartile of the steps, rotation and translation: normal motion of the joint.
+/// Returns the upper quartile of the joint's steps, rotation and translation: its normal motion.
 fn usual_steps(track: &[LocalTransform]) -> [f32; 2] {
     [0, 1].map(|which| {
         let mut steps: Vec<f32> = track.windows(2).map(|pair| step(pair[0], pair[1])[which]).collect();
@@ -80,8 +80,8 @@ fn usual_steps(track: &[LocalTransform]) -> [f32; 2] {
     })
 }
 
-/// Rotation and translation of the joint between frames `before` and `after` (radians, units of the rig), and `after`,
-/// if both steps are jumps and the two ends are close.
+/// Returns the rotation and shift of the joint between frames `before` and `after` (radians, units of the rig), and
+/// `after`, if both steps are jumps and the two ends are close.
 fn spike_between(
     track: &[LocalTransform],
     before: usize,
@@ -100,7 +100,7 @@ fn spike_between(
     (is_spike(0) || is_spike(1)).then_some((away[0], away[1], after))
 }
 
-/// Fills in evenly between two frames.
+/// Interpolates the frames between `before` and `after`.
 fn bridge(track: &mut [LocalTransform], before: usize, after: usize) {
     let (a, b) = (track[before], track[after]);
     for frame in before + 1..after {

@@ -11,22 +11,22 @@ use sinew_math::Rotation;
 /// Interpolation of values between two keys (glTF 2.0 §3.11).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
-    /// The earlier key holds until the next one.
+    /// The value of the earlier key holds until the next key.
     Step,
     /// Linear interpolation; slerp for rotations.
     Linear,
-    /// Cubic Hermite: each key has in-tangent, value, out-tangent; tangents are per second.
+    /// Cubic Hermite: each key has in-tangent, value and out-tangent; tangents are per second.
     CubicSpline,
 }
 
 /// Property of a joint that a channel moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Property {
-    /// Three numbers a key, file units.
+    /// Three numbers per key, file units.
     Translation,
-    /// Four numbers a key, x y z w.
+    /// Four numbers per key, x y z w.
     Rotation,
-    /// Scale, three numbers a key.
+    /// Scale, three numbers per key.
     Scale,
 }
 
@@ -42,7 +42,7 @@ impl Property {
 pub struct Channel {
     /// Joint that the channel moves.
     pub joint: JointIdx,
-    /// The property that it moves.
+    /// The property that the channel moves.
     pub property: Property,
     /// Interpolation between keys.
     pub interpolation: Interpolation,
@@ -64,10 +64,10 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// The clip as differences from `reference`, for additive layers: rotations become `reference⁻¹ · key`,
-    /// translations `key − reference`, scales `key ÷ reference`, each by the reference of its joint, parent's axes.
-    /// Interpolations and tangents keep their meaning. Build it with [`Fill::Identity`](crate::Fill), so that joints
-    /// without a channel do not change.
+    /// Converts the clip to differences from `reference`, for additive layers: rotations become `reference⁻¹ · key`,
+    /// translations `key − reference`, scales `key ÷ reference`, with the reference of the same joint, in the
+    /// parent's axes. Interpolations and tangents keep their meaning. Build the result with
+    /// [`Fill::Identity`](crate::Fill), so that joints without a channel do not change.
     ///
     /// # Panics
     /// If a channel's joint is not in `reference`, or a scale of the reference is 0 where a channel scales.

@@ -1,9 +1,9 @@
 //! Removes keys within a bound on the error.
 //!
-//! Remaining keys keep time and value; keys that the straight line between their neighbours reproduces are dropped. A
-//! joint's error adds up along the chain above it, so each channel gets a share of the bound, smaller the further its
-//! joint reaches; then the error is measured in the whole pose at all key times, and the shares are adjusted until the
-//! error reaches the bound without exceeding it.
+//! Remaining keys keep time and value; a key is dropped if the straight line between its neighbours reproduces it. The
+//! errors of joints add up along a chain, so each channel gets a share of the bound, smaller for joints with a longer
+//! reach. The error of the whole pose is then measured at all key times, and the shares are adjusted until the error is
+//! close to the bound without exceeding it.
 
 use crate::clip::sample::{channel_at, write_property};
 use crate::clip::{Channel, Clip, Interpolation, Property};
@@ -12,24 +12,25 @@ use crate::rig::{JointIdx, LocalTransform, Rig};
 use crate::tuning::{CHANNEL_SHARE, REDUCED_ENOUGH, REDUCTION_AIM};
 use sinew_math::{Affine, Rotation, Vec3, clamp, max, min};
 
-/// Bound of the difference between a clip with fewer keys and the original, in the space that [`reduce_keys`] measures in.
+/// Bound of the difference between a clip with fewer keys and the original, in the space in which [`reduce_keys`]
+/// measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeyBound {
-    /// Distance of a joint's origin from the original, units of that space. 0 keeps every key.
+    /// Distance of a joint's origin from the original, in units of that space. 0 keeps every key.
     pub distance: f32,
     /// Angle of a joint's rotation from the original one, radians. 0 keeps every key.
     pub angle: f32,
 }
 
 impl KeyBound {
-    /// Keeps every key.
+    /// Bound that keeps every key.
     pub const ALL_KEYS: Self = Self { distance: 0.0, angle: 0.0 };
 }
 
-/// Largest difference between a clip with fewer keys and the original: units and radians.
+/// Largest difference between a clip with fewer keys and the original: units of the bound's space, and radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct KeyError {
-    /// Distance of a joint's origin from where it was.
+    /// Distance of a joint's origin from its original position.
     pub distance: f32,
     /// Angle of a joint's rotation from the original one.
     pub angle: f32,
@@ -47,17 +48,17 @@ impl KeyError {
 pub struct Reduced {
     /// The reduced clip; constant channels have one key.
     pub clip: Clip,
-    /// The largest error of any joint at any time that the clip had a key at.
+    /// The largest error of any joint at any of the clip's key times.
     pub error: KeyError,
-    /// Keys of all channels, before and after.
+    /// Number of keys of all channels, before and after.
     pub keys: [usize; 2],
 }
 
-/// Rounds of choosing and measuring, and the share of the bound that is good enough to stop at.
+/// Number of rounds of choosing and measuring, and the share of the bound at which the search stops.
 const ROUNDS: usize = 4;
 
-/// Drops keys of linear channels such that joints stay within `bound` in model space, times `root`: the root's unit is
-/// the bound's. Other channels keep their keys. The duration stays. All values are finite.
+/// Drops keys of linear channels such that joints stay within `bound` in model space, transformed by `root`; the bound
+/// is in the unit of `root`. Other channels keep their keys, and the clip its duration. All values must be finite.
 ///
 /// # Panics
 /// As [`sample`](crate::clip::sample::sample()), and if the bound is negative or not finite.
@@ -71,7 +72,7 @@ pub fn reduce_keys(rig: &Rig, clip: &Clip, root: &Affine, bound: KeyBound) -> Re
     }
     let meter = Meter::new(rig, clip, root);
     let (mut best, mut share): (Option<Reduced>, f32) = (None, CHANNEL_SHARE);
-    // The largest share that kept the bound, and the smallest that broke it.
+    // Largest share that kept the bound, and smallest share that violated it.
     let (mut kept, mut broke) = (0.0, f32::INFINITY);
     for _ in 0..ROUNDS {
         let reduced = meter.thinned(bound, share);
@@ -99,7 +100,7 @@ fn count(clip: &Clip) -> usize {
     clip.channels.iter().map(|channel| channel.times.len()).sum()
 }
 
-/// True if two channels move the same property: then they depend on each other, and no key is dropped.
+/// True if two channels move the same property; they then depend on each other, and no key is dropped.
 fn moves_twice(rig: &Rig, clip: &Clip) -> bool {
     let mut moved = vec![[false; 3]; rig.joints.len()];
     clip.channels.iter().any(|c| core::mem::replace(&mut moved[c.joint][c.property as usize], true))
@@ -108,17 +109,17 @@ fn moves_twice(rig: &Rig, clip: &Clip) -> bool {
 /// A clip with the data to choose its keys and to measure the error.
 struct Meter<'a> {
     rig: &'a Rig,
-    /// The motion without repeated keys: of equal consecutive keys only the first and last remain.
+    /// The motion without repeated keys: of a run of equal keys only the first and the last remain.
     clip: Clip,
     root: &'a Affine,
-    /// All times of keys.
+    /// All key times.
     times: Vec<f32>,
-    /// Model transforms of the joints at these times, including the root; one time after the other.
+    /// Model transforms of the joints at these times, including `root`; one time after the other.
     model: Vec<Affine>,
     /// True where a joint moved since the previous time.
     moved: Vec<bool>,
-    /// For each joint: the largest distance of a descendant at any time, and the scale from its parent's axes to the
-    /// space of the bound.
+    /// For each joint: the largest distance of a descendant at any key time, and the scale from its parent's axes to
+    /// the space of the bound.
     reach: Vec<f32>,
     scale: Vec<f32>,
 }
@@ -164,7 +165,7 @@ impl<'a> Meter<'a> {
         meter
     }
 
-    /// The clip with the keys that each channel needs if it may use up `share` of the bound.
+    /// Returns the clip with the keys that each channel needs if it may use `share` of the bound.
     fn thinned(&self, bound: KeyBound, share: f32) -> Clip {
         let channels = Vec::with_capacity(self.clip.channels.len());
         let mut clip = Clip { name: self.clip.name.clone(), duration: self.clip.duration, channels };
@@ -172,7 +173,7 @@ impl<'a> Meter<'a> {
             let tolerance = share * self.tolerance(channel.property, channel.joint, bound);
             clip.channels.push(thinned(channel, tolerance));
         }
-        // The last channel's end is the clip's, for readers that derive the length from keys.
+        // The last key time must remain, for readers that derive the duration from keys.
         let lasts = |channel: &Channel| channel.times.last().is_some_and(|&time| time >= self.clip.duration);
         if !clip.channels.iter().any(lasts)
             && let Some(index) = self.clip.channels.iter().position(lasts)
@@ -184,7 +185,7 @@ impl<'a> Meter<'a> {
         clip
     }
 
-    /// Error of a channel's value that alone equals the bound: its own units, or radians.
+    /// Error of a channel's value that alone uses up the bound, in the unit of the channel, or radians.
     fn tolerance(&self, property: Property, joint: JointIdx, bound: KeyBound) -> f32 {
         match property {
             Property::Translation => bound.distance / max(self.scale[joint], 1e-12),
@@ -213,9 +214,9 @@ impl<'a> Meter<'a> {
     }
 }
 
-/// Poses of a clip at ascending times. Parts that do not change cost almost nothing.
+/// Poses of a clip at ascending times. Channels that do not change cost almost nothing.
 struct Poses {
-    /// For each channel: its last key not after the time, and the time until which its value is constant.
+    /// For each channel: its last key at or before the time, and the time until which its value is constant.
     keys: Vec<usize>,
     stays: Vec<f32>,
     is_first: bool,
@@ -232,7 +233,7 @@ impl Poses {
         Self { keys, stays, is_first: true, local: rest_pose(rig), model, moved }
     }
 
-    /// Like [`sample`](crate::clip::sample::sample()); values at keys are copied, so that most cost nothing.
+    /// Samples like [`sample`](crate::clip::sample::sample()); values at keys are copied, which is cheaper.
     fn sample(&mut self, rig: &Rig, clip: &Clip, root: &Affine, time: f32) {
         self.moved.fill(core::mem::take(&mut self.is_first));
         for (i, channel) in clip.channels.iter().enumerate() {
@@ -258,8 +259,8 @@ impl Poses {
     }
 }
 
-/// Value of a channel at `time`, with `key` the last one not after it, and the time until which it is constant (a time
-/// before now if it moves). At keys the value is copied.
+/// Returns the channel's value at `time`, and the time until which the value stays constant (negative infinity if it
+/// changes). `key` is the last key at or before `time`. At keys the value is copied.
 fn value_and_end(channel: &Channel, key: usize, time: f32) -> ([f32; 4], f32) {
     if channel.interpolation != Interpolation::Linear {
         return (channel_at(channel, time), f32::NEG_INFINITY);
@@ -282,7 +283,7 @@ fn longest_squared(map: &Affine) -> f32 {
     [m.x_axis, m.y_axis, m.z_axis].into_iter().map(Vec3::length_squared).fold(0.0, max)
 }
 
-/// Square of the angle between two maps, for small angles: for a rotation by `a`, the squared displacements of its
+/// Square of the angle between two maps, for small angles. For a rotation by `a`, the squared displacements of the
 /// three unit axes sum to `8 sin²(a/2)`.
 fn turned_squared(a: &Affine, b: &Affine) -> f32 {
     let (a, b) = (&a.linear, &b.linear);
@@ -295,7 +296,7 @@ fn turned_squared(a: &Affine, b: &Affine) -> f32 {
     0.5 * axes.into_iter().map(moved).sum::<f32>()
 }
 
-/// A linear channel without keys that equal both neighbours.
+/// Returns a linear channel without keys that equal both neighbours.
 fn without_repeats(channel: &Channel) -> Channel {
     if channel.interpolation != Interpolation::Linear {
         return channel.clone();
@@ -310,7 +311,7 @@ fn without_repeats(channel: &Channel) -> Channel {
     with_keys(channel, &kept)
 }
 
-/// A channel without the keys that lines between the others reproduce within `tolerance`.
+/// Returns a channel without the keys that lines between the remaining keys reproduce within `tolerance`.
 fn thinned(channel: &Channel, tolerance: f32) -> Channel {
     if channel.interpolation != Interpolation::Linear || channel.times.len() < 2 {
         return channel.clone();
@@ -329,7 +330,7 @@ fn thinned(channel: &Channel, tolerance: f32) -> Channel {
     with_keys(channel, &kept)
 }
 
-/// A channel with a subset of its keys. Rotations take the short way from one to the next.
+/// Returns a channel with a subset of its keys. Rotations take the short way from one to the next.
 fn with_keys(channel: &Channel, kept: &[usize]) -> Channel {
     let mut values = Vec::with_capacity(kept.len() * channel.property.width());
     let mut last = None;
@@ -350,7 +351,7 @@ fn with_keys(channel: &Channel, kept: &[usize]) -> Channel {
 }
 
 impl Channel {
-    /// A key of a channel that is no spline.
+    /// Value of a key of a channel that is no spline.
     fn value(&self, key: usize) -> [f32; 4] {
         let width = self.property.width();
         let mut value = [0.0; 4];
@@ -393,7 +394,7 @@ struct Fit<'a> {
 }
 
 impl Fit<'_> {
-    /// The last key that a line from `from` can reach: by growing steps until one fails, then by bisection.
+    /// Returns the last key that a line from `from` can reach: growing steps until one fails, then bisection.
     fn farthest(&self, from: usize, last: usize) -> usize {
         let (mut good, mut step) = (from + 1, 2);
         let mut bad = loop {
@@ -413,7 +414,7 @@ impl Fit<'_> {
         good
     }
 
-    /// True if all keys between two are near the line between these. Starts in the middle, where most errors are.
+    /// True if all keys between two keys are near the line between these. Starts in the middle, where most errors are.
     fn holds(&self, from: usize, to: usize) -> bool {
         let line = Line::between(self.channel, from, to);
         let holds = |key: usize| self.holds_at(key, line.at(self.channel.times[key]));
@@ -421,7 +422,7 @@ impl Fit<'_> {
         holds(middle) && (from + 1..middle).all(holds) && (middle + 1..to).all(holds)
     }
 
-    /// True if a key is near a value: in its own units, or radians, for small angles.
+    /// True if a key is near a value: in the unit of the channel, or radians for small angles.
     fn holds_at(&self, key: usize, value: [f32; 4]) -> bool {
         let own = self.channel.value(key);
         let squared = |sign: f32| {
@@ -431,7 +432,7 @@ impl Fit<'_> {
             })
         };
         match self.channel.property {
-            // A quaternion differs by half of the angle, and −q is the same rotation.
+            // Two quaternions differ by half of the angle, and −q is the same rotation.
             Property::Rotation => 4.0 * min(squared(1.0), squared(-1.0)) <= self.squared,
             Property::Translation | Property::Scale => squared(1.0) <= self.squared,
         }

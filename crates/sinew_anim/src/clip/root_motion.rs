@@ -10,7 +10,7 @@ use sinew_math::{Affine, Rotation, Transform, Vec3};
 /// Component of a motion that is extracted along an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AxisExtraction {
-    /// None: it stays in the pose.
+    /// No component is extracted: the motion stays in the pose.
     #[default]
     None,
     /// The straight line from the first pose to the last; oscillation about it stays in the pose.
@@ -19,7 +19,7 @@ pub enum AxisExtraction {
     Full,
 }
 
-/// Selection of the extracted motion.
+/// Selection of the motion to extract.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RootMotionOptions {
     /// The joint that carries the body: the hips, or a joint above them.
@@ -28,32 +28,32 @@ pub struct RootMotionOptions {
     pub axes: [AxisExtraction; 3],
     /// Rotation about `up`.
     pub turn: AxisExtraction,
-    /// Unit vector, model space.
+    /// Up axis: unit vector, model space.
     pub up: Vec3,
 }
 
 impl RootMotionOptions {
-    /// Extracts the motion over the ground and about y: all of x, z and the rotation, nothing of y.
+    /// Extracts the motion over the ground and about y: all of x, z and the rotation, but no y.
     pub fn on_ground(joint: JointIdx) -> Self {
         let (none, full) = (AxisExtraction::None, AxisExtraction::Full);
         Self { joint, axes: [full, none, full], turn: full, up: Vec3::Y }
     }
 }
 
-/// Path along which a clip has carried its character since its start: model space, file units.
+/// Path of a character since the start of its clip: model space, file units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionTrack {
-    /// Seconds, increasing, at least one.
+    /// Sample times, seconds, increasing, at least one.
     times: Vec<f32>,
     positions: Vec<Vec3>,
-    /// Radians about `up`, of any size.
+    /// Rotations about `up`, radians, of any size.
     turns: Vec<f32>,
     up: Vec3,
 }
 
-/// Extracts the motion of a joint from a clip: returns the clip in place, and the motion. Together they are the
+/// Extracts the motion of a joint from a clip: returns the clip in place, and the motion. Combined they reproduce the
 /// original: `motion · pose` in model space, within rounding and the interpolation between samples 1/60 s apart. The
-/// clip in place ends where it starts in every component that was extracted wholly or straight.
+/// clip in place ends where it starts in every component that was extracted fully or linearly.
 ///
 /// Model space and unit are the file's; times are seconds. The joint's channels of translation and rotation are
 /// replaced. `clip` and `rig` must satisfy [`BuiltClip::build`](crate::BuiltClip::build).
@@ -92,7 +92,7 @@ struct Keys {
     rotations: Vec<f32>,
 }
 
-/// The joint at a time, and its parent, in model space.
+/// A joint and its parent at a time, in model space.
 struct ChainPose {
     local: LocalTransform,
     parent: Affine,
@@ -125,8 +125,8 @@ fn chain_poses(clip: &Clip, rig: &Rig, joint: JointIdx, times: &[f32]) -> Vec<Ch
 }
 
 impl MotionTrack {
-    /// Straight motion for `duration` seconds, for a clip made on the spot. `velocity` is in file units per second,
-    /// model space, `up` a unit vector there.
+    /// Makes a straight motion of `duration` seconds, for a clip made on the spot. `velocity` is in file units per
+    /// second, model space; `up` is a unit vector in model space.
     ///
     /// # Panics
     /// If `duration` is negative or not finite.
@@ -142,12 +142,12 @@ impl MotionTrack {
         Self { times: vec![0.0, duration], positions, turns: vec![0.0; 2], up }
     }
 
-    /// Motion through positions (file units, model space) and rotations (radians about `up`) at ascending times; linear
-    /// in between.
+    /// Makes a motion through positions (file units, model space) and rotations (radians about `up`) at ascending
+    /// times; linear in between.
     ///
     /// # Panics
-    /// If there is no time, the numbers of positions and rotations differ from it, a number is not finite, or times do
-    /// not ascend.
+    /// If there is no time, the numbers of positions or rotations differ from the number of times, a number is not
+    /// finite, or times do not ascend.
     pub fn through(times: Vec<f32>, positions: Vec<Vec3>, turns: Vec<f32>, up: Vec3) -> Self {
         let count = times.len();
         assert!(
@@ -173,7 +173,7 @@ impl MotionTrack {
         take(options.turn, times, &mut turns);
         let place = |pose: &ChainPose| pose.parent.point(pose.local.translation);
         let start = place(&poses[0]);
-        // Keeps the joint where it was first, relative to its parent.
+        // Keeps the joint at its first position relative to its parent.
         let carried = |(pose, &turn): (&ChainPose, &f32)| {
             place(pose) - Rotation::from_axis_angle(options.up, turn) * start
         };
@@ -192,7 +192,7 @@ impl MotionTrack {
         Transform::new(self.positions[i], Rotation::from_axis_angle(self.up, self.turns[i]))
     }
 
-    /// Position of the character at `time`, clip seconds, limited to the clip; the identity at its start.
+    /// Returns the pose of the character at `time`, clip seconds, limited to the clip; the identity at the start.
     pub fn at(&self, time: f32) -> Transform {
         let right = self.times.partition_point(|&t| t <= time);
         if right == 0 || right == self.times.len() {
@@ -205,18 +205,18 @@ impl MotionTrack {
         Transform::new(position, Rotation::from_axis_angle(self.up, turn))
     }
 
-    /// Motion of one lap: from the clip's start to its end.
+    /// Returns the motion of one lap: from the clip's start to its end.
     pub fn lap(&self) -> Transform {
         self.at(0.0).inverse() * self.sample(self.times.len() - 1)
     }
 
-    /// Distance of a lap over the ground, file units, without its component along up.
+    /// Distance of a lap over the ground, file units, without the component along up.
     pub fn stride(&self) -> f32 {
         let way = self.lap().translation;
         (way - self.up * self.up.dot(way)).length()
     }
 
-    /// Motion between two positions, relative to the first.
+    /// Returns the motion between two positions, relative to the first.
     pub(crate) fn between(&self, from: Place, to: Place, mode: LoopMode, length: f64) -> Transform {
         let at = |place: Place| {
             let is_way_back = mode == LoopMode::PingPong && place.lap.rem_euclid(2) == 1;
@@ -227,7 +227,7 @@ impl MotionTrack {
     }
 }
 
-/// `t` repeated `n` times, inverted for negative `n`.
+/// Returns `t` repeated `n` times, inverted for negative `n`.
 fn power(t: Transform, n: i64) -> Transform {
     let (mut square, mut rest) = (if n < 0 { t.inverse() } else { t }, n.unsigned_abs());
     let mut product = Transform::IDENTITY;
@@ -241,13 +241,13 @@ fn power(t: Transform, n: i64) -> Transform {
     product
 }
 
-/// The angle equivalent to `angle` that is nearest to `last`.
+/// Returns the angle equivalent to `angle` that is nearest to `last`.
 fn unwrapped(angle: f32, last: f32) -> f32 {
     const TURN: f32 = core::f32::consts::TAU;
     angle + TURN * ((last - angle) / TURN + 0.5).floor()
 }
 
-/// Replaces the path `way` by the component that a mode extracts, from its first number on.
+/// Replaces the path `way` by the component that a mode extracts, relative to its first number.
 fn take(mode: AxisExtraction, times: &[f32], way: &mut [f32]) {
     let first = way[0];
     let last = way[way.len() - 1] - first;

@@ -7,15 +7,16 @@ use sinew_math::{Rotation, Vec3, clamp};
 /// Meaning of a time outside the clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
-    /// The first or the last pose holds.
+    /// The first or the last pose holds outside the clip.
     #[default]
     Clamp,
-    /// The clip starts over, backwards too.
+    /// The clip repeats, also backward.
     Loop,
 }
 
 impl Wrap {
-    /// The clip's own time, seconds in 0..=`duration`, for any `time`; 0 for NaN and for a clip of no length.
+    /// Converts any `time` to the clip's own time, seconds in 0..=`duration`; 0 for NaN and for a clip of no
+    /// duration.
     pub fn clip_time(self, time: f32, duration: f32) -> f32 {
         if duration.is_nan() || duration <= 0.0 {
             return 0.0;
@@ -39,9 +40,9 @@ pub struct SampleCache {
     keys: Vec<usize>,
 }
 
-/// The pose of `clip` at `time` (seconds, any value, see [`Wrap`]): one local transform per joint of the rig into
-/// `out`, file units. Joints and properties without a channel, and values that are not finite, take the rig's rest
-/// pose. A time before a channel's first key takes that key.
+/// Writes the pose of `clip` at `time` (seconds, any value, see [`Wrap`]) to `out`: one local transform per joint of
+/// the rig, file units. Joints and properties without a channel, and values that are not finite, get the rig's rest
+/// pose. Before a channel's first key, the value of that key holds.
 ///
 /// # Panics
 /// If `out` is not as long as the rig has joints, a channel's joint is not in the rig, or a channel has fewer values
@@ -50,7 +51,7 @@ pub fn sample(clip: &Clip, rig: &Rig, time: f32, wrap: Wrap, out: &mut [LocalTra
     sample_cached(clip, rig, time, wrap, &mut SampleCache::default(), out);
 }
 
-/// [`sample`] with a memory of the last keys: constant time per channel while time moves on by small steps.
+/// Like [`sample`], with a cache of the last keys: constant time per channel while time advances by small steps.
 ///
 /// # Panics
 /// As [`sample`].
@@ -78,7 +79,7 @@ pub fn sample_cached(
     }
 }
 
-/// Index of the last key not after `time` (0 before the first), starting the search at `hint`.
+/// Returns the index of the last key at or before `time` (0 before the first), starting the search at `hint`.
 fn last_key_at(times: &[f32], time: f32, hint: usize) -> usize {
     let holds = |i: usize| times[i] <= time && times.get(i + 1).is_none_or(|&next| time < next);
     if let Some(near) = [hint, hint + 1].into_iter().find(|&i| i < times.len() && holds(i)) {
@@ -96,13 +97,14 @@ pub(crate) fn write_property(target: &mut LocalTransform, property: Property, [x
     }
 }
 
-/// Value of a channel at `time`, seconds, by the file's interpolation. The fourth number is 0 except for rotations,
-/// which have length 1 only as far as keys and interpolation keep it.
+/// Returns the value of a channel at `time`, seconds, by the file's interpolation. The fourth number is 0 except for
+/// rotations, whose length is 1 only as far as keys and interpolation keep it.
 pub(crate) fn channel_at(channel: &Channel, time: f32) -> [f32; 4] {
     channel_value(channel, last_key_at(&channel.times, time, 0), time)
 }
 
-/// Value of a channel at `time`, `key` the last key not after it. The fourth number is 0 except for rotations.
+/// Returns the value of a channel at `time`; `key` is the last key at or before it. The fourth number is 0 except
+/// for rotations.
 fn channel_value(channel: &Channel, key: usize, time: f32) -> [f32; 4] {
     let next = key + 1;
     let inside = next < channel.times.len() && time >= channel.times[key];
@@ -145,7 +147,7 @@ fn key_part(channel: &Channel, key: usize, part: Part) -> [f32; 4] {
     value
 }
 
-/// Cubic Hermite spline (glTF 2.0 Appendix C.4); tangents are per second, hence × `dt`.
+/// Evaluates a cubic Hermite spline (glTF 2.0 Appendix C.4); tangents are per second, hence × `dt`.
 fn hermite(channel: &Channel, key: usize, t: f32, dt: f32) -> [f32; 4] {
     let (t2, t3) = (t * t, t * t * t);
     let v0 = key_part(channel, key, Part::Value);

@@ -12,7 +12,7 @@ pub struct Take {
     pub frame_time: f64,
     /// Joints of the rig, at least 1.
     pub joints: usize,
-    /// Frame by frame, each of `joints` local transforms.
+    /// Local transforms, frame by frame, `joints` for each.
     pub poses: Vec<LocalTransform>,
 }
 
@@ -20,12 +20,12 @@ impl Take {
     /// Largest number of frames of a take (hours): bounds the memory that a file can request.
     pub const MOST_FRAMES: usize = 1 << 20;
 
-    /// A clip sampled every `frame_time` seconds, from its start to its end: the last frame is the whole one nearest to
-    /// the end.
+    /// Samples a clip every `frame_time` seconds, from its start to its end. The last frame is the one nearest to the
+    /// end.
     ///
     /// # Panics
-    /// If `frame_time` is not above 0, the rig has no joints, the take would have more than
-    /// [`MOST_FRAMES`](Self::MOST_FRAMES), and as [`sample`](crate::clip::sample::sample()).
+    /// If `frame_time` is not above 0, the rig has no joints, or the take would have more than
+    /// [`MOST_FRAMES`](Self::MOST_FRAMES) frames; also as [`sample`](crate::clip::sample::sample()).
     pub fn of(rig: &Rig, clip: &Clip, frame_time: f64) -> Self {
         assert!(frame_time > 0.0, "frame_time must be positive, not {frame_time} s");
         assert!(!rig.joints.is_empty(), "the rig must have joints");
@@ -61,7 +61,7 @@ impl Take {
         (f64::from(seconds) / self.frame_time).round() as usize
     }
 
-    /// The pose of a frame.
+    /// Returns the pose of a frame.
     ///
     /// # Panics
     /// If the frame is out of range.
@@ -69,7 +69,7 @@ impl Take {
         &self.poses[frame * self.joints..(frame + 1) * self.joints]
     }
 
-    /// The pose of a frame, to change.
+    /// Returns the pose of a frame, mutable.
     ///
     /// # Panics
     /// If the frame is out of range.
@@ -77,12 +77,13 @@ impl Take {
         &mut self.poses[frame * self.joints..(frame + 1) * self.joints]
     }
 
-    /// One joint through time.
+    /// Iterates over the local transforms of one joint, frame by frame.
     pub fn of_joint(&self, joint: JointIdx) -> impl Iterator<Item = LocalTransform> + '_ {
         self.poses.iter().skip(joint).step_by(self.joints).copied()
     }
 
-    /// The take as a clip with one key per frame. Joints in the rest pose get no channel, constant others one key.
+    /// Converts the take to a clip with one key per frame. Joints in the rest pose get no channel, other constant
+    /// joints one key.
     ///
     /// # Panics
     /// If the take does not fit the rig.
@@ -115,7 +116,7 @@ impl Take {
     }
 }
 
-/// Frames in a clip's duration (seconds), the first and the last included.
+/// Number of frames in a clip's duration (seconds), including the first and the last.
 pub(crate) fn frames_of(duration: f32, frame_time: f64) -> usize {
     (f64::from(duration) / frame_time).round() as usize + 1
 }

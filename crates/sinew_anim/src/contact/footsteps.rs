@@ -10,13 +10,13 @@ use crate::roles::{RigAnalysis, Side};
 use crate::tuning::{LAST_FRAMES, LOOP_SEAM, STEP_FRAME_TIME, STEP_SLIDE};
 use sinew_math::{Vec3, min};
 
-/// Footsteps of a clip, and the speed at which it walks on the spot.
+/// Footsteps of a clip, and the speed of its walk on the spot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Footsteps {
     /// An event `footstep` with the payload `left` or `right` at each footfall, by time. A foot that is on the ground
     /// at the start has no footfall there, unless the clip loops.
     pub events: Vec<ClipEvent>,
-    /// Speed of the ground under feet that walk on the spot, m/s; 0 for a clip that travels or stands.
+    /// Speed of the ground relative to a walk on the spot, m/s; 0 for a clip that travels or stands.
     pub speed: f32,
 }
 
@@ -34,12 +34,12 @@ pub enum NoFootsteps {
     TooLong,
 }
 
-/// Finds the footfalls of a clip: moments at which the ball of a foot comes to rest on the ground. A clip whose last
-/// pose is its first counts as a loop. A walk on the spot is recognised by feet that alternately move back at one
-/// speed.
+/// Finds the footfalls of a clip: the times at which the ball of a foot comes to rest on the ground. A clip whose
+/// last pose equals its first counts as a loop. A walk on the spot is recognised by feet that alternately move back
+/// at one speed.
 ///
 /// # Errors
-/// A character without the legs of a human, or a clip that is too long.
+/// If the character lacks the legs of a human, or the clip is too long.
 ///
 /// # Panics
 /// If the analysis or the clip does not fit the rig.
@@ -55,7 +55,7 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     let lap = take.duration() as f32;
     let repeats = is_loop(&take, feet[0].length / analysis.unit_scale);
     if repeats {
-        // Twice in a row, so that a step at the seam is whole; the evaluated lap is in the middle.
+        // Two laps, so that a step at the seam is whole; the evaluated lap is in the middle.
         take.poses.extend_from_within(take.joints..);
     }
     let root = analysis.character_from_file();
@@ -64,7 +64,7 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     let mut settings = ContactSettings::for_leg(feet[0].length);
     let ground = Ground::under(&take, &points, &settings);
     if ground.velocity.length() > settings.run {
-        // Feet of a run touch the ground half as long as those of a walk.
+        // The feet of a runner touch the ground half as long as those of a walker.
         settings.shortest *= 0.5;
     }
     let points = ground.seen_from(&take, points);
@@ -84,7 +84,7 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     Ok(Footsteps { events, speed: ground.velocity.length() })
 }
 
-/// Speed of a body over its ground, metres a second: that of its feet from the first frame to the last.
+/// Mean speed of a body over its ground, m/s, from the middle of its feet in the first and the last frame.
 fn pace(take: &Take, points: &[[[Vec3; 2]; 2]]) -> f32 {
     let middle = |frame: usize| points[frame].as_flattened().iter().sum::<Vec3>() * 0.25;
     let way = middle(points.len() - 1) - middle(0);

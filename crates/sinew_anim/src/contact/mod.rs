@@ -12,19 +12,19 @@ use crate::roles::Side;
 use crate::tuning::{RUN_STANDS, WALK_STANDS};
 use sinew_math::{Affine, Rotation, Vec3, clamp, max, min, trig};
 
-/// A foot on the ground for a while.
+/// A contact of a foot with the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootContact {
     /// Side of the foot.
     pub foot: Side,
-    /// Seconds from the start of the take: the footfall.
+    /// Footfall: start of the contact, seconds from the start of the take.
     pub start: f32,
-    /// End of the contact, seconds.
+    /// End of the contact, seconds from the start of the take.
     pub end: f32,
 }
 
-/// Heels and balls of both feet, frame by frame, in the space of `root`, metres: left then right foot, heel then ball;
-/// one entry per frame of the take.
+/// Returns heels and balls of both feet in the space of `root`, metres: left then right foot, heel then ball; one entry
+/// per frame of the take.
 ///
 /// # Panics
 /// If the take does not fit the rig.
@@ -37,24 +37,26 @@ pub fn sole_points(rig: &Rig, root: &Affine, feet: &[Foot; 2], take: &Take) -> V
     (0..take.frames()).map(points).collect()
 }
 
-/// Height of the floor under a motion: the lowest point of both feet is at or above it in nine frames of ten, which
-/// ignores jumps and noise. `points` are those of [`sole_points`], metres, y up; 0 for none.
+/// Height of the floor under a motion, metres: in nine of ten frames the lowest point of both feet is at or above it,
+/// so that noise has no effect. `points` are those of [`sole_points`], metres, y up; 0 for none.
 pub fn floor_under(points: &[[[Vec3; 2]; 2]]) -> f32 {
     tenth(points.iter().map(lowest).collect())
 }
 
-/// The ground that a motion stands on.
+/// The ground under a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ground {
     /// Height of the ground, metres.
     pub height: f32,
-    /// Velocity of the ground under a body that walks in place, m/s; zero under a body that moves forward. Its y is 0.
+    /// Velocity of the ground under a body that walks in place, m/s; zero under a body that moves forward. Its y
+    /// component is 0.
     pub velocity: Vec3,
 }
 
 impl Ground {
-    /// The ground under a motion, derived from its feet. It moves if both feet are alternately low for much of the time
-    /// and then mostly move at one speed. `points` are those of [`sole_points`] of the take, y up, one entry per frame.
+    /// Derives the ground under a motion from its feet. The ground moves if both feet are alternately low for much of
+    /// the time and then mostly move at one speed. `points` are those of [`sole_points`] of the take, y up, one entry
+    /// per frame.
     pub fn under(take: &Take, points: &[[[Vec3; 2]; 2]], settings: &ContactSettings) -> Self {
         let height = floor_under(points);
         let lower_step = |frame: usize| {
@@ -81,8 +83,8 @@ impl Ground {
         Self { height, velocity: if moves { velocity } else { Vec3::ZERO } }
     }
 
-    /// Points relative to the ground, metres: a standing foot is at rest there. `points` are those of [`sole_points`],
-    /// one entry per frame.
+    /// Converts points to points relative to the ground, metres: a standing foot is at rest there. `points` are those
+    /// of [`sole_points`], one entry per frame.
     pub fn seen_from(&self, take: &Take, mut points: Vec<[[Vec3; 2]; 2]>) -> Vec<[[Vec3; 2]; 2]> {
         for (frame, feet) in points.iter_mut().enumerate() {
             let way = self.velocity * take.time(frame);
@@ -92,10 +94,11 @@ impl Ground {
     }
 }
 
-/// Tilt of each sole while it stands, radians, positive for toes up, and the feet with soles flattened by it.
+/// Returns the tilt of each sole while the foot stands, radians, positive for toes up, and the feet with soles
+/// flattened by it.
 ///
-/// A reference pose hardly shows how a shoe was worn; the heights of heel and ball on the ground do. Tilts over 0.2 rad
-/// belong to a body on its toes and are ignored.
+/// A reference pose hardly shows how a shoe was worn, but the heights of heel and ball on the ground do. Tilts over 0.2
+/// rad come from standing on the toes and are ignored.
 pub fn flatten_soles(feet: &[Foot; 2], points: &[[[Vec3; 2]; 2]]) -> ([f32; 2], [Foot; 2]) {
     let (mut tilts, mut flat) = ([0.0; 2], *feet);
     for k in 0..2 {
@@ -112,12 +115,12 @@ pub fn flatten_soles(feet: &[Foot; 2], points: &[[[Vec3; 2]; 2]]) -> ([f32; 2], 
     (tilts, flat)
 }
 
-/// A rotation of the toes up, in a body's own axes.
+/// Returns a rotation that raises the toes, in a body's own axes.
 pub(crate) fn toes_up(angle: f32) -> Rotation {
     Rotation::from_axis_angle(Vec3::NEG_X, angle)
 }
 
-/// The tenth percentile.
+/// Returns the tenth percentile; 0 for no numbers.
 fn tenth(mut numbers: Vec<f32>) -> f32 {
     numbers.sort_by(f32::total_cmp);
     numbers.get(numbers.len() / 10).copied().unwrap_or(0.0)
@@ -128,21 +131,21 @@ pub fn lowest(points: &[[Vec3; 2]; 2]) -> f32 {
     points.as_flattened().iter().map(|point| point.y).fold(f32::INFINITY, min)
 }
 
-/// Decides when a foot stands.
+/// Thresholds for standing feet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSettings {
-    /// Speed thresholds of the ball of a foot, m/s: it lands below the first and leaves above the second.
+    /// Speeds of the ball of a foot, m/s: the foot lands below the first and leaves above the second.
     pub speed: [f32; 2],
     /// Largest height of the ball above the floor, metres.
     pub height: f32,
     /// Speed over the ground from which a body runs, m/s.
     pub run: f32,
-    /// Shortest time on the ground, and shortest off it, seconds: shorter ones are noise.
+    /// Shortest time on the ground, and shortest time off the ground, seconds; shorter ones are noise.
     pub shortest: f32,
 }
 
 impl ContactSettings {
-    /// Settings for legs of this length (metres, hip to floor): those of an adult, scaled by Froude's law.
+    /// Returns the settings for legs of `length` (metres, hip to floor): those of an adult, scaled by Froude's law.
     pub fn for_leg(length: f32) -> Self {
         let size = length / 0.9;
         let time = size.sqrt();
@@ -152,9 +155,9 @@ impl ContactSettings {
     }
 }
 
-/// Contacts of each foot, by height and speed of its ball. `points` are those of [`sole_points`],
-/// [relative to the ground](Ground::seen_from) if that moves, one entry per frame; `floor` is its height, metres. Times
-/// are seconds from the start of the take. Sorted by start; left before right.
+/// Finds the contacts of each foot, by height and speed of its ball. `points` are those of [`sole_points`], [relative
+/// to the ground](Ground::seen_from) if the ground moves, one entry per frame; `floor` is the height of the ground,
+/// metres. Times are seconds from the start of the take. Sorted by start; left before right.
 pub fn contacts(
     take: &Take,
     feet: &[Foot; 2],
@@ -173,7 +176,7 @@ pub fn contacts(
     found
 }
 
-/// First and last frame of every time on the ground.
+/// Returns the first and last frame of every contact.
 fn standing(take: &Take, balls: &[Vec3], floor: f32, settings: &ContactSettings) -> Vec<[usize; 2]> {
     let shortest = take.frames_in(settings.shortest).max(1);
     let mut spans: Vec<[usize; 2]> = Vec::new();
@@ -192,7 +195,7 @@ fn standing(take: &Take, balls: &[Vec3], floor: f32, settings: &ContactSettings)
     spans
 }
 
-/// Speed over the ground, by a difference over 33 ms: captured points tremble.
+/// Speed over the ground, m/s, by a difference over 33 ms, because captured points tremble.
 fn speed(take: &Take, points: &[Vec3], frame: usize) -> f32 {
     let reach = take.frames_in(0.016).max(1);
     let (from, to) = (frame.saturating_sub(reach), (frame + reach).min(points.len() - 1));
@@ -204,7 +207,7 @@ fn speed(take: &Take, points: &[Vec3], frame: usize) -> f32 {
 /// Slide of the feet while they stand.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FootSlide {
-    /// Mean speed over the ground, m/s: distance slid over time stood.
+    /// Mean speed over the ground, m/s: distance slid divided by standing time.
     pub mean: f32,
     /// Largest distance of a foot from its landing place within one contact, metres.
     pub farthest: f32,
@@ -212,8 +215,9 @@ pub struct FootSlide {
     pub time: f32,
 }
 
-/// Slide of the balls of the feet over the ground (x and z, metres) during `contacts` (seconds of the take). `points`
-/// are those of [`sole_points`], [relative to the ground](Ground::seen_from) if that moves, one entry per frame.
+/// Measures the slide of the balls of the feet over the ground (x and z, metres) during `contacts` (seconds of the
+/// take). `points` are those of [`sole_points`], [relative to the ground](Ground::seen_from) if the ground moves, one
+/// entry per frame.
 pub fn foot_slide(
     take: &Take,
     feet: &[Foot; 2],
@@ -235,7 +239,7 @@ pub fn foot_slide(
     slide
 }
 
-/// First and last frame of a contact, inside a take of this many frames.
+/// First and last frame of a contact in a take of `frames` frames.
 pub(crate) fn frames_of(take: &Take, contact: &FootContact, frames: usize) -> [usize; 2] {
     let last = frames.saturating_sub(1);
     [contact.start, contact.end].map(|time| usize::min(take.frames_in(max(time, 0.0)), last))

@@ -1,18 +1,18 @@
 use std::collections::VecDeque;
 
-/// Source that reported a footstep first.
+/// Source of the first report of a footstep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FootstepSource {
-    /// An event of a clip.
+    /// Event of a clip.
     Clip,
-    /// A contact that physics reported.
+    /// Contact reported by physics.
     Contact,
 }
 
-/// A foot came down.
+/// A footstep: a foot came down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footstep {
-    /// The foot, by a number of the user's.
+    /// The foot, by a number that the user chooses.
     pub foot: u32,
     /// Time, seconds on the user's clock.
     pub time: f64,
@@ -22,8 +22,8 @@ pub struct Footstep {
 
 /// Merges a clip's footsteps and physical contacts into one list of steps.
 ///
-/// Events and contacts within the window after a step of the same foot belong to that step: the contact of an event,
-/// the event of a contact, and contacts of a bouncing foot.
+/// Events and contacts within the window after a step of the same foot belong to that step: the contact after an
+/// event, the event after a contact, and repeated contacts of a bouncing foot.
 #[derive(Clone, Debug)]
 pub struct FootstepMerger {
     window: f64,
@@ -32,7 +32,8 @@ pub struct FootstepMerger {
 }
 
 impl FootstepMerger {
-    /// `window` in seconds: longer than the delay between clip and physics, shorter than a step; 0.15 suits most.
+    /// Creates a merger with a `window` in seconds, longer than the delay between clip and physics and shorter than
+    /// a step; 0.15 suits most characters.
     ///
     /// # Panics
     /// If `window` is negative or not finite.
@@ -44,14 +45,14 @@ impl FootstepMerger {
         Self { window, last: VecDeque::new() }
     }
 
-    /// Adds the steps of an update to `steps`, by time, each once. `clip` and `contacts` are `(foot, time)`, in any
-    /// order, not earlier than those of previous updates; `NaN` is ignored.
+    /// Adds the steps of an update to `steps`, by time, each only once. `clip` and `contacts` are `(foot, time)`, in
+    /// any order, not earlier than those of previous updates; a time of `NaN` is ignored.
     pub fn merge(&mut self, clip: &[(u32, f64)], contacts: &[(u32, f64)], steps: &mut Vec<Footstep>) {
         let first = steps.len();
         let with = |source| move |&(foot, time): &(u32, f64)| Footstep { foot, time, source };
         steps.extend(clip.iter().map(with(FootstepSource::Clip)));
         steps.extend(contacts.iter().map(with(FootstepSource::Contact)));
-        // For a clip's step and a contact at the same time the clip's is kept.
+        // If a clip's step and a contact have the same time, the clip's step is kept.
         steps[first..].sort_unstable_by(|a, b| {
             let rank = |step: &Footstep| (step.foot, step.source == FootstepSource::Contact);
             a.time.total_cmp(&b.time).then(rank(a).cmp(&rank(b)))

@@ -1,4 +1,4 @@
-//! Callbacks: named events on a clip's timeline, and those passed in an update.
+//! Events: named times in a clip, and the ones passed in an update.
 
 mod footsteps;
 
@@ -7,28 +7,29 @@ pub use footsteps::{Footstep, FootstepMerger, FootstepSource};
 use crate::animator::TrackId;
 use crate::set::ClipId;
 
-/// Rule for which of several tracks that pass an event at the same phase may fire it.
+/// Rule that selects, among several tracks that pass an event at the same phase, those that may fire it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FiredBy {
-    /// Every track that passes it.
+    /// Every track that passes the event.
     #[default]
     Every,
     /// The heaviest track of its sync group, and every track without a group.
     Leader,
-    /// Once for all tracks of its sync group whose clips have an event of that name at the same marker: one footstep
-    /// for walk and run together. The heaviest of them fires it, at its own moment; another one does if that had passed
-    /// it before it became the heaviest.
+    /// One track per sync group: the event fires once for all tracks of the group whose clips have an event of that
+    /// name at the same marker, such as one footstep for walk and run together. The heaviest track fires the event at
+    /// its own time. If another track passed the event before the heaviest one led, that track fires it.
     OnePerGroup,
 }
 
 /// Conditions under which a passed event fires.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EventPolicy {
-    /// The least weight of the track at the moment of the event, 0 to 1; ½ by default.
+    /// Smallest weight of the track at the time of the event, 0 to 1; ½ by default.
     pub min_weight: f32,
-    /// Tracks that may fire it.
+    /// Tracks that may fire the event.
     pub fired_by: FiredBy,
-    /// True if it fires, at any weight, when its track stops before it in the lap: for clean-up at the end of a motion.
+    /// True: the event also fires, at any weight, when its track stops before the event in the lap. For clean-up at the
+    /// end of a motion.
     pub on_interrupt: bool,
 }
 
@@ -58,7 +59,7 @@ impl ClipEvent {
     }
 }
 
-/// An event of an update. Name and payload: [`AnimationSet::event`](crate::AnimationSet::event).
+/// An event fired in an update. Name and payload: [`AnimationSet::event`](crate::AnimationSet::event).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiredEvent {
     /// Time, seconds from the start of the update, 0 to its length.
@@ -67,12 +68,12 @@ pub struct FiredEvent {
     pub clip: ClipId,
     /// Index in the clip's events.
     pub event: usize,
-    /// The track that passed it.
+    /// The track that passed the event.
     pub track: TrackId,
     /// The track's weight at that moment, before other tracks are considered.
     pub weight: f32,
     /// The track's lap (see [`Playhead::lap`](crate::Playhead::lap)).
     pub lap: i64,
-    /// True if its track stopped before it.
+    /// True if the track stopped before the event.
     pub is_interrupted: bool,
 }

@@ -6,8 +6,9 @@ use crate::tuning::{HEM_SHARE, RING_GAP};
 use sinew_math::{Affine, Vec3, max};
 
 impl GarmentColumn {
-    /// The chain from a joint down, along the longest branch; joints of [sheets](Rig::sheets) are not part of it. If
-    /// the skin of the last joint reaches beyond it, the hem is at the end of that skin.
+    /// Makes a column of a joint and its descendants along the longest branch, without joints of
+    /// [sheets](Rig::sheets). If the skin of the last joint extends beyond that joint, the hem is at the end of that
+    /// skin.
     ///
     /// # Panics
     /// If the joint does not exist.
@@ -31,7 +32,7 @@ impl GarmentColumn {
     }
 }
 
-/// End of the last joint's skin in its own space, straight on from the bone above; zero if it is close.
+/// End of the last joint's skin in the joint's own space, in the direction of the bone above; zero if it is close.
 fn tip(rig: &Rig, joints: &[JointIdx]) -> Vec3 {
     let [.., above, last] = joints else { return Vec3::ZERO };
     let rest = &rig.joints[*last].rest;
@@ -49,7 +50,7 @@ fn tip(rig: &Rig, joints: &[JointIdx]) -> Vec3 {
     if reach > HEM_SHARE * length * scale { way * (reach / scale) } else { Vec3::ZERO }
 }
 
-/// Vertices that a joint moves more than all others together, in the joint's space.
+/// Vertices that a joint moves more than all other joints together, in the joint's space.
 fn skin_of(rig: &Rig, joint: JointIdx) -> impl Iterator<Item = Vec3> {
     let skinned = rig.meshes.iter().filter_map(|mesh| Some((mesh, &rig.skins[mesh.skin?])));
     skinned.flat_map(move |(mesh, skin)| {
@@ -80,7 +81,8 @@ fn middles(rig: &Rig, columns: &[GarmentColumn]) -> Vec<Vec3> {
     columns.iter().map(middle).collect()
 }
 
-/// Columns sorted side by side: starting with the one furthest from their middle, then always the nearest.
+/// Sorts columns side by side: starts with the column farthest from the mean position, then always takes the
+/// nearest.
 pub fn side_by_side(rig: &Rig, columns: &[GarmentColumn]) -> Vec<GarmentColumn> {
     let places = middles(rig, columns);
     let middle = places.iter().copied().sum::<Vec3>() / max(places.len() as f32, 1.0);
@@ -102,7 +104,8 @@ pub fn side_by_side(rig: &Rig, columns: &[GarmentColumn]) -> Vec<GarmentColumn> 
     order.into_iter().map(|at| columns[at].clone()).collect()
 }
 
-/// True if columns form a ring, as in a skirt: the last is about as near to the first as neighbours are.
+/// True if columns form a ring, as in a skirt: the last column is about as near to the first as neighbours are to
+/// each other.
 pub fn is_ring(rig: &Rig, columns: &[GarmentColumn]) -> bool {
     let places = middles(rig, columns);
     let [first, .., last] = places.as_slice() else { return false };

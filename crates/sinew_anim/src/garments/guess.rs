@@ -11,8 +11,8 @@ const KINDS: [(&str, &[&str]); 3] = [
     ("coat", &["coat", "jacket", "コート"]),
 ];
 
-/// Garments by joint names: capes, skirts and coats with at least two chains side by side. One chain alone is no cloth;
-/// it may swing as a spring ([`guess_springs`](crate::guess_springs)).
+/// Returns garments by joint names: capes, skirts and coats with at least two chains side by side. One chain alone is
+/// no cloth; it may swing as a spring ([`guess_springs`](crate::guess_springs)).
 pub fn guess_garments(rig: &Rig) -> Vec<Garment> {
     let kind_of: Vec<Option<usize>> = rig.joints.iter().map(|joint| kind(&joint.name)).collect();
     let garment = |(kind, (name, _)): (usize, &(&str, &[&str]))| {
@@ -26,7 +26,7 @@ pub fn guess_garments(rig: &Rig) -> Vec<Garment> {
     KINDS.iter().enumerate().map(garment).filter(|garment| garment.columns.len() > 1).collect()
 }
 
-/// Start joints of a kind's chains: the highest of the kind, or its children if there are several.
+/// Start joints of the chains of a kind: the highest joint of the kind, or its children if there are several.
 fn tops(rig: &Rig, of_kind: impl Fn(JointIdx) -> bool) -> Vec<JointIdx> {
     let mut children = vec![0; rig.joints.len()];
     for parent in
@@ -47,7 +47,7 @@ fn tops(rig: &Rig, of_kind: impl Fn(JointIdx) -> bool) -> Vec<JointIdx> {
     tops
 }
 
-/// Index of the kind implied by a name; `None` for control joints.
+/// Index of the kind that a name implies; `None` for other names and for control joints.
 fn kind(name: &str) -> Option<usize> {
     let words = words(name);
     if words.iter().any(|word| matches!(word.as_str(), "ik" | "ctrl" | "control" | "target")) {

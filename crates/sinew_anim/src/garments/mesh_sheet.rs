@@ -10,22 +10,22 @@ pub struct MeshSheet {
     pub name: String,
     /// Index into [`Rig::meshes`](crate::Rig::meshes).
     pub mesh: usize,
-    /// Primitives of the mesh that are of cloth, ascending.
+    /// Primitives of the mesh that are cloth, ascending.
     pub primitives: Vec<usize>,
     /// Joint of each particle.
     pub joints: Vec<JointIdx>,
-    /// Particles that bodies hold.
+    /// True for each particle that a body holds.
     pub held: Vec<bool>,
     /// Triangles of particles.
     pub faces: Vec<[u32; 3]>,
-    /// Pairs of neighbouring particles, each once, the smaller first.
+    /// Pairs of neighbouring particles, each pair once, the smaller index first.
     pub links: Vec<[u32; 2]>,
     /// Area of the mesh around each particle in the bind pose, m²; the areas of a connected piece sum to its whole
     /// area.
     pub areas: Vec<f32>,
-    /// Unique vertex positions of the mesh.
+    /// Number of unique vertex positions of the mesh.
     pub vertices: usize,
-    /// Longest edge of the mesh in the bind pose, metres: if it exceeds the spacing, particles lie between vertices,
+    /// Longest edge of the mesh in the bind pose, metres. If it exceeds the spacing, particles lie between vertices,
     /// and the drawn mesh is flat there.
     pub longest_edge: f32,
 }

@@ -1,5 +1,5 @@
-//! Garments of a rig: capes, skirts and coats on chains of joints, stated ([`Garment::on_chains`]) or guessed from
-//! names ([`guess_garments`]), and meshes used as cloth ([`lay_sheet`]).
+//! Garments of a rig: capes, skirts and coats on chains of joints, given by the user ([`Garment::on_chains`]) or
+//! guessed from names ([`guess_garments`]), and meshes used as cloth ([`lay_sheet`]).
 //!
 //! Plain data: `sinew_ragdoll::garments` simulates them. Unlike springs, whose chains swing separately, a garment is
 //! **one sheet**: its chains are sewn together side by side, and forces with bodies act both ways.
@@ -20,7 +20,7 @@
 //!     let middle = add(&format!("{name}_2"), Some(top), 0.0, -0.4);
 //!     add(&format!("{name}_3"), Some(middle), 0.0, -0.4);
 //! }
-//! // Side by side, whatever the order in the file.
+//! // Side by side, in any order of the file.
 //! let cape = &sinew_anim::guess_garments(&rig)[0];
 //! let tops = cape.columns.iter().map(|column| rig.joints[column.joints[0]].name.as_str());
 //! assert_eq!((tops.collect::<Vec<_>>(), cape.closed), (vec!["cape_l_1", "cape_m_1", "cape_r_1"], false));
@@ -45,24 +45,24 @@ use sinew_math::Vec3;
 /// Garment of cloth on the bones of a rig. Default: no columns, and the cloth of a cape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Garment {
-    /// Name of it for people, or `""`.
+    /// Name for people, or `""`.
     pub name: String,
     /// Chains of joints, side by side; no joint is in two. Empty for a sheet.
     pub columns: Vec<GarmentColumn>,
-    /// Mesh that it is, if not chains.
+    /// Mesh of a garment without chains.
     pub sheet: Option<MeshSheet>,
-    /// True: the last column is sewn to the first, as a skirt's are. Default false.
+    /// True: the last column is sewn to the first, as in a skirt. Default false.
     pub closed: bool,
-    /// Mass of a square metre of it, kg. Default 0.4: wool.
+    /// Mass per square metre of cloth, kg/m². Default 0.4: wool.
     pub area_density: f32,
-    /// Distance of its mid-surface from bodies, metres. Default 0.015.
+    /// Distance of the cloth's mid-surface from bodies, metres. Default 0.015.
     pub radius: f32,
-    /// Largest distance between neighbouring particles, metres: a limb of radius `R` does not pass between four of them
-    /// if its square is below `2 (2 R radius + radius²)`. Default 0.05, which stops shins.
+    /// Largest distance between neighbouring particles, metres. A limb of radius `R` does not pass between four
+    /// particles if the square of the spacing is below `2 (2 R radius + radius²)`. Default 0.05, which stops shins.
     pub spacing: f32,
-    /// Stiffness of a square of it against being pulled along a thread, N/m. Default 2000.
+    /// Stiffness of a square of cloth against stretching along a thread, N/m. Default 2000.
     pub stretching: f32,
-    /// Stiffness of a square of it against being pulled along a diagonal, N/m, ≥ 0. Default 100.
+    /// Stiffness of a square of cloth against stretching along a diagonal, N/m, ≥ 0. Default 100.
     pub shearing: f32,
     /// Bending stiffness per width, N·m, ≥ 0. Default 1e-4.
     pub bending: f32,
@@ -72,22 +72,23 @@ pub struct Garment {
     pub drag: f32,
     /// Friction on bodies, ≥ 0. Default 0.3.
     pub friction: f32,
-    /// False if the wearer's own arms pass through it; `None`: true only if it is held above the pelvis. Arms that
-    /// swing by a skirt would catch it against the thigh in every step.
+    /// False: the wearer's own arms pass through the garment. `None`: arms collide only if the garment is held above
+    /// the pelvis, because swinging arms would catch a skirt against the thigh in every step.
     pub meets_arms: Option<bool>,
-    /// Distance of folds from each other, metres, ≥ 0. Default 0: they pass through each other.
+    /// Distance of folds from each other, metres, ≥ 0. Default 0: folds pass through each other.
     pub thickness: f32,
-    /// Limit of sinking into the body where shapes do not stop it. Default `None`: no limit.
+    /// Limit of the penetration into the body where shapes do not stop the cloth. Default `None`: no limit.
     pub backstop: Option<Backstop>,
 }
 
-/// Backstop of a garment: each particle stays out of a ball behind its rest place, fixed to the nearest body part. It
-/// keeps cloth out of drawn parts that no shape covers.
+/// Backstop of a garment: keeps each particle out of a ball behind its rest place, fixed to the nearest body part.
+/// Keeps cloth out of drawn parts that no shape covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Backstop {
     /// Depth below its rest place that a particle may reach, inward along the garment's normal, metres, ≥ 0. Default 0.
     pub distance: f32,
-    /// Radius of the ball, metres, positive. Default 0.2: a wall to the trunk, and no wider than a stride for a thigh.
+    /// Radius of the ball, metres, positive. Default 0.2: nearly flat at the trunk, and no wider than a stride at a
+    /// thigh.
     pub radius: f32,
 }
 
@@ -125,13 +126,13 @@ impl Default for Garment {
 pub struct GarmentColumn {
     /// Joints from the seam to the hem, each the parent of the next.
     pub joints: Vec<JointIdx>,
-    /// Position of the hem in the last joint's own space, file units; zero: the last joint is at the hem and does not
-    /// turn.
+    /// Position of the hem in the last joint's own space, file units. Zero: the last joint is at the hem and does not
+    /// rotate.
     pub tip: Vec3,
 }
 
 impl Garment {
-    /// A garment on the chains that start at these joints, side by side; closed if they form a ring.
+    /// Makes a garment on the chains that start at the joints `tops`, side by side; closed if they form a ring.
     ///
     /// # Panics
     /// If a joint does not exist.
@@ -140,12 +141,12 @@ impl Garment {
         Self { closed: is_ring(rig, &columns), columns, ..Self::default() }
     }
 
-    /// A garment that is a sheet.
+    /// Makes a garment of a sheet.
     pub fn of_sheet(sheet: &MeshSheet) -> Self {
         Self { sheet: Some(sheet.clone()), ..Self::default() }
     }
 
-    /// All its joints, by column or particle.
+    /// Iterates over all joints of the garment, by column or particle.
     pub fn joints(&self) -> impl Iterator<Item = JointIdx> {
         let of_columns = self.columns.iter().flat_map(|column| column.joints.iter().copied());
         of_columns.chain(self.sheet.iter().flat_map(|sheet| sheet.joints.iter().copied()))

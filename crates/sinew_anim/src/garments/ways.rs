@@ -3,7 +3,7 @@
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Path length along edges from each vertex to the nearest start, and that start.
+/// Path length along edges from each vertex to the nearest start, with the index of that start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ways {
     /// Infinite if no path exists.
@@ -13,7 +13,7 @@ pub struct Ways {
 }
 
 impl Ways {
-    /// Starts without sources, for this many vertices.
+    /// Creates paths for `count` vertices, without starts.
     pub fn new(count: usize) -> Self {
         Self { length: vec![f32::INFINITY; count], from: vec![usize::MAX; count] }
     }
@@ -25,7 +25,7 @@ impl Ways {
             (self.length[start], self.from[start]) = (0.0, start);
             open.push((Reverse(0), Reverse(start)));
         }
-        // Lengths are not negative, so the order of their bits is their order.
+        // Lengths are not negative, so their bits sort like the lengths.
         while let Some((Reverse(bits), Reverse(at))) = open.pop() {
             let length = f32::from_bits(bits);
             if length > self.length[at] {

@@ -15,16 +15,16 @@ pub struct FootGround {
     pub normal: Vec3,
 }
 
-/// Settings for placing feet. Lengths in units of the pose, angles in radians.
+/// Settings for placing feet. Lengths are in units of the pose, angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootPlacement {
-    /// Unit, away from the ground.
+    /// Unit vector away from the ground.
     pub up: Vec3,
-    /// Direction that the body faces, any length: the side to which a straight knee bends.
+    /// Direction that the body faces, any length. A straight knee bends toward it.
     pub forward: Vec3,
     /// Height of the floor that the animation was made for.
     pub floor: f32,
-    /// Height of the ankles above that floor when a foot is flat on it.
+    /// Height of the ankles above that floor when a foot is flat on the floor.
     pub ankle_height: f32,
     /// Height above the floor at which a foot is free and keeps its tilt, above 0.
     pub free_height: f32,
@@ -37,27 +37,27 @@ pub struct FootPlacement {
 /// Result of placing one foot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlacedFoot {
-    /// Height by which it was raised, negative for lowered.
+    /// Height by which the foot was raised; negative if lowered.
     pub raised: f32,
-    /// Angle by which it was tilted.
+    /// Angle by which the foot was tilted.
     pub tilted: f32,
-    /// Distance of its ankle from its goal.
+    /// Distance of the ankle from its target.
     pub miss: f32,
 }
 
 /// Result of placing both feet of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlacedFeet {
-    /// Height by which the pelvis was raised, negative for lowered.
+    /// Height by which the pelvis was raised; negative if lowered.
     pub pelvis: f32,
-    /// Foot by foot, in the order given.
+    /// Results of both feet, in the order given.
     pub feet: [PlacedFoot; 2],
 }
 
 /// Places both feet on the ground: moves the pelvis with the lower foot, bends the knees, and tilts standing feet.
-/// `ground` is called once per leg with the position of its ankle in the space of `model` and returns the ground below;
-/// `None` leaves that foot. `local` and `model` have one entry per joint and are both updated. No state is kept: on
-/// ground with edges, smooth the heights that `ground` returns.
+/// `ground` is called once per leg with the position of its ankle in the space of `model`, and returns the ground
+/// below; `None` leaves that foot unchanged. `local` and `model` have one entry per joint; both are updated. No state
+/// is kept: on ground with edges, smooth the heights that `ground` returns.
 ///
 /// # Panics
 /// If the slices are not as long as the rig has joints, or a joint is not in it.
@@ -92,9 +92,8 @@ pub fn place_feet(
     placed
 }
 
-/// Moves both ankles to goals, by position and rotation in the space of `model` (up: +Y, forward: +Z), and lowers the
-/// pelvis by at most `most` if a leg is too short. Returns the lowering. `local` and `model` have one entry per joint
-/// and are both updated.
+/// Moves both ankles to target poses in the space of `model` (up: +Y, forward: +Z), and lowers the pelvis by at most
+/// `most` if a leg is too short. Returns the lowering. `local` and `model` have one entry per joint; both are updated.
 ///
 /// # Panics
 /// If the slices are not as long as the rig has joints, or a joint is not in it.
@@ -121,7 +120,8 @@ pub fn hold_feet(
     -lift
 }
 
-/// Largest rise of the pelvis with which its leg still reaches the ankle's goal; negative: it must be lowered.
+/// Largest rise of the pelvis at which its leg still reaches the ankle's target; negative if the pelvis must be
+/// lowered.
 fn highest_pelvis(model: &[Affine], leg: &TwoBone, target: Vec3, up: Vec3) -> f32 {
     let place = |joint: JointIdx| model[joint].translation;
     let long = (place(leg.lower) - place(leg.upper)).length() + (place(leg.end) - place(leg.lower)).length();
@@ -129,11 +129,11 @@ fn highest_pelvis(model: &[Affine], leg: &TwoBone, target: Vec3, up: Vec3) -> f3
     let down = way.dot(up);
     let aside = (way - up * down).length();
     let full = 0.999 * long;
-    // Out of reach sideways: no height helps.
+    // A target out of reach sideways is out of reach at every height.
     if aside >= full { f32::INFINITY } else { down + (full * full - aside * aside).sqrt() }
 }
 
-/// Goal of a foot.
+/// Goal of one foot.
 struct Step {
     raise: f32,
     target: Vec3,
@@ -155,7 +155,7 @@ impl Step {
         let normal = direction(ground.normal).filter(|normal| normal.dot(up) > 0.1)?;
         let height = ankle.translation.dot(up) - settings.floor;
         let stands = 1.0 - smoothstep((height - settings.ankle_height) / max(settings.free_height, 1e-6));
-        // An ankle as high over a slope as over the floor is farther from it along up.
+        // On a slope, an ankle at the same distance from the ground as on the floor is farther from it along `up`.
         let slope = (1.0 / normal.dot(up) - 1.0) * settings.ankle_height * stands;
         let raise = clamp(ground.height - settings.floor + slope, -settings.max_step, settings.max_step);
         let whole = Rotation::from_arc(up, normal).to_scaled_axis() * stands;

@@ -7,24 +7,24 @@ use sinew_math::{Affine, Rotation, Vec3, any_orthonormal, clamp, direction, max}
 /// A joint that looks at a target, and its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LookAt {
-    /// The joint that turns, about its origin.
+    /// The joint that turns about its origin.
     pub joint: JointIdx,
     /// Looking direction, in the joint's own axes, any length.
     pub forward: Vec3,
-    /// Up, in the axes of the space, any length: the yaw axis.
+    /// Yaw axis: up in the axes of the space, any length.
     pub up: Vec3,
-    /// Target position in the space, its unit.
+    /// Target position in the space of `model`, in its unit.
     pub target: Vec3,
-    /// Farthest yaw from the pose, radians, 0..=π.
+    /// Largest yaw from the pose, radians, 0..=π.
     pub max_yaw: f32,
-    /// Largest pitch from the pose, radians, 0..=π. Together with yaw: an ellipse.
+    /// Largest pitch from the pose, radians, 0..=π. Yaw and pitch together are limited by an ellipse.
     pub max_pitch: f32,
-    /// Weight of the goal, 0..=1: the share of the rotation that is applied. Several joints (chest, neck, head) share a
-    /// look by their weights.
+    /// Weight of the goal, 0..=1: the share of the rotation that is applied. For a look by several joints (chest, neck,
+    /// head), give each a weight.
     pub weight: f32,
 }
 
-/// Result of a look.
+/// Result of [`look_at`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     /// Angle by which the joint turned, radians.
@@ -33,8 +33,8 @@ pub struct Look {
     pub left: f32,
 }
 
-/// Turns a joint toward a target. `local` and `model` have one entry per joint and are both updated. A target at the
-/// joint itself or not finite, or a zero `forward`, has no effect.
+/// Turns a joint toward a target. `local` and `model` have one entry per joint; both are updated. A target at the joint
+/// itself, a target that is not finite, and a zero `forward` have no effect.
 ///
 /// # Panics
 /// If the slices are not as long as the rig has joints, or the joint is not in it.

@@ -1,9 +1,9 @@
 //! Inverse kinematics: rotates joints so that a hand, a foot or the eyes reach a goal.
 //!
-//! The functions work on two slices of one pose, **local** (each joint relative to its parent, file units) and
-//! **model** (each joint in the space), as long as the rig has joints. They must correspond
-//! ([`local_to_model`](crate::local_to_model)) and still do afterwards. Targets, directions and heights are in the
-//! space of the model slice and its unit. Angles are radians. Nothing is allocated.
+//! The functions work on two slices of one pose, as long as the rig has joints: **local** (each joint relative to
+//! its parent, file units) and **model** (each joint in the space). Both must correspond
+//! ([`local_to_model`](crate::local_to_model)) and still correspond afterwards. Targets, directions and heights
+//! are in the space and unit of the model slice. Angles are radians. No function allocates.
 
 mod foot;
 mod look_at;
@@ -16,9 +16,9 @@ pub use two_bone::{Pole, TwoBone, TwoBoneGoal, TwoBoneSolution, solve_two_bone, 
 use crate::rig::{JointIdx, LocalTransform, Rig};
 use sinew_math::{Affine, Rotation, Vec3, inverse3};
 
-/// The map that the local transform of a joint is relative to.
+/// Returns the map that the local transform of a joint is relative to.
 fn parent_model(rig: &Rig, joint: JointIdx, local: &[LocalTransform], model: &[Affine]) -> Affine {
-    // A root's parent is the space itself, the difference of its two transforms.
+    // For a root, the space itself: the difference of the root's two transforms.
     rig.joints[joint].parent.map_or_else(|| model[joint] * local[joint].to_affine().inverse(), |p| model[p])
 }
 
@@ -32,7 +32,7 @@ fn update_from(rig: &Rig, joint: JointIdx, parent: &Affine, local: &[LocalTransf
     }
 }
 
-/// Sets a joint's rotation to `wanted` in model space, with all its descendants.
+/// Sets a joint's rotation to `wanted` in model space; its descendants move along.
 pub(crate) fn set_rotation(
     rig: &Rig,
     joint: JointIdx,
@@ -45,13 +45,13 @@ pub(crate) fn set_rotation(
     update_from(rig, joint, &parent, local, model);
 }
 
-/// Rotates a joint about its origin, model axes, with all its descendants.
+/// Rotates a joint about its origin, in model axes; its descendants move along.
 fn turn(rig: &Rig, joint: JointIdx, turn: Rotation, local: &mut [LocalTransform], model: &mut [Affine]) {
     let rotation = model[joint].to_rigid().rotation;
     set_rotation(rig, joint, turn * rotation, local, model);
 }
 
-/// Moves a joint, model axes, with all its descendants.
+/// Moves a joint, in model axes; its descendants move along.
 pub(crate) fn shift(
     rig: &Rig,
     joint: JointIdx,

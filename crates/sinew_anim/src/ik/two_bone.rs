@@ -7,7 +7,7 @@ use sinew_math::{
     Affine, Mat3, Rotation, Vec3, any_orthonormal, clamp, direction, max, min, normalize_or, trig,
 };
 
-/// The joints of a limb, from the trunk outward. Joints between them move along.
+/// The three joints of a limb, from the trunk outward. Other joints between them move along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TwoBone {
     /// Start of the first bone: hip, shoulder.
@@ -18,26 +18,26 @@ pub struct TwoBone {
     pub end: JointIdx,
 }
 
-/// Side to which the middle joint bends. The target leaves only this rotation free.
+/// Side to which the middle joint bends; the target determines the rest of the rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pole {
     /// The current side. A straight limb bends toward this direction, of any length.
     Keep(Vec3),
-    /// The joint bends toward this direction, of any length.
+    /// The middle joint bends toward this direction, of any length.
     Toward(Vec3),
 }
 
-/// Goal for the end of a limb: lengths in the unit of the model pose, directions in its space.
+/// Goal for the end of a limb: lengths in the unit of the model pose, directions in the space of that pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoBoneGoal {
     /// Target position of the end joint.
     pub target: Vec3,
-    /// Side of the middle joint.
+    /// Side to which the middle joint bends.
     pub pole: Pole,
-    /// Share of the limb's length, 0..=0.5, over which it slows down before it is straight, so that the knee does not
-    /// snap. 0: none.
+    /// Share of the limb's length, 0..=0.5, over which the limb slows down before it is straight, so that the knee does
+    /// not snap. 0: no slowing.
     pub softness: f32,
-    /// Largest stretch factor of the bones, at least 1. 1: none.
+    /// Largest stretch factor of the bones, at least 1. 1: no stretch.
     pub stretch: f32,
     /// Weight of the goal, 0..=1: the share of the motion that is applied.
     pub weight: f32,
@@ -59,7 +59,7 @@ pub struct TwoBoneSolution {
     pub lower: Rotation,
     /// Stretch factor of both bones, at least 1.
     pub stretch: f32,
-    /// Distance of the end from the target, at full weight. Infinite for a target that is not finite.
+    /// Distance of the end from the target at full weight. Infinite for a target that is not finite.
     pub miss: f32,
 }
 
@@ -68,12 +68,12 @@ impl TwoBoneSolution {
         Self { upper: Rotation::IDENTITY, lower: Rotation::IDENTITY, stretch: 1.0, miss: f32::INFINITY };
 }
 
-/// Bends a limb, given by its three joint positions in any space and unit, so that its end reaches the goal, or points
-/// toward it if it is out of reach. Zero-length bones and targets that are not finite cause no rotation.
+/// Bends a limb, given by its three joint positions in any space and unit, so that its end reaches the target, or
+/// points toward a target out of reach. Zero-length bones and targets that are not finite cause no rotation.
 ///
-/// With bones a and b and the distance d, the middle joint is `(a² − b² + d²) / 2d` along the line to the target,
-/// offset sideways by Pythagoras. Rotations are taken from frames of bone and plane, so that a knee bends about its own
-/// axis.
+/// With bones a and b and the distance d of the target, the middle joint is `(a² − b² + d²) / 2d` along the line to the
+/// target, offset sideways by Pythagoras. Rotations are computed from frames of bone and plane, so that a knee bends
+/// about its own axis.
 pub fn solve_two_bone(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -> TwoBoneSolution {
     let way = goal.target - root;
     let (Some(first), Some(second)) = (direction(middle - root), direction(end - middle)) else {
@@ -108,7 +108,7 @@ pub fn solve_two_bone(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -
     }
 }
 
-/// A limb with one bone of no length has only a direction.
+/// Aims a limb whose first or second bone has no length: such a limb has only a direction.
 fn aim_one_bone(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -> TwoBoneSolution {
     let way = goal.target - root;
     if !way.is_finite() {
@@ -121,8 +121,8 @@ fn aim_one_bone(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -> TwoB
     TwoBoneSolution { upper, lower, stretch: 1.0, miss }
 }
 
-/// Distance that a limb of length `full` reaches for a target `far` away: equal up to `softness` before the end, then
-/// approaching `full`. Once differentiable.
+/// Distance that a limb of length `full` reaches for a target at distance `far`: equal to it until `softness` of the
+/// length is left, then approaching `full`. Continuous in its first derivative.
 fn soft_reach(far: f32, full: f32, softness: f32) -> f32 {
     let slow = clamp(softness, 0.0, 0.5) * full;
     let hard = full - slow;
@@ -133,10 +133,10 @@ fn soft_reach(far: f32, full: f32, softness: f32) -> f32 {
 }
 
 /// Normals of the current and the wanted bending plane: `normal × way` points to the middle joint's side. A nearly
-/// straight limb has no reliable bend; the pole's plane takes over gradually.
+/// straight limb has no reliable plane, so the pole's plane is blended in.
 fn planes(root: Vec3, middle: Vec3, end: Vec3, along: Vec3, pole: Pole) -> (Vec3, Vec3) {
-    /// Sines of the angle between first bone and target line: below the first a limb is straight, above the second it
-    /// is bent.
+    /// Sines of the angle between first bone and target line: below the first number a limb counts as straight, above
+    /// the second as bent.
     const BENT: [f32; 2] = [0.002, 0.08];
     let old_way = normalize_or(end - root, normalize_or(middle - root, along));
     let (Pole::Keep(side) | Pole::Toward(side)) = pole;
@@ -156,9 +156,9 @@ fn planes(root: Vec3, middle: Vec3, end: Vec3, along: Vec3, pole: Pole) -> (Vec3
     (from, to)
 }
 
-/// Brings the end of a limb to a goal. The end joint keeps its rotation relative to the second bone. `local` and
-/// `model` have one entry per joint and are both updated; the goal is in the space of `model`. Returns the rotation at
-/// full weight.
+/// Moves the end of a limb to a goal. The end joint keeps its rotation relative to the second bone. `local` and `model`
+/// have one entry per joint; both are updated. The goal is in the space of `model`. Returns the rotations at full
+/// weight.
 ///
 /// # Panics
 /// If the slices are not as long as the rig has joints, or a joint is not in it.
@@ -179,7 +179,7 @@ pub fn two_bone_ik(
     let part = |turned: Rotation| Rotation::IDENTITY.slerp(turned, weight);
     let (upper, lower) = (part(solution.upper), part(solution.lower));
     turn(rig, limb.upper, upper, local, model);
-    // The first rotation has moved the second bone.
+    // The first rotation has already moved the second bone.
     turn(rig, limb.lower, lower * upper.inverse(), local, model);
     let stretch = 1.0 + (solution.stretch - 1.0) * weight;
     if stretch > 1.0 {

@@ -2,9 +2,9 @@
 
 use sinew_math::{Vec2, clamp, max};
 
-/// Weights of clips on a line: the two neighbours of `at` share it in proportion; beyond the ends the last one has all.
-/// `places` are in any unit, not decreasing, as many as `weights`; the weights sum to 1. Of clips at one place the
-/// first counts. NaN counts as the first place.
+/// Computes weights of clips on a line: the two neighbours of `at` share the weight in proportion; beyond an end, the
+/// end has all of it. `places` are in any unit, not decreasing, as many as `weights`; the weights sum to 1. Of clips at
+/// one place the first counts. NaN counts as the first place.
 ///
 /// # Panics
 /// If there are no places, they decrease or are not finite, or `weights` has another length.
@@ -27,8 +27,8 @@ pub fn weights_on_line(places: &[f32], at: f32, weights: &mut [f32]) {
     weights[right] = share;
 }
 
-/// Weights of clips in a plane by gradient bands (Johansen, "Automated semi-procedural animation for character
-/// locomotion", 2009, section 6.3): each clip has full weight at its own place and none at another's; weights are
+/// Computes weights of clips in a plane by gradient bands (Johansen, "Automated semi-procedural animation for character
+/// locomotion", 2009, section 6.3). Each clip has full weight at its own place and none at another's. Weights are
 /// continuous, never negative, and sum to 1; no triangulation is needed. `places` are in any unit, as many as
 /// `weights`; of clips at one place the first counts. NaN counts as 0.
 ///
@@ -47,7 +47,7 @@ pub fn weights_on_plane(places: &[Vec2], at: Vec2, weights: &mut [f32]) {
         weights[i] = if places[..i].contains(&places[i]) { 0.0 } else { influence(places, i, at) };
         total += weights[i];
     }
-    // Far away rounding can leave no weight; then the nearest clip has it.
+    // At a great distance, rounding can leave no weight; then the nearest clip gets all of it.
     if total < 1e-6 {
         let distance = |i: usize| (places[i] - at).length_squared();
         let nearest =
@@ -61,7 +61,7 @@ pub fn weights_on_plane(places: &[Vec2], at: Vec2, weights: &mut [f32]) {
     }
 }
 
-/// Over all other places, the least remaining share of `at` on the line to place `i`.
+/// Returns the smallest remaining share of `at` on the lines from place `i` to all other places.
 fn influence(places: &[Vec2], i: usize, at: Vec2) -> f32 {
     let own = places[i];
     let mut least = 1.0;

@@ -1,15 +1,15 @@
 //! Inertial transitions: the difference between the old and the new motion decays.
 //!
-//! Bollo, "Inertialization: high-performance animation transitions in Gears of War", GDC 2018. There an offset is an
-//! axis and an angle, and only the velocity along the axis counts. Here the perpendicular velocity decays by the same
-//! curve, and nearly zero offsets may overshoot, so that no joint's velocity jumps.
+//! Bollo, "Inertialization: high-performance animation transitions in Gears of War", GDC 2018. In that talk an offset
+//! is an axis and an angle, and only the velocity along the axis counts. Here the perpendicular velocity decays by the
+//! same curve, and nearly zero offsets may overshoot, so that no joint's velocity jumps.
 
 use crate::pose::Pose;
 use crate::rig::LocalTransform;
 use crate::tuning::SHORTEST_DECAY;
 use sinew_math::{ReadError, Reader, Rotation, Vec3, Writer, max, min, trig};
 
-/// An offset that decays within a time, from an initial velocity, to zero velocity and acceleration.
+/// An offset that decays within a given time from its initial velocity; its final velocity and acceleration are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Decay {
     /// Offset at the start, any unit.
@@ -19,13 +19,13 @@ pub struct Decay {
 }
 
 impl Decay {
-    /// Time to decay, at most `seconds`: shorter, down to a third, if a fast return would overshoot.
+    /// Returns the time to decay, at most `seconds`: shorter, down to a third, if a fast return would overshoot.
     pub fn shortened(&self, seconds: f32) -> f32 {
         let size = self.offset.length();
         if size > 0.0 { shortened(size, self.offset.dot(self.velocity) / size, seconds) } else { seconds }
     }
 
-    /// Offset after `time` seconds, 0 or more, when it may take `seconds`.
+    /// Returns the offset after `time` seconds, 0 or more, of a decay that may take `seconds`.
     pub fn at(&self, time: f32, seconds: f32) -> Vec3 {
         let size = self.offset.length();
         let (mut sum, mut aside) = (Vec3::ZERO, self.velocity);
@@ -40,7 +40,7 @@ impl Decay {
     }
 }
 
-/// `t₁ = min(t₁, −5 x₀/v₀)` if the offset shrinks; more time would change its sign. For a tiny offset that would stop a
+/// `t₁ = min(t₁, −5 x₀/v₀)` if the offset shrinks, because more time would change its sign. A tiny offset would stop a
 /// limb within a frame, so it keeps its time and overshoots.
 fn shortened(x0: f32, v0: f32, t1: f32) -> f32 {
     let without_overshoot = if v0 < 0.0 { -5.0 * x0 / v0 } else { t1 };
@@ -54,7 +54,7 @@ fn quintic(x0: f32, v0: f32, t1: f32, time: f32) -> f32 {
     if t1.is_nan() || t1 <= 0.0 || time >= t1 {
         return 0.0;
     }
-    // Compute in units of t₁, so that nothing is divided by its powers.
+    // Computes in units of t₁, to avoid dividing by powers of t₁.
     let (t, v) = (time / t1, v0 * t1);
     let swings_through = -v > 5.001 * x0;
     let a = if swings_through { 0.0 } else { max(0.0, -8.0 * v - 20.0 * x0) };
@@ -75,7 +75,7 @@ pub struct Inertia {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct JointDecay {
     translation: Decay,
-    /// Scaled axis in the parent's space, radians.
+    /// Offset of the rotation: scaled axis in the parent's space, radians.
     rotation: Decay,
     scale: Decay,
 }
@@ -87,19 +87,19 @@ pub struct Motion<'a> {
     pub now: &'a Pose,
     /// Another pose of the same rig: `seconds` earlier for the old motion, `seconds` later for the new one.
     pub other: &'a Pose,
-    /// Time between both poses; if it is not above 0 there is no velocity.
+    /// Time between both poses, seconds; without velocity if it is not above 0.
     pub seconds: f32,
 }
 
 impl Inertia {
-    /// Becomes a copy of another; allocates for more joints than before.
+    /// Copies another inertia into existing memory; allocates for more joints than before.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.joints.clone_from(&other.joints);
         (self.seconds, self.elapsed) = (other.seconds, other.elapsed);
     }
 
-    /// Takes the difference of `from` (its pose now, and one earlier) to `to` (its pose now, and one later), to decay
-    /// within `seconds`. All four poses have the same length. Allocates for more joints than before.
+    /// Stores the difference between `from` (its pose now, and an earlier one) and `to` (its pose now, and a later
+    /// one); it decays within `seconds`. All four poses have the same length. Allocates for more joints than before.
     ///
     /// # Panics
     /// If the poses differ in length, or `seconds` is negative or not finite.
@@ -126,7 +126,7 @@ impl Inertia {
         self.joints.is_empty() || self.elapsed >= self.seconds
     }
 
-    /// Forgets all offsets.
+    /// Removes all offsets.
     pub fn clear(&mut self) {
         self.joints.clear();
     }
@@ -134,7 +134,7 @@ impl Inertia {
     /// Advances by `seconds` and adds the remaining offset to a pose of the new motion.
     ///
     /// # Panics
-    /// If `pose` has another length than those it was started with, and something is left.
+    /// If an offset remains and `pose` has another length than the poses given to [`start`](Self::start).
     pub fn apply(&mut self, seconds: f32, pose: &mut Pose) {
         self.elapsed += seconds;
         if self.is_over() {
@@ -149,7 +149,7 @@ impl Inertia {
         }
     }
 
-    /// Writes all that [`load`](Self::load) needs.
+    /// Writes the state for [`load`](Self::load).
     pub fn save(&self, out: &mut Writer) {
         out.f32(self.seconds);
         out.f32(self.elapsed);
@@ -162,7 +162,7 @@ impl Inertia {
         }
     }
 
-    /// Reads what [`save`](Self::save) wrote, for a rig of `joints`.
+    /// Reads an inertia that [`save`](Self::save) wrote, for a rig of `joints` joints.
     ///
     /// # Errors
     /// If the bytes end too early, or hold an impossible state.
@@ -195,7 +195,8 @@ fn rate(seconds: f32) -> f32 {
 }
 
 impl JointDecay {
-    /// `from`: earlier, now, one over the time between. `to`: now, later, one over the time between.
+    /// Returns the offsets of a joint. `from`: earlier, now, one over the time between. `to`: now, later, one over the
+    /// time between.
     fn between(
         from: (LocalTransform, LocalTransform, f32),
         to: (LocalTransform, LocalTransform, f32),
@@ -221,8 +222,8 @@ impl JointDecay {
     }
 }
 
-/// The offset is the logarithm of `from · to⁻¹`; its velocity is the difference to that logarithm a moment earlier,
-/// with `to` extrapolated back by as much as it will move ahead.
+/// Returns the offset of the rotation and its velocity. The offset is the logarithm of `from · to⁻¹`. The velocity is
+/// the difference to that logarithm a moment earlier, with `to` extrapolated backward by its next motion.
 fn turn(from: (Rotation, Rotation, f32), to: (Rotation, Rotation, f32)) -> Decay {
     let now = (from.1 * to.0.inverse()).positive();
     let offset = logarithm(now);
@@ -237,7 +238,7 @@ fn turn(from: (Rotation, Rotation, f32), to: (Rotation, Rotation, f32)) -> Decay
     Decay { offset, velocity: (offset - logarithm(before)) * moment }
 }
 
-/// Axis times angle, up to a full turn: close quaternions have close logarithms, also at half a turn, where
+/// Returns axis times angle, up to a full turn. Close quaternions have close logarithms, also at half a turn, where
 /// [`Rotation::to_scaled_axis`] jumps.
 pub(crate) fn logarithm(q: Rotation) -> Vec3 {
     let v = q.vector();

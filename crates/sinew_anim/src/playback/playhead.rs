@@ -1,34 +1,35 @@
-//! Position of a track in a clip, and the moments that it passes.
+//! Position of a track in a clip, and the events that it passes.
 
-/// Largest lap number, in either direction, of a saved playhead: beyond it seconds lose precision.
+/// Largest lap number, in either direction, of a saved playhead; seconds lose precision beyond it.
 const MOST_LAPS: u64 = 1 << 53;
 
 /// Continuation after the end of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LoopMode {
-    /// Continues at the start; end and start are one time.
+    /// The clip continues at the start; its end and start are one time.
     #[default]
     Loop,
-    /// Backward, then forward again.
+    /// The clip plays backward, then forward again.
     PingPong,
-    /// Stops: the last pose holds, and played backward the first.
+    /// The clip stops: the last pose holds, or the first one if it is played backward.
     Once,
 }
 
-/// A position in a clip: whole laps, and time within one.
+/// A position in a clip: whole laps, and time within the lap.
 ///
-/// They are separate so that time keeps precision in a long run, and passed moments are found by comparing positions,
-/// whatever the steps in between. A lap is once through the clip, in either direction.
+/// They are separate so that time keeps its precision in a long run, and passed times are found by comparing positions,
+/// for steps of any size. A lap is one pass through the clip, in either direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Playhead {
     mode: LoopMode,
     length: f64,
     at: Place,
-    /// True before any event was passed: an event exactly here is still to come.
+    /// True before any event was passed: an event exactly here has not been passed yet.
     is_fresh: bool,
 }
 
-/// Laps, and clip seconds in the direction of the lap: 0 to the clip's length, which only [`LoopMode::Once`] reaches.
+/// Laps, and clip seconds in the direction of the lap, from 0 to the clip's length. Only [`LoopMode::Once`] reaches the
+/// length.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(crate) struct Place {
     pub lap: i64,
@@ -36,8 +37,8 @@ pub(crate) struct Place {
 }
 
 impl Playhead {
-    /// Creates a playhead at `start`, clip seconds: beyond the clip's ends in another lap, or clamped if it plays once.
-    /// A clip without length, a pose, plays once.
+    /// Creates a playhead at `start`, clip seconds. A start beyond the clip's ends is in another lap, or clamped if the
+    /// clip plays once. A clip without length, a pose, plays once.
     ///
     /// # Panics
     /// If `length` is negative, or a number is not finite.
@@ -55,12 +56,12 @@ impl Playhead {
         self.mode
     }
 
-    /// Time to sample the clip at, seconds from its start, 0 to its length.
+    /// Time at which to sample the clip, seconds from its start, 0 to its length.
     pub fn clip_time(&self) -> f32 {
         self.clip_time_of(self.at) as f32
     }
 
-    /// Whole laps since time 0, less than 0 before it.
+    /// Number of whole laps since time 0; negative before time 0.
     pub fn lap(&self) -> i64 {
         self.at.lap
     }
@@ -77,7 +78,7 @@ impl Playhead {
         self.length
     }
 
-    /// The playhead when it was at `place`; `None` if it cannot have been there.
+    /// Restores a playhead at `at`; `None` if a playhead cannot have that position.
     pub(crate) fn restored(mode: LoopMode, length: f32, at: Place, is_fresh: bool) -> Option<Self> {
         let mode = if length > 0.0 { mode } else { LoopMode::Once };
         let length = f64::from(length);
@@ -90,7 +91,7 @@ impl Playhead {
         is_inside.then_some(Self { mode, length, at, is_fresh })
     }
 
-    /// Jumps to `time`, clip seconds as in [`new`](Self::new), and passes nothing on its way.
+    /// Jumps to `time`, clip seconds as in [`new`](Self::new), without passing events.
     ///
     /// # Panics
     /// If `time` is not finite.
@@ -116,7 +117,7 @@ impl Playhead {
         passage
     }
 
-    /// True if it has reached the end in the direction of `speed` and stays there.
+    /// True if the playhead has reached the end in the direction of `speed` and stays there.
     pub fn is_at_end(&self, speed: f64) -> bool {
         let end = if speed < 0.0 { 0.0 } else { self.length };
         self.mode == LoopMode::Once && speed != 0.0 && self.at.time == end
@@ -130,7 +131,7 @@ impl Playhead {
         }
         let laps = (time / self.length).floor();
         let rest = time - laps * self.length;
-        // The quotient is rounded, so the remainder may lie just outside.
+        // The quotient is rounded, so the remainder may be just outside the clip.
         let (laps, rest) = if rest < 0.0 {
             (laps - 1.0, rest + self.length)
         } else if rest >= self.length {
@@ -156,8 +157,8 @@ impl Playhead {
     }
 }
 
-/// Passes from one position to another: forward everything after the first up to the second, backward everything before
-/// the first down to the second.
+/// Passage from one position to another. Forward it passes the times after the first position up to the second;
+/// backward, the times before the first position down to the second.
 ///
 /// Several steps therefore pass the same events as one step over the same distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -183,16 +184,16 @@ impl Crossing {
     }
 }
 
-/// Recurring moment of a clip: its place in each period, and the number of laps per period.
+/// Recurring time of a clip: its place in each period, and the number of laps per period.
 #[derive(Clone, Copy)]
 struct Recurring {
     at: Place,
-    /// Number of laps per period; 0: the moment does not recur.
+    /// Number of laps per period; 0: the time does not recur.
     period: i64,
 }
 
 impl Recurring {
-    /// Number of its last occurrence at or before `place`, or before it.
+    /// Returns the number of its last occurrence at or before `place`, or only before it, as `counts` decides.
     fn last(&self, place: Place, counts: impl Fn(f64, f64) -> bool) -> i64 {
         let laps = place.lap.saturating_sub(self.at.lap);
         let (number, rest) = if self.period == 0 {
@@ -209,8 +210,8 @@ impl Recurring {
 }
 
 impl Passage {
-    /// Every passage of the moment `time` of the clip, 0 to its length, in order. The first step after a start or a
-    /// seek passes a moment exactly there too.
+    /// Returns every passage of `time` in the clip, 0 to its length, in order. The first step after a start or a seek
+    /// also passes a time exactly there.
     pub fn crossings(self, time: f32) -> impl Iterator<Item = Crossing> {
         self.recurring(f64::from(time)).into_iter().flatten().flat_map(move |moment| self.of(moment))
     }
@@ -228,7 +229,7 @@ impl Passage {
             LoopMode::PingPong if time <= 0.0 => [Some(forth(2)), None],
             LoopMode::PingPong => {
                 let back = Recurring { at: Place { lap: 1, time: length - time }, period: 2 };
-                // The one that comes first from here, first.
+                // The passage that comes first from the current position is first.
                 let is_back_first = self.playhead.is_way_back(self.playhead.at.lap) != self.is_backward;
                 if is_back_first { [Some(back), Some(forth(2))] } else { [Some(forth(2)), Some(back)] }
             }
@@ -251,7 +252,7 @@ impl Passage {
         })
     }
 
-    /// True if a start at the moment counts as passing it: the end of a loop is not its start.
+    /// True if a start at this time counts as passing it; the end of a loop is not its start.
     fn is_fresh_at(&self, moment: &Recurring) -> bool {
         let is_end_of_loop = self.playhead.mode == LoopMode::Loop && moment.at.lap == 1;
         self.playhead.is_fresh && !is_end_of_loop

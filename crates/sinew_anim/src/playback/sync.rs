@@ -2,7 +2,7 @@
 
 use crate::playback::playhead::{Place, Playhead};
 
-/// Moments of a looped clip that match those of other clips one by one: left foot down, right foot down. Time is
+/// Times in a looped clip that correspond one by one to those of other clips: left foot down, right foot down. Time is
 /// stretched between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Markers {
@@ -10,7 +10,7 @@ pub struct Markers {
 }
 
 impl Default for Markers {
-    /// Only the start of the clip is a marker, so whole laps match.
+    /// A marker only at the start of the clip, so that whole laps match.
     fn default() -> Self {
         Self { times: vec![0.0] }
     }
@@ -21,7 +21,7 @@ impl Default for Markers {
 pub struct Phase {
     /// Number of the last marker, counted through all laps.
     pub marker: i64,
-    /// Share of the way to the next one, 0 to 1, 1 excluded.
+    /// Share of the way to the next marker, 0 to 1, 1 excluded.
     pub share: f64,
 }
 
@@ -37,7 +37,7 @@ impl Markers {
         Self { times }
     }
 
-    /// Seconds from the clip's start, increasing.
+    /// Times of the markers, seconds from the clip's start, increasing.
     pub fn times(&self) -> &[f32] {
         &self.times
     }
@@ -46,13 +46,13 @@ impl Markers {
         self.times.len() as i64
     }
 
-    /// Time of a marker counted through all laps, clip seconds from the start of lap 0's lap `lap`.
+    /// Time of marker `index`, counted through all laps, clip seconds from the start of lap 0.
     fn time(&self, index: i64, length: f64) -> f64 {
         let marker = index.rem_euclid(self.len());
         index.div_euclid(self.len()) as f64 * length + f64::from(self.times[marker as usize])
     }
 
-    /// Phase at a position of a loop of `length` seconds.
+    /// Returns the phase at a position of a loop of `length` seconds.
     pub(crate) fn phase(&self, place: Place, length: f64) -> Phase {
         let passed = self.times.partition_point(|&time| f64::from(time) <= place.time) as i64 - 1;
         let (start, end) = (self.time(passed, length), self.time(passed + 1, length));
@@ -61,23 +61,23 @@ impl Markers {
         Phase { marker, share: if share < 1.0 { share } else { 1.0_f64.next_down() } }
     }
 
-    /// Position in a loop of `length` seconds at a phase.
+    /// Returns the position in a loop of `length` seconds at a phase.
     pub(crate) fn place(&self, phase: Phase, length: f64) -> Place {
         let (lap, marker) = (phase.marker.div_euclid(self.len()), phase.marker.rem_euclid(self.len()));
         let (start, end) = (self.time(marker, length), self.time(marker + 1, length));
         let time = start + phase.share * (end - start);
-        // The place is after the last marker, and before the first of the next lap.
+        // The position may be after the last marker, before the first marker of the next lap.
         if time >= length { Place { lap: lap + 1, time: time - length } } else { Place { lap, time } }
     }
 }
 
-/// Moves a follower to the phase of its leader.
+/// Returns the position of a follower at the phase of its leader.
 pub(crate) fn follow(leader: &Playhead, markers: &Markers, follower: &Playhead, own: &Markers) -> Place {
     match_place(leader.place(), leader.length(), markers, follower.length(), own)
 }
 
-/// The position in a loop of `to_length` seconds with the phase of a position in another. Clips with different numbers
-/// of markers match by whole laps.
+/// Returns the position in a loop of `to_length` seconds at the phase of a position in another loop. Clips with
+/// different numbers of markers match by whole laps.
 pub(crate) fn match_place(
     place: Place,
     length: f64,

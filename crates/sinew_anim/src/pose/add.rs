@@ -1,4 +1,4 @@
-//! Differences on top of a pose.
+//! Adds differences to a pose.
 
 use super::blend::BlendLayer;
 use super::parts::Parts;

@@ -9,7 +9,7 @@ use core::cmp::Ordering;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Block, Blocks, LaneMask, Lanes, Vector3, WIDTH};
 
-/// A share per joint, 0 to 1: the part of the body that a pose affects.
+/// A share per joint, 0 to 1, by which a pose affects the joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mask {
     blocks: Vec<Block<1>>,
@@ -30,7 +30,7 @@ impl Mask {
         self.joints
     }
 
-    /// True if it has no joints.
+    /// True if the mask has no joints.
     pub fn is_empty(&self) -> bool {
         self.joints == 0
     }
@@ -38,7 +38,7 @@ impl Mask {
     /// Share of a joint.
     ///
     /// # Panics
-    /// If the number of shares is not that of the joints.
+    /// If the joint is out of range.
     pub fn get(&self, joint: usize) -> f32 {
         assert!(joint < self.joints, "joint {joint} of {}", self.joints);
         self.blocks[joint / WIDTH].get(joint % WIDTH)[0]
@@ -69,14 +69,14 @@ impl FromIterator<f32> for Mask {
 pub struct BlendLayer<'a> {
     /// One local transform per joint.
     pub pose: &'a Pose,
-    /// Share, ≥ 0; shares need not add up to 1. Negative and NaN count as 0.
+    /// Weight in the blend, ≥ 0; weights need not add up to 1. Negative and NaN count as 0.
     pub weight: f32,
     /// Factor of the weight per joint; `None` is 1 everywhere.
     pub mask: Option<&'a Mask>,
 }
 
 impl<'a> BlendLayer<'a> {
-    /// Creates a layer of the whole body.
+    /// Creates a layer without a mask.
     pub fn new(pose: &'a Pose, weight: f32) -> Self {
         Self { pose, weight, mask: None }
     }
@@ -85,7 +85,7 @@ impl<'a> BlendLayer<'a> {
         if self.weight > 0.0 { self.weight } else { 0.0 }
     }
 
-    /// Weights of a block's joints.
+    /// Returns the weights of a block's joints.
     #[inline(always)]
     pub(super) fn weight<L: Lanes>(&self, index: usize) -> L {
         match self.mask {
@@ -94,7 +94,7 @@ impl<'a> BlendLayer<'a> {
         }
     }
 
-    /// Heaviest first. Equal weights are ordered by content; layers that are equal in both may change places without
+    /// Sorts by weight, the heaviest first, then by content. Layers that are equal in both may change places without
     /// effect.
     fn order(&self, other: &Self) -> Ordering {
         let pose = || {
@@ -115,8 +115,9 @@ pub enum RotationMean {
     /// Sum of the quaternions on the hemisphere of the rest pose, normalised.
     #[default]
     Sum,
-    /// The rotation with the least weighted sum of squared chords to all (Markley et al., "Averaging quaternions",
-    /// 2007): the eigenvector of `Σ w q qᵀ` with the largest eigenvalue. It does not depend on hemispheres.
+    /// The rotation with the smallest weighted sum of squared chords to all rotations (Markley et al., "Averaging
+    /// quaternions", 2007): the eigenvector of `Σ w q qᵀ` with the largest eigenvalue. It does not depend on
+    /// hemispheres.
     Exact,
 }
 
@@ -124,14 +125,14 @@ pub enum RotationMean {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BlendOptions {
     /// Sum of weights at a joint below which the rest pose is blended in, ≥ 0. With 0, the default, a single track has
-    /// full effect at any positive weight, and jumps to the rest pose when that becomes 0; with 0.1 it blends to the
-    /// rest pose over the last tenth of its ramp.
+    /// full effect at any positive weight, and the joint jumps to the rest pose when the weight becomes 0. With 0.1 the
+    /// joint blends to the rest pose over the last tenth of the ramp.
     pub fill_below: f32,
     /// Definition of the mean of rotations.
     pub mean: RotationMean,
 }
 
-/// Blends poses; owns a buffer for sorting them.
+/// Blends poses; reuses a buffer for sorting them.
 #[derive(Clone, Debug, Default)]
 pub struct Blender {
     options: BlendOptions,
@@ -150,14 +151,14 @@ impl Blender {
         Self { options, order: Vec::new() }
     }
 
-    /// Weighted mean of any number of poses, joint by joint: `out`, `rest`, all layers and masks have one entry per
-    /// joint.
+    /// Writes the weighted mean of any number of poses to `out`, joint by joint. `out`, `rest`, all layers and masks
+    /// have one entry per joint.
     ///
-    /// The result does not depend on the order of the layers, to the bit: they are added by weight, then by content. It
-    /// is the heaviest pose plus weighted differences, so that a pose blended with itself is that pose, to the bit. If
-    /// the weights sum to zero, or rotations cancel, the result is the rest pose, to the bit.
+    /// The result does not depend on the order of the layers, to the bit: they are added by weight, then by content.
+    /// The result is the heaviest pose plus weighted differences, so that a pose blended with itself is unchanged, to
+    /// the bit. If the weights sum to zero, or rotations cancel, the result is the rest pose, to the bit.
     ///
-    /// Does not allocate once it has seen as many layers.
+    /// Allocates only for more layers than before.
     ///
     /// # Panics
     /// If lengths differ.
@@ -175,12 +176,12 @@ impl Blender {
 }
 
 impl Blender {
-    /// Adds differences to a pose, joint by joint, each times its weight and mask: layers come from
+    /// Adds differences to a pose, joint by joint, each times its weight and mask. Layers come from
     /// [`Clip::difference_from`](crate::Clip::difference_from). A rotation becomes `pose · difference` (in the joint's
     /// own axes), a translation the sum, a scale the product.
     ///
     /// Several differences at a joint are first summed in the order of [`blend`](Self::blend), so their order does not
-    /// matter, to the bit, and nothing jumps where two weights become equal. For rotations the sum is
+    /// matter, to the bit, and the result does not jump where two weights become equal. For rotations the sum is
     /// `1 + Σ w (difference − 1)`, normalised.
     ///
     /// # Panics
@@ -192,7 +193,7 @@ impl Blender {
         }
     }
 
-    /// Checks lengths and sorts the layers that have weight.
+    /// Checks lengths and sorts the layers with positive weight.
     fn sort(&mut self, layers: &[BlendLayer<'_>], joints: usize) {
         for layer in layers {
             assert_eq!(layer.pose.len(), joints, "all poses are of one rig");
@@ -225,7 +226,7 @@ impl Kernel for Blend<'_, '_> {
             let mut mean = self.mean::<L>(index, shares);
             if self.mean == RotationMean::Exact {
                 let rotation = self.exact_rotation::<L>(index, fill, mean.rotation);
-                // If all are equal, the mean is exactly that pose.
+                // If all rotations are equal, the mean is exactly that rotation.
                 mean.rotation = Quaternions::select(mean.unanimous, mean.rotation, rotation);
             }
             mean.store(&self.rest[index], L::gt(total, L::splat(0.0)), &mut self.out[index]);
@@ -233,12 +234,12 @@ impl Kernel for Blend<'_, '_> {
     }
 }
 
-/// Factors that scale weights to a sum of 1.
+/// Factors that scale the weights to a sum of 1.
 #[derive(Clone, Copy)]
 struct Shares<L> {
     /// Weight of the rest pose.
     fill: L,
-    /// One over the sum of all weights.
+    /// Reciprocal of the sum of all weights.
     scale: L,
 }
 
@@ -266,8 +267,8 @@ impl Blend<'_, '_> {
         mean.finish(rest)
     }
 
-    /// Markley's mean, or `start` if it is undefined: the matrix is squared four times, which equals sixteen steps of a
-    /// power iteration.
+    /// Returns Markley's mean, or `start` if it is undefined. The matrix is squared four times, which equals sixteen
+    /// steps of a power iteration.
     #[inline(always)]
     fn exact_rotation<L: Lanes>(&self, index: usize, fill: L, start: Quaternions<L>) -> Quaternions<L> {
         let mut sum = Symmetric4::outer(Quaternions::load(&self.rest[index]), fill);
@@ -283,12 +284,12 @@ impl Blend<'_, '_> {
     }
 }
 
-/// The mean of a block's joints while it is added up: the heaviest pose and the sum of weighted differences from it.
+/// Mean of a block's joints during summation: the heaviest pose and the sum of weighted differences from it.
 struct Mean<L: Lanes> {
     heaviest: Parts<L>,
     difference: Parts<L>,
     rotation: Quaternions<L>,
-    /// Lanes in which no rotation differs from the heaviest.
+    /// Lanes in which no rotation differs from that of the heaviest pose.
     unanimous: L::Mask,
 }
 
@@ -320,7 +321,7 @@ impl<L: Lanes> Mean<L> {
         self.unanimous = L::eq(change.dot(change), zero);
         let sum = self.heaviest.rotation.plus(change);
         let square = sum.dot(sum);
-        // Opposite rotations cancel; nothing is left to normalise.
+        // Opposite rotations cancel, so their sum cannot be normalised.
         let mean =
             Quaternions::select(L::gt(square, L::splat(1e-8)), sum.unit(square), Quaternions::load(rest));
         self.rotation = Quaternions::select(self.unanimous, self.rotation, mean);

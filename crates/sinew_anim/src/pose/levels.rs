@@ -1,4 +1,4 @@
-//! Every kernel gives the same bits on all registers of this processor.
+//! Checks that every kernel gives the same bits on all registers of this processor.
 
 use super::add::Add;
 use super::blend::{Blend, BlendLayer, Mask, RotationMean};

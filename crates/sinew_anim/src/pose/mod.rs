@@ -22,15 +22,15 @@ pub(crate) use soa::{ROTATION, ROWS, SCALE, TRANSLATION};
 use crate::rig::{LocalTransform, Rig};
 use sinew_math::{Affine, Rotation, Vec3, clamp};
 
-/// Rest pose of the file: the nodes' own transforms.
+/// Returns the rest pose of the file: the nodes' own transforms.
 pub fn rest_pose(rig: &Rig) -> Vec<LocalTransform> {
     rig.joints.iter().map(|joint| joint.rest).collect()
 }
 
-/// Model-space transform of every joint: `root` times the chain of local transforms down to the joint.
+/// Computes the model-space transform of every joint: `root` times the chain of local transforms down to the joint.
 ///
-/// `root` maps the file's scene to the caller's space, the identity for the file's own. `model` is cleared and filled,
-/// one entry per joint.
+/// `root` maps the file's scene to the caller's space; use the identity for the file's own space. `model` is cleared
+/// and filled, one entry per joint.
 ///
 /// # Panics
 /// If `local` is not as long as the rig has joints.
@@ -43,7 +43,7 @@ pub fn local_to_model(rig: &Rig, local: &[LocalTransform], root: &Affine, model:
     }
 }
 
-/// Motion of a joint's frame, model axes.
+/// Velocity of a joint's frame, model axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointVelocity {
     /// Velocity of the joint's origin, the pose's unit of length per second.
@@ -52,9 +52,9 @@ pub struct JointVelocity {
     pub angular: Vec3,
 }
 
-/// Mean velocity of every joint's rigid frame between two model poses `dt` seconds apart; zero if `dt` is not positive.
-/// Exact for motion at constant velocity that rotates less than half a turn in `dt`. Both poses have one entry per
-/// joint, in one space and unit; `out` is cleared and filled with as many.
+/// Computes the mean velocity of every joint's rigid frame between two model poses `dt` seconds apart; zero if `dt` is
+/// not positive. Exact for motion at constant velocity that rotates less than half a turn in `dt`. Both poses have one
+/// entry per joint, in one space and unit; `out` is cleared and filled with as many.
 ///
 /// # Panics
 /// If the poses differ in length.
@@ -78,16 +78,16 @@ pub fn joint_velocities(before: &[Affine], after: &[Affine], dt: f32, out: &mut 
 pub struct WeightedPose<'a> {
     /// One local transform per joint.
     pub pose: &'a [LocalTransform],
-    /// Share, ≥ 0; shares need not add up to 1. Negative and NaN count as 0.
+    /// Weight, ≥ 0; weights need not add up to 1. Negative and NaN count as 0.
     pub weight: f32,
 }
 
-/// Weighted mean of any number of poses; the order of the layers does not matter beyond rounding. All poses, `rest` and
-/// `out` have one local transform per joint of one rig, file units; `out` is overwritten. [`Blender`] does the same on
-/// eight joints at once, in a canonical order, to the bit.
+/// Writes the weighted mean of any number of poses to `out`; the order of the layers does not matter beyond rounding.
+/// All poses, `rest` and `out` have one local transform per joint of one rig, file units. [`Blender`] computes the same
+/// for eight joints at a time, in a canonical order, to the bit.
 ///
-/// Rotations are summed on the hemisphere of the **rest pose** and normalised once: pairwise spherical blends would
-/// depend on the order, and alignment to the first layer on which layer is first. If the weights sum to zero, or a
+/// Rotations are summed on the hemisphere of the **rest pose** and normalised once. Pairwise spherical blends would
+/// depend on the order, and alignment to the first layer on the choice of that layer. If the weights sum to zero, or a
 /// joint's rotations cancel, the result is the rest pose.
 ///
 /// # Panics
@@ -118,8 +118,8 @@ pub fn blend(rest: &[LocalTransform], layers: &[WeightedPose<'_>], out: &mut [Lo
     }
 }
 
-/// Blend of two poses: `from` at `t` = 0, `to` at `t` = 1, `t` limited to 0..=1. See [`blend`], also for the lengths of
-/// the slices: with [`smoothstep`] of the time for `t` it suits poses less than about 120° apart;
+/// Blends two poses: `from` at `t` = 0, `to` at `t` = 1, `t` limited to 0..=1. The slices have the lengths that
+/// [`blend`] requires. With [`smoothstep`] of the time for `t`, the blend suits poses less than about 120° apart;
 /// [`Transition::Crossfade`](crate::Transition::Crossfade) handles any others.
 ///
 /// # Panics

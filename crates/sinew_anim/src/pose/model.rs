@@ -1,4 +1,4 @@
-//! Local to model space, eight conversions to a matrix at a time, then one product per joint.
+//! Converts local to model space: eight conversions to a matrix at a time, then one product per joint.
 
 use super::soa::{Pose, ROTATION, ROWS, SCALE, TRANSLATION};
 use crate::rig::Rig;
@@ -12,7 +12,7 @@ pub(super) type Columns = [[f32; 4]; 4];
 /// Parts of a [`Rig`] for run time: parents and the rest pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skeleton {
-    /// Parent + 1, 0 for a root.
+    /// Parent + 1 for each joint, 0 for a root.
     parents: Vec<u32>,
     rest: Pose,
 }
@@ -54,9 +54,9 @@ impl Skeleton {
         (self.parents[joint] as usize).checked_sub(1)
     }
 
-    /// Model-space transform of every joint: `root` times the chain of local transforms down to the joint, with the
-    /// bits of [`local_to_model`](super::local_to_model). `root` maps the file's scene to the caller's space. `model`
-    /// is resized to the skeleton; it allocates the first time only.
+    /// Computes the model-space transform of every joint: `root` times the chain of local transforms down to the
+    /// joint, with the bits of [`local_to_model`](super::local_to_model). `root` maps the file's scene to the
+    /// caller's space. `model` is resized to the skeleton, which allocates only the first time.
     ///
     /// # Panics
     /// If `local` is not as long as the skeleton.
@@ -68,7 +68,7 @@ impl Skeleton {
     }
 }
 
-/// A transform per joint from its own space to model space, as columns of 4×4 matrices.
+/// A transform from each joint's space to model space, as columns of 4×4 matrices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModelPose {
     /// The root's own transform, then one per joint.
@@ -86,7 +86,7 @@ impl ModelPose {
         self.len() == 0
     }
 
-    /// Transform of `joint`: file units.
+    /// Returns the transform of `joint`; file units.
     ///
     /// # Panics
     /// If the joint is out of range.
@@ -95,12 +95,13 @@ impl ModelPose {
         Affine { linear: Mat3::from_cols(x, y, z), translation: w }
     }
 
-    /// The matrices, one per joint, column after column, as graphics processors take them: the last row is 0 0 0 1.
+    /// Returns the matrices, one per joint, column by column, in the layout of graphics processors: the last row is 0
+    /// 0 0 1.
     pub fn matrices(&self) -> &[[[f32; 4]; 4]] {
         self.joints.get(1..).unwrap_or_default()
     }
 
-    /// The joints in order.
+    /// Iterates over the transforms of the joints in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Affine> {
         (0..self.len()).map(|joint| self.get(joint))
     }
@@ -134,7 +135,7 @@ impl Kernel for ToModel<'_> {
     }
 }
 
-/// Scaled rotation matrices of a block's joints, column after column, by the formulas of `Rotation::to_mat3`.
+/// Computes scaled rotation matrices of a block's joints, column by column, by the formulas of `Rotation::to_mat3`.
 #[inline(always)]
 fn linear_rows<L: Lanes>(block: &Block<ROWS>, rows: &mut [[f32; WIDTH]; 9]) {
     let [one, two] = [L::splat(1.0), L::splat(2.0)];
@@ -156,7 +157,7 @@ fn linear_rows<L: Lanes>(block: &Block<ROWS>, rows: &mut [[f32; WIDTH]; 9]) {
     ((one - two * (x * x + y * y)) * sz).store(&mut rows[8]);
 }
 
-/// Columns of the local transform in `lane`.
+/// Returns the columns of the local transform in `lane`.
 #[inline(always)]
 fn own_columns(rows: &[[f32; WIDTH]; 9], block: &Block<ROWS>, lane: usize) -> [[f32; 3]; 4] {
     let place = &block.0;
@@ -168,7 +169,7 @@ fn own_columns(rows: &[[f32; WIDTH]; 9], block: &Block<ROWS>, lane: usize) -> [[
     ]
 }
 
-/// Parent times own, in the order in which `Affine` adds.
+/// Returns parent times own, with the order of additions of `Affine`.
 #[inline(always)]
 fn product(parent: &Columns, own: &[[f32; 3]; 4]) -> Columns {
     let (at, origin) = (image(parent, &own[3]), &parent[3]);
@@ -180,7 +181,8 @@ fn product(parent: &Columns, own: &[[f32; 3]; 4]) -> Columns {
     ]
 }
 
-/// Four numbers, the last of them 0, so that the compiler uses one register per column.
+/// Maps a vector by the linear part; returns four numbers, the last of them 0, so that the compiler uses one register
+/// per column.
 #[inline(always)]
 fn image([x, y, z, _]: &Columns, v: &[f32; 3]) -> [f32; 4] {
     [

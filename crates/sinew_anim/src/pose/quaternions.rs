@@ -1,9 +1,9 @@
-//! Quaternions whose coordinates are lanes.
+//! Quaternions with one value per lane.
 
 use super::soa::{ROTATION, ROWS};
 use sinew_math::lanes::{Block, Lanes, Vector3};
 
-/// A quaternion per lane. Sums use the order of `Rotation`.
+/// A quaternion per lane. Sums use the order of additions of `Rotation`.
 #[derive(Clone, Copy)]
 pub(crate) struct Quaternions<L> {
     pub v: Vector3<L>,
@@ -17,7 +17,7 @@ impl<L: Lanes> Quaternions<L> {
         Self { v: Vector3::new(zero, zero, zero), w: zero }
     }
 
-    /// The rotations of a block of joints.
+    /// Loads the rotations of a block of joints.
     #[inline(always)]
     pub(crate) fn load(block: &Block<ROWS>) -> Self {
         let rows = &block.0;
@@ -53,7 +53,7 @@ impl<L: Lanes> Quaternions<L> {
         self.v.x * other.v.x + self.v.y * other.v.y + (self.v.z * other.v.z + self.w * other.w)
     }
 
-    /// `a` where the mask is true, `b` where it is false.
+    /// Returns `a` where the mask is true, `b` where it is false.
     #[inline(always)]
     pub(crate) fn select(mask: L::Mask, a: Self, b: Self) -> Self {
         let v = Vector3::new(
@@ -64,7 +64,7 @@ impl<L: Lanes> Quaternions<L> {
         Self { v, w: L::select(mask, a.w, b.w) }
     }
 
-    /// Chooses the sign on the hemisphere of `reference`.
+    /// Chooses the sign of each quaternion on the hemisphere of `reference`.
     #[inline(always)]
     pub(crate) fn toward(self, reference: Self) -> Self {
         let away = L::lt(self.dot(reference), L::splat(0.0));
@@ -77,7 +77,7 @@ impl<L: Lanes> Quaternions<L> {
         self.times(L::splat(1.0) / square.sqrt())
     }
 
-    /// Hamilton's product: `self` after `other`.
+    /// Hamilton's product: the rotation `other`, then `self`.
     #[inline(always)]
     pub(crate) fn after(self, other: Self) -> Self {
         let (a, b) = (self, other);

@@ -23,13 +23,13 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Creates identities.
+    /// Creates a pose of identities.
     pub fn new(joints: usize) -> Self {
         let identity = Block::splat(record(&LocalTransform::default()));
         Self { blocks: vec![identity; joints.div_ceil(WIDTH)], joints }
     }
 
-    /// Rest pose of the file: the nodes' own transforms.
+    /// Returns the rest pose of the file: the nodes' own transforms.
     pub fn rest(rig: &Rig) -> Self {
         rig.joints.iter().map(|joint| joint.rest).collect()
     }
@@ -67,7 +67,7 @@ impl Pose {
         self.blocks[joint / WIDTH].set(joint % WIDTH, record(local));
     }
 
-    /// The joints in order.
+    /// Iterates over the local transforms of the joints in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = LocalTransform> {
         (0..self.joints).map(|joint| self.get(joint))
     }
@@ -89,7 +89,7 @@ impl Pose {
         &mut self.blocks
     }
 
-    /// A total order of poses by bits; only poses equal to the bit compare equal.
+    /// Total order of poses by bits; only poses equal to the bit compare equal.
     pub(crate) fn order(&self, other: &Self) -> Ordering {
         fn bits(pose: &Pose) -> impl Iterator<Item = u32> {
             pose.blocks.iter().flat_map(|block| block.0.as_flattened()).map(|number| number.to_bits())

@@ -1,4 +1,4 @@
-//! Symmetric 4×4 matrices, of which the exact mean of rotations is an eigenvector.
+//! Symmetric 4×4 matrices; the exact mean of rotations is an eigenvector of one.
 
 use super::quaternions::Quaternions;
 use sinew_math::lanes::{Lanes, Vector3};
@@ -54,7 +54,7 @@ impl<L: Lanes> Symmetric4<L> {
         }
     }
 
-    /// Scaled to trace 1, so that squares neither overflow nor vanish.
+    /// Scales to trace 1, so that squares neither overflow nor vanish.
     #[inline(always)]
     pub(super) fn normalized(self) -> Self {
         let s = L::splat(1.0) / (self.xx + self.yy + (self.zz + self.ww));

@@ -1,11 +1,11 @@
-//! Alignment of two bodies: the differences of their reference poses, role by role.
+//! Aligns two bodies: differences of their reference poses, role by role.
 
 use crate::rig::JointIdx;
 use crate::roles::{HUMANOID_ROLES, RigAnalysis, Role, Side};
 use crate::tuning::{LEG_STANDS, SAME_UPRIGHT};
 use sinew_math::{Mat3, Rotation, Transform, Vec3, direction};
 
-/// Joints of one role.
+/// Joints of two bodies with the same role.
 pub(super) struct Pair {
     pub role: Role,
     /// Joint of the actor.
@@ -24,7 +24,7 @@ pub(super) struct Alignment {
     pub unmatched: Vec<Role>,
 }
 
-/// A body in its reference pose, its own axes, metres.
+/// A body in its reference pose, in its own axes, metres.
 struct Stance<'a> {
     analysis: &'a RigAnalysis,
     joints: Vec<Transform>,
@@ -55,7 +55,7 @@ impl<'a> Stance<'a> {
         parts.into_iter().filter_map(|role| Some((role, self.joint(role)?))).collect()
     }
 
-    /// Left and up, from the hip joints and the trunk.
+    /// Returns the left and the up direction, from the hip joints and the trunk.
     fn trunk(&self) -> Option<(Vec3, Vec3)> {
         let left = self.way(Role::UpperLeg(Side::Right), Role::UpperLeg(Side::Left))?;
         let top = [Role::Neck, Role::Head].into_iter().find_map(|role| self.place(role))?;
@@ -73,7 +73,7 @@ impl Alignment {
         for side in [Side::Left, Side::Right] {
             let [leg, arm] = limb_roles(side);
             turns.extend(leg_turns(&from, &to, trunk, leg));
-            // Clavicles vary between rigs, so they only follow the trunk.
+            // Clavicles differ between rigs, so they only follow the trunk.
             turns.extend(chain_turns(&from, &to, trunk, [arm[1], arm[2], arm[3]]));
         }
         let turn_of = |role: Role| turns.iter().find(|(r, _)| *r == role).map_or(trunk, |&(_, turn)| turn);
@@ -92,7 +92,7 @@ impl Alignment {
                 (_, None) => {}
             }
         }
-        // Spines differ in length: their tops correspond, the rest in proportion.
+        // Spines differ in length: their top joints correspond, the others in proportion.
         let (below, above) = (from.spine(), to.spine());
         for (k, &(role, joint)) in above.iter().enumerate() {
             match ((k + 1) * below.len()).div_ceil(above.len()).checked_sub(1) {
@@ -105,8 +105,8 @@ impl Alignment {
     }
 }
 
-/// The rotation from the actor's reference trunk to the character's. If both stand upright only the lines through the
-/// hip joints are matched: a spine's lean depends on the rig.
+/// Returns the rotation from the actor's reference trunk to the character's. If both stand upright, only the lines
+/// through the hip joints are aligned, because a spine's lean depends on the rig.
 fn trunk_turn(from: &Stance<'_>, to: &Stance<'_>) -> Rotation {
     let Some(((left, up), (new_left, new_up))) = from.trunk().zip(to.trunk()) else {
         return Rotation::IDENTITY;
@@ -118,8 +118,8 @@ fn trunk_turn(from: &Stance<'_>, to: &Stance<'_>) -> Rotation {
     Rotation::from_mat3_lossy(&(frame(new_left, new_up) * frame(left, up).transpose()))
 }
 
-/// Rotations that align the two bones of a limb with those of the other body, each on top of the one before; the third
-/// joint follows.
+/// Returns the rotations that align the two bones of a limb with those of the other body, each after the previous one;
+/// the third joint follows.
 fn chain_turns(
     from: &Stance<'_>,
     to: &Stance<'_>,
@@ -135,8 +135,8 @@ fn chain_turns(
     [(upper, first), (lower, second), (end, second)]
 }
 
-/// Rotations of a leg, as of an arm; feet that stand in both reference poses stay flat, and only their headings are
-/// matched.
+/// Returns the rotations of a leg, like those of an arm. Feet that stand in both reference poses stay flat, and only
+/// their headings are aligned.
 fn leg_turns(from: &Stance<'_>, to: &Stance<'_>, trunk: Rotation, roles: [Role; 4]) -> Vec<(Role, Rotation)> {
     let [upper, lower, foot, toes] = roles;
     let [thigh, shank, (_, along)] = chain_turns(from, to, trunk, [upper, lower, foot]);
@@ -158,7 +158,7 @@ fn leg_turns(from: &Stance<'_>, to: &Stance<'_>, trunk: Rotation, roles: [Role; 
     vec![thigh, shank, (foot, turn), (toes, turn)]
 }
 
-/// The roles of a side's leg and of its arm, from the trunk outward.
+/// Roles of the leg and the arm of a side, from the trunk outward.
 fn limb_roles(side: Side) -> [[Role; 4]; 2] {
     use Role::{Foot, Hand, LowerArm, LowerLeg, Shoulder, Toes, UpperArm, UpperLeg};
     [

@@ -1,8 +1,8 @@
-//! An actor's motion on a character of another size and build.
+//! Transfers an actor's motion to a character of another size and build.
 //!
-//! Joints are matched by [roles](crate::roles). Each takes the actor's rotation, corrected by the difference of the
-//! reference poses, so that thighs and arms point where the actor's point; the pelvis moves in proportion to leg
-//! length; the feet are held where the actor's stand. Everything is computed in the bodies' own axes and metres, so
+//! Joints are matched by [roles](crate::roles). Each gets the actor's rotation, corrected by the difference of the
+//! reference poses, so that thighs and arms point in the actor's directions; the pelvis moves in proportion to leg
+//! length; the feet are held where the actor's feet stand. All computation uses the bodies' own axes and metres, so
 //! files may differ in up, facing and unit.
 
 mod align;
@@ -35,25 +35,26 @@ pub struct Body<'a> {
     pub analysis: &'a RigAnalysis,
 }
 
-/// Duration of the motion of a larger body.
+/// Duration of the motion on a larger body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Pace {
     /// Same duration as the actor's.
     #[default]
     Actor,
-    /// Longer by the square root of the ratio of leg lengths (Froude: like walks at equal v²/(g l)): giants seem large.
+    /// Duration times the square root of the ratio of leg lengths (Froude: similar walks have equal v²/(g l)), so that
+    /// giants look large.
     Froude,
-    /// Longer by this factor, above 0.
+    /// Duration times this factor, above 0.
     Times(f32),
 }
 
 /// Treatment of the feet at the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Feet {
-    /// Feet are held where the actor's stand, and lie flat on the floor meanwhile.
+    /// Feet are held where the actor's feet stand, flat on the floor.
     #[default]
     Locked,
-    /// The feet go where the rotations carry them, and are tilted as the actor's.
+    /// Feet follow the rotations of the leg, and tilt like the actor's.
     Free,
 }
 
@@ -62,11 +63,12 @@ pub enum Feet {
 pub struct RetargetOptions {
     /// Seconds from frame to frame of the result, above 0. Default 1/60.
     pub frame_time: f64,
-    /// Default: the actor's duration.
+    /// Duration of the motion. Default: the actor's.
     pub pace: Pace,
     /// Treatment of the feet. Default: locked.
     pub feet: Feet,
-    /// Height of the actor's floor, metres along its up axis from the origin of its file. Default: found from the feet.
+    /// Height of the actor's floor, metres along its up axis from the origin of its file. Default: derived from the
+    /// feet.
     pub floor: Option<f32>,
 }
 
@@ -79,13 +81,13 @@ impl Default for RetargetOptions {
 /// Reason why a motion cannot be retargeted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RetargetError {
-    /// Roles could only be guessed as those of some creature.
+    /// A body is not recognised as humanoid, so it has only generic roles.
     #[error("the {0} is no humanoid: its joints have no roles to match")]
     NotHumanoid(&'static str),
     /// A joint that the method needs has no counterpart.
     #[error("the {0} has no joint for a role that is needed (hips, or a thigh, shank or foot)")]
     RoleMissing(&'static str),
-    /// The frame time, the pace or a length is of no use.
+    /// The frame time, the pace or a length is not above 0.
     #[error("{0} must be above 0 and finite")]
     NotPositive(&'static str),
     /// The clip lasts longer than [`Take::MOST_FRAMES`] frames.
@@ -96,28 +98,28 @@ pub enum RetargetError {
 /// A retargeted motion, and its quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Retargeted {
-    /// The retargeted motion, one pose a frame.
+    /// The retargeted motion, one pose per frame.
     pub take: Take,
     /// Foot contacts, seconds of the new motion.
     pub contacts: Vec<FootContact>,
-    /// Roles that both bodies have: actor's joint, character's joint.
+    /// Roles that both bodies have, with the actor's and the character's joint.
     pub pairs: Vec<(Role, JointIdx, JointIdx)>,
     /// Roles of the character that the actor lacks: these joints follow their parents.
     pub unmatched: Vec<Role>,
-    /// Length of the character's legs over that of the actor's.
+    /// Ratio of the character's leg length to the actor's.
     pub scale: f32,
-    /// Duration over that of the actor's motion.
+    /// Ratio of the duration to that of the actor's motion.
     pub pace: f32,
-    /// Ground of the character, in its own axes, metres: it moves under a motion on the spot.
+    /// Ground of the character, in its own axes, metres; it moves under a motion on the spot.
     pub ground: Ground,
     /// Foot slide of the actor, over the same contacts, for comparison.
     pub actor_slide: FootSlide,
-    /// Foot slide of the character before and after holding; equal without holding.
+    /// Foot slide of the character before and after holding the feet; equal if they are not held.
     pub feet: FootSlideReport,
 }
 
 impl Retargeted {
-    /// The motion as a clip of the character's rig.
+    /// Converts the motion to a clip of the character's rig.
     ///
     /// # Panics
     /// If `rig` is not the character's.
@@ -126,9 +128,9 @@ impl Retargeted {
     }
 }
 
-/// Carries `clip`, a motion of `actor`, over to `character`: one pose of the character's rig every
+/// Transfers `clip`, a motion of `actor`, to `character`. The result has one pose of the character's rig every
 /// [`frame_time`](RetargetOptions::frame_time) seconds, local transforms in its file's units; reported lengths are
-/// metres by the unit scales of the two analyses. Run it once per clip, not each frame: it allocates.
+/// metres by the unit scales of the two analyses. Run it once per clip, not each frame, because it allocates.
 ///
 /// ```
 /// use sinew_anim::retarget::{Body, RetargetOptions, retarget, stand};
@@ -145,8 +147,8 @@ impl Retargeted {
 /// ```
 ///
 /// # Errors
-/// A body without the roles of a humanoid, without hips or with less than two whole legs; numbers that are not above 0;
-/// a clip that is too long.
+/// If a body lacks the roles of a humanoid or hips, or has fewer than two complete legs; if a number is not above 0; if
+/// the clip is too long.
 ///
 /// # Panics
 /// As [`sample`](crate::clip::sample::sample()).
@@ -200,7 +202,7 @@ pub fn retarget(
     })
 }
 
-/// Moves riders to their body part in every frame.
+/// Moves riders with their body part in every frame.
 ///
 /// # Panics
 /// If the take does not fit the character's rig.
@@ -216,7 +218,7 @@ fn check(number: f32, what: &'static str) -> Result<(), RetargetError> {
     if number > 0.0 && number.is_finite() { Ok(()) } else { Err(RetargetError::NotPositive(what)) }
 }
 
-/// Data that does not change from frame to frame.
+/// Data of a retargeting that does not change from frame to frame.
 struct Transfer<'a> {
     actor: Body<'a>,
     character: Body<'a>,
@@ -227,9 +229,9 @@ struct Transfer<'a> {
     actor_feet: [Foot; 2],
     /// Legs of the character.
     legs: Legs,
-    /// Vector from the pelvis to the middle of its hip joints, in the pelvis' own axes without scale, metres.
+    /// Vector from the pelvis to the middle of its hip joints, in the pelvis' axes without scale, metres.
     hips_to_legs: Vec3,
-    /// Length of the character's legs over that of the actor's.
+    /// Ratio of the character's leg length to the actor's.
     scale: f32,
 }
 
@@ -237,7 +239,7 @@ struct Transfer<'a> {
 struct Steps {
     ground: Ground,
     contacts: Vec<FootContact>,
-    /// Height of the lowest sole over the ground in each frame, metres; 0 while a foot stands.
+    /// Height of the lowest sole above the ground in each frame, metres; 0 while a foot stands.
     heights: Vec<f32>,
     slide: FootSlide,
 }
@@ -272,7 +274,8 @@ impl<'a> Transfer<'a> {
         })
     }
 
-    /// Assumes that the actor's standing feet are flat in the motion, and the character's with them.
+    /// Corrects the feet under the assumption that the actor's standing feet are flat in the motion, and so are the
+    /// character's.
     fn flatten_soles(&mut self, source: &Take) {
         let points = sole_points(self.actor.rig, &self.actor_root, &self.actor_feet, source);
         let (tilts, flat) = flatten_soles(&self.actor_feet, &points);
@@ -303,7 +306,7 @@ impl<'a> Transfer<'a> {
         Steps { ground, slide: foot_slide(source, feet, &points, &contacts), contacts, heights }
     }
 
-    /// Holds the character's feet in its contacts, or only measures their slide.
+    /// Holds the character's feet during the contacts, or only measures their slide.
     fn stand(
         &self,
         feet: Feet,
@@ -320,8 +323,8 @@ impl<'a> Transfer<'a> {
         FootSlideReport { slide: [slide; 2], ..FootSlideReport::default() }
     }
 
-    /// Rotations and the path of the pelvis, then the height of the body so that its lowest sole, near the floor, is as
-    /// high as the actor's.
+    /// Computes rotations and the path of the pelvis, then the height of the body: near the floor, its lowest sole is
+    /// as high as the actor's.
     fn carry(&self, source: &Take, steps: &Steps, frame_time: f64) -> Take {
         let rig = self.character.rig;
         let mut take = Take { frame_time, joints: rig.joints.len(), poses: Vec::new() };
@@ -334,7 +337,7 @@ impl<'a> Transfer<'a> {
             let target = self.hips_target(&from, &to, steps.ground.height);
             self.legs.carry(rig, target - to[self.legs.pelvis].translation, &mut pose, &mut to);
             let low = lowest(&self.legs.feet.each_ref().map(|foot| foot.points(&to)));
-            // A body that lies, or leaps with its feet up, follows its pelvis.
+            // If the body lies, or leaps with its feet up, its height follows the pelvis.
             let leg = self.legs.feet[0].length;
             let height = self.scale * steps.heights[frame];
             let near = 1.0 - smoothstep((height - 0.1 * leg) / (0.2 * leg));
@@ -349,7 +352,7 @@ impl<'a> Transfer<'a> {
         take
     }
 
-    /// Every matched joint gets its counterpart's corrected rotation; the others follow.
+    /// Gives every matched joint the corrected rotation of the actor's joint; other joints follow their parents.
     fn turn_joints(&self, from: &[Affine], pose: &mut [crate::rig::LocalTransform], to: &mut Vec<Affine>) {
         to.clear();
         let mut pairs = self.alignment.pairs.iter().peekable();
@@ -363,7 +366,7 @@ impl<'a> Transfer<'a> {
         }
     }
 
-    /// Target of the character's pelvis: its hip joints are as far and as high as the actor's, by the length of the legs.
+    /// Target of the character's pelvis: the position of the actor's hip joints times the ratio of the leg lengths.
     fn hips_target(&self, from: &[Affine], to: &[Affine], floor: f32) -> Vec3 {
         let [left, right] = self.actor_feet.map(|foot| from[foot.leg.upper].translation);
         let middle = (left + right) * 0.5 - Vec3::Y * floor;

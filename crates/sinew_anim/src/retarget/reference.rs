@@ -11,20 +11,20 @@ use sinew_math::{Vec3, direction};
 /// Source of a reference pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reference {
-    /// A given pose: the rest pose that a file puts before its motion.
+    /// A given pose: the rest pose before the motion in a file.
     Stated,
     /// The rest pose of the rig.
     Rest,
-    /// The clip at that time (seconds): the rig's rest pose is not a standing pose.
+    /// The clip at this time (seconds), because the rig's rest pose is not a standing pose.
     Clip(f32),
 }
 
-/// Frames of a clip that are examined.
+/// Number of frames of a clip that are examined.
 const LOOKS: usize = 24;
 
 /// Analyses a skeleton without skin in its best standing pose: the stated one (if any), else the rig's rest pose, else
-/// the most upright frame of the clip. The rest pose of many capture files is no pose, or stands along another axis
-/// than the clip; then a frame of the clip is used.
+/// the most upright frame of the clip. The rest pose of many capture files does not stand, or stands along another
+/// axis than the clip; then a frame of the clip is used.
 ///
 /// # Errors
 /// [`NoSkin`] if no bone has a length.
@@ -50,7 +50,7 @@ pub fn stand(
     let mut best: Option<(f32, RigAnalysis, Reference)> = None;
     for (pose, reference) in at_rest.chain(in_clip) {
         let analysis = analyze_skeleton(rig, &pose)?;
-        // Poses along another axis than the clip's come last.
+        // Poses that stand along another axis than the clip's come last.
         let is_other = moves_along.is_some_and(|up| up.dot(analysis.up_axis) < 0.5);
         let upright = if is_other { f32::NEG_INFINITY } else { uprightness(&analysis) };
         if best.as_ref().is_none_or(|(most, ..)| upright > *most) {
@@ -63,7 +63,7 @@ pub fn stand(
     best.map(|(_, analysis, reference)| (analysis, reference)).ok_or(NoSkin)
 }
 
-/// Up axis of most of some standing poses; `None` if none stands.
+/// Returns the up axis of most of the standing poses; `None` if none stands.
 fn up_in_clip(rig: &Rig, poses: impl Iterator<Item = Vec<LocalTransform>>) -> Option<Vec3> {
     let mut standing: Vec<Vec3> = Vec::new();
     for pose in poses {
@@ -76,7 +76,7 @@ fn up_in_clip(rig: &Rig, poses: impl Iterator<Item = Vec<LocalTransform>>) -> Op
     standing.iter().max_by_key(alike).filter(|up| 2 * alike(up) > LOOKS).copied()
 }
 
-/// Uprightness: the least cosine of trunk, thighs and shanks with the vertical; −1 for other bodies.
+/// Uprightness: the smallest cosine of trunk, thighs and shanks with the vertical; −1 for other bodies.
 fn uprightness(analysis: &RigAnalysis) -> f32 {
     let place = |role: Role| analysis.joint_with(role).map(|joint| analysis.bind_model[joint].translation);
     let up = analysis.up_axis;

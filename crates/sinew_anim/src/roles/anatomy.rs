@@ -28,10 +28,10 @@ pub(super) struct Anatomy {
     pub humanoid: bool,
     /// Up axis, a unit vector in model space.
     pub up: Vec3,
-    /// Unit, model space, at right angles to `up`.
+    /// Left direction, a unit vector in model space, perpendicular to `up`.
     pub left: Vec3,
     pub notes: Vec<String>,
-    /// Longest stride in the clips, seconds, and the height of the leg's start over the floor, file units.
+    /// Longest stride in the clips, seconds, and the height of the leg's start above the floor, file units.
     stride: Option<(f32, f32)>,
 }
 
@@ -47,7 +47,7 @@ pub(super) struct Scene<'a> {
 }
 
 impl Anatomy {
-    /// Fails if no joint moves skin, or if `known` is impossible.
+    /// Builds the analysis; fails if no joint moves skin, or if `known` is impossible.
     pub fn of(
         rig: &Rig,
         bound: &Bound,
@@ -60,7 +60,7 @@ impl Anatomy {
         Ok(draft.finish(scene, notes))
     }
 
-    /// Sizes of the body from which the unit of its file follows.
+    /// Returns the sizes of the body from which the unit of its file follows.
     pub fn measured(&self, bound: &Bound, species: Option<Species>) -> Measured {
         let stance = Stance::new(bound, self.up);
         let is_head = |guess: &Option<RoleGuess>| guess.is_some_and(|guess| guess.role == Role::Head);
@@ -121,7 +121,7 @@ impl<'a> Scene<'a> {
             (readings[joint].part, readings[joint].side) = (part_of(role), role.side());
         }
         if !matches!(trust, Trust::Nothing { .. }) {
-            // A control whose skin no joint above it moves is a body part, whatever its name.
+            // A control whose skin is moved by no joint above it is a body part with any name.
             let fair = CONTROL_SKIN * bound.area.iter().sum::<f32>();
             let is_bone = |joint: JointIdx| {
                 let carries = |ancestor: JointIdx| bound.area[ancestor] > 0.0;
@@ -144,14 +144,14 @@ impl<'a> Scene<'a> {
         Some((Self { rig, bound, hints, graph, symmetry, readings }, notes))
     }
 
-    /// Drafts the roles by the file, else by shape, else by names, else generic ones.
+    /// Drafts the roles: stated by the file, else by shape, else by names, else generic.
     fn draft(&self, notes: &mut Vec<String>) -> Draft {
         if let Some(stated) = self.stated_draft() {
             notes.push("roles are those that the file states".into());
             return stated;
         }
         let human = |up: Vec3| self.recognise(up).filter(|found| !self.is_beast(found));
-        // Tries the file's own up first: some bodies look like a lying human, too.
+        // Tries the file's own up axis first, because some bodies also look like a lying human.
         let ups = self.hints.up.into_iter().filter(|up| up.dot(self.symmetry.lateral).abs() < 0.5);
         let found = ups.chain(possible_ups(self.symmetry.lateral)).find_map(|up| Some((up, human(up)?)));
         if let Some((up, humanoid)) = found {
@@ -167,13 +167,13 @@ impl<'a> Scene<'a> {
         self.generic_draft(notes)
     }
 
-    /// Distance of a joint from the middle toward a direction at right angles to up.
+    /// Distance of a joint from the midline toward `left`, a direction perpendicular to up.
     pub fn toward(&self, left: Vec3, joint: JointIdx) -> f32 {
         let lateral = self.symmetry.lateral;
         (self.bound.model[joint].translation.dot(lateral) - self.symmetry.centre) * left.dot(lateral)
     }
 
-    /// A human from the known roles and names; fails with the missing ones.
+    /// Drafts a human from the known roles and names; fails with the missing roles.
     pub fn known_draft(&self, known: &[(Role, JointIdx)]) -> Result<Draft, Vec<Role>> {
         let mut all = known.to_vec();
         for (joint, reading) in self.readings.iter().enumerate() {
@@ -212,8 +212,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Swing of the limb that ends at a node against its mirror image, and the limb's first node; `None` without an
-    /// image.
+    /// Returns the swing of the limb that ends at a node against its mirror image, and the limb's first node; `None`
+    /// without a mirror image.
     fn swing(&self, up: Vec3, end: usize) -> Option<(Swing, usize)> {
         let other = self.symmetry.other(end)?;
         let mut line: Vec<usize> =
@@ -231,7 +231,7 @@ impl<'a> Scene<'a> {
         Some((self.hints.gait.swing(&pair), begin))
     }
 
-    /// Ends of limbs near the floor, one of each pair.
+    /// Returns the ends of limbs near the floor, one of each mirrored pair.
     fn low_ends(&self, up: Vec3) -> impl Iterator<Item = usize> + '_ {
         let stance = Stance::new(self.bound, up);
         (0..self.graph.nodes.len()).filter(move |&end| {
@@ -241,8 +241,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Longest stride of alternately swinging limbs near the floor, seconds, with the height of the limb's start, file
-    /// units.
+    /// Returns the longest stride of alternately swinging limbs near the floor, seconds, and the height of the limb's
+    /// start, file units.
     fn stride(&self, up: Vec3) -> Option<(f32, f32)> {
         if self.hints.gait.is_empty() {
             return None;
@@ -255,8 +255,8 @@ impl<'a> Scene<'a> {
         Some((swing.stride, stance.level(self.graph.nodes[begin].position) * stance.height))
     }
 
-    /// Walking direction of alternately swinging limbs near the floor: their mean correlation of height and speed along
-    /// `forward`, weighted by swing.
+    /// Returns the mean correlation of height and speed along `forward` of alternately swinging limbs near the floor,
+    /// weighted by swing: positive if the body walks toward `forward`.
     fn walks_toward(&self, up: Vec3) -> f32 {
         let swings = self.low_ends(up).filter_map(|end| self.swing(up, end));
         let (sum, weight) = swings.fold((0.0, 0.0), |(sum, weight), (swing, _)| {
@@ -265,8 +265,8 @@ impl<'a> Scene<'a> {
         if weight > 0.0 { sum / weight } else { 0.0 }
     }
 
-    /// True if names contradict the shape: arms named as wings, a head as a tail, or arms and legs as limbs of a
-    /// quadruped.
+    /// True if names contradict the shape: arms named as wings, a head named as a tail, or arms and legs named as limbs
+    /// of a quadruped.
     fn is_beast(&self, found: &Humanoid) -> bool {
         let arms = found.arms.chain.iter().flatten().map(|&node| self.graph.nodes[node].joint);
         if arms.into_iter().any(|joint| self.readings[joint].is_wing) {
@@ -283,8 +283,8 @@ impl<'a> Scene<'a> {
         is_named(&found.arms) && is_named(&found.legs)
     }
 
-    /// Left by names, unless several signs of the shape contradict them; else by the feet, else by the walking
-    /// direction, else by the elbows, else so that the body faces the file's +Z.
+    /// Returns the left direction by names, unless several signs of the shape contradict them; else by the feet, the
+    /// walking direction, the elbows; else so that the body faces the file's +Z.
     fn left(&self, up: Vec3, ankles: &[Vec3], arms: Option<&Limb>, notes: &mut Vec<String>) -> Vec3 {
         let lateral = self.symmetry.lateral;
         let forward = lateral.cross(up);
@@ -300,7 +300,7 @@ impl<'a> Scene<'a> {
         let steps = if named == 0.0 && feet != 0.0 { 0.0 } else { self.walks_toward(up) };
         let walk = if steps.abs() > STEP_CORRELATION { steps.signum() } else { 0.0 };
         if named != 0.0 {
-            // The feet contradict the names. A single heel, claw or boot may cause that.
+            // The feet contradict the names, but a single heel, claw or boot may cause that.
             let shape = [feet, walk, bent, self.toes_lead(up, forward)];
             let against: f32 = shape.into_iter().map(|sign| -named * sign).sum();
             if against <= 0.0 {
@@ -323,7 +323,7 @@ impl<'a> Scene<'a> {
             notes.push("the feet hardly show the front of the body: it is taken from the elbows".into());
             return lateral * bent;
         }
-        // A lead of half a per cent of the height or more is that of a foot; less is noise.
+        // A lead of at least half a per cent of the height shows feet; a smaller one is noise.
         if lead.abs() > LEAST_FOOT {
             return lateral * lead.signum();
         }
@@ -332,7 +332,7 @@ impl<'a> Scene<'a> {
         lateral * if forward.dot(ahead) < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// Sign of the direction from feet to toes, as named, along `forward`; 0 if unclear.
+    /// Returns the sign of the direction from feet to toes, by name, along `forward`; 0 if unclear.
     fn toes_lead(&self, up: Vec3, forward: Vec3) -> f32 {
         let height = Stance::new(self.bound, up).height;
         let place = |part: Part, side: Side| {
@@ -373,8 +373,8 @@ impl<'a> Scene<'a> {
         Draft { roles, humanoid: true, up, left }
     }
 
-    /// Uses the named joints of limbs if the names distinguish all long bones of both sides: a cuff or a clavicle that
-    /// looks like an upper arm is none.
+    /// Uses the named joints of limbs if the names distinguish all long bones of both sides. A cuff or a clavicle may
+    /// look like an upper arm.
     fn correct_limbs(&self, draft: &mut Draft) {
         let mut named: Vec<(Role, JointIdx)> = Vec::new();
         for (joint, reading) in self.readings.iter().enumerate() {
@@ -405,8 +405,8 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The joints of a chain of the trunk, and those without skin among and directly above them that are named as its
-    /// part.
+    /// Returns the joints of a chain of the trunk, with joints without skin between and directly above them that are
+    /// named as the same part.
     fn with_bare(&self, chain: &[usize], part: Part) -> Vec<JointIdx> {
         let mut joints: Vec<JointIdx> = chain.iter().map(|&node| self.graph.nodes[node].joint).collect();
         let (Some(&first), Some(&last)) = (joints.first(), joints.last()) else { return joints };
@@ -428,7 +428,7 @@ impl<'a> Scene<'a> {
         joints
     }
 
-    /// Position of the ankle: the foot's node, or the end of the shank if the foot moves no skin of its own.
+    /// Position of the ankle: the foot's node, or the end of the shank if the foot moves no skin.
     fn ankle(&self, chain: &[usize], split: Split) -> Vec3 {
         let node = chain[split.2.unwrap_or(split.1)];
         let joint = self.graph.nodes[node].joint;
@@ -438,8 +438,8 @@ impl<'a> Scene<'a> {
         self.bound.model[end.unwrap_or(joint)].translation
     }
 
-    /// Parts that the shape does not show, by name: feet without skin beside the body, hands of arms posed differently
-    /// on the two sides, a neck without skin.
+    /// Adds parts that the shape does not show, by name: feet without skin beside the body, hands of arms posed
+    /// differently on the two sides, a neck without skin.
     fn add_named(&self, roles: &mut [Option<RoleGuess>]) {
         let mut add = |role: Role, part: Part, on: Role| {
             let has = |role: Role| roles.iter().position(|r| r.is_some_and(|guess| guess.role == role));
@@ -450,7 +450,8 @@ impl<'a> Scene<'a> {
                     if side.is_some() { reading.side == side } else { self.on_side_of(joint, on) };
                 reading.part == Some(part) && roles[joint].is_none() && (part == Part::Neck || same_side)
             };
-            // Among several, take the one in line with its parent: controls have the names of bones, too.
+            // Among several joints, takes the one in line with its parent, because controls also have the names of
+            // bones.
             let is_above =
                 |above: JointIdx, joint: JointIdx| ancestors(self.rig, joint).any(|at| at == above);
             let all: Vec<JointIdx> = (0..roles.len()).filter(named).collect();
@@ -473,14 +474,14 @@ impl<'a> Scene<'a> {
         side(joint) * side(other) > 0.0
     }
 
-    /// Roles that the file states, if they form a body.
+    /// Drafts the roles that the file states, if they form a body.
     fn stated_draft(&self) -> Option<Draft> {
         let stated = self.rig.stated_roles.iter();
         let known = stated.filter_map(|(name, joint)| Some((Role::from_name(name)?, *joint)));
         self.draft_of(known.filter(|&(_, joint)| joint < self.rig.joints.len()).collect(), Basis::Stated)
     }
 
-    /// Roles by trusted names, if they form a body and the hands do not walk on the floor.
+    /// Drafts the roles by trusted names, if they form a body and the hands do not stand on the floor.
     fn named_draft(&self) -> Option<Draft> {
         if self.readings.iter().any(|reading| reading.part == Some(Part::Beast)) {
             return None;
@@ -512,7 +513,7 @@ impl<'a> Scene<'a> {
             let joint = draft.roles.iter().position(|r| r.is_some_and(|guess| guess.role == role));
             joint.map(|joint| stance.level(self.bound.model[joint].translation))
         };
-        // The hands are in the lowest third of the leg.
+        // True if the hands are in the lowest third of the leg.
         let low = |side: Side| {
             let foot = level(Role::Foot(side)).unwrap_or(0.0);
             let leg = level(Role::UpperLeg(side)).map_or(0.0, |hip| hip - foot);
@@ -529,7 +530,7 @@ impl<'a> Scene<'a> {
         draft.roles.iter().position(|guess| guess.is_some_and(|guess| guess.role == role))
     }
 
-    /// Middle of the vertices that a joint moves most.
+    /// Mean of the vertices that a joint moves most.
     fn middle(&self, joint: JointIdx) -> Option<Vec3> {
         let own = self.bound.vertices.iter().zip(&self.bound.movers).filter(|(_, mover)| **mover == joint);
         let (sum, count) =
@@ -537,7 +538,8 @@ impl<'a> Scene<'a> {
         (count > 0.0).then(|| sum / count)
     }
 
-    /// True if the legs point away from the head: quadrupeds named like humans have legs across the trunk.
+    /// True if the legs point away from the head; in quadrupeds with human names the legs are perpendicular to the
+    /// trunk.
     fn stands(&self, draft: &Draft) -> bool {
         let place = |role: Role| {
             let joint = draft.roles.iter().position(|r| r.is_some_and(|guess| guess.role == role));
@@ -553,7 +555,7 @@ impl<'a> Scene<'a> {
         [Side::Left, Side::Right].into_iter().filter_map(along).all(|down| down < -0.5)
     }
 
-    /// True if the trunk is horizontal and arms and legs hang down from it, by the file's own up: a quadruped with
+    /// True if the trunk is horizontal and arms and legs hang down from it, by the file's up axis: a quadruped with
     /// human names.
     fn is_on_all_fours(&self, draft: &Draft) -> bool {
         let Some(up) = self.hints.up else { return false };
@@ -573,7 +575,7 @@ impl<'a> Scene<'a> {
             && hangs(Role::UpperLeg, [Role::Foot, Role::LowerLeg])
     }
 
-    /// A draft from known roles; `None` if hips, head, or one of the upper limbs is missing.
+    /// Drafts a body from known roles; `None` if hips, head, or one of the upper limbs is missing.
     fn draft_of(&self, known: Vec<(Role, JointIdx)>, basis: Basis) -> Option<Draft> {
         let joint_of = |role: Role| known.iter().find(|(r, _)| *r == role).map(|&(_, joint)| joint);
         let place = |role: Role| joint_of(role).map(|joint| self.bound.model[joint].translation);
@@ -608,7 +610,7 @@ impl<'a> Scene<'a> {
         };
         let feet: Vec<Vec3> =
             (0..self.graph.nodes.len()).filter(foot).map(|i| self.graph.nodes[i].position).collect();
-        // A body without pairs may have its plane of symmetry across its own up.
+        // A body without pairs may have a plane of symmetry across its up axis.
         let left = if lateral.dot(up).abs() < 0.5 { self.left(up, &feet, None, notes) } else { Vec3::X };
         let mut roles = vec![None; self.rig.joints.len()];
         let parts: Vec<Option<Part>> =
@@ -621,14 +623,14 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Trust in the names of a rig, by what mirrored pairs have in common.
+/// Trust in the names of a rig, by comparing mirrored pairs.
 enum Trust {
     /// The names are mirrored.
     All,
-    /// Both joints of a pair have one name except for numbers ("Leg.1", "Leg.2"): only words of the midline and of
+    /// Both joints of a pair have one name except for numbers ("Leg.1", "Leg.2"), so only words of the midline and of
     /// appendices count.
     Words,
-    /// The names do not match: number of matching pairs, and of all pairs.
+    /// The names of pairs do not match; holds the numbers of matching pairs and of all pairs.
     Nothing { agreeing: usize, pairs: usize },
 }
 
@@ -678,7 +680,7 @@ impl Trust {
     }
 }
 
-/// True if nearly every part with a side is named on both sides: for a bind pose without mirror symmetry.
+/// True if nearly every part with a side is named on both sides; for a bind pose without mirror symmetry.
 fn sides_pair_up(readings: &[Reading]) -> bool {
     let mut sides: Vec<(&str, Side)> = readings
         .iter()
@@ -717,7 +719,7 @@ fn leg_roles(legs: &Limb, k: usize, side: Side) -> Vec<(usize, Role)> {
     roles
 }
 
-/// Geometric evidence for a role.
+/// Returns the evidence for a role found by shape: whether the name agrees, contradicts, or gives no part.
 fn basis(role: Role, reading: &Reading) -> Basis {
     let Some(part) = reading.part else { return Basis::Shape };
     // Rigify and CesiumMan count the pelvis among the spine.
@@ -746,7 +748,7 @@ fn part_of(role: Role) -> Option<Part> {
     })
 }
 
-/// The humanoid role of a part and a side; the spine also needs its place in the chain.
+/// Returns the humanoid role of a part and a side; roles of the spine also depend on the place in the chain.
 fn role_of(part: Part, side: Option<Side>) -> Option<Role> {
     let fits = |role: &Role| part_of(*role) == Some(part) && role.side() == side;
     super::role::HUMANOID_ROLES.into_iter().filter(|_| part != Part::Spine).find(fits)

@@ -1,7 +1,7 @@
-//! Completes bodies by names if the hierarchy or the skin of a rig leaves a part out.
+//! Completes bodies by names if the hierarchy or the skin of a rig omits a part.
 //!
 //! Exports of deform bones only make thighs, shoulders and upper arms roots; low-poly characters have limb bones
-//! without skin; and an asymmetric pose hides what the names say.
+//! without skin; and an asymmetric pose hides the mirrored pairs that the names show.
 
 use super::bind::Bound;
 use super::graph::ancestors;
@@ -13,8 +13,8 @@ use sinew_math::{Vec3, direction};
 
 const LONG: [Part; 4] = [Part::UpperArm, Part::LowerArm, Part::UpperLeg, Part::LowerLeg];
 
-/// Limb bones without skin that carry a skinned part of the same limb, or whose twin has skin: the nearest for each
-/// part of a side.
+/// Returns limb bones without skin that carry a skinned part of the same limb, or whose mirrored bone has skin: the
+/// nearest bone for each part of a side.
 ///
 /// The name and the hierarchy confirm such a bone, even without skin.
 pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<JointIdx> {
@@ -41,7 +41,7 @@ pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<
             }
         }
     }
-    // The twin of the bone has skin: a mirrored figure has both.
+    // The mirrored bone has skin, and a mirrored figure has both.
     for (joint, reading) in readings.iter().enumerate().filter(|&(joint, _)| !moves(joint)) {
         let Some(part) = reading.part.filter(|part| LONG.contains(part)) else { continue };
         let Some(side) = reading.side else { continue };
@@ -53,14 +53,14 @@ pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<
     found.into_iter().map(|(_, _, joint)| joint).collect()
 }
 
-/// Position of a part in its limb, from the trunk outward; `None` for other parts.
+/// Returns the limb of a part and its position in the limb, from the trunk outward; `None` for other parts.
 fn below(part: Part) -> Option<(usize, usize)> {
     use Part::{Clavicle, Foot, Hand, LowerArm, LowerLeg, Toes, UpperArm, UpperLeg};
     let limbs = [[Clavicle, UpperArm, LowerArm, Hand], [UpperLeg, LowerLeg, Foot, Toes]];
     limbs.iter().enumerate().find_map(|(limb, parts)| Some((limb, parts.iter().position(|p| *p == part)?)))
 }
 
-/// True if the first part is nearer to the trunk in the same limb.
+/// True if `inner` is nearer to the trunk than `outer` in the same limb.
 fn is_of_one_limb(inner: Part, outer: Part) -> bool {
     match (below(inner), below(outer)) {
         (Some((a, i)), Some((b, k))) => a == b && i < k,
@@ -68,7 +68,7 @@ fn is_of_one_limb(inner: Part, outer: Part) -> bool {
     }
 }
 
-/// Joints by the human part of their name, to find parents by name.
+/// Joints by the body part in their name, for finding parents by name.
 pub(super) struct Carriers<'a> {
     readings: &'a [Reading],
     is_human: bool,
@@ -80,7 +80,7 @@ pub(super) struct Carriers<'a> {
 }
 
 impl<'a> Carriers<'a> {
-    /// Carriers among the joints that are parts of the body.
+    /// Finds the carriers among the joints that are parts of the body.
     pub fn of(readings: &'a [Reading], bound: &Bound, is_part: impl Fn(JointIdx) -> bool) -> Self {
         let is_part: Vec<bool> = (0..readings.len()).map(is_part).collect();
         let named = |part: Part| {
@@ -95,10 +95,10 @@ impl<'a> Carriers<'a> {
         };
         let mut spine: Vec<JointIdx> = named(Part::Spine).collect();
         let mut chest = None;
-        // Follow the spine from the hips upward to the arms.
+        // Follows the spine from the hips upward to the arms.
         if let Some(low) = named(Part::Hips).next().map(place).or_else(|| mean(Part::UpperLeg)) {
             spine.sort_by(|&a, &b| (place(a) - low).length().total_cmp(&(place(b) - low).length()));
-            // Without a neck or head by name, the spine continues to the crown.
+            // If no joint is named neck or head, the spine continues to the crown.
             let has_top = [Part::Neck, Part::Head].into_iter().any(|part| named(part).next().is_some());
             if let Some(arms) = mean(Part::UpperArm).filter(|_| !has_top) {
                 let below = |&&joint: &&JointIdx| {
@@ -111,7 +111,7 @@ impl<'a> Carriers<'a> {
         Self { readings, is_human: sides_agree(readings, bound), spine, chest, is_part }
     }
 
-    /// The parent of a joint by name; `None` if the names do not contain it.
+    /// Returns the parent of a joint by name; `None` if the names give no parent.
     pub fn of_joint(&self, joint: JointIdx) -> Option<JointIdx> {
         use Part::{
             Clavicle, Foot, Hand, Head, Hips, LowerArm, LowerLeg, Neck, Spine, Toes, UpperArm, UpperLeg,
@@ -150,9 +150,9 @@ impl<'a> Carriers<'a> {
     }
 }
 
-/// True if names consistently distinguish left and right for several pairs, arms and legs among them.
+/// True if names consistently distinguish left and right for several pairs, including arms and legs.
 ///
-/// Does not need a mirror: the two sides may be posed differently.
+/// Needs no mirror symmetry: the two sides may be posed differently.
 pub(super) fn sides_agree(readings: &[Reading], bound: &Bound) -> bool {
     let mut ways: Vec<(Part, Vec3)> = Vec::new();
     for part in [Part::UpperArm, Part::LowerArm, Part::Hand, Part::UpperLeg, Part::LowerLeg, Part::Foot] {

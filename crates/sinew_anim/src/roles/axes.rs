@@ -8,12 +8,12 @@ use super::role::Side;
 use super::symmetry::Symmetry;
 use sinew_math::{Mat3, Rotation, Vec3, max, min};
 
-/// The model's axis nearest to a direction.
+/// Returns the model axis nearest to a direction.
 pub(super) fn snap(direction: Vec3) -> Vec3 {
     nearest(direction).0
 }
 
-/// `y`, `-z` and the like: the axis nearest to a direction.
+/// Returns the name of the axis nearest to a direction, such as `y` or `-z`.
 pub(super) fn name(direction: Vec3) -> &'static str {
     nearest(direction).1
 }
@@ -31,14 +31,14 @@ fn nearest(direction: Vec3) -> (Vec3, &'static str) {
     axes.into_iter().reduce(nearer).unwrap_or((Vec3::Y, "y"))
 }
 
-/// The four model axes perpendicular to `lateral`: the file's own up first, then those of other programs.
+/// Returns the four model axes perpendicular to `lateral`: +Y first, then those of other programs.
 pub(super) fn possible_ups(lateral: Vec3) -> impl Iterator<Item = Vec3> {
     [Vec3::Y, Vec3::Z, -Vec3::Y, -Vec3::Z, Vec3::X, -Vec3::X]
         .into_iter()
         .filter(move |up| up.dot(lateral).abs() < 0.5)
 }
 
-/// The rotation from model axes to the character's: left to +X, up to +Y, forward to +Z.
+/// Returns the rotation from model axes to the character's: left to +X, up to +Y, forward to +Z.
 pub(super) fn character_from_model(left: Vec3, up: Vec3) -> Rotation {
     Rotation::from_mat3(&Mat3::from_cols(left, up, left.cross(up)).transpose())
 }
@@ -60,7 +60,7 @@ pub(super) fn feet_lead(bound: &Bound, stance: &Stance, forward: Vec3, ankles: &
     ankles.iter().map(lead).sum()
 }
 
-/// Direction of the left side by name: the sign along [`Symmetry::lateral`], 0 if unknown.
+/// Sign of the left side along [`Symmetry::lateral`] by name; 0 if unknown.
 pub(super) fn left_by_name(graph: &Graph, symmetry: &Symmetry, readings: &[Reading]) -> f32 {
     let vote = |i: usize| match readings[i].side {
         Some(Side::Left) => symmetry.side(graph, i),

@@ -1,4 +1,4 @@
-//! Places in the bind pose of what is beside the skeleton: rigid meshes, and skeletons of hair and clothes.
+//! Bind poses of nodes beside the skeleton: rigid meshes, and skeletons of hair and clothes.
 
 use super::bind::{alike, moving_slots};
 use super::characters::skeletons;
@@ -7,8 +7,8 @@ use crate::rig::{JointIdx, Rig};
 use crate::roles::tuning::{AT_MAIN, SIDE_BONES};
 use sinew_math::{Affine, Vec3, max, max3, min3};
 
-/// Moves the bind poses of side skeletons (hair, a cape, eyes) with the nearest bone of the main one: they were placed at the
-/// rest pose, and if the body was bound otherwise, they would be beside it.
+/// Moves the bind poses of side skeletons (hair, a cape, eyes) with the nearest bone of the main skeleton. They were
+/// placed at the rest pose, and are misplaced if the body was bound in another pose.
 pub(super) fn move_side_skeletons(rig: &Rig, rest: &[Affine], bound: &mut [Option<Affine>]) {
     let all = skeletons(rig);
     if all.len() < 2 {
@@ -41,7 +41,8 @@ pub(super) fn move_side_skeletons(rig: &Rig, rest: &[Affine], bound: &mut [Optio
     }
 }
 
-/// Joints that move vertices of some meshes, parents first. A control that moves none may be bound anywhere.
+/// Returns the joints that move vertices of some meshes, parents first. A control without vertices may be bound
+/// anywhere.
 fn bones_of(rig: &Rig, meshes: &[usize]) -> Vec<JointIdx> {
     let mut bones: Vec<JointIdx> = Vec::new();
     for mesh in meshes.iter().map(|&m| &rig.meshes[m]) {
@@ -54,8 +55,9 @@ fn bones_of(rig: &Rig, meshes: &[usize]) -> Vec<JointIdx> {
     bones
 }
 
-/// Positions of rigid mesh nodes beside the skeleton in the bind pose: a hat without a bone is placed relative to the
-/// rest pose, and follows the nearest joint. `None` for all others, and if that joint rests as it was bound.
+/// Returns positions in the bind pose of rigid mesh nodes beside the skeleton: a hat without a bone is placed relative
+/// to the rest pose, and follows the nearest joint. `None` for all other nodes, and if the rest pose of that joint
+/// equals its bind pose.
 pub(super) fn beside_the_bones(rig: &Rig, rest: &[Affine], bound: &[Option<Affine>]) -> Vec<Option<Affine>> {
     let mut bears = vec![false; rig.joints.len()];
     let bones = (0..rig.joints.len()).filter(|&joint| bound[joint].is_some());
@@ -64,7 +66,7 @@ pub(super) fn beside_the_bones(rig: &Rig, rest: &[Affine], bound: &[Option<Affin
         ancestors(rig, bone).for_each(|above| bears[above] = true);
     });
     let mut beside = vec![None; rig.joints.len()];
-    // Take the highest node below those that carry bones for each such mesh; its first mesh gives the position.
+    // For each such mesh, takes the highest ancestor that carries no bones; its first mesh gives the position.
     for mesh in rig.meshes.iter().filter(|mesh| mesh.skin.is_none()) {
         let line = core::iter::once(mesh.joint).chain(ancestors(rig, mesh.joint));
         let own: Vec<JointIdx> = line.take_while(|&at| !bears[at]).collect();

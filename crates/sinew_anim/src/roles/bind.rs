@@ -12,24 +12,24 @@ use std::collections::BTreeMap;
 
 /// Geometry of a rig in its bind pose, model space, file units.
 pub(crate) struct Bound {
-    /// Transform of every joint.
+    /// Transform of every joint in the bind pose.
     pub model: Vec<Affine>,
     /// Skin area that each joint moves (its weights times the area around the vertices).
     pub area: Vec<f32>,
     /// All skinned vertices.
     pub vertices: Vec<Vec3>,
-    /// The joint that moves each vertex most; in a skeleton without skin the joint itself.
+    /// The joint that moves each vertex most; without skin, the joint itself.
     pub movers: Vec<JointIdx>,
-    /// Number of triangle edges that run from one joint's vertices to another's, the smaller joint first.
+    /// Number of triangle edges between vertices of two joints, by the pair of joints, the smaller index first.
     pub links: BTreeMap<(JointIdx, JointIdx), u32>,
-    /// Least corner of the skin.
+    /// Lower corner of the skin's box.
     pub lo: Vec3,
-    /// Greatest corner of the skin.
+    /// Upper corner of the skin's box.
     pub hi: Vec3,
 }
 
 impl Bound {
-    /// `None` if no finite vertex of the rig is bound to a joint.
+    /// Collects the bind pose of a rig; `None` if no finite vertex is bound to a joint.
     pub fn of(rig: &Rig) -> Option<Self> {
         let model = bind_pose(rig);
         let mut bound = Self {
@@ -53,8 +53,8 @@ impl Bound {
         Some(bound)
     }
 
-    /// Counts rigid meshes as the skin of their joint if that is named as a body part, or carries both legs, and has no
-    /// skin: low-poly characters consist of such parts.
+    /// Counts rigid meshes as the skin of their joint if the joint has no skin, and is named as a body part or carries
+    /// both legs. Low-poly characters consist of such parts.
     fn add_rigid_parts(&mut self, rig: &Rig) {
         let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
         let parents: Vec<Option<JointIdx>> = rig.joints.iter().map(|joint| joint.parent).collect();
@@ -97,8 +97,8 @@ impl Bound {
         (self.lo, self.hi) = (min3(self.lo, position), max3(self.hi, position));
     }
 
-    /// Collects the bind pose of a skeleton without skin: bones weigh by their length, and joints act as vertices.
-    /// `None` if no bone has a finite length.
+    /// Collects the bind pose of a skeleton without skin: the length of a bone replaces its skin area, and joints
+    /// replace vertices. `None` if no bone has a finite length.
     pub fn of_bones(rig: &Rig, pose: &[LocalTransform]) -> Option<Self> {
         let mut model = Vec::new();
         local_to_model(rig, pose, &Affine::IDENTITY, &mut model);
@@ -119,8 +119,8 @@ impl Bound {
         for &at in &bound.vertices {
             (bound.lo, bound.hi) = (min3(bound.lo, at), max3(bound.hi, at));
         }
-        // A joint exactly on its parent (CMU's skeletons have eleven) is no place of its own, and two at one spot
-        // (clavicles, hips) would each be their own mirror image: their children belong to the parent.
+        // A joint exactly on its parent (CMU's skeletons have eleven) is no separate place, and two joints in one place
+        // (clavicles, hips) would each be their own mirror image. Their children belong to the parent.
         let near = COINCIDENT * bound.size();
         let twins = twins(rig, &bound.model, near);
         let mut place: Vec<usize> = (0..rig.joints.len()).collect();
@@ -139,7 +139,7 @@ impl Bound {
         let has_bones = bound.area.iter().any(|&a| a > 0.0);
         let is_named_end = |&i: &usize| is_end[i] && place[i] == i && !rig.joints[i].name.is_empty();
         for i in (0..rig.joints.len()).filter(is_named_end).filter(|&i| !is_beside[i]) {
-            // A hand or a head whose length the file does not give.
+            // Length of a hand or a head, which the file does not give.
             bound.area[i] = 0.06 * bound.size();
         }
         has_bones.then_some(bound)
@@ -187,7 +187,7 @@ impl Bound {
     }
 }
 
-/// True for each joint of a tree that is not part of the skeleton: cameras with targets, lamps.
+/// True for each joint of a tree that does not belong to the skeleton: cameras with targets, lamps.
 fn beside_the_skeleton(rig: &Rig) -> Vec<bool> {
     let mut root: Vec<usize> = (0..rig.joints.len()).collect();
     let mut size = vec![0; rig.joints.len()];
@@ -199,7 +199,7 @@ fn beside_the_skeleton(rig: &Rig) -> Vec<bool> {
     root.into_iter().map(|root| LARGEST_BESIDE * size[root] < largest).collect()
 }
 
-/// True for each joint with a sibling in the same place, of the other side by name, or both without a name.
+/// True for each joint with a sibling in the same place that has the other side by name, or if both have no name.
 fn twins(rig: &Rig, model: &[Affine], tolerance: f32) -> Vec<bool> {
     let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
     let readings = read_names(&names, &[]);
@@ -222,7 +222,7 @@ fn twins(rig: &Rig, model: &[Affine], tolerance: f32) -> Vec<bool> {
     found
 }
 
-/// A third of the area of every triangle around a vertex; equal shares if there is no area at all.
+/// Returns a third of the area of all triangles around each vertex; equal shares if there is no area.
 fn vertex_areas(positions: &[Vec3], indices: &[u32]) -> Vec<f32> {
     let mut share = vec![0.0; positions.len()];
     for corners in indices.chunks_exact(3) {
@@ -261,8 +261,9 @@ pub(crate) fn bind_pose(rig: &Rig) -> Vec<Affine> {
     model
 }
 
-/// Skinned meshes, the one that defines the bind pose first: a mesh of the trunk before one of a limb or a gun alone,
-/// which lies where a posed hand rests; of these the one that most joints move, of equals the one with the most vertices.
+/// Returns skinned meshes, the one that defines the bind pose first. A mesh of the trunk comes before a mesh of only a
+/// limb or a gun, which may be placed at a posed hand. Then the mesh with the most moving joints comes first, then the
+/// one with the most vertices.
 fn by_weight(rig: &Rig) -> Vec<&RigMesh> {
     let mut meshes: Vec<&RigMesh> = rig.meshes.iter().filter(|mesh| mesh.skin.is_some()).collect();
     let movers = |mesh: &RigMesh| -> Vec<JointIdx> {
@@ -305,9 +306,10 @@ pub(super) fn moving_slots(rig: &Rig, mesh: &RigMesh) -> Vec<bool> {
 
 /// Transform of the skinned mesh to model space in its bind pose.
 ///
-/// If the rest pose equals the bind pose, every joint agrees (joint × inverse bind). Otherwise the mesh's own node is
-/// used if any joint confirms it, else the skinned joint that carries most others bound in their scale: the root of the
-/// skeleton, which poses hardly move. Joints without skin are ignored: a control may be bound anywhere.
+/// If the rest pose equals the bind pose, every joint gives the same result (joint × inverse bind). Otherwise the
+/// mesh's own node is used if any joint confirms it. Otherwise the skinned joint that carries most others of the same
+/// bind scale is used: the root of the skeleton, which poses hardly move. Joints without skin are ignored, because a
+/// control may be bound anywhere.
 fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     let skin = &rig.skins[mesh.skin.expect("only skinned meshes are asked for")];
     let moves = moving_slots(rig, mesh);
@@ -332,12 +334,12 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     if votes(&rest[mesh.joint]) > 0 {
         return rest[mesh.joint];
     }
-    // Take the first of a line of joints that carry as much.
+    // Takes the first of a line of joints that carry equally many.
     let carries = |slot: usize| {
         let joint = skin.joints[slot];
         (carried[joint], core::cmp::Reverse(ancestors(rig, joint).count()))
     };
-    // A handle above the body may be bound in another scale, so it is no evidence.
+    // A handle above the body may be bound in another scale, so it is ignored.
     let size = |place: &Affine| place.linear.x_axis.length();
     let mut sizes: Vec<f32> = said.iter().map(size).collect();
     sizes.sort_by(f32::total_cmp);
@@ -346,14 +348,15 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     let root = slots
         .filter(|&slot| place(slot).is_finite() && is_alike(&place(slot)))
         .reduce(|a, b| if carries(b) > carries(a) { b } else { a });
-    // A joint that carries less than half is a limb, which may have any rotation: the most common rotation decides.
+    // A joint that carries less than half of the joints is a limb, which may have any rotation, so the most common
+    // rotation decides.
     match root {
         Some(root) if 2 * carries(root).0 as usize >= said.len() => place(root),
         _ => most_alike(&said, is_alike).unwrap_or(*majority),
     }
 }
 
-/// Allowed transform whose axes agree most with all others.
+/// Returns the allowed transform whose axes agree most with all others.
 fn most_alike(all: &[Affine], passes: impl Fn(&Affine) -> bool) -> Option<Affine> {
     let axes =
         |place: &Affine| [place.linear.x_axis, place.linear.y_axis, place.linear.z_axis].map(Vec3::normalize);
@@ -366,7 +369,7 @@ fn most_alike(all: &[Affine], passes: impl Fn(&Affine) -> bool) -> Option<Affine
     scored.reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, place)| *place)
 }
 
-/// Equal up to a thousandth of their scale.
+/// True if two transforms are equal up to a thousandth of their scale.
 pub(super) fn alike(a: &Affine, b: &Affine) -> bool {
     let scale = a.linear.x_axis.length() + b.linear.x_axis.length() + 1e-12;
     let columns = [

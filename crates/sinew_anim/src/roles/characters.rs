@@ -6,11 +6,12 @@ use crate::roles::tuning::{BONES_OF_A_CHARACTER, LARGE_WITHIN, LIES_WITHIN, SAME
 use crate::skinning::skin_vertices;
 use sinew_math::{Affine, Vec3, max, max3, min, min3};
 
-/// The characters of a rig, each by its meshes (indices into [`Rig::meshes`]), in the order of their first mesh.
+/// Returns the characters of a rig, each as its meshes (indices into [`Rig::meshes`]), in the order of their first
+/// mesh.
 ///
-/// A character is a skeleton beside the others. One within another, or small beside it, belongs to that: eyes, a hat,
-/// clothes with bones at the body's, a cape of few bones. A skeleton of similar size with bones elsewhere is a character. Empty without
-/// skins.
+/// A character is a skeleton beside the others. A skeleton inside another, or small beside it, belongs to the other:
+/// eyes, a hat, clothes with bones at the body's bones, a cape of few bones. A skeleton of similar size with bones
+/// elsewhere is a character. Empty without skins.
 ///
 /// # Panics
 /// If the rig's indices are out of range.
@@ -30,7 +31,7 @@ pub fn characters(rig: &Rig) -> Vec<Vec<usize>> {
             (Some(main), Some(extent)) => {
                 let is_other = extent.longest() > LARGE_WITHIN * main.longest()
                     && !shares_bones(rig, &bind, meshes, &skeletons[skeleton], main.longest());
-                // A cape hangs half outside the body.
+                // A cape may extend outside of the body by half of its size.
                 let is_worn = extent.common(&main) > 0.0
                     && bones(rig, &skeletons[skeleton]) < BONES_OF_A_CHARACTER
                     && bones(rig, meshes) >= BONES_OF_A_CHARACTER;
@@ -82,7 +83,7 @@ impl Extent {
         max(sides.x, max(sides.y, sides.z))
     }
 
-    /// Share of its box within the other box, along the axis with the smallest share; below 0 if the boxes are apart.
+    /// Smallest share of the box within the other box, over the three axes; below 0 if the boxes are apart.
     fn common(&self, main: &Self) -> f32 {
         let common = min3(self.hi, main.hi) - max3(self.lo, main.lo);
         let share = |k: usize| {
@@ -92,7 +93,7 @@ impl Extent {
         min(share(0), min(share(1), share(2)))
     }
 
-    /// True if it lies mostly within the other, or is small and near it; a skeleton of similar size beside the other is
+    /// True if the box is mostly within the other, or small and near it. A skeleton of similar size beside the other is
     /// a character.
     fn belongs_to(&self, main: &Self) -> bool {
         let least = self.common(main);
@@ -116,16 +117,17 @@ fn extent(rig: &Rig, bind: &[Affine], meshes: &[usize]) -> Option<Extent> {
     extent
 }
 
-/// The skeletons of a rig, each by its meshes (indices into [`Rig::meshes`]), in the order of their first mesh: skins
-/// whose joints share a tree of bones, or whose trees start at one node that is no root of the scene, with the rigid
-/// meshes below them. Rigid meshes elsewhere are in no skeleton. Empty without skins.
+/// Returns the skeletons of a rig, each as its meshes (indices into [`Rig::meshes`]), in the order of their first mesh.
+/// A skeleton is a set of skins whose joints share a tree of bones, or whose trees start at one node that is no root of
+/// the scene, with the rigid meshes below them. Rigid meshes elsewhere are in no skeleton. Empty without skins.
 ///
 /// # Panics
 /// If the rig's indices are out of range.
 pub(super) fn skeletons(rig: &Rig) -> Vec<Vec<usize>> {
     let mut is_bone = vec![false; rig.joints.len()];
     rig.skins.iter().flat_map(|skin| &skin.joints).for_each(|&joint| is_bone[joint] = true);
-    // Key of a joint: the node that carries the highest bone above it, or that bone if the node is a root of the scene.
+    // Key of a joint: the node that carries the highest bone above the joint, or that bone if the node is a root of the
+    // scene.
     let stem = |joint: JointIdx| {
         let line = core::iter::successors(Some(joint), |&at| rig.joints[at].parent);
         let top = line.filter(|&at| is_bone[at]).last()?;
@@ -172,8 +174,8 @@ pub(super) fn skeletons(rig: &Rig) -> Vec<Vec<usize>> {
     skeletons
 }
 
-/// Joints that move skin of the largest skeleton, if a rig has several that count as one character: the others follow
-/// its bodies. `None` if there is only one.
+/// True for the joints that move skin of the largest skeleton, if several skeletons count as one character; the joints
+/// of the others follow its bodies. `None` if there is only one skeleton.
 pub(super) fn main_skeleton(rig: &Rig, area: &[f32]) -> Option<Vec<bool>> {
     let skeletons = skeletons(rig);
     if skeletons.len() < 2 {

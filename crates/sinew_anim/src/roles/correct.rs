@@ -6,12 +6,13 @@ use super::{Basis, NoSkin, RoleGuess};
 use crate::rig::{JointIdx, Primitive, Rig};
 use std::borrow::Cow;
 
-/// Known roles, and joints that are not part of the body. The default corrects nothing.
+/// Roles of joints, and joints outside the body, as given by the user. The default corrects nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Correction {
-    /// Joints with these roles, whatever shape and names say; the previous joint of a role loses it, or swaps roles.
+    /// Joints with given roles, which override shape and names. The previous joint of a role loses it, or swaps
+    /// roles.
     pub roles: Vec<(Role, JointIdx)>,
-    /// Joints that are not part of the body, with everything below them: they follow their parent, and their skin is
+    /// Joints that are not part of the body, with all their descendants: they follow their parent, and their skin is
     /// ignored.
     pub ignored: Vec<JointIdx>,
 }
@@ -19,16 +20,16 @@ pub struct Correction {
 /// Reason why a correction cannot be applied.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CorrectionError {
-    /// True if there is nothing to correct.
+    /// The rig has no skin.
     #[error(transparent)]
     NoSkin(#[from] NoSkin),
-    /// No joint that moves skin is left.
+    /// All joints that move skin are ignored.
     #[error("nothing that moves skin is left")]
     NothingLeft,
-    /// A role, or a joint, is given twice.
+    /// A role or a joint is given twice.
     #[error("`{}` is given twice: a role has one bone, and a bone one role", .0.name())]
     Twice(Role),
-    /// A human role for a rig that is not read as human; these roles are missing.
+    /// A role is human, but the rig is not recognised as human; some roles are missing.
     #[error(
         "`{}` is a role of a human, and the rig is not read as one: give {} too, and both sides have to be where a \
          human's are",
@@ -38,10 +39,10 @@ pub enum CorrectionError {
     NotHuman {
         /// The role that was given.
         role: Role,
-        /// Missing roles of a human; empty if all are there but in impossible places.
+        /// Missing human roles; empty if all are given but in impossible places.
         missing: Vec<Role>,
     },
-    /// The joint moves no skin, but creature parts do.
+    /// The joint moves no skin, which a creature part must do.
     #[error("it moves no skin: it cannot be `{}`", .0.name())]
     NoPart(Role),
 }
@@ -73,7 +74,7 @@ impl Correction {
         self.roles.is_empty() && self.ignored.is_empty()
     }
 
-    /// The rig without the skin, meshes and joint names that are ignored; joints stay where they are.
+    /// Returns the rig without the skin, meshes and joint names that are ignored; joints keep their places.
     ///
     /// # Panics
     /// If a joint, or an index of the rig, is out of range.
@@ -87,7 +88,7 @@ impl Correction {
             is_ignored[joint] |= rig.joints[joint].parent.is_some_and(|parent| is_ignored[parent]);
         }
         let mut seen = rig.clone();
-        // Ignored joints have no body names.
+        // Ignored joints get no name, so that it cannot name a body part.
         let ignored = seen.joints.iter_mut().zip(&is_ignored).filter(|(_, is_ignored)| **is_ignored);
         ignored.for_each(|(joint, _)| joint.name.clear());
         for mesh in &mut seen.meshes {
@@ -105,7 +106,8 @@ impl Correction {
     }
 }
 
-/// Removes vertices that ignored joints mostly move, with their triangles; other vertices lose these weights.
+/// Removes vertices that are moved mostly by ignored joints, with their triangles; other vertices lose the weights
+/// of ignored joints.
 fn strip(primitive: &mut Primitive, is_ignored: &[bool]) {
     if primitive.joints.is_empty() {
         return;
@@ -142,7 +144,7 @@ fn strip(primitive: &mut Primitive, is_ignored: &[bool]) {
     }
 }
 
-/// Keeps the data of remaining vertices; shorter or empty lists stay out of it.
+/// Keeps the data of the vertices in `stays`; items beyond the end of `stays` remain.
 fn retain<T>(list: &mut Vec<T>, stays: &[bool]) {
     let mut vertex = 0;
     list.retain(|_| {
@@ -151,7 +153,7 @@ fn retain<T>(list: &mut Vec<T>, stays: &[bool]) {
     });
 }
 
-/// A draft with the known roles.
+/// Returns the draft with the known roles applied.
 pub(super) fn corrected(
     scene: &Scene<'_>,
     mut draft: Draft,
@@ -189,7 +191,7 @@ pub(super) fn corrected(
     Ok(draft)
 }
 
-/// True if every known joint of a side is on the other side of the body.
+/// True if every known joint with a side is on the other side of the body in the draft.
 fn is_seen_mirrored(scene: &Scene<'_>, draft: &Draft, known: &[(Role, JointIdx)]) -> bool {
     let mut sided = known.iter().filter(|(role, _)| role.side().is_some()).peekable();
     sided.peek().is_some()
@@ -199,7 +201,7 @@ fn is_seen_mirrored(scene: &Scene<'_>, draft: &Draft, known: &[(Role, JointIdx)]
         })
 }
 
-/// Assigns a role to a joint. Creature parts swap, since each has one; so do the two sides of a human.
+/// Assigns a role to a joint. Creature parts swap roles, because each has one; the two sides of a human swap, too.
 fn assign(draft: &mut Draft, role: Role, joint: JointIdx) -> Result<(), CorrectionError> {
     let holds = |guess: &Option<RoleGuess>| guess.is_some_and(|guess| guess.role == role);
     let holder = draft.roles.iter().position(holds);

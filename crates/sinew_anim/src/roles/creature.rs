@@ -1,4 +1,4 @@
-//! Generic roles for shapes other than human.
+//! Generic roles for bodies that are not human.
 
 use super::axes::possible_ups;
 use super::bind::Bound;
@@ -9,9 +9,9 @@ use super::role::Role;
 use super::symmetry::Symmetry;
 use sinew_math::Vec3;
 
-/// A role per node: the midline chain with the most skin is the trunk, the first other midline chain the tail, every
-/// other chain a limb. If names contain a head or a tail (`parts`, per node), the trunk leads to the head and not to the
-/// tail.
+/// Returns a role per node: the midline chain with the most skin is the trunk, the first other midline chain the tail,
+/// every other chain a limb. If names contain a head or a tail (`parts`, per node), the trunk ends at the head, not at
+/// the tail.
 pub(super) fn generic_roles(
     graph: &Graph,
     symmetry: &Symmetry,
@@ -20,14 +20,14 @@ pub(super) fn generic_roles(
 ) -> Vec<Role> {
     let mut roles: Vec<Option<Role>> = vec![None; graph.nodes.len()];
     let [to_head, to_tail] = [Part::Head, Part::Tail].map(|part| leads_to(graph, parts, part));
-    // Among several continuations, prefer one toward the wanted part, then those not toward the unwanted, then the one
-    // with the most skin.
+    // Among several continuations, prefers one toward the wanted part, then one not toward the unwanted part, then the
+    // one with the most skin.
     let better = |a: usize, b: usize, wanted: &[bool], unwanted: Option<&[bool]>| {
         let rank = |i: usize| (wanted[i], unwanted.is_none_or(|unwanted| !unwanted[i]));
         let skin = |i: usize| graph.nodes[i].subtree_area;
         if rank(b) > rank(a) || rank(b) == rank(a) && skin(b) > skin(a) { b } else { a }
     };
-    // A chain that bends aside without branching still continues.
+    // A chain that bends sideways without branching continues.
     let midline = |from: usize, roles: &[Option<Role>], wanted: &[bool], unwanted: Option<&[bool]>| {
         let children = &graph.nodes[from].children;
         let goes_on = |i: &usize| roles[*i].is_none() && (children.len() == 1 || symmetry.on_midline(*i));
@@ -52,7 +52,7 @@ pub(super) fn generic_roles(
         if in_limb[node] {
             continue;
         }
-        // Parents come first, so a node without a role starts a chain; its side branches start others.
+        // Parents come first, so a node without a role starts a chain; its side branches start other chains.
         begins.push(node);
         along(graph, node).for_each(|part| in_limb[part] = true);
     }
@@ -65,7 +65,7 @@ pub(super) fn generic_roles(
     roles.into_iter().map(|role| role.expect("every node is in a chain")).collect()
 }
 
-/// True if a node or one below it is named for a part.
+/// True for each node that is named as `part` or has such a descendant.
 fn leads_to(graph: &Graph, parts: &[Option<Part>], part: Part) -> Vec<bool> {
     let mut leads: Vec<bool> = parts.iter().map(|named| *named == Some(part)).collect();
     for &node in graph.order.iter().rev() {
@@ -76,8 +76,8 @@ fn leads_to(graph: &Graph, parts: &[Option<Part>], part: Part) -> Vec<bool> {
     leads
 }
 
-/// Sorts limbs by where they begin and how far they reach, independent of the file order: those near the root first, of
-/// a mirrored pair the left one. A pair uses its mean, so that rounding puts no third limb between them.
+/// Sorts limbs by place of attachment and reach, independently of the file order: limbs near the root first, and the
+/// left limb of a mirrored pair first. A pair uses its mean, so that rounding puts no third limb between the two.
 fn number(graph: &Graph, symmetry: &Symmetry, left: Vec3, begins: &mut [usize]) {
     let mean = |node: usize, of: &dyn Fn(usize) -> f32| of(node) + of(symmetry.other(node).unwrap_or(node));
     let key = |node: usize| {
@@ -92,7 +92,7 @@ fn number(graph: &Graph, symmetry: &Symmetry, left: Vec3, begins: &mut [usize]) 
     });
 }
 
-/// A limb from a node on to its farthest end.
+/// Iterates over a limb from `node` to its farthest end.
 fn along(graph: &Graph, node: usize) -> impl Iterator<Item = usize> {
     core::iter::successors(Some(node), |&i| longest(graph, i))
 }
@@ -102,7 +102,7 @@ fn longest(graph: &Graph, node: usize) -> Option<usize> {
     graph.nodes[node].children.iter().copied().reduce(|a, b| if way(b) > way(a) { b } else { a })
 }
 
-/// The direction opposite to which most mirrored chains end; the file's own up (+Y) without such chains.
+/// Returns the up direction, opposite to the ends of most mirrored chains; +Y without such chains.
 pub(super) fn up_by_feet(graph: &Graph, bound: &Bound, symmetry: &Symmetry) -> Vec3 {
     let feet: Vec<Vec3> = (0..graph.nodes.len())
         .filter(|&i| graph.nodes[i].children.is_empty() && symmetry.other(i).is_some())

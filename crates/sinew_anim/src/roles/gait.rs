@@ -8,14 +8,14 @@ use crate::roles::tuning::{GAIT_RATE, IN_TURNS, LEAST_SWING, SHORTEST_WALK, SWIN
 use sinew_math::{Affine, Vec3, clamp, max};
 use std::sync::Arc;
 
-/// Most clips that are examined: walks and runs by name first.
+/// Largest number of clips that are examined; walks and runs by name come first.
 const MOST_CLIPS: usize = 12;
-/// Least and most poses of a clip that are examined.
+/// Fewest and most poses of a clip that are examined.
 const FRAMES: [f32; 2] = [16.0, 96.0];
-/// Words of clips in which legs walk.
+/// Words in names of clips in which legs walk.
 const WALKS: [&str; 8] = ["walk", "run", "jog", "trot", "gallop", "sprint", "march", "move"];
 
-/// Poses of a rig in its clips, from which legs are recognised by their swing. The default is empty.
+/// Poses of a rig in its clips, used to recognise legs by their swing. The default is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gait {
     takes: Arc<Vec<Poses>>,
@@ -33,19 +33,19 @@ struct Poses {
 /// Alternating swing of a pair of limbs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Swing {
-    /// Half the distance between the two ends, ahead and back, root mean square, file units; 0 if they swing together
-    /// or not at all.
+    /// Half the distance between the two ends along the walking direction, root mean square, file units; 0 if they
+    /// swing together or not at all.
     pub reach: f32,
-    /// Longest time from step to step of one limb, seconds; 0 if no clip has a whole one.
+    /// Longest time between two steps of one limb, seconds; 0 if no clip has a whole stride.
     pub stride: f32,
-    /// Correlation of the ends' height with their forward speed, -1..=1: a walking foot moves ahead in the air and back
-    /// on the ground.
+    /// Correlation of the ends' height with their forward speed, -1..=1: a walking foot moves forward in the air and
+    /// back on the ground.
     pub ahead: f32,
 }
 
 /// A pair of limbs to examine.
 pub(super) struct Pair {
-    /// The joint that carries both, and its bind pose.
+    /// The joint that carries both limbs, and its bind pose.
     pub carrier: JointIdx,
     pub bind: Affine,
     pub ends: [JointIdx; 2],
@@ -56,14 +56,14 @@ pub(super) struct Pair {
     pub height: f32,
 }
 
-/// Paths of two ends through a clip relative to their carrier, each without its mean.
+/// Paths of the two ends through a clip relative to their carrier, each minus its mean.
 struct Ways {
     ahead: [Vec<f32>; 2],
     lift: [Vec<f32>; 2],
 }
 
 impl Gait {
-    /// Motion in the clips of a rig.
+    /// Samples the clips of a rig.
     ///
     /// # Panics
     /// As [`sample`](crate::clip::sample::sample()): if a clip is not one of the rig's.
@@ -74,7 +74,7 @@ impl Gait {
             let name = clip.name.to_lowercase();
             WALKS.iter().any(|word| name.contains(word))
         };
-        // Stable: clips of a kind keep their order.
+        // The sort is stable, so clips of a kind keep their order.
         wanted.sort_by_key(|clip| !walks(clip));
         wanted.truncate(MOST_CLIPS);
         if rig.joints.is_empty() {
@@ -88,8 +88,8 @@ impl Gait {
         self.takes.is_empty()
     }
 
-    /// Alternating swing of a pair: the widest of all clips, with the longest stride, and the direction over all of
-    /// them.
+    /// Returns the alternating swing of a pair: the widest and the longest stride of all clips, and the correlation
+    /// over all clips.
     pub(super) fn swing(&self, pair: &Pair) -> Swing {
         let mut swing = Swing { reach: 0.0, stride: 0.0, ahead: 0.0 };
         let (mut up_and_on, mut lifts, mut speeds) = (0.0, 0.0, 0.0);
@@ -126,11 +126,11 @@ impl Poses {
         Self { frame_time, frames: (0..count).map(pose).collect() }
     }
 
-    /// `None` if a pose is not finite.
+    /// Returns the paths of a pair; `None` if a pose is not finite.
     fn ways(&self, pair: &Pair) -> Option<Ways> {
         let mut ways = Ways { ahead: Default::default(), lift: Default::default() };
         for model in &self.frames {
-            // Relative to the carrier's bind pose, so that rotations of the whole body move no leg.
+            // Uses the carrier's bind pose, so that rotations of the whole body do not count as motion of legs.
             let steady = pair.bind * model[pair.carrier].inverse();
             for (side, &end) in pair.ends.iter().enumerate() {
                 let at = steady.point(model[end].translation);
@@ -150,12 +150,12 @@ impl Poses {
 }
 
 impl Ways {
-    /// Half of the lead of the first end over the other, frame by frame.
+    /// Half of the lead of the first end over the second, frame by frame.
     fn apart(&self) -> impl Iterator<Item = f32> + '_ {
         self.ahead[0].iter().zip(&self.ahead[1]).map(|(a, b)| 0.5 * (a - b))
     }
 
-    /// Alternating swing, root mean square; 0 if both move together, or only one does.
+    /// Alternating swing, root mean square; 0 if both ends move together, or only one moves.
     fn reach(&self) -> f32 {
         let squared = |way: &[f32]| way.iter().map(|at| at * at).sum::<f32>();
         let [left, right] = self.ahead.each_ref().map(|way| squared(way));
@@ -166,9 +166,9 @@ impl Ways {
         if alike && apart > IN_TURNS * together { (apart / self.ahead[0].len() as f32).sqrt() } else { 0.0 }
     }
 
-    /// Frames from step to step, for a clip treated as a loop; 0 if there is no whole step.
+    /// Number of frames of a stride in a clip treated as a loop; 0 if there is no whole stride.
     fn stride(&self, reach: f32) -> f32 {
-        // Past the middle by a share of the swing, so that trembling there does not count.
+        // Only positions beyond the middle by a share of the swing count, so that noise near the middle has no effect.
         let sides = self.apart().filter(|d| d.abs() > 0.3 * reach).map(|d| d > 0.0);
         let sides: Vec<bool> = sides.collect();
         let next = sides.iter().cycle().skip(1);
@@ -176,7 +176,7 @@ impl Ways {
         if turns < 2 { 0.0 } else { 2.0 * self.ahead[0].len() as f32 / turns as f32 }
     }
 
-    /// Sums over both ends: height times forward speed, squared height, squared speed.
+    /// Returns sums over both ends: height times forward speed, squared height, squared speed.
     fn steps(&self) -> [f32; 3] {
         let mut sums = [0.0; 3];
         for (ahead, lift) in self.ahead.iter().zip(&self.lift) {

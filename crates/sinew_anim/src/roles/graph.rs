@@ -1,4 +1,4 @@
-//! The tree of skinned joints, with strays attached where they belong.
+//! Tree of the skinned joints; joints with an unsuitable parent are attached by geometry or name.
 
 use super::bind::Bound;
 use crate::rig::{JointIdx, Rig};
@@ -12,30 +12,30 @@ pub(super) struct Node {
     pub children: Vec<usize>,
     /// Bind position, model space.
     pub position: Vec3,
-    /// Skin area it moves.
+    /// Skin area that the joint moves.
     pub area: f32,
-    /// Skin area that it and all below it move.
+    /// Skin area that the joint and its descendants move.
     pub subtree_area: f32,
-    /// Length of the longest path down from it.
+    /// Length of the longest path down from the joint.
     pub reach: f32,
 }
 
-/// Most joints of a foot beside the body: it and its toes.
+/// Most joints of a foot beside the body: the foot and its toes.
 const LONGEST_FOOT: usize = 2;
 
 /// A tree of [`Node`]s with one root.
 pub(super) struct Graph {
     pub nodes: Vec<Node>,
     pub root: usize,
-    /// Parents before children.
+    /// Node indices, parents before children.
     pub order: Vec<usize>,
     /// Nodes whose parent was found by geometry.
     pub adopted: Vec<usize>,
 }
 
 impl Graph {
-    /// The tree over the joints in `is_part`; `None` if there is none. `carrier` names the parent by name of joints
-    /// that the rig attaches to nothing in the tree.
+    /// Builds the tree of the joints in `is_part`; `None` if there is none. `carrier` returns the parent by name of a
+    /// joint that the rig does not attach to the tree.
     pub fn of(
         rig: &Rig,
         bound: &Bound,
@@ -72,7 +72,7 @@ impl Graph {
         Some(graph)
     }
 
-    /// Attaches trees to the parent that their names contain.
+    /// Attaches trees to the parent that their names give.
     fn hang_named(&mut self, carrier: impl Fn(JointIdx) -> Option<usize>) {
         let roots: Vec<usize> = (0..self.nodes.len()).filter(|&i| self.nodes[i].parent.is_none()).collect();
         for root in roots {
@@ -86,7 +86,7 @@ impl Graph {
         }
     }
 
-    /// Merges several trees: the one with the most skin stays, the others are attached, large ones first.
+    /// Merges several trees: the tree with the most skin stays, and the others are attached to it, large ones first.
     fn join(&mut self, rig: &Rig, bound: &Bound, node_of: &[Option<usize>]) -> Option<()> {
         let mut roots: Vec<usize> =
             (0..self.nodes.len()).filter(|&i| self.nodes[i].parent.is_none()).collect();
@@ -116,8 +116,9 @@ impl Graph {
         Some(())
     }
 
-    /// Removes from `strays` the parts of the trunk, which have no twin and whose skin runs into it, and returns the
-    /// nodes of the trunk with them. If the root of a body has no skin, hips and back are separate trees.
+    /// Removes the parts of the trunk from `strays`: parts without a mirrored twin whose skin is connected to the
+    /// trunk. Returns the nodes of the trunk with these parts. If the root of a body has no skin, hips and back are
+    /// separate trees.
     fn grow_trunk(&mut self, strays: &mut Vec<usize>, bound: &Bound) -> Vec<usize> {
         let all = strays.clone();
         loop {
@@ -136,8 +137,8 @@ impl Graph {
         }
     }
 
-    /// True for trees with as many joints and about as much skin that start as far from the root but in another place:
-    /// a left and a right.
+    /// True for a left and a right tree: equal numbers of joints, similar areas of skin, starts equally far from the
+    /// root but in different places.
     fn are_twins(&self, a: usize, b: usize, bound: &Bound) -> bool {
         let [of_a, of_b] = [a, b].map(|tree| self.subtree(tree));
         let area = |tree: &[usize]| tree.iter().map(|&node| self.nodes[node].area).sum::<f32>();
@@ -151,8 +152,8 @@ impl Graph {
             && self.distance(a, b) > near
     }
 
-    /// Feet parented to the root, as for IK, that are at the end of a leg, or whose skin runs into it, are attached to
-    /// the leg.
+    /// Attaches feet to their leg that are parented to the root, as for IK: those at the end of a leg, or whose skin is
+    /// connected to it.
     fn hang_feet(&mut self, ends: &[(usize, Vec3)], bound: &Bound) {
         let size = bound.size();
         let mut moved_by = vec![None; bound.model.len()];
@@ -174,11 +175,11 @@ impl Graph {
             let at_end =
                 |&&(node, at): &&(usize, Vec3)| is_leg(node) && (at - start).length() < FOOT_AT_END * size;
             let grown = || self.grows_into(foot, 0..self.nodes.len(), bound).filter(|&leg| is_leg(leg));
-            // Rigid parts have no common skin: the nearest leg is chosen, and each foot has its own.
+            // Rigid parts have no common skin, so the nearest leg is chosen, and each leg gets one foot.
             let touching = || {
                 let leg = touched.iter().find(|(child, _)| *child == foot).map(|&(_, leg)| leg)?;
                 let is_own = touched.iter().filter(|(_, other)| *other == leg).count() == 1;
-                // Two antennae on one root do not carry each other.
+                // Two antennae on one root are not attached to each other.
                 let is_limb = is_leg(leg) && self.nodes[leg].parent != Some(self.root);
                 (is_own && is_limb).then_some(leg)
             };
@@ -194,8 +195,8 @@ impl Graph {
         }
     }
 
-    /// The node of another tree whose skin is nearest to a tree's start, if it touches; `moved_by` has the node of each
-    /// joint.
+    /// Returns the node of another tree whose skin is nearest to a tree's start, if they touch; `moved_by` has the node
+    /// of each joint.
     fn touched_by(&self, tree: usize, moved_by: &[Option<usize>], bound: &Bound) -> Option<usize> {
         let (own, start) = (self.subtree(tree), self.nodes[tree].position);
         let skin = bound.vertices.iter().zip(&bound.movers);
@@ -207,9 +208,9 @@ impl Graph {
         (distance < FOOT_AT_SKIN * bound.size()).then_some(node)
     }
 
-    /// Parent of a stray tree. Rigs baked from IK parent feet to the root: such a short stray belongs to the leaf that
-    /// its skin runs into, at whose end it starts, that is much nearer than the root, or whose skin it starts at. All
-    /// others belong to the node of `trunk` that their skin runs into, or starts at; else to the root.
+    /// Parent of a stray tree. Rigs baked from IK parent feet to the root. Such a short tree belongs to the leaf with
+    /// connected skin, to the leaf at whose end or skin it starts, or to a leaf much nearer than the root. All other
+    /// trees belong to the node of `trunk` with connected skin, or at whose skin they start; else to the root.
     fn place_for(&self, stray: usize, trunk: &[usize], ends: &[(usize, Vec3)], bound: &Bound) -> usize {
         let (size, start) = (bound.size(), self.nodes[stray].position);
         let body = self.subtree(self.root);
@@ -225,7 +226,7 @@ impl Graph {
             let grown = self.grows_into(stray, trunk.iter().copied(), bound).or(end.map(|(_, node)| node));
             return grown.or(nearest(&mut self.skin_of(trunk, bound)).and_then(at_skin)).unwrap_or(self.root);
         }
-        // No foot stands on another foot: attached trees take no others.
+        // A foot does not stand on another foot, so attached trees are no leaves.
         let is_leaf = |i: &usize| {
             let is_end = self.nodes[*i].children.iter().all(|child| self.adopted.contains(child));
             is_end && self.nodes[*i].parent.is_some() && !self.adopted.contains(i)
@@ -254,7 +255,7 @@ impl Graph {
         nearest(&mut self.skin_of(&leaves, bound)).and_then(at_skin).unwrap_or(self.root)
     }
 
-    /// The vertices that some nodes move most, each with its node.
+    /// Iterates over the vertices that `nodes` move most, each with its node.
     fn skin_of<'a>(
         &'a self,
         nodes: &'a [usize],
@@ -267,8 +268,8 @@ impl Graph {
         })
     }
 
-    /// The one of some nodes with the most skin in common with a tree outside them; of equals the nearer; `None` if
-    /// they touch nowhere.
+    /// Returns the node of `among` with the most skin connected to a tree outside of it; of equal ones, the nearer;
+    /// `None` if they touch nowhere.
     fn grows_into(&self, tree: usize, among: impl Iterator<Item = usize>, bound: &Bound) -> Option<usize> {
         let own = self.subtree(tree);
         let links = |node: usize| -> u32 {
@@ -286,7 +287,7 @@ impl Graph {
         all.reduce(|a, b| if better(&a, &b) { b } else { a }).map(|(_, node)| node)
     }
 
-    /// A node and all below it, parents before children.
+    /// Returns a node and all its descendants, parents before children.
     pub fn subtree(&self, from: usize) -> Vec<usize> {
         let mut found = vec![from];
         let mut next = 0;
@@ -297,7 +298,7 @@ impl Graph {
         found
     }
 
-    /// Mean place of each node and all below it.
+    /// Mean position of each node and all its descendants.
     pub fn middles(&self) -> Vec<Vec3> {
         let mut sums: Vec<(Vec3, f32)> = self.nodes.iter().map(|node| (node.position, 1.0)).collect();
         for &i in self.order.iter().rev() {
@@ -310,7 +311,7 @@ impl Graph {
         sums.into_iter().map(|(sum, count)| sum / count).collect()
     }
 
-    /// A node, its parent and so on up to the root.
+    /// Iterates over a node, its parent and so on up to the root.
     pub fn up_from(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
         core::iter::successors(Some(node), |&i| self.nodes[i].parent)
     }
@@ -321,12 +322,12 @@ impl Graph {
     }
 }
 
-/// Joint's parent, its parent, and so on.
+/// Iterates over a joint's parent, the parent's parent, and so on.
 pub(super) fn ancestors(rig: &Rig, joint: JointIdx) -> impl Iterator<Item = JointIdx> + '_ {
     core::iter::successors(rig.joints[joint].parent, |&i| rig.joints[i].parent)
 }
 
-/// Joints without skin under a leaf, and where they are: the far ends of its bone.
+/// Returns joints without skin below a leaf, as the leaf and a position: the far ends of its bone.
 fn ends(rig: &Rig, bound: &Bound, node_of: &[Option<usize>]) -> Vec<(usize, Vec3)> {
     let end = |joint: JointIdx| {
         let node = ancestors(rig, joint).find_map(|ancestor| node_of[ancestor])?;

@@ -1,5 +1,5 @@
-//! Finds a human shape in a tree of joints by geometry alone: mirrored chains to the floor are legs, the highest and
-//! widest mirrored chains on the trunk are arms, the unpaired chain above them ends in the head.
+//! Finds a human shape in a tree of joints by geometry alone. Mirrored chains to the floor are legs, the highest and
+//! widest mirrored chains on the trunk are arms, and the unpaired chain above them ends in the head.
 
 use super::bind::Bound;
 use super::graph::Graph;
@@ -8,7 +8,7 @@ use super::symmetry::Symmetry;
 use crate::roles::tuning::{AS_HIGH, AT_WRIST, FORKED, INNER_END, LONGEST_PALM, LOWEST_HIP};
 use sinew_math::{Vec3, clamp, max, min, trig};
 
-/// Directions and measures of the bind pose under the assumption that `up` is up.
+/// Directions and sizes of the bind pose if `up` is the up axis.
 pub(super) struct Stance {
     /// Up axis, a unit vector in model space.
     pub up: Vec3,
@@ -28,19 +28,19 @@ impl Stance {
         Self { up, floor, height: max(crown - floor, 1e-12) }
     }
 
-    /// Height of a point, 0 at the floor, 1 at the crown.
+    /// Height of a point: 0 at the floor, 1 at the crown.
     pub fn level(&self, point: Vec3) -> f32 {
         (point.dot(self.up) - self.floor) / self.height
     }
 }
 
-/// Indices in a chain of (upper, lower, hand or foot); the last may be missing.
+/// Indices in a chain of the upper part, the lower part, and the hand or foot, which may be missing.
 pub(super) type Split = (usize, usize, Option<usize>);
 
-/// An arm or a leg with its mirror image. Index 0 is the side toward [`Symmetry::lateral`].
+/// An arm or a leg with its mirror image. Index 0 is on the side toward [`Symmetry::lateral`].
 #[derive(Clone, Debug)]
 pub(super) struct Limb {
-    /// Joints from the trunk outward, as far as both sides agree.
+    /// Joints from the trunk outward, as far as both sides correspond.
     pub chain: [Vec<usize>; 2],
     pub split: Split,
 }
@@ -49,7 +49,7 @@ pub(super) struct Limb {
 #[derive(Clone, Debug)]
 pub(super) struct Humanoid {
     pub pelvis: usize,
-    /// Joints from above the pelvis to where the arms attach.
+    /// Joints from above the pelvis to the joint to which the arms attach.
     pub spine: Vec<usize>,
     /// Joints from above the chest to below the head.
     pub neck: Vec<usize>,
@@ -63,9 +63,10 @@ pub(super) struct Evidence<'a> {
     pub graph: &'a Graph,
     pub symmetry: &'a Symmetry,
     pub stance: &'a Stance,
-    /// Readings per node; all empty when the names cannot be trusted.
+    /// Parsed names per node; all empty when the names cannot be trusted.
     pub readings: &'a [Reading],
-    /// Alternating swing in the clips of the limb that ends at a node: [`Swing::reach`](super::gait::Swing::reach).
+    /// Function that returns the alternating swing of the limb that ends at a node:
+    /// [`Swing::reach`](super::gait::Swing::reach).
     pub swing: &'a dyn Fn(usize) -> f32,
 }
 
@@ -78,7 +79,7 @@ impl Evidence<'_> {
         self.readings[node].part
     }
 
-    /// The human shape that stands upright in this orientation, if there is one.
+    /// Finds the human shape that stands upright along `up`; `None` if there is none.
     pub fn recognise(&self) -> Option<Humanoid> {
         let mut limbs = self.limbs();
         let legs = self.take_legs(&mut limbs)?;
@@ -106,7 +107,7 @@ impl Evidence<'_> {
         self.stands(&found).then_some(found)
     }
 
-    /// Arms without a hand if fingers grow out of the forearm and nothing is named a hand.
+    /// Removes the hand of arms whose fingers start at the forearm, if no joint is named a hand.
     fn without_fingers(&self, arms: Limb) -> Limb {
         let (upper, lower, hand) = arms.split;
         let is_hand = |&hand: &usize| {
@@ -123,8 +124,8 @@ impl Evidence<'_> {
         Limb { split: (upper, lower, hand), ..arms }
     }
 
-    /// Distance of both elbows together behind the line from shoulder to hand, against `forward`, in body heights:
-    /// elbows only bend that way.
+    /// Distance of both elbows together behind the line from shoulder to hand, opposite to `forward`, in body heights.
+    /// Elbows only bend that way.
     pub fn elbows_behind(&self, arms: &Limb, forward: Vec3) -> f32 {
         let (upper, lower, hand) = arms.split;
         let behind = |chain: &Vec<usize>| {
@@ -137,7 +138,7 @@ impl Evidence<'_> {
         arms.chain.iter().map(behind).sum()
     }
 
-    /// The trunk goes up and the legs go down.
+    /// True if the trunk extends upward and the legs downward.
     fn stands(&self, found: &Humanoid) -> bool {
         let position = |i: usize| self.graph.nodes[i].position;
         let along = |from: usize, to: usize| {
@@ -148,9 +149,9 @@ impl Evidence<'_> {
         along(found.pelvis, found.head) > 0.8 && along(leg[0], leg[leg.len() - 1]) < -0.6
     }
 
-    /// All mirrored chains that grow out of the midline.
+    /// Returns all mirrored chains that start at the midline.
     fn limbs(&self) -> Vec<[Vec<usize>; 2]> {
-        // A clavicle may start on the midline: its side is that of its descendants.
+        // A clavicle may start on the midline; its side is that of its descendants.
         let middles = self.graph.middles();
         let starts = |&i: &usize| {
             let parent_on_midline = self.graph.nodes[i].parent.is_some_and(|p| self.symmetry.on_midline(p));
@@ -159,7 +160,7 @@ impl Evidence<'_> {
         (0..self.graph.nodes.len()).filter(starts).map(|root| self.limb_from(root)).collect()
     }
 
-    /// The main chain from `root` and its mirror image, up to where fingers branch.
+    /// Returns the main chain from `root` and its mirror image, up to the joint at which fingers branch.
     fn limb_from(&self, root: usize) -> [Vec<usize>; 2] {
         let mut chain = vec![root];
         loop {
@@ -183,8 +184,8 @@ impl Evidence<'_> {
         [chain, mirrored]
     }
 
-    /// True if a chain ends in a forearm with fingers: all start in one place away from it, or further away than a palm
-    /// is long.
+    /// True if a chain ends in a forearm with fingers: all fingers start in one place away from it, or farther away
+    /// than the length of a palm.
     fn ends_at_wrist(&self, chain: &[usize], fingers: &[usize]) -> bool {
         let [.., before, forearm] = chain else { return false };
         let away = |&finger: &usize| self.graph.distance(*forearm, finger);
@@ -194,8 +195,9 @@ impl Evidence<'_> {
         apart < AT_WRIST * farthest || nearest > LONGEST_PALM * self.graph.distance(*before, *forearm)
     }
 
-    /// The pair of chains of at least two joints that reach the floor, and swing alternately if any do: the one with
-    /// the most skin. Other hanging parts swing less than half as far.
+    /// Removes the legs from `limbs`: pairs of at least two joints per side that reach the floor. If any of these swing
+    /// alternately, only those count; the pair with the most skin is chosen. Other hanging parts swing less than half
+    /// as far.
     fn take_legs(&self, limbs: &mut Vec<[Vec<usize>; 2]>) -> Option<[Vec<usize>; 2]> {
         let reaches_floor = |chain: &[usize]| {
             let lowest = chain.iter().map(|&i| self.level(i)).fold(f32::INFINITY, min);
@@ -205,7 +207,7 @@ impl Evidence<'_> {
         };
         let low: Vec<usize> = (0..limbs.len()).filter(|&i| reaches_floor(&limbs[i][0])).collect();
         let swing = |i: usize| match limbs[i][0].last() {
-            // A single pair needs no choice.
+            // A single pair needs no choice by swing.
             Some(&end) if low.len() > 1 => (self.swing)(end),
             _ => 0.0,
         };
@@ -219,7 +221,7 @@ impl Evidence<'_> {
         Some(limbs.swap_remove(best.1))
     }
 
-    /// The widest pair of chains of at least two joints above the legs and off the floor.
+    /// Returns the widest pair of chains of at least two joints that is above the legs and off the floor.
     fn take_arms(&self, limbs: &[[Vec<usize>; 2]], legs: &[Vec<usize>; 2]) -> Option<[Vec<usize>; 2]> {
         let hip = self.level(legs[0][0]);
         let width = |chain: &[usize]| chain.iter().map(|&i| self.symmetry.side(self.graph, i)).fold(0.0, max);
@@ -227,7 +229,7 @@ impl Evidence<'_> {
             let lowest = chain.iter().map(|&i| self.level(i)).fold(f32::INFINITY, min);
             chain.len() > 1 && self.level(chain[0]) > hip + 0.1 && lowest > min(0.22, hip + 0.02)
         };
-        // Ears grow out of the end of the trunk.
+        // Ears are attached to the end of the trunk.
         let goes_on = |chain: &[usize]| {
             let attachment = self.graph.nodes[chain[0]].parent;
             attachment.is_some_and(|at| {
@@ -246,8 +248,9 @@ impl Evidence<'_> {
         self.graph.nodes[limb[0][0]].parent.expect("limbs grow out of the midline")
     }
 
-    /// The midline joint at the height of the hips. Thighs may be parented to another joint of the trunk, so the joints
-    /// from the root to the chest compete: by name, else the lowest of those near the hips with a fair share of skin.
+    /// Returns the midline joint at the height of the hips. Thighs may be parented to another joint of the trunk, so
+    /// all joints from the root to the chest are compared: by name, else the lowest of those near the hips with a fair
+    /// share of skin.
     fn pelvis(&self, legs: &[Vec<usize>; 2], arms: &[Vec<usize>; 2]) -> usize {
         let hip = self.level(legs[0][0]);
         let mut trunk: Vec<usize> = self.graph.up_from(self.attachment(arms)).collect();
@@ -262,8 +265,8 @@ impl Evidence<'_> {
         }
         let most = near.iter().map(|&i| self.graph.nodes[i].area).fold(0.0, max);
         let fair = near.iter().copied().filter(|&i| self.graph.nodes[i].area >= 0.2 * most);
-        // In a chain of two, take the lower one: the other is a handle for the body. Of two at one height, the one that
-        // moves less than half as much skin is a handle too.
+        // In a chain of two, takes the lower joint, because the other is a handle for the body. Of two at one height,
+        // the joint that moves less than half as much skin is a handle, too.
         let leads = |handle: usize, body: usize| {
             let (above, areas) =
                 (self.level(handle) - self.level(body), [handle, body].map(|i| self.graph.nodes[i].area));
@@ -276,7 +279,8 @@ impl Evidence<'_> {
         fair.reduce(|a, b| if leads(a, b) { b } else { a }).unwrap_or(trunk[0])
     }
 
-    /// The midline chain above the arms that carries the most skin: its last joint with a fair share is the head.
+    /// Returns the midline chain above the arms with the most skin; its last joint with a fair share of skin is the
+    /// head.
     fn neck_and_head(
         &self,
         chest: usize,
@@ -305,14 +309,13 @@ impl Evidence<'_> {
         Some((chain, head))
     }
 
-    /// True for a limb whose first joint lies on the midline and its second does not: the inner end of a clavicle or a
-    /// hip.
+    /// True for a limb whose first joint is on the midline and its second is not: the inner end of a clavicle or a hip.
     fn begins_inside(&self, chain: &[usize]) -> bool {
         let side = |place: usize| self.symmetry.side(self.graph, chain[place]).abs();
         chain.len() > 2 && side(0) < INNER_END * side(1)
     }
 
-    /// Indices in a chain at which the upper part, the lower part and the hand or foot begin: by name, else by length.
+    /// Indices in a chain of the upper part, the lower part, and the hand or foot: by name, else by length.
     fn split(&self, chain: &[usize], parts: [Part; 3]) -> Option<Split> {
         let place = |part: Part| chain.iter().position(|&i| self.part(i) == Some(part));
         if let (Some(upper), Some(lower)) = (place(parts[0]), place(parts[1])) {
@@ -334,9 +337,9 @@ impl Evidence<'_> {
         }
     }
 
-    /// In a chain of four or more joints, take the two consecutive segments whose lengths are most like those of an upper arm and a
-    /// forearm, or a thigh and a shank (0.9 : 1), that cover at least half of the length. A joint with hardly any bone
-    /// after it (a clavicle's end, a wrist before the hand) begins neither.
+    /// In a chain of four or more joints, takes the two consecutive segments whose lengths are most like an upper arm
+    /// and a forearm, or a thigh and a shank (0.9 : 1), and which cover at least half of the length. A joint with
+    /// hardly any bone after it (the end of a clavicle, a wrist before the hand) starts neither segment.
     fn split_by_length(&self, chain: &[usize]) -> Split {
         let mut way = vec![0.0];
         for pair in chain.windows(2) {

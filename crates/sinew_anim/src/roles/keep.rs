@@ -1,4 +1,4 @@
-//! Chooses the joints that become bodies, their merged joints, and their parents.
+//! Chooses the joints that become bodies, the joints merged into them, and their parents.
 
 use super::bind::Bound;
 use super::graph::{Graph, ancestors};
@@ -22,18 +22,18 @@ pub(super) struct Selection<'a> {
     pub roles: &'a [Option<RoleGuess>],
     /// Height from floor to crown, file units.
     pub height: f32,
-    /// Parent of each joint, by geometry if the rig's own is not suitable.
+    /// Parent of each joint: the rig's parent, or one found by geometry if that is not suitable.
     pub carrier: Vec<Option<JointIdx>>,
 }
 
-/// The bodies, and per joint the body's joint it follows.
+/// The bodies, and for each joint the body that it follows.
 pub(super) struct Kept {
     pub bones: Vec<KeptBone>,
     pub merge_into: Vec<Option<JointIdx>>,
 }
 
-/// Parent of each joint: the rig's; for strays the attached one; for a stray without skin the bone at whose end it is;
-/// for joints at a wrist beside the hand, the hand.
+/// Returns the parent of each joint: the rig's parent; for stray trees, the joint to which they were attached; for a
+/// stray joint without skin, the bone whose end it marks; for joints at a wrist beside the hand, the hand.
 pub(super) fn carriers(
     rig: &Rig,
     bound: &Bound,
@@ -86,7 +86,7 @@ pub(super) fn carriers(
 }
 
 impl Selection<'_> {
-    /// Bodies of a humanoid: one per role, without toes, tiny clavicles, and parts with too little skin.
+    /// Returns the bodies of a humanoid: one per role, without toes, tiny clavicles, and parts with too little skin.
     pub fn humanoid(&self) -> Kept {
         let mut joints: Vec<JointIdx> = Vec::new();
         for role in super::role::HUMANOID_ROLES {
@@ -103,11 +103,11 @@ impl Selection<'_> {
         self.bones(&joints, parent)
     }
 
-    /// Bodies of a creature: every joint with a fair share of skin.
+    /// Returns the bodies of a creature: every joint with a fair share of skin.
     pub fn creature(&self) -> Kept {
         let total: f32 = self.bound.area.iter().sum();
         let nodes = &self.graph.nodes;
-        // Go from the tips inward, so that a small toe merges into its foot and counts there.
+        // Goes from the tips inward, so that a small toe merges into its foot and adds to its area.
         let mut area: Vec<f32> = nodes.iter().map(|node| node.area).collect();
         for &i in self.graph.order.iter().rev() {
             let Some(parent) = nodes[i].parent else { continue };
@@ -118,13 +118,12 @@ impl Selection<'_> {
         let fair = |&&i: &&usize| i == self.graph.root || area[i] >= LEAST_BODY_SKIN * total;
         let mut joints: Vec<JointIdx> =
             self.graph.order.iter().filter(fair).map(|&i| nodes[i].joint).collect();
-        // Sorted by roles, independent of the file: trunk, tail, then limbs, of which none hangs on one with a higher
-        // number.
+        // Sorts by roles, independently of the file: trunk, tail, then limbs, whose parents have smaller numbers.
         joints.sort_by_key(|&joint| match self.role(joint) {
             Role::LimbSegment { limb, segment } => (2, limb, segment),
             Role::TailSegment(segment) => (1, 0, segment),
             Role::SpineSegment(segment) => (0, 0, segment),
-            // Creatures have no others.
+            // Creatures have no other roles.
             _ => (3, 0, 0),
         });
         self.parents_first(&mut joints);
@@ -132,10 +131,10 @@ impl Selection<'_> {
         self.bones(&joints, |joint| place[self.carried_by(joint, |i| place[i].is_some())?])
     }
 
-    /// User-given roles may put a part before its parent: it is moved right after that. Others stay in order.
+    /// Moves a part behind its parent where roles given by the user put it before. Other parts keep their order.
     fn parents_first(&self, joints: &mut Vec<JointIdx>) {
         let mut sorted: Vec<JointIdx> = Vec::with_capacity(joints.len());
-        // The root first: everything without a parent hangs on it.
+        // The root comes first, because joints without a parent are attached to it.
         let root = self.graph.nodes[self.graph.root].joint;
         let root = joints.iter().position(|&joint| joint == root).map(|at| joints.remove(at));
         sorted.extend(root);
@@ -147,7 +146,7 @@ impl Selection<'_> {
         *joints = sorted;
     }
 
-    /// Index of each joint among the kept ones.
+    /// Returns the index of each joint among the kept joints.
     fn places(&self, kept: &[JointIdx]) -> Vec<Option<usize>> {
         let mut place = vec![None; self.rig.joints.len()];
         kept.iter().enumerate().for_each(|(i, &joint)| place[joint] = Some(i));
@@ -162,7 +161,7 @@ impl Selection<'_> {
         self.roles.iter().position(|guess| guess.as_ref().is_some_and(|guess| guess.role == role))
     }
 
-    /// The nearest suitable parent. Attachment cannot form a cycle, but the walk is bounded anyway.
+    /// Returns the nearest suitable parent. Attachment cannot form a cycle, but the loop is bounded anyway.
     fn carried_by(&self, joint: JointIdx, wanted: impl Fn(JointIdx) -> bool) -> Option<JointIdx> {
         let chain = core::iter::successors(self.carrier[joint], |&i| self.carrier[i]);
         chain.take(self.rig.joints.len()).find(|&i| wanted(i))
@@ -178,7 +177,7 @@ impl Selection<'_> {
         });
     }
 
-    /// Parts of the spine with hardly any skin are merged with the part above, which then rotates at the lower joint.
+    /// Merges parts of the spine with hardly any skin with the part above, which then rotates at the lower joint.
     fn join_thin_spine(&self, joints: &mut Vec<JointIdx>) {
         let total: f32 = self.bound.area.iter().sum();
         let spine = [Role::Spine, Role::Chest, Role::UpperChest];
@@ -197,8 +196,8 @@ impl Selection<'_> {
         }
     }
 
-    /// Share, 0 to 1, of the vertices of a part of the spine that belong to upper arms without skin of their own:
-    /// beyond the shoulder, and far nearer to the arm's bone than to the trunk's line.
+    /// Share, 0 to 1, of the vertices of a part of the spine that belong to upper arms without skin: beyond the
+    /// shoulder, and far nearer to the arm's bone than to the trunk's line.
     fn share_on_bare_arms(&self, part: JointIdx) -> f32 {
         let place = |role: Role| self.joint_of(role).map(|joint| self.bound.model[joint].translation);
         let bare_arm = |side: Side| {
@@ -223,7 +222,7 @@ impl Selection<'_> {
         on_arms / max(all, 1.0)
     }
 
-    /// Removes joints without skin, including that of merged ones; the root stays.
+    /// Removes joints without skin that also merge no joints with skin; the root stays.
     fn drop_bare(&self, joints: &mut Vec<JointIdx>) {
         loop {
             let place = self.places(joints);
@@ -235,7 +234,7 @@ impl Selection<'_> {
                     area[bone] += self.bound.area[joint];
                 }
             }
-            // A limb's bone without skin is still the pivot of its lower part.
+            // A limb's bone without skin is the pivot of the lower part, so it stays.
             let is_limb = |joint: JointIdx| self.graph.nodes.iter().any(|node| node.joint == joint);
             let is_bare = |&i: &usize| area[i] <= 0.0 && !is_limb(joints[i]);
             let Some(bare) = (1..joints.len()).find(is_bare) else { return };
@@ -243,8 +242,8 @@ impl Selection<'_> {
         }
     }
 
-    /// Kept index that each joint follows: its parent, else the one its skin runs into, else that of the joint above
-    /// it, else the nearest. Joints without skin and parent keep their own motion.
+    /// Returns the index of the kept joint that each joint follows: its parent, else the joint with connected skin,
+    /// else that of the joint above it, else the nearest. Joints without skin and parent follow none.
     fn owners(&self, joints: &[JointIdx], place: &[Option<usize>]) -> Vec<Option<usize>> {
         let mut owner = place.to_vec();
         let mut waiting: Vec<JointIdx> = Vec::new();
@@ -255,8 +254,8 @@ impl Selection<'_> {
                 None => {}
             }
         }
-        // The strongest bond first: a finger follows the hand through the finger before it. Of equal bonds the shorter
-        // one.
+        // Starts with the strongest connection: a finger follows the hand through the finger joint before it. Of equal
+        // ones, the shorter comes first.
         loop {
             let mut best: Option<(u32, f32, usize, usize)> = None;
             for (at, &joint) in waiting.iter().enumerate() {
@@ -279,14 +278,14 @@ impl Selection<'_> {
             let Some((_, _, at, body)) = best else { break };
             owner[waiting.remove(at)] = Some(body);
         }
-        // Parents first: strands of hair go with its root, not each with what it hangs over.
+        // Parents come first: strands of hair follow the owner of their root, not the nearest part of each.
         for joint in waiting {
             let above = ancestors(self.rig, joint).find_map(|above| owner[above]);
             owner[joint] = Some(above.unwrap_or_else(|| self.nearest(joint, joints, &owner)));
         }
         self.own_hung(&mut owner);
         self.own_beside(&mut owner);
-        // Hair on a head without a bone.
+        // Joints below a node that follows a body: hair on a head without a bone.
         for joint in 0..self.rig.joints.len() {
             let parent = self.rig.joints[joint].parent.filter(|&parent| place[parent].is_none());
             owner[joint] = owner[joint].or_else(|| owner[parent?]);
@@ -295,7 +294,8 @@ impl Selection<'_> {
     }
 
     /// True if a node without a bone carries a mesh smaller than the body and within or close to it: a hat, eyes or a
-    /// pack without a parent. On the node of the skeleton touching the body suffices: a head parented to the armature.
+    /// pack without a parent. A mesh directly on the skeleton's node only has to touch the body: a head parented to the
+    /// armature.
     fn is_worn(&self, joint: JointIdx) -> bool {
         let (mut positions, mut normals) = (Vec::new(), Vec::new());
         let margin = Vec3::splat(WORN_WITHIN * self.bound.size());
@@ -321,13 +321,13 @@ impl Selection<'_> {
         within > 0 && is_close && longest < largest * self.bound.size()
     }
 
-    /// True if a node hangs on the skeleton's node without a bone in between.
+    /// True if no bone is between a node and the skeleton's node.
     fn hangs_on_armature(&self, joint: JointIdx) -> bool {
         self.hung_on_armature(joint).is_some()
     }
 
-    /// The ancestor of a joint (or the joint itself) directly below the skeleton's node; `None` if a bone is in between.
-    /// In converted files a mesh may be a node below its object.
+    /// Returns the ancestor of a joint (or the joint itself) directly below the skeleton's node; `None` if a bone is in
+    /// between. In converted files a mesh may be a node below its object.
     fn hung_on_armature(&self, joint: JointIdx) -> Option<JointIdx> {
         let first = self.graph.nodes[self.graph.root].joint;
         let is_bone = |joint: JointIdx| self.rig.skins.iter().any(|skin| skin.joints.contains(&joint));
@@ -336,7 +336,7 @@ impl Selection<'_> {
         line.take_while(|&at| !is_bone(at)).find(|&at| self.rig.joints[at].parent == Some(armature))
     }
 
-    /// Meshes on the armature that touch worn parts follow them: eyes in a head without a bone.
+    /// Assigns meshes on the armature that touch worn parts to the owner of these parts: eyes in a head without a bone.
     fn own_beside(&self, owner: &mut [Option<usize>]) {
         let extent = |joint: JointIdx| {
             let points = self.points_of_meshes(joint);
@@ -362,7 +362,8 @@ impl Selection<'_> {
         self.own_hung(owner);
     }
 
-    /// Nodes on the armature follow the worn parts below them: an object with its mesh node and its hair.
+    /// Assigns nodes on the armature to the owner of the worn parts below them: an object with its mesh node and its
+    /// hair.
     fn own_hung(&self, owner: &mut [Option<usize>]) {
         for joint in 0..self.rig.joints.len() {
             if owner[joint].is_none() || self.bound.area[joint] > 0.0 {
@@ -379,8 +380,8 @@ impl Selection<'_> {
         }
     }
 
-    /// The kept index whose skin is nearest to a joint's skin, by the votes of its vertices; the first if one of them
-    /// has none.
+    /// Returns the index of the kept joint whose skin is nearest to a joint's skin, by votes of the vertices; the first
+    /// kept joint if one of both has no skin.
     fn nearest(&self, joint: JointIdx, joints: &[JointIdx], owner: &[Option<usize>]) -> usize {
         let own = self.bound.vertices.iter().zip(&self.bound.movers).filter(|(_, mover)| **mover == joint);
         let mut points: Vec<Vec3> = own.map(|(vertex, _)| *vertex).collect();
@@ -401,7 +402,7 @@ impl Selection<'_> {
         (0..votes.len()).reduce(|a, b| if votes[b] > votes[a] { b } else { a }).unwrap_or(0)
     }
 
-    /// Mesh and primitive of rigid parts of a node: unskinned meshes, and unweighted parts of others.
+    /// Iterates over mesh and primitive of the rigid parts of a node: unskinned meshes, and unweighted parts of others.
     fn rigid_parts(&self, joint: JointIdx) -> impl Iterator<Item = (usize, usize)> + '_ {
         let own = self.rig.meshes.iter().enumerate().filter(move |(_, mesh)| mesh.joint == joint);
         own.flat_map(|(m, mesh)| {
@@ -410,7 +411,7 @@ impl Selection<'_> {
         })
     }
 
-    /// Vertices of the meshes without a skin on a joint, model space.
+    /// Returns the vertices of the rigid parts of a joint, model space.
     fn points_of_meshes(&self, joint: JointIdx) -> Vec<Vec3> {
         let (mut positions, mut normals) = (Vec::new(), Vec::new());
         let mut points = Vec::new();
@@ -429,7 +430,7 @@ impl Selection<'_> {
                 joint,
                 role: guess.role,
                 confidence: guess.confidence,
-                // All but the first have a parent; the first if nothing nearer is kept.
+                // All kept joints but the first have a parent: the first kept joint if none is nearer.
                 parent: parent(joint).or((i > 0).then_some(0)),
                 merged: Vec::new(),
                 bind_model: self.bound.model[joint],

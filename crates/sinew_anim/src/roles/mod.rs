@@ -1,10 +1,10 @@
-//! Analysis of the joints of a rig: roles, axes, units, and which joints deserve a body.
+//! Analysis of the joints of a rig: roles, axes, units, and which joints need a body.
 //!
-//! Roles stated by the file (VRM) come first; then geometry (mirrored chains of the bind pose) decides and names
-//! support it: they settle how a limb is divided, and raise or lower the confidence. Names whose left and right are not
-//! mirrored are ignored. If the shape shows no human (an asymmetric bind pose, feet beside the body), names alone
-//! decide, if their parts stand like one. Names are read by words, not from a list of names. Clips ([`Hints`]) show
-//! legs from other hanging parts: legs swing alternately.
+//! Roles stated by the file (VRM) come first. Otherwise geometry (mirrored chains of the bind pose) decides, and names
+//! support it: they determine how a limb is divided, and raise or lower the confidence. Names whose left and right are
+//! not mirrored are ignored. If the shape shows no human (an asymmetric bind pose, feet beside the body), names alone
+//! decide, if the named parts stand like a human. Names are read by words, not from a list of names. Clips ([`Hints`])
+//! distinguish legs from other hanging parts: legs swing alternately.
 
 mod anatomy;
 mod assembly;
@@ -42,14 +42,14 @@ use humanoid::Stance;
 use keep::{Kept, Selection};
 use sinew_math::{Affine, Transform, Vec3};
 
-/// A role and how sure it is.
+/// A role and its confidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoleGuess {
     /// Role of the joint.
     pub role: Role,
-    /// 0..=1; 1 where the file itself states the role.
+    /// Confidence, 0..=1; 1 where the file itself states the role.
     pub confidence: f32,
-    /// Evidence for it.
+    /// Evidence for the role.
     pub basis: Basis,
 }
 
@@ -59,7 +59,7 @@ impl RoleGuess {
     }
 }
 
-/// Evidence that a role rests on.
+/// Evidence for a role.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Basis {
     /// Stated by the file or by a correction.
@@ -68,16 +68,16 @@ pub enum Basis {
     ShapeAndName,
     /// The shape alone; the name has no meaning.
     Shape,
-    /// The shape, against its name.
+    /// The shape, although the name contradicts it.
     ShapeAgainstName,
     /// The name alone; the shape does not show it.
     Name,
-    /// The place in a creature's body.
+    /// The place in the body of a creature.
     Place,
 }
 
 impl Basis {
-    /// Evidence in words, such as `shape and name`.
+    /// Returns the evidence in words, such as `shape and name`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Stated => "stated",
@@ -100,23 +100,23 @@ impl Basis {
     }
 }
 
-/// A joint that deserves a body.
+/// A joint that gets a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeptBone {
-    /// The joint, whose origin is the pivot against the parent body.
+    /// The joint; its origin is the pivot of the body on its parent.
     pub joint: JointIdx,
     /// Role of the joint.
     pub role: Role,
     /// Confidence of the role, 0..=1.
     pub confidence: f32,
-    /// Index into [`RigAnalysis::kept`], smaller than the bone's own; `None` for the first. By anatomy, not the rig's
-    /// hierarchy: a shank carries the foot even if the rig parents it elsewhere.
+    /// Index into [`RigAnalysis::kept`], smaller than the bone's own; `None` for the first bone. Follows anatomy, not
+    /// the rig's hierarchy: the foot's parent is the shank, even if the rig attaches the foot elsewhere.
     pub parent: Option<usize>,
     /// Other joints that move with this body and share its skin.
     pub merged: Vec<JointIdx>,
     /// Transform in the bind pose, model space, file units.
     pub bind_model: Affine,
-    /// True for props (a sword, a rigid cape): held fast, not part of the body.
+    /// True for props (a sword, a rigid cape), which are fixed to the body but not part of it.
     pub is_prop: bool,
 }
 
@@ -125,7 +125,7 @@ pub struct KeptBone {
 pub struct RigAnalysis {
     /// Metres per file unit.
     pub unit_scale: f32,
-    /// Unit vector, model space.
+    /// Up axis, a unit vector in model space.
     pub up_axis: Vec3,
     /// Rotation to the character's axes: +Y up, +Z forward, left on +X. A model point in file units is at
     /// `character_from_model.point(point * unit_scale)`, metres. The translation is zero.
@@ -136,23 +136,23 @@ pub struct RigAnalysis {
     pub height: f32,
     /// True if the roles are those of the VRM humanoid, else generic.
     pub humanoid: bool,
-    /// Role per joint, if it has one.
+    /// Role per joint; `None` for a joint without a role.
     pub roles: Vec<Option<RoleGuess>>,
-    /// Joints that deserve a body, parents before children, the pelvis (or a creature's root) first.
+    /// Joints that get a body, parents before children, the pelvis (or a creature's root) first.
     pub kept: Vec<KeptBone>,
-    /// Kept joint that each joint follows; `None` for kept joints, for those above them in the rig, and for
-    /// joints without skin outside of every body (IK targets).
+    /// Index into `kept` of the bone that each joint follows; `None` for kept joints, for joints above them in the rig,
+    /// and for joints without skin outside of every body (IK targets).
     pub merge_into: Vec<Option<JointIdx>>,
-    /// Transform of every joint in the bind pose, model space, file units: from the inverse bind matrices, and from
-    /// the rest pose for joints that no skin names.
+    /// Transform of every joint in the bind pose, model space, file units: from the inverse bind matrices, or from the
+    /// rest pose for joints that no skin lists.
     pub bind_model: Vec<Affine>,
-    /// Skin joints that are not kept.
+    /// Joints of skins that are not kept.
     pub dropped: Vec<JointIdx>,
-    /// Assumed length of a file unit with its reason; `None` if given.
+    /// Assumed length of a file unit with its reason; `None` if the unit was given.
     pub unit_guess: Option<UnitGuess>,
     /// Other assumptions, one sentence each.
     pub notes: Vec<String>,
-    /// Evidence from around the rig that was used.
+    /// Hints that were used.
     pub hints: Hints,
 }
 
@@ -161,11 +161,11 @@ pub struct RigAnalysis {
 pub struct UnitGuess {
     /// The unit, the reason and the alternatives, a sentence.
     pub note: String,
-    /// True for a human in metres that no other unit would fit.
+    /// True for a human in metres whose size is plausible in no other unit.
     pub is_sure: bool,
     /// True if only one unit gives a plausible size.
     pub is_only: bool,
-    /// True if no file unit gives a plausible size: the body was scaled to a likely one.
+    /// True if no file unit gives a plausible size, so that the body was scaled to a likely one.
     pub is_scaled: bool,
 }
 
@@ -175,12 +175,12 @@ impl RigAnalysis {
         self.kept.iter().position(|bone| bone.role == role)
     }
 
-    /// The joint with that role, kept or not.
+    /// Returns the joint with that role, kept or not.
     pub fn joint_with(&self, role: Role) -> Option<JointIdx> {
         self.roles.iter().position(|guess| guess.is_some_and(|guess| guess.role == role))
     }
 
-    /// The linear map and translation from model space (file units) to character space (metres).
+    /// Returns the affine map from model space (file units) to character space (metres).
     pub fn character_from_file(&self) -> Affine {
         let turn = self.character_from_model;
         Affine::from_scale_rotation_translation(Vec3::splat(self.unit_scale), turn.rotation, turn.translation)
@@ -204,12 +204,12 @@ impl RigAnalysis {
     }
 }
 
-/// The rig has no skin, so there is no body.
+/// Error: the rig has no skin, so it has no body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no skin: nothing to build a ragdoll from")]
 pub struct NoSkin;
 
-/// Roles, axes, unit and bodies of a rig. Every shape is accepted: other shapes than human get generic roles.
+/// Finds roles, axes, unit and bodies of a rig. Every shape is accepted: bodies that are not human get generic roles.
 ///
 /// # Errors
 /// [`NoSkin`] if no vertex is bound to a joint.
@@ -220,7 +220,7 @@ pub fn analyze(rig: &Rig) -> Result<RigAnalysis, NoSkin> {
     analyze_hinted(rig, &Hints::default())
 }
 
-/// [`analyze`] with evidence from around the rig: see [`Hints`].
+/// [`analyze`] with further evidence: see [`Hints`].
 ///
 /// # Errors
 /// As [`analyze`].
@@ -248,7 +248,7 @@ pub fn analyze_corrected(
         return Err(if correction.ignored.is_empty() { NoSkin.into() } else { CorrectionError::NothingLeft });
     };
     let mut analysis = analyze_bound(&seen, bound, &correction.roles, hints)?;
-    // Ignored joints still follow the body, with the root if nothing carries them.
+    // Ignored joints still follow the body: the root, if they have no parent with a body.
     let mut moves_skin: Vec<JointIdx> = rig.skins.iter().flat_map(|skin| skin.joints.clone()).collect();
     moves_skin.sort_unstable();
     moves_skin.dedup();
@@ -267,14 +267,14 @@ pub fn analyze_corrected(
     Ok(analysis)
 }
 
-/// Without a correction nothing else can fail.
+/// Converts the error: without a correction only missing skin is possible.
 fn plain(analyzed: Result<RigAnalysis, CorrectionError>) -> Result<RigAnalysis, NoSkin> {
     analyzed.map_err(|_| NoSkin)
 }
 
-/// Roles, axes and unit of a skeleton without skin, as in motion capture, standing in `pose`: best with straight legs
-/// and the arms away from the body. Unnamed joints at the ends of chains only mark bone ends. The "bind pose" of the
-/// result is `pose`, heights are those of the joints, and bodies are measured by bone lengths.
+/// Finds roles, axes and unit of a skeleton without skin, as in motion capture, that stands in `pose`: best with
+/// straight legs and the arms away from the body. Unnamed joints at the ends of chains only mark bone ends. The "bind
+/// pose" of the result is `pose`, heights are those of the joints, and bone lengths replace skin areas.
 ///
 /// # Errors
 /// [`NoSkin`] if no bone has a length.

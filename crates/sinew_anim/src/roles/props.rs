@@ -1,7 +1,7 @@
 //! Props: swords, shields and rigid capes as unskinned meshes on a bone of the body.
 //!
-//! A hat that hardly exceeds the head moves with it. Parts that stick out get a fixed body of their own, so that they
-//! do not sink into the floor.
+//! A hat that hardly extends beyond the head moves with it. Parts that extend farther get a fixed body of their own,
+//! so that they do not sink into the floor.
 
 use super::bind::Bound;
 use super::keep::Kept;
@@ -37,7 +37,7 @@ impl Extent {
     }
 }
 
-/// A joint with all of its carrier's joints below it, which hold meshes and no skin.
+/// A joint with all joints of its carrier below it, which have meshes but no skin.
 struct Prop {
     joint: JointIdx,
     /// Index into the kept bones.
@@ -45,7 +45,7 @@ struct Prop {
     points: Vec<Vec3>,
 }
 
-/// Gives protruding props their own bone, the next free limb.
+/// Gives protruding props their own bone, with the role of the next free limb.
 pub(super) fn keep_props(rig: &Rig, bound: &Bound, kept: &mut Kept, roles: &mut [Option<RoleGuess>]) {
     let mut owner = vec![None; rig.joints.len()];
     for (index, bone) in kept.bones.iter().enumerate() {
@@ -70,7 +70,8 @@ pub(super) fn keep_props(rig: &Rig, bound: &Bound, kept: &mut Kept, roles: &mut 
     }
 }
 
-/// Rigid meshes on joints below a kept bone, by the highest joint above them without skin in its subtree.
+/// Returns rigid meshes on joints below a kept bone, grouped by the highest joint above them without skin in its
+/// subtree.
 fn props(rig: &Rig, bound: &Bound, kept: &Kept, owner: &[Option<usize>]) -> Vec<Prop> {
     let mut moves_skin: Vec<bool> = bound.area.iter().map(|&area| area > 0.0).collect();
     for joint in (0..rig.joints.len()).rev() {
@@ -106,7 +107,7 @@ fn props(rig: &Rig, bound: &Bound, kept: &Kept, owner: &[Option<usize>]) -> Vec<
     props
 }
 
-/// Boxes of the skin that each kept bone moves most, in the bind pose; `None` without skin.
+/// Returns boxes of the skin that each kept bone moves most, in the bind pose; `None` without skin.
 fn carriers(rig: &Rig, bound: &Bound, owner: &[Option<usize>], bones: usize) -> Vec<Option<Extent>> {
     let mut extents: Vec<Option<Extent>> = vec![None; bones];
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
@@ -162,7 +163,7 @@ fn insert(rig: &Rig, bound: &Bound, kept: &mut Kept, roles: &mut [Option<RoleGue
     });
 }
 
-/// True for joints that the file's springs move: their meshes are hair or cloth, not props.
+/// True for joints that the file's springs move; their meshes are hair or cloth, not props.
 fn swings(rig: &Rig) -> Vec<bool> {
     let mut swings = vec![false; rig.joints.len()];
     let bones = rig.springs.chains.iter().flat_map(|chain| &chain.bones);

@@ -10,7 +10,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// Role of the other side.
+    /// Returns the other side.
     pub fn mirror(self) -> Self {
         match self {
             Self::Left => Self::Right,
@@ -95,7 +95,7 @@ pub const HUMANOID_ROLES: [Role; 22] = {
 };
 
 impl Role {
-    /// VRM 1 humanoid bone name, or `spine_n`, `tail_n`, `limb_n_m`.
+    /// Returns the VRM 1 humanoid bone name, or `spine_n`, `tail_n`, `limb_n_m`.
     pub fn name(self) -> String {
         let sided = |side: Side, part: &str| match side {
             Side::Left => format!("left{part}"),
@@ -122,7 +122,7 @@ impl Role {
         }
     }
 
-    /// The role of that name; `None` for a name that [`name`](Self::name) does not return.
+    /// Returns the role of that name; `None` for a name that [`name`](Self::name) does not return.
     pub fn from_name(name: &str) -> Option<Self> {
         if let Some(role) = HUMANOID_ROLES.into_iter().find(|role| role.name() == name) {
             return Some(role);
@@ -138,7 +138,7 @@ impl Role {
         }
     }
 
-    /// The side of a humanoid's limb; `None` on the midline and for generic roles.
+    /// Returns the side of a humanoid's limb; `None` on the midline and for generic roles.
     pub fn side(self) -> Option<Side> {
         match self {
             Self::Shoulder(side)
@@ -153,17 +153,17 @@ impl Role {
         }
     }
 
-    /// True on the character's left.
+    /// True if the role is on the character's left.
     pub fn is_left(self) -> bool {
         self.side() == Some(Side::Left)
     }
 
-    /// True on the character's right.
+    /// True if the role is on the character's right.
     pub fn is_right(self) -> bool {
         self.side() == Some(Side::Right)
     }
 
-    /// Returns the part of the other side; roles without a side are their own mirror image.
+    /// Returns the same role on the other side; a role without a side is its own mirror image.
     pub fn mirror(self) -> Self {
         match self {
             Self::Shoulder(side) => Self::Shoulder(side.mirror()),
@@ -178,7 +178,7 @@ impl Role {
         }
     }
 
-    /// The roles that may carry this one, nearest first, by anatomy.
+    /// Returns the roles that may be the parent of this one by anatomy, nearest first.
     pub(crate) fn anatomical_parents(self) -> &'static [Role] {
         use Role::{Chest, Hips, Neck, Spine, UpperChest};
         const TRUNK: &[Role] = &[UpperChest, Chest, Spine, Hips];

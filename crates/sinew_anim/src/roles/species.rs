@@ -1,11 +1,11 @@
-//! Sizes of animals, by the words with which files are named.
+//! Sizes of animals, by words in file names.
 
 use super::names::words;
 use crate::rig::Rig;
 
-/// Longest side of a grown animal, metres: of most from nose to tail, of birds and insects that fly across the wings.
+/// Longest side of a grown animal, metres: for most from nose to tail, for flying birds and insects across the wings.
 ///
-/// Round figures from field guides; insects have the size that games draw, at most a cat's.
+/// Round figures from field guides; insects have the size that games give them, at most a cat's.
 const LENGTHS: &[(&str, f32)] = &[
     ("ant beetle bug fly mosquito ladybug", 0.3),
     ("bee wasp hornet butterfly dragonfly moth", 0.35),
@@ -29,14 +29,14 @@ const LENGTHS: &[(&str, f32)] = &[
     ("trex tyrannosaurus apatosaurus brontosaurus diplodocus whale", 13.0),
 ];
 
-/// Words of humans, by which a body is measured like one even if its joints show no human.
+/// Words for humans. A body named so is measured like a human even if its joints show none.
 const HUMANS: &str = "archer bandit boy chef cowboy doctor farmer girl guard hero heroine human knight mage man ninja npc \
     officer paladin people person pirate player policeman ranger samurai soldier villager warrior witch wizard woman zombie";
 
-/// Machines have any size, whatever animal they resemble.
+/// Words for machines, which have any size, even if they resemble an animal.
 const MACHINES: &str = "bot robot mech mecha drone toy plush statue";
 
-/// Kind of body that names of a file speak of.
+/// Kind of body according to the names of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Species {
     /// A human.
@@ -45,7 +45,7 @@ pub(super) enum Species {
     Animal(&'static str, f32),
 }
 
-/// The kind of body according to file names: an animal before a human (snowman, wolfman).
+/// Returns the kind of body according to file names; an animal comes before a human (snowman, wolfman).
 pub(super) fn named<'a>(rig: &'a Rig, file: &'a str) -> Option<Species> {
     let is_root = |joint: &&crate::rig::Joint| joint.parent.is_none();
     let names = core::iter::once(file)

@@ -4,20 +4,20 @@ use super::graph::Graph;
 use crate::roles::tuning::MIRROR_TOLERANCE;
 use sinew_math::{Vec3, min};
 
-/// A mirror plane and its pairs.
+/// A mirror plane and the mirrored pairs of nodes.
 pub(super) struct Symmetry {
     /// Unit normal of the plane.
     pub lateral: Vec3,
     /// Position of the plane along `lateral`, file units.
     pub centre: f32,
-    /// Mirror image of each node: itself on the midline, `None` without one.
+    /// Mirror image of each node: the node itself on the midline; `None` without one.
     pub partner: Vec<Option<usize>>,
     /// Nodes with a partner on the other side, minus half of those without.
     score: f32,
 }
 
 impl Symmetry {
-    /// The best mirror plane at right angles to one of the model's axes; x on a tie.
+    /// Finds the best mirror plane perpendicular to one of the model's axes; perpendicular to x on a tie.
     pub fn find(graph: &Graph, size: f32) -> Self {
         let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| Self::across(graph, axis, size));
         [z, y].into_iter().fold(x, |best, next| if next.score > best.score { next } else { best })
@@ -26,7 +26,7 @@ impl Symmetry {
     fn across(graph: &Graph, lateral: Vec3, size: f32) -> Self {
         let mut sides: Vec<f32> = graph.nodes.iter().map(|node| node.position.dot(lateral)).collect();
         sides.sort_by(f32::total_cmp);
-        // The median: as many joints are left as right, so it lies on the midline.
+        // The median lies on the midline, because as many joints are left as right.
         let centre = 0.5 * (sides[sides.len() / 2] + sides[(sides.len() - 1) / 2]);
         let mut symmetry = Self { lateral, centre, partner: vec![None; graph.nodes.len()], score: 0.0 };
         symmetry.pair_up(graph, MIRROR_TOLERANCE * size);
@@ -37,14 +37,14 @@ impl Symmetry {
         symmetry
     }
 
-    /// Pairs joints with their mirror images from the root down. The image of a joint is a child of its parent's image, the best fit first.
-    /// Among several joints in one place, as fingers at the wrist, the one whose whole subtree is nearest to the mirrored
-    /// subtree.
+    /// Pairs joints with their mirror images from the root down. The image of a joint is a child of its parent's image;
+    /// the best fits are paired first. Of several joints in one place, such as fingers at the wrist, the one whose
+    /// whole subtree is nearest to the mirrored subtree is chosen.
     fn pair_up(&mut self, graph: &Graph, tolerance: f32) {
         let middles = graph.middles();
         let mirrored = |p: Vec3| p - self.lateral * (2.0 * (p.dot(self.lateral) - self.centre));
-        // Down a limb posed differently from its twin, differences add up, so each bone by itself counts, too. Not on
-        // the midline, where a bone up and one down would be twins in a wrong plane.
+        // Along a limb posed differently from its twin, differences add up, so the difference of a single bone counts,
+        // too; but not on the midline, where a bone up and a bone down would be twins in a wrong plane.
         let lengths = |nodes: [usize; 2], parents: [usize; 2]| {
             (graph.distance(parents[0], nodes[0]) - graph.distance(parents[1], nodes[1])).abs()
         };
@@ -57,7 +57,7 @@ impl Symmetry {
             if parents[0] == parents[1] {
                 away
             } else if is_chain {
-                // An unbranched chain continues like its twin, however it is bent.
+                // An unbranched chain continues like its twin, with any bend.
                 min(min(away, of_bone), lengths(nodes, parents))
             } else {
                 min(away, of_bone)
@@ -101,7 +101,7 @@ impl Symmetry {
         self.partner[node] == Some(node)
     }
 
-    /// The mirror image on the other side; `None` on the midline.
+    /// Returns the mirror image on the other side; `None` on the midline.
     pub fn other(&self, node: usize) -> Option<usize> {
         self.partner[node].filter(|&k| k != node)
     }

@@ -8,7 +8,7 @@ use crate::roles::tuning::{
 use core::fmt::Write as _;
 use sinew_math::{clamp, max, trig};
 
-/// Sizes of a body from which the unit of its file follows.
+/// Sizes of a body, from which the unit of its file is derived.
 pub(super) struct Measured {
     pub humanoid: bool,
     /// Height from floor to crown, file units.
@@ -19,27 +19,27 @@ pub(super) struct Measured {
     pub head: Option<f32>,
     /// Stride time, seconds, and the height of the legs' start over the floor, file units.
     pub stride: Option<(f32, f32)>,
-    /// Kind of body that the names in the file speak of.
+    /// Kind of body according to the names in the file.
     pub species: Option<Species>,
 }
 
 impl Measured {
-    /// True for a body of human size: a human, or a figure with the name of one.
+    /// True for a body of human size: a human, or a figure named like one.
     fn is_human(&self) -> bool {
         self.humanoid || self.species == Some(Species::Human)
     }
 }
 
-/// A unit that files may be in.
+/// A possible unit of a file.
 struct Unit {
     metres: f32,
     name: &'static str,
-    /// Rarity of the unit against centimetres, as a natural logarithm of sizes: a unit that makes the body `e` times
-    /// further from its usual size is as likely as one that is rarer by 1.
+    /// Rarity of the unit compared with centimetres, on a logarithmic scale: a rarity of 1 counts as much as a size
+    /// that is `e` times farther from the usual one.
     rarity: f32,
 }
 
-/// Units of files. The last two result from converting metres or centimetres twice.
+/// Possible units of files. The last two result from converting metres or centimetres twice.
 const UNITS: [Unit; 7] = [
     Unit { metres: 1.0, name: "metres", rarity: 0.0 },
     Unit { metres: 0.01, name: "centimetres", rarity: 0.0 },
@@ -50,7 +50,7 @@ const UNITS: [Unit; 7] = [
     Unit { metres: 0.0001, name: "centimetres times a hundred", rarity: 0.5 },
 ];
 
-/// Programs, by a word of how they sign their files, and the unit in which they write them, metres.
+/// Programs, by a word of their signature in files, and the unit in which they write, metres.
 const EXPORTERS: [(&str, f32); 16] = [
     ("blender", 1.0),
     ("unity", 1.0),
@@ -72,7 +72,7 @@ const EXPORTERS: [(&str, f32); 16] = [
 
 /// Distance from a human's head joint to the crown, metres, nearly independent of height.
 const HEAD: f32 = 0.23;
-/// Heights that a head may imply, metres.
+/// Range of heights that a head may imply, metres.
 const BY_HEAD: [f32; 2] = [0.7, 1.8];
 
 /// Acceleration of free fall, m/s².
@@ -81,14 +81,14 @@ const GRAVITY: f32 = 9.81;
 /// Sizes of a kind of body, metres.
 #[derive(Clone)]
 struct Sizes {
-    /// The body and its measure, for a sentence.
+    /// Names of the body and of its measure, for a sentence.
     words: [&'static str; 2],
     fits: core::ops::Range<f32>,
-    /// Sizes in metres that prove a unit of one centimetre.
+    /// Sizes in metres that prove that the unit is one centimetre.
     surely: core::ops::Range<f32>,
     /// Usual size, metres.
     usual: f32,
-    /// Narrowness of the spread of sizes against those of creatures.
+    /// Factor by which deviations from the usual size count more than for creatures.
     focus: f32,
     /// Size if no unit fits, metres.
     assumed: f32,
@@ -112,7 +112,7 @@ const CREATURE: Sizes = Sizes {
 };
 
 impl Sizes {
-    /// Sizes of the kind of body that was measured.
+    /// Returns the sizes of the kind of body that was measured.
     fn of(body: &Measured) -> Self {
         match body.species {
             Some(Species::Animal(_, length)) if !body.humanoid => Self {
@@ -127,16 +127,17 @@ impl Sizes {
         }
     }
 
-    /// Accepts a small human if neighbouring files use its unit, doors are low, or its steps are fast.
+    /// Accepts a small human if neighbouring files use its unit, doors are low, or the head is large and the steps are
+    /// fast.
     ///
-    /// A large head or an exporter's habit is not enough: figures with large heads are drawn at adult size, and scaled
-    /// rigs are common. A stride alone is not either: an adult may only be in a hurry.
+    /// A large head or the exporter's usual unit is not enough: figures with large heads are drawn at adult size, and
+    /// scaled rigs are common. A short stride time alone is not enough either, because an adult may be in a hurry.
     fn with_small(mut self, witnesses: &Witnesses, metres: f32) -> Self {
         let steps = |(leg, by_stride): (f32, f32)| {
             let leg = leg * metres;
             leg < STEPS_ALIKE * by_stride && by_stride < STEPS_ALIKE * leg
         };
-        // Files in metres occur everywhere and say nothing about a scaled one.
+        // Files in metres occur everywhere, so they do not confirm a scaled one.
         let is_kin = metres != 1.0 && witnesses.kin.is_some_and(|kin| (metres / kin - 1.0).abs() < 0.05);
         if witnesses.has_low_door || is_kin || witnesses.has_large_head && witnesses.legs.is_some_and(steps) {
             self.fits.start = SHORTEST;
@@ -145,19 +146,19 @@ impl Sizes {
     }
 }
 
-/// Sizes of an animal as shares of that of a grown one.
+/// Range of sizes of an animal, as shares of a grown animal's.
 const GROWN: core::ops::Range<f32> = 0.6..1.5;
 
-/// Evidence for a unit beside the body's size, and its wording.
+/// Evidence for a unit in addition to the body's size, and its wording.
 struct Witnesses {
-    /// Length of legs in file units, and in metres by the time of their stride.
+    /// Length of the legs in file units, and in metres as implied by the stride time.
     legs: Option<(f32, f32)>,
-    /// Units of its exporter and of neighbouring files, metres.
+    /// Usual unit of the exporter, and unit of neighbouring files, metres.
     exporter: Option<f32>,
     kin: Option<f32>,
     /// Usual size of such a body, metres.
     usual: f32,
-    /// True if doors of its world are for small humans.
+    /// True if doors of the target world are for small humans.
     has_low_door: bool,
     /// True if the head implies a small human.
     has_large_head: bool,
@@ -195,7 +196,7 @@ impl Witnesses {
         Self { legs, exporter, kin, usual, has_low_door, has_large_head, words }
     }
 
-    /// Evidence against a unit, in the measure of [`Unit::rarity`].
+    /// Returns the evidence against a unit, on the scale of [`Unit::rarity`].
     fn against(&self, unit: &Unit) -> f32 {
         let off = |(leg, metres): (f32, f32)| trig::ln(leg * unit.metres / metres).abs();
         let same = |metres: f32| (metres / unit.metres - 1.0).abs() < 0.05;
@@ -209,20 +210,21 @@ fn unit_of(metres: f32) -> Option<&'static Unit> {
     UNITS.iter().find(|unit| (metres / unit.metres - 1.0).abs() < 0.05)
 }
 
-/// The unit of most of several files; `None` if there is none.
+/// Returns the unit that most of several files have; `None` if there is none.
 fn common(kin: &[f32]) -> Option<f32> {
     let alike = |metres: f32| kin.iter().filter(|other| (*other / metres - 1.0).abs() < 0.05).count();
     kin.iter().copied().find(|&metres| alike(metres) > 1 && 2 * alike(metres) > kin.len())
 }
 
-/// Metres per file unit, the reason, and alternatives.
+/// Returns the metres per file unit, with the reason and alternatives.
 ///
-/// A humanoid between 0.9 m and 3 m is accepted as it is (from 0.5 m on if its legs step as short ones do), and so is a
-/// creature whose longest side is 0.1 m to 10 m, and an animal that the file names at 0.6 to 1.5 times its adult size;
-/// in centimetres from 0.9 m and 0.3 m on. Otherwise the most likely unit among centimetres, inches, decimetres,
-/// millimetres and twice converted ones is taken: near the usual size (by head and doors), not rare, with matching
-/// strides, as its exporter and neighbouring files use. Strong evidence of that kind overrides an accepted size. If no
-/// unit fits, a humanoid is 1.75 m, a creature as long as its stride implies, else 1 m.
+/// In metres, a humanoid between 0.9 m and 3 m is accepted (from 0.5 m if its leg length fits its steps), a creature
+/// whose longest side is 0.1 m to 10 m, and an animal named by the file at 0.6 to 1.5 times its adult size; in
+/// centimetres, humanoids from 0.9 m and creatures from 0.3 m. Otherwise the most likely unit is chosen among
+/// centimetres, inches, decimetres, millimetres and twice converted units: near the usual size (by head and doors), not
+/// rare, with matching strides, and used by the exporter and neighbouring files. Strong evidence of these kinds
+/// overrides an accepted size. If no unit fits, a humanoid is 1.75 m, a creature has the length that its stride
+/// implies, else 1 m.
 pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
     let (measure, sizes) = (if body.is_human() { body.height } else { body.size }, Sizes::of(body));
     let across = sizes.words[1];
@@ -249,7 +251,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
         );
         return (scale, UnitGuess { note, is_sure: false, is_only: false, is_scaled: true });
     }
-    // Stable: of equally likely units the first.
+    // The sort is stable: of equally likely units the first is chosen.
     let by_size = |unit: &Unit| match unit.metres {
         1.0 => 0.0,
         0.01 if sizes.surely.contains(&(measure * 0.01)) => 0.0,
@@ -260,7 +262,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
     let unit = fitting.remove(0);
     let others: Vec<String> =
         fitting.iter().map(|unit| format!("{} ({:.2} m)", unit.name, measure * unit.metres)).collect();
-    // Small humans that their surroundings would confirm leave a doubt.
+    // Units in which the body would be a small human, which its surroundings could confirm, leave a doubt.
     let small = SHORTEST..sizes.fits.start;
     let may_be_small = |unit: &&Unit| body.humanoid && small.contains(&(measure * unit.metres));
     let small =
@@ -273,7 +275,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
         .collect();
     let is_only = others.is_empty();
     let is_sure = is_only && body.humanoid && unit.metres == 1.0;
-    // With a single candidate there is nothing to compare.
+    // A single candidate needs no comparison.
     let (others, words) = if is_only {
         ("no other unit fits".to_owned(), "")
     } else {
@@ -286,7 +288,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
     (unit.metres, UnitGuess { note, is_sure, is_only, is_scaled: false })
 }
 
-/// Size of a body that fits no unit, metres, and its reason.
+/// Returns the assumed size of a body that fits no unit, metres, and its reason.
 fn assumed(body: &Measured, sizes: &Sizes, witnesses: &Witnesses) -> (f32, &'static str) {
     match witnesses.legs {
         Some((leg, metres)) if !body.humanoid && body.species.is_none() => {

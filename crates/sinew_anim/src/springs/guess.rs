@@ -1,4 +1,4 @@
-//! Springs guessed from joint names.
+//! Guesses springs from joint names.
 
 use super::{LimitKind, SpringBone, SpringChain, SpringLimit, SpringLink, Springs};
 use crate::garments::guess_garments;
@@ -14,15 +14,15 @@ struct Material {
     /// Stiffness over the mean length of the chain's bones, 1/s: the rate at which a light spring approaches its rest
     /// pose.
     rate: f32,
-    /// Gravity over stiffness.
+    /// Ratio of gravity to stiffness.
     sag: f32,
     drag: f32,
     /// Largest rotation of a bone from its rest pose, radians.
     cone: f32,
 }
 
-/// Kinds; the first whose word a name has. Rates are those of avatars drawn for VRM (stiffness about 1 m/s on bones of
-/// 6 to 10 cm); parts drawn as if free of gravity, such as ears, do not sag.
+/// Kinds of parts; the first kind whose word is in a name applies. Rates are those of avatars drawn for VRM (stiffness
+/// about 1 m/s on bones of 6 to 10 cm). Parts drawn as if free of gravity, such as ears, do not sag.
 const MATERIALS: [Material; 6] = [
     Material {
         words: &[
@@ -70,10 +70,10 @@ const MATERIALS: [Material; 6] = [
     },
 ];
 
-/// Springs by joint names: hair, ears, tails, skirts, coats and capes, ribbons and straps, breasts, for files that
-/// state none. `up` is the file's up axis, unit. Chains follow children of one kind; a childless joint ends one and
-/// does not swing, since its length is unknown (joints of [sheets](Rig::sheets) are no children). They collide with the
-/// character's body. Neighbouring strands of skirts, coats and capes are linked.
+/// Returns springs by joint names for files that state none: hair, ears, tails, skirts, coats and capes, ribbons and
+/// straps, breasts. `up` is the file's up axis, a unit vector. Chains follow children of one kind. A childless joint
+/// ends a chain and does not swing, because its length is unknown (joints of [sheets](Rig::sheets) do not count as
+/// children). The chains collide with the character's body. Neighbouring strands of skirts, coats and capes are linked.
 pub fn guess_springs(rig: &Rig, up: Vec3) -> Springs {
     let material: Vec<Option<usize>> = rig.joints.iter().map(|joint| material_of(&joint.name)).collect();
     let is_cloth = rig.is_of_sheet();
@@ -138,7 +138,7 @@ fn chain(name: &str, bones: &[(JointIdx, Vec3)], material: &Material, up: Vec3) 
     }
 }
 
-/// Index of the first kind whose word the name has; none for end markers and controls.
+/// Index of the first kind whose word is in the name; `None` for end markers and controls.
 fn material_of(name: &str) -> Option<usize> {
     let words = words(name);
     if words.iter().any(|word| matches!(word.as_str(), "end" | "ik" | "ctrl" | "control" | "target" | "nub"))
@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(of("skirt_front_1"), Some("skirt"));
         assert_eq!(of("breast.R"), Some("breast"));
         assert_eq!(of("リボン_左"), Some("ribbon"));
-        // Names that contain the letters by chance, and names that are only markers.
+        // Names that contain the letters by chance, and names of markers.
         for name in ["LeftForeArm", "Rear_Leg", "Ear4.L_end", "mixamorig:Head", "tailor", "IK_hair"] {
             assert_eq!(of(name), None, "{name}");
         }

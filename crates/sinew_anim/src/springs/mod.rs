@@ -1,5 +1,5 @@
-//! Springs of a rig: hair, tails, ears, straps, skirts, stated by the file (`VRMC_springBone`, VRM 0's secondary
-//! animation) or guessed from names ([`guess_springs`]).
+//! Springs of a rig: hair, tails, ears, straps, skirts. They are stated by the file (`VRMC_springBone`, VRM 0's
+//! secondary animation) or guessed from names ([`guess_springs`]).
 //!
 //! Plain data: `sinew_ragdoll::springs` simulates them. Laws, units and names follow
 //! [VRMC_springBone 1.0](https://github.com/vrm-c/vrm-specification/tree/master/specification/VRMC_springBone-1.0), so
@@ -25,27 +25,28 @@ pub struct Springs {
     pub links: Vec<SpringLink>,
 }
 
-/// Link that keeps the tips of two bones at their distance in the bind pose, so that strands of a skirt stay together.
+/// Link that keeps the tips of two bones at their distance in the bind pose, so that the strands of a skirt stay
+/// together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringLink {
-    /// Joints of the bones, both in chains. Joints that do not swing have no link.
+    /// Joints of the two bones, both in chains. A joint that does not swing has no link.
     pub joints: [JointIdx; 2],
     /// Share of the distance error corrected per 1/60 s, 0..=1.
     pub share: f32,
-    /// False: the link limits only the largest distance of the tips, as cloth does. True: also the smallest.
+    /// False: the link limits only the largest distance of the tips, like cloth. True: also the smallest.
     pub holds_apart: bool,
 }
 
 impl Default for SpringLink {
-    /// Corrects half of the error at a time, only against moving apart; between no two joints.
+    /// Settings that correct half of the error per 1/60 s, only when the tips move apart; joints 0 and 0.
     fn default() -> Self {
         Self { joints: [0; 2], share: SPRING_LINK_SHARE, holds_apart: false }
     }
 }
 
 impl SpringLink {
-    /// Links like this one between neighbouring strands, joint by joint; `closed` also links the last strand to the
-    /// first.
+    /// Returns links with these settings between neighbouring strands, joint by joint; `closed` also links the last
+    /// strand to the first.
     pub fn across(self, strands: &[GarmentColumn], closed: bool) -> Vec<Self> {
         let last = if closed && strands.len() > 2 { Some([strands.len() - 1, 0]) } else { None };
         let pairs = (1..strands.len()).map(|k| [k - 1, k]).chain(last);
@@ -55,12 +56,12 @@ impl SpringLink {
 }
 
 impl Springs {
-    /// True if nothing swings.
+    /// True if there are no chains.
     pub fn is_empty(&self) -> bool {
         self.chains.is_empty()
     }
 
-    /// True if a bone of a chain turns about the joint.
+    /// True if a bone of a chain rotates about the joint.
     pub fn swings(&self, joint: JointIdx) -> bool {
         self.chains.iter().flat_map(|chain| &chain.bones).any(|bone| bone.joint == joint)
     }
@@ -78,11 +79,11 @@ pub struct SpringChain {
     pub name: String,
     /// Bones, from the root to the tip; no joint is in two chains.
     pub bones: Vec<SpringBone>,
-    /// Joint in whose space inertia acts; `None`: the world. It is above the chain.
+    /// Joint in whose space inertia acts; `None`: the world. The joint is above the chain.
     pub center: Option<JointIdx>,
     /// Indices into [`Springs::colliders`].
     pub colliders: Vec<usize>,
-    /// True: the character's own ragdoll bodies are colliders too. Default false, because a file names its colliders.
+    /// True: the character's own ragdoll bodies are colliders, too. Default false, because a file lists its colliders.
     pub hits_body: bool,
 }
 
@@ -91,22 +92,22 @@ pub struct SpringChain {
 pub struct SpringBone {
     /// Joint that rotates.
     pub joint: JointIdx,
-    /// Tip of the bone in the joint's own space, file units. Zero: it does not swing.
+    /// Tip of the bone in the joint's own space, file units. Zero: the bone does not swing.
     pub tail: Vec3,
-    /// Speed of the tip toward the rest pose by the spring, file units a second, ≥ 0.
+    /// Speed of the tip toward the rest pose by the spring, file units per second, ≥ 0.
     pub stiffness: f32,
-    /// Speed of the tip by gravity, file units a second, the file's axes.
+    /// Velocity of the tip by gravity, file units per second, the file's axes.
     pub gravity: Vec3,
     /// Share of the tip's motion lost in 1/60 s, 0..=1.
     pub drag: f32,
     /// Radius of the tip against colliders, file units, ≥ 0.
     pub radius: f32,
-    /// Limit of its rotation from the rest pose.
+    /// Limit of the bone's rotation from the rest pose.
     pub limit: Option<SpringLimit>,
 }
 
 impl Default for SpringBone {
-    /// Defaults of VRMC_springBone: stiffness 1, drag 0.5, no gravity, radius or limit; joint 0, and no length.
+    /// Defaults of VRMC_springBone: stiffness 1, drag 0.5, no gravity, radius or limit; joint 0, length 0.
     fn default() -> Self {
         Self {
             joint: 0,
@@ -128,33 +129,33 @@ impl Default for SpringBone {
 pub struct SpringLimit {
     /// Shape of the allowed region.
     pub kind: LimitKind,
-    /// Rotation of the frame, in the frame.
+    /// Rotation of the frame, in its own axes.
     pub rotation: Rotation,
 }
 
 /// Shape of a limit, angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitKind {
-    /// The direction is within this angle of +Y.
+    /// Cone: the direction is within `angle` of +Y.
     Cone {
         /// Angle, 0..=π.
         angle: f32,
     },
-    /// The direction is within this angle of +Y in the plane perpendicular to X.
+    /// Hinge: the direction is within `angle` of +Y in the plane perpendicular to X.
     Hinge {
         /// Angle, 0..=π.
         angle: f32,
     },
-    /// The direction is within a rotation about X, and an elevation out of the plane perpendicular to X.
+    /// Spherical: the direction is within a rotation about X, and an elevation out of the plane perpendicular to X.
     Spherical {
         /// Largest rotation about X, 0..=π.
         phi: f32,
-        /// Most elevation, 0..=π/2.
+        /// Largest elevation, 0..=π/2.
         theta: f32,
     },
 }
 
-/// Shape that keeps tips out, or in.
+/// Shape that keeps the tips of springs outside or inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringCollider {
     /// Joint that carries the collider.
@@ -177,7 +178,7 @@ pub enum ColliderShape {
     },
     /// A capsule.
     Capsule {
-        /// Middle of the cap at one end.
+        /// Centre of the cap at one end.
         offset: Vec3,
         /// Centre of the cap at the other end.
         tail: Vec3,

@@ -1,4 +1,4 @@
-//! After warm-up, playing a character does not allocate.
+//! Checks that playing a character does not allocate after warm-up.
 
 use crate::{stage, toy};
 use sinew_anim::ik::{

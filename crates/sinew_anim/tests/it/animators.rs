@@ -1,4 +1,4 @@
-//! Tracks, ramps, layers, sync groups and their events.
+//! Tests of tracks, ramps, layers, sync groups and their events.
 
 use crate::{cases, stage};
 use sinew_anim::{
@@ -15,7 +15,7 @@ fn angle(a: &Pose, b: &Pose) -> f32 {
     a.iter().zip(b.iter()).map(|(a, b)| a.rotation.angle_to(b.rotation)).fold(0.0, sinew_math::max)
 }
 
-/// A set with one clip of `duration` that has `events`.
+/// Returns a set with one clip of `duration` seconds that has `events`.
 fn eventful(duration: f32, events: Vec<ClipEvent>) -> AnimationSet {
     let mut set = AnimationSet::new(Skeleton::new(&stage::rig()));
     let clip = stage::build(&stage::swaying(&mut Random::new(3), duration), Fill::Rest);
@@ -38,7 +38,7 @@ fn single_track_shows_its_clip() {
     }
 }
 
-/// One clip in two tracks, with different weights and speeds.
+/// One clip in two tracks with different weights and speeds.
 #[test]
 fn one_clip_in_two_tracks_blends_both_times() {
     let set = stage::set(2);
@@ -137,7 +137,7 @@ fn ramps_end_on_time_with_their_action() {
             assert_eq!(track.is_paused(), then == EndAction::Pause);
         }
     }
-    // At half of the time the eased weight is a half.
+    // Halfway through the time the eased weight is one half.
     let mut animator = Animator::new(&set);
     let track = animator.play(&set, &TrackDef { weight: 0.0, ..TrackDef::new(clip) });
     animator.fade(track, 1.0, 1.0, Easing::In, EndAction::Hold);
@@ -164,7 +164,8 @@ fn one_shot_clip_takes_its_end_action() {
     }
 }
 
-/// Events of a sequence of updates: seconds since the start, event number, and whether it was interrupted.
+/// Returns the events of a sequence of updates: seconds since the start, event number, and true if it was
+/// interrupted.
 fn fired(animator: &mut Animator, set: &AnimationSet, steps: &[f32]) -> Vec<(f64, u32, bool)> {
     let (mut out, mut now) = (Vec::new(), 0.0);
     for &step in steps {
@@ -191,7 +192,7 @@ fn event_times_are_independent_of_the_steps() {
         animator.play(&set, &def);
         fired(&mut animator, &set, &[4.0])
     };
-    // Events at 0, and then in each cycle of half a second: end and start of a loop are one time.
+    // Events occur at 0, and then in each cycle of half a second; end and start of a loop are one time.
     assert_eq!(whole.len(), 1 + 8 + 16);
     for (i, &(seconds, number, _)) in whole.iter().enumerate().filter(|(_, event)| event.1 == 1) {
         let lap = ((seconds - 0.125) / 0.5).round();
@@ -224,7 +225,8 @@ fn track_below_the_weight_threshold_fires_no_events() {
         let mut animator = Animator::new(&set);
         let track = animator.play(&set, &TrackDef { weight: 0.0, ..TrackDef::new(ids(&set)[0]) });
         animator.fade(track, 1.0, 1.0, Easing::Linear, EndAction::Hold);
-        // The weight exceeds a half at 0.5 s for any steps: the sixth event is the first, up to rounding.
+        // The weight exceeds one half at 0.5 s for any number of steps: the sixth event is the first to fire,
+        // up to rounding.
         let numbers: Vec<u32> = fired(&mut animator, &set, &vec![0.98 / steps as f32; steps])
             .iter()
             .map(|event| event.1)
@@ -245,7 +247,7 @@ fn interrupted_track_fires_its_remaining_events() {
     animator.stop(&set, track);
     all.extend(fired(&mut animator, &set, &[0.5]));
     assert_eq!(all.iter().map(|e| (e.1, e.2)).collect::<Vec<_>>(), [(0, false), (2, true)]);
-    // A fade-out that stops it ends on time as well; a clip that has ended fires nothing more.
+    // A fade-out that stops the track also ends on time; an ended clip fires no more events.
     let track = animator.play(&set, &def);
     animator.fade(track, 0.0, 0.5, Easing::Linear, EndAction::Stop);
     let all = fired(&mut animator, &set, &[2.0]);
@@ -260,7 +262,7 @@ fn interrupted_track_fires_its_remaining_events() {
     assert!(fired(&mut animator, &set, &[0.1]).is_empty());
 }
 
-/// Walk and run: 1 s and 0.6 s, with left and right footsteps at different times.
+/// Returns a set with walk and run: 1 s and 0.6 s, with left and right footsteps at different times.
 fn gaits(policy: EventPolicy) -> AnimationSet {
     let mut set = AnimationSet::new(Skeleton::new(&stage::rig()));
     for (duration, left, right) in [(1.0, 0.1, 0.6), (0.6, 0.2, 0.55)] {
@@ -298,7 +300,8 @@ fn sync_group_aligns_footsteps() {
         let apart = (a - b).abs();
         assert!(apart.min(2.0 - apart) < 1e-4, "{a} and {b}");
     }
-    // Left and right alternate, none is repeated although both clips have them, and the last come from the run.
+    // Left and right alternate, none is repeated although both clips have them, and the run fires the last
+    // ones.
     assert!(steps.windows(2).all(|pair| pair[0].1 != pair[1].1), "{steps:?}");
     assert!(steps[0].0 == walk && steps[steps.len() - 1].0 == run);
     // The step frequency rises from 2 to 2 / 0.6 per second.
@@ -314,7 +317,7 @@ fn track_that_joins_a_group_takes_its_phase() {
     animator.play(&set, &walk);
     animator.update(&set, 0.35);
     let run = animator.play(&set, &TrackDef { weight: 0.1, ..run });
-    // Halfway from left to right in both clips.
+    // Both clips are halfway from left to right.
     let time = animator.track(run).expect("it plays").playhead().clip_time();
     assert!((time - 0.375).abs() < 1e-4, "{time}");
 }
@@ -370,7 +373,7 @@ fn additive_clips_apply_in_joint_space() {
     }
 }
 
-/// Walk and run whose footstep events lie on either side of their sync markers, while the leading clip changes
+/// Walk and run have footstep events on opposite sides of their sync markers, while the leading clip changes
 /// constantly.
 #[test]
 fn footstep_is_reported_once_for_any_leading_clip() {
@@ -386,7 +389,7 @@ fn footstep_is_reported_once_for_any_leading_clip() {
     let mut random = Random::new(3);
     for run in 0..200 {
         let mut animator = Animator::new(&set);
-        // The point is between two footsteps.
+        // The time is between two footsteps.
         let backward = if run % 2 == 0 { 1.0 } else { -1.0 };
         let tracks = [0, 1].map(|i| {
             let def =
@@ -425,7 +428,7 @@ fn crossfade_leaves_one_track() {
     );
 }
 
-/// A clip of 1 s in which joints do not move.
+/// Returns a clip of 1 s in which joints do not move.
 fn held(rotation: impl Fn(usize) -> Rotation) -> AnimatedClip {
     let channel = |joint: usize| {
         let Rotation { x, y, z, w } = rotation(joint);
@@ -438,7 +441,7 @@ fn held(rotation: impl Fn(usize) -> Rotation) -> AnimatedClip {
 
 #[test]
 fn crossfade_rotates_about_one_axis_with_its_easing() {
-    // Up to 175° apart, on either side of half a turn from the rest pose.
+    // Poses are up to 175° apart, on opposite sides of half a turn from the rest pose.
     let axis = Vec3::new(1.0, 2.0, 2.0) / 3.0;
     let apart = |joint: usize| 0.3 * joint as f32;
     let around = |angle: f32| Rotation::from_axis_angle(axis, angle);

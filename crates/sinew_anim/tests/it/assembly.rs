@@ -1,4 +1,4 @@
-//! Humans with unambiguous names whose hierarchy or skin is incomplete.
+//! Tests of humans with unambiguous names whose hierarchy or skin is incomplete.
 
 use crate::toy;
 use sinew_anim::riders::Riders;
@@ -9,7 +9,7 @@ use sinew_anim::{
 };
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
-/// Mixamo names for the parts of the toy body.
+/// Returns the Mixamo name of a part of the toy body.
 fn mixamo(role: Role) -> String {
     let side = |side: Side| if side == Side::Left { "Left" } else { "Right" };
     let name = match role {
@@ -170,7 +170,7 @@ fn names_decide_where_the_pose_is_asymmetric() {
     is_whole(&rig, &[]);
 }
 
-/// Adds a second skeleton: one joint that moves a tetrahedron of that size at a place.
+/// Adds a second skeleton: one joint that moves a tetrahedron of the given size at a place.
 fn add_skeleton(rig: &mut Rig, name: &str, place: Vec3, size: f32) -> usize {
     let joint = rig.joints.len();
     let rest = LocalTransform { translation: place, ..LocalTransform::default() };
@@ -200,7 +200,7 @@ fn hat_with_its_own_skeleton_joins_the_head() {
     assert_eq!(found.merge_into[hat], Some(part("head")));
 }
 
-/// A cape with its own skeleton hangs behind the back, half of it outside the body's bounding box.
+/// A cape with its own skeleton, behind the back, half of it outside the body's bounding box.
 #[test]
 fn cape_with_its_own_skeleton_joins_the_body() {
     let mut rig = toy::body(mixamo);
@@ -214,7 +214,7 @@ fn cape_with_its_own_skeleton_joins_the_body() {
     assert!(found.merge_into[cape].is_some(), "{:?}", found.notes);
 }
 
-/// Long hair with its own skeleton is attached to the head as a whole, although its end is nearest to the chest.
+/// Long hair with its own skeleton is attached to the head as a whole, although its tip is nearest to the chest.
 #[test]
 fn hair_with_its_own_skeleton_joins_the_head_as_a_whole() {
     let mut rig = toy::body(mixamo);
@@ -229,7 +229,7 @@ fn hair_with_its_own_skeleton_joins_the_head_as_a_whole() {
     assert_eq!(found.merge_into[tip], Some(part("head")));
 }
 
-/// The rest pose is bent, and the hair is placed and bound at the head.
+/// In a bent rest pose, hair with its own skeleton is placed and bound at the head.
 #[test]
 fn separate_hair_joins_the_head_of_a_bent_rest_pose() {
     let mut rig = toy::body(mixamo);
@@ -250,7 +250,7 @@ fn second_figure_is_not_merged() {
     let mut rig = toy::body(mixamo);
     let other = add_skeleton(&mut rig, "Bone", Vec3::new(2.0, 0.0, 0.0), 1.2);
     assert_eq!(characters(&rig), vec![vec![0], vec![1]]);
-    // As some exporters do, each skeleton has its own nodes below one root.
+    // As from some exporters, each skeleton has its own nodes below one root.
     for joint in &mut rig.joints {
         joint.parent = Some(joint.parent.map_or(1, |parent| parent + 3));
     }
@@ -288,7 +288,7 @@ fn unattached_mesh_inside_the_body_joins_the_nearest_bone() {
 #[test]
 fn outside_skinned_joint_joins_the_adjacent_skin() {
     let mut rig = toy::body(mixamo);
-    // The root of a coat outside the body, whose skin borders on the chest's.
+    // The root of a coat is outside the body, and its skin borders on the chest's.
     let coat = rig.joints.len();
     let place = Vec3::new(0.0, 1.2, -0.1);
     let rest = LocalTransform { translation: place, ..LocalTransform::default() };
@@ -317,7 +317,7 @@ fn clavicles_on_the_midline_belong_to_the_arms() {
     let place = Vec3::new(0.0, 1.45, 0.0);
     for (before, arm) in ["leftUpperArm", "rightUpperArm"].map(part).into_iter().enumerate() {
         let arm = arm + before;
-        // Replaces the neck's joint, so that parents come first.
+        // The parent is the chest instead of the neck, so that parents come first.
         let clavicle = part("chest");
         let twin =
             Joint { name: format!("Bone.1{arm:02}"), parent: Some(clavicle), ..rig.joints[arm].clone() };
@@ -441,7 +441,7 @@ fn human_with_inner_limb_joints_and_no_hands_or_feet_is_recognised() {
         insert_inner_end(&mut rig, part(&format!("{side}UpperLeg")));
         insert_inner_end(&mut rig, part(&format!("{side}UpperArm")));
     }
-    // Parents come before children: the new joints move in front of their descendants.
+    // Moves the new joints in front of their descendants, because parents come before children.
     let rig = in_order(&rig);
     let found = analyze(&rig).expect("a skin");
     assert!(found.humanoid, "{:?}", found.notes);
@@ -457,7 +457,7 @@ fn human_with_inner_limb_joints_and_no_hands_or_feet_is_recognised() {
     }
 }
 
-/// The rig with parents before children.
+/// Returns the rig with parents before children.
 fn in_order(rig: &Rig) -> Rig {
     let depth = |joint: usize| core::iter::successors(Some(joint), |&at| rig.joints[at].parent).count();
     let mut order: Vec<usize> = (0..rig.joints.len()).collect();
@@ -477,7 +477,7 @@ fn in_order(rig: &Rig) -> Rig {
 
 #[test]
 fn quadruped_with_human_names_is_not_human() {
-    // A trunk along z at hip height, with arms and legs straight down from it.
+    // The trunk is along z at hip height, with arms and legs straight down.
     let place = |role: &str, at: [f32; 3]| match role {
         "hips" => [0.0, 1.0, -0.6],
         "spine" => [0.0, 1.0, -0.3],
@@ -580,7 +580,7 @@ fn trunk_on_a_separate_branch_is_found() {
     }
 }
 
-/// Turns the skin of a toy joint into a rigid mesh of `carrier`, which is at `at`.
+/// Converts the skin of a toy joint to a rigid mesh of `carrier`, which is at `at`.
 fn make_rigid(rig: &mut Rig, joint: usize, carrier: usize, at: Vec3) {
     let skinned = &mut rig.meshes[0].primitives[0];
     let own = skinned.positions[4 * joint..4 * joint + 4].iter().map(|&corner| corner - at).collect();
@@ -598,7 +598,7 @@ fn make_rigid(rig: &mut Rig, joint: usize, carrier: usize, at: Vec3) {
 
 #[test]
 fn rigid_trunk_above_the_legs_is_the_hips() {
-    // A toy body whose trunk is one rigid mesh of a nameless bone that is also the parent of the thighs.
+    // In this toy body the trunk is one rigid mesh of a nameless bone, which is also the parent of the thighs.
     let mut rig = toy::body(mixamo);
     let low = Vec3::from_array(toy::BODY[part("hips")].2);
     let bone = add_bare(&mut rig, "Bone", None, low, Vec3::ZERO);
@@ -611,7 +611,7 @@ fn rigid_trunk_above_the_legs_is_the_hips() {
     for bare in ["chest", "spine", "hips", "neck"] {
         make_rigid(&mut rig, part(bare), trunk, low);
     }
-    // An arm is bent, so that names alone decide.
+    // One arm is bent, so that only names can decide.
     bend(&mut rig, part("leftUpperArm"), Rotation::from_axis_angle(Vec3::Z, 0.9));
     let sorted = in_order(&rig);
     let found = analyze(&sorted).expect("a skin");
@@ -626,7 +626,7 @@ fn rigid_trunk_above_the_legs_is_the_hips() {
 fn head_parented_to_the_armature_joins_the_neck() {
     let mut rig = toy::body(mixamo);
     let [head, neck] = ["head", "neck"].map(part);
-    // Makes the head half a metre high, larger than any human's.
+    // The head is half a metre high, larger than any human's.
     let armature = add_bare(&mut rig, "Armature", None, Vec3::ZERO, Vec3::ZERO);
     rig.joints[part("hips")].parent = Some(armature);
     let place = Vec3::from_array(toy::BODY[head].2);
@@ -644,7 +644,7 @@ fn head_parented_to_the_armature_joins_the_neck() {
     let sorted = in_order(&rig);
     let at = |name: &str| sorted.joints.iter().position(|joint| joint.name == name).expect("it is there");
     let found = analyze(&sorted).expect("a skin");
-    // It protrudes enough to get its own body.
+    // The hat protrudes enough to get its own body.
     let body = |name: &str| found.kept.iter().find(|bone| bone.joint == at(name));
     let carrier = body("Goblin_head").and_then(|head| found.kept[head.parent?].joint.into());
     assert_eq!(carrier, Some(at(&rig.joints[neck].name)), "{:?}", found.notes);
@@ -655,7 +655,7 @@ fn head_parented_to_the_armature_joins_the_neck() {
 #[test]
 fn eyes_with_their_own_skeleton_join_the_head() {
     let mut rig = toy::body(mixamo);
-    // The eyes are on both sides of a wide head whose centre is nearest to the nape.
+    // The eyes are on both sides of a wide head, and their centre is nearest to the nape.
     let head = Vec3::from_array(toy::BODY[part("head")].2);
     for corner in 4 * part("head")..4 * part("head") + 4 {
         let at = &mut rig.meshes[0].primitives[0].positions[corner];
@@ -701,7 +701,7 @@ fn rootless_figure_with_squatting_rest_pose_stands_in_the_bind_pose() {
         hang(&mut rig, part(limb), chest, high);
     }
     give_skin(&mut rig, part("spine"), part("hips"));
-    // Every joint except the trunk's is rotated relative to its bind pose, the thighs most; the trunk leans.
+    // Every joint except those of the trunk is rotated relative to its bind pose, the thighs most; the trunk leans.
     let turn = |rig: &mut Rig, name: &str, about: Vec3, by: f32| {
         rig.joints[part(name)].rest.rotation = Rotation::from_axis_angle(about, by);
     };
@@ -723,7 +723,7 @@ fn rootless_figure_with_squatting_rest_pose_stands_in_the_bind_pose() {
     assert!(up.y > 0.9, "from hips to head the direction is {up}; {:?}", found.notes);
 }
 
-/// In some converted files a mesh is a node below its object.
+/// A mesh that is a node below its object, as in some converted files.
 #[test]
 fn head_object_on_the_armature_keeps_its_mesh_and_hair() {
     let mut rig = toy::body(mixamo);
@@ -746,7 +746,7 @@ fn head_object_on_the_armature_keeps_its_mesh_and_hair() {
     let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
     let primitive = Primitive { positions, indices, ..Primitive::default() };
     rig.meshes.push(RigMesh { name: String::new(), joint: strands, skin: None, primitives: vec![primitive] });
-    // Eyes inside the head, far from all skin.
+    // The eyes are inside the head, far from all skin.
     let eyes = add_bare(&mut rig, "Goblin_eyes", Some(armature), place + Vec3::Y * 0.5, Vec3::ZERO);
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * 0.05).to_vec();
     let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
@@ -766,7 +766,7 @@ fn head_object_on_the_armature_keeps_its_mesh_and_hair() {
     assert!(goes, "the eyes are merged into the head's parent");
 }
 
-/// The hat is a separate skeleton. In the bent rest pose it is on the head, and it was bound there in the upright pose.
+/// The hat is a separate skeleton. It is on the head in the bent rest pose, and was bound there in the upright pose.
 #[test]
 fn separate_hat_is_bound_on_the_head_of_a_bent_rest_pose() {
     let mut rig = toy::body(mixamo);
@@ -794,7 +794,7 @@ fn separate_hat_is_bound_on_the_head_of_a_bent_rest_pose() {
     assert_eq!(found.merge_into[hat], Some(part("head")));
 }
 
-/// A large hat outside the skeleton gets its own body. It stays on the head in another body's motion as well.
+/// A large hat outside the skeleton gets its own body. It also stays on the head in another body's motion.
 #[test]
 fn separate_prop_follows_its_carrier() {
     let mut rig = toy::body(mixamo);
@@ -823,13 +823,13 @@ fn separate_prop_follows_its_carrier() {
     assert!(model[hat].linear.y_axis.y < 0.5, "it leans with the head");
 }
 
-/// A hat that only a clip moves to the head stays on it in another body's motion as well.
+/// A hat that only a clip moves to the head also stays there in another body's motion.
 #[test]
 fn hat_moved_by_a_clip_keeps_the_clips_place_on_the_head() {
     let mut rig = toy::body(mixamo);
     let head = Vec3::from_array(toy::BODY[part("head")].2);
     let hat = rig.joints.len();
-    // Bound at the nape, slightly too low.
+    // The hat is bound at the nape, slightly too low.
     let rest = LocalTransform { translation: head - Vec3::Y * 0.1, ..LocalTransform::default() };
     rig.joints.push(Joint { name: "hat".into(), parent: None, rest, source: hat });
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * 0.1).to_vec();
@@ -858,7 +858,7 @@ fn hat_moved_by_a_clip_keeps_the_clips_place_on_the_head() {
     assert!((height(&held) - Vec3::Y * 0.15).length() < 1e-4, "{}", height(&held));
 }
 
-/// Auto-Rig Pro names for the parts of the toy body.
+/// Returns the Auto-Rig Pro name of a part of the toy body.
 fn auto_rig_pro(role: Role) -> String {
     let side = |side: Side| if side == Side::Left { "l" } else { "r" };
     match role {
@@ -898,8 +898,8 @@ fn childless_pelvis_called_root_is_the_hips() {
     assert_eq!(sorted.joints[spine].name, "spine_01.x");
 }
 
-/// A gun with many vertices in the hand of a figure whose rest pose differs from its bind pose: the body determines the
-/// bind pose.
+/// A figure whose rest pose differs from its bind pose has a gun with many vertices in its hand: the body determines
+/// the bind pose.
 #[test]
 fn gun_with_many_vertices_does_not_change_the_bind_pose() {
     let mut rig = toy::body(mixamo);
@@ -926,7 +926,8 @@ fn gun_with_many_vertices_does_not_change_the_bind_pose() {
     }
 }
 
-/// A figure of one mesh a part, whose raised arm is one mesh of three bones: the trunk's says how it was bound.
+/// A figure has one mesh per part, and a raised arm with one mesh of three bones: the trunk's mesh determines the bind
+/// pose.
 #[test]
 fn a_raised_arm_of_its_own_mesh_says_nothing_of_the_bind_pose() {
     let mut rig = toy::body(mixamo);

@@ -1,4 +1,4 @@
-//! Blends of whole poses: order, weights, masks, means.
+//! Tests of blends of whole poses: order, weights, masks, means.
 
 use crate::{precise, toy};
 use sinew_anim::{BlendLayer, BlendOptions, Blender, Mask, Pose, RotationMean};
@@ -99,7 +99,7 @@ fn zero_weight_gives_exactly_the_rest_pose() {
         blender.blend(&rest, layers, &mut out);
         assert_eq!(out, rest);
     }
-    // Mask on half of the body: each joint is blended as if alone.
+    // With a mask on half of the body, each joint is blended as if alone.
     let half: Mask = (0..JOINTS).map(|joint| if joint < 6 { 0.0 } else { 1.0 }).collect();
     blender.blend(&rest, &[BlendLayer { mask: Some(&half), ..BlendLayer::new(&pose, 0.2) }], &mut out);
     for joint in 0..JOINTS {
@@ -166,7 +166,7 @@ fn opposite_rotations_give_unit_quaternions_at_the_rest_pose() {
         let mut local = rest.get(joint);
         let side = random.direction();
         let q = local.rotation;
-        // Half a turn in each direction: opposite quaternions, perpendicular to the rest pose.
+        // Half a turn in each direction gives opposite quaternions, perpendicular to the rest pose.
         local.rotation = q * Rotation::from_xyzw(side.x, side.y, side.z, 0.0);
         poses[0].set(joint, &local);
         local.rotation = q * Rotation::from_xyzw(-side.x, -side.y, -side.z, 0.0);

@@ -1,4 +1,4 @@
-//! Built clips compared with raw clips and with `f64`.
+//! Compares built clips with raw clips and with `f64`.
 
 use crate::{precise, rigs, toy};
 use needs_data::needs_data;
@@ -13,7 +13,7 @@ fn build(clip: &Clip, rig: &Rig) -> BuiltClip {
         .unwrap_or_else(|error| panic!("{}: {error}", clip.name))
 }
 
-/// Channels of every kind over a chain of joints, keys at random.
+/// Returns channels of every kind over a chain of joints, with random keys.
 fn random_clip(random: &mut Random, joints: usize) -> Clip {
     let mut clip = Clip { name: "random".to_owned(), duration: 3.0, channels: Vec::new() };
     let interpolations = [Interpolation::Step, Interpolation::Linear, Interpolation::CubicSpline];
@@ -87,7 +87,8 @@ fn raw_clips_equal_the_file_at_every_key() {
     }
 }
 
-/// Distance of a local transform from a key of the file: radians, or the length of a difference over the value's.
+/// Returns the difference of a local transform from a key of the file: radians, or the distance over the value's
+/// length.
 fn key_error(channel: &Channel, key: usize, local: &LocalTransform) -> f64 {
     let width = channel.property.width();
     let start = if channel.interpolation == Interpolation::CubicSpline { 3 * key + 1 } else { key } * width;
@@ -142,7 +143,7 @@ fn cursor_does_not_change_the_pose() {
     let (mut cursor, mut warm, mut cold) = (Cursor::new(), Pose::new(19), Pose::new(19));
     let mut time = 0.0_f32;
     for i in 0..4_000 {
-        // Forward and backward at all speeds, jumps, and changes of clip.
+        // Time runs forward and backward at all speeds, with jumps and changes of clip.
         time = match i % 37 {
             0 => random.range(-0.5, 3.5),
             k if k < 20 => time + 0.013 * k as f32,
@@ -176,7 +177,7 @@ fn constant_channels_have_no_keys() {
     built.sample(0.5, &mut Cursor::new(), &mut out);
     assert_eq!(out.get(8).rotation, Rotation::from_xyzw(0.6, 0.0, 0.0, 0.8).normalize());
     assert_eq!(out.get(8).translation, Vec3::X, "a joint without a channel has the rest pose");
-    // Opposite signs of one quaternion are no motion either.
+    // Opposite signs of one quaternion are no motion.
     let signs = [0.6, 0.0, 0.0, 0.8, -0.6, 0.0, 0.0, -0.8];
     assert_eq!(build(&clip(vec![channel(8, &signs)]), &rig).keys(), 0);
     // Of two channels the later one is used.

@@ -1,4 +1,4 @@
-//! Clean-up of captures: inserted defects are found and removed, and nothing else changes.
+//! Clean-up of captures: injected defects are found and removed, and nothing else changes.
 
 use crate::mocap::{actor, character};
 use crate::toy;
@@ -14,7 +14,7 @@ use sinew_math::{Random, Rotation, Vec3, trig};
 
 const FRAME: f64 = 1.0 / 120.0;
 
-/// Two joints that swing smoothly, 240 frames.
+/// Returns a take of two joints that swing smoothly, 240 frames.
 fn swinging() -> Take {
     let pose = |frame: usize| {
         let t = frame as f32 / 120.0;
@@ -63,7 +63,7 @@ fn only_spikes_are_removed() {
     assert!(farthest(&take, &clean) < 0.01, "{}", farthest(&take, &clean));
 }
 
-/// A displacement for one frame is a spike as well; a lasting one is a cut.
+/// A displacement for one frame is also a spike; a lasting one is a cut.
 #[test]
 fn position_spikes_are_removed_and_cuts_stay() {
     let clean = swinging();
@@ -149,7 +149,7 @@ fn body_is_lifted_out_of_the_floor() {
     assert!(low(&take) > floor + 0.05 - 1e-4, "{}", low(&take) - floor);
 }
 
-/// Real captures: little is cut off, and a second pass changes nothing.
+/// Clean-up changes real captures little, and a second pass changes nothing.
 #[needs_data]
 #[test]
 fn second_cleanup_of_a_capture_changes_nothing() {

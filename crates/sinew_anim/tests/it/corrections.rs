@@ -8,12 +8,12 @@ use sinew_anim::{
 };
 use sinew_math::{Affine, Random, Vec3};
 
-/// Analysis of a rig with corrections and without hints.
+/// Analyses a rig with corrections and without hints.
 fn analyze_corrected(rig: &Rig, correction: &Correction) -> Result<RigAnalysis, CorrectionError> {
     sinew_anim::analyze_corrected(rig, &Hints::default(), correction)
 }
 
-/// A body whose joint names are numbers.
+/// Returns a body whose joint names are numbers.
 fn numbered() -> Rig {
     let mut rig = toy::body(Role::name);
     rig.joints.iter_mut().enumerate().for_each(|(i, joint)| joint.name = format!("Bone_{i}"));
@@ -44,7 +44,7 @@ fn corrected_role_has_the_given_joint() {
     sound(&rig, &found);
     assert_eq!(found.joint_with(Role::UpperChest), Some(2));
     assert_eq!(found.joint_with(Role::Chest), None, "one joint, one role");
-    // If one side is declared to be the other, both swap, and the body faces the other way.
+    // If one side is declared to be the other, the sides swap, and the body faces the opposite direction.
     let forward = |found: &sinew_anim::RigAnalysis| found.character_from_model.rotation.inverse() * Vec3::Z;
     let before = analyze(&rig).expect("a skin");
     let left = before.joint_with(Role::UpperLeg(Side::Left)).expect("a leg");

@@ -1,4 +1,5 @@
-//! Non-human bodies with numbers for names: each limb is one chain, on one side, attached to the trunk.
+//! Bodies that are not human, with numbers for names: each limb is one chain, on one side, attached to the
+//! trunk.
 
 use crate::wild::rig_of;
 use sinew_anim::{RigAnalysis, Role, analyze};
@@ -9,7 +10,7 @@ use sinew_math::Vec3;
 struct Body(Vec<(Option<usize>, Vec3)>);
 
 impl Body {
-    /// Adds a line of joints and returns the last.
+    /// Adds a line of joints and returns the last joint.
     fn line(&mut self, on: Option<usize>, places: &[[f32; 3]]) -> usize {
         let mut parent = on;
         for &place in places {
@@ -19,7 +20,7 @@ impl Body {
         self.0.len() - 1
     }
 
-    /// Adds a line on the left and its mirror image on the right.
+    /// Adds a line of joints on the left and its mirror image on the right.
     fn pair(&mut self, on: usize, places: &[[f32; 3]]) {
         for side in [1.0, -1.0] {
             let places: Vec<_> = places.iter().map(|&[x, y, z]| [side * x, y, z]).collect();
@@ -44,7 +45,7 @@ impl Body {
     }
 }
 
-/// Numbers of segments of the limbs; checks that each limb is a single chain.
+/// Returns the numbers of segments of the limbs; checks that each limb is a single chain.
 fn limbs(name: &str, found: &RigAnalysis) -> Vec<usize> {
     assert!(!found.humanoid, "{name}");
     let side = |joint: usize| {
@@ -109,7 +110,8 @@ fn birds_insects_snakes_and_carts_get_their_limbs() {
     assert_eq!(limbs("cart", &cart.analyzed()), [1; 4], "each wheel is its own limb");
 }
 
-/// Numbers of a pair do not distinguish left from right; head and tail are still recognised by name.
+/// Numbered names of a pair do not distinguish left from right, but head and tail are still recognised by
+/// name.
 #[test]
 fn numbered_pairs_keep_the_named_head_and_tail() {
     let mut raptor = Body::default();

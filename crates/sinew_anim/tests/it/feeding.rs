@@ -1,4 +1,4 @@
-//! A clip whose pose is supplied by the caller behaves like a played clip.
+//! Checks that a clip whose pose is supplied by the caller behaves like a played clip.
 
 use crate::stage;
 use sinew_anim::{AnimationSet, Animator, Clip, ClipId, Fill, Pose, Skeleton, TrackDef, Transition};
@@ -6,7 +6,7 @@ use sinew_math::{Random, Reader, Writer};
 
 const DT: f32 = 1.0 / 60.0;
 
-/// A motion, another motion, and a clip without channels.
+/// Returns a set with a motion, another motion, and a clip without channels.
 fn set() -> (AnimationSet, [ClipId; 3]) {
     let (mut set, mut random) = (AnimationSet::new(Skeleton::new(&stage::rig())), Random::new(5));
     let sways = [1.0, 0.8].map(|duration| stage::swaying(&mut random, duration));
@@ -16,12 +16,13 @@ fn set() -> (AnimationSet, [ClipId; 3]) {
     (set, [a, b, empty])
 }
 
-/// Largest angle between joints, radians.
+/// Returns the largest angle between joints, radians.
 fn apart(a: &Pose, b: &Pose) -> f32 {
     a.iter().zip(b.iter()).map(|(a, b)| a.rotation.angle_to(b.rotation)).fold(0.0, sinew_math::max)
 }
 
-/// Two animators: one plays the motion, the other is fed the first one's pose, `steps` updates later.
+/// Returns two animators after `steps` updates: one plays the motion, and the other is fed the pose of the
+/// first.
 fn twins(set: &AnimationSet, [played, _, empty]: [ClipId; 3], steps: usize) -> [Animator; 2] {
     let mut twins = [Animator::new(set), Animator::new(set)];
     twins[0].play(set, &TrackDef::new(played));
@@ -52,7 +53,7 @@ fn fed_clip_shows_the_given_pose() {
 #[test]
 fn prediction_extrapolates_the_fed_pose() {
     let (set, clips) = set();
-    // The time is between two keys, where speeds before and after are equal.
+    // The time is between two keys, where the speeds before and after it are equal.
     let [player, fed] = twins(&set, clips, 22);
     let mut ahead = [player.clone(), fed.clone()];
     ahead[1].copy_from(&fed);

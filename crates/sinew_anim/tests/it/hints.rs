@@ -1,4 +1,4 @@
-//! Clips, exporters, neighbouring files and doors give hints about a rig that skin and names lack.
+//! Tests of hints: clips, exporters, neighbouring files and doors show what skin and names do not.
 
 use crate::toy;
 use sinew_anim::{
@@ -22,7 +22,7 @@ fn joint(role: &str) -> usize {
     toy::BODY.iter().position(|(name, ..)| *name == role).expect("a part of the toy")
 }
 
-/// Legs that walk toward +Z or -Z: each knee bends while its leg swings forward.
+/// Returns a walk toward +Z or −Z: each knee bends while its leg swings forward.
 fn walk(seconds: f32, toward: f32) -> Clip {
     let mut channels = Vec::new();
     for (side, phase) in [("left", 0.0), ("right", 0.5 * TAU)] {
@@ -36,7 +36,7 @@ fn walk(seconds: f32, toward: f32) -> Clip {
     Clip { name: String::new(), duration: seconds, channels }
 }
 
-/// The toy body without names, with coat tails beside its legs that have more skin than the legs.
+/// Returns the toy body without names, with coat tails beside its legs that have more skin than the legs.
 fn toy_in_a_coat() -> (Rig, Vec<usize>) {
     let mut rig = toy::body(|_| String::new());
     let mut tails = Vec::new();
@@ -72,9 +72,9 @@ fn alternately_swinging_chains_are_the_legs() {
     let still = analyze(&rig).expect("a skin");
     assert!(still.humanoid && tails.contains(&thigh(&still)), "{}", thigh(&still));
     let mut walks = walk(1.1, 1.0);
-    // The tails swing as well, but both at once.
+    // The tails swing, too, but together.
     walks.channels.extend(tails.iter().map(|&tail| turns(tail, 1.1, |t| 0.3 * trig::sin(2.0 * t))));
-    // Chains that swing while the other is still, or both at once, are no legs either.
+    // Chains of which only one swings, or both swing together, are no legs.
     let kick = Clip { duration: 1.0, channels: vec![turns(tails[0], 1.0, trig::sin)], ..Clip::default() };
     let hop = Clip {
         duration: 1.0,
@@ -123,7 +123,7 @@ fn walking_direction_gives_the_front() {
     assert_eq!(toy::BODY[left].0, "leftHand");
 }
 
-/// The toy body `units` tall, with a head `head` times as high.
+/// Returns the toy body, `units` tall, with a head `head` times as high.
 fn tall(units: f32, head: f32) -> Rig {
     let mut rig = toy::body(Role::name);
     let crown = 4 * joint("head") + 3;
@@ -137,14 +137,14 @@ fn tall(units: f32, head: f32) -> Rig {
     rig
 }
 
-/// Unit and its reason.
+/// Returns the unit and its reason.
 fn unit(rig: &Rig, hints: &Hints) -> (f32, String) {
     let found = analyze_hinted(rig, hints).expect("a skin");
     assert!(found.humanoid);
     (found.unit_scale, found.unit_guess.expect("it was not given").note)
 }
 
-/// 66 units tall: a man in inches, or a dwarf in centimetres.
+/// A body of 66 units is a man in inches, or a dwarf in centimetres.
 #[test]
 fn ambiguous_unit_is_decided_by_neighbouring_files_and_doors() {
     let rig = tall(66.0, 1.0);
@@ -157,8 +157,8 @@ fn ambiguous_unit_is_decided_by_neighbouring_files_and_doors() {
         let (scale, note) = unit(&rig, &hints);
         assert!(scale == 0.01 && note.contains(reason) && note.contains("may also be inches"), "{note}");
     }
-    // An unknown exporter, an exporter's habit for a dwarf, a single other file, and inconsistent files give no hint;
-    // normal doors indicate a human.
+    // An unknown exporter, the exporter's usual unit for a dwarf, a single other file, and inconsistent files are no
+    // hints; doors of normal height indicate a human.
     for hints in [
         Hints { exporter: "nobody".into(), ..Hints::default() },
         Hints { exporter: "Character Creator 4.2".into(), ..Hints::default() },
@@ -168,14 +168,14 @@ fn ambiguous_unit_is_decided_by_neighbouring_files_and_doors() {
     ] {
         assert_eq!(unit(&rig, &hints).0, 0.0254, "{hints:?}");
     }
-    // A human in metres is unaffected by hints.
+    // Hints do not affect a human in metres.
     let hints = Hints { exporter: "DAZ".into(), kin: vec![0.01; 3], door: Some(0.8), ..Hints::default() };
     assert_eq!(unit(&tall(1.75, 1.0), &hints).0, 1.0);
 }
 
 #[test]
 fn ambiguous_unit_is_decided_by_head_size_and_stride() {
-    // Heads have similar sizes: a figure whose head is two fifths of its height is a dwarf.
+    // Heads have similar sizes, so a figure whose head is two fifths of its height is a dwarf.
     let [(plain, _), (dwarf, note)] = [1.0, 7.0].map(|head| unit(&tall(115.0, head), &Hints::default()));
     assert!(plain == 0.01 && dwarf == 0.01 && note.contains("its head is 4"), "{note}");
     let rig = tall(75.0, 5.0);
@@ -197,7 +197,7 @@ fn human_of_implausible_size_is_scaled() {
         let height = if scaled { 1.75 } else { units };
         assert!((found.height - height).abs() < 0.01, "{units}: {} m", found.height);
     }
-    // A figure with short steps is short if its head is large, and in a hurry if it is small.
+    // A figure with fast steps is short if its head is large, and in a hurry if its head is small.
     for (head, is_short) in [(5.0, true), (1.0, false)] {
         let rig = tall(0.57, head);
         let scale = unit(&rig, &Hints::of_clips(&rig, &[walk(0.5, 1.0)])).0;
@@ -205,7 +205,7 @@ fn human_of_implausible_size_is_scaled() {
     }
 }
 
-/// A creature that is a chain of joints of that length.
+/// Returns a creature that is a chain of joints of the given length.
 fn worm(length: f32, name: &str) -> Rig {
     let mut rig = toy::body(|_| String::new());
     for (joint, (_, parent, place)) in toy::BODY.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Inverse kinematics compared with closed forms.
+//! Compares inverse kinematics with closed forms.
 
 use crate::toy;
 use sinew_anim::ik::{
@@ -16,7 +16,7 @@ fn model(rig: &Rig, local: &[LocalTransform]) -> Vec<Affine> {
     out
 }
 
-/// Middle and end of a limb after the solution.
+/// Returns the middle and the end of a limb after the solution.
 fn bent(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -> [Vec3; 2] {
     let found = solve_two_bone(root, middle, end, goal);
     let knee = root + found.upper * (middle - root) * found.stretch;
@@ -65,7 +65,7 @@ fn limb_already_at_its_target_does_not_turn() {
     let mut random = Random::new(3);
     for _ in 0..2000 {
         let [root, middle, end] = [random.in_cube(), random.in_cube(), random.in_cube()];
-        // If the limb is bent by less than five degrees, the pole may turn it.
+        // A limb that is bent by less than five degrees may be turned by the pole.
         if (middle - root).cross(end - root).length() < 0.1 * (middle - root).length() * (end - root).length()
         {
             continue;
@@ -84,14 +84,14 @@ fn limb_points_at_a_target_out_of_reach() {
     let [_, tip] = bent(root, middle, end, &far);
     assert!((tip - Vec3::new(0.6, 0.0, 0.8) * full).length() < 1e-5);
     assert!((solve_two_bone(root, middle, end, &far).miss - (5.0 - full)).abs() < 1e-5);
-    // Stretched as far as allowed, or as far as needed.
+    // The limb is stretched by the allowed factor, or as far as needed.
     let [_, tip] = bent(root, middle, end, &TwoBoneGoal { stretch: 1.5, ..far });
     assert!((tip.length() - 1.5 * full).abs() < 1e-5);
     let [_, tip] = bent(root, middle, end, &TwoBoneGoal { stretch: 9.0, ..far });
     assert!((tip - far.target).length() < 1e-4);
 }
 
-/// The reach of a soft limb grows smoothly in position and speed, and never becomes its full length.
+/// The reach of a soft limb grows smoothly in position and speed, and stays below its full length.
 #[test]
 fn soft_limb_straightens_smoothly() {
     let (root, middle, end) = (Vec3::ZERO, Vec3::new(0.2, -0.5, 0.0), Vec3::new(0.0, -1.0, 0.0));
@@ -156,7 +156,7 @@ fn solver_updates_local_and_model_poses_consistently() {
         for (x, y) in model(&rig, &local).iter().zip(&after) {
             assert!((x.translation - y.translation).length() < 1e-5);
         }
-        // The goal is met already, and a partial weight changes nothing.
+        // The target is already reached, so a partial weight changes nothing.
         let before = local.clone();
         let half = TwoBoneGoal { weight: 0.5, ..TwoBoneGoal::at(target, Pole::Keep(Vec3::X)) };
         two_bone_ik(&rig, limb, &half, &mut local, &mut after);
@@ -182,7 +182,7 @@ fn gaze_is_limited_to_its_largest_angle() {
     let eye = Vec3::Y * 3.0;
     let (gaze, found) = with(eye + Vec3::new(3.0, 1.0, 4.0), 3.0, 3.0);
     assert!((gaze - Vec3::new(3.0, 1.0, 4.0) / 26.0_f32.sqrt()).length() < 1e-6 && found.left < 1e-3);
-    // A quarter turn to the left, of which a third is allowed.
+    // The target is a quarter turn to the left, of which a third is allowed.
     let (gaze, found) = with(eye + Vec3::X, core::f32::consts::FRAC_PI_6, 1.0);
     assert!((gaze - Vec3::new(0.5, 0.0, 0.75_f32.sqrt())).length() < 1e-5);
     assert!((found.left - core::f32::consts::FRAC_PI_3).abs() < 1e-3);
@@ -194,7 +194,7 @@ fn gaze_is_limited_to_its_largest_angle() {
     }
 }
 
-/// A body on a ramp and on a step: both ankles keep the height above the ground that they had above the floor.
+/// On a ramp and on a step, both ankles keep the height above the ground that they had above the floor.
 #[test]
 fn feet_are_placed_on_uneven_ground() {
     let rig = toy::body(Role::name);
@@ -249,6 +249,6 @@ fn limb_within_a_chain_is_solved() {
     let mut after = model(&rig, &local);
     let goal = TwoBoneGoal::at(Vec3::new(1.0, 2.0, 0.0), Pole::Toward(Vec3::X));
     let found = two_bone_ik(&rig, LIMB, &goal, &mut local, &mut after);
-    // Half a rhombus: root at (0, 1, 0), bones of length 1, target √2 away.
+    // Two sides of a rhombus: root at (0, 1, 0), bones of length 1, target at distance √2.
     assert!(found.miss < 1e-6 && (after[1].translation - Vec3::new(1.0, 1.0, 0.0)).length() < 1e-5);
 }

@@ -1,4 +1,4 @@
-//! Limits learned from motions: synthetic motions give their known limits, and captured knees are hinges.
+//! Limits learned from motions: synthetic motions give the known limits, and captured knees are hinges.
 
 use crate::mocap::actor;
 use crate::toy;
@@ -41,7 +41,7 @@ fn swing_ellipse_is_recovered() {
     let long = found.frame * Vec3::Y;
     assert!(long.dot(frame * Vec3::Y).abs() > 0.99, "{long}");
     assert!((found.frame * Vec3::X - Vec3::Y).length() < 1e-4);
-    // As a joint limit it contains the motion, except for one sample in two hundred.
+    // The joint limit contains the motion, except for one sample in two hundred.
     let (limit, mut random) = (found.swing_twist(), Random::new(5));
     let _ = &mut random;
     let beyond = |turn: Rotation| {
@@ -59,7 +59,7 @@ fn swing_ellipse_is_recovered() {
     assert_eq!(outside, 0);
     let far = rest * frame * Rotation::from_scaled_axis(Vec3::new(0.0, 1.2, 0.0)) * frame.inverse();
     assert!(beyond(far));
-    // Projection ends on the limit, and rotations inside stay unchanged.
+    // Projection gives a rotation on the limit; rotations inside stay unchanged.
     let back = found.project(far);
     let (swing, _) = SwingTwistLimit::angles((found.center * found.frame).inverse() * back * found.frame);
     let radius = (swing.y / found.swing[0]).abs() + (swing.z / found.swing[1]).abs();
@@ -80,7 +80,7 @@ fn hinge_axis_and_range_are_recovered() {
         let over = found.center * Rotation::from_axis_angle(axis, 0.9);
         assert!((found.project(over).angle_to(over) - 0.3).abs() < 0.02);
     }
-    // A rotation about one axis that is too small to classify is no hinge.
+    // A rotation about one axis that is too small does not make a hinge.
     let turn = |i: usize| Rotation::from_axis_angle(Vec3::X, 0.15 * i as f32 / 999.0);
     assert!(learn((0..1000).map(turn)).hinge.is_none());
 }

@@ -1,4 +1,4 @@
-//! Tests of the animation library against closed forms and known files.
+//! Compares the animation library with closed forms and known files.
 
 mod allocations;
 mod animators;

@@ -13,7 +13,7 @@ pub struct Actor {
     pub reference: Reference,
 }
 
-/// A BVH file under ../shared/data/mocap, for tests with `needs_data`.
+/// Reads a BVH file under ../shared/data/mocap, for tests with `needs_data`.
 pub fn actor(name: &str) -> Actor {
     let bytes = crate::rigs::bytes(&format!("mocap/{name}"));
     let document = read_bvh(&bytes, BvhOptions::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -22,7 +22,7 @@ pub fn actor(name: &str) -> Actor {
     Actor { rig, clip, analysis, reference }
 }
 
-/// A DeepMimic clip under ../shared/data/mocap, for tests with `needs_data`.
+/// Reads a DeepMimic clip under ../shared/data/mocap, for tests with `needs_data`.
 pub fn imitation(name: &str) -> Actor {
     let skeleton = read_deepmimic_character(&crate::rigs::bytes("mocap/deepmimic_humanoid3d.txt")).unwrap();
     let clip = read_deepmimic(&crate::rigs::bytes(&format!("mocap/{name}")), &skeleton).unwrap().clip;
@@ -30,7 +30,7 @@ pub fn imitation(name: &str) -> Actor {
     Actor { rig: skeleton.rig, clip, analysis, reference }
 }
 
-/// A character under ../shared/data/rigs, for tests with `needs_data`.
+/// Reads a character under ../shared/data/rigs, for tests with `needs_data`.
 pub fn character(name: &str) -> (Rig, RigAnalysis) {
     let (rig, _) = crate::rigs::load(&format!("rigs/{name}"));
     let analysis = analyze(&rig).expect("a skin");

@@ -1,13 +1,14 @@
-//! Passed events compared with a closed formula: each exactly once, for any step lengths.
+//! Compares passed events with a closed formula: each is passed exactly once, for any step lengths.
 
 use crate::cases;
 use sinew_anim::{LoopMode, Passage, Playhead};
 use sinew_math::Random;
 
-/// All times are integer multiples of 1/1024 s, so that the formula works with integers and no step is rounded.
+/// Unit of all times, 1/1024 s. Times are whole multiples of it, so that the formula uses integers and no step is
+/// rounded.
 const UNIT: f64 = 1.0 / 1024.0;
 
-/// Time since lap 0 began, in units, in the direction of the laps.
+/// Returns the time since lap 0 began, in units, in the direction of the laps.
 fn unfolded(playhead: &Playhead, length: i64) -> i64 {
     let in_lap = if playhead.mode() == LoopMode::PingPong && playhead.lap().rem_euclid(2) == 1 {
         length - (f64::from(playhead.clip_time()) / UNIT) as i64
@@ -25,7 +26,7 @@ fn times(from: i64, to: i64, e: i64, period: i64, counts_start: bool) -> i64 {
     start + if to >= from { up_to(to) - up_to(from) } else { up_to(from - 1) - up_to(to - 1) }
 }
 
-/// The closed formula for one motion from `from` to `to`.
+/// Returns the number of crossings of one motion from `from` to `to`, by the closed formula.
 fn expected(mode: LoopMode, length: i64, e: i64, from: i64, to: i64, is_fresh: bool) -> i64 {
     match mode {
         // The end of a loop does not count as its start.
@@ -41,7 +42,7 @@ fn expected(mode: LoopMode, length: i64, e: i64, from: i64, to: i64, is_fresh: b
     }
 }
 
-/// Counts the crossings of a step and checks each one's position.
+/// Counts the crossings of a step and checks the position of each.
 fn count(passage: Passage, mode: LoopMode, length: i64, e: i64, from: i64, way: i64) -> i64 {
     let mut last: Option<f64> = None;
     let mut number = 0;
@@ -80,7 +81,7 @@ fn every_event_is_passed_exactly_once_for_any_steps() {
         let mut playhead = Playhead::new(mode, (length as f64 * UNIT) as f32, start as f64 * UNIT);
         let mut is_fresh = true;
         for _ in 0..3 {
-            // One direction, split into random steps; pauses are steps of length zero.
+            // Motion in one direction is split into random steps; pauses are steps of length zero.
             let direction = if random.index(2) == 0 { 1 } else { -1 };
             let from = unfolded(&playhead, length);
             let (mut way, mut fired) = (0, 0);
@@ -110,7 +111,7 @@ fn every_event_is_passed_exactly_once_for_any_steps() {
 fn long_playback_does_not_drift() {
     let mut playhead = Playhead::new(LoopMode::Loop, 0.7, 0.0);
     let mut passed = 0_usize;
-    // A day in steps of a second.
+    // One day in steps of a second.
     for _ in 0..86_400 {
         passed += playhead.advance(1.0).crossings(0.3).count();
     }

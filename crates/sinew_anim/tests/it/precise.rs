@@ -16,7 +16,7 @@ pub fn unit(q: [f64; 4]) -> [f64; 4] {
     q.map(|x| x / length)
 }
 
-/// Angle between rotations, radians.
+/// Returns the angle between rotations, radians.
 pub fn angle(a: [f64; 4], b: [f64; 4]) -> f64 {
     let (a, b) = (unit(a), unit(b));
     let sign = if dot(a, b) < 0.0 { -1.0 } else { 1.0 };
@@ -24,7 +24,7 @@ pub fn angle(a: [f64; 4], b: [f64; 4]) -> f64 {
     4.0 * (0.5 * chord).asin()
 }
 
-/// Weighted mean on the hemisphere of `rest`.
+/// Returns the weighted mean on the hemisphere of `rest`.
 pub fn mean(rest: Rotation, layers: &[(Rotation, f32)]) -> [f64; 4] {
     let rest = quaternion(rest);
     let mut sum = [0.0; 4];
@@ -60,7 +60,7 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
     })
 }
 
-/// Model-space matrices of a pose.
+/// Returns the model-space matrices of a pose.
 pub fn model(rig: &Rig, pose: &[LocalTransform]) -> Vec<Matrix> {
     let mut out: Vec<Matrix> = Vec::new();
     for (joint, local) in rig.joints.iter().zip(pose) {

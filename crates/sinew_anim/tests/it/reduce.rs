@@ -1,4 +1,4 @@
-//! Key reduction and the resulting error of joints.
+//! Tests of key reduction and the resulting errors of joints.
 
 use crate::toy;
 use sinew_anim::{
@@ -22,7 +22,8 @@ fn frames(count: u16, rate: f32) -> Vec<f32> {
     (0..count).map(|frame| f32::from(frame) / rate).collect()
 }
 
-/// Largest distance and angle between the joints of two clips at many times, computed independently.
+/// Returns the largest distance and angle between the joints of two clips at many times, computed
+/// independently.
 fn apart(rig: &Rig, a: &Clip, b: &Clip, root: &Affine, times: &[f32]) -> [f32; 2] {
     let mut worst = [0.0, 0.0];
     for &time in times {
@@ -59,7 +60,7 @@ fn linear_motion_needs_two_keys_and_rest_one() {
     let keys: Vec<usize> = reduced.clip.channels.iter().map(|channel| channel.times.len()).collect();
     assert_eq!((keys, reduced.keys), (vec![2, 2, 1], [303, 5]));
     assert!((reduced.clip.duration - 2.0).abs() < 1e-6 && reduced.clip.name == "straight");
-    // Without any motion the duration is kept.
+    // The duration is kept also without any motion.
     let still = Clip { channels: vec![clip.channels[2].clone()], ..clip };
     let reduced = reduce_keys(&rig, &still, &Affine::IDENTITY, BOUND);
     assert_eq!(reduced.clip.channels[0].times, [0.0, 2.0]);
@@ -79,7 +80,7 @@ fn corner_keeps_its_key() {
     assert_eq!(reduced.clip.channels[0].times, [0.0, 1.0, 2.0]);
 }
 
-/// A chain of eight joints that all sway, at different rates.
+/// Returns a clip of a chain of eight joints that all sway, at different rates.
 fn swaying(random: &mut Random, times: &[f32]) -> Clip {
     let mut channels = Vec::new();
     for joint in 0..8 {
@@ -135,7 +136,7 @@ fn zero_bound_keeps_all_keys_and_tighter_bounds_keep_more() {
 
 #[test]
 fn random_walks_stay_within_the_bound() {
-    // In noise no key can be removed, and trying changes nothing.
+    // In noise no key can be removed, and the attempt changes nothing.
     let mut random = Random::new(9);
     let rig = toy::chain(5, Vec3::Y);
     let times = frames(60, 30.0);

@@ -1,4 +1,4 @@
-//! Captured motions retargeted to bodies of other sizes and builds.
+//! Tests of captured motions retargeted to bodies of other sizes and builds.
 
 use crate::mocap::{Actor, actor, character, imitation};
 use needs_data::needs_data;
@@ -39,7 +39,7 @@ fn scaled(rig: &Rig, analysis: &RigAnalysis, times: f32) -> (Rig, RigAnalysis) {
     (rig, found)
 }
 
-/// Largest angle between the directions of a bone in the two bodies' own axes over all frames, degrees.
+/// Returns the largest angle between the directions of a bone in the two bodies' own axes over all frames, degrees.
 fn bone_error(
     actor: &Actor,
     from: &Take,
@@ -144,7 +144,7 @@ fn walk_fits_every_body() {
         assert!(
             found.take.poses.iter().all(|local| local.rotation.is_finite() && local.translation.is_finite())
         );
-        // The same holds for contacts detected in the new motion independently.
+        // The same is true for contacts that are detected independently in the new motion.
         let legs = Legs::of(rig, analysis).unwrap();
         let points = sole_points(rig, &analysis.character_from_file(), &legs.feet, &found.take);
         let settings = ContactSettings::for_leg(legs.feet[0].length);
@@ -160,7 +160,7 @@ fn walk_fits_every_body() {
     }
 }
 
-/// Every humanoid of the data takes the walk, including rigs with feet outside the leg hierarchy.
+/// Every humanoid of the data can perform the walk, including rigs with feet outside the leg hierarchy.
 #[needs_data]
 #[test]
 fn every_humanoid_walks() {
@@ -204,8 +204,8 @@ fn every_humanoid_walks() {
     }
 }
 
-/// The walk with joints named by other conventions, with every second name removed, and without names: the result is
-/// the same.
+/// The walk with joint names of other conventions, without every second name, and without names: the result is the
+/// same.
 #[needs_data]
 #[test]
 fn walk_is_the_same_for_other_joint_names() {
@@ -262,7 +262,7 @@ fn walk_is_the_same_for_other_joint_names() {
     }
 }
 
-/// Largest height of the lowest point of both soles above its minimum, metres.
+/// Returns the largest height of the lowest point of both soles above its minimum, metres.
 fn in_the_air(rig: &Rig, analysis: &RigAnalysis, take: &Take) -> f32 {
     let legs = Legs::of(rig, analysis).unwrap();
     let mut model = Vec::new();
@@ -313,7 +313,7 @@ fn every_capture_moves_a_character() {
             assert!(jumped > 0.1, "{jumped} m");
             assert!((hopped / (jumped * found.scale) - 1.0).abs() < 0.3, "{hopped} m for {jumped} m");
         }
-        // The head is where the actor's is relative to the hips.
+        // Relative to the hips, the head is in the direction of the actor's head.
         let source = Take::of(&actor.rig, &actor.clip, 1.0 / 60.0);
         let off = bone_error(actor, &source, &rig, &analysis, &found.take, [Role::Hips, Role::Head]);
         assert!(off < 30.0, "{name}: {off}°");
@@ -351,7 +351,7 @@ fn walk_in_place_is_recognised_as_a_walk() {
     assert!(100.0 * near.feet.slide[1].mean < analysis.height);
 }
 
-/// Clips made for one character move another; so does a file of clips without a skin.
+/// Clips made for one character move another; a file of clips without a skin does, too.
 #[needs_data]
 #[test]
 fn authored_clips_move_other_characters() {
@@ -471,7 +471,7 @@ fn retargeting_to_the_same_body_changes_nothing() {
             .of_joint(joint)
             .zip(found.take.of_joint(joint))
             .map(|(a, b)| a.rotation.angle_to(b.rotation));
-        // A joint above one without a role takes over that joint's rotation.
+        // A joint above one without a role also applies that joint's rotation.
         let above = walk.rig.joints[joint].parent;
         if above.is_none_or(|above| found.pairs.iter().any(|pair| pair.1 == above)) {
             let worst = worst.fold(0.0, sinew_math::max);
@@ -518,13 +518,13 @@ fn rig_without_roles_is_rejected() {
     assert_eq!(refused(body, body, frozen).to_string(), "the frame time must be above 0 and finite");
 }
 
-/// Files with random bytes changed: any file that can be read can be analysed and retargeted, or gives an error.
+/// Changes random bytes of files: a readable file can be analysed and retargeted, or gives an error.
 #[needs_data]
 #[test]
 fn corrupted_captures_give_results_or_errors() {
     let whole = crate::rigs::bytes("mocap/cmu_12_01_walk.bvh");
     let (rig, analysis) = character("mannequiny.glb");
-    // The skeleton and forty rows.
+    // The skeleton and forty rows of motion.
     let rows: Vec<&[u8]> = whole.split_inclusive(|&byte| byte == b'\n').take(227).collect();
     let whole = rows.concat();
     let options = BvhOptions { rows: BvhRows::AsPresent, ..BvhOptions::default() };
@@ -556,7 +556,7 @@ fn corrupted_captures_give_results_or_errors() {
     assert!(matches!(refused, RetargetError::TooLong(_)), "{refused}");
 }
 
-/// Slide of two synthetic feet: one stands, the other is dragged at 0.3 m/s for a second.
+/// Slide of two synthetic feet: one stands, and the other is dragged at 0.3 m/s for a second.
 #[needs_data]
 #[test]
 fn slide_of_synthetic_feet_is_measured_correctly() {

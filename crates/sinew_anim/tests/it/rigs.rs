@@ -24,12 +24,12 @@ pub const WITH_CLIPS: [&str; 16] = [
     "vrma_test.vrma",
 ];
 
-/// The bytes of a shared file, for tests with `needs_data`.
+/// Returns the bytes of a shared file, for tests with `needs_data`.
 pub fn bytes(path: &str) -> Vec<u8> {
     std::fs::read(format!("{DATA}{path}")).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// Rig and clips of a shared file, for tests with `needs_data`.
+/// Returns rig and clips of a shared file, for tests with `needs_data`.
 pub fn load(path: &str) -> (Rig, Vec<Clip>) {
     let document = sinew_formats::load_gltf(format!("{DATA}{path}"), sinew_formats::ReadOptions::default());
     let document = document.unwrap_or_else(|error| panic!("{path}: {error}"));

@@ -4,7 +4,8 @@ use needs_data::needs_data;
 use sinew_anim::{Basis, LocalTransform, NoSkin, Rig, RigAnalysis, Role, Side, analyze};
 use sinew_math::{Affine, Random, Rotation, Vec3};
 
-/// Bodies as lines of role, parent role, confidence and joint name, after a header line about the whole body.
+/// Returns the bodies as lines of role, parent role, confidence and joint name, after a header line about the whole
+/// body.
 fn table(rig: &Rig, found: &RigAnalysis) -> String {
     let forward = found.character_from_model.rotation.inverse() * Vec3::Z;
     let kind = if found.humanoid { "humanoid" } else { "creature" };
@@ -19,7 +20,7 @@ fn table(rig: &Rig, found: &RigAnalysis) -> String {
     out
 }
 
-/// The signed axis nearest to a direction.
+/// Returns the signed axis nearest to a direction.
 fn axis(v: Vec3) -> String {
     let axes = [("x", v.x), ("y", v.y), ("z", v.z)];
     let (name, value) = axes.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).expect("three axes");
@@ -53,7 +54,7 @@ pub fn sound(rig: &Rig, found: &RigAnalysis) {
     assert!(found.unit_scale > 0.0 && found.height > 0.0);
 }
 
-/// Joints with weights, and the sum of their weights.
+/// Returns the joints with weights, and the sum of the weights of each.
 fn skinned_joints(rig: &Rig) -> Vec<(usize, f32)> {
     let mut weight = vec![0.0; rig.joints.len()];
     for mesh in &rig.meshes {
@@ -222,7 +223,8 @@ fn fox_with_human_names_is_not_human() {
     );
 }
 
-/// Protruding parts of the knight get their own bodies attached to their parents; the helmet is merged into the head.
+/// Protruding parts of the knight get their own bodies, attached to their carriers; the helmet is merged into the
+/// head.
 #[needs_data]
 #[test]
 fn props_of_the_knight_are_attached_to_their_carriers() {
@@ -315,7 +317,7 @@ fn many_skeletons_in_one_file_are_analysed() {
     assert!(!found.humanoid);
 }
 
-/// The rig in another frame: every root rotated and scaled.
+/// Returns the rig in another frame: every root is rotated and scaled.
 fn placed(rig: &Rig, turn: Rotation, scale: f32) -> Rig {
     let mut rig = rig.clone();
     for joint in rig.joints.iter_mut().filter(|joint| joint.parent.is_none()) {
@@ -470,7 +472,7 @@ fn role_names_round_trip() {
     }
 }
 
-/// Joint names of the limbs (each from the trunk outward) and of the trunk of a creature.
+/// Returns the joint names of the limbs of a creature (each from the trunk outward) and of its trunk.
 fn limbs_of(file: &str) -> (Vec<Vec<String>>, Vec<String>) {
     let options = sinew_formats::ReadOptions::default();
     let rig = sinew_formats::load_gltf(format!("{}{file}", rigs::DATA), options).expect("a rig").rig;
@@ -492,7 +494,8 @@ fn limbs_of(file: &str) -> (Vec<Vec<String>>, Vec<String>) {
     (limbs, trunk)
 }
 
-/// Frogs, rats, dinosaurs: feet outside the leg hierarchy, hips and back beside the shoulders, roots without skin.
+/// Frogs, rats and dinosaurs have feet outside the leg hierarchy, hips and back beside the shoulders, or roots
+/// without skin.
 #[needs_data]
 #[test]
 fn limbs_and_trunk_of_animals_are_found() {
@@ -555,7 +558,7 @@ fn limbs_and_trunk_of_animals_are_found() {
     }
 }
 
-/// Monsters with head and body on one line: no joint above or below the root is a limb.
+/// In monsters with head and body on one line, no joint above or below the root is a limb.
 #[needs_data]
 #[test]
 fn joints_on_the_midline_are_no_limbs() {

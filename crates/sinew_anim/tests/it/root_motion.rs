@@ -1,4 +1,4 @@
-//! Root motion: extraction, recombination, and blending as deltas.
+//! Tests of root motion: extraction, recombination, and blending as deltas.
 
 use crate::stage;
 use sinew_anim::{
@@ -8,8 +8,8 @@ use sinew_anim::{
 };
 use sinew_math::{Affine, Rotation, Transform, Vec3, trig};
 
-/// Moves around a circle of `radius` once in `duration`, with vertical oscillation; joint 1 is a child of a rotated and
-/// scaled joint 0.
+/// Returns a motion once around a circle of `radius` in `duration` seconds, with vertical oscillation; joint 1 is a
+/// child of a rotated and scaled joint 0.
 fn circling(duration: f32, radius: f32, share: f32) -> (Rig, Clip) {
     let mut rig = stage::rig();
     let turned = Rotation::from_axis_angle(Vec3::X, -core::f32::consts::FRAC_PI_2);
@@ -23,7 +23,7 @@ fn circling(duration: f32, radius: f32, share: f32) -> (Rig, Clip) {
         let height = 1.0 + 0.05 * trig::sin(4.0 * angle);
         let place = Vec3::new(radius * sin, height, radius * (1.0 - cos));
         places.extend(above.inverse().point(place).to_array());
-        // Faces its direction of motion, and leans.
+        // The body faces its direction of motion, and leans.
         let q = turned.inverse()
             * Rotation::from_axis_angle(Vec3::Y, -angle)
             * Rotation::from_axis_angle(Vec3::X, 0.2);
@@ -80,7 +80,7 @@ fn remainder_of_ground_motion_stays_in_place_and_loops() {
         assert!(aside.x.abs() < 1e-3 && aside.z.abs() < 1e-3, "{aside}");
         assert!(now.to_rigid().rotation.angle_to(start.to_rigid().rotation) < 3e-3);
     }
-    // A chord of seven tenths of the circle.
+    // The chord of seven tenths of the circle.
     let chord = 2.0 * 1.5 * trig::sin(0.7 * core::f32::consts::PI);
     assert!((motion.stride() - chord).abs() < 1e-3, "{}", motion.stride());
 }
@@ -106,7 +106,7 @@ fn root_motion_is_independent_of_step_length() {
                 animator.update(&set, dt);
                 place = place * animator.root_motion();
             }
-            // A quarter of the circle in each cycle of 2 s.
+            // Each cycle of 2 s covers a quarter of the circle.
             let angle = core::f32::consts::FRAC_PI_2 * 3.0 * speed;
             let (sin, cos) = trig::sin_cos(angle);
             let expected = Vec3::new(1.5 * sin, 0.0, 1.5 * (1.0 - cos));

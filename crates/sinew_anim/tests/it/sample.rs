@@ -74,7 +74,7 @@ fn a_cubic_rotation_is_normalised() {
     let values: Vec<f32> = [zero, one, zero, zero, quarter, zero].concat();
     let clip = clip(Property::Rotation, Interpolation::CubicSpline, &[0.0, 1.0], &values);
     let middle = at(&clip, 0.5, Wrap::Clamp).rotation;
-    // By symmetry the mean of both keys, an eighth of a turn.
+    // By symmetry, the rotation is the mean of both keys, an eighth of a turn.
     assert!(middle.angle_to(Rotation::from_axis_angle(Vec3::Y, std::f32::consts::FRAC_PI_4)) < 1e-5);
     assert!((middle.dot(middle) - 1.0).abs() < 1e-6);
 }
@@ -112,7 +112,7 @@ fn sampling_cache_does_not_change_the_pose() {
     let mut cache = SampleCache::default();
     let (mut cached, mut plain) = ([LocalTransform::default()], [LocalTransform::default()]);
     for i in 0..2_000 {
-        // Mostly forward, with jumps, backward play and changes of clip.
+        // Time mostly runs forward, with jumps, backward play and changes of clip.
         let time = if i % 7 == 0 { random.range(-1.0, 9.0) } else { i as f32 * 0.013 };
         let clip = if i % 11 == 0 { &short } else { &long };
         sample_cached(clip, &rig, time, Wrap::Loop, &mut cache, &mut cached);

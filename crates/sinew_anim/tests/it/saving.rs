@@ -1,4 +1,4 @@
-//! Saved animator state: exact when loaded, and an error for any other bytes.
+//! Saved animator state: loading restores it exactly, and any other bytes give an error.
 
 use crate::stage;
 use sinew_anim::{
@@ -21,7 +21,7 @@ fn set() -> AnimationSet {
     set
 }
 
-/// An animator with one of every kind of ongoing action.
+/// Returns an animator with one of every kind of ongoing action.
 fn busy(set: &AnimationSet, random: &mut Random) -> Animator {
     let clips: Vec<_> = set.clips().collect();
     let mut animator = Animator::new(set);

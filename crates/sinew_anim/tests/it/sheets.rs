@@ -1,4 +1,4 @@
-//! Meshes as cloth sheets: welded, reduced, held at the top, and attached to joints.
+//! Tests of meshes as cloth sheets: welded, reduced, held at the top, and attached to joints.
 
 use sinew_anim::garments::{MOST_PARTICLES, MeshPart, SheetError, SheetOptions, lay_sheet};
 use sinew_anim::{
@@ -8,11 +8,11 @@ use sinew_anim::{
 use sinew_math::{Affine, Rotation, Vec3};
 
 const SPACING: f32 = 0.05;
-/// Spacing at which ten cells across are kept.
+/// Spacing at which the ten cells across remain.
 const COARSE: f32 = 0.11;
 
-/// A cloth of 1 m × 1 m that hangs from y = 1 in the xy plane, with `cells` cells along each side, weighted to two
-/// joints, an upper and a lower one.
+/// Returns a cloth of 1 m × 1 m that hangs from y = 1 in the xy plane, with `cells` cells along each side, weighted to
+/// an upper and a lower joint.
 fn rig(cells: usize) -> Rig {
     let turned = Rotation::from_axis_angle(Vec3::Z, 0.3);
     let joint =
@@ -104,8 +104,8 @@ fn fine_mesh_is_reduced_and_drawn_unchanged() {
     let sheet = lay(&mut it, 2000, None).expect("it can be cloth");
     let sheet = &it.sheets[sheet];
     assert_eq!(sheet.vertices, 81 * 81);
-    // Particles such that no point of a square metre is farther than 25 mm from one: 616 in a hexagonal grid, 800 in a
-    // square grid.
+    // Numbers of particles such that no point of a square metre is farther than 25 mm from one: 616 in a hexagonal
+    // grid, 800 in a square grid.
     assert!((616..1400).contains(&sheet.joints.len()), "{}", sheet.joints.len());
     let place = bind(&it);
     let at = |particle: u32| place[sheet.joints[particle as usize]].translation;
@@ -115,12 +115,12 @@ fn fine_mesh_is_reduced_and_drawn_unchanged() {
         sheet.faces.iter().map(|f| (at(f[1]) - at(f[0])).cross(at(f[2]) - at(f[0])).length() / 2.0).sum();
     assert!((0.97..1.01).contains(&area), "the borders moved: {area} m²");
     assert!(farthest(&before, &drawn(&it, &rest_pose(&it))) < 1e-5);
-    // Its joints have no motion of their own, and it follows the original joints.
+    // The particles' joints have no motion of their own, and the mesh follows the original joints.
     let mut pose = rest_pose(&it);
     pose[0].translation += Vec3::X * 3.0;
     let moved: Vec<Vec3> = before.iter().map(|&place| place + Vec3::X * 3.0).collect();
     assert!(farthest(&moved, &drawn(&it, &pose)) < 1e-5);
-    // A particle moves its own vertex, and none a metre away.
+    // A particle moves its own vertex, but no vertex a metre away.
     let mut pose = rest_pose(&it);
     pose[sheet.joints[0]].translation += Vec3::Z;
     let bulge: Vec<f32> = drawn(&it, &pose).iter().map(|place| place.z.abs()).collect();
@@ -179,7 +179,7 @@ fn mesh_coarser_than_its_spacing_is_split() {
     let sum: f32 = sheet.areas.iter().sum();
     assert!((sum - 1.0).abs() < 1e-4, "{sum} m²");
     assert!(farthest(&before, &drawn(&it, &rest_pose(&it))) < 1e-5);
-    // A vertex moves only with its own particle; particles between vertices move none.
+    // A vertex moves only with its own particle; a particle between vertices moves no vertex.
     for (particle, moves) in [(12, 1), (25, 0), (100, 0)] {
         let mut pose = rest_pose(&it);
         pose[sheet.joints[particle]].translation += Vec3::Z;
@@ -217,7 +217,7 @@ fn meshes_are_named_by_node_mesh_or_material() {
     assert!(MeshPart::named(&it, "other").is_ok());
 }
 
-/// A cape that is rigidly attached to a bone. Meshes that cannot be cloth leave the rig unchanged.
+/// A cape is rigidly attached to a bone. Meshes that cannot be cloth leave the rig unchanged.
 #[test]
 fn rigid_mesh_gets_a_skin_and_errors_change_nothing() {
     let mut it = rig(10);
@@ -238,7 +238,7 @@ fn rigid_mesh_gets_a_skin_and_errors_change_nothing() {
     assert_eq!(lay(&mut flat, 400, None), Err(SheetError::Empty));
 }
 
-/// The cloth as separate strips of this number of cells.
+/// Returns the cloth as separate strips of `across` cells.
 fn strips(cells: usize, across: usize) -> Rig {
     let mut it = rig(cells);
     let primitive = &mut it.meshes[0].primitives[0];
@@ -277,12 +277,12 @@ fn tiny_spacing_terminates() {
     assert!((50..=100).contains(&it.sheets[sheet].joints.len()));
 }
 
-/// Each piece of a reduced sheet is held, even if only the highest vertices are.
+/// Each piece of a reduced sheet is held, also if only the highest vertices are held.
 #[test]
 fn every_piece_of_a_reduced_sheet_is_held() {
     for most in [4, 20, 100] {
         let mut it = rig(80);
-        // One corner is lifted slightly, so that one vertex is held, which is not the first on the border.
+        // One corner is slightly higher, so that one vertex is held, which is not the first on the border.
         it.meshes[0].primitives[0].positions[37].y += 1e-3;
         let sheet = lay(&mut it, most, Some(0.0)).expect("it can be cloth");
         assert_eq!(it.sheets[sheet].held.iter().filter(|held| **held).count(), 1, "{most}");
@@ -331,7 +331,7 @@ fn piece_above_the_cloth_does_not_take_its_held_vertices() {
     assert_eq!(it.sheets[sheet].held.iter().filter(|held| **held).count(), 22 + 3);
 }
 
-/// A degenerate triangle, two corners of which coincide when bound, next to loose parts that look for the nearest
+/// A degenerate triangle, of which two corners coincide when bound, beside loose parts that are bound to the nearest
 /// triangle.
 #[test]
 fn degenerate_triangles_give_finite_weights() {
@@ -380,7 +380,7 @@ fn rigid_part_of_a_skinned_mesh_is_rejected() {
     assert_eq!(it, untouched);
 }
 
-/// A strand of springs or of a chain garment on the bones above a sheet is the same as without the sheet.
+/// A strand of springs or of a chain garment on the bones above a sheet equals the one without the sheet.
 #[test]
 fn sheet_joints_do_not_count_as_strand_bones() {
     let mut it = rig(10);
@@ -392,6 +392,6 @@ fn sheet_joints_do_not_count_as_strand_bones() {
     let borne = it.sheets[sheet].joints.iter().filter(|&&joint| it.joints[joint].parent == Some(1));
     assert!(borne.count() > 0, "some particles are children of the last bone");
     assert_eq!(guess_springs(&it, Vec3::Y), springs);
-    // Vertices that are cloth no longer count as skin of its last bone.
+    // Vertices that are cloth do not count as skin of the column's last bone.
     assert_eq!(GarmentColumn::below(&it, 0).joints, column.joints);
 }

@@ -3,7 +3,7 @@ use sinew_anim::{LocalTransform, Primitive, Rig, RigMesh, Skin, local_to_model, 
 use sinew_math::{Affine, Rotation, Vec3};
 use std::f32::consts::FRAC_PI_2;
 
-/// Two joints along x and four vertices weighted 1:0, 1:1 (two of them) and 0:1; and a rigid copy on the second joint.
+/// Returns two joints along x, three vertices weighted 1:0, 1:1 and 0:1, and a rigid copy on the second joint.
 fn bar() -> Rig {
     let mut rig = toy::chain(2, Vec3::X);
     let positions = vec![Vec3::new(1.0, 0.1, 0.0), Vec3::new(2.0, 0.1, 0.0), Vec3::new(3.0, 0.1, 0.0)];

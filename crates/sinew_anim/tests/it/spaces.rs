@@ -1,4 +1,4 @@
-//! Blend spaces and footstep merging.
+//! Tests of blend spaces and footstep merging.
 
 use sinew_anim::{Footstep, FootstepMerger, FootstepSource, weights_on_line, weights_on_plane};
 use sinew_math::{Random, Vec2};
@@ -51,7 +51,7 @@ fn planar_weights_are_continuous_and_one_at_their_clip() {
             assert!(jump < 0.05 + 0.02 / closest, "{jump} at {at}, {closest} apart");
         }
     }
-    // Four directions and standing: halfway between forward and right, each has weight a half.
+    // Four directions and standing: halfway between forward and right, both have half of the weight.
     let cross = [Vec2::ZERO, Vec2::X, Vec2::Y, -Vec2::X, -Vec2::Y];
     let mut weights = [0.0; 5];
     weights_on_plane(&cross, Vec2::new(0.5, 0.5), &mut weights);
@@ -65,7 +65,7 @@ fn contact_and_event_of_one_step_are_merged() {
     let mut merger = FootstepMerger::new(0.15);
     let mut steps = Vec::new();
     merger.merge(&[(0, 1.0)], &[(0, 1.05), (1, 1.02)], &mut steps);
-    // The contact comes one update before its event; and a foot that bounces.
+    // The contact comes one update before its event, and the other foot bounces.
     merger.merge(&[], &[(1, 1.5), (1, 1.55)], &mut steps);
     merger.merge(&[(1, 1.6), (0, 1.61)], &[(0, f64::NAN)], &mut steps);
     let step = |foot, time, source| Footstep { foot, time, source };

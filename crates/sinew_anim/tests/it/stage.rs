@@ -13,7 +13,7 @@ pub fn rig() -> Rig {
     toy::chain(JOINTS, Vec3::X)
 }
 
-/// A looped clip with random rotations of all joints; first and last key are equal.
+/// Returns a looped clip with random rotations of all joints; first and last key are equal.
 pub fn swaying(random: &mut Random, duration: f32) -> Clip {
     let keys = 13;
     let times: Vec<f32> = (0..keys).map(|i| duration * (i as f32 / (keys - 1) as f32)).collect();
@@ -43,7 +43,7 @@ pub fn build(clip: &Clip, fill: Fill) -> AnimatedClip {
     AnimatedClip::from(BuiltClip::build(clip, &rig(), &options).expect("a good clip"))
 }
 
-/// Three clips of 1, 0.75 and 1.5 s.
+/// Returns a set with three clips of 1, 0.75 and 1.5 s.
 pub fn set(seed: u64) -> AnimationSet {
     let mut random = Random::new(seed);
     let mut set = AnimationSet::new(Skeleton::new(&rig()));

@@ -1,4 +1,4 @@
-//! Takes, and bodies recognised from bones alone; without files.
+//! Tests of takes, and of bodies recognised from bones alone; without files.
 
 use crate::toy;
 use core::f32::consts::TAU;
@@ -10,7 +10,7 @@ use sinew_anim::{
 };
 use sinew_math::{Affine, Random, Rotation, Vec3, trig};
 
-/// The toy body without its skin.
+/// Returns the toy body without its skin.
 fn skeleton(name: impl Fn(Role) -> String) -> Rig {
     Rig { joints: toy::body(name).joints, ..Rig::default() }
 }
@@ -23,7 +23,7 @@ fn take_and_its_clip_are_the_same_motion() {
     let mut poses = Vec::new();
     for frame in 0..30 {
         let mut pose = toy::random_pose(&mut random, 4);
-        // One joint has the rest pose, another has a constant other pose.
+        // Joint 1 has the rest pose, and joint 2 another constant pose.
         pose[1] = rest[1];
         pose[2] = if frame == 0 { pose[2] } else { poses[2] };
         poses.extend(pose);
@@ -64,7 +64,7 @@ fn roles_are_found_from_bones_alone() {
     assert!(analyze_skeleton(&bare, &rest_pose(&bare)).is_err());
 }
 
-/// A clip of that body that steps in place: thighs and knees swing.
+/// Returns a clip of the body in which it steps in place: thighs and knees swing.
 fn stepping(rig: &Rig) -> Clip {
     let joint = |name: &str| rig.joints.iter().position(|joint| joint.name == name).unwrap();
     let times: Vec<f32> = (0..61).map(|i| i as f32 / 60.0).collect();
@@ -93,7 +93,7 @@ fn stepping(rig: &Rig) -> Clip {
     Clip { name: "step".into(), duration: 1.0, channels }
 }
 
-/// The bodies are scaled and rotated, and have arbitrary joint axes: the motion of the bones is the same.
+/// Scaled and rotated bodies with arbitrary joint axes: the bones move equally.
 #[test]
 fn motion_transfers_between_different_joint_axes() {
     let actor = skeleton(Role::name);
@@ -169,7 +169,7 @@ fn cameras_of_a_capture_are_ignored() {
     }
 }
 
-/// The skeleton stands along Y, but the capture walks along Z: the result is upright.
+/// The skeleton stands along Y, but the capture walks along Z; the result is upright.
 #[test]
 fn capture_along_another_axis_is_made_upright() {
     let actor = skeleton(Role::name);
@@ -202,7 +202,7 @@ fn capture_along_another_axis_is_made_upright() {
     }
 }
 
-/// A low-poly figure whose legs end with the shin gets ankles, and walks like one with feet.
+/// A low-poly figure whose legs end with the shin gets ankles, and walks like a figure with feet.
 #[test]
 fn legs_without_feet_get_ankles() {
     let whole = toy::body(|_| String::new());

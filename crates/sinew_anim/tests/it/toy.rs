@@ -3,7 +3,7 @@
 use sinew_anim::{Joint, LocalTransform, Primitive, Rig, RigMesh, Role, Skin};
 use sinew_math::{Affine, Random, Rotation, Vec3};
 
-/// A chain of `n` joints, each at `offset` from its parent.
+/// Returns a chain of `n` joints, each at `offset` from its parent.
 pub fn chain(n: usize, offset: Vec3) -> Rig {
     let joint = |i: usize| Joint {
         name: format!("joint{i}"),
@@ -14,7 +14,7 @@ pub fn chain(n: usize, offset: Vec3) -> Rig {
     Rig { joints: (0..n).map(joint).collect(), ..Rig::default() }
 }
 
-/// A random pose of `n` joints.
+/// Returns a random pose of `n` joints.
 pub fn random_pose(random: &mut Random, n: usize) -> Vec<LocalTransform> {
     let local = |_| LocalTransform {
         translation: random.in_cube(),
@@ -45,7 +45,8 @@ pub const BODY: [(&str, &str, [f32; 3]); 17] = [
     ("rightFoot", "rightLowerLeg", [-0.1, 0.1, 0.0]),
 ];
 
-/// [`BODY`] with a tetrahedron of skin at every joint; those of the feet reach the floor and point forward (+Z).
+/// Returns [`BODY`] with a tetrahedron of skin at every joint; those of the feet reach the floor and point
+/// forward (+Z).
 pub fn body(name: impl Fn(Role) -> String) -> Rig {
     let place = |i: usize| Vec3::from_array(BODY[i].2);
     let mut rig = Rig::default();

@@ -1,4 +1,4 @@
-//! Transitions have no pops: velocity does not jump, and acceleration stays below a budget of offset and time.
+//! Transitions have no pops: velocity does not jump, and acceleration stays within a budget given by offset and time.
 
 use crate::{rigs, stage};
 use needs_data::needs_data;
@@ -10,7 +10,7 @@ use sinew_math::{Random, Rotation, Vec3};
 
 const DT: f32 = 1.0 / 60.0;
 const BLEND: f32 = 0.3;
-/// Updates of a transition, plus two.
+/// Number of updates of a transition, plus two.
 const WINDOW: usize = 20;
 
 #[test]
@@ -50,7 +50,7 @@ fn returning_offset_does_not_overshoot() {
     assert!(Decay { offset: Vec3::X * 0.5, velocity: Vec3::X * -9.0 }.shortened(0.3) < 0.28);
 }
 
-/// The looped clips of a rig.
+/// Returns a set with the looped clips of a rig.
 fn set_of(file: &str) -> AnimationSet {
     let (rig, clips) = rigs::load(&format!("rigs/{file}"));
     let mut set = AnimationSet::new(Skeleton::new(&rig));
@@ -80,7 +80,7 @@ fn change(a: Rates, b: Rates) -> [f32; 2] {
     [(b.turn - a.turn).length() / DT, (b.way - a.way).length() / DT]
 }
 
-/// Accelerations of a joint over a sequence of poses (two fewer than poses).
+/// Returns the accelerations of a joint over a sequence of poses (two fewer than poses).
 fn accelerations(poses: &[Pose], joint: usize) -> Vec<[f32; 2]> {
     let rates: Vec<Rates> = poses.windows(2).map(|w| velocity(&w[0].get(joint), &w[1].get(joint))).collect();
     rates.windows(2).map(|w| change(w[0], w[1])).collect()
@@ -115,7 +115,7 @@ impl Alone {
         Self { p99: (0..built.joints()).map(p99).collect(), poses }
     }
 
-    /// Largest acceleration of a joint near the poses from `first` on.
+    /// Returns the largest accelerations of a joint near the poses from `first` on.
     fn peak(&self, joint: usize, first: usize) -> [f32; 2] {
         let window = &self.poses[first.saturating_sub(2)..(first + WINDOW + 2).min(self.poses.len())];
         accelerations(window, joint)
@@ -124,7 +124,7 @@ impl Alone {
     }
 }
 
-/// Largest ratio of acceleration to budget for a pair of clips.
+/// Returns the largest ratio of acceleration to budget for a pair of clips, and its joint.
 fn worst_of_pair(
     set: &AnimationSet,
     alone: &[Alone],
@@ -165,8 +165,8 @@ fn worst_of_pair(
     (worst, where_)
 }
 
-/// Budget `6 |x₀|/t₁² + 4 |v₀|/t₁` for rotation and translation, from the offset at the start of the transition. For a
-/// crossfade, whose clips diverge, the largest offset during it counts.
+/// Returns the budget `6 |x₀|/t₁² + 4 |v₀|/t₁` for rotation and translation, from the offset at the start of the
+/// transition. For a crossfade, whose clips diverge, the largest offset during the transition counts.
 fn budget([a, b]: [&Alone; 2], joint: usize, first: usize, transition: Transition) -> [f32; 2] {
     let is_inertial = matches!(transition, Transition::Inertial { .. });
     let lasting = if is_inertial { 1 } else { WINDOW };
@@ -195,7 +195,7 @@ fn no_pops(file: &str, transition: Transition, allowed: f32) {
     let stride = if alone.len() < 20 || std::env::var_os("SINEW_FULL").is_some() { 1 } else { 7 };
     let names: Vec<&str> = set.clips().map(|clip| set.clip(clip).clip.name()).collect();
     for from in 0..alone.len() {
-        // With many clips only some pairs are tested; all with `SINEW_FULL` set.
+        // With many clips only some pairs are tested, but all pairs with `SINEW_FULL` set.
         for to in (0..alone.len()).filter(|&to| to != from && (from + to) % stride == 0) {
             let (ratio, joint) = worst_of_pair(&set, &alone, [from, to], transition);
             pairs += 1;

@@ -1,4 +1,4 @@
-//! Vertices without weights, and skins whose weights are lost.
+//! Tests of vertices without weights, and of skins whose weights are lost.
 
 use crate::toy;
 use sinew_anim::weights::{SkinPart, lost_weights, weigh_by_nearness, weigh_loose_vertices};
@@ -62,7 +62,7 @@ fn vertex_without_weights_follows_its_piece() {
     let mut rig = body();
     let hand = joint_named("leftHand");
     let primitive = &mut rig.meshes[0].primitives[0];
-    // One corner of the hand's own tetrahedron, which a reader assigned to slot 0.
+    // One corner of the hand's own tetrahedron, assigned to slot 0 by a reader.
     let corner = 4 * hand + 3;
     primitive.joints[corner] = [0; 4];
     let without = SkinPart { mesh: 0, primitive: 0, vertices: vec![corner] };
@@ -91,7 +91,7 @@ fn lost_weights_are_restored_by_distance() {
     let primitive = &rig.meshes[0].primitives[0];
     for (vertex, (slots, weights)) in primitive.joints.iter().zip(&primitive.weights).enumerate() {
         assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-6, "vertex {vertex}: {weights:?}");
-        // A vertex is near its own joint, where the parent bone ends and its own begins.
+        // A vertex is near its own joint, where the parent's bone ends and its own bone begins.
         let own = vertex / 4;
         let near = [Some(own), rig.joints[own].parent];
         let most = slots.iter().zip(weights).max_by(|a, b| a.1.total_cmp(b.1)).expect("four");

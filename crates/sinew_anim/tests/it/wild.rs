@@ -1,4 +1,4 @@
-//! Roles of public rigs compared with a table that was written before the recogniser first ran on them.
+//! Compares the roles of public rigs with a table that was written before the recogniser first ran on them.
 
 use crate::rigs;
 use needs_data::needs_data;
@@ -14,7 +14,7 @@ struct Truth {
     roles: BTreeMap<String, String>,
 }
 
-/// Expands `[a|b]` to a for left and b for right; both are equal without brackets.
+/// Expands `[a|b]` to a for left and b for right; without brackets both are equal.
 fn sides(text: &str) -> [String; 2] {
     let parts = text.split_once('[').and_then(|(before, rest)| {
         let (choice, after) = rest.split_once(']')?;
@@ -47,7 +47,7 @@ fn expected_roles() -> Vec<Truth> {
     conventions
 }
 
-/// Files under ../shared/data that match a pattern with at most one star.
+/// Returns the files under ../shared/data that match a pattern with at most one star.
 fn files(pattern: &str) -> Vec<String> {
     let Some((before, after)) = pattern.split_once('*') else { return vec![pattern.into()] };
     let (folder, start) = before.split_once('/').expect("a folder");
@@ -61,7 +61,7 @@ fn files(pattern: &str) -> Vec<String> {
     found
 }
 
-/// A rig from a skeleton's joints, with skin around each bone that moves skin in the file.
+/// Makes a rig from a skeleton's joints, with skin around each bone that moves skin in the file.
 fn of_skeleton(json: &serde_json::Value) -> Rig {
     let nodes = json["nodes"].as_array().expect("nodes");
     let number = |value: &serde_json::Value| value.as_f64().expect("a number") as f32;
@@ -71,7 +71,7 @@ fn of_skeleton(json: &serde_json::Value) -> Rig {
     };
     let parent = |i: usize| usize::try_from(nodes[i]["parent"].as_i64().expect("an index")).ok();
     let vertices = |i: usize| nodes[i]["vertices"].as_u64().unwrap_or(0);
-    // Compressed meshes have no counts: then every joint of the skin counts, except those that never move any.
+    // Compressed meshes have no counts, so every joint of the skin counts, except joints that never move skin.
     let counted = (0..nodes.len()).any(|i| vertices(i) > 0);
     let bare = |i: usize| {
         let name = nodes[i]["name"].as_str().expect("a name");
@@ -84,14 +84,14 @@ fn of_skeleton(json: &serde_json::Value) -> Rig {
         let children: Vec<usize> = (0..nodes.len()).filter(|&k| parent(k) == Some(i)).collect();
         let length = |k: &usize| (place(*k) - place(i)).length();
         let longest = children.into_iter().max_by(|a, b| length(a).total_cmp(&length(b)));
-        // The direction of the last bone of a chain is unknown: straight up implies no forward direction.
+        // The direction of the last bone of a chain is unknown; straight up implies no forward direction.
         let end = Vec3::Y * parent(i).map_or(0.1, |p| 0.4 * (place(i) - place(p)).length());
         bones.push((i, place(i), longest.map_or(place(i) + end, place)));
     }
     rig_of(nodes.iter().map(|node| node["name"].as_str().expect("a name")), &parent, &place, &bones)
 }
 
-/// A rig with a double pyramid of skin around every bone (joint, from, to).
+/// Makes a rig with a double pyramid of skin around every bone (joint, from, to).
 pub fn rig_of<'a>(
     names: impl Iterator<Item = &'a str>,
     parent: &dyn Fn(usize) -> Option<usize>,
@@ -126,7 +126,7 @@ pub fn rig_of<'a>(
     rig
 }
 
-/// Number of correct roles, out of all that are expected or found.
+/// Returns the number of correct roles, and the number of roles that are expected or found.
 fn score(rig: &Rig, truth: &BTreeMap<String, String>, complaints: &mut Vec<String>) -> (usize, usize) {
     let names: Vec<String> = rig.joints.iter().map(|joint| joint.name.clone()).collect();
     score_of(rig, &names, truth, complaints)
@@ -167,7 +167,7 @@ fn score_of(
     (right, roles.len())
 }
 
-/// The rig with every joint displaced at random, so that symmetry finds no limb and only names decide.
+/// Returns the rig with every joint displaced at random, so that symmetry finds no limb and only names decide.
 fn blurred(rig: &Rig, seed: u64) -> Rig {
     let mut rig = rig.clone();
     let mut random = Random::new(seed);
@@ -180,7 +180,7 @@ fn blurred(rig: &Rig, seed: u64) -> Rig {
     rig
 }
 
-/// The rig with numbers for names and without roles stated by the file.
+/// Returns the rig with numbers for names and without roles stated by the file.
 fn numbered(rig: &Rig) -> Rig {
     let mut rig = rig.clone();
     rig.stated_roles.clear();
@@ -202,7 +202,7 @@ struct Scores {
     by_shape: Option<(usize, usize)>,
 }
 
-/// A rig of the shared data.
+/// Loads a rig of the shared data.
 fn load(file: &str) -> Rig {
     if file.starts_with("skeletons/") {
         let bytes = rigs::bytes(file);
@@ -212,7 +212,7 @@ fn load(file: &str) -> Rig {
     sinew_formats::load_gltf(path, sinew_formats::ReadOptions::default()).expect("a rig").rig
 }
 
-/// The scores of a file, and its errors in words. `unstated` is the table without roles stated by the file.
+/// Returns the scores of a file, and its errors in words. `unstated` is the table without roles stated by the file.
 fn measure(file: &str, truth: &Truth, unstated: &Truth) -> (Scores, String) {
     let rig = load(file);
     let mut complaints = Vec::new();
@@ -228,7 +228,7 @@ fn measure(file: &str, truth: &Truth, unstated: &Truth) -> (Scores, String) {
     (scores, complaints.join(" "))
 }
 
-/// Writes the table as JSON where `cargo xtask wild` expects it.
+/// Writes the table as JSON to the path given by `cargo xtask wild`.
 fn write_table(table: &[(String, Scores)]) {
     let Some(path) = std::env::var_os("SINEW_WILD_ROLES") else { return };
     let pair = |(right, all): (usize, usize)| serde_json::json!([right, all]);
@@ -279,7 +279,7 @@ fn roles_of_public_rigs_reach_the_required_share() {
     }
 }
 
-/// Animals, machines and fish, by the prefixes of their files; some have arms, hips and a head by name.
+/// Prefixes of the files of animals, machines and fish; some of these have arms, hips and a head by name.
 const BEASTS: [&str; 14] = [
     "quaternius_animals_",
     "quaternius_dinosaurs_",
@@ -326,7 +326,7 @@ fn dog_with_human_names_is_not_human() {
         }
     };
     let (_, mut lines) = conventions().into_iter().find(|(name, _)| name == "Unreal").expect("a convention");
-    // Paws have no role, otherwise it would walk on hands.
+    // Paws have no role, because otherwise the animal would walk on hands.
     let gone = |line: &Line| line.2.as_deref().is_some_and(|role| role.ends_with("Hand"));
     for line in lines.iter_mut().filter(|line| gone(line)) {
         line.0 = "dewclaw".into();
@@ -338,7 +338,7 @@ fn dog_with_human_names_is_not_human() {
     }
 }
 
-/// Role of the arm at +X of a human with numbers for names.
+/// Returns the role of the arm at +X of a human with numbers for names.
 fn side_of_plus_x(human: &dyn Fn(&str) -> Vec3) -> String {
     let (_, lines) = conventions().into_iter().find(|(name, _)| name == "Unreal").expect("a convention");
     let found = analyze(&numbered(&dressed_as(&lines, human))).expect("a skin");
@@ -360,7 +360,8 @@ fn elbow_bend_gives_the_front_without_feet() {
 
 #[test]
 fn fingers_on_a_forearm_replace_the_hand() {
-    // Each forearm has four fingers that start at the wrist or at the end of a palm; on a hand they are only fingers.
+    // Each forearm has four fingers that start at the wrist or at the end of a palm; fingers on a hand are only
+    // fingers.
     let rig = |spread: f32, on_hand: bool| {
         let (_, mut lines) =
             conventions().into_iter().find(|(name, _)| name == "Unreal").expect("a convention");
@@ -418,7 +419,7 @@ fn fingers_on_a_forearm_replace_the_hand() {
     }
 }
 
-/// A joint of a skeleton of conventions.txt: name, parent, role if any, whether it has skin.
+/// A joint of a skeleton of conventions.txt: name, parent, role if any, and true if it has skin.
 type Line = (String, Option<usize>, Option<String>, bool);
 
 fn conventions() -> Vec<(String, Vec<Line>)> {
@@ -458,7 +459,7 @@ fn add_lines(lines: &[&str], parent: Option<usize>, side: Option<usize>, out: &m
     }
 }
 
-/// Position of a human joint by role, metres; its toes point forward (+Z).
+/// Returns the position of a human joint by role, metres; the toes point forward (+Z).
 fn human(role: &str) -> Vec3 {
     let (x, role) = match (role.strip_prefix("left"), role.strip_prefix("right")) {
         (Some(part), _) => (1.0, part),
@@ -485,7 +486,7 @@ fn human(role: &str) -> Vec3 {
     Vec3::new(x * across, up, ahead)
 }
 
-/// A human with the joints of a convention; joints without a role are between their parent and child.
+/// Makes a human with the joints of a convention; a joint without a role is between its parent and its child.
 fn dressed(lines: &[Line]) -> Rig {
     dressed_as(lines, &human)
 }
@@ -497,7 +498,7 @@ fn dressed_as(lines: &[Line], human: &dyn Fn(&str) -> Vec3) -> Rig {
         let carried =
             (i + 1..lines.len()).find(|&k| lines[k].1 == Some(i)).and_then(|k| lines[k].2.as_deref());
         let from = parent.map_or(Vec3::Y * 0.9, |parent| places[parent]);
-        // Displaced slightly by the length of the name, so that no two joints coincide.
+        // Joints are displaced slightly by the length of the name, so that no two coincide.
         let aside = Vec3::new(0.0, 0.004, 0.004) * (1.0 + name.len() as f32 * 0.1);
         places.push(match (role, carried) {
             (Some(role), _) => human(role),

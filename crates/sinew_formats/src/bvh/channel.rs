@@ -20,7 +20,7 @@ pub enum BvhChannel {
 }
 
 impl BvhChannel {
-    /// All six.
+    /// All six channels.
     pub const ALL: [Self; 6] = [
         Self::Xposition,
         Self::Yposition,
@@ -30,10 +30,10 @@ impl BvhChannel {
         Self::Zrotation,
     ];
 
-    /// The three positions.
+    /// The three position channels.
     pub const POSITIONS: [Self; 3] = [Self::Xposition, Self::Yposition, Self::Zposition];
 
-    /// The rotation about axis 0, 1 or 2.
+    /// Returns the rotation about axis 0, 1 or 2.
     ///
     /// # Panics
     /// If the axis does not exist.
@@ -53,7 +53,7 @@ impl BvhChannel {
         }
     }
 
-    /// The channel of that name, in any case.
+    /// Returns the channel of that name, in any case.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|channel| channel.name().eq_ignore_ascii_case(name))
     }
@@ -63,12 +63,12 @@ impl BvhChannel {
         self >= Self::Xrotation
     }
 
-    /// 0, 1, 2 for x, y, z.
+    /// Returns the axis: 0, 1, 2 for x, y, z.
     pub fn axis(self) -> usize {
         self as usize % 3
     }
 
-    /// The unit vector that it moves along or about.
+    /// Returns the unit vector along or about which the channel moves.
     pub fn direction(self) -> Vec3 {
         Vec3::AXES[self.axis()]
     }

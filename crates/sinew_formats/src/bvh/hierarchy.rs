@@ -6,15 +6,15 @@ use crate::error::{Error, Result, quoted};
 use sinew_anim::{Joint, LocalTransform, Rig};
 use sinew_math::Vec3;
 
-/// A joint as the file has it.
+/// A joint as in the file.
 pub(super) struct FileJoint {
-    /// `""` for an End Site.
+    /// Name, `""` for an End Site.
     pub name: String,
     pub parent: Option<usize>,
-    /// File units.
+    /// Offset from the parent, file units.
     pub offset: Vec3,
     pub channels: Vec<BvhChannel>,
-    /// Index of its first number in a row.
+    /// Index of the joint's first number in a row.
     pub column: usize,
 }
 
@@ -31,7 +31,7 @@ impl FileJoint {
 /// Joints in file order, parents before children.
 pub(super) struct Hierarchy {
     pub joints: Vec<FileJoint>,
-    /// Numbers in a row.
+    /// Number of numbers in a row.
     pub width: usize,
 }
 
@@ -39,7 +39,8 @@ pub(super) struct Hierarchy {
 const MOST_CHANNELS: usize = BvhChannel::ALL.len();
 
 impl Hierarchy {
-    /// Reads up to and with the word `MOTION`. The open joints are a list, not a call depth: nesting costs nothing.
+    /// Reads the text up to and including the word `MOTION`. Open joints are kept in a list instead of the call
+    /// stack, so deep nesting is safe.
     pub fn read(words: &mut Words<'_>) -> Result<Self> {
         let first = words.next().unwrap_or_default();
         if !first.eq_ignore_ascii_case("HIERARCHY") {
@@ -75,7 +76,7 @@ impl Hierarchy {
         }
     }
 
-    /// Starts a joint, up to and including its `{`.
+    /// Starts a joint: reads up to and including its `{`.
     fn open(&mut self, words: &mut Words<'_>, parent: Option<usize>, is_end: bool) -> Result<usize> {
         let name = words.rest_of_line();
         if name.is_empty() && !is_end {
@@ -115,7 +116,7 @@ impl Hierarchy {
         Ok(())
     }
 
-    /// The joints as a rig with the offsets as rest pose.
+    /// Makes a rig of the joints; the rest pose has the offsets.
     pub fn rig(&self, metres_per_unit: f32) -> Rig {
         let joint = |(source, joint): (usize, &FileJoint)| Joint {
             name: joint.name.clone(),
@@ -126,7 +127,7 @@ impl Hierarchy {
         Rig { joints: self.joints.iter().enumerate().map(joint).collect(), ..Rig::default() }
     }
 
-    /// The joint and the channel that a number of a row belongs to, in words.
+    /// Describes the joint and the channel to which a number of a row belongs.
     pub fn name_column(&self, column: usize) -> String {
         let owns = |joint: &&FileJoint| (joint.column..joint.column + joint.channels.len()).contains(&column);
         self.joints.iter().find(owns).map_or_else(String::new, |joint| {

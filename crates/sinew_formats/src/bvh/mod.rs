@@ -1,8 +1,8 @@
 //! Biovision Hierarchy (BVH): a skeleton and its motion as text, the format of most free motion capture.
 //!
-//! The format was never written down by its makers, so files differ in almost every detail. This reader accepts:
-//! rotation channels in any order and number, per joint; positions at any joint; joints of no length; missing End
-//! Sites; any line ends and any white space. Assumptions and corrections are in [`BvhDocument::notes`].
+//! The makers of the format never published a specification, so files differ in almost every detail. This reader
+//! accepts rotation channels in any order and number, per joint; positions at any joint; joints of length zero;
+//! missing End Sites; any line ends and any white space. Assumptions and corrections are in [`BvhDocument::notes`].
 //!
 //! ```
 //! use sinew_formats::{BvhOptions, BvhWriteOptions, read_bvh, write_bvh};
@@ -49,7 +49,7 @@ use words::Words;
 /// Handling of a file with more or fewer rows than its `Frames:` line declares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BvhRows {
-    /// Refuse it: it may have been cut.
+    /// Reject the file: it may be truncated.
     #[default]
     AsDeclared,
     /// Read the complete rows and add a note.
@@ -63,7 +63,7 @@ pub struct BvhOptions {
     pub unit: BvhUnit,
     /// Handling of a rest pose before the motion. Default: excluded from the clip.
     pub rest_frame: RestFrame,
-    /// Default: refuse a file whose row count differs from its declaration.
+    /// Handling of a wrong number of rows. Default: reject the file.
     pub rows: BvhRows,
 }
 
@@ -82,18 +82,19 @@ pub struct BvhDocument {
     pub metres_per_unit: f32,
     /// Channels of each joint in file order, for [`BvhWriteOptions::channels`].
     pub channels: Vec<Vec<BvhChannel>>,
-    /// The rest pose in the first frame, if there is one: it identifies the body better than the offsets.
+    /// The rest pose in the first frame, if there is one. It shows the body better than the offsets.
     pub rest_pose: Option<Vec<LocalTransform>>,
     /// Notes on assumptions, repairs and omissions, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// Reads a BVH file. Memory and call depth are proportional to its size, whatever its numbers claim.
+/// Reads a BVH file. Memory is proportional to the file size, for any numbers in the file, and the call depth is
+/// bounded.
 ///
 /// # Errors
-/// Names the line, and the joint if there is one: misplaced words, unbalanced braces, an unknown or repeated channel,
-/// an invalid or non-finite number, a row that is too long or too short, a wrong number of rows (see [`BvhRows`]), no
-/// joint, no channel, no frame, a frame time that is not above 0.
+/// Returns an error that names the line, and the joint if there is one: misplaced words, unbalanced braces, an
+/// unknown or repeated channel, an invalid or non-finite number, a row that is too long or too short, a wrong number
+/// of rows (see [`BvhRows`]), no joint, no channel, no frame, a frame time that is not above 0.
 pub fn read_bvh(bytes: &[u8], options: BvhOptions) -> Result<BvhDocument> {
     let text = String::from_utf8_lossy(bytes);
     let mut words = Words::new(text.strip_prefix('\u{feff}').unwrap_or(&text));

@@ -11,14 +11,14 @@ use sinew_math::{Rotation, Vec3};
 
 /// Rows of numbers.
 pub(super) struct Motion {
-    /// Seconds.
+    /// Frame time, seconds.
     pub frame_time: f64,
     /// Rows of the hierarchy's width, concatenated, file units and degrees.
     pub rows: Vec<f32>,
 }
 
 impl Motion {
-    /// Reads the text after the word `MOTION`. Allocates nothing for rows that are only declared.
+    /// Reads the text after the word `MOTION`. Allocates only for rows that are present, not for declared ones.
     pub fn read(
         words: &mut Words<'_>,
         hierarchy: &Hierarchy,
@@ -46,7 +46,7 @@ impl Motion {
     }
 }
 
-/// `Frames: N`, with or without a blank before the colon.
+/// Reads `Frames: N`, with or without a blank before the colon, and returns N.
 fn read_count(words: &mut Words<'_>) -> Result<f64> {
     expect_label(words, "Frames")?;
     let declared = words.number("the number of frames")?;
@@ -56,7 +56,7 @@ fn read_count(words: &mut Words<'_>) -> Result<f64> {
     Err(Error::malformed(format!("{declared} is not a number of frames"), words.place()))
 }
 
-/// `Frame Time: T`, repaired.
+/// Reads `Frame Time: T` and returns T, seconds, repaired.
 fn read_frame_time(words: &mut Words<'_>, notes: &mut Vec<String>) -> Result<f64> {
     words.expect("Frame")?;
     expect_label(words, "Time")?;
@@ -71,7 +71,7 @@ fn read_frame_time(words: &mut Words<'_>, notes: &mut Vec<String>) -> Result<f64
     Ok(1.0 / f64::from(rate))
 }
 
-/// A word and a colon, as one word or two.
+/// Reads a word and a colon, as one word or two.
 fn expect_label(words: &mut Words<'_>, label: &str) -> Result<()> {
     let with_colon = format!("{label}:");
     let word = words.need(&format!("`{with_colon}`"))?;
@@ -106,7 +106,7 @@ fn read_row(line: &str, number: usize, hierarchy: &Hierarchy, rows: &mut Vec<f32
     Err(Error::malformed(format!("{column} numbers in a row of {}", hierarchy.width), place()))
 }
 
-/// Every joint's local transforms, joint after joint.
+/// Local transforms of all joints, joint by joint.
 pub(super) struct Frames {
     /// Rotations of each joint by frame; empty if it has no rotation channel.
     rotations: Vec<Vec<Rotation>>,
@@ -154,18 +154,18 @@ pub(super) fn frames(
     found
 }
 
-/// The rotations of a joint, first channel outermost.
+/// Returns the rotation of a joint, with the first channel outermost.
 fn rotation(joint: &FileJoint, numbers: &[f32]) -> Rotation {
     let turns = joint.channels.iter().zip(numbers).filter(|(channel, _)| channel.is_rotation());
     let product = turns.fold(Rotation::IDENTITY, |outer, (channel, &degrees)| {
-        // Compute in f64: a file may count whole turns, and a thousand degrees lose three digits.
+        // Computes in f64, because a file may count whole turns, and a thousand degrees lose three digits in f32.
         let turn = (f64::from(degrees) % 360.0).to_radians() as f32;
         outer * Rotation::from_axis_angle(channel.direction(), turn)
     });
     product.normalize()
 }
 
-/// Numbers of the position channels, by axis; 0 along an axis without one.
+/// Returns the numbers of the position channels, by axis; 0 along an axis without a channel.
 fn positions(joint: &FileJoint, numbers: &[f32]) -> Vec3 {
     let mut at = Vec3::ZERO;
     for (channel, &value) in joint.channels.iter().zip(numbers) {
@@ -176,15 +176,15 @@ fn positions(joint: &FileJoint, numbers: &[f32]) -> Vec3 {
     at
 }
 
-/// The components of a vector along axes that have a position channel.
+/// Returns the components of a vector along axes that have a position channel; 0 along others.
 pub(super) fn along_positions(channels: &[BvhChannel], v: Vec3) -> Vec3 {
     let has = |axis: usize| channels.contains(&BvhChannel::POSITIONS[axis]);
     Vec3::from_array(core::array::from_fn(|axis| if has(axis) { v[axis] } else { 0.0 }))
 }
 
-/// Base to which the positions of a joint are added, file units. Along an axis without a channel it is the offset.
-/// Along the others some programs write the joint's position, others its displacement from the offset; the first frame
-/// decides which.
+/// Returns the base to which the positions of a joint are added, file units, and whether they are displacements. Along
+/// an axis without a channel the base is the offset. Along the other axes some programs write the joint's position,
+/// others its displacement from the offset; the first frame decides.
 fn position_base(joint: &FileJoint, rows: &[f32]) -> (Vec3, bool) {
     let first = positions(joint, &rows[joint.column..joint.column + joint.channels.len()]);
     let shifted = along_positions(&joint.channels, joint.offset);
@@ -198,7 +198,7 @@ pub(super) fn is_added(first: Vec3, offset: Vec3) -> bool {
 }
 
 impl Frames {
-    /// The pose of a frame; components without a channel are at rest.
+    /// Returns the pose of a frame; components without a channel are at rest.
     pub fn pose(&self, rig: &Rig, frame: usize) -> Vec<LocalTransform> {
         let local = |(i, joint): (usize, &sinew_anim::Joint)| LocalTransform {
             translation: self.translations[i].get(frame).copied().unwrap_or(joint.rest.translation),
@@ -208,7 +208,7 @@ impl Frames {
         rig.joints.iter().enumerate().map(local).collect()
     }
 
-    /// The frames from `first` on as a clip that starts at 0.
+    /// Converts the frames from `first` on to a clip that starts at 0.
     pub fn clip(&self, rig: &Rig, first: usize, frame_time: f64) -> Result<Clip> {
         let count = self.rotations.iter().map(Vec::len).chain(self.translations.iter().map(Vec::len)).max();
         let frames = count.unwrap_or(0).saturating_sub(first);

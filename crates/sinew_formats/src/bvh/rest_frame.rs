@@ -3,14 +3,14 @@
 use super::hierarchy::Hierarchy;
 use super::motion::Motion;
 
-/// Handling of a rest pose in the first frame. The BVH files of the CMU library have one (arms out, legs straight), so
-/// that programs know the body at rest.
+/// Handling of a rest pose in the first frame. The BVH files of the CMU library have one (arms out, legs straight),
+/// which shows programs the body at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RestFrame {
-    /// It is not part of the clip; [`rest_pose`](super::BvhDocument::rest_pose) holds it.
+    /// The rest pose is not part of the clip; [`rest_pose`](super::BvhDocument::rest_pose) holds it.
     #[default]
     Skip,
-    /// It is the first frame of the clip, as in the file.
+    /// The rest pose is the first frame of the clip, as in the file.
     Keep,
 }
 

@@ -1,9 +1,9 @@
-//! Frame times that were printed with too few digits.
+//! Repairs frame times that were printed with too few digits.
 
-/// The whole frame rate N for which 1/N was printed as `printed`, which reads as `stated` seconds; `None` if the value
-/// is exact or fits several rates.
+/// Returns the whole frame rate N for which 1/N was printed as `printed`, which reads as `stated` seconds; `None` if
+/// the value is exact or fits several rates.
 ///
-/// Most programs print 1/120 s as `.0083333`; taken literally it would lose 14 ms in an hour.
+/// Most programs print 1/120 s as `.0083333`; taken literally, this loses 14 ms in an hour.
 pub(super) fn mended_frame_time(printed: &str, stated: f64) -> Option<u32> {
     let rate = (1.0 / stated).round();
     if !(1.0..=100_000.0).contains(&rate) {
@@ -18,14 +18,14 @@ pub(super) fn mended_frame_time(printed: &str, stated: f64) -> Option<u32> {
     (is_cut && is_clear && !is_exact(meant, digit)).then_some(rate as u32)
 }
 
-/// Value of the last digit of a decimal number; `None` if it has no fraction or an exponent.
+/// Returns the place value of the last digit of a decimal number; `None` if it has no fraction or an exponent.
 fn last_place(printed: &str) -> Option<f64> {
     let (_, fraction) = printed.split_once('.')?;
     let is_plain = fraction.bytes().all(|b| b.is_ascii_digit());
     (is_plain && fraction.len() < 15).then(|| (0..fraction.len()).fold(1.0, |place, _| place / 10.0))
 }
 
-/// True if a number of seconds needs no more digits than printed: then it is exact.
+/// True if a number of seconds is exact: it needs no more digits than printed.
 fn is_exact(seconds: f64, digit: f64) -> bool {
     let units = seconds / digit;
     (units - units.round()).abs() < 1e-9 * units
@@ -51,7 +51,7 @@ mod tests {
             ("0.0125", None),
             ("0.0083", None),
             ("0.03", None),
-            // 29.97 frames a second, of television.
+            // 29.97 frames per second, the rate of television.
             ("0.0333667", None),
             ("1", None),
             ("2.5", None),

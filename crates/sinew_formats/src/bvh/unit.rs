@@ -1,4 +1,4 @@
-//! Length unit of a file. The format does not state it; the body size implies it.
+//! Infers the length unit of a file from the size of the body, because the format does not state the unit.
 
 use super::hierarchy::Hierarchy;
 use sinew_math::max;
@@ -6,7 +6,7 @@ use sinew_math::max;
 /// Length of the unit of a BVH file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum BvhUnit {
-    /// Unit from the size of the skeleton, if it is that of a human; else centimetres.
+    /// The unit that gives the skeleton the size of a human; centimetres if none does.
     #[default]
     Infer,
     /// This number of metres, above 0.
@@ -15,14 +15,14 @@ pub enum BvhUnit {
     Metres(f32),
 }
 
-/// Distance from toe to fingertip along the bones of an adult, metres: 1.4 times the height, whatever the pose.
+/// Distance from toe to fingertip along the bones of an adult, metres: 1.4 times the height, in any pose.
 const SPAN: f32 = 2.4;
-/// Largest factor by which it may be longer or shorter.
+/// Largest factor by which a body's distance may differ from [`SPAN`].
 const SLACK: f32 = 1.5;
-/// A skeleton with fewer joints may be anything.
+/// Number of joints below which the body may be of any kind.
 const LEAST_JOINTS: usize = 12;
 
-/// Units in use. That of the motion capture lab of Carnegie Mellon University is an inch over 0.45.
+/// Units in use. The unit of the motion capture lab of Carnegie Mellon University is an inch over 0.45.
 const UNITS: [(f32, &str); 5] = [
     (1.0, "metres"),
     (0.01, "centimetres"),
@@ -32,7 +32,7 @@ const UNITS: [(f32, &str); 5] = [
 ];
 
 impl BvhUnit {
-    /// Metres per unit, and why in the notes.
+    /// Returns the metres per unit, and adds the reason to the notes.
     pub(super) fn resolve(self, hierarchy: &Hierarchy, notes: &mut Vec<String>) -> f32 {
         match self {
             Self::Metres(metres) if metres > 0.0 && metres.is_finite() => metres,
@@ -63,7 +63,7 @@ fn infer(hierarchy: &Hierarchy, notes: &mut Vec<String>) -> f32 {
     0.01
 }
 
-/// Longest path between two joints along the bones, file units. Independent of the pose.
+/// Longest path between two joints along the bones, file units; independent of the pose.
 fn longest_way(hierarchy: &Hierarchy) -> f32 {
     let joints = &hierarchy.joints;
     // Children follow their parents, so in reverse order every joint's reach is known before its parent's.

@@ -1,4 +1,4 @@
-//! Words of a text with their line numbers.
+//! Splits a text into words with line numbers.
 
 use crate::error::{Error, Result, quoted};
 
@@ -10,18 +10,18 @@ pub(super) struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// Old files end their lines with a lone carriage return.
+    /// Starts at the first word. Lines of old files end with a lone carriage return.
     pub fn new(text: &'a str) -> Self {
         let end = if text.contains('\n') { '\n' } else { '\r' };
         Self { lines: text.strip_suffix(end).unwrap_or(text).split(end), rest: "", line: 0 }
     }
 
-    /// Line of the last word, from 1.
+    /// Line of the last word, counted from 1.
     pub fn place(&self) -> String {
         format!("line {}", self.line)
     }
 
-    /// The next non-empty line and its number. Skips the rest of the current one.
+    /// Returns the next non-empty line and its number. Skips the rest of the current line.
     pub fn next_line(&mut self) -> Option<(usize, &'a str)> {
         loop {
             let line = self.lines.next()?.trim();
@@ -33,7 +33,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The next word, on any line; `None` at the end.
+    /// Returns the next word, on any line; `None` at the end.
     pub fn next(&mut self) -> Option<&'a str> {
         while self.rest.is_empty() {
             let (_, line) = self.next_line()?;
@@ -51,7 +51,7 @@ impl<'a> Words<'a> {
         Some(word)
     }
 
-    /// Rest of the line, up to a brace: names may have blanks in them.
+    /// Returns the rest of the line, up to a brace; names may contain blanks.
     pub fn rest_of_line(&mut self) -> &'a str {
         let end = self.rest.find(['{', '}']).unwrap_or(self.rest.len());
         let (name, rest) = self.rest.split_at(end);
@@ -59,14 +59,14 @@ impl<'a> Words<'a> {
         name.trim()
     }
 
-    /// The next word, which must exist.
+    /// Returns the next word, or an error that names `expected`.
     pub fn need(&mut self, expected: &str) -> Result<&'a str> {
         self.next().ok_or_else(|| {
             Error::malformed(format!("expected {expected}, found the end of the file"), self.place())
         })
     }
 
-    /// The next word, which must be this one, case-insensitive.
+    /// Reads the next word, which must equal `expected`, ignoring case.
     pub fn expect(&mut self, expected: &str) -> Result<()> {
         let word = self.need(&format!("`{expected}`"))?;
         if word.eq_ignore_ascii_case(expected) {
@@ -75,14 +75,14 @@ impl<'a> Words<'a> {
         Err(Error::malformed(format!("expected `{expected}`, found {}", quoted(word)), self.place()))
     }
 
-    /// The next word as a finite number. `what` names it in the error.
+    /// Reads the next word as a finite number. `what` names the number in the error.
     pub fn number(&mut self, what: &str) -> Result<f64> {
         let word = self.need(what)?;
         parse_number(word).map_err(|wrong| Error::malformed(format!("{what}: {wrong}"), self.place()))
     }
 }
 
-/// A number that is finite as `f32`, or an error text.
+/// Parses a number that is finite as `f32`; else returns an error text.
 pub(super) fn parse_number(word: &str) -> Result<f64, String> {
     let number: f64 = word.parse().map_err(|_| format!("{} is not a number", quoted(word)))?;
     if (number as f32).is_finite() { Ok(number) } else { Err(format!("{} is not finite", quoted(word))) }

@@ -1,4 +1,4 @@
-//! Rig and clip to BVH text.
+//! Converts a rig and a clip to BVH text.
 
 use super::channel::BvhChannel;
 use super::motion::{along_positions, is_added};
@@ -10,14 +10,14 @@ use sinew_anim::{
 use sinew_math::{Affine, EulerOrder, Rotation, Vec3, limits::wrap};
 use std::fmt::Write as _;
 
-/// Ends of chains that are written with an End Site.
+/// Ends of chains that get an End Site.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BvhEnds {
-    /// Unnamed joints that end a chain and do not move become End Sites; nothing is added.
+    /// Unnamed joints that end a chain and do not move become End Sites; no others are added.
     #[default]
     AsInRig,
-    /// In addition, each named joint that ends a chain gets an End Site, half its own bone farther on: without it
-    /// Blender and others give the joint no length.
+    /// Also, each named joint that ends a chain gets an End Site, at half the length of its own bone. Without End
+    /// Sites, Blender and other programs give these joints no length.
     EveryChain,
 }
 
@@ -33,7 +33,7 @@ pub struct BvhWriteOptions<'a> {
     /// Channels per joint, as [`BvhDocument::channels`](super::BvhDocument::channels); `None`: positions where the clip
     /// moves a joint, and rotations in `rotation_order`.
     pub channels: Option<&'a [Vec<BvhChannel>]>,
-    /// Default: as in the rig.
+    /// Ends of chains. Default: as in the rig.
     pub ends: BvhEnds,
 }
 
@@ -54,7 +54,7 @@ pub struct BvhText {
     pub notes: Vec<String>,
 }
 
-/// Deepest indentation: keeps the text of a very long chain from growing with its square.
+/// Deepest indentation: keeps the text size of a very long chain linear.
 const MOST_TABS: usize = 40;
 
 /// Writes the motion of a rig whose lengths are metres. The file's joints have the axes of the rig's model space, so
@@ -64,8 +64,8 @@ const MOST_TABS: usize = 40;
 /// the format.
 ///
 /// # Errors
-/// A rig without joints, a frame time or unit that is not above 0, an order that names an axis twice, channels that
-/// are not as many as the joints, more frames than [`Take::MOST_FRAMES`].
+/// If the rig has no joints, the frame time or unit is not above 0, the order has an axis twice, the numbers of
+/// channels and joints differ, or there are more frames than [`Take::MOST_FRAMES`].
 ///
 /// # Panics
 /// As [`sinew_anim::sample()`].
@@ -109,17 +109,17 @@ fn check(rig: &Rig, options: &BvhWriteOptions<'_>) -> Result<()> {
 
 /// Data needed to write a joint.
 struct Line {
-    /// Metres, model axes, from the parent.
+    /// Offset from the parent, metres, model axes.
     offset: Vec3,
-    /// Rest rotation of the parent and of the joint itself, model space.
+    /// Rest rotations of the parent and of the joint itself, model space.
     turned: [Rotation; 2],
-    /// Rest map of the parent's directions to model space.
+    /// Map from the parent's directions at rest to model space.
     parent: Affine,
     channels: Vec<BvhChannel>,
     is_end: bool,
-    /// True if positions count from the offset.
+    /// True if positions are displacements from the offset.
     added: bool,
-    /// Angles of the frame before, degrees by axis.
+    /// Angles of the previous frame, degrees, by axis.
     angles: [f64; 3],
 }
 
@@ -171,7 +171,8 @@ impl<'a> Writer<'a> {
         Self { rig, options, lines, children, notes }
     }
 
-    /// Joints depth first, as the format nests them, each with an opening and a closing event and its depth.
+    /// Returns the joints depth first, as the format nests them, each with an opening and a closing event and its
+    /// depth.
     fn walk(&self) -> Vec<(Brace, JointIdx, usize)> {
         let mut stack: Vec<(Brace, JointIdx, usize)> = Vec::new();
         let roots = (0..self.rig.joints.len()).filter(|&i| self.rig.joints[i].parent.is_none());
@@ -212,7 +213,7 @@ impl<'a> Writer<'a> {
         text
     }
 
-    /// An offset in units of the file.
+    /// Writes an offset in units of the file.
     fn numbers(&self, offset: Vec3) -> String {
         (offset / self.options.metres_per_unit).to_array().map(|x| format!("{x:.6}")).join(" ")
     }
@@ -239,7 +240,7 @@ impl<'a> Writer<'a> {
 }
 
 impl Line {
-    /// Numbers of a frame.
+    /// Returns the numbers of a frame.
     fn values(&mut self, local: LocalTransform, is_first: bool, metres_per_unit: f32) -> Vec<f64> {
         let [parent, own] = self.turned;
         let shift = self.parent.vector(local.translation);
@@ -256,7 +257,7 @@ impl Line {
         self.channels.iter().map(value).collect()
     }
 
-    /// Converts a rotation to angles, choosing the solution nearest to the previous one, without jumps by whole turns.
+    /// Converts a rotation to angles: chooses the solution nearest to the previous one, without jumps by whole turns.
     fn turn(&mut self, rotation: Rotation) {
         let axes: Vec<usize> = self.channels.iter().filter(|c| c.is_rotation()).map(|c| c.axis()).collect();
         let Some(order) = EulerOrder::ALL.into_iter().find(|order| order.indices()[..] == axes[..]) else {
@@ -278,7 +279,7 @@ impl Line {
     }
 }
 
-/// Channels that a joint is written with: the requested ones, completed to three rotations if it has any.
+/// Returns the channels with which a joint is written: the requested ones, completed to three rotations if it has any.
 fn channels_of(rig: &Rig, clip: &Clip, options: &BvhWriteOptions<'_>, joint: JointIdx) -> Vec<BvhChannel> {
     let in_order = options.rotation_order.indices().map(BvhChannel::rotation);
     let Some(asked) = options.channels else {
@@ -297,7 +298,7 @@ fn channels_of(rig: &Rig, clip: &Clip, options: &BvhWriteOptions<'_>, joint: Joi
     channels
 }
 
-/// A name that is one word.
+/// Returns a name that is one word.
 fn word(name: &str, joint: JointIdx) -> String {
     if name.is_empty() {
         return format!("joint_{joint}");

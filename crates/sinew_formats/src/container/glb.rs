@@ -10,16 +10,16 @@ const BIN: u32 = 0x004E_4942;
 pub(crate) struct Glb<'a> {
     pub(crate) json: &'a [u8],
     pub(crate) bin: Option<&'a [u8]>,
-    /// Further chunks of other types, with their headers: preserved on writing.
+    /// Further chunks of other types, with their headers; they are preserved on writing.
     pub(crate) other_chunks: &'a [u8],
 }
 
-/// True if the bytes start like a GLB.
+/// True if the bytes start with the magic bytes of a GLB.
 pub(crate) fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
-/// Splits a GLB into its parts. Checks every length against the available bytes; copies nothing.
+/// Splits a GLB into its parts. Checks every length against the available bytes; copies no bytes.
 pub(crate) fn parse(bytes: &[u8]) -> Result<Glb<'_>> {
     let header = |offset| u32_at(bytes, offset).ok_or_else(|| truncated("GLB header", bytes.len()));
     match header(4)? {
@@ -62,7 +62,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Glb<'_>> {
     Ok(Glb { json, bin, other_chunks })
 }
 
-/// Type, bytes and end of the chunk at `offset`.
+/// Returns type, bytes and end of the chunk at `offset`.
 fn chunk(body: &[u8], offset: usize) -> Result<(u32, &[u8], usize)> {
     let missing = || truncated("chunk header", offset);
     let length = u32_at(body, offset).ok_or_else(missing)? as usize;
@@ -86,7 +86,7 @@ fn u32_at(bytes: &[u8], offset: usize) -> Option<u32> {
 /// Assembles a GLB: JSON padded with spaces, binary with zeros.
 ///
 /// # Errors
-/// If the file exceeds its 32-bit lengths.
+/// If the file exceeds 4 GiB, the limit of its 32-bit lengths.
 pub(crate) fn write(json: &[u8], bin: &[u8], other_chunks: &[u8]) -> Result<Vec<u8>> {
     let padded = |length: usize| length.div_ceil(4) * 4;
     let bin_size = if bin.is_empty() { 0 } else { 8 + padded(bin.len()) };

@@ -1,4 +1,4 @@
-//! Reads JSON with a path for every error, and writes it in a form that a person can edit.
+//! Reads JSON with a path for every error, and writes JSON that people can edit.
 
 use crate::error::{Error, Result, quoted};
 use serde_json::Value;
@@ -12,8 +12,8 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Value> {
     })
 }
 
-/// A value inside a JSON document. An error finds its path by searching for its address, so the path costs nothing
-/// until then.
+/// A value inside a JSON document. An error finds its path by searching the document for the value's address, so the
+/// path costs no time without an error.
 #[derive(Clone, Copy)]
 pub(crate) struct At<'a> {
     root: &'a Value,
@@ -46,18 +46,18 @@ impl<'a> At<'a> {
         Error::unsupported(what, self.path())
     }
 
-    /// The value of an optional key. A value that is no object is an error.
+    /// Returns the value of an optional key. Fails if `self` is no object.
     pub(crate) fn get(self, key: &str) -> Result<Option<At<'a>>> {
         let object = self.value.as_object().ok_or_else(|| self.malformed("must be an object"))?;
         Ok(object.get(key).map(|value| At { root: self.root, value }))
     }
 
-    /// The value of a required key.
+    /// Returns the value of a required key.
     pub(crate) fn need(self, key: &str) -> Result<At<'a>> {
         self.get(key)?.ok_or_else(|| self.malformed(format!("`{key}` is missing")))
     }
 
-    /// Refuses keys outside `known`: a typing error would otherwise become a silent default.
+    /// Rejects keys outside `known`; otherwise a misspelt key would silently give the default.
     pub(crate) fn only(self, known: &[&str]) -> Result<()> {
         let object = self.value.as_object().ok_or_else(|| self.malformed("must be an object"))?;
         match object.keys().find(|key| !known.contains(&key.as_str())) {
@@ -68,13 +68,13 @@ impl<'a> At<'a> {
         }
     }
 
-    /// Elements of an array.
+    /// Returns the elements of an array.
     pub(crate) fn items(self) -> Result<Vec<At<'a>>> {
         let array = self.value.as_array().ok_or_else(|| self.malformed("must be an array"))?;
         Ok(array.iter().map(|value| At { root: self.root, value }).collect())
     }
 
-    /// Elements of the array under an optional key; empty if the key is absent.
+    /// Returns the elements of the array under an optional key; empty if the key is absent.
     pub(crate) fn list(self, key: &str) -> Result<Vec<At<'a>>> {
         self.get(key)?.map_or_else(|| Ok(Vec::new()), Self::items)
     }
@@ -83,7 +83,7 @@ impl<'a> At<'a> {
         self.value.as_str().ok_or_else(|| self.malformed("must be a string"))
     }
 
-    /// The string under an optional key, `""` if it is absent or no string: for names, which nothing depends on.
+    /// Returns the string under the key `name`, or `""` if it is absent or no string; for names, which need no check.
     pub(crate) fn name(self) -> String {
         self.value.get("name").and_then(Value::as_str).unwrap_or_default().to_owned()
     }
@@ -92,7 +92,7 @@ impl<'a> At<'a> {
         self.value.as_bool().ok_or_else(|| self.malformed("must be true or false"))
     }
 
-    /// A whole number ≥ 0; `3.0` counts as 3.
+    /// Reads a whole number ≥ 0; `3.0` counts as 3.
     pub(crate) fn usize(self) -> Result<usize> {
         const EXACT: f64 = 9_007_199_254_740_992.0;
         let whole = self.value.as_u64().or_else(|| {
@@ -104,12 +104,12 @@ impl<'a> At<'a> {
             .ok_or_else(|| self.malformed("must be a whole number, 0 or more"))
     }
 
-    /// A whole number ≥ 0, up to 64 bits.
+    /// Reads a whole number ≥ 0, up to 64 bits.
     pub(crate) fn u64(self) -> Result<u64> {
         self.value.as_u64().ok_or_else(|| self.malformed("must be a whole number, 0 or more"))
     }
 
-    /// A whole number below `len`, the length of the list named `of`.
+    /// Reads a whole number below `len`, the length of the list named `of`.
     pub(crate) fn index(self, len: usize, of: &str) -> Result<usize> {
         let index = self.usize()?;
         if index >= len {
@@ -118,12 +118,12 @@ impl<'a> At<'a> {
         Ok(index)
     }
 
-    /// A number.
+    /// Reads a number.
     pub(crate) fn f64(self) -> Result<f64> {
         self.value.as_f64().ok_or_else(|| self.malformed("must be a number"))
     }
 
-    /// A number that is finite as `f32`.
+    /// Reads a number that is finite as `f32`.
     pub(crate) fn f32(self) -> Result<f32> {
         let number = self.f64()? as f32;
         if !number.is_finite() {
@@ -132,7 +132,7 @@ impl<'a> At<'a> {
         Ok(number)
     }
 
-    /// An array of exactly `N` finite numbers.
+    /// Reads an array of exactly `N` finite numbers.
     pub(crate) fn numbers<const N: usize>(self) -> Result<[f32; N]> {
         let items = self.items()?;
         if items.len() != N {
@@ -145,7 +145,7 @@ impl<'a> At<'a> {
         Ok(out)
     }
 
-    /// A finite number above 0.
+    /// Reads a finite number above 0.
     pub(crate) fn positive(self) -> Result<f32> {
         let number = self.f32()?;
         if number <= 0.0 {
@@ -154,7 +154,7 @@ impl<'a> At<'a> {
         Ok(number)
     }
 
-    /// A finite number, 0 or more.
+    /// Reads a finite number, 0 or more.
     pub(crate) fn not_negative(self) -> Result<f32> {
         let number = self.f32()?;
         if number < 0.0 {
@@ -163,14 +163,14 @@ impl<'a> At<'a> {
         Ok(number)
     }
 
-    /// The numbers under an optional key, or `default`.
+    /// Reads the numbers under an optional key, or returns `default`.
     pub(crate) fn numbers_or<const N: usize>(self, key: &str, default: [f32; N]) -> Result<[f32; N]> {
         self.get(key)?.map_or(Ok(default), Self::numbers)
     }
 }
 
-/// Appends the path from `from` to the value at the address of `target`; leaves `path` unchanged if it does not contain
-/// it.
+/// Appends the path from `from` to the value at the address of `target`, and returns true. If `from` does not contain
+/// the target, returns false and leaves `path` unchanged.
 fn find(from: &Value, target: &Value, path: &mut String) -> bool {
     if core::ptr::eq(from, target) {
         return true;
@@ -191,7 +191,7 @@ fn find(from: &Value, target: &Value, path: &mut String) -> bool {
                 if !path.is_empty() {
                     path.push('.');
                 }
-                // The file chooses its keys; a path is one line.
+                // Keys may contain any characters, but the path must be one line.
                 path.extend(key.chars().flat_map(char::escape_debug));
                 if find(value, target, path) {
                     return true;
@@ -204,21 +204,21 @@ fn find(from: &Value, target: &Value, path: &mut String) -> bool {
     false
 }
 
-/// The shortest decimal that reads back as the same `f32`.
+/// Converts a number to the shortest decimal that reads back as the same `f32`.
 ///
 /// # Panics
-/// If it is not finite: JSON has no such number.
+/// If `x` is not finite: JSON has no such number.
 pub(crate) fn number(x: f32) -> Value {
     assert!(x.is_finite(), "a file can only hold finite numbers, not {x}");
     Value::from(x.to_string().parse::<f64>().unwrap_or_default())
 }
 
-/// An array of numbers, each as in [`number`].
+/// Converts numbers to an array, each by [`number`].
 pub(crate) fn numbers(xs: &[f32]) -> Value {
     xs.iter().map(|&x| number(x)).collect()
 }
 
-/// Text for people: short values stay on one line.
+/// Converts to text for people: short values stay on one line.
 pub(crate) fn to_text(value: &Value) -> String {
     let mut out = String::new();
     write_value(value, 0, &mut out);
@@ -253,7 +253,7 @@ fn write_value(value: &Value, indent: usize, out: &mut String) {
     out.push(close);
 }
 
-/// Compact JSON with spaces after commas and colons. Whole numbers drop their `.0`.
+/// Converts to compact JSON with spaces after commas and colons. Whole numbers lose their `.0`.
 fn one_line(value: &Value) -> String {
     let join = |parts: Vec<String>| parts.join(", ");
     match value {
@@ -283,7 +283,7 @@ pub(crate) fn check_header(root: At<'_>, kind: &str, version: usize) -> Result<(
     check_version(root, version)
 }
 
-/// Checks the `version` of something of ours.
+/// Checks the `version` of an object that Sinew defines.
 pub(crate) fn check_version(root: At<'_>, version: usize) -> Result<()> {
     let version_at = root.need("version")?;
     match version_at.usize()? {

@@ -1,4 +1,4 @@
-//! Containers that formats share: GLB chunks, JSON as an ordered value, URIs.
+//! Containers shared by several formats: GLB chunks, JSON as an ordered value, URIs.
 
 pub(crate) mod glb;
 pub(crate) mod json;

@@ -1,16 +1,16 @@
-//! URIs inside a glTF file: `data:` URIs, and relative ones inside the file's folder.
+//! URIs inside a glTF file: `data:` URIs, and relative URIs inside the file's folder.
 
 use crate::error::quoted;
 
 /// Target of a URI in a file.
 pub(crate) enum Uri {
-    /// The bytes themselves.
+    /// The decoded bytes of a data URI.
     Data(Vec<u8>),
     /// A path relative to the file's folder, decoded and checked.
     Relative(String),
 }
 
-/// Reads a URI as glTF 2.0 §2.8 allows it. Errors have no place; the caller adds it.
+/// Parses a URI as glTF 2.0 §2.8 allows it. Errors have no place; the caller adds it.
 pub(crate) fn parse(uri: &str) -> Result<Uri, String> {
     if let Some(rest) = uri.strip_prefix("data:") {
         return data(rest).map(Uri::Data);
@@ -18,16 +18,17 @@ pub(crate) fn parse(uri: &str) -> Result<Uri, String> {
     relative_path(uri).map(Uri::Relative)
 }
 
-/// The bytes of a data URI (RFC 2397) after its `data:`.
+/// Decodes the bytes of a data URI (RFC 2397) after `data:`.
 fn data(rest: &str) -> Result<Vec<u8>, String> {
     let (head, body) = rest.split_once(',').ok_or("data URI has no comma")?;
     if head.ends_with(";base64") { base64(body) } else { percent_decode(body) }
 }
 
-/// A relative path, percent-decoded, that stays inside its base folder.
+/// Decodes a relative path that stays inside its base folder.
 ///
 /// # Errors
-/// One line for an absolute path, a scheme (`http:`, `C:`), a `..`, a backslash, a NUL or bad UTF-8.
+/// Returns a one-line error for an absolute path, a scheme (`http:`, `C:`), a `..`, a backslash, a NUL or bad
+/// UTF-8.
 pub(crate) fn relative_path(uri: &str) -> Result<String, String> {
     let path = String::from_utf8(percent_decode(uri)?).map_err(|_| "URI is not UTF-8")?;
     let head = path.split('/').next().unwrap_or_default();
@@ -43,7 +44,7 @@ pub(crate) fn relative_path(uri: &str) -> Result<String, String> {
     Ok(path)
 }
 
-/// Bytes with `%20` and the like decoded (RFC 3986 §2.1).
+/// Decodes `%20` and the like to bytes (RFC 3986 §2.1).
 fn percent_decode(text: &str) -> Result<Vec<u8>, String> {
     let mut out = Vec::with_capacity(text.len());
     let mut bytes = text.bytes();
@@ -61,7 +62,7 @@ fn percent_decode(text: &str) -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-/// Base64 (RFC 4648 §4), padding optional.
+/// Decodes base64 (RFC 4648 §4), with or without padding.
 fn base64(text: &str) -> Result<Vec<u8>, String> {
     let text = text.trim_end_matches('=').as_bytes();
     let mut out = Vec::with_capacity(text.len() / 4 * 3 + 2);
@@ -94,7 +95,7 @@ fn sextet(byte: u8) -> Option<u8> {
     }
 }
 
-/// `data:` URI with base64 (RFC 2397, RFC 4648 §4).
+/// Encodes bytes as a `data:` URI with base64 (RFC 2397, RFC 4648 §4).
 pub(crate) fn encode_data(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::from("data:application/octet-stream;base64,");

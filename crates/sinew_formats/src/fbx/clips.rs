@@ -1,4 +1,4 @@
-//! Animation stacks: curves to keys.
+//! Converts curves of animation stacks to keys.
 
 use super::{explain, index, limited, not_finite};
 use crate::error::Result;
@@ -9,7 +9,7 @@ use ufbx::{BakeOpts, BakedNode, Scene};
 /// Frame rate of a file that does not state one.
 const RATE: f64 = 30.0;
 
-/// One clip for each stack that moves something, and a note for each other stack.
+/// Returns one clip for each stack that moves a joint, and a note for each other stack.
 pub(super) fn read_all(scene: &Scene, size: usize) -> Result<(Vec<Clip>, Vec<String>)> {
     let (mut clips, mut notes) = (Vec::new(), Vec::new());
     let rate = scene.settings.frames_per_second;
@@ -42,7 +42,8 @@ pub(super) fn read_all(scene: &Scene, size: usize) -> Result<(Vec<Clip>, Vec<Str
     Ok((clips, notes))
 }
 
-/// Channels of a node. A constant property has one key, even if it equals the rest pose, because clips are blended.
+/// Returns the channels of a node. A constant property has one key, even if it equals the rest pose, because clips
+/// are blended.
 fn read_node(node: &BakedNode, joint: JointIdx, clip: &str) -> Result<Vec<Channel>> {
     let vector =
         |key: &ufbx::BakedVec3| (key.time, [key.value.x, key.value.y, key.value.z].map(|x| x as f32));
@@ -68,7 +69,7 @@ fn read_node(node: &BakedNode, joint: JointIdx, clip: &str) -> Result<Vec<Channe
     Ok(channels)
 }
 
-/// Keys as a channel; of keys with equal `f32` times, the last stays.
+/// Converts keys to a channel; of keys with equal `f32` times, the last one is kept.
 fn channel<const N: usize>(
     joint: JointIdx,
     property: Property,
@@ -94,7 +95,7 @@ fn channel<const N: usize>(
     })
 }
 
-/// Drops the keys before the start of the take, which a file may hold; the value at the start stays.
+/// Removes keys before time 0, which a file may have; the value at 0 is interpolated.
 fn from_start<const N: usize>(times: &mut Vec<f32>, values: &mut Vec<f32>) {
     let before = times.iter().take_while(|time| **time < 0.0).count();
     let Some(last) = before.checked_sub(1) else { return };

@@ -21,7 +21,7 @@ impl<'a, 'r> Materials<'a, 'r> {
         Self { resolve, wanted, known: BTreeMap::new(), textures: Vec::new(), notes: Vec::new() }
     }
 
-    /// Linear RGBA of a part, white without a material, and its picture.
+    /// Returns the linear RGBA of a part, white without a material, and the index of its picture.
     pub fn look(&mut self, node: &Node, mesh: &ufbx::Mesh, part: &MeshPart) -> ([f32; 4], Option<usize>) {
         let Some(map) = of_part(node, mesh, part).map(|material| &material.pbr.base_color) else {
             return ([1.0; 4], None);
@@ -39,7 +39,7 @@ impl<'a, 'r> Materials<'a, 'r> {
     }
 
     fn picture(&mut self, texture: &ufbx::Texture) -> Option<usize> {
-        // Among several layers, take the first that is a picture.
+        // Of several layers, uses the first that is a picture.
         let texture = texture.file_textures.first().map_or(texture, |file| &**file);
         let id = texture.element.typed_id;
         if self.wanted == Textures::Skip {
@@ -80,8 +80,8 @@ impl<'a, 'r> Materials<'a, 'r> {
     }
 }
 
-/// Paths where a picture is looked for: its path when the file was written, and the file's own folder. Skips absolute
-/// paths of other machines and paths outside the folder.
+/// Returns the paths at which a picture is searched: relative to the file as when it was written, and in the file's
+/// own folder. Absolute paths of other machines and paths outside the folder are skipped.
 fn beside(relative: &str, any: &str) -> Vec<String> {
     let relative = relative.replace('\\', "/");
     let is_beside =
@@ -96,13 +96,13 @@ fn beside(relative: &str, any: &str) -> Vec<String> {
     paths
 }
 
-/// Material of a part.
+/// Returns the material of a part.
 fn of_part<'a>(node: &'a Node, mesh: &'a ufbx::Mesh, part: &MeshPart) -> Option<&'a Material> {
     let at = part.index as usize;
     node.materials.get(at).or_else(|| mesh.materials.get(at)).map(|material| &**material)
 }
 
-/// Name of the material of a part, or `""`.
+/// Returns the name of a part's material, or `""`.
 pub fn name(node: &Node, mesh: &ufbx::Mesh, part: &MeshPart) -> String {
     of_part(node, mesh, part).map_or(String::new(), |material| material.element.name.to_string())
 }

@@ -10,7 +10,7 @@ use sinew_math::{Vec2, Vec3, normalize_or};
 use std::collections::BTreeMap;
 use ufbx::{MeshPart, Scene, SkinDeformer};
 
-/// One mesh per node that places it. Returns the vertices of skinned meshes without weights.
+/// Reads one mesh for each node that places one. Returns the vertices of skinned meshes without weights.
 pub(super) fn read_all(
     scene: &Scene,
     rig: &mut Rig,
@@ -43,16 +43,16 @@ pub(super) fn read_all(
     Ok(without)
 }
 
-/// A skin of the rig, with its slot for each cluster of the file.
+/// A skin of the rig, with the slot of each cluster of the file.
 struct Slots<'a> {
     deformer: &'a SkinDeformer,
     skin: usize,
-    /// `None` for a cluster that no joint carries.
+    /// Slot of each cluster; `None` if no joint carries the cluster.
     of_cluster: Vec<Option<u16>>,
 }
 
 impl<'a> Slots<'a> {
-    /// Adds the skin to the rig; `None` if it has no joint.
+    /// Adds the skin to the rig; `None` if the skin has no joint.
     fn of(deformer: &'a SkinDeformer, mesh: &str, rig: &mut Rig) -> Result<Option<Self>> {
         let mut skin = Skin { name: mesh.to_owned(), joints: Vec::new(), inverse_bind: Vec::new() };
         let mut of_cluster = Vec::new();
@@ -73,7 +73,7 @@ impl<'a> Slots<'a> {
         Ok(Some(Self { deformer, skin: rig.skins.len() - 1, of_cluster }))
     }
 
-    /// Slots and weights of a vertex of the file; `None` if it has no weight.
+    /// Returns slots and weights of a vertex of the file; `None` if it has no weight.
     fn of_vertex(&self, vertex: usize) -> Option<([u16; 4], [f32; 4])> {
         let range = self.deformer.vertices.get(vertex).map_or(0..0, |vertex| {
             let begin = vertex.weight_begin as usize;
@@ -89,7 +89,7 @@ impl<'a> Slots<'a> {
     }
 }
 
-/// The corners of a mesh's faces, merged into vertices: equal corners become one vertex.
+/// Corners of a mesh's faces; equal corners are merged into one vertex.
 struct Corners<'a> {
     mesh: &'a ufbx::Mesh,
     skin: Option<&'a Slots<'a>>,
@@ -105,7 +105,7 @@ impl<'a> Corners<'a> {
         Self { mesh, skin, name, known: BTreeMap::new(), out: Primitive::default(), without: Vec::new() }
     }
 
-    /// The primitive, and its vertices without weights.
+    /// Returns the primitive, and its vertices without weights.
     fn read(mut self, part: &MeshPart) -> Result<(Primitive, Vec<usize>)> {
         let mut corners = vec![0_u32; self.mesh.max_face_triangles * 3];
         for &face in &part.face_indices {
@@ -119,7 +119,7 @@ impl<'a> Corners<'a> {
         Ok((self.out, self.without))
     }
 
-    /// The vertex of a corner.
+    /// Returns the vertex of a corner; adds it if it is new.
     fn vertex(&mut self, corner: usize) -> Result<u32> {
         let mesh = self.mesh;
         let place = || format!("mesh {:?}, corner {corner}", self.name);

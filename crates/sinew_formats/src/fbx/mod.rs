@@ -1,9 +1,9 @@
 //! FBX, text and binary, through the C library ufbx (feature `fbx`).
 //!
-//! The format's variants are normalised. Axes become +Y up and lengths metres in joints, meshes and keys, so that no
-//! root carries a scale. Pivots, rotation orders and non-inherited scale become plain translation, rotation and scale.
+//! The variants of the format are normalised. Axes become +Y up and lengths metres in joints, meshes and keys, so that
+//! no root has a scale. Pivots, rotation orders and non-inherited scale become plain translation, rotation and scale.
 //! Curves that are not straight are sampled at the file's frame rate, then reduced to the necessary keys. Materials
-//! keep the base colour and its picture. Morph targets, constraints, cameras and lights are left out.
+//! keep the base colour and its picture. Morph targets, constraints, cameras and lights are omitted.
 //!
 //! ```
 //! # let bytes: &[u8] = b"neither text nor binary";
@@ -31,17 +31,16 @@ const DEEPEST: u32 = 512;
 
 /// Reads an FBX file: every node as a joint, meshes with their skins, one clip for each animation stack.
 ///
-/// Joints rest where the file's nodes are; skins use their bind pose. Memory stays within 64 times the file size plus
-/// 64 MiB, because arrays in the file may be compressed.
+/// The rest pose of the joints is that of the file's nodes; skins use their bind pose. Memory stays within 64 times
+/// the file size plus 64 MiB, because arrays in the file may be compressed.
 ///
 /// # Errors
-/// Bytes that are no FBX, are truncated, have a version before 3.0 or need more than that memory; numbers that are not
-/// finite.
+/// If the bytes are no FBX, are truncated, have a version before 3.0 or need more memory; if numbers are not finite.
 pub fn read_fbx(bytes: &[u8]) -> Result<MotionFile> {
     read_fbx_with(bytes, ReadOptions::default(), &mut no_files)
 }
 
-/// [`read_fbx`] with the pictures next to the file, which `resolve` returns. A missing or broken picture is left out
+/// [`read_fbx`] with the pictures next to the file, which `resolve` returns. A missing or broken picture is omitted
 /// with a note.
 ///
 /// # Errors
@@ -94,13 +93,13 @@ fn load_options(size: usize) -> LoadOpts<'static> {
     }
 }
 
-/// Memory limit for a file of this size.
+/// Returns the memory limit for a file of this size.
 fn limited(size: usize) -> AllocatorOpts {
     let memory_limit = size.saturating_mul(64).saturating_add(64 << 20);
     AllocatorOpts { memory_limit, ..AllocatorOpts::default() }
 }
 
-/// The library reports only a position: the byte offset, or its current task.
+/// Converts an error of ufbx, which reports only a position: the byte offset, or its current task.
 fn explain(error: &ufbx::Error, size: usize) -> Error {
     use ufbx::ErrorType as Kind;
     let detail = error.info().trim();
@@ -121,7 +120,7 @@ fn explain(error: &ufbx::Error, size: usize) -> Error {
     }
 }
 
-/// Joint of a node: nodes are in order of depth, the root of the scene first, which is no joint.
+/// Returns the joint of a node. Nodes are in order of depth, and the first, the root of the scene, is no joint.
 fn index(node: &Node) -> Option<JointIdx> {
     (node.element.typed_id as usize).checked_sub(1)
 }
@@ -168,7 +167,7 @@ fn not_finite(place: String) -> Error {
     Error::malformed("a number is not finite", place)
 }
 
-/// Parts of the scene that do not become part of a rig, one sentence each.
+/// Lists the parts of the scene that do not become part of a rig, one sentence each.
 fn left_out(scene: &Scene, pictures: Textures) -> Vec<String> {
     let counted = [
         (if pictures == Textures::Skip { scene.textures.len() } else { 0 }, "textures"),

@@ -35,7 +35,8 @@ impl Component {
         }
     }
 
-    /// One component as a number; `b` has at least [`size`](Self::size) bytes. Normalised: §3.6.2.2.
+    /// Reads one component as a number; `b` has at least [`size`](Self::size) bytes. Normalised numbers:
+    /// §3.6.2.2.
     fn number(self, b: &[u8], normalized: Normalized) -> f32 {
         let (value, full) = match self {
             Self::I8 => (f32::from(b[0] as i8), 127.0),
@@ -51,7 +52,7 @@ impl Component {
         }
     }
 
-    /// One component of an unsigned type as an integer.
+    /// Reads one component of an unsigned type as an integer.
     fn integer(self, b: &[u8]) -> u32 {
         match self {
             Self::U8 | Self::I8 => u32::from(b[0]),
@@ -119,7 +120,7 @@ impl Accessor<'_> {
     }
 }
 
-/// Puts 0 for numbers that are not finite; the elements that had any.
+/// Replaces numbers that are not finite by 0; returns the indices of the elements with such numbers.
 pub(super) fn fill_holes<const N: usize>(elements: &mut [[f32; N]]) -> Vec<usize> {
     let is_hole = |element: &[f32; N]| element.iter().any(|x| !x.is_finite());
     let holes: Vec<usize> = (0..elements.len()).filter(|&i| is_hole(&elements[i])).collect();
@@ -130,7 +131,7 @@ pub(super) fn fill_holes<const N: usize>(elements: &mut [[f32; N]]) -> Vec<usize
 }
 
 impl<'a> Source<'a> {
-    /// Count of numbers in an element of the accessor at index `at`: 1 for SCALAR to 16 for MAT4.
+    /// Returns the count of numbers in an element of the accessor at index `at`: 1 for SCALAR to 16 for MAT4.
     pub(super) fn width(&self, at: At<'a>) -> Result<usize> {
         let kind = self.accessors[at.index(self.accessors.len(), "accessors")?].need("type")?;
         Ok(match kind.str()? {
@@ -144,7 +145,7 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// Elements of `N` finite numbers of the accessor at index `at`; normalised integers become −1..=1.
+    /// Reads elements of `N` finite numbers of the accessor at index `at`; normalised integers become −1..=1.
     pub(super) fn floats<const N: usize>(&self, at: At<'a>) -> Result<Vec<[f32; N]>> {
         let (out, holes) = self.floats_and_holes(at)?;
         match holes.first() {
@@ -153,7 +154,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Reason why an element of the accessor at index `at` is refused.
+    /// Returns the error for an element of the accessor at index `at` that is not finite.
     pub(super) fn not_finite(&self, at: At<'a>, element: usize) -> Error {
         let accessor = at.index(self.accessors.len(), "accessors").map_or(at, |index| self.accessors[index]);
         accessor.malformed(format!("element {element} holds a number that is not finite"))
@@ -163,7 +164,7 @@ impl<'a> Source<'a> {
     pub(super) fn floats_and_holes<const N: usize>(&self, at: At<'a>) -> Result<(Vec<[f32; N]>, Vec<usize>)> {
         let accessor = self.accessor::<N>(at)?;
         let (component, normalized) = (accessor.component, accessor.normalized);
-        // The common case separately, so that its loop is a plain copy.
+        // Handles the common case separately, so that its loop is a plain copy.
         let mut out: Vec<[f32; N]> = match component {
             Component::F32 => accessor.decode(|b| Component::F32.number(b, Normalized::No)),
             _ => accessor.decode(|b| component.number(b, normalized)),
@@ -172,7 +173,7 @@ impl<'a> Source<'a> {
         Ok((out, holes))
     }
 
-    /// Divisor of the integers of the accessor at index `at`; 1 if they are not normalised.
+    /// Returns the divisor of the integers of the accessor at index `at`; 1 if they are not normalised.
     pub(super) fn full_scale(&self, at: At<'a>) -> Result<f32> {
         let accessor = self.accessors[at.index(self.accessors.len(), "accessors")?];
         let normalized = accessor.get("normalized")?.map_or(Ok(false), At::bool)?;
@@ -186,7 +187,7 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// Elements of `N` unsigned integers of the accessor at index `at`.
+    /// Reads elements of `N` unsigned integers of the accessor at index `at`.
     pub(super) fn integers<const N: usize>(&self, at: At<'a>) -> Result<Vec<[u32; N]>> {
         let accessor = self.accessor::<N>(at)?;
         let component = accessor.component;
@@ -207,7 +208,7 @@ impl<'a> Source<'a> {
             false => Normalized::No,
         };
         let count = accessor.need("count")?.usize()?;
-        // Decoded components are 4 bytes, whatever their size in the file.
+        // Decoded components have 4 bytes, for every size in the file.
         self.spend(accessor, count, N * 4)?;
         let base = match accessor.get("bufferView")? {
             Some(_) => Some(self.strided(accessor, count, N * component.size())?),
@@ -220,7 +221,7 @@ impl<'a> Source<'a> {
         Ok(Accessor { at: accessor, component, normalized, count, base, sparse })
     }
 
-    /// `count` elements of `size` bytes at the `bufferView` and `byteOffset` of `holder`.
+    /// Returns `count` elements of `size` bytes at the `bufferView` and `byteOffset` of `holder`.
     fn strided(&self, holder: At<'a>, count: usize, size: usize) -> Result<Strided<'a>> {
         let (bytes, view) = self.view(holder.need("bufferView")?)?;
         let offset = holder.get("byteOffset")?.map_or(Ok(0), At::usize)?;

@@ -8,7 +8,7 @@ use sinew_anim::{Channel, Clip, ClipEvent, Interpolation, JointIdx, Property};
 
 type Clips = (Vec<Clip>, Vec<Vec<ClipEvent>>);
 
-/// All animations with their events.
+/// Reads all animations with their events.
 pub(super) fn read_all(
     source: &Source<'_>,
     joint_of_node: &[Option<JointIdx>],
@@ -99,7 +99,7 @@ fn read_channel<'a>(
     Ok(Channel { joint, property, interpolation, times, values })
 }
 
-/// Drops keys at repeated times: the last one at a time stays, so that times strictly increase.
+/// Removes keys at repeated times, so that times strictly increase: the last key at each time is kept.
 fn drop_repeated_times(times: Vec<f32>, values: Vec<f32>, per_key: usize) -> (Vec<f32>, Vec<f32>) {
     if times.windows(2).all(|w| w[0] < w[1]) {
         return (times, values);

@@ -1,4 +1,5 @@
-//! Appends clips to the user's own file: the original JSON is edited as a value, and the original bytes stay a prefix.
+//! Appends clips to the user's own file: the original JSON is edited as a value, and the original bytes remain a
+//! prefix.
 
 use super::Document;
 use super::source::Buffer;
@@ -21,7 +22,7 @@ pub struct NewClip<'a> {
     pub extras: Option<Value>,
 }
 
-/// The user's own file with one more animation, as a GLB: [`append_clips`] with one.
+/// Returns the user's own file with one more animation, as a GLB: [`append_clips`] with one clip.
 ///
 /// # Errors
 /// As [`append_clips`].
@@ -32,34 +33,33 @@ pub fn append_clip(document: &Document, clip: &Clip, name: &str, extras: Option<
     append_clips(document, &[NewClip { clip, name, extras }])
 }
 
-/// The user's own file with more animations, as a GLB.
+/// Returns the user's own file with more animations, as a GLB.
 ///
 /// The existing JSON is preserved in its order, including unknown extensions, and the old binary chunk is a prefix of
 /// the new one. Each clip adds one buffer view, the accessors of its keys and the animation, each at the end of its
 /// list. Channels target the nodes that the joints came from.
 ///
 /// A rig with sheets of cloth ([`sinew_anim::Rig::sheets`]) adds a node per particle, and the primitives that became
-/// cloth are skinned to these.
+/// cloth are skinned to these nodes.
 ///
 /// Only these old entries change:
 /// - `buffers[0].byteLength` grows.
-/// - Primitives whose vertices got other weights on reading, because no bone moved them, reference accessors with
-///   these.
+/// - Primitives whose vertices got other weights on reading, because no bone moved them, refer to new accessors with
+///   these weights.
 /// - A `.gltf` becomes a single self-contained file: `buffers[0]` loses its `uri` and becomes the binary chunk,
 ///   external pictures are embedded, further external buffers become data URIs. A picture that was missing on reading
 ///   keeps its `uri`.
-/// - A node that has a `matrix` and is animated gets `translation`, `rotation` and `scale` instead, as glTF 2.0 §3.5.3
-///   demands.
+/// - An animated node with a `matrix` gets `translation`, `rotation` and `scale` instead, as glTF 2.0 §3.5.3 requires.
 ///
-/// Channels that only repeat a node's rest pose are left out where the format discourages them: if the node has a
-/// `matrix` (which then can stay), or carries a skinned mesh, whose own transform is ignored.
+/// Channels that only repeat a node's rest pose are omitted where the format discourages them: if the node has a
+/// `matrix` (which can then stay), or carries a skinned mesh, whose own transform is ignored.
 ///
 /// # Errors
 /// If there is nothing to write (no channel of a clip remains), the first buffer is a placeholder without bytes, or the
 /// result exceeds 4 GiB.
 ///
 /// # Panics
-/// If a channel names a joint that the document's rig does not have, or violates the rules of [`Channel`].
+/// If a channel's joint is not in the document's rig, or a channel violates the rules of [`Channel`].
 pub fn append_clips(document: &Document, clips: &[NewClip<'_>]) -> Result<Vec<u8>> {
     let mut editor = Editor::open(document)?;
     editor.embed_external(document)?;
@@ -75,7 +75,7 @@ fn better_left_alone(node: &Value) -> bool {
     node.get("matrix").is_some() || node.get("skin").is_some()
 }
 
-/// Nodes of joints that some channel moves from their rest pose, with that pose.
+/// Returns the nodes of joints that some channel moves from their rest pose, with that pose.
 fn moved_nodes(channels: &[&Channel], joints: &[Joint]) -> BTreeMap<usize, LocalTransform> {
     let moving = channels.iter().filter(|c| !repeats_rest(c, &joints[c.joint].rest));
     moving.map(|c| (joints[c.joint].source, joints[c.joint].rest)).collect()
@@ -93,14 +93,14 @@ fn repeats_rest(channel: &Channel, rest: &LocalTransform) -> bool {
         && channel.values.chunks(value.len()).all(|key| key.iter().zip(value).all(near))
 }
 
-/// A file in the making.
+/// Editor of a file that is being written.
 pub(super) struct Editor {
     root: Map<String, Value>,
     bin: Vec<u8>,
 }
 
 impl Editor {
-    /// Starts from the document, with its first buffer as the binary chunk.
+    /// Opens the document, with its first buffer as the binary chunk.
     pub(super) fn open(document: &Document) -> Result<Self> {
         let Value::Object(root) = document.json.clone() else {
             return Err(Error::malformed("must be an object", "top level"));
@@ -123,7 +123,7 @@ impl Editor {
 
     fn append(&mut self, document: &Document, NewClip { clip, name, extras }: &NewClip<'_>) -> Result<()> {
         let joints = &document.rig.joints;
-        // Joints added to the rig only for its motion have no node.
+        // Joints that were added to the rig only for its motion have no node.
         let (nodes, is_of_sheet) = (document.node_count(), document.rig.is_of_sheet());
         let is_node = |channel: &&Channel| joints[channel.joint].source < nodes || is_of_sheet[channel.joint];
         let own: Vec<&Channel> = clip.channels.iter().filter(is_node).collect();
@@ -145,7 +145,7 @@ impl Editor {
         Ok(())
     }
 
-    /// Embeds external files.
+    /// Embeds external buffers and pictures.
     pub(super) fn embed_external(&mut self, document: &Document) -> Result<()> {
         for (i, buffer) in document.buffers.iter().enumerate().skip(1) {
             if let Buffer::External(bytes) = buffer {
@@ -153,7 +153,7 @@ impl Editor {
             }
         }
         for (&i, bytes) in &document.external_images {
-            // A picture in a buffer view must state its type; one of another type stays external.
+            // The type of a picture in a buffer view must be stated; pictures of other types stay external.
             let mime = match bytes.as_slice() {
                 [0x89, b'P', b'N', b'G', ..] => "image/png",
                 [0xFF, 0xD8, 0xFF, ..] => "image/jpeg",
@@ -168,7 +168,7 @@ impl Editor {
         Ok(())
     }
 
-    /// Replaces the matrix of animated nodes by translation, rotation and scale.
+    /// Replaces the matrix of animated nodes with translation, rotation and scale.
     fn free_matrices(&mut self, moved: &BTreeMap<usize, LocalTransform>) -> Result<()> {
         for (&node, rest) in moved {
             let node = self.entry("nodes", node)?;
@@ -183,7 +183,7 @@ impl Editor {
     }
 
     /// Writes keys into one new buffer view, and `channels` and `samplers` into `animation`. Channels with equal key
-    /// times share them.
+    /// times share one accessor for them.
     fn write_channels<'c>(
         &mut self,
         channels: impl Iterator<Item = &'c Channel>,
@@ -231,8 +231,8 @@ impl Editor {
         Ok(())
     }
 
-    /// Adds numbers to the `data` of the future view, and an accessor for them. Times carry their bounds, as §3.11
-    /// requires.
+    /// Adds numbers to the `data` of the future view, and an accessor for them; returns its index. Accessors of times
+    /// have bounds, as §3.11 requires.
     fn push_keys(&mut self, view: usize, data: &mut Vec<u8>, numbers: &[f32], kind: &str) -> Result<usize> {
         let width = match kind {
             "SCALAR" => 1,
@@ -258,7 +258,7 @@ impl Editor {
         self.push("bufferViews", view)
     }
 
-    /// The next element starts at a multiple of 4 bytes.
+    /// Pads the binary chunk to a multiple of 4 bytes.
     fn align(&mut self) {
         self.bin.resize(self.bin.len().div_ceil(4) * 4, 0);
     }
@@ -279,7 +279,7 @@ impl Editor {
         entry.ok_or_else(|| Error::malformed("must be an object", format!("{list}[{index}]")))
     }
 
-    /// Adds an extension to the top of the file, and to those that it uses.
+    /// Adds an extension to the top level of the file, and to `extensionsUsed`.
     pub(super) fn extension(&mut self, name: &str, value: Value) -> Result<()> {
         let extensions = self.root.entry("extensions").or_insert_with(|| json!({}));
         let extensions =

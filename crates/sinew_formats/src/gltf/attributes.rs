@@ -1,4 +1,4 @@
-//! Attributes of a primitive's vertices, plain or compressed.
+//! Attributes of a primitive's vertices, uncompressed or compressed.
 
 use super::accessor::fill_holes;
 use super::draco::Decoded;
@@ -14,18 +14,18 @@ pub(super) struct Attributes<'s, 'a> {
 }
 
 impl<'s, 'a> Attributes<'s, 'a> {
-    /// Attributes of a primitive whose positions are at index `position`.
+    /// Returns the attributes of a primitive whose position accessor is `position`.
     pub(super) fn of(source: &'s Source<'a>, primitive: At<'a>, position: At<'a>) -> Result<Self> {
         let draco = Decoded::of(source, primitive, position)?;
         Ok(Self { source, at: primitive.need("attributes")?, draco })
     }
 
-    /// The attribute's accessor index, if the primitive has it.
+    /// Returns the attribute's accessor index; `None` if the primitive lacks the attribute.
     pub(super) fn get(&self, name: &str) -> Result<Option<At<'a>>> {
         self.at.get(name)
     }
 
-    /// The stream, if it holds the attribute.
+    /// Returns the Draco stream if it has the attribute.
     fn stream(&self, name: &str) -> Result<Option<&Decoded<'a>>> {
         match &self.draco {
             Some(draco) if draco.holds(name)? => Ok(Some(draco)),
@@ -33,7 +33,8 @@ impl<'s, 'a> Attributes<'s, 'a> {
         }
     }
 
-    /// Elements of `N` numbers, with 0 for those that are not finite, and the elements that had any.
+    /// Returns elements of `N` numbers, with 0 for numbers that are not finite, and the indices of elements
+    /// with such numbers.
     pub(super) fn floats<const N: usize>(
         &self,
         name: &str,
@@ -49,15 +50,15 @@ impl<'s, 'a> Attributes<'s, 'a> {
         Ok((numbers, holes))
     }
 
-    /// Elements of `N` unsigned integers.
+    /// Returns elements of `N` unsigned integers.
     pub(super) fn integers<const N: usize>(&self, name: &str, at: At<'a>) -> Result<Vec<[u32; N]>> {
         let Some(draco) = self.stream(name)? else { return self.source.integers(at) };
         let numbers = draco.numbers::<N>(self.source, name)?;
-        // Negative numbers and NaN become 0: integer attributes have none.
+        // Negative numbers and NaN become 0, because integer attributes have none.
         Ok(numbers.into_iter().map(|element| element.map(|x| x as u32)).collect())
     }
 
-    /// The corners of the stream's triangles; `None` if they are not compressed.
+    /// Returns the corners of the stream's triangles; `None` if the primitive is not compressed.
     pub(super) fn triangles(&self) -> Result<Option<Vec<u32>>> {
         self.draco.as_ref().map(|draco| draco.triangles(self.source)).transpose()
     }

@@ -1,11 +1,11 @@
-//! Meshes in bit streams of their own: `KHR_draco_mesh_compression`.
+//! Meshes in Draco bit streams: `KHR_draco_mesh_compression`.
 
 use super::source::Source;
 use crate::container::json::At;
 use crate::error::{Result, quoted};
 use draco_core::{DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder};
 
-/// The name of the extension.
+/// Name of the extension.
 pub(super) const NAME: &str = "KHR_draco_mesh_compression";
 
 /// Upper bound of the decoder's working memory per face, bytes: its corner table and vertex data.
@@ -19,7 +19,8 @@ pub(super) struct Decoded<'a> {
 }
 
 impl<'a> Decoded<'a> {
-    /// The primitive's stream; `None` if its vertices are uncompressed, or an uncompressed fallback exists.
+    /// Returns the primitive's stream; `None` if its vertices are uncompressed, or an uncompressed fallback
+    /// exists.
     pub(super) fn of(source: &Source<'a>, primitive: At<'a>, position: At<'a>) -> Result<Option<Self>> {
         let accessor = source.accessors[position.index(source.accessors.len(), "accessors")?];
         let plain = accessor.get("bufferView")?.is_some() || accessor.get("sparse")?.is_some();
@@ -28,7 +29,7 @@ impl<'a> Decoded<'a> {
             return Ok(None);
         };
         let (bytes, _) = source.view(at.need("bufferView")?)?;
-        // The accessors' sizes are booked; the stream may not exceed them.
+        // The sizes of the accessors count against the budget, and the stream may not exceed them.
         let faces = match primitive.get("indices")? {
             Some(indices) => {
                 let index = indices.index(source.accessors.len(), "accessors")?;
@@ -61,12 +62,12 @@ impl<'a> Decoded<'a> {
         self.mesh.num_points()
     }
 
-    /// True if the stream holds that attribute; others of the primitive are uncompressed.
+    /// True if the stream has that attribute; other attributes of the primitive are uncompressed.
     pub(super) fn holds(&self, name: &str) -> Result<bool> {
         Ok(self.at.need("attributes")?.get(name)?.is_some())
     }
 
-    /// An attribute's numbers as stored in the stream, `N` per vertex.
+    /// Returns an attribute's numbers as stored in the stream, `N` per vertex.
     pub(super) fn numbers<const N: usize>(&self, source: &Source<'a>, name: &str) -> Result<Vec<[f32; N]>> {
         let id_at = self.at.need("attributes")?.need(name)?;
         let id = id_at.usize()?;
@@ -85,7 +86,7 @@ impl<'a> Decoded<'a> {
         Ok(flat.chunks_exact(N).map(|chunk| core::array::from_fn(|i| chunk[i])).collect())
     }
 
-    /// The corners of all triangles.
+    /// Returns the corners of all triangles.
     pub(super) fn triangles(&self, source: &Source<'a>) -> Result<Vec<u32>> {
         let faces = self.mesh.faces();
         source.spend(self.at, faces.len(), 12)?;

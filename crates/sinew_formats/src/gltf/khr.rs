@@ -1,4 +1,5 @@
-//! A ragdoll in the user's own file, as `KHR_physics_rigid_bodies` with `KHR_implicit_shapes` (drafts of October 2025).
+//! Writes a ragdoll into the user's own file, as `KHR_physics_rigid_bodies` with `KHR_implicit_shapes` (drafts of
+//! October 2025).
 
 use super::Document;
 use super::append::Editor;
@@ -13,25 +14,24 @@ use sinew_ragdoll::{BodySettings, RagdollDef};
 const BODIES: &str = "KHR_physics_rigid_bodies";
 const SHAPES: &str = "KHR_implicit_shapes";
 
-/// A file with physics in it.
+/// A file with physics.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KhrFile {
-    /// A GLB.
+    /// Bytes of a GLB.
     pub bytes: Vec<u8>,
     /// Notes on features that the drafts cannot represent, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// The user's own file with the ragdoll on its joints, as a GLB. Existing content is unchanged. Each body adds `motion`
-/// on its node and a child node with its collider; each joint adds a node on either side at its pivot.
+/// Returns the user's own file with the ragdoll on its joints, as a GLB. Existing content is unchanged. Each body adds
+/// `motion` to its node and a child node with its collider; each joint adds a node on each side at its pivot.
 ///
 /// Lengths are in the file's unit, masses in kilograms, inertias in kilograms times the unit squared. `extras.sinew` of
-/// the joints holds data that the drafts cannot represent: the drafts limit swing by a circle or per axis, a ragdoll's
-/// cone is an ellipse. Hulls become their bounding box. Body and bone coincide in the bind pose
-/// (`RigAnalysis::bind_model`).
+/// the joints has data that the drafts cannot represent: they limit swing by a circle or per axis, but a ragdoll's cone
+/// is an ellipse. Hulls become their bounding box. Body and bone coincide in the bind pose (`RigAnalysis::bind_model`).
 ///
 /// # Errors
-/// If the file already has physics, and for the errors of [`append_clips`](super::append_clips).
+/// If the file already has physics; also as [`append_clips`](super::append_clips).
 ///
 /// # Panics
 /// If the definition's joints are not those of the document's rig (see `RagdollDef::for_rig`), or `bind_model` is not
@@ -72,7 +72,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// A body frame relative to its bone, and the length of a metre there.
+    /// Returns a body frame relative to its bone, and the length of a metre in the bone's unit.
     fn seen_from_bone(&self, body: usize, body_from_frame: Transform) -> (Transform, f32) {
         let character = Affine::from(self.def.bodies[body].character_from_body * body_from_frame);
         let bone = self.bind[self.def.bodies[body].joint].inverse();
@@ -107,7 +107,7 @@ impl Writer<'_> {
         self.extend(self.nodes[index], "motion", motion)
     }
 
-    /// The shape in the bone's unit, and where its middle is in the body, metres.
+    /// Returns the shape in the bone's unit, and the position of its centre in the body, metres.
     fn shape(&mut self, index: usize, metre: f32) -> (Value, Vec3) {
         let body = &self.def.bodies[index];
         let size = |length: f32| number(length * metre);
@@ -137,7 +137,7 @@ impl Writer<'_> {
         (shape, Vec3::ZERO)
     }
 
-    /// One joint: a node on the parent's bone constrained relative to one on the child's, with limits.
+    /// Writes one joint with limits: a node on the parent's bone, constrained relative to a node on the child's.
     fn joint(&mut self, index: usize) -> Result<Value> {
         let joint = self.def.joints[index];
         let [parent, child] = [joint.parent, joint.child].map(|body| self.def.bodies[body].bone.as_str());
@@ -156,7 +156,7 @@ impl Writer<'_> {
         Ok(json!({"name": names[1], "limits": limits(&joint.kind), "extras": {"sinew": exact}}))
     }
 
-    /// A new node under a body's bone; its index.
+    /// Adds a node under a body's bone; returns its index.
     fn child(&mut self, body: usize, name: &str, at: Transform, extension: &Value) -> Result<usize> {
         let mut node = json!({
             "name": name,
@@ -253,7 +253,8 @@ fn widest(limit: &SwingTwistLimit) -> f32 {
     max(y, z)
 }
 
-/// Limits of a joint in the draft's form: no translation, and the limits of the rotations that are not free.
+/// Returns the limits of a joint in the draft's form: no translation, and the limits of the rotations that are not
+/// free.
 fn limits(kind: &JointKind) -> Vec<Value> {
     let about = |axis: usize, range: Range| json!({"angularAxes": [axis], "min": number(range.lo), "max": number(range.hi)});
     let shut = |axes: Value| json!({"angularAxes": axes, "min": 0.0, "max": 0.0});

@@ -11,7 +11,7 @@ use sinew_anim::TextureImage;
 use sinew_math::clamp;
 use std::collections::BTreeMap;
 
-/// Memory limit of all decoded pictures of a file together, bytes.
+/// Memory limit of all decoded pictures of a file, bytes.
 pub(crate) const MAX_DECODED: usize = 256 << 20;
 
 /// The materials of a file, and the textures decoded so far.
@@ -57,7 +57,7 @@ impl<'s, 'a> Materials<'s, 'a> {
         })
     }
 
-    /// The look of a primitive; white without a material.
+    /// Returns the look of a primitive; white without a material.
     pub(super) fn look(&mut self, primitive: At<'a>) -> Result<Look> {
         let mut look = Look { base_color: [1.0; 4], texture: None, uv_set: 0, name: String::new() };
         let Some(material_at) = primitive.get("material")? else { return Ok(look) };
@@ -116,7 +116,7 @@ impl<'s, 'a> Materials<'s, 'a> {
     }
 }
 
-/// A picture in a build without decoders: always an error.
+/// Reports an error, because this build has no picture decoders.
 #[cfg(not(feature = "pictures"))]
 pub(crate) fn decode_picture(_: &[u8], _: usize) -> Result<TextureImage, String> {
     Err("the feature `pictures` of sinew_formats is off".into())

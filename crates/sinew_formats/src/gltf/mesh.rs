@@ -10,7 +10,7 @@ use sinew_anim::weights::SkinPart;
 use sinew_anim::{Primitive, RigMesh};
 use sinew_math::{Vec2, Vec3, clamp, normalize_or};
 
-/// One mesh per scene node that places it, and the vertices of skinned meshes without weights.
+/// Returns one mesh per scene node that places one, and the vertices of skinned meshes without weights.
 pub(super) fn read_all<'a>(
     source: &Source<'a>,
     scene: &Scene,
@@ -41,7 +41,7 @@ pub(super) fn read_all<'a>(
                 primitives.push(read);
             }
         }
-        // Parts without weights in a skinned mesh move with the node, like a rigid mesh.
+        // Parts without weights in a skinned mesh move with the node, as in a rigid mesh.
         let (skinned, rigid): (Vec<_>, Vec<_>) = primitives.into_iter().partition(|p| !p.joints.is_empty());
         for (primitives, skin) in [(skinned, skin), (rigid, None)] {
             if !primitives.is_empty() {
@@ -62,7 +62,7 @@ struct Mending<'w> {
 impl Mending<'_> {
     /// Reports repaired elements, once per place.
     fn note(&mut self, at: At<'_>, holes: &[usize], of: usize, mended: &str) {
-        // Finding a place searches the whole file, so it happens only when needed.
+        // Finding a place searches the whole file, so it is done only when needed.
         if holes.is_empty() {
             return;
         }
@@ -73,7 +73,8 @@ impl Mending<'_> {
     }
 }
 
-/// One primitive; `None` for points, lines, and primitives without positions. `slots` is the size of the skin, if any.
+/// Reads one primitive; `None` for points, lines, and primitives without positions. `slots` is the size of the skin,
+/// if any.
 fn read_primitive<'a>(
     source: &Source<'a>,
     primitive: At<'a>,
@@ -124,10 +125,10 @@ fn read_primitive<'a>(
     }))
 }
 
-/// Largest number of non-finite positions outside triangles that are checked; a file with more is refused.
+/// Largest number of non-finite positions outside triangles that are checked; a file with more is rejected.
 const MOST_UNUSED: usize = 64;
 
-/// An optional attribute with one element per vertex; empty if absent. Non-finite numbers become 0.
+/// Reads an optional attribute with one element per vertex; empty if absent. Non-finite numbers become 0.
 fn read_attribute<const N: usize>(
     attributes: &Attributes<'_, '_>,
     name: &str,
@@ -148,7 +149,7 @@ fn check_count(at: At<'_>, there: usize, vertices: usize) -> Result<()> {
     Err(at.malformed(format!("{there} elements for {vertices} vertices")))
 }
 
-/// `COLOR_0` as RGBA in 0..=1; RGB gets alpha 1. Non-finite colours become white.
+/// Reads `COLOR_0` as RGBA in 0..=1; RGB gets alpha 1. Non-finite colours become white.
 fn read_colors<'a>(
     source: &Source<'a>,
     attributes: &Attributes<'_, 'a>,
@@ -172,7 +173,7 @@ fn read_colors<'a>(
 
 type Weights = (Vec<[u16; 4]>, Vec<[f32; 4]>);
 
-/// Skin slots and weights, the four largest of each vertex, their sum 1. Empty if the primitive has none.
+/// Reads skin slots and weights: the four largest of each vertex, with sum 1. Empty if the primitive has none.
 fn read_weights(
     attributes: &Attributes<'_, '_>,
     count: usize,
@@ -208,11 +209,11 @@ fn read_weights(
     Ok(influences.into_iter().map(strongest_four).unzip())
 }
 
-/// Keeps the four largest weights, sorted only if there were more, and normalises their sum to 1. A vertex without any
-/// weight follows its first slot.
+/// Keeps the four largest weights, sorted only if there are more, and normalises their sum to 1. A vertex without
+/// weights follows its first slot.
 pub(crate) fn strongest_four(mut influences: Vec<(u16, f32)>) -> ([u16; 4], [f32; 4]) {
     if influences.len() > 4 {
-        // Stable, so equal weights keep the file's order.
+        // The sort is stable, so equal weights keep the file's order.
         influences.sort_by(|a, b| b.1.total_cmp(&a.1));
     }
     let mut slots = [0; 4];
@@ -221,7 +222,7 @@ pub(crate) fn strongest_four(mut influences: Vec<(u16, f32)>) -> ([u16; 4], [f32
         weights[i] = sinew_math::max(weight, 0.0);
         slots[i] = if weights[i] > 0.0 { slot } else { 0 };
     }
-    // Divided by the largest first: the sum of four large numbers must not overflow.
+    // Divides by the largest first, because the sum of four large numbers must not overflow.
     let largest = weights.iter().copied().fold(0.0, sinew_math::max);
     if largest <= 0.0 {
         return ([influences.first().map_or(0, |i| i.0), 0, 0, 0], [1.0, 0.0, 0.0, 0.0]);
@@ -231,7 +232,7 @@ pub(crate) fn strongest_four(mut influences: Vec<(u16, f32)>) -> ([u16; 4], [f32
     (slots, scaled.map(|w| w / sum))
 }
 
-/// Triangles as a list for every mode: 4 list, 5 strip, 6 fan.
+/// Reads the triangles of every mode as a list: 4 list, 5 strip, 6 fan.
 fn read_triangles<'a>(source: &Source<'a>, primitive: At<'a>, mode: usize, count: usize) -> Result<Vec<u32>> {
     let corners: Vec<u32> = match primitive.get("indices")? {
         Some(at) => {

@@ -1,6 +1,6 @@
 //! Reads glTF 2.0 and its relatives (GLB, VRM 0 and 1, VRMA) as a rig, clips and the source JSON.
 //!
-//! Reads the JSON with our own cursor instead of a typed model: every index, range and number is checked where it is
+//! The JSON is read by our own cursor instead of a typed model: every index, range and number is checked where it is
 //! used, errors name the place, and [`append_clip`] edits and writes back the same value.
 //!
 //! ```
@@ -11,7 +11,7 @@
 //! let document = read_gltf(&file, ReadOptions::default(), &mut no_files)?;
 //! assert_eq!(document.clips[0].name, mannequin.clips[0].name);
 //!
-//! // One more clip in the same file: what was there stays as it was.
+//! // Adds one more clip to the same file; existing content is unchanged.
 //! let slow = sinew_anim::Clip { name: "slow".into(), ..document.clips[0].clone() };
 //! let longer = append_clip(&document, &slow, "slow", None)?;
 //! let document = read_gltf(&longer, ReadOptions::default(), &mut no_files)?;
@@ -59,7 +59,7 @@ use sinew_anim::{Clip, ClipEvent, JointIdx, Rig};
 use source::{Buffer, Source};
 use std::collections::BTreeMap;
 
-/// Container that the bytes were wrapped in.
+/// Container of the JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Container {
     /// Binary: JSON and one buffer in one file (also VRM and VRMA).
@@ -68,25 +68,25 @@ pub enum Container {
     Gltf,
 }
 
-/// Choice whether base colour pictures are decoded.
+/// Setting that decides if base colour pictures are decoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Textures {
-    /// No: [`Rig::textures`] stays empty.
+    /// Pictures are not decoded: [`Rig::textures`] stays empty.
     #[default]
     Skip,
-    /// Yes, PNG and JPEG, with the feature `pictures`; a picture that cannot be decoded becomes a warning, as does
-    /// every picture without the feature.
+    /// PNG and JPEG are decoded, with the feature `pictures`. A picture that cannot be decoded becomes a warning;
+    /// without the feature, every picture does.
     Decode,
 }
 
-/// Options for reading a glTF or FBX file. Default: everything but pictures.
+/// Options for reading a glTF or FBX file. Default: all content but pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReadOptions {
-    /// Default skip.
+    /// Decoding of pictures. Default: skip.
     pub textures: Textures,
 }
 
-/// A glTF file as plain data, including everything needed to write it back.
+/// A glTF file as plain data, including all data needed to write it back.
 #[derive(Clone, Debug)]
 pub struct Document {
     /// Every node of the default scene (else of the first scene, else every node), with skins and meshes.
@@ -95,17 +95,17 @@ pub struct Document {
     pub clips: Vec<Clip>,
     /// Events of each clip (`extras.sinew_events`), by time.
     pub events: Vec<Vec<ClipEvent>>,
-    /// The file's JSON, keys in order, numbers as they were.
+    /// The file's JSON, with keys in order and numbers unchanged.
     pub json: Value,
     /// The file's binary chunk.
     pub bin: Option<Vec<u8>>,
-    /// Container that the bytes were wrapped in.
+    /// Container of the JSON.
     pub container: Container,
-    /// Warnings of omissions and their reasons, one line each (an undecodable picture, a missing external file).
+    /// Omissions with their reasons, one line each (an undecodable picture, a missing external file).
     pub warnings: Vec<String>,
     /// Bytes of the buffers that are not the binary chunk.
     buffers: Vec<Buffer>,
-    /// Bytes of pictures in files of their own, by image index.
+    /// Bytes of external pictures, by image index.
     external_images: BTreeMap<usize, Vec<u8>>,
     /// Further chunks of a GLB.
     other_chunks: Vec<u8>,
@@ -114,7 +114,7 @@ pub struct Document {
 }
 
 impl Document {
-    /// `asset.generator`: the program that wrote the file, or `""`.
+    /// Returns `asset.generator`, the program that wrote the file, or `""`.
     pub fn generator(&self) -> &str {
         self.json["asset"]["generator"].as_str().unwrap_or_default()
     }
@@ -124,14 +124,14 @@ impl Document {
         self.json["nodes"].as_array().map_or(0, Vec::len)
     }
 
-    /// Names of the extensions that the file uses.
+    /// Returns the names of the extensions that the file uses.
     pub fn extensions(&self) -> Vec<&str> {
         let used = self.json["extensionsUsed"].as_array();
         used.into_iter().flatten().filter_map(Value::as_str).collect()
     }
 
-    /// Recomputes the weights of all skins from the distance of their vertices to the bones, for a file whose weights
-    /// were [lost](sinew_anim::weights::lost_weights). [`append_clips`] writes them.
+    /// Recomputes the weights of all skins from the distances of their vertices to the bones, for a file whose weights
+    /// were [lost](sinew_anim::weights::lost_weights). [`append_clips`] writes the new weights.
     pub fn weigh_by_nearness(&mut self) {
         let changed = weigh_by_nearness(&mut self.rig);
         self.note_reweighed(&changed);
@@ -155,7 +155,7 @@ impl Document {
     }
 }
 
-/// Note on vertices that follow the nearest skin; `None` if there are none.
+/// Returns a note on vertices that follow the nearest skin; `None` if there are none.
 pub(crate) fn note_of_loose(changed: &[SkinPart]) -> Option<String> {
     let vertices: usize = changed.iter().map(|part| part.vertices.len()).sum();
     match vertices {
@@ -165,28 +165,28 @@ pub(crate) fn note_of_loose(changed: &[SkinPart]) -> Option<String> {
     }
 }
 
-/// Returns the bytes of a file next to the one being read. The path is relative, decoded, and has no `..` and no
-/// scheme.
+/// Function that returns the bytes of a file next to the one being read. The path is relative, decoded, and has no `..`
+/// and no scheme.
 pub type Resolver<'a> = dyn FnMut(&str) -> Result<Vec<u8>> + 'a;
 
-/// A resolver for bytes that have no folder: every external file is missing.
+/// Resolver for bytes without a folder: every external file is missing.
 ///
 /// # Errors
-/// Always.
+/// Always returns an error.
 pub fn no_files(path: &str) -> Result<Vec<u8>> {
     Err(Error::io(format!("{} is not available", quoted(path))))
 }
 
-/// Reads a GLB, glTF, VRM or VRMA; the bytes decide the kind, not a name.
+/// Reads a GLB, glTF, VRM or VRMA; the bytes determine the kind.
 ///
 /// Memory is proportional to the input: lengths in the file are checked before allocation, and decoded data may not
 /// exceed 64 times the input plus 16 MiB (many nodes may place one mesh).
 ///
 /// # Errors
-/// Bytes that are no glTF 2.0, an index or range outside its list, non-finite numbers, a node that is its own ancestor,
-/// an unsupported required extension, a compressed view or mesh with a broken stream, a missing external buffer, a
-/// spring with a dangling reference. Non-finite numbers in normals, texture coordinates, colours and weights are
-/// repaired with a warning.
+/// If the bytes are no glTF 2.0; for an index or range outside its list, non-finite numbers, a node that is its own
+/// ancestor, an unsupported required extension, a compressed view or mesh with a broken stream, a missing external
+/// buffer, or a spring with a dangling reference. Non-finite numbers in normals, texture coordinates, colours and
+/// weights are repaired with a warning.
 pub fn read_gltf(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<'_>) -> Result<Document> {
     let (container, json_bytes, bin, other_chunks) = unwrap_container(bytes)?;
     let json = json::parse(json_bytes)?;
@@ -242,7 +242,7 @@ fn unwrap_container(bytes: &[u8]) -> Result<Unwrapped<'_>> {
     }
 }
 
-/// glTF 2.0 §3.2: the version must be 2.x, and the minimum version at most 2.0.
+/// Checks the version (glTF 2.0 §3.2): it must be 2.x, and the minimum version at most 2.0.
 fn check_asset(root: At<'_>) -> Result<()> {
     let asset = root.need("asset")?;
     let version = asset.need("version")?;
@@ -259,7 +259,7 @@ fn check_asset(root: At<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Extensions that may be required: understood, or without influence on geometry, joints and motion.
+/// Extensions that may be required: supported, or without influence on geometry, joints and motion.
 const HARMLESS: [&str; 10] = [
     "KHR_mesh_quantization",
     "KHR_materials_",
@@ -287,7 +287,7 @@ fn check_extensions(root: At<'_>) -> Result<()> {
     Ok(())
 }
 
-/// The bytes of every buffer: from the binary chunk, a data URI, or an external file.
+/// Returns the bytes of every buffer: from the binary chunk, a data URI, or an external file.
 fn load_buffers(root: At<'_>, bin: Option<&[u8]>, resolve: &mut Resolver<'_>) -> Result<Vec<Buffer>> {
     let mut buffers = Vec::new();
     for (i, buffer) in root.list("buffers")?.into_iter().enumerate() {
@@ -302,7 +302,7 @@ fn load_buffers(root: At<'_>, bin: Option<&[u8]>, resolve: &mut Resolver<'_>) ->
                 })?),
             },
             (None, Some(_)) if i == 0 => Buffer::Chunk,
-            // A placeholder: an error only where something reads it.
+            // A placeholder, which is an error only if it is read.
             (None, _) => Buffer::Absent,
         };
         let there = loaded.bytes(bin).map(<[u8]>::len);
@@ -317,7 +317,7 @@ fn load_buffers(root: At<'_>, bin: Option<&[u8]>, resolve: &mut Resolver<'_>) ->
     Ok(buffers)
 }
 
-/// External pictures. A missing one does not affect the motion: a warning.
+/// Loads external pictures. A missing picture does not affect the motion, so it becomes a warning.
 fn load_images(
     root: At<'_>,
     resolve: &mut Resolver<'_>,

@@ -1,4 +1,4 @@
-//! PNG and JPEG pictures as RGBA.
+//! Decodes PNG and JPEG pictures to RGBA.
 
 use sinew_anim::TextureImage;
 use std::io::Cursor;
@@ -6,13 +6,13 @@ use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-/// Pixels across or down that a picture may have.
+/// Largest width and height of a picture, pixels.
 const MAX_SIDE: usize = 4096;
 
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 const JPEG: &[u8] = b"\xff\xd8\xff";
 
-/// A PNG or JPEG as RGBA, within the limits of side and of `budget` bytes.
+/// Decodes a PNG or JPEG to RGBA, within the limits of side and of `budget` bytes.
 pub(crate) fn decode_picture(bytes: &[u8], budget: usize) -> Result<TextureImage, String> {
     let image = match bytes {
         _ if bytes.starts_with(PNG) => png(bytes, budget)?,
@@ -43,7 +43,7 @@ fn png(bytes: &[u8], budget: usize) -> Result<TextureImage, String> {
             pixels.chunks_exact(2).flat_map(|p| [p[0], p[0], p[0], p[1]]).collect()
         }
         png::ColorType::Grayscale => pixels.iter().flat_map(|&p| [p, p, p, 255]).collect(),
-        // Expanded to one of the other formats.
+        // The decoder expands palettes to another format.
         png::ColorType::Indexed => return Err("a palette that cannot be read".into()),
     };
     Ok(TextureImage { width, height, rgba })
@@ -55,13 +55,13 @@ fn jpeg(bytes: &[u8], budget: usize) -> Result<TextureImage, String> {
     decoder.decode_headers().map_err(|e| one_line(&e))?;
     let (width, height) = decoder.dimensions().ok_or("no size")?;
     bounded(width, height, budget)?;
-    // Do not decode to RGBA: without intrinsics the decoder fills the fourth byte with the first.
+    // The JPEG decoder must not output RGBA: without intrinsics it copies the first byte to the fourth.
     decoder.set_options(options.jpeg_set_out_colorspace(ColorSpace::RGB));
     let rgba = rgb_as_rgba(&decoder.decode().map_err(|e| one_line(&e))?);
     Ok(TextureImage { width: width as u32, height: height as u32, rgba })
 }
 
-/// Checks the size before anything of the picture's size is allocated.
+/// Checks the size before memory of the picture's size is allocated.
 fn bounded(width: usize, height: usize, budget: usize) -> Result<(), String> {
     if width > MAX_SIDE || height > MAX_SIDE {
         return Err(format!("{width} x {height} pixels, more than {MAX_SIDE} a side"));
@@ -103,7 +103,7 @@ mod tests {
         (0..hex.len()).step_by(2).map(|i| u8::from_str_radix(&hex[i..i + 2], 16).unwrap()).collect()
     }
 
-    /// One row of two pixels.
+    /// Encodes one row of two pixels.
     fn written(color: ColorType, depth: BitDepth, palette: Option<&[u8]>, data: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
         let mut encoder = png::Encoder::new(&mut out, 2, 1);
@@ -156,7 +156,7 @@ mod tests {
         let refused = |bytes: &[u8], budget| decode_picture(bytes, budget).unwrap_err();
         assert_eq!(refused(&bytes(RED), 255), "8 x 8 pixels, more than all pictures of a file may take");
         assert_eq!(refused(b"BM", 1000), "neither PNG nor JPEG");
-        // 5000 pixels across, according to the header alone.
+        // The header claims a width of 5000 pixels.
         let mut wide = bytes(RED);
         let frame = wide.windows(2).position(|two| two == [0xff, 0xc0]).unwrap();
         wide[frame + 7..frame + 9].copy_from_slice(&5000_u16.to_be_bytes());

@@ -6,13 +6,13 @@ use crate::error::Result;
 use sinew_anim::{Joint, JointIdx, LocalTransform, Rig, Skin};
 use sinew_math::{Affine, Mat3, Rotation, Vec3};
 
-/// The tree of a file's nodes, in the rig's order.
+/// Tree of a file's nodes, in the rig's order.
 pub(super) struct Scene {
-    /// Joints and skins; meshes are read later.
+    /// Rig with joints and skins; meshes are read later.
     pub(super) rig: Rig,
-    /// The joint of a node; `None` for nodes outside the scene that no skin needs.
+    /// Joint of each node; `None` for nodes outside the scene that no skin needs.
     pub(super) joint_of_node: Vec<Option<JointIdx>>,
-    /// Joints before this one belong to the scene; later ones exist only for a skin.
+    /// Number of joints that belong to the scene; later joints exist only for a skin.
     pub(super) shown: usize,
 }
 
@@ -37,7 +37,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Scene> {
     Ok(Scene { rig, joint_of_node: tree.joint_of_node, shown })
 }
 
-/// Root nodes of the default scene, else of the first, else every node without a parent.
+/// Returns the root nodes of the default scene, else of the first scene, else all nodes without a parent.
 fn scene_roots<'a>(source: &Source<'a>, parent: &[Option<usize>]) -> Result<Vec<usize>> {
     let scenes = source.root.list("scenes")?;
     let chosen = match source.root.get("scene")? {
@@ -77,7 +77,7 @@ impl Tree {
         Ok(Self { parent, children, joints: Vec::new(), joint_of_node: vec![None; n] })
     }
 
-    /// Adds a node and everything below it, parents first. Not recursive: the depth is the file's to choose.
+    /// Adds a node and its descendants, parents first. Not recursive, because the file determines the depth.
     fn grow(&mut self, source: &Source<'_>, root: usize) -> Result<()> {
         let mut open = vec![(root, None)];
         while let Some((node, parent)) = open.pop() {
@@ -93,7 +93,7 @@ impl Tree {
         Ok(())
     }
 
-    /// The root above a node.
+    /// Returns the root above a node.
     fn topmost(&self, source: &Source<'_>, node: usize) -> Result<usize> {
         let mut top = node;
         for _ in 0..self.parent.len() {
@@ -119,18 +119,20 @@ fn read_transform(node: At<'_>) -> Result<LocalTransform> {
     })
 }
 
-/// Normalised. A quaternion that is unit within rounding is unchanged, so that a file's numbers are preserved.
+/// Normalises a rotation. A quaternion that is unit within rounding is unchanged, so that a file's numbers are
+/// preserved.
 fn unit(rotation: Rotation) -> Rotation {
     if (rotation.dot(rotation) - 1.0).abs() < 1e-6 { rotation } else { rotation.normalize() }
 }
 
-/// Column-major 4×4 numbers as an affine map; the last row is (0, 0, 0, 1) by the rules of the format.
+/// Converts column-major 4×4 numbers to an affine map; the last row is (0, 0, 0, 1) by the rules of the format.
 fn affine(m: &[f32; 16]) -> Affine {
     let column = |i: usize| Vec3::new(m[4 * i], m[4 * i + 1], m[4 * i + 2]);
     Affine { linear: Mat3::from_cols(column(0), column(1), column(2)), translation: column(3) }
 }
 
-/// Scale, rotation and translation of a node matrix without shear (§3.5.3). A mirror becomes a negative z scale.
+/// Decomposes a node matrix without shear into scale, rotation and translation (§3.5.3). A mirror becomes a
+/// negative z scale.
 fn decompose(m: &Affine) -> LocalTransform {
     let columns = m.linear;
     let mirrored = columns.x_axis.cross(columns.y_axis).dot(columns.z_axis) < 0.0;

@@ -1,5 +1,5 @@
 //! Writes changed skins into the user's own file: meshes that became sheets of cloth (a node per particle, a longer
-//! skin, other joints and weights), and vertices with changed weights.
+//! skin, new joints and weights), and vertices with changed weights.
 
 use super::Document;
 use super::append::Editor;
@@ -10,10 +10,10 @@ use sinew_anim::{JointIdx, Primitive, Rig, RigMesh};
 use sinew_math::Affine;
 use std::collections::BTreeMap;
 
-/// Component types of accessors.
+/// Component type of accessors.
 const U16: u32 = 5123;
 const FLOAT: u32 = 5126;
-/// Buffer views that hold vertices.
+/// Target of buffer views with vertices.
 const VERTICES: u32 = 34962;
 
 impl Editor {
@@ -54,7 +54,7 @@ impl Editor {
         Ok(())
     }
 
-    /// The joints of a skin and their inverse bind matrices; existing ones are unchanged.
+    /// Writes the joints of a skin and their inverse bind matrices; existing joints are unchanged.
     fn write_skin(&mut self, rig: &Rig, skin: usize) -> Result<()> {
         let of_rig = &rig.skins[skin];
         let bytes: Vec<u8> = of_rig.inverse_bind.iter().flat_map(matrix).flat_map(f32::to_le_bytes).collect();
@@ -64,7 +64,7 @@ impl Editor {
         });
         let accessor = self.push("accessors", accessor)?;
         let nodes: Vec<usize> = of_rig.joints.iter().map(|&joint| rig.joints[joint].source).collect();
-        // Meshes without a skin got theirs after all others, in this order.
+        // Meshes without a skin got one after all others, in this order.
         if skin == self.list("skins")?.len() {
             self.push("skins", json!({}))?;
         }
@@ -74,7 +74,7 @@ impl Editor {
         Ok(())
     }
 
-    /// Writes the weights of skins that are not the file's any more.
+    /// Writes the weights of skins that were changed on reading.
     pub(super) fn write_reweighed(&mut self, document: &Document) -> Result<()> {
         let mut of_joint: BTreeMap<JointIdx, Vec<usize>> = BTreeMap::new();
         for &(joint, primitive) in &document.reweighed {
@@ -82,14 +82,14 @@ impl Editor {
         }
         for (joint, primitives) in of_joint {
             let mut meshes = document.rig.meshes.iter();
-            // The mesh of another character was left out.
+            // The mesh of another character was removed.
             let Some(mesh) = meshes.find(|mesh| mesh.joint == joint && mesh.skin.is_some()) else { continue };
             self.write_primitives(&document.rig, mesh, &primitives)?;
         }
         Ok(())
     }
 
-    /// Writes the weights of some of a mesh's primitives, and its skin.
+    /// Writes the weights of some of a mesh's primitives, and the mesh's skin.
     fn write_primitives(&mut self, rig: &Rig, mesh: &RigMesh, primitives: &[usize]) -> Result<()> {
         let node = rig.joints[mesh.joint].source;
         let of_file = self.own_mesh(node)?;
@@ -97,7 +97,7 @@ impl Editor {
         let of_mesh = self.entry("meshes", of_file)?.get("primitives").and_then(Value::as_array);
         let read = of_mesh.into_iter().flatten().enumerate().filter(|(_, it)| is_read(it, had_skin));
         let read: Vec<usize> = read.map(|(at, _)| at).collect();
-        // In a mesh without a skin all parts need weights.
+        // In a mesh that had no skin, all parts need weights.
         let written = if had_skin { primitives.to_vec() } else { (0..mesh.primitives.len()).collect() };
         for at in written {
             let lost =
@@ -112,7 +112,7 @@ impl Editor {
         Ok(())
     }
 
-    /// The mesh of a node; a mesh shared with other nodes is copied first.
+    /// Returns the mesh of a node; a mesh shared with other nodes is copied first.
     fn own_mesh(&mut self, node: usize) -> Result<usize> {
         let lost = || Error::malformed("the node has no mesh", format!("nodes[{node}]"));
         let of = |entry: &Value| entry.get("mesh").and_then(Value::as_u64);
@@ -127,7 +127,7 @@ impl Editor {
         Ok(copy)
     }
 
-    /// Accessors of the slots and weights of a primitive's vertices.
+    /// Writes accessors of the slots and weights of a primitive's vertices; returns their indices.
     fn write_weights(&mut self, primitive: &Primitive) -> Result<[usize; 2]> {
         let slots: Vec<u8> = primitive.joints.iter().flatten().flat_map(|slot| slot.to_le_bytes()).collect();
         let weights: Vec<u8> =
@@ -146,7 +146,7 @@ impl Editor {
     }
 }
 
-/// True if the reader turns a primitive into one with weights, or into one at all.
+/// True if the reader keeps a primitive, with weights if `with_weights` is true.
 fn is_read(primitive: &Value, with_weights: bool) -> bool {
     let has = |name: &str| primitive["attributes"].get(name).is_some();
     let weighs = has("JOINTS_0") && has("WEIGHTS_0");
@@ -167,7 +167,7 @@ fn hang(primitive: &mut Value, [slots, weights]: &[usize; 2]) -> Option<()> {
     Some(())
 }
 
-/// Column by column.
+/// Returns the matrix column by column.
 fn matrix(affine: &Affine) -> [f32; 16] {
     let (x, y, z, t) = (affine.linear.x_axis, affine.linear.y_axis, affine.linear.z_axis, affine.translation);
     [x.x, x.y, x.z, 0.0, y.x, y.y, y.z, 0.0, z.x, z.y, z.z, 0.0, t.x, t.y, t.z, 1.0]

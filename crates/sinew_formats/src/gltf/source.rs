@@ -1,4 +1,4 @@
-//! The lists of a glTF file that everything else references, and the budget for decoded data.
+//! Lists of a glTF file that other parts reference, and the budget for decoded data.
 
 use crate::container::json::At;
 use crate::error::Result;
@@ -13,7 +13,7 @@ pub(super) enum Buffer {
     DataUri(Vec<u8>),
     /// An external file.
     External(Vec<u8>),
-    /// Neither: a placeholder that must not be read.
+    /// A placeholder without bytes, which must not be read.
     Absent,
 }
 
@@ -36,20 +36,20 @@ pub(super) struct Source<'a> {
     buffers: &'a [Buffer],
     buffer_entries: Vec<At<'a>>,
     bin: Option<&'a [u8]>,
-    /// Buffer views that were compressed.
+    /// Decoded bytes of compressed buffer views; `None` for other views.
     decompressed: &'a [Option<Vec<u8>>],
-    /// Bytes that may still be decoded.
+    /// Number of bytes that may still be decoded.
     budget: Cell<usize>,
 }
 
-/// Bytes that may be decoded from a file of that size with these buffers.
+/// Number of bytes that may be decoded from a file of that size with these buffers.
 pub(super) fn budget(buffers: &[Buffer], file_size: usize) -> usize {
     let outside: usize =
         buffers.iter().map(|b| if let Buffer::External(bytes) = b { bytes.len() } else { 0 }).sum();
     file_size.saturating_add(outside).saturating_mul(64).saturating_add(16 << 20)
 }
 
-/// The bytes that `holder` names by `buffer`, `byteOffset` and `byteLength`.
+/// Returns the bytes that `holder` selects by `buffer`, `byteOffset` and `byteLength`.
 pub(super) fn buffer_bytes<'a>(
     buffers: &'a [Buffer],
     entries: &[At<'_>],
@@ -92,7 +92,7 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// Books `count × size` bytes for decoding `at`.
+    /// Subtracts `count × size` bytes from the budget, for decoding `at`.
     pub(super) fn spend(&self, at: At<'_>, count: usize, size: usize) -> Result<()> {
         let left = count.checked_mul(size).and_then(|bytes| self.budget.get().checked_sub(bytes));
         let Some(left) = left else {
@@ -104,12 +104,12 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Bytes that may still be decoded.
+    /// Number of bytes that may still be decoded.
     pub(super) fn left(&self) -> usize {
         self.budget.get()
     }
 
-    /// The bytes of the buffer view that `at` is the index of, and the view itself.
+    /// Returns the bytes of the buffer view with the index `at`, and the view itself.
     pub(super) fn view(&self, at: At<'a>) -> Result<(&'a [u8], At<'a>)> {
         let index = at.index(self.views.len(), "buffer views")?;
         let view = self.views[index];

@@ -1,4 +1,4 @@
-//! Springs that a VRM states: `VRMC_springBone` 1.0 with extended colliders and limits, and VRM 0's `secondaryAnimation`.
+//! Springs stated by a VRM: `VRMC_springBone` 1.0 with extended colliders and limits, and VRM 0's `secondaryAnimation`.
 
 use super::scene::Scene;
 use super::source::Source;
@@ -15,12 +15,12 @@ const EXTENDED: &str = "VRMC_springBone_extended_collider";
 const LIMIT: &str = "VRMC_springBone_limit";
 /// Bone length that VRM 0 assumes for a joint without a child, metres.
 const VIRTUAL_TAIL: f32 = 0.07;
-/// Largest number of warnings: each searches the whole file for its place.
+/// Largest number of warnings; each searches the whole file for its place.
 const MOST_WARNINGS: usize = 16;
-/// Memory of a collider reference in bytes, limited by the file size.
+/// Memory of a collider reference, bytes; limited by the file size.
 const REFERENCE: usize = size_of::<usize>();
 
-/// Format that a file states its springs in.
+/// Format in which a file states its springs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpringFormat {
     /// `secondaryAnimation` of VRM 0.
@@ -30,7 +30,7 @@ pub enum SpringFormat {
 }
 
 impl SpringFormat {
-    /// Format of a glTF's JSON; `None` without springs. If both exist, the newer one is read.
+    /// Returns the format of a glTF's JSON; `None` without springs. If both exist, the newer one is read.
     pub(super) fn of(json: &Value) -> Option<Self> {
         let extensions = json.get("extensions")?;
         let stated = |at: Option<&Value>| at.is_some_and(|at| !at.is_null());
@@ -40,7 +40,7 @@ impl SpringFormat {
         stated(extensions.get("VRM")?.get("secondaryAnimation")).then_some(Self::Vrm0)
     }
 
-    /// Name for people: `VRM 0`, `VRM 1`.
+    /// Returns the name for people: `VRM 0`, `VRM 1`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Vrm0 => "VRM 0",
@@ -49,7 +49,7 @@ impl SpringFormat {
     }
 }
 
-/// Springs of a file; adds a line to `warnings` per omission.
+/// Reads the springs of a file; adds a line to `warnings` per omission.
 pub(super) fn read(source: &Source<'_>, scene: &Scene, warnings: &mut Vec<String>) -> Result<Springs> {
     let Some(extensions) = source.root.get("extensions")? else { return Ok(Springs::default()) };
     let mut reader = Reader::new(source, scene);
@@ -69,9 +69,9 @@ struct Reader<'a, 's> {
     scene: &'a Scene,
     /// Rest pose in model space.
     rest: Vec<Affine>,
-    /// End of each joint's subtree, because joints are in depth-first order.
+    /// End of each joint's subtree; joints are in depth-first order.
     ends: Vec<JointIdx>,
-    /// Joints that a chain has.
+    /// True for joints that are already in a chain.
     taken: Vec<bool>,
     springs: Springs,
     warnings: Vec<String>,
@@ -91,7 +91,7 @@ impl<'a, 's> Reader<'a, 's> {
         Self { source, scene, rest, ends, taken, springs: Springs::default(), warnings: Vec::new() }
     }
 
-    /// Joint of a node; `None` for one outside the scene.
+    /// Returns the joint of a node; `None` for a node outside the scene.
     fn joint(&self, at: At<'_>) -> Result<Option<JointIdx>> {
         Ok(self.scene.joint_of_node[at.index(self.source.nodes.len(), "nodes")?])
     }
@@ -104,7 +104,7 @@ impl<'a, 's> Reader<'a, 's> {
         }
     }
 
-    /// True if one joint is a descendant of another.
+    /// True if `below` is a descendant of `above`.
     fn is_above(&self, above: JointIdx, below: JointIdx) -> bool {
         above < below && below < self.ends[above]
     }
@@ -170,20 +170,20 @@ impl<'a, 's> Reader<'a, 's> {
         Ok(())
     }
 
-    /// Tip of a bone in VRM 1: the next joint, which is its descendant.
+    /// Returns the tip of a bone in VRM 1: the next joint of the chain, a descendant.
     fn tail_1(&self, joint: JointIdx, next: JointIdx) -> Vec3 {
         let node = &self.scene.rig.joints[next];
         let is_child = node.parent == Some(joint);
         if is_child { node.rest.translation } else { self.seen_from(joint, self.rest[next].translation) }
     }
 
-    /// A point of model space in a joint's own.
+    /// Converts a point of model space to a joint's own space.
     fn seen_from(&self, joint: JointIdx, point: Vec3) -> Vec3 {
         let seen = self.rest[joint].inverse().point(point);
         if seen.is_finite() { seen } else { Vec3::ZERO }
     }
 
-    /// Colliders of the groups that a spring names, each once, in order.
+    /// Returns the colliders of the groups that a spring lists, each only once, in order.
     fn colliders(&self, spring: At<'_>, groups: &[Vec<usize>]) -> Result<Vec<usize>> {
         let mut named = Vec::new();
         for at in spring.list("colliderGroups")? {
@@ -227,7 +227,7 @@ impl<'a, 's> Reader<'a, 's> {
         Ok(())
     }
 
-    /// Every joint below the roots of a group swings.
+    /// Reads a group of VRM 0: every joint below its roots swings.
     fn bone_group(&mut self, group: At<'_>, groups: &[Vec<usize>], children: &[Vec<JointIdx>]) -> Result<()> {
         let settings = bone_0(group)?;
         let center = self.joint_or_none(group.get("center")?)?;
@@ -251,7 +251,8 @@ impl<'a, 's> Reader<'a, 's> {
         Ok(())
     }
 
-    /// Tip of a bone in VRM 0: the first child, else a position beyond the joint, relative to its parent.
+    /// Returns the tip of a bone in VRM 0: the first child, else a position beyond the joint, in the direction from its
+    /// parent.
     fn tail_0(&self, joint: JointIdx, children: &[Vec<JointIdx>]) -> Vec3 {
         if let Some(&child) = children[joint].first() {
             return self.scene.rig.joints[child].rest.translation;
@@ -263,12 +264,12 @@ impl<'a, 's> Reader<'a, 's> {
     }
 }
 
-/// The number under an optional key.
+/// Reads the number under an optional key.
 fn number<'a>(at: At<'a>, key: &str, default: f32, read: impl FnOnce(At<'a>) -> Result<f32>) -> Result<f32> {
     at.get(key)?.map_or(Ok(default), read)
 }
 
-/// Settings of a VRM 1 joint, without its bone's position.
+/// Reads the settings of a VRM 1 joint, without joint and tip.
 fn bone(at: At<'_>, of_spring: Option<SpringLimit>) -> Result<SpringBone> {
     let usual = SpringBone::default();
     let down = Vec3::from_array(at.numbers_or("gravityDir", [0.0, -1.0, 0.0])?);
@@ -282,7 +283,7 @@ fn bone(at: At<'_>, of_spring: Option<SpringLimit>) -> Result<SpringBone> {
     })
 }
 
-/// Settings of a VRM 0 bone group, which misspells stiffness.
+/// Reads the settings of a VRM 0 bone group; the format misspells `stiffness`.
 fn bone_0(at: At<'_>) -> Result<SpringBone> {
     let usual = SpringBone::default();
     let down = unity(at.get("gravityDir")?, -Vec3::Y)?;
@@ -295,14 +296,14 @@ fn bone_0(at: At<'_>) -> Result<SpringBone> {
     })
 }
 
-/// A vector of VRM 0: an object, in Unity's left-handed axes.
+/// Reads a vector of VRM 0: an object, in Unity's left-handed axes.
 fn unity(at: Option<At<'_>>, default: Vec3) -> Result<Vec3> {
     let Some(at) = at else { return Ok(default) };
     let axis = |key| number(at, key, 0.0, At::f32);
     Ok(Vec3::new(axis("x")?, axis("y")?, -axis("z")?))
 }
 
-/// Shape of a collider: the extension's, if present; the plain one is its fallback.
+/// Reads the shape of a collider: that of the extension if present, else the plain one, which is the fallback.
 fn collider_shape(collider: At<'_>) -> Result<ColliderShape> {
     let extended = match collider.get("extensions")? {
         Some(extensions) => match extensions.get(EXTENDED)? {
@@ -346,7 +347,7 @@ fn collider_shape(collider: At<'_>) -> Result<ColliderShape> {
     Err(at.malformed("must have a sphere, a capsule or a plane"))
 }
 
-/// Limit of a joint or a spring, by its extension.
+/// Reads the limit of a joint or a spring from its extension.
 fn limit(holder: At<'_>) -> Result<Option<SpringLimit>> {
     let Some(extensions) = holder.get("extensions")? else { return Ok(None) };
     let Some(at) = extensions.get(LIMIT)? else { return Ok(None) };

@@ -1,11 +1,11 @@
-//! Roles that a VRM file states: its humanoid bones.
+//! Roles stated by a VRM file: its humanoid bones.
 
 use crate::container::json::At;
 use serde_json::Value;
 use sinew_anim::JointIdx;
 
-/// VRM 1 bone names with their joints, sorted by joint. Entries without a joint of the scene are left out: bones are
-/// optional in both versions, and some exporters write −1.
+/// Returns VRM 1 bone names with their joints, sorted by joint. Entries without a joint of the scene are omitted:
+/// bones are optional in both versions, and some exporters write −1.
 pub(super) fn stated_roles(root: At<'_>, joint_of_node: &[Option<JointIdx>]) -> Vec<(String, JointIdx)> {
     let Some(extensions) = root.value().get("extensions") else { return Vec::new() };
     let joint = |bone: &Value| {
@@ -30,7 +30,8 @@ pub(super) fn stated_roles(root: At<'_>, joint_of_node: &[Option<JointIdx>]) -> 
     roles
 }
 
-/// VRM 1 renamed the thumb: its first bone is the metacarpal, not the proximal phalanx; all other names are the same.
+/// Converts a VRM 0 bone name. VRM 1 renamed the thumb: its first bone is the metacarpal, not the proximal phalanx;
+/// all other names are the same.
 fn version_1_name(version_0: &str) -> String {
     match version_0 {
         "leftThumbProximal" => "leftThumbMetacarpal",

@@ -12,14 +12,14 @@ const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
-/// A rig made by code, with its clips, as a new GLB. Joint `i` becomes node `i`. Each mesh gets a node after them; a
-/// skinned one is at the root of the scene, where no ancestor transform can affect it. For a rig read from a file use
-/// [`append_clips`](super::append_clips), which preserves the rest of that file.
+/// Writes a rig made by code, with its clips, as a new GLB. Joint `i` becomes node `i`. Each mesh gets a node after
+/// the joints; a skinned mesh is at the root of the scene, where no ancestor's transform can affect it. For a rig
+/// read from a file use [`append_clips`](super::append_clips), which preserves the rest of that file.
 ///
 /// Pictures are not written: a textured surface keeps its base colour.
 ///
 /// # Errors
-/// The file would be over 4 GiB, or a clip has no channels.
+/// If the file would exceed 4 GiB, or a clip has no channels.
 ///
 /// # Panics
 /// If an index of the rig or of a clip is out of range, or a number is not finite.
@@ -27,7 +27,7 @@ pub fn write_gltf(rig: &Rig, clips: &[Clip]) -> Result<Vec<u8>> {
     write_motion(rig, clips, &vec![Vec::new(); clips.len()])
 }
 
-/// [`write_gltf`] with the events of each clip, by clip.
+/// [`write_gltf`] with the events of each clip.
 ///
 /// # Errors
 /// As [`write_gltf`].
@@ -47,7 +47,7 @@ pub fn write_motion(rig: &Rig, clips: &[Clip], events: &[Vec<ClipEvent>]) -> Res
     append_clips(&document, &new.collect::<Vec<_>>())
 }
 
-/// The clip with the joints as the document numbers them, which may have nodes of meshes between them.
+/// Renumbers the joints of a clip as in the document, where nodes of meshes may be between them.
 fn renumbered(clip: &Clip, document: &Document) -> Clip {
     let mut clip = clip.clone();
     for channel in &mut clip.channels {
@@ -119,7 +119,7 @@ fn add_child(node: &mut Value, child: usize) {
     }
 }
 
-/// A file in the making.
+/// Writer of a file: its lists and its binary chunk.
 #[derive(Default)]
 struct Writer {
     bin: Vec<u8>,
@@ -168,7 +168,7 @@ impl Writer {
         json!({"attributes": attributes, "indices": indices, "material": self.materials.len() - 1})
     }
 
-    /// Skin slots of the vertices; 0 where the weight is 0, as §3.7.3.3 requires.
+    /// Writes the skin slots of the vertices; 0 where the weight is 0, as §3.7.3.3 requires.
     fn slots(&mut self, part: &Primitive) -> usize {
         let used = part.joints.iter().zip(&part.weights).flat_map(|(slots, weights)| {
             let used = |k: usize| if weights[k] > 0.0 { slots[k] } else { 0 };
@@ -192,7 +192,7 @@ impl Writer {
         self.push(FLOAT, kind, count, numbers.flat_map(f32::to_le_bytes))
     }
 
-    /// A separate buffer view with an accessor over all of it.
+    /// Adds a buffer view and an accessor for all of its bytes; returns the accessor's index.
     fn push(&mut self, component: u32, kind: &str, count: usize, bytes: impl Iterator<Item = u8>) -> usize {
         let start = self.bin.len();
         self.bin.extend(bytes);
@@ -205,7 +205,7 @@ impl Writer {
     }
 }
 
-/// Column-major 4×4 numbers of an affine map.
+/// Returns the column-major 4×4 numbers of an affine map.
 fn columns(m: &Affine) -> [f32; 16] {
     let (x, y, z, t) = (m.linear.x_axis, m.linear.y_axis, m.linear.z_axis, m.translation);
     [x.x, x.y, x.z, 0.0, y.x, y.y, y.z, 0.0, z.x, z.y, z.z, 0.0, t.x, t.y, t.z, 1.0]

@@ -1,4 +1,4 @@
-//! `SkeletalAnimation` as a clip.
+//! Reads a `SkeletalAnimation` as a clip.
 
 use super::objects::Objects;
 use crate::error::{Error, Result, quoted};
@@ -7,8 +7,8 @@ use sinew_anim::{Channel, Clip, Interpolation, Property, Rig};
 /// Reads an animation of a skeleton: keys of rotation and translation, joint by joint, by the joints' names.
 ///
 /// # Errors
-/// Names the line: no text object file, no animation in it, a joint that the rig does not have or that has two tracks,
-/// a joint without keys, times that do not increase, a non-finite number.
+/// Returns an error that names the line: no text object file, no animation, a joint that the rig lacks or that has two
+/// tracks, a joint without keys, times that do not increase, a non-finite number.
 pub fn read_jolt_animation(bytes: &[u8], rig: &Rig) -> Result<Clip> {
     let objects = Objects::read(bytes)?;
     let Some(animation) = objects.of_class("SkeletalAnimation") else {

@@ -13,7 +13,7 @@ mod shape;
 pub use clip::read_jolt_animation;
 pub use ragdoll::{JoltMotor, JoltRagdoll, read_jolt_ragdoll};
 
-/// True if bytes start like a text object file.
+/// True if the bytes start like a text object file.
 pub(crate) fn is_jolt(bytes: &[u8]) -> bool {
     bytes.starts_with(b"TOS ")
 }

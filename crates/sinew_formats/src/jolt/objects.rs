@@ -12,15 +12,15 @@ use crate::error::{Error, Result, quoted};
 use sinew_math::{Rotation, Vec3};
 use std::collections::BTreeMap;
 
-/// Indentation of the elements of an array beyond that of the array, in characters.
+/// Indentation of the elements of an array relative to the array, in characters.
 const STEP: usize = 2;
-/// Objects within objects.
+/// Deepest nesting of objects.
 const DEEPEST: usize = 16;
 
 /// Type of a member.
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
-    /// Numbers on a line, this many.
+    /// This many numbers on a line.
     Numbers(usize),
     /// A number or a truth value.
     Word,
@@ -39,14 +39,14 @@ enum Value {
     Object(Object),
 }
 
-/// A value and its first line.
+/// A value and the number of its first line.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct At {
     line: usize,
     value: Value,
 }
 
-/// Members by name.
+/// Members of an object, by name.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Object {
     pub class: String,
@@ -101,12 +101,12 @@ impl Objects {
         Ok(objects)
     }
 
-    /// The first object of a class, by number.
+    /// Returns the object of a class with the smallest id.
     pub fn of_class(&self, class: &str) -> Option<&Object> {
         self.by_id.values().find(|object| object.class == class)
     }
 
-    /// The object that a member references or contains; `None` if it references none.
+    /// Returns the object that a member references or contains; `None` if it references none.
     pub fn follow<'a>(&'a self, at: &'a At) -> Result<Option<&'a Object>> {
         match &at.value {
             Value::Object(object) => Ok(Some(object)),
@@ -119,21 +119,21 @@ impl Objects {
         }
     }
 
-    /// The object that a member is or names; it must be or name one.
+    /// Returns the object that a member references or contains; fails if there is none.
     pub fn need<'a>(&'a self, at: &'a At) -> Result<&'a Object> {
         self.follow(at)?.ok_or_else(|| at.malformed("names no object"))
     }
 }
 
 impl Object {
-    /// A member.
+    /// Returns a required member.
     pub fn member(&self, name: &str) -> Result<&At> {
         self.members
             .get(name)
             .ok_or_else(|| self.malformed(format!("a {} without {}", quoted(&self.class), quoted(name))))
     }
 
-    /// A member that newer or older files may lack.
+    /// Returns a member that newer or older files may lack.
     pub fn get(&self, name: &str) -> Option<&At> {
         self.members.get(name)
     }
@@ -152,7 +152,7 @@ impl At {
         Error::malformed(what, place(self.line))
     }
 
-    /// An inline object.
+    /// Returns the value as an inline object.
     pub fn object(&self) -> Option<&Object> {
         match &self.value {
             Value::Object(object) => Some(object),
@@ -160,7 +160,7 @@ impl At {
         }
     }
 
-    /// A finite number.
+    /// Returns the value as a finite number.
     pub fn number(&self) -> Result<f32> {
         let Value::Word(word) = &self.value else { return Err(self.malformed("not a number")) };
         match word.parse::<f32>() {
@@ -169,7 +169,7 @@ impl At {
         }
     }
 
-    /// A whole number.
+    /// Returns the value as a whole number.
     pub fn count(&self) -> Result<u32> {
         let Value::Word(word) = &self.value else { return Err(self.malformed("not a number")) };
         word.parse().map_err(|_| self.malformed(format!("{} is not a whole number", quoted(word))))
@@ -189,7 +189,7 @@ impl At {
         }
     }
 
-    /// A unit quaternion, x y z w; normalised on reading.
+    /// Returns the value as a rotation from a unit quaternion, x y z w; normalised on reading.
     pub fn rotation(&self) -> Result<Rotation> {
         match &self.value {
             Value::Numbers(n) if n.len() == 4 => {
@@ -211,7 +211,7 @@ impl At {
     }
 }
 
-/// Eight hexadecimal digits.
+/// Parses an id: eight hexadecimal digits.
 fn identifier(word: &str) -> Option<u32> {
     (word.len() == 8).then(|| u32::from_str_radix(word, 16).ok()).flatten()
 }
@@ -263,7 +263,7 @@ struct Values<'a, 'b> {
 }
 
 impl Values<'_, '_> {
-    /// The members of an object, whose lines have indentation `level`.
+    /// Reads the members of an object, whose lines have indentation `level`.
     fn object(&mut self, class: &str, line: usize, level: usize, depth: usize) -> Result<Object> {
         let Some(members) = self.classes.get(class) else {
             let what = format!("an object of class {}, which is not declared before", quoted(class));
@@ -322,7 +322,7 @@ impl Values<'_, '_> {
             let before = self.lines.line;
             list.push(self.value(inner, level + STEP, depth)?);
             if self.lines.line == before {
-                // Otherwise a few bytes could request any amount of memory.
+                // Without this check, a few bytes could request any amount of memory.
                 return Err(Error::malformed("elements of an array without a line", place(number)));
             }
         }
@@ -347,7 +347,7 @@ impl Values<'_, '_> {
     }
 }
 
-/// Lines that are not empty.
+/// Iterator over lines that are not empty.
 struct Lines<'a> {
     all: core::iter::Enumerate<core::str::Lines<'a>>,
     ahead: Option<(usize, &'a str)>,

@@ -1,4 +1,4 @@
-//! `RagdollSettings` as a rig and a ragdoll.
+//! Reads `RagdollSettings` as a rig and a ragdoll.
 
 use super::objects::{At, Object, Objects};
 use super::shape::Solid;
@@ -11,20 +11,20 @@ use sinew_ragdoll::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 /// Settings of a joint's motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JoltMotor {
-    /// Hz.
+    /// Frequency, Hz.
     pub hertz: f32,
-    /// 1 is critical.
+    /// Damping ratio; 1 is critical.
     pub damping_ratio: f32,
-    /// N·m, infinite without a cap.
+    /// Largest torque, N·m; infinite without a limit.
     pub max_torque: f32,
 }
 
 /// A ragdoll of Jolt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JoltRagdoll {
-    /// Skeleton, resting where the ragdoll's parts are. It has no skin.
+    /// Skeleton without skin; its rest pose is that of the ragdoll's parts.
     pub rig: Rig,
-    /// Body by body as the skeleton's joints.
+    /// Ragdoll with one body for each joint of the skeleton, in the same order.
     pub def: RagdollDef,
     /// Swing motor of each body's joint to its parent; `None` for the root.
     pub motors: Vec<Option<JoltMotor>>,
@@ -33,12 +33,12 @@ pub struct JoltRagdoll {
 /// Reads a ragdoll: its skeleton, one solid per body, joints with swing and twist limits, friction and motors, and the
 /// pairs that collide.
 ///
-/// Jolt's swing limit is an ellipse in quaternion space, ours in angle space: they agree on both axes, and within a few
-/// per cent elsewhere. A part's mass follows from its shape and density, or is given.
+/// Jolt's swing limit is an ellipse in quaternion space, ours in angle space: they are equal on both axes, and within a
+/// few per cent elsewhere. A part's mass is given, or follows from its shape and density.
 ///
 /// # Errors
-/// Names the line: no text object file, no ragdoll in it, a part that does not follow its parent, a number that is not
-/// finite or out of range; a shape or joint of another class, or mass given with inertia, is not supported.
+/// Returns an error that names the line: no text object file, no ragdoll, a part before its parent, a number that is
+/// not finite or out of range. Other classes of shapes and joints, and mass given with inertia, are not supported.
 pub fn read_jolt_ragdoll(bytes: &[u8]) -> Result<JoltRagdoll> {
     let objects = Objects::read(bytes)?;
     let Some(settings) = objects.of_class("RagdollSettings") else {
@@ -63,7 +63,7 @@ struct Read {
     rig: Rig,
     def: RagdollDef,
     motors: Vec<Option<JoltMotor>>,
-    /// Model space.
+    /// Transform of each part, model space.
     model_from_part: Vec<Transform>,
     model_from_body: Vec<Transform>,
 }
@@ -120,8 +120,8 @@ impl Read {
         Ok(())
     }
 
-    /// A swing-twist constraint: x is its twist axis, z its plane axis, y their normal. The cone's half-angle in the
-    /// plane is that of the swing about y (Jolt, `SwingTwistConstraint::UpdateLimits`).
+    /// Converts a swing-twist constraint: x is its twist axis, z its plane axis, y their normal. The cone's half-angle
+    /// in the plane is that of the swing about y (Jolt, `SwingTwistConstraint::UpdateLimits`).
     fn constraint(
         &self,
         objects: &Objects,
@@ -131,7 +131,7 @@ impl Read {
         if c.class != "SwingTwistConstraintSettings" {
             return Err(c.unsupported(format!("a joint of class {}", quoted(&c.class))));
         }
-        // Absent in older files, then and with 1 in the world's axes.
+        // The member is absent in older files; frames are then in world axes, as with the value 1.
         if let Some(space) = c.get("mSpace")
             && space.count()? != 1
         {
@@ -178,7 +178,7 @@ impl Read {
         Ok((def, motor))
     }
 
-    /// Pairs that the table of collision groups disables: one bit per pair, row by row of its lower triangle.
+    /// Disables the pairs that the table of collision groups disables: one bit per pair, row by row of the lower triangle.
     fn filter(&mut self, objects: &Objects, parts: &[At]) -> Result<()> {
         let mut groups = Vec::new();
         for part in parts {
@@ -209,7 +209,7 @@ impl Read {
         Ok(())
     }
 
-    /// Roles and facing, as far as the skeleton identifies them, and sums.
+    /// Sets roles and facing, as far as the skeleton shows them, and the sums of the ragdoll.
     fn finish(mut self) -> JoltRagdoll {
         let def = &mut self.def;
         let mut turn = Transform::IDENTITY;
@@ -265,10 +265,10 @@ fn mass(part: &Object, solid: &Solid) -> Result<sinew_physics::MassProperties> {
     Ok(mass)
 }
 
-/// `None` for a motor without strength.
+/// Reads a motor; `None` for a motor without strength.
 fn motor(objects: &Objects, at: &At) -> Result<Option<JoltMotor>> {
     let settings = objects.need(at)?;
-    // Newer files nest the spring.
+    // In newer files the spring is a nested object.
     let spring = settings.get("mSpringSettings").map(|at| objects.need(at)).transpose()?.unwrap_or(settings);
     let number = |object: &Object, name: &str| object.member(name)?.number();
     let (hertz, damping_ratio) = (number(spring, "mFrequency")?, number(spring, "mDamping")?);

@@ -1,4 +1,4 @@
-//! Jolt shapes: one or several solids per body, each with an offset.
+//! Reads Jolt shapes: one or several solids per body, each with an offset.
 
 use super::objects::{Object, Objects};
 use crate::error::{Result, quoted};
@@ -6,11 +6,11 @@ use sinew_math::{Transform, Vec3, trig};
 use sinew_physics::{Hull, MassProperties, Shape};
 use std::sync::Arc;
 
-/// Shapes within shapes, and solids of a body.
+/// Deepest nesting of shapes, and largest number of solids of a body.
 const DEEPEST: usize = 8;
 const MOST: usize = 64;
 
-/// A body's solid.
+/// A solid of a body.
 pub(super) struct Solid {
     pub shape: Shape,
     pub part_from_shape: Transform,
@@ -20,7 +20,7 @@ pub(super) struct Solid {
 
 impl Solid {
     /// Reads a shape: a sphere, box, capsule or tapered capsule, with or without an offset. A compound collides as its
-    /// convex hull, and each of its solids has its own mass.
+    /// convex hull; its mass is the sum over its solids.
     pub fn read(objects: &Objects, object: &Object) -> Result<Self> {
         let mut solids = Vec::new();
         collect(objects, object, Transform::IDENTITY, DEEPEST, &mut solids)?;
@@ -46,7 +46,7 @@ impl Solid {
     }
 }
 
-/// All solids of a shape, in the axes of its part.
+/// Collects all solids of a shape, in the axes of its part.
 fn collect(
     objects: &Objects,
     object: &Object,
@@ -113,7 +113,7 @@ fn primitive(object: &Object) -> Result<Shape> {
     })
 }
 
-/// Sample points on a solid: corners of a box, else rings on the balls at both ends.
+/// Returns sample points on a solid: corners of a box, else rings on the balls at both ends.
 fn outline(shape: &Shape) -> Vec<Vec3> {
     const AROUND: usize = 8;
     let balls = match *shape {

@@ -1,4 +1,4 @@
-//! The tree of bodies.
+//! Reads the tree of bodies.
 
 use super::compiler::{Compiler, InertiaFrom, ORIENTATIONS, y_up};
 use super::defaults::{Classes, Kind, MAIN};
@@ -11,28 +11,29 @@ use sinew_math::{Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{BodyDef, BodyKind, MassProperties, Shape};
 use std::collections::BTreeMap;
 
-/// Most bodies of a model: those of the largest joint tree. Pairs of bodies grow with the square.
+/// Most bodies of a model: those of the largest joint tree. The number of pairs grows with the square of this
+/// number.
 pub(crate) const MOST_BODIES: usize = 1024;
 
 /// A body of the file with its position in the tree.
 pub(super) struct Link<'a> {
     pub name: String,
     pub element: Element<'a>,
-    /// Index of the parent body; the world's body has its own index.
+    /// Index of the parent body; the world is its own parent.
     pub parent: usize,
-    /// The body, itself or above, up to which nothing moves: 0 for the world.
+    /// Nearest body, this one or an ancestor, that is not fixed to its parent: 0 for the world.
     pub weld: usize,
     pub freedom: Freedom,
     pub def: BodyDef,
 }
 
-/// All bodies, parents before children, the world first.
+/// All bodies, parents before children; the first is the world.
 pub(super) struct Tree<'a> {
     pub links: Vec<Link<'a>>,
     by_name: BTreeMap<&'a str, usize>,
 }
 
-/// Settings, classes and notes with which a document is read.
+/// Settings and default classes for reading a document, and its notes.
 pub(super) struct Reading<'a, 'n> {
     pub compiler: Compiler,
     pub classes: Classes<'a>,
@@ -48,7 +49,7 @@ struct Contents<'a> {
 }
 
 impl<'a> Tree<'a> {
-    /// Tree of a document: the content of its `<worldbody>` elements.
+    /// Reads the tree of a document: the content of its `<worldbody>` elements.
     pub fn read(root: Element<'a>, reading: &mut Reading<'a, '_>) -> Result<Self> {
         let mut tree = Self { links: vec![world(root)], by_name: BTreeMap::from([("world", 0)]) };
         // Uses an explicit stack instead of recursion, so that a deep file cannot overflow the call stack.
@@ -81,7 +82,7 @@ impl<'a> Tree<'a> {
         Ok(tree)
     }
 
-    /// The body that an attribute names.
+    /// Returns the body that an attribute names.
     pub fn named_by(&self, element: Element<'a>, key: &str) -> Result<usize> {
         let name =
             Value::of(element, key).ok_or_else(|| malformed(element, format!("`{key}` is missing")))?;
@@ -136,7 +137,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// Body 0: static.
+/// Returns body 0, the static world.
 fn world(root: Element<'_>) -> Link<'_> {
     let def = BodyDef { kind: BodyKind::Static, ..BodyDef::default() };
     Link { name: "world".to_owned(), element: root, parent: 0, weld: 0, freedom: Freedom::Welded, def }
@@ -172,7 +173,7 @@ impl<'a> Reading<'a, '_> {
         Ok(contents)
     }
 
-    /// Frame of a body or of an inertia in the frame around it.
+    /// Returns the frame of a body or of an inertia relative to the enclosing frame.
     fn pose(&self, element: Element<'a>) -> Result<Transform> {
         let position = Value::of(element, "pos").map_or(Ok([0.0; 3]), Value::numbers)?;
         let turned: Vec<_> = ORIENTATIONS.iter().filter_map(|key| Value::of(element, key)).collect();
@@ -196,12 +197,12 @@ impl<'a> Reading<'a, '_> {
                 [xx, yy, zz, 0.0, 0.0, 0.0]
             }
         };
-        // Convert to our axes: our y is the file's z, our z its −y.
+        // Converts to our axes: our y is the file's z, our z the file's −y.
         let inertia = Sym3 { diagonal: Vec3::new(xx, zz, yy), off: Vec3::new(-yz, -xy, xz) };
         Ok(MassProperties { mass, center: Vec3::ZERO, inertia }.transformed(&self.pose(element)?))
     }
 
-    /// Mass of a body that forces move.
+    /// Returns the mass of a dynamic body.
     fn mass(&self, element: Element<'a>, contents: &Contents<'a>) -> Result<MassProperties> {
         let given = contents.inertial.filter(|_| self.compiler.inertia != InertiaFrom::Geoms);
         let mass = match given {
@@ -224,7 +225,7 @@ impl<'a> Reading<'a, '_> {
     }
 }
 
-/// Checks that a solid body can have such a mass and inertia.
+/// Checks that a solid body can have this mass and inertia.
 pub(crate) fn check_mass(mass: &MassProperties) -> core::result::Result<(), &'static str> {
     let moments = mass.inertia.eigen().0;
     // This form rejects NaN.

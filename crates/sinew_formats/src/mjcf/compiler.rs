@@ -1,16 +1,16 @@
-//! Settings of a model: how its angles, rotations and masses are meant; and from its axes to ours.
+//! Settings for the angles, rotations and masses of a model, and conversion from its axes to ours.
 
 use super::notes::Notes;
 use super::xml::{Element, Value, children};
 use crate::error::Result;
 use sinew_math::{Mat3, Rotation, Vec3};
 
-/// Settings by which the numbers of a file are read.
+/// Settings for reading the numbers of a file.
 pub(super) struct Compiler {
     angle: Angle,
     /// Axes of Euler angles in the file's frame, intrinsic or extrinsic.
     euler: [(Vec3, Axes); 3],
-    /// Rule by which a joint or geom with a range is limited without saying so.
+    /// Rule that decides if a joint or geom with a range is limited when the file does not state it.
     pub limits: Limits,
     pub inertia: InertiaFrom,
 }
@@ -21,7 +21,7 @@ enum Angle {
     Radians,
 }
 
-/// Axes of Euler angles.
+/// Axes of Euler angles: moving or fixed.
 #[derive(Clone, Copy)]
 enum Axes {
     /// Intrinsic: the axes rotate with the preceding rotations.
@@ -29,7 +29,7 @@ enum Axes {
     Fixed,
 }
 
-/// Rule that decides if a joint with a range is limited when it does not say so.
+/// Rule that decides if a joint with a range is limited when the file does not state it.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Limits {
     ByRange,
@@ -49,7 +49,7 @@ const IGNORED: [&str; 5] =
     ["boundmass", "boundinertia", "settotalmass", "balanceinertia", "inertiagrouprange"];
 
 impl Compiler {
-    /// Settings of a document: its `<compiler>` elements, the last of which wins.
+    /// Reads the settings of a document from its `<compiler>` elements; the last one wins.
     pub fn read(root: Element<'_>, notes: &mut Notes) -> Result<Self> {
         let mut compiler = Self {
             angle: Angle::Degrees,
@@ -93,7 +93,7 @@ impl Compiler {
         Ok(())
     }
 
-    /// An angle of the file in radians.
+    /// Converts an angle of the file to radians.
     pub fn radians(&self, angle: f32) -> f32 {
         match self.angle {
             Angle::Degrees => angle.to_radians(),
@@ -101,7 +101,7 @@ impl Compiler {
         }
     }
 
-    /// A rotation of the file, by one of [`ORIENTATIONS`], in our axes.
+    /// Reads a rotation of the file, given by one of [`ORIENTATIONS`], in our axes.
     pub fn rotation(&self, value: Value<'_>) -> Result<Rotation> {
         let rotation = match value.key() {
             "quat" => quaternion(value, value.numbers()?)?,
@@ -155,7 +155,7 @@ fn euler_sequence(value: Value<'_>) -> Result<[(Vec3, Axes); 3]> {
     axes.ok_or_else(|| value.malformed("takes three letters, each one of xyzXYZ"))
 }
 
-/// A quaternion (w, x, y, z) of any length but 0, in the file's axes.
+/// Reads a quaternion (w, x, y, z) of any length but 0, in the file's axes.
 pub(super) fn quaternion(value: Value<'_>, [w, x, y, z]: [f32; 4]) -> Result<Rotation> {
     let rotation = Rotation::from_xyzw(x, y, z, w);
     if rotation.dot(rotation) < 1e-12 {
@@ -164,7 +164,7 @@ pub(super) fn quaternion(value: Value<'_>, [w, x, y, z]: [f32; 4]) -> Result<Rot
     Ok(rotation.normalize())
 }
 
-/// A non-zero vector, normalised, in the file's axes.
+/// Normalises a vector that is not zero, in the file's axes.
 pub(super) fn direction(value: Value<'_>, vector: [f32; 3]) -> Result<Vec3> {
     let vector = Vec3::from_array(vector);
     let length = vector.length();
@@ -180,7 +180,7 @@ pub(super) fn y_up(v: Vec3) -> Vec3 {
     Vec3::new(v.x, v.z, -v.y)
 }
 
-/// A rotation converted to our axes.
+/// Converts a rotation to our axes.
 pub(super) fn turn_y_up(r: Rotation) -> Rotation {
     Rotation::from_xyzw(r.x, r.z, -r.y, r.w)
 }

@@ -14,13 +14,13 @@ pub(super) enum Kind {
     Joint,
 }
 
-/// All classes, the outermost first.
+/// All classes; the first is the outermost.
 pub(super) struct Classes<'a> {
     list: Vec<Class<'a>>,
     by_name: BTreeMap<&'a str, usize>,
 }
 
-/// Defaults that a class itself states; the rest is its parent's.
+/// Defaults stated by a class itself; other defaults are those of its parent.
 #[derive(Default)]
 struct Class<'a> {
     parent: Option<usize>,
@@ -33,7 +33,7 @@ struct Class<'a> {
 pub(super) const MAIN: usize = 0;
 
 impl<'a> Classes<'a> {
-    /// Classes of a document: all its `<default>` elements.
+    /// Reads the classes of a document from all its `<default>` elements.
     pub fn read(root: Element<'a>) -> Result<Self> {
         let mut classes = Self { list: vec![Class::default()], by_name: BTreeMap::from([("main", MAIN)]) };
         for (_, element) in children(root).filter(|(tag, _)| *tag == "default") {
@@ -45,8 +45,8 @@ impl<'a> Classes<'a> {
         Ok(classes)
     }
 
-    /// An outermost `<default>` and its descendants. Uses an explicit stack instead of recursion, so that a deep file
-    /// cannot overflow the call stack.
+    /// Reads an outermost `<default>` and its descendants. Uses an explicit stack instead of recursion, so that a
+    /// deep file cannot overflow the call stack.
     fn read_nested(&mut self, outermost: Element<'a>) -> Result<()> {
         let mut open = vec![(outermost, MAIN)];
         while let Some((element, index)) = open.pop() {
@@ -57,7 +57,7 @@ impl<'a> Classes<'a> {
                     "geom" => class.geom.extend(entries),
                     "joint" => class.joint.extend(entries),
                     "default" => open.push((child, self.add(child, index)?)),
-                    // Defaults of elements that are not read.
+                    // Defaults of elements that this module does not read.
                     _ => {}
                 }
             }
@@ -79,14 +79,15 @@ impl<'a> Classes<'a> {
         Ok(index)
     }
 
-    /// The class that an attribute names, or `otherwise` without it.
+    /// Returns the class that an attribute names, or `otherwise` without the attribute.
     pub fn named_by(&self, element: Element<'a>, key: &str, otherwise: usize) -> Result<usize> {
         let Some(value) = Value::of(element, key) else { return Ok(otherwise) };
         let found = self.by_name.get(value.text()).copied();
         found.ok_or_else(|| value.malformed(format!("no class {}", quoted(value.text()))))
     }
 
-    /// An element with the defaults of its class: its own class, or that of the bodies around it.
+    /// Returns an element with the defaults of its class: its own class, or the one inherited from the bodies around
+    /// it.
     pub fn merge(&self, element: Element<'a>, kind: Kind, inherited: usize) -> Result<Merged<'a, '_>> {
         let class = self.named_by(element, "class", inherited)?;
         Ok(Merged { element, kind, class, classes: self })
@@ -103,15 +104,15 @@ pub(super) struct Merged<'a, 'c> {
 }
 
 impl<'a> Merged<'a, '_> {
-    /// The attribute, from the element or else from the innermost class that has it.
+    /// Returns the attribute of the element, else that of the innermost class that has it.
     pub fn get(&self, key: &str) -> Option<Value<'a>> {
         Value::of(self.element, key).or_else(|| self.defaults().find_map(|table| table.get(key).copied()))
     }
 
-    /// The attribute of these that the element has, else the one that the innermost class has.
+    /// Returns the one of these attributes that the element has, else the one that the innermost class has.
     ///
     /// # Errors
-    /// Two of them at the same level: only one can apply.
+    /// If two of them are at the same level, because only one can apply.
     pub fn get_one(&self, keys: &[&str]) -> Result<Option<Value<'a>>> {
         let of_element = keys.iter().filter_map(|key| Value::of(self.element, key)).collect();
         let mut levels = core::iter::once(of_element)
@@ -124,7 +125,7 @@ impl<'a> Merged<'a, '_> {
         }
     }
 
-    /// Attributes of the class and of those around it, innermost first.
+    /// Iterates over the attributes of the class and of the classes around it, innermost first.
     fn defaults(&self) -> impl Iterator<Item = &BTreeMap<&'a str, Value<'a>>> {
         let classes = &self.classes.list;
         core::iter::successors(Some(&classes[self.class]), |class| {

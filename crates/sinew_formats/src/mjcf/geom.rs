@@ -1,4 +1,4 @@
-//! Geoms: shapes of a body, with their share of its mass.
+//! Geoms: shapes of a body, with their part of its mass.
 
 use super::compiler::{Compiler, ORIENTATIONS, y_up};
 use super::defaults::Merged;
@@ -10,13 +10,13 @@ use sinew_physics::{Filter, MassProperties, Material, Shape, ShapeDef};
 
 /// A geom in the frame of its body.
 pub(super) struct Geom {
-    /// `None` for a visual geom of an unsupported type.
+    /// Shape; `None` for a visual geom of an unsupported type.
     pub shape: Option<ShapeDef>,
-    /// `None` if unknown.
+    /// Mass; `None` if unknown.
     pub mass: Option<MassProperties>,
 }
 
-/// A segment that a geom is laid along.
+/// Segment along which a geom is placed.
 struct Segment {
     body_from_shape: Transform,
     half_length: f32,
@@ -24,11 +24,11 @@ struct Segment {
 
 const UNREAD: [&str; 5] = ["solimp", "margin", "gap", "priority", "solmix"];
 
-/// Motion that friction resists according to `condim`, as far as it is supported.
+/// Motions that friction resists, by `condim`, as far as they are supported.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Resists {
     Sliding,
-    /// The third number of `friction` counts too.
+    /// Also rolling: the third number of `friction` counts.
     Rolling,
     Other,
 }
@@ -107,7 +107,7 @@ fn read_shape(geom: &Merged<'_, '_>, kind: &str, segment: Option<&Segment>) -> R
         "sphere" => Shape::Sphere { radius: number(0)? },
         "capsule" => Shape::Capsule { radius: number(0)?, half_height: along(1)? },
         "cylinder" => Shape::Cylinder { radius: number(0)?, half_height: along(1)? },
-        // The file's z is our y. Along a segment a box is square.
+        // The file's z is our y. A box along a segment is square.
         _ if segment.is_some() => Shape::Box { half_extents: Vec3::new(number(0)?, along(2)?, number(0)?) },
         _ => Shape::Box { half_extents: Vec3::new(number(0)?, number(2)?, number(1)?) },
     };
@@ -115,7 +115,7 @@ fn read_shape(geom: &Merged<'_, '_>, kind: &str, segment: Option<&Segment>) -> R
     Ok(shape)
 }
 
-/// kg/m³, from the mass if that is given.
+/// Returns the density, kg/m³, computed from the mass if the mass is given.
 fn read_density(geom: &Merged<'_, '_>, shape: &Shape) -> Result<f32> {
     let volume = shape.volume();
     match geom.get("mass") {
@@ -124,7 +124,7 @@ fn read_density(geom: &Merged<'_, '_>, shape: &Shape) -> Result<f32> {
     }
 }
 
-/// Sliding friction and, if the file enables it, rolling friction; bounce from `solref`.
+/// Reads sliding friction and, if the file enables it, rolling friction; restitution from `solref`.
 fn read_material(geom: &Merged<'_, '_>, notes: &mut Notes) -> Result<Material> {
     let friction = geom.get("friction").map_or(Ok(vec![1.0]), Value::list)?;
     if friction.iter().any(|&coefficient| coefficient < 0.0) {
@@ -146,9 +146,9 @@ fn read_material(geom: &Merged<'_, '_>, notes: &mut Notes) -> Result<Material> {
     })
 }
 
-/// Half a period of the damped spring that `solref` makes of a contact: a point that arrives with 1 m/s leaves with
-/// `exp(−πζ/√(1 − ζ²))`, or zero if the damping ratio ζ is 1 or more. Two positive numbers are time constant and ζ, two
-/// negative ones stiffness `k` and damping `b` per mass, with `ζ = b/(2√k)`.
+/// Computes the restitution of the damped spring that `solref` makes of a contact, over half a period: a point that
+/// arrives with 1 m/s leaves with `exp(−πζ/√(1 − ζ²))`, or zero if the damping ratio ζ is 1 or more. Two positive
+/// numbers are time constant and ζ; two negative ones are stiffness `k` and damping `b` per mass, with `ζ = b/(2√k)`.
 fn read_restitution(solref: Value<'_>) -> Result<f32> {
     let (first, second) = match solref.list()?[..] {
         [] => return Ok(0.0),
@@ -164,9 +164,9 @@ fn read_restitution(solref: Value<'_>) -> Result<f32> {
     Ok(sinew_math::trig::exp(-core::f32::consts::PI * share))
 }
 
-/// Two geoms collide if either's `contype` shares a bit with the other's `conaffinity`; our two filters must both
-/// agree. Each filter therefore keeps one word in the lower half and the other in the upper: what one side tests in one
-/// half, the other tests in the other half.
+/// Reads the filter. In MuJoCo two geoms collide if either's `contype` shares a bit with the other's `conaffinity`; our
+/// two filters must both agree. Each filter therefore has one word in the lower half and the other in the upper half,
+/// so that one side tests in one half, and the other in the other half.
 fn read_filter(geom: &Merged<'_, '_>) -> Result<Filter> {
     let bits = |key: &str| match geom.get(key) {
         None => Ok(1),

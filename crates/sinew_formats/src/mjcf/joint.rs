@@ -11,9 +11,9 @@ use sinew_physics::{AxisMotion, JointKind, SixDof, Softness, Spring};
 
 /// Joints between a body and its parent.
 pub(super) enum Freedom {
-    /// None: the body is fixed to its parent.
+    /// No motion: the body is fixed to its parent.
     Welded,
-    /// All: it has no parent.
+    /// Free motion: the body has no joint to a parent.
     Free,
     /// A `<joint type="ball">`.
     Ball(Pivot),
@@ -29,28 +29,28 @@ pub(super) struct Pivot {
     anchor: Vec3,
     /// Unit axis of the joint.
     axis: Vec3,
-    /// Relative to the file's pose; `None`: unlimited.
+    /// Range relative to the file's pose; `None`: unlimited.
     range: Option<Range>,
     /// Coordinate in the pose of the file.
     reference: f32,
-    /// Coordinate at which its spring rests, from the pose of the file.
+    /// Coordinate at which the joint's spring rests, relative to the file's pose.
     spring_rest: f32,
     stiffness: f32,
     damping: f32,
-    /// N·m or N.
+    /// Largest friction torque or force, N·m or N.
     friction: f32,
 }
 
-/// Quantity that the numbers of a joint measure.
+/// Quantity in which the numbers of a joint are given.
 #[derive(Clone, Copy, PartialEq)]
 enum Measure {
     Angle,
     Length,
 }
 
-/// Cosine of the angle between hinges that count as perpendicular: within 6°.
+/// Largest cosine of the angle between hinges that count as perpendicular: within 6°.
 const NEARLY_PERPENDICULAR: f32 = 0.1;
-/// Anchors farther apart get a note, metres.
+/// Distance of anchors above which the reader adds a note, metres.
 const SAME_ANCHOR: f32 = 1e-3;
 
 const UNREAD: [(&str, &str); 4] = [
@@ -61,7 +61,7 @@ const UNREAD: [(&str, &str); 4] = [
 ];
 
 impl Freedom {
-    /// Adds a `<joint>` to the body's joints so far.
+    /// Adds a `<joint>` to the joints that the body has so far.
     pub fn and_joint(self, joint: &Merged<'_, '_>, compiler: &Compiler, notes: &mut Notes) -> Result<Self> {
         let kind = joint.get("type").map_or("hinge", Value::text);
         let mut read = |measure| Pivot::read(joint, measure, compiler, notes);
@@ -82,7 +82,7 @@ impl Freedom {
         }
     }
 
-    /// Names of its joints, if any.
+    /// Returns the names of the body's joints, joined by `+`; `None` if it has none.
     pub fn name(&self) -> Option<String> {
         match self {
             Self::Welded | Self::Free => None,
@@ -94,7 +94,7 @@ impl Freedom {
         }
     }
 
-    /// Numbers of coordinates of the body relative to its parent.
+    /// Number of coordinates of the body relative to its parent.
     pub fn coordinates(&self) -> usize {
         match self {
             Self::Welded => 0,
@@ -105,8 +105,8 @@ impl Freedom {
         }
     }
 
-    /// Displacement of a body that has a joint from the pose of the file at the `coordinates` that `value` holds; in the
-    /// body's axes, about its anchor.
+    /// Returns the displacement from the file's pose at `coordinates`, the numbers in `value`, for a body with a joint;
+    /// in the body's axes, about the joint's anchor.
     pub fn motion(&self, coordinates: &[f32], value: Value<'_>) -> Result<Transform> {
         Ok(match (self, coordinates) {
             (Self::Ball(_), &[w, x, y, z]) => {
@@ -124,7 +124,7 @@ impl Freedom {
     }
 }
 
-/// MuJoCo applies a body's hinges in order, each in the axes left by the previous ones.
+/// Rotation of a body by its hinges. MuJoCo applies them in order, each in the axes left by the previous ones.
 fn turned<'a>(hinges: impl Iterator<Item = (&'a Pivot, f32)>) -> Rotation {
     hinges
         .fold(Rotation::IDENTITY, |turn, (hinge, angle)| turn * Rotation::from_axis_angle(hinge.axis, angle))
@@ -189,19 +189,19 @@ fn read_range(joint: &Merged<'_, '_>, limits: Limits) -> Result<Option<[f32; 2]>
     Ok(limited.then_some([lo, hi]))
 }
 
-/// The same range of angles with its centre within ±π.
+/// Shifts a range of angles by whole turns so that its centre is within ±π.
 fn whole_turns_off(range: Range) -> Range {
     let turns = (range.center() / (2.0 * PI)).round() * (2.0 * PI);
     Range::new(range.lo - turns, range.hi - turns)
 }
 
-/// The joint of a freedom, in the body's frame.
+/// Joint of a body, in the body's frame.
 pub(super) struct BodyJoint {
     /// Joint frame in the body's frame.
     pub frame: Transform,
     pub kind: JointKind,
     pub spring: Option<Spring>,
-    /// N·m or N.
+    /// Largest friction torque or force, N·m or N.
     pub friction: f32,
 }
 
@@ -221,7 +221,7 @@ impl BodyJoint {
         Self { frame, kind: JointKind::Ball { limit }, spring, friction: ball.friction }
     }
 
-    /// Joint of a slide.
+    /// Joint of a slide, along its axis.
     pub fn of_slide(slide: &Pivot) -> Self {
         let frame = Transform::new(slide.anchor, Rotation::from_arc(Vec3::X, slide.axis));
         let rest = Transform::from_translation(Vec3::X * slide.spring_rest);
@@ -229,7 +229,7 @@ impl BodyJoint {
         Self { frame, kind: JointKind::Slider { limit: slide.range }, spring, friction: slide.friction }
     }
 
-    /// Joint of one to three perpendicular hinges, the first next to the parent.
+    /// Joint of one to three perpendicular hinges, of which the first is nearest to the parent.
     ///
     /// The body rotates by `R₁ R₂ R₃`. With the **last** hinge's axis as x, the last hinge is exactly the twist. With
     /// two hinges the first one is exactly the swing. With three, `R₁ R₂` is a swing about both other axes and, to
@@ -277,7 +277,7 @@ fn within(range: Option<Range>) -> AxisMotion {
     range.map_or(AxisMotion::Free, AxisMotion::Limited)
 }
 
-/// The range of a hinge as a swing: at most half a turn each way, and containing 0.
+/// Converts the range of a hinge to a swing range: at most half a turn each way, and including 0.
 fn swing(hinge: &Pivot, range: Range, notes: &mut Notes) -> Range {
     if range.lo > 0.0 || range.hi < 0.0 {
         let name = quoted(&hinge.name);
@@ -286,7 +286,7 @@ fn swing(hinge: &Pivot, range: Range, notes: &mut Notes) -> Range {
     Range::new(clamp(range.lo, -PI, 0.0), clamp(range.hi, 0.0, PI))
 }
 
-/// The softest spring of a body's joints: no direction is stiffer than in the file.
+/// Returns the softest spring of a body's joints, so that no direction is stiffer than in the file.
 fn softest_spring(pivots: &[Pivot], rest: Transform) -> Option<Spring> {
     let least = |of: fn(&Pivot) -> f32| pivots.iter().map(of).reduce(min).unwrap_or_default();
     let (stiffness, damping) = (least(|pivot| pivot.stiffness), least(|pivot| pivot.damping));
@@ -299,7 +299,7 @@ fn names(hinges: &[Pivot]) -> String {
     names.join(" and ")
 }
 
-/// Axes of the joint in the body's frame: x along the last hinge, y along the first of several.
+/// Returns the axes of the joint in the body's frame: x along the last hinge, y along the first of several.
 fn joint_axes(hinges: &[Pivot], element: Element<'_>) -> Result<Rotation> {
     let [first, .., last] = hinges else {
         let one = hinges.first();
@@ -315,7 +315,7 @@ fn joint_axes(hinges: &[Pivot], element: Element<'_>) -> Result<Rotation> {
     Ok(Rotation::from_mat3(&Mat3::from_cols(x, y, x.cross(y))).normalize())
 }
 
-/// The common pivot of the body, in its frame.
+/// Returns the mean anchor of the hinges, in the body's frame.
 fn shared_anchor(hinges: &[Pivot], notes: &mut Notes) -> Vec3 {
     let sum: Vec3 = hinges.iter().map(|hinge| hinge.anchor).sum();
     let apart = hinges.iter().map(|hinge| (hinge.anchor - hinges[0].anchor).length()).fold(0.0, max);

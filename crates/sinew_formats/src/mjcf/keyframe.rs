@@ -8,7 +8,7 @@ use super::{MjcfJoint, MjcfKeyframe};
 use crate::error::Result;
 use sinew_math::{Transform, Vec3};
 
-/// Keyframes of a document.
+/// Reads the keyframes of a document.
 pub(super) fn read(root: Element<'_>, tree: &Tree<'_>, joints: &[MjcfJoint]) -> Result<Vec<MjcfKeyframe>> {
     let keys = children(root)
         .filter(|(tag, _)| *tag == "keyframe")

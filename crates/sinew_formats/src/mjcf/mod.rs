@@ -1,12 +1,13 @@
 //! Reads robot and body models in MuJoCo's format MJCF: the subset for rigid bodies and joints.
 //!
-//! What is read: bodies with their poses (`pos`, and `quat`, `axisangle`, `euler`, `xyaxes` or `zaxis`), geoms of type
-//! plane, sphere, capsule and box (`size`, `fromto`, `density`, `mass`, `friction` of sliding and, with `condim` 6, of rolling,
-//! bounce by the damping ratio of `solref`, `contype`, `conaffinity`), `<inertial>`, hinges, slides and ball joints (`range`, `ref`, `stiffness`, `springref`, `damping`, `frictionloss`),
+//! The reader supports bodies with their poses (`pos`, and `quat`, `axisangle`, `euler`, `xyaxes` or `zaxis`), geoms of
+//! type plane, sphere, capsule and box (`size`, `fromto`, `density`, `mass`, `friction` of sliding and, with `condim`
+//! 6, of rolling, restitution by the damping ratio of `solref`, `contype`, `conaffinity`), `<inertial>`, hinges, slides
+//! and ball joints (`range`, `ref`, `stiffness`, `springref`, `damping`, `frictionloss`),
 //! free joints, `childclass` and default classes, `<exclude>`, keyframes, and of `<compiler>`: `angle`, `eulerseq`,
 //! `autolimits`, `inertiafromgeom`. Metres, kilograms; the file's z up becomes our y up, its x stays x.
 //!
-//! Features without a counterpart are left out with a note in [`MjcfModel::notes`]: rotor inertia of joints, actuators,
+//! Features without a counterpart are omitted with a note in [`MjcfModel::notes`]: rotor inertia of joints, actuators,
 //! sensors, tendons, equalities, softness of contacts and limits. Features that would change the bodies are errors:
 //! included files, colliding meshes, slides together with hinges, `<frame>`, `<replicate>`.
 //!
@@ -64,9 +65,9 @@ use xml::{Element, Value, children, malformed, unsupported};
 pub struct MjcfModel {
     /// Name of the model, or `""`.
     pub name: String,
-    /// m/s², world axes. `spawn` does not set it.
+    /// Gravity, m/s², world axes. `spawn` does not set it.
     pub gravity: Vec3,
-    /// Parents before children; the first, named `world`, is static and has the shapes that never move.
+    /// Bodies, parents before children; the first, named `world`, is static and has the shapes that never move.
     pub bodies: Vec<MjcfBody>,
     /// Joints in the order of their children.
     pub joints: Vec<MjcfJoint>,
@@ -83,14 +84,14 @@ pub struct MjcfModel {
 pub struct MjcfBody {
     /// Name in the file, or `""`.
     pub name: String,
-    /// Body in the pose of the file. A dynamic body's mass is given; `user_data` is its index.
+    /// Definition of the body in the pose of the file. A dynamic body's mass is given; `user_data` is its index.
     pub def: BodyDef,
 }
 
 /// A joint of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MjcfJoint {
-    /// Names of the file's joints it was made from, joined by `+`; for a weld, the body's name.
+    /// Names of the file's joints that were combined, joined by `+`; for a weld, the body's name.
     pub name: String,
     /// Index of the body that is nearer to the world.
     pub parent: usize,
@@ -100,13 +101,13 @@ pub struct MjcfJoint {
     pub frame_a: Transform,
     /// Joint frame in the child's frame.
     pub frame_b: Transform,
-    /// Kind of the joint: the motion that is free.
+    /// Kind of the joint, which states the free motions.
     pub kind: JointKind,
-    /// The softest of its hinges': the least stiffness and the least damping.
+    /// Spring with the smallest stiffness and the smallest damping of its hinges; `None` if both are 0.
     pub spring: Option<Spring>,
-    /// N·m or N, the largest `frictionloss` of its hinges.
+    /// Friction torque or force, N·m or N: the largest `frictionloss` of its hinges.
     pub friction_torque: f32,
-    /// Collision of parent and child: only if nothing moves the parent.
+    /// Collision of parent and child; on only if the parent never moves.
     pub collision: JointCollision,
 }
 
@@ -121,7 +122,7 @@ pub struct MjcfKeyframe {
     pub moved: Vec<(usize, Transform)>,
 }
 
-/// A model in a world.
+/// Ids of a model that was added to a world.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MjcfInstance {
     /// Bodies in the order of the model.
@@ -133,9 +134,9 @@ pub struct MjcfInstance {
 /// Reads an MJCF file.
 ///
 /// # Errors
-/// Names line and column: text that is not XML; elements, attributes and values that the format does not allow there;
-/// unsupported features that would change the model; moving bodies without mass; more than 4 MiB, 1,024 bodies or 32
-/// nested default classes.
+/// Returns an error that names line and column: text that is not XML; elements, attributes and values that the format
+/// does not allow there; unsupported features that would change the model; moving bodies without mass; more than 4 MiB,
+/// 1,024 bodies or 32 nested default classes.
 pub fn read_mjcf(bytes: &[u8]) -> Result<MjcfModel> {
     let document = xml::parse(bytes)?;
     let root = document.root_element();
@@ -157,7 +158,8 @@ pub fn read_mjcf(bytes: &[u8]) -> Result<MjcfModel> {
     Ok(MjcfModel { name, gravity, bodies, joints, excluded_pairs, keyframes, notes: notes.into_sentences() })
 }
 
-/// Reads a model of bodies and joints in any of the formats that hold one: MJCF, URDF, or the physics of a glTF, by what is in the file.
+/// Reads a model of bodies and joints as MJCF, URDF, or the physics of a glTF; the content of the file determines the
+/// format.
 ///
 /// # Errors
 /// As [`read_mjcf`], [`read_urdf`](crate::read_urdf) and [`read_physics_gltf`](crate::read_physics_gltf).
@@ -170,7 +172,7 @@ pub fn read_model(bytes: &[u8]) -> Result<MjcfModel> {
     if place(b"<robot") < place(b"<mujoco") { crate::read_urdf(bytes) } else { read_mjcf(bytes) }
 }
 
-/// Refuses sections that are not of the format, and notes those that are not read.
+/// Rejects sections that are not part of the format, and notes sections that are not read.
 fn check_sections(root: Element<'_>, notes: &mut Notes) -> Result<()> {
     for (tag, section) in children(root) {
         let what = match tag {
@@ -197,7 +199,7 @@ fn read_gravity(root: Element<'_>) -> Result<Vec3> {
     Ok(y_up(Vec3::from_array(said.map_or(Ok([0.0, 0.0, -9.81]), Value::numbers)?)))
 }
 
-/// Joints between moving bodies and their parents.
+/// Returns the joints between moving bodies and their parents.
 fn read_joints(tree: &Tree<'_>, notes: &mut Notes) -> Result<Vec<MjcfJoint>> {
     let mut joints = Vec::new();
     for (child, link) in tree.links.iter().enumerate() {
@@ -230,8 +232,8 @@ fn read_joints(tree: &Tree<'_>, notes: &mut Notes) -> Result<Vec<MjcfJoint>> {
     Ok(joints)
 }
 
-/// Pairs that do not collide: those listed in `<exclude>`, and those that MuJoCo excludes itself: parts fixed to each
-/// other, and groups jointed to each other. A joint excludes its own pair.
+/// Returns the pairs that do not collide: those listed in `<exclude>`, and those that MuJoCo excludes itself, which are
+/// parts fixed to each other and groups jointed to each other. A joint excludes its own pair.
 fn excluded_pairs(root: Element<'_>, tree: &Tree<'_>, notes: &mut Notes) -> Result<Vec<(usize, usize)>> {
     let mut pairs = Vec::new();
     let contacts = children(root).filter(|(tag, _)| *tag == "contact");
@@ -268,17 +270,17 @@ impl MjcfModel {
         self.bodies.iter().position(|body| body.name == name)
     }
 
-    /// The keyframe of that name.
+    /// Returns the keyframe of that name.
     pub fn keyframe(&self, name: &str) -> Option<&MjcfKeyframe> {
         self.keyframes.iter().find(|keyframe| keyframe.name == name)
     }
 
-    /// World poses of all bodies in the pose of the file.
+    /// Returns the world poses of all bodies in the pose of the file.
     pub fn rest_pose(&self) -> Vec<Transform> {
         self.bodies.iter().map(|body| Transform::new(body.def.position, body.def.rotation)).collect()
     }
 
-    /// World poses of all bodies in a keyframe: joints are satisfied, but a limit may be exceeded.
+    /// Returns the world poses of all bodies in a keyframe: joints are satisfied, but limits may be exceeded.
     ///
     /// # Panics
     /// If the keyframe belongs to another model.
@@ -299,7 +301,7 @@ impl MjcfModel {
         pose
     }
 
-    /// Puts the model into a world, in the pose of the file.
+    /// Adds the model to a world, in the pose of the file.
     pub fn spawn(&self, world: &mut World) -> MjcfInstance {
         self.spawn_at(world, &self.rest_pose())
     }

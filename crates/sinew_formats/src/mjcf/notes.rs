@@ -1,13 +1,13 @@
-//! Notes on what a reader leaves out or changes.
+//! Notes on content that a reader omits or changes.
 
-/// Collects notes, each once with its count: memory does not grow with the file.
+/// Collects notes, each with its count, so that memory does not grow with the file.
 #[derive(Default)]
 pub(crate) struct Notes {
     left_out: Vec<(&'static str, usize)>,
     changed: Vec<String>,
 }
 
-/// Most sentences about single joints.
+/// Largest number of sentences about single joints.
 const MOST_CHANGES: usize = 64;
 
 impl Notes {
@@ -26,7 +26,7 @@ impl Notes {
         }
     }
 
-    /// One sentence each.
+    /// Returns the notes, one sentence each.
     pub fn into_sentences(self) -> Vec<String> {
         let left_out = self.left_out.into_iter().map(|(what, count)| format!("left out: {what} ({count})"));
         self.changed.into_iter().chain(left_out).collect()

@@ -1,4 +1,4 @@
-//! A model as a ragdoll: one shape per body, joints that only rotate.
+//! Converts a model to a ragdoll: one shape per body, joints that only rotate.
 
 use super::{MjcfJoint, MjcfModel};
 use crate::error::{Error, Result, quoted};
@@ -15,23 +15,23 @@ const FLESH: f32 = 1000.0;
 /// A character of an MJCF file as a ragdoll.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MjcfRagdoll {
-    /// In character space: the model's x is forward (+Z), its lowest point at y = 0. `joint` of a body is its index in
-    /// the model; roles are read from its name.
+    /// Ragdoll in character space: the model's x is forward (+Z), its lowest point at y = 0. `joint` of a body is its
+    /// index in the model; roles are derived from its name.
     pub def: RagdollDef,
-    /// Springs of the joints, by joint.
+    /// Spring of each joint.
     pub springs: Vec<Option<Softness>>,
     /// Notes on changes, one sentence each.
     pub notes: Vec<String>,
 }
 
 impl MjcfModel {
-    /// The model's first tree of moving bodies as a ragdoll.
+    /// Converts the model's first tree of moving bodies to a ragdoll.
     ///
-    /// A body with several shapes gets their convex hull, one without a shape a ball of its mass; two hinges become a
-    /// universal joint, whose range is an ellipse instead of a rectangle.
+    /// Several shapes of a body become their convex hull; a body without a shape gets a ball of its mass. Two hinges
+    /// become a universal joint, whose range is an ellipse instead of a rectangle.
     ///
     /// # Errors
-    /// If nothing in the model moves, a joint slides or is a rod, or a body has no name.
+    /// If no body of the model moves, a joint slides or is a rod, or a body has no name.
     pub fn to_ragdoll(&self) -> Result<MjcfRagdoll> {
         let root = self.bodies.iter().position(|body| body.def.kind == BodyKind::Dynamic);
         let root =
@@ -96,13 +96,13 @@ impl MjcfModel {
             character_from_model: lifted * ahead * upright,
         };
         let springs = joints.iter().map(|joint| joint.spring.map(|spring| spring.softness));
-        // A spring without stiffness is a damper.
+        // A spring without stiffness is only a damper.
         let springs = springs
             .map(|softness| softness.filter(|s| !matches!(s, Softness::Stiffness { stiffness: 0.0, .. })));
         Ok(MjcfRagdoll { def, springs: springs.collect(), notes })
     }
 
-    /// The shape of a body, and its frame in the body's.
+    /// Returns the shape of a body, and the shape's frame in the body's frame.
     fn one_shape(&self, body: usize, notes: &mut Vec<String>) -> Result<(Shape, Transform)> {
         let MjcfBodyShapes { name, shapes, mass } = MjcfBodyShapes::of(self, body);
         if name.is_empty() {
@@ -139,7 +139,7 @@ impl<'a> MjcfBodyShapes<'a> {
     }
 }
 
-/// Points whose hull is the shape, or inside it by at most 4 % of its radius; in the body's frame.
+/// Returns points whose hull is the shape, or smaller by at most 4 % of its radius; in the body's frame.
 fn outline(shape: &ShapeDef) -> Vec<Vec3> {
     let ball = |center: Vec3, radius: f32| {
         let mut points = Vec::new();
@@ -174,7 +174,7 @@ fn outline(shape: &ShapeDef) -> Vec<Vec3> {
     points.into_iter().map(|p| shape.body_from_shape.point(p)).collect()
 }
 
-/// The kind of joint that a ragdoll has, and its axes in those of the model's joint.
+/// Returns the kind of joint for the ragdoll, and its axes in those of the model's joint.
 fn turning(joint: &MjcfJoint, notes: &mut Vec<String>) -> Result<(JointKind, Transform)> {
     let unsupported = |what: &str| {
         let name = quoted(&joint.name);
@@ -198,14 +198,14 @@ fn turning(joint: &MjcfJoint, notes: &mut Vec<String>) -> Result<(JointKind, Tra
         AxisMotion::Locked => Range::symmetric(0.0),
     };
     notes.push(format!("the two hinges {} became one joint with an elliptic range", quoted(&joint.name)));
-    // The y axis remains the first hinge's; z becomes the last hinge's, which was x.
+    // The y axis remains that of the first hinge; z becomes the axis of the last hinge, which was x.
     let axes = Rotation::from_mat3(&Mat3::from_cols(-Vec3::Z, Vec3::Y, Vec3::X));
     let limit =
         SwingTwistLimit { swing_y: range(swing), swing_z: range(twist), twist: Range::symmetric(0.0) };
     Ok((JointKind::Universal { limit: Some(limit) }, Transform::new(Vec3::ZERO, axes)))
 }
 
-/// The role given by a body's name, else `limb_n_0`.
+/// Returns the role given by a body's name, else `limb_n_0`.
 fn role_of(name: &str, index: usize) -> String {
     let name = name.to_ascii_lowercase();
     let words: Vec<&str> = name.split(|c: char| !c.is_ascii_alphanumeric()).collect();

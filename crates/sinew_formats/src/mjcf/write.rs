@@ -1,4 +1,4 @@
-//! A ragdoll as an MJCF model: bodies in a tree, hinges in ranges.
+//! Writes a ragdoll as an MJCF model: bodies in a tree, hinges with ranges.
 
 use core::fmt::Write as _;
 use sinew_math::{Rotation, Sym3, Transform, Vec3, min};
@@ -6,7 +6,7 @@ use sinew_physics::{JointKind, MassProperties, Shape};
 use sinew_ragdoll::doctor::limit_reach;
 use sinew_ragdoll::{RagdollBodyDef, RagdollDef};
 
-/// A model's text.
+/// Text of a model, with notes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MjcfText {
     /// The file.
@@ -15,12 +15,12 @@ pub struct MjcfText {
     pub notes: Vec<String>,
 }
 
-/// The ragdoll in its bind pose on a plane, facing +x with z up, as MJCF. `name` is that of the model.
+/// Writes the ragdoll in its bind pose on a plane, facing +x with z up, as MJCF. `name` is the name of the model.
 ///
-/// A ball joint becomes three hinges, a universal joint two, each with the range that it has from the bind pose while
-/// the others rest: a box where the ragdoll's limit is an ellipse. Coordinates are 0 in the bind pose, except for
-/// hinges, which keep their own angle (`ref`). Tapered capsules get their mean radius, cones become their cylinder and
-/// hulls their bounding box. Masses and inertias are written unchanged.
+/// A ball joint becomes three hinges, a universal joint two. The range of each is that from the bind pose while the
+/// other hinges are at rest: a box where the ragdoll's limit is an ellipse. Coordinates are 0 in the bind pose, except
+/// for hinge joints, which keep their own angle (`ref`). Tapered capsules get their mean radius, cones become their
+/// cylinder and hulls their bounding box. Masses and inertias are unchanged.
 ///
 /// # Panics
 /// If the joints are not in the order of the bodies, or a number is not finite.
@@ -56,7 +56,7 @@ pub fn write_mjcf(def: &RagdollDef, name: &str) -> MjcfText {
     MjcfText { text: writer.out, notes: writer.notes }
 }
 
-/// Unique names of bodies.
+/// Returns unique names of bodies.
 fn names(def: &RagdollDef) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for body in &def.bodies {
@@ -72,7 +72,7 @@ fn names(def: &RagdollDef) -> Vec<String> {
     names
 }
 
-/// Text escaped for an attribute.
+/// Returns the text escaped for an attribute.
 fn escaped(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
@@ -102,7 +102,7 @@ impl Writer<'_> {
         self.out.push('\n');
     }
 
-    /// A body with its descendants.
+    /// Writes a body with its descendants.
     fn body(&mut self, index: usize, indent: usize) {
         let body = &self.def.bodies[index];
         let joint = index.checked_sub(1).map(|joint| self.def.joints[joint]);
@@ -130,7 +130,7 @@ impl Writer<'_> {
         self.line(indent, "</body>");
     }
 
-    /// Up, until nothing is in the floor: shapes may reach below the soles of the skin.
+    /// Returns the translation upward until no shape is in the floor: shapes may extend below the soles of the skin.
     fn lifted(&self) -> Transform {
         let lowest = |body: &RagdollBodyDef| body.shape.aabb(&body.character_from_body).min.y;
         Transform::from_translation(Vec3::Y * -self.def.bodies.iter().map(lowest).fold(0.0, min))
@@ -164,7 +164,7 @@ impl Writer<'_> {
                 let angle = sinew_math::limits::hinge_angle(bind);
                 vec![hinge("", Vec3::X, limit.map(|range| [range.lo, range.hi]), angle)]
             }
-            // The twist is last: it is then exactly the last hinge.
+            // The twist comes last, so that it is exactly the last hinge.
             JointKind::Ball { limit } => [("_y", Vec3::Y), ("_z", Vec3::Z), ("_x", Vec3::X)]
                 .map(|(suffix, axis)| hinge(suffix, axis, free(axis, limit.is_some()), 0.0))
                 .to_vec(),
@@ -178,7 +178,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The shape; its y is the file's z.
+    /// Writes the shape of a body; its y is the file's z.
     fn geom(&mut self, index: usize) -> String {
         let body = &self.def.bodies[index];
         let mut at = Vec3::ZERO;
@@ -214,12 +214,12 @@ impl Writer<'_> {
     }
 }
 
-/// Converts from the character's axes (+Z forward) to ours of a file (+x forward).
+/// Rotates from the character's axes (+Z forward) to the file's forward (+x), with +Y up.
 fn facing_x() -> Transform {
     Transform::new(Vec3::ZERO, Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_2))
 }
 
-/// Inverse of the reader's rotation from z up to y up.
+/// Converts from y up to z up, the inverse of the reader's rotation.
 fn file_axes(v: Vec3) -> Vec3 {
     Vec3::new(v.x, -v.z, v.y)
 }
@@ -230,8 +230,8 @@ fn pose(at: Transform) -> String {
     format!(" pos=\"{place}\" quat=\"{}\"", numbers(&[r.w, r.x, -r.z, r.y]))
 }
 
-/// The inertia, with its smaller moments slightly increased if rounding has made their sum less than the largest, which
-/// MuJoCo refuses.
+/// Returns the inertia. If rounding made the sum of the smaller moments less than the largest, which MuJoCo rejects,
+/// the smaller moments are slightly increased.
 fn solid(inertia: Sym3) -> Sym3 {
     let (moments, axes) = inertia.eigen();
     let missing = 1.0005 * moments.x - (moments.y + moments.z);
@@ -241,7 +241,7 @@ fn solid(inertia: Sym3) -> Sym3 {
     Sym3::from_rotated_diagonal(axes, moments + Vec3::new(0.0, 0.5 * missing, 0.5 * missing))
 }
 
-/// The inertia in the file's axes: their z is our y, their y our −z.
+/// Writes the inertia in the file's axes: their z is our y, their y our −z.
 fn inertial(mass: &MassProperties) -> String {
     let inertia = solid(mass.inertia);
     let (d, o) = (inertia.diagonal, inertia.off);
@@ -251,10 +251,10 @@ fn inertial(mass: &MassProperties) -> String {
     format!("<inertial pos=\"{center}\" mass=\"{}\" fullinertia=\"{}\"/>", mass.mass, numbers(&full))
 }
 
-/// Numbers as an attribute has them.
+/// Formats numbers for an attribute.
 ///
 /// # Panics
-/// If one is not finite.
+/// If a number is not finite.
 fn numbers(xs: &[f32]) -> String {
     let mut out = String::new();
     for (index, x) in xs.iter().enumerate() {

@@ -1,14 +1,15 @@
-//! Elements and attributes of an XML text, with a place for every error.
+//! Elements and attributes of an XML text, with their places for errors.
 
 use crate::error::{Error, Result, quoted};
 use roxmltree::{Attribute, Document, Node};
 
-/// An element. Shares the lifetime of the document and of the text that it was made from.
+/// An element. Has the lifetime of the document and of its text.
 pub(crate) type Element<'a> = Node<'a, 'a>;
 
-/// Longest text that is read. Models without meshes are far shorter; the XML parser uses about 20 times that in memory.
+/// Largest text that is read, bytes. Models without meshes are far smaller; the XML parser needs about 20 times as much
+/// memory.
 const MOST_BYTES: usize = 4 << 20;
-/// Largest number of attributes per element: the XML parser compares each with each.
+/// Largest number of attributes per element, because the XML parser compares every pair.
 const MOST_ATTRIBUTES: usize = 1000;
 /// Largest number that is read; keeps sums and squares finite.
 const LARGEST: f32 = 1e9;
@@ -24,7 +25,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Document<'_>> {
     if let Some(at) = text.find("xmlns") {
         return Err(Error::unsupported("XML namespaces are not read", line_of(text, at)));
     }
-    // A tag contains no `<`, so the text between two of them holds at most one tag.
+    // A tag contains no `<`, so the text between two `<` has at most one tag.
     for tag in text.split('<') {
         let quotes = tag.bytes().filter(|byte| matches!(byte, b'"' | b'\'')).count();
         if quotes > 2 * MOST_ATTRIBUTES {
@@ -41,7 +42,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Document<'_>> {
     })
 }
 
-/// Another parser's message as part of ours: quotes from the text on one line of limited length.
+/// Converts another parser's message, which may quote the text, to one line of limited length.
 fn one_line(text: &str) -> String {
     text.chars().take(120).map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
@@ -54,7 +55,7 @@ fn position(row: u32, column: u32) -> String {
     format!("line {row} column {column}")
 }
 
-/// Line and column of an element.
+/// Returns line and column of an element.
 pub(crate) fn place(element: Element<'_>) -> String {
     place_at(element, element.range().start)
 }
@@ -64,17 +65,17 @@ fn place_at(element: Element<'_>, byte: usize) -> String {
     position(pos.row, pos.col)
 }
 
-/// The elements directly below one.
+/// Iterates over the child elements, with their tags.
 pub(crate) fn children<'a>(element: Element<'a>) -> impl DoubleEndedIterator<Item = (&'a str, Element<'a>)> {
     element.children().filter(Element::is_element).map(|child| (child.tag_name().name(), child))
 }
 
-/// The element breaks the rules of its format.
+/// Makes an error: the element breaks the rules of its format.
 pub(crate) fn malformed(element: Element<'_>, what: impl Into<String>) -> Error {
     Error::malformed(what, place(element))
 }
 
-/// The element uses an unsupported feature.
+/// Makes an error: the element uses an unsupported feature.
 pub(crate) fn unsupported(element: Element<'_>, what: impl Into<String>) -> Error {
     Error::unsupported(what, place(element))
 }
@@ -91,7 +92,7 @@ impl<'a> Value<'a> {
         Self { element, attribute }
     }
 
-    /// The attribute of that name, if the element has it.
+    /// Returns the attribute of that name, if the element has it.
     pub fn of(element: Element<'a>, key: &str) -> Option<Self> {
         element.attribute_node(key).map(|attribute| Self { element, attribute })
     }
@@ -116,30 +117,30 @@ impl<'a> Value<'a> {
         place_at(self.element, self.attribute.range().start)
     }
 
-    /// Any number of numbers, separated by white space.
+    /// Parses any number of numbers, separated by white space.
     pub fn list(self) -> Result<Vec<f32>> {
         self.text().split_ascii_whitespace().map(|word| self.parse(word)).collect()
     }
 
-    /// Exactly `N` numbers.
+    /// Parses exactly `N` numbers.
     pub fn numbers<const N: usize>(self) -> Result<[f32; N]> {
         let list = self.list()?;
         let count = list.len();
         list.try_into().map_err(|_| self.malformed(format!("takes {N} numbers, not {count}")))
     }
 
-    /// One number.
+    /// Parses one number.
     pub fn number(self) -> Result<f32> {
         Ok(self.numbers::<1>()?[0])
     }
 
-    /// One number, 0 or more.
+    /// Parses one number, 0 or more.
     pub fn not_negative(self) -> Result<f32> {
         let number = self.number()?;
         if number < 0.0 { Err(self.malformed("must not be negative")) } else { Ok(number) }
     }
 
-    /// A word that means one of `meanings`.
+    /// Returns the meaning of the word, which must be one of `meanings`.
     pub fn word<T: Copy>(self, meanings: &[(&str, T)]) -> Result<T> {
         let found = meanings.iter().find(|(word, _)| *word == self.text());
         found.map(|&(_, meaning)| meaning).ok_or_else(|| {

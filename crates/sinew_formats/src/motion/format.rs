@@ -1,4 +1,4 @@
-//! Format of a file, detected from its bytes.
+//! Detects the format of a file from its bytes.
 
 use crate::error::{Error, Result};
 use crate::{container::glb, container::json};
@@ -22,9 +22,9 @@ pub enum MotionFormat {
     Jolt,
 }
 
-/// Description of a file kind that users often pass instead of one with clips.
+/// Describes a kind of file that users often pass instead of a file with clips; `None` for other bytes.
 pub(crate) fn foreign(bytes: &[u8]) -> Option<&'static str> {
-    // Elements after an XML header and comments.
+    // Length of the start of the file in which XML elements are searched, after the header and comments.
     const NEAR: usize = 4096;
     let near = &bytes[..bytes.len().min(NEAR)];
     let has = |element: &[u8]| near.windows(element.len()).any(|window| window == element);
@@ -40,10 +40,10 @@ pub(crate) fn foreign(bytes: &[u8]) -> Option<&'static str> {
 }
 
 impl MotionFormat {
-    /// The format of some bytes.
+    /// Detects the format of bytes.
     ///
     /// # Errors
-    /// They match no known format.
+    /// If the bytes match no known format.
     pub fn of(bytes: &[u8]) -> Result<Self> {
         if glb::is_glb(bytes) {
             return Ok(Self::Glb);
@@ -68,7 +68,7 @@ impl MotionFormat {
         }
     }
 
-    /// The two formats in JSON have no key in common.
+    /// Detects one of the two DeepMimic formats in JSON, which have no key in common, or glTF.
     fn of_json(bytes: &[u8]) -> Result<Self> {
         let root = json::parse(bytes)?;
         Ok(if root.get("Frames").is_some() {

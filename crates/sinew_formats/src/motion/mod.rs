@@ -1,4 +1,5 @@
-//! Any file with clips by one function: glTF, GLB, VRM and VRMA, BVH, DeepMimic, FBX, and the skeleton of a Jolt ragdoll.
+//! Reads any file with clips by one function: glTF, GLB, VRM and VRMA, BVH, DeepMimic, FBX, and the skeleton of a Jolt
+//! ragdoll.
 //!
 //! ```
 //! use sinew_formats::{MotionFormat, MotionOptions, no_files, read_motion, write_gltf};
@@ -27,7 +28,7 @@ use sinew_anim::{Clip, ClipEvent, LocalTransform, Rig};
 pub struct MotionOptions<'a> {
     /// Options for a BVH file.
     pub bvh: BvhOptions,
-    /// Character of a DeepMimic clip, which the clip itself does not name.
+    /// Character of a DeepMimic clip, which the clip does not name.
     pub deepmimic: Option<&'a DeepMimicCharacter>,
     /// Options for a glTF or FBX file.
     pub gltf: ReadOptions,
@@ -38,7 +39,7 @@ pub struct MotionOptions<'a> {
 pub struct MotionFile {
     /// Format of the file.
     pub format: MotionFormat,
-    /// The program that wrote it, or `""`.
+    /// Program that wrote the file, or `""`.
     pub generator: String,
     /// Names of the extensions that a glTF uses.
     pub extensions: Vec<String>,
@@ -50,26 +51,27 @@ pub struct MotionFile {
     pub clips: Vec<Clip>,
     /// Events of each clip, by time: from the file itself, and from the events file next to it.
     pub events: Vec<Vec<ClipEvent>>,
-    /// Seconds from frame to frame, where the file was captured or baked at a rate.
+    /// Seconds from frame to frame, if the file was captured or baked at a fixed rate.
     pub frame_time: Option<f64>,
-    /// Metres per unit of the rig, if the file states it or it is inferred; `None` leaves it to the rig's analysis.
+    /// Metres per unit of the rig, if the file states the unit or it is inferred; with `None` the rig's analysis
+    /// decides.
     pub metres_per_unit: Option<f32>,
-    /// A pose that identifies the body, if the file has one that is not the rig's rest pose: see
+    /// A pose that shows the body, if the file has one in addition to the rig's rest pose: see
     /// [`stand`](sinew_anim::retarget::stand).
     pub rest_pose: Option<Vec<LocalTransform>>,
     /// Notes on assumptions, repairs and omissions, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// Reads any file with clips; the bytes decide the kind. `resolve` returns the files next to a glTF, and the pictures
-/// next to an FBX.
+/// Reads any file with clips; the bytes determine the format. `resolve` returns the files next to a glTF, and the
+/// pictures next to an FBX.
 ///
-/// Formats without clip names leave them empty. A DeepMimic character is a rig without clips, and so is a Jolt ragdoll:
-/// [`read_jolt_animation`](crate::read_jolt_animation) reads its clips.
+/// Formats without clip names leave the names empty. A DeepMimic character is a rig without clips, and so is a Jolt
+/// ragdoll: [`read_jolt_animation`](crate::read_jolt_animation) reads its clips.
 ///
 /// # Errors
-/// Bytes of no known kind, and the errors of the readers ([`read_gltf`], [`read_bvh`], [`read_deepmimic`]); a DeepMimic
-/// clip without its character; an FBX file without the feature `fbx`.
+/// If the bytes are of no known format; as the readers ([`read_gltf`], [`read_bvh`], [`read_deepmimic`]); for a
+/// DeepMimic clip without its character, and an FBX file without the feature `fbx`.
 pub fn read_motion(
     bytes: &[u8],
     options: &MotionOptions<'_>,
@@ -97,7 +99,7 @@ pub fn read_motion(
     }
 }
 
-/// A rig without anything else.
+/// Makes a file that has only a rig.
 fn bare(format: MotionFormat, rig: Rig) -> MotionFile {
     MotionFile {
         format,
@@ -143,7 +145,7 @@ fn of_bvh(bytes: &[u8], options: BvhOptions) -> Result<MotionFile> {
         clips: vec![document.clip],
         events: vec![Vec::new()],
         frame_time: Some(document.frame_time),
-        // The reader has turned the file's units into metres.
+        // The reader has converted the file's units to metres.
         metres_per_unit: Some(1.0),
         rest_pose: document.rest_pose,
         notes: document.notes,

@@ -1,5 +1,6 @@
-//! Physics in glTF files, read as a model of bodies and joints like those of [MJCF](crate::mjcf): `KHR_physics_rigid_bodies` with
-//! `KHR_implicit_shapes` (drafts of October 2025), and `OMI_physics_body`, `OMI_physics_shape` and `OMI_physics_joint`.
+//! Reads physics in glTF files as a model of bodies and joints like those of [MJCF](crate::mjcf):
+//! `KHR_physics_rigid_bodies` with `KHR_implicit_shapes` (drafts of October 2025), and `OMI_physics_body`,
+//! `OMI_physics_shape` and `OMI_physics_joint`.
 //!
 //! The reader supports `motion` (mass, centre, inertia, velocities, gravity factor, static and kinematic bodies), sphere, box, capsule and
 //! cylinder colliders on a body's node or any node below it, friction and restitution of materials, and joints with limits in their six
@@ -36,11 +37,11 @@ use sinew_physics::{
     SixDof,
 };
 
-/// Largest number of nodes in a file: each may have a collider.
+/// Largest number of nodes in a file; each may have a collider.
 const MOST_NODES: usize = 100_000;
 /// Largest coordinate, metres.
 const FARTHEST: f32 = 1e6;
-/// Mass, kg, and moments, kg·m², of a dynamic body with neither mass nor shape: a ball of 20 cm.
+/// Mass, kg, and moments, kg·m², of a dynamic body with neither mass nor shape.
 const UNKNOWN: (f32, f32) = (1.0, 0.016);
 /// Density of bodies without a mass, kg/m³.
 const DENSITY: f32 = 1000.0;
@@ -50,7 +51,7 @@ struct Node<'a> {
     at: At<'a>,
     parent: Option<usize>,
     world: Affine,
-    /// Index of its body; 0 is the world.
+    /// Index of the node's body; 0 is the world.
     body: usize,
 }
 
@@ -109,7 +110,7 @@ fn list<'a>(root: At<'a>, name: &str, key: &str) -> Result<Vec<At<'a>>> {
     extension(root, name)?.map_or(Ok(Vec::new()), |of| of.list(key))
 }
 
-/// The physics extension of a node, of either family.
+/// Returns the physics extension of a node, of either family; `None` without one.
 fn physics(node: At<'_>) -> Result<Option<At<'_>>> {
     Ok(extension(node, "KHR_physics_rigid_bodies")?.or(extension(node, "OMI_physics_body")?))
 }
@@ -133,7 +134,7 @@ fn read_nodes(root: At<'_>) -> Result<Vec<Node<'_>>> {
         }
         below.push(own);
     }
-    // Use a list of open nodes instead of recursion, so that the depth of the file cannot overflow the stack.
+    // Uses a list of open nodes instead of recursion, so that a deep file cannot overflow the stack.
     let mut open: Vec<usize> = (0..nodes.len()).filter(|&node| nodes[node].parent.is_none()).collect();
     let mut seen = 0;
     while let Some(index) = open.pop() {
@@ -176,13 +177,13 @@ fn unit(of: At<'_>, key: &str) -> Result<Rotation> {
     }
 }
 
-/// Position and rotation of a node, without scale.
+/// Returns position and rotation of a node, without scale.
 fn rigid(world: &Affine) -> Transform {
     let place = world.to_rigid();
     Transform::new(place.translation, place.rotation.normalize())
 }
 
-/// The body of a node: its own, or that of the nearest ancestor with one.
+/// Returns the body of a node: its own, or that of the nearest ancestor with one; 0 without one.
 fn body_of(nodes: &[Node<'_>], index: usize) -> usize {
     let above = |&at: &usize| nodes[at].parent;
     core::iter::successors(Some(index), above).map(|at| nodes[at].body).find(|&body| body != 0).unwrap_or(0)
@@ -314,7 +315,7 @@ fn read_shape(of: At<'_>, scale: f32, notes: &mut Notes) -> Result<Option<Shape>
     Ok(Some(shape))
 }
 
-/// Sets the mass of dynamic bodies: that of the file, or computed from their shapes.
+/// Sets the mass of dynamic bodies, given in the file or computed from their shapes.
 fn weigh(nodes: &[Node<'_>], bodies: &mut [MjcfBody]) -> Result<()> {
     for node in nodes.iter().filter(|node| node.body != 0) {
         let body = &mut bodies[node.body].def;
@@ -411,7 +412,7 @@ fn read_joints(
     Ok(joints)
 }
 
-/// Motions in the six directions that a joint's limits allow.
+/// Returns the joint kind that a joint's limits in the six directions allow.
 fn kind_of(settings: At<'_>, notes: &mut Notes) -> Result<JointKind> {
     let (mut linear, mut angular) = ([AxisMotion::Free; 3], [AxisMotion::Free; 3]);
     for limit in settings.list("limits")? {
@@ -461,7 +462,7 @@ fn narrowed(motion: AxisMotion, lo: f32, hi: f32, most: f32) -> Option<AxisMotio
     }
 }
 
-/// The simplest joint with these motions.
+/// Returns the simplest joint with these motions.
 fn simplest(linear: [AxisMotion; 3], angular: [AxisMotion; 3]) -> JointKind {
     use AxisMotion::{Free, Limited, Locked};
     let range = |motion: AxisMotion| match motion {

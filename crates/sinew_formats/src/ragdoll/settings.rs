@@ -1,4 +1,4 @@
-//! Settings of a ragdoll, version 1 (`NAME.ragdoll.json` beside `NAME.glb`): overrides of the build.
+//! Settings of a ragdoll, version 1 (`NAME.ragdoll.json` beside `NAME.glb`), which override the automatic build.
 //!
 //! ```json
 //! {
@@ -102,16 +102,17 @@ const GARMENT_KEYS: [&str; 19] = [
     "backstop",
 ];
 
-/// Largest number of particles of a sheet: each is a joint in the file.
+/// Range of the number of particles of a sheet; each is a joint in the file.
 const SHEET_PARTICLES: core::ops::RangeInclusive<usize> = 4..=4000;
 
 const BONE_KEYS: [&str; 9] =
     ["comment", "role", "body", "shape", "scale", "mass", "type", "limits_deg", "friction_torque"];
 
-/// The settings of a settings file. Bone names are resolved when the settings are applied to a rig.
+/// Reads the settings of a settings file. Bone names are resolved when the settings are applied to a rig.
 ///
 /// # Errors
-/// Names the place: unknown keys, with the nearest known one; values out of range; both a height and a unit.
+/// Returns an error that names the place: unknown keys, with the nearest known one; values out of range; both a height
+/// and a unit.
 pub fn read_ragdoll_settings(bytes: &[u8]) -> Result<Settings> {
     let value = json::parse(bytes)?;
     let root = At::root(&value);
@@ -264,10 +265,10 @@ fn read_garment(at: At<'_>) -> Result<GarmentSettings> {
     })
 }
 
-/// A number within a range, `usual` if absent.
+/// Reads a number within a range; `usual` if absent.
 fn within(at: At<'_>, key: &str, usual: f32, [least, most]: [f32; 2]) -> Result<f32> {
     let Some(at) = at.get(key)? else { return Ok(usual) };
-    // Other messages explain values of 0 and below better.
+    // Other messages are clearer for values of 0 and below.
     let number = if least > 0.0 { at.positive()? } else { at.not_negative()? };
     if number < least || number > most {
         return Err(at.malformed(format!("must lie between {least} and {most}")));
@@ -283,7 +284,7 @@ fn read_backstop(at: At<'_>) -> Result<Backstop> {
     Ok(Backstop { distance, radius })
 }
 
-/// The mesh of a garment; `None` if it is made of chains.
+/// Reads the mesh of a garment; `None` if the garment consists of chains.
 fn read_mesh(at: At<'_>) -> Result<Option<MeshSettings>> {
     let Some(mesh) = at.get("mesh")? else {
         for key in ["held", "most_particles"] {
@@ -333,12 +334,12 @@ fn read_pairs(root: At<'_>, key: &str) -> Result<Vec<[String; 2]>> {
     root.list(key)?.into_iter().map(read).collect()
 }
 
-/// Value of a keyword from a list; `None` if the key is absent.
+/// Reads one of the words in a list; `None` if the key is absent.
 fn word<T: Clone>(at: At<'_>, key: &str, words: &[(&str, T)]) -> Result<Option<T>> {
     at.get(key)?.map(|at| one_of(at, words)).transpose()
 }
 
-/// Meaning of a word of a list.
+/// Returns the meaning of a word in a list.
 fn one_of<T: Clone>(at: At<'_>, words: &[(&str, T)]) -> Result<T> {
     let said = at.str()?;
     let found = words.iter().find(|(word, _)| *word == said).map(|(_, meaning)| meaning.clone());
@@ -348,7 +349,7 @@ fn one_of<T: Clone>(at: At<'_>, words: &[(&str, T)]) -> Result<T> {
     })
 }
 
-/// Refuses keys outside `known`, naming the nearest one.
+/// Rejects keys outside `known`; the error names the nearest known key.
 fn only(at: At<'_>, known: &[&str]) -> Result<()> {
     let object = at.value().as_object().ok_or_else(|| at.malformed("must be an object"))?;
     match object.keys().find(|key| !known.contains(&key.as_str())) {

@@ -43,7 +43,7 @@ use std::collections::BTreeMap;
 
 /// Name of a root link that is fixed.
 const WORLD: &str = "world";
-/// Mass, kg, and moments, kg·m², of a link without inertial data: those of a ball of a gram and a few centimetres.
+/// Mass, kg, and moments, kg·m², of a link without inertial data, such as a frame.
 const FRAME: (f32, f32) = (1e-3, 1e-6);
 
 /// A link of the file.
@@ -59,7 +59,7 @@ struct Joint<'a> {
     name: &'a str,
     parent: usize,
     child: usize,
-    /// The child's frame in the parent's frame, with the joint at zero.
+    /// The child's frame in the parent's frame, at joint position zero.
     parent_from_child: Transform,
     kind: Kind,
     damping: f32,
@@ -68,15 +68,15 @@ struct Joint<'a> {
 
 enum Kind {
     Floating,
-    /// Kind, and the direction in the child of the joint frame's x axis.
+    /// Kind of the joint, and direction of the joint frame's x axis in the child.
     Held(JointKind, Vec3),
 }
 
 /// Reads a URDF file.
 ///
 /// # Errors
-/// Names line and column: invalid XML, or XML that is not URDF; invalid names, numbers and types; unsupported content that would change the
-/// model; more than 4 MiB or 1,024 links.
+/// Returns an error that names line and column: invalid XML, or XML that is not URDF; invalid names, numbers and types;
+/// unsupported content that would change the model; more than 4 MiB or 1,024 links.
 pub fn read_urdf(bytes: &[u8]) -> Result<MjcfModel> {
     // Some programs write the terminating zero byte of a C string to the file.
     let document = xml::parse(bytes.strip_suffix(&[0]).unwrap_or(bytes))?;
@@ -131,7 +131,7 @@ fn need_child<'a>(element: Element<'a>, tag: &str) -> Result<Element<'a>> {
     child(element, tag).ok_or_else(|| malformed(element, format!("<{tag}> is missing")))
 }
 
-/// Pose of `<origin>` in an element; the identity without one.
+/// Reads the pose of `<origin>` in an element; the identity without one.
 fn origin(element: Element<'_>) -> Result<Transform> {
     let Some(origin) = child(element, "origin") else { return Ok(Transform::IDENTITY) };
     let three = |key: &str| Value::of(origin, key).map_or(Ok([0.0; 3]), Value::numbers);
@@ -154,7 +154,7 @@ fn read_link<'a>(element: Element<'a>, name: &'a str, notes: &mut Notes) -> Resu
     Ok(link)
 }
 
-/// Mass of a link in its frame; `None` without `<inertial>`.
+/// Reads the mass of a link in the link's frame; `None` for a mass of 0.
 fn read_inertial(element: Element<'_>, notes: &mut Notes) -> Result<Option<MassProperties>> {
     let mass = need(need_child(element, "mass")?, "value")?.not_negative()?;
     if mass == 0.0 {
@@ -265,7 +265,7 @@ fn read_kind(element: Element<'_>) -> Result<Kind> {
         if lo > hi {
             return Err(malformed(limit, "`lower` is above `upper`"));
         }
-        // A hinge with a range of a full turn or more has no limit.
+        // A hinge with a range of a full turn or more is unlimited.
         Ok((lo > -most || hi < most)
             .then_some(Range { lo: sinew_math::max(lo, -most), hi: sinew_math::min(hi, most) }))
     };
@@ -288,7 +288,7 @@ fn read_kind(element: Element<'_>) -> Result<Kind> {
     Ok(Kind::Held(joint, axis))
 }
 
-/// Links with the joint to their parent, parents before children.
+/// Returns the links with the joint to their parent, parents before children.
 fn ordered<'a>(
     root: Element<'a>,
     links: &[Link<'a>],
@@ -304,7 +304,7 @@ fn ordered<'a>(
     let mut below: Vec<Vec<usize>> = vec![Vec::new(); links.len()];
     joints.iter().for_each(|joint| below[joint.parent].push(joint.child));
     let mut order = Vec::with_capacity(links.len());
-    // Use a list of open links instead of recursion, so that the depth of the file cannot overflow the stack.
+    // Uses a list of open links instead of recursion, so that a deep file cannot overflow the stack.
     let mut open: Vec<usize> = (0..links.len()).rev().filter(|&link| above[link].is_none()).collect();
     while let Some(link) = open.pop() {
         order.push((link, above[link]));
@@ -371,7 +371,7 @@ fn model(
     }
 }
 
-/// The joint between two bodies; `None` for a floating child.
+/// Returns the joint between two bodies; `None` for a floating child.
 fn joined(joint: &Joint<'_>, parent: usize, child: usize) -> Option<MjcfJoint> {
     let Kind::Held(kind, axis) = joint.kind else { return None };
     let frame_b = Transform::new(Vec3::ZERO, Rotation::from_arc(Vec3::X, axis));

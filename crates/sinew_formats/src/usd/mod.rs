@@ -1,4 +1,5 @@
-//! A character, its motion and its ragdoll as a USD text file (`.usda`): UsdSkel for skeleton, skin and animation, UsdPhysics for bodies, joints and limits.
+//! Writes a character, its motion and its ragdoll as a USD text file (`.usda`): UsdSkel for skeleton, skin and
+//! animation, UsdPhysics for bodies, joints and limits.
 //!
 //! Lengths of the stage are in metres, +Y is up, and time codes are frames. `/Character` holds the rig in its file's unit, under a
 //! transform that converts to metres. `/Physics` holds the bodies in the pose of the definition.
@@ -24,12 +25,12 @@ use sinew_physics::{JointKind, Shape};
 use sinew_ragdoll::RagdollDef;
 use std::collections::BTreeSet;
 
-/// A USD file as text, and notes on lost content.
+/// Text of a USD file, with notes on lost content.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UsdText {
     /// The file.
     pub text: String,
-    /// Notes on what is lost, a sentence each.
+    /// Notes on lost content, one sentence each.
     pub notes: Vec<String>,
 }
 
@@ -40,7 +41,7 @@ pub struct UsdInput<'a> {
     pub rig: &'a Rig,
     /// Motion of the rig.
     pub clip: &'a Clip,
-    /// Frames a second, at least 1.
+    /// Frames per second, at least 1.
     pub fps: f32,
     /// Transform from the rig's model space to the world, metres.
     pub world_from_model: Affine,
@@ -122,7 +123,7 @@ fn quaternion(q: Rotation) -> String {
     format!("({}, {}, {}, {})", q.w, q.x, q.y, q.z)
 }
 
-/// Rows in USD's convention: a row vector is multiplied from the left.
+/// Writes a matrix by rows in USD's convention, in which a row vector is multiplied from the left.
 fn matrix(m: &Affine) -> String {
     let row = |v: Vec3, w: u8| format!("({}, {}, {}, {w})", v.x, v.y, v.z);
     let (l, t) = (&m.linear, m.translation);
@@ -361,7 +362,7 @@ impl Writer {
     }
 }
 
-/// Bind pose of each joint in model space: that of its skin, or else the rest pose.
+/// Returns the bind pose of each joint in model space: that of its skin, or else the rest pose.
 fn bind_of(rig: &Rig) -> Vec<Affine> {
     let mut bind = Vec::new();
     local_to_model(rig, &rest_pose(rig), &Affine::IDENTITY, &mut bind);

@@ -1,4 +1,4 @@
-//! A clip written into the user's own file: all old content stays, and the clip reads back equal.
+//! Writes a clip into the user's own file: all old content stays, and the clip reads back equal.
 
 use crate::data::{GLTF, files, shared_data};
 use needs_data::needs_data;
@@ -74,7 +74,7 @@ fn appending_keeps_the_old_file() {
         let clip = motion(&old);
         let extras = json!({"sinew_events": []});
         let bytes = append_clip(&old, &clip, "Moved", Some(extras.clone())).unwrap();
-        // For runs of the Khronos glTF validator over the outputs.
+        // Keeps the outputs for the Khronos glTF validator.
         if let Some(folder) = std::env::var_os("SINEW_KEEP_OUTPUTS") {
             let name = path.file_name().unwrap().to_str().unwrap();
             std::fs::write(std::path::Path::new(&folder).join(format!("{name}.glb")), &bytes).unwrap();
@@ -148,7 +148,7 @@ fn a_clip_without_motion_is_refused_in_one_line() {
     assert_eq!(error.to_string(), "the clip moves nothing: there is no channel to write (animations)");
 }
 
-/// A strip of skin with a morph target, and a weight of it in the mesh.
+/// A strip of skin with a morph target, and the target's weight in the mesh.
 const STRIP: &[u8] = include_bytes!("../../../../fuzz/seeds/gltf/strip_nan_normals.glb");
 
 #[test]

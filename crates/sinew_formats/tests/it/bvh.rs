@@ -18,7 +18,7 @@ fn read(text: &str) -> BvhDocument {
     read_bvh(text.as_bytes(), BvhOptions { unit: BvhUnit::Metres(1.0), ..AS_IT_IS }).unwrap()
 }
 
-/// Returns the error of the reader for a text, or "" if it accepts it.
+/// Returns the error of the reader for a text, or "" if the text is accepted.
 fn complaint(text: &str) -> String {
     read_bvh(text.as_bytes(), AS_IT_IS).err().map(|e| e.to_string()).unwrap_or_default()
 }
@@ -71,7 +71,8 @@ fn channels_rotate_in_file_order() {
     // A quarter turn about z moves the arm from x up to y.
     near(at(0, 1), [5.0, 8.0, 7.0]);
     near(at(0, 2), [5.0, 9.0, 7.0]);
-    // The arm turns about y, then about its new z: its end, along x, goes to y. The hips' turn about x makes that z.
+    // The arm turns about y, then about its new z, which moves its end from x to y. The hips' turn about x moves it
+    // to z.
     near(at(1, 1), [7.0, 6.0, 7.0]);
     near(at(1, 2), [7.0, 6.0, 8.0]);
     assert_eq!((found.frames, found.clip.duration), (2, 0.5));
@@ -195,7 +196,7 @@ fn a_hundred_thousand_nested_joints_are_read_and_written() {
     let again = write_bvh(&found.rig, &found.clip, &options_of(&found)).unwrap();
     assert!(again.text.len() < 300 * DEEP, "{}", again.text.len());
     assert_eq!(read(&again.text).rig.joints.len(), DEEP + 1);
-    // Open braces alone are refused, however many.
+    // Any number of open braces alone is rejected.
     assert!(!complaint(&"HIERARCHY ROOT r {".repeat(DEEP)).is_empty());
 }
 
@@ -245,8 +246,8 @@ fn options_of(document: &BvhDocument) -> BvhWriteOptions<'_> {
     }
 }
 
-/// Largest difference of two motions of one skeleton, frame by frame: radians, metres. In model space, so that a rig
-/// whose joints have other rest axes has the same motion.
+/// Returns the largest difference of two motions of one skeleton over all frames: radians, metres. Compares in model
+/// space, so that rigs whose joints have other rest axes may have the same motion.
 fn difference(a: &BvhDocument, b: &BvhDocument) -> (f32, f32) {
     assert_eq!(a.frames, b.frames);
     let (mut turn, mut shift) = (0.0, 0.0);
@@ -284,7 +285,7 @@ fn every_file_round_trips() {
     }
 }
 
-/// Returns a skeleton and a motion with everything that the format can hold.
+/// Returns a skeleton and a motion with all features of the format.
 fn random_motion(random: &mut Random) -> (Rig, Clip, Vec<Vec<BvhChannel>>) {
     let (joints, frames) = (1 + random.index(12), 1 + random.index(5));
     let (mut rig, mut clip, mut layout) = (Rig::default(), Clip::default(), Vec::new());
@@ -335,7 +336,7 @@ fn random_motions_round_trip() {
         let unit = BvhUnit::Metres(0.01);
         let after = read_bvh(text.as_bytes(), BvhOptions { unit, ..AS_IT_IS })
             .unwrap_or_else(|error| panic!("case {case}: {error}\n{text}"));
-        // Written depth first: joints are found by name.
+        // Joints are written depth first, so they are found by name.
         let place = |i: usize| after.rig.joints.iter().position(|j| j.name == rig.joints[i].name).unwrap();
         for frame in 0..after.frames {
             let mut before = sinew_anim::rest_pose(&rig);
@@ -353,7 +354,7 @@ fn random_motions_round_trip() {
     }
 }
 
-/// Joints of a glTF rig have their own axes at rest; in the file they have the model's.
+/// Joints of a glTF rig have their own rest axes; in the file they have those of the model.
 #[needs_data]
 #[test]
 fn a_rig_with_turned_joints_keeps_its_motion() {
@@ -431,7 +432,7 @@ fn read_and_check(bytes: &[u8]) -> Option<String> {
 fn a_file_cut_anywhere_is_refused() {
     let end = TWO_JOINTS.trim_end().len();
     for length in 0..end {
-        // The last number may lose digits and still be valid.
+        // If only the last number loses digits, the file remains valid.
         assert!(read_and_check(&TWO_JOINTS.as_bytes()[..length]).is_some(), "{length}");
     }
     let data = shared_data();
@@ -451,7 +452,7 @@ fn a_file_cut_anywhere_is_refused() {
     }
 }
 
-/// Random bytes changed: 10,000 cases with `SINEW_FULL` set, otherwise a tenth.
+/// Changes random bytes: 10,000 cases with `SINEW_FULL` set, otherwise a tenth.
 #[test]
 fn mutated_files_do_no_harm() {
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 10_000 } else { 1000 };

@@ -1,10 +1,10 @@
-//! Files that are not part of the repository, where they are present.
+//! Files outside the repository, if they are present.
 
 use sinew_anim::{Channel, Clip, Interpolation, Joint, LocalTransform, Property, Rig};
 use sinew_math::{Rotation, Vec3};
 use std::path::{Path, PathBuf};
 
-/// The folder of test data beside the workspace, for tests with `needs_data`.
+/// Returns the folder of test data beside the workspace, for tests with `needs_data`.
 pub fn shared_data() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"))
 }
@@ -30,7 +30,7 @@ pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
 /// Extensions of glTF and its relatives.
 pub const GLTF: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];
 
-/// Returns three joints in a row, metres apart; the middle one rotates by a right angle in half a second.
+/// Returns three joints in a row, one metre apart; the middle one rotates by a right angle in half a second.
 pub fn bar() -> (Rig, Clip) {
     let joint = |name: &str, parent: Option<usize>, source| {
         let translation = if source == 0 { Vec3::ZERO } else { Vec3::Y };

@@ -16,7 +16,7 @@ fn humanoid() -> DeepMimicCharacter {
     read_deepmimic_character(&bytes("deepmimic_humanoid3d.txt")).unwrap()
 }
 
-/// Heights of all joints at a time, metres.
+/// Returns the heights of all joints at a time, metres.
 fn heights(character: &DeepMimicCharacter, clip: &sinew_anim::Clip, time: f32) -> Vec<f32> {
     let mut pose = rest_pose(&character.rig);
     sample(clip, &character.rig, time, Wrap::Clamp, &mut pose);
@@ -36,7 +36,7 @@ fn clips_are_what_the_manifest_says() {
         let found = read_deepmimic(&bytes(name), &character).unwrap();
         assert_eq!((found.clip.channels[0].times.len(), found.wrap), (frames, wrap), "{name}");
         assert!((found.clip.duration - duration).abs() < 0.01, "{name}: {}", found.clip.duration);
-        // Root: two channels; fixed wrists: none.
+        // The root has two channels, fixed wrists none.
         let turning = character.joints.iter().filter(|joint| **joint != DeepMimicJoint::Fixed).count();
         assert_eq!(found.clip.channels.len(), turning + 1);
         assert!(found.clip.channels.iter().all(|c| c.times.windows(2).all(|w| w[0] < w[1])));
@@ -102,7 +102,7 @@ fn complaints_name_the_place() {
     );
 }
 
-/// Files cut and changed at random places: an error or a clip, never a panic.
+/// Cuts and changes files at random places: the result is an error or a clip, never a panic.
 #[needs_data]
 #[test]
 fn mutated_files_do_no_harm() {

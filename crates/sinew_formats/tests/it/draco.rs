@@ -1,4 +1,4 @@
-//! Meshes compressed by Draco: read within the quantization error; bad streams give errors.
+//! Meshes compressed by Draco: they are read within the quantization error, and bad streams give errors.
 
 use crate::data::shared_data;
 use draco_core::{
@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 use sinew_formats::{Document, ErrorKind, ReadOptions, Result, load_gltf, no_files, read_gltf};
 use sinew_math::{Random, Vec3};
 
-/// Vertices along a side of the sheet.
+/// Number of vertices along a side of the sheet.
 const SIDE: usize = 12;
 
-/// Returns a bent sheet of `SIDE` × `SIDE` vertices bound to two joints.
+/// Returns the position of vertex `i` of a bent sheet of `SIDE` × `SIDE` vertices, bound to two joints.
 fn place(i: usize) -> Vec3 {
     let (x, y) = ((i % SIDE) as f32, (i / SIDE) as f32);
     Vec3::new(x * 0.1, y * 0.1, x * y * 0.01)
@@ -24,7 +24,7 @@ fn triangles() -> Vec<[usize; 3]> {
     quads.flat_map(|i| [[i, i + 1, i + SIDE], [i + 1, i + SIDE + 1, i + SIDE]]).collect()
 }
 
-/// The second joint's weight.
+/// Returns the weight of the second joint.
 fn weight(i: usize) -> f32 {
     (i / SIDE) as f32 / (SIDE - 1) as f32
 }
@@ -110,7 +110,7 @@ fn read(json: &Value, stream: &[u8]) -> Result<Document> {
 
 #[test]
 fn compressed_meshes_round_trip() {
-    // Sequential, edgebreaker.
+    // Sequential and edgebreaker encoding.
     for method in [0, 1] {
         let stream = stream(method);
         let document = read(&file(&stream), &stream).unwrap();
@@ -118,7 +118,7 @@ fn compressed_meshes_round_trip() {
         let mesh = &document.rig.meshes[0];
         let part = &mesh.primitives[0];
         assert_eq!((mesh.skin, part.positions.len()), (Some(0), SIDE * SIDE), "method {method}");
-        // The encoder reorders vertices, so they are matched by position.
+        // The encoder reorders vertices, so they are compared by position.
         let known = |at: Vec3| {
             let i = (0..SIDE * SIDE)
                 .min_by(|&a, &b| (place(a) - at).length().total_cmp(&(place(b) - at).length()));
@@ -182,7 +182,7 @@ fn complaints_about_a_stream_name_its_place() {
     assert_eq!(said, "elements have 3 numbers in the Draco stream, not 4");
     let said = case(&with(|own| own["bufferView"] = 4.into()), &good);
     assert_eq!(said, "index 4 is out of range: there are 1 buffer views");
-    // More triangles in the stream than the file declares, and more in the file than it can hold.
+    // The stream has more triangles than the file declares, or the file declares more than the stream has.
     assert!(
         case(&|json| json["accessors"][0]["count"] = 30.into(), &good)
             .contains("has more than its accessors say")
@@ -191,14 +191,14 @@ fn complaints_about_a_stream_name_its_place() {
     assert_eq!(said, "1333333333 elements are more than the size of the file justifies");
 }
 
-/// A stream whose header claims more than it has is refused without allocating it.
+/// A stream whose header claims more data than it has is rejected without allocating memory for it.
 #[test]
 fn oversized_counts_allocate_nothing() {
     let honest = stream(1);
     let mut random = Random::new(5);
     for case in 0..cases() {
         let mut lying = honest.clone();
-        // The header and the counts after it: numbers of vertices, faces, symbols.
+        // Changes the header and the counts after it: numbers of vertices, faces, symbols.
         for _ in 0..3 {
             let at = 5 + random.index(40.min(lying.len() - 5));
             lying[at] = if random.index(2) == 0 { 0xff } else { random.index(256) as u8 };
@@ -254,7 +254,7 @@ fn the_compressed_rigs_of_shared_are_read() {
         let mesh = document.rig.meshes.iter().find(|mesh| mesh.skin.is_some()).unwrap();
         let part = &mesh.primitives[0];
         assert_eq!((part.positions.len(), part.indices.len() / 3), (vertices, triangles), "{file}");
-        // The file has the bounds of the positions before quantization.
+        // The file has the bounds of the unquantized positions.
         let accessor =
             document.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"].as_u64().unwrap();
         let accessor = &document.json["accessors"][usize::try_from(accessor).unwrap()];
@@ -270,7 +270,7 @@ fn the_compressed_rigs_of_shared_are_read() {
     }
 }
 
-/// Seeds of the fuzzer: a stream of each method after the counts that its file declares.
+/// Seeds of the fuzzer: a stream of each method, after the counts declared by its file.
 #[test]
 fn seeds_of_the_fuzzer_are_whole_files() {
     for (method, name) in [(0, "sequential"), (1, "edgebreaker")] {

@@ -1,4 +1,4 @@
-//! Events beside clips and inside glTF.
+//! Tests of events in files beside clips and inside glTF.
 
 use crate::data::bar;
 use sinew_anim::{Clip, ClipEvent, EventPolicy, FiredBy};

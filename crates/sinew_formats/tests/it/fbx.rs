@@ -1,4 +1,4 @@
-//! FBX: a small text file, against closed forms.
+//! FBX: compares a small text file with closed forms.
 
 use crate::fbx_file::{corners, leg, pictured_leg};
 use sinew_anim::{LocalTransform, Wrap, local_to_model, rest_pose, sample, skin_vertices};
@@ -45,7 +45,7 @@ fn the_thigh_turns_evenly() {
     for k in 0..=20 {
         let time = k as f32 / 20.0;
         let (sin, cos) = trig::sin_cos(core::f32::consts::FRAC_PI_2 * time);
-        // Linear in the angle, like slerp between keys of one axis.
+        // The angle is linear in time, as with slerp between keys about one axis.
         near(pose_at(&file, time)[shank].translation, Vec3::new(0.1, 1.0 - 0.4 * cos, -0.4 * sin));
     }
 }
@@ -66,11 +66,12 @@ fn the_skin_follows_its_bones() {
     for p in &positions {
         assert!(wanted.iter().any(|corner| (*corner - *p).length() < 1e-5), "{p} is no corner of the box");
     }
-    // Faces point outwards: the enclosed volume is that of the box.
+    // Faces point outward: the enclosed volume is that of the box.
     let triangles = part.indices.chunks_exact(3).map(|t| [0, 1, 2].map(|k| positions[t[k] as usize]));
     let volume: f32 = triangles.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
     assert!((volume - 0.1 * 0.1 * 0.8).abs() < 1e-6, "{volume}");
-    // After the rotation about the thigh's joint at (0.1, 1, 0), what was below is behind.
+    // After the rotation about the thigh's joint at (0.1, 1, 0), points that were below the joint are behind
+    // it.
     skin_vertices(rig, 0, 0, &pose_at(&file, 1.0), &mut positions, &mut normals);
     for p in &positions {
         let back = Vec3::new(p.x, 1.0 + p.z, -(p.y - 1.0));
@@ -103,7 +104,7 @@ fn garbage_does_not_panic() {
             bytes[at] = random.index(256) as u8;
         }
         if let Ok(file) = read_fbx(&bytes) {
-            // The result can be used.
+            // All channels refer to existing joints.
             let joints = file.rig.joints.len();
             assert!(file.clips.iter().flat_map(|clip| &clip.channels).all(|channel| channel.joint < joints));
             if joints > 0 {
@@ -127,13 +128,13 @@ fn a_material_has_its_colour_and_its_picture() {
     let png = RED.to_vec();
     let decode = ReadOptions { textures: Textures::Decode };
     let missing = |_: &str| Err(Error::io("no such file"));
-    // In the file.
+    // The picture is in the file.
     let text = pictured_leg(Some(&png), "skin.png");
     let file = read_fbx_with(text.as_bytes(), decode, &mut |path| missing(path)).unwrap();
     let part = &file.rig.meshes[0].primitives[0];
     assert_eq!((part.texture, part.base_color), (Some(0), [1.0; 4]), "{:?}", file.notes);
     assert_eq!(file.rig.textures[0].rgba, [255, 0, 0, 255]);
-    // Beside it; its folder on another machine is ignored.
+    // The picture is beside the file; its folder on another machine is ignored.
     let text = pictured_leg(None, "skin.png");
     let mut asked = Vec::new();
     let mut beside = |path: &str| {
@@ -143,7 +144,7 @@ fn a_material_has_its_colour_and_its_picture() {
     let file = read_fbx_with(text.as_bytes(), decode, &mut beside).unwrap();
     assert_eq!(file.rig.textures.len(), 1, "{:?}", file.notes);
     assert!(asked.iter().all(|path| !path.contains("..") && !path.contains(':')), "{asked:?}");
-    // Missing, broken, or not wanted: the colour stays, and a note names the picture.
+    // The picture is missing, broken, or not requested: the colour stays, and a note names the picture.
     let broken = pictured_leg(Some(&png[..20]), "skin.png");
     for (text, options) in [(&text, decode), (&broken, decode), (&text, ReadOptions::default())] {
         let file = read_fbx_with(text.as_bytes(), options, &mut |path| missing(path)).unwrap();

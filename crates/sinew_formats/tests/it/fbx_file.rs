@@ -1,4 +1,4 @@
-//! A small FBX file as text. The tests of the command line use it too.
+//! A small FBX file as text, also used by the tests of the command line.
 
 use std::fmt::Write as _;
 
@@ -26,7 +26,7 @@ fn limb(id: u32, name: &str, at: [i32; 3]) -> String {
     )
 }
 
-/// Returns a cluster of the corners in `range`, on a limb at `at` without a rotation.
+/// Returns a cluster of the corners in `range`, on a limb at `at` without rotation.
 fn cluster(id: u32, range: core::ops::Range<usize>, at: [f64; 3]) -> String {
     let matrix =
         |[x, y, z]: [f64; 3]| [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0];
@@ -40,8 +40,8 @@ fn cluster(id: u32, range: core::ops::Range<usize>, at: [f64; 3]) -> String {
     )
 }
 
-/// Returns hips at a height of 1 m, a thigh 10 cm beside them and a shank 40 cm below, z up in centimetres. The thigh rotates by 90°
-/// about x within a second; a box is bound to thigh (upper four corners) and shank (lower four).
+/// Returns hips at a height of 1 m, a thigh 10 cm to the side and a shank 40 cm below, z up in centimetres. The thigh
+/// rotates by 90° about x within a second; a box is bound to thigh (upper four corners) and shank (lower four).
 pub fn leg() -> String {
     let mut text = String::from(
         "; FBX 7.4.0 project file\nFBXHeaderExtension: {\n FBXHeaderVersion: 1003\n FBXVersion: 7400\n Creator: \"tests\"\n}\n\
@@ -112,7 +112,8 @@ pub fn leg() -> String {
     text
 }
 
-/// Returns the [`leg`] with a material on its box and a picture: with its bytes in the file, or only its name.
+/// Returns the [`leg`] with a material on its box and a picture, either with the picture's bytes in the file, or only
+/// with its name.
 pub fn pictured_leg(picture: Option<&[u8]>, name: &str) -> String {
     let content = picture.map_or(String::new(), |bytes| format!(" Content: ,\n \"{}\"\n", base64(bytes)));
     let objects = format!(

@@ -1,4 +1,4 @@
-//! Table of every moving file of the test data, compared with `tests/data/moving_files.txt`.
+//! Compares the table of all files with motion in the test data with `tests/data/moving_files.txt`.
 
 use crate::data::{GLTF, files, shared_data};
 use needs_data::needs_data;
@@ -17,7 +17,7 @@ const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/moving_files
 const START: &str = "<!-- made by `cargo test -p sinew_formats formats_table`, with UPDATE_EXPECT=1 -->\n";
 const END: &str = "<!-- end of what is made -->\n";
 
-/// Largest difference of a clip's keys from samples at their times.
+/// Returns the largest difference of a clip's keys from samples at their times.
 fn key_error(rig: &Rig, clip: &Clip) -> f32 {
     let mut worst = 0.0;
     let mut pose = rest_pose(rig);
@@ -33,7 +33,8 @@ fn key_error(rig: &Rig, clip: &Clip) -> f32 {
     worst
 }
 
-/// Largest difference of a sample from a key, component by component; −q equals q, and quaternions are normalized.
+/// Returns the largest difference of a sample from a key over the components; −q equals q, and quaternions are
+/// normalized.
 fn distance(channel: &Channel, found: LocalTransform, key: &[f32]) -> f32 {
     let largest = |off: [f32; 4]| off.into_iter().fold(0.0, |a, b: f32| sinew_math::max(a, b.abs()));
     let vector = |v: sinew_math::Vec3| largest([v.x - key[0], v.y - key[1], v.z - key[2], 0.0]);
@@ -111,7 +112,7 @@ fn clip_rows(out: &mut String, folder: &Path) {
     }
 }
 
-/// Returns the orders of rotations of a file's joints.
+/// Returns the rotation orders of a file's joints.
 fn orders(document: &BvhDocument) -> String {
     let order = |channels: &Vec<BvhChannel>| -> String {
         channels.iter().filter(|channel| channel.is_rotation()).map(|channel| &channel.name()[..1]).collect()
@@ -121,7 +122,7 @@ fn orders(document: &BvhDocument) -> String {
     found.into_iter().collect::<Vec<_>>().join(", ")
 }
 
-/// Largest difference after writing and reading again, radians and metres.
+/// Returns the largest difference after writing and reading again, radians and metres.
 fn round_trip(bytes: &[u8]) -> Result<(f32, f32)> {
     let keep = BvhOptions { rest_frame: RestFrame::Keep, ..BvhOptions::default() };
     let before = read_bvh(bytes, keep)?;

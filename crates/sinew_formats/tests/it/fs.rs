@@ -1,4 +1,4 @@
-//! Files on disk: written whole or not at all, and nothing read outside a glTF's folder.
+//! Tests of files on disk: they are written atomically, and nothing is read outside a glTF's folder.
 
 use sinew_formats::{ErrorKind, ReadOptions, load_gltf, read_bytes, write_all_atomic, write_atomic};
 use std::fs;
@@ -30,7 +30,7 @@ fn a_write_replaces_and_leaves_nothing_beside_it() {
     fs::remove_dir_all(folder).unwrap();
 }
 
-/// A link's target is written, and the link stays; only regular files are replaced.
+/// For a link, the target is written and the link stays; only regular files are replaced.
 #[cfg(unix)]
 #[test]
 fn only_regular_files_are_replaced() {

@@ -1,10 +1,11 @@
-//! Storage forms of vertex data: each is compared with the original numbers.
+//! Compares each storage form of vertex data with the original numbers.
 
 use sinew_anim::{Primitive, Rig};
 use sinew_formats::{ReadOptions, no_files, read_gltf};
 use sinew_math::{Affine, Rotation, Vec3};
 
-/// Returns a one-mesh file: `primitive` without its braces, accessors, views and the bytes of its only buffer in hexadecimal.
+/// Reads a file with one mesh: `primitive` without its braces, accessors, views and the bytes of its only buffer;
+/// returns the primitive.
 fn read(primitive: &str, accessors: &str, views: &str, bytes: &[u8]) -> Primitive {
     let escaped: String = bytes.iter().map(|b| format!("%{b:02x}")).collect();
     let json = format!(
@@ -17,7 +18,7 @@ fn read(primitive: &str, accessors: &str, views: &str, bytes: &[u8]) -> Primitiv
     document.rig.meshes[0].primitives[0].clone()
 }
 
-/// Little-endian bytes of points.
+/// Returns the little-endian bytes of points.
 fn floats(points: &[[f32; 3]]) -> Vec<u8> {
     points.iter().flatten().flat_map(|x| x.to_le_bytes()).collect()
 }
@@ -73,7 +74,7 @@ fn interleaved_and_sparse_positions_are_found() {
     let part = read(r#""attributes":{"POSITION":0}"#, accessor, view, &bytes);
     assert_eq!(part.positions, SQUARE.map(Vec3::from_array));
 
-    // No base: zeros, and one element replaced.
+    // Without a base, all elements are zero except the replaced one.
     let mut bytes = vec![2, 0, 0, 0];
     bytes.extend(floats(&[[7.0, 8.0, 9.0]]));
     let accessor = r#"{"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":1,

@@ -11,7 +11,7 @@ use std::path::Path;
 
 const DECODE: ReadOptions = ReadOptions { textures: Textures::Decode };
 
-/// Returns the error of the reader for a JSON text, or "" if it accepts it.
+/// Returns the error of the reader for a JSON text, or "" if the text is accepted.
 fn complaint(json: &str) -> String {
     read_gltf(json.as_bytes(), DECODE, &mut no_files).err().map(|e| e.to_string()).unwrap_or_default()
 }
@@ -144,7 +144,7 @@ fn complaints_name_the_place() {
     }
 }
 
-/// One mesh placed by very many nodes must not use much memory.
+/// Checks that one mesh placed by very many nodes does not use much memory.
 #[test]
 fn instances_cannot_multiply_memory_without_bound() {
     let bin = vec![0; 1_200_000];
@@ -159,7 +159,7 @@ fn instances_cannot_multiply_memory_without_bound() {
     assert!(error.what.contains("more than the size of the file justifies"), "{error}");
 }
 
-/// Deep chains do not cause deep recursion.
+/// Checks that deep chains of nodes do not cause deep recursion.
 #[test]
 fn a_chain_of_a_hundred_thousand_nodes_is_read() {
     let nodes: Vec<_> = (1..100_000).map(|i| format!(r#"{{"children":[{i}]}}"#)).collect();
@@ -217,7 +217,7 @@ fn valid_files_without_characters_are_read() {
     }
 }
 
-/// Random bytes changed in small rigs: 2,000 cases with `SINEW_FULL` set, otherwise a tenth.
+/// Changes random bytes in small rigs: 2,000 cases with `SINEW_FULL` set, otherwise a tenth.
 #[needs_data]
 #[test]
 fn mutated_rigs_do_no_harm() {
@@ -257,7 +257,8 @@ fn read_as_whatever(bytes: &[u8], path: &Path) {
     }
 }
 
-/// Every file that is not too long, cut at every 64th byte, gives an error or a shorter file, never a panic. Files up to 256 KiB with `SINEW_FULL` set.
+/// Truncates every short file at every 64th byte; the result is an error or a shorter file, never a panic. Files up to
+/// 256 KiB with `SINEW_FULL` set.
 #[test]
 fn truncated_files_give_errors_or_shorter_files() {
     const EXTENSIONS: [&str; 10] = ["glb", "gltf", "vrm", "vrma", "bvh", "fbx", "obj", "xml", "json", "txt"];

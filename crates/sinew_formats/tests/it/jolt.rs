@@ -1,4 +1,4 @@
-//! Ragdolls and animations of Jolt: a small one written here, malicious bytes, and Jolt's own human.
+//! Ragdolls and animations of Jolt: a small file in this module, malicious bytes, and Jolt's own human.
 
 use crate::data::shared_data;
 use needs_data::needs_data;
@@ -9,7 +9,7 @@ use sinew_physics::{BodyDef, JointKind, Shape, World, WorldDef};
 use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
 use sinew_ragdoll::{BodySettings, BodyState, DriveMode, Drives, Muscle, Pin, Ragdoll};
 
-/// Two parts: a ball, and a capsule half a metre above it, with the joint half way between.
+/// Two parts: a ball, and a capsule half a metre above it; the joint is in the middle between them.
 const SMALL: &str = r#"TOS 1.00
 
 declare RagdollSettings 2
@@ -184,7 +184,7 @@ fn a_small_ragdoll_is_read_as_it_is_written() {
     let model_from_character = def.character_from_model.inverse();
     let bodies: Vec<Transform> =
         def.bodies.iter().map(|body| model_from_character * body.character_from_body).collect();
-    // The capsule's own x, 0.25 along, points up.
+    // The capsule's own x axis, along which it is offset by 0.25, points up.
     close(bodies[1].translation, Vec3::Y * 1.75);
     let joint = def.joints[0];
     for (body, frame) in [(bodies[0], joint.frame_parent), (bodies[1], joint.frame_child)] {
@@ -200,7 +200,7 @@ fn a_small_ragdoll_is_read_as_it_is_written() {
     assert_eq!((motor.hertz, motor.damping_ratio, motor.max_torque), (20.0, 2.0, 500.0));
 }
 
-/// An animation of one joint of [`SMALL`].
+/// Returns an animation of one joint of [`SMALL`].
 fn animation(times: [f32; 2]) -> String {
     format!(
         "TOS 1.00\ndeclare SkeletalAnimation 1\n  mAnimatedJoints array instance A\ndeclare A 2\n  mJointName string\n  \
@@ -276,7 +276,7 @@ fn every_prefix_and_every_changed_byte_gives_an_answer() {
     }
 }
 
-/// Jolt's human and one of its clips.
+/// Returns Jolt's human and one of its clips.
 fn human(clip: &str) -> (JoltRagdoll, Clip) {
     let folder = shared_data().join("peers/jolt");
     let ragdoll = read_jolt_ragdoll(&std::fs::read(folder.join("Human.tof")).unwrap()).unwrap();
@@ -303,7 +303,7 @@ fn jolts_human_is_whole() {
     assert_eq!(role("L_Leg_sjnt_1"), Some("leftLowerLeg"));
     assert_eq!(role("R_Arm_sjnt_1"), Some("rightLowerArm"));
     assert!((2.0..4.0).contains(&clip.duration) && clip.channels.len() == 46, "{} s", clip.duration);
-    // At rest its joints' anchors coincide, and no joint is far beyond its limits.
+    // In the rest pose the anchors of each joint coincide, and no joint is far beyond its limits.
     for joint in &def.joints {
         let [a, b] = [(joint.parent, joint.frame_parent), (joint.child, joint.frame_child)]
             .map(|(body, frame)| def.bodies[body].character_from_body * frame);
@@ -314,7 +314,7 @@ fn jolts_human_is_whole() {
     }
 }
 
-/// Model poses of the joints, which have no scale.
+/// Returns the model poses of the joints, which have no scale.
 fn model_poses(rig: &Rig, pose: &[LocalTransform]) -> Vec<Transform> {
     let mut model: Vec<Transform> = Vec::new();
     for (joint, own) in rig.joints.iter().zip(pose) {
@@ -324,7 +324,7 @@ fn model_poses(rig: &Rig, pose: &[LocalTransform]) -> Vec<Transform> {
     model
 }
 
-/// World poses of the bodies in a clip.
+/// World poses of the bodies during a clip.
 struct Stage {
     ragdoll: JoltRagdoll,
     clip: Clip,
@@ -360,8 +360,8 @@ impl Stage {
             .collect()
     }
 
-    /// Root mean square, over joints and over time after the first second, of the angle between a joint and the
-    /// clip, degrees; and the largest mean force of the pins, N.
+    /// Returns the root mean square, over joints and over time after the first second, of the angle between a
+    /// joint and the clip, degrees; and the largest mean force of the pins, N.
     fn track(&self, mode: DriveMode) -> (f32, f32) {
         let def = &self.ragdoll.def;
         let mut world = World::new(WorldDef::default());

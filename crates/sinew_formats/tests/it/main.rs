@@ -1,4 +1,4 @@
-//! Integration tests: real files, hostile files, round trips.
+//! Integration tests with real files, malicious files and round trips.
 
 mod append;
 mod bvh;

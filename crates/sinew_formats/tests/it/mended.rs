@@ -1,4 +1,5 @@
-//! Numbers that are not finite: replaced with a note where they do not matter, refused elsewhere.
+//! Numbers that are not finite: they are replaced with a note where they do not matter, and rejected
+//! elsewhere.
 
 use crate::data::shared_data;
 use needs_data::needs_data;
@@ -8,10 +9,10 @@ use std::fmt::Write as _;
 
 const NAN: f32 = f32::NAN;
 
-/// Two separate triangles, and an unused vertex; each attribute has three, two or four numbers per vertex.
+/// Number of vertices of two separate triangles, with one unused.
 const VERTICES: usize = 7;
 
-/// Returns a file of attributes by name; weights use slots 0 and 1 of a skin of two joints.
+/// Returns a file with attributes by name; weights use slots 0 and 1 of a skin with two joints.
 fn file(attributes: &[(&str, usize, Vec<f32>)]) -> Result<Document> {
     let mut bin: Vec<u8> = Vec::new();
     let (mut views, mut accessors, mut named) = (Vec::new(), Vec::new(), serde_json::Map::new());
@@ -59,7 +60,7 @@ fn positions() -> Vec<f32> {
     (0..VERTICES).flat_map(|i| [i as f32, (i * i) as f32, (i % 3) as f32]).collect()
 }
 
-/// Weight 1 for slot 0 in the first triangle, for slot 1 after it.
+/// Returns weight 1 for slot 0 in the first triangle, for slot 1 after it.
 fn weights() -> Vec<f32> {
     (0..VERTICES).flat_map(|i| if i < 3 { [1.0, 0.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0, 0.0] }).collect()
 }
@@ -99,7 +100,7 @@ fn cosmetic_values_are_replaced_with_a_note() {
 fn nonfinite_weights_come_from_the_nearest_skin() {
     let mut lost = weights();
     lost[20..24].fill(NAN);
-    // One of several weights remains.
+    // One of several weights is not finite; the others remain.
     lost[1] = NAN;
     let document = file(&[("POSITION", 3, positions()), ("WEIGHTS_0", 4, lost)]).unwrap();
     let part = &document.rig.meshes[0].primitives[0];

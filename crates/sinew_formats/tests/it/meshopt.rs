@@ -1,4 +1,4 @@
-//! Compressed and quantized glTF. The encoder here is small and does not optimize.
+//! Tests of compressed and quantized glTF. The encoder of these tests is small and does not optimize.
 
 use crate::meshopt_encoder::{attributes, sequence, triangles};
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use sinew_anim::{Clip, Primitive, Rig};
 use sinew_formats::{Document, ErrorKind, ReadOptions, no_files, read_gltf};
 use sinew_math::{Random, Rotation, Vec3};
 
-/// A glTF under construction: views are compressed, or stored raw.
+/// A glTF that is being written; its views are compressed, or stored raw.
 #[derive(Default)]
 struct File {
     bin: Vec<u8>,
@@ -29,7 +29,7 @@ impl File {
         (self.bin.len() - bytes.len(), bytes.len())
     }
 
-    /// A view over elements of `stride` bytes; `stream` encodes them.
+    /// Adds a view over elements of `stride` bytes; `stream` is its encoded form.
     fn view(&mut self, storage: Storage, plain: &[u8], stride: usize, stream: &Stream) -> usize {
         let count = plain.len() / stride;
         let view = if storage == Storage::Plain {
@@ -68,7 +68,7 @@ const COLUMNS: usize = 20;
 const ROWS: usize = 15;
 const KEYS: usize = 40;
 
-/// Vertices of a wavy sheet as quantized numbers: positions of 16 bits, slots and weights of 8.
+/// Returns the position of a vertex of a wavy sheet, quantized to 16 bits.
 fn place(i: usize) -> [u16; 4] {
     let (x, y) = (i % COLUMNS, i / COLUMNS);
     [(x * 3000) as u16, (y * 4000) as u16, ((x * y * 37) % 500) as u16, 0]
@@ -85,17 +85,17 @@ fn sheet() -> Vec<u32> {
     indices
 }
 
-/// Rotations of the second joint.
+/// Returns the rotation of the second joint at a key.
 fn turn(key: usize) -> Rotation {
     Rotation::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), key as f32 * 0.07 - 1.0)
 }
 
-/// A quaternion as four normalised numbers of 16 bits.
+/// Converts a quaternion to four normalised numbers of 16 bits.
 fn shorts(r: Rotation) -> [i16; 4] {
     [r.x, r.y, r.z, r.w].map(|x| (x * 32767.0).round() as i16)
 }
 
-/// Returns a skinned, quantized sheet with an animation; every view is stored in that encoding.
+/// Returns a skinned, quantized sheet with an animation, with every view in the given encoding.
 fn file(storage: Storage, version: u8) -> (Value, Vec<u8>, Vec<u32>) {
     let mut file = File::default();
     let vertices = COLUMNS * ROWS;
@@ -219,7 +219,7 @@ fn filtered(filter: &'static str, bytes: &[u8], stride: usize, component: u32, k
 #[test]
 fn filters_round_trip() {
     let mut random = Random::new(7);
-    // Quaternions: the three smaller numbers of 15 bits, the largest left out.
+    // Quaternions: the three smaller numbers with 15 bits each; the largest is omitted.
     let turns: Vec<Rotation> = (0..200).map(|_| random.rotation()).collect();
     let encode = |r: &Rotation| {
         let q = [r.x, r.y, r.z, r.w];
@@ -247,7 +247,7 @@ fn filters_round_trip() {
         .map(|&v| (v << 8 >> 8) as f32 * f32::from_bits((((v >> 24) + 127) as u32) << 23));
     let bytes: Vec<u8> = numbers.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect();
     assert_eq!(filtered("EXPONENTIAL", &bytes, 12, 5126, "VEC3"), wanted.collect::<Vec<f32>>());
-    // Unit vectors: the octahedron unfolded onto a square.
+    // Unit vectors, as the unfolded octahedron in a square.
     for bits in [8_u32, 16] {
         let most = f32::from((1_i16 << (bits - 2)) - 1) * 2.0 + 1.0;
         let directions: Vec<Vec3> = (0..200).map(|_| random.direction()).collect();
@@ -283,7 +283,7 @@ fn sequences_and_random_triangles() {
     }
 }
 
-/// Returns the indices of a primitive that are stored so.
+/// Returns the indices of a primitive that are stored in the given mode.
 fn decoded(mode: &'static str, stream: &[u8], count: usize) -> Vec<u32> {
     let mut file = File::default();
     let (offset, length) = file.put(stream);
@@ -326,7 +326,7 @@ fn broken_streams_are_refused() {
             assert!(error.kind == ErrorKind::Malformed && error.where_ == place, "{length}: {error}");
         }
     }
-    // A count that the bytes do not justify is refused before anything is allocated.
+    // A count that the bytes do not justify is rejected before any allocation.
     let mut greedy = root;
     greedy["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["count"] = json!(1_u64 << 40);
     assert!(read(&glb(&greedy, &bin)).unwrap_err().what.contains("justifies"));

@@ -1,4 +1,4 @@
-//! The simplest streams of `EXT_meshopt_compression` that use all of the format.
+//! Writes the simplest streams of `EXT_meshopt_compression` that use all features of the format.
 
 fn zigzag8(d: u8) -> u8 {
     (d << 1) ^ ((d as i8 >> 7) as u8)
@@ -16,7 +16,7 @@ fn varint(mut value: u32, out: &mut Vec<u8>) {
     out.push(value as u8);
 }
 
-/// 16 numbers in so many bits.
+/// Writes 16 numbers with `bits` bits each.
 fn group(numbers: &[u8], bits: u32, out: &mut Vec<u8>) {
     if bits == 0 {
         return;
@@ -32,7 +32,7 @@ fn group(numbers: &[u8], bits: u32, out: &mut Vec<u8>) {
     out.extend(numbers.iter().filter(|&&n| n >= most));
 }
 
-/// Writes one byte of each element of a block, in the fewest bits of these for each group.
+/// Encodes one byte of each element of a block, with the fewest of the allowed bits for each group.
 fn lane(mut numbers: Vec<u8>, bits: [u32; 4]) -> Vec<u8> {
     numbers.resize(numbers.len().div_ceil(16) * 16, 0);
     let groups: Vec<&[u8]> = numbers.chunks(16).collect();
@@ -52,7 +52,7 @@ fn lane(mut numbers: Vec<u8>, bits: [u32; 4]) -> Vec<u8> {
     [headers, data].concat()
 }
 
-/// Version 1 uses each kind of differences and of lane encodings in turn.
+/// Encodes attributes. Version 1 uses each kind of differences and of lane encodings in turn.
 pub fn attributes(bytes: &[u8], stride: usize, version: u8) -> Vec<u8> {
     let mut out = vec![0xA0 | version];
     let mut last = bytes[..stride].to_vec();
@@ -115,16 +115,17 @@ pub fn attributes(bytes: &[u8], stride: usize, version: u8) -> Vec<u8> {
     out
 }
 
-/// Byte after codes 0xF0 to 0xFD: which of the other two corners is new (0), or how many vertices back.
+/// Bytes for codes 0xF0 to 0xFD: for each of the other two corners, 0 if it is new, or the number of vertices
+/// back.
 const TABLE: [u8; 16] =
     [0x00, 0x12, 0x10, 0x01, 0x11, 0x21, 0x20, 0x02, 0x13, 0x31, 0x30, 0x03, 0x22, 0x33, 0, 0];
 
-/// Returns the entry that was pushed this many before the next.
+/// Returns the entry that is `by` entries before the end.
 fn back_by<T: Copy>(list: &[T], by: usize) -> Option<T> {
     list.len().checked_sub(by).map(|at| list[at])
 }
 
-/// Returns a stream of version 1, and the decoded triangles: with the same corners, some starting at another.
+/// Returns a stream of version 1, and the decoded triangles, whose first corner may be another one.
 pub fn triangles(indices: &[u32]) -> (Vec<u8>, Vec<u32>) {
     let (mut codes, mut data, mut out) = (vec![0xE1], Vec::new(), Vec::new());
     let (mut edges, mut vertices): (Vec<[u32; 2]>, Vec<u32>) = (Vec::new(), Vec::new());
@@ -176,7 +177,7 @@ pub fn triangles(indices: &[u32]) -> (Vec<u8>, Vec<u32>) {
         } else {
             codes.push(if kinds[0] == 0 { 0xFE } else { 0xFF });
             data.push(others);
-            // The byte 0 restarts the numbering.
+            // The byte 0 would restart the numbering.
             assert_ne!(others, 0, "two new vertices beside an old one are not in these tests");
             for (&corner, _) in corners.iter().zip(kinds).filter(|&(_, kind)| kind == 15) {
                 varint(zigzag(corner.wrapping_sub(last)), &mut data);
@@ -196,7 +197,7 @@ pub fn triangles(indices: &[u32]) -> (Vec<u8>, Vec<u32>) {
     (([codes, data, TABLE.to_vec()]).concat(), out)
 }
 
-/// Returns a stream of any indices; every third is relative to the second of the last two.
+/// Returns a stream of any indices; every third is relative to the second of the last two indices.
 pub fn sequence(indices: &[u32]) -> Vec<u8> {
     let (mut out, mut last) = (vec![0xD1], [0_u32; 2]);
     for (i, &index) in indices.iter().enumerate() {

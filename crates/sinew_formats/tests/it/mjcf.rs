@@ -1,4 +1,4 @@
-//! MJCF: MuJoCo's humanoid compared with MuJoCo, small models against closed forms, and malicious bytes.
+//! MJCF: compares MuJoCo's humanoid with MuJoCo and small models with closed forms, and tests malicious bytes.
 
 use crate::data::shared_data;
 use core::f32::consts::FRAC_1_SQRT_2 as H;
@@ -19,7 +19,7 @@ fn humanoid() -> MjcfModel {
     read_mjcf(humanoid_text().as_bytes()).expect("it is read")
 }
 
-/// From MuJoCo's axes to ours.
+/// Converts from MuJoCo's axes to ours.
 fn y_up([x, y, z]: [f32; 3]) -> Vec3 {
     Vec3::new(x, z, -y)
 }
@@ -28,7 +28,8 @@ fn assert_close(found: Vec3, expected: Vec3, tolerance: f32, what: &str) {
     assert!((found - expected).length() <= tolerance, "{what}: {found} for {expected}");
 }
 
-/// Name, mass, centre of mass in the body's frame, trace of the inertia, place in the world: of MuJoCo 4.0.0.
+/// Name, mass, centre of mass in the body's frame, trace of the inertia, position in the world; computed by
+/// MuJoCo 4.0.0.
 type BodyRow = (&'static str, f32, [f32; 3], f32, [f32; 3]);
 
 const BODIES: [BodyRow; 16] = [
@@ -71,7 +72,7 @@ fn humanoid_bodies_match_mujoco() {
     assert!((total - 40.844_02).abs() < 1e-4, "{total} kg");
 }
 
-/// Full tensors of two bodies whose principal axes are not the frame's: MuJoCo 4.0.0.
+/// Compares the full tensors of two bodies whose principal axes are not the frame's with MuJoCo 4.0.0.
 #[needs_data]
 #[test]
 fn inertia_is_turned_like_the_body() {
@@ -147,7 +148,7 @@ fn humanoid_ranges_follow_its_classes() {
         JointKind::Ball { limit: Some(limit) } => limit,
         kind => panic!("{child}: {kind:?}"),
     };
-    // Hips: twist about y, and swings about x and z. Right-handed, the z axis of one side points down.
+    // Hips: twist about y, and swings about x and z. With right-handed axes, the z axis of one side points down.
     for (side, z) in [("thigh_right", (-35.0, 60.0)), ("thigh_left", (-35.0, 60.0))] {
         let hip = limit(side);
         assert_range(hip.twist, -150.0, 20.0);
@@ -171,7 +172,7 @@ fn disabled_pairs_match_mujoco() {
         });
         joined || model.excluded_pairs.contains(&(a.min(b), a.max(b)))
     };
-    // Jointed, excluded by the file, part of a part, jointed to its whole.
+    // Jointed bodies, bodies excluded by the file, a part of a part, and a part jointed to the whole.
     assert!(excluded("thigh_left", "shin_left") && excluded("waist_lower", "thigh_left"));
     assert!(excluded("head", "torso") && excluded("head", "upper_arm_left"));
     assert!(excluded("hand_right", "upper_arm_right") && excluded("head", "waist_lower"));
@@ -179,7 +180,8 @@ fn disabled_pairs_match_mujoco() {
     assert!(!excluded("torso", "world") && !excluded("head", "pelvis"));
 }
 
-/// Places of bodies in keyframes, MuJoCo 4.0.0. Feet are left out: their two hinges are 4 cm apart there.
+/// Compares the positions of bodies in keyframes with MuJoCo 4.0.0, without feet, whose two hinges are 4 cm apart
+/// in the file.
 #[needs_data]
 #[test]
 fn keyframes_match_mujoco() {
@@ -237,14 +239,14 @@ fn read(text: &str) -> MjcfModel {
     read_mjcf(text.as_bytes()).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// A model with one free body.
+/// Reads a model with one free body.
 fn one_body(settings: &str, attributes: &str, contents: &str) -> MjcfModel {
     read(&format!(
         "<mujoco>{settings}<worldbody><body {attributes}><freejoint/>{contents}</body></worldbody></mujoco>"
     ))
 }
 
-/// Quaternions (w, x, y, z) of MuJoCo 4.0.0.
+/// Compares quaternions (w, x, y, z) with MuJoCo 4.0.0.
 #[test]
 fn rotations_match_mujoco() {
     for (settings, attributes, [w, x, y, z]) in [
@@ -268,7 +270,7 @@ fn rotations_match_mujoco() {
     }
 }
 
-/// A rotated box, a capsule of given mass and a ball; and a given tensor: MuJoCo 4.0.0.
+/// Compares a rotated box, a capsule with a given mass, a ball, and a given tensor with MuJoCo 4.0.0.
 #[test]
 fn masses_of_rotated_shapes_match_mujoco() {
     let geoms = "<geom type='box' size='.1 .2 .3' pos='.5 0 0' euler='20 0 0' density='500'/>
@@ -287,7 +289,7 @@ fn masses_of_rotated_shapes_match_mujoco() {
     assert_close(mass.inertia.off, Vec3::new(-0.3, -0.1, 0.2), 1e-6, "off the diagonal");
 }
 
-/// A body on hinges, and its pose in one keyframe. Ranges are wide.
+/// Reads a model of a body on hinges with one keyframe and wide ranges.
 fn on_hinges(axes: &[Vec3], angles: &[f32], range: [f32; 2]) -> MjcfModel {
     let vector = |v: Vec3| format!("{} {} {}", v.x, v.y, v.z);
     let joints: String = axes
@@ -330,7 +332,7 @@ fn three_hinges_keep_their_ranges_one_by_one() {
         angles[used] = random.range(-1.5, 1.5);
         let model = on_hinges(&axes, &angles, [-60.0, 30.0]);
         let JointKind::Ball { limit: Some(limit) } = model.joints[0].kind else { panic!("a ball") };
-        // Each hinge alone stops at the end of its own range, for either handedness of the three axes.
+        // Each hinge alone stops at the end of its own range, with right-handed and left-handed axes.
         let beyond = Range::degrees(-60.0, 30.0).excess(angles[used]);
         let found = limit.overshoot(model.keyframes[0].moved[0].1.rotation);
         assert!((found - beyond).abs() < 1e-4, "hinge {used} at {}: {found} for {beyond}", angles[used]);
@@ -349,7 +351,7 @@ fn ranges_follow_compiler_reference_and_joint() {
     };
     assert_range(range("", "range='-10 20'").unwrap(), -10.0, 20.0);
     assert_range(range("", "range='-10 20' ref='5'").unwrap(), -15.0, 15.0);
-    // The middle of a range is within half a turn of the file's pose.
+    // The centre of a range is within half a turn of the file's pose.
     assert_range(range("", "range='170 200'").unwrap(), -190.0, -160.0);
     assert_range(range("", "range='350 370'").unwrap(), -10.0, 10.0);
     let radian = "<compiler angle='radian'/>";
@@ -391,7 +393,7 @@ fn shapes_meet_where_either_is_affine_to_the_other() {
     assert_eq!(with_last, [true, true, false, false, false]);
 }
 
-/// Returns the error of the reader for contents of a `<mujoco>`, or "" if it accepts them.
+/// Returns the error of the reader for contents of a `<mujoco>`, or "" if they are accepted.
 fn complaint(contents: &str) -> String {
     let text = format!("<mujoco>\n{contents}</mujoco>");
     read_mjcf(text.as_bytes()).err().map(|error| error.to_string()).unwrap_or_default()
@@ -475,7 +477,7 @@ fn assert_one_line(error: &Error) {
     assert!(!error.where_.is_empty(), "{text}");
 }
 
-/// A model can be put into a world in each of its poses, and stepped.
+/// Reads a model, adds it to a world in each of its poses, and steps the world.
 fn read_and_try(bytes: &[u8]) -> Result<(), Error> {
     let model = read_mjcf(bytes)?;
     let poses = model.keyframes.iter().map(|keyframe| model.pose(keyframe));
@@ -498,7 +500,7 @@ fn every_prefix_of_the_humanoid_is_refused() {
     }
 }
 
-/// Random bytes of the humanoid changed, and its numbers replaced by extreme ones: 10,000 cases with `SINEW_FULL`
+/// Changes random bytes of the humanoid, and replaces its numbers by extreme ones: 10,000 cases with `SINEW_FULL`
 /// set, otherwise a hundredth.
 #[needs_data]
 #[test]
@@ -506,7 +508,7 @@ fn mutated_humanoids_do_no_harm() {
     const WORDS: [&str; 10] = ["0", "-1", "1e9", "1e-30", "nan", "1e40", "", "\"", "<body>", "0 0 0 0"];
     let text = humanoid_text();
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 10_000 } else { 100 };
-    // After the comment at its head.
+    // Starts after the comment at the head of the file.
     let start = text.find("<mujoco").expect("the root");
     let mut random = Random::new(5);
     let (mut read, mut refused) = (0, 0);
@@ -542,7 +544,7 @@ fn a_free_body_is_placed_and_its_parts_follow() {
     );
     let pose = model.pose(model.keyframe("k").expect("it is there"));
     assert_close(pose[1].translation, y_up([1.0, 2.0, 3.0]), 1e-6, "a");
-    // Half a turn about the file's z.
+    // The pose after half a turn about the file's z.
     assert_close(pose[2].translation, y_up([0.0, 2.0, 3.0]), 1e-6, "b");
     assert_eq!(model.rest_pose()[2], Transform::from_translation(Vec3::new(1.0, 1.0, 0.0)));
 }
@@ -571,7 +573,7 @@ fn springs_and_slides_match_the_file() {
     assert!(rest.rotation.angle_to(quarter) < 1e-3, "{rest:?}");
 }
 
-/// ζ = 0.2 returns `exp(−0.2π/√0.96)` in either notation.
+/// Checks that ζ = 0.2 gives a restitution of `exp(−0.2π/√0.96)` in both notations.
 #[test]
 fn contact_properties_match_the_file() {
     let material = |attributes: &str| {

@@ -1,4 +1,4 @@
-//! Reading of any file with clips by one function.
+//! Tests of reading any file with clips by one function.
 
 use crate::data::{bar, files, shared_data};
 use needs_data::needs_data;

@@ -1,4 +1,4 @@
-//! OBJ files: accepted content, and refusals with their line.
+//! OBJ files: accepted content, and rejected content with its line.
 
 use sinew_formats::read_obj;
 use sinew_math::Vec3;
@@ -18,7 +18,7 @@ fn faces_of_every_kind_are_read() {
     assert_eq!(mesh.colors.len(), 4);
 }
 
-/// An arrow head, which a fan from its first corner would not triangulate.
+/// An arrow head, which cannot be triangulated as a fan from its first corner.
 #[test]
 fn concave_faces_keep_their_area() {
     let text = "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf 1 2 3 4\nf 2 3 4 1\nf 3 4 1 2\nf 4 1 2 3\n";
@@ -89,14 +89,14 @@ fn a_trailing_backslash_does_not_continue_a_comment() {
     assert_eq!((mesh.positions.len(), mesh.triangles), (3, vec![[0, 1, 2]]));
 }
 
-/// If each line were joined to all earlier ones, 80 GB would be copied.
+/// If each line were joined to all earlier lines, 80 GB would be copied.
 #[test]
 fn many_continued_lines_finish_quickly() {
     let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n{}2 3\n", "\\\n".repeat(400_000));
     assert_eq!(read_obj(text.as_bytes()).expect("a good file").triangles, [[0, 1, 2]]);
 }
 
-/// A star: every other corner points inward; no area is lost.
+/// A star, in which every other corner is reflex, keeps its area.
 #[test]
 fn a_large_jagged_face_keeps_its_area() {
     let corner = |k: usize| {
@@ -116,7 +116,7 @@ fn a_large_jagged_face_keeps_its_area() {
     assert!((areas.sum::<f32>() - expected).abs() < 1e-4);
 }
 
-/// A hundred twisted faces of the maximum size, which take an hour without a bound.
+/// A hundred twisted faces of the maximum size would take an hour without a bound.
 #[test]
 fn large_twisted_faces_finish_quickly() {
     let mut random = sinew_math::Random::new(3);

@@ -1,4 +1,4 @@
-//! Ragdoll files: the example of the documentation, round trips, complaints.
+//! Ragdoll files: the example of the documentation, round trips, errors.
 
 use crate::world::documented_example;
 use needs_data::needs_data;
@@ -187,7 +187,7 @@ fn bytes_changed_at_random_do_no_harm() {
     }
 }
 
-/// Wrong numbers in a whole body are refused, or examined, fixed and written again.
+/// Wrong numbers in a whole body are rejected, or examined, fixed and written again.
 #[needs_data]
 #[test]
 fn wrong_values_are_refused_or_examined() {

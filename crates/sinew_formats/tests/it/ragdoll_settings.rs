@@ -1,4 +1,4 @@
-//! Settings files: the example of the documentation, complaints.
+//! Settings files: the example of the documentation, errors.
 
 use crate::world::documented_example;
 use sinew_anim::garments::Backstop;
@@ -86,7 +86,7 @@ fn bytes_changed_at_random_do_no_harm() {
     }
 }
 
-/// The documented settings are those that are read.
+/// Checks that the documented settings are the ones that the reader accepts.
 #[test]
 fn the_examples_of_the_page_are_read() {
     let page = include_str!("../../../../docs/ragdoll.md");

@@ -1,4 +1,4 @@
-//! Rigs from elsewhere: the reader agrees with the manifest beside them.
+//! Rigs from other sources: the reader agrees with the manifest beside them.
 
 use crate::data::{GLTF, files, shared_data};
 use needs_data::needs_data;
@@ -11,7 +11,8 @@ fn load(name: &str) -> Document {
     load_gltf(path, ReadOptions { textures: Textures::Decode }).unwrap()
 }
 
-/// (skin joints, vertices, triangles, clips, duration of the first clip) in the manifest of the data.
+/// Compares skin joints, vertices, triangles, clips and duration of the first clip with the manifest of the
+/// data.
 fn check(name: &str, skin_joints: usize, vertices: usize, triangles: usize, clips: usize, duration: f32) {
     let document = load(name);
     let rig = &document.rig;
@@ -97,8 +98,8 @@ fn every_rig_keeps_the_promises_of_its_types() {
     }
 }
 
-/// At rest a skinned mesh is in the file's bind pose: rest × inverse bind is the identity, up to the place of
-/// the armature, for rigs whose manifest says that both poses agree.
+/// In the rest pose a skinned mesh is in the file's bind pose: rest × inverse bind is the identity, up to the
+/// placement of the armature, for rigs in which both poses agree according to the manifest.
 #[needs_data]
 #[test]
 fn inverse_bind_matrices_undo_the_rest_pose() {

@@ -1,4 +1,4 @@
-//! Springs of VRM files, both versions, and wrong files.
+//! Tests of springs in VRM files of both versions, and of wrong files.
 
 use crate::data::shared_data;
 use needs_data::needs_data;
@@ -8,7 +8,7 @@ use sinew_formats::{Document, ReadOptions, Result, load_gltf, no_files, read_glt
 use sinew_math::{Rotation, Vec3};
 use sinew_ragdoll::settings::SpringSource;
 
-/// Returns six nodes: a body with a head, a strand of three on the head, and a place beside it.
+/// Six nodes: a body with a head, a strand of three on the head, and a node beside the body.
 const NODES: &str = r#""asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[
     {"name":"body","children":[1]},{"name":"head","translation":[0,1,0],"children":[2,5]},
     {"name":"a","translation":[0,0.1,0],"rotation":[0,0,1,0],"children":[3]},
@@ -52,7 +52,7 @@ fn version_1_with_extended_colliders_and_limits() {
         (limit.kind, limit.rotation.angle_to(Rotation::from_xyzw(0.0, 0.0, 1.0, 0.0))),
         (LimitKind::Cone { angle: 0.8 }, 0.0)
     );
-    // Defaults of the schema.
+    // Defaults of the format's schema.
     assert_eq!((b.stiffness, b.drag, b.radius, b.gravity, b.limit), (1.0, 0.5, 0.0, Vec3::ZERO, None));
     let sphere = |offset, radius, keeps| ColliderShape::Sphere { offset, radius, keeps };
     let due = [
@@ -94,10 +94,10 @@ fn version_0_springs_include_all_descendants() {
     assert_eq!((chain.name.as_str(), chain.center, &chain.colliders[..]), ("hair", None, &[0][..]));
     let joints: Vec<usize> = chain.bones.iter().map(|bone| bone.joint).collect();
     assert_eq!(joints, [2, 3, 4]);
-    // Unity's z points the other way.
+    // Unity's z axis has the opposite direction.
     assert_eq!(chain.bones[0].gravity, Vec3::new(0.0, -0.5, -0.25));
     assert_eq!((chain.bones[0].stiffness, chain.bones[0].drag, chain.bones[0].radius), (2.0, 0.4, 0.03));
-    // Seven centimetres beyond the last.
+    // The tip is seven centimetres beyond the last joint.
     assert!((chain.bones[2].tail - Vec3::new(0.0, 0.07, 0.0)).length() < 1e-6, "{}", chain.bones[2].tail);
     let offset = Vec3::new(0.1, 0.2, -0.3);
     let shape = ColliderShape::Sphere { offset, radius: 0.1, keeps: Side::Outside };
@@ -132,7 +132,7 @@ fn wrong_springs_are_refused_with_their_place() {
 
 #[test]
 fn unusable_springs_are_skipped_with_a_warning() {
-    // A joint that is not below the one before it, and one that is in two springs.
+    // One spring has a joint that is not below the previous one; another joint is in two springs.
     let document = read(
         r#"{"VRMC_springBone":{"springs":[{"joints":[{"node":2},{"node":3},{"node":5}]},
         {"joints":[{"node":2},{"node":3},{"node":4}]}]}}"#,
@@ -148,7 +148,7 @@ fn unusable_springs_are_skipped_with_a_warning() {
 
 #[test]
 fn excessive_collider_groups_are_refused() {
-    // A few kilobytes that would name millions of colliders.
+    // A few kilobytes that would refer to millions of colliders.
     let colliders = vec![r#"{"node":1,"shape":{"sphere":{}}}"#; 2000].join(",");
     let members: Vec<String> = (0..2000).map(|index| index.to_string()).collect();
     let group = format!(r#"{{"colliders":[{}]}}"#, members.join(","));
@@ -190,7 +190,7 @@ fn settings_link_strands() {
     assert_eq!((links[0].chains.as_slice(), links[0].closed), (["Kilt_*".to_owned()].as_slice(), Some(true)));
     assert_eq!((links[0].link.share, links[0].link.holds_apart), (0.8, true));
     assert_eq!((links[1].closed, links[1].link), (None, SpringLink::default()));
-    // Without links, those of the springs; with none, none.
+    // Without `links` the springs keep their own links; an empty list removes them.
     assert_eq!(read(r#"{"source": "file"}"#).unwrap().spring_links, None);
     let none = read(r#"{"links": []}"#).unwrap();
     assert_eq!((none.springs, none.spring_links), (None, Some(Vec::new())));
@@ -220,7 +220,7 @@ fn shared_avatars_are_read() {
     let folder = shared_data();
     let springs =
         |name: &str| load_gltf(folder.join("rigs").join(name), ReadOptions::default()).unwrap().rig.springs;
-    // One bone group without bones; none.
+    // The first file has one bone group without bones, the second none.
     assert_eq!(springs("CoolLoops_mixamorig_vrm0.vrm"), Springs::default());
     assert_eq!(springs("vrm1_unskinned_humanoid.vrm"), Springs::default());
 }

@@ -1,4 +1,4 @@
-//! World files: the example of the documentation, round trips, complaints.
+//! World files: the example of the documentation, round trips, errors.
 
 use sinew_formats::{read_world, write_world};
 use sinew_math::{Random, Rotation, Sym3, Transform, Vec3};
@@ -8,7 +8,7 @@ use sinew_physics::{
 };
 use std::sync::Arc;
 
-/// The first block of JSON in a module's documentation.
+/// Returns the first block of JSON in a module's documentation.
 pub fn documented_example(source: &str) -> String {
     first_json(source.lines().map(|line| line.strip_prefix("//!").unwrap_or_default()))
 }
@@ -50,7 +50,7 @@ fn the_example_of_the_page_is_read_and_stands() {
     assert_eq!(bodies[4].mass.map(|mass| mass.mass), Some(0.01));
     assert_eq!(read_world(write_world(&bodies).as_bytes()).unwrap(), bodies);
 
-    // A set-up that reads back equal is the same world to the last bit, and stays so.
+    // A set-up that reads back equal gives the same world to the last bit, also after steps.
     let [mut world, mut again] =
         [bodies.clone(), read_world(write_world(&bodies).as_bytes()).unwrap()].map(|bodies| {
             let mut world = World::new(WorldDef::default());
@@ -66,7 +66,7 @@ fn the_example_of_the_page_is_read_and_stands() {
     }
 }
 
-/// Every key on the page is known, and every known shape and kind is on the page.
+/// Checks that every key on the page is known, and every known shape and kind is on the page.
 #[test]
 fn the_page_lists_every_key_and_kind() {
     let page = include_str!("../../../../docs/world.md");

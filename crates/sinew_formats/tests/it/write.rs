@@ -1,4 +1,4 @@
-//! A rig made by code, written to a file, reads back equal.
+//! Checks that a rig made by code and written to a file reads back equal.
 
 use sinew_anim::{
     Channel, Clip, Interpolation, Joint, LocalTransform, Primitive, Property, Rig, RigMesh, Skin,
@@ -24,7 +24,8 @@ fn triangle() -> Primitive {
     }
 }
 
-/// Returns two joints, a skinned mesh, and a rigid one on the first, whose node comes between the joints in the file's order.
+/// Returns two joints, a skinned mesh, and a rigid mesh on the first joint, whose node is between the joints in the
+/// file.
 fn rig() -> Rig {
     let skinned = Primitive {
         joints: vec![[1, 0, 0, 0], [0, 1, 0, 0], [1, 0, 0, 0]],
@@ -86,7 +87,7 @@ fn joints_skins_and_meshes_come_back() {
     for mesh in &rig.meshes {
         let read = back.meshes.iter().find(|read| read.name == mesh.name).unwrap();
         assert_eq!(read.skin, mesh.skin);
-        // Slots of weight 0 may differ; here they do not.
+        // Slots with weight 0 may differ in general, but not in this rig.
         assert_eq!(read.primitives, mesh.primitives);
     }
 }

@@ -21,16 +21,16 @@ pub(crate) struct Avx2(__m256);
 #[derive(Clone, Copy)]
 pub(crate) struct Avx2Mask(__m256);
 
-/// The sign bit only.
+/// Number with only the sign bit set.
 const SIGN: f32 = -0.0;
 
 /// All bits set: the true result of a comparison.
 const TRUE: f32 = f32::from_bits(u32::MAX);
 
-/// AVX intrinsics. A value of [`Avx2`] proves that they may be called.
+/// Calls AVX intrinsics. A value of [`Avx2`] proves that the processor has them.
 macro_rules! avx {
     ($call:expr) => {
-        // SAFETY: whoever holds, or makes, a value of `Avx2` was entered by `dispatch`, on a processor with AVX2.
+        // SAFETY: code that holds or makes a value of `Avx2` was entered by `dispatch`, on a processor with AVX2.
         unsafe { $call }
     };
 }
@@ -159,7 +159,7 @@ impl Lanes for Avx2 {
 
     #[inline(always)]
     fn load(from: &[f32; WIDTH]) -> Self {
-        // SAFETY: as above; and the array has the eight floats that are read, at no alignment of their own.
+        // SAFETY: as above; the array has the eight floats that are read, and the load needs no alignment.
         Self(unsafe { _mm256_loadu_ps(from.as_ptr()) })
     }
 
@@ -194,7 +194,7 @@ impl Lanes for Avx2 {
     }
 }
 
-/// Column `k` of four rows in the lower half of register `k`, column `4 + k` in its upper half.
+/// Puts column `k` of four rows in the lower half of register `k`, and column `4 + k` in its upper half.
 #[inline(always)]
 fn quarters(a: Avx2, b: Avx2, c: Avx2, d: Avx2) -> [__m256; 4] {
     avx!({

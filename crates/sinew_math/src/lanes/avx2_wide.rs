@@ -1,6 +1,6 @@
-//! Eight `f64` in two registers of AVX, for [`Avx2`](super::avx2::Avx2).
+//! Eight `f64` in two AVX registers, for [`Avx2`](super::avx2::Avx2).
 //!
-//! Values exist only where those of [`Avx2`](super::avx2::Avx2) do; each `unsafe` below relies on that.
+//! Values exist only on processors where [`Avx2`](super::avx2::Avx2) exists; each `unsafe` below relies on that.
 
 use super::{Mask, Real};
 use core::arch::x86_64::{
@@ -18,16 +18,16 @@ pub(crate) struct Wide(pub __m256d, pub __m256d);
 #[derive(Clone, Copy)]
 pub(crate) struct WideMask(__m256d, __m256d);
 
-/// The sign bit only.
+/// Number with only the sign bit set.
 const SIGN: f64 = -0.0;
 
 /// All bits set: the true result of a comparison.
 const TRUE: f64 = f64::from_bits(u64::MAX);
 
-/// AVX intrinsics. A value of [`Wide`] proves that they may be called.
+/// Calls AVX intrinsics. A value of [`Wide`] proves that the processor has them.
 macro_rules! avx {
     ($call:expr) => {
-        // SAFETY: whoever holds, or makes, a value of `Wide` was entered by `dispatch`, on a processor with AVX2.
+        // SAFETY: code that holds or makes a value of `Wide` was entered by `dispatch`, on a processor with AVX2.
         unsafe { $call }
     };
 }

@@ -1,22 +1,22 @@
-//! Records in blocks of eight, field by field.
+//! Lists of records, stored field by field in blocks of eight.
 
 use super::WIDTH;
 
 /// Eight records of `F` numbers: row `f` holds number `f` of all eight.
 ///
-/// A kernel reads a block as one stream, whatever `F` is. One array per field would give `F` streams, which share cache
+/// A kernel reads a block as one stream for every `F`. One array per field would give `F` streams, which share cache
 /// sets if the array lengths are powers of two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
 pub struct Block<const F: usize>(pub [[f32; WIDTH]; F]);
 
 impl<const F: usize> Block<F> {
-    /// The same record in all lanes.
+    /// Makes a block with the same record in all lanes.
     pub fn splat(record: [f32; F]) -> Self {
         Self(record.map(|number| [number; WIDTH]))
     }
 
-    /// The record in `lane`.
+    /// Returns the record in `lane`.
     ///
     /// # Panics
     /// If `lane` is not below [`WIDTH`].
@@ -37,7 +37,7 @@ impl<const F: usize> Block<F> {
 
 /// A list of records of `F` numbers, in [`Block`]s.
 ///
-/// Unused lanes of the last block repeat a record, so that kernels may compute them too.
+/// Unused lanes of the last block repeat a record, so that kernels may process them too.
 #[derive(Clone, Debug, Default)]
 pub struct Blocks<const F: usize> {
     blocks: Vec<Block<F>>,
@@ -45,12 +45,12 @@ pub struct Blocks<const F: usize> {
 }
 
 impl<const F: usize> Blocks<F> {
-    /// An empty list.
+    /// Creates an empty list.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Number of records.
+    /// Returns the number of records.
     pub fn len(&self) -> usize {
         self.len
     }
@@ -69,7 +69,7 @@ impl<const F: usize> Blocks<F> {
         self.len += 1;
     }
 
-    /// Record `index`.
+    /// Returns record `index`.
     ///
     /// # Panics
     /// If `index` is not below the list's length.
@@ -93,12 +93,12 @@ impl<const F: usize> Blocks<F> {
         self.len = len;
     }
 
-    /// The blocks; the last one is padded.
+    /// Returns the blocks; the last one is padded.
     pub fn blocks(&self) -> &[Block<F>] {
         &self.blocks
     }
 
-    /// The blocks, mutable.
+    /// Returns the blocks for writing; the last one is padded.
     pub fn blocks_mut(&mut self) -> &mut [Block<F>] {
         &mut self.blocks
     }

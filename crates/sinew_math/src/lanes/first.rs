@@ -1,13 +1,13 @@
-//! Lane 0 alone, for an item that has no others to share lanes with.
+//! Lane 0 alone, for a single item.
 
 use super::{LaneMask, Lanes, Mask, Real, WIDTH};
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// One `f32` in place of eight: it reads and writes lane 0, with the same bits as in a full register.
+/// One `f32` in place of eight: reads and writes lane 0, with the same bits as in a full register.
 #[derive(Clone, Copy, Debug)]
 pub struct First(f32);
 
-/// Mask of lane 0; the other lanes repeat it.
+/// Mask of lane 0; the other lanes repeat its value.
 #[derive(Clone, Copy, Debug)]
 pub struct FirstMask(bool);
 

@@ -1,16 +1,16 @@
 //! Eight `f32` side by side, with the same bits on every processor.
 //!
-//! A formula is written once, generic over [`Real`]: with `f32` it computes one item, with [`Lanes`] eight, and lane
-//! `k` has the bits of `f32` for item `k`. This holds because no operation here depends on the processor: `+ − × ÷ √`
+//! A formula is written once, generic over [`Real`]: with `f32` it computes one item, with [`Lanes`] eight. Lane `k`
+//! has the same bits as `f32` for item `k`, because no operation here depends on the processor: `+ − × ÷ √`
 //! are exact by IEEE 754, and the rest are comparisons and selections. There is no fused multiply-add, no reciprocal
 //! estimate and no sum across lanes.
 //!
-//! The only exception is the sign and payload of a NaN produced by arithmetic. *Whether* a lane is NaN is the same
-//! everywhere; its bits are not, so do not store them where bits count.
+//! The only exception is the sign and payload of a NaN produced by arithmetic. Every processor gets NaN in the same
+//! lanes, but with different bits, so do not store them where bits count.
 //!
-//! Kernels are entered through [`dispatch`](crate::dispatch), which picks the type for [`Lanes`]. Everything a kernel
-//! calls must be `#[inline(always)]`: a separate call is compiled for the oldest processor and passes its vectors
-//! through memory. Closures are not allowed in kernels for the same reason.
+//! Kernels are entered through [`dispatch`](crate::dispatch), which picks the type for [`Lanes`]. Every function that a
+//! kernel calls must be `#[inline(always)]`: a separate call is compiled for the oldest processor and passes its
+//! vectors through memory. Closures are not allowed in kernels for the same reason.
 #![allow(unsafe_code)] // the intrinsics of AVX2, and loads and stores
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -49,7 +49,7 @@ pub const WIDTH: usize = 8;
 /// Result of a comparison of [`Real`]s: true or false, in each lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {}
 
-/// A number, or eight of them; operations act on each lane separately.
+/// A number, or eight numbers; operations act on each lane separately.
 ///
 /// NaN and −0 have a fixed result on every processor: see [`min`](Self::min), which equals `sinew_math::min`.
 pub trait Real:
@@ -58,16 +58,16 @@ pub trait Real:
     /// Result of a comparison.
     type Mask: Mask;
 
-    /// `value` in every lane.
+    /// Returns `value` in every lane.
     fn splat(value: f32) -> Self;
 
-    /// `value` in every lane, rounded to the precision of the lanes.
+    /// Returns `value` in every lane, rounded to the precision of the lanes.
     #[inline(always)]
     fn splat_wide(value: f64) -> Self {
         Self::splat(value as f32)
     }
 
-    /// Square root, exact; NaN below zero, −0 of −0.
+    /// Square root, exact; NaN below zero, −0 for −0.
     fn sqrt(self) -> Self;
 
     /// Absolute value.
@@ -79,7 +79,7 @@ pub trait Real:
     /// `a ≤ b`; false where either is NaN.
     fn le(a: Self, b: Self) -> Self::Mask;
 
-    /// `a = b`; false where either is NaN, true of 0 and −0.
+    /// `a = b`; false where either is NaN, true for 0 and −0.
     fn eq(a: Self, b: Self) -> Self::Mask;
 
     /// `a > b`; false where either is NaN.
@@ -97,19 +97,19 @@ pub trait Real:
     /// `a` where the mask is true, else `b`; bits are copied unchanged, including NaN.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
 
-    /// The number where the mask is true, +0 where it is false.
+    /// Returns the number where the mask is true, +0 where it is false.
     fn masked(self, mask: Self::Mask) -> Self;
 
-    /// NaN where the mask is true, the number where it is false.
+    /// Returns NaN where the mask is true, the number where it is false.
     fn nan_where(self, mask: Self::Mask) -> Self;
 
-    /// The smaller number; `b` if either is NaN or both are equal (so of 0 and −0 the second).
+    /// Returns the smaller number, or `b` if either is NaN or both are equal (so `b` for 0 and −0).
     #[inline(always)]
     fn min(a: Self, b: Self) -> Self {
         Self::select(Self::lt(a, b), a, b)
     }
 
-    /// The larger number; `b` if either is NaN or both are equal (so of 0 and −0 the second).
+    /// Returns the larger number, or `b` if either is NaN or both are equal (so `b` for 0 and −0).
     #[inline(always)]
     fn max(a: Self, b: Self) -> Self {
         Self::select(Self::lt(b, a), a, b)
@@ -118,7 +118,7 @@ pub trait Real:
 
 /// True or false in each of the eight lanes.
 pub trait LaneMask: Mask {
-    /// Bit `k` is lane `k`.
+    /// Returns lane `k` as bit `k`.
     fn bits(self) -> u8;
 
     /// True if any lane is true.
@@ -141,10 +141,10 @@ pub trait Lanes: Real<Mask: LaneMask> {
     /// Eight `f64`, for sums that cancel.
     type Wide: Real;
 
-    /// The same numbers as `f64`.
+    /// Converts the numbers to `f64`.
     fn widen(self) -> Self::Wide;
 
-    /// Eight `f64` rounded to the nearest `f32`.
+    /// Rounds eight `f64` to the nearest `f32`.
     fn narrow(wide: Self::Wide) -> Self;
 
     /// Loads an array, item `k` into lane `k`.

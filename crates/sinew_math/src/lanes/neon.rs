@@ -11,7 +11,7 @@ use core::arch::aarch64::{
 
 pub(crate) type Neon = Quads<float32x4_t>;
 
-/// Intrinsics of NEON.
+/// Calls NEON intrinsics.
 macro_rules! neon {
     ($call:expr) => {
         // SAFETY: NEON is part of aarch64.

@@ -6,7 +6,7 @@ use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// A register of four `f32`. Each operation corresponds to that of [`Real`] or [`Lanes`] with the same name.
 pub(crate) trait Quad: Copy {
-    /// Comparison result: all bits of a lane set, or none.
+    /// Comparison result: all bits of a lane are set, or none.
     type Mask: Copy;
 
     fn splat(value: f32) -> Self;
@@ -30,7 +30,7 @@ pub(crate) trait Quad: Copy {
     fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn not(mask: Self::Mask) -> Self::Mask;
-    /// Bit `k` is lane `k`; the upper four are clear.
+    /// Returns lane `k` as bit `k`; the upper four bits are clear.
     fn bits(mask: Self::Mask) -> u8;
 }
 

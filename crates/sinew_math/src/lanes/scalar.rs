@@ -1,4 +1,4 @@
-//! One number, and eight in an array for processors without a known register set.
+//! One number, and eight numbers in an array for processors without a known register set.
 
 use super::{LaneMask, Lanes, Mask, Real, WIDTH};
 use core::array;
@@ -6,7 +6,7 @@ use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 impl Mask for bool {}
 
-/// One lane; defines the results of all other types.
+/// One lane; defines the results of all other implementations.
 impl Real for f32 {
     type Mask = bool;
 
@@ -111,9 +111,9 @@ impl Real for f64 {
     }
 }
 
-/// Eight `f32`, each handled like `f32`. Operations are calls: inlined eight times at each use, kernels are more than
-/// twice as large and no faster (wasm32 without simd128 and development builds use this: see
-/// [`dispatch`](crate::dispatch)).
+/// Eight `f32`, each handled like `f32`. Operations are calls: inlined eight times at each use, they would make
+/// kernels more than twice as large and no faster. wasm32 without simd128 and development builds use this type: see
+/// [`dispatch`](crate::dispatch).
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar([f32; WIDTH]);
 
@@ -170,7 +170,7 @@ impl LaneMask for Bools {
     }
 }
 
-/// Numbers in an array, each handled like a single one.
+/// Defines a type for numbers in an array, each handled like a single one.
 macro_rules! array_of {
     ($of:ident $number:ident) => {
         impl Neg for $of {

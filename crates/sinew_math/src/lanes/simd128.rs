@@ -19,13 +19,13 @@ impl Quad for v128 {
 
     #[inline(always)]
     fn load(from: &[f32; 4]) -> Self {
-        // SAFETY: the array has the 16 bytes that are read, and no alignment is asked for.
+        // SAFETY: the array has the 16 bytes that are read, and the load needs no alignment.
         unsafe { v128_load(from.as_ptr().cast()) }
     }
 
     #[inline(always)]
     fn store(self, to: &mut [f32; 4]) {
-        // SAFETY: the array has room for the 16 bytes that are written, and no alignment is asked for.
+        // SAFETY: the array has room for the 16 bytes that are written, and the store needs no alignment.
         unsafe { v128_store(to.as_mut_ptr().cast(), self) }
     }
 

@@ -9,13 +9,13 @@ use core::arch::x86_64::{
 
 pub(crate) type Sse2 = Quads<__m128>;
 
-/// The sign bit only.
+/// Number with only the sign bit set.
 const SIGN: f32 = -0.0;
 
 /// All bits set: the true result of a comparison.
 const TRUE: f32 = f32::from_bits(u32::MAX);
 
-/// Intrinsics of SSE and SSE2.
+/// Calls SSE and SSE2 intrinsics.
 macro_rules! sse2 {
     ($call:expr) => {
         // SAFETY: SSE2 is part of x86-64.
@@ -33,13 +33,13 @@ impl Quad for __m128 {
 
     #[inline(always)]
     fn load(from: &[f32; 4]) -> Self {
-        // SAFETY: the array has the four floats that are read, and no alignment is asked for.
+        // SAFETY: the array has the four floats that are read, and the load needs no alignment.
         unsafe { _mm_loadu_ps(from.as_ptr()) }
     }
 
     #[inline(always)]
     fn store(self, to: &mut [f32; 4]) {
-        // SAFETY: the array has room for the four floats that are written, and no alignment is asked for.
+        // SAFETY: the array has room for the four floats that are written, and the store needs no alignment.
         unsafe { _mm_storeu_ps(to.as_mut_ptr(), self) }
     }
 

@@ -1,14 +1,14 @@
-//! Every operation, at every level that the processor has, against `f32` and against a hash that is the same on all
-//! processors: the golden soup.
+//! Compares every operation, at every level that the processor has, with `f32` and with a hash that is the same on
+//! all processors.
 
 use super::{LaneMask, Lanes, Real, WIDTH};
 use crate::dispatch::{self, Kernel, Level};
 use crate::{Random, StableHasher};
 
-/// Hash of the soup's results, on x86-64, aarch64 and wasm.
+/// Hash of the results of [`soup`], on x86-64, aarch64 and wasm.
 const GOLDEN: u64 = 0xa6ab_2171_d2ba_4a5b;
 
-/// Numbers at which arithmetic branches.
+/// Numbers at which arithmetic has special cases.
 const CORNERS: [f32; 24] = [
     0.0,
     -0.0,
@@ -36,7 +36,7 @@ const CORNERS: [f32; 24] = [
     f32::from_bits(0xFFC1_2345),
 ];
 
-/// All pairs of corners, then pairs of random bits, then pairs of random numbers near 1.
+/// Returns all pairs of corners, then pairs of random bits and pairs of random numbers near 1.
 fn soup() -> Vec<[f32; 2]> {
     let mut random = Random::new(20_26);
     let mut pairs: Vec<[f32; 2]> = CORNERS.iter().flat_map(|&a| CORNERS.map(|b| [a, b])).collect();
@@ -50,7 +50,7 @@ fn soup() -> Vec<[f32; 2]> {
 
 const OPERATIONS: usize = 17;
 
-/// Each operation once; masks are observed through selections.
+/// Applies each operation once; masks are observed through selections.
 #[inline(always)]
 fn operations<R: Real>(a: R, b: R) -> [R; OPERATIONS] {
     let (less, same) = (R::lt(a, b), R::eq(a, b));
@@ -75,7 +75,7 @@ fn operations<R: Real>(a: R, b: R) -> [R; OPERATIONS] {
     ]
 }
 
-/// All NaN count as equal: neither sign nor payload is promised.
+/// Returns the bits of a number; all NaN count as equal, because neither sign nor payload is promised.
 fn bits(number: f32) -> u32 {
     if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() }
 }

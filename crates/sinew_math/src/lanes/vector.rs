@@ -4,7 +4,7 @@ use super::{Lanes, Real, WIDTH};
 use crate::{Rotation, Vec3};
 use core::ops::{Add, Mul, Neg, Sub};
 
-/// A vector, or one per lane. Sums use the order of [`Vec3`], so the bits are equal.
+/// A vector, or one vector per lane. Sums use the order of [`Vec3`], so the bits are equal.
 #[derive(Clone, Copy, Debug)]
 pub struct Vector3<R> {
     /// First coordinate.
@@ -22,13 +22,13 @@ impl<R: Real> Vector3<R> {
         Self { x, y, z }
     }
 
-    /// The same vector in every lane.
+    /// Returns the same vector in every lane.
     #[inline(always)]
     pub fn splat(v: Vec3) -> Self {
         Self::new(R::splat(v.x), R::splat(v.y), R::splat(v.z))
     }
 
-    /// The vector rotated by one rotation for all lanes, with the bits of `by * v`.
+    /// Returns the vector rotated by `by` in all lanes, with the bits of `by * v`.
     #[inline(always)]
     pub fn turned(self, by: Rotation) -> Self {
         let axis = Self::splat(by.vector());
@@ -36,7 +36,7 @@ impl<R: Real> Vector3<R> {
         self + across * R::splat(by.w) + axis.cross(across)
     }
 
-    /// The coordinates.
+    /// Returns the coordinates.
     #[inline(always)]
     pub fn to_array(self) -> [R; 3] {
         [self.x, self.y, self.z]
@@ -78,7 +78,7 @@ impl<R: Real> Vector3<R> {
 }
 
 impl<L: Lanes> Vector3<L> {
-    /// Eight vectors from three rows of a [`Block`](super::Block).
+    /// Loads eight vectors from three rows of a [`Block`](super::Block).
     #[inline(always)]
     pub fn load(x: &[f32; WIDTH], y: &[f32; WIDTH], z: &[f32; WIDTH]) -> Self {
         Self::new(L::load(x), L::load(y), L::load(z))

@@ -14,7 +14,7 @@ pub enum EulerOrder {
     Xyz,
     /// Rotations about x, z, y.
     Xzy,
-    /// Rotations about y, x, z: heading, pitch and roll of a world with +Y up, when the axes move along.
+    /// Rotations about y, x, z: heading, pitch and roll of a world with +Y up, with intrinsic axes.
     Yxz,
     /// Rotations about y, z, x.
     Yzx,
@@ -30,14 +30,14 @@ pub enum EulerOrder {
     Yxy,
     /// Rotations about y, z, y.
     Yzy,
-    /// Rotations about z, x, z: the classical angles of a top, when the axes move along.
+    /// Rotations about z, x, z: the classical angles of a top, with intrinsic axes.
     Zxz,
     /// Rotations about z, y, z.
     Zyz,
 }
 
 impl EulerOrder {
-    /// All twelve.
+    /// All twelve orders.
     pub const ALL: [Self; 12] = [
         Self::Xyz,
         Self::Xzy,
@@ -53,17 +53,17 @@ impl EulerOrder {
         Self::Zyz,
     ];
 
-    /// Each rotation is about axes that moved with the rotations before it: `R = R₁ R₂ R₃`.
+    /// Convention in which each rotation is about axes moved by the rotations before it: `R = R₁ R₂ R₃`.
     pub const fn intrinsic(self) -> EulerConvention {
         EulerConvention { order: self, axes: EulerAxes::Moving }
     }
 
-    /// Each rotation is about fixed axes: `R = R₃ R₂ R₁`.
+    /// Convention in which each rotation is about fixed axes: `R = R₃ R₂ R₁`.
     pub const fn extrinsic(self) -> EulerConvention {
         EulerConvention { order: self, axes: EulerAxes::Fixed }
     }
 
-    /// The axes in the order of the rotations; 0, 1, 2 for x, y, z.
+    /// Returns the axes in the order of the rotations; 0, 1, 2 for x, y, z.
     pub const fn indices(self) -> [usize; 3] {
         match self {
             Self::Xyz => [0, 1, 2],
@@ -88,10 +88,10 @@ impl EulerOrder {
     }
 }
 
-/// Motion of the second and third axis: with the rotations before them, or fixed.
+/// Motion of the second and third axis: moved by the earlier rotations, or fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EulerAxes {
-    /// Moved by them: *intrinsic* angles, those of nested rings. The axes are the body's.
+    /// The axes move with the earlier rotations: *intrinsic* angles, as in nested rings. The axes are the body's.
     Moving,
     /// The axes do not move: *extrinsic* angles about the world's axes.
     Fixed,
@@ -102,12 +102,12 @@ pub enum EulerAxes {
 pub struct EulerConvention {
     /// Axes of the rotations.
     pub order: EulerOrder,
-    /// Motion of these axes: with the rotations, or fixed.
+    /// Motion of the axes: with the rotations, or fixed.
     pub axes: EulerAxes,
 }
 
 impl EulerConvention {
-    /// All 24.
+    /// Iterates over all 24 conventions.
     pub fn all() -> impl Iterator<Item = Self> {
         EulerOrder::ALL.into_iter().flat_map(|order| [order.intrinsic(), order.extrinsic()])
     }
@@ -127,11 +127,11 @@ pub enum GimbalLock {
     OnlyDifference,
 }
 
-/// Euler angles of a rotation, and how well it determines them.
+/// Euler angles of a rotation, and how well the rotation determines them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EulerAngles {
-    /// In the order of the turns, radians. First and third −π..=π; the second −π/2..=π/2 of a Tait-Bryan order, 0..=π of
-    /// a proper one.
+    /// Angles in the order of the rotations, radians. First and third −π..=π; the second −π/2..=π/2 for a Tait-Bryan
+    /// order, 0..=π for a proper one.
     pub angles: [f32; 3],
     /// Distance of the second angle from gimbal lock, radians, 0..=π/2. The error of the first and third angle is the
     /// error of the rotation over the sine of this margin: at 0.001 an error of 1e-7 becomes 1e-4.
@@ -141,14 +141,15 @@ pub struct EulerAngles {
 }
 
 impl EulerAngles {
-    /// Margin, radians, below which the outer angles are noise: the third is then 0 and the first has the rotation of
-    /// both. The rotation is reproduced within this margin. Angles with the second exactly at lock are always reported
-    /// as locked.
+    /// Margin, radians, below which the outer angles are noise. The third angle is then 0, and the first holds the
+    /// rotation of both. The rotation is reproduced within this margin. Angles with the second exactly at lock are
+    /// always reported as locked.
     pub const LOCKED_BELOW: f32 = 2e-6;
 }
 
 impl Rotation {
-    /// Rotation from three `angles` (radians, in the order of the rotations, any size). Identity if one is not finite.
+    /// Makes a rotation from three `angles` (radians, in the order of the rotations, any size). Identity if one is not
+    /// finite.
     ///
     /// ```
     /// use sinew_math::{EulerOrder, Rotation, Vec3};
@@ -167,7 +168,7 @@ impl Rotation {
         }
     }
 
-    /// The three angles of this rotation, and whether they are locked.
+    /// Returns the three angles of this rotation, and whether they are locked.
     ///
     /// After Bernardes & Viollet, "Quaternion to Euler angles conversion: a direct, general and computationally
     /// efficient method", PLoS ONE 17(11), 2022. The quaternion of rotations by α, β, γ about axes i, j, i, with third
@@ -179,14 +180,14 @@ impl Rotation {
     /// ```
     ///
     /// so that two arctangents give sum and difference and a third gives β, without the precision loss of an arccosine.
-    /// A Tait-Bryan order becomes a proper one by a quarter turn:
+    /// A quarter turn makes a proper order of a Tait-Bryan order:
     /// `R_i(α) R_j(β) R_l(γ) R_j(π/2) = R_i(α) R_j(β+π/2) R_i(−εγ)`.
     ///
     /// ```
     /// use sinew_math::{EulerOrder, GimbalLock, Rotation};
     /// let nose_up = Rotation::from_euler(EulerOrder::Yxz.intrinsic(), [0.3, core::f32::consts::FRAC_PI_2, 0.5]);
     /// let found = nose_up.to_euler(EulerOrder::Yxz.intrinsic());
-    /// // Heading and roll turn about one line now. What is left of them is their difference.
+    /// // Heading and roll now turn about one line. Only their difference is defined.
     /// assert_eq!(found.lock, GimbalLock::OnlyDifference);
     /// assert_eq!(found.angles[2], 0.0);
     /// assert!((found.angles[0] - (0.3 - 0.5)).abs() < 1e-6);
@@ -223,13 +224,13 @@ struct Rings {
     outer: f32,
     middle: f32,
     inner: f32,
-    /// Angle from the middle angle to the nearer lock.
+    /// Difference between the middle angle and the nearer lock, radians.
     margin: f32,
-    /// The kind of that one.
+    /// Kind of the nearer lock.
     nearest_lock: GimbalLock,
-    /// Outer angle at that lock when the inner one is 0, radians.
+    /// Outer angle at the nearer lock when the inner one is 0, radians.
     outer_alone: f32,
-    /// Inner angle at that lock when the outer one is 0, radians.
+    /// Inner angle at the nearer lock when the outer one is 0, radians.
     inner_alone: f32,
 }
 
@@ -251,7 +252,7 @@ impl Rings {
             // `(sin² − cos²) / (sin + cos)`, which does not cancel for small angles.
             clamp(2.0 * trig::atan2(tilt / (cos + sin), cos + sin), -FRAC_PI_2, FRAC_PI_2)
         };
-        // The inner axis of a Tait-Bryan order is aligned with the outer one, or against it.
+        // The inner axis of a Tait-Bryan order is aligned with the outer axis, or opposite to it.
         let sign = if is_proper { 1.0 } else { -parity };
         let (half_sum, half_difference) = (trig::atan2(x, w), trig::atan2(z, y));
         let (small, large, share) = if sin < cos { (sin, cos, 1.0) } else { (cos, sin, -1.0) };

@@ -1,4 +1,4 @@
-//! Rotations in all representations.
+//! Rotations as quaternions, Euler angles and matrices.
 
 pub(crate) mod euler;
 pub(crate) mod orthonormal;

@@ -1,10 +1,10 @@
-//! Matrices that should be rotations: their drift, and how to correct it.
+//! Matrices that should be rotations: measures and corrects their drift.
 
 use crate::symmetric::jacobi;
 use crate::{Mat3, Rotation, Vec3, abs3, any_orthonormal, max, max3, normalize_or};
 
 /// Distance of a matrix from the rotation matrices. A rotation has `{ deviation: 0, determinant: 1 }`, up to rounding:
-/// 2e-6 and 1.5e-6 at most for one made by [`Rotation::to_mat3`].
+/// at most 2e-6 and 1.5e-6 for a matrix made by [`Rotation::to_mat3`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatrixDrift {
     /// `‖RᵀR − I‖`, Frobenius: 0 if the columns are orthonormal, mirrored or not.
@@ -14,7 +14,7 @@ pub struct MatrixDrift {
 }
 
 impl MatrixDrift {
-    /// Drift of a matrix.
+    /// Measures the drift of a matrix.
     pub fn of(m: &Mat3) -> Self {
         Self { deviation: frobenius(&(m.transpose() * *m - Mat3::IDENTITY)), determinant: m.determinant() }
     }
@@ -31,8 +31,8 @@ pub enum Orthonormalization {
     /// absolute orientation using unit quaternions", 1987), so mirrored and flat matrices have a result too.
     #[default]
     Polar,
-    /// Gram-Schmidt: x keeps its direction, y loses its component along x, z is their cross product. Cheaper (two
-    /// square roots) and exact in x, but the whole error goes into y and z, and the result does not commute with
+    /// Gram-Schmidt: x keeps its direction, y loses its component along x, z is the cross product of x and y. Cheaper
+    /// (two square roots) and exact in x, but the whole error goes into y and z, and the result does not commute with
     /// rotations.
     GramSchmidt,
 }
@@ -40,7 +40,7 @@ pub enum Orthonormalization {
 /// Result of correcting a matrix to a rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orthonormalized {
-    /// The rotation; [`Rotation::to_mat3`] for its matrix.
+    /// The rotation; [`Rotation::to_mat3`] returns its matrix.
     pub rotation: Rotation,
     /// `‖M − R‖`, Frobenius: size of the correction. Infinite for a matrix that is not finite.
     pub residual: f32,
@@ -62,7 +62,7 @@ pub enum Uniqueness {
 /// Relative difference below which two candidates count as equal (rounding).
 const ROUNDING: f32 = 1e-6;
 
-/// Rotation part of a matrix, without scale, shear and mirroring.
+/// Returns the rotation part of a matrix, without scale, shear and mirroring.
 pub fn orthonormalize(m: &Mat3, method: Orthonormalization) -> Orthonormalized {
     if !m.is_finite() {
         let residual = f32::INFINITY;
@@ -76,14 +76,14 @@ pub fn orthonormalize(m: &Mat3, method: Orthonormalization) -> Orthonormalized {
     Orthonormalized { rotation, residual: frobenius(&(*m - rotation.to_mat3())), answer }
 }
 
-/// The nearest rotation to a matrix that is not zero, and its uniqueness.
+/// Returns the rotation nearest to a matrix that is not zero, and its uniqueness.
 fn nearest(m: &Mat3) -> (Rotation, Uniqueness) {
     let columns = [m.x_axis, m.y_axis, m.z_axis].map(abs3);
     let largest = max3(columns[0], max3(columns[1], columns[2]));
     let largest = max(largest.x, max(largest.y, largest.z));
-    // Scaled first, so that matrices of every size give the same result without overflow.
+    // Divides by the largest element first, so that matrices of every size give the same result without overflow.
     let [a, b, c] = [m.x_axis, m.y_axis, m.z_axis].map(|column| column / largest);
-    // tr(RᵀM) = qᵀKq for the quaternion q = (x, y, z, w) of R: the nearest rotation has the largest.
+    // tr(RᵀM) = qᵀKq for the quaternion q = (x, y, z, w) of R: the nearest rotation maximises it.
     let (values, vectors) = jacobi([
         [a.x - b.y - c.z, a.y + b.x, c.x + a.z, b.z - c.y],
         [a.y + b.x, b.y - a.x - c.z, b.z + c.y, c.x - a.z],
@@ -94,7 +94,7 @@ fn nearest(m: &Mat3) -> (Rotation, Uniqueness) {
     order.sort_by(|&i, &j| values[j].total_cmp(&values[i]));
     let [first, second, ..] = order;
     let q = Rotation::from_xyzw(vectors[0][first], vectors[1][first], vectors[2][first], vectors[3][first]);
-    // With stretches σ₁ ≥ σ₂ ≥ |σ₃| (σ₃ < 0 if mirrored) the two largest are σ₁ + σ₂ + σ₃ and σ₁ − σ₂ − σ₃.
+    // With stretches σ₁ ≥ σ₂ ≥ |σ₃| (σ₃ < 0 if mirrored) the two largest eigenvalues are σ₁ + σ₂ + σ₃ and σ₁ − σ₂ − σ₃.
     let is_unique = values[first] - values[second] > ROUNDING * (values[first] + values[second]);
     (q.normalize().positive(), if is_unique { Uniqueness::Unique } else { Uniqueness::Arbitrary })
 }

@@ -38,9 +38,9 @@ pub struct Quaternion {
 }
 
 impl Quaternion {
-    /// Zero: the quotient of the zero vector by any other.
+    /// Zero: the quotient of the zero vector and any other vector.
     pub const ZERO: Self = Self::new(0.0, Vec3::ZERO);
-    /// One: neither rotates nor stretches.
+    /// One, which neither rotates nor stretches.
     pub const ONE: Self = Self::new(1.0, Vec3::ZERO);
 
     /// Creates a quaternion from its two parts.
@@ -48,15 +48,15 @@ impl Quaternion {
         Self { scalar, vector }
     }
 
-    /// Quaternion that rotates and stretches `from` into `to`: `to from⁻¹ = (from·to + from×to) / |from|²`. `None` if
-    /// `from` is zero, or either is not finite. Opposite vectors give a negative number, which has no axis.
+    /// Returns the quaternion that rotates and stretches `from` into `to`: `to from⁻¹ = (from·to + from×to) / |from|²`.
+    /// `None` if `from` is zero, or either is not finite. Opposite vectors give a negative number, which has no axis.
     pub fn quotient(to: Vec3, from: Vec3) -> Option<Self> {
         let unit = direction(from)?;
         let length = from.dot(unit);
         to.is_finite().then(|| Self::new(unit.dot(to) / length, unit.cross(to) * (1.0 / length)))
     }
 
-    /// A versor times a scale: rotates by `angle` (radians) about `axis` (length 1), stretches by `scale`.
+    /// Makes a versor times a scale: rotates by `angle` (radians) about `axis` (length 1), stretches by `scale`.
     pub fn from_scale_axis_angle(scale: f32, axis: Vec3, angle: f32) -> Self {
         let (sin, cos) = trig::sin_cos(angle);
         Self::new(scale * cos, axis * (scale * sin))
@@ -72,7 +72,7 @@ impl Quaternion {
         self.scalar * self.scalar + self.vector.length_squared()
     }
 
-    /// Angle of the rotation, radians, 0..=π. 0 for zero.
+    /// Angle of the rotation, radians, 0..=π; 0 for the zero quaternion.
     pub fn angle(self) -> f32 {
         trig::atan2(self.vector.length(), self.scalar)
     }
@@ -83,8 +83,8 @@ impl Quaternion {
         direction(self.vector)
     }
 
-    /// The rotation without the stretch: the quaternion at length 1. [`ONE`](Self::ONE) for zero, and if it is not
-    /// finite.
+    /// The rotation without the stretch: the quaternion at length 1. [`ONE`](Self::ONE) for the zero quaternion and for
+    /// one that is not finite.
     pub fn versor(self) -> Self {
         let v = abs3(self.vector);
         let largest = max(max(v.x, v.y), max(v.z, self.scalar.abs()));
@@ -96,14 +96,14 @@ impl Quaternion {
         scaled * (1.0 / scaled.norm())
     }
 
-    /// The rotation as a [`Rotation`]: by [`angle`](Self::angle) about [`axis`](Self::axis), with half the angle
-    /// inside. Identity for zero; half a turn about x for a negative number, which has no axis.
+    /// Converts the rotation to a [`Rotation`] by [`angle`](Self::angle) about [`axis`](Self::axis), which stores half
+    /// the angle. Identity for zero; half a turn about x for a negative number, which has no axis.
     pub fn to_rotation(self) -> Rotation {
         let q = self.versor();
         let Some(axis) = q.axis() else {
             return if q.scalar > 0.0 { Rotation::IDENTITY } else { Rotation::from_xyzw(1.0, 0.0, 0.0, 0.0) };
         };
-        // tan(θ/2) = sin θ / (1 + cos θ) = (1 − cos θ) / sin θ: the one that does not cancel.
+        // tan(θ/2) = sin θ / (1 + cos θ) = (1 − cos θ) / sin θ: uses the form that does not cancel.
         let sin = q.vector.length();
         let (sin, cos) = if q.scalar > 0.0 { (sin, 1.0 + q.scalar) } else { (1.0 - q.scalar, sin) };
         let half = axis * sin;
@@ -115,7 +115,7 @@ impl Quaternion {
         Self::new(self.scalar, -self.vector)
     }
 
-    /// Inverse: `q⁻¹ = q̄ / |q|²`, with `q q⁻¹ = q⁻¹ q = 1`. `None` for zero and if it is not finite.
+    /// Inverse: `q⁻¹ = q̄ / |q|²`, with `q q⁻¹ = q⁻¹ q = 1`. `None` for a quaternion that is zero or not finite.
     pub fn inverse(self) -> Option<Self> {
         let versor = self.versor();
         let norm = versor.scalar * self.scalar + versor.vector.dot(self.vector);
@@ -135,16 +135,16 @@ impl Quaternion {
     /// Rotates `v` by [`angle`](Self::angle) about [`axis`](Self::axis) and stretches it by [`norm`](Self::norm). A
     /// number multiplies; zero gives zero.
     ///
-    /// For `v` perpendicular to the axis it is the product `q v`, so `Quaternion::quotient(b, a)` takes `a` to `b`. The
-    /// component of `v` along the axis is only stretched (Rodrigues): `w v + u × v + (|q| − w) u (u·v)/u²`. Close to
-    /// half a turn the axis depends on the last digits of `u`, and so does that component.
+    /// For `v` perpendicular to the axis the result is the product `q v`, so `Quaternion::quotient(b, a)` takes `a` to
+    /// `b`. The component of `v` along the axis is only stretched (Rodrigues): `w v + u × v + (|q| − w) u (u·v)/u²`.
+    /// Close to half a turn the axis, and with it that component, depends on the last digits of `u`.
     pub fn apply(self, v: Vec3) -> Vec3 {
         let along = self.axis().map_or(Vec3::ZERO, |axis| axis * axis.dot(v));
         v * self.scalar + self.vector.cross(v) + along * (self.norm() - self.scalar)
     }
 
-    /// `q v q̄`: rotates `v` by twice [`angle`](Self::angle) and stretches it by the square of [`norm`](Self::norm).
-    /// Rotations compose as products: `(p q).sandwich(v) = p.sandwich(q.sandwich(v))`.
+    /// Returns `q v q̄`: rotates `v` by twice [`angle`](Self::angle) and stretches it by the square of
+    /// [`norm`](Self::norm). Rotations compose as products: `(p q).sandwich(v) = p.sandwich(q.sandwich(v))`.
     pub fn sandwich(self, v: Vec3) -> Vec3 {
         let (w, u) = (self.scalar, self.vector);
         v * (w * w - u.length_squared()) + u * (2.0 * u.dot(v)) + u.cross(v) * (2.0 * w)
@@ -156,14 +156,14 @@ impl Quaternion {
     }
 }
 
-/// A vector is a quaternion without a number; its square is minus the square of its length.
+/// Converts a vector to a quaternion without a scalar part; its square is minus the square of its length.
 impl From<Vec3> for Quaternion {
     fn from(v: Vec3) -> Self {
         Self::new(0.0, v)
     }
 }
 
-/// The four numbers of a rotation, which hold half its angle: `Quaternion::from(r).sandwich(v)` is `r * v`.
+/// Copies the four numbers of a rotation, which hold half its angle: `Quaternion::from(r).sandwich(v)` is `r * v`.
 impl From<Rotation> for Quaternion {
     fn from(r: Rotation) -> Self {
         Self::new(r.w, r.vector())
@@ -198,7 +198,7 @@ impl Mul<f32> for Quaternion {
     }
 }
 
-/// Hamilton's product, `ij = k = −ji`: lengths multiply, the order matters.
+/// Hamilton's product, `ij = k = −ji`: lengths multiply, and the order of the factors matters.
 impl Mul for Quaternion {
     type Output = Self;
     fn mul(self, b: Self) -> Self {

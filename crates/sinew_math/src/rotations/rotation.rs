@@ -5,8 +5,8 @@ use core::ops::Mul;
 
 /// A rotation as a unit quaternion `x i + y j + z k + w`.
 ///
-/// The algebra is scalar code of our own, because the bits of `glam::Quat` differ between targets. Converts from and to
-/// `glam::Quat` with `From`, component by component. `a * b` applies `b` first; `r * v` rotates a vector.
+/// The algebra is our own scalar code, because the bits of `glam::Quat` differ between targets. `From` converts from and
+/// to `glam::Quat`, component by component. `a * b` applies `b` first; `r * v` rotates a vector.
 ///
 /// A rotation by angle θ about the unit vector n is `cos(θ/2) + n sin(θ/2)` and takes v to `q v q̄`; so q and −q are
 /// the same rotation. For quaternions of any length, and for whole angles, see [`Quaternion`](crate::Quaternion).
@@ -18,14 +18,14 @@ use core::ops::Mul;
 /// // From axis and angle, radians, counter-clockwise as seen against the axis.
 /// let q = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_2);
 /// assert!((q * Vec3::Z - Vec3::X).length() < 1e-6);
-/// // To a matrix, whose columns are where the axes go, and from it.
+/// // To a matrix, whose columns are the images of the axes, and from it.
 /// let m = q.to_mat3();
 /// assert!((m * Vec3::Z - Vec3::X).length() < 1e-6);
 /// assert!(Rotation::from_mat3(&m).angle_to(q) < 1e-6);
 /// // Normalise to remove the error of many products.
 /// let worn = Rotation::from_xyzw(q.x * 1.01, q.y * 1.01, q.z * 1.01, q.w * 1.01);
 /// assert!((worn.normalize().length() - 1.0).abs() < 1e-6);
-/// // Inverse: the turn back.
+/// // The inverse turns back.
 /// assert!((q.inverse() * (q * Vec3::X) - Vec3::X).length() < 1e-6);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +49,7 @@ impl Default for Rotation {
 }
 
 impl Rotation {
-    /// No rotation.
+    /// The identity: no rotation.
     pub const IDENTITY: Self = Self { x: 0.0, y: 0.0, z: 0.0, w: 1.0 };
 
     /// Creates a rotation from four numbers as they are; call [`normalize`](Self::normalize) if their length may differ
@@ -77,7 +77,7 @@ impl Rotation {
         Self::from_vector(axis * sin, cos)
     }
 
-    /// Rotation by `angle` radians about an axis of any length. Identity if the axis is zero or a number is not finite.
+    /// Rotates by `angle` radians about an axis of any length. Identity if the axis is zero or a number is not finite.
     pub fn about(axis: Vec3, angle: f32) -> Self {
         direction(axis).map_or(Self::IDENTITY, |axis| Self::from_axis_angle(axis, angle).normalize())
     }
@@ -90,8 +90,8 @@ impl Rotation {
         direction(q.vector()).map_or((Vec3::X, 0.0), axis_and_angle)
     }
 
-    /// Exponential map: rotation about `v` by its length in radians. Exact for the zero vector; identity for one that is
-    /// not finite or longer than 1e19.
+    /// Exponential map: rotation about `v` by its length in radians. Exact for the zero vector; identity for a vector
+    /// that is not finite or longer than 1e19.
     #[doc(alias = "exp")]
     pub fn from_scaled_axis(v: Vec3) -> Self {
         let angle = v.length();
@@ -116,9 +116,9 @@ impl Rotation {
         v * (2.0 * trig::atan2(sin, q.w) / sin)
     }
 
-    /// The shortest rotation that takes unit vector `from` to unit vector `to`. For opposite vectors: half a turn about
-    /// a fixed axis perpendicular to `from`. Accurate within 7e-7 rad over the sine of an obtuse angle between the two:
-    /// 5e-4 at worst, a tenth of a degree from opposite. For vectors of other lengths see
+    /// Returns the shortest rotation that takes unit vector `from` to unit vector `to`. For opposite vectors: half a
+    /// turn about a fixed axis perpendicular to `from`. The error is at most 7e-7 rad over the sine of an obtuse angle
+    /// between the two; the worst is 5e-4 rad, a tenth of a degree from opposite. For vectors of other lengths see
     /// [`Quaternion::quotient`](crate::Quaternion::quotient).
     pub fn from_arc(from: Vec3, to: Vec3) -> Self {
         let cos = from.dot(to);
@@ -134,7 +134,7 @@ impl Rotation {
         Self::from_vector(sin, square / (1.0 - cos)).normalize()
     }
 
-    /// From a rotation matrix with orthonormal columns (Shepperd, "Quaternion from rotation matrix", 1978: by the
+    /// Converts a rotation matrix with orthonormal columns (Shepperd, "Quaternion from rotation matrix", 1978: by the
     /// largest component, so that nothing cancels). For other matrices the result is some rotation: see
     /// [`orthonormalize`](crate::orthonormalize).
     pub fn from_mat3(m: &Mat3) -> Self {
@@ -152,14 +152,14 @@ impl Rotation {
         q.normalize()
     }
 
-    /// The rotation of `m` without scale and shear, by Gram-Schmidt, x first. A mirrored matrix gives the rotation of
-    /// its mirror image in z. Degenerate columns are replaced. [`orthonormalize`](crate::orthonormalize) returns the
-    /// nearest rotation, the size of the correction and whether it is unique.
+    /// Returns the rotation of `m` without scale and shear, by Gram-Schmidt, x first. A mirrored matrix gives the
+    /// rotation of its mirror image in z. Degenerate columns are replaced. [`orthonormalize`](crate::orthonormalize)
+    /// returns the nearest rotation, the size of the correction and whether it is unique.
     pub fn from_mat3_lossy(m: &Mat3) -> Self {
         gram_schmidt(m).0
     }
 
-    /// The same rotation as a matrix; its columns are the images of the axes.
+    /// Converts the rotation to a matrix; its columns are the images of the axes.
     #[inline]
     pub fn to_mat3(self) -> Mat3 {
         let Self { x, y, z, w } = self;
@@ -194,8 +194,8 @@ impl Rotation {
         self.dot(self).sqrt()
     }
 
-    /// Scales to length 1; the zero quaternion (below 1e-12) and those that are not finite (above 1e19) give the
-    /// identity.
+    /// Scales to length 1. The zero quaternion (not longer than 1e-12) and those that are not finite (above 1e19) give
+    /// the identity.
     #[inline]
     pub fn normalize(self) -> Self {
         let length = self.length();
@@ -207,13 +207,13 @@ impl Rotation {
         }
     }
 
-    /// The same rotation with `w ≥ 0`.
+    /// Returns the same rotation with `w ≥ 0`.
     #[inline]
     pub fn positive(self) -> Self {
         if self.w < 0.0 { self.negate() } else { self }
     }
 
-    /// The same rotation on the hemisphere of `reference`, so that blends take the short way.
+    /// Returns the same rotation on the hemisphere of `reference`, so that blends take the short way.
     #[inline]
     pub fn toward(self, reference: Self) -> Self {
         if self.dot(reference) < 0.0 { self.negate() } else { self }
@@ -229,8 +229,8 @@ impl Rotation {
         (self.inverse() * other).to_scaled_axis().length()
     }
 
-    /// Normalised linear blend, the short way; `t` in 0..=1. Same path as [`slerp`](Self::slerp), but faster in its
-    /// middle. Between rotations half a turn apart the signs of the two choose the way.
+    /// Normalised linear blend, the short way; `t` in 0..=1. Follows the path of [`slerp`](Self::slerp), but moves
+    /// faster in its middle. Between rotations half a turn apart the signs of the two quaternions choose the way.
     pub fn nlerp(self, other: Self, t: f32) -> Self {
         let b = other.toward(self);
         let s = 1.0 - t;
@@ -244,9 +244,9 @@ impl Rotation {
     }
 
     /// Spherical blend at constant angular speed, the short way; `t` in 0..=1 (Shoemake, "Animating rotation with
-    /// quaternion curves", 1985): `(q sin((1−t)φ) + p sin(tφ)) / sin φ` with `cos φ = q·p`. Below 3.6° it is
+    /// quaternion curves", 1985): `(q sin((1−t)φ) + p sin(tφ)) / sin φ` with `cos φ = q·p`. Below 3.6° it uses
     /// [`nlerp`](Self::nlerp), which is as accurate there. Opposite quaternions are the same rotation, so a blend of
-    /// them is constant. Between rotations half a turn apart the signs of the two choose the way.
+    /// them is constant. Between rotations half a turn apart the signs of the two quaternions choose the way.
     pub fn slerp(self, other: Self, t: f32) -> Self {
         let b = other.toward(self);
         let cos = self.dot(b);
@@ -266,8 +266,8 @@ impl Rotation {
     }
 
     /// Splits into `(swing, twist)` with `self = swing * twist`, `twist` about unit vector `axis` and the axis of
-    /// `swing` perpendicular to it. At a swing of half a turn (within 2e-4) the twist is undefined and returned as
-    /// none.
+    /// `swing` perpendicular to it. At a swing of half a turn (within 2e-4) the twist is undefined; the identity is
+    /// returned for it.
     pub fn swing_twist(self, axis: Vec3) -> (Self, Self) {
         let q = self.positive();
         let along = q.vector().dot(axis);
@@ -278,21 +278,22 @@ impl Rotation {
         (q * twist.inverse(), twist)
     }
 
-    /// Twist angle about unit vector `axis`, radians, −π..=π: that of the second part of
+    /// Twist angle about unit vector `axis`, radians, −π..=π: the angle of the second part of
     /// [`swing_twist`](Self::swing_twist).
     pub fn twist_angle(self, axis: Vec3) -> f32 {
         let q = self.positive();
         2.0 * trig::atan2(q.vector().dot(axis), q.w)
     }
 
-    /// The rotation after turning with angular velocity `w` (rad/s, world axes) for `h` seconds: exponential map.
+    /// Returns the rotation after turning with angular velocity `w` (rad/s, world axes) for `h` seconds: exponential
+    /// map.
     #[inline]
     pub fn integrate(self, w: Vec3, h: f32) -> Self {
         (Self::from_scaled_axis(w * h) * self).normalize()
     }
 
-    /// The constant angular velocity (rad/s, world axes) that takes `self` to `later` within `dt` seconds, the short
-    /// way; at most `π/dt`. `dt` is not 0.
+    /// Returns the constant angular velocity (rad/s, world axes) that takes `self` to `later` within `dt` seconds, the
+    /// short way; at most `π/dt`. `dt` must not be 0.
     pub fn angular_velocity_to(self, later: Self, dt: f32) -> Vec3 {
         let turn = (later * self.inverse()).positive();
         let square = turn.vector().length_squared();
@@ -306,16 +307,17 @@ impl Rotation {
     /// angle of 0.2 rad.
     pub const SHORT_TURN: f32 = 0.01;
 
-    /// Half of a rotation's angle (rad) over its sine `s`, from `s²`: the first terms of the series of `asin(s) / s`.
-    /// The truncation error is 3e-10 up to [`SHORT_TURN`](Self::SHORT_TURN).
+    /// Returns half of a rotation's angle (rad) over its sine `s`, from `s²`: the first terms of the series of
+    /// `asin(s) / s`. The truncation error is 3e-10 up to [`SHORT_TURN`](Self::SHORT_TURN).
     #[inline(always)]
     pub fn half_angle_over_sine<R: Real>(square: R) -> R {
         let [one, third, fifth, seventh] = [1.0, 1.0 / 6.0, 3.0 / 40.0, 15.0 / 336.0].map(R::splat);
         one + square * (third + square * (fifth + square * seventh))
     }
 
-    /// `self * v`, corrected for the quaternion's deviation from length 1. After normalising, the deviation is up to
-    /// 1e-7 and positive on average: rotated back and forth in every substep, a vector would grow by 1e-3 in a minute.
+    /// Returns `self * v`, corrected for the quaternion's deviation from length 1. After normalising, the deviation is
+    /// up to 1e-7 and positive on average: rotated back and forth in every substep, a vector would grow by 1e-3 in a
+    /// minute.
     #[inline]
     pub fn turn(self, v: Vec3) -> Vec3 {
         let [x, y, z, w] = [self.x, self.y, self.z, self.w].map(f64::from);

@@ -1,4 +1,4 @@
-//! The same bits on every target and in every profile: the hash of a few thousand rotations is stored here, and
+//! Checks that bits are equal on every target and in every profile. The stored hash of a few thousand rotations
 //! changes only if a formula does.
 
 use sinew_math::{

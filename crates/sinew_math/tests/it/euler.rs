@@ -4,10 +4,10 @@ use super::oracle::{CASES, Exact, angle, worst_of};
 use core::f32::consts::{FRAC_PI_2, PI, TAU};
 use sinew_math::{EulerAngles, EulerAxes, EulerConvention, EulerOrder, GimbalLock, Random, Rotation, trig};
 
-/// Cases of each convention, where their total is enough.
+/// Number of cases per convention, if all conventions together give enough cases.
 const SHARE: usize = CASES / 20;
 
-/// From the definition.
+/// Returns the rotation by definition.
 fn exact(convention: EulerConvention, angles: [f64; 3]) -> Exact {
     let turn = |i: usize| {
         let mut axis = [0.0; 3];
@@ -35,7 +35,8 @@ fn check_range(convention: EulerConvention, found: EulerAngles) {
     assert!((0.0..=FRAC_PI_2 + 1e-6).contains(&found.lock_margin), "{convention:?} {found:?}");
 }
 
-/// Calls a function for all conventions and cases with a rotation, its angles, and the largest error of the angles.
+/// Returns the largest result of a function over all conventions and cases, called with a rotation, its angles, and
+/// the largest error of the angles.
 fn worst(cases: usize, seed: u64, mut rotation: impl FnMut(EulerConvention, &mut Random) -> Rotation) -> f64 {
     let mut most = 0.0;
     for convention in EulerConvention::all() {
@@ -87,7 +88,7 @@ fn rotations_close_to_lock_round_trip() {
         let sign = if random.index(2) == 0 { 1.0 } else { -1.0 };
         Rotation::from_euler(convention, [random.range(-PI, PI), lock + sign * near, random.range(-PI, PI)])
     });
-    // At lock the error is up to the margin.
+    // At gimbal lock the error is at most the margin.
     assert!(error < 4.5e-6, "{error}");
 }
 
@@ -107,7 +108,7 @@ fn angles_round_trip_away_from_lock() {
                 let apart = f64::from(found.angles[i] - angles[i]).rem_euclid(f64::from(TAU));
                 f64::min(apart, f64::from(TAU) - apart)
             };
-            // An error in the rotation grows in the outer angles near the lock.
+            // An error of the rotation is amplified in the outer angles near the lock.
             let outer = f64::max(off(0), off(2)) * f64::from(trig::sin(found.lock_margin));
             f64::max(outer, off(1))
         });

@@ -2,7 +2,7 @@
 
 use sinew_math::{Mat3, Random, Rotation, Vec3};
 
-/// Random cases of each test.
+/// Number of random cases per test.
 pub const CASES: usize = 100_000;
 
 /// A quaternion (w, x, y, z).
@@ -53,7 +53,7 @@ impl Exact {
         2.0 * norm([x, y, z]).atan2(w.abs())
     }
 
-    /// Returns the angle from this rotation to `r`, radians; a length other than 1 counts as well.
+    /// Returns the angle from this rotation to `r`, radians; a deviation from length 1 counts, too.
     pub fn error(self, r: Rotation) -> f64 {
         let [w, x, y, z] = [r.w, r.x, r.y, r.z].map(f64::from);
         let distance = |sign: f64| {
@@ -84,19 +84,19 @@ pub fn largest(errors: impl IntoIterator<Item = f64>) -> f64 {
         .fold(0.0, |most, error| if error.is_nan() { f64::INFINITY } else { f64::max(most, error) })
 }
 
-/// Returns the distance of a vector from an exact one over the latter's length.
+/// Returns the relative error of a vector: its distance from an exact vector over the length of that vector.
 pub fn off(found: Vec3, expected: [f64; 3]) -> f64 {
     let found = wide(found);
     norm([found[0] - expected[0], found[1] - expected[1], found[2] - expected[2]]) / norm(expected)
 }
 
-/// Largest difference of an entry of two matrices.
+/// Returns the largest difference of the entries of two matrices.
 pub fn matrix_off(a: &Mat3, b: &Mat3) -> f64 {
     let (a, b) = (a.to_cols_array(), b.to_cols_array());
     largest(a.iter().zip(b).map(|(x, y)| f64::from(x - y).abs()))
 }
 
-/// Returns angles of every size: from 1e-9 to 7, either sign, and those where formulas switch.
+/// Returns angles of every size: from 1e-9 to 7 with either sign, and angles at which formulas switch.
 pub fn angle(random: &mut Random) -> f32 {
     const EDGES: [f64; 6] = [
         0.0,
@@ -121,7 +121,7 @@ pub fn worst(seed: u64, error: impl FnMut(&mut Random) -> f64) -> f64 {
     worst_of(CASES, seed, error)
 }
 
-/// The same of another number of cases.
+/// Like [`worst`], with another number of cases.
 pub fn worst_of(cases: usize, seed: u64, mut error: impl FnMut(&mut Random) -> f64) -> f64 {
     let mut random = Random::new(seed);
     let (mut most, mut at) = (0.0, 0);

@@ -1,4 +1,4 @@
-//! Matrices that are not quite rotations.
+//! Tests of matrices that are nearly rotations.
 
 use super::oracle::{Exact, matrix_off, worst};
 use sinew_math::{
@@ -55,7 +55,7 @@ fn rotations_are_kept() {
 
 #[test]
 fn polar_removes_all_stretch() {
-    // M = R S with S symmetric and positive: the polar rotation is R, whatever S.
+    // M = R S with S symmetric and positive: the polar rotation is R for every S.
     let error = worst(32, |random| {
         let (rotation, frame) = (random.rotation(), random.rotation());
         let sizes = Vec3::new(random.range(0.2, 3.0), random.range(0.2, 3.0), random.range(0.2, 3.0));
@@ -69,7 +69,7 @@ fn polar_removes_all_stretch() {
     assert!(error < 1.5e-5, "{error}");
 }
 
-/// No other rotation is nearer: neither Gram-Schmidt's nor any beside it.
+/// Checks that no other rotation is nearer: neither Gram-Schmidt's nor any neighbouring one.
 #[test]
 fn polar_is_nearest() {
     worst(33, |random| {
@@ -87,7 +87,7 @@ fn polar_is_nearest() {
 
 #[test]
 fn polar_is_independent_of_axes() {
-    // In other axes the answer is the same; Gram-Schmidt's is not.
+    // In other axes the polar result is the same, but Gram-Schmidt's is not.
     let turned = |m: &Mat3, method| {
         let axes = Rotation::from_axis_angle(Vec3::ONE.normalize(), 1.0);
         let there = orthonormalize(&(*m * axes.to_mat3()), method).rotation;
@@ -112,7 +112,7 @@ fn size_does_not_matter() {
 
 #[test]
 fn mirrored_matrices_have_an_answer() {
-    // The least stretched axis is reversed.
+    // The axis with the smallest stretch is reversed.
     let mirror = Mat3::from_diagonal(Vec3::new(2.0, -0.5, 1.0));
     let found = orthonormalize(&mirror, Orthonormalization::Polar);
     assert!(

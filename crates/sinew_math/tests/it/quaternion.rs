@@ -1,4 +1,4 @@
-//! General quaternions.
+//! Tests of general quaternions.
 
 use super::oracle::{Exact, largest, norm, off, wide, worst};
 use core::f32::consts::PI;
@@ -9,7 +9,7 @@ fn random_quaternion(random: &mut Random) -> Quaternion {
     Quaternion::new(random.range(-1.0, 1.0), random.in_cube()) * size
 }
 
-/// Returns the distance of two quaternions over their size.
+/// Returns the distance of two quaternions over the length of the second.
 fn apart(a: Quaternion, b: Quaternion) -> f64 {
     f64::from((a - b).norm()) / f64::from(b.norm())
 }
@@ -122,7 +122,7 @@ fn sandwich_is_a_rotation_by_twice_the_angle() {
 
 #[test]
 fn quotients_in_one_plane_follow_each_other() {
-    // c/a = (c/b)(b/a) for any vectors; in one plane rotations and stretches compose as well.
+    // c/a = (c/b)(b/a) for any vectors; in one plane the rotations and stretches also compose.
     let error = worst(44, |random| {
         let [a, b, c] = [0; 3].map(|_| random.direction() * random.range(0.1, 5.0));
         let q = |to, from| Quaternion::quotient(to, from).expect("none is zero");
@@ -145,7 +145,7 @@ fn parts_recombine_to_the_quaternion() {
     assert!(error < 5e-6, "{error}");
     assert_eq!(Quaternion::ZERO.power(2.0), Quaternion::ZERO);
     assert_eq!(Quaternion::new(4.0, Vec3::ZERO).power(0.5), Quaternion::new(2.0, Vec3::ZERO));
-    // The root of −1.
+    // The square root of −1.
     assert!((Quaternion::new(-1.0, Vec3::ZERO).power(0.5) - Quaternion::from(Vec3::X)).norm() < 1e-6);
 }
 

@@ -1,4 +1,4 @@
-//! Unit quaternions.
+//! Tests of unit quaternions.
 
 use super::oracle::{Exact, angle, cross, largest, norm, off, wide, worst};
 use core::f32::consts::{FRAC_PI_2, PI, TAU};
@@ -44,7 +44,7 @@ fn to_axis_and_angle() {
     assert_eq!(Rotation::from_xyzw(0.0, 1.0, 0.0, 0.0).to_axis_angle(), (Vec3::Y, PI));
     let (axis, angle) = Rotation::from_axis_angle(Vec3::Z, TAU - 1e-3).to_axis_angle();
     assert!((axis + Vec3::Z).length() < 1e-3 && (angle - 1e-3).abs() < 1e-6, "{axis} {angle}");
-    // Any small angle: the quaternion's vector part holds it.
+    // Even a very small angle is exact, because it is in the quaternion's vector part.
     let (axis, angle) = Rotation::from_axis_angle(Vec3::Y, 1e-30).to_axis_angle();
     assert!((axis - Vec3::Y).length() < 1e-6 && (angle / 1e-30 - 1.0).abs() < 1e-6, "{axis} {angle}");
 }
@@ -57,7 +57,7 @@ fn exponential_of_a_vector() {
         let exact = if vector == Vec3::ZERO { Exact::IDENTITY } else { exact };
         exact.error(Rotation::from_scaled_axis(vector))
     });
-    // The longest are two full turns, and have an ulp of 1e-6.
+    // The longest vectors are two full turns, where an ulp is 1e-6.
     assert!(error < 1.5e-6, "{error}");
     assert_eq!(Rotation::from_scaled_axis(Vec3::ZERO), Rotation::IDENTITY);
     assert_eq!(Rotation::from_scaled_axis(Vec3::splat(f32::NAN)), Rotation::IDENTITY);
@@ -66,7 +66,7 @@ fn exponential_of_a_vector() {
 
 #[test]
 fn logarithm_undoes_the_exponential() {
-    // Vectors up to half a turn, relative to their own length, so that small ones count.
+    // Vectors up to half a turn; the error is relative to their length, so that small ones count.
     let error = worst(5, |random| {
         let vector = random.direction() * trig::pow(10.0, random.range(-9.0, 0.49));
         off(Rotation::from_scaled_axis(vector).to_scaled_axis(), wide(vector))
@@ -81,7 +81,7 @@ fn logarithm_undoes_the_exponential() {
     assert!(error < 8e-7, "{error}");
     assert_eq!(Rotation::IDENTITY.to_scaled_axis(), Vec3::ZERO);
     assert_eq!(Rotation::from_xyzw(1.0, 0.0, 0.0, 0.0).to_scaled_axis(), Vec3::X * PI);
-    // More than half a turn: the short way, about the opposite axis.
+    // More than half a turn gives the short way about the opposite axis.
     let long = Rotation::from_scaled_axis(Vec3::Y * (TAU - 0.5)).to_scaled_axis();
     assert!((long + Vec3::Y * 0.5).length() < 1e-6, "{long}");
 }
@@ -90,14 +90,14 @@ fn logarithm_undoes_the_exponential() {
 fn arc_between_directions() {
     let error = worst(7, |random| {
         let from = random.direction();
-        // Of all sizes, and close to opposite ones.
+        // Angles of all sizes, and close to half a turn.
         let exact = Exact::about(wide(random.direction()), f64::from(angle(random))).turn(wide(from));
         let to = Vec3::from_array(exact.map(|x| x as f32)).normalize();
         let arc = Rotation::from_arc(from, to);
         let landed = off(arc * from, wide(to));
-        // It is the shortest: its axis is perpendicular to both.
+        // The arc is the shortest: its axis is perpendicular to both vectors.
         let astray = f64::from(arc.vector().dot(from).abs());
-        // Less exact near opposite directions.
+        // Arcs are less exact near opposite directions.
         let is_less_exact = (-0.999_999..0.0).contains(&from.dot(to));
         let scale = if is_less_exact { norm(cross(wide(from), wide(to))) } else { 1.0 };
         largest([landed, astray]) * scale
@@ -137,7 +137,7 @@ fn matrix_and_back() {
         Exact::of(rotation).error(Rotation::from_mat3(&rotation.to_mat3()))
     });
     assert!(error < 1e-6, "{error}");
-    // Half turns, where the trace is least, about every kind of axis.
+    // Half turns about every kind of axis; there the trace is smallest.
     let error = worst(11, |random| {
         let axis = [Vec3::X, Vec3::Y, Vec3::Z, random.direction()][random.index(4)];
         let rotation = Rotation::from_axis_angle(axis, PI + random.range(-1e-3, 1e-3));
@@ -180,7 +180,8 @@ fn normalise() {
     }
 }
 
-/// Rotations that slerp should return, by definition: `a` rotated by a share of the way to `b`; the short way and the long one.
+/// Returns the results that slerp may have by definition: `a` rotated by a share of the way to `b`, by the short way
+/// and by the long one.
 fn part_way(a: Exact, b: Exact, t: f64) -> [Exact; 2] {
     let [w, x, y, z] = b.then(a.inverse()).0;
     let sin = norm([x, y, z]);
@@ -200,10 +201,10 @@ fn spherical_blend() {
         let t = random.unit();
         let [short, long] =
             part_way(Exact::of(a), Exact::of(b), f64::from(t)).map(|way| way.error(a.slerp(b, t)));
-        // Half a turn apart, either way is valid.
+        // For rotations half a turn apart, both ways are valid.
         if a.dot(b).abs() < 1e-6 { f64::min(short, long) } else { short }
     });
-    // Below 3.6° the linear blend is used, which lags by this.
+    // Below 3.6° the linear blend is used, which deviates by at most this angle.
     assert!(error < 3e-6, "{error}");
 }
 
@@ -227,7 +228,7 @@ fn linear_blend_takes_the_same_path() {
         let (start, end) = (Exact::of(a), Exact::of(b));
         let whole = end.then(start.inverse());
         let part = Exact::of(a.nlerp(b, t)).then(start.inverse());
-        // About the same axis, so still on the great circle.
+        // The axis is the same, so the result is on the great circle.
         let (v, w) = ([1, 2, 3].map(|i| whole.0[i]), [1, 2, 3].map(|i| part.0[i]));
         assert!(part.angle() <= whole.angle() + 1e-6);
         norm(cross(v, w))
@@ -249,7 +250,7 @@ fn swing_times_twist() {
         largest([Exact::of(rotation).error(swing * twist), swing_along, twist_across, twist_angle])
     });
     assert!(error < 2e-6, "{error}");
-    // Half a turn of swing: no twist.
+    // A swing of half a turn has no twist.
     let upside_down = Rotation::from_axis_angle(Vec3::X, PI);
     assert_eq!(upside_down.swing_twist(Vec3::Y).1, Rotation::IDENTITY);
     assert_eq!(Rotation::IDENTITY.swing_twist(Vec3::Y), (Rotation::IDENTITY, Rotation::IDENTITY));
@@ -267,7 +268,7 @@ fn angular_velocity_between_two() {
         norm(wide(found - velocity)) * f64::from(dt)
     });
     assert!(error < 1.5e-6, "{error}");
-    // Faster than half a turn looks like slower the other way.
+    // A rotation by more than half a turn appears as a smaller one in the opposite direction.
     let seen = Rotation::IDENTITY.angular_velocity_to(Rotation::from_axis_angle(Vec3::Z, 1.5 * PI), 1.0);
     assert!((seen + Vec3::Z * FRAC_PI_2).length() < 1e-6, "{seen}");
 }
@@ -282,7 +283,7 @@ fn ten_thousand_products_stay_rotations() {
     assert!((rotation.length() - 1.0).abs() < 3e-7, "{}", rotation.length());
 }
 
-/// A rotation of the space above, seen from within a mirrored frame, is the one that the frame's rigid part gives.
+/// A rotation of the space above, converted to a mirrored frame, equals the conversion by the frame's rigid part.
 #[test]
 fn a_mirrored_frame_conjugates_like_its_rigid_part() {
     let turn = Rotation::from_scaled_axis(Vec3::new(0.4, -1.1, 0.3));

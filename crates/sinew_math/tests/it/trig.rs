@@ -1,10 +1,10 @@
-//! Trigonometry against that of `f64`, in units of the last place.
+//! Compares trigonometry with that of `f64`, in units of the last place.
 
 use super::oracle::{angle, largest, worst};
 use core::f32::consts::{FRAC_PI_2, PI};
 use sinew_math::trig;
 
-/// Error in units of the last place of the exact result, at least those of 1e-30.
+/// Returns the error in units of the last place of the exact result; results below 1e-30 count as 1e-30.
 fn ulps(found: f32, exact: f64) -> f64 {
     let size = f32::max((exact as f32).abs(), 1e-30);
     let ulp = f64::from(f32::from_bits(size.to_bits() + 1)) - f64::from(size);
@@ -35,7 +35,7 @@ fn inverse_functions() {
         ])
     });
     assert!(error < 1.5, "{error}");
-    // Rounding beyond 1 is clamped to 1.
+    // Arguments beyond 1 through rounding are clamped to 1.
     assert_eq!((trig::asin(1.000_001), trig::asin(-2.0)), (FRAC_PI_2, -FRAC_PI_2));
     assert_eq!(trig::acos(1.000_001), 0.0);
     assert!((trig::acos(-2.0) - PI).abs() < 3e-7);

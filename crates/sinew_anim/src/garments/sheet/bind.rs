@@ -4,7 +4,7 @@ use super::reduce::Reduced;
 use super::weld::Welded;
 use sinew_math::{Vec3, triangle};
 
-/// Particles of a vertex.
+/// Particles that move a vertex, with their weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bound {
     pub particles: [usize; 4],
@@ -17,8 +17,8 @@ impl Bound {
     }
 }
 
-/// Weights each vertex to its own particle, or to those of the nearest triangle: among the triangles of its particle,
-/// or, if it has none, among all.
+/// Weights each vertex to its own particle, or to the particles of the nearest triangle: among the triangles of its
+/// particle if it has any, else among all.
 pub(super) fn bind(welded: &Welded, reduced: &Reduced) -> Vec<Bound> {
     let area = |face: u32| welded.area(&reduced.faces[face as usize].map(|at| reduced.seeds[at as usize]));
     // Triangles without area are skipped.
@@ -35,7 +35,7 @@ pub(super) fn bind(welded: &Welded, reduced: &Reduced) -> Vec<Bound> {
     reduced.owner.iter().enumerate().map(bound).collect()
 }
 
-/// The triangle of these that is nearest to a vertex.
+/// Returns the triangle of `faces` that is nearest to a vertex.
 fn nearest(welded: &Welded, reduced: &Reduced, vertex: usize, faces: &[u32]) -> Option<Bound> {
     let place = welded.places[vertex];
     let mut best: Option<(f32, Bound)> = None;

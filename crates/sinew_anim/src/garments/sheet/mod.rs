@@ -1,4 +1,4 @@
-//! Meshes as sheets of cloth: one joint per particle, to which the vertices are weighted.
+//! Meshes as sheets of cloth, with one joint per particle, to which the vertices are weighted.
 
 mod bind;
 mod graph;
@@ -12,10 +12,10 @@ use bind::Bound;
 use sinew_math::Affine;
 use weld::Welded;
 
-/// Part of a rig to make a sheet of: a whole mesh, or its parts with one material.
+/// Part of a rig that becomes a sheet: a whole mesh, or its parts with one material.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeshPart {
-    /// Name that was requested.
+    /// Name by which the part was requested.
     pub name: String,
     /// Index into [`Rig::meshes`].
     pub mesh: usize,
@@ -29,25 +29,25 @@ pub enum SheetError {
     /// No mesh or material has the name.
     #[error("no mesh or material has that name")]
     Unknown,
-    /// Several meshes have it: their nodes.
+    /// Several meshes have the name: lists their nodes.
     #[error("{} meshes have that name or material, and a garment is of one: {}", .0.len(), .0.join(", "))]
     Several(Vec<String>),
-    /// The part has no weights, but another part of its mesh has.
+    /// The part has no weights, but another part of its mesh has weights.
     #[error("that part of the mesh has no weights, and others have: give it some")]
     NoSkin,
     /// The mesh is cloth already.
     #[error("that mesh is a garment already")]
     Twice,
-    /// There are no triangles, or all of them lie in a point.
+    /// The part has no triangles, or all of them lie in a point.
     #[error("that mesh has no triangles with an area")]
     Empty,
     /// The whole mesh is held.
     #[error("all of that mesh is held: no part can move")]
     AllHeld,
-    /// Most of it is not connected to the held part.
+    /// Most of the mesh is not connected to the held part.
     #[error("most of that mesh is not connected to the held part at its top: use a larger `held`")]
     MostlyLoose,
-    /// More pieces are held than particles are allowed.
+    /// The held pieces are more than the particles allowed.
     #[error(
         "{0} separate pieces of that mesh are held, and each needs a particle: use a larger `most_particles`"
     )]
@@ -64,22 +64,22 @@ pub struct SheetOptions<'a> {
     pub bind_model: &'a [Affine],
     /// Transform to +Y up and metres.
     pub metres_from_model: Affine,
-    /// Largest distance between neighbouring particles, metres, positive; larger if there would be too many, and along
-    /// diagonals of square cells.
+    /// Largest distance between neighbouring particles, metres, positive. Larger if there would be too many particles,
+    /// and along diagonals of square cells.
     pub spacing: f32,
-    /// Depth below its top down to which it is held, metres; `None`: a tenth of its height.
+    /// Depth below the top of the mesh down to which it is held, metres; `None`: a tenth of its height.
     pub held: Option<f32>,
-    /// Most particles, at least 4: finer meshes are reduced, and coarser ones no further split.
+    /// Most particles, at least 4: finer meshes are reduced to this number, and coarser ones not split beyond it.
     pub most_particles: usize,
     /// File node of the first new joint ([`Joint::source`]); the others follow.
     pub first_source: usize,
 }
 
 impl MeshPart {
-    /// The mesh of a node with that name, a mesh with that name, or the parts with a material of that name.
+    /// Returns the mesh of a node with that name, the mesh with that name, or the parts with a material of that name.
     ///
     /// # Errors
-    /// There is none, more than one, or it is the unweighted part of a skinned mesh.
+    /// If there is none or more than one, or the part is the unweighted part of a skinned mesh.
     pub fn named(rig: &Rig, name: &str) -> Result<Self, SheetError> {
         let node = |mesh: usize| rig.joints[rig.meshes[mesh].joint].name.as_str();
         let all = |mesh: usize| (0..rig.meshes[mesh].primitives.len()).collect::<Vec<usize>>();
@@ -110,7 +110,7 @@ impl MeshPart {
         Err(SheetError::Unknown)
     }
 
-    /// Names of all meshes, their nodes and their materials, each once.
+    /// Returns the names of all meshes, their nodes and their materials, each only once.
     pub fn names(rig: &Rig) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
         for mesh in &rig.meshes {
@@ -125,12 +125,12 @@ impl MeshPart {
     }
 }
 
-/// Turns a part of a rig into a sheet: vertices in one place are merged; a finer mesh is reduced to particles no
-/// further apart than the spacing, borders first; longer edges are split. The rig gets a joint per particle, and
-/// vertices are weighted to these: each to its own, or to the three of its triangle. While nothing moves the new
-/// joints, the mesh follows the old ones.
+/// Makes a sheet of a part of a rig. Vertices in one place are merged; a finer mesh is reduced to particles no farther
+/// apart than the spacing, borders first; longer edges are split. The rig gets a joint per particle, and each vertex
+/// is weighted to its own particle, or to the three of its triangle. While the new joints are not moved, the mesh
+/// follows the old ones.
 ///
-/// Loose parts (buttons, a buckle) move with the cloth under them.
+/// Loose parts (buttons, a buckle) follow the cloth under them.
 ///
 /// Returns the index of the sheet in [`Rig::sheets`].
 ///
@@ -168,7 +168,7 @@ impl Rig {
         skin.is_none() && self.meshes.iter().any(|other| other.joint == joint && other.skin.is_some())
     }
 
-    /// Gives a rigid mesh its own skin, all on its joint.
+    /// Gives a rigid mesh its own skin, with all weights on its joint.
     fn hang_on_its_joint(&mut self, mesh: usize) {
         let mesh = &mut self.meshes[mesh];
         mesh.skin = Some(self.skins.len());
@@ -180,7 +180,7 @@ impl Rig {
         }
     }
 
-    /// Removes that skin (the last one) again.
+    /// Removes the skin that [`hang_on_its_joint`](Self::hang_on_its_joint) added (the last one).
     fn hang_rigidly(&mut self, mesh: usize) {
         self.skins.pop();
         let mesh = &mut self.meshes[mesh];
@@ -223,7 +223,7 @@ fn lay(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> Result<usi
     Ok(rig.sheets.len() - 1)
 }
 
-/// A joint for each particle, and its slot at the end of the skin; it moves with its parent.
+/// Adds a joint for each particle, and its slot at the end of the skin. Each joint moves with its parent.
 fn add_joints(
     rig: &mut Rig,
     part: &MeshPart,
@@ -261,11 +261,11 @@ fn rewrite(rig: &mut Rig, part: &MeshPart, welded: &Welded, bound: &[Bound], par
     for (&at, of_vertex) in part.primitives.iter().zip(&welded.of_vertex) {
         let primitive = &mut mesh.primitives[at];
         for (vertex, of) in of_vertex.iter().enumerate() {
-            // Vertices of no triangle are not drawn.
+            // Vertices that no triangle uses are not drawn.
             let Some(Bound { particles, weights }) = of.map_or(bound.first(), |of| bound.get(of)) else {
                 continue;
             };
-            // A slot without a weight is 0, as glTF 2.0 §3.7.3.3 requires.
+            // The slot of a zero weight is 0, as glTF 2.0 §3.7.3.3 requires.
             let slot = |k: usize| if weights[k] > 0.0 { (first + particles[k]) as u16 } else { 0 };
             primitive.joints[vertex] = [0, 1, 2, 3].map(slot);
             primitive.weights[vertex] = *weights;

@@ -1,4 +1,4 @@
-//! Particles of a sheet among the vertices of its mesh.
+//! Chooses the particles of a sheet among the vertices of its mesh.
 
 use super::graph::Graph;
 use super::weld::Welded;
@@ -12,17 +12,17 @@ use std::collections::BTreeSet;
 pub(super) struct Reduced {
     /// Vertex of each particle.
     pub seeds: Vec<usize>,
-    /// Particle of each vertex; `None` if nothing holds its part of the mesh.
+    /// Particle of each vertex; `None` if its part of the mesh is not connected to a held vertex.
     pub owner: Vec<Option<usize>>,
     pub faces: Vec<[u32; 3]>,
     pub links: Vec<[u32; 2]>,
-    /// Area of the mesh about each particle, m².
+    /// Area of the mesh around each particle, m².
     pub areas: Vec<f32>,
-    /// One particle per vertex.
+    /// True if every vertex is a particle.
     pub is_whole: bool,
 }
 
-/// Particles of a mesh within the limit, with the particle of each welded vertex.
+/// Reduces a mesh to particles within the limit; also returns the particle of each welded vertex.
 ///
 /// # Errors
 /// If the held part has no area, is less than half of the mesh, or has more pieces than particles are allowed.
@@ -63,7 +63,8 @@ pub(super) fn reduce(
 }
 
 impl Reduced {
-    /// Triangles and edges between particles, and the mesh area of each: a vertex has a third of its triangles.
+    /// Builds triangles and links between particles, and the mesh area of each particle: a vertex has a third of its
+    /// triangles' area.
     fn new(welded: &Welded, seeds: Vec<usize>, owner: Vec<Option<usize>>, is_whole: bool) -> Self {
         let (mut known, mut faces, mut links) = (BTreeSet::new(), Vec::new(), BTreeSet::new());
         let mut areas = vec![0.0; seeds.len()];
@@ -96,9 +97,9 @@ impl IntoSorted for [u32; 2] {
     }
 }
 
-/// Vertices spread over a mesh, each the furthest from those before it (Gonzalez 1985): first the held part, so that
-/// every piece of it is held, then borders, so that hems keep their shape. No vertex is further from one of them than
-/// half the spacing; if that takes too many, the spacing grows.
+/// Spreads vertices over a mesh, each the farthest from those before it (Gonzalez 1985): first the held part, so that
+/// every held piece has one, then borders, so that hems keep their shape. No vertex is farther than half the spacing
+/// from one of them; if that needs too many vertices, the spacing grows.
 fn spread(
     welded: &Welded,
     graph: &Graph,
@@ -132,7 +133,7 @@ fn spread(
     }
 }
 
-/// The first of those vertices that are farthest.
+/// Returns the first of the farthest vertices in `among`.
 fn farthest(ways: &Ways, among: &[usize]) -> Option<usize> {
     among
         .iter()

@@ -7,7 +7,7 @@ use crate::tuning::{DIAGONAL, SQUARE_CORNER};
 use sinew_math::direction;
 use std::collections::BTreeMap;
 
-/// An edge, the smaller vertex first.
+/// An edge: two vertices, the smaller index first.
 type Edge = [usize; 2];
 
 fn edge(a: usize, b: usize) -> Edge {
@@ -19,13 +19,13 @@ impl Welded {
         (self.places[b] - self.places[a]).length()
     }
 
-    /// Longest edge of its triangles, metres.
+    /// Longest edge of the mesh's triangles, metres.
     pub fn longest_edge(&self) -> f32 {
         let edges = self.faces.iter().flat_map(|&[a, b, c]| [edge(a, b), edge(b, c), edge(c, a)]);
         edges.map(|edge| self.length(edge)).fold(0.0, sinew_math::max)
     }
 
-    /// Splits what is connected to a vertex at least as high as `above` (m).
+    /// Splits the components that have a vertex at least as high as `above` (m).
     pub fn split_connected(&mut self, above: f32, options: &SheetOptions<'_>) {
         let graph = Graph::new(self);
         let mut is_held = vec![false; self.places.len()];
@@ -35,8 +35,9 @@ impl Welded {
         self.split(options.spacing, options.most_particles, |vertex| is_held[graph.component[vertex]]);
     }
 
-    /// Halves edges of the held part longer than `spacing` (diagonals of square cells may be longer), the longest
-    /// first, up to `most` vertices. New vertices come last and belong to no vertex of the mesh.
+    /// Halves edges of the held components that are longer than `spacing` (diagonals of square cells may be
+    /// longer), the longest first, up to `most` vertices. New vertices are appended and belong to no vertex of
+    /// the mesh.
     fn split(&mut self, spacing: f32, most: usize, hangs: impl Fn(usize) -> bool) {
         let all = self.places.len();
         let others = (0..all).filter(|&vertex| !hangs(vertex)).count();
@@ -55,7 +56,7 @@ impl Welded {
         }
     }
 
-    /// Edges that are too long, the longest first.
+    /// Returns the edges that are too long, the longest first.
     fn long_edges(&self, spacing: f32, hangs: impl Fn(usize) -> bool) -> Vec<Edge> {
         let mut long: BTreeMap<Edge, f32> = BTreeMap::new();
         // Parts without area are no cloth.
@@ -74,7 +75,7 @@ impl Welded {
         long.into_iter().map(|(edge, _)| edge).collect()
     }
 
-    /// The vertex in the middle of an edge, in the component of its first end.
+    /// Adds a vertex in the middle of an edge, in the component of its first end.
     fn halve(&mut self, [a, b]: Edge) -> usize {
         self.places.push((self.places[a] + self.places[b]) * 0.5);
         self.at.push((self.at[a] + self.at[b]) * 0.5);
@@ -88,7 +89,7 @@ impl Welded {
         match [middle(a, b), middle(b, c), middle(c, a)] {
             [None, None, None] => self.faces.push([a, b, c]),
             [Some(m), Some(n), Some(o)] => self.faces.extend([[a, m, o], [m, b, n], [o, n, c], [m, n, o]]),
-            // Rotated so that the first side is split, and the last is not.
+            // Rotates the corners so that the first side is split and the last is not.
             [None, Some(_), _] => self.cut([b, c, a], middles),
             [_, None, Some(_)] => self.cut([c, a, b], middles),
             [Some(m), None, None] => self.faces.extend([[a, m, c], [m, b, c]]),

@@ -7,13 +7,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// A mesh with merged vertices.
 pub(super) struct Welded {
-    /// Position of each in the bind pose, metres, +Y up.
+    /// Position of each vertex in the bind pose, metres, +Y up.
     pub places: Vec<Vec3>,
-    /// Position in mesh space.
+    /// Position of each vertex in mesh space.
     pub at: Vec<Vec3>,
-    /// Slot of the skin that moves it most.
+    /// Skin slot that moves the vertex most.
     pub slots: Vec<u16>,
-    /// Triangles with three distinct corners, each once in either orientation.
+    /// Triangles with three distinct corners; a triangle of the same corners, in either orientation, appears
+    /// once.
     pub faces: Vec<[usize; 3]>,
     /// New index of each vertex of each primitive; `None` if no triangle uses it.
     pub of_vertex: Vec<Vec<Option<usize>>>,
@@ -26,7 +27,7 @@ impl Welded {
         0.5 * (b - a).cross(c - a).length()
     }
 
-    /// Lowest and highest position of triangles with area, metres; `None` if there are none.
+    /// Lowest and highest y of triangles with area, metres; `None` if there are none.
     pub fn heights(&self) -> Option<(f32, f32)> {
         let faces = self.faces.iter().filter(|face| self.area(face) > 0.0);
         let heights = faces.flatten().map(|&corner| self.places[corner].y);
@@ -76,7 +77,7 @@ pub(super) fn weld(rig: &Rig, part: &MeshPart, options: &SheetOptions<'_>) -> We
 }
 
 impl Welded {
-    /// Merged index of a vertex.
+    /// Returns the merged index of a vertex; adds the vertex if it is new.
     fn one(
         &mut self,
         primitive: &Primitive,

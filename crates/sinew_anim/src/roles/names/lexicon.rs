@@ -1,4 +1,4 @@
-//! Words in joint names, and their meaning.
+//! Words in joint names, and their meanings.
 
 use super::super::role::Side;
 
@@ -11,9 +11,9 @@ pub(super) enum Word {
     /// The part nearer to the trunk, or higher in it.
     Upper,
     Lower,
-    /// The part between upper and lower: another part of the spine; in a limb a part that humans lack.
+    /// The part between upper and lower: another part of the spine; in a limb, a part that humans lack.
     Mid,
-    /// The lower part before "arm", and a part of a beast before "leg".
+    /// The lower part before "arm"; before "leg", a part of a quadruped.
     Fore,
     /// Front of a quadruped; `Back` is its hind part.
     Front,
@@ -22,7 +22,7 @@ pub(super) enum Word {
     Wing,
     Arm,
     Leg,
-    /// Leg or foot, as Japanese has it.
+    /// Leg or foot, which Japanese names do not distinguish.
     LegOrFoot,
     Body,
     Hip,
@@ -42,11 +42,11 @@ pub(super) enum Word {
     Ankle,
     Toes,
     Tail,
-    /// Twist helper beside a limb; a plain bone in the neck.
+    /// Twist helper beside a limb; in the neck, an ordinary bone.
     Twist,
-    /// Animator's control, not a body part: an appendix too, as long as it has little skin.
+    /// Animator's control, not a body part: an appendix if it has little skin.
     Control,
-    /// Makes the joint an appendix whatever the rest of its name.
+    /// Word that makes the joint an appendix, with any other words in the name.
     Appendix,
 }
 
@@ -169,7 +169,7 @@ const WORDS: &[(Word, &str)] = &[
     (Tail, "queue cola coda cauda rabo ogon kuyruk staart svans hvost ocas hanta"),
     (Tail, "tail shippo weiba schwanz 尾 尾巴 しっぽ"),
     (Twist, "twist twst roll nejiri 捩 捩り"),
-    // Inverse kinematics, controls, ends, sockets.
+    // Words of inverse kinematics, controls, ends, sockets.
     (Control, "ik fk pole target ctrl ctl control"),
     (Appendix, "end tip nub slot handslot socket attach attachment helper"),
     (
@@ -228,8 +228,8 @@ const WORDS: &[(Word, &str)] = &[
     (Appendix, "breast breasts bust boob butt buttock glute muscle pad armor tie qunzi スカート 乳 袖"),
 ];
 
-/// Words that mean a body part only if other names of the rig are in the same language: the words that tell the
-/// language, and the meaning.
+/// Words that mean a body part only if other names of the rig are in the same language: the words that identify the
+/// language, and pairs of word and meaning.
 pub(super) const LANGUAGES: &[(&str, &[(&str, &str)])] = &[
     (
         "bras jambe cuisse pied tete tête bassin épaule epaule mollet",
@@ -249,18 +249,18 @@ pub(super) const LANGUAGES: &[(&str, &[(&str, &str)])] = &[
     ("bovenbeen onderbeen bovenarm onderarm", &[("been", "leg")]),
 ];
 
-/// Two words that are written as one of a few letters: OptiTrack's "LUArm", "RFArm".
+/// Two words written as a few letters: OptiTrack's "LUArm", "RFArm".
 const PAIRS: &[(&str, [Word; 2])] =
     &[("lu", [LEFT, Upper]), ("ru", [RIGHT, Upper]), ("lf", [LEFT, Fore]), ("rf", [RIGHT, Fore])];
 
-/// Meaning of a whole word.
+/// Returns the meaning of a whole word; `None` if it is unknown.
 pub(super) fn meaning(word: &str) -> Option<Word> {
     let has_word = |&&(_, words): &&(Word, &str)| words.split(' ').any(|known| known == word);
     WORDS.iter().find(has_word).map(|&(meaning, _)| meaning)
 }
 
-/// Meanings of a word, whole or as known words joined together ("lefttoebase", "lthigh", "左足首"); `None` if a part of it
-/// is unknown.
+/// Returns the meanings of a word, known as a whole or as joined known words ("lefttoebase", "lthigh", "左足首"); `None`
+/// if a part of it is unknown.
 pub(super) fn meanings(word: &str) -> Option<Vec<Word>> {
     if let Some(whole) = meaning(word) {
         return Some(vec![whole]);
@@ -271,7 +271,7 @@ pub(super) fn meanings(word: &str) -> Option<Vec<Word>> {
     glued(word, true)
 }
 
-/// The fewest known words that make up a text, the longest first among equals.
+/// Splits a text into the fewest known words; among equals, the split with the longest first word.
 fn glued(text: &str, at_start: bool) -> Option<Vec<Word>> {
     let mut best: Option<Vec<Word>> = None;
     for (end, _) in
@@ -288,7 +288,8 @@ fn glued(text: &str, at_start: bool) -> Option<Vec<Word>> {
     best
 }
 
-/// Short words are weak inside a word: two letters count for "up", one for a side before or after all the rest.
+/// True if a short word may be part of a joined word: two letters only for "up", "ik" and "fk", one letter only for a
+/// side before or after all other letters.
 fn may_be_glued(word: &str, at_start: bool, rest: &str) -> bool {
     !word.is_ascii()
         || word.len() > 2

@@ -9,7 +9,7 @@ use tokens::{Token, tokens};
 
 pub(crate) use tokens::words;
 
-/// Body part of a name.
+/// Body part given by a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Hips,
@@ -25,26 +25,26 @@ pub(super) enum Part {
     Foot,
     Toes,
     Tail,
-    /// A limb of a body on four legs, which is no human's.
+    /// A limb of a quadruped, which humans lack.
     Beast,
-    /// The joint is never a body: twist and IK joints, ends, sockets, fingers, face.
+    /// A joint that never has a body: twist and IK joints, ends, sockets, fingers, face.
     Appendix,
 }
 
 /// A parsed name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Reading {
-    /// Name without prefixes, numbers and side: equal for both joints of a mirrored pair.
+    /// Name without prefixes, numbers and side; equal for both joints of a mirrored pair.
     pub key: String,
-    /// Side that the name states.
+    /// Side in the name.
     pub side: Option<Side>,
-    /// Body part, if the name is a known one.
+    /// Body part, if the name gives a known one.
     pub part: Option<Part>,
-    /// True if the name speaks of a wing.
+    /// True if the name contains a word for wing.
     pub is_wing: bool,
-    /// True if the name is only "root": if no joint of the rig is named hips, a root that moves skin is the hips.
+    /// True if the name is only "root". If no joint of the rig is named hips, a root that moves skin is the hips.
     pub is_root: bool,
-    /// True if it is an appendix only because the name speaks of a control, such as "IK".
+    /// True if the joint is an appendix only because its name contains a word for a control, such as "IK".
     pub is_control: bool,
 }
 
@@ -73,14 +73,14 @@ pub(super) fn read_names(names: &[&str], parents: &[Option<usize>]) -> Vec<Readi
         let sided = reading.side.is_some();
         reading.part = match sense {
             None => None,
-            // The clavicle in Mixamo, VRM and CMU, the humerus in SMPL and Daz.
+            // Clavicle in Mixamo, VRM and CMU, humerus in SMPL and Daz.
             Some(Sense::Shoulder) if upper_arm => Some(Part::Clavicle),
             Some(Sense::Shoulder | Sense::Arm) => Some(Part::UpperArm),
-            // SMPL's hip joint is the thigh; CMU's only leads to it. Rigify has a pelvis on either side.
+            // SMPL's hip joint is the thigh; CMU's hip joint is only above it. Rigify has a pelvis on each side.
             Some(Sense::Hip) if sided && !thigh => Some(Part::UpperLeg),
             Some(Sense::Hip | Sense::Pelvis) if sided => Some(Part::Appendix),
             Some(Sense::Hip | Sense::Pelvis) => Some(Part::Hips),
-            // The shank in Mixamo; the thigh in MMD and rigs with only one such name; the whole leg in some.
+            // Shank in Mixamo; thigh in MMD and rigs with only one such name; the whole leg in some rigs.
             Some(Sense::LegOrFoot) if thigh && shank => Some(Part::Foot),
             Some(Sense::Leg | Sense::LegOrFoot) if thigh => Some(Part::LowerLeg),
             Some(Sense::Leg | Sense::LegOrFoot) if shank || one_leg => Some(Part::UpperLeg),
@@ -101,7 +101,7 @@ pub(super) fn read_names(names: &[&str], parents: &[Option<usize>]) -> Vec<Readi
     readings
 }
 
-/// A foot on a foot is the ball of it, where nothing is called toes.
+/// Reads a foot below a foot as its ball if no joint is named toes.
 fn name_ball(readings: &mut [Reading], parents: &[Option<usize>]) {
     if readings.iter().any(|reading| reading.part == Some(Part::Toes)) {
         return;
@@ -117,9 +117,9 @@ fn name_ball(readings: &mut [Reading], parents: &[Option<usize>]) {
     balls.into_iter().for_each(|joint| readings[joint].part = Some(Part::Toes));
 }
 
-/// Resolves parts that several skinned joints of one side claim; they have a `depth`, the number of joints above them.
-/// If the rig names all four long limb parts, one joint is the part and the others continue it (Rigify's
-/// "upper_arm.L.001"); else the name has no meaning (CesiumMan calls all of its arm "arm").
+/// Resolves parts that several skinned joints of one side claim; `depth` returns the number of joints above a skinned
+/// joint. If the rig names all four long limb parts, one joint is the part and the others continue it (Rigify's
+/// "upper_arm.L.001"); otherwise the name has no meaning (CesiumMan names all joints of its arm "arm").
 pub(super) fn settle_duplicates(
     readings: &mut [Reading],
     names: &[&str],
@@ -138,7 +138,7 @@ pub(super) fn settle_duplicates(
         if many || matches!(claim.0, None | Some(Part::Spine | Part::Tail | Part::Beast | Part::Appendix)) {
             continue;
         }
-        // Each claim once, at the first joint that makes it.
+        // Counts each claim once, at the first joint that makes it.
         if claims[..i].contains(&claim) {
             continue;
         }
@@ -153,8 +153,8 @@ pub(super) fn settle_duplicates(
     }
 }
 
-/// Exchanges the upper and the lower bone of limbs that are named in the wrong order, 'Elbow' above 'Arm': a limb's
-/// upper bone carries its lower one.
+/// Swaps the upper and the lower bone of limbs that are named in the wrong order ('Elbow' above 'Arm'), because a
+/// limb's upper bone carries its lower one.
 pub(super) fn settle_limbs(readings: &mut [Reading], parents: &[Option<usize>]) {
     for (upper, lower) in [(Part::UpperArm, Part::LowerArm), (Part::UpperLeg, Part::LowerLeg)] {
         for side in [Side::Left, Side::Right] {
@@ -174,8 +174,8 @@ pub(super) fn settle_limbs(readings: &mut [Reading], parents: &[Option<usize>]) 
     }
 }
 
-/// Finds the skinned joint at which the trunk begins and reads it as hips: it is not named hips but carries the thighs
-/// and the rest of the trunk. No part of the spine is above the hips.
+/// Finds the skinned joint at which the trunk begins and reads it as hips. Such a joint is not named hips but carries
+/// the thighs and the rest of the trunk. No part of the spine is above the hips.
 pub(super) fn settle_trunk(
     readings: &mut [Reading],
     parents: &[Option<usize>],
@@ -190,7 +190,7 @@ pub(super) fn settle_trunk(
     let hips = (0..readings.len()).find(is_hips).or_else(|| {
         let thighs = [Side::Left, Side::Right].map(|side| with(Part::UpperLeg, Some(side)));
         let [Some(left), Some(right)] = thighs else { return None };
-        // Auto-Rig Pro calls the pelvis root.
+        // Auto-Rig Pro names the pelvis "root".
         if let Some(root) = (0..readings.len()).find(|&at| readings[at].is_root && moves_skin(at)) {
             return Some(root);
         }
@@ -204,7 +204,8 @@ pub(super) fn settle_trunk(
         if readings[lowest].part.is_none() || is_spine(lowest) {
             return Some(lowest);
         }
-        // Nothing between the legs and the neck moves skin: the trunk's bones are a branch of their own, which constraints moved.
+        // No joint between the legs and the neck moves skin: the trunk's bones are a separate branch, moved by
+        // constraints.
         let on_bare = |at: usize| up(at).skip(1).all(|above| !is_spine(above) || !moves_skin(above));
         (0..readings.len()).find(|&at| is_spine(at) && moves_skin(at) && on_bare(at))
     });
@@ -217,8 +218,8 @@ pub(super) fn settle_trunk(
     readings[hips].part = Some(Part::Hips);
 }
 
-/// The joint to use among several of one name, independent of the file order: the nearest to the root; of siblings the
-/// middle one by name (of three palms the second, of two the first).
+/// Returns the joint to use among several of one name, independently of the file order: the nearest to the root; of
+/// siblings, the middle one by name (of three palms the second, of two the first).
 fn chosen_index(
     mut same: Vec<usize>,
     names: &[&str],
@@ -230,7 +231,7 @@ fn chosen_index(
     same.get((same.len() - 1) / 2).copied()
 }
 
-/// Meaning of a name without the others; some words depend on the rest of the rig.
+/// Meaning of a single name; for some words it depends on the rest of the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sense {
     Part(Part),
@@ -258,7 +259,7 @@ fn read(tokens: &[Token]) -> (Reading, Option<Sense>) {
         for word in said {
             match word {
                 Word::Noise => {}
-                // If a name has two sides, the last one counts (Blender's ".L"), because the other is just a letter.
+                // If a name has two sides, the last one counts (Blender's ".L"), because the first is only a letter.
                 Word::Side(side) => unknown |= reading.side.replace(*side).is_some(),
                 _ => words.push(*word),
             }
@@ -276,12 +277,12 @@ fn read(tokens: &[Token]) -> (Reading, Option<Sense>) {
     (reading, sense)
 }
 
-/// Words as a text that is equal for both joints of a pair.
+/// Joins words to a text that is equal for both joints of a mirrored pair.
 fn key(words: &[Word]) -> String {
     words.iter().map(|word| format!("{word:?}")).collect()
 }
 
-/// Meaning of known words together, mostly in any order.
+/// Returns the meaning of a combination of known words. Their order matters only in a few cases.
 fn sense(words: &[Word]) -> Option<Sense> {
     use Word::{Arm, Back, Body, Fore, Front, Leg, Lower, Mid, Paw, Twist, Upper};
     let has = |word: Word| words.contains(&word);
@@ -341,7 +342,7 @@ fn sense(words: &[Word]) -> Option<Sense> {
     if has(Twist) && !trunk { Some(Sense::Part(Part::Appendix)) } else { Some(found) }
 }
 
-/// Meaning of a single word.
+/// Returns the meaning of a single word.
 fn plain(word: Word) -> Option<Sense> {
     Some(match word {
         Word::Pelvis => Sense::Pelvis,
@@ -411,7 +412,7 @@ mod tests {
         );
     }
 
-    /// Body parts in the languages of asset stores, on both sides, in any case.
+    /// Checks body parts in the languages of asset stores, on both sides, in any case.
     #[test]
     fn names_are_read_in_other_languages_and_any_case() {
         use Part::*;
@@ -500,7 +501,7 @@ mod tests {
                 (Some(Appendix), r),
             ],
         );
-        // A mesh beside the skeleton named a wrist does not turn hands into fingers.
+        // A mesh beside the skeleton named "wrist" does not turn hands into fingers.
         check(&["Wrist_2", "mixamorig:LeftHand"], &[(Some(Hand), None), (Some(Hand), l)]);
         check(&["leg_joint_L_1", "torso_joint_3", "Cube"], &[(None, l), (Some(Spine), None), (None, None)]);
     }

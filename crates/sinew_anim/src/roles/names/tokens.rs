@@ -1,23 +1,23 @@
-//! Splits the names of a rig into words and drops what most names share.
+//! Splits the names of a rig into words and drops words that most names share.
 
 use super::lexicon::{LANGUAGES, Word, meaning, meanings};
 use std::collections::BTreeMap;
 
-/// A word of a name, in lower case, and its meaning; `None` if unknown.
+/// A word of a name, in lower case, with its meaning; `None` if unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Token {
     pub text: String,
     pub words: Option<Vec<Word>>,
 }
 
-/// Fewer names than this have nothing in common but chance.
+/// Number of names below which shared words are coincidence.
 const FEW: usize = 4;
 
-/// The words of every name, without numbers and without the rig's own prefixes and suffixes.
+/// Returns the words of every name, without numbers and without the rig's own prefixes and suffixes.
 pub(super) fn tokens(names: &[&str]) -> Vec<Vec<Token>> {
     let mut split: Vec<Vec<String>> = names.iter().map(|name| words(name)).collect();
     name_vertebrae(names, &mut split);
-    // If a name has "rt", "lf" is short for left, else for left front.
+    // If a name has "rt", "lf" means left; otherwise it means left front.
     let has = |wanted: &str| split.iter().flatten().any(|word| word == wanted);
     if has("rt") && !has("rf") {
         split.iter_mut().flatten().filter(|word| *word == "lf").for_each(|word| *word = "left".into());
@@ -58,7 +58,7 @@ fn translate(split: &mut [Vec<String>]) {
     }
 }
 
-/// Xsens names the spine by vertebrae, L5 to T8; if there is an R1, L1 is a left one.
+/// Reads the spine in Xsens' names, which are vertebrae, L5 to T8. If there is an R1, L1 means left.
 fn name_vertebrae(names: &[&str], split: &mut [Vec<String>]) {
     let numbered = |name: &str, letter: char| {
         let rest = name.strip_prefix(letter).or_else(|| name.strip_prefix(letter.to_ascii_uppercase()));
@@ -75,8 +75,8 @@ fn name_vertebrae(names: &[&str], split: &mut [Vec<String>]) {
     }
 }
 
-/// Drops words without information because most names have them: unknown ones anywhere in half of all names, known ones
-/// at the start of nearly all.
+/// Returns words without information because most names have them: unknown words anywhere in half of all names, and
+/// known words at the start of nearly all.
 fn own_words(split: &[Vec<String>]) -> Vec<(String, bool)> {
     let named = split.iter().filter(|words| !words.is_empty()).count();
     let (mut anywhere, mut first): (BTreeMap<&str, usize>, BTreeMap<&str, usize>) = Default::default();
@@ -97,8 +97,8 @@ fn own_words(split: &[Vec<String>]) -> Vec<(String, bool)> {
     own
 }
 
-/// Removes a prefix that half of all first words have, if it is no known word and the rest of each is one
-/// ("herohips", "herospine").
+/// Removes a prefix that half of all first words have, if the prefix is no known word and the rest of each first word
+/// is known ("herohips", "herospine").
 fn cut_glued_prefix(split: &mut [Vec<String>]) {
     let unknown = |words: &&Vec<String>| words.first().is_some_and(|word| meanings(word).is_none());
     let firsts: Vec<&str> = split.iter().filter(unknown).map(|words| words[0].as_str()).collect();
@@ -122,9 +122,9 @@ fn cut_glued_prefix(split: &mut [Vec<String>]) {
     }
 }
 
-/// Words in lower case, split at punctuation, digits, camel humps ("LHipJoint": l, hip, joint) and between Latin and
-/// other letters; namespaces and numbers are dropped. If humps give no known words but the text without them does
-/// ("UPPERarm", "fOOT"), case is ignored.
+/// Splits a name into words in lower case: at punctuation, digits, capitals in camel case ("LHipJoint": l, hip, joint)
+/// and between Latin and other letters; drops namespaces and numbers. If camel case gives no known words but the text
+/// without it does ("UPPERarm", "fOOT"), case is ignored.
 pub(crate) fn words(name: &str) -> Vec<String> {
     let bare = name.rsplit([':', '|']).find(|part| !part.is_empty()).unwrap_or(name);
     let chars: Vec<char> = bare.chars().map(half_width).collect();
@@ -145,7 +145,7 @@ pub(crate) fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// Words of a run of letters, in lower case.
+/// Splits a run of letters in camel case into words in lower case.
 fn humps(run: &[char]) -> Vec<String> {
     let mut words = vec![String::new()];
     for (i, &c) in run.iter().enumerate() {
@@ -166,7 +166,7 @@ fn humps(run: &[char]) -> Vec<String> {
     words
 }
 
-/// The ASCII letter of a full-width one: MMD writes "ＩＫ".
+/// Converts a full-width letter to ASCII: MMD writes "ＩＫ".
 fn half_width(c: char) -> char {
     match c {
         '\u{ff01}'..='\u{ff5e}' => char::from_u32(u32::from(c) - 0xfee0).unwrap_or(c),

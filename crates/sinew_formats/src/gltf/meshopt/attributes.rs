@@ -1,13 +1,13 @@
-//! Streams of attributes: elements in blocks, byte by byte; each byte as its difference to that of the element before, in
-//! groups of 16 that take 0 to 8 bits each (extension, appendix A, mode 0).
+//! Streams of attributes: elements in blocks, byte by byte. Each byte is stored as the difference from the same byte of
+//! the previous element, in groups of 16 with 0 to 8 bits each (extension, appendix A, mode 0).
 
 use super::{Decoded, Reader, unzigzag};
 
-/// Elements of a group.
+/// Number of elements in a group.
 const GROUP: usize = 16;
-/// Most bytes of a block, and most elements.
+/// Largest number of bytes and of elements in a block.
 const BLOCK: [usize; 2] = [8192, 256];
-/// Bits of an element by the two bits in a group's header: of version 0, and of version 1 with its two tables.
+/// Bits per element for each two-bit code in a group's header: of version 0, and of version 1 with its two tables.
 const BITS: [[u32; 4]; 3] = [[0, 2, 4, 8], [0, 1, 2, 4], [1, 2, 4, 8]];
 
 /// Decodes `count` elements of `stride` bytes.
@@ -41,7 +41,7 @@ pub(super) fn decode(bytes: &[u8], count: usize, stride: usize) -> Decoded {
     if reader.rest.is_empty() { Ok(out) } else { Err("bytes are left over") }
 }
 
-/// Four bytes of each element of a block.
+/// Four bytes of each element in a block.
 struct Lanes<'r, 'a> {
     reader: &'r mut Reader<'a>,
     count: usize,
@@ -66,7 +66,7 @@ impl Lanes<'_, '_> {
         Ok(numbers)
     }
 
-    /// One lane: headers of two bits for each group, then the groups.
+    /// Reads one lane: headers of two bits for each group, then the groups.
     fn groups(&mut self, bits: [u32; 4]) -> Result<Vec<u8>, &'static str> {
         let groups = self.count.div_ceil(GROUP);
         let headers = self.reader.take(groups.div_ceil(4))?;
@@ -78,7 +78,7 @@ impl Lanes<'_, '_> {
         Ok(out)
     }
 
-    /// 16 numbers of this many bits; the largest code stands for a whole byte after the group.
+    /// Reads 16 numbers of `bits` bits; the largest code means that a whole byte follows after the group.
     fn group(&mut self, bits: u32, out: &mut Vec<u8>) -> Result<(), &'static str> {
         if bits == 0 {
             out.resize(out.len() + GROUP, 0);
@@ -103,7 +103,7 @@ impl Lanes<'_, '_> {
     }
 }
 
-/// Differences to values, from `last` on: of bytes, of 16-bit numbers, or as exclusive or of 32 bits.
+/// Converts differences to values, starting from `last`: of bytes, of 16-bit numbers, or as exclusive or of 32 bits.
 fn undo_differences(
     numbers: &[[u8; 4]],
     channel: u8,

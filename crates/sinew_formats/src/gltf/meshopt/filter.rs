@@ -1,4 +1,5 @@
-//! Filters behind the attribute streams: unit vectors, quaternions, floats and colours in fewer bits (extension, appendix B).
+//! Filters after the attribute streams: unit vectors, quaternions, floats and colours in fewer bits (extension,
+//! appendix B).
 
 /// Undoes the filter on elements of `stride` bytes.
 pub(super) fn apply(filter: &str, bytes: &mut [u8], stride: usize) -> Result<(), &'static str> {
@@ -18,7 +19,7 @@ pub(super) fn apply(filter: &str, bytes: &mut [u8], stride: usize) -> Result<(),
     Ok(())
 }
 
-/// `f` gets four numbers and how large they may be.
+/// Applies `f` to the four numbers of each element; its second argument is their largest value.
 fn each_i8(bytes: &mut [u8], f: impl Fn([i32; 4], i32) -> [i32; 4]) {
     for element in bytes.chunks_exact_mut(4) {
         let numbers = [element[0], element[1], element[2], element[3]].map(|byte| i32::from(byte as i8));
@@ -39,11 +40,11 @@ fn rounded(x: f32) -> i32 {
     (if x >= 0.0 { x + 0.5 } else { x - 0.5 }) as i32
 }
 
-/// A unit vector from octahedral coordinates; the third number is the encoder's rounded 1, the fourth is kept.
+/// Decodes a unit vector from octahedral coordinates; the third number is the encoder's rounded 1, the fourth is kept.
 fn octahedral([x, y, one, w]: [i32; 4], most: i32) -> [i32; 4] {
     let [mut x, mut y] = [x as f32, y as f32];
     let z = one as f32 - x.abs() - y.abs();
-    // The lower half is folded outwards.
+    // The lower half is folded outward.
     let fold = if z >= 0.0 { 0.0 } else { z };
     x += if x >= 0.0 { fold } else { -fold };
     y += if y >= 0.0 { fold } else { -fold };
@@ -52,7 +53,8 @@ fn octahedral([x, y, one, w]: [i32; 4], most: i32) -> [i32; 4] {
     [rounded(x * scale), rounded(y * scale), rounded(z * scale), w]
 }
 
-/// A quaternion from its three smaller components; the fourth gives the missing index and the scale of 1.
+/// Decodes a quaternion from its three smaller components; the fourth number gives the missing index and the scale of
+/// 1.
 fn quaternion([x, y, z, code]: [i32; 4], most: i32) -> [i32; 4] {
     let scale = core::f32::consts::FRAC_1_SQRT_2 / (code | 3) as f32;
     let three = [x, y, z].map(|number| number as f32 * scale);
@@ -67,12 +69,12 @@ fn quaternion([x, y, z, code]: [i32; 4], most: i32) -> [i32; 4] {
     out
 }
 
-/// Floats from a mantissa of 24 bits and an exponent of 8.
+/// Decodes floats from a mantissa of 24 bits and an exponent of 8.
 fn exponential(bytes: &mut [u8]) {
     for element in bytes.chunks_exact_mut(4) {
         let bits = i32::from_le_bytes([element[0], element[1], element[2], element[3]]);
         let (exponent, mantissa) = (bits >> 24, bits << 8 >> 8);
-        // Powers of 2 down to the smallest of f32, in two exact steps.
+        // Multiplies by powers of 2, down to the smallest `f32`, in two exact steps.
         let power = |e: i32| f32::from_bits(((e + 127).clamp(1, 254) as u32) << 23);
         let half = exponent / 2;
         let value = mantissa as f32 * power(half) * power(exponent - half);
@@ -80,7 +82,7 @@ fn exponential(bytes: &mut [u8]) {
     }
 }
 
-/// RGBA from luma, two colour differences, and alpha, whose highest bit gives the scale of 1.
+/// Decodes RGBA from luma, two colour differences, and alpha, whose highest bit gives the scale of 1.
 fn color([y, co, cg, alpha]: [i32; 4], most: i32) -> [i32; 4] {
     let full = 2 * most + 1;
     let (y, alpha) = (y & full, alpha & full);

@@ -1,11 +1,11 @@
-//! Streams of indices: triangles by the edges and vertices seen last (extension, appendix A, mode 1), and sequences as
-//! differences to the last two (mode 2).
+//! Streams of indices: triangles by recent edges and vertices (extension, appendix A, mode 1), and sequences as
+//! differences from the last two indices (mode 2).
 
 use super::{Reader, unzigzag};
 
 type Indices = Result<Vec<u32>, &'static str>;
 
-/// The last 16 of something.
+/// The last 16 entries.
 struct Recent<T> {
     items: [T; 16],
     next: usize,
@@ -21,7 +21,7 @@ impl<T: Copy> Recent<T> {
         self.next = self.next.wrapping_add(1);
     }
 
-    /// The entry pushed this many entries ago: 1 is the last.
+    /// Returns the entry pushed `by` entries ago: 1 is the last.
     fn back(&self, by: usize) -> T {
         self.items[self.next.wrapping_sub(by) & 15]
     }
@@ -31,14 +31,14 @@ struct Triangles<'a> {
     data: Reader<'a>,
     edges: Recent<[u32; 2]>,
     vertices: Recent<u32>,
-    /// The lowest new index.
+    /// The lowest unused index.
     next: u32,
     /// The last index written.
     last: u32,
     out: Vec<u32>,
 }
 
-/// Decodes `count` indices, three a triangle.
+/// Decodes `count` indices, three per triangle.
 pub(super) fn decode_triangles(bytes: &[u8], count: usize) -> Indices {
     if !count.is_multiple_of(3) {
         return Err("triangles have three corners");
@@ -78,7 +78,7 @@ impl Triangles<'_> {
         index
     }
 
-    /// An index as its difference to the last.
+    /// Reads an index as its difference from the last.
     fn explicit(&mut self) -> Result<u32, &'static str> {
         self.last = self.last.wrapping_add(unzigzag(self.data.varint()?));
         Ok(self.last)
@@ -89,7 +89,7 @@ impl Triangles<'_> {
         edges.iter().for_each(|&edge| self.edges.push(edge));
     }
 
-    /// A triangle at a recent edge.
+    /// Reads a triangle at a recent edge.
     fn by_edge(&mut self, code: u8, fifo_codes: u8) -> Result<(), &'static str> {
         let [a, b] = self.edges.back(1 + usize::from(code >> 4));
         let third = code & 15;
@@ -97,7 +97,7 @@ impl Triangles<'_> {
             0 => self.fresh(),
             _ if third < fifo_codes => self.vertices.back(1 + usize::from(third)),
             15 => self.explicit()?,
-            // 13 and 14 are one before and one after the last index.
+            // 13 and 14 mean one less and one more than the last index.
             _ => {
                 self.last = if third == 13 { self.last.wrapping_sub(1) } else { self.last.wrapping_add(1) };
                 self.last
@@ -110,7 +110,7 @@ impl Triangles<'_> {
         Ok(())
     }
 
-    /// A triangle that starts with a new vertex; a code from the table gives the others.
+    /// Reads a triangle that starts with a new vertex; a code from the table gives the other two.
     fn by_table(&mut self, code: u8) {
         let a = self.fresh();
         let corner = |state: &mut Self, code: u8| match code {
@@ -124,7 +124,7 @@ impl Triangles<'_> {
         self.push([a, b, c], &[[b, a], [c, b], [a, c]]);
     }
 
-    /// A triangle of any three vertices.
+    /// Reads a triangle of any three vertices.
     fn free(&mut self, code: u8) -> Result<(), &'static str> {
         let others = self.data.byte()?;
         if others == 0 {
@@ -152,7 +152,7 @@ impl Triangles<'_> {
         Ok(())
     }
 
-    /// Stores the indices that were new or written explicitly.
+    /// Stores the indices that were new or explicit.
     fn new_vertices(&mut self, corners: [(u8, u32); 2]) {
         for (code, index) in corners {
             if code == 0 || code == 15 {

@@ -1,7 +1,8 @@
-//! Compressed buffer views: `EXT_meshopt_compression`, and `KHR_meshopt_compression`, which adds a second version of the
-//! attribute streams and a filter for colours.
+//! Compressed buffer views: `EXT_meshopt_compression`, and `KHR_meshopt_compression`, which adds a second version of
+//! the attribute streams and a filter for colours.
 //!
-//! Streams are untrusted: every read is bounds-checked, and a view's claimed size is booked before decoding.
+//! Streams are untrusted: every read is bounds-checked, and a view's claimed size counts against the budget before
+//! decoding.
 
 mod attributes;
 mod filter;
@@ -11,10 +12,10 @@ use super::source::{Buffer, buffer_bytes};
 use crate::container::json::At;
 use crate::error::Result;
 
-/// Both names of the extension; the streams themselves mark the newer one's additions.
+/// Both names of the extension; the streams themselves mark the additions of the newer one.
 const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-/// True if an extension is one that this module reads.
+/// True if this module reads the extension.
 pub(super) fn is_known(name: &str) -> bool {
     NAMES.contains(&name)
 }
@@ -22,7 +23,7 @@ pub(super) fn is_known(name: &str) -> bool {
 /// Decoded bytes, or the reason why a stream cannot be decoded, in a few words.
 type Decoded = Result<Vec<u8>, &'static str>;
 
-/// The bytes of each compressed buffer view; `None` for the others. `budget` shrinks by their size.
+/// Returns the bytes of each compressed buffer view; `None` for other views. `budget` shrinks by their size.
 pub(super) fn decode_views(
     root: At<'_>,
     buffers: &[Buffer],
@@ -77,7 +78,7 @@ fn decode_view(at: At<'_>, view: At<'_>, bytes: &[u8], budget: &mut usize) -> Re
     Ok(decoded)
 }
 
-/// Indices as bytes, two or four each.
+/// Packs indices as bytes, two or four each.
 fn packed(indices: &[u32], stride: usize) -> Decoded {
     match stride {
         2 => {
@@ -90,13 +91,13 @@ fn packed(indices: &[u32], stride: usize) -> Decoded {
     }
 }
 
-/// A stream that is read from its start.
+/// Reads a stream from its start.
 struct Reader<'a> {
     rest: &'a [u8],
 }
 
 impl<'a> Reader<'a> {
-    /// The next this many bytes.
+    /// Returns the next `count` bytes.
     fn take(&mut self, count: usize) -> Result<&'a [u8], &'static str> {
         let (taken, rest) = self.rest.split_at_checked(count).ok_or("it is cut off")?;
         self.rest = rest;
@@ -107,7 +108,7 @@ impl<'a> Reader<'a> {
         Ok(self.take(1)?[0])
     }
 
-    /// Seven bits a byte, the lowest first, at most five bytes.
+    /// Reads a number with seven bits per byte, the lowest first, at most five bytes.
     fn varint(&mut self) -> Result<u32, &'static str> {
         let mut value = 0_u32;
         for shift in (0..35).step_by(7) {
@@ -121,7 +122,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Zigzag-coded signed numbers: 0, −1, 1, −2, …
+/// Decodes zigzag-coded signed numbers: 0, −1, 1, −2, …
 fn unzigzag(value: u32) -> u32 {
     (value >> 1) ^ (value & 1).wrapping_neg()
 }
