@@ -347,7 +347,7 @@ pub unsafe extern "C" fn sinew_character_pose(
     })
 }
 
-/// Stores the matrix from the file's model space to the world in `matrix`: 3 rows of 4. It is the parent of the pose.
+/// Stores the matrix from the file's model space to the world in `matrix`, 3 rows of 4: the parent transform of the pose.
 ///
 /// # Safety
 /// `character` is null or one that no other thread changes, `matrix` is null or has room for 12 numbers.

@@ -58,7 +58,7 @@ pub struct SinewBodyId {
     pub bits: u64,
 }
 
-/// Id of a joint in a world; the rules are those of body ids.
+/// Id of a joint in a world. The id of a removed joint is stale, as for bodies.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SinewJointId {

@@ -48,7 +48,7 @@ pub struct SinewBodyDef {
     pub shapes: *const SinewShape,
     /// Number of shapes.
     pub shape_count: usize,
-    /// Mass, kg, distributed over the shapes; with 0, the default, it is computed from `density`.
+    /// Mass, kg, distributed over the shapes; with 0, the default, the mass is computed from `density`.
     pub mass: f32,
     /// Density, kg/m³. Default 1,000.
     pub density: f32,

@@ -207,7 +207,7 @@ impl CharacterFile {
             .map_err(|error| failed(&error))
     }
 
-    /// Returns the character with its own clips, built like in `sinew bake`. A humanoid can get Sinew's get-up motions. A character without
+    /// Returns the character with its own clips, built as in `sinew bake`. A humanoid can get Sinew's get-up motions. A character without
     /// get-ups stays down.
     ///
     /// # Errors

@@ -197,7 +197,7 @@ impl Inner {
         place
     }
 
-    /// Stops exporting the pose with an index.
+    /// Stops exporting the pose at index `place`.
     pub fn untrack(&mut self, place: usize) {
         if let Some(tracked) = self.tracked.get_mut(place) {
             *tracked = None;

@@ -58,8 +58,9 @@ pub fn mannequin() -> Mannequin {
     Mannequin { rig, clips, motions }
 }
 
-/// The mannequin as a character for [`Character::spawn`](crate::ragdoll::Character::spawn), which stands until moved,
-/// walks, and gets up. Its walk has events `left step` and `right step` at heel strikes.
+/// The mannequin as a character that stands until moved, walks, and gets up, for
+/// [`Character::spawn`](crate::ragdoll::Character::spawn). Its walk has events `left step` and `right step` at heel
+/// strikes.
 #[cfg(feature = "ragdoll")]
 pub fn character() -> crate::ragdoll::CharacterDef {
     use crate::ragdoll::{BuildOptions, CharacterDef, Locomotion, MotionSet, build};

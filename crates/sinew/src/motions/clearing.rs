@@ -52,7 +52,7 @@ struct Prop {
 }
 
 impl<'a> Clearing<'a> {
-    /// `None` for a body without two complete legs.
+    /// Collects the bodies of a character by part; `None` without two complete legs.
     pub fn new(def: &'a CharacterDef, analysis: &RigAnalysis) -> Option<Self> {
         let bodies = &def.ragdoll.bodies;
         let places: Vec<Transform> = bodies.iter().map(|body| body.character_from_body).collect();

@@ -193,7 +193,7 @@ struct Recurring {
 }
 
 impl Recurring {
-    /// Returns the number of its last occurrence at or before `place`, or only before it, as `counts` decides.
+    /// Returns the number of the last occurrence at or before `place`, or only before `place`, as `counts` decides.
     fn last(&self, place: Place, counts: impl Fn(f64, f64) -> bool) -> i64 {
         let laps = place.lap.saturating_sub(self.at.lap);
         let (number, rest) = if self.period == 0 {

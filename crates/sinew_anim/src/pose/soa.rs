@@ -14,8 +14,8 @@ pub(crate) const SCALE: usize = 7;
 
 /// Local transforms of a rig's joints, eight side by side, for sampling and blending.
 ///
-/// Spaces and units are those of [`LocalTransform`]: each joint relative to its parent, file units, rotations of length
-/// 1. Block `i` holds joints `8 i` to `8 i + 7`; the last block is padded with identities.
+/// Spaces and units are those of [`LocalTransform`]: each joint relative to its parent, file units, unit rotations.
+/// Block `i` holds joints `8 i` to `8 i + 7`; the last block is padded with identities.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
     blocks: Vec<Block<ROWS>>,

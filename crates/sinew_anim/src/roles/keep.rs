@@ -131,7 +131,7 @@ impl Selection<'_> {
         self.bones(&joints, |joint| place[self.carried_by(joint, |i| place[i].is_some())?])
     }
 
-    /// Moves a part behind its parent where roles given by the user put it before. Other parts keep their order.
+    /// Moves each part that comes before its parent behind the parent; roles given by the user can cause such an order.
     fn parents_first(&self, joints: &mut Vec<JointIdx>) {
         let mut sorted: Vec<JointIdx> = Vec::with_capacity(joints.len());
         // The root comes first, because joints without a parent are attached to it.

@@ -109,7 +109,7 @@ impl<'a> Merged<'a, '_> {
         Value::of(self.element, key).or_else(|| self.defaults().find_map(|table| table.get(key).copied()))
     }
 
-    /// Returns the one of these attributes that the element has, else the one that the innermost class has.
+    /// Returns the attribute of the element whose name is in `keys`, else that of the innermost class with one.
     ///
     /// # Errors
     /// If two of them are at the same level, because only one can apply.
