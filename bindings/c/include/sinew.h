@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Outcome of a call.
+// Status of a call.
 typedef enum SinewStatus {
   // The call succeeded.
   SINEW_STATUS_OK = 0,
@@ -25,9 +25,9 @@ typedef enum SinewStatus {
   SINEW_STATUS_BAD_FILE = 4,
   // The bytes are no snapshot of this version; the world is unchanged.
   SINEW_STATUS_BAD_SNAPSHOT = 5,
-  // The buffer is too small; the needed count was returned.
+  // The buffer is too small; the needed count was stored.
   SINEW_STATUS_TOO_SMALL = 6,
-  // A bug in the library. The object being changed is unusable and can only be freed.
+  // A bug in the library. The object that was being changed is unusable and can only be freed.
   SINEW_STATUS_PANIC = 7,
 } SinewStatus;
 
@@ -53,31 +53,31 @@ typedef enum SinewBodyKind {
   SINEW_BODY_KIND_DYNAMIC = 0,
   // The body never moves.
   SINEW_BODY_KIND_STATIC = 1,
-  // The body moves at its velocity; nothing pushes it.
+  // The body moves at its velocity; no force or contact changes it.
   SINEW_BODY_KIND_KINEMATIC = 2,
 } SinewBodyKind;
 
 // Kind of events.
 typedef enum SinewEventKind {
-  // Bodies that began to touch.
+  // The bodies began to touch.
   SINEW_EVENT_KIND_BEGIN = 0,
-  // Bodies that stopped; ids may be stale.
+  // The bodies stopped touching; ids may be stale.
   SINEW_EVENT_KIND_END = 1,
-  // Bodies that hit each other fast.
+  // The bodies hit each other at high speed.
   SINEW_EVENT_KIND_HIT = 2,
 } SinewEventKind;
 
 // Kind of a joint.
 typedef enum SinewJointKind {
-  // Turns freely about the anchor.
+  // Allows rotation about the anchor.
   SINEW_JOINT_KIND_BALL = 0,
-  // Turns about the axis. `range`: radians.
+  // Allows rotation about the axis. `range`: radians.
   SINEW_JOINT_KIND_HINGE = 1,
-  // Slides along the axis. `range`: metres.
+  // Allows sliding along the axis. `range`: metres.
   SINEW_JOINT_KIND_SLIDER = 2,
   // Locks all motions.
   SINEW_JOINT_KIND_FIXED = 3,
-  // Rope or rod from the anchor of A to that of B. `range`: metres.
+  // Rope or rod from the anchor of A to the anchor of B. `range`: metres.
   SINEW_JOINT_KIND_DISTANCE = 4,
 } SinewJointKind;
 
@@ -93,17 +93,17 @@ typedef enum SinewShapeKind {
   SINEW_SHAPE_KIND_CYLINDER = 3,
   // Cone along y, the apex up. `size.x`: radius of the base; `size.y`: half the height.
   SINEW_SHAPE_KIND_CONE = 4,
-  // Everything below y = 0 of its frame, for static bodies. No sizes.
+  // All points below y = 0 of its frame, for static bodies. No sizes.
   SINEW_SHAPE_KIND_HALF_SPACE = 5,
 } SinewShapeKind;
 
-// Character in a world. It is stepped after the world: `sinew_world_step`, then `sinew_character_update`, one for one.
+// Character in a world. Call `sinew_character_update` once after each `sinew_world_step`.
 typedef struct SinewCharacter SinewCharacter;
 
-// Kind of a character: rig, ragdoll and motions, shared by any number of characters.
+// Kind of character: rig, ragdoll and motions, shared by any number of characters.
 typedef struct SinewCharacterDef SinewCharacterDef;
 
-// Ragdoll as data, to be added to worlds.
+// Ragdoll as data, which can be added to worlds.
 typedef struct SinewRagdoll SinewRagdoll;
 
 // World with bodies and joints. One thread at a time may use it.
@@ -145,7 +145,7 @@ typedef struct SinewBodyId {
   uint64_t bits;
 } SinewBodyId;
 
-// Transform of a joint in its parent, in the file's units.
+// Transform of a joint relative to its parent, in the file's units.
 typedef struct SinewLocalTransform {
   // Position and rotation.
   struct SinewPose pose;
@@ -153,29 +153,29 @@ typedef struct SinewLocalTransform {
   struct SinewVec3 scale;
 } SinewLocalTransform;
 
-// Joint to be added.
+// Definition of a joint.
 typedef struct SinewJointDef {
   // One of `SinewJointKind`.
   uint32_t kind;
   // The first body.
   struct SinewBodyId a;
-  // The other body; at least one of both must be dynamic.
+  // The second body; at least one of the two must be dynamic.
   struct SinewBodyId b;
-  // Anchor of both bodies, world, metres; of a distance joint its end at A.
+  // Anchor of both bodies, world, metres; for a distance joint, its end at A.
   struct SinewVec3 anchor;
   // End of a distance joint at B, world, metres; ignored by other kinds.
   struct SinewVec3 anchor_b;
-  // Axis of a hinge or a slider, world; not zero.
+  // Axis of a hinge or a slider, world; must not be zero.
   struct SinewVec3 axis;
-  // 1 if a hinge or slider has a range, else 0; a distance always has one. The present pose is 0.
+  // 1 if a hinge or slider has a range, else 0; a distance joint always has one. The present pose is 0.
   uint32_t has_range;
-  // Least.
+  // Lower end of the range.
   float range_lo;
-  // Most.
+  // Upper end of the range.
   float range_hi;
 } SinewJointDef;
 
-// Id of a joint in a world, as for bodies.
+// Id of a joint in a world. The id of a removed joint is stale, as for bodies.
 typedef struct SinewJointId {
   // Index and generation.
   uint64_t bits;
@@ -183,17 +183,17 @@ typedef struct SinewJointId {
 
 // First hit of a ray.
 typedef struct SinewRayHit {
-  // The body.
+  // The body that was hit.
   struct SinewBodyId body;
-  // World, metres.
+  // Point of the hit, world, metres.
   struct SinewVec3 point;
-  // Out of the body, unit length.
+  // Normal of the surface, outward, unit length.
   struct SinewVec3 normal;
-  // Fraction of the ray before the hit, 0 to 1.
+  // Position of the hit as a fraction of the ray, 0 to 1.
   float fraction;
 } SinewRayHit;
 
-// Shape around its body's origin. `kind` is one of `SinewShapeKind`; a number, so that a wrong one is an error.
+// Shape around its body's origin. `kind` is a number instead of an enum, so that an invalid one is an error.
 typedef struct SinewShape {
   // One of `SinewShapeKind`.
   uint32_t kind;
@@ -201,7 +201,7 @@ typedef struct SinewShape {
   struct SinewVec3 size;
 } SinewShape;
 
-// Point of a contact, as the last step left it.
+// Contact point after the last step.
 typedef struct SinewContact {
   // The body with the smaller index.
   struct SinewBodyId a;
@@ -211,9 +211,9 @@ typedef struct SinewContact {
   struct SinewVec3 position;
   // Normal from A to B, unit length.
   struct SinewVec3 normal;
-  // Gap, metres; negative if they overlap.
+  // Gap between the surfaces, metres; negative if they overlap.
   float separation;
-  // Total impulse of the step, N·s.
+  // Total impulse of the last step, N·s.
   float impulse;
 } SinewContact;
 
@@ -225,7 +225,7 @@ typedef struct SinewPair {
   struct SinewBodyId b;
 } SinewPair;
 
-// Settings of a world; `sinew_world_def_default` fills it.
+// Settings of a world; `sinew_world_def_default` fills them in.
 typedef struct SinewWorldDef {
   // Gravitational acceleration, m/s². Default (0, -9.81, 0).
   struct SinewVec3 gravity;
@@ -247,7 +247,7 @@ typedef struct SinewVelocity {
   struct SinewVec3 angular;
 } SinewVelocity;
 
-// Body to be added; `sinew_body_def_default` fills it.
+// Definition of a body; `sinew_body_def_default` fills it in.
 typedef struct SinewBodyDef {
   // One of `SinewBodyKind`. Default dynamic.
   uint32_t kind;
@@ -255,21 +255,21 @@ typedef struct SinewBodyDef {
   struct SinewPose pose;
   // Velocity, m/s and rad/s.
   struct SinewVelocity velocity;
-  // Shapes, all of them around the body's origin.
+  // Shapes, each around the body's origin.
   const struct SinewShape *shapes;
   // Number of shapes.
   size_t shape_count;
-  // Mass, kg, distributed over the shapes; 0, the default: computed from `density`.
+  // Mass, kg, distributed over the shapes; with 0, the default, the mass is computed from `density`.
   float mass;
   // Density, kg/m³. Default 1,000.
   float density;
-  // Coulomb's coefficient, at least 0. Default 0.6.
+  // Coefficient of Coulomb friction, at least 0. Default 0.6.
   float friction;
-  // Share of the speed given back, 0 to 1. Default 0.
+  // Coefficient of restitution, 0 to 1. Default 0.
   float restitution;
-  // Bits of the layers that its shapes are on. Default 1.
+  // Bits of the layers to which the shapes belong. Default 1.
   uint32_t layers;
-  // Bits of the layers that they collide with. Default all.
+  // Bits of the layers with which the shapes collide. Default all.
   uint32_t mask;
   // Data of the user.
   uint64_t user_data;
@@ -279,35 +279,35 @@ typedef struct SinewBodyDef {
 extern "C" {
 #endif // __cplusplus
 
-// Sentence on the last call of this thread that gave no `SINEW_STATUS_OK`, or "". It names the file and the place. It lives until the
-// thread's next call.
+// Returns the error text of the last call of this thread, or "" if it returned `SINEW_STATUS_OK`. The text names the file and the
+// place. It is valid until the thread's next call.
 const char *sinew_last_error(void);
 
-// Version of the library, such as "0.1.0".
+// Returns the version of the library, such as "0.1.0".
 const char *sinew_version(void);
 
-// Reads a character (GLB, glTF, VRM, FBX) and builds its ragdoll. Where the file has no clip to get up by, a humanoid gets those that
-// come with the library. A null path: the mannequin that comes with the library.
+// Reads a character (GLB, glTF, VRM, FBX) and builds its ragdoll. If the file has no get-up clip, a humanoid gets the built-in ones. A
+// null path loads the built-in mannequin.
 //
 // The caller promises:
 // `path` is null or text, `def` is null or points to room for a pointer.
 enum SinewStatus sinew_character_def_load(const char *path,
                                           struct SinewCharacterDef **def);
 
-// Frees a kind of character; its characters stay. Null is allowed.
+// Frees a kind of character; its characters remain valid. Null is allowed.
 //
 // The caller promises:
-// `def` is null or came from `sinew_character_def_load` and is not used any more.
+// `def` is null or came from `sinew_character_def_load` and is not used afterwards.
 void sinew_character_def_free(struct SinewCharacterDef *def);
 
-// Number of joints in its rig, and of transforms in a pose.
+// Stores the number of joints of the rig in `count`; a pose has as many transforms.
 //
 // The caller promises:
 // `def` is null or a kind of character, `count` is null or points to a number.
 enum SinewStatus sinew_character_def_joint_count(const struct SinewCharacterDef *def,
                                                  size_t *count);
 
-// Name of a joint; valid as long as the kind of character.
+// Stores the name of a joint in `name`; valid as long as the kind of character.
 //
 // The caller promises:
 // `def` is null or a kind of character, `name` is null or points to room for a pointer.
@@ -315,7 +315,7 @@ enum SinewStatus sinew_character_def_joint_name(const struct SinewCharacterDef *
                                                 size_t joint,
                                                 const char **name);
 
-// Adds an animated character to a world, with bodies that rays can hit, standing at a pose (+Y up, facing +Z).
+// Adds an animated character to a world at a pose (+Y up, facing +Z). Rays can hit its bodies.
 //
 // The caller promises:
 // `def` is null or a kind of character, `world` is null or a world that no other thread uses, `character` is null or room for a pointer.
@@ -324,18 +324,18 @@ enum SinewStatus sinew_character_spawn(const struct SinewCharacterDef *def,
                                        struct SinewPose pose,
                                        struct SinewCharacter **character);
 
-// Takes a character out of its world and frees it. If it was in another one, or a body of it was removed, it is freed all the same,
-// and the status says so.
+// Removes a character from its world and frees it. If the character is in another world, or one of its bodies was removed, it is freed
+// anyway, and the status is `SINEW_STATUS_STALE_ID`.
 //
 // The caller promises:
-// `character` came from `sinew_character_spawn` and is not used any more; `world` is null or a world that no other thread uses.
+// `character` came from `sinew_character_spawn` and is not used afterwards; `world` is null or a world that no other thread uses.
 enum SinewStatus sinew_character_despawn(struct SinewCharacter *character,
                                          struct SinewWorld *world);
 
-// Frees a character without removing its bodies, for a world that is freed as well. Null is allowed.
+// Frees a character without removing its bodies, for a world that is freed, too. Null is allowed.
 //
 // The caller promises:
-// `character` is null or came from `sinew_character_spawn` and is not used any more.
+// `character` is null or came from `sinew_character_spawn` and is not used afterwards.
 void sinew_character_free(struct SinewCharacter *character);
 
 // Updates the character after a step of its world.
@@ -344,7 +344,8 @@ void sinew_character_free(struct SinewCharacter *character);
 // `character` and `world` are null or used by no other thread.
 enum SinewStatus sinew_character_update(struct SinewCharacter *character, struct SinewWorld *world);
 
-// Hits a body, by its role ("chest") or its joint's name, with an impulse, N·s, world axes. It falls, or flinches if the hit is weak.
+// Hits a body, given by its role ("chest") or its joint's name, with an impulse, N·s, world axes. The character falls, or flinches if
+// the hit is weak.
 //
 // The caller promises:
 // `character` and `world` are null or used by no other thread, `body` is null or text.
@@ -353,21 +354,21 @@ enum SinewStatus sinew_character_hit(struct SinewCharacter *character,
                                      const char *body,
                                      struct SinewVec3 impulse);
 
-// Makes it limp at its present velocity.
+// Makes the character limp at its present velocity.
 //
 // The caller promises:
 // `character` and `world` are null or used by no other thread.
 enum SinewStatus sinew_character_go_limp(struct SinewCharacter *character,
                                          struct SinewWorld *world);
 
-// State of the character.
+// Stores the state of the character in `state`.
 //
 // The caller promises:
 // `character` is null or one that no other thread changes, `state` is null or points to room.
 enum SinewStatus sinew_character_state(const struct SinewCharacter *character,
                                        enum SinewCharacterState *state);
 
-// Returns the ids of its bodies in the world, in the order of its ragdoll.
+// Stores the ids of the character's bodies in the world in `ids`, in the order of the ragdoll.
 //
 // The caller promises:
 // `character` is null or one that no other thread changes; `ids` has room for `capacity`, `count` is null or points to a number.
@@ -376,7 +377,7 @@ enum SinewStatus sinew_character_bodies(const struct SinewCharacter *character,
                                         size_t capacity,
                                         size_t *count);
 
-// Returns the transforms of all joints relative to their parents, in the order of the file.
+// Stores the transforms of all joints relative to their parents in `pose`, in the order of the file.
 //
 // The caller promises:
 // `character` is null or one that no other thread changes; `pose` has room for `capacity`, `count` is null or points to a number.
@@ -385,14 +386,14 @@ enum SinewStatus sinew_character_pose(const struct SinewCharacter *character,
                                       size_t capacity,
                                       size_t *count);
 
-// Returns the matrix from the file's model space to the world, the parent of the pose: 3 rows of 4.
+// Stores the matrix from the file's model space to the world in `matrix`, 3 rows of 4: the parent transform of the pose.
 //
 // The caller promises:
 // `character` is null or one that no other thread changes, `matrix` is null or has room for 12 numbers.
 enum SinewStatus sinew_character_world_from_model(const struct SinewCharacter *character,
                                                   float *matrix);
 
-// Saves a character to a buffer, to accompany the snapshot of its world; see `sinew_world_save`.
+// Saves a character to a buffer, in addition to the snapshot of its world; see `sinew_world_save`.
 //
 // The caller promises:
 // `character` is null or one that no other thread changes; `bytes` has room for `capacity`, `size` is null or points to a number.
@@ -401,15 +402,15 @@ enum SinewStatus sinew_character_save(const struct SinewCharacter *character,
                                       size_t capacity,
                                       size_t *size);
 
-// Restores a saved character of the same kind. If the bytes are invalid, it is unchanged.
+// Restores a saved character of the same kind. If the bytes are invalid, the character is unchanged.
 //
 // The caller promises:
-// `character` is null or used by no other thread, `bytes` has `size` of them.
+// `character` is null or used by no other thread, `bytes` has `size` bytes.
 enum SinewStatus sinew_character_load(struct SinewCharacter *character,
                                       const uint8_t *bytes,
                                       size_t size);
 
-// Adds a joint at the present poses of its bodies.
+// Adds a joint at the present poses of its bodies; stores its id in `id`.
 //
 // The caller promises:
 // `world` is null or a world that no other thread uses, `def` null or a definition, `id` null or room for one.
@@ -423,8 +424,8 @@ enum SinewStatus sinew_world_add_joint(struct SinewWorld *world,
 // `world` is null or a world that no other thread uses.
 enum SinewStatus sinew_world_remove_joint(struct SinewWorld *world, struct SinewJointId id);
 
-// Drives a joint toward a rotation of B in A (a hinge: about its axis, x), as a spring with a frequency in Hz and a damping ratio, with no more
-// than a torque, N·m. 0 Hz: no motor.
+// Drives a joint toward a rotation of B relative to A, given as a scaled axis (a hinge: along x), by a spring with a frequency in Hz, a
+// damping ratio and a largest torque, N·m. 0 Hz removes the motor.
 //
 // The caller promises:
 // `world` is null or a world that no other thread uses.
@@ -435,7 +436,7 @@ enum SinewStatus sinew_world_drive_joint(struct SinewWorld *world,
                                          float damping_ratio,
                                          float max_torque);
 
-// Returns the distance of the joint's two anchors, metres.
+// Stores the distance between the joint's two anchors in `gap`, metres.
 //
 // The caller promises:
 // `world` is null or a world that no other thread changes, `gap` is null or points to a number.
@@ -443,7 +444,7 @@ enum SinewStatus sinew_world_joint_gap(const struct SinewWorld *world,
                                        struct SinewJointId id,
                                        float *gap);
 
-// Returns the pose of B in A in the joint's frames: its rotation and its slide.
+// Stores the pose of B relative to A, in the joint's frames, in `pose`: rotation and translation.
 //
 // The caller promises:
 // As `sinew_world_joint_gap`.
@@ -451,7 +452,8 @@ enum SinewStatus sinew_world_joint_pose(const struct SinewWorld *world,
                                         struct SinewJointId id,
                                         struct SinewPose *pose);
 
-// Casts a ray from `origin` along `way`, which also sets its length. If it hits a body, `found` is 1 and `hit` is filled, else `found` is 0.
+// Casts a ray from `origin` along `way`, whose length is that of the ray. If it hits a body, `found` is 1 and `hit` is filled; else
+// `found` is 0.
 //
 // The caller promises:
 // `world` is null or a world that no other thread changes; `hit` and `found` are null or have room.
@@ -461,7 +463,7 @@ enum SinewStatus sinew_world_ray(const struct SinewWorld *world,
                                  struct SinewRayHit *hit,
                                  uint32_t *found);
 
-// Bodies that a shape at a pose would overlap, ascending.
+// Stores the ids of the bodies that a shape at a pose would overlap, ascending.
 //
 // The caller promises:
 // `world` is null or a world that no other thread changes; `ids` has room for `capacity`, `count` is null or points to a number.
@@ -472,7 +474,7 @@ enum SinewStatus sinew_world_overlap(const struct SinewWorld *world,
                                      size_t capacity,
                                      size_t *count);
 
-// Returns the points of all contacts, including those with a gap, in the order of pairs.
+// Stores the points of all contacts, including contacts with a gap, in the order of pairs.
 //
 // The caller promises:
 // `world` is null or a world that no other thread changes; `contacts` has room for `capacity`, `count` is null or points to a number.
@@ -481,7 +483,7 @@ enum SinewStatus sinew_world_contacts(const struct SinewWorld *world,
                                       size_t capacity,
                                       size_t *count);
 
-// Events of the last step, of a kind (one of `SinewEventKind`), in the order of pairs.
+// Stores the pairs of the last step's events of one kind (one of `SinewEventKind`), in the order of pairs.
 //
 // The caller promises:
 // `world` is null or a world that no other thread changes; `pairs` has room for `capacity`, `count` is null or points to a number.
@@ -491,27 +493,27 @@ enum SinewStatus sinew_world_events(const struct SinewWorld *world,
                                     size_t capacity,
                                     size_t *count);
 
-// Reads a ragdoll: a definition (`.json`), an MJCF model (`.xml`), or a character (GLB, glTF, VRM, FBX), of which it is built. A null
-// path: that of the mannequin that comes with the library.
+// Reads a ragdoll definition (`.json`) or an MJCF model (`.xml`), or builds the ragdoll of a character (GLB, glTF, VRM, FBX). A null path
+// loads that of the built-in mannequin.
 //
 // The caller promises:
 // `path` is null or text, `ragdoll` is null or points to room for a pointer.
 enum SinewStatus sinew_ragdoll_load(const char *path,
                                     struct SinewRagdoll **ragdoll);
 
-// Frees a ragdoll; bodies in worlds stay. Null is allowed.
+// Frees a ragdoll; its bodies in worlds remain. Null is allowed.
 //
 // The caller promises:
-// `ragdoll` is null or came from `sinew_ragdoll_load` and is not used any more.
+// `ragdoll` is null or came from `sinew_ragdoll_load` and is not used afterwards.
 void sinew_ragdoll_free(struct SinewRagdoll *ragdoll);
 
-// Number of its bodies.
+// Stores the number of bodies of the ragdoll in `count`.
 //
 // The caller promises:
 // `ragdoll` is null or a ragdoll, `count` is null or points to a number.
 enum SinewStatus sinew_ragdoll_body_count(const struct SinewRagdoll *ragdoll, size_t *count);
 
-// Role of a body, such as "head" or "leftUpperArm"; valid as long as the ragdoll.
+// Stores the role of a body in `role`, such as "head" or "leftUpperArm"; valid as long as the ragdoll.
 //
 // The caller promises:
 // `ragdoll` is null or a ragdoll, `role` is null or points to room for a pointer.
@@ -519,8 +521,8 @@ enum SinewStatus sinew_ragdoll_role(const struct SinewRagdoll *ragdoll,
                                     size_t body,
                                     const char **role);
 
-// Puts a ragdoll into a world, in its bind pose, standing at a pose (+Y up, facing +Z), at rest. Gives its bodies' ids in the order
-// of the definition; with too little room for them nothing is put into the world.
+// Adds a ragdoll to a world in its bind pose, standing at a pose (+Y up, facing +Z), at rest. Stores the ids of its bodies in `ids`, in
+// the order of the definition. If `ids` is too small, the world is unchanged.
 //
 // The caller promises:
 // `world` is null or a world that no other thread uses, `ragdoll` is null or a ragdoll; `ids` has room for `capacity`, `count` is null or
@@ -532,13 +534,14 @@ enum SinewStatus sinew_ragdoll_spawn(const struct SinewRagdoll *ragdoll,
                                      size_t capacity,
                                      size_t *count);
 
-// Hash of the complete state: the same on every machine, for every number of threads.
+// Stores the hash of the complete state in `hash`: the same on every machine, for every number of threads.
 //
 // The caller promises:
 // `world` is null or a world that no other thread changes, `hash` is null or points to a number.
-enum SinewStatus sinew_world_hash(const struct SinewWorld *world, uint64_t *hash);
+enum SinewStatus sinew_world_hash(const struct SinewWorld *world,
+                                  uint64_t *hash);
 
-// Saves a world to a buffer; `size` is the number of bytes, also if the capacity is too small.
+// Saves a world to a buffer; stores the number of bytes in `size`, also if the capacity is too small.
 //
 // The caller promises:
 // `world` is null or a world that no other thread changes; `bytes` has room for `capacity`, `size` is null or points to a number.
@@ -550,7 +553,7 @@ enum SinewStatus sinew_world_save(const struct SinewWorld *world,
 // Restores a saved world. If the bytes are invalid, the world is unchanged.
 //
 // The caller promises:
-// `world` is null or a world that no other thread uses, `bytes` has `size` of them.
+// `world` is null or a world that no other thread uses, `bytes` has `size` bytes.
 enum SinewStatus sinew_world_load(struct SinewWorld *world, const uint8_t *bytes, size_t size);
 
 // Fills in the default settings of a world.
@@ -574,10 +577,10 @@ enum SinewStatus sinew_world_new(const struct SinewWorldDef *def, struct SinewWo
 // Frees a world; null is allowed.
 //
 // The caller promises:
-// `world` is null or came from `sinew_world_new` and is not used any more.
+// `world` is null or came from `sinew_world_new` and is not used afterwards.
 void sinew_world_free(struct SinewWorld *world);
 
-// Takes steps on the given number of threads; the result does not depend on it. 0 and 1 use the calling thread only.
+// Takes steps on the given number of threads, which does not affect the result. 0 and 1 use only the calling thread.
 //
 // The caller promises:
 // `world` is null or a world that no other thread uses.
@@ -585,16 +588,16 @@ enum SinewStatus sinew_world_step(struct SinewWorld *world,
                                   uint32_t steps,
                                   uint32_t threads);
 
-// Number of steps since the beginning.
+// Stores the number of steps since the world was created in `steps`.
 //
 // The caller promises:
 // `world` is null or a world that no other thread changes, `steps` is null or points to a number.
 enum SinewStatus sinew_world_step_count(const struct SinewWorld *world, uint64_t *steps);
 
-// Adds a body.
+// Adds a body; stores its id in `id`.
 //
 // The caller promises:
-// `world` is null or a world that no other thread uses, `def` null or a definition whose shapes are there, `id` null or room for one.
+// `world` is null or a world that no other thread uses, `def` null or a definition with valid `shapes`, `id` null or room for one.
 enum SinewStatus sinew_world_add_body(struct SinewWorld *world,
                                       const struct SinewBodyDef *def,
                                       struct SinewBodyId *id);
@@ -605,7 +608,7 @@ enum SinewStatus sinew_world_add_body(struct SinewWorld *world,
 // `world` is null or a world that no other thread uses.
 enum SinewStatus sinew_world_remove_body(struct SinewWorld *world, struct SinewBodyId id);
 
-// Ids of all bodies, ascending by index.
+// Stores the ids of all bodies in `ids`, ascending by index.
 //
 // The caller promises:
 // `world` is null or a world that no other thread changes, `ids` has room for `capacity`, `count` is null or points to a number.
@@ -614,7 +617,7 @@ enum SinewStatus sinew_world_bodies(const struct SinewWorld *world,
                                     size_t capacity,
                                     size_t *count);
 
-// Poses of bodies in the world, one for each id.
+// Stores the poses of bodies in the world in `poses`, one for each id.
 //
 // The caller promises:
 // `world` is null or a world that no other thread changes; `ids` and `poses` have `count` elements.
@@ -623,7 +626,7 @@ enum SinewStatus sinew_world_poses(const struct SinewWorld *world,
                                    size_t count,
                                    struct SinewPose *poses);
 
-// Velocities of bodies, one for each id.
+// Stores the velocities of bodies in `velocities`, one for each id.
 //
 // The caller promises:
 // As `sinew_world_poses`.
@@ -640,7 +643,7 @@ enum SinewStatus sinew_world_set_pose(struct SinewWorld *world,
                                       struct SinewBodyId id,
                                       struct SinewPose pose);
 
-// Sets the velocity of a body; ignored for static ones.
+// Sets the velocity of a body; ignored for static bodies.
 //
 // The caller promises:
 // `world` is null or a world that no other thread uses.
