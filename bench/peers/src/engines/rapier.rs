@@ -68,7 +68,7 @@ impl Engine for Rapier {
             let ball = ColliderBuilder::ball(radius).translation(vector(center));
             world.insert_collider(ball.friction(scene.friction), None);
         }
-        // Rapier's grid varies fastest along its first direction; ours along rows, which are x.
+        // Rapier numbers cloth particles fastest along its second direction, we along a row, in x.
         let [along_rows, to_next_row] = [Vec3::X, Vec3::Z].map(|axis| vector(axis * scene.spacing));
         let surface = ColliderBuilder::ball(0.1).friction(scene.friction);
         let cloth =

@@ -79,7 +79,7 @@ export class SinewDrag {
     if (!this.#pressed) return;
     const { hit } = this.#pressed;
     if (hit.character && ['animated', 'flinching', 'gettingUp'].includes(hit.character.state)) hit.character.goLimp();
-    // A character that went limp has other bodies, and has moved since the press.
+    // Going limp replaces the bodies of the character, which may also have moved since the press.
     const body = hit.character && hit.bone ? hit.character.core.body(hit.bone) : hit.body;
     if (body === undefined || !this.physics.world.hasBody(body)) return;
     this.#grab = this.physics.world.grab(body, hit.point, { reach: REACH, ...this.options });

@@ -99,7 +99,7 @@ fn axis_along(direction: Vec3) -> Option<usize> {
 }
 
 /// Returns the rotation whose axes are, in some order and sign, x, y and their cross product, and which is closest to
-/// the identity. The second half extent of the box is then its height.
+/// the identity. The y half extent of the box is then half its height.
 fn frame(x: Vec3, y: Vec3) -> Rotation {
     let axes = [x, y, x.cross(y)];
     let most = |world: Vec3, taken: Option<usize>| {

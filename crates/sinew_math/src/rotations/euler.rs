@@ -102,7 +102,7 @@ pub enum EulerAxes {
 pub struct EulerConvention {
     /// Axes of the rotations.
     pub order: EulerOrder,
-    /// Motion of the axes: with the rotations, or fixed.
+    /// Axes that rotate with the body (intrinsic) or stay fixed (extrinsic).
     pub axes: EulerAxes,
 }
 

@@ -184,8 +184,8 @@ impl JointRows {
         if self.turns(row) { join(Vec3::ZERO, axis) } else { join(axis, arm.cross(axis)) }
     }
 
-    /// Sum of the rows' impulses, as force and torque about the centre of A and about that of B. B receives the second,
-    /// A the negative of the first.
+    /// Returns the total impulse of the rows, linear and angular, about the centre of A and about that of B. Subtract
+    /// the first from A, add the second to B.
     pub fn impulse(&self, of_rows: &Vec6) -> [Vec6; 2] {
         let [x, y, z, ..] = *of_rows;
         let (first, mut force) =

@@ -78,7 +78,7 @@ pub(super) const STRIKE_GAP: f32 = 0.005;
 
 /// Share of critical damping of the springs of ropes and strands, a ratio.
 ///
-/// Larger: ropes hang like dough. Smaller: ropes vibrate for seconds. Shown by `catenary` and the tests of `rope`.
+/// Larger: ropes swing sluggishly. Smaller: ropes vibrate for seconds. Shown by `catenary` and the tests of `rope`.
 pub(super) const ROPE_DAMPING: f32 = 0.1;
 
 /// Speed of approach above which particles bounce, m/s.

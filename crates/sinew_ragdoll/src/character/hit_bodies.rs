@@ -55,7 +55,7 @@ impl Physique {
         (self.before, scratch.after) = (now, before);
     }
 
-    /// Moves the hit bodies, which are at `now`, to `next` within the next step; world.
+    /// Moves the hit bodies from `now` to `next` in the next step; poses in world space.
     pub fn lead_to(&mut self, now: &[Transform], next: &[Transform], world: &mut World) {
         self.before.clear();
         self.before.extend_from_slice(now);

@@ -689,7 +689,7 @@ pub(crate) const WIDE_STEP: f32 = 0.2;
 /// Larger: the character jerks. Smaller: it drifts. Shown by the tests of `stumble`.
 pub(crate) const RESUMES: f32 = 10.0;
 
-/// Height of an ankle above its height on the floor at which a foot is in the air, metres.
+/// Rise of an ankle over its standing height above which the foot is in the air, metres.
 ///
 /// Larger: hopping counts as standing. Smaller: rough ground counts as air. Shown by the tests of `stumble`.
 pub(crate) const AIRBORNE: f32 = 0.04;

@@ -35,7 +35,7 @@ pub(super) struct Around {
 }
 
 impl Around {
-    /// Finds the surroundings in a sheet of a mesh.
+    /// Finds the triangles and neighbours of each particle in a sheet of a mesh.
     pub fn new(sheet: &Sheet, mesh: &MeshSheet) -> Self {
         let places: Vec<Vec3> = sheet.group.particles.iter().map(|particle| particle.position).collect();
         let (mut faces, mut beside) = (vec![Vec::new(); places.len()], vec![Vec::new(); places.len()]);

@@ -21,7 +21,7 @@ const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=1000.0;
 pub struct Doubt {
     /// Reason, a sentence.
     pub reason: String,
-    /// Scale at which the heaviest body of its kind would have this mass, at most 1.
+    /// Factor on the size of the character that reduces its mass to the heaviest plausible one of its kind, at most 1.
     size: f32,
 }
 

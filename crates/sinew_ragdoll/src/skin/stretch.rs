@@ -15,9 +15,9 @@ pub(super) struct Stretched {
     pub side: Option<usize>,
 }
 
-/// Collects sides over poses.
+/// Collects the growth of triangle edges over poses.
 pub(super) struct Stretch {
-    /// Length of each side in the bind pose, metres.
+    /// Length of each edge in the bind pose, metres.
     bound: Vec<f32>,
     /// Growth of each side in each pose, metres.
     longer: Vec<f32>,

@@ -33,7 +33,7 @@ pub trait Walker {
     fn step(&mut self, wish: Vec3);
 }
 
-/// Capsule of all walks: that of [`MoverDef`]'s defaults, with an acceleration of a few steps.
+/// Mover of all walks: [`MoverDef`]'s defaults, with an acceleration that reaches the wanted speed in a few steps.
 pub fn capsule() -> MoverDef {
     MoverDef { ground_acceleration: 300.0, ..MoverDef::default() }
 }

@@ -9,7 +9,7 @@ use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 use sinew_math::{Transform, Vec3};
 
-/// Computes the residuals, link by link, that would remove the position errors of a tree's joints within a substep. Returns the largest
+/// Computes for each link the velocity change at its joint that removes the joint's position error within a substep. Returns the largest
 /// error, m or rad.
 pub(in crate::solver) struct FindErrors<'a> {
     pub links: &'a [Link],

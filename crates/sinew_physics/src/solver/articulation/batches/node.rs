@@ -134,7 +134,7 @@ impl Node {
         }
     }
 
-    /// Writes the axes of the locked rotations in the order of their rows, then those of the open rotations.
+    /// Writes the axes of the locked rotations in the order of their rows, then those of the free rotations.
     fn write_axes(&mut self, lane: usize, joint: &SolverJoint, held: usize) {
         let rows = &joint.rows;
         let Ways { way, row, count } = Ways::new(rows, true);
