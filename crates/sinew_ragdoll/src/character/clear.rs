@@ -1,12 +1,13 @@
 //! Moves a limp character out of walls and floors. Contacts push bodies out one by one and slowly, and out of a thin
 //! wall to both sides.
 
+use super::ground;
 use super::limp::Clearing;
 use super::tuning::{CLEARING_REACH, CLEARING_SPEED, DEEP, MOST_OBSTACLES, SAME_WAY, SUNK};
 use sinew_math::{Transform, Vec3, max, min, normalize_or};
 use sinew_physics::{
-    BodyId, BodyKind, BodyKinds, BodyPenetration, ContactRule, PenetrationOf, Probe, QueryFilter, Shape,
-    ShapeCast, ShapeId, Velocity, World,
+    BodyId, BodyKind, BodyKinds, BodyPenetration, PenetrationOf, Probe, QueryFilter, Shape, ShapeCast,
+    ShapeId, Velocity, World,
 };
 
 /// Starts to move all bodies together out of static shapes in which they are deep; `None` if no body is deep, or no
@@ -92,11 +93,7 @@ fn deepest(
     probes: impl Iterator<Item = Probe>,
     limit: f32,
 ) -> Option<BodyPenetration> {
-    let pushes = |body, shape| {
-        let rule = world.contact_rule(ShapeId { body, shape });
-        matches!(rule, ContactRule::Push | ContactRule::Modified { .. })
-    };
-    let query = world.query().filter(filter).accept(pushes);
+    let query = world.query().filter(filter).accept(ground::pushes(world));
     let deeper = |a: BodyPenetration, b: BodyPenetration| if b.depth > a.depth { b } else { a };
     let found =
         probes.filter_map(|probe| query.first(&PenetrationOf(probe))).filter(|found| found.depth > limit);

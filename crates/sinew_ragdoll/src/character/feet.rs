@@ -29,7 +29,7 @@ pub(super) struct Feet {
     pub treads: Option<Treads>,
     /// Transition during which the character is kept out of the floor.
     pub passage: Passage,
-    /// Hands and feet beside walls.
+    /// Displacements of trunk, feet and hands out of walls.
     pub walls: WallOffsets,
     /// Pose of the clips with planted feet, out of floor and walls; empty if that equals the clips' pose.
     pub pose: Vec<LocalTransform>,

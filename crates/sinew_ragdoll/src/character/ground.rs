@@ -56,6 +56,14 @@ pub(super) fn bearer(world: &World, ray: &Ray, own: &[BodyId]) -> Option<BodyHit
     world.query().filter(QueryFilter::without(own)).accept(bears).first(ray)
 }
 
+/// Returns the condition of queries for shapes that push, neither sensors nor ghosts nor yielding ones.
+pub(super) fn pushes(world: &World) -> impl Fn(BodyId, u32) -> bool + '_ {
+    |body, shape| {
+        let rule = world.contact_rule(ShapeId { body, shape });
+        matches!(rule, ContactRule::Push | ContactRule::Modified { .. })
+    }
+}
+
 /// Motion of the ground under a body; the default is at rest.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct GroundMotion {

@@ -3,13 +3,13 @@
 //! Rays from pelvis, hips and shoulders to the outermost points of each part find the wall, and the part moves out
 //! along the wall's horizontal normal.
 
-use super::CharacterDef;
 use super::clearance::{MOVABLE, spread};
+use super::{CharacterDef, ground};
 use crate::character::tuning::{PROBES_APART, PULLED_BACK, RETURNS, STEEPEST_TREAD};
 use sinew_anim::LocalTransform;
 use sinew_math::{Affine, Transform, Vec3, max, min, normalize_or};
 use sinew_physics::ray::Ray;
-use sinew_physics::{BodyId, BodyKinds, ContactRule, QueryFilter, ShapeId, World};
+use sinew_physics::{BodyKinds, QueryFilter, World};
 
 /// Largest number of points of a part that are tested.
 const MOST_POINTS: usize = 2;
@@ -85,12 +85,9 @@ fn rays<'a>(
 /// Returns the level displacement of `to` out of the wall that a ray from `from` to `to` enters; zero if it enters
 /// none.
 fn out_of_wall(world: &World, from: Vec3, to: Vec3) -> Vec3 {
-    let pushes = |body: BodyId, shape: u32| {
-        let rule = world.contact_rule(ShapeId { body, shape });
-        matches!(rule, ContactRule::Push | ContactRule::Modified { .. })
-    };
     let ray = Ray { origin: from, direction: to - from };
-    let hit = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).accept(pushes).first(&ray);
+    let hit =
+        world.query().filter(QueryFilter::of(BodyKinds::STATIC)).accept(ground::pushes(world)).first(&ray);
     let Some(hit) = hit.filter(|hit| hit.start.is_none() && hit.normal.y.abs() < STEEPEST_TREAD) else {
         return Vec3::ZERO;
     };
