@@ -92,8 +92,9 @@ pub fn place_feet(
     placed
 }
 
-/// Moves both ankles to target poses in the space of `model` (up: +Y, forward: +Z), and lowers the pelvis by at most
-/// `most` if a leg is too short. Returns the lowering. `local` and `model` have one entry per joint; both are updated.
+/// Moves both ankles to target poses in the space of `model` (up: +Y, forward: +Z), and lowers the pelvis if a leg is
+/// too short, by at least `least` and at most `most`. Returns the lowering. `local` and `model` have one entry per
+/// joint; both are updated.
 ///
 /// # Panics
 /// If the slices are not as long as the rig has joints, or a joint is not in it.
@@ -102,14 +103,14 @@ pub fn hold_feet(
     pelvis: JointIdx,
     legs: &[TwoBone; 2],
     ankles: &[Transform; 2],
-    most: f32,
+    [least, most]: [f32; 2],
     local: &mut [LocalTransform],
     model: &mut [Affine],
 ) -> f32 {
     assert_eq!((local.len(), model.len()), (rig.joints.len(), rig.joints.len()), "two poses of one rig");
     let highest =
         |(leg, ankle): (&TwoBone, &Transform)| highest_pelvis(model, leg, ankle.translation, Vec3::Y);
-    let lift = legs.iter().zip(ankles).map(highest).fold(0.0, min);
+    let lift = legs.iter().zip(ankles).map(highest).fold(-least, min);
     let lift = max(lift, -most);
     shift(rig, pelvis, Vec3::Y * lift, local, model);
     for (leg, ankle) in legs.iter().zip(ankles) {

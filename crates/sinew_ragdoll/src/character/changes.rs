@@ -77,7 +77,7 @@ impl Character {
         let HitBodies::Present(yields) = self.def.in_world.hit_bodies else { return };
         let mut poses = Vec::new();
         let pose = self.feet.led(&self.figure.pose);
-        self.scratch.bodies_of(&self.def, pose, self.figure.place, &mut poses);
+        self.scratch.hit_bodies_of(&self.def, pose, self.figure.place, &mut poses);
         self.physique.enter(&self.def, &poses, ContactRule::Yields(yields), world);
         self.grips.bearer = None;
         let (wear, bearer) = self.wearing();
@@ -123,6 +123,7 @@ impl Character {
             figure: &self.figure,
             feet: &self.feet,
             stumble: self.activity.stumble(),
+            leads: false,
         };
         (foresight, &mut self.scratch)
     }
@@ -304,7 +305,7 @@ impl Character {
     /// Lets clips move all bodies again.
     pub(super) fn recover(&mut self, world: &mut World) {
         let (foresight, scratch) = self.ahead();
-        foresight.next(world.def().dt(), scratch);
+        Foresight { leads: true, ..foresight }.next(world.def().dt(), scratch);
         self.leave_bodies(world);
         self.activity = Activity::Animated;
         self.events.push(CharacterEvent::Recovered);

@@ -148,24 +148,13 @@ impl Clearance {
         let mut chosen: [Vec<usize>; PARTS] = Default::default();
         let mut held: [Vec<usize>; 2] = Default::default();
         for body in 0..def.bodies.len() {
-            let own = surface.sample.iter().copied().filter(|&vertex| surface.owner(vertex) == Some(body));
-            let places: Vec<(usize, Vec3)> =
-                own.map(|vertex| (vertex, surface.place(&palette, vertex))).collect();
-            for direction in directions() {
-                let along = |place: &(usize, Vec3)| place.1.dot(direction);
-                let outmost = places.iter().reduce(|a, b| if along(b) > along(a) { b } else { a });
-                if let Some(&(vertex, place)) = outmost {
-                    let part = part_of(def, &limbs, bind, body, place);
-                    part.into_iter().for_each(|part| chosen[part].push(vertex));
-                    hand_of(def, body).into_iter().for_each(|hand| held[hand].push(vertex));
-                }
+            for (vertex, place) in outermost(&surface, body, &palette) {
+                let part = part_of(def, &limbs, bind, body, place);
+                part.into_iter().for_each(|part| chosen[part].push(vertex));
+                hand_of(def, body).into_iter().for_each(|hand| held[hand].push(vertex));
             }
         }
-        let skin = |mut vertices: Vec<usize>| {
-            vertices.sort_unstable();
-            vertices.dedup();
-            surface.part(&vertices)
-        };
+        let skin = |vertices: Vec<usize>| part_without_repeats(&surface, vertices);
         let joint = |hand: usize| {
             def.bodies.iter().find(|body| body.role == hand_roles()[hand].name()).map(|body| body.joint)
         };
@@ -363,6 +352,24 @@ impl Clearance {
             }
         }
     }
+}
+
+/// Returns the vertices of a body that are farthest in some directions, with their places; a vertex may repeat.
+pub(super) fn outermost(surface: &Surface, body: usize, palette: &[Affine]) -> Vec<(usize, Vec3)> {
+    let own = surface.sample.iter().copied().filter(|&vertex| surface.owner(vertex) == Some(body));
+    let places: Vec<(usize, Vec3)> = own.map(|vertex| (vertex, surface.place(palette, vertex))).collect();
+    let farthest = |direction: Vec3| {
+        let along = |place: &(usize, Vec3)| place.1.dot(direction);
+        places.iter().copied().reduce(|a, b| if along(&b) > along(&a) { b } else { a })
+    };
+    directions().filter_map(farthest).collect()
+}
+
+/// Returns the surface of some vertices, each once.
+pub(super) fn part_without_repeats(surface: &Surface, mut vertices: Vec<usize>) -> Surface {
+    vertices.sort_unstable();
+    vertices.dedup();
+    surface.part(&vertices)
 }
 
 /// Returns up to `most` of some points that are at least `apart` metres from each other, those of largest `size` first.

@@ -1,6 +1,7 @@
 //! Definition that characters of one kind share.
 
 use super::clearance::Clearance;
+use super::foot_bodies::FootBodies;
 use super::in_world::InWorld;
 use super::legs::Legs;
 use super::moves::{MotionError, Moves, Pace};
@@ -148,6 +149,7 @@ pub struct CharacterDef {
     legs: Option<Legs>,
     /// Points of the skin that reach the floor first.
     pub(super) clearance: Arc<Clearance>,
+    pub(super) foot_bodies: Arc<FootBodies>,
     /// Springs, such as hair.
     springs: SpringRig,
     /// Garments, such as capes, which are cloth in the world.
@@ -172,6 +174,7 @@ impl CharacterDef {
             garments: GarmentRig::default(),
             legs: Legs::of(&rig, &ragdoll, &bind),
             clearance: Arc::new(Clearance::of(&rig, &ragdoll, bind_model)),
+            foot_bodies: Arc::new(FootBodies::of(&rig, &ragdoll, bind_model)),
             moves: Arc::new(Moves::none(&rig, &ragdoll, &mapping)),
             in_world: InWorld::of(&ragdoll),
             mapping,
@@ -319,6 +322,10 @@ impl CharacterDef {
 
     pub(super) fn clearance(&self) -> &Clearance {
         &self.clearance
+    }
+
+    pub(super) fn foot_bodies(&self) -> &FootBodies {
+        &self.foot_bodies
     }
 
     pub(super) fn moves(&self) -> &Moves {

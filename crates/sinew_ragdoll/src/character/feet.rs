@@ -60,7 +60,9 @@ impl Feet {
 
     /// Returns true while a foot is displaced from the clips' foot.
     fn are_astray(&self) -> bool {
-        self.treads.iter().flat_map(|treads| treads.feet).any(|tread| tread.offset != Vec3::ZERO)
+        self.treads.is_some_and(|treads| {
+            treads.lowering > 0.0 || treads.feet.iter().any(|tread| tread.offset != Vec3::ZERO)
+        })
     }
 
     /// Returns the pose of clips or bodies, with feet on the ground and out of the floor.
@@ -88,7 +90,10 @@ impl Feet {
             return;
         }
         let mut pose = core::mem::take(&mut self.pose);
-        self.stand_out_of_floor(stand.def, state, stand.figure, &mut pose, model);
+        let lowering = self.stand_out_of_floor(stand.def, state, stand.figure, &mut pose, model);
+        if let Some(treads) = &mut self.treads {
+            treads.lowering = lowering;
+        }
         if meets_walls {
             local_to_model(&stand.def.rig, &pose, &stand.def.mapping().character_from_model(), model);
             self.walls.follow(stand.def, stand.figure.place, self.treads.is_some(), world, model);
@@ -139,7 +144,7 @@ impl Feet {
         self.pose = pose;
     }
 
-    /// Computes the clips' pose with planted feet and out of the floor.
+    /// Computes the clips' pose with planted feet and out of the floor. Returns the lowering of the pelvis, metres.
     fn stand_out_of_floor(
         &self,
         def: &CharacterDef,
@@ -147,14 +152,15 @@ impl Feet {
         figure: &Figure,
         pose: &mut Vec<LocalTransform>,
         model: &mut Vec<Affine>,
-    ) {
+    ) -> f32 {
         pose.clone_from(&figure.pose);
-        self.place(def, figure.place, 0.0, pose, model);
+        let lowering = self.place(def, figure.place, 0.0, pose, model);
         self.clear_floor(def, state, figure.place, 0.0, pose, model);
+        lowering
     }
 
     /// Moves a pose of the clips to the planted feet after `later` seconds more, for a character that will be at
-    /// `place`.
+    /// `place`. Returns the lowering of the pelvis, metres.
     pub fn place(
         &self,
         def: &CharacterDef,
@@ -162,9 +168,11 @@ impl Feet {
         later: f32,
         pose: &mut [LocalTransform],
         model: &mut Vec<Affine>,
-    ) {
+    ) -> f32 {
         let planting = self.planting_at(place, later);
-        let Some(legs) = def.legs().filter(|_| self.treads.is_some() || !planting.is_over()) else { return };
+        let Some(legs) = def.legs().filter(|_| self.treads.is_some() || !planting.is_over()) else {
+            return 0.0;
+        };
         let (root, up) = (def.mapping().character_from_model(), place.rotation.inverse() * Vec3::Y);
         local_to_model(&def.rig, pose, &root, model);
         let mut offsets = self.offsets(later);
@@ -177,7 +185,7 @@ impl Feet {
             let tilts = if self.treads.is_some() { Tilts::Always } else { Tilts::OnTheFloor };
             legs.place(&def.rig, &root, (up, tilts), planting, pose, model);
         }
-        self.bring_home(def, offsets, place, pose, model);
+        self.bring_home(def, offsets, (place, later), pose, model)
     }
 
     /// Returns the depths in the ground of the shown pose, and its ankles.

@@ -127,6 +127,23 @@ impl Scratch {
         }
     }
 
+    /// Computes the world poses of the hit bodies for a pose: [`bodies_of`](Self::bodies_of), but feet are no lower
+    /// than their drawn skin.
+    pub fn hit_bodies_of(
+        &mut self,
+        def: &CharacterDef,
+        pose: &[LocalTransform],
+        place: Transform,
+        out: &mut Vec<Transform>,
+    ) {
+        self.bodies_of(def, pose, place, out);
+        let feet = def.foot_bodies();
+        if !feet.is_empty() {
+            local_to_model(&def.rig, pose, &def.mapping().world_from_model(place), &mut self.model);
+            feet.raise(&def.ragdoll, &self.model, out);
+        }
+    }
+
     /// Copies an animator into the copy of the last call, and returns this copy; return it to `ahead` afterwards.
     pub fn sent_ahead(&mut self, animator: &Animator) -> Animator {
         match self.ahead.take() {

@@ -23,6 +23,8 @@ pub(super) struct Foresight<'a> {
     pub figure: &'a Figure,
     pub feet: &'a Feet,
     pub stumble: Option<&'a Stumble>,
+    /// True if clips will move the bodies: feet are then no lower than their drawn skin.
+    pub leads: bool,
 }
 
 impl Foresight<'_> {
@@ -47,7 +49,11 @@ impl Foresight<'_> {
         if let Some(stumble) = self.stumble {
             stumble.hold_feet(def, here, *place, seconds, &mut pose, &mut scratch.model);
         }
-        scratch.bodies_of(def, &pose, *place, out);
+        if self.leads {
+            scratch.hit_bodies_of(def, &pose, *place, out);
+        } else {
+            scratch.bodies_of(def, &pose, *place, out);
+        }
         scratch.pose = pose;
     }
 

@@ -34,7 +34,7 @@ impl Physique {
         }
         let mut before = core::mem::take(&mut self.before);
         let mut now = core::mem::take(&mut scratch.after);
-        scratch.bodies_of(def, pose, place, &mut now);
+        scratch.hit_bodies_of(def, pose, place, &mut now);
         if before.len() != now.len() {
             before.clone_from(&now);
         }

@@ -38,6 +38,7 @@ mod event;
 mod feet;
 mod figure;
 mod floor;
+mod foot_bodies;
 mod foresight;
 mod gait;
 mod get_up;

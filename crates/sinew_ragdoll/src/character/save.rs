@@ -23,7 +23,7 @@ use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::{BodyId, JointId, MoverId, Velocity};
 
 /// First bytes of a saved character; the last one is the version.
-const MAGIC: &[u8; 8] = b"sinew-c\x0a";
+const MAGIC: &[u8; 8] = b"sinew-c\x0b";
 /// Flag of a held body whose pulling grip is saved after it.
 const GRASPS: u8 = 2;
 /// Number of bytes of an unreported event.
@@ -233,6 +233,7 @@ impl Treads {
             w.bool(stands);
         }
         w.f32(self.level);
+        w.f32(self.lowering);
         w.bool(self.aloft);
     }
 
@@ -242,7 +243,7 @@ impl Treads {
             let (points, floor) = ([r.vec3()?, r.vec3()?], r.vec3()?);
             Ok(Tread { offset, home, slip, points, floor, ground: r.f32()?, stands: r.bool()? })
         };
-        Ok(Self { feet: [foot()?, foot()?], level: r.f32()?, aloft: r.bool()? })
+        Ok(Self { feet: [foot()?, foot()?], level: r.f32()?, lowering: r.f32()?, aloft: r.bool()? })
     }
 }
 

@@ -11,8 +11,8 @@ use super::ground;
 use super::legs::{Legs, Need};
 use crate::character::tuning::{
     FOOT_EDGE, FOOT_FLOOR, FOOT_HOME, FOOT_RANGE, FOOT_SEARCH, LANDS, LEAST_TREAD, LOOKS_AHEAD, MOST_ASTRAY,
-    RELEASES, RISES, SMALL_WAY, SOLE_SINKS, STANCE_HEIGHT, STANCE_SPEED, STEEPEST_TREAD, TOES_CLEAR,
-    TOES_OVER, TREAD_QUICKNESS, TREAD_RANGE,
+    PELVIS_RISES, RELEASES, RISES, SMALL_WAY, SOLE_SINKS, STANCE_HEIGHT, STANCE_SPEED, STEEPEST_TREAD,
+    TOES_CLEAR, TOES_OVER, TREAD_QUICKNESS, TREAD_RANGE,
 };
 use sinew_anim::ik::hold_feet;
 use sinew_anim::{LocalTransform, local_to_model};
@@ -43,6 +43,8 @@ pub(super) struct Tread {
 pub(super) struct Treads {
     pub feet: [Tread; 2],
     pub level: f32,
+    /// Lowering of the pelvis in the last step so that both legs reach their planted feet, metres.
+    pub lowering: f32,
     /// True if the character jumps or falls, so that its feet leave the ground.
     pub aloft: bool,
 }
@@ -102,6 +104,10 @@ impl Feet {
         let mut treads = self.treads.unwrap_or(Treads { level, ..Treads::default() });
         let rise = if stand.aloft { 0.0 } else { level - treads.level };
         (treads.level, treads.aloft) = (level, stand.aloft);
+        treads.lowering *= trig::exp(-PELVIS_RISES * dt);
+        if treads.lowering < FOOT_HOME {
+            treads.lowering = 0.0;
+        }
         for (foot, tread) in treads.feet.iter_mut().enumerate() {
             let (points, sole) = legs.points(foot, place, model);
             if is_new {
@@ -142,25 +148,26 @@ impl Feet {
     }
 
     /// Moves the feet of a pose of the clips, already at their heights, to their planted places. `now` is the place of
-    /// the character after `later` seconds.
+    /// the character after `later` seconds. Returns the lowering of the pelvis, metres.
     pub(super) fn bring_home(
         &self,
         def: &CharacterDef,
         offsets: [Vec3; 2],
-        now: Transform,
+        (now, later): (Transform, f32),
         pose: &mut [LocalTransform],
-        model: &mut [Affine],
-    ) {
-        let Some(legs) = def.legs() else { return };
-        if offsets.iter().all(|offset| offset.length_squared() < 1e-8) {
-            return;
+        model: &mut Vec<Affine>,
+    ) -> f32 {
+        let Some(legs) = def.legs() else { return 0.0 };
+        let least = self.treads.map_or(0.0, |treads| treads.lowering * trig::exp(-PELVIS_RISES * later));
+        if least == 0.0 && offsets.iter().all(|offset| offset.length_squared() < 1e-8) {
+            return 0.0;
         }
         let ankles = [0, 1].map(|foot| {
             let ankle = model[legs.chains[foot].end].to_rigid();
             Transform::new(ankle.translation + now.rotation.inverse() * offsets[foot], ankle.rotation)
         });
         let most = TREAD_RANGE * def.ragdoll.height;
-        hold_feet(&def.rig, legs.pelvis, &legs.chains, &ankles, most, pose, model);
+        hold_feet(&def.rig, legs.pelvis, &legs.chains, &ankles, [least, most], pose, model)
     }
 
     /// Returns the level offsets of the feet from a pose of the clips, `later` seconds from now.

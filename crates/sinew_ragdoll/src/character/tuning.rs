@@ -109,6 +109,20 @@ pub(crate) const RETURNS: f32 = 1.0;
 /// Larger: hands jerk over edges. Smaller: hands pass through them. Shown by `brawl`.
 pub(crate) const PART_QUICKNESS: f32 = 12.0;
 
+// character/foot_bodies.rs
+
+/// Distance by which the body of a foot may be lower than its drawn skin, as a share of the character's height.
+///
+/// Larger: the box of a walking foot enters the ground. Smaller: boxes that are a little larger than the skin turn while
+/// the foot is flat. Shown by `feet::bodies_of_feet_stay_out_of_the_floor`.
+pub(crate) const BODY_BELOW_SKIN: f32 = 0.003;
+
+/// Downward component of a foot's up direction at which its body is not rotated.
+///
+/// Larger: feet of prone characters press their toes into the floor. Smaller: the box of a foot that points down enters
+/// the ground. Shown by the scene `brawl`.
+pub(crate) const UPSIDE_DOWN: f32 = 0.5;
+
 // character/grab.rs
 
 /// Half of the distance between the bounds of two characters from which they collide again after a release, metres.
@@ -215,6 +229,12 @@ pub(crate) const STANCE_SPEED: f32 = 0.8;
 ///
 /// Larger: the foot flicks. Smaller: the foot lands beside its target. Shown by the tests of `feet`.
 pub(crate) const RELEASES: f32 = 12.0;
+
+/// Rate at which the pelvis returns after it was lowered so that a leg reaches its planted foot, 1/s.
+///
+/// Larger: the knee jumps when the foot leaves the ground. Smaller: the walker crouches. Shown by
+/// `feet::joints_of_a_walker_do_not_shake`.
+pub(crate) const PELVIS_RISES: f32 = 8.0;
 
 /// Part of a foot's offset that is not corrected, metres. A mover's speed lags the clips' speed by a step.
 ///

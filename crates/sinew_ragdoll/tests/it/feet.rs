@@ -315,3 +315,53 @@ fn feet_stand_on_the_ground_in_every_scene() {
         assert!(on >= 0.95 && deepest < may_be && median < 0.01 && most < 0.03, "{text}");
     }
 }
+
+/// The box of a walking foot does not bend at the toes; it rotates about the ankle instead of entering the floor.
+#[test]
+fn bodies_of_feet_stay_out_of_the_floor() {
+    let def = shared(sinew::mannequin::character());
+    let mut world = World::new(WorldDef::default());
+    let ground = world.add_body(&floor());
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    character.set_move(Vec3::Z * 1.2);
+    let mut deepest = 0.0;
+    for step in 0..300 {
+        world.step();
+        character.update(&mut world);
+        // The first steps start in the air, at the mover's margin, and in mid-stride.
+        if step >= 45 {
+            let depth = |&body: &BodyId| world.overlap(body, ground);
+            deepest = character.bodies().iter().map(depth).fold(deepest, max);
+        }
+    }
+    assert!(deepest < 0.01, "a foot's body is {:.1} cm in the floor", 100.0 * deepest);
+}
+
+/// No joint of a walker jumps for a frame: it would move back and forth in three frames.
+#[test]
+fn joints_of_a_walker_do_not_shake() {
+    let def = shared(sinew::mannequin::character());
+    for speed in [0.5, 0.8, 1.0, 1.1, 1.2, 1.3, 1.4, 1.7] {
+        let mut world = World::new(WorldDef::default());
+        world.add_body(&floor());
+        let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+        let (mut frames, mut model): (Vec<Vec<Vec3>>, _) = (Vec::new(), Vec::new());
+        for step in 0..300 {
+            let turn = Rotation::from_axis_angle(Vec3::Y, 0.01 * step as f32);
+            character.set_move(turn * Vec3::Z * speed);
+            character.face(turn * Vec3::Z);
+            world.step();
+            character.update(&mut world);
+            let root = def.mapping().world_from_model(character.world_from_character());
+            local_to_model(&def.rig, character.pose(), &root, &mut model);
+            frames.push(def.ragdoll.bodies.iter().map(|body| model[body.joint].translation).collect());
+            let [.., a, b, c, d] = &frames[..] else { continue };
+            for (index, body) in def.ragdoll.bodies.iter().enumerate() {
+                let ways = [b[index] - a[index], c[index] - b[index], d[index] - c[index]];
+                let reverses = ways.windows(2).all(|pair| pair[0].dot(pair[1]) < 0.0);
+                let shakes = reverses && ways.iter().all(|way| way.length() > 0.003);
+                assert!(!shakes, "{speed} m/s, step {step}: {} moves by {ways:?} m", body.role);
+            }
+        }
+    }
+}

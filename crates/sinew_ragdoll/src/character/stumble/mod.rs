@@ -389,7 +389,7 @@ impl Stumble {
             legs.pelvis,
             &legs.chains,
             &goals,
-            PELVIS_SINKS * def.ragdoll.height,
+            [0.0, PELVIS_SINKS * def.ragdoll.height],
             pose,
             model,
         );
