@@ -131,10 +131,10 @@ mod tests {
             assert!(mapping.bodies_from_pose(first, Transform::IDENTITY, &mut Vec::new(), &mut due));
             for (body, (due, at)) in due.iter().zip(&pose).enumerate() {
                 let off = (due.translation - at.translation).length();
-                assert!(off < 2e-3, "fall {seed}: body {body} starts {off} m from its pose");
+                assert!(off < 2e-3, "fall {seed}: body {body} starts {off} m away from its pose");
             }
             assert_eq!(fall.baked.quality.nan, 0);
-            assert!(fall.baked.quality.first_contact_s.is_some(), "fall {seed} met nothing");
+            assert!(fall.baked.quality.first_contact_s.is_some(), "fall {seed}: no contact");
             assert_eq!(fall.baked.hash, random_fall(&character, seed, &options).baked.hash);
             hashes.push(fall.baked.hash);
         }

@@ -269,7 +269,7 @@ mod tests {
                 let [x, y, w] = view.clip_from_world(corner);
                 farthest = sinew::math::max(farthest, sinew::math::max((x / w).abs(), (y / w).abs()));
             }
-            assert!((farthest - 1.0).abs() < 1e-3, "from {direction}: {farthest}");
+            assert!((farthest - 1.0).abs() < 1e-3, "from {direction}: farthest corner at {farthest}");
         }
     }
 

@@ -148,6 +148,10 @@ fn pictures_are_those_that_the_library_draws() {
         }
         let is = std::fs::read_to_string(&path).expect("it is there");
         assert!(is == due, "{}: bless it, and look at it", path.display());
-        assert!(due.len() < 40_000 && !due.contains("\n\n"), "{} bytes, one block of HTML", due.len());
+        assert!(
+            due.len() < 40_000 && !due.contains("\n\n"),
+            "the page has {} bytes; expected one block of HTML",
+            due.len()
+        );
     }
 }

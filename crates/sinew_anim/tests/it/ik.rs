@@ -128,7 +128,10 @@ fn degenerate_input_gives_finite_rotations() {
                         assert!(
                             found.upper.is_finite() && found.lower.is_finite() && found.stretch.is_finite()
                         );
-                        assert!((found.upper.length() - 1.0).abs() < 1e-4, "{root} {middle} {end} {target}");
+                        assert!(
+                            (found.upper.length() - 1.0).abs() < 1e-4,
+                            "root {root}, middle {middle}, end {end}, target {target}"
+                        );
                         cases += 1;
                     }
                 }

@@ -148,7 +148,7 @@ fn window_opens_and_the_mouse_pulls_a_body() {
     viewer.wait_for("let go");
     let (name, after) = picture();
     assert_ne!(name, "sinew-free_fall-0.png", "no step was taken");
-    assert_ne!(before, after, "the mouse moved nothing");
+    assert_ne!(before, after, "the click at the mouse did nothing");
 }
 
 /// Reads the written ragdoll and returns the largest swing about z of its left upper arm, degrees.

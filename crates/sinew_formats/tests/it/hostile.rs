@@ -205,7 +205,7 @@ fn malicious_files_give_errors() {
         }
     }
     println!("{read} read, {refused} refused");
-    assert!(read > 60 && refused > 40, "{read} read, {refused} refused");
+    assert!(read > 60 && refused > 40, "{read} files read, {refused} refused");
 }
 
 #[needs_data]

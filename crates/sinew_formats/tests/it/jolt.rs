@@ -295,7 +295,7 @@ fn jolts_human_is_whole() {
     assert!((50.0..120.0).contains(&def.total_mass), "{} kg", def.total_mass);
     let role = |bone: &str| def.bodies.iter().find(|body| body.bone == bone).map(|body| body.role.as_str());
     println!(
-        "{} kg, {} m, roles {:?}",
+        "mass {} kg, height {} m, roles {:?}",
         def.total_mass,
         def.height,
         def.bodies.iter().map(|b| &b.role).collect::<Vec<_>>()

@@ -294,6 +294,9 @@ mod tests {
                 );
             }
         }
-        assert!(parted > 1_000 && touching > 1_000 && same * 10 > parted * 7, "{same} {parted} {touching}");
+        assert!(
+            parted > 1_000 && touching > 1_000 && same * 10 > parted * 7,
+            "{same} equal, {parted} separated, {touching} touching pairs"
+        );
     }
 }

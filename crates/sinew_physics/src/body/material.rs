@@ -218,8 +218,11 @@ mod tests {
             let (a, b) = (random_material(&mut random), random_material(&mut random));
             let surface = ContactMaterial::of(&a, &b);
             assert_eq!(surface, ContactMaterial::of(&b, &a), "{a:?} {b:?}");
-            assert!(surface.static_friction >= surface.friction, "{a:?} {b:?}: {surface:?}");
-            assert!(surface.is_valid(), "{a:?} {b:?}: {surface:?}");
+            assert!(
+                surface.static_friction >= surface.friction,
+                "static friction of {a:?} and {b:?} is too low: {surface:?}"
+            );
+            assert!(surface.is_valid(), "{a:?} and {b:?} give an invalid {surface:?}");
         }
     }
 

@@ -745,7 +745,7 @@ mod tests {
         let particle = ParticleDef { position: Vec3::ZERO, velocity: Vec3::ZERO, mass: 0.1, radius: 0.01 };
         let mut group = ParticleGroup::new(&GroupDef { particles: vec![particle; 2], ..GroupDef::default() });
         group.contact_impulses = vec![Vec3::splat(f32::INFINITY), Vec3::X];
-        assert!(!group.roll_back(), "places and velocities are numbers");
+        assert!(!group.roll_back(), "the positions and velocities are finite");
         assert_eq!(group.contact_impulses, [Vec3::ZERO, Vec3::X]);
     }
 }

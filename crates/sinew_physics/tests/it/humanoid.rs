@@ -201,9 +201,15 @@ fn wall_hits() {
             let turn = if i == 0 { Rotation::IDENTITY } else { random.rotation() };
             let mut figure = thrown_at_a_wall(speed, turn);
             let report = observe(&mut figure, 3.0);
-            assert!(report.gap_max < gap, "wall {speed} {i}: {report:?}");
-            assert!(report.overshoot_max < 4.0 && report.overshoot_p99 < 2.0, "wall {speed} {i}: {report:?}");
-            assert!(report.gain < 0.01 && report.penetration_rest < 0.005, "wall {speed} {i}: {report:?}");
+            assert!(report.gap_max < gap, "wall, speed {speed}, run {i}: {report:?}");
+            assert!(
+                report.overshoot_max < 4.0 && report.overshoot_p99 < 2.0,
+                "wall, speed {speed}, run {i}: {report:?}"
+            );
+            assert!(
+                report.gain < 0.01 && report.penetration_rest < 0.005,
+                "wall, speed {speed}, run {i}: {report:?}"
+            );
         }
     }
 }

@@ -71,10 +71,10 @@ fn lie(bytes: &mut Vec<u8>, random: &mut Random) {
 fn live_on(shapes: &[u8], state: &[u8]) -> bool {
     let mut world = World::new(WorldDef::default());
     functions::register(&mut world);
-    world.load_shapes(&mut Reader::new(shapes)).expect("a library that was saved");
+    world.load_shapes(&mut Reader::new(shapes)).expect("a saved library is valid");
     let before = world.hash();
     if world.load(&mut Reader::new(state)).is_err() {
-        assert_eq!(world.hash(), before, "a world that refuses a snapshot is as it was");
+        assert_eq!(world.hash(), before, "a refused snapshot must not change the world");
         return false;
     }
     (0..STEPS).for_each(|_| world.step());
@@ -99,10 +99,10 @@ fn damaged_snapshots_are_refused_or_step() {
             let start = Instant::now();
             let outcome = caught(|| live_on(&shapes, &bytes));
             let time = start.elapsed();
-            assert!(time < LONG, "world {seed}, lie {number} takes {time:?}");
+            assert!(time < LONG, "world {seed}, damage {number}: loading took {time:?}");
             match outcome {
                 Ok(was_taken) => taken += usize::from(was_taken),
-                Err(text) => panic!("world {seed}, lie {number}: {text}"),
+                Err(text) => panic!("world {seed}, damage {number}: {text}"),
             }
             all += 1;
         }

@@ -155,7 +155,7 @@ mod tests {
         for color in wanted {
             let entry = palette.entry(color);
             let shown = palette.colors[entry as usize];
-            assert!(distance(shown, color) <= 3 * 9 + 5 * 9 + 2 * 9, "{color:?} became {shown:?}");
+            assert!(distance(shown, color) <= 3 * 9 + 5 * 9 + 2 * 9, "{color:?} is shown as {shown:?}");
         }
     }
 

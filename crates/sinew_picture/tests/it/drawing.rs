@@ -87,7 +87,7 @@ fn every_pixel_shows_the_nearest_triangle() {
             let tie =
                 nearest.is_some_and(|n| hits.iter().any(|h| h.0 != n.0 && (h.1 / n.1 - 1.0).abs() < 1e-3));
             if !agrees {
-                assert!(on_edge || tie, "pixel {x} {y}: {shown:?}, hits {hits:?}");
+                assert!(on_edge || tie, "pixel {x} {y}: drawn {shown:?}, ray hits {hits:?}");
                 disputed += 1;
             }
         }

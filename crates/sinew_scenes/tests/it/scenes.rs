@@ -100,7 +100,11 @@ fn check_with_gravity(name: &str) {
     for factor in [0.99, 1.01] {
         let wrong = metrics_after(scene(name), &scene(name).settings(), factor);
         let noticed = unmet(&wrong).iter().any(|figure| !not_yet(name).contains(figure));
-        assert_eq!(noticed, !BLIND_TO_GRAVITY.contains(&name), "{name} under {factor} g: {wrong:#?}");
+        assert_eq!(
+            noticed,
+            !BLIND_TO_GRAVITY.contains(&name),
+            "{name} under {factor} g: missed limits {wrong:#?}"
+        );
     }
 }
 
@@ -270,7 +274,7 @@ fn closed_forms_of_rotations_hold_with_other_settings() {
             let mut settings = scene(name).settings();
             settings.assign(assignment).expect("it is in range");
             let metrics = metrics_after(scene(name), &settings, 1.0);
-            assert_eq!(unmet(&metrics), [""; 0], "{name}, {assignment}: {metrics:#?}");
+            assert_eq!(unmet(&metrics), [""; 0], "{name}, {assignment}: metrics {metrics:#?}");
         }
     }
 }

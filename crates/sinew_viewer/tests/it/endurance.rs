@@ -60,7 +60,12 @@ fn every_scene_opens_and_closes() {
         &slowest[..5]
     );
     if let (Some(early), Some(late)) = (early, resident()) {
-        assert!(late < early + NOISE, "{} MiB after five rounds, {} at the end", early >> 20, late >> 20);
+        assert!(
+            late < early + NOISE,
+            "memory: {} MiB after five rounds, {} MiB at the end",
+            early >> 20,
+            late >> 20
+        );
     }
 }
 

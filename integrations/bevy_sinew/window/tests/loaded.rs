@@ -168,7 +168,7 @@ fn bevys_player_poses_the_character() {
         for (joint, (due, rest)) in own.rig.joints.iter().zip(due.iter().zip(own.rest())).skip(pelvis) {
             let is = rig.joints.iter().position(|of| of.name == joint.name).expect("the file has it");
             let off = pose[is].rotation.angle_to(due.rotation);
-            assert!(off < 0.01, "{time} s, {}: {off} rad", joint.name);
+            assert!(off < 0.01, "at {time} s, {}: off by {off} rad", joint.name);
             most = most.max(due.rotation.angle_to(rest.rotation));
         }
     }
@@ -189,7 +189,7 @@ fn mesh_follows_the_fall() {
         for (bone, drawn, on_body) in hero.joints_and_bodies() {
             let off = (drawn.translation - on_body.translation).length();
             let turned = drawn.rotation.angle_to(on_body.rotation);
-            assert!(off < OFF && turned < 1e-3, "frame {frame}, {bone}: {off} m, {turned} rad");
+            assert!(off < OFF && turned < 1e-3, "frame {frame}, {bone}: off by {off} m and {turned} rad");
         }
     }
     assert!(hero.height() < 0.4 * stands, "{} m of {stands}", hero.height());
@@ -208,7 +208,7 @@ fn despawn_during_a_fall_removes_everything() {
     let stands = hero.height();
     hero.go_limp();
     hero.run(25);
-    assert!((0.3 * stands..0.95 * stands).contains(&hero.height()), "it is not falling: {} m", hero.height());
+    assert!((0.3 * stands..0.95 * stands).contains(&hero.height()), "the character is not falling: height {} m", hero.height());
     let limbs = hero.handle().bodies().to_vec();
     let joints = hero.handle().def().rig.joints.len();
     assert!(hero.parts() > joints, "{} parts", hero.parts());
@@ -216,9 +216,9 @@ fn despawn_during_a_fall_removes_everything() {
     hero.run(3);
     let physics = hero.app.world().resource::<Physics>();
     let left = (physics.body_ids().count(), physics.joint_ids().count(), physics.mover_ids().count());
-    assert_eq!(left, (1, 0, 0), "something besides the ground remains");
+    assert_eq!(left, (1, 0, 0), "only the ground may remain");
     assert!(limbs.iter().all(|&limb| physics.entity(limb).is_none()));
-    assert_eq!((physics.len(), hero.parts()), (1, 1), "something besides the ground remains");
+    assert_eq!((physics.len(), hero.parts()), (1, 1), "only the ground may remain");
     // Bevy frees its assets once nothing uses the file any more.
     assert_eq!(hero.app.world().resource::<Assets<Mesh>>().len(), 0);
     assert_eq!(hero.app.world().resource::<Assets<Gltf>>().len(), 0);

@@ -198,7 +198,7 @@ mod tests {
                 let is_fixed = edge.bodies.iter().any(|&body| body as usize >= moving);
                 assert!(
                     !is_fixed || edge.color > last_moving || last_moving == 0,
-                    "case {case}: fixed come last"
+                    "case {case}: constraints to fixed bodies must come last"
                 );
             }
         }
