@@ -34,7 +34,7 @@ pub struct RandomFall {
     pub hit: BakeHit,
     /// Static bodies onto which the character falls.
     pub ground: Vec<BodyDef>,
-    /// Clip, frames, figures and hash.
+    /// Clip, frames, metrics and hash.
     pub baked: Baked,
     /// Verdict on the result: good, usable or bad.
     pub verdict: Verdict,

@@ -132,7 +132,7 @@ fn strays(rig: &Rig, analysis: &RigAnalysis) -> Vec<Stray> {
     HUMANOID_ROLES.into_iter().filter_map(stray).collect()
 }
 
-/// Adds ankle joints to a humanoid whose legs end with the shank, so that motions with feet fit low-poly figures.
+/// Adds ankle joints to a humanoid whose legs end with the shank, so that motions with feet fit low-poly characters.
 ///
 /// Each is a new joint at the end of the rig, without skin, a child of the shank, at the centre of the shank's lowest
 /// skin. Its [`Joint::source`] is beyond the file's nodes. The analysis treats the joint as a foot. Returns the number

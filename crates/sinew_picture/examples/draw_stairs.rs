@@ -1,4 +1,4 @@
-//! Draws a figure on stairs: `cargo run --release -p sinew_picture --example draw_stairs -- DIR` writes `stairs.png` and
+//! Draws a character on stairs: `cargo run --release -p sinew_picture --example draw_stairs -- DIR` writes `stairs.png` and
 //! a movie as `stairs.gif` there, and prints the times.
 
 #[path = "../tests/it/stairs.rs"]

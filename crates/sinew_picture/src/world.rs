@@ -28,7 +28,7 @@ pub struct Frame<'a> {
 pub enum Kinematic {
     /// The bodies are drawn like others.
     Solid,
-    /// The edges of the bodies are drawn, so that they do not hide the figure that leads them.
+    /// The edges of the bodies are drawn, so that they do not hide the character that leads them.
     Wire,
 }
 

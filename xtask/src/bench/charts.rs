@@ -180,7 +180,7 @@ mod tests {
     use crate::command;
     use std::fs;
 
-    /// The charts agree with the committed page of figures.
+    /// The charts agree with the committed page of results.
     #[test]
     fn charts_agree_with_the_page() {
         let page = fs::read_to_string(command::root().join("docs/benchmarks.md")).expect("the page");

@@ -5,7 +5,7 @@ use crate::rig::Rig;
 
 /// Longest side of a grown animal, metres: for most from nose to tail, for flying birds and insects across the wings.
 ///
-/// Round figures from field guides; insects have the size that games give them, at most a cat's.
+/// Round values from field guides; insects have the size that games give them, at most a cat's.
 const LENGTHS: &[(&str, f32)] = &[
     ("ant beetle bug fly mosquito ladybug", 0.3),
     ("bee wasp hornet butterfly dragonfly moth", 0.35),

@@ -1,7 +1,7 @@
 //! Tunable constants for the recognition of joints.
 //!
 //! Each has its unit, the effect of a larger and a smaller value, and the tests (`crates/sinew_anim/tests/it`) that
-//! show it; effects without a figure are estimates.
+//! show it; effects without a number are estimates.
 
 // roles/anatomy.rs
 
@@ -13,7 +13,7 @@ pub(crate) const CONTROL_SKIN: f32 = 5e-4;
 
 /// Least lead of both feet together, in body heights, that decides forward against the names of left and right.
 ///
-/// Half of a human's lead. Larger: swapped names reverse figures. Smaller: slightly leading toes reverse them. Shown by
+/// Half of a human's lead. Larger: swapped names reverse characters. Smaller: slightly leading toes reverse them. Shown by
 /// the tests of `hints`.
 pub(crate) const FEET_AGAINST_NAMES: f32 = 0.04;
 
@@ -43,7 +43,7 @@ pub(crate) const STEP_CORRELATION: f32 = 0.25;
 
 /// Least number of limb pairs with consistent left and right names to trust them without a mirror.
 ///
-/// Larger: low-poly figures with few bones are rejected. Smaller: two names may agree by chance. Shown by the tests of
+/// Larger: low-poly characters with few bones are rejected. Smaller: two names may agree by chance. Shown by the tests of
 /// `assembly`.
 pub(crate) const LEAST_NAMED_PAIRS: usize = 3;
 
@@ -184,7 +184,7 @@ pub(crate) const FORKED: f32 = 0.8;
 /// Larger: palms are lost. Smaller: fingers are attached to the forearm. Shown by the tests of `roles`.
 pub(crate) const AT_WRIST: f32 = 0.15;
 
-/// Longest palm, as a share of the forearm's length; also fits figures with large hands.
+/// Longest palm, as a share of the forearm's length; also fits characters with large hands.
 ///
 /// Larger: forearms count as palms. Smaller: large hands count as forearms. Shown by the tests of `roles`.
 pub(crate) const LONGEST_PALM: f32 = 0.7;
@@ -194,7 +194,7 @@ pub(crate) const LONGEST_PALM: f32 = 0.7;
 /// Larger: knees count as high as ankles. Smaller: rounding decides. Shown by the tests of `roles`.
 pub(crate) const AS_HIGH: f32 = 0.02;
 
-/// Least height of the hips of a figure with a large head, as a share of the figure's height.
+/// Least height of the hips of a character with a large head, as a share of the character's height.
 ///
 /// Larger: the legs of dolls are not recognised. Smaller: feet count as legs. Shown by the tests of `roles`.
 pub(crate) const LOWEST_HIP: f32 = 0.1;
@@ -232,17 +232,17 @@ pub(crate) const LEAST_CLAVICLE: f32 = 0.05;
 
 /// Distance around the skin's box within which a mesh without a bone counts as worn, as a share of the skin's size.
 ///
-/// Larger: a table beside a figure follows it. Smaller: a backpack stays behind. Shown by the tests of `assembly`.
+/// Larger: a table beside a character follows it. Smaller: a backpack stays behind. Shown by the tests of `assembly`.
 pub(crate) const WORN_WITHIN: f32 = 0.08;
 
 /// Longest side of a worn mesh, as a share of the skin's size.
 ///
-/// Larger: the ground under a figure follows it. Smaller: a rifle stays behind. Shown by the tests of `assembly`.
+/// Larger: the ground under a character follows it. Smaller: a rifle stays behind. Shown by the tests of `assembly`.
 pub(crate) const LARGEST_WORN: f32 = 0.9;
 
 /// Longest side of a mesh on the skeleton's node that touches the body, as a share of the skin's size.
 ///
-/// Larger: a stage under a figure follows it. Smaller: a goblin's head stays in the air. Shown by the tests of
+/// Larger: a stage under a character follows it. Smaller: a goblin's head stays in the air. Shown by the tests of
 /// `assembly`.
 pub(crate) const LARGEST_ON_ARMATURE: f32 = 1.2;
 
@@ -280,7 +280,7 @@ pub(crate) const PROP_CONFIDENCE: f32 = 0.5;
 
 /// Largest distance of a joint from its mirror image, as a share of the size of the skin.
 ///
-/// Larger: false planes are found. Smaller: sculpted figures have no plane. Shown by the tests of `creatures`.
+/// Larger: false planes are found. Smaller: sculpted characters have no plane. Shown by the tests of `creatures`.
 pub(crate) const MIRROR_TOLERANCE: f32 = 0.025;
 
 // roles/units.rs
@@ -299,14 +299,14 @@ pub(crate) const UNIT_BY_KIN: f32 = 2.0;
 
 /// Height of a human as a share of the free height under a door, 0 to 1.
 ///
-/// Doors of 2.05 m suit 1.75 m. Larger or smaller: figures sized by a door grow or shrink with it. Shown by the tests
+/// Doors of 2.05 m suit 1.75 m. Larger or smaller: characters sized by a door grow or shrink with it. Shown by the tests
 /// of `hints`.
 pub(crate) const UNDER_DOOR: f32 = 0.85;
 
 /// Speed of strides in square roots of gravity times leg length, between that of a walk (3.6 strides) and a run (2.3
 /// strides).
 ///
-/// Larger or smaller: figures without other hints shrink or grow by its square. Shown by the tests of `hints`.
+/// Larger or smaller: characters without other hints shrink or grow by its square. Shown by the tests of `hints`.
 pub(crate) const STRIDE_SPEED: f32 = 3.0;
 
 /// Least height that an adult's head implies, metres.

@@ -901,7 +901,7 @@ fn childless_pelvis_called_root_is_the_hips() {
     assert_eq!(sorted.joints[spine].name, "spine_01.x");
 }
 
-/// A figure whose rest pose differs from its bind pose has a gun with many vertices in its hand: the body determines
+/// A character whose rest pose differs from its bind pose has a gun with many vertices in its hand: the body determines
 /// the bind pose.
 #[test]
 fn gun_with_many_vertices_does_not_change_the_bind_pose() {
@@ -929,7 +929,7 @@ fn gun_with_many_vertices_does_not_change_the_bind_pose() {
     }
 }
 
-/// A figure has one mesh per part, and a raised arm with one mesh of three bones: the trunk's mesh determines the bind
+/// A character has one mesh per part, and a raised arm with one mesh of three bones: the trunk's mesh determines the bind
 /// pose.
 #[test]
 fn a_raised_arm_of_its_own_mesh_says_nothing_of_the_bind_pose() {

@@ -202,7 +202,7 @@ fn capture_along_another_axis_is_made_upright() {
     }
 }
 
-/// A low-poly figure whose legs end with the shin gets ankles, and walks like a figure with feet.
+/// A low-poly character whose legs end with the shin gets ankles, and walks like a character with feet.
 #[test]
 fn legs_without_feet_get_ankles() {
     let whole = toy::body(|_| String::new());

@@ -1,7 +1,7 @@
 //! Behaviour constants of movers: the numbers an engineer would tune.
 //!
 //! Each comment states the unit, the reason, the effect of a larger and a smaller value, and the scene (`sinew run
-//! NAME`) or test (`crates/sinew_physics/tests/it`) that shows it. Effects without a figure are judgement, not
+//! NAME`) or test (`crates/sinew_physics/tests/it`) that shows it. Effects without a number are judgement, not
 //! measurement. Any change may move the golden hashes. Rounding tolerances are in the formulas they belong to.
 
 /// Distance at which a sweep stops in front of an obstacle, in skins.

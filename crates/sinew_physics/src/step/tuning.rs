@@ -1,12 +1,12 @@
 //! Behaviour constants of the world's stages: the numbers an engineer would tune.
 //!
 //! Each comment states the unit, the reason, the effect of a larger and a smaller value, and the scene (`sinew run
-//! NAME`) or test (`crates/sinew_physics/tests/it`) that shows it. Effects without a figure are judgement, not
+//! NAME`) or test (`crates/sinew_physics/tests/it`) that shows it. Effects without a number are judgement, not
 //! measurement. Any change may move the golden hashes. Rounding tolerances are in the formulas they belong to.
 
 /// Factor on `distance / time` of the sleep thresholds: below that speed a body is at rest at any place, a ratio.
 ///
-/// Limp limbs sag for seconds. Larger: a body that creeps down a slope falls asleep there. Smaller: heaps of figures
+/// Limp limbs sag for seconds. Larger: a body that creeps down a slope falls asleep there. Smaller: heaps of ragdolls
 /// stay awake for seconds longer. Shown by `ragdoll_pile`, `ragdoll_poses`.
 pub(super) const CREEP: f32 = 2.0;
 
@@ -37,7 +37,7 @@ pub(super) const HANGING_SPIN: f32 = 0.05;
 
 /// Overlap above which a yielding shape lets a body pass, metres.
 ///
-/// Larger: a body between a walking figure and a wall is squeezed for longer. Smaller: a body that leans on a yielding
+/// Larger: a body between a walking character and a wall is squeezed for longer. Smaller: a body that leans on a yielding
 /// shape falls through. Shown by the tests of `yields`.
 pub(super) const YIELDING_DEPTH: f32 = 0.01;
 
@@ -56,7 +56,7 @@ pub(super) const BLOW_SPEED: f32 = 0.3;
 /// Number of consecutive joints through which a blow is followed.
 ///
 /// There are five from the pelvis to a hand. Larger: more pairs are tested in steps after a blow. Smaller: the hand of
-/// a figure hit at its trunk is inside the thigh at the end of the step. Shown as [`BLOW_SPEED`].
+/// a ragdoll hit at its trunk is inside the thigh at the end of the step. Shown as [`BLOW_SPEED`].
 pub(super) const BLOW_PASSES: usize = 6;
 
 /// Ratio of the added mass of a body on ropes to its own mass, above which its island's contacts are swept until they

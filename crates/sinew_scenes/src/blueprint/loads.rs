@@ -76,9 +76,9 @@ pub(crate) fn leaning(scene: &mut Blueprint, touch: Vec3, degrees: f32, mass: f3
     });
 }
 
-/// Adds a limp figure, `scale` times as large as a man, on its back along x, with its centre of mass over the centre of a level place.
+/// Adds a limp humanoid, `scale` times as large as a man, on its back along x, with its centre of mass over the centre of a level place.
 pub(crate) fn figure(scene: &mut Blueprint, place: Transform, scale: f32) {
-    /// Height of the figure's centre of mass above its soles, and half the depth of its chest, metres.
+    /// Height of the humanoid's centre of mass above its soles, and half the depth of its chest, metres.
     const CENTER: f32 = 1.04;
     const BACK: f32 = 0.1;
     let on_its_back = Rotation::from_axis_angle(Vec3::X, -FRAC_PI_2);

@@ -75,7 +75,7 @@ fn overlap(scene: &Blueprint, stride: usize) -> f32 {
 
 #[test]
 fn figures_and_boxes_of_heaps_start_apart() {
-    // Bodies of one figure follow each other, and may overlap where the definition disables the pair.
+    // Bodies of one humanoid follow each other, and may overlap where the definition disables the pair.
     let heaps = [(blueprint::humanoid_lying(), 19), (blueprint::humanoid_pile(33), 19)];
     for (scene, stride) in heaps.into_iter().chain([(blueprint::box_heap(6, 6), 1)]) {
         let overlap = overlap(&scene, stride);

@@ -1,9 +1,9 @@
-//! Every scene of the registry: its figures, and their dependence on gravity.
+//! Every scene of the registry: its metrics, and their dependence on gravity.
 
 use sinew::physics::World;
 use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, Settings, find, registry};
 
-/// Figures outside their bars, by scene. A figure that is met must be removed, or its test fails.
+/// Metrics outside their bars, by scene. A metric that is met must be removed, or its test fails.
 const NOT_YET: &[(&str, &[&str])] = &[
     // 2.07 mm instead of 2; the line of thrust is nearer to the middle than when the scene met this bar.
     ("arch", &["shift_max_m"]),
@@ -82,7 +82,7 @@ fn not_yet(name: &str) -> &'static [&'static str] {
     NOT_YET.iter().find(|(scene, _)| *scene == name).map_or(&[], |(_, figures)| figures)
 }
 
-/// Runs a scene with its defaults: exactly the figures of [`NOT_YET`] miss their bars, and no warm step
+/// Runs a scene with its defaults: exactly the metrics of [`NOT_YET`] miss their bars, and no warm step
 /// allocates.
 fn check(name: &str) {
     let mut run = after(scene(name), &scene(name).settings(), 1.0);
@@ -94,7 +94,7 @@ fn check(name: &str) {
     assert_eq!(warm_allocations(run.world_mut()), 0, "{name} allocates");
 }
 
-/// Checks a scene as `check` does, and that more figures miss if gravity is slightly wrong.
+/// Checks a scene as `check` does, and that more metrics miss if gravity is slightly wrong.
 fn check_with_gravity(name: &str) {
     check(name);
     for factor in [0.99, 1.01] {

@@ -69,7 +69,7 @@ fn every_scene_opens_and_closes() {
     }
 }
 
-/// Prints the time that encoding a frame with a hundred skinned figures takes, beside an empty stage, which
+/// Prints the time that encoding a frame with a hundred skinned characters takes, beside an empty stage, which
 /// reads back as much.
 #[test]
 #[ignore = "a measurement, which asserts no time: `cargo xtask ci --full`"]

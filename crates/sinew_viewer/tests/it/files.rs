@@ -45,7 +45,7 @@ fn height(viewer: &Headless) -> f32 {
     world.body_ids().map(|id| world.transform(id).translation.y).fold(0.0, f32::max)
 }
 
-/// Runs two seconds of steps, after which standing figures lie on the ground.
+/// Runs two seconds of steps, after which standing characters lie on the ground.
 fn falls(viewer: &mut Headless, name: &str) {
     let before = height(viewer);
     for _ in 0..120 {

@@ -156,7 +156,7 @@ fn keys_walk_a_character() {
     assert_eq!(replay.instance().steered(), Some(place(&viewer)));
 }
 
-/// The first scene opens with figures drawn with their skin, which stay in the picture.
+/// The first scene opens with characters drawn with their skin, which stay in the picture.
 #[test]
 fn the_first_scene_stays_in_sight() {
     let Some(gpu) = gpu() else { return };

@@ -136,7 +136,7 @@ fn a_skin_is_where_its_joints_are() {
     let mut offscreen = Offscreen::new(gpu, SIZE);
     let found = offscreen.render(&stage, &camera).expect("the card draws");
     look("skin_card", &found);
-    // The same figures as models skinned by the processor.
+    // The same characters as models skinned by the processor.
     let mut skinned = self::stage(&session, &camera, &[]);
     let figures = std::mem::take(&mut skinned.figures);
     for figure in &figures {

@@ -37,7 +37,7 @@ fn seek(session: &mut Session, step: u64) {
 }
 
 /// Scenes of bodies, joints, particles, and characters: after any seek the state is that
-/// of the recording, and so are the figures.
+/// of the recording, and so are the metrics.
 #[test]
 fn seeking_gives_the_same_bits() {
     for scene in ["stack", "pendulum", "rope_on_box", "stairs", "two_tracks", "flag", "dominoes"] {

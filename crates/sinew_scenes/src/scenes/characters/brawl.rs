@@ -1,4 +1,4 @@
-//! A brawl in a room: characters walk at random among crates and stairs and are hit; fallen ones get up. The figures measure how well all
+//! A brawl in a room: characters walk at random among crates and stairs and are hit; fallen ones get up. The metrics measure how well all
 //! character features work together.
 
 mod watch;

@@ -38,7 +38,7 @@ fn pendulum(setup: &Setup<'_>) -> Instance {
 }
 
 struct Bob {
-    /// Name of the figure for the pendulum's period.
+    /// Name of the metric for the pendulum's period.
     name: &'static str,
     id: BodyId,
     joint: JointId,

@@ -1,4 +1,4 @@
-//! Figures fall on planks that hang on two ropes.
+//! Ragdolls fall on planks that hang on two ropes.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -151,7 +151,7 @@ struct RopeBridge {
     ropes: GroupId,
     /// Particles that are attached to the world.
     held: Vec<usize>,
-    /// Total weight of planks, ropes and figures, N.
+    /// Total weight of planks, ropes and ragdolls, N.
     weight: f32,
     /// Pull of the attached particles in each step, N.
     pulls: Vec<f64>,

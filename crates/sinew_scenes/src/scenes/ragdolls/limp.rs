@@ -203,7 +203,7 @@ impl Script for Limp {
         self.meter.before_step(world);
     }
 
-    /// Returns the figures with the specification's limits for the quality of a ragdoll.
+    /// Returns the metrics with the specification's limits for the quality of a ragdoll.
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let q = self.meter.quality();
         let Requirements { gap_p99, gap_max, overshoot_p99, overshoot_max } = self.requirements;

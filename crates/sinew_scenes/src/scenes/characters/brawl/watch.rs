@@ -1,4 +1,4 @@
-//! Figures of a brawl.
+//! Metrics of a brawl.
 
 use super::{Fighter, ROOM};
 use crate::framework::metric::{Expected, Metric};
@@ -6,7 +6,7 @@ use sinew::math::{ReadError, Reader, Vec3, Writer, max};
 use sinew::physics::{BodyId, World};
 use sinew::ragdoll::{CharacterEvent, State};
 
-/// States of a character that have separate figures.
+/// States of a character that have separate metrics.
 pub(super) const STATES: [State; 6] =
     [State::Animated, State::Flinching, State::Powered, State::Limp, State::Preparing, State::GettingUp];
 /// Number of steps between measurements of the penetration into static bodies.
@@ -94,7 +94,7 @@ impl Watched {
     }
 }
 
-/// Figures of all characters.
+/// Metrics of all characters.
 #[derive(Default)]
 pub(super) struct Watch {
     /// Static bodies: floor, walls, stairs.
@@ -271,7 +271,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Figures so far; the expectations are the bars of a crowd fit for a game.
+    /// Metrics so far; the expectations are the bars of a crowd fit for a game.
     pub fn metrics(&self) -> Vec<Metric> {
         let count = |name: &str| {
             f64::from(self.counts[COUNTS.iter().position(|&other| other == name).expect("it is counted")])
