@@ -90,7 +90,8 @@ impl Legs {
         Some(Self { pelvis, feet, strays: strays(rig, analysis) })
     }
 
-    /// Moves stray joints to their anatomical place; rotations stay. Call it after moving their anatomical parents.
+    /// Moves stray joints to their anatomical place; rotations do not change. Call it after moving their anatomical
+    /// parents.
     pub fn gather(&self, rig: &Rig, local: &mut [LocalTransform], model: &mut [Affine]) {
         for stray in &self.strays {
             let by = model[stray.carrier].point(stray.at) - model[stray.joint].translation;

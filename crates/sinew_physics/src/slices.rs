@@ -6,9 +6,10 @@ use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
 use sinew_math::lanes::WIDTH;
 
-/// Most items in one claim of a thread. Two threads that claim one by one spend more on the counter than on a light item.
+/// Largest number of items that a thread claims at once. Two threads that claim single items spend more time on the counter
+/// than on light items.
 const MOST_CLAIMED: usize = 32;
-/// Smallest number of claims for a few items, so that no thread waits long for another's last claim.
+/// Smallest number of claims for a short list, so that no thread waits long for the last claim of another.
 const CLAIMS: usize = 16;
 
 /// The items of a slice, shared by threads that each access different ones.
@@ -143,10 +144,10 @@ pub(crate) fn for_each_mut<T: Send>(runner: &dyn TaskRunner, items: &mut [T], wo
     }
 }
 
-/// Most items of [`for_each_near`].
+/// Largest number of items of [`for_each_near`].
 pub(crate) const MOST_NEAR: usize = u64::BITS as usize;
 
-/// Most threads that take part in [`for_each_near`].
+/// Largest number of threads that take part in [`for_each_near`].
 const MOST_CALLS: usize = 16;
 
 /// Like [`for_each_mut`], for at most [`MOST_NEAR`] items whose neighbours share memory: each thread starts at the item
@@ -163,8 +164,8 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
         if taken.load(Ordering::Relaxed).count_ones() as usize == count {
             return;
         }
-        // Threads start far from each other: the second in the middle, the next two at the quarters. The caller is the
-        // first, because the others start later.
+        // Threads start far from each other: the second at the middle, the next two at the quarters. The caller starts first,
+        // because the other threads are delayed.
         let number = entered.fetch_add(1, Ordering::Relaxed);
         let share = (u64::from(number.reverse_bits()) * count as u64) >> u32::BITS;
         let start = share as usize;

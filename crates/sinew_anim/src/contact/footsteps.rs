@@ -84,7 +84,7 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     Ok(Footsteps { events, speed: ground.velocity.length() })
 }
 
-/// Mean speed of a body over its ground, m/s, from the middle of its feet in the first and the last frame.
+/// Mean speed of a body over its ground, m/s, from the midpoint between its feet in the first and the last frame.
 fn pace(take: &Take, points: &[[[Vec3; 2]; 2]]) -> f32 {
     let middle = |frame: usize| points[frame].as_flattened().iter().sum::<Vec3>() * 0.25;
     let way = middle(points.len() - 1) - middle(0);

@@ -83,8 +83,8 @@ impl Ground {
         Self { height, velocity: if moves { velocity } else { Vec3::ZERO } }
     }
 
-    /// Converts points to points relative to the ground, metres: a standing foot is at rest there. `points` are those
-    /// of [`sole_points`], one entry per frame.
+    /// Converts points to positions relative to the ground, metres: a standing foot is at rest there. `points` are
+    /// those of [`sole_points`], one entry per frame.
     pub fn seen_from(&self, take: &Take, mut points: Vec<[[Vec3; 2]; 2]>) -> Vec<[[Vec3; 2]; 2]> {
         for (frame, feet) in points.iter_mut().enumerate() {
             let way = self.velocity * take.time(frame);

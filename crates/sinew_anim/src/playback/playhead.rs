@@ -169,7 +169,7 @@ pub struct Passage {
     is_backward: bool,
 }
 
-/// A passed moment of a clip.
+/// Passage of a playhead over a time of its clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     pub(crate) place: Place,

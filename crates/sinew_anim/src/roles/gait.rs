@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// Largest number of clips that are examined; walks and runs by name come first.
 const MOST_CLIPS: usize = 12;
-/// Fewest and most poses of a clip that are examined.
+/// Smallest and largest number of poses of a clip that are examined.
 const FRAMES: [f32; 2] = [16.0, 96.0];
 /// Words in names of clips in which legs walk.
 const WALKS: [&str; 8] = ["walk", "run", "jog", "trot", "gallop", "sprint", "march", "move"];

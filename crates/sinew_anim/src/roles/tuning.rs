@@ -19,7 +19,7 @@ pub(crate) const FEET_AGAINST_NAMES: f32 = 0.04;
 
 /// Least lead of both feet together, in body heights, that decides forward if there is no other evidence.
 ///
-/// Larger: small feet decide nothing. Smaller: noise decides. Shown by the tests of `hints`.
+/// Larger: small feet are ignored. Smaller: noise decides the forward direction. Shown by the tests of `hints`.
 pub(crate) const LEAST_FOOT: f32 = 0.005;
 
 /// Fall of a limb from its first joint to its last, as a share of the distance, above which the limb counts as hanging.
@@ -31,12 +31,13 @@ pub(crate) const HANGING: f32 = 0.6;
 
 /// Least distance of both elbows together behind the arms, in body heights, to outweigh unclear feet.
 ///
-/// Larger: T-poses without feet have no front. Smaller: noise of straight arms decides. Shown by the tests of `hints`.
+/// Larger: T-poses without feet have no front. Smaller: noise of straight arms decides the forward direction. Shown by the
+/// tests of `hints`.
 pub(crate) const ELBOWS_BEHIND: f32 = 0.03;
 
 /// Least correlation of the feet's height with their speed, 0 to 1, that decides the walking direction.
 ///
-/// Larger: shuffling walks decide nothing. Smaller: dances decide the direction. Shown by the tests of `hints`.
+/// Larger: shuffling walks give no direction. Smaller: dances give a direction. Shown by the tests of `hints`.
 pub(crate) const STEP_CORRELATION: f32 = 0.25;
 
 // roles/assembly.rs

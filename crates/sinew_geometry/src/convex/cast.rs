@@ -20,7 +20,8 @@ pub struct ShapeHit {
 /// added.
 const CLOSE: f32 = 1e-5;
 const CLOSE_STEP: f32 = 1e-7;
-/// Most steps of a cast. They are Newton steps: only motions that graze a round shape need more than a few.
+/// Largest number of steps of a cast. They are Newton steps: only motions that graze a round shape need more than a
+/// few.
 const MOST_STEPS: usize = 64;
 
 /// Moves `a` by `motion` (metres) and returns its first touch of `b`; `None` if there is none, or a number is not

@@ -30,7 +30,7 @@ struct Entry {
     alive: bool,
 }
 
-/// A way to remove one box.
+/// A step that removes one box.
 #[derive(Clone, Copy)]
 enum Step {
     /// Drop a box.

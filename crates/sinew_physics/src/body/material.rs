@@ -32,7 +32,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// Material with friction 0.6 and all else zero.
+    /// Material with friction 0.6; all other values are zero.
     pub const DEFAULT: Self = Self {
         friction: 0.6,
         static_friction: None,

@@ -40,8 +40,7 @@ pub struct Events {
     pub sensor_shapes_begin: Vec<(ShapeId, ShapeId)>,
     /// Pairs of a sensor and a shape that left it.
     pub sensor_shapes_end: Vec<(ShapeId, ShapeId)>,
-    /// Bodies whose state became non-finite: reset to the state before the step, stopped and taken out of the
-    /// simulation.
+    /// Bodies whose state became non-finite: reset to their state before the step, stopped and disabled.
     pub quarantined: Vec<BodyId>,
     /// Bodies that were slowed to [`WorldDef::max_speed`](crate::WorldDef::max_speed) or
     /// [`WorldDef::max_turn`](crate::WorldDef::max_turn), by index: a force or an impulse was too large, or a fall too

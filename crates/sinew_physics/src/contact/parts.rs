@@ -1,5 +1,5 @@
-//! In `collide`: pairs of which one shape is a mesh or a height field, with several contact regions. Each manifold is a
-//! contact of its own, a part of the pair.
+//! Part of `collide`: pairs with a mesh or a height field have several contact regions. Each manifold is a separate
+//! contact, a part of the pair.
 
 use crate::collide::{Ground, MAX_PARTS, Manifold, Motion, Patch, Scratch, collide_pair};
 use crate::contact::proxies::Owner;

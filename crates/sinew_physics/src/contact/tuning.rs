@@ -19,13 +19,13 @@ pub(crate) const SEAM_SLOPS: f32 = 0.9;
 /// Depth below the plane of the next ground shape up to which a point gets a contact before it is over that shape, in
 /// slops.
 ///
-/// Larger: bodies are lifted before a hill's crest. Smaller: bodies that rest below the surface sink in before the next
-/// shape. Shown by the tests of `seams`.
+/// Larger: bodies are lifted before a hill's crest. Smaller: bodies that rest slightly below the surface sink at the
+/// border to the next shape. Shown by the tests of `seams`.
 pub(crate) const SEAM_REACH: f32 = 1.0;
 
 /// Margin of the fat bounds of moving shapes, metres.
 ///
-/// With the margin, bodies that tremble or settle keep their leaf. Larger: the step tests more candidate pairs.
+/// Within the margin, bodies that vibrate or settle keep their leaf. Larger: the step tests more candidate pairs.
 /// Smaller: more leaves move. Changes only the order of work; shown by `cargo xtask bench --trace wave_pile`.
 pub(crate) const BOUNDS_ROOM: f32 = 0.04;
 
@@ -56,7 +56,7 @@ pub(crate) const BOUNDS_STEPS_ALONE: f32 = 12.0;
 
 /// Factor on the margin above which oversized fat bounds are shrunk, a ratio.
 ///
-/// Larger: bodies at rest keep the long bounds of their flight, and the pairs of these. Smaller: the bounds of slowing
+/// Larger: bodies at rest keep the long bounds of their flight, with many candidate pairs. Smaller: the bounds of slowing
 /// bodies are rebuilt repeatedly. Shown as [`BOUNDS_STEPS`].
 pub(crate) const BOUNDS_EXCESS: f32 = 3.0;
 
@@ -81,7 +81,7 @@ pub(crate) const RECYCLED_SLIP: f32 = 0.4;
 
 /// Cosine of half the relative rotation, 1°, up to which a manifold is recycled.
 ///
-/// A larger angle: a tipping body stands on the points of its face. A smaller angle: the step recomputes more
+/// Larger angle: a tipping body keeps the contact points of a whole face. Smaller angle: the step recomputes more
 /// manifolds. Shown by `dominoes`, `cards`.
 pub(crate) const RECYCLED_HALF_TURN: f32 = 0.999_962;
 

@@ -263,7 +263,7 @@ fn each_locked(kind: &JointKind, locks: &[bool; 6], pose: &JointPose, mut put: i
         return;
     }
     if locks[..TWIST] == [true; 3] {
-        // For a point any axes are valid, and those of the world need no rotation.
+        // For a point any axes are valid; world axes need no rotation.
         put(0, pose.gap.x, Vec3::X);
         put(1, pose.gap.y, Vec3::Y);
         put(2, pose.gap.z, Vec3::Z);

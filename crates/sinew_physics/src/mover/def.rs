@@ -34,7 +34,7 @@ pub struct MoverDef {
     pub air_acceleration: f32,
     /// Multiple of the world's gravity. Default 1.
     pub gravity_scale: f32,
-    /// Distance that the mover keeps from obstacles, metres, above 0 and below the radius. Default 5 mm.
+    /// Distance between the mover and obstacles, metres, above 0 and below the radius. Default 5 mm.
     pub skin: f32,
     /// Filter of the shapes and other movers that the mover collides with. Default all.
     pub filter: Filter,

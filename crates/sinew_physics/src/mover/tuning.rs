@@ -114,6 +114,6 @@ pub(super) const WEDGED_SHARE: f32 = 0.02;
 
 /// Largest acceleration with which a dynamic body carries a mover that stands on it, m/s²: friction of soles.
 ///
-/// Larger: a mover on a hand that jerks away is thrown with the hand. Smaller: riders slide on crates that start
-/// moving. Shown by the tests of `mover`.
+/// Larger: a mover on a suddenly moving hand is thrown with the hand. Smaller: movers slide on crates that start to
+/// move. Shown by the tests of `mover`.
 pub(super) const GRIP: f32 = 20.0;

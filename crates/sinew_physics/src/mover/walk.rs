@@ -198,8 +198,8 @@ impl<'a> Move<'a> {
         found
     }
 
-    /// Returns the footing with the velocity that the mover gets from it; a dynamic body keeps the velocity of the
-    /// footing before.
+    /// Returns the footing with the velocity that the mover takes over: on a dynamic body that of the previous footing,
+    /// otherwise that of the new one.
     fn taken_along(&self, mover: &Mover, footing: Footing) -> Footing {
         let (Some(before), Bearer::Shape { body, .. }) = (mover.ground, footing.on) else { return footing };
         let is_dynamic = self.sight.bodies.at(body.index).kind == BodyKind::Dynamic;

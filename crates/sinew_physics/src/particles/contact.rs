@@ -263,7 +263,7 @@ impl Touch {
 /// Grip of a surface on a particle that touches it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Grip {
-    /// The surface does not hold the particle.
+    /// The particle does not touch the surface.
     #[default]
     Off,
     /// The surface holds the particle along the normal; friction is a force.

@@ -137,8 +137,8 @@ impl System {
         }
     }
 
-    /// Loads the momenta without those of hubs: of particles and contacts, of springs from where they are linearised,
-    /// and of fixed ends; and the pulls along the trees.
+    /// Loads the momenta of particles, contacts, linearised springs and fixed ends, without those of hubs; and the
+    /// spring forces along the trees.
     fn load_momenta(&mut self, forest: &Forest, springs: &[SpringDef], h: f32, velocities: &[Vec3]) {
         for i in 0..velocities.len() {
             self.gathered_momentum[i] = self.momentum[i] + self.added_momentum[i];

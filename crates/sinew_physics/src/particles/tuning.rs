@@ -17,9 +17,8 @@ pub(super) const LIST_ROOM: f32 = 0.01;
 
 /// Displacement speed in a step below which a particle may sleep, m/s.
 ///
-/// A particle swings about its rest position, and must settle first. Larger: cloth stops in mid-swing, with springs
-/// short of the stretch that their load requires. Smaller: trembling nets keep a world awake. Shown by the tests of
-/// `sleep`.
+/// A particle swings about its rest position, and must settle first. Larger: cloth stops in mid-swing, with springs short
+/// of the stretch that their load requires. Smaller: vibrating nets keep a world awake. Shown by the tests of `sleep`.
 pub(super) const RESTING_SPEED: f32 = 0.001;
 
 /// Margin around a sleeping group within which the user's changes to bodies wake it, metres.
@@ -43,7 +42,7 @@ pub(super) const LENGTH_TOLERANCE: f32 = 1e-3;
 /// Energy of the velocity error at which the solve of springs that close loops ends, as a share of the energy of the
 /// velocities, a ratio.
 ///
-/// Larger: taut nets tremble. Smaller: conjugate gradients take more iterations. Shown by the tests of `loads`.
+/// Larger: taut nets vibrate. Smaller: conjugate gradients take more iterations. Shown by the tests of `loads`.
 pub(super) const CONJUGATE_TOLERANCE: f64 = 1e-9;
 
 /// Largest number of iterations of conjugate gradients in one solve.
@@ -60,7 +59,7 @@ pub(super) const DETOUR: f32 = 1.5;
 
 /// Gap up to which a particle counts as touching at any speed, as a share of its radius, a ratio.
 ///
-/// Larger: the solve includes contacts that never close. Smaller: the solve ignores the surface under a trembling
+/// Larger: the solve includes contacts that never close. Smaller: the solve ignores the surface under a vibrating
 /// particle. Shown by the tests of `particles`.
 pub(super) const REACH_SHARE: f32 = 0.05;
 
@@ -112,7 +111,7 @@ pub(super) const LEAST_ADDED: f32 = 1e-3;
 
 /// Largest ratio of the mass added to a body to its own mass.
 ///
-/// Larger: a taut body that also stands on the ground is solved as if immovable, with errors when it lifts off.
+/// Larger: a body on taut ropes that also stands on the ground is solved as if immovable, with errors when it lifts off.
 /// Smaller: light planks hang lower under a load heavier by that ratio. Shown by the tests of `held`.
 pub(super) const MOST_ADDED: f32 = 1e3;
 
@@ -145,9 +144,8 @@ pub(super) const WALL_GAP: f32 = 1e-4;
 
 /// Speed below which a particle counts as at rest, m/s.
 ///
-/// Rounding error of speeds of some metres per second. Larger: creeping particles count as held. Smaller: noise decides
-/// grips.
-/// No scene shows it.
+/// The rounding error of speeds of a few metres per second. Larger: creeping particles count as held. Smaller: rounding
+/// noise decides whether particles stick. No scene shows the effect.
 pub(super) const NO_SPEED: f32 = 1e-6;
 
 /// Depth below which a particle counts as on a surface and not inside it, metres.

@@ -18,8 +18,8 @@ pub(crate) struct Blows {
 }
 
 impl Blows {
-    /// Finds blows by separating anchors: the joint solver left them with equal velocity, and a hit has changed one
-    /// since.
+    /// Finds the joints whose anchors separate after an impact: the joint solver left them with equal velocity, and a
+    /// hit has changed one since.
     pub fn find(&mut self, bodies: &Arena<Body>, joints: &Arena<Joint>, activity: &Activity) {
         let slots = bodies.slot_count();
         self.speeds.resize(slots, 0.0);

@@ -41,7 +41,7 @@ pub(crate) struct Islands {
     /// Groups taken out of the world during the step, ordered by island.
     taken: Vec<TakenGroup>,
     solution: Solution,
-    /// True if the solution is that of the last step, not of one before a snapshot was loaded.
+    /// True if the solution belongs to the last step, and not to one before a snapshot was loaded.
     is_known: bool,
     /// True for each island that is a free-flying body or a strand and has already been solved in this step.
     flown: Vec<bool>,

@@ -11,7 +11,7 @@ use crate::step::project::Surroundings;
 use std::sync::{Mutex, PoisonError};
 
 /// Memory for solving islands one after the other: it grows to the largest island's size and stays in the cache. No
-/// content persists between islands.
+/// data persist between islands.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace {
     pub solver: IslandSolver,

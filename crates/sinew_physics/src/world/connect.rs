@@ -154,7 +154,7 @@ impl World {
             swing_y: turning(1),
             swing_z: turning(2),
         };
-        // Rotation that maps X to Y, Y to Z and Z to X: a third of a turn about the diagonal.
+        // Rotation by a third of a turn about the diagonal: maps X to Y, Y to Z and Z to X.
         let cycle = Rotation::from_xyzw(0.5, 0.5, 0.5, 0.5);
         let rotation = [Rotation::IDENTITY, cycle, cycle.inverse()][unlike];
         let world_from_joint = Transform::new(self.center_of_mass(body), rotation);

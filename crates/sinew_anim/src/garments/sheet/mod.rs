@@ -69,7 +69,8 @@ pub struct SheetOptions<'a> {
     pub spacing: f32,
     /// Depth below the top of the mesh down to which it is held, metres; `None`: a tenth of its height.
     pub held: Option<f32>,
-    /// Most particles, at least 4: finer meshes are reduced to this number, and coarser ones not split beyond it.
+    /// Largest number of particles, at least 4: finer meshes are reduced to this number, and coarser ones are not split
+    /// beyond it.
     pub most_particles: usize,
     /// File node of the first new joint ([`Joint::source`]); the others follow.
     pub first_source: usize,

@@ -144,7 +144,7 @@ fn flying_bodies_pass_a_mover_that_lets_them() {
     assert!(speed == 20.0 && moved < 0.01, "the ball passed at {speed} m/s, the mover moved {moved} m");
     assert!(
         after(0.0, 0.5).0 < 1.0 && after(60.0, 5.0).0 < 19.0,
-        "a heavy ball, or one that collides, must be stopped"
+        "a ball with more momentum than `lets_pass` must be slowed"
     );
 }
 
