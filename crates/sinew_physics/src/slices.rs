@@ -138,7 +138,7 @@ pub(crate) fn for_each_mut<T: Send>(runner: &dyn TaskRunner, items: &mut [T], wo
         }
     };
     runner.run(count.div_ceil(claim), &task);
-    // A runner that made too few calls must not lose work.
+    // If the runner made too few calls, this thread does the remaining work.
     while next.load(Ordering::Relaxed) < count {
         task();
     }
@@ -177,7 +177,7 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
         }
     };
     runner.run(usize::min(count, MOST_CALLS), &task);
-    // A runner that made no call must not lose work.
+    // If the runner made no call, this thread does the work.
     task();
 }
 

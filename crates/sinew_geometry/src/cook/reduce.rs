@@ -35,7 +35,7 @@ struct Entry {
 enum Step {
     /// Drop a box.
     Drop(usize),
-    /// Replace two boxes by one.
+    /// Replaces two boxes by one.
     Merge(usize, usize, Obb),
 }
 

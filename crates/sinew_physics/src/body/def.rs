@@ -117,7 +117,7 @@ impl WorldDef {
     /// # Errors
     /// Names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         if self.step_nanoseconds == 0 || self.substeps == 0 {
             return Err(DefError::new("a step takes time and has substeps"));
@@ -198,7 +198,7 @@ pub struct BodyDef {
     pub sleeping: Sleeping,
     /// Step quality of this body and its island; `None`: that of the [world](WorldDef::quality). Default `None`.
     pub quality: Option<Quality>,
-    /// Data of the user.
+    /// User data of the body; the library does not use it.
     pub user_data: u64,
 }
 

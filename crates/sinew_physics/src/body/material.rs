@@ -49,7 +49,7 @@ impl Material {
     /// # Errors
     /// Names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         let positive = not_negative(self.friction) && not_negative(self.rolling);
         if !(positive && not_negative(self.restitution)) {
@@ -177,7 +177,7 @@ impl ContactMaterial {
     }
 
     pub(crate) fn is_valid(&self) -> bool {
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         let positive =
             [self.friction, self.restitution, self.rolling, self.launch].into_iter().all(not_negative);

@@ -94,7 +94,7 @@ impl ShapeDef {
         self.material.check()?;
         self.rule.check()?;
         let placed = self.body_from_shape.is_finite();
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         let dense = (0.0..f32::INFINITY).contains(&self.density);
         if placed && dense {
             Ok(())

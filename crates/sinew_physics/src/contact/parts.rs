@@ -20,7 +20,7 @@ pub(crate) struct Parts {
     idle: Mutex<Vec<(Scratch, Vec<Owner>)>>,
 }
 
-/// A clone starts empty, because no content persists.
+/// A clone starts empty: the memory holds no data between steps.
 impl Clone for Parts {
     fn clone(&self) -> Self {
         Self::default()

@@ -8,7 +8,7 @@ use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3};
 /// Directions of a joint: translation along x, y, z of frame A (along the line between the anchors for a distance),
 /// then twist about x, swing about y and z.
 pub(crate) const DIRECTIONS: usize = 6;
-/// First rotation among the directions.
+/// Index of the first rotation among the directions.
 pub(crate) const TWIST: usize = 3;
 
 /// Definition of a joint without state: the geometry of its rows.

@@ -78,7 +78,7 @@ impl MoverDef {
     /// # Errors
     /// The problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         if !self.position.is_finite() {

@@ -354,10 +354,10 @@ impl<'a> Move<'a> {
 /// Kinds of supporting edges.
 #[derive(Clone, Copy, PartialEq)]
 enum Edges {
-    /// Edges of treads: on the ground.
+    /// Edges of treads support the mover; used on the ground.
     Bear,
-    /// None: in the air.
+    /// No edge supports the mover; used in the air.
     Fall,
-    /// All touches that stop a fall.
+    /// Every touch that stops a fall supports the mover.
     Wedge,
 }

@@ -54,7 +54,7 @@ impl System {
             of.turn((found / last) as f32, self.hubs.iter().map(|hub| &hub.velocity));
             self.pass_across(forest, &of.direction, &mut of.passed);
             let taken = dot(&of.needed, &of.direction) - dot(&of.passed, &of.direction);
-            // The comparison is written so that NaN ends it, too.
+            // The comparison is false for NaN, which ends the loop, too.
             let goes_on = found > most && taken > 0.0;
             if !goes_on {
                 break;

@@ -182,7 +182,7 @@ impl Hub {
         self.seen
     }
 
-    /// Momentum for that inertia at `point`, kg·m/s.
+    /// Momentum that belongs to the inertia `seen` at `point`, kg·m/s.
     pub fn momentum_seen_at(&self, point: Vec3) -> Vec3 {
         self.seen * velocity_at(&self.free, point - self.center)
     }

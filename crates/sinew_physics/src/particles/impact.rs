@@ -21,7 +21,7 @@ struct Came {
     position: Vec3,
     /// Velocity, m/s.
     velocity: Vec3,
-    /// Number of impulses on bodies that were listed before.
+    /// Number of impulses on bodies listed before this particle.
     reported: usize,
 }
 

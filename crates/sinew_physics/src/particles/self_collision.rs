@@ -197,7 +197,7 @@ impl SelfCollision {
         if self.supports[row.below as usize].dot(row.normal) <= BEARING {
             return;
         }
-        // A particle that touches a surface transmits to that surface.
+        // A particle that already touches a surface keeps that surface as its support.
         if self.turns[above] == Turn::Loose {
             self.list(row.above);
             self.ways[above] = self.ways[row.below as usize];
@@ -314,7 +314,7 @@ impl ParticleGroup {
         self.backings[i] > 0.0 && self.backings[i] < 1.0
     }
 
-    /// Moves a pair to its distance; the total impulse never pulls.
+    /// Moves the two particles of a row to their distance; the total impulse never pulls.
     fn press(&mut self, row: &mut Row, h: f32) {
         let (below, above) = (row.below as usize, row.above as usize);
         let missing = row.goal - (self.positions[above] - self.positions[below]).dot(row.normal);

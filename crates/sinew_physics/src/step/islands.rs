@@ -209,7 +209,7 @@ impl Islands {
         }
     }
 
-    /// Joins all bodies and groups that a field makes attract each other.
+    /// Joins bodies and groups that attract each other through a field to one island.
     fn join_attracted(&mut self, view: &View<'_>, groups: &Arena<ParticleGroup>) {
         for (field, _) in view.fields.mutual() {
             let mut first = None;

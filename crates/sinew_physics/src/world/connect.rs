@@ -17,11 +17,11 @@ impl LockedAxes {
     pub const TRANSLATION_Y: Self = Self(1 << 1);
     /// No motion along the world's z axis.
     pub const TRANSLATION_Z: Self = Self(1 << 2);
-    /// No turning about the world's x axis.
+    /// No rotation about the world's x axis.
     pub const ROTATION_X: Self = Self(1 << 3);
-    /// No turning about the world's y axis.
+    /// No rotation about the world's y axis.
     pub const ROTATION_Y: Self = Self(1 << 4);
-    /// No turning about the world's z axis.
+    /// No rotation about the world's z axis.
     pub const ROTATION_Z: Self = Self(1 << 5);
     /// No motion along any axis.
     pub const TRANSLATIONS: Self = Self(0b111);

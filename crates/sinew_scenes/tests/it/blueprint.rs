@@ -56,7 +56,7 @@ fn blueprints_have_their_described_sizes() {
 
 /// Returns the largest initial depth of a moving body in a fixed one or in a moving one at least `stride` indices away, metres.
 fn overlap(scene: &Blueprint, stride: usize) -> f32 {
-    /// Bodies whose centres are further apart do not touch, metres.
+    /// Distance of their centres above which two bodies do not touch, metres.
     const NEAR: f32 = 1.1;
     let (world, bodies, _) = scene.build();
     let far = |a: usize, b: usize| {

@@ -3,9 +3,10 @@
 use sinew::physics::World;
 use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, Settings, find, registry};
 
-/// Metrics outside their bars, by scene. A metric that is met must be removed, or its test fails.
+/// Metrics that miss their expectations, by scene. A metric that meets its expectation must be removed, otherwise its test
+/// fails.
 const NOT_YET: &[(&str, &[&str])] = &[
-    // 2.07 mm instead of 2; the line of thrust is nearer to the middle than when the scene met this bar.
+    // 2.07 mm instead of 2; the line of thrust is nearer to the middle than when the scene met this expectation.
     ("arch", &["shift_max_m"]),
     // A character that has just got up is lifted by half a metre if it stands on another; walks put feet into stairs
     // and toes into the floor; rest, roll and get-up take 4.3 s.
@@ -18,7 +19,7 @@ const NOT_YET: &[(&str, &[&str])] = &[
     ("skirt", &["deepest_in_wearer_m", "energy_gain_max"]),
 ];
 
-/// Scenes without gravity, and one whose bar is about walls alone (`fast_particle`).
+/// Scenes without gravity, and one with expectations about walls only (`fast_particle`).
 const BLIND_TO_GRAVITY: &[&str] = &[
     "fast_particle",
     "gimbal",
@@ -82,8 +83,7 @@ fn not_yet(name: &str) -> &'static [&'static str] {
     NOT_YET.iter().find(|(scene, _)| *scene == name).map_or(&[], |(_, figures)| figures)
 }
 
-/// Runs a scene with its defaults: exactly the metrics of [`NOT_YET`] miss their bars, and no warm step
-/// allocates.
+/// Runs a scene with its defaults: exactly the metrics of [`NOT_YET`] miss their expectations, and no warm step allocates.
 fn check(name: &str) {
     let mut run = after(scene(name), &scene(name).settings(), 1.0);
     let metrics = run.metrics();
@@ -301,7 +301,7 @@ fn pyramid_of_a_hundred_rows_stands() {
     assert_eq!(unmet(&metrics), UNMET, "{metrics:#?}");
 }
 
-/// 100 falls in random poses; the default run has a few of them.
+/// 100 falls in random poses; the default run simulates only a few of them.
 #[test]
 #[ignore = "minutes in a debug build: cargo test --release --package sinew_scenes -- --ignored"]
 fn falls_in_a_hundred_poses() {

@@ -71,7 +71,7 @@ fn the_subject_stays_in_the_picture() {
     }
 }
 
-/// The test above can fail: a camera that stands loses the subject.
+/// The test above can fail: a camera that does not move loses the subject.
 #[test]
 fn a_camera_that_stands_loses_it() {
     assert!(outermost(Sample::Mannequin, 1.5, false, false) > 0.6);

@@ -74,7 +74,7 @@ fn keys_change_a_limit_which_is_saved() {
     let [Some(y), ..] = after else { panic!("it swings") };
     assert!((y[0] - f32::min(lo + 20.0, 0.0)).abs() < 0.01 && (y[1] - f32::max(hi - 20.0, 0.0)).abs() < 0.01);
     assert_eq!(degrees(def(&viewer), "rightUpperArm"), degrees(&saved(&mut viewer), "rightUpperArm"));
-    // The new test starts again and falls by the new limits.
+    // The ragdoll is dropped again, with the new limits.
     assert_eq!(viewer.app().session().world().step_count(), 0);
     let world = viewer.app().session().world();
     let ragdoll = viewer.app().session().ragdoll();

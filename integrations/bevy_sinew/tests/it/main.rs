@@ -190,7 +190,7 @@ fn children_follow_their_bodies() {
         let body = physics(&app).transform(id).translation;
         assert!((body - global(&app, entity)).length() < 1e-4);
     }
-    // With another parent, and with none, the body keeps its place.
+    // With another parent, and with none, the body keeps its pose.
     for parent in [Some(root), None] {
         let before = global(&app, child);
         match parent {

@@ -21,7 +21,7 @@ use bevy_sinew::{
 use std::path::Path;
 use std::time::Duration;
 
-/// Largest distance of a joint's entity from its place on the body that carries it, metres: a tenth of a millimetre, for
+/// Largest distance of a joint's entity from its pose on the body that carries it, metres: a tenth of a millimetre, for
 /// rounding.
 const OFF: f32 = 1e-4;
 

@@ -74,7 +74,7 @@ fn points_match_the_nearest_of_six_faces() {
     }
 }
 
-/// For exact numbers the surface belongs to the box, and the next number does not.
+/// With exact coordinates a point on the surface is inside the box, and the next representable one is outside.
 #[test]
 fn the_surface_belongs_to_the_box() {
     let aabb = Aabb::new(Vec3::new(-1.0, 2.0, 4.0), Vec3::new(1.0, 4.0, 4.0));

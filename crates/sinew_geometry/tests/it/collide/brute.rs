@@ -253,7 +253,7 @@ fn is_exchanged(ka: Kind, kb: Kind, size: f32, ab: &Manifold, ba: &Manifold) -> 
     Ok(())
 }
 
-/// A pair that moves as one has the moved contact.
+/// Moving both shapes together moves the contact with them.
 #[test]
 fn contacts_turn_with_the_shapes() {
     let mut other = 0;

@@ -24,7 +24,7 @@ use sinew_math::{Transform, Vec3, max, max3, min3};
 /// Number of shapes up to which a body's shapes are inserted into a tree one by one.
 const FEW: usize = 64;
 
-/// A shape of a body: indices.
+/// A shape of a body, by indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Owner {
     pub body: u32,

@@ -100,7 +100,7 @@ impl Proxies {
         let bounds = self.wide_bounds(body, owner, leaf);
         let sensing = body.surface(owner.shape as usize).sensing;
         let mut meet = |other: Owner, its: Leaf| {
-            // A pair of pending movable shapes would be found twice.
+            // The search finds a pair of pending movable shapes from both shapes; the second time it is skipped.
             let is_found = leaf.moves() && its.moves() && its.at() < leaf.at() && self.is_asking(other, its);
             let its_body = bodies.at(other.body);
             let its_sensing = its_body.surface(other.shape as usize).sensing;
