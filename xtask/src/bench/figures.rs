@@ -63,7 +63,7 @@ pub const ASLEEP: Figure =
 /// Mean stretch of a cloth's edges.
 pub const CLOTH: Figure =
     Figure { heading: "mean stretch", unit: Unit::Share, of: |e| number(e, "stretch_mean") };
-/// Largest distance of a joint from its place in the clips, in model space.
+/// Largest distance of a joint from its position in the clips, in model space.
 pub const POSE: Figure =
     Figure { heading: "pose error", unit: Unit::Length, of: |e| number(e, "model_error_max_m") };
 /// Share of rays or pairs that hit.

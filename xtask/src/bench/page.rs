@@ -217,7 +217,7 @@ pub fn speeds(results: &Results) -> Table {
             Verdict::Goal => "reaches the goal".to_owned(),
             Verdict::Met => "met".to_owned(),
             Verdict::Missed => "**falls short**".to_owned(),
-            // If no peer's joints hold, there is no bar.
+            // If no peer's joints hold, there is no requirement.
             Verdict::Open(_) if matches!(speed.bar, Bar::Factor { .. }) => continue,
             Verdict::Open(why) => why,
             Verdict::NotRun => continue,

@@ -44,7 +44,7 @@ pub enum Measure {
     Peers(&'static str),
     /// A scene: the fastest peer's 99th percentile over Sinew's.
     PeersP99(&'static str),
-    /// Like `Peers`, but without peers whose joints came apart; if none is left, there is no bar.
+    /// Like `Peers`, but without peers whose joints came apart; if none is left, there is no requirement.
     PeersTogether(&'static str),
     /// Like `Peers`, but without peers whose metric exceeds a bound; if Sinew's exceeds it, the requirement is missed.
     PeersWithin(&'static str, &'static Figure, f64),

@@ -51,7 +51,7 @@ pub fn ragdoll_on_boxes(layers: usize) -> Blueprint {
     scene
 }
 
-/// 300 humanoids rain on 10 × 10 boxes, three on each; each column of boxes is hit later than the one before.
+/// 300 humanoids fall on 10 × 10 boxes, three on each; each column of boxes is hit later than the one before.
 ///
 /// Modelled on Box3D's `rain`, whose humanoids are created during the run and fall on triangle meshes. Here all start in the air.
 pub fn rain() -> Blueprint {

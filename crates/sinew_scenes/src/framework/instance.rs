@@ -162,7 +162,7 @@ impl Instance {
         self.script.steer(way);
     }
 
-    /// Place of the character that a user may control, metres, world space; `None` in scenes that have none.
+    /// Position of the character that a user may control, metres, world space; `None` in scenes without one.
     pub fn steered(&self) -> Option<Vec3> {
         self.script.steered()
     }

@@ -1,4 +1,4 @@
-//! Metrics of a run, and their bars.
+//! Metrics of a run, and their expectations.
 
 /// Expectation of a metric at the end of a scene's steps.
 #[derive(Clone, Copy, Debug, PartialEq)]

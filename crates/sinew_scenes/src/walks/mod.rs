@@ -14,7 +14,7 @@ use sinew::physics::{MoverDef, MoverId, World};
 /// Number of steps of a random walk, and of steps between turns.
 pub const STEPS: usize = 120;
 const TURNS: usize = 20;
-/// Number of steps in which a walker comes to rest before its surroundings are checked.
+/// Number of steps in which a walker comes to rest before the positions around it are checked.
 const SETTLES: usize = 60;
 /// Depth from which a capsule counts as inside a body, metres.
 pub const INSIDE: f32 = 0.005;
@@ -80,7 +80,7 @@ pub struct Tally {
     pub margin: f32,
     /// Number of walks, and of their steps.
     pub walks: usize,
-    /// Number of steps of all walks, without those to reachable places.
+    /// Number of steps of all walks, without those to reachable positions.
     pub steps: usize,
     /// Number of steps after which the capsule was inside a body by more than [`INSIDE`].
     pub inside: usize,
@@ -90,7 +90,7 @@ pub struct Tally {
     pub through: usize,
     /// Number of walks that ended on ground from which a flood searched for room.
     pub floods: usize,
-    /// Number of places found by all floods.
+    /// Number of positions found by all flood fills.
     pub places: usize,
     /// Number of floods whose last place was not reached.
     pub stuck: usize,
@@ -116,8 +116,8 @@ impl Default for Tally {
 }
 
 impl Tally {
-    /// Walks at random for two seconds from the walker's place, at up to `fast` m/s, with a new direction every third of a second; then
-    /// walks to the farthest place that a flood finds.
+    /// Walks at random for two seconds from the walker's position, at up to `fast` m/s, with a new direction every third of a second; then
+    /// walks to the farthest position that a flood fill finds.
     pub fn walk(
         &mut self,
         on: &Terrain,

@@ -118,7 +118,7 @@ fn walls_and_stairs() -> Vec<(Vec3, Vec3)> {
     boxes
 }
 
-/// Height of the stairs under a place of the initial grid, given from the room's corner.
+/// Height of the stairs under a position of the initial grid, which is relative to the room's corner.
 fn on_stairs(place: Vec3, apart: f32) -> Vec3 {
     let (steps, height, depth, half) = STAIRS;
     let (x, z) = (place.x - 0.9 * ROOM, place.z - 0.9 * ROOM);

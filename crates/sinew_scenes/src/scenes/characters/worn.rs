@@ -17,7 +17,7 @@ pub(super) struct Wear {
     pub torn: f32,
     /// Number of times that the wearer went limp.
     falls: u32,
-    /// Time at which the wearer was up again, seconds; 0 if it has not got up.
+    /// Time at which the wearer was up again, seconds; 0 before that.
     up: f32,
     /// Work of drives and of bodies that clips move, J.
     pub work_in: f32,

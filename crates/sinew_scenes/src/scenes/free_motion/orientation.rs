@@ -135,7 +135,7 @@ fn versor(_: &Setup<'_>) -> Instance {
     Instance::new(world, journey)
 }
 
-/// A body that moves from one place to another, and beyond, by equal rotations and equal factors.
+/// A body that moves from one position to another, and beyond, by equal rotations and equal factors.
 struct Journey {
     from: BodyId,
     to: BodyId,

@@ -26,12 +26,12 @@ pub(in crate::scenes) const ROPE_BRIDGE: Scene = Scene {
 };
 
 const PLANKS: usize = 8;
-/// Distance from the middle of one plank to that of the next, metres.
+/// Distance between the centres of neighbouring planks, metres.
 const SPACING: f32 = 0.6;
 /// Half extents of a plank, metres, and its mass, kg.
 const PLANK: Vec3 = Vec3::new(0.28, 0.03, 1.0);
 const PLANK_MASS: f32 = 15.0;
-/// Distance from a plank's middle to its hangers, metres.
+/// Position of a hanger relative to the plank's centre, metres.
 const TIED: Vec3 = Vec3::new(0.2, 0.0, 0.95);
 /// Heights of the deck, of the ropes' middles and of their ends, metres.
 const DECK: f32 = 2.0;

@@ -1,4 +1,4 @@
-//! Structures with jointed loads on them, hanging from them or leaning on them: they must stand as well as without
+//! Structures that carry jointed loads, on them, below them or leaning on them: they must stand as well as without
 //! loads.
 
 use crate::blueprint::{self, Blueprint, arch, loads};
@@ -95,7 +95,7 @@ struct Host {
 
 /// Radius of a rope over its host, as a share of half the host's width.
 const ROPE_RADIUS: f32 = 0.06;
-/// Half of the least width on which a man lies with his trunk, metres: narrower tops get a smaller ragdoll.
+/// Half of the smallest width on which a man's trunk fits, metres: narrower tops get a smaller ragdoll.
 const CHEST: f32 = 0.35;
 /// Mass of the plank, as a share of the lightest body's mass.
 const PLANK: f32 = 0.1;
@@ -321,8 +321,8 @@ struct Laden {
     asleep: Option<f32>,
 }
 
-/// Shift, sink and depth that are always allowed for a loaded structure, metres: twice a value near zero is no useful
-/// bar. An unloaded one may shift by 5 mm in its own scene.
+/// Shift, sink and depth that are always allowed for a loaded structure, metres, because twice a value near zero is too
+/// strict. An unloaded one may shift by 5 mm in its own scene.
 const ROOM: [f32; 3] = [0.005, 0.005, 0.001];
 
 impl Script for Laden {

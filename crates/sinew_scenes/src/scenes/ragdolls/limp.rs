@@ -146,7 +146,7 @@ const PUSH_STEP: u64 = 12;
 
 impl Limp {
     /// Spawns the mannequin in its bind pose, rotated about its soles and moving as one rigid piece, with its lowest
-    /// point at the height of `place`.
+    /// point at `place`.
     fn spawn(world: &mut World, turn: Rotation, place: Vec3, speed: Vec3) -> Self {
         Self::spawn_of(ragdoll_of_mannequin(), world, turn, place, speed)
     }

@@ -97,7 +97,7 @@ fn drop(setup: &Setup<'_>) -> Instance {
 #[derive(Clone, Copy, PartialEq)]
 enum Ground {
     Keep,
-    /// There is a floor already, and contacts with a second one in the same place would push twice.
+    /// The world already has a floor, and contacts with a second one at the same position would push twice.
     Remove,
 }
 

@@ -63,7 +63,7 @@ fn level(triangles: &[[Vec3; 3]]) -> BodyDef {
     fixed(body(Shape::Mesh(Arc::new(mesh)), Vec3::ZERO))
 }
 
-/// Balls of 100 g in layers, in a pattern whose period matches no side of the cabin.
+/// Balls of 100 g in layers, in a pattern whose period matches no edge of the cabin.
 fn rain(count: usize) -> GroupDef {
     const ACROSS: usize = 10;
     let ball = |i: usize| {

@@ -23,7 +23,7 @@ pub(in crate::scenes) const SHOWROOM: Scene = Scene {
     build,
 };
 
-/// Half the side of a floor, and the distance between the middles of neighbouring floors, metres.
+/// Half the side of a floor, and the distance between the centres of neighbouring floors, metres.
 const HALF_SIDE: f32 = 3.0;
 const NEXT_FLOOR: f32 = 6.5;
 /// Distance between neighbouring bodies on a floor, metres: some are on corners, some on edges, some inside of

@@ -75,7 +75,7 @@ impl Watched {
         Ok(())
     }
 
-    /// Largest displacement of a joint in the frame before the last, beyond those of the neighbouring frames, metres.
+    /// Largest displacement of a joint in the second to last frame beyond those of the neighbouring frames, metres.
     fn jump(&self, now: &[Vec3]) -> f32 {
         let [c, b, a] = &self.frames;
         if a.len() != now.len() || b.len() != now.len() || c.len() != now.len() {
@@ -271,7 +271,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Metrics so far; the expectations are the bars of a crowd fit for a game.
+    /// Metrics so far; the expectations are those of a crowd fit for a game.
     pub fn metrics(&self) -> Vec<Metric> {
         let count = |name: &str| {
             f64::from(self.counts[COUNTS.iter().position(|&other| other == name).expect("it is counted")])
