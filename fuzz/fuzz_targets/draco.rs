@@ -1,4 +1,4 @@
-//! A Draco stream in a glTF that says how much is in it: read, or refused with a place.
+//! A Draco stream in a glTF that says how much is in it: read, or refused with a location.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -2,7 +2,7 @@
 //!
 //! Birds are bodies: they bounce off each other and off the tower in their way. A custom object makes them a flock
 //! (Reynolds, "Flocks, Herds, and Schools", SIGGRAPH 1987): each bird avoids near birds, matches its neighbours'
-//! velocity, and stays with them. All birds are attracted to a place that changes from time to time, and none leaves
+//! velocity, and stays with them. All birds are attracted to a position that changes from time to time, and none leaves
 //! the aviary.
 
 use sinew::prelude::*;

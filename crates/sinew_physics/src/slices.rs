@@ -64,7 +64,7 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn at(&self, places: &Places, k: usize) -> &T {
         assert!(places.len <= self.len);
-        // SAFETY: all places are below their length, and the caller of `new` promised that nobody writes the item
+        // SAFETY: all indices are below their length, and the caller of `new` promised that nobody writes the item
         // meanwhile.
         unsafe { &*self.start.add(places.at[k] as usize) }
     }
@@ -76,7 +76,7 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn at_mut(&mut self, places: &Places, k: usize) -> &mut T {
         assert!(places.len <= self.len);
-        // SAFETY: all places are below their length, and the caller of `new` promised that nobody else reads or writes
+        // SAFETY: all indices are below their length, and the caller of `new` promised that nobody else reads or writes
         // the item meanwhile.
         unsafe { &mut *self.start.add(places.at[k] as usize) }
     }

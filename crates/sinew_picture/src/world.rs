@@ -15,7 +15,7 @@ use std::collections::{HashMap, HashSet};
 pub struct Frame<'a> {
     /// Middle of the frame, world space, metres.
     pub center: Vec3,
-    /// Radius of the frame around its middle, metres, above 0.
+    /// Radius of the frame around its centre, metres, above 0.
     pub radius: f32,
     /// Drawing mode of kinematic bodies.
     pub kinematic: Kinematic,

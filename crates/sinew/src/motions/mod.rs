@@ -210,7 +210,7 @@ fn hold_as_looped(rig: &Rig, motions: &mut MotionSet, first: usize) {
 
 /// Frames per second of the retargeted motions, at the mannequin's pace.
 const RATE: f64 = 30.0;
-/// Number of repetitions of a cycle, so that the middle one has both neighbours.
+/// Number of repetitions of a cycle, so that the middle repetition has both neighbours.
 const PLAYED: usize = 3;
 
 /// Returns the retargeting options: pace of `body` relative to `actor`, floor, and frame time.

@@ -55,7 +55,7 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     let lap = take.duration() as f32;
     let repeats = is_loop(&take, feet[0].length / analysis.unit_scale);
     if repeats {
-        // Two laps, so that a step at the seam is whole; the evaluated lap is in the middle.
+        // Two laps, so that a step at the seam is whole; the lap between the two seams is evaluated.
         take.poses.extend_from_within(take.joints..);
     }
     let root = analysis.character_from_file();

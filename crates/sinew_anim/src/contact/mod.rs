@@ -209,7 +209,7 @@ fn speed(take: &Take, points: &[Vec3], frame: usize) -> f32 {
 pub struct FootSlide {
     /// Mean speed over the ground, m/s: distance slid divided by standing time.
     pub mean: f32,
-    /// Largest distance of a foot from its landing place within one contact, metres.
+    /// Largest distance of a foot from its landing position within one contact, metres.
     pub farthest: f32,
     /// Total standing time of both feet, seconds.
     pub time: f32,

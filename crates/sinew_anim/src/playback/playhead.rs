@@ -184,7 +184,7 @@ impl Crossing {
     }
 }
 
-/// Recurring time of a clip: its place in each period, and the number of laps per period.
+/// Recurring time of a clip: its position in each period, and the number of laps per period.
 #[derive(Clone, Copy)]
 struct Recurring {
     at: Place,

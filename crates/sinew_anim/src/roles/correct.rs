@@ -39,7 +39,7 @@ pub enum CorrectionError {
     NotHuman {
         /// The role that was given.
         role: Role,
-        /// Missing human roles; empty if all are given but in impossible places.
+        /// Missing human roles; empty if all are given but at impossible positions.
         missing: Vec<Role>,
     },
     /// The joint moves no skin, which a creature part must do.

@@ -13,8 +13,8 @@ pub(crate) const CONTROL_SKIN: f32 = 5e-4;
 
 /// Least lead of both feet together, in body heights, that decides forward against the names of left and right.
 ///
-/// Half of a human's lead. Larger: swapped names reverse characters. Smaller: slightly leading toes reverse them. Shown by
-/// the tests of `hints`.
+/// Half of a human's lead. Larger: swapped names reverse characters. Smaller: slightly leading toes reverse them. Shown
+/// by the tests of `hints`.
 pub(crate) const FEET_AGAINST_NAMES: f32 = 0.04;
 
 /// Least lead of both feet together, in body heights, that decides forward if there is no other evidence.
@@ -31,8 +31,8 @@ pub(crate) const HANGING: f32 = 0.6;
 
 /// Least distance of both elbows together behind the arms, in body heights, to outweigh unclear feet.
 ///
-/// Larger: T-poses without feet have no front. Smaller: noise of straight arms decides the forward direction. Shown by the
-/// tests of `hints`.
+/// Larger: T-poses without feet have no front. Smaller: noise of straight arms decides the forward direction. Shown by
+/// the tests of `hints`.
 pub(crate) const ELBOWS_BEHIND: f32 = 0.03;
 
 /// Least correlation of the feet's height with their speed, 0 to 1, that decides the walking direction.
@@ -44,8 +44,8 @@ pub(crate) const STEP_CORRELATION: f32 = 0.25;
 
 /// Least number of limb pairs with consistent left and right names to trust them without a mirror.
 ///
-/// Larger: low-poly characters with few bones are rejected. Smaller: two names may agree by chance. Shown by the tests of
-/// `assembly`.
+/// Larger: low-poly characters with few bones are rejected. Smaller: two names may agree by chance. Shown by the tests
+/// of `assembly`.
 pub(crate) const LEAST_NAMED_PAIRS: usize = 3;
 
 /// Least cosine between a pair's right-to-left direction and the mean of all pairs.
@@ -55,7 +55,7 @@ pub(crate) const NAMED_ALIKE: f32 = 0.3;
 
 // roles/bind.rs
 
-/// Distance of two joints that counts as one place, as a share of the body's size.
+/// Distance of two joints that counts as one position, as a share of the body's size.
 ///
 /// Larger: fingertips coincide. Smaller: an exporter's helpers count as bones. Shown by the tests of `rigs`.
 pub(crate) const COINCIDENT: f32 = 1e-3;
@@ -179,7 +179,7 @@ pub(crate) const TWIN_AREA: f32 = 0.6;
 /// `roles`.
 pub(crate) const FORKED: f32 = 0.8;
 
-/// Largest spread of the fingers' starts, as a share of their distance from the parent, at which their place is the
+/// Largest spread of the fingers' starts, as a share of their distance from the parent, at which their position is the
 /// wrist.
 ///
 /// Larger: palms are lost. Smaller: fingers are attached to the forearm. Shown by the tests of `roles`.
@@ -300,8 +300,8 @@ pub(crate) const UNIT_BY_KIN: f32 = 2.0;
 
 /// Height of a human as a share of the free height under a door, 0 to 1.
 ///
-/// Doors of 2.05 m suit 1.75 m. Larger or smaller: characters sized by a door grow or shrink with it. Shown by the tests
-/// of `hints`.
+/// Doors of 2.05 m suit 1.75 m. Larger or smaller: characters sized by a door grow or shrink with it. Shown by the
+/// tests of `hints`.
 pub(crate) const UNDER_DOOR: f32 = 0.85;
 
 /// Speed of strides in square roots of gravity times leg length, between that of a walk (3.6 strides) and a run (2.3

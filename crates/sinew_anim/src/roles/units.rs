@@ -130,8 +130,8 @@ impl Sizes {
     /// Accepts a small human if neighbouring files use its unit, doors are low, or the head is large and the steps are
     /// fast.
     ///
-    /// A large head or the exporter's usual unit is not enough: characters with large heads are drawn at adult size, and
-    /// scaled rigs are common. A short stride time alone is not enough either, because an adult may be in a hurry.
+    /// A large head or the exporter's usual unit is not enough: characters with large heads are drawn at adult size,
+    /// and scaled rigs are common. A short stride time alone is not enough either, because an adult may be in a hurry.
     fn with_small(mut self, witnesses: &Witnesses, metres: f32) -> Self {
         let steps = |(leg, by_stride): (f32, f32)| {
             let leg = leg * metres;

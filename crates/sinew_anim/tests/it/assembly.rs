@@ -170,7 +170,7 @@ fn names_decide_where_the_pose_is_asymmetric() {
     is_whole(&rig, &[]);
 }
 
-/// Adds a second skeleton: one joint that moves a tetrahedron of the given size at a place.
+/// Adds a second skeleton: one joint that moves a tetrahedron of the given size at a position.
 fn add_skeleton(rig: &mut Rig, name: &str, place: Vec3, size: f32) -> usize {
     let joint = rig.joints.len();
     let rest = LocalTransform { translation: place, ..LocalTransform::default() };
@@ -517,7 +517,7 @@ fn quadruped_with_human_names_is_not_human() {
     assert!((found.up_axis - Vec3::Y).length() < 1e-6);
 }
 
-/// Adds a joint without skin at a place.
+/// Adds a joint without skin at a position.
 fn add_bare(rig: &mut Rig, name: &str, parent: Option<usize>, place: Vec3, under: Vec3) -> usize {
     let rest = LocalTransform { translation: place - under, ..LocalTransform::default() };
     rig.joints.push(Joint { name: name.into(), parent, rest, source: rig.joints.len() });
@@ -929,8 +929,8 @@ fn gun_with_many_vertices_does_not_change_the_bind_pose() {
     }
 }
 
-/// A character has one mesh per part, and a raised arm with one mesh of three bones: the trunk's mesh determines the bind
-/// pose.
+/// A character has one mesh per part, and a raised arm with one mesh of three bones: the trunk's mesh determines the
+/// bind pose.
 #[test]
 fn a_raised_arm_of_its_own_mesh_says_nothing_of_the_bind_pose() {
     let mut rig = toy::body(mixamo);

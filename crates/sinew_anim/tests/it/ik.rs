@@ -16,7 +16,7 @@ fn model(rig: &Rig, local: &[LocalTransform]) -> Vec<Affine> {
     out
 }
 
-/// Returns the middle and the end of a limb after the solution.
+/// Returns the positions of middle joint and end of a limb after the solution.
 fn bent(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -> [Vec3; 2] {
     let found = solve_two_bone(root, middle, end, goal);
     let knee = root + found.upper * (middle - root) * found.stretch;

@@ -1,4 +1,4 @@
-//! Malicious bytes: each gives an error with a place, without a panic and without large allocations.
+//! Malicious bytes: each gives an error with a location, without a panic and without large allocations.
 
 use crate::data::{GLTF, files, shared_data};
 use needs_data::needs_data;

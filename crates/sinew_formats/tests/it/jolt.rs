@@ -9,7 +9,7 @@ use sinew_physics::{BodyDef, JointKind, Shape, World, WorldDef};
 use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
 use sinew_ragdoll::{BodySettings, BodyState, DriveMode, Drives, Muscle, Pin, Ragdoll};
 
-/// Two parts: a ball, and a capsule half a metre above it; the joint is in the middle between them.
+/// Two parts: a ball, and a capsule half a metre above it; the joint is midway between them.
 const SMALL: &str = r#"TOS 1.00
 
 declare RagdollSettings 2

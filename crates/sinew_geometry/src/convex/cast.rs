@@ -28,7 +28,7 @@ const MOST_STEPS: usize = 64;
 /// finite. `a` may not be a half-space or mesh.
 ///
 /// Shapes that overlap or touch at the start hit at fraction 0: the normal is the shortest way of A out of B, and the
-/// point is at the middle of the overlap. This holds for every pair of shapes. A later hit is reported when the gap is
+/// point is midway in the overlap. This holds for every pair of shapes. A later hit is reported when the gap is
 /// below 1e-5 of the smaller shape; if the gap stops closing before, there is no hit.
 pub fn cast_shape(
     a: &Shape,

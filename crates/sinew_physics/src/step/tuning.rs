@@ -4,7 +4,8 @@
 //! NAME`) or test (`crates/sinew_physics/tests/it`) that shows it. Effects without a number are judgement, not
 //! measurement. Any change may move the golden hashes. Rounding tolerances are in the formulas they belong to.
 
-/// Factor on `distance / time` of the sleep thresholds: below that speed a body is at rest at any place, a ratio.
+/// Factor on `distance / time` of the sleep thresholds: below that speed a body counts as at rest wherever it is, a
+/// ratio.
 ///
 /// Limp limbs sag for seconds. Larger: a body that creeps down a slope falls asleep there. Smaller: heaps of ragdolls
 /// stay awake for seconds longer. Shown by `ragdoll_pile`, `ragdoll_poses`.
@@ -13,9 +14,9 @@ pub(super) const CREEP: f32 = 2.0;
 /// Velocity gain during about the rest time, above which a body is not at rest, as a multiple of the distance and angle
 /// thresholds divided by that time, a ratio.
 ///
-/// 4 mm/s in 0.5 s: the gain of a ball at its turning point on a slope of 0.07°, where it is slower than the creep limit
-/// for a second. Larger: the ball falls asleep there. Smaller: slowly settling limbs and bodies swinging on ropes stay
-/// awake longer. Shown by the tests of `sleep` and of `loads`.
+/// 4 mm/s in 0.5 s: the gain of a ball at its turning point on a slope of 0.07°, where it is slower than the creep
+/// limit for a second. Larger: the ball falls asleep there. Smaller: slowly settling limbs and bodies swinging on ropes
+/// stay awake longer. Shown by the tests of `sleep` and of `loads`.
 pub(super) const GAINED: f32 = 2.0 / 3.0;
 
 /// Displacement speed in a step above which a body without velocity counts as being pushed out of another, m/s.
@@ -37,8 +38,8 @@ pub(super) const HANGING_SPIN: f32 = 0.05;
 
 /// Overlap above which a yielding shape lets a body pass, metres.
 ///
-/// Larger: a body between a walking character and a wall is squeezed for longer. Smaller: a body that leans on a yielding
-/// shape passes through. Shown by the tests of `yields`.
+/// Larger: a body between a walking character and a wall is squeezed for longer. Smaller: a body that leans on a
+/// yielding shape passes through. Shown by the tests of `yields`.
 pub(super) const YIELDING_DEPTH: f32 = 0.01;
 
 /// Gap up to which two shapes that touched continue to touch, in slops.
@@ -99,8 +100,8 @@ pub(super) const POINT_SLOPE: f32 = 5.0;
 
 /// Distance by which a new point must be farther away to replace a point of the previous step, metres.
 ///
-/// Larger: contact points stay where there is no load. Smaller: contact points and their impulses jump between particles.
-/// Shown by `cape`.
+/// Larger: contact points stay where there is no load. Smaller: contact points and their impulses jump between
+/// particles. Shown by `cape`.
 pub(super) const KEPT_POINT: f32 = 0.005;
 
 /// Largest approach speed of a contact for bounces and hits, m/s.

@@ -17,7 +17,7 @@ const STEPS: usize = 3;
 /// Longest time for loading and stepping one snapshot.
 const LONG: Duration = Duration::from_secs(5);
 
-/// Returns a world in the middle of a life as bytes: its shapes and its state.
+/// Returns a world halfway through a life as bytes: its shapes and its state.
 fn saved(seed: u64) -> (Vec<u8>, Vec<u8>) {
     let mut last = (Vec::new(), Vec::new());
     at_each_step(seed, |world| {

@@ -40,7 +40,7 @@ fn is_sky(image: &Image, x: u32, y: u32) -> bool {
     image.pixel(x, y)[..3] == [255, 255, 255]
 }
 
-/// Returns the ray through the middle of a pixel at depth 1, by the definition of a pinhole camera.
+/// Returns the ray through the centre of a pixel at depth 1, by the definition of a pinhole camera.
 fn ray(x: u32, y: u32) -> Vec3 {
     let half = sinew::math::trig::tan(0.5 * CAMERA.fov_y);
     let across = (x as f32 + 0.5) / WIDTH as f32 * 2.0 - 1.0;

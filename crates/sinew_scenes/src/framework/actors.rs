@@ -127,7 +127,7 @@ impl Actor {
     }
 }
 
-/// Number of world steps that the animation has followed. After a world was restored in the middle, the animation catches up from its
+/// Number of world steps that the animation has followed. After a world was restored during a run, the animation catches up from its
 /// start.
 #[derive(Default)]
 pub(crate) struct Gone(u64);

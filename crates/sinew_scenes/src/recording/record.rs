@@ -116,7 +116,7 @@ pub struct Replay {
     recording: Recording,
 }
 
-/// Saved state in the middle of a replay, to which the replay can return.
+/// Saved state within a replay, to which the replay can return.
 #[derive(Clone, Debug)]
 pub struct Mark {
     step: u64,

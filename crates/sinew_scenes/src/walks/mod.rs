@@ -1,5 +1,5 @@
 //! Random walks of a capsule over uneven ground, for Sinew's mover and others: the ground, the wanted velocities, and a flood fill that
-//! finds the reachable places.
+//! finds the reachable positions.
 
 mod room;
 mod terrain;
@@ -45,7 +45,7 @@ pub struct Ours {
 }
 
 impl Ours {
-    /// A mover with its feet at a place.
+    /// A mover with its feet at a position.
     pub fn new(mut world: World, feet: Vec3) -> Self {
         let id = world.add_mover(&MoverDef { position: feet, ..capsule() });
         Self { world, id }
@@ -92,7 +92,7 @@ pub struct Tally {
     pub floods: usize,
     /// Number of positions found by all flood fills.
     pub places: usize,
-    /// Number of floods whose last place was not reached.
+    /// Number of flood fills whose last position was not reached.
     pub stuck: usize,
     /// Description of each fault, with its seed.
     pub wrong: Vec<String>,
@@ -168,7 +168,7 @@ impl Tally {
         if worst > INSIDE { Err(format!("{worst} m inside at {place}")) } else { Ok(()) }
     }
 
-    /// Lets a walker stand still, and sends it to the farthest reachable place; returns where it is stuck. A walker
+    /// Lets a walker stand still, and sends it to the farthest reachable position; returns where it is stuck. A walker
     /// that slides off an edge on the way searches again from there.
     fn explore(&mut self, on: &Terrain, walker: &mut dyn Walker) -> Result<(), String> {
         const TRIES: usize = 3;

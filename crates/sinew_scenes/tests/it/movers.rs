@@ -65,7 +65,7 @@ fn depth(world: &World, id: MoverId) -> f32 {
 }
 
 /// Runs `SHARE` walks for each seed on the ground of that seed, never inside of or through a body. From the end of each
-/// walk the mover reaches the farthest place that a flood fill finds, `places` or more on average.
+/// walk the mover reaches the farthest position that a flood fill finds, `places` or more on average.
 fn wander(name: &str, all: usize, places: usize, ground: impl Fn(u64) -> Terrain) {
     let mut tally = Tally::default();
     for seed in seeds(all) {

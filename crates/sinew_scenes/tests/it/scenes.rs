@@ -6,14 +6,14 @@ use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, Settings, find, re
 /// Metrics that miss their expectations, by scene. A metric that meets its expectation must be removed, otherwise its test
 /// fails.
 const NOT_YET: &[(&str, &[&str])] = &[
-    // 2.07 mm instead of 2; the line of thrust is nearer to the middle than when the scene met this expectation.
+    // 2.07 mm instead of 2; the line of thrust is nearer to the centre than when the scene met this expectation.
     ("arch", &["shift_max_m"]),
     // A character that has just got up is lifted by half a metre if it stands on another; walks put feet into stairs
     // and toes into the floor; rest, roll and get-up take 4.3 s.
     ("brawl", &["animated_ms", "depth_m", "up_after_s"]),
     // Heaps are chaotic: from starts that differ by 1 mm the sticks sleep after 212 to 226 steps.
     ("mesh_drop", &["asleep_steps"]),
-    // A get-up clip puts a foot on the cape for a frame with 2 mm of free space, so its middle is 17 mm inside. The
+    // A get-up clip puts a foot on the cape for a frame with 2 mm of free space, so its centre is 17 mm inside. The
     // shin stretches the skirt to three times its length, whose energy its rows overestimate (ADR 0027): limbs do 2.3 J
     // of work in a step in which the skirt gains 3.3 J.
     ("skirt", &["deepest_in_wearer_m", "energy_gain_max"]),

@@ -113,7 +113,7 @@ pub(super) fn push_subject(app: &mut App) {
     push(app, subject(app));
 }
 
-/// Returns the position of the subject in the window, points; the middle of the picture if the subject is out of sight.
+/// Returns the position of the subject in the window, points; the centre of the picture if the subject is out of sight.
 fn subject(app: &App) -> Pos2 {
     let place = app.subject_place().map(|[x, y]| app.area.lerp_inside(egui::vec2(x, y)));
     place.filter(|at| app.area.contains(*at)).unwrap_or(app.area.center())

@@ -31,7 +31,7 @@ pub(super) fn apply(ctx: &egui::Context) {
             style.text_styles.insert(text, FontId::proportional(size));
         }
         style.text_styles.insert(TextStyle::Monospace, FontId::monospace(12.5));
-        // A panel that fades in delays reading, and a picture might be taken in the middle of the fade.
+        // A panel that fades in delays reading, and a picture might be taken during the fade.
         style.animation_time = 0.0;
         style.spacing.item_spacing = egui::vec2(8.0, 5.0);
         style.spacing.button_padding = egui::vec2(8.0, 3.0);

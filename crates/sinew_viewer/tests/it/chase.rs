@@ -11,7 +11,7 @@ const ASPECTS: [f32; 4] = [0.8, 1.1, 1.5, 2.6];
 const STEPS: u32 = 60 * 25;
 /// Frames a second of a slow machine: two steps a frame.
 const FRAME: f32 = 1.0 / 30.0;
-/// Least distance of the subject's middle from the edges, as a share of the picture.
+/// Least distance of the subject's centre from the edges, as a share of the picture.
 const EDGE: f32 = 0.12;
 
 /// Returns the position of a point in the picture, 0 to 1 from the upper left corner.
@@ -26,7 +26,7 @@ fn place(orbit: &Orbit, point: Vec3, aspect: f32) -> [f32; 2] {
     ]
 }
 
-/// Returns the largest distance of the subject from the middle of a picture, as a share of the picture, with a camera that
+/// Returns the largest distance of the subject from the centre of a picture, as a share of the picture, with a camera that
 /// follows or stands.
 fn outermost(sample: Sample, aspect: f32, follows: bool, pushes: bool) -> f32 {
     let mut stage = staged(sample.character());

@@ -164,7 +164,7 @@ fn colliders_below_a_body_are_part_of_it() {
     run(&mut app, 120);
     let id = body(&app, table);
     assert_eq!(physics(&app).shape_ids(id).count(), 5);
-    // Two legs of 0.7 m under the middle of the plate, which is 0.75 m above the ground.
+    // Two legs of 0.7 m under the centre of the plate, which is 0.75 m above the ground.
     assert!((at(&app, table).y - 0.75).abs() < 0.01, "{}", at(&app, table));
     let (mass, leg_mass) = (physics(&app).mass(id).mass, 1000.0 * 0.1 * 0.7 * 0.1);
     assert!((mass - (1000.0 * 1.0 * 0.1 * 1.0 + 4.0 * leg_mass)).abs() < 0.1, "{mass}");

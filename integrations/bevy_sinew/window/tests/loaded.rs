@@ -107,7 +107,7 @@ impl Hero {
         self.app.world().resource::<Physics>().transform(self.handle().bodies()[0]).translation.y
     }
 
-    /// Returns the joints of the skinned mesh that bodies carry: name, pose as Bevy draws it, and place on the body.
+    /// Returns the joints of the skinned mesh that bodies carry: name, pose as Bevy draws it, and pose on the body.
     fn joints_and_bodies(&mut self) -> Vec<(String, Pose, Pose)> {
         let world = self.app.world_mut();
         let mut skins = world.query::<&SkinnedMesh>();

@@ -126,7 +126,7 @@ impl MeshPart {
     }
 }
 
-/// Makes a sheet of a part of a rig. Vertices in one place are merged; a finer mesh is reduced to particles no farther
+/// Makes a sheet of a part of a rig. Coinciding vertices are merged; a finer mesh is reduced to particles no farther
 /// apart than the spacing, borders first; longer edges are split. The rig gets a joint per particle, and each vertex
 /// is weighted to its own particle, or to the three of its triangle. While the new joints are not moved, the mesh
 /// follows the old ones.

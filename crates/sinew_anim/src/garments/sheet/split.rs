@@ -75,7 +75,7 @@ impl Welded {
         long.into_iter().map(|(edge, _)| edge).collect()
     }
 
-    /// Adds a vertex in the middle of an edge, in the component of its first end.
+    /// Adds a vertex at the midpoint of an edge, in the component of its first end.
     fn halve(&mut self, [a, b]: Edge) -> usize {
         self.places.push((self.places[a] + self.places[b]) * 0.5);
         self.at.push((self.at[a] + self.at[b]) * 0.5);

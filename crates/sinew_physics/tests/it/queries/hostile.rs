@@ -123,7 +123,7 @@ fn extreme_shape(random: &mut Random) -> Shape {
     }
 }
 
-/// Returns a world with many bodies at one place, tiny beside huge, possibly far from the origin.
+/// Returns a world with many bodies at one position, tiny beside huge, possibly far from the origin.
 fn extreme_world(random: &mut Random) -> World {
     let mut world = World::new(WorldDef::default());
     let far = [0.0f32, 1.0, 1e3, 1e6][random.index(4)];

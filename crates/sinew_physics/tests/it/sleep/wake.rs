@@ -14,7 +14,7 @@ fn wakes(what: &str, act: impl FnOnce(&mut Nap)) {
     assert!(nap.world.is_awake(nap.sleeper), "{what} wakes");
 }
 
-/// Checks that after `act` a crate that sleeps on a floor still sleeps at the same place.
+/// Checks that after `act` a crate that sleeps on a floor still sleeps at the same position.
 fn leaves_asleep(what: &str, act: impl FnOnce(&mut Nap)) {
     let mut nap = nap();
     let at = nap.world.transform(nap.sleeper);

@@ -42,7 +42,7 @@ pub(in crate::scenes) const UNEVEN_GROUND: Scene = Scene {
 const CAPSULE: [f32; 2] = [0.57, 0.3];
 /// Height of the mannequin, metres.
 const HEIGHT: f32 = 1.75;
-/// Vector from the soles to the middle of the capsule.
+/// Vector from the soles to the centre of the capsule.
 const MIDDLE: Vec3 = Vec3::new(0.0, CAPSULE[0] + CAPSULE[1], 0.0);
 
 fn root_walk(setup: &Setup<'_>) -> Instance {

@@ -201,7 +201,7 @@ fn bullet(setup: &Setup<'_>) -> Instance {
 }
 
 struct Shot {
-    /// The blocks: hit in the middle, hit off-centre, and hanging.
+    /// The blocks: hit at the centre, hit off-centre, and hanging.
     blocks: [BodyId; 3],
     mass: f32,
     speed: f32,
@@ -217,7 +217,7 @@ impl Script for Shot {
             let velocity = Vec3::X * self.speed;
             for (block, aside) in [(middle, 0.0), (beside, ASIDE), (hung, 0.0)] {
                 let Transform { translation, .. } = world.transform(block);
-                // The bullet stops in the middle of the block.
+                // The bullet stops at the centre of the block.
                 let point = translation + Vec3::Y * aside;
                 world.apply_bullet_impact(block, self.mass, velocity, point);
             }

@@ -145,7 +145,7 @@ struct Journey {
 }
 
 impl Journey {
-    /// Quaternion that maps the first place to the second.
+    /// Quaternion that maps the first position to the second.
     fn quotient(&self, world: &World) -> Quaternion {
         let at = |id| world.center_of_mass(id);
         Quaternion::quotient(at(self.to), at(self.from)).expect("no place is the origin")

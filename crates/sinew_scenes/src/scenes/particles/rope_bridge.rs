@@ -33,7 +33,7 @@ const PLANK: Vec3 = Vec3::new(0.28, 0.03, 1.0);
 const PLANK_MASS: f32 = 15.0;
 /// Position of a hanger relative to the plank's centre, metres.
 const TIED: Vec3 = Vec3::new(0.2, 0.0, 0.95);
-/// Heights of the deck, of the ropes' middles and of their ends, metres.
+/// Heights of the deck, and of the ropes at mid-span and at their ends, metres.
 const DECK: f32 = 2.0;
 const LOW: f32 = 2.6;
 const HIGH: f32 = 3.6;

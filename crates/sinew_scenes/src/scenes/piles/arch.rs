@@ -101,7 +101,7 @@ impl Pier {
         Self { weight: world.mass(pier).mass * GRAVITY, held }
     }
 
-    /// Reaction of the pier on the arch, about the middle of their joint.
+    /// Reaction of the pier on the arch, about the centre of their joint.
     fn load(self, world: &World) -> Reaction {
         // The pier's own weight acts right below that point.
         let Reaction { force, torque } = world.reaction(self.held);
