@@ -13,8 +13,8 @@ pub(crate) const CONTROL_SKIN: f32 = 5e-4;
 
 /// Least lead of both feet together, in body heights, that decides forward against the names of left and right.
 ///
-/// Half of a human's lead. Larger: swapped names reverse characters. Smaller: slightly leading toes reverse them. Shown
-/// by the tests of `hints`.
+/// Half of a human's lead. Larger: swapped names reverse characters. Smaller: slightly leading toes reverse them.
+/// Shown by the tests of `hints`.
 pub(crate) const FEET_AGAINST_NAMES: f32 = 0.04;
 
 /// Least lead of both feet together, in body heights, that decides forward if there is no other evidence.
