@@ -6,8 +6,8 @@ use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
 use sinew_math::lanes::WIDTH;
 
-/// Largest number of items that a thread claims at once. Two threads that claim single items spend more time on the counter
-/// than on light items.
+/// Largest number of items that a thread claims at once. Two threads that claim single items spend more time on the
+/// counter than on light items.
 const MOST_CLAIMED: usize = 32;
 /// Smallest number of claims for a short list, so that no thread waits long for the last claim of another.
 const CLAIMS: usize = 16;
@@ -164,8 +164,8 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
         if taken.load(Ordering::Relaxed).count_ones() as usize == count {
             return;
         }
-        // Threads start far from each other: the second at the middle, the next two at the quarters. The caller starts first,
-        // because the other threads are delayed.
+        // Threads start far from each other: the second at the middle, the next two at the quarters. The caller starts
+        // first, because the other threads are delayed.
         let number = entered.fetch_add(1, Ordering::Relaxed);
         let share = (u64::from(number.reverse_bits()) * count as u64) >> u32::BITS;
         let start = share as usize;

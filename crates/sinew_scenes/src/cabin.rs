@@ -88,8 +88,8 @@ impl Site {
         props
     }
 
-    /// Start of the character: with a cabin, inside behind the door, facing the stairs; otherwise at the same position on the
-    /// ground.
+    /// Start of the character: with a cabin, inside behind the door, facing the stairs; otherwise at the same position
+    /// on the ground.
     pub fn spawn(self) -> Spawn {
         let start = FRONT - 0.4;
         let height = if self == Self::CabinWithStairs { PORCH_HEIGHT } else { 0.0 };

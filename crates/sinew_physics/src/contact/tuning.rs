@@ -56,8 +56,8 @@ pub(crate) const BOUNDS_STEPS_ALONE: f32 = 12.0;
 
 /// Factor on the margin above which oversized fat bounds are shrunk, a ratio.
 ///
-/// Larger: bodies at rest keep the long bounds of their flight, with many candidate pairs. Smaller: the bounds of slowing
-/// bodies are rebuilt repeatedly. Shown as [`BOUNDS_STEPS`].
+/// Larger: bodies at rest keep the long bounds of their flight, with many candidate pairs. Smaller: the bounds of
+/// slowing bodies are rebuilt repeatedly. Shown as [`BOUNDS_STEPS`].
 pub(crate) const BOUNDS_EXCESS: f32 = 3.0;
 
 /// Error by which a computed gap may be too large, metres.

@@ -17,8 +17,9 @@ pub(super) const LIST_ROOM: f32 = 0.01;
 
 /// Displacement speed in a step below which a particle may sleep, m/s.
 ///
-/// A particle swings about its rest position, and must settle first. Larger: cloth stops in mid-swing, with springs short
-/// of the stretch that their load requires. Smaller: vibrating nets keep a world awake. Shown by the tests of `sleep`.
+/// A particle swings about its rest position, and must settle first. Larger: cloth stops in mid-swing, with springs
+/// short of the stretch that their load requires. Smaller: vibrating nets keep a world awake. Shown by the tests of
+/// `sleep`.
 pub(super) const RESTING_SPEED: f32 = 0.001;
 
 /// Margin around a sleeping group within which the user's changes to bodies wake it, metres.
@@ -111,8 +112,8 @@ pub(super) const LEAST_ADDED: f32 = 1e-3;
 
 /// Largest ratio of the mass added to a body to its own mass.
 ///
-/// Larger: a body on taut ropes that also stands on the ground is solved as if immovable, with errors when it lifts off.
-/// Smaller: light planks hang lower under a load heavier by that ratio. Shown by the tests of `held`.
+/// Larger: a body on taut ropes that also stands on the ground is solved as if immovable, with errors when it lifts
+/// off. Smaller: light planks hang lower under a load heavier by that ratio. Shown by the tests of `held`.
 pub(super) const MOST_ADDED: f32 = 1e3;
 
 /// Cosine between the normals of a firmer and a less firm surface below which a particle on the firmer one cannot yield

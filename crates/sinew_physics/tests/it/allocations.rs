@@ -25,8 +25,8 @@ const CYCLES: usize = 6;
 /// Steps until bodies on joints and springs are almost at rest.
 const SETTLE: usize = 400;
 
-/// Returns a world with all that a step can contain (loose boxes, a ragdoll, a chain, a ring of joints and a rope with a
-/// weight), and the boxes with their first poses.
+/// Returns a world with all that a step can contain (loose boxes, a ragdoll, a chain, a ring of joints and a rope with
+/// a weight), and the boxes with their first poses.
 fn crowded() -> (World, Vec<(BodyId, Transform)>) {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     floor(&mut world);

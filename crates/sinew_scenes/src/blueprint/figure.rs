@@ -53,7 +53,8 @@ pub fn ragdoll_on_boxes(layers: usize) -> Blueprint {
 
 /// 300 humanoids fall on 10 × 10 boxes, three on each; each column of boxes is hit later than the one before.
 ///
-/// Modelled on Box3D's `rain`, whose humanoids are created during the run and fall on triangle meshes. Here all start in the air.
+/// Modelled on Box3D's `rain`, whose humanoids are created during the run and fall on triangle meshes. Here all start
+/// in the air.
 pub fn rain() -> Blueprint {
     const CELLS: usize = 10;
     /// Width of the cell of three humanoids, metres.
@@ -111,8 +112,8 @@ fn across() -> Rotation {
     tilt(90.0)
 }
 
-/// Adds a standing humanoid with its arms stretched out sideways: 15 bodies and 14 joints. Its soles are at `base`; without `yaw` (radians
-/// about y) it faces +z, with its left toward +x.
+/// Adds a standing humanoid with its arms stretched out sideways: 15 bodies and 14 joints. Its soles are at `base`;
+/// without `yaw` (radians about y) it faces +z, with its left toward +x.
 fn figure(scene: &mut Blueprint, base: Vec3, yaw: f32) {
     figure_at(scene, Transform::new(base, Rotation::from_axis_angle(Vec3::Y, yaw)), 1.0);
 }

@@ -19,8 +19,8 @@ const PIT: f32 = 3.6;
 /// Spacing of humanoids in a heap, metres, limited by the reach of their arms.
 const APART: f32 = 1.8;
 
-/// The mannequin's ragdoll with plain capsules. In its bind pose all joints are at zero, as blueprints require. A hinge whose range
-/// excludes zero starts at the nearer end of its range.
+/// The mannequin's ragdoll with plain capsules. In its bind pose all joints are at zero, as blueprints require. A hinge
+/// whose range excludes zero starts at the nearer end of its range.
 pub fn humanoid() -> RagdollDef {
     let rig = mannequin().rig;
     let analysis = analyze(&rig).expect("the mannequin has a skin");

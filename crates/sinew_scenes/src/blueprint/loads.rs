@@ -7,8 +7,8 @@ use core::f32::consts::FRAC_PI_2;
 use sinew::math::{Rotation, Transform, Vec3, trig};
 use sinew::physics::{BodyDef, JointKind, Shape};
 
-/// Adds two boxes end to end on a horizontal surface at `place`, with the total length `2 half`, the total mass `mass`, and a ball joint
-/// between them.
+/// Adds two boxes end to end on a horizontal surface at `place`, with the total length `2 half`, the total mass `mass`,
+/// and a ball joint between them.
 pub(crate) fn pair(scene: &mut Blueprint, place: Transform, half: f32, mass: f32) {
     let side = half * Vec3::new(0.45, 0.15, 0.3);
     let [a, b] = [-1.0, 1.0].map(|way| {

@@ -127,8 +127,8 @@ impl Actor {
     }
 }
 
-/// Number of world steps that the animation has followed. After a world was restored during a run, the animation catches up from its
-/// start.
+/// Number of world steps that the animation has followed. After a world was restored during a run, the animation
+/// catches up from its start.
 #[derive(Default)]
 pub(crate) struct Gone(u64);
 

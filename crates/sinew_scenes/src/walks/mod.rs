@@ -116,8 +116,8 @@ impl Default for Tally {
 }
 
 impl Tally {
-    /// Walks at random for two seconds from the walker's position, at up to `fast` m/s, with a new direction every third of a second; then
-    /// walks to the farthest position that a flood fill finds.
+    /// Walks at random for two seconds from the walker's position, at up to `fast` m/s, with a new direction every
+    /// third of a second; then walks to the farthest position that a flood fill finds.
     pub fn walk(
         &mut self,
         on: &Terrain,

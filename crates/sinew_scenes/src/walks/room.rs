@@ -1,4 +1,5 @@
-//! Reachable positions of a walker: a flood fill over moves within the step height and slope limit, and walks along its paths.
+//! Reachable positions of a walker: a flood fill over moves within the step height and slope limit, and walks along its
+//! paths.
 
 use super::{Terrain, Walker, capsule};
 use sinew::math::{Transform, Vec3, min, trig};

@@ -3,8 +3,8 @@
 use sinew::physics::World;
 use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, Settings, find, registry};
 
-/// Metrics that miss their expectations, by scene. A metric that meets its expectation must be removed, otherwise its test
-/// fails.
+/// Metrics that miss their expectations, by scene. A metric that meets its expectation must be removed, otherwise its
+/// test fails.
 const NOT_YET: &[(&str, &[&str])] = &[
     // 2.07 mm instead of 2; the line of thrust is nearer to the centre than when the scene met this expectation.
     ("arch", &["shift_max_m"]),
@@ -83,7 +83,8 @@ fn not_yet(name: &str) -> &'static [&'static str] {
     NOT_YET.iter().find(|(scene, _)| *scene == name).map_or(&[], |(_, figures)| figures)
 }
 
-/// Runs a scene with its defaults: exactly the metrics of [`NOT_YET`] miss their expectations, and no warm step allocates.
+/// Runs a scene with its defaults: exactly the metrics of [`NOT_YET`] miss their expectations, and no warm step
+/// allocates.
 fn check(name: &str) {
     let mut run = after(scene(name), &scene(name).settings(), 1.0);
     let metrics = run.metrics();

@@ -26,8 +26,8 @@ fn place(orbit: &Orbit, point: Vec3, aspect: f32) -> [f32; 2] {
     ]
 }
 
-/// Returns the largest distance of the subject from the centre of a picture, as a share of the picture, with a camera that
-/// follows or stands.
+/// Returns the largest distance of the subject from the centre of a picture, as a share of the picture, with a camera
+/// that follows or stands.
 fn outermost(sample: Sample, aspect: f32, follows: bool, pushes: bool) -> f32 {
     let mut stage = staged(sample.character());
     let first = bounds(&stage);

@@ -1,5 +1,5 @@
-//! A brawl in a room: characters walk at random among crates and stairs and are hit; fallen ones get up. The metrics measure how well all
-//! character features work together.
+//! A brawl in a room: characters walk at random among crates and stairs and are hit; fallen ones get up. The metrics
+//! measure how well all character features work together.
 
 mod watch;
 

@@ -183,8 +183,8 @@ impl Script for Hair {
         CameraHint { direction: Vec3::new(-0.1, 0.12, -1.0), ..CameraHint::default() }
     }
 
-    /// The finest curve is solid; each coarser curve is drawn over it with shorter dashes, so that coinciding curves stay
-    /// visible.
+    /// The finest curve is solid; each coarser curve is drawn over it with shorter dashes, so that coinciding curves
+    /// stay visible.
     fn curves(&self) -> Vec<Curve> {
         let place =
             |&(time, side): &(f32, f32)| GRAPH + Vec3::new(time * GRAPH_SECOND, side * GRAPH_METRE, 0.0);
