@@ -13,7 +13,7 @@ use std::collections::{HashMap, HashSet};
 /// Part of a world shown in a picture: thin and small things are drawn thick enough to be visible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<'a> {
-    /// Middle of the frame, world space, metres.
+    /// Centre of the frame, world space, metres.
     pub center: Vec3,
     /// Radius of the frame around its centre, metres, above 0.
     pub radius: f32,

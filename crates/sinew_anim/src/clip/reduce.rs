@@ -351,7 +351,7 @@ fn with_keys(channel: &Channel, kept: &[usize]) -> Channel {
 }
 
 impl Channel {
-    /// Value of a key of a channel that is no spline.
+    /// Value of a key of a channel that is not a spline.
     fn value(&self, key: usize) -> [f32; 4] {
         let width = self.property.width();
         let mut value = [0.0; 4];

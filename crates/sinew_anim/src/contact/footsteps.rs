@@ -23,7 +23,7 @@ pub struct Footsteps {
 /// Reason why a clip has no footsteps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoFootsteps {
-    /// The character is no humanoid.
+    /// The character is not a humanoid.
     #[error("footsteps are found on the two legs of a human, and this is none")]
     NotHumanoid,
     /// A leg has no joint for the hip, the knee or the ankle.

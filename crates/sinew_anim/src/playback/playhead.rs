@@ -219,7 +219,7 @@ impl Passage {
     fn recurring(&self, time: f64) -> [Option<Recurring>; 2] {
         let length = self.playhead.length;
         let forth = |period| Recurring { at: Place { lap: 0, time }, period };
-        // The end of a lap is the start of the next one.
+        // The end of a lap is the start of the next lap.
         let end = |period| Recurring { at: Place { lap: 1, time: 0.0 }, period };
         match self.playhead.mode {
             LoopMode::Once => [Some(forth(0)), None],

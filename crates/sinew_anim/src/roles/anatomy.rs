@@ -722,7 +722,7 @@ fn leg_roles(legs: &Limb, k: usize, side: Side) -> Vec<(usize, Role)> {
 /// Returns the evidence for a role found by shape: whether the name agrees, contradicts, or gives no part.
 fn basis(role: Role, reading: &Reading) -> Basis {
     let Some(part) = reading.part else { return Basis::Shape };
-    // Rigify and CesiumMan count the pelvis among the spine.
+    // Rigify and CesiumMan name the pelvis as a part of the spine.
     if role == Role::Hips && part == Part::Spine {
         return Basis::Shape;
     }

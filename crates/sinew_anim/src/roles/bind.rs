@@ -334,7 +334,7 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     if votes(&rest[mesh.joint]) > 0 {
         return rest[mesh.joint];
     }
-    // Takes the first of a line of joints that carry equally many.
+    // Of joints that carry equally many, take the first.
     let carries = |slot: usize| {
         let joint = skin.joints[slot];
         (carried[joint], core::cmp::Reverse(ancestors(rig, joint).count()))

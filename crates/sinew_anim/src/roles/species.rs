@@ -41,7 +41,7 @@ const MACHINES: &str = "bot robot mech mecha drone toy plush statue";
 pub(super) enum Species {
     /// A human.
     Human,
-    /// An animal, and the length of a grown one, metres.
+    /// An animal, and the length of an adult animal, metres.
     Animal(&'static str, f32),
 }
 

@@ -57,7 +57,7 @@ impl Symmetry {
             if parents[0] == parents[1] {
                 away
             } else if is_chain {
-                // An unbranched chain continues like its twin, with any bend.
+                // An unbranched chain continues like its counterpart, with any bend.
                 min(min(away, of_bone), lengths(nodes, parents))
             } else {
                 min(away, of_bone)

@@ -146,7 +146,7 @@ impl Sizes {
     }
 }
 
-/// Range of sizes of an animal, as shares of a grown animal's.
+/// Range of sizes of an animal, as shares of an adult's.
 const GROWN: core::ops::Range<f32> = 0.6..1.5;
 
 /// Evidence for a unit in addition to the body's size, and its wording.

@@ -377,7 +377,7 @@ impl Lattice {
     }
 }
 
-/// Rows of a picture, and their layout in memory.
+/// Rows of a picture with their layout in memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Area {
     /// Width in pixels.

@@ -59,7 +59,7 @@ impl Welded {
     /// Returns the edges that are too long, the longest first.
     fn long_edges(&self, spacing: f32, hangs: impl Fn(usize) -> bool) -> Vec<Edge> {
         let mut long: BTreeMap<Edge, f32> = BTreeMap::new();
-        // Parts without area are no cloth.
+        // Parts without area do not become cloth.
         for &[a, b, c] in self.faces.iter().filter(|face| hangs(face[0]) && self.area(face) > 0.0) {
             for [from, to, tip] in [[a, b, c], [b, c, a], [c, a, b]] {
                 let length = self.length(edge(from, to));

@@ -47,7 +47,7 @@ const SPEEDS: (f32, f32) = (0.7, 1.4);
 const KEEPS: (f32, f32) = (1.0, 4.0);
 /// Time after which a fallen character gets up although it still moves, seconds: in a crowd other characters push it.
 const PATIENCE: f32 = 2.0;
-/// Impulses of blows, N·s.
+/// Impulses of hits, N·s.
 const BLOWS: (f32, f32) = (5.0, 90.0);
 /// Stairs: number of steps, their height and depth, half their width, metres.
 const STAIRS: (usize, f32, f32, f32) = (4, 0.18, 0.32, 1.0);

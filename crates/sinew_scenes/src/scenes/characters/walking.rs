@@ -119,7 +119,7 @@ impl RootWalk {
         share_of_lap(&self.actor, &self.cycle)
     }
 
-    /// Poses the unchanged clip, lap after lap.
+    /// Computes the poses of the unchanged clip, lap by lap.
     fn play_alone(&mut self) {
         let Cycle { clip, path, speed, .. } = &self.cycle;
         let rig = &self.actor.cast.rig;
