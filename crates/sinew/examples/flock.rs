@@ -15,7 +15,7 @@ const MASS: f32 = 0.05;
 const SPEED: f32 = 5.0;
 /// Largest acceleration of a wing, m/s².
 const AGILITY: f32 = 25.0;
-/// Distance at which a bird sees others, and distance that it keeps, m.
+/// Distance at which a bird reacts to others, and distance that it keeps, m.
 const SIGHT: f32 = 3.0;
 const CLEARANCE: f32 = 0.8;
 /// Radius of the aviary, m.

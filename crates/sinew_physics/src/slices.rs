@@ -64,7 +64,7 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn at(&self, places: &Places, k: usize) -> &T {
         assert!(places.len <= self.len);
-        // SAFETY: all indices are below their length, and the caller of `new` promised that nobody writes the item
+        // SAFETY: all indices are below their length, and the caller of `new` promised that no thread writes the item
         // meanwhile.
         unsafe { &*self.start.add(places.at[k] as usize) }
     }
@@ -76,8 +76,8 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn at_mut(&mut self, places: &Places, k: usize) -> &mut T {
         assert!(places.len <= self.len);
-        // SAFETY: all indices are below their length, and the caller of `new` promised that nobody else reads or writes
-        // the item meanwhile.
+        // SAFETY: all indices are below their length, and the caller of `new` promised that no other thread reads or
+        // writes the item meanwhile.
         unsafe { &mut *self.start.add(places.at[k] as usize) }
     }
 
@@ -103,7 +103,7 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn get(&self, i: usize) -> &T {
         assert!(i < self.len);
-        // SAFETY: the item is inside the slice, and the caller of `new` promised that nobody writes it meanwhile.
+        // SAFETY: the item is inside the slice, and the caller of `new` promised that no thread writes it meanwhile.
         unsafe { &*self.start.add(i) }
     }
 
@@ -114,8 +114,8 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn get_mut(&mut self, i: usize) -> &mut T {
         assert!(i < self.len);
-        // SAFETY: the item is inside the slice, and the caller of `new` promised that nobody else reads or writes it
-        // meanwhile.
+        // SAFETY: the item is inside the slice, and the caller of `new` promised that no other thread reads or writes
+        // it meanwhile.
         unsafe { &mut *self.start.add(i) }
     }
 }
@@ -127,7 +127,7 @@ pub(crate) fn for_each_mut<T: Send>(runner: &dyn TaskRunner, items: &mut [T], wo
     let count = items.len();
     let claim = usize::min(usize::max(count / CLAIMS, 1), MOST_CLAIMED);
     let next = AtomicUsize::new(0);
-    // SAFETY: `fetch_add` hands out every index once, so no two calls hold the same item, whatever the runner does; `items`
+    // SAFETY: `fetch_add` hands out every index once, so no two calls hold the same item, for any runner; `items`
     // is borrowed exclusively until `run` has returned.
     let rows = unsafe { SharedRows::new(items) };
     let task = || {
@@ -156,7 +156,7 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
     let count = items.len();
     assert!(count <= MOST_NEAR);
     let (taken, entered) = (AtomicU64::new(0), AtomicU32::new(0));
-    // SAFETY: `fetch_or` sets the bit of an item once, so no two calls hold the same item, whatever the runner does; `items` is
+    // SAFETY: `fetch_or` sets the bit of an item once, so no two calls hold the same item, for any runner; `items` is
     // borrowed exclusively until `run` has returned.
     let rows = unsafe { SharedRows::new(items) };
     let task = || {

@@ -121,7 +121,7 @@ impl<'a> Scene<'a> {
             (readings[joint].part, readings[joint].side) = (part_of(role), role.side());
         }
         if !matches!(trust, Trust::Nothing { .. }) {
-            // A control with skin that no joint above it moves counts as a body part, whatever its name.
+            // A control with skin that no joint above it moves counts as a body part, regardless of its name.
             let fair = CONTROL_SKIN * bound.area.iter().sum::<f32>();
             let is_bone = |joint: JointIdx| {
                 let carries = |ancestor: JointIdx| bound.area[ancestor] > 0.0;

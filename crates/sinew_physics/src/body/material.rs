@@ -82,7 +82,7 @@ impl Default for Material {
 }
 
 /// Rule that combines two numbers. If two surfaces request different rules, the one later in this list applies,
-/// whichever side it is on.
+/// for either surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Combine {

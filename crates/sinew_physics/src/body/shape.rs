@@ -41,7 +41,7 @@ impl Filter {
         self.layers & other.mask != 0 && other.layers & self.mask != 0
     }
 
-    /// True if the shape collides with no other shape, whatever the filter of the other.
+    /// True if the shape collides with no other shape, regardless of the filter of the other.
     pub fn meets_none(self) -> bool {
         self.group <= 0 && (self.layers == 0 || self.mask == 0)
     }

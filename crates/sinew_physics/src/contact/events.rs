@@ -10,9 +10,9 @@ use sinew_math::Vec3;
 /// Two shapes **touch** while their surfaces overlap at the start of the step, or if they pushed each other in the
 /// previous step. Shapes that a step brings together are reported by the next step, even if they separate immediately.
 /// Touching ends at a gap of half a millimetre, or 0.2 % of the smaller shape's smallest extent if that is less. Two
-/// bodies touch while any of their shapes do. Each touch has exactly one begin and one end event, whatever ends the touch:
-/// motion, teleport, removal (the id is stale then), a filter or pair change, quarantine. Falling asleep does not end a
-/// touch.
+/// bodies touch while any of their shapes do. Each touch has exactly one begin and one end event, for each possible end
+/// of the touch: motion, teleport, removal (the id is stale then), a filter or pair change, quarantine. Falling asleep
+/// does not end a touch.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[doc(alias = "collision events")]
 #[doc(alias = "OnCollisionEnter")]

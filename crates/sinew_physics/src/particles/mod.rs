@@ -4,8 +4,8 @@
 //! moved. It applies the reactions to the bodies that particles are attached to or touch.
 //!
 //! Springs of an implicit group (ropes, strands, bridges, load-bearing nets) are solved together, see `system.rs`: the
-//! stretch at rest is exact, `m g / k`, for a chain as for a single mass, whatever the substeps. Springs of cloth and
-//! blobs are projected, each once, see `net.rs`: exact at rest for one mass on one spring, softer by `h² (w₁ + w₂)`
+//! stretch at rest is exact, `m g / k`, for a chain as for a single mass, for any number of substeps. Springs of cloth
+//! and blobs are projected, each once, see `net.rs`: exact at rest for one mass on one spring, softer by `h² (w₁ + w₂)`
 //! per spring in a net. Damping acts on the velocity at the start of the substep, before forces.
 //!
 //! Contacts are part of the spring solve (`contact.rs`). Otherwise a rope bent over an edge would have the wrong

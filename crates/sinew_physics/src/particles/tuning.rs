@@ -123,8 +123,8 @@ pub(super) const MOST_ADDED: f32 = 1e3;
 /// rolls over a rope drags the rope through the floor. Shown by the tests of `pinched`.
 pub(super) const PINCHING: f32 = -0.1;
 
-/// Least tangent of the half angle between two surfaces at which a particle between them counts as nipped, whatever the
-/// friction, a ratio.
+/// Least tangent of the half angle between two surfaces at which a particle between them counts as nipped, regardless
+/// of the friction, a ratio.
 ///
 /// Larger: smooth surfaces hold particles that should slip out. Smaller: rounding of normals releases such particles.
 /// Shown by the tests of `pinched`.

@@ -1,5 +1,5 @@
-//! Damaged snapshots: bytes of a saved world, some of them replaced. Loading refuses them or creates a world that can
-//! be stepped, without a panic and within a short time.
+//! Damaged snapshots: bytes of a saved world, some of them replaced. Loading returns an error or creates a world that
+//! can be stepped, without a panic and within a short time.
 
 use crate::actor::Actor;
 use crate::functions;
