@@ -46,7 +46,7 @@ const COLORS: [[f32; 3]; 8] = [
 const STANDING: [f32; 3] = [0.34, 0.35, 0.36];
 const KINEMATIC: [f32; 3] = [0.20, 0.24, 0.28];
 const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
-/// Brightness of every second square of a floor with a colour of its own, as a factor.
+/// Brightness of every second square of a floor with its own colour, as a factor.
 const MOWN: f32 = 1.2;
 const PARTICLE: [f32; 3] = [0.70, 0.34, 0.05];
 const SPRING: [f32; 3] = [0.25, 0.22, 0.18];

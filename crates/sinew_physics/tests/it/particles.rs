@@ -436,7 +436,7 @@ fn a_rope_over_a_box_rests() {
     assert!(ends.iter().all(|p| p.y < -0.2 && p.y > -0.8), "{ends:?}");
 }
 
-/// A heavy rope lands on a light free box: momentum is exchanged, and neither is thrown away.
+/// A heavy rope lands on a light free box: momentum is exchanged, and neither gets a high speed.
 #[test]
 fn a_heavy_rope_and_a_light_box_share_momentum() {
     for rope_mass in [0.1, 1.0, 5.0] {

@@ -25,7 +25,7 @@ struct Drawing {
     world: World,
     /// Paths that bodies took, world space, metres.
     trails: Vec<Vec<Vec3>>,
-    /// Bodies with a colour of their own, linear.
+    /// Bodies with their own colour, linear.
     colors: Vec<(BodyId, [f32; 3])>,
     captions: [&'static str; 2],
     camera: Camera,

@@ -52,7 +52,7 @@ pub trait Script: Send {
     /// Draws additional content of a picture, such as query results.
     fn draw(&self, _world: &World, _out: &mut dyn DebugDraw) {}
 
-    /// Curves that a picture compares, each in a colour of its own.
+    /// Curves that a picture compares, each in its own colour.
     fn curves(&self) -> Vec<Curve> {
         Vec::new()
     }
@@ -130,7 +130,7 @@ impl Instance {
         self.script.draw(&self.world, out);
     }
 
-    /// Curves that a picture compares, each in a colour of its own.
+    /// Curves that a picture compares, each in its own colour.
     pub fn curves(&self) -> Vec<Curve> {
         self.script.curves()
     }

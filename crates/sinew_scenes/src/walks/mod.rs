@@ -38,7 +38,7 @@ pub fn capsule() -> MoverDef {
     MoverDef { ground_acceleration: 300.0, ..MoverDef::default() }
 }
 
-/// Sinew's mover in a world of its own.
+/// Sinew's mover in a separate world.
 pub struct Ours {
     world: World,
     id: MoverId,

@@ -125,7 +125,7 @@ fn memory() -> Option<u64> {
     line.split_whitespace().nth(1)?.parse().ok()
 }
 
-/// The test runs in a process of its own, because memory is counted by process.
+/// The test runs in a separate process, because memory is counted by process.
 #[test]
 fn thousand_spawns_per_frame_do_not_leak() {
     const ALONE: &str = "SINEW_TEST_ALONE";

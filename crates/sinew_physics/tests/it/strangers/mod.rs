@@ -5,8 +5,9 @@
 //! saved at random steps and continues next to the worlds that loaded its snapshots, which get the same calls.
 //! Snapshots and events are equal after each step.
 //!
-//! A few worlds, or 300 with `SINEW_FULL` set. `SINEW_WORLDS=17..18 cargo test --release -p sinew_physics --test it -- --nocapture strangers`
-//! runs the seeds of the range and prints progress. `cargo xtask lives --of strangers` goes on from seed to seed, 600 steps each.
+//! A few worlds, or 300 with `SINEW_FULL` set.
+//! `SINEW_WORLDS=17..18 cargo test --release -p sinew_physics --test it -- --nocapture strangers` runs the seeds of the
+//! range and prints progress. `cargo xtask lives --of strangers` continues from seed to seed, 600 steps each.
 
 mod deeds;
 mod populate;

@@ -1,4 +1,4 @@
-//! Movers on a course: each has a lane of its own.
+//! Movers on a course: each has its own lane.
 
 use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
