@@ -170,7 +170,10 @@ fn shapes_have_their_sizes() {
             // Jolt lets resting bodies sink by 20 mm.
             assert!((y - height).abs() < 0.025, "{name}: the body rests at {y} m, expected {height} m");
         }
-        assert!(states[4].world_from_body.translation.y < -5.0, "{name}: a body without collisions did not fall");
+        assert!(
+            states[4].world_from_body.translation.y < -5.0,
+            "{name}: a body without collisions did not fall"
+        );
         assert_eq!(quality.place.lost, 0, "{name}: a fallen body without collisions counts as lost");
     }
 }

@@ -251,7 +251,11 @@ fn bodies_without_contacts_are_never_lost() {
     let mut ghost = cube(Vec3::NEG_Y * 9.0);
     ghost.shapes[0].filter = Filter { mask: 0, ..Filter::default() };
     let fallen = scene(vec![floor(), ghost], vec![]);
-    assert_eq!(judge(&fallen, &[start(&fallen)]).place.lost, 0, "bodies that do not collide must not count as lost");
+    assert_eq!(
+        judge(&fallen, &[start(&fallen)]).place.lost,
+        0,
+        "bodies that do not collide must not count as lost"
+    );
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `sinew run`: runs a named scene without a picture: figures, times, state hash.
+//! `sinew run`: runs a named scene without a picture: metrics, times, state hash.
 
 use crate::failure::{Failure, Result};
 use crate::input::scene_choice::choose;
@@ -12,7 +12,7 @@ use sinew_scenes::scenes::{Expected, Instance, Metric, Part, Scene};
 use std::fmt::Write;
 use std::time::Instant;
 
-/// Run a named scene without a picture, and print its figures and the hash of its state
+/// Run a named scene without a picture, and print its metrics and the hash of its state
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -162,12 +162,12 @@ struct Outcome<'a> {
     times: StepTimes,
     hash: u64,
     metrics: Vec<Metric>,
-    /// True if the figures are compared with the scene's expectations.
+    /// True if the metrics are compared with the scene's expectations.
     has_bars: bool,
 }
 
 impl Outcome<'_> {
-    /// Returns the figures that miss the scene's expectations.
+    /// Returns the metrics that miss the scene's expectations.
     fn missed(&self) -> Vec<&'static str> {
         let unmet = self.metrics.iter().filter(|metric| self.has_bars && !metric.is_met());
         unmet.map(|metric| metric.name).collect()

@@ -48,16 +48,16 @@ pub(super) const YIELDING_DEPTH: f32 = 0.01;
 /// the tests of `events`.
 pub(super) const LINGER: f32 = 0.1;
 
-/// Separation speed of joint anchors above which it counts as a blow, m/s.
+/// Separation speed of joint anchors above which an impulse counts as an impact, m/s.
 ///
 /// Solved joints leave a smaller speed to the next step. Larger: a limb penetrates another for a step at this speed.
 /// Smaller: the step searches pairs that do not touch. Shown by the tests of `stumble`.
 pub(super) const BLOW_SPEED: f32 = 0.3;
 
-/// Number of consecutive joints through which a blow is followed.
+/// Number of consecutive joints through which an impact is followed.
 ///
-/// There are five from the pelvis to a hand. Larger: more pairs are tested in steps after a blow. Smaller: the hand of
-/// a ragdoll hit at its trunk is inside the thigh at the end of the step. Shown as [`BLOW_SPEED`].
+/// There are five from the pelvis to a hand. Larger: more pairs are tested in steps after an impact. Smaller: the hand
+/// of a ragdoll hit at its trunk is inside the thigh at the end of the step. Shown as [`BLOW_SPEED`].
 pub(super) const BLOW_PASSES: usize = 6;
 
 /// Ratio of the added mass of a body on ropes to its own mass, above which its island's contacts are swept until they

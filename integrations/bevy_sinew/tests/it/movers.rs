@@ -37,7 +37,10 @@ fn movers_have_the_same_bits_as_in_the_library() {
         assert_eq!(physics(&app).hash(), world.hash(), "step {step}");
         assert_eq!(at(&app, entity), world.mover(id).position());
     }
-    assert!(at(&app, entity).x > 4.0 && at(&app, crate_).x > 3.0, "the mover did not walk or did not push the crate");
+    assert!(
+        at(&app, entity).x > 4.0 && at(&app, crate_).x > 3.0,
+        "the mover did not walk or did not push the crate"
+    );
 }
 
 #[test]

@@ -208,7 +208,11 @@ fn despawn_during_a_fall_removes_everything() {
     let stands = hero.height();
     hero.go_limp();
     hero.run(25);
-    assert!((0.3 * stands..0.95 * stands).contains(&hero.height()), "the character is not falling: height {} m", hero.height());
+    assert!(
+        (0.3 * stands..0.95 * stands).contains(&hero.height()),
+        "the character is not falling: height {} m",
+        hero.height()
+    );
     let limbs = hero.handle().bodies().to_vec();
     let joints = hero.handle().def().rig.joints.len();
     assert!(hero.parts() > joints, "{} parts", hero.parts());

@@ -103,8 +103,8 @@ impl Coloring {
         }
     }
 
-    /// Assigns colours from `first` on to the edges at `places`, up to the number of bits in a mask, and leaves the remaining edges.
-    /// Returns the number of colours used.
+    /// Assigns colours from `first` on to the edges `places`, up to the number of bits in a mask, and leaves the remaining edges. Returns the
+    /// number of colours used.
     fn round(&mut self, places: impl Iterator<Item = u32>, moving: usize, first: u32) -> u32 {
         let Self { edges, used, left, .. } = self;
         used.clear();
