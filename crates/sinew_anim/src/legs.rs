@@ -90,8 +90,7 @@ impl Legs {
         Some(Self { pelvis, feet, strays: strays(rig, analysis) })
     }
 
-    /// Moves stray joints to their anatomical place; rotations do not change. Call it after moving their anatomical
-    /// parents.
+    /// Moves stray joints to their anatomical place; rotations stay. Call it after moving their anatomical parents.
     pub fn gather(&self, rig: &Rig, local: &mut [LocalTransform], model: &mut [Affine]) {
         for stray in &self.strays {
             let by = model[stray.carrier].point(stray.at) - model[stray.joint].translation;
@@ -133,7 +132,7 @@ fn strays(rig: &Rig, analysis: &RigAnalysis) -> Vec<Stray> {
     HUMANOID_ROLES.into_iter().filter_map(stray).collect()
 }
 
-/// Adds ankle joints to a humanoid whose legs end with the shank, so that motions with feet fit low-poly characters.
+/// Adds ankle joints to a humanoid whose legs end with the shank, so that motions with feet fit low-poly figures.
 ///
 /// Each is a new joint at the end of the rig, without skin, a child of the shank, at the centre of the shank's lowest
 /// skin. Its [`Joint::source`] is beyond the file's nodes. The analysis treats the joint as a foot. Returns the number

@@ -229,7 +229,7 @@ struct Transfer<'a> {
     actor_feet: [Foot; 2],
     /// Legs of the character.
     legs: Legs,
-    /// Vector from the pelvis to the midpoint of its hip joints, in the pelvis' axes without scale, metres.
+    /// Vector from the pelvis to the middle of its hip joints, in the pelvis' axes without scale, metres.
     hips_to_legs: Vec3,
     /// Ratio of the character's leg length to the actor's.
     scale: f32,

@@ -41,7 +41,7 @@ pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<
             }
         }
     }
-    // The mirrored bone has skin, and a mirrored character has both.
+    // The mirrored bone has skin, and a mirrored figure has both.
     for (joint, reading) in readings.iter().enumerate().filter(|&(joint, _)| !moves(joint)) {
         let Some(part) = reading.part.filter(|part| LONG.contains(part)) else { continue };
         let Some(side) = reading.side else { continue };

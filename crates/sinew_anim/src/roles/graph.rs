@@ -138,7 +138,7 @@ impl Graph {
     }
 
     /// True for a left and a right tree: equal numbers of joints, similar areas of skin, starts equally far from the
-    /// root but at different positions.
+    /// root but in different places.
     fn are_twins(&self, a: usize, b: usize, bound: &Bound) -> bool {
         let [of_a, of_b] = [a, b].map(|tree| self.subtree(tree));
         let area = |tree: &[usize]| tree.iter().map(|&node| self.nodes[node].area).sum::<f32>();

@@ -267,7 +267,7 @@ impl Kernel for Descent<'_> {
             let own = &mut self.tree.nodes[node as usize];
             let slot = own.least_growth(&bounds);
             own.set_bounds(slot, &own.bounds(slot).merge(self.bounds));
-            node = own.child(slot).get().expect_err("nodes above the lowest level must hold nodes");
+            node = own.child(slot).get().expect_err("nodes above the lowest hold nodes");
         }
         node
     }

@@ -236,8 +236,8 @@ fn never_still(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     })
 }
 
-/// Returns the input of a bake with the weakest forward [push](BakeInput::topple) that makes the character fall. `None`
-/// if the character does not stay upright when it goes limp, or no push makes it fall.
+/// Returns the input of a bake with the weakest forward [push](BakeInput::topple) that fells the character. `None` if
+/// the character does not stay upright when it goes limp, or no push fells it.
 ///
 /// # Panics
 /// If the bake does not belong to the input.
