@@ -12,7 +12,7 @@ use sinew_scenes::scenes::{Expected, Instance, Metric, Part, Scene};
 use std::fmt::Write;
 use std::time::Instant;
 
-/// Run a named scene without a picture, and print its metrics and the hash of its state
+/// Run a named scene without a picture, and print its figures and the hash of its state
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:

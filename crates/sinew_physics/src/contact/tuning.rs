@@ -37,12 +37,12 @@ pub(crate) const BOUNDS_ROOM: f32 = 0.04;
 /// Smaller: more leaves move. Changes only the order of work; shown by `walkers_step` of `cargo xtask bench --counts`.
 pub(crate) const BOUNDS_ROOM_LED: f32 = 0.3;
 
-/// Steps of motion at the current velocity included in the fat bounds of small kinematic bodies, a number.
+/// Number of steps of motion at the current velocity that the fat bounds of small kinematic bodies include.
 ///
 /// Larger: bounds are longer and make more candidate pairs. Smaller: more leaves move. Shown as [`BOUNDS_ROOM_LED`].
 pub(crate) const BOUNDS_STEPS_LED: f32 = 12.0;
 
-/// Steps of motion at the current velocity included in fat bounds, a number.
+/// Number of steps of motion at the current velocity that fat bounds include.
 ///
 /// Larger: bounds are longer and make more candidate pairs. Smaller: moving bodies search the tree more often. Shown by
 /// `cargo xtask bench --trace box_rain`.

@@ -150,7 +150,7 @@ impl ParticleGroup {
         true
     }
 
-    /// Moves a particle out of all fixed shapes except the two that leave no room; the last one wins.
+    /// Moves a particle out of all fixed shapes except the two that leave no room; the last shape has priority.
     fn leave_walls(&mut self, i: usize, but: [usize; 2], obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         let (at, radius) = (self.positions[i], self.radii[i]);
         let way = DETOUR * (at - self.previous[i]).length();

@@ -57,7 +57,7 @@ fn centers(character: &Character) -> Vec<Transform> {
 #[derive(Clone, Copy, Default)]
 struct Budget([f32; 2]);
 
-/// An open window.
+/// A time window in which pops are measured.
 struct Window {
     kind: usize,
     left: usize,
