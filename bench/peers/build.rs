@@ -1,4 +1,4 @@
-//! Passes the compiler's flags and Sinew's version to the program, which prints them beside its figures.
+//! Passes the compiler's flags and Sinew's version to the program, which prints them beside its results.
 
 /// Manifest with the version of Sinew's workspace.
 const ROOT_MANIFEST: &str = "../../Cargo.toml";

@@ -1,4 +1,4 @@
-//! The state of an animator: what is accepted goes on, and comes back to the same bytes.
+//! The state of an animator: an accepted state can be advanced, and is saved as the same bytes.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

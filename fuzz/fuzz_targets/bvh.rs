@@ -1,4 +1,4 @@
-//! A BVH file: read, or refused with a place. What was read is a good clip, and can be written and read again.
+//! A BVH file: read, or refused with a location. What was read is a good clip, and can be written and read again.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

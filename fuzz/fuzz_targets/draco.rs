@@ -1,4 +1,4 @@
-//! A Draco stream in a glTF that says how much is in it: read, or refused with a place.
+//! A Draco stream in a glTF that states the size of its content: it is read, or refused with the location of the error.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,5 @@
-//! An events file for two clips, one of them without a name: read, or refused with a place; events lie within their clips.
+//! An events file for two clips, one of them without a name: read, or refused with a location; events lie within their
+//! clips.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,5 +1,5 @@
-//! A glTF, GLB or VRM without files beside it, with its pictures: read, or refused with a place; its clips are built or refused, and
-//! the roles that it states are those of joints that there are.
+//! A glTF, GLB or VRM without files beside it, with its pictures: read, or refused with a location; its clips are built
+//! or refused, and the roles that it states are those of joints that there are.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Text object files of Jolt: a ragdoll, or refused with a place; an animation of three joints likewise.
+//! Text object files of Jolt: a ragdoll, or refused with a location; an animation of three joints likewise.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

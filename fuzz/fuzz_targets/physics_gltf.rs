@@ -1,4 +1,4 @@
-//! Physics of glTF files: a model that a world takes, or refused with a place.
+//! Physics of glTF files: a model that a world takes, or refused with a location.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

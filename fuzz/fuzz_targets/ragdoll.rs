@@ -1,4 +1,5 @@
-//! A ragdoll definition: refused with a place, or one that a world takes, and that is the same once written and read again.
+//! A ragdoll definition: refused with a location, or one that a world takes, and that is the same once written and read
+//! again.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Joints of any names, parents and places with skin on them: understood somehow, with whatever a user says of their roles.
+//! Joints with any names, parents, positions and skin: the analysis returns a result for any roles given by a user.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -11,7 +11,7 @@ use sinew_math::{Affine, Vec3};
 /// Most joints of a rig.
 const MOST: usize = 64;
 
-/// A line of the input: parent, place and what the user says of the joint, then its name.
+/// A line of the input: parent, position, the role given by the user, then the joint's name.
 struct Line<'a> {
     numbers: [u8; 5],
     name: std::borrow::Cow<'a, str>,

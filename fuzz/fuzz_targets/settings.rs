@@ -1,4 +1,4 @@
-//! Settings of a ragdoll's build: read, or refused with a place.
+//! Settings of a ragdoll's build: read, or refused with a location.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Robots of URDF: a model that a world takes, or refused with a place.
+//! Robots of URDF: a model that a world takes, or refused with a location.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

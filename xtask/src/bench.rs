@@ -65,10 +65,10 @@ const THREADED: &[(&str, u32)] = &[("box_rain", 120), ("ragdoll_pile", 300)];
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask bench --scene ragdoll_pile --scene chain_swing_1000 --quick")]
 pub struct Bench {
-    /// Only this scene of `peers list`, or `bake`, `limp` or `threads`; others keep their figures
+    /// Only this scene of `peers list`, or `bake`, `limp` or `threads`; others keep their results
     #[arg(long = "scene", value_name = "NAME")]
     scenes: Vec<String>,
-    /// Only this engine of `peers list`; the scenes that run lose the figures of the others
+    /// Only this engine of `peers list`; the scenes that run lose the results of the others
     #[arg(long = "engine", value_name = "NAME")]
     engines: Vec<String>,
     /// Number of rounds; heaps run from 5 starts that differ a little, and each run is judged
@@ -97,10 +97,10 @@ pub struct Bench {
     /// Number of steps before a trace starts, instead of a third of the scene
     #[arg(long, value_name = "STEPS", requires = "trace")]
     warm_up: Option<u32>,
-    /// Write the page from the stored figures instead
+    /// Write the page from the stored results instead
     #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "check", "counts", "kernels"])]
     page: bool,
-    /// Add the figures of another machine instead, a file in the form of bench/benchmarks.json, and write the page
+    /// Add the results of another machine instead, a file in the form of bench/benchmarks.json, and write the page
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "engines", "quick", "check", "counts", "kernels", "trace", "page"])]
     take: Option<PathBuf>,
     /// Store the counts as the expected ones
@@ -110,7 +110,7 @@ pub struct Bench {
 
 impl Bench {
     /// # Errors
-    /// If a run cannot be started or its figures cannot be written.
+    /// If a run cannot be started or its results cannot be written.
     pub fn run(&self) -> Result<ExitCode> {
         if self.counts {
             let counted = if self.bless { counts::bless() } else { counts::check() };
@@ -310,12 +310,12 @@ fn two_threads(rounds: u32) -> Result<BTreeMap<String, f64>> {
     Ok(factors)
 }
 
-/// Returns the file with the figures of earlier runs, which is committed, because a full run takes hours.
+/// Returns the file with the results of earlier runs, which is committed, because a full run takes hours.
 fn file() -> PathBuf {
     command::root().join("bench/benchmarks.json")
 }
 
-/// Returns the figures of earlier runs; empty if none can be read.
+/// Returns the results of earlier runs; empty if none can be read.
 fn kept() -> Results {
     let earlier = fs::read_to_string(file()).ok().and_then(|text| serde_json::from_str(&text).ok());
     Results::from_json(&earlier.unwrap_or(Value::Null))
@@ -331,7 +331,7 @@ pub fn charts() -> Result<(String, String)> {
     Ok((html, results.machine.unwrap_or_default()))
 }
 
-/// Adds the figures of another machine, at least one.
+/// Adds the results of another machine, at least one.
 fn take(file: &Path) -> Result<()> {
     let text = fs::read_to_string(file).with_context(|| file.display().to_string())?;
     let value = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
@@ -349,7 +349,7 @@ fn take(file: &Path) -> Result<()> {
     write(taken, &names.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
-/// Merges new figures of the scenes `names` with earlier ones, and writes the page.
+/// Merges new results of the scenes `names` with earlier ones, and writes the page.
 fn write(results: Results, names: &[&str]) -> Result<()> {
     let mut all = kept();
     all.update(results, names);
@@ -357,7 +357,7 @@ fn write(results: Results, names: &[&str]) -> Result<()> {
     write_page(&all, &[names, &[BAKE, LIMP, THREADS]].concat())
 }
 
-/// Writes the page of all figures, with a list of `names` without figures. Never replaces a page with more scenes.
+/// Writes the page of all results, with a list of `names` without results. Never replaces a page with more scenes.
 fn write_page(all: &Results, names: &[&str]) -> Result<()> {
     let missing: Vec<&str> = names.iter().copied().filter(|name| !all.has(name)).collect();
     let page = command::root().join(PAGE);

@@ -127,7 +127,7 @@ pub fn python() -> Result<()> {
     let run = |program: &str, arguments: &[&str], place: &Path| {
         command::run(Command::new(user.join("bin").join(program)).args(arguments).current_dir(place))
     };
-    // Runs in a folder of its own, so that the tests use the installed package and not the sources.
+    // Runs in a separate folder, so that the tests use the installed package and not the sources.
     let tests = folder.join("tests");
     copy(&source.join("tests"), &tests)?;
     run("pytest", &["-q", "."], &tests)?;

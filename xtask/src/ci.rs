@@ -281,7 +281,7 @@ fn documentation() -> Result<()> {
     command::run(doc.env("RUSTDOCFLAGS", "-D warnings"))
 }
 
-/// Bound on a figure of the demo's report (spec §4).
+/// Bound on a metric of the demo's report (spec §4).
 #[derive(Clone, Copy, Debug)]
 enum Gate {
     /// Equal to a value.

@@ -88,7 +88,7 @@ pub fn provide(program: &str, package: &str) -> Result<()> {
 pub enum Profile {
     /// Debug build, with overflow checks and debug assertions.
     Debug,
-    /// Release build, the users' profile.
+    /// Release build, the profile that users have.
     Release,
 }
 

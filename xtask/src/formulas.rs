@@ -241,7 +241,7 @@ impl Formula {
         }
     }
 
-    /// Returns true if a bar opens, because no end follows. Inside bars the first bar closes.
+    /// Returns true if a vertical bar opens a norm, because no end follows. Inside bars the first bar closes.
     fn opens(&self) -> bool {
         let mut ahead = self.tokens.clone();
         ahead.next();

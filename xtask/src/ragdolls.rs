@@ -125,7 +125,7 @@ const COLUMNS: [&str; 9] = [
     "gap in falls, mm",
 ];
 
-/// Returns a figure of the drops and of the wall hit.
+/// Returns a metric of the drops and of the wall hit.
 fn pair(report: &Value, key: &str, factor: f64) -> String {
     let figure = |run: &str| number(&report["quality"][run][key], factor);
     format!("{} · {}", figure("drop"), figure("wall"))

@@ -1,4 +1,4 @@
-//! Random falls of every available rig, and the bars of each rig.
+//! Random falls of every available rig, and the thresholds of each rig.
 
 use crate::command::{self, Profile};
 use crate::ragdolls::{self, Measured};
@@ -15,7 +15,7 @@ pub const ALL: u32 = 10_000;
 /// Runs falls of the mannequin and of each rig beside the repository: no NaN, no added energy, no open joint.
 ///
 /// # Errors
-/// With the numbers of the falls that miss a bar.
+/// With the numbers of the falls that miss a threshold.
 pub fn check(spawns: u32) -> Result<()> {
     let binary = command::build_sinew(Profile::Release)?;
     let folder = std::env::temp_dir().join(format!("sinew-spawns-{}", std::process::id()));
@@ -59,7 +59,7 @@ fn check_in(binary: &Path, folder: &Path, spawns: u32) -> Result<()> {
     Ok(())
 }
 
-/// Returns the number of falls that miss a bar. A report without that number, or of another number of falls, is
+/// Returns the number of falls that miss a threshold. A report without that number, or of another number of falls, is
 /// an error.
 fn broken(gate: &Value, spawns: u32) -> Result<u64> {
     ensure!(gate["spawns"] == spawns, "the report has {} falls, not {spawns}", gate["spawns"]);

@@ -55,7 +55,7 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
 /// `cargo xtask tidy`.
 #[derive(clap::Args)]
 pub struct Tidy {
-    /// Also print figures of each crate
+    /// Also print metrics of each crate
     #[arg(long)]
     table: bool,
 }

@@ -24,7 +24,7 @@ const OUT: &str = "out/wild";
 const SECONDS: &str = "6";
 
 /// `cargo xtask wild`: builds, drops and bakes every rig beside the repository, recognises every skeleton, and writes
-/// their figures and sheets of pictures after the fall.
+/// their metrics and sheets of pictures after the fall.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:

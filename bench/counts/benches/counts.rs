@@ -109,7 +109,7 @@ fn after(steps: u32, blueprint: &blueprint::Blueprint) -> World {
     world
 }
 
-/// Returns four figures of 15 bodies in a heap, still moving.
+/// Returns four humanoids of 15 bodies in a heap, still moving.
 fn ragdoll_pile() -> World {
     after(40, &blueprint::ragdoll_column(4))
 }
@@ -129,7 +129,7 @@ fn humanoid_lying() -> World {
     after(90, &blueprint::humanoid_lying())
 }
 
-/// Returns 14 cubes with a figure fallen on them.
+/// Returns 14 cubes with a humanoid that fell onto them.
 fn ragdoll_on_boxes() -> World {
     after(40, &blueprint::ragdoll_on_boxes(3))
 }
@@ -330,7 +330,7 @@ fn walkers_step(mut walkers: Walkers) -> Walkers {
     walkers
 }
 
-/// A hundred figures with eight strands of five spring bones each, whose heads walk and sway.
+/// A hundred characters with eight strands of five spring bones each, whose heads walk and sway.
 struct Maned {
     def: CharacterDef,
     swings: Vec<SpringSwing>,

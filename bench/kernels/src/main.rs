@@ -15,8 +15,8 @@ use std::time::{Duration, Instant};
 /// Duration of a sample: so short that some samples run while the processor is free.
 const SAMPLE: Duration = Duration::from_micros(400);
 
-/// Number of samples of each figure. They are interleaved, so that a change of the clock rate affects all
-/// figures.
+/// Number of samples of each result. They are interleaved, so that a change of the clock rate affects all
+/// measurements.
 const ROUNDS: usize = 200;
 
 fn main() {

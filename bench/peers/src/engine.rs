@@ -138,7 +138,7 @@ pub struct ParticleState {
     pub velocity: Vec3,
 }
 
-/// Description that is printed beside every figure.
+/// Description that is printed beside every result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Description {
     /// Name on the command line.

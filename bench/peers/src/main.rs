@@ -51,7 +51,7 @@ enum Command {
         #[arg(long, default_value = "../shared/data/worlds")]
         worlds: PathBuf,
     },
-    /// A scene of our own ragdolls for MuJoCo: the figure, its starts, the obstacles.
+    /// A scene of our own ragdolls for MuJoCo: the humanoid, its starts, the obstacles.
     Mjcf {
         /// Name in `peers list`.
         #[arg(long, value_parser = parse_scene)]

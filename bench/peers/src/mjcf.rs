@@ -1,4 +1,4 @@
-//! Scenes of our own ragdolls for MuJoCo: the same figures and starts.
+//! Scenes of our own ragdolls for MuJoCo: the same humanoids and starts.
 
 use serde_json::{Value, json};
 use sinew::formats::write_mjcf;
@@ -6,7 +6,7 @@ use sinew::math::{Transform, Vec3};
 use sinew::physics::{BodyKind, Shape};
 use sinew_scenes::blueprint::{self, Blueprint};
 
-/// Returns one figure as MJCF on a plane, the starts of the first bodies of all figures, and the surrounding boxes,
+/// Returns one humanoid as MJCF on a plane, the starts of the first bodies of all humanoids, and the surrounding boxes,
 /// in the axes of the file: z up. Joints are at 0 in the file's pose, as in the blueprint's start.
 pub fn mjcf(scene: &Blueprint) -> Value {
     let place = |at: &Transform| {

@@ -39,7 +39,7 @@ pub fn triangles(shape: &Shape) -> Option<(Vec<Vec3>, Vec<[u32; 3]>)> {
     match shape {
         Shape::Mesh(mesh) => Some((mesh.vertices().to_vec(), mesh.triangles().collect())),
         Shape::HeightField(field) => {
-            // Indexes corners by their places on the grid, so that triangles share them.
+            // Indexes corners by their positions on the grid, so that triangles share them.
             let def = field.def();
             let [dx, dz] = def.spacing;
             let at = |i: usize| {

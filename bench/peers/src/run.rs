@@ -45,7 +45,7 @@ impl Start {
     }
 }
 
-/// Returns the result as one JSON object; `"unsupported"` gives the reason for missing figures.
+/// Returns the result as one JSON object; `"unsupported"` gives the reason for missing results.
 ///
 /// `steps` is the number of steps; `None`: the scene's own.
 pub fn run(

@@ -125,7 +125,7 @@ impl CharacterFile {
     /// use neighbouring files to find an uncertain unit.
     ///
     /// # Errors
-    /// If the file is invalid; the error names the file, the problem and its place.
+    /// If the file is invalid; the error names the file, the problem and its position.
     pub fn load(path: &Path, corrections: &Corrections) -> Result<Self, Failure> {
         let name = path.display().to_string();
         let is_fbx = matches!(MotionFormat::of(&read_bytes(path)?), Ok(MotionFormat::Fbx));
@@ -274,7 +274,7 @@ pub fn embedded() -> CharacterFile {
 /// ragdoll is built.
 ///
 /// # Errors
-/// If the file is invalid; the error names the file, the problem and its place.
+/// If the file is invalid; the error names the file, the problem and its position.
 pub fn load_ragdoll(path: &Path) -> Result<Repair, Failure> {
     let name = path.display().to_string();
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());

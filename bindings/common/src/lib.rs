@@ -9,7 +9,7 @@ pub use character_file::{CharacterFile, Corrections, Motions, Wishes, embedded, 
 pub use panics::caught;
 pub use random_fall::{FallOptions, RandomFall, random_fall};
 
-/// Error of a call: one line that names the file and the place.
+/// Error of a call: one line that names the file and the position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure {
     /// True if a file could not be read or written, or is invalid; false if an argument is wrong.

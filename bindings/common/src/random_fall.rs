@@ -34,7 +34,7 @@ pub struct RandomFall {
     pub hit: BakeHit,
     /// Static bodies onto which the character falls.
     pub ground: Vec<BodyDef>,
-    /// Clip, frames, figures and hash.
+    /// Clip, frames, metrics and hash.
     pub baked: Baked,
     /// Verdict on the result: good, usable or bad.
     pub verdict: Verdict,
@@ -131,10 +131,10 @@ mod tests {
             assert!(mapping.bodies_from_pose(first, Transform::IDENTITY, &mut Vec::new(), &mut due));
             for (body, (due, at)) in due.iter().zip(&pose).enumerate() {
                 let off = (due.translation - at.translation).length();
-                assert!(off < 2e-3, "fall {seed}: body {body} starts {off} m from its pose");
+                assert!(off < 2e-3, "fall {seed}: body {body} starts {off} m away from its pose");
             }
             assert_eq!(fall.baked.quality.nan, 0);
-            assert!(fall.baked.quality.first_contact_s.is_some(), "fall {seed} met nothing");
+            assert!(fall.baked.quality.first_contact_s.is_some(), "fall {seed}: no contact");
             assert_eq!(fall.baked.hash, random_fall(&character, seed, &options).baked.hash);
             hashes.push(fall.baked.hash);
         }

@@ -30,7 +30,7 @@ pub struct Character {
     pub def: Arc<CharacterDef>,
 }
 
-/// Result of a bake: poses, events, figures, and a clip.
+/// Result of a bake: poses, events, metrics, and a clip.
 #[pyclass(frozen, module = "sinew")]
 pub struct Bake {
     file: Arc<CharacterFile>,
@@ -447,7 +447,7 @@ impl Bake {
         self.hits.iter().map(|hit| (hit.time, role(hit.body), hit.impulse.to_array())).collect()
     }
 
-    /// Figures, with the names in docs/contract.md.
+    /// Metrics, with the names in docs/contract.md.
     #[getter]
     fn quality<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         quality_dict(py, &self.baked.quality)

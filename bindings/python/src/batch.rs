@@ -1,4 +1,4 @@
-//! Many worlds with the same figure, which are stepped together.
+//! Many worlds with the same ragdoll or model, which are stepped together.
 
 use crate::arrays::{array, elements, floats, poses, push_pose, push_velocity, vectors, velocities};
 use crate::errors::{bad, guarded, refused};
@@ -15,7 +15,7 @@ use sinew::ragdoll::{BodySettings, BodyState, RagdollDef};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Worlds with one figure each, on a floor. Each world has the same bits as alone, for any number of threads.
+/// Worlds with one ragdoll or model each, on a floor. Each world has the same bits as alone, for any number of threads.
 #[pyclass(module = "sinew")]
 pub struct BatchWorlds {
     worlds: Vec<Mutex<World>>,
@@ -26,7 +26,7 @@ pub struct BatchWorlds {
     threads: Threads,
 }
 
-/// A figure in a world: its moving bodies, their joints, and their names.
+/// A ragdoll or model in a world: its moving bodies, their joints, and their names.
 type Figure = (Vec<BodyId>, Vec<JointId>, Vec<String>);
 
 fn spawn_ragdoll(world: &mut World, def: &RagdollDef) -> Figure {

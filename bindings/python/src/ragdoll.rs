@@ -54,7 +54,7 @@ impl Ragdoll {
     }
 }
 
-/// Figures of a fall, with the names in docs/contract.md.
+/// Metrics of a fall, with the names in docs/contract.md.
 pub fn quality_dict<'py>(py: Python<'py>, q: &FallQuality) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (key, value) in [

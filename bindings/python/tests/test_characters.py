@@ -20,7 +20,7 @@ def character(file: sinew.CharacterFile) -> sinew.Character:
 
 
 def figure(scale: float = 1.0) -> dict[str, object]:
-    """A figure of boxes: joints, parents, rest pose, one mesh."""
+    """A character of boxes: joints, parents, rest pose, one mesh."""
     at = {
         "hips": (None, (0, 1.0, 0)),
         "spine": ("hips", (0, 0.2, 0)),

@@ -25,7 +25,7 @@ pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
 
-    // The whole setup.
+    // All of the setup.
     let def = Arc::new(sinew::mannequin::character());
     let mut puppet = Character::spawn(&mut world, &def, Transform::IDENTITY);
     puppet.set_preset(&mut world, Preset::Powered);

@@ -2,7 +2,7 @@
 //!
 //! Birds are bodies: they bounce off each other and off the tower in their way. A custom object makes them a flock
 //! (Reynolds, "Flocks, Herds, and Schools", SIGGRAPH 1987): each bird avoids near birds, matches its neighbours'
-//! velocity, and stays with them. All birds are attracted to a place that changes from time to time, and none leaves
+//! velocity, and stays with them. All birds are attracted to a position that changes from time to time, and none leaves
 //! the aviary.
 
 use sinew::prelude::*;
@@ -15,21 +15,21 @@ const MASS: f32 = 0.05;
 const SPEED: f32 = 5.0;
 /// Largest acceleration of a wing, m/s².
 const AGILITY: f32 = 25.0;
-/// Distance at which a bird sees others, and distance that it keeps, m.
+/// Distance at which a bird reacts to others, and distance that it keeps, m.
 const SIGHT: f32 = 3.0;
 const CLEARANCE: f32 = 0.8;
 /// Radius of the aviary, m.
 const AVIARY: f32 = 12.0;
-/// Seconds until the flock chooses another place.
+/// Time until the flock chooses another target, seconds.
 const PATIENCE: f32 = 4.0;
 
 /// Birds that fly together.
 struct Flock {
     birds: Vec<BodyId>,
-    /// Attracting place, and seconds until it changes.
+    /// Target position, and time until the flock chooses another, seconds.
     goal: Vec3,
     patience: f32,
-    /// Seed of the next attracting place.
+    /// Seed of the next target position.
     seed: u64,
     /// Position and velocity of each bird in the current substep.
     seen: Vec<(Vec3, Vec3)>,
@@ -80,7 +80,7 @@ impl PhysicsObject for Flock {
         "flock"
     }
 
-    /// Adds the birds at random places with random velocities.
+    /// Adds the birds at random positions with random velocities.
     fn init(&mut self, world: &mut World) {
         let mut random = Random::new(self.seed);
         let radius = 0.1;

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 /// Gravity of the Earth, m/s².
 const GRAVITY: f32 = 9.81;
-/// Period, s; each swing takes one second.
+/// Period of the pendulum, seconds; each swing takes one second.
 const PERIOD: f32 = 2.0;
 /// Amplitude of the pendulum, radians.
 const AMPLITUDE: f32 = 0.06;
@@ -135,7 +135,7 @@ fn run(world: &mut World, escapement: ObjectId, minutes: u32) -> (f64, f32) {
     let mut passed: Vec<f64> = Vec::new();
     let (mut before, mut swing) = (0.0, 0.0);
     for frame in 0..minutes * 60 * 30 {
-        // Thirty frames a second, two steps each.
+        // Thirty frames per second, two steps each.
         world.update_with(Duration::from_nanos(33_333_334), |world| {
             world.step();
             let bob = world.center_of_mass(world.object::<Escapement>(escapement).pendulum);

@@ -20,7 +20,7 @@ fn feet(player: &Character) -> Vec3 {
     player.world_from_character().translation
 }
 
-/// Walks, pushes, climbs, rides, jumps.
+/// Walks, pushes a crate, climbs a step, rides a lift, jumps.
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));

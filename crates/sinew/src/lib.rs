@@ -77,7 +77,7 @@ pub use source::CharacterSource;
 /// ```
 ///
 /// # Errors
-/// Returns an error that names the file, the problem, and its place; see [`formats::read_gltf`].
+/// Returns an error that names the file, the problem, and its location; see [`formats::read_gltf`].
 #[cfg(feature = "formats")]
 pub fn load(path: impl AsRef<std::path::Path>) -> formats::Result<formats::Document> {
     formats::load_gltf(path, formats::ReadOptions::default())

@@ -6,7 +6,7 @@ use crate::roles::{Basis, Bound, HUMANOID_ROLES, RigAnalysis, Role, RoleGuess, S
 use crate::tuning::{ANKLE_HEIGHT, BALL_AHEAD, MADE_UP};
 use sinew_math::{Affine, Rotation, Vec3};
 
-/// A leg with two sole points.
+/// A leg with two points of its sole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foot {
     /// Side of the foot.

@@ -1,7 +1,7 @@
 //! Tunable constants of animation.
 //!
 //! Each has its unit, the effect of a larger and a smaller value, and the tests (`crates/sinew_anim/tests/it`) that
-//! show it; effects without a figure are estimates.
+//! show it; effects without a number are estimates.
 
 // animator/mod.rs
 

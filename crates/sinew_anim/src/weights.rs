@@ -155,7 +155,7 @@ fn nearest<'d>(donors: &[&'d Donor], stride: usize, at: Vec3) -> (&'d Donor, f32
     all.min_by(|a, b| a.1.total_cmp(&b.1)).expect("there are donors")
 }
 
-/// Returns the piece of each vertex: the smallest index connected to it by triangles. Vertices in one place are
+/// Returns the piece of each vertex: the smallest index connected to it by triangles. Coinciding vertices are
 /// connected.
 fn pieces(primitive: &Primitive) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..primitive.positions.len()).collect();

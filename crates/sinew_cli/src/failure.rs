@@ -25,12 +25,12 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// Creates an error in a file without a particular place.
+    /// Creates an error in a file without a position.
     pub fn of_file(file: impl Into<String>, what: impl fmt::Display) -> Self {
         Self::File(sinew::formats::Error::unsupported(what.to_string(), "").with_file(file))
     }
 
-    /// Creates an error in a file with its place.
+    /// Creates an error at a position in a file.
     pub fn at(file: impl Into<String>, what: impl fmt::Display, place: impl Into<String>) -> Self {
         Self::File(sinew::formats::Error::unsupported(what.to_string(), place).with_file(file))
     }
@@ -43,7 +43,7 @@ impl Failure {
         })
     }
 
-    /// Returns the JSON of `--json`: the file, the problem, and its place; `None` for usage errors.
+    /// Returns the JSON of `--json`: the file, the problem, and its position; `None` for usage errors.
     pub fn to_json(&self) -> Option<Value> {
         match self {
             Self::File(error) => {

@@ -20,7 +20,7 @@ pub struct Fall<'a> {
     pub realtime_factor: f64,
     /// Verdict on the fall.
     pub verdict: Verdict,
-    /// Reasons for the verdict: figures outside their bars, one sentence each.
+    /// Reasons for the verdict: metrics beyond their thresholds, one sentence each.
     pub reasons: Vec<String>,
 }
 
@@ -37,7 +37,7 @@ impl<'a> Fall<'a> {
         Self { input, baked, realtime_factor, verdict, reasons }
     }
 
-    /// Returns the figures of the contract.
+    /// Returns the metrics of the contract.
     pub fn to_json(&self, outputs: &[&Path]) -> Value {
         let outputs: Vec<String> = outputs.iter().map(|path| path.display().to_string()).collect();
         let mut object = Map::new();

@@ -20,7 +20,7 @@ pub const SECONDS: f32 = 8.0;
 /// Result of the judge.
 pub struct Judgement {
     pub verdict: Verdict,
-    /// Figures outside their bars, one sentence each.
+    /// Metrics beyond their thresholds, one sentence each.
     pub reasons: Vec<String>,
     pub skin: SkinReport,
 }
@@ -35,7 +35,7 @@ pub fn judge_life(
     let def = &life.fall.input.character.ragdoll;
     let of_drops = |[drop, wall]: &[_; 2]| {
         let (verdict, mut reasons) = judge(drop, wall);
-        // Removes the entry for unmeasured figures.
+        // Remove the entry for unmeasured metrics.
         reasons.pop();
         (verdict, reasons)
     };

@@ -1,4 +1,4 @@
-//! The `sinew` command line. Each command is a struct in a file of its own.
+//! The `sinew` command line. Each command is a struct in a separate file.
 #![forbid(unsafe_code)]
 
 mod commands;

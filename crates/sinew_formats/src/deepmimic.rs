@@ -73,7 +73,7 @@ pub struct DeepMimicClip {
 /// Reads a character: joints and their attachment. Ignores bodies, limits and gains.
 ///
 /// # Errors
-/// Returns an error that names the place: invalid JSON, a missing key or one of another type, a parent that does not
+/// Returns an error that names the location: invalid JSON, a missing key or one of another type, a parent that does not
 /// precede its child, a joint of an unknown type, no joint, a second root.
 pub fn read_deepmimic_character(bytes: &[u8]) -> Result<DeepMimicCharacter> {
     let json = json::parse(bytes)?;
@@ -131,7 +131,7 @@ fn attached(at: At<'_>) -> Result<Rotation> {
 /// Reads a clip of a character.
 ///
 /// # Errors
-/// Returns an error that names the place: invalid JSON, no frame, a row whose length does not match the character, a
+/// Returns an error that names the location: invalid JSON, no frame, a row whose length does not match the character, a
 /// non-finite number, a frame without duration (other than the last).
 pub fn read_deepmimic(bytes: &[u8], character: &DeepMimicCharacter) -> Result<DeepMimicClip> {
     let json = json::parse(bytes)?;

@@ -1,4 +1,4 @@
-//! Error of this crate: the problem, the file, and the place in the file.
+//! Error of this crate: the problem, the file, and the location in the file.
 
 use core::fmt;
 

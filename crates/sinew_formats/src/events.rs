@@ -41,7 +41,7 @@ const FIRED_BY: [(&str, FiredBy); 3] =
 /// mention.
 ///
 /// # Errors
-/// Returns an error that names the place: invalid JSON, another kind of file or a newer version, an unknown key, a
+/// Returns an error that names the location: invalid JSON, another kind of file or a newer version, an unknown key, a
 /// clip that does not exist, is ambiguous or is listed twice, an event without a name or outside its clip, a weight
 /// outside 0..=1.
 pub fn read_events(bytes: &[u8], clips: &[Clip]) -> Result<Vec<Option<Vec<ClipEvent>>>> {

@@ -15,7 +15,7 @@
 //! clip back into the same file.
 //!
 //! All functions take bytes, and a closure for external files; only the feature `fs` (on by default) accesses the file
-//! system. Input is untrusted: the result is a value or an [`Error`] with a place, never a panic, and memory is
+//! system. Input is untrusted: the result is a value or an [`Error`] with a location, never a panic, and memory is
 //! proportional to the input.
 #![forbid(unsafe_code)]
 

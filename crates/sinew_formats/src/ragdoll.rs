@@ -108,7 +108,7 @@ const JOINT_KEYS: [&str; 7] =
 /// Reads the ragdoll of a ragdoll file. Rig joints are indices that only the rig can check.
 ///
 /// # Errors
-/// Returns an error that names the place, such as `bodies[3].joint.limits_deg.twist`: no bodies, a parent that does
+/// Returns an error that names the location, such as `bodies[3].joint.limits_deg.twist`: no bodies, a parent that does
 /// not precede its child, reversed limits, sizes and masses that are not positive, unknown keys and names, a later
 /// version.
 pub fn read_ragdoll(bytes: &[u8]) -> Result<RagdollDef> {
@@ -188,7 +188,7 @@ fn read_shape(at: At<'_>) -> Result<Shape> {
         let name = at.need("type")?.str()?;
         return Err(at.malformed(format!("a body of a ragdoll cannot be a {name}")));
     }
-    // This form rejects NaN.
+    // The comparison is false for NaN.
     if !(shape.smallest_extent() >= SMALLEST && shape.bounding_radius() <= FARTHEST) {
         return Err(at.malformed("is smaller than a micrometre or larger than 1,000 km"));
     }

@@ -93,8 +93,8 @@ const SURFACE_KEYS: [&str; 6] = ["density", "material", "filter", "sensor", "con
 /// Reads the bodies of a world file, in file order.
 ///
 /// # Errors
-/// Returns an error that names the place, such as `bodies[3].shapes[0].half_extents[1]`: sizes that are not positive,
-/// non-finite numbers, unknown keys, types and materials, a half-space on a moving body, a later version.
+/// Returns an error that names the location, such as `bodies[3].shapes[0].half_extents[1]`: sizes that are not
+/// positive, non-finite numbers, unknown keys, types and materials, a half-space on a moving body, a later version.
 pub fn read_world(bytes: &[u8]) -> Result<Vec<BodyDef>> {
     let value = json::parse(bytes)?;
     let root = At::root(&value);

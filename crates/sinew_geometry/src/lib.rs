@@ -46,7 +46,7 @@
 //! | [`submerged`] | the part of a shape below a plane |
 //! | [`revolved`], [`slabs`] | solids of revolution; lines through boxes, one or eight at a time |
 //!
-//! # Figures
+//! # Measurements
 //! Overlap of two boxes, in milliseconds for 4,096 pairs in the cache and for 10,000 pairs from memory, with AVX2, next
 //! to the separating axis test of `parry3d` 0.31 (`obb_tests` and `obb_tests_streamed` of `docs/benchmarks.md`):
 //!

@@ -38,7 +38,7 @@ impl Ray {
 
 /// Largest component of a direction whose square is safe from overflow.
 const LONG: f32 = 1e15;
-/// Factor for longer directions: 2⁻⁹⁶, exact.
+/// Factor for directions longer than that: 2⁻⁹⁶, exact.
 const SHORTENED: f32 = f32::from_bits((127 - 96) << 23);
 
 /// First point of a ray in a shape.
@@ -153,7 +153,7 @@ fn enter_ball(center: Vec3, radius: f32, origin: Vec3, direction: Vec3) -> Optio
     let middle = -offset.dot(direction) / length_squared;
     let closest = offset + direction * middle;
     let depth = radius * radius - closest.dot(closest);
-    // This form rejects NaN, which squares that overflow produce.
+    // The comparison is false for NaN, which squares that overflow produce.
     if !(depth >= 0.0 && middle >= 0.0) {
         return None;
     }

@@ -84,7 +84,10 @@ mod tests {
                 Nearest::Face(..) => 2,
             }] += 1;
             let shares = nearest.shares();
-            assert!(shares.iter().all(|share| *share > -1e-4), "in the triangle: {shares:?}");
+            assert!(
+                shares.iter().all(|share| *share > -1e-4),
+                "barycentric coordinates outside the triangle: {shares:?}"
+            );
             assert!((shares.iter().sum::<f32>() - 1.0).abs() < 1e-5);
             let away = (at(shares) - p).length();
             let mut least = f32::INFINITY;
@@ -94,7 +97,10 @@ mod tests {
                     least = min(least, (at([u, v, max(1.0 - u - v, 0.0)]) - p).length());
                 }
             }
-            assert!(away < least + 1e-4 && away > least - 0.06, "{away} and {least}: {nearest:?}");
+            assert!(
+                away < least + 1e-4 && away > least - 0.06,
+                "distance {away}, sampled {least}: {nearest:?}"
+            );
         }
         assert!(found.iter().all(|count| *count > 20), "{found:?}");
     }

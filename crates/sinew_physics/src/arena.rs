@@ -110,7 +110,7 @@ impl<T: Item> Arena<T> {
         generation == Some(&id.generation()) && id.lineage().goes_with(self.lineage)
     }
 
-    /// Id of the item in a slot; for a free slot, the id of the next item in it.
+    /// Id of the item in a slot; for a free slot, the id of the next item stored there.
     pub fn id(&self, index: u32) -> T::Id {
         T::Id::new(index, self.generations[index as usize], self.lineage)
     }
@@ -135,7 +135,7 @@ impl<T: Item> Arena<T> {
         self.free.len() == self.items.len()
     }
 
-    /// Replaces every item by `item` of its id and itself; slots and free list are the same.
+    /// Replaces every item by the result of `item` for its id and itself; keeps slots and free list.
     pub fn map<U>(self, mut item: impl FnMut(T::Id, T) -> U) -> Arena<U> {
         let Self { lineage, generations, items, free } = self;
         let slots = items.into_iter().zip(&generations).enumerate();

@@ -9,7 +9,7 @@ pub(crate) struct StepContext<'a> {
     pub dt: f32,
     pub h: f32,
     pub substeps: u32,
-    /// Start time, seconds.
+    /// Start time of the step, seconds.
     pub time: f64,
     pub runner: &'a dyn TaskRunner,
     pub profiler: &'a dyn Profiler,

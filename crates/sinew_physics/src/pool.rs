@@ -119,7 +119,7 @@ impl Shared {
             // SAFETY: this worker is inside, by a compare-exchange (Acquire) on a gate that was open, so the pointer is
             // the one stored before the gate was opened (SeqCst store). The caller of `run` keeps the batch alive and
             // in place until this worker leaves: even if a call panics (`work` catches panics), it does not return
-            // before nobody is inside. Nothing of the batch is used after `leave`.
+            // until no thread is inside. Nothing of the batch is used after `leave`.
             unsafe { &*batch }.work();
             self.leave();
         }

@@ -6,9 +6,10 @@ use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
 use sinew_math::lanes::WIDTH;
 
-/// Most items in one claim of a thread. Two threads that claim one by one spend more on the counter than on a light item.
+/// Largest number of items that a thread claims at once. Two threads that claim single items spend more time on the
+/// counter than on light items.
 const MOST_CLAIMED: usize = 32;
-/// Smallest number of claims for a few items, so that no thread waits long for another's last claim.
+/// Smallest number of claims for a short list, so that no thread waits long for the last claim of another.
 const CLAIMS: usize = 16;
 
 /// The items of a slice, shared by threads that each access different ones.
@@ -63,7 +64,7 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn at(&self, places: &Places, k: usize) -> &T {
         assert!(places.len <= self.len);
-        // SAFETY: all places are below their length, and the caller of `new` promised that nobody writes the item
+        // SAFETY: all indices are below their length, and the caller of `new` promised that no thread writes the item
         // meanwhile.
         unsafe { &*self.start.add(places.at[k] as usize) }
     }
@@ -75,8 +76,8 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn at_mut(&mut self, places: &Places, k: usize) -> &mut T {
         assert!(places.len <= self.len);
-        // SAFETY: all places are below their length, and the caller of `new` promised that nobody else reads or writes
-        // the item meanwhile.
+        // SAFETY: all indices are below their length, and the caller of `new` promised that no other thread reads or
+        // writes the item meanwhile.
         unsafe { &mut *self.start.add(places.at[k] as usize) }
     }
 
@@ -102,7 +103,7 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn get(&self, i: usize) -> &T {
         assert!(i < self.len);
-        // SAFETY: the item is inside the slice, and the caller of `new` promised that nobody writes it meanwhile.
+        // SAFETY: the item is inside the slice, and the caller of `new` promised that no thread writes it meanwhile.
         unsafe { &*self.start.add(i) }
     }
 
@@ -113,8 +114,8 @@ impl<'a, T> SharedRows<'a, T> {
     #[inline(always)]
     pub fn get_mut(&mut self, i: usize) -> &mut T {
         assert!(i < self.len);
-        // SAFETY: the item is inside the slice, and the caller of `new` promised that nobody else reads or writes it
-        // meanwhile.
+        // SAFETY: the item is inside the slice, and the caller of `new` promised that no other thread reads or writes
+        // it meanwhile.
         unsafe { &mut *self.start.add(i) }
     }
 }
@@ -126,7 +127,7 @@ pub(crate) fn for_each_mut<T: Send>(runner: &dyn TaskRunner, items: &mut [T], wo
     let count = items.len();
     let claim = usize::min(usize::max(count / CLAIMS, 1), MOST_CLAIMED);
     let next = AtomicUsize::new(0);
-    // SAFETY: `fetch_add` hands out every index once, so no two calls hold the same item, whatever the runner does; `items`
+    // SAFETY: `fetch_add` hands out every index once, so no two calls hold the same item, for any runner; `items`
     // is borrowed exclusively until `run` has returned.
     let rows = unsafe { SharedRows::new(items) };
     let task = || {
@@ -137,16 +138,16 @@ pub(crate) fn for_each_mut<T: Send>(runner: &dyn TaskRunner, items: &mut [T], wo
         }
     };
     runner.run(count.div_ceil(claim), &task);
-    // A runner that made too few calls must not lose work.
+    // If the runner made too few calls, this thread does the remaining work.
     while next.load(Ordering::Relaxed) < count {
         task();
     }
 }
 
-/// Most items of [`for_each_near`].
+/// Largest number of items of [`for_each_near`].
 pub(crate) const MOST_NEAR: usize = u64::BITS as usize;
 
-/// Most threads that take part in [`for_each_near`].
+/// Largest number of threads that take part in [`for_each_near`].
 const MOST_CALLS: usize = 16;
 
 /// Like [`for_each_mut`], for at most [`MOST_NEAR`] items whose neighbours share memory: each thread starts at the item
@@ -155,7 +156,7 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
     let count = items.len();
     assert!(count <= MOST_NEAR);
     let (taken, entered) = (AtomicU64::new(0), AtomicU32::new(0));
-    // SAFETY: `fetch_or` sets the bit of an item once, so no two calls hold the same item, whatever the runner does; `items` is
+    // SAFETY: `fetch_or` sets the bit of an item once, so no two calls hold the same item, for any runner; `items` is
     // borrowed exclusively until `run` has returned.
     let rows = unsafe { SharedRows::new(items) };
     let task = || {
@@ -163,8 +164,8 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
         if taken.load(Ordering::Relaxed).count_ones() as usize == count {
             return;
         }
-        // Threads start far from each other: the second in the middle, the next two at the quarters. The caller is the
-        // first, because the others start later.
+        // Threads start far from each other: the second at the middle, the next two at the quarters. The caller starts
+        // first, because the other threads are delayed.
         let number = entered.fetch_add(1, Ordering::Relaxed);
         let share = (u64::from(number.reverse_bits()) * count as u64) >> u32::BITS;
         let start = share as usize;
@@ -176,7 +177,7 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
         }
     };
     runner.run(usize::min(count, MOST_CALLS), &task);
-    // A runner that made no call must not lose work.
+    // If the runner made no call, this thread does the work.
     task();
 }
 

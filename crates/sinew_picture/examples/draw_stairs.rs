@@ -1,5 +1,5 @@
-//! Draws a figure on stairs: `cargo run --release -p sinew_picture --example draw_stairs -- DIR` writes `stairs.png` and
-//! a movie as `stairs.gif` there, and prints the times.
+//! Draws a character on stairs: `cargo run --release -p sinew_picture --example draw_stairs -- DIR` writes `stairs.png`
+//! and a movie as `stairs.gif` there, and prints the times.
 
 #[path = "../tests/it/stairs.rs"]
 mod stairs;

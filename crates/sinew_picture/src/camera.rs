@@ -26,8 +26,9 @@ impl Camera {
         Self { position: center + direction * distance, target: center, fov_y: PORTRAIT_FOV }
     }
 
-    /// Returns a camera with a field of view of 35° that looks at the middle of a box (world space, metres) from `direction` (toward
-    /// the camera, any length). Its distance is just enough for the whole box on a picture `aspect` times as wide as high.
+    /// Returns a camera with a field of view of 35° that looks at the centre of a box (world space, metres) from
+    /// `direction` (toward the camera, any length). Its distance is just enough for the whole box on a picture `aspect`
+    /// times as wide as high.
     pub fn framing_box(bounds: &Aabb, direction: Vec3, aspect: f32) -> Self {
         let back = normalize_or(direction, Vec3::Z);
         let right = normalize_or(Vec3::Y.cross(back), Vec3::X);
@@ -90,9 +91,10 @@ pub struct FollowCamera {
     pub fov_y: f32,
     /// Time in which the lag behind the subject shrinks to 1/e, seconds, above 0. Default 0.35.
     pub time_constant: f32,
-    /// Distance that the subject may move from the middle before the camera follows, metres. Default a fifth of the radius.
+    /// Distance that the subject may move from the centre before the camera follows, metres. Default a fifth of the
+    /// radius.
     pub slack: f32,
-    /// Largest distance of the subject from the middle, metres. Default 0.7 of the radius.
+    /// Largest distance of the subject from the centre, metres. Default 0.7 of the radius.
     pub reach: f32,
     target: Vec3,
 }
@@ -269,7 +271,7 @@ mod tests {
                 let [x, y, w] = view.clip_from_world(corner);
                 farthest = sinew::math::max(farthest, sinew::math::max((x / w).abs(), (y / w).abs()));
             }
-            assert!((farthest - 1.0).abs() < 1e-3, "from {direction}: {farthest}");
+            assert!((farthest - 1.0).abs() < 1e-3, "from {direction}: farthest corner at {farthest}");
         }
     }
 

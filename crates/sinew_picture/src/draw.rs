@@ -206,7 +206,7 @@ fn side_latitude(half_height: f32, bottom: f32, top: f32) -> f32 {
     if half_height > 0.0 { trig::asin((bottom - top) / (2.0 * half_height)) } else { 0.0 }
 }
 
-/// Returns cylinders and cones: flat ends, and a side whose rings have normals of their own.
+/// Returns cylinders and cones: flat ends, and a side whose rings have separate normals.
 fn frustum_model(half_height: f32, bottom: f32, top: f32) -> Model {
     let pole = core::f32::consts::FRAC_PI_2;
     let lean = trig::atan2(bottom - top, 2.0 * half_height);

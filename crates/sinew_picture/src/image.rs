@@ -1,7 +1,7 @@
 /// A finished picture: 8-bit sRGB with alpha, rows from the top.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Image {
-    /// Pixels across.
+    /// Width in pixels.
     pub width: u32,
     /// Pixels down.
     pub height: u32,

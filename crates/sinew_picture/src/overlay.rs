@@ -50,7 +50,7 @@ fn on_picture(line: &Line, view: &View, samples: &Samples) -> Option<[ScreenVert
             last = sinew::math::min(last, da / (da - db));
         }
     }
-    // This comparison also rejects NaN.
+    // The comparison is false for NaN.
     let some = first < last;
     some.then(|| {
         [first, last].map(|t| {

@@ -29,7 +29,7 @@ pub struct RenderSettings {
 /// Smoothing of edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Antialiasing {
-    /// One sample in the middle of each pixel: jagged, twice as fast.
+    /// One sample at the centre of each pixel: jagged, twice as fast.
     Off,
     /// Four samples a pixel on a rotated grid: near-vertical and near-horizontal edges get all five steps.
     #[default]
@@ -49,7 +49,7 @@ impl Default for RenderSettings {
 }
 
 impl Antialiasing {
-    /// Returns the positions of the samples within a pixel, 1/256 pixel from its middle.
+    /// Returns the positions of the samples within a pixel, 1/256 pixel from its centre.
     fn offsets(self) -> &'static [[i64; 2]] {
         match self {
             Self::Off => &[[0, 0]],
@@ -197,7 +197,7 @@ impl Renderer {
         Some(shader.flat_span(id, x, y))
     }
 
-    /// Returns the linear colour of a pixel: every triangle in it is shaded once, in the middle of its samples.
+    /// Returns the linear colour of a pixel: every triangle in it is shaded once, at the mean position of its samples.
     fn pixel(&self, shader: &Shader<'_>, x: usize, y: usize) -> [f32; 3] {
         let solid = mean(&self.solid, x, y, |id, sample| {
             let (px, py) = (x as f32 + sample[0], y as f32 + sample[1]);

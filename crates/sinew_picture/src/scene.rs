@@ -86,7 +86,7 @@ pub enum ShadowCasting {
     /// The surface casts a shadow.
     #[default]
     Yes,
-    /// The surface casts no shadow: right for floors with nothing below.
+    /// The surface casts no shadow; suitable for floors.
     No,
 }
 

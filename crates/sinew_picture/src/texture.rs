@@ -64,7 +64,7 @@ impl Texture {
     pub(crate) fn level_for(&self, texels_per_pixel: f32) -> usize {
         let mut level = 0;
         let mut area = texels_per_pixel;
-        // A level down quarters the area; half a level up is a factor of two.
+        // Each level has a quarter of the area; the limit of 2 is half a level.
         while area > 2.0 && level + 1 < self.levels.len() {
             area *= 0.25;
             level += 1;

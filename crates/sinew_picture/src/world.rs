@@ -13,9 +13,9 @@ use std::collections::{HashMap, HashSet};
 /// Part of a world shown in a picture: thin and small things are drawn thick enough to be visible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<'a> {
-    /// Middle of the frame, world space, metres.
+    /// Centre of the frame, world space, metres.
     pub center: Vec3,
-    /// Radius of the frame around its middle, metres, above 0.
+    /// Radius of the frame around its centre, metres, above 0.
     pub radius: f32,
     /// Drawing mode of kinematic bodies.
     pub kinematic: Kinematic,
@@ -28,7 +28,7 @@ pub struct Frame<'a> {
 pub enum Kinematic {
     /// The bodies are drawn like others.
     Solid,
-    /// The edges of the bodies are drawn, so that they do not hide the figure that leads them.
+    /// The edges of the bodies are drawn, so that they do not hide the character that leads them.
     Wire,
 }
 
@@ -46,7 +46,7 @@ const COLORS: [[f32; 3]; 8] = [
 const STANDING: [f32; 3] = [0.34, 0.35, 0.36];
 const KINEMATIC: [f32; 3] = [0.20, 0.24, 0.28];
 const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
-/// Brightness of every second square of a floor with a colour of its own, as a factor.
+/// Brightness of every second square of a floor with its own colour, as a factor.
 const MOWN: f32 = 1.2;
 const PARTICLE: [f32; 3] = [0.70, 0.34, 0.05];
 const SPRING: [f32; 3] = [0.25, 0.22, 0.18];

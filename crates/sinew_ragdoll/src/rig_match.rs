@@ -20,7 +20,7 @@ use crate::build::joint_name;
 use crate::def::RagdollDef;
 use sinew_anim::{JointIdx, Rig};
 
-/// A body whose bone the rig does not have.
+/// Error for a body whose bone the rig does not have.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RigMismatch {
     /// The rig has no joint of this name, or several of them but none at the old index.
@@ -91,7 +91,8 @@ impl RagdollDef {
                     return Err(RigMismatch::NoJoint { joint, bone: body.bone.clone(), body: index });
                 }
             } else {
-                // Indices of a reordered rig have no meaning; joints below the bone follow it anyway.
+                // The old indices have no meaning in a reordered rig; joints below the bone follow it without being
+                // listed.
                 self.bodies[index].merged.clear();
             }
         }

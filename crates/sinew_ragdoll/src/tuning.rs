@@ -1,7 +1,7 @@
 //! Behaviour constants for building, judging and driving ragdolls: the numbers an engineer would tune.
 //!
 //! Each comment states the unit and space, the effect of a larger and a smaller value, and the tests
-//! (`crates/sinew_ragdoll/tests/it`) that show it. Effects without a figure are judgement, not measurement.
+//! (`crates/sinew_ragdoll/tests/it`) that show it. Effects without a number are judgement, not measurement.
 
 // build/report.rs
 
@@ -28,7 +28,7 @@ pub(crate) const LEAST_HERTZ: f32 = 0.02;
 
 /// Number of half-lives after which a body becomes keyed.
 ///
-/// Larger: the body lags longer. Smaller: it jumps. Shown by the tests of `drive`.
+/// Larger: the body lags longer. Smaller: it jumps to the animation. Shown by the tests of `drive`.
 pub(crate) const KEYED_AFTER: f32 = 5.0;
 
 // drive/mod.rs
@@ -144,13 +144,13 @@ pub(crate) const CLEARLY_SMALLER: f32 = 0.9;
 
 /// Least half side or radius of a shape, metres.
 ///
-/// Larger: fingers and ears of small figures become clubs. Smaller: thin shapes fall through edges. Shown by the tests
-/// of `build`.
+/// Larger: fingers and ears of small characters become too thick. Smaller: thin shapes fall through edges. Shown by the
+/// tests of `build`.
 pub(crate) const LEAST_HALF: f32 = 0.0075;
 
 /// Factor on the fitted cross-section that places contacts inside the skin instead of outside.
 ///
-/// Larger: figures float. Smaller: figures sink in. Shown by the tests of `skin`.
+/// Larger: characters float. Smaller: they sink in. Shown by the tests of `skin`.
 pub(crate) const SHRINK: f32 = 0.97;
 
 /// Share of a bone's length by which its shape may extend past each of its joints. Two neighbours then overlap by at
@@ -257,8 +257,8 @@ pub(crate) const FINEST: f32 = 0.03;
 
 /// Largest number of parts into which a side of a triangle is cut.
 ///
-/// Larger: figures with few triangles are slow to fit. Smaller: same effect as a larger [`FINEST`]. Shown by the tests
-/// of `rig_variants`.
+/// Larger: characters with few triangles are slow to fit. Smaller: same effect as a larger [`FINEST`]. Shown by the
+/// tests of `rig_variants`.
 pub(crate) const MOST_CUTS: f32 = 8.0;
 
 // garments/sheet.rs
@@ -376,7 +376,7 @@ pub(crate) const WIDEST_SWING: f32 = 2.967;
 
 /// Half-axes of the square of random swings over those of the ellipse that contains them: √½, minus a margin.
 ///
-/// Larger: random poses exceed their limits. Smaller: all random poses are near the middle. Shown by the tests of
+/// Larger: random poses exceed their limits. Smaller: all random poses are near the centre. Shown by the tests of
 /// `filter`.
 pub(crate) const INSCRIBED: f32 = 0.7;
 
@@ -416,7 +416,7 @@ pub(crate) const LEAST_TRUNK: f32 = 0.1;
 
 /// Least share of the sample lines that must cross a closed skin, 0 to 1.
 ///
-/// Larger: the mass of figures with open necks is computed from their shapes. Smaller: volumes include the air under
+/// Larger: the mass of characters with open necks is computed from their shapes. Smaller: volumes include the air under
 /// cloaks. Shown by the tests of `volume`.
 pub(crate) const CLOSED: f32 = 0.6;
 
@@ -460,8 +460,8 @@ pub(crate) const STILL_UPRIGHT: f32 = 0.8;
 /// Velocities of the highest point used to push over a limp body that stays upright, weakest first, as shares of √(g
 /// h), h its height.
 ///
-/// A block half as deep as it is tall falls from 0.7 on. Larger: a slender figure flies. Smaller: a broad one stays
-/// upright. Shown by the tests of `faults`.
+/// A block half as deep as it is tall falls from 0.7 on. Larger: a slender character is thrown into the air. Smaller: a
+/// broad one stays upright. Shown by the tests of `faults`.
 pub(crate) const TOPPLES: [f32; 3] = [0.35, 0.7, 1.05];
 
 /// Largest ratio of a creature's mass to the cube of its longest side, kg/m³: a human has 14, an elephant 20, a bear
@@ -477,11 +477,12 @@ pub(crate) const ROUND: f32 = 20.0;
 
 /// Largest factor by which a character grows or shrinks between its clip and a get-up.
 ///
-/// Larger: a giant that becomes a child for a second passes. Smaller: clips that stretch a figure slightly count as
+/// Larger: a giant that becomes a child for a second passes. Smaller: clips that stretch a character slightly count as
 /// faults. Shown by the tests of `faults`.
 pub(crate) const OTHER_SIZE: f32 = 1.15;
 
-/// Least distance of two limbs' roots from the middle plane, as a share of the height, from which the limbs have sides.
+/// Least distance of two limbs' roots from the plane of symmetry, as a share of the height, from which each limb counts
+/// as left or right.
 ///
 /// Larger: narrow bodies are not checked. Smaller: noise counts as a side. Shown by the tests of `faults`.
 pub(crate) const ON_A_SIDE: f32 = 0.01;
@@ -512,8 +513,8 @@ pub(crate) const STANDS_OFF: f32 = 0.04;
 
 /// Largest depth of the lowest drawn point in the floor while getting up, as a share of the size.
 ///
-/// Larger: hands and knees far below the floor pass. Smaller: fingertips that dip in for a moment count as flaws.
-/// Shown by the tests of `skin`.
+/// Larger: hands and knees far below the floor pass. Smaller: fingertips that dip in briefly count as flaws. Shown by
+/// the tests of `skin`.
 pub(crate) const SUNK_RISING: f32 = 0.1;
 
 /// Height of the lowest drawn point over the floor at rest, as a share of the size, above which the verdict is bad.
@@ -522,7 +523,7 @@ pub(crate) const SUNK_RISING: f32 = 0.1;
 /// round shape is bad. Shown by the tests of `skin`.
 pub(crate) const HANGS: f32 = 0.125;
 
-/// Ratio of a skin figure to its bar above which the verdict is bad.
+/// Ratio of a skin metric to its threshold above which the verdict is bad.
 ///
 /// Larger: torsos torn by half a height are usable. Smaller: a coat that drags is bad. Shown by the tests of `skin`.
 pub(crate) const GROSS: f32 = 3.0;
@@ -536,19 +537,21 @@ pub(crate) const OWN_WEIGHT: f32 = 0.25;
 
 // skin/sides.rs
 
-/// Largest distance of a pivot from its twin's mirror image, as a share of the size.
+/// Largest distance of a pivot from its counterpart's mirror image, as a share of the size.
 ///
-/// Larger: unrelated bodies become twins. Smaller: sculpted figures have no twins. Shown by the tests of `skin`.
+/// Larger: unrelated bodies count as counterparts. Smaller: sculpted characters have no counterparts. Shown by the
+/// tests of `skin`.
 pub(crate) const MIRRORED: f32 = 0.05;
 
-/// Largest distance from the plane of symmetry of a pivot without twin, as a share of the size.
+/// Largest distance from the plane of symmetry of a pivot without counterpart, as a share of the size.
 ///
-/// Larger: narrow legs have no twins. Smaller: bodies of spines count as lacking twins. Shown by the tests of `skin`.
+/// Larger: narrow legs have no counterparts. Smaller: counterparts of spine bodies count as missing. Shown by the tests
+/// of `skin`.
 pub(crate) const MIDDLE: f32 = 0.02;
 
 /// Largest distance from its parent of a body whose skin is not linked to another body's, as a share of the size.
 ///
-/// Larger: floating parts are not detected. Smaller: figures of loose parts count as torn. Shown by the tests of
+/// Larger: floating parts are not detected. Smaller: characters of loose parts count as torn. Shown by the tests of
 /// `skin`.
 pub(crate) const LOOSE: f32 = 0.2;
 
@@ -586,7 +589,7 @@ pub(crate) const JUMPS: f32 = 0.03;
 /// Larger: steps count as slides. Smaller: skating just over the floor is missed. Shown by the tests of `rising`.
 pub(crate) const STANDS_NEAR: f32 = 0.008;
 
-/// Height of the hips over the floor from which the feet bear the body, as a share of the hips' height in the bind
+/// Height of the hips over the floor from which the feet carry the body, as a share of the hips' height in the bind
 /// pose; 0.05 to 0.3 when lying or sitting.
 ///
 /// Larger: skating of a squatting body is missed. Smaller: legs that a sitting body draws in count as slides. Shown by

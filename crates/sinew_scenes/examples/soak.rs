@@ -15,7 +15,7 @@ struct Part {
     scene: &'static str,
     settings: &'static [&'static str],
     round: Option<u64>,
-    /// Speed that the scene's blows give a single limb, m/s.
+    /// Speed that the scene's hits give a single limb, m/s.
     blows: f32,
 }
 
@@ -34,7 +34,7 @@ const PARTS: &[Part] = &[
     Part { name: "brawl", scene: "brawl", settings: &[], round: None, blows: BLOW },
 ];
 
-/// Speed at which the brawl's blow of 90 N·s drives the lightest limb, a hand of 0.4 kg, m/s.
+/// Speed that the brawl's hit of 90 N·s gives the lightest limb, a hand of 0.4 kg, m/s.
 const BLOW: f32 = 225.0;
 /// Largest joint gap, metres, and largest speed, m/s.
 const GAP: f32 = 5e-3;

@@ -48,7 +48,7 @@ pub const STAIRS_WIDTH: f32 = 1.6;
 pub const PORCH_HEIGHT: f32 = STEPS as f32 * STEP_RISE;
 
 const PORCH_HALF_WIDTH: f32 = 2.3;
-/// Places of the outer faces of the front and the back wall along z, metres.
+/// Positions of the outer faces of the front and the back wall along z, metres.
 const FRONT: f32 = -2.2;
 const BACK: f32 = -6.4;
 const HALF_WIDTH: f32 = 2.5;
@@ -88,7 +88,8 @@ impl Site {
         props
     }
 
-    /// Start of the character: with a cabin, inside behind the door, facing the stairs; otherwise at the same place on the ground.
+    /// Start of the character: with a cabin, inside behind the door, facing the stairs; otherwise at the same position
+    /// on the ground.
     pub fn spawn(self) -> Spawn {
         let start = FRONT - 0.4;
         let height = if self == Self::CabinWithStairs { PORCH_HEIGHT } else { 0.0 };

@@ -19,7 +19,7 @@ pub struct Chains {
     pub bones: usize,
     /// True if the last chain is next to the first.
     pub closed: bool,
-    /// Returns the position in the bind pose, metres, at a fraction of the way across and a fraction of the way down, 0..=1.
+    /// Returns the position in the bind pose, metres, at a fraction across and a fraction down the garment, 0..=1.
     pub place: fn(f32, f32) -> Vec3,
     /// Linear RGBA colour.
     pub color: [f32; 4],

@@ -115,7 +115,7 @@ impl Script for Fallen {
         Ok(())
     }
 
-    /// Returns the figures with the bars of a drop test.
+    /// Returns the metrics with the thresholds of a drop test.
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let q = self.meter.quality();
         vec![

@@ -60,7 +60,7 @@ pub(crate) fn level_rod(start: f32, length: f32, radius: f32) -> BodyDef {
     BodyDef { rotation: tilt(90.0), ..ghost(def) }
 }
 
-/// A thin rod along x, from `start` to `start + length`, with the moment `m l²/12` about its middle, that collides
+/// A thin rod along x, from `start` to `start + length`, with the moment `m l²/12` about its centre. The rod collides
 /// with nothing.
 pub(crate) fn thin_rod(start: f32, length: f32, mass: f32) -> BodyDef {
     let moment = mass * length * length / 12.0;

@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// metres.
 const MANNEQUIN: f32 = 1.8;
 const FITTING: core::ops::RangeInclusive<f32> = 1.3..=2.3;
-/// Distance from the place behind the door to the start, metres: the wall hides a character at the start.
+/// Distance from the position behind the door to the start, metres: the wall hides a character at the start.
 const START_DISTANCE: f32 = 0.45;
 /// Speed of the walk of a character of the mannequin's height, m/s.
 const WALK: f32 = 1.3;

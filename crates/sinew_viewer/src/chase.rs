@@ -4,8 +4,8 @@ use sinew::math::{Vec3, min, trig};
 
 /// Time in which the lag shrinks to 1/e, seconds: so long that swinging limbs do not shake the camera.
 const LAG: f32 = 0.3;
-/// Largest distance of the subject from the middle, as a share of the camera's distance: a fall down stairs stays in the picture,
-/// and after a jump the camera arrives without a lag.
+/// Largest distance of the subject from the centre, as a share of the camera's distance: a fall down stairs stays in
+/// the picture, and after a jump the camera arrives without a lag.
 const REACH: f32 = 0.16;
 
 /// Point that glides after a subject, metres, world space.

@@ -263,7 +263,11 @@ mod tests {
             assert_eq!(orbit, before, "it is above");
             orbit.turn(0.0, -3.0);
             orbit.rise_above(&world);
-            assert!(orbit.camera().position.y > 0.01, "{height} {distance}: {:?}", orbit.camera());
+            assert!(
+                orbit.camera().position.y > 0.01,
+                "height {height}, distance {distance}: {:?}",
+                orbit.camera()
+            );
         }
         // A camera whose target is below the ground is not raised.
         let mut below = Orbit { target: Vec3::NEG_Y, yaw: 0.0, pitch: -0.5, distance: 3.0 };

@@ -94,7 +94,7 @@ fn leave(removed: On<Remove<Collider>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<ColliderOf>();
 }
 
-/// Finds the body above each collider, and the collider's place on the body.
+/// Finds the body above each collider, and the collider's pose on the body.
 pub(crate) fn find_bodies(
     mut commands: Commands,
     mut physics: ResMut<Physics>,

@@ -80,7 +80,7 @@ pub(crate) fn read_transforms(
             Err(_) => to_pose(transform),
         };
         physics.set_transform(handle.id(), pose);
-        // The next lock holds the new place.
+        // The next lock holds the new position.
         unlock(&mut handle, &mut physics);
     }
 }

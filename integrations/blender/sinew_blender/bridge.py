@@ -46,7 +46,7 @@ class Loaded:
     joints: list
     parents: dict
     rest: dict
-    # Metres of a unit of Blender, as the ragdoll has it.
+    # Metres per Blender unit, as in the ragdoll.
     unit: float = 1.0
 
 

@@ -53,7 +53,7 @@ fn decades(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
     [(least - 0.05).floor(), (most + 0.05).ceil()]
 }
 
-/// Returns the place of a value on a logarithmic axis.
+/// Returns the position of a value on a logarithmic axis.
 fn place(value: f64, [low, high]: [f64; 2], [from, to]: [f64; 2]) -> f64 {
     from + (value.log10() - low) / (high - low) * (to - from)
 }
@@ -180,7 +180,7 @@ mod tests {
     use crate::command;
     use std::fs;
 
-    /// The charts agree with the committed page of figures.
+    /// The charts agree with the committed page of results.
     #[test]
     fn charts_agree_with_the_page() {
         let page = fs::read_to_string(command::root().join("docs/benchmarks.md")).expect("the page");

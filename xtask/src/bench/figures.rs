@@ -1,9 +1,9 @@
-//! Quality figures listed beside the times, and their formatting.
+//! Quality metrics listed beside the times, and their formatting.
 
 use super::results::{EngineResult, SceneResult};
 use serde_json::Value;
 
-/// Unit of a figure.
+/// Unit of a metric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// A length in metres, written in millimetres up to a metre.
@@ -18,13 +18,13 @@ pub enum Unit {
     Count,
 }
 
-/// A figure of quality.
+/// A metric of quality.
 pub struct Figure {
     /// Heading in tables.
     pub heading: &'static str,
-    /// Unit of the figure.
+    /// Unit of the metric.
     pub unit: Unit,
-    /// Returns the figure; `None` if it was not measured.
+    /// Returns the metric; `None` if it was not measured.
     pub of: fn(&EngineResult) -> Option<f64>,
 }
 
@@ -63,13 +63,13 @@ pub const ASLEEP: Figure =
 /// Mean stretch of a cloth's edges.
 pub const CLOTH: Figure =
     Figure { heading: "mean stretch", unit: Unit::Share, of: |e| number(e, "stretch_mean") };
-/// Largest distance of a joint from its place in the clips, in model space.
+/// Largest distance of a joint from its position in the clips, in model space.
 pub const POSE: Figure =
     Figure { heading: "pose error", unit: Unit::Length, of: |e| number(e, "model_error_max_m") };
 /// Share of rays or pairs that hit.
 pub const HITS: Figure = Figure { heading: "hits", unit: Unit::Share, of: |e| e.number("hit_share") };
 
-/// All figures, in the order of the columns.
+/// All metrics, in the order of the columns.
 pub const FIGURES: &[Figure] = &[
     GAP,
     Figure { heading: "gap at the end", unit: Unit::Length, of: |e| number(e, "joint_gap_end_max_m") },
@@ -94,7 +94,7 @@ pub const FIGURES: &[Figure] = &[
     HITS,
 ];
 
-/// Returns the figure that shows whether engines did the same work in a scene.
+/// Returns the metric that shows whether engines did the same work in a scene.
 pub fn headline(scene: &str) -> &'static Figure {
     match scene {
         "box_pyramid" | "large_pyramid" => &SHIFT,
@@ -142,7 +142,7 @@ fn energy_lost(engine: &EngineResult) -> Option<f64> {
     Some(number(engine, "energy_start_j")? - number(engine, "energy_end_j")?)
 }
 
-/// Returns the relevant figures of a scene: those measured and not all 0, and the shift of bodies only where they
+/// Returns the relevant metrics of a scene: those measured and not all 0, and the shift of bodies only where they
 /// should stay.
 pub fn telling(scene: &SceneResult) -> Vec<&'static Figure> {
     let is_telling = |figure: &Figure| {

@@ -1,4 +1,4 @@
-//! Machine on which the figures are measured.
+//! Machine on which the results are measured.
 
 use std::fmt;
 use std::fs;

@@ -7,10 +7,10 @@ use super::results::{EngineResult, Results, SceneResult};
 use super::table::Table;
 use std::fmt::Write as _;
 
-/// Text of a missing figure.
+/// Text of a missing result.
 const NONE: &str = "–";
 
-/// Returns the page for readers; `missing` are the scenes without figures.
+/// Returns the page for readers; `missing` are the scenes without results.
 pub fn page(results: &Results, missing: &[&str]) -> String {
     let mut page =
         format!("{INTRODUCTION}\n{COUNTED}{} scenes: all of each in {DETAILS}.\n", results.scenes.len());
@@ -28,7 +28,7 @@ pub fn page(results: &Results, missing: &[&str]) -> String {
     page
 }
 
-/// Returns a page with all figures of each scene.
+/// Returns a page with all results of each scene.
 pub fn scenes(results: &Results) -> String {
     let mut page = format!("# Benchmarks, scene by scene\n\n{SCENES}");
     for scene in &results.scenes {
@@ -46,7 +46,7 @@ pub fn scene_count(page: &str) -> usize {
 /// Start of the line with the number of scenes.
 const COUNTED: &str = "Figures of ";
 
-/// Places of the figures that the page leaves out.
+/// Places of the results that the page leaves out.
 const DETAILS: &str =
     "`bench/benchmarks.json`, as tables in `target/benchmarks.md` after `cargo xtask bench --page`";
 
@@ -147,17 +147,17 @@ pub fn of<'a>(scene: &'a SceneResult, engine: &str) -> Option<&'a EngineResult> 
     scene.engines.iter().find(|result| result.name == engine)
 }
 
-/// Returns one line per scene: time and main figure of each engine.
+/// Returns one line per scene: time and main metric of each engine.
 pub fn glance(results: &Results) -> Table {
     times_and_figures(&physics(results))
 }
 
-/// Returns one line per animation scene: time and main figure of each engine.
+/// Returns one line per animation scene: time and main metric of each engine.
 pub fn animation(results: &Results) -> Table {
     times_and_figures(&results.scenes.iter().filter(|scene| is_animation(scene)).collect::<Vec<_>>())
 }
 
-/// Returns one line per scene of ragdolls beside MuJoCo: time and main figure of each engine.
+/// Returns one line per scene of ragdolls beside MuJoCo: time and main metric of each engine.
 pub fn ragdolls(results: &Results) -> Table {
     times_and_figures(&results.scenes.iter().filter(|scene| is_of_ragdolls(scene)).collect::<Vec<_>>())
 }
@@ -184,12 +184,12 @@ fn factor(speed: Option<f64>) -> String {
     speed.map_or(NONE.to_owned(), |speed| format!("{}×", rounded(speed)))
 }
 
-/// Returns the reason why there is no figure.
+/// Returns the reason why there is no result.
 fn absence(engine: &EngineResult) -> String {
     if engine.is_failed() { engine.missing_reason().unwrap_or(NONE).to_owned() } else { NONE.to_owned() }
 }
 
-/// Returns the table of requirements, with Sinew's figure and the best peer's.
+/// Returns the table of requirements, with Sinew's metric and the best peer's.
 pub fn holds<'a>(results: &Results, rows: impl IntoIterator<Item = &'a Hold>) -> Table {
     let mut table = Table::new(2, ["scene", "figure", "must", "Sinew", "best peer"]);
     for hold in rows {
@@ -217,7 +217,7 @@ pub fn speeds(results: &Results) -> Table {
             Verdict::Goal => "reaches the goal".to_owned(),
             Verdict::Met => "met".to_owned(),
             Verdict::Missed => "**falls short**".to_owned(),
-            // If no peer's joints hold, there is no bar.
+            // If no peer's joints hold, there is no requirement.
             Verdict::Open(_) if matches!(speed.bar, Bar::Factor { .. }) => continue,
             Verdict::Open(why) => why,
             Verdict::NotRun => continue,
@@ -228,7 +228,7 @@ pub fn speeds(results: &Results) -> Table {
     table
 }
 
-/// Returns the figures of one scene.
+/// Returns the results of one scene.
 fn details(scene: &SceneResult) -> String {
     let sizes = ["bodies", "particles", "characters", "joints", "steps"].into_iter();
     let sizes = sizes.filter_map(|key| Some((scene.size(key).filter(|&size| size > 0)?, key)));
@@ -261,7 +261,7 @@ fn time_cells(scene: &SceneResult, engine: &EngineResult) -> Option<[String; 8]>
     ])
 }
 
-/// Formats a figure with its unit.
+/// Formats a metric with its unit.
 fn cell(figure: &Figure, engine: &EngineResult) -> String {
     (figure.of)(engine).map_or(NONE.to_owned(), |value| figure.unit.show(value))
 }

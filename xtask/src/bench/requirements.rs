@@ -44,11 +44,11 @@ pub enum Measure {
     Peers(&'static str),
     /// A scene: the fastest peer's 99th percentile over Sinew's.
     PeersP99(&'static str),
-    /// Like `Peers`, but without peers whose joints came apart; if none is left, there is no bar.
+    /// Like `Peers`, but without peers whose joints came apart; if none is left, there is no requirement.
     PeersTogether(&'static str),
-    /// Like `Peers`, but without peers whose figure exceeds a bound; if Sinew's exceeds it, the requirement is missed.
+    /// Like `Peers`, but without peers whose metric exceeds a bound; if Sinew's exceeds it, the requirement is missed.
     PeersWithin(&'static str, &'static Figure, f64),
-    /// A figure of characters that fall limp until they sleep, in seconds per second.
+    /// A metric of characters that fall limp until they sleep, in seconds per second.
     Limp(&'static str),
     /// The bake of one character, in seconds per second.
     Bake,
@@ -188,7 +188,7 @@ fn speed_together(scene: &SceneResult) -> Result<f64, Verdict> {
     fair.speed().ok_or_else(|| Verdict::Open("no bar: peers come apart".to_owned()))
 }
 
-/// Returns the speed like [`SceneResult::speed`], against peers with a figure within the bound, which Sinew's must
+/// Returns the speed like [`SceneResult::speed`], against peers with a metric within the bound, which Sinew's must
 /// meet, too.
 fn speed_within(scene: &SceneResult, figure: &Figure, most: f64) -> Result<f64, Verdict> {
     let holds = |engine: &EngineResult| (figure.of)(engine).is_some_and(|it| it <= most);
@@ -204,13 +204,13 @@ fn speed_within(scene: &SceneResult, figure: &Figure, most: f64) -> Result<f64, 
 pub struct Hold {
     /// The scene.
     pub scene: &'static str,
-    /// Checked figure.
+    /// Checked metric.
     pub figure: &'static Figure,
     /// Bound of the requirement.
     pub most: Most,
 }
 
-/// Bound on a figure.
+/// Bound on a metric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Most {
     /// At most this value.
@@ -275,7 +275,7 @@ pub const STANDS: &[Hold] = &[
 ];
 
 impl Hold {
-    /// Returns the verdict on Sinew's figure.
+    /// Returns the verdict on Sinew's metric.
     pub fn judge(&self, results: &Results) -> Verdict {
         let (scene, ours) = match raced(results, self.scene) {
             Ok(raced) => raced,

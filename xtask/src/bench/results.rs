@@ -1,4 +1,4 @@
-//! Measured results: the unmodified reports of the peers, and the figures in them.
+//! Measured results: the unmodified reports of the peers, and the results in them.
 
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -201,7 +201,7 @@ impl EngineResult {
         self.reports.iter().any(|report| report["failed"].is_string())
     }
 
-    /// Returns the reason for missing figures.
+    /// Returns the reason for missing results.
     pub fn missing_reason(&self) -> Option<&str> {
         let report = self.reports.last()?;
         report["unsupported"].as_str().or_else(|| report["failed"].as_str())
@@ -231,7 +231,7 @@ impl EngineResult {
         self.reports.iter().filter_map(|report| report["peak_rss_mib"].as_f64()).min_by(f64::total_cmp)
     }
 
-    /// Returns the median of a figure over the judged runs; `None` if one lacks it.
+    /// Returns the median of a metric over the judged runs; `None` if one lacks it.
     pub fn judged(&self, figure: impl Fn(&Map<String, Value>) -> Option<f64>) -> Option<f64> {
         let runs = self.reports.iter().filter_map(|report| report["quality"].as_object());
         let mut values: Vec<f64> = runs.map(figure).collect::<Option<_>>()?;

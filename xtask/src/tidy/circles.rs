@@ -40,7 +40,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     findings
 }
 
-/// Figures of a crate's files and names, a row of the table.
+/// Metrics of a crate's files and names, a row of the table.
 pub struct House<'a> {
     pub name: &'a str,
     /// Number of source files, without tests.

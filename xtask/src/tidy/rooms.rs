@@ -35,7 +35,7 @@ const ROOMS: &[(&str, &[&str])] = &[(
 
 /// Existing upward arrows, by file and room. The list may only shrink.
 const EXCEPTIONS: &[(&str, &str)] = &[
-    // The step takes the whole world, because the user's objects and the movers act on it within the step.
+    // A step accesses the whole world, because the user's objects and the movers act on it within the step.
     ("crates/sinew_physics/src/step/mod.rs", "world"),
     ("crates/sinew_physics/src/step/mod.rs", "user_object"),
     ("crates/sinew_physics/src/step/mod.rs", "mover"),
@@ -52,14 +52,14 @@ const EXCEPTIONS: &[(&str, &str)] = &[
 const EXCEPTIONS_MAX: usize = 10;
 const _: () = assert!(EXCEPTIONS.len() <= EXCEPTIONS_MAX, "too many arrows back up");
 
-/// Returns the number of upward arrows in a crate; `None` if it has no rooms.
+/// Returns the number of upward dependencies in a crate; `None` if it has no rooms.
 pub fn arrows_back_up(name: &str) -> Option<usize> {
     let source = format!("crates/{name}/");
     let has_rooms = ROOMS.iter().any(|&(with_rooms, _)| with_rooms == name);
     has_rooms.then(|| EXCEPTIONS.iter().filter(|(file, _)| file.starts_with(&source)).count())
 }
 
-/// Checks that every arrow between rooms goes down, except for the listed ones; every exception must be needed.
+/// Checks that dependencies between rooms go down, except for the listed ones; every exception must be needed.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     check_rooms(repo, ROOMS, EXCEPTIONS)
 }
@@ -101,7 +101,7 @@ fn check_rooms(repo: &Repo, crates: &[(&str, &[&str])], exceptions: &[(&str, &st
     findings
 }
 
-/// Returns the room of a file: its folder at the top of `src/`, or itself.
+/// Returns the room of a file: its top folder in `src/`, or the file itself.
 fn room_of(file: &File) -> &str {
     let inside = file.path.splitn(4, '/').nth(3).unwrap_or_default();
     inside.split('/').next().unwrap_or_default().trim_end_matches(".rs")

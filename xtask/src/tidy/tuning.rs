@@ -8,7 +8,7 @@ use super::{Finding, Repo};
 const CRATES: &[&str] = &["sinew_physics", "sinew_anim", "sinew_ragdoll"];
 
 /// Other constants: bounds of rounding, of representable values, of a series; a unit; sizes that are only drawn; a table of
-/// anatomy, a drop of the contract, the verdict's bars. Listed by file and name; the list may only shrink.
+/// anatomy, a drop of the contract, the verdict's thresholds. Listed by file and name; the list may only shrink.
 const OTHERS: &[(&str, &str)] = &[
     ("sinew_anim/src/animator/advance.rs", "SHORTEST"),
     ("sinew_anim/src/animator/fire.rs", "MOMENT"),

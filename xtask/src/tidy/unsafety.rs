@@ -1,4 +1,4 @@
-//! Allowed places of `unsafe` (design §5).
+//! Modules that may contain `unsafe` (design §5).
 
 use super::lexer;
 use super::{Finding, Repo};

@@ -1,4 +1,4 @@
-//! Figures of all files as tables.
+//! Metrics of all files as tables.
 
 use super::Row;
 use crate::bench::table::Table;

@@ -1,4 +1,4 @@
-//! Contact manifolds of two shapes, beside Parry's: the same random pairs, without cached data.
+//! Contact manifolds of two shapes, compared with Parry's: the same random pairs, without cached data.
 //!
 //! `manifolds` prints nanoseconds per pair and the number of touching pairs; `manifolds ENGINE KINDS` (as `sinew box-hull`) runs one engine
 //! on one kind of pair ten times, for `valgrind --tool=callgrind`.

@@ -1,7 +1,7 @@
 //! Box3D with its defaults.
 //!
-//! On an Intel Xeon it takes 0.68 of Rapier's time for the pile of figures, 1.05 for the pyramid, 1.61 for the chain of 100 links;
-//! another commit on a Zen 4 took 0.59, 0.94 and 1.44.
+//! On an Intel Xeon it takes 0.68 of Rapier's time for the pile of humanoids, 1.05 for the pyramid, 1.61 for the chain
+//! of 100 links; another commit on a Zen 4 took 0.59, 0.94 and 1.44.
 
 use crate::engine::{
     BodyState, Description, Engine, OverlapTester, RayCaster, Simulation, Unsupported, circular_cone,

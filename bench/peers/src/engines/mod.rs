@@ -1,4 +1,4 @@
-//! The engines, each a file. Calls into C and C++ are in `crate::ffi`, the only place with `unsafe`.
+//! The engines, each a file. Calls into C and C++ are in `crate::ffi`, the only module with `unsafe`.
 
 #[cfg(feature = "box3d")]
 mod box3d;

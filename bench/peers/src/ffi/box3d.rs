@@ -31,7 +31,7 @@ pub fn version() -> String {
     format!("{major}.{minor}.{revision}")
 }
 
-/// A world and all its objects. The index of a body is its place in the order of additions.
+/// A world and all its objects. The index of a body is its index in the order of additions.
 pub struct World {
     id: b3WorldId,
     bodies: Vec<b3BodyId>,
@@ -277,7 +277,7 @@ impl World {
 
     /// Takes one step of `dt` seconds.
     pub fn step(&mut self, dt: f32, substeps: i32) {
-        // SAFETY: the world lives as long as `self`, which nobody else has now.
+        // SAFETY: the world lives as long as `self`, to which there is no other reference now.
         unsafe { b3World_Step(self.id, dt, substeps) }
     }
 

@@ -22,7 +22,7 @@ pub struct CrowdMeter<'a> {
 pub struct CrowdQuality {
     /// Angle between the rotation of a sampled joint and its clip, radians.
     pub rotation_error_max: f32,
-    /// Distance of a joint of the blended pose from its expected place, model space, metres.
+    /// Distance of a joint of the blended pose from its expected position, model space, metres.
     pub model_error_max: f32,
 }
 

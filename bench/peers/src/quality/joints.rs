@@ -32,7 +32,7 @@ pub(super) struct JointMeter {
     stretch_peak: f32,
 }
 
-/// Bodies of a joint, and the joint's place in each.
+/// Bodies of a joint, and the joint's position in each.
 struct Anchors {
     bodies: [usize; 2],
     local: [Vec3; 2],

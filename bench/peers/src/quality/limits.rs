@@ -8,7 +8,7 @@ use sinew::math::{Range, Rotation, SwingTwistLimit, Vec3, trig};
 use sinew::physics::JointKind;
 use sinew_scenes::blueprint::Blueprint;
 
-/// Overshoot from which on a joint is counted, radians.
+/// Overshoot from which a joint is counted, radians.
 const TOLERANCE: f32 = 0.1;
 
 /// Overshoots of limits by kind.
@@ -70,7 +70,7 @@ impl LimitTally {
     }
 }
 
-/// Returns true if an excess is beyond the tolerance; NaN is.
+/// Returns true if an excess is beyond the tolerance, or NaN.
 fn is_exceeded(excess: f32) -> bool {
     excess.is_nan() || excess > TOLERANCE
 }

@@ -48,12 +48,12 @@ pub struct Quality {
     pub penetration: Option<PenetrationQuality>,
     /// Energy of the dynamic bodies.
     pub energy: EnergyQuality,
-    /// Final places of the dynamic bodies.
+    /// Final positions of the dynamic bodies.
     pub place: PlaceQuality,
 }
 
 impl QualityMeter {
-    /// Starts the measurement before the first step. Penetration, the most expensive figure, is measured every
+    /// Starts the measurement before the first step. Penetration, the most expensive metric, is measured every
     /// `penetration_every` steps.
     pub fn new(scene: &Blueprint, penetration_every: usize) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! Final places of the dynamic bodies.
+//! Final positions of the dynamic bodies.
 
 use super::{collides, worse};
 use crate::engine::BodyState;
@@ -10,7 +10,7 @@ use sinew_scenes::blueprint::Blueprint;
 /// Depth below all static shapes at which a body counts as lost, metres.
 const LOST_BELOW: f32 = 1.0;
 
-/// Final places of dynamic bodies.
+/// Final positions of dynamic bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceQuality {
     /// Number of bodies that fell below all static shapes, or whose numbers are not finite.

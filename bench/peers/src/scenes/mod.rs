@@ -32,9 +32,9 @@ pub struct Scene {
 /// Sensitivity of a scene's run to a small change of its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Course {
-    /// The run changes little: one run gives the figures.
+    /// The run changes little: one run gives the results.
     Steady,
-    /// The run differs: figures are those of several starts.
+    /// The run differs: results are those of several starts.
     Chaotic,
 }
 

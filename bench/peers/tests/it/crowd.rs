@@ -10,7 +10,7 @@ fn poses_match_the_raw_clips() {
     let scene = CrowdScene::new(3);
     for engine in engines_of(Field::Animation) {
         let name = engine.describe().name;
-        let mut crowd = engine.build_crowd(&scene).expect("an engine for animation plays clips");
+        let mut crowd = engine.build_crowd(&scene).expect("an animation engine can play clips");
         let mut meter = CrowdMeter::new(&scene);
         // More than one whole loop.
         for step in 0..130 {
@@ -22,7 +22,7 @@ fn poses_match_the_raw_clips() {
         let quality = meter.finish();
         assert!(quality.rotation_error_max < 3e-4, "{name}: {quality:?}");
         assert!(quality.model_error_max < 1e-3, "{name}: {quality:?}");
-        assert!(quality.rotation_error_max > 0.0, "{name}: keys of 48 bits are not exact");
+        assert!(quality.rotation_error_max > 0.0, "{name}: 48-bit keys must show a quantization error");
     }
 }
 
@@ -31,7 +31,7 @@ fn wrong_pose_is_detected() {
     let scene = CrowdScene::new(1);
     for engine in engines_of(Field::Animation) {
         let name = engine.describe().name;
-        let mut crowd = engine.build_crowd(&scene).expect("an engine for animation plays clips");
+        let mut crowd = engine.build_crowd(&scene).expect("an animation engine can play clips");
         crowd.step(0);
         let mut pose = crowd.pose(0, 0);
         pose.places[7].y += 0.01;

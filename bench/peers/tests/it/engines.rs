@@ -51,7 +51,7 @@ fn brick() -> Shape {
 }
 
 fn after(engine: &dyn Engine, scene: &Blueprint, steps: usize) -> (Vec<BodyState>, Quality) {
-    let mut simulation = engine.build(scene).expect("every engine has boxes, balls and hinges");
+    let mut simulation = engine.build(scene).expect("every engine supports boxes, balls and hinges");
     let mut meter = QualityMeter::new(scene, 1);
     let mut states = Vec::new();
     for _ in 0..steps {
@@ -121,7 +121,7 @@ fn round_shapes_and_hulls_have_their_sizes_or_are_unsupported() {
             if have.contains(&name) {
                 let (states, _) = after(engine, &scene, 60);
                 let y = states[1].world_from_body.translation.y;
-                assert!((y - height).abs() < 0.025, "{name}: {kind} at {y} for {height}");
+                assert!((y - height).abs() < 0.025, "{name}: {kind} rests at {y} m, expected {height} m");
             }
         }
     }
@@ -168,9 +168,12 @@ fn shapes_have_their_sizes() {
         for (state, height) in states[1..4].iter().zip([0.3, 0.25, 0.1]) {
             let y = state.world_from_body.translation.y;
             // Jolt lets resting bodies sink by 20 mm.
-            assert!((y - height).abs() < 0.025, "{name}: {y} for {height}");
+            assert!((y - height).abs() < 0.025, "{name}: the body rests at {y} m, expected {height} m");
         }
-        assert!(states[4].world_from_body.translation.y < -5.0, "{name}: a ghost stands");
-        assert_eq!(quality.place.lost, 0, "{name}: a ghost may fall");
+        assert!(
+            states[4].world_from_body.translation.y < -5.0,
+            "{name}: a body without collisions did not fall"
+        );
+        assert_eq!(quality.place.lost, 0, "{name}: a fallen body without collisions counts as lost");
     }
 }

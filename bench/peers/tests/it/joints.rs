@@ -76,7 +76,11 @@ fn a_hinge_stops_at_either_limit() {
         let scene = hung(arm, axes, JointKind::Hinge { limit: Some(Range::new(-0.5, 0.3)) });
         for engine in engines() {
             let angle = hinge_angle(joint_rotation(&scene, &run(engine, &scene, 300)));
-            assert!((angle - stop).abs() < 0.03, "{}: {angle} rad at {stop}", engine.describe().name);
+            assert!(
+                (angle - stop).abs() < 0.03,
+                "{}: the hinge is at {angle} rad, its stop at {stop} rad",
+                engine.describe().name
+            );
         }
     }
 }
@@ -89,7 +93,10 @@ fn a_ball_joint_stops_at_its_cone() {
     for engine in engines() {
         let (swing, twist) = SwingTwistLimit::angles(joint_rotation(&scene, &run(engine, &scene, 300)));
         let name = engine.describe().name;
-        assert!((swing.length() - 0.4).abs() < 0.03 && twist.abs() < 0.23, "{name}: {swing} and {twist} rad");
+        assert!(
+            (swing.length() - 0.4).abs() < 0.03 && twist.abs() < 0.23,
+            "{name}: swing {swing} rad, twist {twist} rad"
+        );
     }
 }
 
@@ -102,7 +109,11 @@ fn a_twist_stops_at_either_limit() {
         let scene = hung(arm, Rotation::IDENTITY, JointKind::Ball { limit: Some(limit) });
         for engine in engines() {
             let (_, twist) = SwingTwistLimit::angles(joint_rotation(&scene, &run(engine, &scene, 300)));
-            assert!((twist - stop).abs() < 0.04, "{}: {twist} rad at {stop}", engine.describe().name);
+            assert!(
+                (twist - stop).abs() < 0.04,
+                "{}: the twist is {twist} rad, its stop {stop} rad",
+                engine.describe().name
+            );
         }
     }
 }
@@ -148,7 +159,10 @@ fn mass_and_inertia_equal_the_given_ones() {
         let [heavy, light] = [0, 1].map(|place: usize| states[place].world_from_body.translation);
         let center = heavy * 0.9 + light * 0.1;
         let name = engine.describe().name;
-        assert!((center - Vec3::new(0.1, 0.1, 0.0)).length() < 0.01, "{name}: common centre at {center}");
+        assert!(
+            (center - Vec3::new(0.1, 0.1, 0.0)).length() < 0.01,
+            "{name}: the common centre of mass is at {center}"
+        );
         let spin = states[0].angular_velocity.z;
         assert!((spin - 1.0).abs() < 0.02, "{name}: {spin} rad/s");
     }

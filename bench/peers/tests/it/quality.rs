@@ -239,7 +239,7 @@ fn bodies_below_the_floor_or_without_numbers_are_lost() {
     states[2].world_from_body.translation.x = f32::NAN;
     let quality = judge(&scene, &[states]);
     assert_eq!(quality.place.lost, 2);
-    assert!(quality.to_json()["displacement_max_m"].is_null(), "a non-finite number is null");
+    assert!(quality.to_json()["displacement_max_m"].is_null(), "a non-finite number must become null");
 }
 
 #[test]
@@ -247,11 +247,15 @@ fn bodies_without_contacts_are_never_lost() {
     let mut hook = floor();
     hook.shapes[0].filter = Filter { mask: 0, ..Filter::default() };
     let hung = scene(vec![hook, cube(Vec3::NEG_Y * 9.0)], vec![]);
-    assert_eq!(judge(&hung, &[start(&hung)]).place.lost, 0, "bodies below a hook are not lost");
+    assert_eq!(judge(&hung, &[start(&hung)]).place.lost, 0, "bodies below the hook must not count as lost");
     let mut ghost = cube(Vec3::NEG_Y * 9.0);
     ghost.shapes[0].filter = Filter { mask: 0, ..Filter::default() };
     let fallen = scene(vec![floor(), ghost], vec![]);
-    assert_eq!(judge(&fallen, &[start(&fallen)]).place.lost, 0, "bodies that do not collide are not lost");
+    assert_eq!(
+        judge(&fallen, &[start(&fallen)]).place.lost,
+        0,
+        "bodies that do not collide must not count as lost"
+    );
 }
 
 #[test]

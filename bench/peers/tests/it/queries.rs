@@ -33,7 +33,7 @@ fn rays_match_brute_force() {
         let Some(mut caster) = offered(engine.build_rays(&scene), name) else { continue };
         let found = caster.count_hits(0..RAYS);
         // Engines differ on rays that start inside a box: 3 in 1,000.
-        assert!(found.abs_diff(expected) <= RAYS / 200, "{name}: {found} of {expected}");
+        assert!(found.abs_diff(expected) <= RAYS / 200, "{name}: found {found} hits, expected {expected}");
     }
 }
 

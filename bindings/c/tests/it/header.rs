@@ -17,5 +17,5 @@ fn header_is_up_to_date() {
         fs::write(&path, &text).expect("it is written");
     }
     let committed = fs::read_to_string(&path).unwrap_or_default();
-    assert!(committed == text, "include/sinew.h is out of date: run this test with SINEW_BLESS=1");
+    assert!(committed == text, "include/sinew.h is out of date; run this test with SINEW_BLESS=1");
 }

@@ -65,7 +65,7 @@ fn null_pointers_are_named() {
         assert_eq!(sinew_world_add_body(world.0, &def(&shapes), null_mut()), SinewStatus::NullPointer);
         let mut count = 7;
         assert_eq!(sinew_world_bodies(world.0, null_mut(), 0, &mut count), SinewStatus::Ok);
-        assert_eq!(count, 0, "a body without space for its id was added");
+        assert_eq!(count, 0, "the call added a body although the id array was full");
         let torn = SinewBodyDef { shapes: null(), shape_count: 3, ..def(&shapes) };
         let mut id = SinewBodyId::default();
         assert_eq!(sinew_world_add_body(world.0, &torn, &mut id), SinewStatus::NullPointer);
@@ -79,7 +79,7 @@ fn null_pointers_are_named() {
         sinew_character_def_free(null_mut());
         sinew_ragdoll_free(null_mut());
         assert_eq!(sinew_world_step(world.0, 1, 1), SinewStatus::Ok);
-        assert_eq!(sentence(), "", "a successful call leaves an error text");
+        assert_eq!(sentence(), "", "a successful call left an error text");
     }
 }
 

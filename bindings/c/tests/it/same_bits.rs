@@ -59,6 +59,6 @@ fn in_c(threads: u32, saves_at: Option<u32>) -> u64 {
 fn bits_equal_those_of_rust() {
     let due = in_rust();
     for (threads, saves_at) in [(0, None), (1, None), (2, None), (3, Some(40))] {
-        assert_eq!(in_c(threads, saves_at), due, "{threads} threads, saved at {saves_at:?}");
+        assert_eq!(in_c(threads, saves_at), due, "{threads} threads, snapshot at step {saves_at:?}");
     }
 }

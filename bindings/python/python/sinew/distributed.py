@@ -93,7 +93,7 @@ def bake(task: Task) -> Row:
 
 
 def build(task: Task) -> Row:
-    """The ragdoll of the character: its definition, and figures of its drops. Settings: those of `CharacterFile.build`."""
+    """The ragdoll of the character: its definition, and metrics of its drops. Settings: those of `CharacterFile.build`."""
     ragdoll = _file(task.file).build(**task.settings)
     tested, report = ragdoll.drop_test(), ragdoll.report
     return {

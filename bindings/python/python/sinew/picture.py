@@ -1,4 +1,4 @@
-"""Draws figures as capsules between bodies, with numpy alone."""
+"""Draws ragdolls as capsules between bodies, with numpy alone."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _NEAR, _FAR = np.array([38.0, 92.0, 160.0]), np.array([138.0, 170.0, 206.0])
 def draw(
     poses: Floats, parents: NDArray[np.int64], height: float = 1.75, size: tuple[int, int] = (320, 240)
 ) -> NDArray[np.uint8]:
-    """Draws a figure from its left and slightly from the front: an array (height, width, 3).
+    """Draws a ragdoll from its left and slightly from the front: an array (height, width, 3).
 
-    `poses` (bodies, 7) are places and quaternions in metres, `parents` the body that each hangs on (-1: none), `height` that of the standing figure, `size` the width and
+    `poses` (bodies, 7) are positions (metres) and quaternions, `parents` the parent of each body (-1: none), `height` that of the standing ragdoll, `size` the width and
     height in pixels. The camera follows the first body along the ground.
     """
     width, rows = size

@@ -10,7 +10,7 @@ _Ids = NDArray[np.uint64]
 
 
 class FallQuality(TypedDict):
-    """Figures of a fall: metres, degrees, joules, seconds; docs/contract.md of the repository describes each."""
+    """Metrics of a fall: metres, degrees, joules, seconds; docs/contract.md of the repository describes each."""
 
     energy_gain_max: float
     work_in_j: float

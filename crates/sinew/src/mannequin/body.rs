@@ -160,7 +160,7 @@ fn nose() -> (Loft, Chain) {
     (loft, Chain::rigid(Bone::Head))
 }
 
-/// A band across the eyes, round the front of the head.
+/// A band across the eyes, around the front of the head.
 fn visor() -> (Loft, Chain) {
     let section = |step: i32| {
         let angle = step as f32 * 0.2;

@@ -24,7 +24,7 @@ fn clip(name: &str, keys: &[Key], steps: &[Step]) -> Clip {
     })
 }
 
-/// A step of a foot to another place: the foot goes up, over and down without sliding.
+/// A step of a foot to another position: the foot goes up, over and down without sliding.
 struct Step {
     side: Side,
     /// Seconds.

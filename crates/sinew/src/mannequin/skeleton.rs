@@ -65,7 +65,7 @@ const JOINTS: [(Bone, &str, Option<Bone>); Bone::COUNT] = [
 
 impl Bone {
     pub(super) const COUNT: usize = 22;
-    /// Index offset of right-side joints from their left twins in the order above.
+    /// Index offset of right-side joints from their left counterparts in the order above.
     const MIRROR_STEP: usize = 8;
 
     pub(super) fn index(self) -> JointIdx {

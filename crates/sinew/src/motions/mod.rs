@@ -199,7 +199,7 @@ fn hold_as_looped(rig: &Rig, motions: &mut MotionSet, first: usize) {
         }
         for channel in held.iter().filter(|channel| !carries[channel.joint]) {
             let width = channel.property.width();
-            // The middle one of a cubic key's three numbers is the value.
+            // A cubic key has three numbers; the middle one is the value.
             let at = if channel.interpolation == Interpolation::CubicSpline { width } else { 0 };
             let values = channel.values[at..at + width].to_vec();
             let interpolation = Interpolation::Linear;
@@ -210,7 +210,7 @@ fn hold_as_looped(rig: &Rig, motions: &mut MotionSet, first: usize) {
 
 /// Frames per second of the retargeted motions, at the mannequin's pace.
 const RATE: f64 = 30.0;
-/// Number of repetitions of a cycle, so that the middle one has both neighbours.
+/// Number of repetitions of a cycle, so that the middle repetition has both neighbours.
 const PLAYED: usize = 3;
 
 /// Returns the retargeting options: pace of `body` relative to `actor`, floor, and frame time.
@@ -243,7 +243,7 @@ fn one_round(mut fitted: Retargeted, clip: &Clip) -> Retargeted {
 fn repeated(clip: &Clip, times: usize) -> Clip {
     let mut whole = Clip { duration: clip.duration * times as f32, ..clip.clone() };
     for (channel, one) in whole.channels.iter_mut().zip(&clip.channels) {
-        // The last key of a round is the first of the next.
+        // The last key of a round equals the first key of the next.
         let width = channel.property.width();
         for round in 1..times {
             let later = one.times.iter().skip(1).map(|time| time + round as f32 * clip.duration);

@@ -147,7 +147,7 @@ pub fn looped_among(rig: &Rig, analysis: &RigAnalysis, clips: &[Clip]) -> Option
 /// Smallest difference of a key from the first key that counts as motion, as a share of the channel's largest number.
 const MOVES: f32 = 0.01;
 
-/// True if any joint of a clip moves. A static pose is no walk, even if its name says so.
+/// True if any joint of a clip moves. A static pose is not a walk, even if its name says so.
 fn moves(clip: &Clip) -> bool {
     clip.channels.iter().any(|channel| {
         let width = channel.property.width();

@@ -27,7 +27,7 @@ fn the_clips_of_a_file_are_recognised() {
     assert_eq!((own.looped, own.idle, own.get_ups.as_slice()), (Some(2), Some(1), &[0, 3][..]));
     assert_eq!(hero.def.after_settling, AfterSettling::GetUp);
     let Locomotion::Forward { speed } = own.locomotion else { panic!("{:?}", own.locomotion) };
-    assert!((speed - WALK_SPEED).abs() < 0.05, "the walk is on the spot, at {speed} m/s");
+    assert!((speed - WALK_SPEED).abs() < 0.05, "an in-place walk moves at {speed} m/s");
     let steps: Vec<&str> = own.events.iter().map(|(_, event)| event.payload.as_str()).collect();
     assert_eq!(steps, ["left", "right"], "{:?}", own.events);
     assert!(own.events.iter().all(|(clip, event)| *clip == 2 && event.name == "footstep"));
@@ -38,7 +38,7 @@ fn what_a_file_lacks_is_built_in_and_said() {
     let hero = loaded(&mannequin().rig, &[]);
     let own = hero.def.motions();
     assert!(own.looped.is_some() && own.idle.is_some() && own.get_ups.len() == 2);
-    assert_eq!(own.events.len(), 2, "the built-in walk has footsteps: {:?}", own.events);
+    assert_eq!(own.events.len(), 2, "footsteps of the built-in walk: {:?}", own.events);
     for said in ["it walks by the built-in motions", "it gets up by the built-in motions"] {
         assert!(hero.notes.iter().any(|note| note == said), "{said}: {:?}", hero.notes);
     }

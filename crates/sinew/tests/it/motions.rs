@@ -83,19 +83,22 @@ fn feet_stand_on_the_floor_and_nothing_of_the_trunk_is_in_it() {
     for (name, def, analysis) in &all {
         let motions = builtin_motions(def, analysis).unwrap_or_else(|error| panic!("{name}: {error}"));
         for (fit, what) in motions.fits.iter().zip(["walk", "idle", "supine", "prone"]) {
-            assert!(!fit.contacts.is_empty(), "{name}: no foot ever stands in {what}");
+            assert!(!fit.contacts.is_empty(), "{name}: no foot is planted in {what}");
             // The error is scaled for a giant; a body with very short legs may miss.
             let size = def.ragdoll.height / 1.8;
             let off = worst_stance(def, analysis, fit);
             let is_stub = fit.scale < 0.3 * size;
-            assert!(off < 0.01 * size.max(1.0) || is_stub, "{name}: {off} m off the floor in {what}");
+            assert!(
+                off < 0.01 * size.max(1.0) || is_stub,
+                "{name}: feet are {off} m away from the floor in {what}"
+            );
             let is_trunk = |body: &RagdollBodyDef| {
                 let part = |end: &str| body.role.ends_with(end);
                 part("hips") || part("spine") || part("hest") || part("neck") || part("head")
             };
             let low = (0..fit.take.frames()).map(|frame| lowest(def, fit.take.pose(frame), is_trunk));
             let deep = low.fold(0.0, |deep: f32, low| deep.max(-low));
-            assert!(deep < 0.01 * size.max(1.0), "{name}: the trunk is {deep} m in the floor in {what}");
+            assert!(deep < 0.01 * size.max(1.0), "{name}: the trunk is {deep} m below the floor in {what}");
         }
     }
 }
@@ -204,7 +207,7 @@ fn a_mirrored_skeleton_gets_up() {
         deepest.fold(0.0_f32, f32::max)
     };
     let [plain, mirrored] = [depth(rig.clone()), depth(mirrored(&rig))];
-    assert!((plain - mirrored).abs() < 0.01, "{mirrored} m in the floor, {plain} m without the mirror");
+    assert!((plain - mirrored).abs() < 0.01, "depth in the floor: mirrored {mirrored} m, plain {plain} m");
 }
 
 /// Adds a box skinned to a joint to the rig, its centre `off` from the joint (model space, metres).
@@ -252,7 +255,7 @@ fn a_human_with_a_staff_gets_up() {
         let (mut def, analysis) = character(rig);
         let motions = builtin_motions(&def, &analysis).expect("a human");
         let depths = [2, 3].map(|fit: usize| def.deepest_skin(&motions.fits[fit].take));
-        assert!(depths.iter().all(|&depth| depth < 0.1), "{what}: {depths:?} m in the floor");
+        assert!(depths.iter().all(|&depth| depth < 0.1), "{what}: depths in the floor {depths:?} m");
         set_motions_with_builtin(&mut def, &analysis, MotionSet::default()).expect("get-ups");
         assert_eq!(def.motions().get_ups.len(), 2, "{what}");
     }

@@ -62,10 +62,10 @@ impl Drawing {
     }
 }
 
-/// Steps of the fall at which a figure is drawn, and position of its pelvis from the left edge, metres.
+/// Steps of the fall at which a character is drawn, and position of its pelvis from the left edge, metres.
 const FALL: [(u32, f32); 7] = [(40, 0.5), (58, 1.3), (66, 2.3), (74, 3.4), (82, 4.6), (92, 6.0), (180, 7.7)];
 
-/// Draws the mannequin, hit while it walks, from the side; the figures are side by side.
+/// Draws the mannequin, hit while it walks, from the side; the characters are side by side.
 fn fall() -> String {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -90,7 +90,7 @@ fn fall() -> String {
     drawing.end()
 }
 
-/// Draws bones and head of a figure, seen from its left: +Z to the right.
+/// Draws bones and head of a character, seen from its left: +Z to the right.
 fn figure(drawing: &mut Drawing, def: &CharacterDef, model: &[Affine], way: Vec3) {
     let at = |joint: usize| {
         let place = model[joint].translation + way;
@@ -148,6 +148,10 @@ fn pictures_are_those_that_the_library_draws() {
         }
         let is = std::fs::read_to_string(&path).expect("it is there");
         assert!(is == due, "{}: bless it, and look at it", path.display());
-        assert!(due.len() < 40_000 && !due.contains("\n\n"), "{} bytes, one block of HTML", due.len());
+        assert!(
+            due.len() < 40_000 && !due.contains("\n\n"),
+            "the page has {} bytes; expected one block of HTML",
+            due.len()
+        );
     }
 }

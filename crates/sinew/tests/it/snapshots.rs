@@ -123,7 +123,7 @@ fn row(name: &str, mut it: Match, times: usize) {
     );
 }
 
-/// Prints the table; each figure is the median of `times` runs.
+/// Prints the table; each value is the median of `times` runs.
 fn table(times: usize, counts: &[usize]) {
     println!(
         "| world | bodies | contacts | bytes | per body | delta, bytes | save, µs | load, µs | clone, µs | delta, µs | its snapshot, µs | 8 ticks again, ms |"

@@ -36,7 +36,7 @@ enum Kind {
     Difference,
 }
 
-/// Tracks of a layer that are blended together.
+/// Returns the tracks of a layer that are blended together.
 fn layers_of<'a>(
     slots: &'a [Slot],
     set: &'a AnimationSet,

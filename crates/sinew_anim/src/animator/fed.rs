@@ -13,7 +13,7 @@ use sinew_math::{Rotation, min};
 pub(super) struct Fed {
     pub clip: ClipId,
     pub now: Pose,
-    /// The previous pose; equal to `now` at the start.
+    /// The previous pose; `now` at the start.
     pub before: Pose,
     /// Seconds between both poses.
     pub seconds: f32,

@@ -394,7 +394,7 @@ impl Slot {
         }
     }
 
-    /// Resets a slot, whose memory another track can reuse.
+    /// Resets a slot and keeps its memory for another track.
     fn emptied(mut self) -> Self {
         self.crossfade.clear();
         Self { motion: Transform::IDENTITY, is_crossfaded: false, ..self }

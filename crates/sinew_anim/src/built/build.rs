@@ -198,7 +198,7 @@ impl BuiltClip {
         let bounds = |b: &Bounds| [b.low[0], b.low[1], b.low[2], b.step[0], b.step[1], b.step[2]];
         self.translations.hash(&mut hasher, bounds);
         self.scales.hash(&mut hasher, bounds);
-        // 0 marks a cursor without a clip.
+        // The value 0 stands for a cursor without a clip, so set the lowest bit.
         hasher.finish() | 1
     }
 }

@@ -128,7 +128,7 @@ mod tests {
             worst = worst.max(angle(q, back));
         }
         assert!(worst < f64::from(ROTATION_BOUND), "{worst}");
-        assert!(worst > 0.8 * f64::from(ROTATION_BOUND), "the bound is too wide: {worst}");
+        assert!(worst > 0.8 * f64::from(ROTATION_BOUND), "the bound is too wide; largest error {worst}");
         assert_eq!(SmallestThree.decode(SmallestThree::encode(Rotation::IDENTITY)), [0.0, 0.0, 0.0, 1.0]);
         let half = trig::sin(core::f32::consts::FRAC_PI_4);
         let [.., w] = SmallestThree.decode(SmallestThree::encode(Rotation::from_xyzw(half, 0.0, 0.0, half)));
@@ -144,7 +144,7 @@ mod tests {
             for i in 0..3 {
                 assert!(
                     (back[i] - value[i]).abs() <= 0.51 * bounds.step[i] + 1e-6,
-                    "{value:?} became {back:?}"
+                    "{value:?} decodes to {back:?}"
                 );
             }
         }

@@ -7,7 +7,7 @@ use sinew_math::clamp;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
-/// Index before a key is loaded: every key counts as later.
+/// Index before a key is loaded; every key is later than this one.
 const UNSET: u32 = u32::MAX / 2;
 /// Index of a left key before the first key, so that the first key follows it.
 const BEFORE: u32 = u32::MAX;

@@ -13,7 +13,7 @@ use sinew_math::{Affine, Vec3, max, min};
 /// Result of holding the feet on the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FootSlideReport {
-    /// Number of contacts that were held in place.
+    /// Number of contacts during which the foot was held in place.
     pub contacts: usize,
     /// Foot slide before and after.
     pub slide: [FootSlide; 2],

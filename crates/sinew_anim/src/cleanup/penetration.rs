@@ -71,7 +71,7 @@ pub fn raise(
     }
 }
 
-/// A joint and all its descendants.
+/// Returns a joint and all its descendants.
 fn below(rig: &Rig, top: JointIdx) -> Vec<JointIdx> {
     let mut hangs = vec![false; rig.joints.len()];
     hangs[top] = true;

@@ -66,7 +66,7 @@ pub fn despike(take: &mut Take, settings: &SpikeSettings) -> Vec<Spike> {
     found
 }
 
-/// Returns rotation (radians) and shift from one transform to another.
+/// Returns the rotation (radians) and the shift from one transform to another.
 fn step(a: LocalTransform, b: LocalTransform) -> [f32; 2] {
     [a.rotation.angle_to(b.rotation), (a.translation - b.translation).length()]
 }

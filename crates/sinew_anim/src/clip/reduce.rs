@@ -351,7 +351,7 @@ fn with_keys(channel: &Channel, kept: &[usize]) -> Channel {
 }
 
 impl Channel {
-    /// Value of a key of a channel that is no spline.
+    /// Value of a key of a channel that is not a spline.
     fn value(&self, key: usize) -> [f32; 4] {
         let width = self.property.width();
         let mut value = [0.0; 4];
@@ -414,7 +414,8 @@ impl Fit<'_> {
         good
     }
 
-    /// True if all keys between two keys are near the line between these. Starts in the middle, where most errors are.
+    /// True if all keys between two keys are near the line between these. Tests the middle first, where errors are
+    /// largest.
     fn holds(&self, from: usize, to: usize) -> bool {
         let line = Line::between(self.channel, from, to);
         let holds = |key: usize| self.holds_at(key, line.at(self.channel.times[key]));

@@ -23,7 +23,7 @@ pub struct Footsteps {
 /// Reason why a clip has no footsteps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoFootsteps {
-    /// The character is no humanoid.
+    /// The character is not a humanoid.
     #[error("footsteps are found on the two legs of a human, and this is none")]
     NotHumanoid,
     /// A leg has no joint for the hip, the knee or the ankle.
@@ -55,7 +55,7 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     let lap = take.duration() as f32;
     let repeats = is_loop(&take, feet[0].length / analysis.unit_scale);
     if repeats {
-        // Two laps, so that a step at the seam is whole; the evaluated lap is in the middle.
+        // Two laps, so that a step at the seam is whole; the lap between the two seams is evaluated.
         take.poses.extend_from_within(take.joints..);
     }
     let root = analysis.character_from_file();
@@ -84,7 +84,7 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     Ok(Footsteps { events, speed: ground.velocity.length() })
 }
 
-/// Mean speed of a body over its ground, m/s, from the middle of its feet in the first and the last frame.
+/// Mean speed of a body over its ground, m/s, from the midpoint between its feet in the first and the last frame.
 fn pace(take: &Take, points: &[[[Vec3; 2]; 2]]) -> f32 {
     let middle = |frame: usize| points[frame].as_flattened().iter().sum::<Vec3>() * 0.25;
     let way = middle(points.len() - 1) - middle(0);

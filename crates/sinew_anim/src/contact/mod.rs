@@ -83,8 +83,8 @@ impl Ground {
         Self { height, velocity: if moves { velocity } else { Vec3::ZERO } }
     }
 
-    /// Converts points to points relative to the ground, metres: a standing foot is at rest there. `points` are those
-    /// of [`sole_points`], one entry per frame.
+    /// Converts points to positions relative to the ground, metres: a standing foot is at rest there. `points` are
+    /// those of [`sole_points`], one entry per frame.
     pub fn seen_from(&self, take: &Take, mut points: Vec<[[Vec3; 2]; 2]>) -> Vec<[[Vec3; 2]; 2]> {
         for (frame, feet) in points.iter_mut().enumerate() {
             let way = self.velocity * take.time(frame);
@@ -209,7 +209,7 @@ fn speed(take: &Take, points: &[Vec3], frame: usize) -> f32 {
 pub struct FootSlide {
     /// Mean speed over the ground, m/s: distance slid divided by standing time.
     pub mean: f32,
-    /// Largest distance of a foot from its landing place within one contact, metres.
+    /// Largest distance of a foot from its landing position within one contact, metres.
     pub farthest: f32,
     /// Total standing time of both feet, seconds.
     pub time: f32,

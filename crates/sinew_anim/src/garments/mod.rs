@@ -81,11 +81,12 @@ pub struct Garment {
     pub backstop: Option<Backstop>,
 }
 
-/// Backstop of a garment: keeps each particle out of a ball behind its rest place, fixed to the nearest body part.
+/// Backstop of a garment: keeps each particle out of a ball behind its rest position, fixed to the nearest body part.
 /// Keeps cloth out of drawn parts that no shape covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Backstop {
-    /// Depth below its rest place that a particle may reach, inward along the garment's normal, metres, ≥ 0. Default 0.
+    /// Depth below its rest position that a particle may reach, inward along the garment's normal, metres, ≥ 0. Default
+    /// 0.
     pub distance: f32,
     /// Radius of the ball, metres, positive. Default 0.2: nearly flat at the trunk, and no wider than a stride at a
     /// thigh.

@@ -35,7 +35,7 @@ impl Decay {
             sum += along * quintic(size, speed, shortened(size, speed, seconds), time);
             aside -= along * speed;
         }
-        // A curve without an offset is in proportion to its velocity.
+        // Without an offset, the curve is proportional to the velocity.
         sum + aside * quintic(0.0, 1.0, seconds, time)
     }
 }

@@ -169,7 +169,7 @@ pub struct Passage {
     is_backward: bool,
 }
 
-/// A passed moment of a clip.
+/// Passage of a playhead over a time of its clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     pub(crate) place: Place,
@@ -184,7 +184,7 @@ impl Crossing {
     }
 }
 
-/// Recurring time of a clip: its place in each period, and the number of laps per period.
+/// Recurring time of a clip: its position in each period, and the number of laps per period.
 #[derive(Clone, Copy)]
 struct Recurring {
     at: Place,
@@ -219,7 +219,7 @@ impl Passage {
     fn recurring(&self, time: f64) -> [Option<Recurring>; 2] {
         let length = self.playhead.length;
         let forth = |period| Recurring { at: Place { lap: 0, time }, period };
-        // The end of a lap is the start of the next one.
+        // The end of a lap is the start of the next lap.
         let end = |period| Recurring { at: Place { lap: 1, time: 0.0 }, period };
         match self.playhead.mode {
             LoopMode::Once => [Some(forth(0)), None],

@@ -36,7 +36,7 @@ impl Skeleton {
         self.parents.len()
     }
 
-    /// True if it has no joints.
+    /// True if the skeleton has no joints.
     pub fn is_empty(&self) -> bool {
         self.parents.is_empty()
     }

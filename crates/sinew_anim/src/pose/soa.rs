@@ -39,7 +39,7 @@ impl Pose {
         self.joints
     }
 
-    /// True if it has no joints.
+    /// True if the pose has no joints.
     pub fn is_empty(&self) -> bool {
         self.joints == 0
     }

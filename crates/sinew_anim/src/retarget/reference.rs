@@ -19,7 +19,7 @@ pub enum Reference {
     Clip(f32),
 }
 
-/// Number of frames of a clip that are examined.
+/// Number of frames that are examined in a clip.
 const LOOKS: usize = 24;
 
 /// Analyses a skeleton without skin in its best standing pose: the stated one (if any), else the rig's rest pose, else

@@ -121,7 +121,7 @@ impl<'a> Scene<'a> {
             (readings[joint].part, readings[joint].side) = (part_of(role), role.side());
         }
         if !matches!(trust, Trust::Nothing { .. }) {
-            // A control whose skin is moved by no joint above it is a body part with any name.
+            // A control with skin that no joint above it moves counts as a body part, regardless of its name.
             let fair = CONTROL_SKIN * bound.area.iter().sum::<f32>();
             let is_bone = |joint: JointIdx| {
                 let carries = |ancestor: JointIdx| bound.area[ancestor] > 0.0;
@@ -693,7 +693,7 @@ fn sides_pair_up(readings: &[Reading]) -> bool {
     all >= 8 && 10 * paired >= 9 * all
 }
 
-/// At most three evenly spread places in a chain, including the first.
+/// Returns at most three evenly spaced positions in a chain, including the first.
 fn thirds(length: usize) -> impl Iterator<Item = usize> {
     let count = length.min(3);
     (0..count).map(move |k| k * length / count)
@@ -722,7 +722,7 @@ fn leg_roles(legs: &Limb, k: usize, side: Side) -> Vec<(usize, Role)> {
 /// Returns the evidence for a role found by shape: whether the name agrees, contradicts, or gives no part.
 fn basis(role: Role, reading: &Reading) -> Basis {
     let Some(part) = reading.part else { return Basis::Shape };
-    // Rigify and CesiumMan count the pelvis among the spine.
+    // Rigify and CesiumMan name the pelvis as a part of the spine.
     if role == Role::Hips && part == Part::Spine {
         return Basis::Shape;
     }
@@ -748,7 +748,7 @@ fn part_of(role: Role) -> Option<Part> {
     })
 }
 
-/// Returns the humanoid role of a part and a side; roles of the spine also depend on the place in the chain.
+/// Returns the humanoid role of a part and a side; roles of the spine also depend on the position in the chain.
 fn role_of(part: Part, side: Option<Side>) -> Option<Role> {
     let fits = |role: &Role| part_of(*role) == Some(part) && role.side() == side;
     super::role::HUMANOID_ROLES.into_iter().filter(|_| part != Part::Spine).find(fits)

@@ -119,8 +119,8 @@ impl Bound {
         for &at in &bound.vertices {
             (bound.lo, bound.hi) = (min3(bound.lo, at), max3(bound.hi, at));
         }
-        // A joint exactly on its parent (CMU's skeletons have eleven) is no separate place, and two joints in one place
-        // (clavicles, hips) would each be their own mirror image. Their children belong to the parent.
+        // A joint exactly on its parent (CMU's skeletons have eleven) has no separate position, and two joints at one
+        // position (clavicles, hips) would each be their own mirror image. Their children belong to the parent.
         let near = COINCIDENT * bound.size();
         let twins = twins(rig, &bound.model, near);
         let mut place: Vec<usize> = (0..rig.joints.len()).collect();
@@ -199,7 +199,7 @@ fn beside_the_skeleton(rig: &Rig) -> Vec<bool> {
     root.into_iter().map(|root| LARGEST_BESIDE * size[root] < largest).collect()
 }
 
-/// True for each joint with a sibling in the same place that has the other side by name, or if both have no name.
+/// True for each joint with a sibling at the same position that has the other side by name, or if both have no name.
 fn twins(rig: &Rig, model: &[Affine], tolerance: f32) -> Vec<bool> {
     let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
     let readings = read_names(&names, &[]);
@@ -334,7 +334,7 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     if votes(&rest[mesh.joint]) > 0 {
         return rest[mesh.joint];
     }
-    // Takes the first of a line of joints that carry equally many.
+    // Of joints that carry equally many, take the first.
     let carries = |slot: usize| {
         let joint = skin.joints[slot];
         (carried[joint], core::cmp::Reverse(ancestors(rig, joint).count()))

@@ -31,7 +31,7 @@ pub fn characters(rig: &Rig) -> Vec<Vec<usize>> {
             (Some(main), Some(extent)) => {
                 let is_other = extent.longest() > LARGE_WITHIN * main.longest()
                     && !shares_bones(rig, &bind, meshes, &skeletons[skeleton], main.longest());
-                // A cape may extend outside of the body by half of its size.
+                // Half of a cape's size may be outside of the body.
                 let is_worn = extent.common(&main) > 0.0
                     && bones(rig, &skeletons[skeleton]) < BONES_OF_A_CHARACTER
                     && bones(rig, meshes) >= BONES_OF_A_CHARACTER;

@@ -39,7 +39,7 @@ pub enum CorrectionError {
     NotHuman {
         /// The role that was given.
         role: Role,
-        /// Missing human roles; empty if all are given but in impossible places.
+        /// Missing human roles; empty if all are given but at impossible positions.
         missing: Vec<Role>,
     },
     /// The joint moves no skin, which a creature part must do.
@@ -74,7 +74,7 @@ impl Correction {
         self.roles.is_empty() && self.ignored.is_empty()
     }
 
-    /// Returns the rig without the skin, meshes and joint names that are ignored; joints keep their places.
+    /// Returns the rig without the ignored skin, meshes and joint names; joint indices do not change.
     ///
     /// # Panics
     /// If a joint, or an index of the rig, is out of range.

@@ -76,8 +76,8 @@ fn leads_to(graph: &Graph, parts: &[Option<Part>], part: Part) -> Vec<bool> {
     leads
 }
 
-/// Sorts limbs by place of attachment and reach, independently of the file order: limbs near the root first, and the
-/// left limb of a mirrored pair first. A pair uses its mean, so that rounding puts no third limb between the two.
+/// Sorts limbs by their point of attachment and reach, independently of the file order: limbs near the root first, and
+/// the left limb of a mirrored pair first. A pair uses its mean, so that rounding puts no third limb between the two.
 fn number(graph: &Graph, symmetry: &Symmetry, left: Vec3, begins: &mut [usize]) {
     let mean = |node: usize, of: &dyn Fn(usize) -> f32| of(node) + of(symmetry.other(node).unwrap_or(node));
     let key = |node: usize| {

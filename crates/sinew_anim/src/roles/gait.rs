@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// Largest number of clips that are examined; walks and runs by name come first.
 const MOST_CLIPS: usize = 12;
-/// Fewest and most poses of a clip that are examined.
+/// Smallest and largest number of poses of a clip that are examined.
 const FRAMES: [f32; 2] = [16.0, 96.0];
 /// Words in names of clips in which legs walk.
 const WALKS: [&str; 8] = ["walk", "run", "jog", "trot", "gallop", "sprint", "march", "move"];
@@ -168,7 +168,7 @@ impl Ways {
 
     /// Number of frames of a stride in a clip treated as a loop; 0 if there is no whole stride.
     fn stride(&self, reach: f32) -> f32 {
-        // Only positions beyond the middle by a share of the swing count, so that noise near the middle has no effect.
+        // Only positions beyond the centre by a share of the swing count, so that noise near the centre has no effect.
         let sides = self.apart().filter(|d| d.abs() > 0.3 * reach).map(|d| d > 0.0);
         let sides: Vec<bool> = sides.collect();
         let next = sides.iter().cycle().skip(1);

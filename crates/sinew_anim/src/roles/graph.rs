@@ -20,7 +20,7 @@ pub(super) struct Node {
     pub reach: f32,
 }
 
-/// Most joints of a foot beside the body: the foot and its toes.
+/// Largest number of joints of a foot beside the body: the foot and its toes.
 const LONGEST_FOOT: usize = 2;
 
 /// A tree of [`Node`]s with one root.
@@ -226,7 +226,7 @@ impl Graph {
             let grown = self.grows_into(stray, trunk.iter().copied(), bound).or(end.map(|(_, node)| node));
             return grown.or(nearest(&mut self.skin_of(trunk, bound)).and_then(at_skin)).unwrap_or(self.root);
         }
-        // A foot does not stand on another foot, so attached trees are no leaves.
+        // A foot is never attached to another foot, so attached trees are not leaves.
         let is_leaf = |i: &usize| {
             let is_end = self.nodes[*i].children.iter().all(|child| self.adopted.contains(child));
             is_end && self.nodes[*i].parent.is_some() && !self.adopted.contains(i)

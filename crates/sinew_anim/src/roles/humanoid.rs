@@ -184,7 +184,7 @@ impl Evidence<'_> {
         [chain, mirrored]
     }
 
-    /// True if a chain ends in a forearm with fingers: all fingers start in one place away from it, or farther away
+    /// True if a chain ends in a forearm with fingers: all fingers start at one position away from it, or farther away
     /// than the length of a palm.
     fn ends_at_wrist(&self, chain: &[usize], fingers: &[usize]) -> bool {
         let [.., before, forearm] = chain else { return false };

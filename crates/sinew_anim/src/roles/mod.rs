@@ -72,7 +72,7 @@ pub enum Basis {
     ShapeAgainstName,
     /// The name alone; the shape does not show it.
     Name,
-    /// The place in the body of a creature.
+    /// The position in the body of a creature.
     Place,
 }
 

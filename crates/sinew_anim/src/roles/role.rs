@@ -19,7 +19,7 @@ impl Side {
     }
 }
 
-/// Role of a joint: a bone of the VRM 1 humanoid, or a place in the generic anatomy of a creature.
+/// Role of a joint: a bone of the VRM 1 humanoid, or a part of the generic anatomy of a creature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Role {
     /// Pelvis, the root of a humanoid's bodies.

@@ -5,7 +5,7 @@ use crate::rig::Rig;
 
 /// Longest side of a grown animal, metres: for most from nose to tail, for flying birds and insects across the wings.
 ///
-/// Round figures from field guides; insects have the size that games give them, at most a cat's.
+/// Round values from field guides; insects have the size that games give them, at most a cat's.
 const LENGTHS: &[(&str, f32)] = &[
     ("ant beetle bug fly mosquito ladybug", 0.3),
     ("bee wasp hornet butterfly dragonfly moth", 0.35),
@@ -41,7 +41,7 @@ const MACHINES: &str = "bot robot mech mecha drone toy plush statue";
 pub(super) enum Species {
     /// A human.
     Human,
-    /// An animal, and the length of a grown one, metres.
+    /// An animal, and the length of an adult animal, metres.
     Animal(&'static str, f32),
 }
 

@@ -38,7 +38,7 @@ impl Symmetry {
     }
 
     /// Pairs joints with their mirror images from the root down. The image of a joint is a child of its parent's image;
-    /// the best fits are paired first. Of several joints in one place, such as fingers at the wrist, the one whose
+    /// the best fits are paired first. Of several joints at one position, such as fingers at the wrist, the one whose
     /// whole subtree is nearest to the mirrored subtree is chosen.
     fn pair_up(&mut self, graph: &Graph, tolerance: f32) {
         let middles = graph.middles();
@@ -57,7 +57,7 @@ impl Symmetry {
             if parents[0] == parents[1] {
                 away
             } else if is_chain {
-                // An unbranched chain continues like its twin, with any bend.
+                // An unbranched chain continues like its counterpart, with any bend.
                 min(min(away, of_bone), lengths(nodes, parents))
             } else {
                 min(away, of_bone)

@@ -1,7 +1,7 @@
 //! Tunable constants for the recognition of joints.
 //!
 //! Each has its unit, the effect of a larger and a smaller value, and the tests (`crates/sinew_anim/tests/it`) that
-//! show it; effects without a figure are estimates.
+//! show it; effects without a number are estimates.
 
 // roles/anatomy.rs
 
@@ -13,13 +13,13 @@ pub(crate) const CONTROL_SKIN: f32 = 5e-4;
 
 /// Least lead of both feet together, in body heights, that decides forward against the names of left and right.
 ///
-/// Half of a human's lead. Larger: swapped names reverse figures. Smaller: slightly leading toes reverse them. Shown by
-/// the tests of `hints`.
+/// Half of a human's lead. Larger: swapped names reverse characters. Smaller: slightly leading toes reverse them.
+/// Shown by the tests of `hints`.
 pub(crate) const FEET_AGAINST_NAMES: f32 = 0.04;
 
 /// Least lead of both feet together, in body heights, that decides forward if there is no other evidence.
 ///
-/// Larger: small feet decide nothing. Smaller: noise decides. Shown by the tests of `hints`.
+/// Larger: small feet are ignored. Smaller: noise decides the forward direction. Shown by the tests of `hints`.
 pub(crate) const LEAST_FOOT: f32 = 0.005;
 
 /// Fall of a limb from its first joint to its last, as a share of the distance, above which the limb counts as hanging.
@@ -31,20 +31,21 @@ pub(crate) const HANGING: f32 = 0.6;
 
 /// Least distance of both elbows together behind the arms, in body heights, to outweigh unclear feet.
 ///
-/// Larger: T-poses without feet have no front. Smaller: noise of straight arms decides. Shown by the tests of `hints`.
+/// Larger: T-poses without feet have no front. Smaller: noise of straight arms decides the forward direction. Shown by
+/// the tests of `hints`.
 pub(crate) const ELBOWS_BEHIND: f32 = 0.03;
 
 /// Least correlation of the feet's height with their speed, 0 to 1, that decides the walking direction.
 ///
-/// Larger: shuffling walks decide nothing. Smaller: dances decide the direction. Shown by the tests of `hints`.
+/// Larger: shuffling walks give no direction. Smaller: dances give a direction. Shown by the tests of `hints`.
 pub(crate) const STEP_CORRELATION: f32 = 0.25;
 
 // roles/assembly.rs
 
 /// Least number of limb pairs with consistent left and right names to trust them without a mirror.
 ///
-/// Larger: low-poly figures with few bones are rejected. Smaller: two names may agree by chance. Shown by the tests of
-/// `assembly`.
+/// Larger: low-poly characters with few bones are rejected. Smaller: two names may agree by chance. Shown by the tests
+/// of `assembly`.
 pub(crate) const LEAST_NAMED_PAIRS: usize = 3;
 
 /// Least cosine between a pair's right-to-left direction and the mean of all pairs.
@@ -54,7 +55,7 @@ pub(crate) const NAMED_ALIKE: f32 = 0.3;
 
 // roles/bind.rs
 
-/// Distance of two joints that counts as one place, as a share of the body's size.
+/// Distance of two joints that counts as one position, as a share of the body's size.
 ///
 /// Larger: fingertips coincide. Smaller: an exporter's helpers count as bones. Shown by the tests of `rigs`.
 pub(crate) const COINCIDENT: f32 = 1e-3;
@@ -178,13 +179,13 @@ pub(crate) const TWIN_AREA: f32 = 0.6;
 /// `roles`.
 pub(crate) const FORKED: f32 = 0.8;
 
-/// Largest spread of the fingers' starts, as a share of their distance from the parent, at which their place is the
+/// Largest spread of the fingers' starts, as a share of their distance from the parent, at which their position is the
 /// wrist.
 ///
 /// Larger: palms are lost. Smaller: fingers are attached to the forearm. Shown by the tests of `roles`.
 pub(crate) const AT_WRIST: f32 = 0.15;
 
-/// Longest palm, as a share of the forearm's length; also fits figures with large hands.
+/// Longest palm, as a share of the forearm's length; also fits characters with large hands.
 ///
 /// Larger: forearms count as palms. Smaller: large hands count as forearms. Shown by the tests of `roles`.
 pub(crate) const LONGEST_PALM: f32 = 0.7;
@@ -194,7 +195,7 @@ pub(crate) const LONGEST_PALM: f32 = 0.7;
 /// Larger: knees count as high as ankles. Smaller: rounding decides. Shown by the tests of `roles`.
 pub(crate) const AS_HIGH: f32 = 0.02;
 
-/// Least height of the hips of a figure with a large head, as a share of the figure's height.
+/// Least height of the hips of a character with a large head, as a share of the character's height.
 ///
 /// Larger: the legs of dolls are not recognised. Smaller: feet count as legs. Shown by the tests of `roles`.
 pub(crate) const LOWEST_HIP: f32 = 0.1;
@@ -232,17 +233,17 @@ pub(crate) const LEAST_CLAVICLE: f32 = 0.05;
 
 /// Distance around the skin's box within which a mesh without a bone counts as worn, as a share of the skin's size.
 ///
-/// Larger: a table beside a figure follows it. Smaller: a backpack stays behind. Shown by the tests of `assembly`.
+/// Larger: a table beside a character follows it. Smaller: a backpack stays behind. Shown by the tests of `assembly`.
 pub(crate) const WORN_WITHIN: f32 = 0.08;
 
 /// Longest side of a worn mesh, as a share of the skin's size.
 ///
-/// Larger: the ground under a figure follows it. Smaller: a rifle stays behind. Shown by the tests of `assembly`.
+/// Larger: the ground under a character follows it. Smaller: a rifle stays behind. Shown by the tests of `assembly`.
 pub(crate) const LARGEST_WORN: f32 = 0.9;
 
 /// Longest side of a mesh on the skeleton's node that touches the body, as a share of the skin's size.
 ///
-/// Larger: a stage under a figure follows it. Smaller: a goblin's head stays in the air. Shown by the tests of
+/// Larger: a stage under a character follows it. Smaller: a goblin's head stays in the air. Shown by the tests of
 /// `assembly`.
 pub(crate) const LARGEST_ON_ARMATURE: f32 = 1.2;
 
@@ -280,7 +281,7 @@ pub(crate) const PROP_CONFIDENCE: f32 = 0.5;
 
 /// Largest distance of a joint from its mirror image, as a share of the size of the skin.
 ///
-/// Larger: false planes are found. Smaller: sculpted figures have no plane. Shown by the tests of `creatures`.
+/// Larger: false planes are found. Smaller: sculpted characters have no plane. Shown by the tests of `creatures`.
 pub(crate) const MIRROR_TOLERANCE: f32 = 0.025;
 
 // roles/units.rs
@@ -299,14 +300,14 @@ pub(crate) const UNIT_BY_KIN: f32 = 2.0;
 
 /// Height of a human as a share of the free height under a door, 0 to 1.
 ///
-/// Doors of 2.05 m suit 1.75 m. Larger or smaller: figures sized by a door grow or shrink with it. Shown by the tests
-/// of `hints`.
+/// Doors of 2.05 m suit 1.75 m. Larger or smaller: characters sized by a door grow or shrink with it. Shown by the
+/// tests of `hints`.
 pub(crate) const UNDER_DOOR: f32 = 0.85;
 
 /// Speed of strides in square roots of gravity times leg length, between that of a walk (3.6 strides) and a run (2.3
 /// strides).
 ///
-/// Larger or smaller: figures without other hints shrink or grow by its square. Shown by the tests of `hints`.
+/// Larger or smaller: characters without other hints shrink or grow by its square. Shown by the tests of `hints`.
 pub(crate) const STRIDE_SPEED: f32 = 3.0;
 
 /// Least height that an adult's head implies, metres.

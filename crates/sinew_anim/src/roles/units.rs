@@ -24,7 +24,7 @@ pub(super) struct Measured {
 }
 
 impl Measured {
-    /// True for a body of human size: a human, or a figure named like one.
+    /// True for a body of human size: a human, or a character named like one.
     fn is_human(&self) -> bool {
         self.humanoid || self.species == Some(Species::Human)
     }
@@ -130,8 +130,8 @@ impl Sizes {
     /// Accepts a small human if neighbouring files use its unit, doors are low, or the head is large and the steps are
     /// fast.
     ///
-    /// A large head or the exporter's usual unit is not enough: figures with large heads are drawn at adult size, and
-    /// scaled rigs are common. A short stride time alone is not enough either, because an adult may be in a hurry.
+    /// A large head or the exporter's usual unit is not enough: characters with large heads are drawn at adult size,
+    /// and scaled rigs are common. A short stride time alone is not enough either, because an adult may be in a hurry.
     fn with_small(mut self, witnesses: &Witnesses, metres: f32) -> Self {
         let steps = |(leg, by_stride): (f32, f32)| {
             let leg = leg * metres;
@@ -146,7 +146,7 @@ impl Sizes {
     }
 }
 
-/// Range of sizes of an animal, as shares of a grown animal's.
+/// Range of sizes of an animal, as shares of an adult's.
 const GROWN: core::ops::Range<f32> = 0.6..1.5;
 
 /// Evidence for a unit in addition to the body's size, and its wording.

@@ -61,11 +61,11 @@ fn one_clip_in_two_tracks_blends_both_times() {
             let [a, b, mean] = [fast, late, both.pose()].map(|pose| pose.get(joint).rotation);
             // The mean of two rotations lies on the arc between them.
             let expected = a.nlerp(b, 0.3);
-            assert!(mean.angle_to(expected) < 1e-3, "step {step}, joint {joint}");
+            assert!(mean.angle_to(expected) < 1e-3, "step {step}, joint {joint} differs");
         }
         apart = sinew_math::max(apart, angle(fast, late));
     }
-    assert!(apart > 0.3, "they drift apart: {apart}");
+    assert!(apart > 0.3, "the clips must drift apart; distance {apart}");
     // With equal speed and time, both tracks give the same bits.
     both.set_speed(slow, 1.0);
     let time = both.tracks().next().expect("two play").playhead().clip_time();
@@ -133,7 +133,10 @@ fn ramps_end_on_time_with_their_action() {
                 EndAction::Restart => 0.45,
                 _ => 0.95,
             };
-            assert!((track.playhead().clip_time() - time).abs() < 1e-5, "{then:?} in {steps} steps");
+            assert!(
+                (track.playhead().clip_time() - time).abs() < 1e-5,
+                "end action {then:?} in {steps} steps"
+            );
             assert_eq!(track.is_paused(), then == EndAction::Pause);
         }
     }
@@ -160,7 +163,7 @@ fn one_shot_clip_takes_its_end_action() {
         assert_eq!(after(EndAction::Pause, 1.25, steps), Some(1.0));
         assert_eq!(after(EndAction::Stop, 1.25, steps), None);
         let again = after(EndAction::Restart, 2.25, steps).expect("it goes on");
-        assert!((again - 0.25).abs() < 1e-4, "{again} in {steps} steps");
+        assert!((again - 0.25).abs() < 1e-4, "restarted at {again} s in {steps} steps");
     }
 }
 
@@ -403,7 +406,10 @@ fn footstep_is_reported_once_for_any_leading_clip() {
             let seconds = random.range(0.0, 0.04);
             animator.update_with(&set, seconds, |_, event| steps.push(event.payload.clone()));
         }
-        assert!(steps.windows(2).all(|pair| pair[0] != pair[1]), "left and right by turns: {steps:?}");
+        assert!(
+            steps.windows(2).all(|pair| pair[0] != pair[1]),
+            "steps must alternate between left and right: {steps:?}"
+        );
         // The number of passed markers, with a tolerance of one at the current time.
         let place = animator.track(tracks[0]).expect("it plays").playhead();
         let laps = place.lap() as f32 + place.clip_time() - 0.25;
@@ -459,7 +465,10 @@ fn crossfade_rotates_about_one_axis_with_its_easing() {
         for joint in 0..stage::JOINTS {
             let expected = around(3.0 + (share - 0.5) * apart(joint));
             let found = animator.pose().get(joint).rotation;
-            assert!(found.angle_to(expected) < 2e-3, "joint {joint}, {share}: {found:?}");
+            assert!(
+                found.angle_to(expected) < 2e-3,
+                "joint {joint}, blend share {share}: rotation {found:?}"
+            );
         }
     }
 }
@@ -478,7 +487,7 @@ fn nested_crossfades_are_continuous() {
         }
         animator.update(&set, 0.001);
         for (joint, (a, b)) in last.iter().zip(animator.pose().iter()).enumerate() {
-            assert!(a.rotation.angle_to(b.rotation) < 0.03, "joint {joint}, update {i}");
+            assert!(a.rotation.angle_to(b.rotation) < 0.03, "joint {joint} differs in update {i}");
         }
         last.copy_from(animator.pose());
     }

@@ -170,7 +170,7 @@ fn names_decide_where_the_pose_is_asymmetric() {
     is_whole(&rig, &[]);
 }
 
-/// Adds a second skeleton: one joint that moves a tetrahedron of the given size at a place.
+/// Adds a second skeleton: one joint that moves a tetrahedron of the given size at a position.
 fn add_skeleton(rig: &mut Rig, name: &str, place: Vec3, size: f32) -> usize {
     let joint = rig.joints.len();
     let rest = LocalTransform { translation: place, ..LocalTransform::default() };
@@ -517,7 +517,7 @@ fn quadruped_with_human_names_is_not_human() {
     assert!((found.up_axis - Vec3::Y).length() < 1e-6);
 }
 
-/// Adds a joint without skin at a place.
+/// Adds a joint without skin at a position.
 fn add_bare(rig: &mut Rig, name: &str, parent: Option<usize>, place: Vec3, under: Vec3) -> usize {
     let rest = LocalTransform { translation: place - under, ..LocalTransform::default() };
     rig.joints.push(Joint { name: name.into(), parent, rest, source: rig.joints.len() });
@@ -575,7 +575,7 @@ fn trunk_on_a_separate_branch_is_found() {
         // The spine's parts may be numbered differently.
         assert!(
             joint.as_deref() == Some(&expected) || expected.contains("spine.00"),
-            "{name} is {joint:?}, not {expected}"
+            "the joint of {name} is {joint:?}, expected {expected}"
         );
     }
 }
@@ -720,7 +720,7 @@ fn rootless_figure_with_squatting_rest_pose_stands_in_the_bind_pose() {
     let found = analyze(&in_order(&rig)).expect("a skin");
     let place = |role: Role| found.bind_model[found.joint_with(role).expect("a joint")].translation;
     let up = (place(Role::Head) - place(Role::Hips)).normalize();
-    assert!(up.y > 0.9, "from hips to head the direction is {up}; {:?}", found.notes);
+    assert!(up.y > 0.9, "the direction from hips to head is {up}; notes {:?}", found.notes);
 }
 
 /// A mesh that is a node below its object, as in some converted files.
@@ -790,7 +790,10 @@ fn separate_hat_is_bound_on_the_head_of_a_bent_rest_pose() {
     rig.meshes.push(RigMesh { name: String::new(), joint: hat, skin: None, primitives: vec![primitive] });
     let found = analyze(&rig).expect("a skin");
     let bound = found.bind_model[hat].translation - found.bind_model[part("head")].translation;
-    assert!((bound - Vec3::Y * 0.2).length() < 1e-3, "bound {bound} above the head at {place}");
+    assert!(
+        (bound - Vec3::Y * 0.2).length() < 1e-3,
+        "the bind position is {bound} relative to the head at {place}"
+    );
     assert_eq!(found.merge_into[hat], Some(part("head")));
 }
 
@@ -819,8 +822,8 @@ fn separate_prop_follows_its_carrier() {
     let [head, hat] = ["mixamorig:Head", "hat"].map(at);
     let way = model[hat].translation - model[head].translation;
     let bound = found.bind_model[hat].translation - found.bind_model[head].translation;
-    assert!((way.length() - bound.length()).abs() < 1e-4, "{way}, not as far as {bound}");
-    assert!(model[hat].linear.y_axis.y < 0.5, "it leans with the head");
+    assert!((way.length() - bound.length()).abs() < 1e-4, "moved by {way}, but bound at {bound}");
+    assert!(model[hat].linear.y_axis.y < 0.5, "the hat must lean with the head");
 }
 
 /// A hat that only a clip moves to the head also stays there in another body's motion.
@@ -898,7 +901,7 @@ fn childless_pelvis_called_root_is_the_hips() {
     assert_eq!(sorted.joints[spine].name, "spine_01.x");
 }
 
-/// A figure whose rest pose differs from its bind pose has a gun with many vertices in its hand: the body determines
+/// A character whose rest pose differs from its bind pose has a gun with many vertices in its hand: the body determines
 /// the bind pose.
 #[test]
 fn gun_with_many_vertices_does_not_change_the_bind_pose() {
@@ -922,12 +925,12 @@ fn gun_with_many_vertices_does_not_change_the_bind_pose() {
     assert!(found.humanoid, "{:?}", found.notes);
     for (joint, (name, _, at)) in toy::BODY.iter().enumerate() {
         let off = (found.bind_model[joint].translation - Vec3::from_array(*at)).length();
-        assert!(off < 1e-3, "{name} is bound {off} m off");
+        assert!(off < 1e-3, "{name}: the bind position is off by {off} m");
     }
 }
 
-/// A figure has one mesh per part, and a raised arm with one mesh of three bones: the trunk's mesh determines the bind
-/// pose.
+/// A character has one mesh per part, and a raised arm with one mesh of three bones: the trunk's mesh determines the
+/// bind pose.
 #[test]
 fn a_raised_arm_of_its_own_mesh_says_nothing_of_the_bind_pose() {
     let mut rig = toy::body(mixamo);
@@ -955,6 +958,6 @@ fn a_raised_arm_of_its_own_mesh_says_nothing_of_the_bind_pose() {
     let found = analyze(&rig).expect("a skin");
     for (joint, (name, _, at)) in toy::BODY.iter().enumerate() {
         let off = (found.bind_model[joint].translation - Vec3::from_array(*at)).length();
-        assert!(off < 1e-3, "{name} is bound {off} m off");
+        assert!(off < 1e-3, "{name}: the bind position is off by {off} m");
     }
 }

@@ -81,7 +81,7 @@ fn pose_blended_with_itself_keeps_its_bits() {
         for weights in [&[0.3][..], &[0.1, 0.7], &[1.0, 1.0, 1.0], &[0.2, 0.5, 0.1, 3.0]] {
             let layers: Vec<_> = weights.iter().map(|&weight| BlendLayer::new(&pose, weight)).collect();
             blender.blend(&rest, &layers, &mut out);
-            assert_eq!(out, pose, "{mean:?}, weights {weights:?}");
+            assert_eq!(out, pose, "mean {mean:?}, weights {weights:?}");
         }
     }
 }
@@ -118,12 +118,12 @@ fn weight_ramp_leaves_the_rest_pose_continuously() {
         for joint in 0..JOINTS {
             let way = (pose.get(joint).translation - rest.get(joint).translation).length();
             let step = (out.get(joint).translation - before.get(joint).translation).length();
-            assert!(step <= way * 0.0051 + 1e-6, "step {i}: {step} of {way}");
+            assert!(step <= way * 0.0051 + 1e-6, "step {i}: moved {step} of the total {way}");
         }
         before.copy_from(&out);
     }
     for joint in 0..JOINTS {
-        assert_eq!(out.get(joint), pose.get(joint), "from 0.1 on only the pose counts");
+        assert_eq!(out.get(joint), pose.get(joint), "from 0.1 s on only the pose may count");
     }
 }
 

@@ -54,12 +54,16 @@ fn built_clips_are_within_their_bound_on_all_open_clips() {
                 Err(error) => panic!("{file}, {}: {error}", clip.name),
             };
             let (error, bound) = (built.measure_error(clip, &rig, 2), built.error_bound());
-            assert!(error.is_within(bound), "{file}, {}: {error:?} is beyond {bound:?}", clip.name);
+            assert!(
+                error.is_within(bound),
+                "{file}, {}: error {error:?} exceeds the bound {bound:?}",
+                clip.name
+            );
             (clips, keys, worst) = (clips + 1, keys + built.keys(), worst.merged(error));
         }
     }
-    println!("{clips} clips, {keys} keys, worst {worst:?}");
-    assert_eq!(clips, 168, "all clips of the manifest");
+    println!("{clips} clips, {keys} keys, largest error {worst:?}");
+    assert_eq!(clips, 168, "the manifest lists 168 clips");
 }
 
 #[needs_data]
@@ -80,7 +84,7 @@ fn raw_clips_equal_the_file_at_every_key() {
                 sample_cached(clip, &rig, at_one_time[0].0, Wrap::Clamp, &mut cache, &mut out);
                 for &(_, key, channel) in at_one_time {
                     let (joint, error) = (channel.joint, key_error(channel, key, &out[channel.joint]));
-                    assert!(error < 1e-6, "{file}, {}, joint {joint}, key {key}: {error}", clip.name);
+                    assert!(error < 1e-6, "{file}, {}, joint {joint}, key {key}: error {error}", clip.name);
                 }
             }
         }
@@ -116,7 +120,7 @@ fn steps_splines_and_wide_arcs_are_within_the_bound() {
         let clip = random_clip(&mut random, joints);
         let built = build(&clip, &rig);
         let (error, bound) = (built.measure_error(&clip, &rig, 5), built.error_bound());
-        assert!(error.is_within(bound), "{error:?} is beyond {bound:?}");
+        assert!(error.is_within(bound), "error {error:?} exceeds the bound {bound:?}");
     }
 }
 
@@ -176,7 +180,7 @@ fn constant_channels_have_no_keys() {
     let mut out = Pose::new(9);
     built.sample(0.5, &mut Cursor::new(), &mut out);
     assert_eq!(out.get(8).rotation, Rotation::from_xyzw(0.6, 0.0, 0.0, 0.8).normalize());
-    assert_eq!(out.get(8).translation, Vec3::X, "a joint without a channel has the rest pose");
+    assert_eq!(out.get(8).translation, Vec3::X, "a joint without a channel must have the rest pose");
     // Opposite signs of one quaternion are no motion.
     let signs = [0.6, 0.0, 0.0, 0.8, -0.6, 0.0, 0.0, -0.8];
     assert_eq!(build(&clip(vec![channel(8, &signs)]), &rig).keys(), 0);
@@ -247,7 +251,7 @@ fn additive_clip_on_its_reference_equals_the_clip() {
     let fill = Fill::Identity;
     let built =
         BuiltClip::build(&difference, &rig, &ClipBuildOptions { fill, ..ClipBuildOptions::default() });
-    let built = built.expect("the difference is valid like the clip");
+    let built = built.expect("the difference of valid clips must be valid");
     let (mut out, mut expected) = (Pose::new(6), reference.clone());
     for i in 0..30 {
         let time = 0.1 * i as f32;
@@ -263,7 +267,7 @@ fn additive_clip_on_its_reference_equals_the_clip() {
                     (reference[joint].translation + delta.translation - expected[joint].translation).length()
                 }
             };
-            assert!(error < 2e-3, "joint {joint} at {time}: {error}");
+            assert!(error < 2e-3, "joint {joint} at {time} s: error {error}");
         }
     }
 }
@@ -293,7 +297,7 @@ fn model_space_matches_the_slices_exactly_and_f64_closely() {
             for (j, column) in columns.iter().enumerate() {
                 for (i, x) in column.to_array().into_iter().enumerate() {
                     let error = (f64::from(x) - exact[i][j]).abs();
-                    assert!(error < 1e-5 * size, "joint {joint}: {error} of {size}");
+                    assert!(error < 1e-5 * size, "joint {joint}: error {error} at size {size}");
                 }
             }
         }

@@ -69,7 +69,7 @@ fn impossible_correction_is_rejected() {
     assert_eq!(analyze_corrected(&rig, &all), Err(CorrectionError::NothingLeft));
     let bare = Rig { skins: Vec::new(), meshes: Vec::new(), ..rig.clone() };
     assert_eq!(analyze_corrected(&bare, &Correction::default()), Err(CorrectionError::NoSkin(NoSkin)));
-    // Without arms no figure is recognised as human; the error names the missing roles.
+    // Without arms no character is recognised as human; the error names the missing roles.
     let mut stump = rig.clone();
     let arms: Vec<u16> = (5..11).collect();
     for primitive in &mut stump.meshes[0].primitives {

@@ -55,14 +55,16 @@ fn limbs(name: &str, found: &RigAnalysis) -> Vec<usize> {
     let mut counts: Vec<usize> = Vec::new();
     for bone in &found.kept {
         let Role::LimbSegment { limb, .. } = bone.role else {
-            assert_eq!(side(bone.joint), 0.0, "{name}: {} is of the trunk", bone.role.name());
+            assert_eq!(side(bone.joint), 0.0, "{name}: {} must belong to the trunk", bone.role.name());
             continue;
         };
         counts.resize(counts.len().max(usize::from(limb) + 1), 0);
         counts[usize::from(limb)] += 1;
         let on = &found.kept[bone.parent.expect("a limb has a parent")];
         match on.role {
-            Role::LimbSegment { limb: other, .. } => assert_eq!(limb, other, "{name}: a limb on a limb"),
+            Role::LimbSegment { limb: other, .. } => {
+                assert_eq!(limb, other, "{name}: a limb is attached to another limb")
+            }
             _ => assert_eq!(side(on.joint), 0.0, "{name}"),
         }
         let own = found
@@ -84,7 +86,7 @@ fn birds_insects_snakes_and_carts_get_their_limbs() {
     bird.pair(hips + 1, &[[0.07, 0.35, 0.1], [0.25, 0.36, 0.06], [0.45, 0.36, 0.0]]);
     let mut segments = limbs("bird", &bird.analyzed());
     segments.sort_unstable();
-    assert_eq!(segments, [3, 3, 4, 4], "two legs and two wings");
+    assert_eq!(segments, [3, 3, 4, 4], "expected two legs and two wings");
 
     let mut ant = Body::default();
     let thorax = ant.line(None, &[[0.0, 0.1, 0.0]]);

@@ -46,7 +46,7 @@ fn fed_clip_shows_the_given_pose() {
     for step in 0..90 {
         go_on(&set, clips[2], &mut twins);
         let off = apart(twins[0].pose(), twins[1].pose());
-        assert!(off < 1e-3, "step {step}: {off} rad");
+        assert!(off < 1e-3, "step {step}: off by {off} rad");
     }
 }
 
@@ -59,7 +59,7 @@ fn prediction_extrapolates_the_fed_pose() {
     ahead[1].copy_from(&fed);
     ahead.iter_mut().for_each(|animator| animator.update(&set, DT));
     let (moved, off) = (apart(player.pose(), ahead[0].pose()), apart(ahead[0].pose(), ahead[1].pose()));
-    assert!(off < 0.2 * moved, "{off} rad off after {moved} rad");
+    assert!(off < 0.2 * moved, "off by {off} rad after a motion of {moved} rad");
     // The extrapolation is limited in time.
     let mut alone = fed;
     (0..12).for_each(|_| alone.update(&set, DT));
@@ -88,7 +88,7 @@ fn transition_inherits_the_speed_of_the_fed_pose() {
         }
         twins.iter_mut().for_each(|animator| animator.update(&set, DT));
         let off = apart(twins[0].pose(), twins[1].pose());
-        assert!(off < 2e-3, "step {step}: {off} rad");
+        assert!(off < 2e-3, "step {step}: off by {off} rad");
     }
 }
 
@@ -107,6 +107,9 @@ fn loaded_animator_can_be_fed() {
         assert_eq!(fed.pose(), loaded.pose());
     }
     for end in 0..bytes.len() {
-        assert!(Animator::load(&set, &mut Reader::new(&bytes[..end])).is_err(), "{end} bytes are too few");
+        assert!(
+            Animator::load(&set, &mut Reader::new(&bytes[..end])).is_err(),
+            "a snapshot of {end} bytes must be refused"
+        );
     }
 }

@@ -175,7 +175,7 @@ fn ambiguous_unit_is_decided_by_neighbouring_files_and_doors() {
 
 #[test]
 fn ambiguous_unit_is_decided_by_head_size_and_stride() {
-    // Heads have similar sizes, so a figure whose head is two fifths of its height is a dwarf.
+    // Heads have similar sizes, so a character whose head is two fifths of its height is a dwarf.
     let [(plain, _), (dwarf, note)] = [1.0, 7.0].map(|head| unit(&tall(115.0, head), &Hints::default()));
     assert!(plain == 0.01 && dwarf == 0.01 && note.contains("its head is 4"), "{note}");
     let rig = tall(75.0, 5.0);
@@ -197,7 +197,7 @@ fn human_of_implausible_size_is_scaled() {
         let height = if scaled { 1.75 } else { units };
         assert!((found.height - height).abs() < 0.01, "{units}: {} m", found.height);
     }
-    // A figure with fast steps is short if its head is large, and in a hurry if its head is small.
+    // A character with fast steps is short if its head is large, and in a hurry if its head is small.
     for (head, is_short) in [(5.0, true), (1.0, false)] {
         let rig = tall(0.57, head);
         let scale = unit(&rig, &Hints::of_clips(&rig, &[walk(0.5, 1.0)])).0;

@@ -16,7 +16,7 @@ fn model(rig: &Rig, local: &[LocalTransform]) -> Vec<Affine> {
     out
 }
 
-/// Returns the middle and the end of a limb after the solution.
+/// Returns the positions of middle joint and end of a limb after the solution.
 fn bent(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -> [Vec3; 2] {
     let found = solve_two_bone(root, middle, end, goal);
     let knee = root + found.upper * (middle - root) * found.stretch;
@@ -128,7 +128,10 @@ fn degenerate_input_gives_finite_rotations() {
                         assert!(
                             found.upper.is_finite() && found.lower.is_finite() && found.stretch.is_finite()
                         );
-                        assert!((found.upper.length() - 1.0).abs() < 1e-4, "{root} {middle} {end} {target}");
+                        assert!(
+                            (found.upper.length() - 1.0).abs() < 1e-4,
+                            "root {root}, middle {middle}, end {end}, target {target}"
+                        );
                         cases += 1;
                     }
                 }

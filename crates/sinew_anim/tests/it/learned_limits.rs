@@ -12,7 +12,7 @@ fn learn(turns: impl Iterator<Item = Rotation>) -> LearnedLimit {
         |rotation| [LocalTransform { rotation, ..LocalTransform::default() }, LocalTransform::default()];
     let take = Take { frame_time: 0.01, joints: 2, poses: turns.flat_map(local).collect() };
     let found = learn_limits(&toy::chain(2, Vec3::Y), &[&take]);
-    assert_eq!(found.len(), 1, "a joint without motion has no limit");
+    assert_eq!(found.len(), 1, "a joint without motion must have no limit");
     found[0]
 }
 
@@ -102,10 +102,10 @@ fn captured_knees_and_elbows_are_hinges() {
         };
         for name in ["LeftLeg", "RightLeg", "LeftForeArm", "RightForeArm"] {
             let limit = of(name);
-            let hinge = limit.hinge.unwrap_or_else(|| panic!("{file}: {name} is no hinge: {limit:?}"));
+            let hinge = limit.hinge.unwrap_or_else(|| panic!("{file}: {name} is not a hinge: {limit:?}"));
             let range = (hinge.range.hi - hinge.range.lo).to_degrees();
             println!(
-                "{file} {name}: hinge about {}, {range:.0}°, off {:.2}°",
+                "{file} {name}: hinge about {}, range {range:.0}°, off-axis {:.2}°",
                 hinge.axis,
                 hinge.off_axis.to_degrees()
             );

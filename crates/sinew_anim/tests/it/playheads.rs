@@ -49,7 +49,7 @@ fn count(passage: Passage, mode: LoopMode, length: i64, e: i64, from: i64, way: 
     let all: Vec<_> = passage.crossings((e as f64 * UNIT) as f32).collect();
     for crossing in &all {
         let distance = (crossing.distance / UNIT) as i64;
-        assert_eq!(distance as f64 * UNIT, crossing.distance, "it lies at a whole number of units");
+        assert_eq!(distance as f64 * UNIT, crossing.distance, "the event must be at a whole number of units");
         assert!(if way < 0 { (way..=0).contains(&distance) } else { (0..=way).contains(&distance) });
         let at = from + distance;
         let is_there = match mode {
@@ -57,7 +57,7 @@ fn count(passage: Passage, mode: LoopMode, length: i64, e: i64, from: i64, way: 
             LoopMode::PingPong => [e, -e].iter().any(|e| (at - e).rem_euclid(2 * length) == 0),
             LoopMode::Once => at == e,
         };
-        assert!(is_there, "{mode:?}, event at {e} of {length}, passed at {at}");
+        assert!(is_there, "{mode:?}: event at {e}, length {length}, passed at {at}");
         let lap = at.div_euclid(length);
         assert!(crossing.lap() == lap || mode == LoopMode::Once);
         if mode != LoopMode::PingPong {
@@ -97,7 +97,10 @@ fn every_event_is_passed_exactly_once_for_any_steps() {
             let end = if mode == LoopMode::Once { (from + way).clamp(0, length) } else { from + way };
             assert_eq!(to, end, "playback {playback}");
             let formula = expected(mode, length, e, from, to, is_fresh);
-            assert_eq!(fired, formula, "playback {playback}: {mode:?}, {e} of {length}, {from} to {to}");
+            assert_eq!(
+                fired, formula,
+                "playback {playback}: {mode:?}, event at {e}, length {length}, from {from} to {to}"
+            );
             is_fresh = false;
             if random.index(4) == 0 {
                 playhead.seek(random.index(2 * length as usize) as f64 * UNIT);

@@ -110,7 +110,10 @@ fn error_of_a_whole_chain_stays_within_the_bound() {
         let reduced = reduce_keys(&rig, &clip, &root, bound);
         let [distance, angle] = apart(&rig, &clip, &reduced.clip, &root, &times);
         println!("{unit} {bound:?}: {:?} keys, {distance} and {angle}", reduced.keys);
-        assert!(distance <= bound.distance && angle <= bound.angle, "{distance} {angle}, {bound:?}");
+        assert!(
+            distance <= bound.distance && angle <= bound.angle,
+            "error {distance} m and {angle} rad, bound {bound:?}"
+        );
         assert!((distance - reduced.error.distance).abs() < 2e-6 + 0.01 * distance, "{:?}", reduced.error);
         assert!((angle - reduced.error.angle).abs() < 2e-6 + 0.01 * angle, "{:?}", reduced.error);
         // The bound is nearly used up, and many keys are removed.
@@ -118,7 +121,7 @@ fn error_of_a_whole_chain_stays_within_the_bound() {
         assert!(4 * reduced.keys[1] < 3 * reduced.keys[0], "{:?}", reduced.keys);
         // Between keys the error is only slightly larger, because motion there is linear.
         let [distance, _] = apart(&rig, &clip, &reduced.clip, &root, &between);
-        assert!(distance <= 1.1 * bound.distance, "{distance} between keys");
+        assert!(distance <= 1.1 * bound.distance, "error between keys: {distance} m");
     }
 }
 
@@ -160,7 +163,7 @@ fn random_walks_stay_within_the_bound() {
     for channel in &reduced.clip.channels {
         for pair in channel.values.chunks_exact(4).collect::<Vec<_>>().windows(2) {
             let dot: f32 = pair[0].iter().zip(pair[1]).map(|(a, b)| a * b).sum();
-            assert!(dot >= 0.0, "consecutive keys are in one hemisphere");
+            assert!(dot >= 0.0, "consecutive keys must be in one hemisphere");
         }
     }
 }

@@ -137,7 +137,7 @@ fn walk_fits_every_body() {
             1e3 * found.feet.miss,
             found.contacts.len()
         );
-        assert!(slide[1] < 1.0, "{name}: {slide:?} cm/s per metre of height");
+        assert!(slide[1] < 1.0, "{name}: feet slide at {slide:?} cm/s per metre of height");
         assert!(found.feet.miss < 0.002 * analysis.height, "{name}: {}", found.feet.miss);
         assert!(found.feet.shifted < 0.06 * analysis.height, "{name}: {}", found.feet.shifted);
         assert!((f64::from(found.pace) - f64::from(found.scale).sqrt()).abs() < 1e-5);
@@ -152,7 +152,10 @@ fn walk_fits_every_body() {
         let own = foot_slide(&found.take, &legs.feet, &points, &seen);
         let own = 100.0 * own.mean / analysis.height;
         println!("{name}: {own:.2} cm/s per m in {} contacts of its own", seen.len());
-        assert!(own < 1.0 && seen.len() == found.contacts.len(), "{name}: {own} cm/s per metre of height");
+        assert!(
+            own < 1.0 && seen.len() == found.contacts.len(),
+            "{name}: feet slide at {own} cm/s per metre of height"
+        );
         // Soles are on or above the floor, and one of them is always near it.
         let heights: Vec<f32> =
             points.iter().map(|frame| (lowest(frame) - analysis.floor) / analysis.height).collect();
@@ -179,7 +182,7 @@ fn every_humanoid_walks() {
             "{name}: legs × {:.2}, slide {slide:.3} cm/s per m, miss {:.4} m",
             found.scale, found.feet.miss
         );
-        assert!(slide < 1.0, "{name}: {slide} cm/s per metre of height");
+        assert!(slide < 1.0, "{name}: feet slide at {slide} cm/s per metre of height");
         // Bones keep their lengths in any hierarchy.
         let (mut model, place) = (Vec::new(), |role: Role| analysis.joint_with(role).unwrap());
         let length = |model: &[Affine], side: Side| {
@@ -196,7 +199,7 @@ fn every_humanoid_walks() {
                 for (now, bind) in length(&model, side).into_iter().zip(length(&analysis.bind_model, side)) {
                     assert!(
                         (now / bind - 1.0).abs() < 0.02,
-                        "{name}, frame {frame}, {side:?}: {now} for {bind}"
+                        "{name}, frame {frame}, {side:?}: length {now}, in the bind pose {bind}"
                     );
                 }
             }
@@ -253,12 +256,15 @@ fn walk_is_the_same_for_other_joint_names() {
         for role in [Role::Hand(Side::Right), Role::Head] {
             let [told, own] = [&found, &walk.analysis].map(|of| of.joint_with(role).expect("a human's"));
             let mut up = std::iter::successors(Some(told), |&joint| walk.rig.joints[joint].parent);
-            assert!(up.any(|joint| joint == own), "{what}: {told} for {own}, {role:?}");
+            assert!(up.any(|joint| joint == own), "{what}: joint {told} for {own}, role {role:?}");
         }
         let named = Actor { rig: other, clip: walk.clip.clone(), analysis: found, reference };
         let moved = onto(&named, &rig, &analysis, &RetargetOptions::default());
         let slide = 100.0 * moved.feet.slide[1].mean / analysis.height;
-        assert!(slide < 1.0 && moved.contacts.len() >= 6, "{what}: {slide} cm/s per m");
+        assert!(
+            slide < 1.0 && moved.contacts.len() >= 6,
+            "{what}: feet slide at {slide} cm/s per metre of height"
+        );
     }
 }
 
@@ -311,7 +317,10 @@ fn every_capture_moves_a_character() {
                 in_the_air(&rig, &analysis, &found.take),
             ];
             assert!(jumped > 0.1, "{jumped} m");
-            assert!((hopped / (jumped * found.scale) - 1.0).abs() < 0.3, "{hopped} m for {jumped} m");
+            assert!(
+                (hopped / (jumped * found.scale) - 1.0).abs() < 0.3,
+                "jump height {hopped} m on the target, {jumped} m in the source"
+            );
         }
         // Relative to the hips, the head is in the direction of the actor's head.
         let source = Take::of(&actor.rig, &actor.clip, 1.0 / 60.0);
@@ -424,7 +433,10 @@ fn knees_bend_forward() {
                 let (hip, knee, ankle) =
                     (place(Role::UpperLeg(side)), place(Role::LowerLeg(side)), place(Role::Foot(side)));
                 let bulge = (knee - (hip + ankle) * 0.5).dot(forward);
-                assert!(bulge > -0.03 * analysis.height, "frame {frame}, {side:?}: {bulge}");
+                assert!(
+                    bulge > -0.03 * analysis.height,
+                    "frame {frame}, {side:?}: the knee is {bulge} m before the line from hip to ankle"
+                );
             }
         }
     }
@@ -454,7 +466,10 @@ fn foot_contact_does_not_pop() {
     };
     let (free, held) = (jerk(Feet::Free), jerk(Feet::Locked));
     println!("largest change of a leg joint's step: {free:.2}° free, {held:.2}° held");
-    assert!(held < 1.5 * free + 1.0, "{held}° per frame², {free}° with free feet");
+    assert!(
+        held < 1.5 * free + 1.0,
+        "largest change of a leg joint's step: {held}° with locked feet, {free}° with free feet"
+    );
 }
 
 #[needs_data]

@@ -47,9 +47,9 @@ pub fn sound(rig: &Rig, found: &RigAnalysis) {
             assert_eq!(found.merge_into[joint], Some(bone.joint));
         }
     }
-    assert!(carried.iter().all(|&times| times <= 1), "every joint has one body at most");
+    assert!(carried.iter().all(|&times| times <= 1), "every joint must have at most one body");
     for (joint, _) in skinned_joints(rig) {
-        assert_eq!(carried[joint], 1, "skin of joint {joint} ({}) has a body", rig.joints[joint].name);
+        assert_eq!(carried[joint], 1, "no body for the skin of joint {joint} ({})", rig.joints[joint].name);
     }
     assert!(found.unit_scale > 0.0 && found.height > 0.0);
 }
@@ -82,7 +82,7 @@ fn check_humanoid(file: &str, bodies: usize) {
         found.character_from_file().point(found.bind_model[joint].translation)
     };
     let (hips, head) = (place(Role::Hips), place(Role::Head));
-    assert!(head.y > hips.y + 0.2 * found.height, "{file}: head {head}, hips {hips}");
+    assert!(head.y > hips.y + 0.2 * found.height, "{file}: head at {head}, hips at {hips}");
     for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
         let chain = [Role::UpperArm(side), Role::LowerArm(side), Role::Hand(side)].map(place);
         assert!(chain.iter().all(|p| p.x * sign > 0.0), "{file}: left is on +X");
@@ -93,7 +93,7 @@ fn check_humanoid(file: &str, bodies: usize) {
         let chain = [Role::UpperLeg(side), Role::LowerLeg(side), Role::Foot(side)].map(place);
         assert!(chain.iter().all(|p| p.x * sign > 0.0), "{file}: left is on +X");
         assert!(chain[0].y > chain[1].y && chain[1].y > chain[2].y, "{file}: {chain:?}");
-        assert!(chain[2].y - found.floor < 0.12 * found.height, "{file}: feet on the floor");
+        assert!(chain[2].y - found.floor < 0.12 * found.height, "{file}: the feet must be on the floor");
     }
 }
 
@@ -362,7 +362,7 @@ fn names_size_and_axes_of_the_file_do_not_change_the_roles() {
             for (a, b) in found.kept.iter().zip(&plain.kept) {
                 let p = found.character_from_file().point(a.bind_model.translation);
                 let q = plain.character_from_file().point(b.bind_model.translation);
-                assert!((p - q).length() < 1e-3, "{file}: {} at {p} and {q}", a.role.name());
+                assert!((p - q).length() < 1e-3, "{file}: {} is at {p} and at {q}", a.role.name());
             }
         }
     }
@@ -543,17 +543,19 @@ fn limbs_and_trunk_of_animals_are_found() {
         for part in trunk {
             assert!(
                 middle.iter().any(|name| name == part),
-                "{file}: {part} is in the trunk: {middle:?}, {limbs:?}"
+                "{file}: {part} is in the trunk: {middle:?}, limbs {limbs:?}"
             );
         }
         for (leg, of) in legs.into_iter().flat_map(|leg| [(leg, "L"), (leg, "R")]) {
             let wanted: Vec<String> = leg.iter().map(|part| side(part, of)).collect();
             let other = if of == "L" { ".R" } else { ".L" };
             let is_leg = |limb: &&Vec<String>| wanted.iter().all(|part| limb.contains(part));
-            let found =
-                limbs.iter().find(is_leg).unwrap_or_else(|| panic!("{file}: no {wanted:?} in {limbs:?}"));
+            let found = limbs
+                .iter()
+                .find(is_leg)
+                .unwrap_or_else(|| panic!("{file}: no limb like {wanted:?} in {limbs:?}"));
             assert!(found.iter().all(|name| !name.ends_with(other)), "{file}: {found:?}");
-            assert!(found.len() <= 5, "{file}: more than a leg: {found:?}");
+            assert!(found.len() <= 5, "{file}: the limb has more joints than a leg: {found:?}");
         }
     }
 }
@@ -564,6 +566,6 @@ fn limbs_and_trunk_of_animals_are_found() {
 fn joints_on_the_midline_are_no_limbs() {
     for file in ["rigs_wild/platformer_game_Enemy.glb", "rigs_wild/platformer_game_Crab.glb"] {
         let (limbs, trunk) = limbs_of(file);
-        assert!(limbs.is_empty() && trunk.len() == 4, "{file}: {limbs:?} {trunk:?}");
+        assert!(limbs.is_empty() && trunk.len() == 4, "{file}: limbs {limbs:?}, trunk {trunk:?}");
     }
 }

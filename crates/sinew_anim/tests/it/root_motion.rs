@@ -61,9 +61,12 @@ fn root_motion_and_remainder_recombine_to_the_clip() {
             let time = 0.05 * i as f32;
             let (whole, rest) = (model(&clip, &rig, time), model(&still, &rig, time));
             let again = Affine::from(motion.at(time)) * rest;
-            assert!((again.translation - whole.translation).length() < 2e-3, "at {time}, {options:?}");
+            assert!(
+                (again.translation - whole.translation).length() < 2e-3,
+                "translation at {time} s differs from the clip's, {options:?}"
+            );
             let apart = again.to_rigid().rotation.angle_to(whole.to_rigid().rotation);
-            assert!(apart < 3e-3, "at {time}: {apart}, {options:?}");
+            assert!(apart < 3e-3, "rotation at {time} s is off by {apart} rad, {options:?}");
         }
         assert_eq!(motion.at(0.0), Transform::IDENTITY);
     }
@@ -111,7 +114,11 @@ fn root_motion_is_independent_of_step_length() {
             let (sin, cos) = trig::sin_cos(angle);
             let expected = Vec3::new(1.5 * sin, 0.0, 1.5 * (1.0 - cos));
             let error = (place.translation - expected).length();
-            assert!(error < 1e-2, "{steps} steps at {speed}: {} is not {expected}", place.translation);
+            assert!(
+                error < 1e-2,
+                "{steps} steps at speed {speed}: at {}, expected {expected}",
+                place.translation
+            );
             assert!(place.rotation.angle_to(Rotation::from_axis_angle(Vec3::Y, -angle)) < 1e-2);
         }
     }

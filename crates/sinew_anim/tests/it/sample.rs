@@ -144,7 +144,7 @@ fn interpolation_test_file_is_sampled_correctly() {
                     local.rotation.angle_to(q.normalize())
                 }
             };
-            assert!(error < 1e-3, "{} at key {key}: off by {error}", clip.name);
+            assert!(error < 1e-3, "clip {} at key {key}: error {error}", clip.name);
         }
         // Halfway between the first two keys, step interpolation still gives the first key, and the others do not.
         let (a, b) = (channel.times[0], channel.times[1]);
@@ -172,7 +172,11 @@ fn every_clip_of_every_rig_gives_finite_unit_poses() {
                 for (joint, local) in out.iter().enumerate() {
                     let finite = local.translation.is_finite() && local.scale.is_finite();
                     let unit = (local.rotation.dot(local.rotation) - 1.0).abs() < 1e-4;
-                    assert!(finite && unit, "{file}, {}, joint {joint}: {local:?}", clip.name);
+                    assert!(
+                        finite && unit,
+                        "{file}, {}, joint {joint}: invalid transform {local:?}",
+                        clip.name
+                    );
                 }
             }
         }

@@ -71,8 +71,8 @@ fn loaded_animator_continues_identically() {
         let mut animator = busy(&set, &mut random);
         let bytes = saved(&animator, &set);
         let mut reader = Reader::new(&bytes);
-        let mut loaded =
-            Animator::load(&set, &mut reader).unwrap_or_else(|error| panic!("round {round}: {error}"));
+        let mut loaded = Animator::load(&set, &mut reader)
+            .unwrap_or_else(|error| panic!("round {round}: load fails: {error}"));
         assert_eq!(reader.remaining(), 0);
         assert_eq!(saved(&loaded, &set), bytes);
         assert_eq!(loaded.pose(), animator.pose());
@@ -80,7 +80,7 @@ fn loaded_animator_continues_identically() {
             let dt = random.range(0.0, 0.1);
             animator.update(&set, dt);
             loaded.update(&set, dt);
-            assert_eq!(loaded.pose(), animator.pose(), "round {round}, step {step}");
+            assert_eq!(loaded.pose(), animator.pose(), "round {round}: other state in step {step}");
             assert_eq!(loaded.events(), animator.events());
             assert_eq!(loaded.root_motion(), animator.root_motion());
         }

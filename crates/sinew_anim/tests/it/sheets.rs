@@ -113,7 +113,7 @@ fn fine_mesh_is_reduced_and_drawn_unchanged() {
     assert!(longest <= SPACING + 2.0 / 80.0, "{longest}");
     let area: f32 =
         sheet.faces.iter().map(|f| (at(f[1]) - at(f[0])).cross(at(f[2]) - at(f[0])).length() / 2.0).sum();
-    assert!((0.97..1.01).contains(&area), "the borders moved: {area} m²");
+    assert!((0.97..1.01).contains(&area), "the borders moved; area {area} m²");
     assert!(farthest(&before, &drawn(&it, &rest_pose(&it))) < 1e-5);
     // The particles' joints have no motion of their own, and the mesh follows the original joints.
     let mut pose = rest_pose(&it);
@@ -173,7 +173,7 @@ fn mesh_coarser_than_its_spacing_is_split() {
         let normal = (at(face[1]) - at(face[0])).cross(at(face[2]) - at(face[0]));
         assert!(
             normal.z > 0.0 && (normal.length() - cell * cell).abs() < 1e-5,
-            "the winding changed: {normal}"
+            "the winding changed; normal {normal}"
         );
     }
     let sum: f32 = sheet.areas.iter().sum();

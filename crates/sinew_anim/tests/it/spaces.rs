@@ -48,7 +48,10 @@ fn planar_weights_are_continuous_and_one_at_their_clip() {
                 .map(|(i, j)| (places[i] - places[j]).length())
                 .fold(f32::INFINITY, sinew_math::min);
             let jump = before.iter().zip(&weights).map(|(a, b)| (a - b).abs()).fold(0.0, sinew_math::max);
-            assert!(jump < 0.05 + 0.02 / closest, "{jump} at {at}, {closest} apart");
+            assert!(
+                jump < 0.05 + 0.02 / closest,
+                "the weights jump by {jump} at {at}; the closest two clips are {closest} apart"
+            );
         }
     }
     // Four directions and standing: halfway between forward and right, both have half of the weight.

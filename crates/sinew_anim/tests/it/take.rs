@@ -198,11 +198,11 @@ fn capture_along_another_axis_is_made_upright() {
     for frame in 0..moved.take.frames() {
         local_to_model(&body, moved.take.pose(frame), &Affine::IDENTITY, &mut model);
         let trunk = model[head].translation - model[hips].translation;
-        assert!(trunk.y > 0.9 * trunk.length(), "frame {frame}: from hips to head {trunk}");
+        assert!(trunk.y > 0.9 * trunk.length(), "frame {frame}: the direction from hips to head is {trunk}");
     }
 }
 
-/// A low-poly figure whose legs end with the shin gets ankles, and walks like a figure with feet.
+/// A low-poly character whose legs end with the shin gets ankles, and walks like a character with feet.
 #[test]
 fn legs_without_feet_get_ankles() {
     let whole = toy::body(|_| String::new());
@@ -227,7 +227,7 @@ fn legs_without_feet_get_ankles() {
         let foot = found.joint_with(Role::Foot(Side::Left)).unwrap();
         found.character_from_file().point(found.bind_model[foot].translation)
     });
-    assert!((made - real).length() < 0.06, "at {made}, {real} in the whole body");
+    assert!((made - real).length() < 0.06, "the point is at {made}, in the whole body at {real}");
     let actor = skeleton(Role::name);
     let clip = stepping(&actor);
     let (analysis, _) = stand(&actor, &clip, None).unwrap();
@@ -237,8 +237,8 @@ fn legs_without_feet_get_ankles() {
     for frame in 0..moved.take.frames() {
         local_to_model(&rig, moved.take.pose(frame), &found.character_from_file(), &mut model);
         let ankle = model[foot].translation;
-        assert!(ankle.y > found.floor - 0.02, "frame {frame}: the ankle at {ankle}");
+        assert!(ankle.y > found.floor - 0.02, "frame {frame}: the ankle is at {ankle}");
         lifted = sinew_math::max(lifted, ankle.y - found.floor);
     }
-    assert!(lifted > 0.1, "feet are lifted by {lifted} m");
+    assert!(lifted > 0.1, "the feet are lifted by only {lifted} m");
 }

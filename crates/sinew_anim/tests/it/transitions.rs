@@ -26,7 +26,10 @@ fn decay_starts_with_its_velocity_and_ends_at_rest() {
         let start = (decay.at(h, seconds) - decay.at(0.0, seconds)) / h;
         let shortened = decay.shortened(seconds);
         let budget = 6.0 * offset.length() / (shortened * shortened) + 4.0 * velocity.length() / shortened;
-        assert!((start - velocity).length() < h * budget + 1e-3, "velocity {velocity}, got {start}");
+        assert!(
+            (start - velocity).length() < h * budget + 1e-3,
+            "start velocity {start}, expected {velocity}"
+        );
         assert_eq!(decay.at(seconds, seconds), Vec3::ZERO);
         assert!(decay.at(seconds - h, seconds).length() < 1e-5);
         // Second differences over a hundredth of the time approximate the acceleration.
@@ -34,11 +37,14 @@ fn decay_starts_with_its_velocity_and_ends_at_rest() {
         for i in 1..100 {
             let at = |k: usize| decay.at(h * k as f32, seconds);
             let peak = (at(i + 1) - at(i) * 2.0 + at(i - 1)).length() / (h * h);
-            assert!(peak < budget * 1.01 + 0.05, "{peak} is above {budget}: {decay:?} in {seconds}");
+            assert!(
+                peak < budget * 1.01 + 0.05,
+                "the peak {peak} exceeds the bound {budget}: {decay:?} in {seconds} s"
+            );
             longest = sinew_math::max(longest, peak / budget);
         }
     }
-    assert!(longest > 0.8, "the bound is loose: {longest}");
+    assert!(longest > 0.8, "the bound is loose; longest blend {longest}");
 }
 
 #[test]
@@ -245,11 +251,11 @@ fn nested_transitions_do_not_pop() {
             // Swings of up to 0.8 rad at up to 1.5 Hz, offsets up to 3 rad.
             assert!(
                 pair[0] < 6.0 * 3.0 / (BLEND * BLEND) + 4.0 * 15.0 / BLEND,
-                "joint {joint}, update {i}: {pair:?}"
+                "joint {joint}, update {i}: accelerations {pair:?}"
             );
         }
     }
     let last = animator.pose().clone();
     animator.update(&set, 0.0);
-    assert_eq!(*animator.pose(), last, "an update of zero length changes the pose");
+    assert_eq!(*animator.pose(), last, "an update of zero length must not change the pose");
 }

@@ -54,7 +54,7 @@ fn hat_on_the_neutral_bone_follows_the_head() {
     }
     let untouched = hat[0];
     assert_eq!(primitive.joints[..untouched], before.meshes[0].primitives[0].joints[..untouched]);
-    assert!(weigh_loose_vertices(&mut rig, &[]).is_empty(), "nothing is loose any more");
+    assert!(weigh_loose_vertices(&mut rig, &[]).is_empty(), "no vertex may remain unweighted");
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn lost_weights_are_restored_by_distance() {
     assert_eq!(lost_weights(&rig), None);
     let primitive = &rig.meshes[0].primitives[0];
     for (vertex, (slots, weights)) in primitive.joints.iter().zip(&primitive.weights).enumerate() {
-        assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-6, "vertex {vertex}: {weights:?}");
+        assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-6, "weights of vertex {vertex}: {weights:?}");
         // A vertex is near its own joint, where the parent's bone ends and its own bone begins.
         let own = vertex / 4;
         let near = [Some(own), rig.joints[own].parent];
@@ -99,7 +99,7 @@ fn lost_weights_are_restored_by_distance() {
             || rig.joints[usize::from(*most.0)].parent == Some(own);
         assert!(
             is_near,
-            "vertex {vertex} of {} is weighted to {}",
+            "vertex {vertex} of mesh {} is weighted to {}",
             toy::BODY[own].0,
             toy::BODY[usize::from(*most.0)].0
         );
@@ -108,7 +108,7 @@ fn lost_weights_are_restored_by_distance() {
             let is_right = |joint: usize| toy::BODY[joint].0.starts_with("right");
             assert!(
                 !(is_left(own) && is_right(usize::from(slot))),
-                "vertex {vertex} is weighted to the other side"
+                "vertex {vertex} is weighted to a joint of the other side"
             );
         }
     }

@@ -275,7 +275,10 @@ fn roles_of_public_rigs_reach_the_required_share() {
     ];
     println!("{rows}all: {sums:?}");
     for (share, (right, all)) in sums {
-        assert!(100 * right >= share * all, "{right} of {all} roles are right, {share} % are asked\n{rows}");
+        assert!(
+            100 * right >= share * all,
+            "{right} of {all} roles are right; the user must confirm {share} %\n{rows}"
+        );
     }
 }
 

@@ -94,7 +94,7 @@ impl RagdollBuild {
             with_default_life(&character, &def, doubt.as_ref(), |life| {
                 judge_life(&character, &tested, life, doubt.as_ref())
             })?;
-        // The entry for unmeasured figures is last.
+        // The entry for unmeasured metrics is last.
         let not_measured = tested.reasons.pop();
         (tested.verdict, tested.reasons) = (verdict, reasons);
         tested.reasons.extend(not_measured);

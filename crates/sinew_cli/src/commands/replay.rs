@@ -105,7 +105,7 @@ impl Replay {
     }
 }
 
-/// Describes a difference: the text before the other file's name, and the place.
+/// Describes a difference: the text before the other file's name, and the location of the difference.
 fn described(difference: &Difference) -> (String, String) {
     match difference {
         Difference::Scene => ("has another scene or other settings than".to_owned(), String::new()),

@@ -1,4 +1,4 @@
-//! `sinew run`: runs a named scene without a picture: figures, times, state hash.
+//! `sinew run`: runs a named scene without a picture: metrics, times, state hash.
 
 use crate::failure::{Failure, Result};
 use crate::input::scene_choice::choose;
@@ -162,12 +162,12 @@ struct Outcome<'a> {
     times: StepTimes,
     hash: u64,
     metrics: Vec<Metric>,
-    /// True if the figures are compared with the scene's expectations.
+    /// True if the metrics are compared with the scene's expectations.
     has_bars: bool,
 }
 
 impl Outcome<'_> {
-    /// Returns the figures that miss the scene's expectations.
+    /// Returns the metrics that miss the scene's expectations.
     fn missed(&self) -> Vec<&'static str> {
         let unmet = self.metrics.iter().filter(|metric| self.has_bars && !metric.is_met());
         unmet.map(|metric| metric.name).collect()

@@ -324,7 +324,7 @@ mod tests {
             });
             looks.count()
         };
-        assert_eq!(hidden(Vec3::Z), boxes.len(), "the wall is in the way");
+        assert_eq!(hidden(Vec3::Z), boxes.len(), "the wall must hide the character in every frame");
         assert_eq!(hidden(clear_side(&bodies, &framing, &boxes, Vec3::Z)), 0);
         // Without a wall the camera stays at the requested position.
         assert_eq!(clear_side(&[], &framing, &boxes, Vec3::Z), Vec3::Z);

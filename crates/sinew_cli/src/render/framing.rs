@@ -101,9 +101,15 @@ mod tests {
             let framing = Framing::new(&boxes, 20.0, direction);
             for (frame, bounds) in boxes.iter().enumerate() {
                 let camera = framing.camera(frame, 1.6);
-                assert!(shows(&camera, bounds, 1.6), "frame {frame} from {direction}");
+                assert!(
+                    shows(&camera, bounds, 1.6),
+                    "bounds outside of the picture in frame {frame}, seen from {direction}"
+                );
                 // The camera follows closely enough for the subject to be visible.
-                assert!((camera.position - bounds.center()).length() < 8.0, "frame {frame} from {direction}");
+                assert!(
+                    (camera.position - bounds.center()).length() < 8.0,
+                    "camera too far away in frame {frame}, seen from {direction}"
+                );
             }
         }
     }

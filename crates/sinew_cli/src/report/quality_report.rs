@@ -1,10 +1,10 @@
-//! Figures of falls, as JSON by the contract and as text.
+//! Metrics of falls, as JSON by the contract and as text.
 
 use crate::report::number;
 use serde_json::{Map, Value};
 use sinew::ragdoll::FallQuality;
 
-/// Returns the figures under the keys that `bake` and `ragdoll build` share.
+/// Returns the metrics under the keys that `bake` and `ragdoll build` share.
 pub fn quality_json(q: &FallQuality) -> Map<String, Value> {
     let time = |seconds: Option<f32>| seconds.map_or(Value::Null, number);
     let figures = [
@@ -24,7 +24,7 @@ pub fn quality_json(q: &FallQuality) -> Map<String, Value> {
     figures.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }
 
-/// Returns the figures in a few lines.
+/// Returns the metrics in a few lines.
 pub fn quality_text(q: &FallQuality) -> String {
     let mm = |meters: f32| 1000.0 * meters;
     format!(

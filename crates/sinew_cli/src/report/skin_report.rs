@@ -1,4 +1,4 @@
-//! The drawn skin: its measurement, and its figures as JSON by the contract and as text.
+//! The drawn skin: its measurement, and its metrics as JSON by the contract and as text.
 
 use crate::fall::Fall;
 use crate::input::files::CharacterFile;
@@ -15,7 +15,7 @@ use sinew::ragdoll::{DropReport, Flaw, RagdollDef, SkinMeter, SkinQuality, State
 /// Largest number of bake frames measured per state, evenly spread; bounds the memory of a long bake.
 const MOST_FRAMES: usize = 256;
 
-/// Figures of the skin, and its flaws.
+/// Metrics of the skin, and its flaws.
 pub struct SkinReport {
     pub figures: SkinQuality,
     pub flaws: Vec<Flaw>,
@@ -107,7 +107,7 @@ impl Life<'_> {
     }
 }
 
-/// Returns the figures under the keys of the contract.
+/// Returns the metrics under the keys of the contract.
 pub fn skin_json(report: &SkinReport) -> Value {
     let SkinReport { figures: skin, rising, .. } = report;
     let known = |figure: Option<f32>| figure.map_or(Value::Null, number);
@@ -132,7 +132,7 @@ pub fn skin_json(report: &SkinReport) -> Value {
     })
 }
 
-/// Returns the figures in a few lines.
+/// Returns the metrics in a few lines.
 pub fn skin_text(report: &SkinReport) -> String {
     let SkinReport { figures: skin, rising, .. } = report;
     let (cm, percent) = (|meters: f32| 100.0 * meters, |share: f32| 100.0 * share);

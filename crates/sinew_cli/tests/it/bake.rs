@@ -297,7 +297,7 @@ fn foreign_rigs_are_written_as_bvh() {
         let document = load_gltf(&glb, ReadOptions::default()).expect("it can be read");
         let worst = between(&document, &read, unit);
         println!("{name}: {worst} m, {}", object["notes"]);
-        assert!(worst < 2e-4, "{name}: {worst} m off, {object:#}");
+        assert!(worst < 2e-4, "{name}: largest error {worst} m, {object:#}");
     }
 }
 
@@ -328,10 +328,10 @@ fn human_without_clips_gets_up_by_builtin_motions() {
         let turned = local.iter().zip(&rest).map(|(a, b)| a.rotation.angle_to(b.rotation));
         (model[joint].translation, turned.fold(0.0, f32::max))
     };
-    assert!(hips(0.0).1 < 1e-3, "it does not begin in its rest pose");
-    assert!((hips(0.0).0.y - hips(up + 1.0).0.y).abs() < 0.1, "it does not stand again");
+    assert!(hips(0.0).1 < 1e-3, "the character does not begin in its rest pose");
+    assert!((hips(0.0).0.y - hips(up + 1.0).0.y).abs() < 0.1, "the character does not stand again");
     let way = (hips(up + 1.5).0 - hips(up + 0.5).0) * Vec3::new(1.0, 0.0, 1.0);
-    assert!((way.length() - 1.25).abs() < 0.1, "it does not walk: {way}");
+    assert!((way.length() - 1.25).abs() < 0.1, "the character does not walk: displacement {way} m");
 
     let object = baked(&bare, &["--no-builtin-motions"]);
     assert!(object["up_s"].is_null());
@@ -373,11 +373,11 @@ fn character_is_placed_where_there_is_room() {
         sinew(&[&arguments[..], extra].concat())
     };
     let notes = bake(&[]).json()["notes"].to_string();
-    let (_, stands) = notes.split_once("it stands at ").expect("the note names a place");
+    let (_, stands) = notes.split_once("it stands at ").expect("the note names a position");
     let (place, _) = stands.split_once(", the free place").expect("the note gives the reason");
     let at: Vec<f32> = place.split(',').map(|number| number.parse().expect("a number")).collect();
     assert!((12.0..20.0).contains(&at[0]) && at[1] == 7.0 && at[2].abs() < 4.0, "{at:?}");
-    // Below the roof there is 1.7 m, too little for a fall. An explicit place is used anyway, without a search.
+    // Below the roof there is 1.7 m, too little for a fall. An explicit position is used anyway, without a search.
     let under = bake(&["--at", "2,2,2"]).json();
     assert!(!under["notes"].to_string().contains("it stands at"), "{under:#}");
     assert!(under["penetration_max_m"].as_f64().expect("a number") < 0.05, "{under:#}");
@@ -410,7 +410,7 @@ fn fall_depends_on_facing_and_not_on_height() {
 }
 
 /// Feet that are children of the root, as in rigs for inverse kinematics, fall with their legs and are written back to
-/// their place in the hierarchy.
+/// their position in the hierarchy.
 #[test]
 fn feet_on_the_root_follow_their_legs_and_keep_their_parent() {
     let folder = Folder::new("feet-on-root");
@@ -444,11 +444,14 @@ fn feet_on_the_root_follow_their_legs_and_keep_their_parent() {
                 [foot, shank].map(|joint| named(&written, &rig.joints[joint].name)).map(|joint| now[joint]);
             let bound = (model[foot].translation - model[shank].translation).length();
             let length = (foot_now.translation - shank_now.translation).length();
-            assert!((length - bound).abs() < 2e-3, "frame {frame}: {length} m for {bound}");
+            assert!(
+                (length - bound).abs() < 2e-3,
+                "frame {frame}: shank length {length} m, {bound} m in the bind pose"
+            );
         }
         lowest = sinew::math::min(lowest, now[named(&written, "hips")].translation.y);
     }
-    assert!(lowest < 0.4, "it did not fall: {lowest} m");
+    assert!(lowest < 0.4, "the character did not fall: lowest height of the hips {lowest} m");
     for foot in feet {
         let foot = named(&written, &rig.joints[foot].name);
         let above = written.joints[foot].parent.map(|joint| written.joints[joint].name.as_str());
@@ -456,7 +459,8 @@ fn feet_on_the_root_follow_their_legs_and_keep_their_parent() {
     }
 }
 
-/// A bake with a hit, a travelling clip and a world is judged by the same bars as a drop test, and reports violations.
+/// A bake with a hit, a travelling clip and a world is judged by the same thresholds as a drop test, and reports
+/// violations.
 #[needs_data]
 #[test]
 fn bake_is_judged_by_the_bars_of_a_drop() {
@@ -569,7 +573,7 @@ fn lying_character_is_placed_with_its_lowest_point_on_the_floor() {
     let out = folder.path("out.glb");
     let object = sinew(&["bake", &file, "--clip", "Idle", "--seconds", "2", "-o", &out, "--json"]).json();
     let lowest = object["skin"]["standing_height_m"].as_f64().expect("a height");
-    assert!(lowest.abs() < 0.02, "{lowest} m; {object:#}");
+    assert!(lowest.abs() < 0.02, "lowest point at {lowest} m; {object:#}");
 }
 
 #[test]
@@ -590,7 +594,7 @@ fn speed_moves_a_walk_on_the_spot_ahead() {
         (model[hips].translation.z, object["notes"].to_string())
     };
     let (on_the_spot, notes) = way(&[]);
-    assert!(on_the_spot.abs() < 0.2 && notes.contains("--speed feet"), "{on_the_spot} m: {notes}");
+    assert!(on_the_spot.abs() < 0.2 && notes.contains("--speed feet"), "moved by {on_the_spot} m: {notes}");
     let (by_feet, notes) = way(&["--speed", "feet"]);
     assert!((1.8..4.0).contains(&by_feet) && !notes.contains("--speed"), "{by_feet} m: {notes}");
     let (given, _) = way(&["--speed", "-0.5"]);

@@ -128,7 +128,7 @@ fn bounce_down(house: &[BodyDef]) {
     for (top, step) in tops.iter().zip(STEPS) {
         assert!((top - step).abs() < 0.005, "{tops:?}");
     }
-    assert_eq!(met.last(), Some(&ground), "the ball does not end on the ground");
+    assert_eq!(met.last(), Some(&ground), "the ball does not come to rest on the ground");
 }
 
 #[needs_data]

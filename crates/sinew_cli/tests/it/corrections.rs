@@ -65,7 +65,7 @@ fn ignored_bones_and_body_choices_are_applied() {
     let forearm = bone_of(&before, "leftLowerArm").expect("a forearm");
     let hand = bone_of(&before, "leftHand").expect("a hand");
     let without = build(&["--no-body", "hand"]);
-    assert_eq!(without.len() + 2, before.len(), "a role without its side means both");
+    assert_eq!(without.len() + 2, before.len(), "a role without a side must stand for both sides");
     let stump = build(&["--ignore", &hand]);
     assert!(stump.iter().all(|(_, bone)| *bone != hand), "{stump:?}");
     assert!(stump.iter().any(|(_, bone)| *bone == forearm), "{stump:?}");
@@ -74,7 +74,7 @@ fn ignored_bones_and_body_choices_are_applied() {
     assert!(shorter.iter().all(|(_, bone)| *bone != forearm && *bone != hand), "{shorter:?}");
     let arm = bone_of(&before, "leftUpperArm").expect("an arm");
     assert!(shorter.iter().any(|(_, bone)| *bone == arm), "{shorter:?}");
-    assert_eq!(build(&["--body", &forearm]), before, "a bone with a body keeps it");
+    assert_eq!(build(&["--body", &forearm]), before, "a bone with a body must keep it");
     for command in [["bake"].as_slice(), &["ragdoll", "doctor"], &["ragdoll", "export"]] {
         let run = sinew(&[command, &["--help"]].concat());
         for option in ["--role", "--ignore", "--body", "--no-body", "--height", "--unit", "--mass"] {

@@ -9,7 +9,7 @@ use sinew::ragdoll::{BakeInput, Baked, FallQuality, State, bake};
 use sinew_scenes::cabin::{PORCH_HEIGHT, Site};
 use sinew_scenes::demo::Demo;
 
-/// Enough time to fall and come to rest, even after hanging over the railing for a while.
+/// Long enough to fall and come to rest, also after hanging over the railing.
 const SECONDS: f32 = 9.0;
 
 fn fall(demo: &Demo) -> Baked {
@@ -28,7 +28,7 @@ fn check_gates(what: &str, q: &FallQuality) {
         ("penetration at rest, m", q.penetration_rest_max_m, 5e-3),
     ];
     for (figure, value, limit) in gates {
-        assert!(value < limit, "{what}: {figure} is {value}, must be below {limit}");
+        assert!(value < limit, "{what}: {figure} is {value}, limit {limit}");
     }
     assert!(q.first_contact_s.is_some() && q.settled_s.is_some(), "{what}: {q:?}");
 }
@@ -69,7 +69,7 @@ fn other_hits_give_other_falls_of_the_same_quality() {
         let baked = fall(&other);
         check_gates(what, &baked.quality);
         let apart = farthest_apart(&lying(&demo, &shown), &lying(&other, &baked));
-        assert!(apart > 0.01, "{what}: the limp poses differ by {apart} m only");
+        assert!(apart > 0.01, "{what}: the limp poses differ by only {apart} m");
     }
 }
 
@@ -85,7 +85,7 @@ fn demo_falls_down_the_stairs_and_flat_without_them() {
     let baked = fall(&flat);
     check_gates("without stairs", &baked.quality);
     let height = highest(&lying(&flat, &baked));
-    assert!(height < 0.45, "its highest joint is {height} m above the ground");
+    assert!(height < 0.45, "the highest joint is {height} m above the ground");
 }
 
 #[test]
@@ -110,5 +110,5 @@ fn demo_writes_file_picture_and_report() {
     assert!(read("demo.gif").starts_with(b"GIF89a"));
     let document = load_gltf(folder.path("new/folder/demo.glb"), ReadOptions::default()).expect("a GLB");
     assert_eq!((document.clips.len(), document.rig.skins.len()), (1, 1));
-    assert!(document.rig.meshes.iter().any(|mesh| mesh.name == "cabin"), "the stairs are shown with it");
+    assert!(document.rig.meshes.iter().any(|mesh| mesh.name == "cabin"), "the file must contain the stairs");
 }

@@ -19,10 +19,10 @@ fn built(rig: &Rig) -> RagdollDef {
     build(rig, &analysis, &BuildOptions::default()).expect("bones").0
 }
 
-/// Checks that two places agree within 0.1 mm and 1e-3 rad.
+/// Checks that two transforms agree within 0.1 mm and 1e-3 rad.
 fn assert_same(a: Transform, b: Transform, what: &str) {
     let (off, turned) = ((a.translation - b.translation).length(), a.rotation.angle_to(b.rotation));
-    assert!(off < 1e-4 && turned < 1e-3, "{what}: {off} m, {turned} rad");
+    assert!(off < 1e-4 && turned < 1e-3, "{what}: error {off} m, {turned} rad");
 }
 
 /// Checks that our MuJoCo reader recovers the definition.
@@ -33,7 +33,7 @@ fn check_mjcf(def: &RagdollDef, text: &str, what: &str) {
     let own = |name: &str| def.bodies.iter().position(|body| body.bone == name).expect("a bone of ours");
     // The model may be higher if shapes reach below the soles.
     let is_in_place = |body: &&RagdollBodyDef| !is_moved(&def.bodies[own(&body.bone)].shape);
-    let fixed = back.bodies.iter().find(is_in_place).expect("a body that is no hull");
+    let fixed = back.bodies.iter().find(is_in_place).expect("a body whose shape is not a hull");
     let height = |body: &RagdollBodyDef| body.character_from_body.translation.y;
     let lift = height(fixed) - height(&def.bodies[own(&fixed.bone)]);
     let lift = Transform::from_translation(Vec3::Y * lift);
@@ -42,7 +42,7 @@ fn check_mjcf(def: &RagdollDef, text: &str, what: &str) {
         let what = format!("{what} {}", was.role);
         assert!((body.mass.mass / was.mass.mass - 1.0).abs() < 1e-4, "{what}: {} kg", body.mass.mass);
         let (moments, before) = (body.mass.inertia.eigen().0, was.mass.inertia.eigen().0);
-        assert!((moments - before).length() < 1e-3 * before.length(), "{what}: {moments} of {before}");
+        assert!((moments - before).length() < 1e-3 * before.length(), "{what}: inertia {moments}, {before}");
         if !is_moved(&was.shape) {
             assert_same(lift * was.character_from_body, body.character_from_body, &what);
         }
@@ -64,7 +64,7 @@ fn check_mjcf(def: &RagdollDef, text: &str, what: &str) {
             assert_eq!(joint.kind, JointKind::Fixed, "{what}");
             continue;
         }
-        assert!(off.length() < 1e-4, "{what}: a pivot is {off} off");
+        assert!(off.length() < 1e-4, "{what}: a pivot is off by {off} m");
         assert_eq!(joint.friction_torque, was.friction_torque);
         if let (JointKind::Hinge { limit: Some(a) }, JointKind::Hinge { limit: Some(b) }) =
             (joint.kind, was.kind)
@@ -73,7 +73,10 @@ fn check_mjcf(def: &RagdollDef, text: &str, what: &str) {
             let turn = |body: usize| def.bodies[body].character_from_body.rotation;
             let parent = turn(was.parent) * was.frame_parent.rotation;
             let bind = hinge_angle(parent.inverse() * (turn(child) * was.frame_child.rotation));
-            assert!((a.lo + bind - b.lo).abs() + (a.hi + bind - b.hi).abs() < 1e-4, "{what}: {a:?} of {b:?}");
+            assert!(
+                (a.lo + bind - b.lo).abs() + (a.hi + bind - b.hi).abs() < 1e-4,
+                "{what}: ranges {a:?}, {b:?}"
+            );
         }
     }
     let names = |def: &RagdollDef| {
@@ -235,7 +238,10 @@ impl Written<'_> {
             _ => Vec::new(),
         };
         for (written, meant) in sizes {
-            assert!(written.is_some_and(|size| (size - meant).abs() < 1e-3), "{what}: {shape} for {meant} m");
+            assert!(
+                written.is_some_and(|size| (size - meant).abs() < 1e-3),
+                "{what}: size of {shape}, expected {meant} m"
+            );
         }
         assert!(shape[shape["type"].as_str().expect("a type")].is_object(), "{what}: {shape}");
     }

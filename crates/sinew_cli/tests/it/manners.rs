@@ -439,7 +439,7 @@ fn unit_of_a_bvh_is_the_same_for_all_commands() {
         |arguments: &[&str]| sinew(&[&["inspect", "--json"], arguments].concat()).json()["height_m"].as_f64();
     let is_tall = |found: Option<f64>, due: f64| {
         let found = found.expect("a human");
-        assert!((found / due - 1.0).abs() < 0.01, "{found} m, not {due} m");
+        assert!((found / due - 1.0).abs() < 0.01, "height {found} m, expected {due} m");
     };
     let out = folder.path("out.glb");
     let converted = |bvh: &str, unit: &[&str]| {
@@ -489,7 +489,10 @@ fn build_and_doctor_agree() {
         let built = sinew(&["ragdoll", "build", &file, "--json"]).json();
         let examined = sinew(&["ragdoll", "doctor", &file, "--json"]).json();
         let (of_build, of_doctor) = (notes(&built), notes(&examined));
-        assert!(of_doctor.iter().all(|note| of_build.contains(note)), "{of_doctor:?} {of_build:?}");
+        assert!(
+            of_doctor.iter().all(|note| of_build.contains(note)),
+            "notes of the doctor {of_doctor:?}, of the build {of_build:?}"
+        );
         assert_eq!(built["quality"]["verdict"] != "bad", can_be_used, "{built:#}");
         let errors = examined["findings"].as_array().expect("findings").iter();
         assert_eq!(

@@ -310,7 +310,7 @@ fn limits_can_be_learned_from_clips() {
     check_keys("ragdoll build", &learned);
     assert!(from(&table).iter().all(|from| from == "anatomy"));
     let moved = from(&learned).iter().filter(|from| *from == "clips").count();
-    assert!(2 * moved > from(&learned).len(), "a walk moves most joints: {:?}", from(&learned));
+    assert!(2 * moved > from(&learned).len(), "a walk must move most joints: {:?}", from(&learned));
     let settings = r#"{"sinew":"ragdoll-settings","version":1,"limits":"clips"}"#;
     let settings = folder.file("slow.ragdoll.json", settings);
     assert_eq!(build(&["--settings", &settings])["joints"], learned["joints"]);

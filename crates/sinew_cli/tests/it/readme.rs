@@ -32,7 +32,7 @@ fn readme_commands_run_in_order() {
         copy("worlds/house_2story_stairs.glb", "house.glb");
         let own = lines("## With your own character");
         let others = lines("## The experiments, and a world from a mesh");
-        assert!(own.len() >= 7 && others.len() >= 4, "the README has fewer lines than it had");
+        assert!(own.len() >= 7 && others.len() >= 4, "the README has fewer commands than expected");
         // Windows need a display: `window.rs` tests them.
         let opens_window = |line: &&Vec<&str>| {
             line[0] == "view" && !line.iter().any(|part| ["--picture", "--movie"].contains(part))

@@ -12,7 +12,7 @@ fn recording_verifies_and_diff_finds_the_step() {
     check_keys("record", &object);
     assert_eq!((&object["steps"], &object["key_frames"]), (&50.into(), &3.into()));
     let ran = sinew(&["run", "pendulum", "--steps", "50", "--json"]).json();
-    assert_eq!(ran["hash"], object["hash"], "recording and run differ");
+    assert_eq!(ran["hash"], object["hash"], "the hashes of recording and run differ");
     let replayed = sinew(&["replay", &mine, "--verify", "--json"]).json();
     check_keys("replay", &replayed);
     assert_eq!(replayed["hash"], object["hash"]);
@@ -31,7 +31,7 @@ fn recording_verifies_and_diff_finds_the_step() {
     assert_eq!(
         sinew(&["replay", &tampered, "--verify"]).code,
         Some(0),
-        "equal bits of another version verify"
+        "equal bits of another version must be accepted"
     );
     recording.steps[49].hash ^= 1;
     let tampered = folder.file("tampered.sinewrec", recording.to_bytes());
@@ -56,7 +56,7 @@ fn damaged_and_tampered_recordings_are_reported() {
         flipped[place] ^= 1 << (k % 8);
         let damaged = folder.file("damaged.sinewrec", &flipped);
         let refused = sinew(&["replay", &damaged, "--verify"]);
-        assert!(refused.refusal(1).contains("damaged.sinewrec: "), "byte {place}: {refused:?}");
+        assert!(refused.refusal(1).contains("damaged.sinewrec: "), "damaged byte {place}: {refused:?}");
     }
     let mut recording = Recording::read(&bytes).expect("a recording");
     recording.key_frames[1].bodies[0].1.translation.y += 0.5;

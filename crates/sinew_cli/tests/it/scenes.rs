@@ -81,7 +81,7 @@ fn scene_that_misses_its_bars_fails_with_its_report() {
     assert!(object["metrics"]["shift_max_m"].is_number());
     let run = sinew(&["run", "arch"]);
     assert!(run.code == Some(1) && run.stdout.matches("MISSED").count() == 1, "{run:?}");
-    // For another number of steps there are no bars.
+    // For another number of steps there are no expectations.
     let run = sinew(&["run", "arch", "--steps", "1000"]);
     assert!(run.code == Some(0) && !run.stdout.contains("MISSED"), "{run:?}");
 }

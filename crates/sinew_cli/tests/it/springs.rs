@@ -55,7 +55,7 @@ fn avatar_hair_moves_in_the_bake() {
     };
     let (springs, moved, hash) = bake(&[]);
     assert_eq!(springs, json!({"chains": 3, "bones": 13, "links": 0, "left_out": []}));
-    assert!(moved > 0.3, "in the fall the hair turns only {moved} rad");
+    assert!(moved > 0.3, "the hair rotates only by {moved} rad in the fall");
     let (springs, moved, bare) = bake(&["--no-springs"]);
     assert_eq!((&springs["bones"], moved), (&json!(0), 0.0));
     assert_ne!(hash, bare);
@@ -82,7 +82,7 @@ fn settings_link_braids() {
     settings(r#"{"links": [{"chains": ["hair_left_0", "hair_right_0"], "share": 1}]}"#);
     let (four, tied) = bake();
     assert_eq!((none, four), (json!(0), json!(4)));
-    assert_ne!(loose, tied, "linked and loose braids swing alike");
+    assert_ne!(loose, tied, "linked and loose braids must swing differently");
     let object = sinew(&["inspect", &file, "--json"]).json();
     check_keys("inspect", &object);
     let first = json!({"joints": ["hair_left_0", "hair_right_0"], "share": 1.0, "holds_apart": false});

@@ -52,7 +52,7 @@ fn help_wraps_once() {
             for pair in lines.windows(2) {
                 let next = pair[1].split_whitespace().next().unwrap_or_default();
                 let needed = pair[0].chars().count() + 1 + next.chars().count();
-                assert!(needed > 100, "{arguments:?}: it breaks after {:?}", pair[0]);
+                assert!(needed > 100, "{arguments:?}: the line breaks too early, after {:?}", pair[0]);
             }
         }
     }

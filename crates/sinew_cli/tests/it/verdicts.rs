@@ -142,7 +142,7 @@ fn fall_out_of_the_world_is_bad() {
     assert!(object["reasons"].to_string().contains("falls out of the world"), "{object:#}");
 }
 
-/// A clip without motion is not a walk, whatever its name.
+/// A clip without motion is not a walk, even if its name says so.
 #[test]
 fn clip_without_motion_is_not_used_as_walk() {
     let folder = Folder::new("verdict-walk");
@@ -236,13 +236,13 @@ fn character_lying_in_its_file_starts_lying() {
         ([trunk(0.0), trunk(later)], object["notes"].to_string())
     };
     let ([start, end], notes) = trunks(&[], 1.0);
-    assert!(start.y.abs() < 0.05 && start.z < -0.4, "it does not start on its back: {start}");
-    assert!(end.y.abs() < 0.15 && end.z < -0.4, "it does not stay on its back: {end}");
+    assert!(start.y.abs() < 0.05 && start.z < -0.4, "the character does not start on its back: {start}");
+    assert!(end.y.abs() < 0.15 && end.z < -0.4, "the character does not stay on its back: {end}");
     assert!(notes.contains("--up"), "{notes}");
     // With another up axis the character stands, and falls.
     let ([start, end], _) = trunks(&["--up", "-z"], 2.0);
     assert!(start.z < -0.4, "{start}");
-    assert!(end.z > -0.3, "it has not fallen: {end}");
+    assert!(end.z > -0.3, "the character has not fallen: {end}");
 }
 
 /// A human in a hoop that no get-up keeps out of the floor stays down: usable at most, with the reason.

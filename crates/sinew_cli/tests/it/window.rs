@@ -148,7 +148,7 @@ fn window_opens_and_the_mouse_pulls_a_body() {
     viewer.wait_for("let go");
     let (name, after) = picture();
     assert_ne!(name, "sinew-free_fall-0.png", "no step was taken");
-    assert_ne!(before, after, "the mouse moved nothing");
+    assert_ne!(before, after, "the click had no effect");
 }
 
 /// Reads the written ragdoll and returns the largest swing about z of its left upper arm, degrees.
@@ -185,7 +185,7 @@ fn edited_limit_is_saved() {
         display.xdotool(&["key", "bracketright"]);
         viewer.wait_for("chose ").starts_with("chose leftUpperArm ")
     });
-    assert!(chosen, "it has a left upper arm");
+    assert!(chosen, "the character has a left upper arm");
     let mut output_text = String::new();
     for _ in 0..4 {
         display.xdotool(&["key", "minus"]);
@@ -195,7 +195,7 @@ fn edited_limit_is_saved() {
     let line = viewer.wait_for(".sinew.json");
     let name = line.strip_prefix("wrote ").expect("the name follows").to_owned();
     let (before, after) = (swing(&built), swing(&folder.path(&name)));
-    assert!((before - after - 20.0).abs() < 0.1, "{before}° became {after}°; the log said {output_text}");
+    assert!((before - after - 20.0).abs() < 0.1, "range {before}° became {after}°; log: {output_text}");
     display.xdotool(&["key", "F12"]);
     assert_eq!(viewer.wait_for("wrote sinew-"), first, "the test restarts at step 0");
     // The ragdoll falls with the new limits, and the written file can be opened.

@@ -33,7 +33,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Returns the next word, on any line; `None` at the end.
+    /// Returns the next word, on any line; `None` at the end of the text.
     pub fn next(&mut self) -> Option<&'a str> {
         while self.rest.is_empty() {
             let (_, line) = self.next_line()?;

@@ -10,7 +10,7 @@ pub(crate) enum Uri {
     Relative(String),
 }
 
-/// Parses a URI as glTF 2.0 §2.8 allows it. Errors have no place; the caller adds it.
+/// Parses a URI as glTF 2.0 §2.8 allows it. Errors have no location; the caller adds it.
 pub(crate) fn parse(uri: &str) -> Result<Uri, String> {
     if let Some(rest) = uri.strip_prefix("data:") {
         return data(rest).map(Uri::Data);

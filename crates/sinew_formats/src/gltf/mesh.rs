@@ -60,9 +60,9 @@ struct Mending<'w> {
 }
 
 impl Mending<'_> {
-    /// Reports repaired elements, once per place.
+    /// Reports repaired elements, once per location.
     fn note(&mut self, at: At<'_>, holes: &[usize], of: usize, mended: &str) {
-        // Finding a place searches the whole file, so it is done only when needed.
+        // Finding a location searches the whole file, so it is done only when needed.
         if holes.is_empty() {
             return;
         }

@@ -1,7 +1,7 @@
 //! Reads glTF 2.0 and its relatives (GLB, VRM 0 and 1, VRMA) as a rig, clips and the source JSON.
 //!
 //! The JSON is read by our own cursor instead of a typed model: every index, range and number is checked where it is
-//! used, errors name the place, and [`append_clip`] edits and writes back the same value.
+//! used, errors name the location, and [`append_clip`] edits and writes back the same value.
 //!
 //! ```
 //! use sinew_formats::{ReadOptions, append_clip, no_files, read_gltf, write_gltf};

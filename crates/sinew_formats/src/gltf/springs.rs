@@ -15,7 +15,7 @@ const EXTENDED: &str = "VRMC_springBone_extended_collider";
 const LIMIT: &str = "VRMC_springBone_limit";
 /// Bone length that VRM 0 assumes for a joint without a child, metres.
 const VIRTUAL_TAIL: f32 = 0.07;
-/// Largest number of warnings; each searches the whole file for its place.
+/// Largest number of warnings; each searches the whole file for its location.
 const MOST_WARNINGS: usize = 16;
 /// Memory of a collider reference, bytes; limited by the file size.
 const REFERENCE: usize = size_of::<usize>();

@@ -221,7 +221,7 @@ impl BodyJoint {
         Self { frame, kind: JointKind::Ball { limit }, spring, friction: ball.friction }
     }
 
-    /// Joint of a slide, along its axis.
+    /// Joint of a slider, along its axis.
     pub fn of_slide(slide: &Pivot) -> Self {
         let frame = Transform::new(slide.anchor, Rotation::from_arc(Vec3::X, slide.axis));
         let rest = Transform::from_translation(Vec3::X * slide.spring_rest);

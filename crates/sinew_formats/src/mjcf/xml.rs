@@ -1,4 +1,4 @@
-//! Elements and attributes of an XML text, with their places for errors.
+//! Elements and attributes of an XML text, with their locations for errors.
 
 use crate::error::{Error, Result, quoted};
 use roxmltree::{Attribute, Document, Node};

@@ -57,8 +57,8 @@ struct Node<'a> {
 
 /// Reads the physics of a glTF or GLB file; buffers are not needed.
 ///
-/// Names the place of the error: invalid JSON; numbers, indices and kinds that the formats do not allow; cycles of nodes; a file without
-/// physics; more than 100,000 nodes or 1,024 bodies.
+/// Names the location of the error: invalid JSON; numbers, indices and kinds that the formats do not allow; cycles of
+/// nodes; a file without physics; more than 100,000 nodes or 1,024 bodies.
 pub fn read_physics_gltf(bytes: &[u8]) -> Result<MjcfModel> {
     let json = if glb::is_glb(bytes) { glb::parse(bytes)?.json } else { bytes };
     let value = json::parse(json)?;

@@ -111,8 +111,8 @@ const BONE_KEYS: [&str; 9] =
 /// Reads the settings of a settings file. Bone names are resolved when the settings are applied to a rig.
 ///
 /// # Errors
-/// Returns an error that names the place: unknown keys, with the nearest known one; values out of range; both a height
-/// and a unit.
+/// Returns an error that names the location: unknown keys, with the nearest known one; values out of range; both a
+/// height and a unit.
 pub fn read_ragdoll_settings(bytes: &[u8]) -> Result<Settings> {
     let value = json::parse(bytes)?;
     let root = At::root(&value);

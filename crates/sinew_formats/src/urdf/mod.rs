@@ -1,16 +1,19 @@
 //! Reads robot models in URDF as a model of bodies and joints like those of [MJCF](crate::mjcf).
 //!
-//! The reader supports links with `<inertial>` and `<collision>` shapes (box, sphere, cylinder, capsule), and joints of type `revolute`,
-//! `continuous`, `prismatic`, `fixed`, `floating` and Bullet's `spherical`, with `<origin>`, `<axis>`, `<limit>` and `<dynamics>`. Units
-//! are metres and kilograms. The file's z axis (up) becomes y, its x axis stays x. The links keep the file's own axes.
+//! The reader supports links with `<inertial>` and `<collision>` shapes (box, sphere, cylinder, capsule), and joints of
+//! type `revolute`, `continuous`, `prismatic`, `fixed`, `floating` and Bullet's `spherical`, with `<origin>`, `<axis>`,
+//! `<limit>` and `<dynamics>`. Units are metres and kilograms. The file's z axis (up) becomes y, its x axis stays x.
+//! The links keep the file's own axes.
 //!
-//! Unsupported content is skipped and listed in [`MjcfModel::notes`]: visuals, mesh colliders, transmissions, mimic joints, effort and
-//! velocity limits, safety controllers, Gazebo's and other extensions. Content that would change the model if skipped is an error: planar
-//! joints, links with two parent joints, cycles.
+//! Unsupported content is skipped and listed in [`MjcfModel::notes`]: visuals, mesh colliders, transmissions, mimic
+//! joints, effort and velocity limits, safety controllers, Gazebo's and other extensions. Content that would change the
+//! model if skipped is an error: planar joints, links with two parent joints, cycles.
 //!
 //! - **The root link** is free; a root named `world` stands.
-//! - **Links without mass** between joints get one of a gram, because files have them as frames; a note says so. The root frame of most robots is one.
-//! - **Collision** of links with a joint between them is off, as most simulators have it; `<dynamics>` damping is a spring without stiffness, friction the joint's.
+//! - **Links without mass** between joints get one of a gram, because files use them as frames; a note reports it. The
+//!   root frame of most robots is such a link.
+//! - **Collision** of links with a joint between them is off, as most simulators have it; `<dynamics>` damping is a
+//!   spring without stiffness, friction the joint's.
 //!
 //! ```
 //! use sinew_formats::read_urdf;

@@ -40,7 +40,7 @@ fn motion(document: &Document) -> Clip {
     clip
 }
 
-/// Checks that `new` has everything in `old` at the same place; lists may be longer. Places in `allowed` may differ.
+/// Checks that `new` has everything in `old` at the same path; lists may be longer. Paths in `allowed` may differ.
 fn assert_kept(old: &Value, new: &Value, path: &str, allowed: &dyn Fn(&str) -> bool) {
     if allowed(path) {
         return;

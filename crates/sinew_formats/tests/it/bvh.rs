@@ -280,8 +280,8 @@ fn every_file_round_trips() {
             |d: &BvhDocument| d.rig.joints.iter().map(|j| (j.name.clone(), j.parent)).collect::<Vec<_>>();
         assert_eq!(names(&before), names(&after));
         let (turn, shift) = difference(&before, &after);
-        println!("{}: {turn:.1e} rad, {shift:.1e} m", path.display());
-        assert!(turn < 1e-4 && shift < 1e-4, "{}: {turn} rad, {shift} m", path.display());
+        println!("{}: errors {turn:.1e} rad, {shift:.1e} m", path.display());
+        assert!(turn < 1e-4 && shift < 1e-4, "{}: errors {turn} rad, {shift} m", path.display());
     }
 }
 
@@ -375,7 +375,7 @@ fn a_rig_with_turned_joints_keeps_its_motion() {
             let name = joint.name.replace(' ', "_");
             let k = after.rig.joints.iter().position(|other| other.name == name).unwrap();
             let off = (expected[i].translation - found[k].translation).length();
-            assert!(off < 1e-4, "frame {frame}, {name}: {off} m");
+            assert!(off < 1e-4, "frame {frame}, {name}: off by {off} m");
         }
     }
 }

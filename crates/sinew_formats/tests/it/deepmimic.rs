@@ -102,7 +102,7 @@ fn complaints_name_the_place() {
     );
 }
 
-/// Cuts and changes files at random places: the result is an error or a clip, never a panic.
+/// Cuts and changes files at random offsets: the result is an error or a clip, never a panic.
 #[needs_data]
 #[test]
 fn mutated_files_do_no_harm() {

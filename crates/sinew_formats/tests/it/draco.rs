@@ -133,7 +133,7 @@ fn compressed_meshes_round_trip() {
                 .filter(|(slot, _)| **slot == 1)
                 .map(|(_, w)| w)
                 .sum();
-            assert!((moved - weight(i)).abs() < 1e-3, "method {method}: {moved} at {at}");
+            assert!((moved - weight(i)).abs() < 1e-3, "method {method}: weight {moved} at {at}");
         }
         let corner = |&index: &u32| known(part.positions[index as usize]);
         let turned = |t: [usize; 3]| {
@@ -204,7 +204,7 @@ fn oversized_counts_allocate_nothing() {
             lying[at] = if random.index(2) == 0 { 0xff } else { random.index(256) as u8 };
         }
         let used = peak(|| drop(read(&file(&lying), &lying)));
-        assert!(used < 40 << 20, "case {case}: {used} bytes");
+        assert!(used < 40 << 20, "case {case}: allocates {used} bytes");
     }
 }
 
@@ -265,7 +265,7 @@ fn the_compressed_rigs_of_shared_are_read() {
             let lowest = part.positions.iter().map(of).fold(f64::INFINITY, f64::min);
             let highest = part.positions.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
             let off = (lowest - low).abs().max((highest - high).abs());
-            assert!(off < 2e-3 * (high - low), "{file}: {lowest}..{highest}, not {low}..{high}");
+            assert!(off < 2e-3 * (high - low), "{file}: range {lowest}..{highest}, expected {low}..{high}");
         }
     }
 }

@@ -64,7 +64,7 @@ fn the_skin_follows_its_bones() {
     local_to_model(rig, &rest_pose(rig), &Affine::IDENTITY, &mut model);
     skin_vertices(rig, 0, 0, &model, &mut positions, &mut normals);
     for p in &positions {
-        assert!(wanted.iter().any(|corner| (*corner - *p).length() < 1e-5), "{p} is no corner of the box");
+        assert!(wanted.iter().any(|corner| (*corner - *p).length() < 1e-5), "{p} is not a corner of the box");
     }
     // Faces point outward: the enclosed volume is that of the box.
     let triangles = part.indices.chunks_exact(3).map(|t| [0, 1, 2].map(|k| positions[t[k] as usize]));

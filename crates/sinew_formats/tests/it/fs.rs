@@ -60,7 +60,7 @@ fn only_regular_files_are_replaced() {
     }
     drop(socket);
     assert!(!fs::metadata("/dev/null").unwrap().is_file());
-    assert_eq!(fs::read_dir(folder.join("far")).unwrap().count(), 2, "nothing is left beside");
+    assert_eq!(fs::read_dir(folder.join("far")).unwrap().count(), 2, "a temporary file remains");
     fs::remove_dir_all(folder).unwrap();
 }
 

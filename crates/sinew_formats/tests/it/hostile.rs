@@ -1,4 +1,4 @@
-//! Malicious bytes: each gives an error with a place, without a panic and without large allocations.
+//! Malicious bytes: each gives an error with a location, without a panic and without large allocations.
 
 use crate::data::{GLTF, files, shared_data};
 use needs_data::needs_data;
@@ -205,7 +205,7 @@ fn malicious_files_give_errors() {
         }
     }
     println!("{read} read, {refused} refused");
-    assert!(read > 60 && refused > 40, "{read} read, {refused} refused");
+    assert!(read > 60 && refused > 40, "{read} files read, {refused} refused");
 }
 
 #[needs_data]

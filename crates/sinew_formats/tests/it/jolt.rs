@@ -9,7 +9,7 @@ use sinew_physics::{BodyDef, JointKind, Shape, World, WorldDef};
 use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
 use sinew_ragdoll::{BodySettings, BodyState, DriveMode, Drives, Muscle, Pin, Ragdoll};
 
-/// Two parts: a ball, and a capsule half a metre above it; the joint is in the middle between them.
+/// Two parts: a ball, and a capsule half a metre above it; the joint is midway between them.
 const SMALL: &str = r#"TOS 1.00
 
 declare RagdollSettings 2
@@ -295,7 +295,7 @@ fn jolts_human_is_whole() {
     assert!((50.0..120.0).contains(&def.total_mass), "{} kg", def.total_mass);
     let role = |bone: &str| def.bodies.iter().find(|body| body.bone == bone).map(|body| body.role.as_str());
     println!(
-        "{} kg, {} m, roles {:?}",
+        "mass {} kg, height {} m, roles {:?}",
         def.total_mass,
         def.height,
         def.bodies.iter().map(|b| &b.role).collect::<Vec<_>>()

@@ -297,7 +297,7 @@ fn decoded(mode: &'static str, stream: &[u8], count: usize) -> Vec<u32> {
         "buffers": [{"byteLength": file.bin.len()}, {"byteLength": 4 * count}],
     });
     read(&glb(&root, &file.bin))
-        .map_or_else(|error| panic!("{mode} of {count}: {error}"), |d| part(&d.rig).indices.clone())
+        .map_or_else(|error| panic!("{mode} of {count} elements: {error}"), |d| part(&d.rig).indices.clone())
 }
 
 #[test]

@@ -25,7 +25,7 @@ fn y_up([x, y, z]: [f32; 3]) -> Vec3 {
 }
 
 fn assert_close(found: Vec3, expected: Vec3, tolerance: f32, what: &str) {
-    assert!((found - expected).length() <= tolerance, "{what}: {found} for {expected}");
+    assert!((found - expected).length() <= tolerance, "{what}: {found}, expected {expected}");
 }
 
 /// Name, mass, centre of mass in the body's frame, trace of the inertia, position in the world; computed by
@@ -62,7 +62,11 @@ fn humanoid_bodies_match_mujoco() {
     for ((name, mass, center, trace, place), body) in BODIES.into_iter().zip(&model.bodies[1..]) {
         assert_eq!(body.name, name);
         let found = body.def.mass.expect("a mass");
-        assert!((found.mass - mass).abs() < 1e-5 * mass, "{name}: {} kg for {mass}", found.mass);
+        assert!(
+            (found.mass - mass).abs() < 1e-5 * mass,
+            "{name}: mass {} kg, expected {mass} kg",
+            found.mass
+        );
         assert_close(found.center, y_up(center), 1e-5, name);
         let moments = found.inertia.diagonal;
         assert!((moments.x + moments.y + moments.z - trace).abs() < 2e-6, "{name}: {moments}");
@@ -215,7 +219,11 @@ fn keyframes_match_mujoco() {
             let at = pose[model.body(name).expect(name)];
             assert_close(at.translation, y_up(place), 1e-4, name);
             let turn = Rotation::from_xyzw(x, z, -y, w).normalize();
-            assert!(at.rotation.angle_to(turn) < 3e-4, "{name}: {:?} for {turn:?}", at.rotation);
+            assert!(
+                at.rotation.angle_to(turn) < 3e-4,
+                "{name}: rotation {:?}, expected {turn:?}",
+                at.rotation
+            );
         }
     }
 }
@@ -231,7 +239,11 @@ fn omitted_features_are_noted() {
         "left out: tendons (2)",
         "left out: actuators (21)",
     ] {
-        assert!(model.notes.iter().any(|found| found == note), "{note} is not in {:#?}", model.notes);
+        assert!(
+            model.notes.iter().any(|found| found == note),
+            "the note {note} is missing in {:#?}",
+            model.notes
+        );
     }
 }
 
@@ -264,9 +276,9 @@ fn rotations_match_mujoco() {
     ] {
         let found = one_body(settings, attributes, "<geom size='.1'/>").bodies[1].def.rotation;
         let expected = Rotation::from_xyzw(x, z, -y, w);
-        assert!(found.angle_to(expected) < 1e-3, "{attributes}: {found:?} for {expected:?}");
+        assert!(found.angle_to(expected) < 1e-3, "{attributes}: {found:?}, expected {expected:?}");
         let straight = found.dot(expected).abs();
-        assert!((straight - 1.0).abs() < 1e-6, "{attributes}: {straight}");
+        assert!((straight - 1.0).abs() < 1e-6, "{attributes}: dot product {straight}");
     }
 }
 
@@ -335,7 +347,11 @@ fn three_hinges_keep_their_ranges_one_by_one() {
         // Each hinge alone stops at the end of its own range, with right-handed and left-handed axes.
         let beyond = Range::degrees(-60.0, 30.0).excess(angles[used]);
         let found = limit.overshoot(model.keyframes[0].moved[0].1.rotation);
-        assert!((found - beyond).abs() < 1e-4, "hinge {used} at {}: {found} for {beyond}", angles[used]);
+        assert!(
+            (found - beyond).abs() < 1e-4,
+            "hinge {used} at {}: overshoot {found}, expected {beyond}",
+            angles[used]
+        );
     }
 }
 
@@ -532,7 +548,7 @@ fn mutated_humanoids_do_no_harm() {
         }
     }
     println!("{read} read, {refused} refused");
-    assert!(read > cases / 20 && refused > cases / 5, "{read} read, {refused} refused");
+    assert!(read > cases / 20 && refused > cases / 5, "{read} files read, {refused} refused");
 }
 
 #[test]

@@ -30,7 +30,7 @@ fn concave_faces_keep_their_area() {
             (b - a).cross(c - a).z * 0.5
         });
         let areas: Vec<f32> = areas.collect();
-        assert!(areas.iter().all(|&area| area > 0.0), "turned over: {areas:?}");
+        assert!(areas.iter().all(|&area| area > 0.0), "triangles are turned over; areas {areas:?}");
         assert!((areas.iter().sum::<f32>() - 4.0).abs() < 1e-5, "{areas:?}");
     }
 }

@@ -213,11 +213,11 @@ fn wrong_values_are_refused_or_examined() {
         read += 1;
         let (cured, _) = cure(&Repair::new(def));
         match read_ragdoll(write_ragdoll(&cured.def).as_bytes()) {
-            Ok(back) => assert!(back == cured.def, "what is written reads back otherwise"),
-            Err(error) => panic!("what a cure writes is refused: {error}"),
+            Ok(back) => assert!(back == cured.def, "the written definition reads back differently"),
+            Err(error) => panic!("a repaired definition is refused: {error}"),
         }
     }
-    assert!(10 * read > cases, "only {read} of {cases} were read");
+    assert!(10 * read > cases, "only {read} of {cases} definitions were read");
 }
 
 /// Returns JSON pointers to all numbers.

@@ -118,7 +118,7 @@ fn inverse_bind_matrices_undo_the_rest_pose() {
         for slot in 1..skin.joints.len() {
             for point in [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z] {
                 let gap = place(slot).point(point).distance(place(0).point(point));
-                assert!(gap < 2e-3, "{name} slot {slot}: {gap}");
+                assert!(gap < 2e-3, "{name} slot {slot}: gap {gap}");
             }
         }
     }

@@ -43,7 +43,7 @@ fn version_1_with_extended_colliders_and_limits() {
     );
     let [chain] = &springs.chains[..] else { panic!("{springs:?}") };
     assert_eq!((chain.name.as_str(), chain.center, chain.hits_body), ("hair", Some(0), false));
-    assert_eq!(chain.colliders, [0, 1, 3, 2], "each once, in the order of the groups");
+    assert_eq!(chain.colliders, [0, 1, 3, 2], "each chain once, in the order of the groups");
     let [a, b] = chain.bones[..] else { panic!("the last joint is an end only") };
     assert_eq!((a.joint, a.stiffness, a.drag, a.radius), (2, 0.7, 0.3, 0.02));
     assert_eq!((a.gravity, a.tail), (Vec3::new(0.0, 0.0, -0.5), Vec3::new(0.0, 0.2, 0.0)));

@@ -7,7 +7,7 @@ use sinew_math::{Transform, Vec3, max3, min, min3};
 pub struct PlacedBox {
     /// Centre, metres.
     pub center: Vec3,
-    /// Unit directions of the sides: the columns of the rotation's matrix.
+    /// Unit vectors along the box's axes: the columns of the rotation's matrix.
     pub axes: [Vec3; 3],
     /// Half extents along the axes, metres, ≥ 0.
     pub half: Vec3,

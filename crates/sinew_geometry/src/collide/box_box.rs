@@ -238,6 +238,6 @@ mod tests {
                 with_points += usize::from(out.count > 0);
             }
         }
-        assert!(pairs > 20_000 && with_points > 5_000, "{pairs}, {with_points}");
+        assert!(pairs > 20_000 && with_points > 5_000, "{pairs} pairs, {with_points} with contact points");
     }
 }

@@ -138,7 +138,7 @@ fn as_ball(shape: &Shape) -> Option<Shape> {
     }
 }
 
-/// Rank by which the shapes of a pair are sorted. Pairs with files of their own have the order of the files' names.
+/// Rank by which the shapes of a pair are sorted. Pairs with separate files have the order of the files' names.
 fn rank(shape: &Shape) -> u32 {
     match shape {
         Shape::HalfSpace => 0,
@@ -294,6 +294,9 @@ mod tests {
                 );
             }
         }
-        assert!(parted > 1_000 && touching > 1_000 && same * 10 > parted * 7, "{same} {parted} {touching}");
+        assert!(
+            parted > 1_000 && touching > 1_000 && same * 10 > parted * 7,
+            "{same} equal, {parted} separated, {touching} touching pairs"
+        );
     }
 }

@@ -268,16 +268,19 @@ mod tests {
             }
             let mut out = Manifold::default();
             collide(&a, &b, 0.0, Vec3::Y, &mut SeparationCache::default(), &mut out);
-            assert_eq!(out.count > 0, best <= 0.0, "case {case}: {best}, {out:?}");
+            assert_eq!(out.count > 0, best <= 0.0, "case {case}: separation {best}, manifold {out:?}");
             if out.count > 0 {
                 let along = gap(&a, &b, out.normal);
                 let slack = 1e-4 + 0.0011 + 0.06 * best.abs();
-                assert!(along > best - slack, "case {case}: {along} for {best}, {out:?}");
+                assert!(
+                    along > best - slack,
+                    "case {case}: separation {along} along the normal, best {best}, {out:?}"
+                );
                 touching += 1;
                 faces += usize::from(out.count > 2);
             }
         }
-        assert!(touching > 500 && faces > 100, "{touching} touch, {faces} with three points or more");
+        assert!(touching > 500 && faces > 100, "{touching} pairs touch, {faces} with at least three points");
     }
 
     /// Skipping never loses the closest of all corners and edges.
@@ -312,10 +315,10 @@ mod tests {
             let mut out = Manifold::default();
             a.push_closest(&b, normal, 10.0, 1e-4, &mut out);
             let found = out.points().iter().fold(f32::INFINITY, |least, point| min(point.separation, least));
-            assert!((found - closest).abs() <= 1e-5, "case {case}: {found} for {closest}");
+            assert!((found - closest).abs() <= 1e-5, "case {case}: distance {found}, expected {closest}");
             let mut none = Manifold::default();
             a.push_closest(&b, normal, 0.9 * closest, 1e-4, &mut none);
-            assert_eq!(none.count, 0, "case {case}: beyond the margin");
+            assert_eq!(none.count, 0, "case {case}: contact points beyond the margin");
             apart += 1;
         }
         assert!(apart > 100, "{apart}");

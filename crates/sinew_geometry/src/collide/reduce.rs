@@ -22,7 +22,7 @@ pub(super) fn push_best(points: &[ManifoldPoint], tolerance: f32, out: &mut Mani
     let left = best_relative(points, area);
     let right = best_relative(points, |p| -area(p));
     let mut chosen = [deepest, furthest, left, right];
-    // Sort them in the order of the polygon, each once.
+    // Sorts the chosen points in the order of the polygon, each once.
     chosen.sort_unstable();
     let smallest_area = 1e-6 * line.dot(line);
     let mut previous = usize::MAX;

@@ -206,7 +206,10 @@ mod tests {
             left.hide_behind(&around(Vec3::new(1.0, raised, 0.0), seam).expect("it is there"));
             let tilted = (up + side * random.range(0.01, 3.0)).normalize();
             let (normal, height) = left.shown(tilted).expect("its top");
-            assert!((normal - up).length() < 1e-5 && height.abs() < 1e-5, "case {case}: {normal} {height}");
+            assert!(
+                (normal - up).length() < 1e-5 && height.abs() < 1e-5,
+                "case {case}: normal {normal}, height {height}"
+            );
             // A wall that stands on the floor and continues below it.
             for below in [0.5, 0.0] {
                 let foot = Vec3::new(0.5, 0.5, seam.z);
@@ -214,12 +217,12 @@ mod tests {
                 let mut wall = around(at, foot).expect("it is there");
                 wall.hide_behind(&around(Vec3::ZERO, foot).expect("it is there"));
                 let (normal, _) = wall.shown(-side).expect("its side");
-                assert!((normal + side).length() < 1e-5, "case {case}, {below} below: {normal}");
+                assert!((normal + side).length() < 1e-5, "case {case}, {below} below: normal {normal}");
             }
             // A single box shows all faces.
             let alone = around(Vec3::ZERO, seam).expect("it is there");
             let (normal, _) = alone.shown(tilted).expect("its edge");
-            assert!((normal - tilted).length() < 1e-5, "case {case}: {normal} {tilted}");
+            assert!((normal - tilted).length() < 1e-5, "case {case}: normal {normal}, expected {tilted}");
         }
     }
 

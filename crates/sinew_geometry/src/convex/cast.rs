@@ -20,14 +20,15 @@ pub struct ShapeHit {
 /// added.
 const CLOSE: f32 = 1e-5;
 const CLOSE_STEP: f32 = 1e-7;
-/// Most steps of a cast. They are Newton steps: only motions that graze a round shape need more than a few.
+/// Largest number of steps of a cast. They are Newton steps: only motions that graze a round shape need more than a
+/// few.
 const MOST_STEPS: usize = 64;
 
 /// Moves `a` by `motion` (metres) and returns its first touch of `b`; `None` if there is none, or a number is not
 /// finite. `a` may not be a half-space or mesh.
 ///
 /// Shapes that overlap or touch at the start hit at fraction 0: the normal is the shortest way of A out of B, and the
-/// point is at the middle of the overlap. This holds for every pair of shapes. A later hit is reported when the gap is
+/// point is midway in the overlap. This holds for every pair of shapes. A later hit is reported when the gap is
 /// below 1e-5 of the smaller shape; if the gap stops closing before, there is no hit.
 pub fn cast_shape(
     a: &Shape,

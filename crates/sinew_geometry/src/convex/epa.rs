@@ -82,7 +82,7 @@ pub(super) fn deepest<A: Support, B: Support>(
     if -best.distance - bound <= PRECISION * size {
         return best;
     }
-    // Round cores have filled the polytope. Its other faces still give directions that might be shorter.
+    // Round cores have filled the polytope. Its remaining faces may still give shorter directions.
     let mut best = refined(a, b, best, size);
     let mut tried = [best.normal; MOST_STARTS];
     for count in 1..MOST_STARTS {

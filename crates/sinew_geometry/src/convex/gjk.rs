@@ -12,7 +12,8 @@ const PRECISION: f64 = 1e-12;
 pub(super) const TOUCH: f64 = 3e-8;
 /// Height, relative to the edges, below which a tetrahedron is flat.
 const THIN: f64 = 1e-12;
-/// Most steps, far above the need: polytopes take about as many steps as they have nearby faces, round cores some 30.
+/// Largest number of steps, far above the need: polytopes take about as many steps as they have nearby faces, round
+/// cores some 30.
 const MOST_STEPS: usize = 128;
 
 /// A point of the Minkowski difference A − B, and the points of A and B that give it.
@@ -70,7 +71,7 @@ pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>
     let start = if offset.length() > TOUCH * size { offset } else { DVec3::X };
     let mut simplex = Simplex::of(support(a, b, start));
     let mut nearest = simplex.nearest();
-    // The best separating direction and the closest points so far are kept apart: at distances small against the sizes,
+    // The best separating direction and the closest points are stored separately: at distances small against the sizes,
     // rounding makes neither a measure of the other.
     let (mut apart, mut toward_a) = (f64::NEG_INFINITY, DVec3::X);
     let (mut shortest, mut bridge) = (f64::INFINITY, simplex);

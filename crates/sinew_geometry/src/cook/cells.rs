@@ -200,7 +200,7 @@ mod tests {
         assert_eq!(boxes.len(), 6, "{boxes:?}");
         for step in 0..6 {
             let top = |cells: &CellBox| cells[1].end == step + 1 && cells[0].end == 6 && cells[2] == (0..4);
-            assert!(boxes.iter().any(top), "step {step}: {boxes:?}");
+            assert!(boxes.iter().any(top), "step {step} has no box on top: {boxes:?}");
         }
     }
 

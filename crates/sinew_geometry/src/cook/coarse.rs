@@ -15,7 +15,7 @@ pub(super) fn at_most(most: usize, mut blocks: Vec<Obb>, thinnest: f32) -> Vec<O
     let farthest = small.iter().flat_map(|block| block.center.to_array()).map(f32::abs).fold(0.0, max);
     let mut size = max(farthest / 1024.0, thinnest);
     let mut cells = by_cell(&small, size);
-    // Once the cells are larger than `farthest`, at most the eight cells around the origin remain.
+    // Once the cells are larger than `farthest`, only the eight cells around the origin remain.
     while cells.len() > usize::max(most - most / 2, 8) {
         size *= 1.25;
         cells = by_cell(&small, size);

@@ -30,12 +30,12 @@ struct Entry {
     alive: bool,
 }
 
-/// A way to remove one box.
+/// A step that removes one box.
 #[derive(Clone, Copy)]
 enum Step {
     /// Drop a box.
     Drop(usize),
-    /// Replace two boxes by one.
+    /// Replaces two boxes by one.
     Merge(usize, usize, Obb),
 }
 

@@ -24,7 +24,7 @@ const MOST_BOXES: usize = 256;
 const LEFT_OUT: f32 = 0.005;
 
 /// Returns boxes for a connected part. A part that is nearly a box gives one box. Other parts give boxes of the inside
-/// or plates behind the faces, whichever are closer to the part. Filling an open shell costs the faces that close its
+/// or plates behind the faces if those are closer to the part. Filling an open shell costs the faces that close its
 /// holes.
 pub(super) fn blocks_of_part(
     mesh: &SurfaceMesh,

@@ -21,7 +21,7 @@ struct Node {
     bounds: Aabb,
     /// First triangle of a leaf, or index of the second child of an inner node; the first child follows its parent.
     next: u32,
-    /// Number of triangles of a leaf, 0 for an inner node.
+    /// Number of triangles of a leaf; 0 for an inner node.
     count: u32,
 }
 
@@ -102,7 +102,7 @@ impl Tree {
         while count > 0 {
             count -= 1;
             let (index, least) = open[count];
-            // This form rejects NaN.
+            // The comparison is false for NaN.
             if !(least <= limit && least < f32::INFINITY) {
                 continue;
             }

@@ -25,7 +25,7 @@ fn box_on_box_touches_at_four_corners() {
             .points()
             .iter()
             .find(|p| (p.position - expected).length() < 1e-5)
-            .expect("a point at each corner");
+            .expect("expected a point at each corner");
         assert!((p.separation + 0.001).abs() < 1e-6);
     }
 

@@ -181,7 +181,7 @@ fn a_tread_stays_level_and_as_high_as_it_was_drawn() {
             let (off, up) = found.fold((f32::NEG_INFINITY, 0.0), |a, b| if b.0 > a.0 { b } else { a });
             assert!(
                 off.abs() < 2e-3 && up > 0.999_999,
-                "{worn}, step {step}: {off} m off, up {up}: {cooked:?}"
+                "{worn}, step {step}: off by {off} m, up {up}: {cooked:?}"
             );
         }
     }

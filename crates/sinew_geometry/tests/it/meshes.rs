@@ -123,7 +123,10 @@ fn near_a_triangle(kind: usize, random: &mut Random) {
             assert!(manifold.points().iter().all(|point| point.separation <= MARGIN), "{place}");
         }
     }
-    assert!(apart * 5 > cases(100_000) && deep * 10 > cases(100_000), "{apart} apart, {deep} deep");
+    assert!(
+        apart * 5 > cases(100_000) && deep * 10 > cases(100_000),
+        "{apart} separated, {deep} overlapping pairs"
+    );
 }
 
 /// Moves a shape out along the normal of its manifold, a millimetre further than the separation.
@@ -156,7 +159,10 @@ fn the_deepest_face_beside_the_lowest_counts() {
     assert_eq!(found.len(), 1);
     let (before, after) =
         (distance(&hull, &frame, &corners), distance(&hull, &moved_out(&frame, &found[0]), &corners));
-    assert!(before < -0.09 && (0.0..2e-3).contains(&after), "{before}, {after}: {found:?}");
+    assert!(
+        before < -0.09 && (0.0..2e-3).contains(&after),
+        "separation {before} before, {after} after: {found:?}"
+    );
 }
 
 /// The separation of a box edge above the top of a pyramid is the edge's height: no side of the pyramid treats the top
@@ -178,7 +184,7 @@ fn an_edge_over_a_peak_has_contacts() {
         let over = half_extents * Vec3::new(random.range(-0.9, 0.9), -1.0, 1.0);
         let frame = Transform::new(peak + Vec3::Y * gap - rotation * over, rotation);
         let found = contacts(&pyramid, &Transform::IDENTITY, &Shape::Box { half_extents }, &frame);
-        assert!((nearest(&found) - gap).abs() < 1e-4, "case {case}: {gap}, {found:?}");
+        assert!((nearest(&found) - gap).abs() < 1e-4, "case {case}: gap {gap}, manifold {found:?}");
     }
 }
 
@@ -279,7 +285,10 @@ fn terrain_distance_is_that_of_the_nearest_triangle() {
                 let found = contacts(surface, &still, &shape, &frame);
                 check_exchanged(&found, &contacts(&shape, &frame, surface, &still));
                 if expected > MARGIN {
-                    assert!(found.is_empty(), "{shape:?} at {frame:?}: {expected}, {found:?}");
+                    assert!(
+                        found.is_empty(),
+                        "{shape:?} at {frame:?}: separation {expected}, manifold {found:?}"
+                    );
                 } else if (1e-3..MARGIN - 1e-3).contains(&expected) {
                     apart += 1;
                     off += u32::from((nearest(&found) - expected).abs() > 2e-3);
@@ -290,10 +299,13 @@ fn terrain_distance_is_that_of_the_nearest_triangle() {
             }
         }
         println!("kind {kind}: {off} of {apart} apart are off, of {deep} deep {lost} are not felt");
-        assert!(apart * 10 > cases(100_000) && deep * 10 > cases(100_000), "{apart} apart, {deep} deep");
+        assert!(
+            apart * 10 > cases(100_000) && deep * 10 > cases(100_000),
+            "{apart} separated, {deep} overlapping pairs"
+        );
         assert!(
             off * 20_000 <= apart && lost * 20_000 <= deep,
-            "kind {kind}: {off} of {apart}, {lost} of {deep}"
+            "kind {kind}: wrong at {off} of {apart} separated points, missed {lost} of {deep} inside"
         );
     }
 }
@@ -343,13 +355,19 @@ fn terrain_rays_match_triangle_rays() {
             let found = shape.cast_ray(&Transform::IDENTITY, &ray).map(|hit| hit.fraction);
             match (expected, found) {
                 (Some(t), Some(found)) => {
-                    assert!((t - f64::from(found)).abs() < 1e-4, "case {case}: {t} {found}");
+                    assert!(
+                        (t - f64::from(found)).abs() < 1e-4,
+                        "case {case}: fraction {found}, expected {t}"
+                    );
                 }
                 (None, None) => {}
                 // The ray starts or ends on the surface.
                 (t, found) => {
                     let at = t.map(|t| t as f32).or(found).unwrap();
-                    assert!(!(1e-4..=1.0 - 1e-4).contains(&at), "case {case}: {t:?} {found:?}");
+                    assert!(
+                        !(1e-4..=1.0 - 1e-4).contains(&at),
+                        "case {case}: fraction {found:?}, expected {t:?}"
+                    );
                 }
             }
             hits += u32::from(found.is_some());
@@ -381,13 +399,16 @@ fn the_closest_point_is_that_of_all_triangles() {
         let expected = alone.iter().map(away).fold(f32::INFINITY, f32::min);
         for shape in [&mesh, &field] {
             let (found, normal) = shape.signed_distance(&Transform::IDENTITY, p);
-            assert!((found.abs() - expected).abs() < 1e-4, "case {case} at {p}: {found} {expected}");
+            assert!(
+                (found.abs() - expected).abs() < 1e-4,
+                "case {case} at {p}: distance {found}, expected {expected}"
+            );
             let back = shape.signed_distance(&Transform::IDENTITY, p - normal * found).0;
-            assert!(back.abs() < 1e-3, "case {case} at {p}: {back}");
+            assert!(back.abs() < 1e-3, "case {case} at {p}: the closest point is {back} from the surface");
             let over = (0.0..6.0).contains(&p.x) && (0.0..6.0).contains(&p.z);
             assert!(
                 !(over && p.y > 0.6 && found < 0.0),
-                "case {case}: above all of it, {p} is not behind it"
+                "case {case}: {p} is above the whole surface but counts as behind it"
             );
         }
     }

@@ -95,24 +95,30 @@ fn rays_enter_where_marching_does() {
                     let (depth, outward) = shape.signed_distance(&frame, hit.point);
                     assert!(hit.fraction == 0.0 || depth.abs() < 1e-5, "{shape:?} case {case}");
                     if let Some(t) = marched {
-                        assert!(hit.fraction <= t + 1e-5, "{shape:?} case {case}: {hit:?}, marched {t}");
-                        assert!(hit.fraction > t - 2.0 * step, "{shape:?} case {case}: {hit:?}, marched {t}");
+                        assert!(
+                            hit.fraction <= t + 1e-5,
+                            "{shape:?} case {case}: hit {hit:?}, by marching {t}"
+                        );
+                        assert!(
+                            hit.fraction > t - 2.0 * step,
+                            "{shape:?} case {case}: hit {hit:?}, by marching {t}"
+                        );
                     }
                     if hit.fraction > 0.0 {
                         assert!(hit.normal.dot(ray.direction) <= 1e-5, "{shape:?} case {case}");
                         // The whole shape is behind the plane through the hit.
                         let behind =
                             surface.iter().all(|p| (frame.point(*p) - hit.point).dot(hit.normal) < 2e-4);
-                        assert!(behind, "{shape:?} case {case}: {outward} {hit:?}");
+                        assert!(behind, "{shape:?} case {case}: outward {outward}, hit {hit:?}");
                     } else {
                         let back = -ray.direction / ray.direction.length();
                         assert!((hit.normal - back).length() < 1e-5, "{shape:?} case {case}");
                     }
                 }
-                None => assert!(marched.is_none(), "{shape:?} case {case}: missed, marched {marched:?}"),
+                None => assert!(marched.is_none(), "{shape:?} case {case}: no hit, by marching {marched:?}"),
             }
         }
-        assert!(hits > 40, "{shape:?}: {hits} hits");
+        assert!(hits > 40, "{shape:?}: only {hits} hits");
     }
 }
 
@@ -121,7 +127,8 @@ fn rays_enter_where_marching_does() {
 fn long_rays_keep_their_precision() {
     let ball = Shape::Sphere { radius: 0.01 };
     let ray = Ray { origin: Vec3::new(5000.0, 0.005, 0.0), direction: Vec3::new(-10_000.0, 0.0, 0.0) };
-    let hit = ball.cast_ray(&Transform::IDENTITY, &ray).expect("it passes half a radius off the centre");
+    let hit =
+        ball.cast_ray(&Transform::IDENTITY, &ray).expect("the ray passes half a radius from the centre");
     assert!((hit.normal.y - 0.5).abs() < 0.05, "{hit:?}");
     let beside = Ray { origin: Vec3::new(5000.0, 0.0101, 0.0), ..ray };
     assert_eq!(ball.cast_ray(&Transform::IDENTITY, &beside), None);
@@ -159,9 +166,12 @@ fn signed_distance_is_the_closest_surface() {
             assert_eq!(distance < 0.0, holds(&shape, local), "{shape:?} case {case}");
             let foot = frame.inverse_point(frame.point(local) - normal * distance);
             let (off, _) = shape.signed_distance(&Transform::IDENTITY, foot);
-            assert!(off.abs() < 1e-5, "{shape:?} case {case}: foot is {off} off the surface");
+            assert!(off.abs() < 1e-5, "{shape:?} case {case}: the closest point is {off} from the surface");
             let sampled = surface.iter().map(|p| (*p - local).length()).fold(f32::INFINITY, f32::min);
-            assert!(distance.abs() <= sampled + 1e-5, "{shape:?} case {case}: {distance}, sampled {sampled}");
+            assert!(
+                distance.abs() <= sampled + 1e-5,
+                "{shape:?} case {case}: distance {distance}, sampled {sampled}"
+            );
         }
     }
 }
@@ -206,13 +216,19 @@ fn mass_properties_match_integration() {
             }
         }
         let exact = shape.mass_properties(density);
-        assert!((f64::from(exact.mass) / mass - 1.0).abs() < 0.01, "{shape:?}: {exact:?}, {mass}");
+        assert!(
+            (f64::from(exact.mass) / mass - 1.0).abs() < 0.01,
+            "{shape:?}: {exact:?}, sampled mass {mass}"
+        );
         let center = moment / mass;
-        assert!((f64::from(exact.center.y) - center).abs() < 0.005, "{shape:?}: {exact:?}, {center}");
+        assert!(
+            (f64::from(exact.center.y) - center).abs() < 0.005,
+            "{shape:?}: {exact:?}, sampled centre {center}"
+        );
         for axis in 0..3 {
             let about_center = inertia[axis] - if axis == 1 { 0.0 } else { mass * center * center };
             let ratio = f64::from(exact.inertia.diagonal[axis]) / about_center;
-            assert!((ratio - 1.0).abs() < 0.015, "{shape:?}: {exact:?}, {inertia:?}");
+            assert!((ratio - 1.0).abs() < 0.015, "{shape:?}: {exact:?}, sampled inertia {inertia:?}");
         }
     }
     assert_eq!(Shape::HalfSpace.mass_properties(density), MassProperties::default());

@@ -57,9 +57,9 @@ fn submerged_volumes_match_brute_force() {
             let found = shape.submerged(&at, &plane);
             let (volume, moment) = brute_force(&shape, &at, &plane, 60);
             let off = (found.volume - volume).abs() / whole;
-            assert!(off < 0.015, "{shape:?} {case}: {} for {volume}", found.volume);
+            assert!(off < 0.015, "{shape:?} {case}: volume {}, sampled {volume}", found.volume);
             let off = (found.center() * found.volume - moment).length() / (whole * reach);
-            assert!(off < 0.02, "{shape:?} {case}: centre {} for {}", found.center(), moment / volume);
+            assert!(off < 0.02, "{shape:?} {case}: centre {}, sampled {}", found.center(), moment / volume);
         }
     }
 }
@@ -91,7 +91,7 @@ fn both_parts_sum_to_the_whole() {
         let middle = below.center() * below.volume + above.center() * above.volume;
         let center = at.point(shape.mass_properties(1.0).center);
         let off = (middle / whole - center).length() / shape.bounding_radius();
-        assert!(off < 2e-5, "{i} {shape:?}: the middle is off by {off}");
+        assert!(off < 2e-5, "{i} {shape:?}: the centroid is off by {off}");
     }
 }
 

@@ -20,7 +20,7 @@ impl MatrixDrift {
     }
 }
 
-/// Method of turning a nearly orthonormal matrix into a rotation.
+/// Method of converting a nearly orthonormal matrix to a rotation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Orthonormalization {
     /// The rotation nearest to the matrix in the sum of squared differences: the rotation part of its polar

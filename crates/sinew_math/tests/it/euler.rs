@@ -30,9 +30,12 @@ fn check_range(convention: EulerConvention, found: EulerAngles) {
     let [lo, hi] = locks(convention);
     assert!(
         first.abs() <= PI && third.abs() <= PI && (lo..=hi).contains(&second),
-        "{convention:?} {found:?}"
+        "{convention:?}: angles out of range: {found:?}"
     );
-    assert!((0.0..=FRAC_PI_2 + 1e-6).contains(&found.lock_margin), "{convention:?} {found:?}");
+    assert!(
+        (0.0..=FRAC_PI_2 + 1e-6).contains(&found.lock_margin),
+        "{convention:?}: lock margin out of range: {found:?}"
+    );
 }
 
 /// Returns the largest result of a function over all conventions and cases, called with a rotation, its angles, and
@@ -46,7 +49,7 @@ fn worst(cases: usize, seed: u64, mut rotation: impl FnMut(EulerConvention, &mut
             let found = rotation.to_euler(convention);
             check_range(convention, found);
             let error = exact(convention, found.angles.map(f64::from)).error(rotation);
-            assert!(error < 1e-5, "{convention:?}, case {case}: {rotation:?} {found:?}");
+            assert!(error < 1e-5, "{convention:?}, case {case}: {rotation:?} gives {found:?}");
             most = if error > most { error } else { most };
         }
     }
@@ -69,7 +72,7 @@ fn from_angles() {
             let angles = [angle(random), angle(random), angle(random)];
             exact(convention, angles.map(f64::from)).error(Rotation::from_euler(convention, angles))
         });
-        assert!(error < 1e-6, "{convention:?}: {error}");
+        assert!(error < 1e-6, "{convention:?}: error {error} rad");
         assert_eq!(Rotation::from_euler(convention, [0.0, f32::NAN, 0.0]), Rotation::IDENTITY);
     }
 }
@@ -100,7 +103,10 @@ fn angles_round_trip_away_from_lock() {
             let angles = [random.range(-PI, PI), random.range(lo, hi), random.range(-PI, PI)];
             let found = Rotation::from_euler(convention, angles).to_euler(convention);
             let nearest_lock = f32::min(angles[1] - lo, hi - angles[1]);
-            assert!((found.lock_margin - nearest_lock).abs() < 1e-6, "{convention:?} {angles:?} {found:?}");
+            assert!(
+                (found.lock_margin - nearest_lock).abs() < 1e-6,
+                "{convention:?}: lock margin of {angles:?}: {found:?}"
+            );
             if found.lock != GimbalLock::Free {
                 return 0.0;
             }
@@ -112,7 +118,7 @@ fn angles_round_trip_away_from_lock() {
             let outer = f64::max(off(0), off(2)) * f64::from(trig::sin(found.lock_margin));
             f64::max(outer, off(1))
         });
-        assert!(error < 2e-6, "{convention:?}: {error}");
+        assert!(error < 2e-6, "{convention:?}: error {error} rad");
     }
 }
 
@@ -148,7 +154,7 @@ fn small_turns_keep_their_digits() {
         let angles = [3e-9, -2e-12, 5e-10];
         for convention in [order.intrinsic(), order.extrinsic()] {
             let found = Rotation::from_euler(convention, angles).to_euler(convention).angles;
-            assert!((found[1] / angles[1] - 1.0).abs() < 1e-5, "{convention:?} {found:?}");
+            assert!((found[1] / angles[1] - 1.0).abs() < 1e-5, "{convention:?}: angles {found:?}");
         }
         assert_eq!(Rotation::IDENTITY.to_euler(order.intrinsic()).angles, [0.0; 3]);
     }

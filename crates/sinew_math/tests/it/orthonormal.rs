@@ -77,10 +77,13 @@ fn polar_is_nearest() {
         let found = orthonormalize(&m, Orthonormalization::Polar);
         let scale = length(&m);
         let rival = orthonormalize(&m, Orthonormalization::GramSchmidt);
-        assert!(found.residual <= rival.residual + 2e-6 * scale, "{m:?} {found:?} {rival:?}");
+        assert!(
+            found.residual <= rival.residual + 2e-6 * scale,
+            "{m:?}: {found:?}, a better one is {rival:?}"
+        );
         let beside = Rotation::from_axis_angle(random.direction(), random.range(-1.0, 1.0)) * found.rotation;
         let distance = length(&(m - beside.to_mat3()));
-        assert!(found.residual <= distance + 2e-6 * scale, "{m:?} {found:?} {beside:?}");
+        assert!(found.residual <= distance + 2e-6 * scale, "{m:?}: {found:?}, better nearby is {beside:?}");
         0.0
     });
 }

@@ -216,7 +216,7 @@ fn spherical_blend_at_its_edges() {
         assert!(a.angle_to(a.slerp(a, t)) < 1e-6);
         assert!(a.angle_to(a.slerp(negated, t)) < 1e-6, "the same rotation");
         let half = Rotation::IDENTITY.slerp(turn, t);
-        assert!((half.angle_to(Rotation::IDENTITY) - PI * t).abs() < 1e-6, "either way is half a turn");
+        assert!((half.angle_to(Rotation::IDENTITY) - PI * t).abs() < 1e-6, "both ways must be half a turn");
     }
     assert!(a.angle_to(a.slerp(turn, 0.0)) < 1e-6 && turn.angle_to(a.slerp(turn, 1.0)) < 1e-6);
 }
@@ -235,7 +235,7 @@ fn linear_blend_takes_the_same_path() {
     });
     assert!(error < 1e-6, "{error}");
     let (a, b) = (Rotation::from_axis_angle(Vec3::X, 0.2), Rotation::from_axis_angle(Vec3::X, 1.2));
-    assert!(a.slerp(b, 0.5).angle_to(a.nlerp(b, 0.5)) < 1e-6, "they meet in the middle");
+    assert!(a.slerp(b, 0.5).angle_to(a.nlerp(b, 0.5)) < 1e-6, "slerp and nlerp must agree at the middle");
 }
 
 #[test]
@@ -295,7 +295,7 @@ fn a_mirrored_frame_conjugates_like_its_rigid_part() {
         let expected = rigid.inverse() * change * rigid;
         for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
             let away = within.vector(axis) - expected * axis;
-            assert!(away.length() < 1e-5, "{scale}: {axis} is {away} off");
+            assert!(away.length() < 1e-5, "scale {scale}: axis {axis} is off by {away}");
         }
     }
 }

@@ -67,7 +67,7 @@ impl Default for OneWay {
 
 impl OneWay {
     fn check(&self) -> Result<(), DefError> {
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         let length = self.direction.length();
         if !(length > 0.0 && length < f32::INFINITY) {
             return Err(DefError::new("the direction of a one-way shape must be finite and not 0"));
@@ -111,7 +111,7 @@ impl Default for Yields {
 
 impl Yields {
     fn check(&self) -> Result<(), DefError> {
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         if [self.max_force, self.max_impulse].iter().all(|x| (0.0..f32::INFINITY).contains(x)) {
             return Ok(());
         }

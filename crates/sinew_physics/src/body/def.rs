@@ -18,8 +18,9 @@ pub struct WorldDef {
     pub substeps: u32,
     /// Step quality of bodies without [their own](BodyDef::quality). Default balanced.
     pub quality: Quality,
-    /// Most steps per [`World::update`](crate::World::update), at least 1, so that a delayed host, or steps that take
-    /// longer than they simulate, cannot cause ever longer frames. Default 15, a quarter of a second of default steps.
+    /// Largest number of steps per [`World::update`](crate::World::update), at least 1, so that a delayed host, or
+    /// steps slower than real time, cannot cause ever longer frames. Default 15, a quarter of a second of default
+    /// steps.
     pub catch_up_steps: u32,
     /// Permission for bodies to fall asleep. Default yes.
     pub sleeping: Sleeping,
@@ -28,7 +29,7 @@ pub struct WorldDef {
     /// Largest speed of a body, m/s. Enforced when forces act, before joints and contacts. Default 4,000.
     pub max_speed: f32,
     /// Largest rotation of a body per substep, radians. Beyond a quarter turn (the default, 377 rad/s at 1/60 s and 4
-    /// substeps) rows linearised at the substep's start are meaningless; a top may spin faster.
+    /// substeps) rows linearised at the substep's start are invalid. Raise it for fast tops.
     pub max_turn: f32,
     /// Least approach speed along the contact normal for which [a hit](crate::Hit) is reported, m/s, ≥ 0. Default 1:
     /// resting and rolling bodies report none.
@@ -65,7 +66,7 @@ pub enum Sleeping {
 }
 
 /// Thresholds of rest: an island sleeps when each of its bodies has stayed in place for a time. A body that creeps by
-/// more than twice the distance or by the angle within the time does not sleep; one that trembles within them may.
+/// more than twice the distance or by the angle within the time does not sleep; a body that vibrates within them may.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -116,7 +117,7 @@ impl WorldDef {
     /// # Errors
     /// Names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         if self.step_nanoseconds == 0 || self.substeps == 0 {
             return Err(DefError::new("a step takes time and has substeps"));
@@ -183,9 +184,9 @@ pub struct BodyDef {
     pub linear_velocity: Vec3,
     /// Angular velocity, rad/s, world axes; ignored for a static body.
     pub angular_velocity: Vec3,
-    /// Share of linear velocity lost per second, 1/s. Default 0.
+    /// Rate at which linear velocity decays, 1/s. Default 0.
     pub linear_damping: f32,
-    /// Share of angular velocity lost per second, 1/s. Default 0.
+    /// Rate at which angular velocity decays, 1/s. Default 0.
     pub angular_damping: f32,
     /// Factor on the world's gravity. Default 1.
     pub gravity_scale: f32,
@@ -197,7 +198,7 @@ pub struct BodyDef {
     pub sleeping: Sleeping,
     /// Step quality of this body and its island; `None`: that of the [world](WorldDef::quality). Default `None`.
     pub quality: Option<Quality>,
-    /// Data of the user.
+    /// User data of the body; the library does not use it.
     pub user_data: u64,
 }
 

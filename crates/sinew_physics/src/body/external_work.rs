@@ -12,7 +12,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// Sum of all three, J.
+    /// Sum of the work of motors, kinematic bodies and movers, J.
     pub fn total(self) -> f32 {
         self.drives + self.kinematic + self.movers
     }

@@ -1,4 +1,4 @@
-//! Library of all shapes with data that the world was given, by content hash (ADR 0014).
+//! Library of all hulls, meshes and height fields that were added to the world, by content hash (ADR 0014).
 //!
 //! A snapshot references such a shape by kind and hash, and a restore finds the shape here, which keeps snapshots small
 //! and fast. [`World::save_shapes`](crate::World::save_shapes) transfers the library to another process.
@@ -19,7 +19,7 @@ pub(crate) const ENTRY_BYTES: usize = 5;
 pub enum LoadError {
     /// The bytes are not a snapshot of this version.
     Bytes(ReadError),
-    /// The snapshot references a shape that this world was never given: see
+    /// The snapshot references a shape that was never added to this world: see
     /// [`World::load_shapes`](crate::World::load_shapes).
     UnknownShape {
         /// Offset of the hash in the bytes, bytes.
@@ -64,7 +64,7 @@ pub(crate) struct ShapeLibrary {
 }
 
 impl ShapeLibrary {
-    /// Adds a shape, if it has data.
+    /// Adds a hull, mesh or height field; ignores other shapes.
     ///
     /// # Panics
     /// If another shape has the same hash.

@@ -32,7 +32,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// Material with friction 0.6 and all else zero.
+    /// Material with friction 0.6; all other values are zero.
     pub const DEFAULT: Self = Self {
         friction: 0.6,
         static_friction: None,
@@ -49,7 +49,7 @@ impl Material {
     /// # Errors
     /// Names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         let positive = not_negative(self.friction) && not_negative(self.rolling);
         if !(positive && not_negative(self.restitution)) {
@@ -82,7 +82,7 @@ impl Default for Material {
 }
 
 /// Rule that combines two numbers. If two surfaces request different rules, the one later in this list applies,
-/// whichever side it is on.
+/// for either surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Combine {
@@ -177,7 +177,7 @@ impl ContactMaterial {
     }
 
     pub(crate) fn is_valid(&self) -> bool {
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         let positive =
             [self.friction, self.restitution, self.rolling, self.launch].into_iter().all(not_negative);
@@ -218,8 +218,11 @@ mod tests {
             let (a, b) = (random_material(&mut random), random_material(&mut random));
             let surface = ContactMaterial::of(&a, &b);
             assert_eq!(surface, ContactMaterial::of(&b, &a), "{a:?} {b:?}");
-            assert!(surface.static_friction >= surface.friction, "{a:?} {b:?}: {surface:?}");
-            assert!(surface.is_valid(), "{a:?} {b:?}: {surface:?}");
+            assert!(
+                surface.static_friction >= surface.friction,
+                "static friction of {a:?} and {b:?} is too low: {surface:?}"
+            );
+            assert!(surface.is_valid(), "{a:?} and {b:?} give an invalid {surface:?}");
         }
     }
 

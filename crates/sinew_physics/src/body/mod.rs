@@ -55,7 +55,7 @@ impl Velocity {
 /// Awake, or asleep with its island.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rest {
-    /// Time for which the body has stayed in place, seconds.
+    /// Time for which the body has been at rest, seconds.
     Awake { rest_time: f32 },
     /// Number of the sleeping island; all of its bodies wake together.
     Asleep { island: u32 },
@@ -114,7 +114,7 @@ pub(crate) struct Body {
     pub mass: f32,
     /// Principal moments of inertia, kg·m².
     pub inertia: Vec3,
-    /// Mass and principal moments for the time when the body becomes dynamic; only for a body that was dynamic or was
+    /// Mass and principal moments that the body gets when it becomes dynamic; only for a body that was dynamic or was
     /// given a mass.
     pub laid_by: Option<(f32, Vec3)>,
     pub linear_damping: f32,
@@ -270,7 +270,7 @@ impl Body {
         }
     }
 
-    /// Mass that the body has or would have as a dynamic body, kg; 0 if it never had one.
+    /// Mass of the body if it were dynamic, kg; 0 if it never had a mass.
     pub fn weighs(&self) -> f32 {
         self.laid_by.map_or(self.mass, |(mass, _)| mass)
     }

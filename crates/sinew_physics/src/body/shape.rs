@@ -41,7 +41,7 @@ impl Filter {
         self.layers & other.mask != 0 && other.layers & self.mask != 0
     }
 
-    /// True if the shape collides with no other shape, whatever the filter of the other.
+    /// True if the shape collides with no other shape, regardless of the filter of the other.
     pub fn meets_none(self) -> bool {
         self.group <= 0 && (self.layers == 0 || self.mask == 0)
     }
@@ -94,7 +94,7 @@ impl ShapeDef {
         self.material.check()?;
         self.rule.check()?;
         let placed = self.body_from_shape.is_finite();
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         let dense = (0.0..f32::INFINITY).contains(&self.density);
         if placed && dense {
             Ok(())

@@ -10,9 +10,9 @@ use sinew_math::Vec3;
 /// Two shapes **touch** while their surfaces overlap at the start of the step, or if they pushed each other in the
 /// previous step. Shapes that a step brings together are reported by the next step, even if they separate immediately.
 /// Touching ends at a gap of half a millimetre, or 0.2 % of the smaller shape's smallest extent if that is less. Two
-/// bodies touch while any of their shapes do. Each touch has exactly one begin and one end event, whatever ends the touch:
-/// motion, teleport, removal (the id is stale then), a filter or pair change, quarantine. Falling asleep does not end a
-/// touch.
+/// bodies touch while any of their shapes do. Each touch has exactly one begin and one end event, for each possible end
+/// of the touch: motion, teleport, removal (the id is stale then), a filter or pair change, quarantine. Falling asleep
+/// does not end a touch.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[doc(alias = "collision events")]
 #[doc(alias = "OnCollisionEnter")]
@@ -40,8 +40,7 @@ pub struct Events {
     pub sensor_shapes_begin: Vec<(ShapeId, ShapeId)>,
     /// Pairs of a sensor and a shape that left it.
     pub sensor_shapes_end: Vec<(ShapeId, ShapeId)>,
-    /// Bodies whose state became non-finite: reset to the state before the step, stopped and taken out of the
-    /// simulation.
+    /// Bodies whose state became non-finite: reset to their state before the step, stopped and disabled.
     pub quarantined: Vec<BodyId>,
     /// Bodies that were slowed to [`WorldDef::max_speed`](crate::WorldDef::max_speed) or
     /// [`WorldDef::max_turn`](crate::WorldDef::max_turn), by index: a force or an impulse was too large, or a fall too

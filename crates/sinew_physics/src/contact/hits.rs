@@ -69,7 +69,7 @@ impl OpenHits {
         self.fast.reserve(contacts + self.list.len());
     }
 
-    /// Records a pair if it is fast.
+    /// Records a pair as a hit if it approaches fast enough.
     pub fn note(&mut self, pair: &[Contact]) {
         if pair.iter().any(|contact| contact.approach >= self.threshold) {
             self.fast.push(ContactKey { part: 0, ..pair[0].key });

@@ -31,8 +31,8 @@ impl Modifiers {
         }
     }
 
-    /// Modified material of a contact whose combined material is `own`; `None` if it is unchanged, or if a modifier
-    /// disables the push.
+    /// Returns the material that a modifier gives to a contact with combined material `own`; `None` if the material
+    /// does not change, or the modifier disables the push.
     pub fn ask(
         &self,
         bodies: &Arena<Body>,

@@ -1,5 +1,5 @@
-//! Pairs of shapes whose bounds in the trees overlap: candidates that persist from step to step. A shape is searched
-//! again only when it has left those bounds or was changed; every step tests which candidates are near.
+//! Pairs of shapes whose bounds in the trees overlap: candidates that persist from step to step. Pairs of a shape are
+//! searched again only after the shape has left its bounds or was changed. Every step tests which candidates are near.
 //!
 //! The list is not part of the state. The bounds depend on history, but near pairs are always among the candidates, and
 //! other pairs have no contact.

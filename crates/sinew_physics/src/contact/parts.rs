@@ -1,5 +1,5 @@
-//! In `collide`: pairs of which one shape is a mesh or a height field, with several contact regions. Each manifold is a
-//! contact of its own, a part of the pair.
+//! Part of `collide`: pairs with a mesh or a height field have several contact regions. Each manifold is a separate
+//! contact, a part of the pair.
 
 use crate::collide::{Ground, MAX_PARTS, Manifold, Motion, Patch, Scratch, collide_pair};
 use crate::contact::proxies::Owner;
@@ -20,7 +20,7 @@ pub(crate) struct Parts {
     idle: Mutex<Vec<(Scratch, Vec<Owner>)>>,
 }
 
-/// A clone starts empty, because no content persists.
+/// A clone starts empty: the memory holds no data between steps.
 impl Clone for Parts {
     fn clone(&self) -> Self {
         Self::default()

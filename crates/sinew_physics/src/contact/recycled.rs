@@ -338,15 +338,21 @@ mod tests {
             kept += 1;
             let anew = found([&a, &b]);
             // The other box's face may be equally good: tilted by up to 3 degrees, with its own feature numbers.
-            assert!(anew.normal.dot(manifold.normal) > 0.998, "case {case}: {anew:?}, {manifold:?}");
+            assert!(
+                anew.normal.dot(manifold.normal) > 0.998,
+                "case {case}: new {anew:?}, recycled {manifold:?}"
+            );
             for point in manifold.points() {
                 if let Some(other) = anew.points().iter().find(|other| other.feature == point.feature) {
                     same += 1;
                     let off = (other.separation - point.separation).abs();
-                    assert!(off < 2e-4, "case {case}: {off} m, {anew:?}, {manifold:?}");
+                    assert!(off < 2e-4, "case {case}: off by {off} m, new {anew:?}, recycled {manifold:?}");
                 }
             }
         }
-        assert!(kept > 1_000 && dropped > 500 && same > 3 * kept, "{kept} {dropped} {same}");
+        assert!(
+            kept > 1_000 && dropped > 500 && same > 3 * kept,
+            "{kept} manifolds kept, {dropped} dropped, {same} equal"
+        );
     }
 }

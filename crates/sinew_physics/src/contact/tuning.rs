@@ -1,7 +1,7 @@
 //! Behaviour constants of contacts and their search: the numbers an engineer would tune.
 //!
 //! Each comment states the unit, the reason, the effect of a larger and a smaller value, and the scene (`sinew run
-//! NAME`) or test (`crates/sinew_physics/tests/it`) that shows it. Effects without a figure are judgement, not
+//! NAME`) or test (`crates/sinew_physics/tests/it`) that shows it. Effects without a number are judgement, not
 //! measurement. Any change may move the golden hashes. Rounding tolerances are in the formulas they belong to.
 
 /// Separation up to which contacts are searched, in addition to the motion of the step, metres.
@@ -19,13 +19,13 @@ pub(crate) const SEAM_SLOPS: f32 = 0.9;
 /// Depth below the plane of the next ground shape up to which a point gets a contact before it is over that shape, in
 /// slops.
 ///
-/// Larger: bodies are lifted before a hill's crest. Smaller: bodies that rest below the surface sink in before the next
-/// shape. Shown by the tests of `seams`.
+/// Larger: bodies are lifted before a hill's crest. Smaller: bodies that rest slightly below the surface sink at the
+/// border to the next shape. Shown by the tests of `seams`.
 pub(crate) const SEAM_REACH: f32 = 1.0;
 
 /// Margin of the fat bounds of moving shapes, metres.
 ///
-/// With the margin, bodies that tremble or settle keep their leaf. Larger: the step tests more candidate pairs.
+/// Within the margin, bodies that vibrate or settle keep their leaf. Larger: the step tests more candidate pairs.
 /// Smaller: more leaves move. Changes only the order of work; shown by `cargo xtask bench --trace wave_pile`.
 pub(crate) const BOUNDS_ROOM: f32 = 0.04;
 
@@ -37,12 +37,12 @@ pub(crate) const BOUNDS_ROOM: f32 = 0.04;
 /// Smaller: more leaves move. Changes only the order of work; shown by `walkers_step` of `cargo xtask bench --counts`.
 pub(crate) const BOUNDS_ROOM_LED: f32 = 0.3;
 
-/// Steps of motion at the current velocity included in the fat bounds of small kinematic bodies, a number.
+/// Number of steps of motion at the current velocity that the fat bounds of small kinematic bodies include.
 ///
 /// Larger: bounds are longer and make more candidate pairs. Smaller: more leaves move. Shown as [`BOUNDS_ROOM_LED`].
 pub(crate) const BOUNDS_STEPS_LED: f32 = 12.0;
 
-/// Steps of motion at the current velocity included in fat bounds, a number.
+/// Number of steps of motion at the current velocity that fat bounds include.
 ///
 /// Larger: bounds are longer and make more candidate pairs. Smaller: moving bodies search the tree more often. Shown by
 /// `cargo xtask bench --trace box_rain`.
@@ -56,8 +56,8 @@ pub(crate) const BOUNDS_STEPS_ALONE: f32 = 12.0;
 
 /// Factor on the margin above which oversized fat bounds are shrunk, a ratio.
 ///
-/// Larger: bodies at rest keep the long bounds of their flight, and the pairs of these. Smaller: the bounds of slowing
-/// bodies are rebuilt repeatedly. Shown as [`BOUNDS_STEPS`].
+/// Larger: bodies at rest keep the long bounds of their flight, with many candidate pairs. Smaller: the bounds of
+/// slowing bodies are rebuilt repeatedly. Shown as [`BOUNDS_STEPS`].
 pub(crate) const BOUNDS_EXCESS: f32 = 3.0;
 
 /// Error by which a computed gap may be too large, metres.
@@ -81,7 +81,7 @@ pub(crate) const RECYCLED_SLIP: f32 = 0.4;
 
 /// Cosine of half the relative rotation, 1°, up to which a manifold is recycled.
 ///
-/// A larger angle: a tipping body stands on the points of its face. A smaller angle: the step recomputes more
+/// Larger angle: a tipping body keeps the contact points of a whole face. Smaller angle: the step recomputes more
 /// manifolds. Shown by `dominoes`, `cards`.
 pub(crate) const RECYCLED_HALF_TURN: f32 = 0.999_962;
 

@@ -14,7 +14,7 @@
 //! field that changes by itself (wind with gusts, a user function) it may not. Bodies that attract each other sleep and
 //! wake together, and never sleep if there are particles; attracted particles do not sleep.
 //!
-//! A world without fields pays nothing for them.
+//! Fields cost nothing in a world without fields.
 
 mod buoyancy;
 mod custom;

@@ -60,7 +60,7 @@ impl MutualGravity {
 
     /// Force on `a` by `b`, N; the force on `b` is the opposite.
     pub(crate) fn force(&self, a: &Attractor, b: &Attractor) -> Vec3 {
-        // The heavier first, so that both sides of a pair get the same bits.
+        // Uses the heavier mass first, so that both sides of a pair get the same bits.
         let (heavy, light) = if a.mass > b.mass { (a.mass, b.mass) } else { (b.mass, a.mass) };
         let pull = attraction(b.position - a.position, self.constant * heavy, self.softening);
         pull * (light * (a.weight * b.weight))

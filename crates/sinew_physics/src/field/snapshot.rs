@@ -1,4 +1,4 @@
-//! Fields to bytes and back.
+//! Conversion of fields to bytes and back.
 
 use super::{
     Buoyancy, Drag, Fade, FieldDef, FieldKind, Functions, Gusts, MutualGravity, PARAMETERS, PointGravity,

@@ -95,8 +95,8 @@ pub enum Softness {
     /// Frequency-based: the joint behaves as a damped oscillator. Its mass is that of the two sides of the joint, each
     /// as one rigid piece in the pose at the step's start, rotating about one joint axis. For a joint that closes a
     /// loop it is the mass of its two bodies. For a pin ([`SixDof::FREE`] to a kinematic or static body) it is the mass
-    /// of all bodies that are fewer joints away from this pin than from other pins and from the tree's support. For
-    /// limits and soft zones it is the effective mass of their row while the joints hold.
+    /// of all bodies that are nearer to this pin, in joints, than to other pins and to the tree's support. For limits
+    /// and soft zones it is the effective mass of their row while the joints hold.
     Frequency {
         /// Natural frequency, Hz.
         hertz: f32,

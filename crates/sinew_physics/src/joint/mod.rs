@@ -30,7 +30,7 @@ pub(crate) struct LimitImpulse {
 }
 
 impl LimitImpulse {
-    /// Scales the impulses to substeps `times` as long.
+    /// Scales the impulses for substeps that are `times` as long.
     pub fn of_substeps(self, times: f32) -> Self {
         Self { now: self.now * times, before: self.before * times }
     }

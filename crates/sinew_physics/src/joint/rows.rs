@@ -8,7 +8,7 @@ use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3};
 /// Directions of a joint: translation along x, y, z of frame A (along the line between the anchors for a distance),
 /// then twist about x, swing about y and z.
 pub(crate) const DIRECTIONS: usize = 6;
-/// First rotation among the directions.
+/// Index of the first rotation among the directions.
 pub(crate) const TWIST: usize = 3;
 
 /// Definition of a joint without state: the geometry of its rows.
@@ -263,7 +263,7 @@ fn each_locked(kind: &JointKind, locks: &[bool; 6], pose: &JointPose, mut put: i
         return;
     }
     if locks[..TWIST] == [true; 3] {
-        // For a point any axes are valid, and those of the world need no rotation.
+        // For a point any axes are valid; world axes need no rotation.
         put(0, pose.gap.x, Vec3::X);
         put(1, pose.gap.y, Vec3::Y);
         put(2, pose.gap.z, Vec3::Z);

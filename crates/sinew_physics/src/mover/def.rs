@@ -34,7 +34,7 @@ pub struct MoverDef {
     pub air_acceleration: f32,
     /// Multiple of the world's gravity. Default 1.
     pub gravity_scale: f32,
-    /// Distance that the mover keeps from obstacles, metres, above 0 and below the radius. Default 5 mm.
+    /// Distance between the mover and obstacles, metres, above 0 and below the radius. Default 5 mm.
     pub skin: f32,
     /// Filter of the shapes and other movers that the mover collides with. Default all.
     pub filter: Filter,
@@ -78,7 +78,7 @@ impl MoverDef {
     /// # Errors
     /// The problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         if !self.position.is_finite() {

@@ -1,4 +1,4 @@
-//! Finds the motion closest to a wanted one that satisfies a few planes.
+//! Finds the allowed motion closest to a wanted one, for a few planes.
 
 use sinew_math::Vec3;
 

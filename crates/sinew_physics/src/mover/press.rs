@@ -83,7 +83,7 @@ pub(super) fn meet(
 }
 
 impl Hitter {
-    /// Returns the impulse that pushes the mover and a body apart, N·s, and applies it to the mover; `None` if there is
+    /// Applies the impulse that pushes the mover and a body apart to the mover, and returns it, N·s; `None` if there is
     /// none.
     fn meet(&mut self, body: &Body, normal: Vec3, point: Vec3, room: f32, dt: f32) -> Option<f32> {
         let arm = point - body.center();

@@ -1,7 +1,7 @@
 //! Behaviour constants of movers: the numbers an engineer would tune.
 //!
 //! Each comment states the unit, the reason, the effect of a larger and a smaller value, and the scene (`sinew run
-//! NAME`) or test (`crates/sinew_physics/tests/it`) that shows it. Effects without a figure are judgement, not
+//! NAME`) or test (`crates/sinew_physics/tests/it`) that shows it. Effects without a number are judgement, not
 //! measurement. Any change may move the golden hashes. Rounding tolerances are in the formulas they belong to.
 
 /// Distance at which a sweep stops in front of an obstacle, in skins.
@@ -114,6 +114,6 @@ pub(super) const WEDGED_SHARE: f32 = 0.02;
 
 /// Largest acceleration with which a dynamic body carries a mover that stands on it, m/s²: friction of soles.
 ///
-/// Larger: a mover on a hand that jerks away is thrown with the hand. Smaller: riders slide on crates that start
-/// moving. Shown by the tests of `mover`.
+/// Larger: a mover on a suddenly moving hand is thrown with the hand. Smaller: movers slide on crates that start to
+/// move. Shown by the tests of `mover`.
 pub(super) const GRIP: f32 = 20.0;

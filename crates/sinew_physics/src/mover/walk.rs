@@ -198,8 +198,8 @@ impl<'a> Move<'a> {
         found
     }
 
-    /// Returns the footing with the velocity that the mover gets from it; a dynamic body keeps the velocity of the
-    /// footing before.
+    /// Returns the footing with the velocity that the mover takes over: on a dynamic body that of the previous footing,
+    /// otherwise that of the new one.
     fn taken_along(&self, mover: &Mover, footing: Footing) -> Footing {
         let (Some(before), Bearer::Shape { body, .. }) = (mover.ground, footing.on) else { return footing };
         let is_dynamic = self.sight.bodies.at(body.index).kind == BodyKind::Dynamic;
@@ -354,10 +354,10 @@ impl<'a> Move<'a> {
 /// Kinds of supporting edges.
 #[derive(Clone, Copy, PartialEq)]
 enum Edges {
-    /// Edges of treads: on the ground.
+    /// Edges of treads support the mover; used on the ground.
     Bear,
-    /// None: in the air.
+    /// No edge supports the mover; used in the air.
     Fall,
-    /// All touches that stop a fall.
+    /// Every touch that stops a fall supports the mover.
     Wedge,
 }

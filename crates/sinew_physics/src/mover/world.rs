@@ -131,7 +131,7 @@ impl World {
         gather(self, (all, all.iter().map(|(other, _)| other)), id.index, &bounds, &mut obstacles);
         let sight = Surroundings::new(&self.bodies, &obstacles, &grown);
         let low = Surroundings::new(&self.bodies, &obstacles, self.mover(id));
-        // The mover may keep its present touches.
+        // An obstacle that already touches the mover is allowed.
         obstacles.iter().all(|obstacle| {
             let distance = |sight: &Surroundings<'_>, center| {
                 sight.gap(obstacle, center).map_or(skin, |gap| gap.distance)

@@ -2,7 +2,7 @@
 //!
 //! Springs are solved before body contacts, with a plank's own mass only. With a box of twenty times that mass on the
 //! plank, the load would act on the springs one substep late: the plank would hang lower by `g h² M/m`, and stiff ropes
-//! would throw both into the air. So each substep measures the effect of the impulse `p` from the springs: the body
+//! would throw both upward. Therefore each substep measures the effect of the impulse `p` from the springs: the body
 //! gained the velocity `d` and transmitted `w = p − m d`. With `m + w wᵀ/(w·d)`, the symmetric rank-one update of
 //! quasi-Newton methods, the next substep uses the mass that responds to `p` with `d`; at rest this is exact. Rotations
 //! are excluded: at the turning points of a swing, their ratio is noise.

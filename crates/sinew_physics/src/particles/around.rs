@@ -6,7 +6,7 @@ use sinew_math::Vec3;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Lanes, WIDTH};
 
-/// Bounds of no points.
+/// Empty bounds.
 pub(super) const NOTHING: Aabb =
     Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
 

@@ -6,7 +6,7 @@ use sinew_geometry::DefError;
 /// Largest number of iterations of a substep.
 const MAX_ITERATIONS: u32 = 64;
 
-// This form rejects NaN.
+// The comparison is false for NaN.
 fn positive(x: f32) -> bool {
     x > 0.0 && x < f32::INFINITY
 }

@@ -13,7 +13,7 @@ pub(super) struct Conjugate {
     /// Search direction of the velocities, m/s, and its product with the preconditioner, kg·m/s (`needed`).
     pub direction: Vec<Vec3>,
     pub needed: Vec<Vec3>,
-    /// Momentum that closing springs transmit from end to end, kg·m/s.
+    /// Momentum that closing springs transmit from one end to the other, kg·m/s.
     pub passed: Vec<Vec3>,
     /// Velocity of each hub, and its search direction.
     pub hubs: Vec<[Vec6; 2]>,

@@ -263,7 +263,7 @@ impl Touch {
 /// Grip of a surface on a particle that touches it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Grip {
-    /// The surface does not hold the particle.
+    /// The particle does not touch the surface.
     #[default]
     Off,
     /// The surface holds the particle along the normal; friction is a force.
@@ -652,7 +652,7 @@ impl ParticleGroup {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
             if let Some(touch) = self.touches[i].filter(|_| self.backings[i] > 0.0) {
-                // The contact of the two pinching shapes has applied its load, and the solve the friction of that load.
+                // The contact of the two pinching shapes has already applied its load, and the solver the friction of this load.
                 let pressing = self.backings[i] * (min(self.rooms[i], 0.0) + self.pinched_by(i));
                 let impulse = self.press_normals[i] * pressing;
                 (self.backings[i], self.press_normals[i], self.rooms[i]) = (0.0, Vec3::ZERO, 0.0);

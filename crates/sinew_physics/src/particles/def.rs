@@ -218,9 +218,9 @@ pub struct GroupDef {
     /// Thickness for self-collision, metres, ≥ 0: particles without a common spring keep this distance, with the
     /// friction of the material. Default 0: off.
     ///
-    /// 1.4 times the grid spacing is good; less than 0.8 lets a sheet pass through itself, more than twice pushes it
-    /// apart. Six layers on the ground carry a body of 30 times the mass of the particles under it, dropped from 10 cm
-    /// (0.4 kg on scene `folded`); a body of 1 kg slides off and squeezes through in places. Particles that move by the
+    /// Use 1.4 times the grid spacing. Below 0.8 a sheet passes through itself; above 2 the thickness pushes it apart.
+    /// Six layers on the ground carry a body of 30 times the mass of the particles under it, dropped from 10 cm (0.4 kg
+    /// on scene `folded`); a body of 1 kg slides off and squeezes through in places. Particles that move by the
     /// thickness within a substep pass through. Bodies on a slope creep down on the sheet.
     pub thickness: f32,
     /// Collision filter of the group.

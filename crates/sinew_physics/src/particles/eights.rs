@@ -3,8 +3,8 @@
 //! A net has no trees, so each of its particles has independent contacts. On a ball, a box, a capsule or a half-space
 //! that neither moves nor can be moved, the solve of `contact.rs` has a closed form: the particle sticks to the plane
 //! that it touches, or slides on it by Coulomb's law. This is the case for most particles of a cloth: they touch at
-//! most one of these solids, and certainly hit nothing else. They are processed in the lanes of `batches.rs`; the
-//! **others** are taken out of the lanes, solved individually, and put back (`in_eights.rs`).
+//! most one of these solids and cannot hit other obstacles. They are processed in the lanes of `batches.rs`. The
+//! **others** are moved out of the lanes, solved individually, and moved back (`in_eights.rs`).
 //!
 //! Rows move particles in lanes without regard to contacts. At the end of the iteration the motion through the touched
 //! plane is reverted, with the corresponding friction: at rest the position and the normal impulse are the same,
@@ -19,8 +19,8 @@ use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
 /// Numbers per particle in addition to those of `batches.rs`: velocity, height above the touched plane at the start of
-/// the iteration, distance from all else, friction and static friction of the plane, radius, acceleration, plane
-/// normal.
+/// the iteration, distance to the nearest other obstacle, friction and static friction of the plane, radius,
+/// acceleration, plane normal.
 pub(super) const STRIP: usize = 14;
 const HEIGHT: usize = 3;
 const CLEARANCE: usize = 4;

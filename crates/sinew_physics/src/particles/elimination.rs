@@ -54,7 +54,7 @@ impl System {
             of.turn((found / last) as f32, self.hubs.iter().map(|hub| &hub.velocity));
             self.pass_across(forest, &of.direction, &mut of.passed);
             let taken = dot(&of.needed, &of.direction) - dot(&of.passed, &of.direction);
-            // The comparison is written so that NaN ends it, too.
+            // The comparison is false for NaN, which ends the loop, too.
             let goes_on = found > most && taken > 0.0;
             if !goes_on {
                 break;
@@ -137,8 +137,8 @@ impl System {
         }
     }
 
-    /// Loads the momenta without those of hubs: of particles and contacts, of springs from where they are linearised,
-    /// and of fixed ends; and the pulls along the trees.
+    /// Loads the momenta of particles, contacts, linearised springs and fixed ends, without those of hubs; and the
+    /// spring forces along the trees.
     fn load_momenta(&mut self, forest: &Forest, springs: &[SpringDef], h: f32, velocities: &[Vec3]) {
         for i in 0..velocities.len() {
             self.gathered_momentum[i] = self.momentum[i] + self.added_momentum[i];

@@ -8,7 +8,7 @@ pub(super) struct Faces {
     pub list: Vec<[u32; 3]>,
     /// Start of each particle's part of `corners`, and the end of the last part; empty without faces.
     starts: Vec<u32>,
-    /// Two other corners of each face of each particle, in the face's order.
+    /// The other two corners of each face of each particle, in the face's order.
     corners: Vec<[u32; 2]>,
 }
 
@@ -48,7 +48,7 @@ impl Faces {
         self.at(particle).iter().map(move |&[b, c]| side(b).cross(side(c)) / 6.0)
     }
 
-    /// Two other corners of each face of a particle.
+    /// The other two corners of each face of a particle.
     fn at(&self, particle: usize) -> &[[u32; 2]] {
         match self.starts.get(particle..particle + 2) {
             Some(range) => &self.corners[range[0] as usize..range[1] as usize],

@@ -73,7 +73,7 @@ mod tests {
             assert_eq!(2 * edges.len(), 3 * triangles.len());
             assert!(corners.iter().all(|c| (c.length() - 1.0).abs() < 1e-6));
             let volume = enclosed_volume(&triangles, &corners, |_, _| ());
-            assert!(volume > least && volume < 4.18879, "{subdivisions}: {volume}");
+            assert!(volume > least && volume < 4.18879, "{subdivisions} subdivisions: volume {volume}");
             least = volume;
         }
         assert!(least > 0.99 * 4.18879 * 0.99, "{least}");

@@ -182,12 +182,13 @@ impl Hub {
         self.seen
     }
 
-    /// Momentum for that inertia at `point`, kg·m/s.
+    /// Momentum that belongs to the inertia `seen` at `point`, kg·m/s.
     pub fn momentum_seen_at(&self, point: Vec3) -> Vec3 {
         self.seen * velocity_at(&self.free, point - self.center)
     }
 
-    /// Sets the body's velocity as a pull at `point` does that gives the point this velocity.
+    /// Sets the body's velocity to its free velocity plus the response to the impulse at `point` that gives the point
+    /// this velocity.
     pub fn follow(&mut self, point: Vec3, velocity: Vec3) {
         let pull = wrench(point - self.center, self.seen * velocity - self.momentum_seen_at(point));
         self.velocity = self.free;
@@ -213,7 +214,7 @@ impl Hub {
         if all > 0.0 { (energy_from(&self.found) / all).sqrt() } else { 0.0 }
     }
 
-    /// Merit function, J, and the sum of the magnitudes of its terms, J: see `merit` of `system.rs`.
+    /// Merit function, J, and the sum of the magnitudes of its terms, J: see `merit` in `system.rs`.
     pub fn merit(&self) -> (f32, f32) {
         let mut gained = self.velocity;
         add_scaled(&mut gained, &self.coming, -1.0);

@@ -9,10 +9,10 @@ use crate::particles::tuning::{DETOUR, EXIT_SPEED, IMPACT_SPEED, PINCHING, ROUND
 use core::cmp::Ordering;
 use sinew_math::{Vec3, clamp, max, min, normalize_or};
 
-/// Largest number of surfaces that a particle is moved out of; then it stays where it hits the next one.
+/// Largest number of surfaces out of which a particle is moved; at the next one it stops.
 const ROUNDS: usize = 2;
-/// Largest number of impulses on bodies per particle and iteration: in the solve, of the net, of its bounce, and of
-/// impacts, the last of which may be with two bodies.
+/// Largest number of impulses on bodies per particle and iteration: one each from the solve, the net and the bounce,
+/// and one per impact, of which the last may involve two bodies.
 pub(super) const MAX_TOUCHES: usize = 3 + ROUNDS + 2;
 
 /// A particle at the end of the iteration, after the solve.
@@ -21,7 +21,7 @@ struct Came {
     position: Vec3,
     /// Velocity, m/s.
     velocity: Vec3,
-    /// Number of impulses on bodies that were listed before.
+    /// Number of impulses on bodies listed before this particle.
     reported: usize,
 }
 
@@ -150,7 +150,7 @@ impl ParticleGroup {
         true
     }
 
-    /// Moves a particle out of all fixed shapes except the two that leave no room; the last one wins.
+    /// Moves a particle out of all fixed shapes except the two that leave no room; the last shape has priority.
     fn leave_walls(&mut self, i: usize, but: [usize; 2], obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         let (at, radius) = (self.positions[i], self.radii[i]);
         let way = DETOUR * (at - self.previous[i]).length();

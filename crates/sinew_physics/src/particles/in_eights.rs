@@ -1,4 +1,5 @@
-//! Moves a group into the lanes of `eights.rs`, takes individually solved particles out of them, and puts these back.
+//! Moves a group into the lanes of `eights.rs`, extracts the particles that are solved individually, and moves them
+//! back.
 
 use super::ParticleGroup;
 use super::batches::{FIELDS, WAY};

@@ -4,8 +4,8 @@
 //! moved. It applies the reactions to the bodies that particles are attached to or touch.
 //!
 //! Springs of an implicit group (ropes, strands, bridges, load-bearing nets) are solved together, see `system.rs`: the
-//! stretch at rest is exact, `m g / k`, for a chain as for a single mass, whatever the substeps. Springs of cloth and
-//! blobs are projected, each once, see `net.rs`: exact at rest for one mass on one spring, softer by `h² (w₁ + w₂)`
+//! stretch at rest is exact, `m g / k`, for a chain as for a single mass, for any number of substeps. Springs of cloth
+//! and blobs are projected, each once, see `net.rs`: exact at rest for one mass on one spring, softer by `h² (w₁ + w₂)`
 //! per spring in a net. Damping acts on the velocity at the start of the substep, before forces.
 //!
 //! Contacts are part of the spring solve (`contact.rs`). Otherwise a rope bent over an edge would have the wrong
@@ -183,7 +183,7 @@ pub struct ParticleGroup {
     outer: Vec<Vec3>,
     /// Acceleration of each particle by gravity and external forces in the last substep, m/s².
     accelerations: Vec<Vec3>,
-    /// Magnitudes of the accelerations, m/s².
+    /// Magnitude of each particle's acceleration, m/s².
     pulls: Vec<f32>,
     /// Bits of the acceleration of all particles, m/s², if they have the same.
     common_acceleration: Option<[u32; 3]>,
@@ -339,27 +339,27 @@ impl ParticleGroup {
         &self.radii
     }
 
-    /// Springs of the definition.
+    /// Springs, as in the group's definition.
     pub fn springs(&self) -> &[SpringDef] {
         &self.springs
     }
 
-    /// Bends of the definition.
+    /// Bends, as in the group's definition.
     pub fn bends(&self) -> &[BendDef] {
         &self.bends
     }
 
-    /// Tethers of the definition.
+    /// Tethers, as in the group's definition.
     pub fn tethers(&self) -> &[TetherDef] {
         &self.tethers
     }
 
-    /// Volumes of the definition.
+    /// Volumes, as in the group's definition.
     pub fn volumes(&self) -> &[VolumeDef] {
         &self.volumes
     }
 
-    /// Faces of the definition.
+    /// Faces, as in the group's definition.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces.list
     }
@@ -598,7 +598,7 @@ impl ParticleGroup {
         self.begin_iteration(Part { number: 0, of: self.iterations, whole: h }, anchors, obstacles, bodies);
     }
 
-    /// Second half of a substep, with all other iterations.
+    /// Runs the second half of a substep: the rest of the first iteration, and all others.
     pub(crate) fn end_substep(
         &mut self,
         h: f32,
@@ -628,7 +628,7 @@ impl ParticleGroup {
         if self.eights.on { self.eights.others[at] as usize } else { at }
     }
 
-    /// First half of an iteration: computes velocities.
+    /// Runs the first half of an iteration, which computes velocities.
     fn begin_iteration(
         &mut self,
         part: Part,
@@ -651,7 +651,7 @@ impl ParticleGroup {
         self.settle_contacts(h, obstacles, bodies);
     }
 
-    /// Second half of an iteration: moves the group.
+    /// Runs the second half of an iteration, which moves the group.
     fn end_iteration(
         &mut self,
         part: Part,
@@ -745,7 +745,7 @@ mod tests {
         let particle = ParticleDef { position: Vec3::ZERO, velocity: Vec3::ZERO, mass: 0.1, radius: 0.01 };
         let mut group = ParticleGroup::new(&GroupDef { particles: vec![particle; 2], ..GroupDef::default() });
         group.contact_impulses = vec![Vec3::splat(f32::INFINITY), Vec3::X];
-        assert!(!group.roll_back(), "places and velocities are numbers");
+        assert!(!group.roll_back(), "the positions and velocities are finite");
         assert_eq!(group.contact_impulses, [Vec3::ZERO, Vec3::X]);
     }
 }

@@ -350,7 +350,7 @@ mod tests {
                 assert_eq!(
                     bits(&listed, &bodies),
                     bits(&trying_all, &same_bodies),
-                    "seed {seed}, substep {substep}"
+                    "seed {seed}, substep {substep}: other bits"
                 );
                 assert_eq!(trying_all.near.within(3, 0.0, obstacles.len()).count(), obstacles.len());
                 let sight = |i| listed.near.within(i, listed.sight(i, H), obstacles.len());
@@ -358,8 +358,8 @@ mod tests {
                 touching += listed.touches.iter().flatten().count();
             }
             let pairs = SUBSTEPS * def.particles.len() * obstacles.len();
-            assert!(tried * 4 < pairs, "seed {seed}: {tried} of {pairs} pairs are tried");
-            assert!(touching > SUBSTEPS, "seed {seed}: {touching} touches say little");
+            assert!(tried * 4 < pairs, "seed {seed}: {tried} of {pairs} pairs are tested");
+            assert!(touching > SUBSTEPS, "seed {seed}: only {touching} contacts");
         }
     }
 

@@ -7,7 +7,7 @@
 //! transmitted to the body; otherwise the cloth's own few grams would carry a ball. A surface only presses. A particle
 //! has **room**, the impulse that brings it from the solve's position onto the surface. Rows use up the room before
 //! they press, and a later row that pulls the particle away reduces the press first. Otherwise rows would pull
-//! particles through the surface, or push the body by an impulse that no longer presses, and nets would tremble under
+//! particles through the surface, or push the body by an impulse that no longer presses, and nets would vibrate under
 //! loads. Static obstacles need none of this: see `eights.rs`.
 //!
 //! Rows with an attached particle are solved individually, because the impulse on the particle is counted. All other

@@ -1,7 +1,7 @@
 //! Contacts of two shapes through pinched particles of a group, and the resulting pressure on the particles.
 //!
 //! A particle of a few grams cannot carry a body: its own contacts with two shapes would push it from one into the
-//! other. Such shapes therefore have contacts of their own, with a point at each particle between them, solved with all
+//! other. Such shapes therefore have separate contacts, with a point at each particle between them, solved with all
 //! other contacts; see [`crate::step::pinched`]. The particle stays where it is pinched, with friction against the
 //! shapes.
 

@@ -12,7 +12,7 @@ use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 /// Awake, asleep with its island, or woken since the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum GroupRest {
-    /// Time for which each particle has stayed in place, seconds.
+    /// Time for which all particles have been at rest, seconds.
     Awake { rest_time: f32 },
     /// Number of the sleeping island; its bodies wake with the group.
     Asleep { island: u32 },
@@ -197,7 +197,7 @@ impl ParticleGroup {
                 out.u32(island);
             }
         }
-        // While the group sleeps, each particle is at its place.
+        // While the group sleeps, each particle is at its rest position.
         if !matches!(self.rest, GroupRest::Asleep { .. }) {
             self.places.iter().for_each(|&place| out.vec3(place));
         }

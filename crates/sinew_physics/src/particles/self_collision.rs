@@ -71,7 +71,7 @@ struct Row {
     above: u32,
     /// Normal from the lower particle to the upper one, unit length.
     normal: Vec3,
-    /// Share of an impulse on the lower particle that its support takes, outward.
+    /// Part of the impulse on the lower particle that its support takes, outward.
     held: Vec3,
     /// Target distance along the normal, metres.
     goal: f32,
@@ -197,7 +197,7 @@ impl SelfCollision {
         if self.supports[row.below as usize].dot(row.normal) <= BEARING {
             return;
         }
-        // A particle that touches a surface transmits to that surface.
+        // A particle that already touches a surface keeps that surface as its support.
         if self.turns[above] == Turn::Loose {
             self.list(row.above);
             self.ways[above] = self.ways[row.below as usize];
@@ -268,7 +268,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Solves the pairs of all listed particles in order, and those of the particles that they support.
+    /// Solves the pairs of all listed particles in order, and then those of the particles that they support.
     fn part_listed(&mut self, own: &mut SelfCollision, h: f32) {
         while let Some(&i) = own.order.get(own.next) {
             own.next += 1;
@@ -297,7 +297,7 @@ impl ParticleGroup {
         // exist.
         let way = |i: usize| (self.positions[i] - self.previous[i] - own.ways[b]).dot(normal);
         let (fallen, risen) = (max(-way(a), 0.0), max(way(b), 0.0));
-        // Particles without a support below, at a surface, share its load by mass.
+        // A particle without a support below that is pressed from above shares the load by mass.
         let is_borne = own.bearing[b] > 0.0 && fallen > 0.0;
         let share = if is_borne { fallen / (fallen + risen) } else { 0.0 };
         let held = own.supports[b] * (share * max(normal.dot(own.supports[b]), 0.0));
@@ -314,7 +314,7 @@ impl ParticleGroup {
         self.backings[i] > 0.0 && self.backings[i] < 1.0
     }
 
-    /// Moves a pair to its distance; the total impulse never pulls.
+    /// Moves the two particles of a row to their distance; the total impulse never pulls.
     fn press(&mut self, row: &mut Row, h: f32) {
         let (below, above) = (row.below as usize, row.above as usize);
         let missing = row.goal - (self.positions[above] - self.positions[below]).dot(row.normal);

@@ -3,8 +3,8 @@
 //!
 //! The unknowns are the velocities at the end of the step: `(M + h² K + h D) v⁺ = M v + h f` (Baraff & Witkin 1998),
 //! with the axial stiffness `k n nᵀ`, the geometric stiffness `k max(0, 1 − L₀/L) (I − n nᵀ)` and the axial damping of
-//! each spring. At rest the right-hand side is zero, so that a chain hangs exactly where its forces balance, whatever
-//! the length of the step.
+//! each spring. At rest the right-hand side is zero, so that a chain hangs exactly where its forces balance, for
+//! any length of the step.
 
 use super::SpringDef;
 use super::conjugate::Conjugate;

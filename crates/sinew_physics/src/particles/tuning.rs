@@ -1,7 +1,7 @@
 //! Behaviour constants of particles: the numbers an engineer would tune.
 //!
 //! Each comment states the unit, the reason, the effect of a larger and a smaller value, and the scene (`sinew run
-//! NAME`) or test (`crates/sinew_physics/tests/it`) that shows it. Effects without a figure are judgement, not
+//! NAME`) or test (`crates/sinew_physics/tests/it`) that shows it. Effects without a number are judgement, not
 //! measurement. Any change may move the golden hashes. Rounding tolerances are in the formulas they belong to.
 
 /// Number of iterations, at the current speed and acceleration, covered by the margins of the lists of nearby
@@ -18,7 +18,7 @@ pub(super) const LIST_ROOM: f32 = 0.01;
 /// Displacement speed in a step below which a particle may sleep, m/s.
 ///
 /// A particle swings about its rest position, and must settle first. Larger: cloth stops in mid-swing, with springs
-/// short of the stretch that their load requires. Smaller: trembling nets keep a world awake. Shown by the tests of
+/// short of the stretch that their load requires. Smaller: vibrating nets keep a world awake. Shown by the tests of
 /// `sleep`.
 pub(super) const RESTING_SPEED: f32 = 0.001;
 
@@ -43,7 +43,7 @@ pub(super) const LENGTH_TOLERANCE: f32 = 1e-3;
 /// Energy of the velocity error at which the solve of springs that close loops ends, as a share of the energy of the
 /// velocities, a ratio.
 ///
-/// Larger: taut nets tremble. Smaller: conjugate gradients take more iterations. Shown by the tests of `loads`.
+/// Larger: taut nets vibrate. Smaller: conjugate gradients take more iterations. Shown by the tests of `loads`.
 pub(super) const CONJUGATE_TOLERANCE: f64 = 1e-9;
 
 /// Largest number of iterations of conjugate gradients in one solve.
@@ -60,7 +60,7 @@ pub(super) const DETOUR: f32 = 1.5;
 
 /// Gap up to which a particle counts as touching at any speed, as a share of its radius, a ratio.
 ///
-/// Larger: the solve includes contacts that never close. Smaller: the solve ignores the surface under a trembling
+/// Larger: the solve includes contacts that never close. Smaller: the solve ignores the surface under a vibrating
 /// particle. Shown by the tests of `particles`.
 pub(super) const REACH_SHARE: f32 = 0.05;
 
@@ -112,8 +112,8 @@ pub(super) const LEAST_ADDED: f32 = 1e-3;
 
 /// Largest ratio of the mass added to a body to its own mass.
 ///
-/// Larger: a taut body that also stands on the ground is solved as if immovable, with errors when it lifts off.
-/// Smaller: light planks hang lower under a load heavier by that ratio. Shown by the tests of `held`.
+/// Larger: a body on taut ropes that also stands on the ground is solved as if immovable, with errors when it lifts
+/// off. Smaller: light planks hang lower under a load heavier by that ratio. Shown by the tests of `held`.
 pub(super) const MOST_ADDED: f32 = 1e3;
 
 /// Cosine between the normals of a firmer and a less firm surface below which a particle on the firmer one cannot yield
@@ -123,8 +123,8 @@ pub(super) const MOST_ADDED: f32 = 1e3;
 /// rolls over a rope drags the rope through the floor. Shown by the tests of `pinched`.
 pub(super) const PINCHING: f32 = -0.1;
 
-/// Least tangent of the half angle between two surfaces at which a particle between them counts as nipped, whatever the
-/// friction, a ratio.
+/// Least tangent of the half angle between two surfaces at which a particle between them counts as nipped, regardless
+/// of the friction, a ratio.
 ///
 /// Larger: smooth surfaces hold particles that should slip out. Smaller: rounding of normals releases such particles.
 /// Shown by the tests of `pinched`.
@@ -145,9 +145,8 @@ pub(super) const WALL_GAP: f32 = 1e-4;
 
 /// Speed below which a particle counts as at rest, m/s.
 ///
-/// Rounding error of speeds of some metres per second. Larger: creeping particles count as held. Smaller: noise decides
-/// grips.
-/// No scene shows it.
+/// The rounding error of speeds of a few metres per second. Larger: creeping particles count as held. Smaller: rounding
+/// noise decides whether particles stick. No scene shows the effect.
 pub(super) const NO_SPEED: f32 = 1e-6;
 
 /// Depth below which a particle counts as on a surface and not inside it, metres.

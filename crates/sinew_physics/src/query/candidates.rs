@@ -71,7 +71,7 @@ pub(super) fn sweep(bounds: &Aabb, direction: Vec3) -> Option<Sweep> {
     is_near.then_some(Sweep { origin, direction, half_extents, limit })
 }
 
-/// Returns the fraction beyond which the tree search may stop, if answers beyond `limit` do not count.
+/// Returns the fraction at which the tree search may stop, given that answers beyond `limit` do not count.
 pub(super) fn what_is_left(sweep: &Sweep, limit: f32) -> f32 {
     // For hits at the start of a very long sweep the fractions underflow, but those of their bounds may not.
     min(max(limit, SHORTEST), sweep.limit)

@@ -47,7 +47,7 @@ pub(super) mod sealed {
 
     /// Answer of a shape.
     pub trait Reply: Copy + core::fmt::Debug + PartialEq {
-        /// Shape that answered.
+        /// Shape that was found.
         fn shape(&self) -> ShapeId;
 
         /// Rank of the answer: smaller comes first; equal ranks are ordered by body and shape.

@@ -1,4 +1,4 @@
-//! Measures of a scene: energies, momenta, overlaps of bodies.
+//! Measurements of a world: energies, momenta, overlaps of bodies.
 
 use super::{BodyKinds, OverlapWith, Probe, QueryFilter};
 use crate::body::contact_rule::ContactRule;
@@ -22,7 +22,7 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// Sum of both, joules.
+    /// Sum of kinetic and potential energy, joules.
     pub fn total(self) -> f32 {
         self.kinetic + self.potential
     }

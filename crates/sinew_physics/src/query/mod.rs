@@ -59,7 +59,7 @@
 //! their outside, and no way out leads through the back of a triangle. Distances from them are never negative, except
 //! for shapes that cross a triangle.
 //!
-//! # What is not answered
+//! # Queries without answers
 //!
 //! With a non-finite number, or a negative size or distance, no shape answers. Nothing farther than 10¹⁸ m from the
 //! world's origin is found. No answer contains NaN or infinity.
@@ -262,7 +262,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
     }
 }
 
-/// Replaces the best answer if `answer` comes before it.
+/// Replaces the best answer if `answer` precedes it.
 fn keep_first<A: Reply>(best: &mut Option<A>, answer: A) {
     if best.as_ref().is_none_or(|best| key(&answer) < key(best)) {
         *best = Some(answer);

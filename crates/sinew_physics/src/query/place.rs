@@ -65,7 +65,7 @@ impl Ask for OverlapWith {
 #[derive(Clone, Debug, PartialEq)]
 pub struct PenetrationOf(pub Probe);
 
-/// Depth of a probe in a shape of a body, and the shortest way out.
+/// Depth of a probe in a shape, and the shortest way out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyPenetration {
     /// The body.

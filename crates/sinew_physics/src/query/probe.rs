@@ -35,7 +35,7 @@ impl Probe {
     pub(super) fn is_valid(&self) -> bool {
         assert!(Core::of(&self.shape).is_some(), "a probe is convex and bounded");
         let reach = self.shape.bounding_radius();
-        // This form rejects NaN.
+        // The comparison is false for NaN.
         self.world_from_shape.is_finite() && self.shape.inner_radius() >= 0.0 && reach < f32::INFINITY
     }
 

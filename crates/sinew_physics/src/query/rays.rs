@@ -17,7 +17,7 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Transform, Vec3};
 
-/// Number of rays in flight: while eight of them wait at boxes, the others continue.
+/// Number of rays in flight: while eight of them wait for a box test, the others continue.
 const UNDER_WAY: usize = 2 * WIDTH;
 
 /// Finds the [`first`](Query::first) answer of each ray. Fewer than eight rays are cast one after the other.
@@ -102,7 +102,7 @@ impl<P: Fn(BodyId, u32) -> bool> Kernel for Stream<'_, '_, P> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
         let mut riders: [Rider; UNDER_WAY] = core::array::from_fn(|_| Rider::idle());
-        // The riders that continue are first.
+        // Rays that continue come first.
         let mut order: [usize; UNDER_WAY] = core::array::from_fn(|number| number);
         let mut going = UNDER_WAY;
         let mut nodes = [0; UNDER_WAY];
@@ -204,13 +204,13 @@ fn placed(half_extents: Vec3, frame: &Transform) -> Obb {
     Obb { center: frame.translation, rotation: frame.rotation, half_extents }
 }
 
-/// Rays that wait at boxes, one per SIMD lane.
+/// Rays that wait for a box test, one per SIMD lane.
 struct Meetings {
     boxes: [[f32; WIDTH]; NUMBERS],
     origins: [[f32; WIDTH]; 3],
     directions: [[f32; WIDTH]; 3],
     limits: [f32; WIDTH],
-    /// Rider at each box, and the box's owner.
+    /// Ray at each box, and the box's owner.
     who: [(usize, Owner); WIDTH],
     count: usize,
 }

@@ -167,7 +167,7 @@ impl IslandSolver {
         if after <= most {
             return;
         }
-        // Momentum is corrected to that after the forces, whatever the motion inside the island.
+        // Momentum is corrected to that after the forces, for any motion inside the island.
         let (now, meant) = (self.motion_as_one(&self.velocities[..moving]), self.meant_as_one());
         let s = &mut self.scratch;
         s.dv.clear();
@@ -272,7 +272,7 @@ impl IslandSolver {
     ///
     /// [`bound_energy`](Self::bound_energy) does not cover this: it lets `relax` return the energy that `solve` lost, and removes none from
     /// the rigid motion of the island. Without this limit, equally many of 400 random worlds pass, but two of the failing ones explode (to
-    /// 8e4 and 2e14 times their energy), and a figure thrown at a wall sinks in by 10 mm instead of 1.
+    /// 8e4 and 2e14 times their energy), and a ragdoll thrown at a wall sinks in by 10 mm instead of 1.
     pub(in crate::solver) fn keep_energy(&mut self) {
         let moving = self.links.len();
         let before = &self.scratch.before[..moving];

@@ -1,8 +1,8 @@
 //! Tuning constants of the solver, by subject.
 //!
 //! The documentation of each constant states its unit, the reason for its value, the sensible range, the effects of larger and smaller
-//! values, and the scene (`sinew run NAME`) or test (`crates/sinew_physics/tests/it`) that shows them. Figures are measured. Ranges, and
-//! effects without a figure, are estimates: no sweep over values was made. Any change may change the golden hashes.
+//! values, and the scene (`sinew run NAME`) or test (`crates/sinew_physics/tests/it`) that shows them. Numbers are measured. Ranges, and
+//! effects without a number, are estimates: no sweep over values was made. Any change may change the golden hashes.
 //!
 //! Constants that are structures are in `sweep/policy.rs`: `JOINTED`, `TURNS`, `PILE`, `HEAP` and `UNEQUAL` (number of sweeps) and
 //! [`Firmness`](crate::solver::sweep::policy::Firmness) (hardness of a pair's contact). Constants of layout and code (widths, sizes of
@@ -13,21 +13,21 @@
 /// Number of contacts at or above which an island of free bodies takes half of the substeps.
 ///
 /// Many contacts damp all motion, and no single one dominates. Sensible from 16 to some hundreds. Smaller: with 16, 10,000 boxes take a
-/// quarter less time, but `cards` sink by 2.009 mm (bar 2.0) and `wave_pile` sleeps 52 steps too late (ADR 0015). Larger: small heaps take
+/// quarter less time, but `cards` sink by 2.009 mm (allowed: 2.0) and `wave_pile` sleeps 52 steps too late (ADR 0015). Larger: small heaps take
 /// all substeps. Shown by `cards`, `wave_pile`.
 pub(super) const DAMPED_CONTACTS: usize = 32;
 
 /// Number of contacts per body at or above which an island with limp joints takes half of the substeps, a ratio.
 ///
-/// Figures that lie on the ground or on each other take half of the substeps, figures that swing or fly take all. Sensible from 0.1 to 1.
-/// Larger: heaps of figures cost more. Smaller: figures that hang by joints and hardly touch anything swing in the longer substep. Shown by
+/// Ragdolls that lie on the ground or on each other take half of the substeps, ragdolls that swing or fly take all. Sensible from 0.1 to 1.
+/// Larger: heaps of ragdolls cost more. Smaller: ragdolls that hang by joints and hardly touch anything swing in the longer substep. Shown by
 /// `ragdoll_pile`; the tests of `bobs` swing beneath a heap.
 pub(super) const DAMPED_CONTACTS_PER_BODY: f32 = 0.25;
 
 /// Number of contacts below which an island with joints takes all substeps.
 ///
 /// With fewer than four contacts, a single one dominates: in half the substeps, a foot of 1 kg under 69 kg sinks by 2.3 mm instead of 2.
-/// Sensible from 2 to 8. Larger: single lying figures cost more. Smaller: the foot sinks. Shown by `heavy_foot`.
+/// Sensible from 2 to 8. Larger: single lying ragdolls cost more. Smaller: the foot sinks. Shown by `heavy_foot`.
 pub(super) const DAMPED_CONTACTS_JOINTED: usize = 4;
 
 /// Largest turn of a body within a longer substep for its island to take longer substeps, radians.
@@ -44,14 +44,14 @@ pub(super) const GRADED_RATIO: f32 = 100.0;
 
 /// Number of trees of joints above which an island is solved by turns.
 ///
-/// The cost of the response of all links grows with trees times contacts (ADR 0017). Sensible from 1 to 16. Larger: heaps of some figures
-/// take half as long again. Smaller: single figures press 6 mm into each other when they hit. Shown by `brawl` (above) and `ragdoll_poses`
+/// The cost of the response of all links grows with trees times contacts (ADR 0017). Sensible from 1 to 16. Larger: heaps of some ragdolls
+/// take half as long again. Smaller: single ragdolls press 6 mm into each other when they hit. Shown by `brawl` (above) and `ragdoll_poses`
 /// (below).
 pub(super) const RESPONSE_TREES: usize = 2;
 
 /// Number of contacts, without those of [`RESPONSE_CONTACTS_PER_LINK`], above which an island with joints is solved by turns.
 ///
-/// Sensible from 32 to 512. Larger and smaller: as for [`RESPONSE_TREES`]. Shown by a figure among many boxes (`ragdoll_on_boxes` of
+/// Sensible from 32 to 512. Larger and smaller: as for [`RESPONSE_TREES`]. Shown by a ragdoll among many boxes (`ragdoll_on_boxes` of
 /// `cargo xtask bench`).
 pub(super) const RESPONSE_CONTACTS: usize = 128;
 
@@ -85,7 +85,7 @@ pub(super) const PREDICTIONS: usize = 8;
 ///
 /// The first update uses the impulses of `solve`, the second those of the first sweep. Then the loads stay fixed; otherwise friction and
 /// normal impulses may alternate for ever (ADR 0011). With one update, friction uses the impulses of `solve`, bias included. With more than
-/// a few, `relax` may not converge. Shown by `ragdoll_poses` (hands that tremble) and `slide_to_roll`.
+/// a few, `relax` may not converge. Shown by `ragdoll_poses` (hands that vibrate) and `slide_to_roll`.
 pub(super) const FRICTION_BOUND_UPDATES: usize = 2;
 
 /// Number of contacts at or above which an island of free bodies uses the sweep policy of heaps.
@@ -217,7 +217,7 @@ pub(super) const RELAX_TURN: f32 = 0.15;
 /// Turn within a substep at or above which contacts by response are recomputed, radians.
 ///
 /// The points of the step's beginning do not include a corner that swings in: a hand sank 33 mm into a thigh (docs/step.md). Larger: such
-/// corners sink in. Smaller: rolling figures cost more. The value also decides which contacts are predicted, and half of it which contacts
+/// corners sink in. Smaller: rolling ragdolls cost more. The value also decides which contacts are predicted, and half of it which contacts
 /// in lanes have room for four points from the start. Sensible from 0.003 to 0.05. Shown by `ragdoll_drop`, `ragdoll_poses`.
 pub(super) const REFRESH_TURN_RESPONSE: f32 = 0.01;
 
@@ -378,7 +378,7 @@ pub(super) const POSITION_CORRECTIONS_ITERATED: usize = 1;
 /// Position error that needs no correction, for gaps in metres and locked rotations in radians.
 ///
 /// There is one value for both units, since a tree is judged by its largest error over all rows, and all its rows are corrected together.
-/// Strands have ball joints only, so the unit there is metres. With 3e-6 a triple pendulum drifts by 1.3 % of its energy (bar 1), though a
+/// Strands have ball joints only, so the unit there is metres. With 3e-6 a triple pendulum drifts by 1.3 % of its energy (allowed: 1), though a
 /// scene of rain takes 277 instead of 294 M instructions (docs/performance.md). Smaller: corrections act on rounding errors. Sensible from
 /// 3e-7 to 1e-5. Shown by `triple_pendulum`.
 pub(super) const POSITION_TOLERANCE: f32 = 1e-6;
@@ -456,7 +456,7 @@ pub(super) const LEAST_AXIS_SHARE: f32 = 1e-5;
 /// Rate below which rotational dry friction is less than the full torque, rad/s.
 ///
 /// Joint friction is a viscosity that gives the full torque at the present rate, but at most the viscosity at this rate. A joint that
-/// should stick creeps below this rate, until it sleeps. Larger: limp figures sag. Smaller: gains are so large that the limb's inertia is
+/// should stick creeps below this rate, until it sleeps. Larger: limp ragdolls sag. Smaller: gains are so large that the limb's inertia is
 /// lost in 32 bits. Sensible from 0.001 to 0.02. Shown by the test `joints::friction_slows_a_hinge_by_its_torque`, `ragdoll_poses`.
 pub(super) const STICK_SPIN: f32 = 0.004;
 
@@ -480,7 +480,7 @@ pub(super) const FASTEST_SPRING: f32 = 1.0;
 
 /// Factor on the least damping with which springs on small masses are stable, a number.
 ///
-/// A spring with less damping uses implicit Euler: a pin that carries a figure by its hand must not shake if only the hand moves. Larger:
+/// A spring with less damping uses implicit Euler: a pin that carries a ragdoll by its hand must not shake if only the hand moves. Larger:
 /// more springs lose their exact poles. Below 1: such pins shake. Sensible from 1 to 2. Shown by the test
 /// `pins::an_underdamped_pin_on_a_light_end_does_not_shake`.
 pub(super) const SPRING_MARGIN: f32 = 1.1;
@@ -591,7 +591,7 @@ pub(super) const DIVERGED_SPIN: f32 = 1e4;
 /// Largest increase of a joint's error in a substep before the substep counts as unsolved, for gaps in metres and angles in radians.
 ///
 /// There is one value for both units, since an island is judged by the largest error of all its rows (see [`POSITION_TOLERANCE`]). Larger:
-/// contradictory rows fling bodies. Smaller: crashes count as contradictions, and figures move as one rigid piece. Sensible from 0.03 to
+/// contradictory rows fling bodies. Smaller: crashes count as contradictions, and ragdolls move as one rigid piece. Sensible from 0.03 to
 /// 0.5. Shown by the `random_worlds`.
 pub(super) const TORN: f32 = 0.1;
 

@@ -1,4 +1,4 @@
-//! Blows transmitted by joints within the step: an impulse moves one body immediately, and its jointed bodies only when
+//! Impacts transmitted by joints within the step: an impulse moves one body immediately, and its jointed bodies only when
 //! joints are solved, after `pairs` has searched.
 
 use super::tuning::{BLOW_PASSES, BLOW_SPEED};
@@ -9,17 +9,17 @@ use crate::contact::proxies::Proxies;
 use crate::joint::{Joint, TWIST, locks};
 use sinew_math::max;
 
-/// Bodies that a blow will reach through their joints.
+/// Bodies that an impact will reach through their joints.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blows {
     reached: Vec<u32>,
-    /// Largest speed that a blow may cause, m/s, by index of the body; all 0 between two steps.
+    /// Largest speed that an impact may cause, m/s, by index of the body; all 0 between two steps.
     speeds: Vec<f32>,
 }
 
 impl Blows {
-    /// Finds blows by separating anchors: the joint solver left them with equal velocity, and a hit has changed one
-    /// since.
+    /// Finds the joints whose anchors separate after an impact: the joint solver left them with equal velocity, and a
+    /// hit has changed one since.
     pub fn find(&mut self, bodies: &Arena<Body>, joints: &Arena<Joint>, activity: &Activity) {
         let slots = bodies.slot_count();
         self.speeds.resize(slots, 0.0);
@@ -62,7 +62,7 @@ impl Blows {
         *most = max(*most, speed);
     }
 
-    /// Extends the contact search of the reached bodies by the speed of the blow.
+    /// Extends the contact search of the reached bodies by the speed of the impact.
     pub fn widen(&mut self, proxies: &mut Proxies, bodies: &Arena<Body>) {
         for index in self.reached.drain(..) {
             let speed = core::mem::take(&mut self.speeds[index as usize]);

@@ -41,7 +41,7 @@ pub(crate) struct Islands {
     /// Groups taken out of the world during the step, ordered by island.
     taken: Vec<TakenGroup>,
     solution: Solution,
-    /// True if the solution is that of the last step, not of one before a snapshot was loaded.
+    /// True if the solution belongs to the last step, and not to one before a snapshot was loaded.
     is_known: bool,
     /// True for each island that is a free-flying body or a strand and has already been solved in this step.
     flown: Vec<bool>,
@@ -209,7 +209,7 @@ impl Islands {
         }
     }
 
-    /// Joins all bodies and groups that a field makes attract each other.
+    /// Joins bodies and groups that attract each other through a field to one island.
     fn join_attracted(&mut self, view: &View<'_>, groups: &Arena<ParticleGroup>) {
         for (field, _) in view.fields.mutual() {
             let mut first = None;

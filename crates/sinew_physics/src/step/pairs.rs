@@ -355,7 +355,7 @@ mod tests {
                 let found = world.broad.proxies.overlapping(&bounds, |owner| {
                     if owner == own { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
                 });
-                assert!(found.is_break(), "case {case}: shape {own:?} is outside of its bounds");
+                assert!(found.is_break(), "case {case}: shape {own:?} is outside its bounds");
             }
         }
     }
@@ -392,7 +392,7 @@ mod tests {
                 case += 1;
             }
         }
-        assert!(found > case, "{found} pairs in {case} cases say little");
+        assert!(found > case, "only {found} pairs in {case} cases");
     }
 
     /// Steps a heap of all kinds of shapes and returns the number of near pairs that were skipped.
@@ -443,7 +443,11 @@ mod tests {
                     let ahead = crate::contact::proxies::Ahead { most: f32::INFINITY, blow: 0.0 };
                     crate::step::collide::ask((a, b, &seams), &mut asked, ahead, def.dt());
                     let found = asked.manifold;
-                    assert_eq!(found.count, 0, "{:?} with {} left: {found:?}", pair.key, pair.left);
+                    assert_eq!(
+                        found.count, 0,
+                        "pair {:?} with {} left has points: {found:?}",
+                        pair.key, pair.left
+                    );
                     count += 1;
                 }
             }
@@ -457,6 +461,6 @@ mod tests {
         let mut random = Random::new(12);
         let worlds = cases(600);
         let count: usize = (0..worlds).map(|_| skipped(&mut random, 250)).sum();
-        assert!(count > 3_000 * worlds, "{count} in {worlds} worlds say little");
+        assert!(count > 3_000 * worlds, "only {count} pairs in {worlds} worlds");
     }
 }

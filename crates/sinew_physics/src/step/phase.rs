@@ -12,7 +12,7 @@ pub(crate) enum Phase {
     Prepare,
     /// The first part of the substep with this number, until all bodies and particles have moved.
     Move(u32),
-    /// The rest of the substep.
+    /// Remaining stages of the substep.
     Relax(u32),
     Store,
 }

@@ -185,7 +185,7 @@ impl Pinches {
             for number in 0..MOST_PINCHED {
                 let Some(deepest) = rest.iter().copied().min_by(Between::deeper) else { break };
                 let is_part = |normal: Vec3| normal.dot(deepest.normal) >= SAME_PART_COSINE;
-                // Sorts the points of the part first, in order of particles.
+                // Sorts the points of the current part first, by particle.
                 rest.sort_unstable_by_key(|between| (!is_part(between.normal), between.particle));
                 let count = rest.partition_point(|between| is_part(between.normal));
                 let (part, others) = core::mem::take(&mut rest).split_at_mut(count);

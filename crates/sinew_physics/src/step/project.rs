@@ -162,8 +162,8 @@ impl Surroundings {
     /// not depend on the others' velocities, and the first round is exact except for springs that rotate or close
     /// loops.
     ///
-    /// Without this, each group would rotate the whole body about its own corner, and one rope would undo the effect of
-    /// another.
+    /// If groups were solved alone, each would rotate the whole body about its own corner, and ropes would undo each
+    /// other's effect.
     fn solve_together(
         &mut self,
         groups: &mut [TakenGroup],
@@ -269,7 +269,7 @@ impl Surroundings {
     }
 
     /// Estimates the added mass of bodies on groups, from their velocity gain until the end of the substep. Groups that
-    /// share a body and are not solved together follow each other, each after the previous one.
+    /// share a body and are not solved together are evaluated one after the other.
     pub fn find_added(&self, groups: &mut [TakenGroup], solver: &IslandSolver) {
         let moving = solver.moving_bodies();
         for (id, added) in groups.iter_mut().flat_map(|taken| taken.group.holders()) {

@@ -1,5 +1,5 @@
-//! `sleep`: an island whose bodies have all stayed in place for a while is no longer simulated. The test is
-//! displacement: a body squeezed between others may tremble and still sleep, a creeping body may not.
+//! `sleep`: an island whose bodies have all stayed in place for a while is no longer simulated. The test compares
+//! displacements: a squeezed body that vibrates may sleep, a creeping body may not.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
@@ -101,8 +101,8 @@ fn is_pushed_out(body: &Body, dt: f32) -> bool {
     (body.world_from_principal.translation - body.previous.translation).length() > PUSHED_SPEED * dt
 }
 
-/// True if a body on particles hardly moved in this step. Its velocity does not show this: springs push for the coming
-/// substep and give it the velocity that its weight will cancel.
+/// True if a body on particles hardly moved in this step. Its velocity does not show this: springs act for the coming
+/// substep and give the body a velocity that its weight will cancel.
 fn hangs_still(body: &Body, dt: f32) -> bool {
     let (was, is) = (body.previous, body.world_from_principal);
     (is.translation - was.translation).length() < HANGING_SPEED * dt

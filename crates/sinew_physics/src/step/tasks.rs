@@ -11,7 +11,7 @@ use crate::step::project::Surroundings;
 use std::sync::{Mutex, PoisonError};
 
 /// Memory for solving islands one after the other: it grows to the largest island's size and stays in the cache. No
-/// content persists between islands.
+/// data persist between islands.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace {
     pub solver: IslandSolver,
@@ -117,11 +117,11 @@ impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
         runner.run(count, &|| {
             work_on_next();
         });
-        // A runner that made too few calls must not lose work.
+        // If the runner made too few calls, this thread does the remaining work.
         while work_on_next() {}
     }
 
-    /// Returns the next island of this queue that has not flown.
+    /// Returns the next island of this queue that was not solved in `flight`.
     fn next(&mut self) -> Option<Task<'a>> {
         loop {
             let (number, island) = self.islands.next()?;

@@ -16,7 +16,7 @@ use crate::step::tuning::LINGER;
 use sinew_math::min;
 
 /// `touch`: computes contact effects and events, and wakes bodies that an awake body touches, presses through particles
-/// or attracts, or that a moving kinematic body holds. Contacts of woken bodies return.
+/// or attracts, and bodies jointed to a moving kinematic body. Contacts of woken bodies return.
 pub(crate) fn touch(
     bodies: &mut Arena<Body>,
     joints: &Arena<Joint>,
@@ -107,8 +107,8 @@ fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Act
 }
 
 /// True if two shapes overlap, or pushed each other in the last step and are still near. A contact may carry a load at
-/// a gap of a thousandth of a millimetre, and a bounced body has touched although it has left. A touch continues until
-/// the gap exceeds rounding.
+/// a gap of a thousandth of a millimetre, and a body that bounced has touched although it already separated. A touch
+/// continues until the gap exceeds rounding.
 fn touches(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
     let Contact { key, touching, .. } = pair[0];
     let nearest = points_of(pair).fold(f32::INFINITY, |least, point| min(point.separation, least));

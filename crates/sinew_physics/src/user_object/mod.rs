@@ -1,5 +1,4 @@
-//! Objects of the user's own kinds: they push bodies and particles, and hold them where the world's shapes and joints
-//! cannot.
+//! Objects of user-defined kinds, which apply forces and constraints that shapes and joints do not provide.
 //!
 //! An object is called twice in each substep, on one thread, in the order of ids: for forces before bodies move, and
 //! for corrections after all have moved, before velocities are relaxed. An object may have state, which is part of
@@ -69,7 +68,7 @@ use sinew_math::{ReadError, Reader, Writer};
 /// User-defined behaviour in a world. See [the module](self) for the call order and an example.
 ///
 /// The object must ensure that it gives the same bits everywhere: it computes with `sinew_math`, reads no clock, and
-/// [`save`](Self::save)s all state that affects its future. The world panics if it gets a non-finite number.
+/// [`save`](Self::save)s all state that affects its future. The world panics on a non-finite number.
 pub trait PhysicsObject: Any + Send + Sync {
     /// Name of the kind, the same in every build, because it is part of snapshots. Two kinds in a world must have
     /// different names.

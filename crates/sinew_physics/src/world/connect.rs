@@ -17,11 +17,11 @@ impl LockedAxes {
     pub const TRANSLATION_Y: Self = Self(1 << 1);
     /// No motion along the world's z axis.
     pub const TRANSLATION_Z: Self = Self(1 << 2);
-    /// No turning about the world's x axis.
+    /// No rotation about the world's x axis.
     pub const ROTATION_X: Self = Self(1 << 3);
-    /// No turning about the world's y axis.
+    /// No rotation about the world's y axis.
     pub const ROTATION_Y: Self = Self(1 << 4);
-    /// No turning about the world's z axis.
+    /// No rotation about the world's z axis.
     pub const ROTATION_Z: Self = Self(1 << 5);
     /// No motion along any axis.
     pub const TRANSLATIONS: Self = Self(0b111);
@@ -154,7 +154,7 @@ impl World {
             swing_y: turning(1),
             swing_z: turning(2),
         };
-        // Rotation that maps X to Y, Y to Z and Z to X: a third of a turn about the diagonal.
+        // Rotation by a third of a turn about the diagonal: maps X to Y, Y to Z and Z to X.
         let cycle = Rotation::from_xyzw(0.5, 0.5, 0.5, 0.5);
         let rotation = [Rotation::IDENTITY, cycle, cycle.inverse()][unlike];
         let world_from_joint = Transform::new(self.center_of_mass(body), rotation);

@@ -28,7 +28,7 @@ pub struct Snapshot {
     bytes: Vec<u8>,
 }
 
-/// First bytes of a delta; the last byte is the version.
+/// Magic bytes at the start of a delta; the last byte is the version.
 const MAGIC: &[u8; 8] = b"sinew-d\x01";
 /// Length of a byte sequence that is searched in the earlier snapshot, and the shortest match worth storing, bytes.
 const PIECE: usize = 16;

@@ -59,8 +59,8 @@ impl World {
 
     /// Gives many bodies the velocities that continue their motion: body `i` moved from `before[i]` to `now[i]` within
     /// `seconds`, and continues that motion for the same time. Equivalent to [`move_to`](Self::move_to) with the
-    /// extrapolated pose, bit for bit, at less than half the cost: for characters whose bodies follow a pose before the
-    /// next pose is known.
+    /// extrapolated pose, bit for bit, at less than half the cost: for bodies of characters, whose next pose is not
+    /// known yet.
     ///
     /// # Panics
     /// If there is not one pose per body in each list, or `move_to` would panic.
@@ -96,7 +96,7 @@ impl World {
         }
     }
 
-    /// Sets a body's velocity. A kinematic body that keeps moving does not wake or lose its contacts.
+    /// Sets a body's velocity. A kinematic body that keeps moving neither wakes nor loses its contacts.
     fn go_on(&mut self, id: BodyId, velocity: Velocity) {
         let body = self.bodies.at_mut(id.index);
         if body.kind == BodyKind::Kinematic && !body.velocity.is_zero() && !velocity.is_zero() {

@@ -18,7 +18,7 @@ use crate::particles::ParticleGroup;
 use crate::world::World;
 use sinew_math::{ReadError, Reader, Writer};
 
-/// First bytes of a snapshot; the last byte is the version.
+/// Magic bytes at the start of a snapshot; the last byte is the version.
 const MAGIC: &[u8; 8] = b"sinew-w\x0a";
 /// Largest number of steps in a snapshot: a thousand steps a second for 280,000 years.
 const MOST_STEPS: u64 = 1 << 53;

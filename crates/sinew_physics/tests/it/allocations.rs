@@ -25,8 +25,8 @@ const CYCLES: usize = 6;
 /// Steps until bodies on joints and springs are almost at rest.
 const SETTLE: usize = 400;
 
-/// Returns a world with all that a step can contain (loose boxes, a figure, a chain, a ring of joints and a rope with a
-/// weight), and the boxes with their first poses.
+/// Returns a world with all that a step can contain (loose boxes, a ragdoll, a chain, a ring of joints and a rope with
+/// a weight), and the boxes with their first poses.
 fn crowded() -> (World, Vec<(BodyId, Transform)>) {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     floor(&mut world);
@@ -155,7 +155,7 @@ fn a_warm_step_allocates_nothing() {
     let (mut world, boxes) = crowded();
     let mut cold = Seen::default();
     run(&mut world, SETTLE, &mut cold);
-    assert!(cold.allocations > 0, "the first steps fill the buffers, and the counter sees it");
+    assert!(cold.allocations > 0, "the first steps must allocate, so that the counter is known to work");
     let ties = tie(&mut world);
     cycle(&mut world, &boxes);
     for id in ties {
@@ -169,8 +169,11 @@ fn a_warm_step_allocates_nothing() {
     cycle(&mut world, boxes);
     for _ in 0..CYCLES {
         let warm = cycle(&mut world, boxes);
-        assert!(warm.touches_begun >= BOXES && warm.touches_ended >= BOXES, "contacts come and go: {warm:?}");
-        assert!(warm.sensed > 10 && warm.hits > 20, "and are told of: {warm:?}");
+        assert!(
+            warm.touches_begun >= BOXES && warm.touches_ended >= BOXES,
+            "contacts must begin and end: {warm:?}"
+        );
+        assert!(warm.sensed > 10 && warm.hits > 20, "sensor overlaps and hits must be reported: {warm:?}");
         assert_eq!(warm.allocations, 0, "{warm:?}");
     }
 }
@@ -208,7 +211,7 @@ fn falling_asleep_and_waking_allocate_nothing() {
             world.set_velocity(id, Velocity::default());
         }
         run(&mut world, 600, &mut last);
-        assert!(boxes.iter().all(|&(id, _)| !world.is_awake(id)), "all sleep in cycle {cycle}");
+        assert!(boxes.iter().all(|&(id, _)| !world.is_awake(id)), "all boxes must sleep in cycle {cycle}");
         for &(id, _) in &boxes {
             world.apply_impulse_at_center(id, Vec3::Y);
             run(&mut world, 5, &mut last);

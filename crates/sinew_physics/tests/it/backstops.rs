@@ -56,17 +56,17 @@ fn a_particle_rests_on_its_backstop() {
         let off = (world.particles(stopped).positions()[1] - center).length();
         deepest = f32::min(deepest, off);
     }
-    assert!(deepest > reach - 1e-4, "it was {} m in the ball", reach - deepest);
+    assert!(deepest > reach - 1e-4, "the particle is {} m inside the ball", reach - deepest);
     let at = world.particles(stopped).positions()[1];
     let normal = (at - center).normalize();
     assert!(((at - center).length() - reach).abs() < 2e-5, "{} m", (at - center).length());
     let pull = (pin - at).normalize() * (stiffness * ((pin - at).length() - rest_length));
     let force = pull + Vec3::NEG_Y * (9.81 * mass);
-    assert!(force.dot(normal) < -0.2, "it is pressed on it: {} N", force.dot(normal));
+    assert!(force.dot(normal) < -0.2, "the force along the normal is {} N", force.dot(normal));
     let along = force - normal * force.dot(normal);
-    assert!(along.length() < 5e-3, "nothing rubs it: {} N along it", along.length());
+    assert!(along.length() < 5e-3, "friction must be 0; the force along the surface is {} N", along.length());
     let below = world.particles(free).positions()[1];
-    assert!((below - center).length() < reach - 0.05, "the ball is on its way");
+    assert!((below - center).length() < reach - 0.05, "the ball has not moved away");
 }
 
 /// A particle passes through the backstop of another particle, and so does another body.
@@ -83,8 +83,17 @@ fn backstops_affect_only_their_particle() {
     let ball = world.add_body(&sphere_body(0.05, Vec3::new(0.1, 1.5, 0.0)));
     (0..60).for_each(|_| world.step());
     let height = |i: usize| world.particles(group).positions()[i].y;
-    assert!((height(1) - 0.22).abs() < 1e-4, "it lies on its own: {}", height(1));
-    assert!(height(0) < -1.0 && height(2) < -1.0, "others fall through it: {}, {}", height(0), height(2));
+    assert!(
+        (height(1) - 0.22).abs() < 1e-4,
+        "the middle particle must rest on its own ball; height {}",
+        height(1)
+    );
+    assert!(
+        height(0) < -1.0 && height(2) < -1.0,
+        "the other particles must fall through the ball; heights {}, {}",
+        height(0),
+        height(2)
+    );
     assert!(world.transform(ball).translation.y < -1.0);
 }
 
@@ -117,10 +126,13 @@ fn backstop_impulses_are_equal_and_opposite() {
         assert_eq!(world.velocity(body).linear, Vec3::ZERO, "it is not there yet");
         (0..40).for_each(|_| world.step());
         let (after, turning_after) = momentum(&world);
-        assert!((after - before).length() < 1e-5, "{before} to {after} N·s");
-        assert!((turning_after - turning).length() < 2e-3 * mass * speed, "{turning} to {turning_after}");
+        assert!((after - before).length() < 1e-5, "momentum {before} before, {after} after, N·s");
+        assert!(
+            (turning_after - turning).length() < 2e-3 * mass * speed,
+            "angular momentum {turning} before, {turning_after} after"
+        );
         let v = world.velocity(body);
-        assert!(v.linear.z < -0.05, "the body goes along: {}", v.linear.z);
+        assert!(v.linear.z < -0.05, "the particle must pull the body along; speed {}", v.linear.z);
         if aside == 0.0 {
             let together = -speed * mass / (whole + mass);
             assert!((v.linear.z - together).abs() < 1e-4 * speed, "{} for {together}", v.linear.z);
@@ -157,7 +169,10 @@ fn a_backstop_moves_with_its_body() {
         pushed += u32::from(gap < 1e-3);
     }
     let speed = world.particles(group).velocities()[0].length();
-    assert!(pushed > 1 && speed > 0.9 * way.length(), "it pushed for {pushed} steps, to {speed} m/s");
+    assert!(
+        pushed > 1 && speed > 0.9 * way.length(),
+        "the ball pushed for {pushed} steps, up to {speed} m/s"
+    );
 }
 
 /// Returns cloth above a heap of bodies, each particle with a backstop on one of them.
@@ -223,7 +238,7 @@ fn threads_and_snapshots_have_the_same_bits() {
         (group.positions()[stop.particle as usize] - center).length() - stop.radius - RADIUS
     });
     let on = off.filter(|gap| *gap < 1e-3).count();
-    assert!(on > 10, "{on} particles lie on theirs");
+    assert!(on > 10, "only {on} particles rest on their backstops");
 }
 
 /// A group that sleeps on its backstop sleeps with the body, and wakes when the body is moved.
@@ -245,7 +260,7 @@ fn a_backstop_sleeps_and_wakes_with_its_body() {
     assert!(steps < 600, "they sleep");
     world.apply_impulse(body, Vec3::X * 20.0, world.center_of_mass(body));
     (0..3).for_each(|_| world.step());
-    assert!(world.particles(group).is_awake(), "what it lay on goes away");
+    assert!(world.particles(group).is_awake(), "removing the support must wake the particles");
     (0..60).for_each(|_| world.step());
     let gone = world.particles(group).positions()[0];
     assert!((gone - Vec3::new(0.0, 0.97, 0.0)).length() > 0.05, "{gone}");

@@ -68,8 +68,11 @@ fn bobs_beneath_stones_keep_their_swing() {
         row.reach(900);
         let reach = row.reach(120);
         let start = LENGTH * trig::sin(tilt);
-        assert!(reach.iter().all(|reach| (reach / start - 1.0).abs() < 0.01), "{tilt}: {reach:?} of {start}");
-        assert!(row.gap() < 2e-5, "{tilt}: joints open by {} m", row.gap());
+        assert!(
+            reach.iter().all(|reach| (reach / start - 1.0).abs() < 0.01),
+            "tilt {tilt}: amplitudes {reach:?}, at the start {start}"
+        );
+        assert!(row.gap() < 2e-5, "tilt {tilt}: joint gap {} m", row.gap());
     }
 }
 
@@ -86,6 +89,6 @@ fn bobs_lowered_onto_stops_stay() {
     row.reach(600);
     let rest = row.reach(60);
     let stop = LENGTH * trig::sin(0.1);
-    assert!(rest.iter().all(|reach| (reach - stop).abs() < 5e-4), "{rest:?}, stop at {stop}");
+    assert!(rest.iter().all(|reach| (reach - stop).abs() < 5e-4), "rest angles {rest:?}, stop at {stop}");
     assert!(row.gap() < 2e-5, "joints open by {} m", row.gap());
 }

@@ -26,7 +26,7 @@ fn rebounds(world: &mut World, ball: BodyId, ground: f32, count: usize) -> Vec<f
         if !rises {
             peaks.extend(highest.take());
         }
-        assert!(world.step_count() < 2_000, "it bounces {count} times: {peaks:?}");
+        assert!(world.step_count() < 2_000, "the ball still bounces after {count} bounces: {peaks:?}");
     }
     peaks
 }
@@ -45,7 +45,10 @@ fn rebound_height_is_restitution_squared() {
                 expected *= restitution * restitution;
                 // A peak between two steps is missed by up to g dt² / 8, plus the error of a substep.
                 let tolerance = 2e-3 * expected + 6e-4;
-                assert!((peak - expected).abs() < tolerance, "{restitution}, {height} m: {peak}, {expected}");
+                assert!(
+                    (peak - expected).abs() < tolerance,
+                    "restitution {restitution}, dropped from {height} m: peak {peak} m, expected {expected} m"
+                );
             }
         }
     }
@@ -63,7 +66,7 @@ fn a_resting_body_carries_a_bounce() {
         let def = sphere_body(RADIUS, Vec3::Y * (top + RADIUS + 2.0));
         let ball = world.add_body(&bouncy(def, 0.8));
         let peak = rebounds(&mut world, ball, top, 1)[0];
-        assert!((peak / 1.28 - 1.0).abs() < share, "off {planks} planks to {peak} m");
+        assert!((peak / 1.28 - 1.0).abs() < share, "on {planks} planks the peak is {peak} m");
     }
 }
 
@@ -93,7 +96,7 @@ fn two_balls_conserve_momentum_and_energy() {
         let speeds = collided(&[m1, m2], 3.0, 0.0);
         let expected = [3.0 * (m1 - m2) / (m1 + m2), 3.0 * 2.0 * m1 / (m1 + m2)];
         for (speed, expected) in speeds.iter().zip(expected) {
-            assert!((speed - expected).abs() < 1e-4, "{m1} on {m2} kg: {speeds:?}");
+            assert!((speed - expected).abs() < 1e-4, "{m1} kg hits {m2} kg: speeds {speeds:?}");
         }
     }
 }
@@ -127,7 +130,11 @@ fn bounces_of_a_weightless_heap_add_no_energy() {
         // Corners of a box that bounce together, each with its own speed, may gain slightly (at most 0.13 % here). Sums
         // in 32 bits have rounding errors.
         let no_more = start * (1.0 + 1e-6);
-        assert!(now < before * 1.002 && now <= no_more, "step {}: {before} J, {now} J", world.step_count());
+        assert!(
+            now < before * 1.002 && now <= no_more,
+            "step {}: energy {before} J before, {now} J now",
+            world.step_count()
+        );
         before = now;
     }
 }

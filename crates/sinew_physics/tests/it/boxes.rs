@@ -69,9 +69,9 @@ fn regions_find_bodies_with_points_inside() {
             let nearest = points.iter().map(distance).fold(f32::INFINITY, f32::min);
             if found.contains(&id) {
                 // Samples are about a sixth of the region's size apart.
-                assert!(nearest < 0.35, "case {case}: {id:?} is {nearest} from {region:?}");
+                assert!(nearest < 0.35, "case {case}: {id:?} was found {nearest} m from {region:?}");
             } else {
-                assert!(nearest > 0.0, "case {case}: {id:?} is in {region:?}");
+                assert!(nearest > 0.0, "case {case}: {id:?} inside {region:?} was not found");
             }
         }
         let all = Aabb::around(Vec3::ZERO, Vec3::splat(10.0));

@@ -120,10 +120,10 @@ fn changing_the_centre_of_mass_keeps_point_velocities() {
     let after = world.get(block).expect("it is there").velocity_at(point);
     assert!((before - after).length() < 1e-5, "{before} {after}");
     let moved = (pose.inverse() * world.transform(block)).translation.length();
-    assert!(moved < 1e-6, "it stays where it is, to {moved} m");
+    assert!(moved < 1e-6, "the body must not move; it moved {moved} m");
     let found = world.mass(block);
     assert!((found.center - properties.center).length() < 1e-6 && found.mass == properties.mass);
-    assert!(world.joint_gap(joint) < 1e-5, "its joint is where it was");
+    assert!(world.joint_gap(joint) < 1e-5, "the joint must keep its position");
     run(&mut world, 60);
     assert!(world.joint_gap(joint) < 1e-4);
 }
@@ -201,10 +201,13 @@ fn a_body_takes_every_kind() {
         if to == Dynamic {
             let mass = Shape::cuboid(Vec3::new(0.5, 0.1, 0.5)).mass_properties(1000.0);
             assert!((world.mass(plate).mass - mass.mass).abs() < 1e-3);
-            assert!((world.mass(plate).center.x - 0.3).abs() < 1e-5, "the centre is that of its shapes");
-            assert!(height(&world, rider) < 4.5, "what lay on it falls as well");
+            assert!(
+                (world.mass(plate).center.x - 0.3).abs() < 1e-5,
+                "the centre of mass must be that of the shapes"
+            );
+            assert!(height(&world, rider) < 4.5, "the box on the removed body must fall");
         } else {
-            assert!((height(&world, rider) - 5.2).abs() < 0.01, "what lies on it stays there");
+            assert!((height(&world, rider) - 5.2).abs() < 0.01, "the box on the body must stay there");
         }
     }
 }
@@ -263,7 +266,7 @@ fn shapes_come_and_go_with_their_events() {
     assert_eq!((third.shape, world.shape_ids(shelf).count()), (2, 3));
     world.set_gravity_scale(balls[2], 1.0);
     world.step();
-    assert_eq!(pairs(&world.events().shapes_begin), [(2, 0)], "the new one is touched");
+    assert_eq!(pairs(&world.events().shapes_begin), [(2, 0)], "the new body must begin a contact");
     run(&mut world, 60);
     assert!((height(&world, balls[2]) - 0.2).abs() < 0.01, "and bears");
     // The first shape is removed, and the numbers of the others decrease.
@@ -274,7 +277,7 @@ fn shapes_come_and_go_with_their_events() {
     other.step();
     let events = world.events();
     assert_eq!(events.end, [(shelf, balls[0])]);
-    assert!(events.begin.is_empty(), "what still touches begins nothing: {:?}", events.begin);
+    assert!(events.begin.is_empty(), "persistent contacts must not begin again: {:?}", events.begin);
     assert_eq!((&events.end, &events.shapes_end), (&other.events().end, &other.events().shapes_end));
     run(&mut world, 60);
     run(&mut other, 60);
@@ -319,7 +322,7 @@ fn masses_follow_shapes_unless_kept() {
     }
     let mut w = Writer::new();
     world.save(&mut w);
-    assert!(w.as_bytes().len() < 2000, "surfaces of shapes that are gone are forgotten");
+    assert!(w.as_bytes().len() < 2000, "snapshots must not keep surfaces of removed shapes");
 }
 
 #[test]
@@ -415,12 +418,12 @@ fn a_changed_world_equals_a_reloaded_one() {
                 assert!(told.insert(*pair), "{pair:?} begins twice");
             }
             for pair in &one.end {
-                assert!(told.remove(pair), "{pair:?} ends without having begun");
+                assert!(told.remove(pair), "{pair:?} ends without a begin event");
             }
             touched += told.len();
         }
     }
-    assert!(touched > 2000, "{touched} touches say little");
+    assert!(touched > 2000, "only {touched} contacts");
 }
 
 #[test]
@@ -509,7 +512,7 @@ fn short_joints_keep_their_length() {
         });
         let start = world.transform(b);
         let joint = world.add_joint(&make(&world, a, b, axis));
-        assert!(world.joint_gap(joint) < 1e-6, "kind {kind} starts without a gap");
+        assert!(world.joint_gap(joint) < 1e-6, "a joint of kind {kind} must start without a gap");
         run(&mut world, 40);
         assert!(world.joint_gap(joint) < 1e-4, "kind {kind} holds");
         let (now, unit) = (world.transform(b), axis / 3.0);
@@ -566,7 +569,7 @@ fn locked_axes_hold_and_free_ones_go_on() {
         let free = [1.0, 2.0 - 0.5 * G * (1.0 + 1.0 / 240.0), 3.0];
         for (i, way) in at.translation.to_array().into_iter().enumerate() {
             let due = if locks.contains(all[i]) { 0.0 } else { free[i] };
-            assert!((way - due).abs() < 5e-3, "{locks:?}, axis {i}: {way} of {due} m");
+            assert!((way - due).abs() < 5e-3, "{locks:?}, axis {i}: moved {way} m, expected {due} m");
         }
         let turned = at.rotation.to_scaled_axis().to_array();
         let locked = (0..3).filter(|i| locks.contains(all[3 + i])).count();
@@ -574,7 +577,10 @@ fn locked_axes_hold_and_free_ones_go_on() {
             let due = if locks.contains(all[3 + i]) { 0.0 } else { [0.3, 0.2, 0.1][i] };
             // Two free axes form a universal joint; small swings rotate each other slightly.
             let within = if locked == 1 { 0.02 } else { 2e-3 };
-            assert!((angle - due).abs() < within, "{locks:?}, axis {i}: {angle} of {due} rad");
+            assert!(
+                (angle - due).abs() < within,
+                "{locks:?}, axis {i}: rotated {angle} rad, expected {due} rad"
+            );
         }
     }
 }
@@ -613,7 +619,7 @@ fn a_copy_has_the_same_future_and_its_own() {
     let (before, marked) = (world.hash(), copy.hash());
     assert_eq!(before, marked);
     run(&mut copy, 50);
-    assert_eq!(world.hash(), before, "the copy's steps are its own");
+    assert_eq!(world.hash(), before, "steps of the copy must not change the world");
     run(&mut world, 50);
     assert_eq!(world.hash(), copy.hash());
     assert_eq!(copy.object::<Count>(count).0, world.object::<Count>(count).0);
@@ -655,7 +661,7 @@ fn bodies_moved_are_those_whose_pose_changed() {
         assert!(moved.contains(&lift) && !moved.contains(&still));
         (most, least) = (most.max(moved.len()), least.min(moved.len()));
     }
-    assert_eq!((most, least), (21, 1), "all at first, at last the lift alone");
+    assert_eq!((most, least), (21, 1), "all bodies must move at first, at last only the lift");
     assert_eq!(reborn(&world).bodies_moved().count(), 0);
 }
 
@@ -671,7 +677,7 @@ fn a_body_is_found_while_it_is_there() {
     world.remove_body(ball);
     assert!(world.get(ball).is_none());
     world.add_body(&sphere_body(0.5, Vec3::Y));
-    assert!(world.get(ball).is_none(), "the next one at its place is another");
+    assert!(world.get(ball).is_none(), "the old handle must not refer to the new body in its slot");
 }
 
 #[test]
@@ -685,5 +691,8 @@ fn a_static_body_has_no_velocity() {
     let ball = world.add_body(&sphere_body(0.2, Vec3::Y * 0.7));
     run(&mut world, 30);
     let slide = world.transform(ball).translation;
-    assert!(slide.x.abs() < 1e-4 && slide.z.abs() < 1e-4, "nothing carries it along: {slide}");
+    assert!(
+        slide.x.abs() < 1e-4 && slide.z.abs() < 1e-4,
+        "the floor must not carry the body; it moved {slide}"
+    );
 }

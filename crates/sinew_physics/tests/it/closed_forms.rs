@@ -50,7 +50,10 @@ fn pendulum_periods() {
         let bob = world.add_body(&def);
         world.add_joint(&ball(&world, anchor, bob, Vec3::ZERO));
         let measured = swing_period(&mut world, bob);
-        assert!((measured / period - 1.0).abs() < 0.003, "{amplitude}°: {measured} for {period}");
+        assert!(
+            (measured / period - 1.0).abs() < 0.003,
+            "amplitude {amplitude}°: period {measured} s, expected {period} s"
+        );
     }
 }
 
@@ -93,7 +96,10 @@ fn coulomb_friction_holds_below_its_angle_and_slides_above() {
                 let gain = 9.81 * (sin - friction * cos);
                 // The block also slid during the first second: s = a (t₁ t + t²/2).
                 let expected = gain * (t + 0.5 * t * t);
-                assert!((moved / expected - 1.0).abs() < 0.02, "μ {friction}: slid {moved} for {expected}");
+                assert!(
+                    (moved / expected - 1.0).abs() < 0.02,
+                    "μ {friction}: slid {moved} m, expected {expected} m"
+                );
                 assert!((world.transform(id).translation - start).dot(down) > 0.0);
             } else {
                 assert!(moved < 1e-3, "μ {friction}: crept {moved} m in 10 s");

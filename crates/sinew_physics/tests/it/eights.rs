@@ -71,7 +71,7 @@ fn way_down(angle: f32, solid: usize, beside: usize, substeps: usize) -> f32 {
     }
     let moved = mean(&group) - start;
     let off = moved.dot(slope * Vec3::Y).abs() + moved.z.abs();
-    assert!(off < 2e-3, "solid {solid}: it has left the slope by {off} m");
+    assert!(off < 2e-3, "solid {solid}: the particle is {off} m away from the slope");
     moved.dot(slope * -Vec3::X)
 }
 
@@ -86,7 +86,7 @@ fn cloth_slides_down_a_slope_by_coulombs_law() {
             let way = way_down(angle, solid, beside, substeps);
             assert!(
                 (way / expected - 1.0).abs() < 0.02,
-                "solid {solid}, {beside} others: {way} m for {expected} m"
+                "solid {solid}, {beside} other obstacles: slid {way} m, expected {expected} m"
             );
         }
     }
@@ -97,7 +97,7 @@ fn cloth_stays_on_a_slope_that_friction_holds() {
     for solid in 0..4 {
         for beside in [0, 16] {
             let way = way_down(trig::atan2(0.4, 1.0), solid, beside, 120);
-            assert!(way.abs() < 2e-3, "solid {solid}, {beside} others: it has come {way} m");
+            assert!(way.abs() < 2e-3, "solid {solid}, {beside} other obstacles: crept {way} m");
         }
     }
 }
@@ -133,7 +133,10 @@ fn over_a_ball(beside: usize, start: usize) -> [f32; 2] {
     let length = |s: &SpringDef| (at[s.a as usize] - at[s.b as usize]).length();
     let stretches = group.springs().iter().map(|s| (length(s) / s.rest_length - 1.0).abs());
     let deepest = at.iter().fold(f32::INFINITY, |least, p| f32::min(least, p.length()));
-    assert!(deepest > 0.3 + RADIUS - 1e-4, "{beside} others: a particle is {deepest} m from the middle");
+    assert!(
+        deepest > 0.3 + RADIUS - 1e-4,
+        "{beside} other obstacles: a particle is {deepest} m from the centre"
+    );
     let heights = at.iter().map(|p| p.y).sum::<f32>() / at.len() as f32;
     [stretches.sum::<f32>() / group.springs().len() as f32, heights]
 }
@@ -146,6 +149,16 @@ fn cloth_hangs_over_a_ball_alike_in_lanes_and_one_by_one() {
         let all: [[f32; 2]; 8] = core::array::from_fn(|start| over_a_ball(beside, start));
         [0, 1].map(|k| all.iter().map(|figures| figures[k]).sum::<f32>() / all.len() as f32)
     });
-    assert!((lanes[0] / others[0] - 1.0).abs() < 0.02, "mean stretch {} and {}", lanes[0], others[0]);
-    assert!((lanes[1] - others[1]).abs() < 1e-3, "mean height {} and {} m", lanes[1], others[1]);
+    assert!(
+        (lanes[0] / others[0] - 1.0).abs() < 0.02,
+        "mean stretch {} in lanes, {} one by one",
+        lanes[0],
+        others[0]
+    );
+    assert!(
+        (lanes[1] - others[1]).abs() < 1e-3,
+        "mean height {} m in lanes, {} m one by one",
+        lanes[1],
+        others[1]
+    );
 }

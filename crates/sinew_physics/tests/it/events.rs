@@ -44,7 +44,7 @@ impl Solid {
         let (half, radius) = match *shape {
             Shape::Box { half_extents } => (wide(half_extents), 0.0),
             Shape::Sphere { radius } => ([0.0; 3], f64::from(radius)),
-            _ => unreachable!("only boxes and balls are made"),
+            _ => unreachable!("the test makes only boxes and balls"),
         };
         Self { center: wide(frame.translation), axes, half, radius }
     }
@@ -103,7 +103,7 @@ fn follow<T: Ord + Copy + core::fmt::Debug, K: Ord>(
     assert!(begin.is_sorted_by(|p, q| order(p) < order(q)), "{begin:?}");
     assert!(end.is_sorted_by(|p, q| order(p) < order(q)), "{end:?}");
     for pair in end {
-        assert!(told.remove(pair), "{pair:?} ended that did not touch");
+        assert!(told.remove(pair), "{pair:?} ends without a begin event");
     }
     for pair in begin {
         assert!(told.insert(*pair), "{pair:?} began twice");
@@ -116,7 +116,7 @@ impl Told {
         let order = |(a, b): &(ShapeId, ShapeId)| (a.body, b.body, a.shape, b.shape);
         follow(&mut self.shapes, shapes_begin, shapes_end, order);
         let of_shapes: BTreeSet<_> = self.shapes.iter().map(|(a, b)| (a.body, b.body)).collect();
-        assert_eq!(self.bodies, of_shapes, "bodies touch while any of their shapes do");
+        assert_eq!(self.bodies, of_shapes, "two bodies touch exactly while any of their shapes touch");
     }
 }
 
@@ -319,12 +319,12 @@ fn check(seed: u64) -> usize {
         for (pair, touches, senses) in expected {
             let told = [touching.shapes.contains(&pair), sensed.shapes.contains(&pair)];
             let right = [touches && !senses, touches && senses];
-            assert_eq!(told, right, "seed {seed} step {step}: {pair:?}");
+            assert_eq!(told, right, "seed {seed} step {step}: wrong event for {pair:?}");
             seen += 1;
         }
     }
     let hashes: Vec<u64> = ways.iter().map(|way| way.world.hash()).collect();
-    assert!(hashes.iter().all(|hash| *hash == hashes[0]), "seed {seed}: {hashes:?}");
+    assert!(hashes.iter().all(|hash| *hash == hashes[0]), "seed {seed}: hashes differ: {hashes:?}");
     seen
 }
 
@@ -332,7 +332,7 @@ fn check(seed: u64) -> usize {
 fn events_are_what_the_poses_say_for_any_threads_and_across_snapshots() {
     let full = std::env::var_os("SINEW_FULL").is_some();
     let seen: usize = (0..if full { 200 } else { 6 }).map(check).sum();
-    assert!(seen > if full { 100_000 } else { 3_000 }, "{seen} pairs of shapes were looked at");
+    assert!(seen > if full { 100_000 } else { 3_000 }, "only {seen} pairs of shapes were checked");
 }
 
 /// Putting a body to sleep just outside a sensor ends its overlap; just inside, the overlap continues.

@@ -150,7 +150,7 @@ fn forces() {
     refuses_in("apply_torque", |f, v| f.world.apply_torque(f.body, v));
     let lasting = |f: &mut Fixture, def: ForceDef| {
         let added = std::panic::catch_unwind(AssertUnwindSafe(|| f.world.add_force(f.body, &def)));
-        assert!(added.is_err(), "add_force takes {def:?}");
+        assert!(added.is_err(), "add_force accepts {def:?}");
         f.world.set_force(f.force, &def);
     };
     refuses_in("force", |f, force| lasting(f, ForceDef { force, ..ForceDef::default() }));
@@ -179,7 +179,7 @@ fn fields() {
     let set = |f: &mut Fixture, kind: FieldKind| {
         let def = FieldDef::new(kind);
         let added = std::panic::catch_unwind(AssertUnwindSafe(|| f.world.add_field(&def)));
-        assert!(added.is_err(), "add_field takes {def:?}");
+        assert!(added.is_err(), "add_field accepts {def:?}");
         f.world.set_field(f.field, &def);
     };
     refuses_in("uniform", |f, acceleration| set(f, FieldKind::Uniform(UniformGravity { acceleration })));
@@ -236,7 +236,7 @@ fn joints() {
         let mut def = f.world.joint(f.joint);
         change(&mut def);
         let added = std::panic::catch_unwind(AssertUnwindSafe(|| f.world.add_joint(&def)));
-        assert!(added.is_err(), "add_joint takes {def:?}");
+        assert!(added.is_err(), "add_joint accepts {def:?}");
         f.world.set_joint(f.joint, &def);
     };
     let nan = [f32::NAN];

@@ -45,8 +45,14 @@ fn flight_matches_islands() {
             world.apply_torque(id, Vec3::X);
             flown(world, id, 60)
         });
-        assert!((pose.translation - expected.translation).length() < 1e-4, "{i}: {pose:?}, {expected:?}");
-        assert!(pose.rotation.dot(expected.rotation).abs() > 1.0 - 1e-6, "{i}: {pose:?}, {expected:?}");
+        assert!(
+            (pose.translation - expected.translation).length() < 1e-4,
+            "body {i}: pose {pose:?}, expected {expected:?}"
+        );
+        assert!(
+            pose.rotation.dot(expected.rotation).abs() > 1.0 - 1e-6,
+            "body {i}: pose {pose:?}, expected {expected:?}"
+        );
         assert!((v.linear - w.linear).length() < 1e-4, "{i}: {v:?}, {w:?}");
         assert!((v.angular - w.angular).length() < 2e-3, "{i}: {v:?}, {w:?}");
     }

@@ -123,13 +123,13 @@ fn are_weighed_on(apart: bool) {
         println!(
             "{what}: sag {sag} for {due}, tension {tension} for {weight}, gain {gain}, tremble {tremble}"
         );
-        assert!((tension / weight - 1.0).abs() < 0.01, "{what}: {tension} N for {weight}");
-        assert!(above.abs() < 1e-3, "{what}: {above} m above the plank");
-        assert!(gain < 0.01 * weight * (height + due), "{what}: gained {gain} J");
+        assert!((tension / weight - 1.0).abs() < 0.01, "{what}: tension {tension} N, weight {weight} N");
+        assert!(above.abs() < 1e-3, "{what}: the load is {above} m above the plank");
+        assert!(gain < 0.01 * weight * (height + due), "{what}: the energy rose by {gain} J");
         // After the fall of a load of twenty times the plank's mass the plank oscillates longer than this, by 1.4 mm.
         if mass * height < 20.0 {
-            assert!((sag / due - 1.0).abs() < 0.005, "{what}: sag {sag} for {due}");
-            assert!(tremble < 1e-5, "{what}: trembles by {tremble} m");
+            assert!((sag / due - 1.0).abs() < 0.005, "{what}: sag {sag} m, expected {due} m");
+            assert!(tremble < 1e-5, "{what}: vibrates by {tremble} m");
         }
     }
 }

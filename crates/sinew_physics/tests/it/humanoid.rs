@@ -1,4 +1,4 @@
-//! A figure of 14 bodies, dropped and thrown, meets the quality limits of ragdolls.
+//! A humanoid of 14 bodies, dropped and thrown, meets the quality limits of ragdolls.
 
 use crate::build::{floor, joint};
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3};
@@ -43,7 +43,7 @@ impl Builder {
         id
     }
 
-    /// Adds a joint at `at` whose x axis is `axis`, both in the figure's frame.
+    /// Adds a joint at `at` whose x axis is `axis`, both in the humanoid's frame.
     fn join(&mut self, a: BodyId, b: BodyId, at: Vec3, axis: Vec3, kind: JointKind) {
         let frame = Transform::new(at, Rotation::from_arc(Vec3::X, axis));
         let mut def = joint(&self.world, a, b, self.placed * frame, kind);
@@ -63,7 +63,7 @@ fn hinge(lo: f32, hi: f32) -> JointKind {
     JointKind::Hinge { limit: Some(Range::degrees(lo, hi)) }
 }
 
-/// Adds the figure with its feet at the origin of `placed` and its arms stretched out.
+/// Adds the humanoid with its feet at the origin of `placed` and its arms stretched out.
 pub fn figure(mut world: World, placed: Transform, velocity: Vec3) -> Figure {
     world.step(); // settles what is static
     let mut b = Builder { world, placed, velocity, bodies: Vec::new(), joints: Vec::new() };
@@ -147,7 +147,7 @@ pub fn observe(figure: &mut Figure, seconds: f32) -> Report {
     report
 }
 
-/// Returns a rotated figure whose lowest body is about `height` above the floor, metres.
+/// Returns a rotated humanoid whose lowest body is about `height` above the floor, metres.
 fn dropped(turn: Rotation, height: f32) -> Figure {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
@@ -201,9 +201,15 @@ fn wall_hits() {
             let turn = if i == 0 { Rotation::IDENTITY } else { random.rotation() };
             let mut figure = thrown_at_a_wall(speed, turn);
             let report = observe(&mut figure, 3.0);
-            assert!(report.gap_max < gap, "wall {speed} {i}: {report:?}");
-            assert!(report.overshoot_max < 4.0 && report.overshoot_p99 < 2.0, "wall {speed} {i}: {report:?}");
-            assert!(report.gain < 0.01 && report.penetration_rest < 0.005, "wall {speed} {i}: {report:?}");
+            assert!(report.gap_max < gap, "wall, speed {speed}, run {i}: {report:?}");
+            assert!(
+                report.overshoot_max < 4.0 && report.overshoot_p99 < 2.0,
+                "wall, speed {speed}, run {i}: {report:?}"
+            );
+            assert!(
+                report.gain < 0.01 && report.penetration_rest < 0.005,
+                "wall, speed {speed}, run {i}: {report:?}"
+            );
         }
     }
 }

@@ -61,7 +61,7 @@ fn turned(angle: f32) -> Transform {
 }
 
 fn near(found: f32, expected: f32, share: f32, what: &str) {
-    assert!((found - expected).abs() <= share * expected.abs(), "{what}: {found} is not {expected}");
+    assert!((found - expected).abs() <= share * expected.abs(), "{what}: {found}, expected {expected}");
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn a_motor_steps_as_a_second_order_system() {
             let found = angle(&world, b) / goal;
             assert!(
                 (found - expected).abs() < 0.02,
-                "{hertz} Hz, ζ {zeta}, t {t}: {found} is not {expected}"
+                "{hertz} Hz, ζ {zeta}, t {t} s: {found}, expected {expected}"
             );
         }
     }
@@ -173,9 +173,15 @@ fn a_motor_reversed_at_its_stop_leaves_it_at_its_speed() {
             let expected = sinew_math::max(stop + way * step as f32, -0.5);
             let gone = at(&world);
             let bar = 2e-4 + 0.01 * way.abs();
-            assert!(gone > expected - bar, "case {case}, cap {cap}, {speed} m/s: {gone} for {expected}");
+            assert!(
+                gone > expected - bar,
+                "case {case}, cap {cap}, {speed} m/s: at {gone}, expected {expected}"
+            );
             if cap > 2e3 {
-                assert!(gone < expected + bar, "case {case}, cap {cap}, {speed} m/s: {gone} for {expected}");
+                assert!(
+                    gone < expected + bar,
+                    "case {case}, cap {cap}, {speed} m/s: at {gone}, expected {expected}"
+                );
             }
         }
     }
@@ -240,9 +246,9 @@ fn motors_in_a_chain_saturate_only_where_they_are_weak() {
             *most = most.max(sinew_math::limits::hinge_angle(world.joint_transform(id).rotation).abs());
         }
     }
-    assert!(most[0] < 0.1, "the root holds: {most:?}");
-    assert!(most[1] > 0.7, "the middle gives way: {most:?}");
-    assert!(most[2] < 0.1, "the tip holds: {most:?}");
+    assert!(most[0] < 0.1, "the root joint must not move: {most:?}");
+    assert!(most[1] > 0.7, "the middle joint must yield: {most:?}");
+    assert!(most[2] < 0.1, "the tip joint must not move: {most:?}");
 }
 
 #[test]
@@ -274,10 +280,14 @@ fn saturated_motors_add_only_their_work() {
         world.step();
         let after = world.energy();
         let rise = after.kinetic - before.kinetic - world.work().total();
-        assert!(rise <= 0.01 * before.kinetic.max(20.2), "step {step}: {rise} J out of {}", before.kinetic);
+        assert!(
+            rise <= 0.01 * before.kinetic.max(20.2),
+            "step {step}: the energy rose by {rise} J from {} J",
+            before.kinetic
+        );
         most = most.max(after.kinetic);
     }
-    assert!(most > 2.0, "they moved it: {most} J");
+    assert!(most > 2.0, "the drives must move the chain; kinetic energy {most} J");
 }
 
 #[test]
@@ -313,7 +323,7 @@ fn distances_are_rods_ropes_and_springs() {
     let id = rod.add_joint(&JointDef::between(a, b, Transform::IDENTITY, Transform::IDENTITY, kind));
     for _ in 0..300 {
         rod.step();
-        assert!(rod.joint_gap(id) < 1e-4, "the rod keeps its length: {}", rod.joint_gap(id));
+        assert!(rod.joint_gap(id) < 1e-4, "the rod must keep its length; gap {} m", rod.joint_gap(id));
     }
     // A rope lets its end fall freely, then stops it.
     let mut rope = world(G);
@@ -355,7 +365,7 @@ fn an_undamped_spring_keeps_its_period_and_energy() {
         world.step();
         let expected = 0.2 * trig::cos(core::f32::consts::TAU * 1.5 * step as f32 / 60.0);
         let found = world.center_of_mass(b).x;
-        assert!((found - expected).abs() < 0.008, "step {step}: {found} is not {expected}");
+        assert!((found - expected).abs() < 0.008, "step {step}: {found}, expected {expected}");
     }
 }
 
@@ -520,7 +530,10 @@ fn joints_break_above_their_strength_and_report() {
             let y = world.center_of_mass(b).y;
             world.set_velocity(b, Velocity::default());
             run(&mut world, 1.0);
-            assert!((world.center_of_mass(b).y - y).abs() < 1e-3, "attached anew where it is");
+            assert!(
+                (world.center_of_mass(b).y - y).abs() < 1e-3,
+                "the joint must attach the body where it is"
+            );
         }
     }
     // Breaks by torque.
@@ -563,7 +576,7 @@ fn a_soft_zone_brakes_before_the_stop() {
     };
     let hard = hardest(None);
     let soft = hardest(Some(SoftZone { width: 0.2, softness: spring(5.0, 0.7) }));
-    assert!(soft < 0.5 * hard, "{soft} N·m with, {hard} N·m without");
+    assert!(soft < 0.5 * hard, "peak torque {soft} N·m with the spring, {hard} N·m without");
 }
 
 #[test]
@@ -639,7 +652,7 @@ fn a_four_bar_linkage_of_hinges_stays_closed() {
         gap = joints.iter().map(|&id| world.joint_gap(id)).fold(gap, f32::max);
         swing = swing.max(world.center_of_mass(low).x - 0.5);
         let level = world.transform(low).rotation.angle_to(Rotation::IDENTITY);
-        assert!(level < 5e-3, "the lower bar stays level: {level}");
+        assert!(level < 5e-3, "the lower bar must stay level; angle {level}");
     }
     let drift = (world.energy().total() - start) / (3.0 * G);
     assert!(gap < 1e-4, "gap {gap}");
@@ -684,7 +697,7 @@ fn a_stiff_spring_that_pulls_beyond_a_stop_rests_at_it() {
         world.step();
         let (at, speed) = (angle(&world, b), world.velocity(b).angular.length());
         assert!(at > -0.32, "step {step}: {at} rad");
-        assert!(step < 60 || speed < 0.01, "step {step}: {speed} rad/s");
+        assert!(step < 60 || speed < 0.01, "step {step}: spins at {speed} rad/s");
     }
 }
 

@@ -126,8 +126,8 @@ fn a_net_carries_fifty_times_its_mass_at_the_static_height() {
         assert!(!world.is_awake(ball), "{what} rest");
         let at = world.center_of_mass(ball);
         let (sag, due) = (above - at.y, above - rest_height(&def, f64::from(mass)) as f32);
-        println!("{what}: {sag} m, due {due} m");
-        assert!((sag / due - 1.0).abs() < 0.01, "{what}: {sag} m for {due} m");
+        println!("{what}: sag {sag} m, expected {due} m");
+        assert!((sag / due - 1.0).abs() < 0.01, "{what}: sag {sag} m, expected {due} m");
         let gap = |p: &Vec3| (*p - at).length() - BALL - RADIUS;
         let deepest = world.particles(group).positions().iter().map(gap).fold(1.0, sinew_math::min);
         assert!(deepest > -1e-5, "{what}: {deepest} m");
@@ -197,7 +197,7 @@ fn loops_match_the_dense_solution() {
                 worst = worst.max((f64::from(v) - due[3 * (i - held) + k]).abs());
             }
         }
-        assert!(worst < 2e-3 * size, "case {case}: off by {worst} of {size} m/s");
+        assert!(worst < 2e-3 * size, "case {case}: velocity off by {worst} m/s at a size of {size} m/s");
     }
 }
 
@@ -299,6 +299,6 @@ fn two_ropes_through_planks_add_little_energy() {
             gain = max(gain, world.energy().total() - begin);
         }
         println!("{tension} N: {gain} J");
-        assert!(gain < most, "{tension} N: gained {gain} J");
+        assert!(gain < most, "tension {tension} N: the energy rose by {gain} J");
     }
 }

@@ -110,7 +110,7 @@ fn slide(floor: &Shape, slider: &Shape, height: f32, speed: f32, friction: f32) 
         if let Some(rest) = rest {
             deviation = deviation.max((y - rest).abs());
         }
-        assert!((y - height).abs() < 2e-3, "{slider:?} at {speed} m/s: {y} after {step} steps");
+        assert!((y - height).abs() < 2e-3, "{slider:?} at {speed} m/s: height {y} after {step} steps");
     }
     (deviation, world.velocity(id).linear.length())
 }
@@ -144,8 +144,11 @@ fn friction_on_a_tiled_floor_is_that_of_a_plane() {
             // Two seconds without the first substep.
             let expected = 20.0 - FRICTION * 9.81 * 2.0;
             println!("{floor:?} {slider:?}: {deviation} m, {end} m/s for {expected}");
-            assert!(deviation < 1e-3, "{floor:?} {slider:?}: {deviation} m");
-            assert!((end - expected).abs() < 0.01 * (20.0 - expected), "{floor:?} {slider:?}: {end} m/s");
+            assert!(deviation < 1e-3, "{floor:?} {slider:?}: off its line by {deviation} m");
+            assert!(
+                (end - expected).abs() < 0.01 * (20.0 - expected),
+                "{floor:?} {slider:?}: final speed {end} m/s"
+            );
         }
     }
 }
@@ -158,8 +161,11 @@ fn bodies_slide_over_a_tiled_floor_without_catching() {
             for speed in [1.0, 5.0, 20.0] {
                 let (deviation, end) = slide(&shape, &slider, height, speed, 0.0);
                 println!("{floor:?} {slider:?} {speed} m/s: {deviation} m, {end} m/s");
-                assert!(deviation < 1e-3, "{floor:?} {slider:?} {speed} m/s: {deviation} m");
-                assert!((end - speed).abs() < 1e-3 * speed, "{floor:?} {slider:?} {speed} m/s: {end} m/s");
+                assert!(deviation < 1e-3, "{floor:?} {slider:?} {speed} m/s: off its line by {deviation} m");
+                assert!(
+                    (end - speed).abs() < 1e-3 * speed,
+                    "{floor:?} {slider:?} {speed} m/s: final speed {end} m/s"
+                );
             }
         }
     }

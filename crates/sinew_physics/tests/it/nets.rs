@@ -78,7 +78,7 @@ fn a_chain_of_fifty_masses_stretches_by_mg_over_k() {
     for k in 0..MASSES {
         let expected = (MASSES - k) as f32 * G / 1e5;
         let found = world.particles(id).stretch(k as usize);
-        assert!((found / expected - 1.0).abs() < 0.01, "spring {k}: {found} m, {expected} m");
+        assert!((found / expected - 1.0).abs() < 0.01, "spring {k}: length {found} m, expected {expected} m");
     }
 }
 
@@ -187,7 +187,7 @@ fn particles_never_pass_through_moving_shapes() {
             for k in 0..=64 {
                 let at = start + (end - start) * (k as f32 / 64.0);
                 let (distance, _) = shape.signed_distance(&Transform::IDENTITY, at);
-                assert!(distance > radius - 2e-3, "case {case}, step {step}: {distance}");
+                assert!(distance > radius - 2e-3, "case {case}, step {step}: distance {distance} m");
             }
         }
     }
@@ -277,7 +277,7 @@ fn a_pressed_blob_keeps_its_volume() {
     for _ in 0..120 {
         world.step();
         let kept = world.particles(id).volume(0) / rest;
-        assert!((kept - 1.0).abs() < 0.01, "{kept} of it under the plate");
+        assert!((kept - 1.0).abs() < 0.01, "{kept} of the volume remains under the plate");
     }
     let highest = world.particles(id).positions().iter().fold(0.0, |high, p| max(high, p.y));
     assert!(highest < 0.13, "{highest} m of 0.25");

@@ -168,7 +168,7 @@ fn given_back(world: &World) -> f32 {
     let mut stopped = World::new(WorldDef::default());
     let mut state = Writer::new();
     world.save(&mut state);
-    stopped.load(&mut Reader::new(&state.into_bytes())).expect("it was written by a world");
+    stopped.load(&mut Reader::new(&state.into_bytes())).expect("a world wrote the snapshot");
     stopped.set_gravity(Vec3::ZERO);
     for id in stopped.body_ids().collect::<Vec<_>>() {
         stopped.set_velocity(id, Velocity::default());
@@ -223,9 +223,9 @@ fn are_sound(seeds: &[u64], whole: bool) {
                 depth = max(depth, beyond(&one));
             }
         }
-        assert_eq!(one.hash(), other.hash(), "world {seed} on two threads");
+        assert_eq!(one.hash(), other.hash(), "world {seed}: other hash on two threads");
         if gain > 0.0 || depth > DEPTH {
-            bad.push(format!("world {seed}: {gain} J above what is allowed, {depth} m deep"));
+            bad.push(format!("world {seed}: {gain} J above the allowed energy, depth {depth} m"));
         }
     }
     assert!(bad.is_empty(), "{bad:#?}");

@@ -63,7 +63,7 @@ fn a_roller_crosses_a_rope_without_energy_gain() {
             world.step();
             let what = format!("{stiffness} N at {turn} rad, step {step}");
             let gain = world.energy().total() - begin;
-            assert!(gain < 0.1, "{what}: gained {gain} J");
+            assert!(gain < 0.1, "{what}: the energy rose by {gain} J");
             assert!(sunk(&world, rope) < 1e-4, "{what}: {} m in the floor", sunk(&world, rope));
         }
     }
@@ -93,11 +93,11 @@ fn cloth_on_the_ground_carries_a_roller() {
     for step in 0..240 {
         world.step();
         let gain = world.energy().total() - begin;
-        assert!(gain < 0.1, "step {step}: gained {gain} J");
+        assert!(gain < 0.1, "step {step}: the energy rose by {gain} J");
         assert!(sunk(&world, cloth) < 1e-4, "step {step}: {} m in the floor", sunk(&world, cloth));
     }
     let height = world.center_of_mass(roller).y - ROLLER;
-    assert!(height > 1.8 * RADIUS, "{height} m above the ground");
+    assert!(height > 1.8 * RADIUS, "the roller is {height} m above the ground");
 }
 
 /// The end of a rope that starts in the narrow crease between two limbs comes out without a gain of energy.
@@ -134,10 +134,10 @@ fn a_rope_end_starting_in_a_crease_comes_out() {
         for step in 0..240 {
             world.step();
             let energy = world.energy().total();
-            assert!(energy < most, "bent by {bend}, step {step}: {energy} J of {most}");
+            assert!(energy < most, "bent by {bend}, step {step}: energy {energy} J, bound {most} J");
         }
         let end = world.particles(id).positions()[rope.last as usize];
-        assert!(end.x > 0.05, "bent by {bend}: it is still at {end:?}");
+        assert!(end.x > 0.05, "bent by {bend}: not yet relaxed, end at {end:?}");
     }
 }
 
@@ -188,9 +188,9 @@ fn crates_lie_and_sleep_on_cloth() {
         }
         let bottom = world.center_of_mass(id).y - 0.15;
         // A crate sinks into the floor as deep: a fifth of the slop, and the softness of the contact.
-        assert!((bottom - 2.0 * RADIUS).abs() < 2e-3, "{mass} kg: {bottom} m above the floor");
+        assert!((bottom - 2.0 * RADIUS).abs() < 2e-3, "{mass} kg: the bottom is {bottom} m above the floor");
         assert!(sunk(&world, cloth) < 1e-4, "{mass} kg: {} m in the floor", sunk(&world, cloth));
-        assert!(!world.is_awake(id), "{mass} kg: it is awake after 4 s");
+        assert!(!world.is_awake(id), "{mass} kg: still awake after 4 s");
     }
 }
 
@@ -207,7 +207,7 @@ fn crates_wake_through_cloth() {
     for _ in 0..60 {
         world.step();
     }
-    assert!(!world.is_awake(below), "cloth alone wakes nobody");
+    assert!(!world.is_awake(below), "cloth alone must not wake a body");
     // The fall is slower than an impact.
     let above = crate_of(&mut world, 5.0, 0.3 + 2.0 * RADIUS + 0.001);
     let mut woke = false;
@@ -249,7 +249,7 @@ fn cloth_under_a_crate_is_held_by_its_friction() {
             world.step();
         }
         let way = (world.particles(cloth).positions()[middle] - begin).x;
-        assert_eq!(way < 0.03, stays, "pulled with {pull} N: {way} m");
+        assert_eq!(way < 0.03, stays, "pulled with {pull} N: moved {way} m");
     }
 }
 
@@ -287,7 +287,7 @@ fn cloth_slides_from_under_a_crate_by_coulombs_law() {
         let expected = f32::min(share, 1.0) * rubs;
         assert!(
             (found / expected - 1.0).abs() < 0.05,
-            "pulled by {share}: {found} N, not {expected}, {way} m"
+            "pulled by {share}: force {found} N, expected {expected} N, moved {way} m"
         );
     }
 }
@@ -328,7 +328,7 @@ fn a_ball_in_a_narrow_wedge_carries_and_in_a_wide_one_slips_out() {
         }
         let way = world.particles(ball).positions()[0].x - at;
         let rises = world.transform(slab).rotation * Vec3::X;
-        assert_eq!(way.abs() < 0.01, is_nipped, "{degrees}°: it went {way} m");
+        assert_eq!(way.abs() < 0.01, is_nipped, "{degrees}°: moved {way} m");
         let least = if is_nipped { degrees - 2.0 } else { 20.0 };
         assert!(rises.y > trig::sin(least.to_radians()), "{degrees}°: the slab rises along {rises}");
     }

@@ -75,7 +75,7 @@ fn a_pinned_body_sags_by_weight_over_stiffness() {
         run(&mut world, 2.0);
         let sag = 1.0 - world.center_of_mass(body).y;
         let expected = 3.0 * G / stiffness;
-        assert!((sag - expected).abs() < 0.005 * expected + 2e-7, "{sag} is not {expected}");
+        assert!((sag - expected).abs() < 0.005 * expected + 2e-7, "sag {sag} m, expected {expected} m");
         let force = world.reaction(id).force;
         assert!((force - Vec3::Y * 3.0 * G).length() < 0.002 * 3.0 * G, "{force}");
     }
@@ -101,7 +101,7 @@ fn a_chain_with_every_link_pinned_holds_its_joints() {
         let mass = world.mass(body).mass;
         let sag = 1.0 - world.center_of_mass(body).y;
         let expected = G / omega2(20.0);
-        assert!((sag - expected).abs() < 0.01 * expected, "{sag} is not {expected}");
+        assert!((sag - expected).abs() < 0.01 * expected, "sag {sag} m, expected {expected} m");
         let force = world.reaction(pin).force;
         assert!((force - Vec3::Y * mass * G).length() < 0.01 * mass * G, "{force}");
     }
@@ -116,7 +116,10 @@ fn pins_at_the_ends_carry_a_chain() {
     run(&mut world, 20.0);
     let carried: Vec3 = pins.iter().map(|&pin| world.reaction(pin).force).sum();
     let weight = weight(&world, &bodies);
-    assert!((carried - Vec3::Y * weight).length() < 0.01 * weight, "{carried} for {weight}");
+    assert!(
+        (carried - Vec3::Y * weight).length() < 0.01 * weight,
+        "pin force {carried} N, weight {weight} N"
+    );
     assert!(joints.iter().all(|&joint| world.joint_gap(joint) < 1e-5));
 }
 
@@ -132,7 +135,7 @@ fn a_weak_pin_pulls_with_its_cap() {
     assert!((world.reaction(id).force.y - 30.0).abs() < 0.01, "{}", world.reaction(id).force);
     let fall = 1.0 - world.center_of_mass(body).y;
     let expected = 0.5 * (G - 30.0 / 4.0);
-    assert!((fall - expected).abs() < 0.03 * expected, "{fall} is not {expected}");
+    assert!((fall - expected).abs() < 0.03 * expected, "fell {fall} m, expected {expected} m");
 }
 
 #[test]
@@ -198,7 +201,10 @@ fn energy_rises_by_the_work_of_pins_at_most() {
         let after = world.energy();
         let gain = (after.kinetic - before.kinetic) + (after.potential - before.potential);
         let done = world.work().drives;
-        assert!(gain <= done + 1e-3 * before.kinetic + 1e-3, "step {step}: {gain} J of {done}");
+        assert!(
+            gain <= done + 1e-3 * before.kinetic + 1e-3,
+            "step {step}: the energy rose by {gain} J, work {done} J"
+        );
         rise += gain;
         work += done.abs();
     }
@@ -234,7 +240,10 @@ fn a_body_made_kinematic_and_back_keeps_its_properties() {
     let momentum = world.momentum().linear;
     world.step();
     let lost = momentum - world.momentum().linear;
-    assert!((lost - Vec3::Y * weight(&world, &bodies) / 60.0).length() < 1e-3, "it falls freely: {lost}");
+    assert!(
+        (lost - Vec3::Y * weight(&world, &bodies) / 60.0).length() < 1e-3,
+        "the ragdoll must fall freely; lost momentum {lost}"
+    );
 }
 
 #[test]
@@ -300,9 +309,12 @@ fn kinematic_bodies_report_work_on_particles() {
     for held in [true, false] {
         let (rise, work) = lift(held);
         println!("held: {held}, {rise} J of {work}");
-        assert!((rise - expected).abs() < 0.01 * expected, "held: {held}, {rise} J");
+        assert!((rise - expected).abs() < 0.01 * expected, "held: {held}, energy rise {rise} J");
         // A body of 2 kg loses 2 v per second to the air.
         let drag = 2.0 * 2.0 * 0.5 * 0.5 * 2.0;
-        assert!((work - rise - drag).abs() < 0.03 * expected, "held: {held}, {rise} J of {work}");
+        assert!(
+            (work - rise - drag).abs() < 0.03 * expected,
+            "held: {held}, energy rise {rise} J, work {work} J"
+        );
     }
 }

@@ -113,14 +113,17 @@ fn ten_thousand_random_worlds_hold() {
     let outcomes = outcomes(asked_seeds().unwrap_or(100..10_000));
     let failed: Vec<_> = outcomes.iter().filter_map(|(seed, o)| Some((seed, o.as_ref().err()?))).collect();
     let share = failed.len() * 1000 / outcomes.len();
-    assert!(share <= KNOWN_PER_THOUSAND, "{share} of 1000 worlds do not hold: {failed:?}");
+    assert!(share <= KNOWN_PER_THOUSAND, "{share} of 1000 worlds fail: {failed:?}");
     let never = |failure: &Failure| matches!(failure.fault, Fault::Panic(_) | Fault::Restore);
-    assert!(!failed.iter().any(|(_, failure)| never(failure)), "panic or another future: {failed:?}");
+    assert!(
+        !failed.iter().any(|(_, failure)| never(failure)),
+        "panic or a state that depends on threads: {failed:?}"
+    );
 }
 
 /// Runs the worlds of the range in `SINEW_WORLDS`, prints failing ones after shrinking, and the distribution of gaps.
 #[test]
-#[ignore = "for people: prints, asserts nothing"]
+#[ignore = "manual tool: prints, asserts nothing"]
 fn survey() {
     let seeds = asked_seeds().unwrap_or(0..100);
     let count = seeds.end - seeds.start;

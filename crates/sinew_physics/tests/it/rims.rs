@@ -83,7 +83,10 @@ fn a_disc_rolls_in_a_circle_at_the_rate_of_its_closed_form() {
         for ground in [plane as fn(&mut World), slab] {
             let share = share_of_rate(ground, rate, lean.to_radians());
             println!("{rate} rad/s, leaning by {lean}°: {share}");
-            assert!((share - 1.0).abs() < 0.015, "{rate} rad/s, leaning by {lean}°: {share}");
+            assert!(
+                (share - 1.0).abs() < 0.015,
+                "{rate} rad/s, leaning by {lean}°: {share} times the expected rate"
+            );
         }
     }
 }

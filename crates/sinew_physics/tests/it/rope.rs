@@ -39,7 +39,10 @@ fn a_mass_stretches_its_spring_by_mg_over_k() {
         run(&mut world, 600);
         let stretch = -0.5 - world.particles(id).positions()[1].y;
         let expected = 2.0 * 9.81 / 1000.0;
-        assert!((stretch / expected - 1.0).abs() < 1e-3, "{substeps} substeps: {stretch} for {expected}");
+        assert!(
+            (stretch / expected - 1.0).abs() < 1e-3,
+            "{substeps} substeps: stretch {stretch}, expected {expected}"
+        );
     }
 }
 
@@ -73,7 +76,7 @@ fn a_rope_holds_a_body_and_hangs_from_a_beam() {
     // The weight stretches the whole rope; the rope's own weight acts on half of it on average.
     let sunk = 1.8 - world.transform(weight).translation.y;
     let expected = (mass + 0.1) * 9.81 / 5000.0;
-    assert!((sunk / expected - 1.0).abs() < 0.002, "sunk by {sunk} for {expected}");
+    assert!((sunk / expected - 1.0).abs() < 0.002, "sunk by {sunk} m, expected {expected} m");
     // At the end of a step, the pull of the last substep has acted but the weight of the next one has not: g h.
     assert!(world.velocity(weight).linear.length() < 0.05);
 }
@@ -100,7 +103,7 @@ fn a_rope_falls_over_a_box_and_rests_on_it() {
     let rope = world.particles(id);
     let lowest = rope.positions().iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
     let highest = rope.positions().iter().map(|p| p.y).fold(0.0, f32::max);
-    assert!(lowest > 0.0 && highest > 0.5 && highest < 0.53, "from {lowest} to {highest}");
+    assert!(lowest > 0.0 && highest > 0.5 && highest < 0.53, "lowest {lowest} m, highest {highest} m");
     assert!(rope.velocities().iter().all(|v| v.length() < 0.02));
     assert!((world.transform(crate_body).translation - Vec3::new(0.0, 0.25, 0.0)).length() < 0.01);
 }
@@ -128,7 +131,7 @@ fn rope_and_body_keep_their_momentum_together() {
     let before = world.momentum().linear;
     run(&mut world, 300);
     let after = world.momentum().linear;
-    assert!((after - before).length() < 1e-5 * before.length(), "{before:?} became {after:?}");
+    assert!((after - before).length() < 1e-5 * before.length(), "momentum {before:?} became {after:?}");
 }
 
 #[test]
@@ -199,7 +202,10 @@ fn a_rope_pulls_through_a_body_that_it_holds_twice() {
     let hung = [11.0, 10.0].map(|mass| mass * 9.81 / 5000.0);
     for (k, expected) in hung.into_iter().enumerate() {
         let stretch = world.particles(id).stretch(k);
-        assert!((stretch / expected - 1.0).abs() < 1e-3, "spring {k}: {stretch} for {expected}");
+        assert!(
+            (stretch / expected - 1.0).abs() < 1e-3,
+            "spring {k}: stretch {stretch}, expected {expected}"
+        );
     }
 }
 
@@ -245,7 +251,10 @@ fn a_plank_on_taut_ropes_gains_no_energy() {
         for step in 0..600 {
             world.step();
             let now = world.energy().total();
-            assert!(now < begin + 0.5, "{ropes} ropes, step {step}: {begin} J became {now}");
+            assert!(
+                now < begin + 0.5,
+                "{ropes} ropes, step {step}: the energy rose from {begin} J to {now} J"
+            );
         }
     }
 }
@@ -273,12 +282,9 @@ fn a_stiff_rope_keeps_its_motion() {
             world.step();
             let what = format!("{stiffness} N at {velocity} m/s, step {step}");
             let apart = world.momentum().linear / 0.08 - thrown;
-            assert!(
-                apart.length() < 1e-3 * velocity,
-                "{what}: {apart:?} from the velocity that it was thrown with"
-            );
+            assert!(apart.length() < 1e-3 * velocity, "{what}: the velocity is off by {apart:?}");
             let gain = world.energy().total() - begin;
-            assert!(gain.abs() < 1e-3 * begin, "{what}: gained {gain} J of {begin}");
+            assert!(gain.abs() < 1e-3 * begin, "{what}: the energy rose by {gain} J from {begin} J");
             assert!(world.particles(id).elastic_energy() < 1e-3 * begin, "{what}: stretched");
         }
     }

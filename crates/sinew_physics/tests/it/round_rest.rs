@@ -50,7 +50,10 @@ fn round_shapes_settle_and_sleep() {
                 let lowest = shape.aabb(&at).min.y;
                 let slop = 0.02 * shape.smallest_extent();
                 assert!(!world.is_awake(id), "{shape:?} tilted {tilt} on box {boxed}: awake at {at:?}");
-                assert!(lowest.abs() < slop, "{shape:?} tilted {tilt} on box {boxed}: bottom at {lowest}");
+                assert!(
+                    lowest.abs() < slop,
+                    "{shape:?} tilted {tilt} on box {boxed}: its bottom is at {lowest}"
+                );
             }
         }
     }
@@ -96,6 +99,6 @@ fn a_lying_cylinder_rolls() {
         println!("box {boxed}: {v:?}, off by {highest} m, at {}", world.transform(id).translation);
         assert!((v.linear.x - 1.0).abs() < 0.05, "box {boxed}: {v:?}");
         assert!((v.angular.z + 5.0).abs() < 0.25, "box {boxed}: {v:?}");
-        assert!(highest < 0.002, "box {boxed}: off by {highest}");
+        assert!(highest < 0.002, "box {boxed}: the height is off by {highest} m");
     }
 }

@@ -205,7 +205,7 @@ fn real_edges_stop_bodies() {
             let body = world.add_body(&BodyDef { linear_velocity: Vec3::X * speed, ..crate_of });
             (0..120).for_each(|_| world.step());
             let x = world.center_of_mass(body).x;
-            assert!(x < 0.4, "{name}, {speed} m/s: the crate is at {x}");
+            assert!(x < 0.4, "{name}, {speed} m/s: the crate is at x = {x}");
         }
     }
 }

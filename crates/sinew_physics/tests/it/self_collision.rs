@@ -121,7 +121,7 @@ fn folds_do_not_intersect() {
     }
     // Without thickness the layers do cross, so the count can detect crossings.
     let (seen, ..) = fall(0.2, 0.0, 240);
-    assert!(seen > 50, "{seen} crossings without thickness");
+    assert!(seen > 50, "only {seen} crossings without thickness");
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn spring_neighbours_may_be_near() {
             group.substep(1e-3, Vec3::ZERO, &[], &[], &mut []);
         }
         let apart = (group.positions()[1] - group.positions()[0]).length();
-        assert!((apart - distance).abs() < 1e-4, "joined: {joined}, {apart} m");
+        assert!((apart - distance).abs() < 1e-4, "joined: {joined}, distance {apart} m");
         // Overlapping particles that separate do not fly apart.
         assert!(group.velocities().iter().all(|v| v.length() < 1e-4), "{:?}", group.velocities());
     }

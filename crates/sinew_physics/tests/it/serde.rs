@@ -73,5 +73,5 @@ fn missing_fields_have_defaults() {
     let def: BodyDef = from_str(r#"{"position": [0, 2, 0], "gravity_scale": 0.5}"#).expect("it is enough");
     assert_eq!(def, BodyDef { gravity_scale: 0.5, ..BodyDef::default().at(Vec3::Y * 2.0) });
     let hull: Result<Shape, _> = from_str(r#"{"Hull": [[0, 0, 0], [1, 0, 0]]}"#);
-    assert!(hull.expect_err("two points are no solid").to_string().contains("hull"));
+    assert!(hull.expect_err("two points do not span a solid").to_string().contains("hull"));
 }

@@ -69,14 +69,17 @@ fn towers_of_any_masses_shift_by(most_aside: f32) {
         run(&mut world, 30);
         let weight = 9.81 * masses.iter().map(|&m| f64::from(m)).sum::<f64>();
         let borne = floor_force(&world, cubes[0]);
-        assert!((borne / weight - 1.0).abs() < 0.01, "{borne} N under {weight}, case {case}, {masses:?}");
+        assert!(
+            (borne / weight - 1.0).abs() < 0.01,
+            "force {borne} N, weight {weight} N, case {case}, {masses:?}"
+        );
         run(&mut world, 270);
         for (i, &id) in cubes.iter().enumerate() {
             let off = world.transform(id).translation - place(i);
             let (aside, sunk) = (Vec3::new(off.x, 0.0, off.z).length(), -off.y);
             assert!(
                 aside < most_aside && sunk < 0.005,
-                "cube {i} {aside} aside, {sunk} down, case {case}, {masses:?}"
+                "cube {i} moved {aside} m aside, {sunk} m down, case {case}, {masses:?}"
             );
         }
     }
@@ -119,6 +122,6 @@ fn a_wall_at_rest_stays_at_rest() {
         world.step();
         let energy = world.energy().kinetic;
         // 1 cm/s of all cubes is 2.9 J; one substep without contacts gives 48 J.
-        assert!(energy < 5.0, "{energy} J in step {step}");
+        assert!(energy < 5.0, "energy {energy} J in step {step}");
     }
 }

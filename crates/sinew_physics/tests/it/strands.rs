@@ -102,17 +102,26 @@ fn strands_match_islands() {
             island.step();
             for ((pose, v), (expected, w)) in a.state(&strand).into_iter().zip(b.state(&island)) {
                 let off = (pose.translation - expected.translation).length();
-                assert!(off < 1e-4, "chain {i}, step {step}: {pose:?}, {expected:?}");
-                assert!(pose.rotation.dot(expected.rotation).abs() > 1.0 - 1e-6, "chain {i}, step {step}");
-                assert!((v.linear - w.linear).length() < 5e-3, "chain {i}, step {step}: {v:?}, {w:?}");
-                assert!((v.angular - w.angular).length() < 5e-2, "chain {i}, step {step}: {v:?}, {w:?}");
+                assert!(off < 1e-4, "chain {i}, step {step}: pose {pose:?}, expected {expected:?}");
+                assert!(
+                    pose.rotation.dot(expected.rotation).abs() > 1.0 - 1e-6,
+                    "chain {i}, step {step}: other rotation"
+                );
+                assert!(
+                    (v.linear - w.linear).length() < 5e-3,
+                    "chain {i}, step {step}: velocity {v:?}, expected {w:?}"
+                );
+                assert!(
+                    (v.angular - w.angular).length() < 5e-2,
+                    "chain {i}, step {step}: velocity {v:?}, expected {w:?}"
+                );
             }
             for (&a, &b) in a.joints.iter().zip(&b.joints) {
                 let (of_strand, of_island) = (strand.reaction(a), island.reaction(b));
                 let off = (of_strand.force - of_island.force).length();
                 assert!(
                     off < 0.01 * of_island.force.length() + 0.1,
-                    "chain {i}: {of_strand:?}, {of_island:?}"
+                    "chain {i}: force {of_strand:?} as a strand, {of_island:?} as an island"
                 );
             }
         }
@@ -144,7 +153,10 @@ fn momentum_of_a_free_strand_stays() {
         let before = momentum(&world);
         run(&mut world, 120);
         let lost = (momentum(&world) - before).length();
-        assert!(before.length() > 0.05 * mass && lost < 1e-4 * mass, "{links}: {lost} of {before}");
+        assert!(
+            before.length() > 0.05 * mass && lost < 1e-4 * mass,
+            "{links} links: lost momentum {lost} of {before}"
+        );
         let gap = chain.joints.iter().map(|&joint| world.joint_gap(joint)).fold(0.0, f32::max);
         assert!(gap < 2e-4, "{links}: {gap} m");
     }
@@ -170,7 +182,10 @@ fn joints_of_a_long_rope_carry_the_weight_below() {
         for (joint, mass) in joints.iter().zip(&masses).rev() {
             below += mass * 9.81;
             let force = world.reaction(*joint).force.length();
-            assert!((force - below).abs() < 2e-4 * below, "{links} links: {force} N for {below} N");
+            assert!(
+                (force - below).abs() < 2e-4 * below,
+                "{links} links: joint force {force} N, weight below {below} N"
+            );
             assert!(world.joint_gap(*joint) < 1e-5, "{links} links");
         }
     }
@@ -204,7 +219,7 @@ fn joints_of_a_long_whirling_chain_stay_closed() {
             world.step();
             widest = joints.iter().map(|&joint| world.joint_gap(joint)).fold(widest, f32::max);
         }
-        assert!(widest < 2e-5, "{links} links: {widest} m");
+        assert!(widest < 2e-5, "{links} links: widest gap {widest} m");
     }
 }
 

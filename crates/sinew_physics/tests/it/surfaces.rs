@@ -32,7 +32,7 @@ fn only_shape(world: &World, body: BodyId) -> ShapeId {
 }
 
 fn assert_near(found: f32, expected: f32, share: f32, what: &str) {
-    assert!((found / expected - 1.0).abs() < share, "{what}: {found} for {expected}");
+    assert!((found / expected - 1.0).abs() < share, "{what}: {found}, expected {expected}");
 }
 
 fn reloaded(world: &World, into: &mut World) {
@@ -65,7 +65,7 @@ fn a_block_holds_to_the_static_angle_and_slides_with_the_other_coefficient() {
     let start = world.transform(block).translation;
     run(&mut world, 600);
     let crept = (world.transform(block).translation - start).length();
-    assert!(crept < 1e-3, "it crept {crept} m in 10 s");
+    assert!(crept < 1e-3, "the body crept {crept} m in 10 s");
     // A push makes the block slide, and it stops again: the slope is below the friction angle.
     world.apply_impulse_at_center(block, down * world.mass(block).mass);
     run(&mut world, 60);
@@ -115,7 +115,7 @@ fn a_belt_carries_a_box_to_its_speed() {
         run(&mut world, 2 * half);
         let v = world.velocity(load).linear;
         assert!((v - along * speed).length() < 0.01, "{v:?} on a belt");
-        assert!(world.is_awake(load), "what is carried does not sleep");
+        assert!(world.is_awake(load), "a conveyed body must not sleep");
     }
 }
 
@@ -211,7 +211,7 @@ fn a_one_way_platform_passes_upward_and_holds_downward() {
         }
         assert_near(highest, radius + speed * speed / (2.0 * G), 0.02, "nothing holds it up on its way");
         let y = world.transform(ball).translation.y;
-        assert!((y - 1.0 - radius).abs() < 3e-3, "it lies on top, not at {y}");
+        assert!((y - 1.0 - radius).abs() < 3e-3, "the body must lie on top; its height is {y} m");
         assert!(!world.is_awake(ball));
     }
 }
@@ -295,7 +295,7 @@ fn a_modifier_drops_contacts_and_throws() {
         highest = sinew_math::max(highest, world.transform(thrown).translation.y);
     }
     assert!(world.transform(dropped).translation.y < -1.0);
-    assert_near(highest - 0.1, 25.0 / (2.0 * G), 0.03, "as high as it is thrown");
+    assert_near(highest - 0.1, 25.0 / (2.0 * G), 0.03, "height of the throw");
     assert!((world.transform(held).translation.y - 0.1).abs() < 2e-3);
     let mut w = Writer::new();
     world.save(&mut w);
@@ -411,7 +411,10 @@ fn a_hit_reports_speed_and_impulse_once() {
             let weight = mass * G * 2.0 / 60.0;
             let expected = mass * speed * (1.0 + restitution);
             let slack = tolerance * expected + weight;
-            assert!((hit.impulse - expected).abs() < slack, "from {height} m: {hit:?} for {expected}");
+            assert!(
+                (hit.impulse - expected).abs() < slack,
+                "dropped from {height} m: {hit:?}, expected impulse {expected}"
+            );
             assert!(hit.point.length() < 1e-3 && hit.greatest == hit.impulse, "{hit:?}");
         }
     }
@@ -472,7 +475,7 @@ fn sensors_report_static_moving_sleeping_and_removed_bodies() {
         world.step();
         assert!(world.events().sensor_begin.is_empty() && world.events().sensor_end.is_empty());
     }
-    assert!(!world.is_awake(sleeper), "and falling asleep ends nothing");
+    assert!(!world.is_awake(sleeper), "falling asleep must not end contacts");
     world.set_transform(door, Transform::from_translation(Vec3::Y * 5.0));
     world.step();
     assert_eq!(world.events().sensor_end, [(gate, door)]);

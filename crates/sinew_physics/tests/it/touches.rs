@@ -174,10 +174,13 @@ fn many_triangles_are_one_touch_and_one_hit() {
     let lying = world.transform(block).translation.y;
     run(&mut world, 300);
     let lies = world.transform(block).translation.y;
-    assert!((lies - lying).abs() < 3e-3, "it lay at {lying} m and lies at {lies} m");
+    assert!((lies - lying).abs() < 3e-3, "height {lying} m at rest before, {lies} m after");
     world.set_velocity(block, Velocity { linear: Vec3::X * 1.0, ..Velocity::default() });
     let seen = run(&mut world, 30);
-    assert!(seen.begin.is_empty() && seen.end.is_empty(), "it slides from tile to tile: {seen:?}");
+    assert!(
+        seen.begin.is_empty() && seen.end.is_empty(),
+        "sliding from tile to tile must not begin or end contacts: {seen:?}"
+    );
     world.set_transform(block, Transform::from_translation(Vec3::Y * 5.0));
     let seen = run(&mut world, 2);
     assert_eq!((&seen.end[..], seen.shapes_end), (&[(trench, block)][..], 1));

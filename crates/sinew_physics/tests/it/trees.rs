@@ -51,8 +51,11 @@ fn a_chain_with_a_heavy_end_does_not_stretch() {
             gap * 1e3,
             lost * 100.0
         );
-        assert!(gap < 1e-3, "{ratio}:1 L={length}: gap {gap}");
-        assert!(lost < 0.01 && lost > -0.12, "{ratio}:1 L={length}: energy {lost}");
+        assert!(gap < 1e-3, "mass ratio {ratio}:1, length {length}: gap {gap}");
+        assert!(
+            lost < 0.01 && lost > -0.12,
+            "mass ratio {ratio}:1, length {length}: relative energy loss {lost}"
+        );
     }
 }
 
@@ -77,5 +80,5 @@ fn a_double_pendulum_keeps_its_energy() {
     }
     let drift = (world.energy().total() - start) / (9.81 * mass);
     println!("double pendulum 20 s: {:.3} % of depth", drift * 100.0);
-    assert!(drift.abs() < 0.01, "energy drifts by {drift}");
+    assert!(drift.abs() < 0.01, "relative energy drift {drift}");
 }

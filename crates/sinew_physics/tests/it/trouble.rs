@@ -36,11 +36,11 @@ fn nonfinite_particles_are_rolled_back() {
         let group = world.particles(group);
         assert!(group.positions()[0].is_finite() && group.velocities()[0].is_finite());
     }
-    assert!(told > 0, "it fell faster than 1 m/s");
+    assert!(told > 0, "a fall faster than 1 m/s must be reported");
     world.mark();
     let hash = world.hash();
     world.reset();
-    assert_eq!(world.hash(), hash, "what was saved is loaded");
+    assert_eq!(world.hash(), hash, "the loaded state must equal the saved state");
 }
 
 #[test]
@@ -57,7 +57,7 @@ fn a_quarantined_body_acts_as_a_fixed_anchor() {
         world.step();
         quarantined |= world.events().quarantined.contains(&body);
     }
-    assert!(quarantined, "it fell faster than 1 m/s");
+    assert!(quarantined, "a fall faster than 1 m/s must be quarantined");
     let gap = world.particles(group).positions()[0] - world.transform(body).translation;
     assert!(gap.length() < 0.01, "{gap}");
 }
@@ -83,7 +83,7 @@ fn a_star_does_not_fall_asleep_under_its_satellite() {
     for _ in 0..600 {
         world.step();
         let radius = world.particles(group).positions()[0].length();
-        assert!((radius - 1.0).abs() < 0.02, "after {} s at {radius} m", world.time());
+        assert!((radius - 1.0).abs() < 0.02, "radius {radius} m after {} s", world.time());
     }
 }
 

@@ -41,7 +41,7 @@ fn the_state_after_step_k_is_the_same_at_any_frame_rate() {
     }
     for rate in [24, 30, 60, 144] {
         let frame = Duration::from_secs(1) / rate;
-        assert_eq!(hashes(|| frame), expected, "{rate} frames a second");
+        assert_eq!(hashes(|| frame), expected, "other hashes at {rate} frames a second");
     }
     let mut random = Random::new(1);
     let jittered = hashes(|| Duration::from_secs_f32(random.range(0.0, 0.03)));
@@ -55,7 +55,7 @@ fn time_beyond_catch_up_steps_is_dropped_and_reported() {
     assert_eq!(world.update(step * 4), Update { steps: 4, alpha: 0.0, dropped: Duration::ZERO });
     let late = world.update(step * 10 + step / 2);
     assert_eq!((late.steps, late.dropped), (4, step * 6));
-    assert!((late.alpha - 0.5).abs() < 1e-6, "what is less than a step still waits");
+    assert!((late.alpha - 0.5).abs() < 1e-6, "time less than a step must wait for the next frame");
     assert_eq!(world.step_count(), 8);
     // Host that slept for five hundred years.
     let late = world.update(Duration::from_secs(500 * 365 * 86_400));

@@ -41,7 +41,7 @@ fn a_ball_bounces_off_and_is_kicked() {
         world.step();
     }
     let back = -world.velocity(thrown).linear.x;
-    assert!((back - 16.0).abs() < 0.3, "it comes back at {back} m/s");
+    assert!((back - 16.0).abs() < 0.3, "the arm returns at {back} m/s");
 
     let mut world = level();
     arm(&mut world, Vec3::new(-0.5, 0.5, 0.0), Vec3::X * 4.0);
@@ -66,10 +66,10 @@ fn a_yielding_contact_with_a_crate_is_reported() {
         told += world.events().begin.iter().filter(met).count();
         fastest = max(fastest, world.velocity(load).linear.length());
     }
-    assert!(world.transform(arm).translation.x > 1.0, "the arm has gone through");
-    assert_eq!(told, 1, "its contact is told of once");
+    assert!(world.transform(arm).translation.x > 1.0, "the arm must pass through");
+    assert_eq!(told, 1, "the contact must be reported once");
     let way = world.transform(load).translation.x;
-    assert!(way.abs() < 0.01 && fastest < 0.1, "{way} m, {fastest} m/s");
+    assert!(way.abs() < 0.01 && fastest < 0.1, "moved {way} m, fastest {fastest} m/s");
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn a_body_jammed_against_a_wall_is_not_crushed() {
     for _ in 0..900 {
         world.step();
         let sunk = world.penetration(load);
-        assert!(sunk < 0.01, "it is {sunk} m in the wall");
+        assert!(sunk < 0.01, "the arm is {sunk} m inside the wall");
     }
     assert!((world.transform(load).translation.x).abs() < 0.02, "{}", world.transform(load).translation);
 }
@@ -107,7 +107,7 @@ fn heavy_fast_bodies_pass_and_dynamic_shapes_push() {
         }
         (world.velocity(load).linear.x, world.velocity(post).linear.x)
     };
-    assert_eq!(fly(BodyKind::Kinematic), (6.0, 0.0), "240 N·s are more than it stops");
+    assert_eq!(fly(BodyKind::Kinematic), (6.0, 0.0), "an impulse of 240 N·s exceeds the strength");
     let (load, post) = fly(BodyKind::Dynamic);
     assert!(load < 4.0 && post > 1.0, "{load} and {post} m/s");
 }

@@ -339,7 +339,7 @@ pub fn stranger(original: &World) -> World {
     let (mut shapes, mut state) = (Writer::new(), Writer::new());
     original.save_shapes(&mut shapes);
     original.save(&mut state);
-    world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("a library that was saved is valid");
+    world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("a saved library is valid");
     world.load(&mut Reader::new(state.as_bytes())).expect("a saved world is valid");
     world
 }
@@ -349,7 +349,7 @@ pub fn reload(world: &mut World) {
     let (mut shapes, mut state) = (Writer::new(), Writer::new());
     world.save_shapes(&mut shapes);
     world.save(&mut state);
-    world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("a library that was saved is valid");
+    world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("a saved library is valid");
     world.load(&mut Reader::new(state.as_bytes())).expect("a saved world is valid");
 }
 

@@ -20,11 +20,11 @@ fn a_delta_restores_the_later_snapshot() {
             assert_eq!(
                 Snapshot::from_delta(&all[i], &delta).as_ref(),
                 Ok(&all[j]),
-                "life {seed}, {i} to {j}"
+                "life {seed}, snapshots {i} to {j}"
             );
             assert!(
                 delta.len() <= all[j].as_bytes().len() + 64,
-                "life {seed}, {i} to {j}: {} bytes",
+                "life {seed}, snapshots {i} to {j}: {} bytes",
                 delta.len()
             );
         }
@@ -62,7 +62,7 @@ fn resting_bodies_add_almost_nothing_to_a_delta() {
 fn damaged_deltas_and_other_bases_are_refused() {
     let all = snapshots(5);
     let delta = all[9].delta(&all[8]);
-    assert!(Snapshot::from_delta(&all[7], &delta).is_err(), "it was made against another");
+    assert!(Snapshot::from_delta(&all[7], &delta).is_err(), "a delta must be refused for another base");
     for end in 0..usize::min(delta.len(), 2000) {
         assert!(Snapshot::from_delta(&all[8], &delta[..end]).is_err(), "cut at {end}");
     }
@@ -72,7 +72,7 @@ fn damaged_deltas_and_other_bases_are_refused() {
         let at = random.index(lie.len());
         lie[at] ^= 1 << random.index(8);
         if let Ok(taken) = Snapshot::from_delta(&all[8], &lie) {
-            assert!(taken == all[9], "a bit of byte {at} makes another snapshot");
+            assert!(taken == all[9], "a flipped bit of byte {at} must not load as another snapshot");
         }
     }
 }

@@ -1,5 +1,5 @@
 //! Objects next to a world, with their own deeds: none here. The lives of the ragdoll crate use the same files and have
-//! characters in this place.
+//! characters in this file.
 
 use crate::actor::Twin;
 use crate::deeds::Deed;

@@ -63,5 +63,5 @@ pub fn expect_all(calls: &BTreeMap<&'static str, u64>) {
     let is_of_here = |name: &str| name.contains("::") || CALLED.contains(&"World");
     let unknown: Vec<&&str> =
         calls.keys().filter(|name| is_of_here(name) && !there.contains(**name)).collect();
-    assert!(unknown.is_empty(), "lives count calls that there are not: {unknown:?}");
+    assert!(unknown.is_empty(), "the counts name calls that do not exist: {unknown:?}");
 }

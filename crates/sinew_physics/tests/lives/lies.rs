@@ -1,5 +1,5 @@
-//! Damaged snapshots: bytes of a saved world, some of them replaced. Loading refuses them or creates a world that can
-//! be stepped, without a panic and within a short time.
+//! Damaged snapshots: bytes of a saved world, some of them replaced. Loading returns an error or creates a world that
+//! can be stepped, without a panic and within a short time.
 
 use crate::actor::Actor;
 use crate::functions;
@@ -17,7 +17,7 @@ const STEPS: usize = 3;
 /// Longest time for loading and stepping one snapshot.
 const LONG: Duration = Duration::from_secs(5);
 
-/// Returns a world in the middle of a life as bytes: its shapes and its state.
+/// Returns a world halfway through a life as bytes: its shapes and its state.
 fn saved(seed: u64) -> (Vec<u8>, Vec<u8>) {
     let mut last = (Vec::new(), Vec::new());
     at_each_step(seed, |world| {
@@ -71,10 +71,10 @@ fn lie(bytes: &mut Vec<u8>, random: &mut Random) {
 fn live_on(shapes: &[u8], state: &[u8]) -> bool {
     let mut world = World::new(WorldDef::default());
     functions::register(&mut world);
-    world.load_shapes(&mut Reader::new(shapes)).expect("a library that was saved");
+    world.load_shapes(&mut Reader::new(shapes)).expect("a saved library is valid");
     let before = world.hash();
     if world.load(&mut Reader::new(state)).is_err() {
-        assert_eq!(world.hash(), before, "a world that refuses a snapshot is as it was");
+        assert_eq!(world.hash(), before, "a refused snapshot must not change the world");
         return false;
     }
     (0..STEPS).for_each(|_| world.step());
@@ -99,10 +99,10 @@ fn damaged_snapshots_are_refused_or_step() {
             let start = Instant::now();
             let outcome = caught(|| live_on(&shapes, &bytes));
             let time = start.elapsed();
-            assert!(time < LONG, "world {seed}, lie {number} takes {time:?}");
+            assert!(time < LONG, "world {seed}, damage {number}: loading took {time:?}");
             match outcome {
                 Ok(was_taken) => taken += usize::from(was_taken),
-                Err(text) => panic!("world {seed}, lie {number}: {text}"),
+                Err(text) => panic!("world {seed}, damage {number}: {text}"),
             }
             all += 1;
         }

@@ -58,7 +58,7 @@ fn methods_are_read_from_the_sources() {
     for name in ["add_body", "object_mut", "set_mover_walk", "save_shapes", "query", "hash"] {
         assert!(found.contains(name), "{name}");
     }
-    assert!(!found.contains("expect_mut"), "what is private is no call");
+    assert!(!found.contains("expect_mut"), "private methods must not count as calls");
 }
 
 /// Injected faults, with the lives that find them soon.
@@ -80,13 +80,13 @@ fn planted_faults_of_each_kind_are_found() {
     for (plant, seeds) in FINDERS {
         let finds = |seed: u64| !plant.found_in(seed..seed + 1).is_empty();
         let is_found = seeds.iter().copied().chain(0..LIVES).any(finds);
-        assert!(is_found, "{plant:?} is not found in {LIVES} lives");
+        assert!(is_found, "the injected fault {plant:?} is not found in {LIVES} lives");
     }
 }
 
 /// Prints the lives that find each injected fault, and the time they need.
 #[test]
-#[ignore = "for people: prints, asserts nothing"]
+#[ignore = "manual tool: prints, asserts nothing"]
 fn finders() {
     std::thread::scope(|scope| {
         for plant in Plant::ALL {

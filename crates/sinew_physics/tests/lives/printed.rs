@@ -46,6 +46,6 @@ fn a_printed_program_does_what_the_life_did() {
         return;
     }
     let kept = std::fs::read_to_string(&path).expect("the program is there");
-    assert!(kept == text, "another program than `program.txt` is printed: SINEW_BLESS=1 writes it anew");
-    assert_eq!(kept::program().hash(), outcome.hash, "the program ends in another state");
+    assert!(kept == text, "the printed program differs from `program.txt`; SINEW_BLESS=1 writes it anew");
+    assert_eq!(kept::program().hash(), outcome.hash, "the program must end in the same state");
 }

@@ -16,7 +16,7 @@ pub struct Failure {
     pub fault: Fault,
 }
 
-/// Result of a life, its calls by name, and its figures.
+/// Result of a life, its calls by name, and its metrics.
 pub struct Outcome {
     pub result: Result<(), Failure>,
     pub calls: BTreeMap<&'static str, u64>,

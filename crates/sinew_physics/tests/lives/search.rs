@@ -62,7 +62,7 @@ fn told(seed: u64, outcome: &Outcome) -> String {
     format!("life {seed} ({acts} deeds left): {failure:?}\n{program}")
 }
 
-/// Figures of many lives.
+/// Metrics of many lives.
 #[derive(Default)]
 struct Sum {
     lives: u64,

@@ -83,7 +83,7 @@ fn frame_control(sequence: u32, rect: Rect, fps: u32) -> Vec<u8> {
     data
 }
 
-/// Returns kind and data of each chunk of a PNG file of our own.
+/// Returns kind and data of each chunk of a PNG file that this crate wrote.
 fn chunks(png: &[u8]) -> impl Iterator<Item = ([u8; 4], &[u8])> {
     const SIGNATURE: usize = 8;
     let mut rest = &png[SIGNATURE..];

@@ -1,4 +1,4 @@
-//! GIF: each frame holds only the changed pixels, in a palette of its own.
+//! GIF: each frame holds only the changed pixels, with its own palette.
 
 use super::palette::{Histogram, Palette};
 use super::{EncodeError, Rect, bounds};

@@ -47,7 +47,7 @@ pub enum EncodeError {
     /// An image has no pixels, or its bytes do not fit its size.
     #[error("an image of {width} × {height} with {bytes} bytes is no image")]
     Malformed {
-        /// Pixels across.
+        /// Width in pixels.
         width: u32,
         /// Pixels down.
         height: u32,
@@ -57,19 +57,19 @@ pub enum EncodeError {
     /// An image has a different size from the first.
     #[error("the images differ in size: {first:?} and {other:?}")]
     Size {
-        /// Pixels across and down of the first image.
+        /// Width and height of the first image, pixels.
         first: (u32, u32),
-        /// Pixels across and down of the image.
+        /// Width and height of the image, pixels.
         other: (u32, u32),
     },
     /// The format does not allow pictures this large.
     #[error("{width} × {height} is more than the format's {most} pixels a side")]
     TooLarge {
-        /// Pixels across.
+        /// Width in pixels.
         width: u32,
         /// Pixels down.
         height: u32,
-        /// Largest number of pixels a side.
+        /// Largest number of pixels along a side.
         most: u32,
     },
     /// The WebP movie has more than 4 GiB.

@@ -35,7 +35,7 @@ fn cell(color: [u8; 3]) -> usize {
     r << (2 * BITS) | g << BITS | b
 }
 
-/// Returns the colour in the middle of a cell.
+/// Returns the colour at the centre of a cell.
 fn color_of(cell: u32) -> [u8; 3] {
     let mask = (1 << BITS) - 1;
     [cell >> (2 * BITS), cell >> BITS, cell].map(|part| {
@@ -155,7 +155,7 @@ mod tests {
         for color in wanted {
             let entry = palette.entry(color);
             let shown = palette.colors[entry as usize];
-            assert!(distance(shown, color) <= 3 * 9 + 5 * 9 + 2 * 9, "{color:?} became {shown:?}");
+            assert!(distance(shown, color) <= 3 * 9 + 5 * 9 + 2 * 9, "{color:?} is shown as {shown:?}");
         }
     }
 

@@ -3,7 +3,7 @@
 /// Clip space of a [`View`](crate::camera::View): x, y, w; the picture spans ±w.
 pub(crate) type ClipVertex = [f32; 3];
 
-/// Largest distance of a corner from the picture's middle, in half pictures. Nearer corners are not changed, so that
+/// Largest distance of a corner from the picture's centre, in half pictures. Nearer corners are not changed, so that
 /// clipping, which rounds, happens off screen.
 const GUARD: f32 = 2.0;
 

@@ -22,7 +22,7 @@ pub(crate) fn floor(x: f32) -> i32 {
 pub(crate) struct Samples {
     pub(crate) width: usize,
     pub(crate) height: usize,
-    /// Positions of the samples in a pixel, 1/256 pixel from its middle: one, or four.
+    /// Positions of the samples in a pixel, 1/256 pixel from its centre: one, or four.
     offsets: &'static [[i64; 2]],
     /// Number of samples from a row to the next: whole lanes, so that no lane reaches into another row.
     stride: usize,
@@ -377,7 +377,7 @@ impl Lattice {
     }
 }
 
-/// Rows of a picture, and their layout in memory.
+/// Rows of a picture with their layout in memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Area {
     /// Width in pixels.

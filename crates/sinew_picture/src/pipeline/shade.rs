@@ -136,8 +136,8 @@ impl<'a> Shader<'a> {
         !has_picture && model.normals.len() != vertices && model.colors.len() != vertices
     }
 
-    /// Returns the colours of a flat triangle in the middles of neighbouring pixels, from `x` on in row `y`, by channel: the same
-    /// numbers as [`Self::surface`].
+    /// Returns the colours of a flat triangle at the centres of neighbouring pixels, from `x` on in row `y`, by
+    /// channel: the same numbers as [`Self::surface`].
     #[inline(always)]
     pub(crate) fn flat_span<L: Lanes>(&self, id: u32, x: usize, y: usize) -> [L; 3] {
         let triangle = &self.triangles[id as usize];

@@ -276,7 +276,7 @@ impl HeightOverMap {
         let (bx, by, bz) = (b[0] - a[0], b[1] - a[1], b[2] - a[2]);
         let (cx, cy, cz) = (c[0] - a[0], c[1] - a[1], c[2] - a[2]);
         let det = bx * cy - cx * by;
-        // A triangle seen edge on covers no texel; any finite slope will do.
+        // A triangle seen from its edge covers no texel; any finite slope is correct.
         let inverse = if det.abs() > 1e-12 { 1.0 / det } else { 0.0 };
         Self { base: a, per_x: (bz * cy - cz * by) * inverse, per_y: (cz * bx - bz * cx) * inverse }
     }

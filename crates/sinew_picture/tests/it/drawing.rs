@@ -40,7 +40,7 @@ fn is_sky(image: &Image, x: u32, y: u32) -> bool {
     image.pixel(x, y)[..3] == [255, 255, 255]
 }
 
-/// Returns the ray through the middle of a pixel at depth 1, by the definition of a pinhole camera.
+/// Returns the ray through the centre of a pixel at depth 1, by the definition of a pinhole camera.
 fn ray(x: u32, y: u32) -> Vec3 {
     let half = sinew::math::trig::tan(0.5 * CAMERA.fov_y);
     let across = (x as f32 + 0.5) / WIDTH as f32 * 2.0 - 1.0;
@@ -87,7 +87,7 @@ fn every_pixel_shows_the_nearest_triangle() {
             let tie =
                 nearest.is_some_and(|n| hits.iter().any(|h| h.0 != n.0 && (h.1 / n.1 - 1.0).abs() < 1e-3));
             if !agrees {
-                assert!(on_edge || tie, "pixel {x} {y}: {shown:?}, hits {hits:?}");
+                assert!(on_edge || tie, "pixel {x} {y}: drawn {shown:?}, ray hits {hits:?}");
                 disputed += 1;
             }
         }

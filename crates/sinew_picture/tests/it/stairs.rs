@@ -1,4 +1,4 @@
-//! A figure of capsules on stairs, like the demo's pictures.
+//! A humanoid of capsules on stairs, like the demo's pictures.
 
 use sinew::math::{Rotation, Transform, Vec3, trig};
 use sinew::physics::Shape;
@@ -9,7 +9,7 @@ const WOOD: [f32; 3] = [0.50, 0.33, 0.19];
 const SKIN: [f32; 3] = [0.86, 0.42, 0.17];
 const SHIRT: [f32; 3] = [0.10, 0.32, 0.56];
 
-/// Returns stairs with a landing, a figure in the middle of a step at `time` seconds, a ball and a glass box.
+/// Returns stairs with a landing, a humanoid in the middle of a step at `time` seconds, a ball and a glass box.
 pub fn scene(time: f32) -> Scene {
     let mut models = vec![draw::floor(Vec3::ZERO, 60.0, [0.36, 0.37, 0.37], [0.27, 0.28, 0.29])];
     for step in 0..5 {

@@ -25,7 +25,7 @@ struct Drawing {
     world: World,
     /// Paths that bodies took, world space, metres.
     trails: Vec<Vec<Vec3>>,
-    /// Bodies with a colour of their own, linear.
+    /// Bodies with their own colour, linear.
     colors: Vec<(BodyId, [f32; 3])>,
     captions: [&'static str; 2],
     camera: Camera,
@@ -73,7 +73,7 @@ fn jitters() -> Drawing {
     });
     let mut trails = vec![Vec::new(), Vec::new()];
     for step in 0..90 {
-        // Up by 0.7 m and to the right by 1 m, in a second and a half.
+        // The lift moves up by 0.7 m and to the right by 1 m in 1.5 s.
         let share = step as f32 / 90.0;
         let way = Vec3::new(share - 0.5, 0.35 - 0.35 * trig::cos(share * core::f32::consts::PI), 0.0);
         world.set_transform(put.0, Transform::from_translation(at(-1.6, 0.3) + way));

@@ -170,7 +170,7 @@ impl<'a> Actor<'a> {
         }
     }
 
-    /// Returns clip, frames and figures. `hash` is the hash of world and character at the end.
+    /// Returns clip, frames and metrics. `hash` is the hash of world and character at the end.
     pub fn finish(self, input: &BakeInput<'_>, steps: u64, hash: u64) -> Baked {
         let rig = &input.character.rig;
         let world_from_model = input.character.mapping().world_from_model(input.world_from_character);

@@ -58,11 +58,11 @@ pub struct BakeDrive<'a> {
     pub half_life: f32,
 }
 
-/// Return to the looped clip by [`Character::return_to_clip`](crate::Character::return_to_clip), at the place where the
-/// character started and at the clip time that the character would have reached without interruption.
+/// Return to the looped clip by [`Character::return_to_clip`](crate::Character::return_to_clip), at the position where
+/// the character started and at the clip time that the character would have reached without interruption.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeReturn {
-    /// Time from the start at which the pose is that of the clip alone, seconds.
+    /// Time from the start at which the pose equals that of the clip, seconds.
     pub time: f32,
     /// Duration of the preceding blend from the simulated pose, seconds.
     pub seconds: f32,
@@ -100,7 +100,7 @@ pub struct BakeInput<'a> {
     /// Frames per second of the clip, at least 1.
     pub fps: f32,
     /// Extra velocity of the character's highest point when it goes limp at [`limp_at`](Self::limp_at), m/s, world
-    /// axes: the whole body rotates about the ground under it. Default zero. Without it a body with broad feet stays
+    /// axes: the whole body rotates about the ground under it. Default zero. With zero a body with broad feet stays
     /// upright.
     pub topple: Vec3,
     /// Largest error of any joint of the clip against the frames, metres and radians; keys not needed for this bound
@@ -163,8 +163,8 @@ pub struct Frame {
 /// The result of a bake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Baked {
-    /// Linear keys at frame times for every joint that moves: rotations, and translations that change. The clip starts at the place of the
-    /// file's character. The pelvis contains all root motion.
+    /// Linear keys at frame times for every joint that moves: rotations, and translations that change. The clip starts
+    /// at the position of the file's character. The pelvis contains all root motion.
     pub clip: Clip,
     /// Largest error of the clip's joints against the frames, at the frame times: metres and radians, within
     /// [`BakeInput::key_bound`].
@@ -175,7 +175,7 @@ pub struct Baked {
     pub frames: Vec<Frame>,
     /// Transform from the model space of the file to the world, the same for all frames.
     pub world_from_model: Affine,
-    /// Quality figures of the falls.
+    /// Quality metrics of the falls.
     pub quality: FallQuality,
     /// Events with their times in seconds.
     pub events: Vec<(f32, CharacterEvent)>,
@@ -189,7 +189,7 @@ pub struct Baked {
 }
 
 impl Baked {
-    /// Returns the clip for the character's own file. The clip is moved back to its place in the file, if the played
+    /// Returns the clip for the character's own file. The clip is moved back to its position in the file, if the played
     /// clip has another floor than the rest pose ([`CharacterDef::raised`]) or begins elsewhere.
     pub fn clip_for_file(&self, character: &CharacterDef) -> Clip {
         let back = character.mapping().character_from_model().inverse().vector(-character.shift());
@@ -210,7 +210,7 @@ pub fn bake(input: &BakeInput<'_>) -> Baked {
 /// Bakes several characters in one world, where they collide with each other. The world contains the bodies, movers and fields of all
 /// inputs. `watch` is called with the simulated seconds after every step; if it breaks, the bake ends and the result is `None`.
 ///
-/// Figures of the whole world (energy, work) are the same for all characters.
+/// Metrics of the whole world (energy, work) are the same for all characters.
 ///
 /// # Panics
 /// Panics like [`bake`], or if the inputs differ in their world or their length.

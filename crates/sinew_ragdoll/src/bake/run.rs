@@ -52,7 +52,7 @@ impl<'a> Run<'a> {
         actors.iter_mut().for_each(|actor| actor.update(world));
     }
 
-    /// Returns the clips and figures of all characters.
+    /// Returns the clips and metrics of all characters.
     pub fn finish(self, inputs: &[BakeInput<'_>]) -> Vec<Baked> {
         let Self { world, actors, .. } = self;
         let of_world = {

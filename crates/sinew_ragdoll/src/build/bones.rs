@@ -108,8 +108,8 @@ impl Bones {
         ((tail - self.list[bone].head).length() > 1e-3 * self.height).then_some(tail)
     }
 
-    /// Returns the unit vector from pivot to tail; at the end of a chain, from the pivot to `middle` (the middle of the
-    /// bone's surface). Without either, the direction from the parent's pivot, or up.
+    /// Returns the unit vector from pivot to tail; at the end of a chain, from the pivot to `middle` (the centroid of
+    /// the bone's surface). Without either, the direction from the parent's pivot, or up.
     pub fn direction(&self, bone: usize, middle: Option<Vec3>) -> Vec3 {
         let head = self.list[bone].head;
         let onward = self.list[bone]

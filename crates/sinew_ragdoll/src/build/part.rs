@@ -57,7 +57,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// Returns the sign of x: +1 on the left, −1 on the right, 0 in the middle.
+    /// Returns the sign of x: +1 on the left, −1 on the right, 0 on the midline.
     pub fn sign(self) -> f32 {
         match self {
             Side::Left => 1.0,

@@ -72,7 +72,7 @@ impl Activity {
         }
     }
 
-    /// Returns a number from 1 for a body near the ground, which is hard to fell, to 0 for a body that stands upright.
+    /// Returns a number from 1 for a body near the ground, which hardly falls, to 0 for a body that stands upright.
     pub fn lowness(&self, def: &CharacterDef, animator: &Animator) -> f32 {
         match self {
             Self::Limp(_) | Self::Preparing(_) => 1.0,
@@ -82,7 +82,7 @@ impl Activity {
     }
 }
 
-/// Flinch of a character after a blow to a limb.
+/// Flinch of a character after a hit on a limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Flinch {
     /// Seconds until the limb has returned.
@@ -100,12 +100,12 @@ impl Flinch {
         Self { seconds: FLINCH_TIME + comes_back() }
     }
 
-    /// Keeps the limb weak because a hand or joint holds it.
+    /// Keeps the limb weak while a hand or joint holds it.
     pub fn go_on(&mut self) {
         self.seconds = max(self.seconds, Self::begun().seconds);
     }
 
-    /// Advances the flinch; returns true at the moment when the limb begins to return.
+    /// Advances the flinch; returns true in the step in which the limb begins to return.
     pub fn turns_back(&mut self, dt: f32) -> bool {
         let before = self.seconds;
         self.seconds -= dt;

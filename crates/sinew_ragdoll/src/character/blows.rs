@@ -1,4 +1,4 @@
-//! Blows: which bodies become weak, and how hard a blow must be to fell.
+//! Hits: the bodies that become weak, and the impulse that makes a character fall.
 
 use crate::character::tuning::{LEGS_WEAKEN, LOW_STANDS, TRUNK_WEAKENS};
 use crate::def::RagdollDef;
@@ -7,8 +7,8 @@ use crate::drive::{DriveMode, Drives, Muscle};
 /// Drive of a struck limb until it returns.
 const GIVING: Muscle = Muscle { hertz: 3.0, damping_ratio: 1.0, strength: 0.5 };
 
-/// Returns the impulse that fells a character at height `lowness` (0 upright, 1 lying), N·s; `least` is the threshold
-/// upright.
+/// Returns the impulse that makes a character at height `lowness` (0 upright, 1 lying) fall, N·s; `least` is the
+/// threshold upright.
 pub(super) fn felling(least: f32, lowness: f32) -> f32 {
     least * (1.0 + lowness * (LOW_STANDS - 1.0))
 }
@@ -25,7 +25,7 @@ pub(super) fn pelvis_children(def: &RagdollDef) -> Vec<usize> {
     def.joints.iter().filter(|joint| joint.parent == 0).map(|joint| joint.child).collect()
 }
 
-/// Limits how much a blow weakens the legs and the trunk of a standing character.
+/// Limits how much a hit weakens the legs and the trunk of a standing character.
 pub(super) fn tense(def: &RagdollDef, drives: &mut Drives) {
     for (index, body) in def.bodies.iter().enumerate() {
         let is_leg = ["Leg", "Foot", "Toes"].iter().any(|part| body.role.ends_with(part));
@@ -38,7 +38,7 @@ pub(super) fn tense(def: &RagdollDef, drives: &mut Drives) {
     }
 }
 
-/// Returns the bodies whose subtrees a blow weakens: the struck limb up to the trunk; for the pelvis its children,
+/// Returns the bodies whose subtrees a hit weakens: the struck limb up to the trunk; for the pelvis its children,
 /// because a pin holds the pelvis itself.
 fn limb_of(def: &RagdollDef, body: usize) -> Vec<usize> {
     let parent = |body: usize| body.checked_sub(1).map(|joint| def.joints[joint].parent);

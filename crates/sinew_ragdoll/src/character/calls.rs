@@ -20,8 +20,8 @@ impl Character {
     // Entering and leaving
 
     /// Creates an animated character in a world, with a mover and hit bodies by [`CharacterDef::in_world`].
-    /// `world_from_character` is its place (metres, +Y up, +Z forward). [`despawn`](Self::despawn) removes the
-    /// character with all its parts.
+    /// `world_from_character` is its pose (metres, +Y up, +Z forward). [`despawn`](Self::despawn) removes the character
+    /// with all its parts.
     ///
     /// # Panics
     /// If the transform is not finite.
@@ -54,9 +54,9 @@ impl Character {
         self.leave(world);
     }
 
-    /// Moves the character elsewhere immediately; obstacles in between are not checked. A lying character keeps its
-    /// pose, springs and garments keep their swing; [`reset_springs`](Self::reset_springs) and
-    /// [`reset_garments`](Self::reset_garments) restart them.
+    /// Teleports the character; obstacles in between are not checked. A lying character keeps its pose, springs and
+    /// garments keep their swing; [`reset_springs`](Self::reset_springs) and [`reset_garments`](Self::reset_garments)
+    /// restart them.
     ///
     /// # Panics
     /// If the transform is not finite.
@@ -95,9 +95,9 @@ impl Character {
     }
 
     /// Sets the character's level of detail: immediately if clips move it, otherwise once they do again, because a
-    /// flinch, a fall or a get-up finishes first. Pose and place do not change. Below [`Detail::HitBodies`] its bodies
-    /// leave the world, unless it holds a body; they return with other ids. Its springs then ease to the pose and cost
-    /// nothing from there, until they return with the motion of the pose. No effect outside of a world.
+    /// flinch, a fall or a get-up finishes first. Pose and position do not change. Below [`Detail::HitBodies`] its
+    /// bodies leave the world, unless it holds a body; they return with other ids. Its springs then ease to the pose
+    /// and stop costing time, until they return with the motion of the pose. No effect outside of a world.
     pub fn set_level_of_detail(&mut self, world: &mut World, detail: Detail) {
         if self.is_in_world() {
             self.detail = Some(detail);
@@ -144,8 +144,8 @@ impl Character {
         self.feet.led(&self.figure.pose)
     }
 
-    /// Computes pose and place between the last step (`alpha` 0) and the present one (1): `pose` is cleared and gets
-    /// one local transform per joint; returns the character's transform.
+    /// Computes pose and transform between the last step (`alpha` 0) and the present one (1): `pose` is cleared and
+    /// gets one local transform per joint; returns the character's transform.
     pub fn interpolated(&self, alpha: f32, pose: &mut Vec<LocalTransform>) -> Transform {
         self.figure.between(self.pose(), alpha, pose)
     }
@@ -312,7 +312,7 @@ impl Character {
                 self.physique.drives.set_all(DriveMode::Keyed, POWERED_HALF_LIFE);
                 self.activity = Activity::Flinching(Flinch { seconds: RETURNED_AFTER * POWERED_HALF_LIFE });
             }
-            // Bodies moved by clips would tear off whatever holds them.
+            // Kinematic bodies moved by clips would tear off the held bodies.
             (Preset::Animated, State::Limp | State::Preparing)
                 if may_get_up && !self.grips.is_gripped(&self.physique, world) =>
             {
@@ -346,7 +346,7 @@ impl Character {
     /// detached](Self::detach).
     ///
     /// # Panics
-    /// If the place or the phase is not finite, or `seconds` is negative or not finite.
+    /// If the transform or the phase is not finite, or `seconds` is negative or not finite.
     pub fn return_to_clip(&mut self, world: &mut World, place: Transform, phase: f32, seconds: f32) {
         assert!(place.is_finite() && phase.is_finite(), "a character returns to a finite place and moment");
         assert!((0.0..f32::INFINITY).contains(&seconds), "a return takes 0 s or longer, not {seconds}");
@@ -380,8 +380,8 @@ impl Character {
         }
     }
 
-    /// Moves a limp character out of static shapes in which it is deep, at 1.9 m/s, with all bodies together; it falls
-    /// from where it is clear. Returns false if nothing is done: the character is not limp, or held, no body is deeper
+    /// Moves a limp character out of static shapes in which it is deep, at 1.9 m/s, all bodies together; it falls as
+    /// soon as it is clear. Returns false if nothing is done: the character is not limp, or held, no body is deeper
     /// than 0.1 m, or no displacement of at most 1.2 m leads out.
     ///
     /// A moving character leaves a wall on the side from which it came, a resting one on the nearer side. Going limp
@@ -439,7 +439,7 @@ impl Character {
     /// through movers.
     ///
     /// One of the two bodies must be dynamic: a kinematic hand drags limp or powered bodies. A grabbed character stays
-    /// limp and does not get up. A limb of an animated character is kinematic until a blow makes it weak:
+    /// limp and does not get up. A limb of an animated character is kinematic until a hit makes it weak:
     /// [`hit`](Self::hit) it with an impulse of 0 before. While held, the limb stays weak; its character follows the
     /// limb at up to 2 m/s, and falls if the limb is drawn 0.3 of the character's height from the clip.
     ///
@@ -481,13 +481,13 @@ impl Character {
         self.grips.grab(&self.physique, body, held, grab, world)
     }
 
-    /// Detaches a limb: the named body (by role or bone) and all bodies below it. They become bodies of their own at
-    /// their present velocity, in any state; a holder keeps holding them. Bodies that they held are dropped; garments
-    /// hang on the remaining bodies.
+    /// Detaches a limb: the named body (by role or bone) and all bodies below it. They become independent bodies at
+    /// their present velocity, in any state; grips on them continue. Bodies that they held are dropped; garments hang
+    /// on the remaining bodies.
     ///
-    /// The character lives on. Without an arm or a hand it continues. Without a leg, a foot, the head or a part of the
-    /// trunk it goes limp and does not get up again. [`bodies`](Self::bodies) keeps its order: the ids of the limb's
-    /// bodies stay in place, and [`has_body`](Self::has_body) is false for them.
+    /// Without an arm or a hand the character continues. Without a leg, a foot, the head or a part of the trunk it goes
+    /// limp and does not get up again. [`bodies`](Self::bodies) keeps its order: the ids of the limb's bodies keep
+    /// their indices, and [`has_body`](Self::has_body) is false for them.
     ///
     /// Returns `None` if that body is detached already.
     ///

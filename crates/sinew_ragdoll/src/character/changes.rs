@@ -40,7 +40,7 @@ impl Character {
         self.detail == Some(Detail::Frozen) && self.state() == State::Animated
     }
 
-    /// Returns true if the character steps to catch itself from pushes.
+    /// Returns true if the character takes steps to recover from pushes.
     pub(super) fn steps(&self) -> bool {
         matches!(self.activity, Activity::Powered(_))
             && self.def.in_world.most_steps > 0
@@ -84,7 +84,7 @@ impl Character {
         wear.dress(bearer, world);
     }
 
-    /// Removes all parts of the character from the world; its clips continue at its last place.
+    /// Removes all parts of the character from the world; its clips continue at its last position.
     pub(super) fn leave(&mut self, world: &mut World) {
         self.grips.release_all(self.physique.own(), false, world, &mut self.events);
         self.wear.garments.take_off(world);
@@ -99,7 +99,7 @@ impl Character {
         self.detail = None;
     }
 
-    /// Adds a mover at the character's place, at a share of its full height.
+    /// Adds a mover at the character's position, at a share of its full height.
     fn stand_up(&mut self, world: &mut World, share: f32) {
         if self.is_in_world() {
             self.gait.stand_up(&self.def, self.figure.place.translation, world, share);
@@ -177,7 +177,7 @@ impl Character {
         self.physique.keep_own();
     }
 
-    /// Gives kinematic bodies the velocities of their clips. Their present velocities, which move them to their place
+    /// Gives kinematic bodies the velocities of their clips. Their present velocities, which move them to their pose
     /// within a step, would throw them when a mover has just climbed a kerb.
     fn slow_led(&mut self, world: &mut World, bodies: &[usize]) {
         let (foresight, scratch) = self.ahead();
@@ -208,7 +208,7 @@ impl Character {
         }
     }
 
-    /// Makes the character flinch or fall by a contact blow to one of its bodies. A dynamic body received the impulse
+    /// Makes the character flinch or fall after a contact hit one of its bodies. A dynamic body received the impulse
     /// in the contact already.
     pub(super) fn be_struck(&mut self, world: &mut World, body: usize, strike: Strike) {
         let is_led = world.kind(self.physique.ids()[body]) != BodyKind::Dynamic;
@@ -217,7 +217,7 @@ impl Character {
         }
     }
 
-    /// Makes the character flinch or fall; returns false if the blow may move no body.
+    /// Makes the character flinch or fall; returns false if the hit may move no body.
     pub(super) fn react(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
         assert!(impulse.is_finite(), "an impulse is finite");
         assert!(body < self.def.ragdoll.bodies.len(), "there is such a body");
@@ -243,8 +243,8 @@ impl Character {
             }
     }
 
-    /// Returns true if a field that gave the character this momentum fells it. Without a threshold the usual one
-    /// applies, so that a breeze is not a blow.
+    /// Returns true if a field that gave the character this momentum makes it fall. Without a threshold the usual one
+    /// applies, so that light wind does not count as a hit.
     pub(super) fn is_swept_by(&self, blow: Blow) -> bool {
         let lowness = self.activity.lowness(&self.def, &self.gait.animator);
         let fells = |least: f32| blow.impulse.length() >= blows::felling(least, lowness);
@@ -376,7 +376,7 @@ impl Character {
         self.clear(world);
     }
 
-    /// Continues the way out of a wall for the next step, or makes the bodies fall where the way ends.
+    /// Continues the displacement out of a wall for the next step, or makes the bodies fall where it ends.
     pub(super) fn go_out(&mut self, world: &mut World) {
         let Activity::Limp(lying) = &mut self.activity else { return };
         if !lying.clearing.go_on(self.physique.own(), world) {
@@ -384,7 +384,7 @@ impl Character {
         }
     }
 
-    /// Makes bodies on their way out of a wall fall from where they are.
+    /// Makes bodies that are being moved out of a wall fall from their current positions.
     pub(super) fn end_clearing(&mut self, world: &mut World) {
         let Activity::Limp(lying) = &mut self.activity else { return };
         let clearing = core::mem::take(&mut lying.clearing);
@@ -414,7 +414,7 @@ impl Character {
         prepare::draw(&def, &choice, &mut self.physique, &mut self.scratch, world);
     }
 
-    /// Gets up if nobody stands or lies on the character; otherwise it waits.
+    /// Gets up if no body lies on the character and no mover is in the way; otherwise the character waits.
     pub(super) fn get_up_where_free(&mut self, world: &mut World) {
         let lies = self.figure.stance(&self.def, &mut self.scratch);
         let moves = self.def.moves();
@@ -434,7 +434,7 @@ impl Character {
         }
     }
 
-    /// Starts the get-up clip at its moment most similar to the pose.
+    /// Starts the get-up clip at the time most similar to the pose.
     pub(super) fn get_up(&mut self, world: &mut World) {
         let def = self.def.clone();
         let moves = def.moves();
@@ -535,8 +535,8 @@ impl Character {
         self.stand_up(world, 1.0);
     }
 
-    /// Moves the character's frame to `place` while every joint stays in place in the world, stops all tracks of the
-    /// whole body, and blends the present pose and motion into the next tracks within `seconds`.
+    /// Moves the character's frame to `place` while every joint keeps its world pose, stops all tracks of the whole
+    /// body, and blends the present pose and motion into the next tracks within `seconds`.
     fn take_over(&mut self, world: &World, place: Transform, seconds: f32) {
         let def = self.def.clone();
         self.figure.reframe(&def, place);
@@ -563,7 +563,7 @@ impl Character {
             self.physique.cut_led(&self.def, parts, states, world)
         };
         for &body in &bodies {
-            // A detached body collides like any body and blocks nobody.
+            // A detached body collides like any body and does not stop movers.
             let rule = ContactRule::Yields(Yields::default());
             world.set_contact_rule(sinew_physics::ShapeId { body, shape: 0 }, rule);
         }

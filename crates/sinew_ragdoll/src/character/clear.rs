@@ -44,7 +44,7 @@ impl Clearing {
         true
     }
 
-    /// Makes the bodies fall from where they are.
+    /// Makes the bodies fall from their current positions.
     pub fn end(self, own: &[BodyId], world: &mut World) {
         for (&body, &velocity) in own.iter().zip(&self.velocities) {
             world.set_kind(body, BodyKind::Dynamic);

@@ -1,8 +1,9 @@
 //! Keeps the skin out of the floor during transitions from bodies to a clip and between clips. Joints blend separately,
 //! so feet, hands and knees would pass through the floor although both poses are above it.
 //!
-//! Each part may be as deep as at the start of the transition, and gradually as deep as in the clip. Deeper parts are
-//! raised: the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper arm.
+//! The allowed depth of each part changes gradually from that at the start of the transition to that in the clip.
+//! Deeper parts are raised: the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper
+//! arm.
 
 use super::{CharacterDef, State};
 use crate::character::tuning::{LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STEPS_FROM, STRAIGHT_UP};
@@ -15,7 +16,7 @@ use sinew_anim::take::Take;
 use sinew_anim::{JointIdx, LocalTransform, Rig, local_to_model, smoothstep};
 use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
 
-/// Number of parts: the trunk with its knees, the feet, the hands, the elbows, left ones first.
+/// Number of parts: the trunk with its knees, then feet, hands and elbows, the left one first.
 pub(super) const PARTS: usize = 7;
 const TRUNK: usize = 0;
 /// Largest number of passes that raise trunk and limbs: raising a foot may press its knee into the floor.
@@ -38,7 +39,7 @@ pub(super) struct Passage {
     pub to: Depths,
     /// Ankles at the start of the transition, world, left and right.
     pub ankles: [Transform; 2],
-    /// Least distance to the goal at which a foot steps, metres.
+    /// Smallest distance to the goal at which a foot steps, metres.
     pub far: [f32; 2],
     /// Seconds since the start of the transition, and its duration.
     pub age: f32,
@@ -57,7 +58,7 @@ pub(super) struct Step {
     far: f32,
     /// Share of the step that is done.
     along: f32,
-    /// Height of the foot over the straight line, as a share of the step height.
+    /// Height of the foot above the straight line, as a share of the step height.
     over: f32,
 }
 
@@ -256,7 +257,7 @@ impl Clearance {
         self.carry(def, &carried, 0..self.strays.len(), pose, model);
     }
 
-    /// Displaces the trunk and the ends of the limbs, which otherwise keep their places; character space.
+    /// Displaces the trunk and the ends of the limbs; ends that are not listed keep their positions. Character space.
     pub fn shift(
         &self,
         def: &CharacterDef,

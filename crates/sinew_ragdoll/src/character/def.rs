@@ -23,9 +23,9 @@ use std::sync::Arc;
 pub enum Locomotion {
     /// The character returns to the clip's start with each lap.
     InPlace,
-    /// The character travels on with each lap. A clip that ends where it began stays in place.
+    /// The character moves with the clip from lap to lap. A clip that ends where it began stays in place.
     ByClip,
-    /// The character moves exactly as in the clip, from its start place: the clip is not raised onto its floor, no
+    /// The character moves exactly as in the clip, from its start position: the clip is not raised onto its floor, no
     /// ground lifts the character, and its feet are not moved to the ground. For an animation that was made for this
     /// world.
     Exact,
@@ -63,7 +63,7 @@ pub enum GroundContact {
     #[default]
     AsBlended,
     /// The drawn skin stays out of the floor as far as it does in the poses before and after, and feet step to their
-    /// new places. Motions are quicker then.
+    /// new positions. Motions are faster then.
     Enforced,
 }
 
@@ -304,7 +304,7 @@ impl CharacterDef {
         (self.paces().len() > 1).then_some(0)
     }
 
-    /// Returns the displacement of the looped clip to the place of the character, character space, metres: onto the
+    /// Returns the displacement of the looped clip to the position of the character, character space, metres: onto the
     /// floor of the rest pose ([`raised`](Self::raised)), and to the character's origin if the clip begins elsewhere.
     pub(crate) fn shift(&self) -> Vec3 {
         self.moves.shift

@@ -92,8 +92,8 @@ impl Physique {
         self.keep_own();
     }
 
-    /// Enables collision between the limb and the remaining bodies; pairs that overlap at the cut collide once they are
-    /// apart.
+    /// Enables collision between the limb and the remaining bodies; pairs that overlap at the cut collide once they
+    /// have separated.
     pub fn part_bodies(&mut self, bodies: &[BodyId], world: &mut World) {
         let mut parting = core::mem::take(&mut self.parting);
         for &own in self.own() {
@@ -109,7 +109,7 @@ impl Physique {
         self.parting = parting;
     }
 
-    /// Enables collision of bodies that have come apart since the cut.
+    /// Enables collision of bodies that have separated since the cut.
     pub fn mind_parting(&mut self, world: &mut World) {
         self.parting.retain(|&(a, b)| {
             if !world.contains(a) || !world.contains(b) {
@@ -141,7 +141,7 @@ impl Physique {
         }
     }
 
-    /// Moves detached bodies to a place where springs do not touch them.
+    /// Moves detached bodies to a position where springs do not touch them.
     pub fn hide_lost(&self, bodies: &mut [Transform]) {
         for &(lost, _) in &self.lost {
             if let Some(body) = bodies.get_mut(lost) {

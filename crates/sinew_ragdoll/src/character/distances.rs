@@ -2,14 +2,14 @@
 
 use sinew_math::max;
 
-/// Interaction of a character with its world while clips move it, the least first.
+/// Interaction of a character with its world while clips move it, in ascending order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Detail {
     /// No interaction: the character's clips are paused, nothing stops or carries it, and an update costs nothing.
     Frozen,
     /// A mover and clips; rays and contacts do not find the character's limbs.
     Keyed,
-    /// In addition hit bodies, which do not flinch: blows below the threshold are only reported.
+    /// In addition hit bodies, which do not flinch: hits below the threshold are only reported.
     HitBodies,
     /// Full interaction. Default.
     #[default]

@@ -37,7 +37,7 @@ pub enum CharacterEvent {
         /// Impulse, N·s; of a blast the sum over the character's bodies.
         impulse: f32,
     },
-    /// A blow did not fell the character: the limb is weak and returns.
+    /// A hit did not make the character fall: the limb is weak and returns.
     Flinched {
         /// Index of the struck body in the definition.
         body: usize,
@@ -68,7 +68,7 @@ pub enum CharacterEvent {
     },
     /// The character starts stepping to catch a push.
     Stumbled,
-    /// Steps caught the character; its feet follow the clips again.
+    /// The steps stopped the fall; the character's feet follow the clips again.
     Caught {
         /// Number of steps, except those that only returned the feet.
         steps: u32,

@@ -31,7 +31,7 @@ pub(super) struct Feet {
     pub passage: Passage,
     /// Displacements of trunk, feet and hands out of walls.
     pub walls: WallOffsets,
-    /// Pose of the clips with planted feet, out of floor and walls; empty if that equals the clips' pose.
+    /// Pose of the clips with planted feet, clear of floor and walls; empty if that equals the clips' pose.
     pub pose: Vec<LocalTransform>,
 }
 
@@ -144,7 +144,7 @@ impl Feet {
         self.pose = pose;
     }
 
-    /// Computes the clips' pose with planted feet and out of the floor. Returns the lowering of the pelvis, metres.
+    /// Computes the clips' pose with planted feet and clear of the floor. Returns the lowering of the pelvis, metres.
     fn stand_out_of_floor(
         &self,
         def: &CharacterDef,

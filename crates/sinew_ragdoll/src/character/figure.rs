@@ -1,4 +1,4 @@
-//! Pose and place of a character: now, one step ago, and as shown.
+//! Pose and transform of a character: now, one step ago, and as shown.
 
 use super::CharacterDef;
 use super::pose_similarity::Stance;
@@ -6,23 +6,23 @@ use sinew_anim::{Animator, LocalTransform, Pose, local_to_model};
 use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::Velocity;
 
-/// Pose and place at a given time.
+/// Pose and transform at a given time.
 #[derive(Clone, Debug)]
 pub(super) struct Moment {
     pub pose: Vec<LocalTransform>,
     pub place: Transform,
 }
 
-/// Pose and place of a character.
+/// Pose and transform of a character.
 #[derive(Clone, Debug)]
 pub(super) struct Figure {
-    /// Pose of bodies or clips, without planted feet and worn parts.
+    /// Pose of bodies or clips, without planted feet, springs and garments.
     pub pose: Vec<LocalTransform>,
     /// Transform from the character to the world.
     pub place: Transform,
-    /// Pose and place one step ago.
+    /// Pose and transform one step ago.
     pub earlier: Moment,
-    /// Pose and place as shown at the end of the last step, with feet and worn parts.
+    /// Pose and transform as shown at the end of the last step, with feet, springs and garments.
     pub shown: Moment,
 }
 
@@ -45,7 +45,7 @@ impl Figure {
         self.pose.clone_from(&self.earlier.pose);
     }
 
-    /// Changes the character's place while every joint keeps its place in the world.
+    /// Changes the character's transform while every joint keeps its world pose.
     pub fn reframe(&mut self, def: &CharacterDef, to: Transform) {
         let mapping = def.mapping();
         mapping.reframe(&mut self.pose, self.place, to);
@@ -56,7 +56,7 @@ impl Figure {
         }
     }
 
-    /// Moves the character's place together with its pose.
+    /// Moves the character's transform together with its pose.
     pub fn carry(&mut self, to: Transform) {
         let moved = to * self.place.inverse();
         self.place = to;
@@ -72,7 +72,7 @@ impl Figure {
         landmarks.stance(def.mapping(), &scratch.model, self.place, points, &mut scratch.before)
     }
 
-    /// Computes pose and place between the last shown (`alpha` 0) and `now` (1).
+    /// Computes pose and transform between the last shown (`alpha` 0) and `now` (1).
     pub fn between(&self, now: &[LocalTransform], alpha: f32, pose: &mut Vec<LocalTransform>) -> Transform {
         pose.clear();
         let (from, to) = (self.shown.place, self.place);
@@ -93,7 +93,7 @@ impl Figure {
     }
 }
 
-/// Buffers for reuse; except for `posed` they keep nothing between calls.
+/// Buffers for reuse; except for `posed` they hold no data between calls.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     /// Bodies from which the present pose was computed, a cache while they do not move; otherwise empty. The cache is

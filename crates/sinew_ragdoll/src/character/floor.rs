@@ -1,4 +1,4 @@
-//! The floor of a clip: the height of its lowest drawn point, which may differ from the rest pose's.
+//! The floor of a clip: the height of its lowest drawn point, which may differ from that of the rest pose.
 
 use super::{CharacterDef, Locomotion, MotionSet};
 use crate::character::tuning::OWN_FLOOR;
@@ -51,7 +51,7 @@ impl Raised {
         let looped = looped.map_or(0.0, |index| {
             let clip = &motions.clips[index];
             let raised = raise(low(clip, 0));
-            // Without legs, or in the air, nothing stands on a floor; only parts in the floor are raised.
+            // Without legs, or in the air, a clip has no floor; only parts below the floor are raised.
             if raised < 0.0 && (!has_legs || is_aloft(&clip.name)) { 0.0 } else { raised }
         });
         let get_ups = motions.get_ups.iter().map(|&clip| (clip, raise(low(&motions.clips[clip], LOOKS))));

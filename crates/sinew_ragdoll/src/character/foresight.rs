@@ -29,7 +29,7 @@ pub(super) struct Foresight<'a> {
 
 impl Foresight<'_> {
     /// Returns the poses of the bodies from an animator that is advanced by `seconds`, relative to the character's
-    /// present place. `place` is the place to which the animator has moved the character until then.
+    /// present transform. `place` is the transform to which the animator has moved the character until then.
     fn bodies(
         &self,
         ahead: &mut Animator,

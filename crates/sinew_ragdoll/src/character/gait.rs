@@ -34,15 +34,15 @@ pub(super) struct Gait {
     pub pace: f32,
     /// Time since the mover last had ground, seconds.
     pub air: f32,
-    /// Offset from the mover to the shown place, metres: the character takes a moment to follow a step down, or a mover
-    /// that was pushed aside.
+    /// Offset from the mover to the shown position, metres: the character follows a step down, or a mover that was
+    /// pushed aside, with a delay.
     pub beside: Vec3,
     /// Velocity by blasts and fields in addition to the walk, m/s; the feet brake it. Upward: on the way off the
     /// ground.
     pub shoved: Vec3,
     /// Change of velocity by blasts and fields in the last step, m/s; zero between updates.
     pub blown: Vec3,
-    /// Velocity at which the character follows a held limb, level, m/s; zero between updates.
+    /// Velocity at which the character follows a held limb, horizontal, m/s; zero between updates.
     pub pulled: Vec3,
     /// True if the character was off the ground for too long or landed too fast.
     pub falls: bool,
@@ -77,8 +77,8 @@ impl Gait {
         }
     }
 
-    /// Advances the clips and the figure over the ground by a step. `own`: bodies of the character, if it is in the
-    /// world.
+    /// Advances the clips and moves the character over the ground by a step. `own`: bodies of the character, if it is
+    /// in the world.
     pub fn advance(
         &mut self,
         def: &CharacterDef,
@@ -114,8 +114,8 @@ impl Gait {
         self.climbing = (to.translation.y - from.translation.y) / dt;
     }
 
-    /// Returns the place after a step, by the mover, and records the mover's speeds. `turns`: largest turning speed,
-    /// rad/s.
+    /// Returns the transform after a step, by the mover, and records the mover's speeds. `turns`: largest turning
+    /// speed, rad/s.
     fn ride(
         &mut self,
         def: &CharacterDef,
@@ -203,7 +203,7 @@ impl Gait {
                 world.set_mover_velocity(mover, velocity);
             }
             self.shoved.y = 0.0;
-            // In the air a mover without a wish keeps its velocity.
+            // In the air a mover without a wanted velocity keeps its velocity.
             return if walk == Vec3::ZERO { walk } else { walk + self.shoved };
         }
         let level = Vec3::new(self.shoved.x, 0.0, self.shoved.z);
@@ -312,7 +312,7 @@ impl Gait {
         self.animator.tracks().find(plays).map(sinew_anim::Track::id)
     }
 
-    /// Returns the place after `seconds` more, relative to the character's present place: by its mover, or by its
+    /// Returns the transform after `seconds` more, relative to the character's present one: by its mover, or by its
     /// clips.
     pub fn gone_on(
         &self,
@@ -334,7 +334,7 @@ impl Gait {
         place
     }
 
-    /// Adds a mover at the character's place, at a share of its full height.
+    /// Adds a mover at the character's position, at a share of its full height.
     pub fn stand_up(&mut self, def: &CharacterDef, place: Vec3, world: &mut World, share: f32) {
         let Some(mover) = def.in_world.mover.as_ref().filter(|_| self.mover.is_none()) else { return };
         let height = max(2.0 * mover.radius, share * mover.height);
@@ -350,8 +350,7 @@ impl Gait {
         self.clear_shoves();
     }
 
-    /// Returns true once the character has left the ground: immediately in a jump, after a moment over an edge or a
-    /// kerb.
+    /// Returns true once the character has left the ground: immediately in a jump, with a delay over an edge or a kerb.
     pub fn is_aloft(&self) -> bool {
         self.air >= OFF_GROUND || self.air > 0.0 && self.velocity.y > LIFTS_OFF
     }
@@ -380,7 +379,7 @@ impl Gait {
         }
     }
 
-    /// Restarts at a new place.
+    /// Restarts at a new position.
     pub fn teleport(&mut self, place: Vec3, world: &mut World) {
         (self.air, self.beside, self.velocity) = (0.0, Vec3::ZERO, Vec3::ZERO);
         self.clear_shoves();

@@ -17,7 +17,7 @@ pub(super) struct Rising {
     pub lean: Vec3,
 }
 
-/// The way in which a character gets up.
+/// Method by which a character gets up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Way {
     /// The track plays a get-up clip.
@@ -58,8 +58,8 @@ impl Rising {
         matches!(self.way, Way::Without(_))
     }
 
-    /// Tilts the place by the slope while the character lies, and makes it upright toward the end, because clips are
-    /// made for a level floor.
+    /// Tilts the transform by the slope while the character lies, and makes it upright toward the end, because clips
+    /// are made for a level floor.
     pub fn straighten(&self, def: &CharacterDef, animator: &Animator, figure: &mut Figure) {
         if self.lean == Vec3::ZERO {
             return;
@@ -86,7 +86,7 @@ impl Rising {
     }
 }
 
-/// A get-up clip, the moment of this clip that is most similar to the present pose, and their similarity.
+/// A get-up clip, the clip time that is most similar to the present pose, and their similarity.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Choice<'a> {
     pub get_up: &'a GetUp,
@@ -94,7 +94,7 @@ pub(super) struct Choice<'a> {
     pub pose_similarity: PoseSimilarity,
 }
 
-/// Returns the best of all clips and moments for a body in this pose.
+/// Returns the best of all clips and clip times for a body in this pose.
 pub(super) fn choose<'a>(get_ups: &'a [GetUp], landmarks: &Landmarks, lies: &Stance) -> Option<Choice<'a>> {
     let all = get_ups.iter().flat_map(|get_up| get_up.starts.iter().map(move |start| (get_up, start)));
     all.map(|(get_up, start)| Choice {
@@ -105,7 +105,8 @@ pub(super) fn choose<'a>(get_ups: &'a [GetUp], landmarks: &Landmarks, lies: &Sta
     .reduce(|a, b| if b.pose_similarity.distance < a.pose_similarity.distance { b } else { a })
 }
 
-/// Returns the place of a character tilted by `lean`, at the height at which its floor is at `ground` under the pelvis.
+/// Returns the transform of a character tilted by `lean`, at the height at which its floor is at `ground` under the
+/// pelvis.
 pub(super) fn standing(place: Transform, lean: Vec3, pelvis: Vec3, ground: f32) -> Transform {
     let mut to = Transform::new(place.translation, Rotation::from_scaled_axis(lean) * place.rotation);
     let normal = Rotation::from_scaled_axis(lean) * Vec3::Y;
@@ -114,7 +115,7 @@ pub(super) fn standing(place: Transform, lean: Vec3, pelvis: Vec3, ground: f32) 
     to
 }
 
-/// Returns true if another mover occupies the place of the character's mover.
+/// Returns true if another mover occupies the position of the character's mover.
 pub(super) fn is_taken(def: &CharacterDef, world: &World, place: Vec3) -> bool {
     let Some(own) = &def.in_world.mover else { return false };
     world.mover_ids().any(|id| {
@@ -126,9 +127,10 @@ pub(super) fn is_taken(def: &CharacterDef, world: &World, place: Vec3) -> bool {
     })
 }
 
-/// Returns true if a movable body is on the character, and it has not waited too long: a kinematic body that stands on
-/// it, or dynamic bodies that press it down by more than it presses others. These net loads of characters in a pile sum
-/// to zero, so at least one character is always free. `steps`: time that the character has lain.
+/// Returns true if a movable body is on the character and the character has not waited too long: a kinematic body that
+/// stands on it, or dynamic bodies whose load exceeds that of the character on others. These net loads of characters in
+/// a pile sum to zero, so at least one character is always free. `steps`: number of steps for which the character has
+/// lain.
 pub(super) fn is_under(def: &CharacterDef, own: &[BodyId], steps: u32, world: &World) -> bool {
     let dt = world.def().dt();
     if steps as f32 * dt > BEARS_FOR {

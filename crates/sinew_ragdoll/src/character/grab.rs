@@ -1,5 +1,5 @@
-//! Grips on limbs and other dynamic bodies. A grip holds the touched point with bounded force, and lets go beyond this
-//! force.
+//! Grips on limbs and other dynamic bodies. A grip holds the touched point with bounded force, and releases it beyond
+//! this force.
 
 use super::grasp::{Grab, Grasp};
 use super::hold::{Grips, Hold};
@@ -66,7 +66,7 @@ impl Grips {
         all.any(|held| held == body || together(world, held).contains(&body))
     }
 
-    /// Enables collision with released bodies once they are apart.
+    /// Enables collision with released bodies once they have separated.
     pub fn mind_freed(&mut self, own: &[BodyId], world: &mut World) {
         if self.freed.is_empty() {
             return;
@@ -91,7 +91,7 @@ impl Grips {
         self.freed = freed;
     }
 
-    /// Pulls all grips through the next step; returns the body that one of them lets go.
+    /// Pulls all grips through the next step; returns the body that one of them releases.
     pub(super) fn pull(&mut self, world: &mut World) -> Option<BodyId> {
         for hold in &mut self.holds {
             if let Some(grasp) = &mut hold.grasp

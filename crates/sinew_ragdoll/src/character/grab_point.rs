@@ -90,8 +90,8 @@ impl GrabPoint {
         self.joint
     }
 
-    /// Pulls through the next step; call it before each step. Returns false once the point holds nothing: the body is
-    /// gone, or further from the target than [`Grab::slip`].
+    /// Pulls through the next step; call it before each step. Returns false once the point holds nothing: the body was
+    /// removed, or is further from the target than [`Grab::slip`].
     pub fn update(&mut self, world: &mut World) -> bool {
         let is_there = world.contains_joint(self.joint) && world.contains(self.held);
         if is_there && self.grasp.pull(world, self.joint, true) {

@@ -13,7 +13,7 @@ pub struct Grab {
     pub max_force: f32,
     /// Largest distance from the surface to the centre of the hand, or to the point, metres. Default 0.25.
     pub reach: f32,
-    /// Distance by which the grip slips at its full force before it lets go, metres; for a
+    /// Distance by which the grip slips at its full force before it releases the body, metres; for a
     /// [`GrabPoint`](super::GrabPoint) the distance from its target. Default 0.4.
     pub slip: f32,
     /// Point in the frame of the hand's body to which the grip pulls the held body, at `speed`; `None`: to the hand's
@@ -22,7 +22,7 @@ pub struct Grab {
     /// Speed at which the grip pulls the held body, and at which a [`GrabPoint`](super::GrabPoint) moves, m/s. Default
     /// 1.
     pub speed: f32,
-    /// True if the grip lets go when its character goes limp. Default true.
+    /// True if the grip releases the body when its character goes limp. Default true.
     pub drops: bool,
 }
 
@@ -30,7 +30,7 @@ impl Grab {
     /// Grip of a hand.
     pub const HAND: Self =
         Self { max_force: 1300.0, reach: 0.25, slip: 0.4, to: None, speed: 1.0, drops: true };
-    /// Grip for a point moved by a person, such as a mouse: at most 2.5 m/s; it never lets go by itself.
+    /// Grip for a point moved by a person, such as a mouse: at most 2.5 m/s; it never releases the body by itself.
     pub const POINT: Self = Self { slip: f32::INFINITY, speed: 2.5, ..Self::HAND };
 
     /// # Panics
@@ -57,7 +57,8 @@ impl Default for Grab {
 pub(super) struct Grasp {
     /// Target of the hold.
     pub goal: Vec3,
-    /// Offset from the target to the current hold, world axes. A body pulled from afar does not rotate with the hand.
+    /// Offset from the target to the currently held point, world axes. A body pulled from afar does not rotate with the
+    /// hand.
     pub off: Vec3,
     /// Anchors on the hand's body and on the held body, in their frames.
     anchors: [Vec3; 2],
@@ -102,8 +103,8 @@ impl Grasp {
         (grasp, joint)
     }
 
-    /// Pulls through the next step; returns false if the grip lets go. `leads`: the target stays near the held point
-    /// instead of dragging it from afar.
+    /// Pulls through the next step; returns false if the grip releases the body. `leads`: the target stays near the
+    /// held point instead of dragging it from afar.
     pub fn pull(&mut self, world: &mut World, joint: JointId, leads: bool) -> bool {
         let (dt, def) = (world.def().dt(), world.joint(joint));
         let held = def.frame_a.rotation * world.joint_transform(joint).translation;

@@ -42,8 +42,8 @@ pub(super) fn firm_below(
     is_firm(world, hit.body, least).then_some(hit.point.y)
 }
 
-/// Returns true if a body bears a character: neither another character's body nor a dynamic body lighter than `least`
-/// kg.
+/// Returns true if a body can support a character: it is neither another character's body nor a dynamic body lighter
+/// than `least` kg.
 pub(super) fn is_firm(world: &World, body: BodyId, least: f32) -> bool {
     let is_heavy = world.kind(body) != BodyKind::Dynamic || world.mass(body).mass >= least;
     is_heavy && world.body_owner(body).is_none()
@@ -91,7 +91,7 @@ pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
     GroundMotion { velocity: world.velocity(hit.body), center: world.center_of_mass(hit.body) }
 }
 
-/// Returns true if a lying body, its pelvis the first of `own`, is low over ground, or firm ground bears it.
+/// Returns true if a lying body, its pelvis the first of `own`, is low over ground, or firm ground supports it.
 pub(super) fn bears(def: &RagdollDef, own: &[BodyId], world: &World) -> bool {
     let Some(&pelvis) = own.first() else { return true };
     let (at, low) = (world.center_of_mass(pelvis), LIES_LOW * def.height);
@@ -132,7 +132,7 @@ pub(super) fn slope(world: &World, points: &[Vec3], own: Option<&[BodyId]>, leas
         (xx, xz, zz) = (xx + d.x * d.x, xz + d.x * d.z, zz + d.z * d.z);
         (xy, zy) = (xy + d.x * d.y, zy + d.z * d.y);
     }
-    // Collinear points do not determine the slope across them; it is level there.
+    // Collinear points do not determine the slope across them; that slope is zero.
     let ridge = 0.01 * (xx + zz) + 1e-6;
     let (xx, zz) = (xx + ridge, zz + ridge);
     let det = xx * zz - xz * xz;

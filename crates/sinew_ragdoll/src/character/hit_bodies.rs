@@ -10,10 +10,10 @@ use sinew_anim::LocalTransform;
 use sinew_math::{Transform, Vec3, max, min, normalize_or};
 use sinew_physics::{BodyId, BodyKind, Hit, Push, Velocity, World};
 
-/// A contact blow.
+/// A hit by a contact.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Strike {
-    /// Impulse of the blow, N·s, world axes.
+    /// Impulse of the hit, N·s, world axes.
     pub impulse: Vec3,
     /// Largest speed that the striker can give to the body, m/s.
     pub speed: f32,
@@ -64,8 +64,8 @@ impl Physique {
         own.for_each(|(_, (&id, &next))| world.move_to(id, next, dt));
     }
 
-    /// Returns the hardest blow to the character's bodies in the last step, with the body's index, if the blow is felt.
-    /// `steps`: the character stands on its own feet, whose steps are not blows.
+    /// Returns the strongest hit on the character's bodies in the last step, with the body's index, if it exceeds the
+    /// threshold. `steps`: the character stands on its own feet, whose steps do not count as hits.
     pub fn felt(&self, def: &CharacterDef, steps: bool, world: &World) -> Option<(usize, Strike)> {
         let least = def.in_world.feels;
         if self.hit.is_empty() || least == f32::INFINITY {
@@ -80,7 +80,7 @@ impl Physique {
             }
         };
         let own = |id: BodyId| self.index_of(id);
-        // The character's own steps are not blows: static bodies strike nobody.
+        // The character's own steps do not count as hits, and neither do contacts with static bodies.
         let stands = |id: BodyId| steps && world.contains(id) && world.kind(id) == BodyKind::Static;
         for hit in &world.events().hits {
             match (own(hit.a.body), own(hit.b.body)) {
@@ -160,8 +160,8 @@ impl Physique {
 
     /// Applies an impulse to a body, at a point or at its centre of mass, and returns the work, joules.
     ///
-    /// A share that would make the body faster than [`HIT_SPEED`] goes to the bodies above it; otherwise the blow would
-    /// fling a hand away. The rest beyond the pelvis goes to the struck body.
+    /// A share that would make the body faster than [`HIT_SPEED`] goes to the bodies above it; otherwise a strong hit
+    /// would throw a hand away. The rest beyond the pelvis goes to the struck body.
     pub fn push(
         &self,
         def: &CharacterDef,
@@ -201,9 +201,10 @@ fn shares(def: &RagdollDef, body: usize, speed: f32) -> impl Iterator<Item = (us
     core::iter::successors(Some(body), parent).map(move |body| (body, def.bodies[body].mass.mass * speed))
 }
 
-/// Returns the blow by another body to one of the character's, with `way` the direction from the other body to it. The
-/// impulse is at most the one that the striker could give to the whole character, `whole` kg. A keyed body gets only
-/// the striker's own momentum: a foot that lands on a hand presses the hand to the ground however strongly it is keyed.
+/// Returns the impulse of another body on one of the character's, with `way` the direction from the other body to it.
+/// The impulse is at most the one that the striker could give to the whole character, `whole` kg. A keyed body gets
+/// only the striker's own momentum: a foot that lands on a hand presses the hand to the ground however strongly it is
+/// keyed.
 fn taken(world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3, whole: f32) -> Strike {
     let Velocity { linear, angular } = world.velocity(own);
     let led = linear + angular.cross(hit.point - world.center_of_mass(own));
@@ -230,7 +231,7 @@ fn meeting_mass(world: &World, other: BodyId, whole: f32) -> f32 {
     mass * whole / (mass + whole)
 }
 
-/// Returns the blow of a body that passes through one of the character's bodies, as if the two stopped each other.
+/// Returns the hit of a body that passes through one of the character's bodies, as if the two stopped each other.
 fn passing(world: &World, own: BodyId, other: BodyId, whole: f32) -> Strike {
     let gone = !world.contains(other) || !world.contains(own);
     if gone || world.kind(other) != BodyKind::Dynamic || world.kind(own) == BodyKind::Dynamic {

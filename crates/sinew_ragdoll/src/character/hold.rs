@@ -1,5 +1,5 @@
 //! Bodies attached to a character's bodies: a sword in a hand, a lantern on a belt. Hit bodies and ragdoll are the same
-//! bodies, so held bodies stay in every state.
+//! bodies, so a body is held in every state.
 
 use super::CharacterEvent;
 use super::event::Events;
@@ -43,7 +43,7 @@ pub(super) struct Hold {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Grips {
     pub holds: Vec<Hold>,
-    /// Released limbs, whose bodies the character's own bodies pass through until they are apart.
+    /// Released limbs, whose bodies the character's own bodies pass through until they have separated.
     pub freed: Vec<BodyId>,
     /// Dynamic body under the mover.
     pub bearer: Option<BodyId>,
@@ -137,7 +137,8 @@ impl Grips {
     }
 
     /// Lets a body pass through the character's bodies and through movers, or reverts that. For a body of another
-    /// character this applies to all of that character's bodies; the two characters collide again once they are apart.
+    /// character this applies to all of that character's bodies; the two characters collide again once they have
+    /// separated.
     pub fn set_passes(&mut self, own: &[BodyId], other: BodyId, passes: bool, world: &mut World) {
         let rule = if passes { ContactRule::Yields(Yields::default()) } else { ContactRule::Push };
         let is_owned = world.body_owner(other).is_some();
@@ -162,7 +163,7 @@ impl Grips {
     }
 
     /// Lets the character's bodies pass through the dynamic body under its mover. This body gets only the mover's
-    /// weight: feet that kick a crate on which they ride would accelerate it and themselves without end.
+    /// weight: feet that kick the crate on which their character rides would accelerate both without end.
     pub fn spare_bearer(&mut self, own: &[BodyId], mover: Option<MoverId>, world: &mut World) {
         let ground = mover.and_then(|mover| world.mover_ground(mover));
         let bearer = ground.and_then(|ground| ground.shape).map(|shape| shape.body);

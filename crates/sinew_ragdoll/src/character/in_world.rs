@@ -17,26 +17,26 @@ pub enum HitBodies {
     Absent,
 }
 
-/// A blow to a character.
+/// A hit on a character.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blow {
     /// Struck body, by index in the definition.
     pub body: usize,
     /// Impulse, N·s, world axes.
     pub impulse: Vec3,
-    /// State of the character before the blow.
+    /// State of the character before the hit.
     pub state: State,
 }
 
-/// Rule that decides which blows fell a standing character, and which make it flinch.
+/// Rule that decides which hits make a standing character fall, and which make it flinch.
 #[derive(Clone, Copy, Debug)]
 pub enum Toughness {
-    /// Every blow fells the character.
+    /// Every hit makes the character fall.
     None,
-    /// Blows of at least this impulse, N·s, fell the character; weaker ones make it flinch. While it gets up near the
-    /// ground, 2.5 times this impulse is needed. Default: a speed of 0.6 m/s for the character's whole mass.
+    /// Hits of at least this impulse, N·s, make the character fall; weaker ones make it flinch. While it gets up near
+    /// the ground, 2.5 times this impulse is needed. Default: a speed of 0.6 m/s for the character's whole mass.
     Impulse(f32),
-    /// A user's function decides: it returns true if the blow fells the character.
+    /// A user's function decides: it returns true if the hit makes the character fall.
     Function(fn(&CharacterDef, &Blow) -> bool),
 }
 
@@ -55,14 +55,14 @@ impl PartialEq for Toughness {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FootPlanting {
     /// Feet are placed on the ground under them: on stairs, slopes, edges and moving ground; a planted foot keeps its
-    /// place. Bodies lighter than a twentieth of the character, and limbs of others, are not ground. For humanoids in a
-    /// world, with [hit bodies](InWorld::hit_bodies). Default.
+    /// position. Bodies lighter than a twentieth of the character, and limbs of others, are not ground. For humanoids
+    /// in a world, with [hit bodies](InWorld::hit_bodies). Default.
     OnGround,
     /// Feet follow the clips, except those of a character that got up and still stands there.
     AsClips,
 }
 
-/// Settings of a kind of character in a world while clips move it: mover, bodies, blows and falls.
+/// Settings of a kind of character in a world while clips move it: mover, bodies, hits and falls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InWorld {
     /// Bodies of the character. Default present.
@@ -76,17 +76,17 @@ pub struct InWorld {
     pub jump_speed: f32,
     /// Time without ground after which the character falls limp, seconds. Default 1.2.
     pub air_time: f32,
-    /// Speed toward the ground from which a landing fells the character, m/s. Default 7, a fall from 2.5 m.
+    /// Speed toward the ground from which a landing makes the character fall, m/s. Default 7, a fall from 2.5 m.
     pub landing_speed: f32,
     /// Placement of the feet. Default on the ground.
     pub foot_planting: FootPlanting,
-    /// Rule that decides which blows fell the character or make it flinch.
+    /// Rule that decides which hits make the character fall or flinch.
     pub toughness: Toughness,
-    /// Largest number of steps in a row to catch a push while powered. Such a character falls by losing its balance and
-    /// not by [`toughness`](Self::toughness), unless that is a function or none. 0: the character does not step. Only
-    /// for humanoids with a mover. Default 4.
+    /// Largest number of steps in a row to catch a push while powered. Such a character falls when it loses its
+    /// balance, not by [`toughness`](Self::toughness), unless that is a function or none. 0: the character does not
+    /// step. Only for humanoids with a mover. Default 4.
     pub most_steps: u32,
-    /// Least impulse from contacts and blasts that counts as a blow, N·s; infinite: only
+    /// Smallest impulse from contacts and blasts that counts as a hit, N·s; infinite: only
     /// [`Character::hit`](super::Character::hit) counts. Default 3.
     pub feels: f32,
     /// True if [`CharacterEvent::Contact`](super::CharacterEvent::Contact) reports contacts of the character's bodies.

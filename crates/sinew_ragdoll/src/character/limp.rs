@@ -16,7 +16,7 @@ use sinew_physics::{BodyId, Velocity, World};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Lying {
     pub stillness: Stillness,
-    /// Way out of shapes in which the character was deep when it went limp.
+    /// Displacement out of shapes in which the character was deep when it went limp.
     pub clearing: Clearing,
 }
 
@@ -29,16 +29,16 @@ pub(super) struct Stillness {
     pub calm_steps: u32,
     pub settled: bool,
     pub touched: bool,
-    /// True if nobody was on the character when it last tried to get up.
+    /// True if no body was on the character when it last tried to get up.
     pub free: bool,
 }
 
-/// A limp character on its way out of a wall or the floor.
+/// Displacement of a limp character out of a wall or the floor.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Clearing {
     /// Remaining displacement after the next step, world, metres.
     pub way: Vec3,
-    /// Velocities of the bodies at the end of the way; empty without a way.
+    /// Velocities of the bodies at the end of the displacement; empty without one.
     pub velocities: Vec<Velocity>,
 }
 
@@ -125,8 +125,8 @@ impl Physique {
         scratch.pose.extend(resting.iter());
     }
 
-    /// Moves the place of a limp character with its pelvis; the place approaches the point under the pelvis, as high as
-    /// the lowest body.
+    /// Moves the transform of a limp character with its pelvis; the transform approaches the point under the pelvis, as
+    /// high as the lowest body.
     pub fn take_along(&self, place: &mut Transform, world: &World, scratch: &mut Scratch) {
         let Some(&pelvis) = self.own().first() else { return };
         let dt = world.def().dt();

@@ -76,7 +76,7 @@ impl Mirror {
     }
 }
 
-/// Returns true if a pose translates the joint from its rest place.
+/// Returns true if a pose translates the joint from its rest position.
 fn is_moved(rig: &Rig, pose: &[LocalTransform], joint: JointIdx) -> bool {
     let rest = rig.joints[joint].rest.translation;
     (pose[joint].translation - rest).length() > MOVED * rest.length()

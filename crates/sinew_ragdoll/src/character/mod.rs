@@ -1,5 +1,5 @@
-//! A character: animated until a blow fells it, limp until it lies still, prepared for a get-up clip if needed, getting
-//! up, animated again. Each change is a [`CharacterEvent`].
+//! A character: animated until a hit makes it fall, limp until it lies still, prepared for a get-up clip if needed,
+//! getting up, animated again. Each change is a [`CharacterEvent`].
 //!
 #![doc = include_str!("states.svg")]
 //!
@@ -111,7 +111,7 @@ pub struct Character {
     activity: Activity,
     /// Action of the character once it lies still.
     after_settling: AfterSettling,
-    /// Level of detail, now or once clips move the character; `None`: it is in no world.
+    /// Level of detail, now or once clips move the character; `None` outside of a world.
     detail: Option<Detail>,
     gait: Gait,
     figure: Figure,
@@ -231,7 +231,7 @@ impl Character {
         self.feet.plant(&stand, world, &mut self.scratch.model);
     }
 
-    /// Exchanges blows, hit bodies and steering between the world and a character that its clips move.
+    /// Exchanges hits, hit bodies and steering between the world and a character that its clips move.
     fn attend(&mut self, world: &mut World) {
         if !self.is_in_world() {
             return;
@@ -246,7 +246,7 @@ impl Character {
         self.steer(world);
     }
 
-    /// Makes the character flinch or fall by blows to its bodies in the last step.
+    /// Makes the character flinch or fall after hits on its bodies in the last step.
     fn feel(&mut self, world: &mut World) {
         if !self.is_in_world() {
             return;
@@ -355,7 +355,7 @@ impl Character {
         balance.go_on(on, steps, &mut self.scratch, world, &mut self.events)
     }
 
-    /// Makes a held limb weak. A character held by the pelvis, or while it gets up, goes limp.
+    /// Makes a held limb weak. A character that is held by the pelvis, or that gets up, goes limp.
     fn give_way_to_grips(&mut self, world: &mut World) {
         if self.physique.hit.is_empty() || self.physique.ragdoll.is_some() {
             return;
@@ -480,13 +480,13 @@ impl Character {
         prepare::draw(&def, &choice, &mut self.physique, &mut self.scratch, world);
     }
 
-    /// Returns true if ground is under the pelvis, or the static world bears the character; a carried character does
+    /// Returns true if ground is under the pelvis, or the static world supports the character; a carried character does
     /// not get up. Outside of a world: always true.
     fn lies_on_ground(&self, world: &World) -> bool {
         !self.is_in_world() || ground::bears(&self.def.ragdoll, self.physique.own(), world)
     }
 
-    /// Takes place and pose from the bodies, except for joints without a body.
+    /// Takes transform and pose from the bodies, except for joints without a body.
     fn follow_bodies(&mut self, world: &World) {
         self.figure.keep_earlier();
         if self.is_in_world() {

@@ -40,7 +40,7 @@ pub(super) struct Moves {
     pub upright: Stance,
     /// Heights by which clips are raised to the floor of the rest pose.
     pub raised: Raised,
-    /// Displacement of the looped clip to the place of the character, character space.
+    /// Displacement of the looped clip to the position of the character, character space.
     pub shift: Vec3,
     /// Largest depths of the clips that loop, or of the rest pose.
     pub deepest: Depths,
@@ -60,18 +60,18 @@ pub(super) struct GetUp {
     /// Index of the clip in [`MotionSet::clips`].
     pub clip: usize,
     pub id: ClipId,
-    /// Moments at which a get-up may begin.
+    /// Clip times at which a get-up may begin.
     pub starts: Vec<Start>,
     /// Largest depth of the parts in the floor.
     pub deepest: Depths,
 }
 
-/// A moment of a get-up clip.
+/// A time of a get-up clip.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
     /// Time in the clip, seconds.
     pub time: f32,
-    /// Stance at this moment, character space.
+    /// Stance at this time, character space.
     pub stance: Stance,
     /// Transform from each body to character space.
     pub bodies: Vec<Transform>,

@@ -26,7 +26,7 @@ pub(super) struct Physique {
     pub lost: Vec<(usize, BodyId)>,
     /// Remaining bodies; empty if none was detached.
     pub kept: Vec<BodyId>,
-    /// Pairs of own and detached bodies that overlap. They pass through each other until they are apart.
+    /// Pairs of own and detached bodies that overlap. They pass through each other until they have separated.
     pub parting: Vec<(BodyId, BodyId)>,
 }
 
@@ -169,7 +169,7 @@ impl Physique {
         }
     }
 
-    /// Computes the poses of the bodies of a ragdoll, in `scratch.after`; detached ones are at their rest place.
+    /// Computes the poses of the bodies of a ragdoll, in `scratch.after`; detached ones are at their rest position.
     pub fn poses(&self, def: &CharacterDef, world: &World, scratch: &mut Scratch) {
         let ragdoll = self.ragdoll.as_ref().expect("it has bodies");
         ragdoll.poses(world, &mut scratch.after);

@@ -1,7 +1,7 @@
-//! Similarity of two poses, independent of place and heading.
+//! Similarity of two poses, independent of position and heading.
 //!
 //! The method is that of motion graphs (Kovar, Gleicher, Pighin, SIGGRAPH 2002, §3.1): one pose is rotated about the
-//! vertical and moved so that its points are as near to the other's as possible; the remaining distance is the
+//! vertical and moved so that its points are as near as possible to those of the other; the remaining distance is the
 //! difference.
 
 use crate::character::tuning::{STICK, STICK_WEIGHT};

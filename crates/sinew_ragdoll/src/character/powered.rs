@@ -18,7 +18,8 @@ pub enum Preset {
     Animated,
     /// Clips move the character, with all bodies weak and returning as if all were struck.
     Flinching,
-    /// Muscles drive the bodies to the clips, and soft pins keep the character near its place, strongest at the pelvis.
+    /// Muscles drive the bodies to the clips, and soft pins keep the character near its position, strongest at the
+    /// pelvis.
     Powered,
     /// Nothing drives the bodies: the character falls.
     Limp,
@@ -37,12 +38,12 @@ pub enum Part<'a> {
     From(&'a str),
 }
 
-/// Pin that keeps a body of a powered character near its place. Pins of legs and pelvis are stronger, because otherwise
-/// feet would drag.
+/// Pin that keeps a body of a powered character near its position. Pins of legs and pelvis are stronger, because
+/// otherwise feet would drag.
 const NEAR: Pin = Pin { hertz: 2.0, damping_ratio: 1.0, max_force: 0.0, max_torque: 0.0 };
 const WALKS: Pin = Pin { hertz: 4.0, ..NEAR };
 
-/// Returns the pin that holds a body near its place in [`Preset::Powered`].
+/// Returns the pin that holds a body near its position in [`Preset::Powered`].
 fn powered_pin(def: &CharacterDef, body: usize, gravity: f32) -> Pin {
     let def = &def.ragdoll;
     if body == 0 {
@@ -67,8 +68,8 @@ pub(super) fn set_drives(def: &CharacterDef, physique: &mut Physique, world: &Wo
     }
 }
 
-/// Returns true if the pelvis is too far from the clips' pelvis for the feet to hold it, or leans too far. Its heading
-/// is ignored, because it lags behind when the character turns on the spot.
+/// Returns true if the pelvis is too far from the pelvis of its clips for the feet to hold it, or leans too far. Its
+/// heading is ignored, because it lags behind when the character turns on the spot.
 pub(super) fn is_toppled(
     def: &CharacterDef,
     animator: &Animator,

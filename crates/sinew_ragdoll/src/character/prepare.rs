@@ -86,7 +86,7 @@ pub(super) fn set_drives(def: &CharacterDef, rolls: bool, physique: &mut Physiqu
     }
 }
 
-/// Drives the bodies toward the start of the clip, at their place, for the next step.
+/// Drives the bodies toward the start of the clip, at their current position, for the next step.
 pub(super) fn draw(
     def: &CharacterDef,
     choice: &Choice<'_>,

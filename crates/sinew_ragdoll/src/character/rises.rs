@@ -22,7 +22,8 @@ pub(super) struct Grounds<'a> {
 }
 
 impl Grounds<'_> {
-    /// Returns the depths of the parts of a pose in the floor of the character's place, and in the ground below them.
+    /// Returns the depths of the parts of a pose in the floor of the character's transform, and in the ground below
+    /// them.
     pub fn depths(
         self,
         def: &CharacterDef,

@@ -8,7 +8,7 @@ use sinew_anim::{Animator, Garment, LocalTransform, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, max3};
 use sinew_physics::Yields;
 
-/// Number of moments of a clip at which its limbs are measured.
+/// Number of times within a clip at which its limbs are measured.
 const MOMENTS: u16 = 64;
 
 impl CharacterDef {

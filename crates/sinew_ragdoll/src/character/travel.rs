@@ -42,7 +42,7 @@ impl Lap {
     }
 }
 
-/// Returns the place of the pelvis over the ground, and its heading.
+/// Returns the position of the pelvis over the ground, and its heading.
 fn stand(def: &CharacterDef, take: &Take, frame: usize) -> Transform {
     let (mut model, mut bodies) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, take.pose(frame), &Affine::IDENTITY, &mut model);
@@ -54,8 +54,8 @@ fn stand(def: &CharacterDef, take: &Take, frame: usize) -> Transform {
     Transform::new(place, Rotation::from_axis_angle(Vec3::Y, heading))
 }
 
-/// Returns the level displacement that brings the start of a clip to the place of the character, character space:
-/// captures often begin metres from their origin. Zero if the pelvis starts near its place in the rest pose.
+/// Returns the horizontal displacement that moves the start of a clip to the position of the character, character
+/// space: captures often begin metres from their origin. Zero if the pelvis starts near its position in the rest pose.
 pub(super) fn to_origin(def: &CharacterDef, clip: &Clip) -> Vec3 {
     let mut poses = def.rest().to_vec();
     sample(clip, &def.rig, 0.0, Wrap::Clamp, &mut poses);

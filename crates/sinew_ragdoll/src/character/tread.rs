@@ -1,8 +1,8 @@
 //! Feet of a walking character: each foot stays planted where it landed, and swings over edges.
 //!
-//! A planted foot keeps its place on the ground: the clip's displacement is removed, except for the roll from heel to
-//! ball. In the air the offset decays, and the foot takes the height of the ground at its landing point, predicted over
-//! [`LOOKS_AHEAD`]. Continuous ground is followed immediately, edges like a spring.
+//! A planted foot keeps its position on the ground: the clip's displacement is removed, except for the roll from heel
+//! to ball. In the air the offset decays, and the foot takes the height of the ground at its landing point, predicted
+//! over [`LOOKS_AHEAD`]. Continuous ground is followed immediately, edges like a spring.
 
 use super::CharacterDef;
 use super::feet::{Feet, Stand};
@@ -38,7 +38,7 @@ pub(super) struct Tread {
     pub stands: bool,
 }
 
-/// Both feet, and the height of the character's place in the last step, metres.
+/// Both feet, and the height of the character's transform in the last step, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Treads {
     pub feet: [Tread; 2],
@@ -98,7 +98,7 @@ impl Feet {
         let (def, figure, dt) = (stand.def, stand.figure, world.def().dt());
         let (place, level) = (figure.place, figure.place.translation.y);
         local_to_model(&def.rig, &figure.pose, &def.mapping().character_from_model(), model);
-        // Place of the character if it moved exactly as its clips do.
+        // Transform of the character if it moved exactly as its clips do.
         let by_clips = figure.earlier.place * root_step(def, stand.animator);
         let is_new = self.treads.is_none();
         let mut treads = self.treads.unwrap_or(Treads { level, ..Treads::default() });
@@ -147,8 +147,8 @@ impl Feet {
         self.treads = Some(treads);
     }
 
-    /// Moves the feet of a pose of the clips, already at their heights, to their planted places. `now` is the place of
-    /// the character after `later` seconds. Returns the lowering of the pelvis, metres.
+    /// Moves the feet of a pose of the clips, already at their heights, to their planted positions. `now` is the
+    /// transform of the character after `later` seconds. Returns the lowering of the pelvis, metres.
     pub(super) fn bring_home(
         &self,
         def: &CharacterDef,
@@ -203,7 +203,7 @@ struct Found {
     under: [Option<f32>; 3],
     /// Level direction from ankle to ball.
     ahead: Vec3,
-    /// Level distance by which the toes must stay back from a wall at the landing point, metres.
+    /// Horizontal distance by which the toes must stay back from a wall at the landing point, metres.
     home: Vec3,
 }
 
@@ -265,15 +265,15 @@ impl Stand<'_> {
         let bearer = found[1].or(found[0]).map(|(_, hit)| hit);
         let floor = bearer.map_or(Vec3::ZERO, |hit| {
             let (velocity, arm) = (world.velocity(hit.body), hit.point - world.center_of_mass(hit.body));
-            // Velocity in the middle of the next step.
+            // Velocity at half of the next step.
             velocity.at(arm + velocity.at(arm) * (0.5 * dt))
         });
         Found { need, floor, under: heights, ahead, home }
     }
 
-    /// Returns the shift of a foot's landing place along the foot, metres: toes out of a wall, and the ball onto the
-    /// step that bears the heel, or the heel past the edge of this step. `heel`, `toes`: lengths behind the ankle and
-    /// before the ball.
+    /// Returns the shift of a foot's landing position along the foot, metres: toes out of a wall, and the ball onto the
+    /// step under the heel, or the heel past the edge of this step. `heel`, `toes`: lengths behind the ankle and before
+    /// the ball.
     fn aside(
         &self,
         world: &World,

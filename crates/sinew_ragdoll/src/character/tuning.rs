@@ -1,7 +1,7 @@
 //! Tunable constants of characters: animated, limp, getting up, stumbling.
 //!
 //! Each constant has its unit, the effect of a larger and a smaller value, and the tests
-//! (`crates/sinew_ragdoll/tests/it`) that show it. Effects without a figure are estimates.
+//! (`crates/sinew_ragdoll/tests/it`) that show it. Effects without a number are estimates.
 
 // character/animate.rs
 
@@ -14,7 +14,7 @@ pub(crate) const CLIMB_SPEED: f32 = 1.2;
 
 /// Time for which a struck limb is weak, seconds.
 ///
-/// Larger: the limb hangs down. Smaller: the blow is not visible. Shown by the tests of `blows`.
+/// Larger: the limb hangs down. Smaller: the hit is not visible. Shown by the tests of `blows`.
 pub(crate) const FLINCH_TIME: f32 = 0.12;
 
 /// Half-life of a struck limb's return, seconds.
@@ -22,7 +22,7 @@ pub(crate) const FLINCH_TIME: f32 = 0.12;
 /// Larger: the limb drifts back slowly. Smaller: it snaps back. Shown by the tests of `blows`.
 pub(crate) const FLINCH_HALF_LIFE: f32 = 0.08;
 
-/// Largest share of the legs' strength, 0 to 1, that a blow takes from a stepping character.
+/// Largest share of the legs' strength, 0 to 1, that a hit takes from a stepping character.
 ///
 /// Larger: the character kneels before its foot is down. Smaller: the legs stay stiff. Shown by the tests of `stumble`.
 pub(crate) const LEGS_WEAKEN: f32 = 0.2;
@@ -33,19 +33,19 @@ pub(crate) const LEGS_WEAKEN: f32 = 0.2;
 /// tests of `grab`.
 pub(crate) const GIVES_WAY: f32 = 3.0;
 
-/// Largest speed that [`hit`](super::Character::hit) gives to the struck body alone, m/s; the rest of the blow goes up
-/// its chain.
+/// Largest speed that [`hit`](super::Character::hit) gives to the struck body alone, m/s; the rest of the impulse goes
+/// up its chain.
 ///
-/// A fist or foot strikes at 8 to 12 m/s. Larger: a strong blow flings a hand away. Smaller: weak blows move the trunk.
+/// A fist or foot strikes at 8 to 12 m/s. Larger: a strong hit flings a hand away. Smaller: weak hits move the trunk.
 /// Shown by `brawl`.
 pub(crate) const HIT_SPEED: f32 = 12.0;
 
-/// Ratio of the blow that fells a character still near the ground to the one that fells a standing one.
+/// Ratio of the impulse that makes a character near the ground fall to the one that makes a standing character fall.
 ///
-/// Larger: no blow stops a get-up. Smaller: few characters of a crowd get up. Shown by the tests of `blows`.
+/// Larger: no hit stops a get-up. Smaller: few characters of a crowd get up. Shown by the tests of `blows`.
 pub(crate) const LOW_STANDS: f32 = 2.5;
 
-/// Largest share of the trunk's strength, 0 to 1, that a blow takes from a stepping character.
+/// Largest share of the trunk's strength, 0 to 1, that a hit takes from a stepping character.
 ///
 /// Larger: the trunk folds. Smaller: the trunk stays stiff. Shown by the tests of `stumble`.
 pub(crate) const TRUNK_WEAKENS: f32 = 0.5;
@@ -238,7 +238,7 @@ pub(crate) const PELVIS_RISES: f32 = 8.0;
 
 /// Part of a foot's offset that is not corrected, metres. A mover's speed lags the clips' speed by a step.
 ///
-/// Larger: feet slide. Smaller: legs tremble. Shown by the tests of `feet`.
+/// Larger: feet slide. Smaller: legs vibrate. Shown by the tests of `feet`.
 pub(crate) const SMALL_WAY: f32 = 4e-3;
 
 /// Least mass of a dynamic body that counts as ground, over the mass of the character.
@@ -247,7 +247,7 @@ pub(crate) const SMALL_WAY: f32 = 4e-3;
 /// `in_world`.
 pub(crate) const LEAST_TREAD: f32 = 0.05;
 
-/// Largest distance of a planted foot from its clip, over body height.
+/// Largest distance of a planted foot from its position in the clip, over body height.
 ///
 /// Larger: legs twist. Smaller: feet slide. Shown by the tests of `feet`.
 pub(crate) const MOST_ASTRAY: f32 = 0.07;
@@ -285,8 +285,8 @@ pub(crate) const BALL_AHEAD: f32 = 0.14;
 
 // character/clearance.rs
 
-/// Least horizontal distance of the pelvis from its place in the rest pose at which a clip begins away from its origin,
-/// as a share of the character's height.
+/// Least horizontal distance of the pelvis from its position in the rest pose at which a clip begins away from its
+/// origin, as a share of the character's height.
 ///
 /// Larger: a character with a captured clip walks beside its ground. Smaller: a lunge is pulled back. Shown by the
 /// tests of `travel`.
@@ -312,7 +312,7 @@ pub(crate) const STEP_OVER: f32 = 0.6;
 /// See [`STEP_OVER`].
 pub(crate) const STEP_HEIGHT: f32 = 0.05;
 
-/// Cosine of the largest tilt of a foot that steps to its place in a clip.
+/// Cosine of the largest tilt of a foot that steps to its position in a clip.
 ///
 /// Larger: feet slide. Smaller: lying legs kick. Shown by the tests of `rising`.
 pub(crate) const STEPS_FROM: f32 = 0.0;
@@ -324,7 +324,7 @@ pub(crate) const STRAIGHT_UP: f32 = 0.22;
 
 // character/grab.rs
 
-/// Distance of a held limb from its clip beyond which its character follows, over body height.
+/// Distance of a held limb from its position in the clip beyond which its character follows, over body height.
 ///
 /// Larger: the character leans before it steps. Smaller: it creeps after a hand that only touches it. Shown by the
 /// tests of `held`.
@@ -338,18 +338,19 @@ pub(crate) const LIFTS_OFF: f32 = 0.5;
 
 /// Rate at which a character follows a held limb beyond [`PULL_SLACK`], 1/s.
 ///
-/// Larger: the character jerks. Smaller: a slow pull fells it. Shown by the tests of `held`.
+/// Larger: the character jerks. Smaller: a slow pull makes it fall. Shown by the tests of `held`.
 pub(crate) const PULL_RATE: f32 = 6.0;
 
 /// Largest speed at which a character follows a held limb, m/s.
 ///
-/// Larger: the character is dragged on its feet faster than it can walk. Smaller: a walker who holds it fells it.
+/// Larger: the character is dragged on its feet faster than it can walk. Smaller: a walker who holds it makes it fall.
 /// Shown by the tests of `held`.
 pub(crate) const PULL_SPEED: f32 = 2.0;
 
-/// Distance of a held limb from its clip at which its character falls, over body height: about an arm's reach.
+/// Distance of a held limb from its position in the clip at which its character falls, over body height: about an arm's
+/// reach.
 ///
-/// Larger: joints are torn apart. Smaller: every pull fells the character. Shown by the tests of `held`.
+/// Larger: joints are torn apart. Smaller: every pull makes the character fall. Shown by the tests of `held`.
 pub(crate) const PULL_FELLS: f32 = 0.3;
 
 // character/get_up.rs
@@ -360,7 +361,7 @@ pub(crate) const PULL_FELLS: f32 = 0.3;
 /// `held`.
 pub(crate) const LIES_LOW: f32 = 0.3;
 
-/// Share of its weight that the static world must bear for a body to get up from an edge or a rail.
+/// Share of its weight that the static world must carry for a body to get up from an edge or a rail.
 ///
 /// Larger: the body stays on rails. Smaller: a carried body whose foot drags gets up. Shown by the tests of `held`.
 pub(crate) const BORNE: f32 = 0.5;
@@ -385,7 +386,8 @@ pub(crate) const INTO_LOOP: f32 = 0.3;
 /// Larger: hands leave the ground. Smaller: the body swings upright. Shown by the tests of `slopes`.
 pub(crate) const STRAIGHTENS: f32 = 0.6;
 
-/// Net load from other bodies from which a lying body does not get up, as a share of its own weight: half of an arm.
+/// Net load from other bodies from which a lying body does not get up, as a share of its own weight: half the weight of
+/// an arm.
 ///
 /// Larger: the body gets up under another's limb and throws it off. Smaller: it waits for someone who only leans on it.
 /// Shown by `in_world::upper_of_two_fallen_characters_gets_up_first`.
@@ -428,8 +430,8 @@ pub(crate) const GROUND_DEPTH: f32 = 100.0;
 
 /// Depth under a pelvis to which the supporting ground is searched, metres.
 ///
-/// Larger: a body on an edge gets up on the floor below. Smaller: large figures find no support. Shown by the tests of
-/// `slopes`.
+/// Larger: a body on an edge gets up on the floor below. Smaller: large characters find no support. Shown by the tests
+/// of `slopes`.
 pub(crate) const LIES_ON: f32 = 1.0;
 
 /// Height above a point of a lying body from which the ground is searched, metres.
@@ -457,9 +459,9 @@ pub(crate) const TELEPORTED: f32 = 1.0;
 
 // character/in_world.rs
 
-/// Least speed that a felling blow gives to the whole character, m/s.
+/// Least speed of the whole character after a hit that makes it fall, m/s.
 ///
-/// Larger: the character withstands more. Smaller: a touch fells it. Shown by the tests of `in_world`.
+/// Larger: the character withstands more. Smaller: a touch makes it fall. Shown by the tests of `in_world`.
 pub(crate) const FELLING_SPEED: f32 = 0.6;
 
 /// Radius of a mover over its height.
@@ -475,16 +477,17 @@ pub(crate) const MOVER_RADIUS: f32 = 0.17;
 /// `hand_over`.
 pub(crate) const HAND_OVER_TIME: f32 = 1.0 / 1000.0;
 
-/// Rate at which the place of a limp character approaches the point under its pelvis, in addition to moving with this
-/// point, 1/s.
+/// Rate at which the position of a limp character approaches the point under its pelvis, in addition to moving with
+/// this point, 1/s.
 ///
-/// Larger: the place jumps where a fall begins. Smaller: a camera looks beside the body. Shown by the tests of `held`.
+/// Larger: the position jumps when a fall begins. Smaller: a camera looks beside the body. Shown by the tests of
+/// `held`.
 pub(crate) const PLACE_FOLLOWS: f32 = 8.0;
 
-/// Distance from that point below which the place stays, metres, so that a resting body keeps its pose.
+/// Distance from that point below which the position stays unchanged, metres, so that a resting body keeps its pose.
 ///
-/// Larger: the place stays beside the body. Smaller: the pose of a resting body is computed in every step. Shown by the
-/// tests of `held`.
+/// Larger: the position stays beside the body. Smaller: the pose of a resting body is computed in every step. Shown by
+/// the tests of `held`.
 pub(crate) const PLACE_RESTS: f32 = 1e-4;
 
 /// Time in which joints without bodies come to rest, seconds.
@@ -529,7 +532,7 @@ pub(crate) const SUNK: f32 = 5e-3;
 /// Larger: mirrored clips look crooked. Smaller: no clip is mirrored. Shown by the tests of `character`.
 pub(crate) const MIRROR_TOLERANCE: f32 = 0.03;
 
-/// Distance of a joint from its rest place beyond which it counts as translated, as a share of its distance from its
+/// Distance of a joint from its rest position beyond which it counts as translated, as a share of its distance from its
 /// parent.
 ///
 /// Larger: sliding joints stay behind in mirrored clips. Smaller: rounding counts. Shown by the tests of `character`.
@@ -543,7 +546,7 @@ pub(crate) const MOVED: f32 = 1e-3;
 /// `character`.
 pub(crate) const MAY_BEGIN: f32 = 0.4;
 
-/// Time between the moments at which a get-up may begin in its clip, seconds.
+/// Time between the times at which a get-up may begin in its clip, seconds.
 ///
 /// Larger: the start matches the lying pose less well. Smaller: the search is slower. Shown by the tests of
 /// `character`.
@@ -586,7 +589,7 @@ pub(crate) const PIN_STEPS: f32 = 4.0;
 
 /// Largest force of a powered pelvis' pin, over the total weight.
 ///
-/// Larger: nothing fells the character. Smaller: it sags. Shown by the tests of `lives`.
+/// Larger: nothing makes the character fall. Smaller: it sags. Shown by the tests of `lives`.
 pub(crate) const PIN_BEARS: f32 = 1.0;
 
 /// Largest torque of a powered pelvis' pin over the total weight, metres.
@@ -601,7 +604,7 @@ pub(crate) const POWERED_HALF_LIFE: f32 = 0.1;
 
 /// Distance of a powered pelvis from the pelvis of its clips, over its height, beyond which the character falls.
 ///
-/// Larger: the character is dragged along. Smaller: a push fells it. Shown by the tests of `lives`.
+/// Larger: the character is dragged along. Smaller: a push makes it fall. Shown by the tests of `lives`.
 pub(crate) const FALLS_BEYOND: f32 = 0.3;
 
 /// Rotation of a powered pelvis from the pelvis of its clips beyond which the character falls, radians.
@@ -645,7 +648,7 @@ pub(crate) const HOME_TIME: f32 = 0.25;
 
 /// Share of a step until which its goal may change, 0 to 1.
 ///
-/// Larger: feet dart aside at the end. Smaller: they land at the first prediction. Shown by the tests of `stumble`.
+/// Larger: feet change direction late. Smaller: they land at the first prediction. Shown by the tests of `stumble`.
 pub(crate) const AIMS_UNTIL: f32 = 0.7;
 
 /// Height of a step over the height of the body.
@@ -716,12 +719,12 @@ pub(crate) const AIRBORNE: f32 = 0.04;
 
 /// Time without ground after which the character has no ground to step on, seconds.
 ///
-/// Larger: the character steps in the air. Smaller: a kerb fells it. Shown by the tests of `stumble`.
+/// Larger: the character steps in the air. Smaller: a kerb makes it fall. Shown by the tests of `stumble`.
 pub(crate) const FLIES_AFTER: f32 = 0.15;
 
 /// Largest height difference of the ground that a step may cover, metres.
 ///
-/// Larger: the character steps onto tables. Smaller: stairs fell it. Shown by the tests of `stumble`.
+/// Larger: the character steps onto tables. Smaller: stairs make it fall. Shown by the tests of `stumble`.
 pub(crate) const STEP_RANGE: f32 = 0.4;
 
 // character/stumble/step.rs
@@ -848,7 +851,7 @@ pub(crate) const OWN_FLOOR: f32 = 0.03;
 /// Penetration from which a character that goes limp is moved out, metres.
 ///
 /// Contacts push out half of it in 0.5 s. Larger: limbs stay in walls for seconds. Smaller: a foot that a clip puts
-/// into a stair lifts the whole figure. Shown by the tests of `clear`.
+/// into a stair lifts the whole character. Shown by the tests of `clear`.
 pub(super) const DEEP: f32 = 0.1;
 
 /// Speed at which the character is moved out, m/s.
@@ -858,13 +861,14 @@ pub(super) const CLEARING_SPEED: f32 = 1.9;
 
 /// Largest distance by which the character is moved out, metres.
 ///
-/// Larger: a character in a hill rises out of it. Smaller: it stays in a thick wall. Shown by the tests of `clear`.
+/// Larger: a character inside a hill is lifted out of it. Smaller: it stays in a thick wall. Shown by the tests of
+/// `clear`.
 pub(super) const CLEARING_REACH: f32 = 1.2;
 
 /// Largest number of static shapes that the character is moved out of in sequence.
 ///
-/// Floor, two walls of a corner, and one more. Larger: more queries if no way leads out. Smaller: corners are not left.
-/// Shown by the tests of `clear`.
+/// Floor, two walls of a corner, and one more. Larger: more queries if no direction leads out. Smaller: corners are not
+/// left. Shown by the tests of `clear`.
 pub(super) const MOST_OBSTACLES: usize = 4;
 
 /// Cosine of the angle, 11°, below which two directions out of a shape count as one.

@@ -50,7 +50,7 @@ impl WallOffsets {
         }
     }
 
-    /// Displaces trunk and limbs of a character at `place`.
+    /// Displaces trunk and limbs of a character with the transform `place`.
     pub fn shift(
         &self,
         def: &CharacterDef,
@@ -82,7 +82,7 @@ fn rays<'a>(
     rays.into_iter()
 }
 
-/// Returns the level displacement of `to` out of the wall that a ray from `from` to `to` enters; zero if it enters
+/// Returns the horizontal displacement of `to` out of the wall that a ray from `from` to `to` enters; zero if it enters
 /// none.
 fn out_of_wall(world: &World, from: Vec3, to: Vec3) -> Vec3 {
     let ray = Ray { origin: from, direction: to - from };

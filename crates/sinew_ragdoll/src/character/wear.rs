@@ -22,7 +22,7 @@ pub(super) struct Wear {
 #[derive(Clone, Copy)]
 pub(super) struct Bearer<'a> {
     pub def: &'a CharacterDef,
-    /// Pose without springs and garments; `place` is the character's place.
+    /// Pose without springs and garments; `place` is the character's transform.
     pub pose: &'a [LocalTransform],
     pub place: Transform,
     pub physique: &'a Physique,
@@ -46,8 +46,8 @@ impl Wear {
         Self { springs: SpringSwing::new(), garments: Worn::default(), pose: Vec::new() }
     }
 
-    /// Advances springs and garments by a step of the world, about the wearer's pose. `shown`: the moment that was
-    /// shown last; `is_far`: springs rest; `mends`: cloth caught by clips is freed.
+    /// Advances springs and garments by a step of the world, about the wearer's pose. `shown`: the time that was shown
+    /// last; `is_far`: springs rest; `mends`: cloth caught by clips is freed.
     pub fn go_on(
         &mut self,
         bearer: Bearer<'_>,

@@ -115,7 +115,7 @@ pub(super) fn repair_in_metres(repair: &Repair) -> Repair {
 
 /// Returns the factor on all lengths, and the name of the assumed unit.
 fn unit_of(def: &RagdollDef) -> (f32, String) {
-    // Choose the unit whose height is closest to a person's; for a creature any that gives a plausible size.
+    // Choose the unit whose height is closest to a person's; for a creature use any that gives a plausible size.
     let human = bones_of(def).anatomy == Anatomy::Human;
     let heights = if human { HUMAN } else { HEIGHTS };
     let ratio = |factor: f32| max(def.height * factor / USUAL_HEIGHT, USUAL_HEIGHT / (def.height * factor));

@@ -153,7 +153,7 @@ pub(super) fn swing_excess(limit: &SwingTwistLimit, seen: Rotation) -> f32 {
 
 /// Returns the angle, radians, at most π, by which the child of a joint can rotate about `axis` of its own joint frame
 /// before it reaches a limit. The rotation starts from `bind`, the joint's rotation in the bind pose. The twist of a
-/// universal joint is ignored, because a swing that goes round contains some.
+/// universal joint is ignored, because a swing of more than half a turn contains some twist.
 pub fn limit_reach(kind: &JointKind, bind: Rotation, axis: Vec3) -> f32 {
     const STEP: f32 = 0.02;
     let is_free = |angle: f32| {

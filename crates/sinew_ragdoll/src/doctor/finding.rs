@@ -11,7 +11,7 @@ pub struct Repair {
     /// The ragdoll.
     pub def: RagdollDef,
     /// Spring or motor of each joint, in the order of the joints; `None` for a limp joint. The list may be shorter than
-    /// that of the joints.
+    /// the list of joints.
     pub springs: Vec<Option<Softness>>,
     /// Ragdoll built from the definition's rig, if available: it shows what the definition lacks.
     pub reference: Option<RagdollDef>,

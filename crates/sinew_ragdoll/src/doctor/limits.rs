@@ -263,7 +263,7 @@ fn both_ways(exam: &Exam<'_>, index: usize) -> Option<Finding> {
         }
         _ => return None,
     };
-    // Widths beyond half a turn are wrapped angles.
+    // Ranges wider than half a turn come from wrapped angles.
     if sinew_math::min(back, on) <= BACKWARDS {
         return None;
     }
@@ -345,7 +345,7 @@ pub(super) fn hertz(exam: &Exam<'_>, index: usize, softness: Softness) -> f32 {
     (stiffness / turning_inertia(exam, index)).sqrt() / (2.0 * PI)
 }
 
-/// Returns the least inertia of the relative motion of a joint's two sides, kg·m².
+/// Returns the least inertia of the relative motion of a joint's two bodies, kg·m².
 pub(super) fn turning_inertia(exam: &Exam<'_>, index: usize) -> f32 {
     let child = exam.def.joints[index].child;
     let mut below = vec![false; exam.def.bodies.len()];

@@ -138,12 +138,12 @@ fn moved(exam: &Exam<'_>, index: usize, code: Code) -> RagdollJointDef {
     new
 }
 
-/// Returns the end of the child's shape nearer to the parent, character space, where the bone must begin.
+/// Returns the end of the child's shape nearer to the parent, character space, which is where the bone must begin.
 fn near_end(exam: &Exam<'_>, index: usize) -> Vec3 {
     let joint = &exam.def.joints[index];
     let child = &exam.def.bodies[joint.child];
     let half = full_size(&child.shape) * 0.5;
-    // Place the point slightly inside, where a bone's head is.
+    // Put the point slightly inside the shape, where a bone begins.
     let along = if half.y >= half.x && half.y >= half.z {
         Vec3::Y * (0.9 * half.y)
     } else if half.x >= half.z {
@@ -231,7 +231,7 @@ fn quiet(range: Range) -> Range {
     Range::new(min(range.lo, -0.09), max(range.hi, 0.09))
 }
 
-/// Turns a joint into a hinge about another of its axes.
+/// Changes a joint into a hinge about another of its axes.
 fn hinge_about(exam: &Exam<'_>, index: usize, axes: Rotation, range: Range) -> RagdollJointDef {
     let joint = exam.def.joints[index];
     let turned = |frame: Transform| Transform { rotation: frame.rotation * axes, ..frame };
@@ -252,7 +252,8 @@ fn at_bind(exam: &Exam<'_>, joint: RagdollJointDef) -> RagdollJointDef {
     fitted(&joint, pose(joint.parent), pose(joint.child))
 }
 
-/// Gives one of two sides the range of the other: the side whose range is further from the anatomical one changes.
+/// Gives a joint of one side of the body the range of its counterpart: the range that is further from the anatomical
+/// one changes.
 fn mirror_joint(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     let strangeness = |body: usize| {
         let anatomical = exam.anatomical(body - 1).def.kind;
@@ -283,8 +284,8 @@ fn span(a: &JointKind, b: &JointKind) -> f32 {
     }
 }
 
-/// Gives one of two sides the mirror image of the other's shape: the side whose length differs more from its bone's
-/// changes.
+/// Gives a body of one side the mirror image of its counterpart's shape: the shape whose length differs more from that
+/// of its bone changes.
 fn mirror_shape(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     let misfit = |body: usize| {
         let long = longest(&exam.def.bodies[body].shape);
@@ -296,7 +297,7 @@ fn mirror_shape(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     reshape(exam, def, wrong, source.shape.clone(), mirror::mirrored(source.character_from_body, plane));
 }
 
-/// Changes a body's shape and place; its joints stay in place in the character.
+/// Changes a body's shape and position; its joints keep their positions in the character.
 fn reshape(exam: &Exam<'_>, def: &mut RagdollDef, body: usize, shape: Shape, place: Transform) {
     let old = exam.def.bodies[body].character_from_body;
     let new_from_old = place.inverse() * old;
@@ -359,7 +360,7 @@ fn nearest_pair(exam: &Exam<'_>, body: usize) -> Option<(usize, usize)> {
     best.1
 }
 
-/// Gives a body's shape the size of the rig's shape, the other side's shape or the bone.
+/// Gives a body's shape the size of the rig's shape, its counterpart's shape or the bone.
 fn resize(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) {
     let own = &exam.def.bodies[body];
     let rig = exam.repair.reference.as_ref();

@@ -113,7 +113,7 @@ pub(super) fn mirrored(frame: Transform, plane: f32) -> Transform {
     Transform::new(translation, Rotation::from_mat3(&axes).normalize())
 }
 
-/// Returns the joint of a body as the mirror image of its twin's joint, about the body's own pivot.
+/// Returns the joint of a body as the mirror image of its counterpart's joint, about the body's own pivot.
 pub(super) fn mirrored_joint(exam: &Exam<'_>, body: usize, twin: usize) -> RagdollJointDef {
     let def = exam.def;
     let (own, other) = (&def.joints[body - 1], &def.joints[twin - 1]);

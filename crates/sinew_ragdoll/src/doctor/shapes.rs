@@ -88,7 +88,8 @@ fn overlap(exam: &Exam<'_>, (a, b): (usize, usize)) -> Option<Finding> {
     })
 }
 
-/// Returns a finding if all pairs of limb ends with the trunk are disabled, although they do not overlap.
+/// Returns a finding if all pairs of hands, feet and other limb ends with the trunk are disabled, although they do not
+/// overlap.
 fn no_self_collision(exam: &Exam<'_>) -> Option<Finding> {
     let pairs = limbs_and_trunk(exam);
     let is_disabled = |&(a, b): &(usize, usize)| {

@@ -1,7 +1,7 @@
 //! Behaviour constants of the doctor's findings and cures: the numbers an engineer would tune.
 //!
 //! Each comment states the unit and space, the effect of a larger and a smaller value, and the tests
-//! (`crates/sinew_ragdoll/tests/it`) that show it. Effects without a figure are judgement, not measurement.
+//! (`crates/sinew_ragdoll/tests/it`) that show it. Effects without a number are judgement, not measurement.
 
 use crate::tuning::TOLERATED;
 
@@ -97,7 +97,7 @@ pub(crate) const ENDS_APART: f32 = 0.262;
 
 /// Largest ratio of the volumes of two sides.
 ///
-/// Larger: asymmetric shapes are missed. Smaller: figures with one glove get findings. Shown by the tests of `doctor`.
+/// Larger: asymmetric shapes are missed. Smaller: ragdolls with one glove get findings. Shown by the tests of `doctor`.
 pub(crate) const VOLUMES_APART: f32 = 1.6;
 
 /// Largest ratio of the lengths of two sides.
@@ -109,7 +109,7 @@ pub(crate) const LENGTHS_APART: f32 = 1.3;
 
 /// Smallest motion worth reporting, as a share of the height.
 ///
-/// Larger: slow explosions are missed. Smaller: figures that only settle get findings. Shown by the tests of `doctor`.
+/// Larger: slow explosions are missed. Smaller: ragdolls that only settle get findings. Shown by the tests of `doctor`.
 pub(crate) const MOVED_SHARE: f32 = 0.015;
 
 /// Smallest motion worth reporting in addition to [`MOVED_SHARE`], metres: two tolerated overlaps.

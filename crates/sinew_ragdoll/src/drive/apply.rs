@@ -67,8 +67,8 @@ impl Drives {
         }
     }
 
-    /// Removes pins and motors from the world and makes keyed bodies dynamic again, with the velocity they were driven
-    /// at. Call it before removing the ragdoll; the modes do not change.
+    /// Removes pins and motors from the world and makes keyed bodies dynamic again, with the velocity at which they
+    /// were driven. Call this before removing the ragdoll; the modes do not change.
     pub fn release(&mut self, world: &mut World, ragdoll: &Ragdoll) {
         let all: Vec<usize> = ragdoll.own_bodies().map(|(body, _)| body).collect();
         self.release_bodies(world, ragdoll, &all);

@@ -79,7 +79,7 @@ impl Default for Muscle {
 /// Springs from the world to a body: one to its position (at the centre of mass) and one to its rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pin {
-    /// Natural frequency of all bodies that are nearer to this pin than to other pins, Hz, at least 0.
+    /// Natural frequency with all bodies that are nearer to this pin than to other pins, Hz, at least 0.
     pub hertz: f32,
     /// Damping ratio; 1 is critical.
     pub damping_ratio: f32,
@@ -203,7 +203,7 @@ impl Drives {
         }
         drive.half_life = half_life;
         if half_life == 0.0 {
-            // The change is immediate, also for limp bodies, whose drive does not advance.
+            // Change immediately, because the drive of limp bodies does not advance.
             drive.level = Level::of(mode);
         }
     }

@@ -6,7 +6,7 @@ use crate::tuning::{CREATURE_STRENGTH, GRAVITY};
 use sinew_math::{Vec3, max};
 
 /// Largest torques of the muscles about a joint of a body of 75 kg and 1.75 m, N·m, by the role of the body below the
-/// joint. The values are those of the humanoid of Peng et al. 2018 ("DeepMimic"); they are between the clinical figures
+/// joint. The values are those of the humanoid of Peng et al. 2018 ("DeepMimic"); they are between the clinical values
 /// and those of dm_control's CMU humanoid.
 const HUMAN: [(&str, f32); 12] = [
     ("Shoulder", 100.0),
@@ -28,7 +28,7 @@ const REFERENCE: f32 = 75.0 * 1.75;
 
 /// Returns the largest muscle torque of each body's joint to its parent, N·m; 0 for the first body. Human roles use a
 /// table, in proportion to mass and height. Other roles get three times the torque that holds the joint's subtree
-/// level; limbs get at least the torque that carries the whole weight at the middle of their bone.
+/// horizontal; limbs get at least the torque that carries the whole weight at half the length of their bone.
 pub fn torque_caps(def: &RagdollDef) -> Vec<f32> {
     let total: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
     let strength = total * def.height / REFERENCE;

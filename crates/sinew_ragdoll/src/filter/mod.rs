@@ -1,8 +1,8 @@
 //! Collision filter for pairs of bodies within a ragdoll.
 //!
 //! Bodies that overlap at the start would be pushed apart violently, and bodies that overlap in every joint pose would
-//! fight forever. Such pairs are shrunk or excluded from collision. Shrinking is preferred where the contact makes a
-//! crumple look real: hand on thigh, thigh on thigh, arm on trunk.
+//! push forever. Such pairs are shrunk or excluded from collision. Shrinking is preferred where a contact makes a
+//! fallen pose look real: hand on thigh, thigh on thigh, arm on trunk.
 //!
 //! A pair is tested in the bind pose, in poses within the limits, and in poses of the character's clips. An overlap in
 //! a few poses is not a fault of the shapes: limbs do touch. A ragdoll that starts in such a pose excludes the pair
@@ -79,7 +79,7 @@ pub struct FilterReport {
     pub overlaps: Vec<Overlap>,
     /// Pairs that must not collide, the smaller index first, sorted.
     pub disabled: Vec<(usize, usize)>,
-    /// Factor on each body's cross-section; 1 for most.
+    /// Factor on each body's cross-section; 1 for most bodies.
     pub scale: Vec<f32>,
 }
 

@@ -21,7 +21,7 @@ use sinew_math::{Mat3, Vec2, Vec3, any_orthonormal, normalize_or};
 /// Returns the unit vector along the flesh of a bone, pointing away from its joint.
 ///
 /// The result is the direction to the next joints if the surface's long axis agrees with it, otherwise this axis. If
-/// the surface has no long axis (a head), the result is the direction from the joint to the surface's middle.
+/// the surface has no long axis (a head), the result is the direction from the joint to the centre of the surface.
 pub fn long_axis(bones: &Bones, bone: usize, patch: &Patch) -> Vec3 {
     let mut direction = bones.direction(bone, Some(patch.center));
     if bones.is_central(bone) {
@@ -39,8 +39,8 @@ pub fn long_axis(bones: &Bones, bone: usize, patch: &Patch) -> Vec3 {
 /// Returns the axes of a box around a bone's skin: columns, right-handed, in any order and sign.
 pub fn box_frame(bones: &Bones, bone: usize, patch: &Patch) -> Mat3 {
     if bones.is_central(bone) {
-        // The skin is symmetric in x, so x is one of the axes and only the rotation about x is unknown. Human trunks
-        // are upright; creatures' trunks follow their spine.
+        // The skin is symmetric in x, so x is one of the axes and only the rotation about x is unknown. The axis of a
+        // human's trunk is vertical; that of a creature's trunk follows the spine.
         let upright = match bones.anatomy {
             Anatomy::Human => Vec3::Y,
             Anatomy::Creature => long_axis(bones, bone, patch),
@@ -70,8 +70,9 @@ fn sole_frame(patch: &Patch) -> Option<Mat3> {
     (along.y.abs() < 0.5).then(|| around(patch, Vec3::Y, None))
 }
 
-/// Returns `axis` and the sides of the smallest rectangle around the patch seen along `axis`. `preferred`
-/// (perpendicular to the axis) replaces the rectangle's side unless the rectangle saves a quarter of the area.
+/// Returns `axis` and the directions of the sides of the smallest rectangle around the patch seen along `axis`.
+/// `preferred` (perpendicular to the axis) replaces the rectangle's side unless the rectangle saves a quarter of the
+/// area.
 fn around(patch: &Patch, axis: Vec3, preferred: Option<Vec3>) -> Mat3 {
     let u = preferred.unwrap_or_else(|| any_orthonormal(axis));
     let v = axis.cross(u);

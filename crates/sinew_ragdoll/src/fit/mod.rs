@@ -53,7 +53,7 @@ pub enum ShapeChoice {
 pub struct Fit {
     /// Geometry, metres.
     pub shape: Shape,
-    /// Body frame in character space: origin at the shape's middle, y along the bone.
+    /// Body frame in character space: origin at the shape's centre, y along the bone.
     pub character_from_body: Transform,
     /// Area-weighted mean distance between the bone's skin and the shape's surface, metres; 0 without skin.
     pub error: f32,
@@ -95,7 +95,7 @@ fn protruding_end(bones: &Bones, bone: usize, shares: &[Share], fit: &Fit) -> Op
     solid::fit_whole_hull(&solid::fit_box(bones, bone, &patch), &patch, |point| point)
 }
 
-/// Returns the shape of a bone, or the mirror image of its twin's shape if that fits better: a pad skinned to a
+/// Returns the shape of a bone, or the mirror image of its counterpart's shape if that fits better: a pad skinned to a
 /// shoulder is not part of the shoulder, and a coarse mesh may give the two sides different shapes.
 fn reconciled(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
     let own = fits[bone].clone();

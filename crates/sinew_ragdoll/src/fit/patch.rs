@@ -26,7 +26,7 @@ use sinew_math::{Sym3, Vec3, clamp, max, min};
 /// Selection of the skin triangles used for a bone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Selection {
-    /// Triangles on which the bone's mean weight is at least this value.
+    /// Triangles on which the bone's mean weight is at least this.
     Weight(f32),
     /// Triangles on which no other bone has more weight.
     Most,

@@ -77,7 +77,7 @@ fn hull_of(cuboid: &Fit, patch: &Patch, within: impl Fn(Vec3) -> Vec3) -> Option
         let outermost = local.iter().copied().reduce(|a, b| if out(b) > out(a) { b } else { a });
         points.extend(outermost.map(|p| p * SHRINK));
     }
-    // The body's origin is the middle of its shape.
+    // The body's origin is the centre of its shape.
     let center = Hull::new(&points).ok()?.center();
     points.iter_mut().for_each(|point| *point -= center);
     let hull = Hull::new(&points).ok()?;

@@ -16,9 +16,9 @@ pub(super) struct Backing {
     pub radius: f32,
 }
 
-/// Returns the backstops of a sheet's particles at rest (character space), except held particles and places where the
-/// sheet has no area; empty for a garment without backstops. Bodies that pass through the sheet get none, because the
-/// sheet does not move with them.
+/// Returns the backstops of a sheet's particles at rest (character space). Held particles and particles where the sheet
+/// has no area get none. The list is empty for a garment without backstops. Bodies that pass through the sheet get
+/// none, because the sheet does not move with them.
 pub(super) fn backings(
     garment: &Garment,
     group: &GroupDef,

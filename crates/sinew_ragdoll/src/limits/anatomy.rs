@@ -28,7 +28,7 @@ use crate::build::bones::{Anatomy, Bones};
 use crate::build::part::Part;
 use sinew_math::{Mat3, Rotation, Vec3};
 
-/// Returns the rotation of each bone from the anatomical pose to the bind pose, character axes. `middles`: middle of
+/// Returns the rotation of each bone from the anatomical pose to the bind pose, character axes. `middles`: centre of
 /// each bone's shape.
 pub fn bind_from_anatomical(bones: &Bones, middles: &[Vec3]) -> Vec<Rotation> {
     let mut turned: Vec<Rotation> = Vec::with_capacity(bones.list.len());
@@ -51,7 +51,7 @@ pub fn bind_from_anatomical(bones: &Bones, middles: &[Vec3]) -> Vec<Rotation> {
     turned
 }
 
-/// Returns the rotation to a level foot that points along `direction` seen from above; `None` if `direction` is
+/// Returns the rotation to a horizontal foot that points along `direction` seen from above; `None` if `direction` is
 /// vertical.
 fn level_heading(direction: Vec3) -> Option<Rotation> {
     let forward = Vec3::new(direction.x, 0.0, direction.z);

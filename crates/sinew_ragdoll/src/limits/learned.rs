@@ -38,8 +38,8 @@ const FRAMES_PER_BIND: usize = 100;
 const DIRECTIONS: usize = 16;
 
 /// Returns the joint with limits from the clips; `None` if the clips show too little of its motion. The mirrored motion
-/// of its twin counts too: a motion that only one arm makes does not mean that the other cannot. `fits` and `poses` are
-/// ordered as the plan's bodies; poses are in character space, one transform per body.
+/// of its counterpart counts too: a motion that only one arm makes does not mean that the other cannot. `fits` and
+/// `poses` are ordered as the plan's bodies; poses are in character space, one transform per body.
 pub fn learned(
     plan: &JointPlan,
     twin: Option<&JointPlan>,

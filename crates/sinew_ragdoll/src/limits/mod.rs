@@ -65,7 +65,7 @@ pub fn joints(bones: &Bones, fits: &[Fit], total_mass: f32) -> Vec<JointPlan> {
             let entry = entry(bones, child);
             let mut directions = [parent, child].map(|bone| bones.direction(bone, Some(middles[bone])));
             if bones.list[child].part == Part::Toes {
-                // A foot slopes down from ankle to toes; toes are straight when they are level with the sole.
+                // A foot slopes down from ankle to toes; toes are straight when they are parallel to the sole.
                 directions[0] = turned[parent] * Vec3::Z;
             }
             let seen =
@@ -145,7 +145,7 @@ impl Seen {
         Rotation::from_mat3(&Mat3::from_cols(x, y, x.cross(y)))
     }
 
-    /// Returns frames that coincide in the middle of the cone.
+    /// Returns frames that coincide at the centre of the cone.
     fn cone_frames(&self, axes: Axes, cone: Cone) -> [Rotation; 2] {
         let basis = self.basis(axes);
         if axes == Axes::Bind {

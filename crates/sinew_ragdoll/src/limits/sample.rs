@@ -22,7 +22,7 @@ use sinew_physics::JointKind;
 const FREE: Range = Range::symmetric(1.0);
 
 /// Returns a joint rotation (joint frame of the parent to that of the child) within `share` of each range, about its
-/// middle.
+/// centre.
 ///
 /// # Panics
 /// If the joint also translates.

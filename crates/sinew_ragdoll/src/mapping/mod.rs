@@ -3,9 +3,9 @@
 //! There are three spaces: the **model** space of the file (file units, its own up axis), the **character** space of
 //! the ragdoll (metres, +Y up, facing +Z) and the world. A body keeps its offset from its bone in the bind pose.
 //!
-//! Root motion must be stored in one place; otherwise a clip that moves a root node above the pelvis could not blend
-//! with a ragdoll that moves the pelvis. So all poses here are **flat**: nodes above the pelvis stay in their rest
-//! pose, and the *heads* below them (usually only the pelvis) carry all motion.
+//! Root motion must be stored in one way; otherwise a clip that moves a root node above the pelvis could not blend with
+//! a ragdoll that moves the pelvis. So all poses here are **flat**: nodes above the pelvis stay in their rest pose, and
+//! the *heads* below them (usually only the pelvis) carry all motion.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;

@@ -122,7 +122,7 @@ const MACHINES: [&str; 14] = [
     "drone",
 ];
 
-/// Returns the density of a body's matter, kg/m³, and a word for the matter, from the words in its joints' names.
+/// Returns the density of a body's matter, kg/m³, and the name of the matter, from words in the names of its joints.
 pub fn density(rig: &Rig) -> (f32, &'static str) {
     let is_machine =
         rig.joints.iter().any(|joint| words(&joint.name).any(|word| MACHINES.contains(&word.as_str())));

@@ -18,11 +18,11 @@ const WALL_SECONDS: f32 = 3.0;
 /// Result of [`drop_test`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropReport {
-    /// The worst value of each figure over the 8 drops; a time is `None` if any drop lacks the event.
+    /// The worst value of each metric over the 8 drops; a time is `None` if any drop lacks the event.
     pub drop: FallQuality,
-    /// Figures of each drop.
+    /// Metrics of each drop.
     pub drops: Vec<FallQuality>,
-    /// Figures of the wall hit.
+    /// Metrics of the wall hit.
     pub wall: FallQuality,
     /// Poses of the bodies in each drop.
     pub falls: Vec<Fallen>,
@@ -174,7 +174,7 @@ pub(super) fn carried(
         .collect()
 }
 
-/// Steps until the ragdoll sleeps, or the time is over, and returns the figures.
+/// Steps until the ragdoll sleeps, or the time is over, and returns the metrics.
 pub(super) fn measure(world: &mut World, def: &RagdollDef, ragdoll: &Ragdoll, seconds: f32) -> FallQuality {
     measure_seen(world, def, ragdoll, seconds, |_, _| ())
 }
@@ -198,7 +198,7 @@ fn measure_seen(
         see(step, world);
         let all = ragdoll.bodies.iter().all(|&body| !world.is_awake(body));
         asleep = if all { asleep + 1 } else { 0 };
-        // The figures at rest cover the first half second of rest.
+        // The metrics at rest cover the first half second of rest.
         if asleep > steps_of_rest {
             break;
         }
@@ -206,7 +206,7 @@ fn measure_seen(
     meter.quality()
 }
 
-/// Returns the worse value of each figure.
+/// Returns the worse value of each metric.
 pub(super) fn worse(a: FallQuality, b: FallQuality) -> FallQuality {
     let later = |a: Option<f32>, b: Option<f32>| Some(max(a?, b?));
     FallQuality {

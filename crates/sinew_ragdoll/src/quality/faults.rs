@@ -1,4 +1,4 @@
-//! Faults of a ragdoll, or of its bake, that no single figure shows.
+//! Faults of a ragdoll, or of its bake, that no single metric shows.
 
 use super::Verdict;
 use crate::bake::{BakeInput, Baked, Frame, bake};
@@ -9,7 +9,7 @@ use sinew_anim::{LocalTransform, Rig, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, min};
 use sinew_physics::{BodyKind, OverlapWith, PenetrationOf, Probe, Shape, World, WorldDef};
 
-/// Number of joints with skin from which a single body is not a ragdoll: few one-part figures have as many.
+/// Number of joints with skin from which a single body is not a ragdoll: few one-part characters have as many.
 const MANY_JOINTS: usize = 8;
 /// Number of frames between two checks of an animated character.
 const INSIDE_EVERY: usize = 5;

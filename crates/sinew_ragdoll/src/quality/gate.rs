@@ -23,11 +23,11 @@ pub struct GateReport {
     pub spawns: usize,
     /// Number of falls by verdict: good, usable, bad.
     pub verdicts: [usize; 3],
-    /// The worst value of each figure.
+    /// The worst value of each metric.
     pub worst: FallQuality,
     /// Number of the first fall with the worst verdict, to replay it.
     pub worst_spawn: u64,
-    /// Reasons for that fall's verdict, one sentence each; empty if it is good.
+    /// Reasons for the verdict of that fall, one sentence each; empty if the verdict is good.
     pub worst_reasons: Vec<String>,
     /// Numbers of the falls that are bad, ascending.
     pub bad: Vec<u64>,
@@ -41,13 +41,13 @@ pub struct GateReport {
 pub struct Miss {
     /// Number of the fall: [`random_fall`] replays it.
     pub spawn: u64,
-    /// Bar that is missed.
+    /// Threshold that the fall does not meet.
     pub bar: Bar,
-    /// Value of the figure.
+    /// Value of the metric.
     pub value: f32,
 }
 
-/// Bar that every random fall must pass (specification, section 4).
+/// Threshold that every random fall must meet (specification, section 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bar {
     /// No body has a state that is not finite.
@@ -59,10 +59,10 @@ pub enum Bar {
 }
 
 impl Bar {
-    /// All bars.
+    /// All thresholds.
     pub const ALL: [Self; 3] = [Self::Finite, Self::EnergyGain, Self::JointGap];
 
-    /// Returns the figure's key in reports.
+    /// Returns the metric's key in reports.
     pub fn key(self) -> &'static str {
         match self {
             Self::Finite => "nan",
@@ -71,7 +71,7 @@ impl Bar {
         }
     }
 
-    /// Returns the figure, and the side of the bar on which it is; NaN does not meet the bar.
+    /// Returns the metric, and the side of the threshold on which it is; NaN does not meet the threshold.
     fn of(self, quality: &FallQuality) -> (f32, Side) {
         let (value, holds) = match self {
             Self::Finite => (quality.nan as f32, quality.nan == 0),
@@ -82,7 +82,7 @@ impl Bar {
     }
 }
 
-/// Side of a bar on which a figure is.
+/// Side of a threshold on which a metric is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Inside,
@@ -129,7 +129,7 @@ impl GateReport {
     }
 
     fn of_fall(spawn: u64, quality: FallQuality) -> Self {
-        // A fall has no wall hit, so its own figures serve as both.
+        // A fall has no wall hit, so its own metrics serve as both.
         let (verdict, reasons) = judge(&quality, &quality);
         let is = |wanted: Verdict| usize::from(verdict == wanted);
         let misses = Bar::ALL.into_iter().filter_map(|bar| match bar.of(&quality) {

@@ -10,7 +10,7 @@ use sinew_physics::{BodyId, Energy, World};
 /// Speed below which a body is calm, m/s.
 pub(super) const CALM: f32 = 0.3;
 
-/// Collects the figures of [`FallQuality`] over the steps in which a character is limp.
+/// Collects the metrics of [`FallQuality`] over the steps in which a character is limp.
 #[derive(Clone, Debug)]
 pub struct QualityMeter {
     quality: FallQuality,
@@ -46,7 +46,7 @@ impl QualityMeter {
         }
     }
 
-    /// Begins the measurement of a fall. Call this after a ragdoll was spawned, before the step.
+    /// Begins the measurement of a fall. Call this after a ragdoll was spawned, before the next step.
     pub fn went_limp(&mut self) {
         self.calm_steps = 0;
         self.calm_since = None;
@@ -74,7 +74,7 @@ impl QualityMeter {
         self.measure_rest(world, ragdoll, world.time() as f32);
     }
 
-    /// Measures a step of driven bodies, except the figures of rest, because driven bodies are not at rest.
+    /// Measures a step of driven bodies, except the metrics of rest, because driven bodies are not at rest.
     pub fn after_driven_step(&mut self, world: &World, ragdoll: &Ragdoll) {
         self.measure_motion(world, ragdoll);
     }
@@ -139,7 +139,7 @@ impl QualityMeter {
         }
     }
 
-    /// Returns the figures so far.
+    /// Returns the metrics so far.
     pub fn quality(&self) -> FallQuality {
         let mut quality = self.quality;
         let mut sorted = self.gaps.clone();

@@ -1,4 +1,4 @@
-//! Fall quality: the contract's figures, computed from queries to the world only.
+//! Fall quality: the contract's metrics, computed from queries to the world only.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -28,12 +28,12 @@ pub use plausible::Doubt;
 pub use rising::{RisingQuality, measure_rising};
 pub use verdict::{Verdict, judge, judge_bake};
 
-/// Figures of a character's falls. Times are seconds of world time.
+/// Metrics of a character's falls. Times are seconds of world time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FallQuality {
     /// Largest rise of kinetic and potential energy of all dynamic bodies within one step, minus the work of motors,
     /// pins and kinematic bodies in this step. It is a share of the kinetic energy before the step, or of 1 J per kg of
-    /// the character if that is more. Pushes happen between steps and do not count.
+    /// the character if that is more. Pushes between steps do not count.
     pub energy_gain_max: f32,
     /// Work of the pushes, of motors, pins and kinematic bodies, J.
     pub work_in_j: f32,
@@ -61,7 +61,7 @@ pub struct FallQuality {
     pub settled_omega_max: Option<f32>,
     /// Time when all bodies first slept.
     pub asleep_s: Option<f32>,
-    /// Time from the first moment when every body was below 0.3 m/s to sleep, seconds.
+    /// Time from the first step in which every body was below 0.3 m/s until the bodies sleep, seconds.
     pub calm_to_asleep_s: Option<f32>,
     /// Number of bodies with a non-finite state, summed over the steps.
     pub nan: u32,

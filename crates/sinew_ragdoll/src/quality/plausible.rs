@@ -12,11 +12,11 @@ const HUMAN_BUILD: core::ops::RangeInclusive<f32> = 10.0..=80.0;
 /// Height range of a human with adult proportions, metres.
 const ADULT: core::ops::RangeInclusive<f32> = 0.9..=2.6;
 /// Mass range of a creature, kg: from a small bird to a bull or the largest bears. Heavier creatures are elephants,
-/// whales and, far more often, files drawn in another unit: a wolf of 2.5 t, a wasp of 1.6 t.
+/// whales and, far more often, files in another unit: a wolf of 2.5 t, a wasp of 1.6 t.
 const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=1000.0;
 
 /// Doubt about an estimated mass that hardly any body has. If the file's unit was guessed, the guess is usually wrong,
-/// and a verdict on the ragdoll means little.
+/// and a verdict on the ragdoll is unreliable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
     /// Reason, a sentence.
@@ -86,11 +86,11 @@ impl Doubt {
         Some(Self { reason, size: 1.0 })
     }
 
-    /// Judges a ragdoll in doubt, from drops or bakes, and returns verdict and reasons; `judge` judges the figures of a
-    /// ragdoll without doubt. The verdict is at most `usable`, and the doubt is the first reason. The bars are in
+    /// Judges a ragdoll in doubt, from drops or bakes, and returns verdict and reasons; `judge` judges the metrics of a
+    /// ragdoll without doubt. The verdict is at most `usable`, and the doubt is the first reason. The thresholds are in
     /// metres and seconds for real bodies, so a heavier ragdoll is judged at the scale where the heaviest real body
-    /// would have its mass: lengths scale with the size and times with its square root. Figures that miss their bar
-    /// unscaled are still listed among the reasons.
+    /// would have its mass: lengths scale with the size and times with its square root. Metrics that miss their
+    /// threshold unscaled are still listed among the reasons.
     pub fn judge<const N: usize>(
         &self,
         figures: [FallQuality; N],
@@ -103,7 +103,7 @@ impl Doubt {
     }
 }
 
-/// Returns the figures of the same fall scaled to a body `size` times as large.
+/// Returns the metrics of the same fall scaled to a body `size` times as large.
 fn at_size(quality: FallQuality, size: f32) -> FallQuality {
     let time = |seconds: Option<f32>| seconds.map(|seconds| seconds * size.sqrt());
     FallQuality {

@@ -7,11 +7,11 @@ use crate::tuning::{HIPS_BEAR, JUMPS, SLIDES, SLIDES_LEAST, STANDS_NEAR, STANDS_
 use sinew_anim::local_to_model;
 use sinew_math::{Affine, Vec3, max, min};
 
-/// Figures of getting up, metres; `None` if a character does not get up, or has no feet with skin.
+/// Metrics of getting up, metres; `None` if a character does not get up, or has no feet with skin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RisingQuality {
     /// Largest slide of a foot over the floor while the foot is flat on it, over the stances of all get-ups. Only on
-    /// level floors. A foot that a lying or sitting character draws in bears nothing and does not count.
+    /// horizontal floors. A foot that a lying or sitting character draws in carries no weight and does not count.
     pub foot_slide_m: Option<f32>,
     /// Largest motion of a body in the frame of a hand-over beyond its motion in the frames before and after: from
     /// bodies to a clip, and from a get-up to the next clip.
@@ -31,12 +31,12 @@ pub fn measure_rising(input: &BakeInput<'_>, baked: &Baked, floor: Option<f32>) 
 }
 
 impl RisingQuality {
-    /// Returns the figures that miss their bars, for a character of this height (metres).
+    /// Returns the metrics that miss their thresholds, for a character of this height (metres).
     pub fn faults(&self, height: f32) -> Vec<Fault> {
         let mut faults = Vec::new();
         let help = "--clips FILE brings a clip to get up by that is made for this body";
         let mut hold = |figure: Option<f32>, bar: f32, what: &str| {
-            // NaN does not meet the bar.
+            // NaN does not meet the threshold.
             if let Some(figure) = figure.filter(|figure| *figure > bar || figure.is_nan()) {
                 let cm = 100.0 * figure;
                 let reason =

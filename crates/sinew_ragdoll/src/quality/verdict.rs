@@ -1,4 +1,4 @@
-//! Derives a verdict from figures, by the limits of the specification (section 4).
+//! Derives a verdict from metrics, by the limits of the specification (section 4).
 
 use super::FallQuality;
 use super::drop_test::worse;
@@ -6,11 +6,11 @@ use super::drop_test::worse;
 /// Verdict on a ragdoll's fitness for use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// Some figure is unusable.
+    /// Some metric is unusable.
     Bad,
-    /// Nothing breaks, but some figure is outside its limit.
+    /// Nothing breaks, but some metric is outside its limit.
     Usable,
-    /// Every measured figure is inside its limit.
+    /// Every measured metric is inside its limit.
     Good,
 }
 
@@ -25,12 +25,12 @@ impl Verdict {
     }
 }
 
-/// Limit of one figure.
+/// Limit of one metric.
 struct Limit {
     what: &'static str,
     value: Option<f32>,
     good: f32,
-    /// Value beyond which the ragdoll is bad; infinite if the figure alone never makes it bad.
+    /// Value beyond which the ragdoll is bad; infinite if the metric alone never makes it bad.
     usable: f32,
 }
 
@@ -40,7 +40,7 @@ impl Limit {
     }
 }
 
-/// Judges drops and a 15 m/s wall hit together. The reasons name each figure beyond its limit, and each that was not
+/// Judges drops and a 15 m/s wall hit together. The reasons name each metric beyond its limit, and each that was not
 /// measured.
 pub fn judge(drop: &FallQuality, wall: &FallQuality) -> (Verdict, Vec<String>) {
     let timed = |what, value, good, usable| Limit { what, value, good, usable };
@@ -64,9 +64,9 @@ pub fn judge(drop: &FallQuality, wall: &FallQuality) -> (Verdict, Vec<String>) {
     (verdict, reasons)
 }
 
-/// Judges a character in any world: hits, a travelling clip. The limits are those of [`judge`], except the times to
-/// sleep and the spin after settling, which depend on the world and on later events. The reasons name each figure
-/// beyond its limit.
+/// Judges a character in any world, also with hits or a travelling clip. The limits are those of [`judge`], except the
+/// times to sleep and the spin after settling, which depend on the world and on later events. The reasons name each
+/// metric beyond its limit.
 pub fn judge_bake(quality: &FallQuality) -> (Verdict, Vec<String>) {
     let [broken, ajar, open, p99, overshoot] = of_joints(quality);
     verdict_of([
@@ -102,7 +102,7 @@ fn verdict_of(limits: impl IntoIterator<Item = Limit>) -> (Verdict, Vec<String>)
                 Verdict::min(verdict, if usable < f32::INFINITY { Verdict::Bad } else { Verdict::Usable });
             continue;
         };
-        // Comparisons with NaN are false, so a figure that is NaN is bad.
+        // Comparisons with NaN are false, so a metric that is NaN is bad.
         if value <= good {
             continue;
         }

@@ -19,8 +19,8 @@ pub struct LinkSettings {
 }
 
 impl Settings {
-    /// Returns the springs that a character shall wear: those of `source` (an option may override
-    /// [`springs`](Self::springs)), with the requested [links](Self::spring_links). `up` is the rig's up axis, unit.
+    /// Returns the springs for a character: those of `source` (an option may override [`springs`](Self::springs)), with
+    /// the requested [links](Self::spring_links). `up` is the rig's up axis, unit.
     ///
     /// # Errors
     /// For names that the rig does not have, with the nearest ones; fewer than two strands; strands that do not swing;

@@ -1,6 +1,6 @@
-//! Judges the figures of the skin.
+//! Judges the metrics of the skin.
 //!
-//! The bars were tuned on 43 open rigs (figures in `docs/ragdoll.md`): each lies in the gap between rigs that look
+//! The thresholds were tuned on 43 open rigs (values in `docs/ragdoll.md`): each lies in the gap between rigs that look
 //! right at rest and rigs that do not.
 
 use super::{Phase, SkinQuality, Stage};
@@ -57,7 +57,7 @@ pub enum FlawKind {
 pub struct Flaw {
     /// Kind of the flaw.
     pub kind: FlawKind,
-    /// Measured figure and the bar that it misses, one sentence.
+    /// Measured value and the threshold that it misses, one sentence.
     pub evidence: String,
     /// Option or setting that helps, with the bones concerned.
     pub remedy: String,
@@ -80,7 +80,7 @@ impl SkinQuality {
     /// measured.
     ///
     /// # Panics
-    /// If the figures belong to a definition with more bodies.
+    /// If the metrics belong to a definition with more bodies.
     pub fn flaws(&self, def: &RagdollDef) -> Vec<Flaw> {
         let names = BodyNames(def);
         [
@@ -106,7 +106,7 @@ impl SkinQuality {
     }
 
     fn uncovered(&self, names: &BodyNames<'_>) -> Option<Flaw> {
-        // Comparisons with NaN are false: a figure that is NaN is a flaw.
+        // Comparisons with NaN are false: a metric that is NaN is a flaw.
         if self.covered_share >= COVERED {
             return None;
         }

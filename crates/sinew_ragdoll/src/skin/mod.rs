@@ -1,8 +1,8 @@
 //! Quality of the drawn skin on the bodies: the visible result, whereas [`crate::quality`] measures the simulation.
 //!
 //! A ragdoll may rest quietly and still look broken: a limb without a body stays behind and tears the mesh, a hat sinks
-//! into the floor, a figure scaled twice floats. The skin is therefore posed as a viewer would draw it, in the poses of
-//! the eight drops, and compared with the bodies, the floor, and the stretch in the file's own clips.
+//! into the floor, a character scaled twice floats. The skin is therefore posed as a viewer would draw it, in the poses
+//! of the eight drops, and compared with the bodies, the floor, and the stretch in the file's own clips.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -35,7 +35,7 @@ use surface::{Side, Surface, may_stand};
 /// Largest number of clip poses measured, evenly spread over all clips.
 const MOST_CLIP_POSES: usize = 64;
 
-/// Figures of the drawn skin, metres unless a field says otherwise.
+/// Metrics of the drawn skin, metres unless a field says otherwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkinQuality {
     /// Share of the skin's vertices that are, in the bind pose, no farther than [`tolerance`](Self::tolerance) outside the shape of
@@ -73,11 +73,11 @@ pub struct SkinQuality {
     pub airborne_s: Option<f32>,
     /// Reference length of heights and stretches: a human's height; for a creature the longest side of its skin's box.
     pub size: f32,
-    /// Bodies with the worst figures.
+    /// Bodies with the worst metrics.
     pub worst: Worst,
 }
 
-/// Body with the worst value of each figure, by index in the definition; `None` if the figure is good or no body is
+/// Body with the worst value of each metric, by index in the definition; `None` if the metric is good or no body is
 /// responsible.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Worst {
@@ -216,7 +216,7 @@ impl<'a> SkinMeter<'a> {
     }
 
     /// Measures the height of the skin where the bodies are in the bind pose, by the sizes of its triangles. Ears that
-    /// are bound in another pose than they are drawn in do not change this height.
+    /// are bound in another pose than the drawn one do not change this height.
     fn draw_bound(&mut self, def: &RagdollDef, bound: f32) {
         let own: Vec<Transform> = def.bodies.iter().map(|body| body.character_from_body).collect();
         let mut drawn = Drawn::new(self.rig, &self.mapping);
@@ -322,7 +322,7 @@ impl<'a> SkinMeter<'a> {
         self.surface.palette(&self.model, &mut self.palette);
     }
 
-    /// Returns the figures so far; stretches are the worst of all phases.
+    /// Returns the metrics so far; stretches are the worst of all phases.
     pub fn figures(mut self) -> SkinQuality {
         let mut skin = self.skin;
         for (phase, stretch) in [Phase::Drop, Phase::Fall, Phase::Clip].into_iter().zip(&mut self.stretch) {
@@ -397,8 +397,8 @@ fn without_body(
     (joint != def.bodies[body].joint).then(|| rig.joints[joint].name.clone())
 }
 
-/// Writes the share of the skin near its body and the body that moves most of the rest. Returns body and joint that
-/// move each vertex of the rest.
+/// Stores the share of the skin near its body, and the body that moves most of the other vertices. Returns the body and
+/// the joint that move each of these other vertices.
 fn cover(
     skin: &mut SkinQuality,
     surface: &Surface,

@@ -8,12 +8,12 @@ use sinew_anim::roles::Role;
 use sinew_math::{Vec3, max};
 use sinew_physics::convex::gap;
 
-/// Returns the largest difference of two sides, metres, and the body that has it.
+/// Returns the largest difference between left and right, metres, and the body that has it.
 ///
 /// The compared lengths do not depend on the pose: pivot to body centre, the shape's bounding radius, and the mass
 /// difference as a length (a third of the relative difference, times the radius, because mass grows with the cube of a
-/// length). A human's part whose twin has no body differs by its whole radius. Creatures' twins are matched by their
-/// pivots, and parts without a twin are not compared: a body with one claw or a sword in one hand is no fault.
+/// length). A human's part without a counterpart differs by its whole radius. Counterparts of creatures are found by
+/// their pivots, and parts without one are not compared: a body with one claw or a sword in one hand is no fault.
 pub(super) fn symmetry_error(def: &RagdollDef, bones: &Bones, size: f32) -> (f32, Option<usize>) {
     let mut worst = (0.0, None);
     for body in (1..def.bodies.len()).filter(|&body| !bones.list[body].is_prop) {

@@ -46,7 +46,7 @@ impl Stretch {
         }
     }
 
-    /// Returns the figures over all poses since the last call; zeros where no side can stretch.
+    /// Returns the metrics over all poses since the last call; zeros where no side can stretch.
     pub fn take(&mut self, surface: &Surface) -> Stretched {
         let mut longer = core::mem::take(&mut self.longer);
         let worst = core::mem::take(&mut self.worst);

@@ -108,7 +108,7 @@ impl Surface {
     /// Returns the position of a vertex in the target space of the matrices in `palette`.
     pub fn place(&self, palette: &[Affine], vertex: usize) -> Vec3 {
         let Vertex { position, slots, weights } = self.vertices[vertex];
-        // Most of a figure's vertices follow one joint.
+        // Most of a character's vertices follow one joint.
         if weights[0] >= 1.0 {
             return palette[slots[0] as usize].point(position);
         }

@@ -13,7 +13,7 @@ pub(super) struct Gap {
     pub distance: f32,
 }
 
-/// A collider at the present place of its joint (VRMC_springBone, and the appendix of its extended colliders). A
+/// A collider at the current position of its joint (VRMC_springBone, and the appendix of its extended colliders). A
 /// joint's scale enters by its largest axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Placed {

@@ -214,7 +214,7 @@ impl SpringSwing {
         self.stride = 0.0;
     }
 
-    /// Places all nodes according to a pose.
+    /// Moves all nodes to a pose.
     pub(super) fn place_all(
         &mut self,
         rig: &SpringRig,
@@ -228,7 +228,7 @@ impl SpringSwing {
         }
     }
 
-    /// Returns the position of a tip at the new place of its node, in the space of its chain's centre.
+    /// Returns the position of a tip for the new transform of its node, in the space of its chain's centre.
     pub(super) fn placed_tip(&self, rig: &SpringRig, index: usize) -> Vec3 {
         let bone = &rig.bones[index];
         let tip = self.at[bone.node].point(bone.tail);

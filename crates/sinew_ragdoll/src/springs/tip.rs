@@ -111,7 +111,7 @@ pub(super) struct Held<'a> {
 }
 
 impl<'a> Held<'a> {
-    /// Creates the relation for a joint at `place`.
+    /// Creates the relation for a joint at the transform `place`.
     #[inline(always)]
     pub fn new(bone: &'a Bone, local: &LocalTransform, world_from_parent: &'a Mat3, place: Vec3) -> Self {
         let rest = local.rotation;
@@ -212,7 +212,10 @@ mod tests {
             };
             let near = flight(way, push, drag, 0.999_999);
             let whole = flight(way, push, drag, 1.0);
-            assert!((near - whole).length() < 1e-4 * (1.0 + drag) * 0.1, "drag {drag}: {near} {whole}");
+            assert!(
+                (near - whole).length() < 1e-4 * (1.0 + drag) * 0.1,
+                "drag {drag}: {near} near ρ = 1, {whole} at ρ = 1"
+            );
             assert_eq!(flight(way, push, drag, 0.0), Vec3::ZERO);
         }
         // Free flight against drag has a closed form: without a push, two half ticks equal one tick.

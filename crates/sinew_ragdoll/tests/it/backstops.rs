@@ -77,9 +77,9 @@ fn cloth_stays_out_of_the_mesh_where_no_body_is() {
         (rest, most, fastest.fold(0.0, max))
     };
     let (rest, bare, _) = pressed(None);
-    assert!(bare > rest + 0.02, "without a backstop the cloth sinks in {bare} m, from {rest} m");
+    assert!(bare > rest + 0.02, "without a backstop the cloth is {bare} m deep, at rest {rest} m");
     let (_, stopped, fastest) = pressed(Some(Backstop { distance: 0.005, radius: 0.2 }));
-    assert!(stopped < rest + 0.006, "with a backstop the cloth sinks in {stopped} m, from {rest} m");
+    assert!(stopped < rest + 0.006, "with a backstop the cloth is {stopped} m deep, at rest {rest} m");
     assert!(fastest < 0.3, "the cloth moves at {fastest} m/s");
 }
 
@@ -118,11 +118,11 @@ fn each_free_particle_has_a_backstop_on_the_nearest_body() {
     );
     for (stop, depth) in group.backstops().iter().zip(depths(&world, group)) {
         assert_eq!(stop.radius, 0.25);
-        assert!((depth + 0.03).abs() < 1e-3, "the particle is {depth} m from its backstop");
+        assert!((depth + 0.03).abs() < 1e-3, "the particle is {depth} m inside its backstop");
         let (place, center) =
             (group.positions()[stop.particle as usize], world.transform(stop.body).point(stop.center));
         let out = Vec3::new(place.x, 0.0, place.z);
-        assert!((place - center).dot(out) > 0.0, "the backstop is inside the skirt");
+        assert!((place - center).dot(out) > 0.0, "the backstop must be inside the skirt");
     }
     let of_giant = character.def().scaled(2.0);
     let giant = Character::spawn(&mut world, &Arc::new(of_giant), Transform::IDENTITY);
@@ -149,8 +149,8 @@ fn backstops_do_not_disturb_a_walk() {
                 stretch = max(stretch, mean_stretch(group));
             }
         }
-        assert!(depth < 0.005, "{} is {depth} m in its backstops", chains.name);
+        assert!(depth < 0.005, "{} is {depth} m inside its backstops", chains.name);
         // The first steps are long: feet on the ground wait until the clips reach the mover's speed.
-        assert!(stretch < 0.05, "{} is stretched by {stretch}", chains.name);
+        assert!(stretch < 0.05, "the stretch of {} is {stretch}", chains.name);
     }
 }

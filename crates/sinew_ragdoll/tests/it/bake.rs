@@ -91,7 +91,7 @@ fn only_pelvis_translation_and_rotations_have_keys() {
         assert!(is_turn || channel.joint == hips, "joint {} has {:?}", channel.joint, channel.property);
         for pair in channel.values.chunks_exact(4).collect::<Vec<_>>().windows(2).filter(|_| is_turn) {
             let dot: f32 = pair[0].iter().zip(pair[1]).map(|(a, b)| a * b).sum();
-            assert!(dot > 0.0, "consecutive keys are in one hemisphere");
+            assert!(dot > 0.0, "consecutive keys must be in one hemisphere");
         }
     }
 }
@@ -258,9 +258,9 @@ fn a_figure_with_large_feet_and_head_keeps_its_limits_in_a_bake() {
         let bodies = [floor()];
         let input = BakeInput { bodies: &bodies, hits: &hits, seconds: 4.0, ..BakeInput::new(def.clone()) };
         let baked = bake(&input);
-        assert!(baked.quality.first_contact_s.is_some(), "{body} {impulse}: no contact");
+        assert!(baked.quality.first_contact_s.is_some(), "{body}, impulse {impulse}: no contact");
         let (verdict, reasons) = judge_bake(&baked.quality);
-        assert_eq!(verdict, Verdict::Good, "{body} {impulse}: {reasons:?}");
+        assert_eq!(verdict, Verdict::Good, "{body}, impulse {impulse}: {reasons:?}");
     }
 }
 
@@ -282,7 +282,7 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
 fn exact() -> Arc<CharacterDef> {
     let mut def = walker();
     let motions = MotionSet { locomotion: Locomotion::Exact, ..def.motions().clone() };
-    def.set_motions(motions).expect("it could be played before");
+    def.set_motions(motions).expect("the motions were accepted before");
     shared(def)
 }
 
@@ -299,7 +299,7 @@ fn returned_character_rejoins_its_clip() {
     let away: Vec<f32> = own.iter().zip(&back).map(|(a, b)| farthest(a, b)).collect();
     assert!(away[..31].iter().all(|&away| away < 1e-4), "before the fall: {:?}", &away[..31]);
     assert!(away[70] > 0.3, "while down: {}", away[70]);
-    assert!(away[91..].iter().all(|&away| away < 2e-3), "after the return: {:?}", &away[91..]);
+    assert!(away[91..].iter().all(|&away| away < 2e-3), "distances after the return: {:?}", &away[91..]);
     let own_step = (1..own.len()).map(|frame| farthest(&own[frame], &own[frame - 1])).fold(0.0, max);
     for frame in 70..100 {
         let step = farthest(&back[frame], &back[frame - 1]);
@@ -350,10 +350,10 @@ fn movers_push_and_wind_blows() {
     let end = |input: &BakeInput<'_>| places(&def, &bake(input)).pop().expect("there are frames")[1];
     let lies = end(&still);
     let shoved = end(&BakeInput { movers: &movers, ..still.clone() });
-    assert!((shoved - lies).length() > 0.3, "the plough moves it from {lies} to {shoved}");
+    assert!((shoved - lies).length() > 0.3, "the plough moved the character only from {lies} to {shoved}");
     assert!(
         end(&BakeInput { fields: &fields, ..still.clone() }).x > lies.x + 0.1,
-        "wind moves it by more than 0.1 m"
+        "the wind must move the character by more than 0.1 m"
     );
 }
 
@@ -371,7 +371,7 @@ fn joint_bake_shares_one_world_and_can_be_cancelled() {
     assert_eq!(
         met,
         bake_together(&[one.clone(), two], go_on).expect("nothing stops it"),
-        "a second bake is identical"
+        "a second bake must be identical"
     );
     let mut event_count = 0;
     let stopped = bake_together(&[one], &mut |time| {

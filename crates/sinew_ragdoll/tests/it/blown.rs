@@ -38,7 +38,7 @@ fn blast(world: &mut World, character: &mut Character, momentum: f32) -> Vec<Cha
         trial.update(&mut trial_world);
         sum.length()
     };
-    assert!(unit_impulse > 0.1, "a blast of 1 Pa·s gives it {unit_impulse} N·s");
+    assert!(unit_impulse > 0.1, "a blast of 1 Pa·s gives an impulse of only {unit_impulse} N·s");
     world.explode(&Explosion { impulse: momentum / unit_impulse, ..unit });
     run(world, character, 1)
 }
@@ -58,7 +58,10 @@ fn explosion_knocks_over_a_standing_character() {
     let mass: f32 = character.bodies().iter().map(|&body| world.mass(body).mass).sum();
     let momentum: Vec3 =
         character.bodies().iter().map(|&body| world.velocity(body).linear * world.mass(body).mass).sum();
-    assert!(momentum.x > 0.9 * 400.0 && momentum.x < 1.1 * 400.0, "{momentum} N·s of {mass} kg");
+    assert!(
+        momentum.x > 0.9 * 400.0 && momentum.x < 1.1 * 400.0,
+        "momentum {momentum} N·s of a mass of {mass} kg"
+    );
     let from = pelvis(&world, &character);
     run(&mut world, &mut character, 60);
     let way = pelvis(&world, &character) - from;
@@ -75,7 +78,7 @@ fn weak_explosion_causes_a_flinch_and_displacement() {
         let (mut world, mut character) = standing(&def);
         let from = pelvis(&world, &character);
         let events = blast(&mut world, &mut character, momentum);
-        assert_eq!(character.state(), State::Flinching, "{momentum} N·s: {events:?}");
+        assert_eq!(character.state(), State::Flinching, "momentum {momentum} N·s: {events:?}");
         let (mut before, mut jump, mut most) = (from, 0.0, 0.0);
         for _ in 0..90 {
             run(&mut world, &mut character, 1);
@@ -85,7 +88,10 @@ fn weak_explosion_causes_a_flinch_and_displacement() {
             before = now;
         }
         println!("{momentum} N·s: the pelvis goes {most} m, {jump} m in a step");
-        assert!(most > last && jump < 0.02, "{momentum} N·s: {most} m after {last}, {jump} m in a step");
+        assert!(
+            most > last && jump < 0.02,
+            "momentum {momentum} N·s: farthest {most} m, at the end {last} m, largest step {jump} m"
+        );
         assert_eq!(character.state(), State::Animated);
         last = most;
     }
@@ -106,7 +112,11 @@ fn bullet_or_impulse_on_an_animated_body_counts_as_a_hit() {
     let at = world.center_of_mass(character.bodies()[chest]);
     world.apply_bullet_impact(character.bodies()[chest], 0.01, Vec3::X * 800.0, at);
     run(&mut world, &mut character, 1);
-    assert_eq!(character.state(), State::Flinching, "a rifle's bullet has 8 N·s");
+    assert_eq!(
+        character.state(),
+        State::Flinching,
+        "the impulse of a rifle's bullet, 8 N·s, must cause a flinch"
+    );
 }
 
 /// Returns a field with this sideways acceleration, m/s².
@@ -125,11 +135,11 @@ fn character_resists_a_field_until_its_feet_slip() {
         (character.state(), (pelvis(&world, &character) - from).x)
     };
     let (state, way) = after(3.0, 180);
-    assert!(state == State::Animated && way.abs() < 0.01, "3 m/s²: {state:?}, {way} m");
+    assert!(state == State::Animated && way.abs() < 0.01, "wind of 3 m/s²: {state:?}, moved {way} m");
     let (state, way) = after(7.0, 12);
-    assert!(state == State::Animated && way > 0.01, "7 m/s²: {state:?}, {way} m");
+    assert!(state == State::Animated && way > 0.01, "wind of 7 m/s²: {state:?}, moved {way} m");
     let (state, _) = after(7.0, 60);
-    assert_eq!(state, State::Limp, "7 m/s² sweeps it off its feet");
+    assert_eq!(state, State::Limp, "7 m/s² must make the character fall");
     // In the air the character accelerates like any free body.
     let (mut world, mut character) = standing(&def);
     world.add_field(&pull(Vec3::X * 3.0));
@@ -148,9 +158,12 @@ fn character_resists_a_field_until_its_feet_slip() {
         }
     }
     let (time, way) = (aloft as f32 / 60.0, (pelvis(&world, &character) - from).x);
-    assert!(high > 0.55 && off < 0.12, "the body follows its mover: {high} m up, {off} m off");
+    assert!(high > 0.55 && off < 0.12, "the body is {high} m high and {off} m from its mover");
     let falls = 0.5 * 3.0 * time * time;
-    assert!(time > 0.6 && (way - falls).abs() < 0.25 * falls, "{way} m in {time} s; free fall: {falls}");
+    assert!(
+        time > 0.6 && (way - falls).abs() < 0.25 * falls,
+        "moved {way} m in {time} s; free fall: {falls} m"
+    );
 }
 
 #[test]
@@ -173,7 +186,7 @@ fn strong_wind_fells_and_updraft_lifts() {
     let field = world.add_field(&pull(Vec3::Y * 12.0));
     run(&mut world, &mut character, 40);
     let high = pelvis(&world, &character).y;
-    assert!(high > 1.2, "an updraft above its weight lifts it: {high} m");
+    assert!(high > 1.2, "an updraft above the weight must lift the character; height {high} m");
     world.remove_field(field);
     // Fields of a region act only inside it.
     let (mut world, mut character) = standing(&def);

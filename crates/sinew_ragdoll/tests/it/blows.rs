@@ -26,7 +26,7 @@ fn places(character: &Character) -> Vec<Vec3> {
     def.ragdoll.bodies.iter().map(|body| model[body.joint].translation).collect()
 }
 
-/// Returns the largest distance of a joint from its place in an undisturbed twin, metres.
+/// Returns the largest distance of a joint from its position in an undisturbed copy, metres.
 fn apart(one: &Character, twin: &Character) -> f32 {
     let far = |(a, b): (&Vec3, &Vec3)| (*a - *b).length();
     places(one).iter().zip(&places(twin)).map(far).fold(0.0, max)
@@ -49,7 +49,7 @@ fn hit_hand_yields_and_returns_smoothly() {
         let off = apart(&character, &twin);
         most = max(most, off);
         if step >= 60 {
-            assert!(off < 2e-3, "after {step} steps it is still {off} m off");
+            assert!(off < 2e-3, "after {step} steps the pose is still {off} m off");
         }
         seen.rotate_left(1);
         seen[2] = places(&character).iter().zip(&places(&twin)).map(|(a, b)| *a - *b).collect();
@@ -61,10 +61,10 @@ fn hit_hand_yields_and_returns_smoothly() {
         last = Some((places(&character), places(&twin)));
     }
     assert_eq!(character.state(), State::Animated);
-    assert!(most > 0.05, "the hand moves {most} m");
-    assert!(jump < 60.0, "on its way back its acceleration exceeds the clip's by {jump} m/s²");
+    assert!(most > 0.05, "the hand moves only {most} m");
+    assert!(jump < 60.0, "on the way back the acceleration exceeds the clip's by {jump} m/s²");
     let way = character.world_from_character().translation - twin.world_from_character().translation;
-    assert!(way.length() < 1e-3, "the walk was interrupted: {way}");
+    assert!(way.length() < 1e-3, "the flinch interrupted the walk: {way}");
 }
 
 /// A character walks along a wall 10 cm from its hand, and the hand is hit toward the wall.
@@ -97,8 +97,11 @@ fn arm_hit_into_a_wall_leaves_it_at_once() {
         deepest = max(deepest, beside(&character) - face);
         inside += u32::from(beside(&character) > face);
     }
-    assert!(would > 0.05, "without a wall it would go {would} m beyond it");
-    assert!(inside <= 6 && deepest < 0.02, "the hand is inside for {inside} steps, up to {deepest} m");
+    assert!(would > 0.05, "without a wall the hand must reach beyond it; distance {would} m");
+    assert!(
+        inside <= 6 && deepest < 0.02,
+        "the hand is inside the wall for {inside} steps, up to {deepest} m"
+    );
     assert_eq!(character.state(), State::Animated);
 }
 
@@ -108,7 +111,7 @@ fn arm_hit_into_a_wall_leaves_it_at_once() {
 fn limbs_stay_out_of_a_wall_that_stops_the_walk() {
     let mut def = walker();
     let motions = def.motions().clone();
-    def.set_motions(MotionSet { idle: Some(1), ..motions }).expect("they could be played before");
+    def.set_motions(MotionSet { idle: Some(1), ..motions }).expect("the motions were accepted before");
     let def = shared(def);
     let mut world = level();
     let half_extents = Vec3::new(3.0, 2.0, 0.2);
@@ -120,7 +123,7 @@ fn limbs_stay_out_of_a_wall_that_stops_the_walk() {
         run(&mut world, &mut character, 1);
         deepest = places(&character).iter().map(|at| at.z - 2.0).fold(deepest, max);
     }
-    assert!(deepest < 0.005, "{deepest} m in the wall");
+    assert!(deepest < 0.005, "the hand is {deepest} m inside the wall");
     assert!(character.world_from_character().translation.z > 1.65, "it reaches the wall");
 }
 
@@ -147,7 +150,7 @@ fn hands_of_a_walker_that_a_wall_stops_stay_out_of_it() {
         deepest
     };
     let (narrow, wide) = (deepest(false), deepest(true));
-    assert!(narrow < 0.0 && wide < 0.0, "{narrow} and {wide} m in the wall");
+    assert!(narrow < 0.0 && wide < 0.0, "depth in the wall: {narrow} m and {wide} m");
 }
 
 #[test]
@@ -175,14 +178,14 @@ fn hit_by_a_ray_flinches_the_limb_and_a_second_hit_fells() {
     let (mut world, mut character) = walking(&def);
     let at = places(&character)[def.body_named("head").expect("it has a head")] + Vec3::Y * 0.1;
     let shot = Ray { origin: at + Vec3::Z * 3.0, direction: Vec3::Z * -6.0 };
-    let hit = world.query().first(&shot).expect("the head is in the way");
+    let hit = world.query().first(&shot).expect("the shot hits the head");
     assert_eq!(character.body_index(hit.body), def.body_named("head"));
     assert!(character.hit_at(&mut world, &hit, Vec3::Z * -8.0).is_some());
     assert_eq!(character.state(), State::Flinching);
     let events = run(&mut world, &mut character, 8);
     let head = hit.body;
     let flinched = CharacterEvent::Flinched { body: character.body_index(head).expect("it is its own") };
-    assert_eq!(events, [flinched], "one event, and no other");
+    assert_eq!(events, [flinched], "expected exactly one event");
     let floor = world.body_ids().next().expect("the floor");
     let other = sinew_physics::BodyHit { body: floor, ..hit };
     assert!(character.hit_at(&mut world, &other, Vec3::Z).is_none(), "not of this character");
@@ -206,7 +209,7 @@ fn active_ragdoll_tracks_its_clips_and_withstands_a_push() {
         (world, twin)
     };
     let off = apart(&character, &twin);
-    assert!(off < 0.15, "powered, it is {off} m off its clips");
+    assert!(off < 0.15, "the powered pose is {off} m from its clips");
     character.hit(&mut world, 2, Vec3::X * 25.0);
     let events = run(&mut world, &mut character, 120);
     assert_eq!(character.state(), State::Powered, "{events:?}");
@@ -231,7 +234,7 @@ fn one_part_can_have_another_drive() {
         (with[body] - without[body]).length()
     };
     assert!(off("rightHand") < 2e-3 && off("head") < 2e-3 && off("leftFoot") < 2e-3);
-    assert!(off("leftHand") > 0.01, "a relaxed arm follows late: {} m", off("leftHand"));
+    assert!(off("leftHand") > 0.01, "a relaxed arm must follow late; distance {} m", off("leftHand"));
     assert_eq!(character.drives_mut().mode(0), DriveMode::Keyed);
 }
 
@@ -308,7 +311,7 @@ fn until(world: &mut World, character: &mut Character, state: State) -> f32 {
             return most;
         }
     }
-    panic!("it never entered {state:?}");
+    panic!("the character never entered {state:?}");
 }
 
 #[test]
@@ -333,7 +336,11 @@ fn hit_threshold_is_higher_while_getting_up_near_the_ground() {
     until(&mut world, &mut character, State::GettingUp);
     character.hit(&mut world, chest, Vec3::X * 60.0);
     run(&mut world, &mut character, 1);
-    assert_eq!(character.state(), State::GettingUp, "60 N·s fell a standing character, not a lying one");
+    assert_eq!(
+        character.state(),
+        State::GettingUp,
+        "60 N·s make a standing character fall, but not a lying one"
+    );
     character.hit(&mut world, chest, Vec3::X * 200.0);
     assert_eq!(character.state(), State::Limp);
     until(&mut world, &mut character, State::Animated);
@@ -361,10 +368,10 @@ fn character_turns_to_its_heading_while_getting_up() {
         until(&mut world, &mut character, State::Animated);
         run(&mut world, &mut character, 60);
         let turned = (character.world_from_character().rotation * Vec3::Z).dot(heading);
-        assert!(!faces || turned < -0.9, "it faces the wanted way once it stands: {turned}");
+        assert!(!faces || turned < -0.9, "the character must face the requested direction: {turned}");
     }
     let [free, facing] = speeds;
-    assert!(facing < 1.2 * free + 0.5, "{facing} m/s while turning, {free} without");
+    assert!(facing < 1.2 * free + 0.5, "fastest joint: {facing} m/s while turning, {free} m/s without");
 }
 
 /// In the past, hit bodies waited for one step when the clips took them back, and moved by two steps' distance in the
@@ -392,10 +399,10 @@ fn hit_bodies_go_on_at_the_end_of_a_flinch() {
             slowest = min(slowest, speed);
             assert!(
                 speed < 1.5 * fastest_led + 0.5,
-                "a hand at {speed} m/s, led at {fastest_led} m/s at most"
+                "a hand moves at {speed} m/s; led, at most at {fastest_led} m/s"
             );
             run(&mut world, &mut character, 1);
         }
-        assert!(slowest > 0.0, "it never stops for a step");
+        assert!(slowest > 0.0, "the hand must not stop for a step");
     }
 }

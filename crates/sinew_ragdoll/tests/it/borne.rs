@@ -86,16 +86,16 @@ fn load_on_a_held_cloth_sleeps_and_wakes_with_it() {
     let mut hammock = Hammock::new();
     let mut steps = 0;
     while hammock.awake() > 0 {
-        assert_eq!(hammock.awake(), 4, "only some are asleep, step {steps}");
+        assert_eq!(hammock.awake(), 4, "only some bodies sleep in step {steps}");
         hammock.world.step();
         steps += 1;
-        assert!(steps < 1200, "it never comes to rest");
+        assert!(steps < 1200, "the hammock never comes to rest");
     }
     let places = hammock.places();
     let load = places[2];
     assert!(
         load.x.abs() < 0.1 && load.z.abs() < 0.1 && load.y < 2.0 * BLOCK.y,
-        "the load is off the cloth, at {load}"
+        "the load is not on the cloth but at {load}"
     );
     for step in 0..600 {
         hammock.world.step();
@@ -106,7 +106,7 @@ fn load_on_a_held_cloth_sleeps_and_wakes_with_it() {
         let mut woken = hammock.clone();
         hit(&mut woken);
         woken.world.step();
-        assert_eq!(woken.awake(), 4, "{what} wakes all of them");
+        assert_eq!(woken.awake(), 4, "{what} must wake all bodies");
     };
     wakes("a hit on the load", &|it| it.world.apply_impulse_at_center(it.bodies[2], Vec3::Y * 0.1));
     wakes("a hit on the cloth", &|it| {

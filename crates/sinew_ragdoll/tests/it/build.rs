@@ -44,7 +44,7 @@ pub fn check_sound(name: &str, def: &RagdollDef) {
         let pivot = |body: usize, p: Vec3| def.bodies[body].character_from_body.point(p);
         let gap = pivot(joint.parent, joint.frame_parent.translation)
             - pivot(joint.child, joint.frame_child.translation);
-        assert!(gap.length() < 1e-4 * def.height.max(1.0), "{name} joint {i}: {gap}");
+        assert!(gap.length() < 1e-4 * def.height.max(1.0), "{name} joint {i}: gap {gap}");
         assert!(joint.friction_torque > 0.0 && joint.friction_torque.is_finite(), "{name} joint {i}");
     }
     for body in &def.bodies {
@@ -54,7 +54,7 @@ pub fn check_sound(name: &str, def: &RagdollDef) {
         assert!(body.character_from_body.is_finite(), "{label}");
         assert!(body.mass.mass > 0.0 && body.mass.mass.is_finite(), "{label}");
         let (distance, _) = body.shape.signed_distance(&sinew_math::Transform::IDENTITY, body.mass.center);
-        assert!(distance < 0.0, "{label}: centre of mass {distance} m outside");
+        assert!(distance < 0.0, "{label}: the centre of mass is {distance} m outside");
         let (moments, _) = body.mass.inertia.eigen();
         assert!(moments.z > 0.0 && moments.x <= 8.01 * moments.z, "{label}: {moments}");
         assert!(moments.x <= 1.001 * (moments.y + moments.z), "{label}: {moments}");
@@ -76,14 +76,14 @@ fn human_rigs_get_human_bodies_and_masses() {
         assert!((13..=25).contains(&def.bodies.len()), "{name}: {} bodies", def.bodies.len());
         assert!((def.total_mass - 75.0).abs() < 1e-3, "{name}: {}", def.total_mass);
         assert!(report.mean_error < 0.0125 * def.height, "{name}: mean error {} m", report.mean_error);
-        assert!(report.shape_volume < 1.6 * 0.075, "{name}: shapes of {} m³", report.shape_volume);
+        assert!(report.shape_volume < 1.6 * 0.075, "{name}: the shapes have {} m³", report.shape_volume);
         for role in ["hips", "spine", "head"] {
             body(&def, role);
         }
         for part in ["UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot"] {
             let [left, right] = ["left", "right"].map(|side| body(&def, &format!("{side}{part}")));
             let (l, r) = (def.bodies[left].mass.mass, def.bodies[right].mass.mass);
-            assert!((l - r).abs() < 0.01 * l, "{name} {part}: {l} and {r} kg");
+            assert!((l - r).abs() < 0.01 * l, "{name} {part}: left {l} kg, right {r} kg");
         }
         // De Leva: a thigh is 14.16 % of a man, a shank 4.33 %.
         let thigh = def.bodies[body(&def, "leftUpperLeg")].mass.mass;

@@ -95,13 +95,13 @@ fn knees_bend_backward_and_elbows_forward() {
             let ankle = bones.list[index(&bones, Role::Foot(side))].head;
             let foot = moved(&bones, knee, bend, ankle);
             let back = Vec3::new(ankle.x, 0.52, -0.43);
-            assert!((foot - back).length() < 1e-3, "{side:?}: ankle at {foot}");
+            assert!((foot - back).length() < 1e-3, "{side:?}: the ankle is at {foot}");
 
             let elbow = index(&bones, Role::LowerArm(side));
             let wrist = bones.list[index(&bones, Role::Hand(side))].head;
             let hand = moved(&bones, elbow, bend, wrist);
             let front = bones.list[elbow].head + Vec3::Z * 0.27;
-            assert!((hand - front).length() < 1e-3, "{side:?} at {drop}: wrist at {hand}");
+            assert!((hand - front).length() < 1e-3, "{side:?} at {drop}: the wrist is at {hand}");
         }
     }
 }
@@ -113,7 +113,7 @@ fn hinge_limits_equal_the_table() {
     let knee = &plans[index(&bones, Role::LowerLeg(Side::Left)) - 1];
     assert!((hinge(knee).hi.to_degrees() - 142.0).abs() < 1e-3);
     assert!((hinge(knee).lo.to_degrees() + 2.0).abs() < 1e-3);
-    assert!(hinge_angle(at_bind(&bones, knee).0).abs() < 1e-3, "straight legs are at 0");
+    assert!(hinge_angle(at_bind(&bones, knee).0).abs() < 1e-3, "straight legs must be at 0");
 }
 
 #[test]
@@ -127,7 +127,10 @@ fn hinge_angle_of_a_bent_bind_pose_counts_from_straight() {
         bones.list[knee].head + Vec3::new(0.0, -trig::cos(angle), -trig::sin(angle)) * 0.43;
     let plan = &plans(&bones)[knee - 1];
     assert!((hinge_angle(at_bind(&bones, plan).0).to_degrees() - 30.0).abs() < 0.1);
-    assert!((hinge(plan).hi.to_degrees() - 142.0).abs() < 1e-3, "142° from straight, not from the bind pose");
+    assert!(
+        (hinge(plan).hi.to_degrees() - 142.0).abs() < 1e-3,
+        "142° must count from straight, not from the bind pose"
+    );
 }
 
 #[test]
@@ -147,7 +150,10 @@ fn hips_reach_farther_forward_than_back() {
         assert_eq!(beyond(-Vec3::X * 110f32.to_radians()), 0.0, "110° forward");
         assert!(beyond(Vec3::X * 40f32.to_radians()) > 10.0, "40° back");
         assert_eq!(beyond(Vec3::Z * out * 30f32.to_radians()), 0.0, "30° outward");
-        assert!(beyond(-Vec3::Z * out * 50f32.to_radians()) > 10.0, "50° across the other leg");
+        assert!(
+            beyond(-Vec3::Z * out * 50f32.to_radians()) > 10.0,
+            "50° across the other leg must be out of reach"
+        );
     }
 }
 
@@ -171,7 +177,10 @@ fn shoulders_reach_the_same_places_from_any_bind_pose() {
                 assert!(beyond < 0.0, "{side:?} bound at {drop}: {inside} is {beyond} rad out of reach");
             }
             let behind = (-Vec3::Z * 0.9 - out * 0.43).normalize();
-            assert!(reach(drop, side, behind) > 0.1, "{side:?} bound at {drop}: behind the back");
+            assert!(
+                reach(drop, side, behind) > 0.1,
+                "{side:?} bound at {drop}: the hand reaches behind the back"
+            );
         }
     }
 }
@@ -193,7 +202,7 @@ fn right_is_the_mirror_image_of_left() {
                 assert_eq!((a.swing_z.lo, a.swing_z.hi), (-b.swing_z.hi, -b.swing_z.lo));
                 assert_eq!((a.twist.lo, a.twist.hi), (-b.twist.hi, -b.twist.lo));
             }
-            other => panic!("unlike kinds {other:?}"),
+            other => panic!("the two sides have different kinds: {other:?}"),
         }
         // A mirror keeps the x component of a rotation axis and negates the others. The same holds for a rotation's
         // vector part.
@@ -220,7 +229,11 @@ fn every_bind_pose_is_within_the_limits() {
                 JointKind::Hinge { limit: Some(limit) } => limit.excess(hinge_angle(joint)),
                 _ => 0.0,
             };
-            assert!(beyond <= 0.0, "{:?} at {drop}: {beyond}", bones.list[plan.def.child].role);
+            assert!(
+                beyond <= 0.0,
+                "{:?} at {drop}: {beyond} beyond the limit",
+                bones.list[plan.def.child].role
+            );
         }
     }
 }
@@ -246,9 +259,12 @@ fn creature_joint_friction_follows_the_carried_moment() {
         (friction_torques(&bones, &fits, &masses, &plans)[0], plans[0].def.friction_torque)
     };
     let (resists, table) = torque(Anatomy::Creature, 8.0);
-    assert!(table < 0.5 && (resists - 0.2 * 9.81 * 0.5).abs() < 1e-4, "{resists} and {table} N·m");
+    assert!(
+        table < 0.5 && (resists - 0.2 * 9.81 * 0.5).abs() < 1e-4,
+        "friction {resists} N·m, in the table {table} N·m"
+    );
     let (resists, table) = torque(Anatomy::Creature, 800.0);
-    assert!(resists == table && table > 5.0, "{resists} and {table} N·m");
+    assert!(resists == table && table > 5.0, "friction {resists} N·m, in the table {table} N·m");
     let (resists, table) = torque(Anatomy::Human, 8.0);
     assert_eq!(resists, table);
 }

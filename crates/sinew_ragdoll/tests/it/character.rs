@@ -62,7 +62,7 @@ fn character_walks_at_its_speed() {
     let way = character.world_from_character().translation - somewhere().translation;
     let expected = somewhere().rotation * Vec3::Z * sinew_scenes::mannequin::WALK_SPEED * world.time() as f32;
     assert!((way - expected).length() < 1e-3, "{way} for {expected}");
-    assert_eq!(world.body_ids().count(), 1, "an animated character has no bodies");
+    assert_eq!(world.body_ids().count(), 1, "an animated character must have no bodies");
 }
 
 #[test]
@@ -84,7 +84,7 @@ fn character_falls_settles_gets_up_and_walks_on() {
         CharacterEvent::Up,
     ];
     assert_eq!(kinds, expected.map(|event| core::mem::discriminant(&event)), "{events:?}");
-    assert_eq!(world.body_ids().count(), 1, "its bodies are removed");
+    assert_eq!(world.body_ids().count(), 1, "the bodies must be removed");
     assert!(place_of(&character, "head").y > 1.3);
     // The character accelerates gradually: it does not start at full walking speed.
     run_until(&mut world, &mut character, 0.35, |_| false);
@@ -106,7 +106,7 @@ fn get_up_clip_matches_the_lying_side() {
         let Some(&CharacterEvent::GettingUp { clip: Some(clip) }) =
             character.events().iter().find(|event| matches!(event, CharacterEvent::GettingUp { .. }))
         else {
-            panic!("it got up without a clip: {:?}", character.events());
+            panic!("the character got up without a clip: {:?}", character.events());
         };
         let name = &def.motions().clips[clip].name;
         let up = pelvis_forward(&character).y;
@@ -116,7 +116,10 @@ fn get_up_clip_matches_the_lying_side() {
             clear[usize::from(up > 0.0)] += 1;
         }
     }
-    assert!(clear.iter().all(|&falls| falls > 0), "it never fell on one of the two sides: {clear:?}");
+    assert!(
+        clear.iter().all(|&falls| falls > 0),
+        "the character never fell on one of the two sides: {clear:?}"
+    );
 }
 
 /// Returns the direction in which the pelvis faces.
@@ -164,7 +167,7 @@ fn character_set_to_stay_down_stays_down() {
 fn character_stands_up_without_a_clip() {
     let mut def = walker();
     let motions = MotionSet { get_ups: Vec::new(), ..def.motions().clone() };
-    def.set_motions(motions).expect("they could be played before");
+    def.set_motions(motions).expect("the motions were accepted before");
     let def = shared(def);
     let (mut world, mut character) = knocked_over(&def, Vec3::Z * 60.0);
     let events = run_until(&mut world, &mut character, 10.0, |c| c.state() == State::Animated);
@@ -232,7 +235,11 @@ fn get_up_clips_are_recognised_by_their_motion() {
     }
     assert_eq!(def.get_ups_among(&clips), expected, "by what they do");
     clips[0].name = "Rig|Stand-Up".into();
-    assert_eq!(def.get_ups_among(&clips), [0, expected[0], expected[1]], "the user's choice has priority");
+    assert_eq!(
+        def.get_ups_among(&clips),
+        [0, expected[0], expected[1]],
+        "the user's choice must have priority"
+    );
 }
 
 #[test]
@@ -260,12 +267,12 @@ fn joints_without_bodies_keep_their_secondary_motion() {
         // The joints' last motion has decayed by then.
         if character.state() == State::Limp && steps > 20 {
             let now = character.pose()[toes].rotation;
-            assert_eq!(*frozen.get_or_insert(now), now, "toes move while it lies");
+            assert_eq!(*frozen.get_or_insert(now), now, "toes must not move while the character lies");
         }
     }
     // The finger sways 0.5 rad to either side once per cycle of about a second: 2 rad per cycle, at most about π rad/s.
-    assert!(way > 1.0, "the finger turned {way} rad");
-    assert!(step < 1.1 * core::f32::consts::PI / 60.0, "it jumped by {step} rad");
+    assert!(way > 1.0, "the finger rotated by only {way} rad");
+    assert!(step < 1.1 * core::f32::consts::PI / 60.0, "the finger jumped by {step} rad");
 }
 
 /// Returns the walker with an extra finger that sways in all of its clips.
@@ -310,8 +317,11 @@ fn hit_while_getting_up_knocks_it_over_again() {
         assert_eq!(character.state(), State::Limp);
         assert!(character.events().contains(&CharacterEvent::WentLimp), "{:?}", character.events());
         let events = run_until(&mut world, &mut character, 12.0, |c| c.state() == State::Animated);
-        assert!(events.iter().any(|(_, event)| *event == CharacterEvent::Up), "{events:?}, {bodies} bodies");
-        assert_eq!(world.body_ids().count(), 1, "its bodies and their drives are removed");
+        assert!(
+            events.iter().any(|(_, event)| *event == CharacterEvent::Up),
+            "no `Up` event in {events:?}; {bodies} bodies"
+        );
+        assert_eq!(world.body_ids().count(), 1, "the bodies and their drives must be removed");
     }
 }
 
@@ -335,7 +345,7 @@ fn a_powered_fall_keeps_more_of_its_pose() {
         off / steps as f32
     };
     let (limp, powered) = (bend(DriveMode::Limp), bend(DriveMode::Powered(Muscle::ALIVE)));
-    assert!(powered < 0.6 * limp, "off by {powered} rad on the mean, limp by {limp}");
+    assert!(powered < 0.6 * limp, "mean error {powered} rad powered, {limp} rad limp");
 }
 
 /// Returns the joint positions in character space (metres) in a clip of the set.

@@ -58,7 +58,10 @@ fn limp_character_leaves_the_floor_within_half_a_second() {
         let turn = Rotation::from_axis_angle(Vec3::Y, Random::new(seed).range(0.0, 6.0));
         let mut character = limp_at(&mut world, &def, Transform::new(Vec3::Y * -depth, turn));
         let (step, speed) = out_of_it(&mut world, &mut character).expect("it comes out");
-        assert!(step < HALF_SECOND && speed <= 2.5, "{depth} m: after {step} steps, {speed} m/s");
+        assert!(
+            step < HALF_SECOND && speed <= 2.5,
+            "depth {depth} m: clear after {step} steps, fastest {speed} m/s"
+        );
     }
 }
 
@@ -74,13 +77,22 @@ fn limp_character_leaves_a_wall_on_the_nearer_side() {
         character.update(&mut world);
         character.go_limp(&mut world);
         let (step, speed) = out_of_it(&mut world, &mut character).expect("it comes out");
-        assert!(step < HALF_SECOND && speed <= 2.5, "seed {seed}: after {step} steps, {speed} m/s");
+        assert!(
+            step < HALF_SECOND && speed <= 2.5,
+            "seed {seed}: clear after {step} steps, fastest {speed} m/s"
+        );
         let at = character.bodies().iter().map(|&body| world.transform(body).translation.z);
         let (low, high) =
             at.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), z| (min(low, z), max(high, z)));
-        assert!(low > 0.1 || high < -0.1, "seed {seed}: it is on both sides, {low} to {high}");
-        // From the middle, both sides are equally near.
-        assert!(z.abs() < 0.06 || (low > 0.0) == (z > 0.0), "seed {seed}: {z} m, {low} to {high}");
+        assert!(
+            low > 0.1 || high < -0.1,
+            "seed {seed}: the character is on both sides, from {low} to {high}"
+        );
+        // From the centre, both sides are equally near.
+        assert!(
+            z.abs() < 0.06 || (low > 0.0) == (z > 0.0),
+            "seed {seed}: started at {z} m, now from {low} to {high}"
+        );
     }
 }
 
@@ -101,7 +113,10 @@ fn moving_character_leaves_a_wall_on_its_entry_side() {
         assert!(character.clear(&mut world) && !character.clear(&mut world));
         let (step, _) = out_of_it(&mut world, &mut character).expect("it comes out");
         let chest = world.transform(character.bodies()[0]).translation.z;
-        assert!(step < HALF_SECOND && chest * speed < 0.0, "{speed} m/s: after {step} steps at {chest}");
+        assert!(
+            step < HALF_SECOND && chest * speed < 0.0,
+            "pushed at {speed} m/s: after {step} steps the chest is at {chest}"
+        );
     }
 }
 
@@ -121,7 +136,8 @@ fn filtered_shapes_do_not_move_the_character() {
     assert!(character.bodies().iter().all(|&body| world.kind(body) == BodyKind::Dynamic));
 }
 
-/// A snapshot taken during the way out continues identically, also after a limb is detached during the way out.
+/// A snapshot taken while the character is moved out continues identically, also after a limb is detached during this
+/// time.
 #[test]
 fn snapshot_during_clearing_continues_identically() {
     let def = Arc::new(sinew::mannequin::character());

@@ -41,7 +41,7 @@ fn in_state(def: &Arc<CharacterDef>, state: State) -> (World, Character) {
             character.go_limp(&mut world);
         }
     }
-    panic!("it never entered {state:?}");
+    panic!("the character never entered {state:?}");
 }
 
 /// Returns the total energy of the bodies, J.
@@ -62,7 +62,7 @@ fn fastest(world: &World) -> f32 {
 }
 
 fn message(panics: impl FnOnce()) -> String {
-    let panic = catch_unwind(AssertUnwindSafe(panics)).expect_err("the world refuses that");
+    let panic = catch_unwind(AssertUnwindSafe(panics)).expect_err("the world must refuse the call");
     panic.downcast_ref::<String>().expect("a message with names").clone()
 }
 
@@ -121,16 +121,20 @@ fn detached_limb_keeps_its_motion_in_every_state() {
             let limb = character.detach(&mut world, bone).expect("it has that");
             assert!(character.events().contains(&CharacterEvent::Detached { body: first }), "{what}");
             if !is_led {
-                assert!(energy(&world) <= joules * 1.0001, "{what}: {joules} J become {} J", energy(&world));
+                assert!(
+                    energy(&world) <= joules * 1.0001,
+                    "{what}: energy {joules} J rose to {} J",
+                    energy(&world)
+                );
                 for (&part, &body) in limb.parts().iter().zip(limb.bodies()) {
-                    assert_eq!(world.velocity(body), before[part], "{what}: its velocity changes");
+                    assert_eq!(world.velocity(body), before[part], "{what}: the velocity must not change");
                 }
             }
             for (&part, &body) in limb.parts().iter().zip(limb.bodies()) {
                 assert_eq!((body, character.has_body(part)), (had[part], false), "{what}");
                 assert_eq!(character.body_index(body), None, "{what}");
                 let away = (world.velocity(body).linear - before[part].linear).length();
-                assert!(away < 1.0, "{what}: body {part} is {away} m/s off");
+                assert!(away < 1.0, "{what}: the velocity of body {part} is off by {away} m/s");
             }
             let mut up = false;
             let mut most = 0.0;
@@ -138,7 +142,7 @@ fn detached_limb_keeps_its_motion_in_every_state() {
                 world.step();
                 character.update(&mut world);
                 most = max(most, fastest(&world));
-                assert!(widest_gap(&world) < 0.01, "{what}: {} m at step {step}", widest_gap(&world));
+                assert!(widest_gap(&world) < 0.01, "{what}: gap {} m, step {step}", widest_gap(&world));
                 up |= character.events().contains(&CharacterEvent::Up);
                 let poses = character.pose().iter();
                 assert!(poses.clone().all(|local| local.rotation.is_finite()), "{what}");
@@ -172,7 +176,7 @@ fn nested_limbs_and_the_rest_share_the_whole_skin() {
     let (mut world, mut character) = in_state(&def, State::Limp);
     let mut arm = character.detach(&mut world, "leftUpperArm").expect("it has arms");
     let hand = arm.detach(&mut world, "leftHand").expect("the arm has a hand");
-    assert!(arm.detach(&mut world, "leftHand").is_none(), "it is detached already");
+    assert!(arm.detach(&mut world, "leftHand").is_none(), "a detached limb cannot be detached again");
     assert!(arm.detach(&mut world, "leftUpperArm").is_none(), "a limb's root cannot be detached");
     assert!(character.detach(&mut world, "leftHand").is_none(), "it left with the arm");
     assert_eq!(
@@ -182,7 +186,7 @@ fn nested_limbs_and_the_rest_share_the_whole_skin() {
     let lost = character.lost_joints();
     let mut drawn: Vec<usize> = arm.skin_joints().chain(hand.skin_joints()).collect();
     drawn.sort_unstable();
-    assert_eq!(drawn, lost, "each joint of the arm is drawn by one of them");
+    assert_eq!(drawn, lost, "exactly one of them must draw each joint of the arm");
     assert!(lost.len() >= 3 && lost.len() < def.rig.joints.len() / 2);
     // The skin joint of a limb is near its body.
     run(&mut world, &mut character, 120);
@@ -193,7 +197,7 @@ fn nested_limbs_and_the_rest_share_the_whole_skin() {
     let joint =
         arm.skin_joints().position(|joint| joint == def.ragdoll.bodies[upper].joint).expect("its own");
     let away = (places[joint].translation - world.transform(arm.bodies()[0]).translation).length();
-    assert!(away < 0.3, "the shoulder of the arm is {away} m from its middle ({:?})", bind(upper));
+    assert!(away < 0.3, "the shoulder is {away} m from the centre of the arm ({:?})", bind(upper));
     // Skins of character and limb have a finite matrix for each joint.
     for skin in 0..def.rig.skins.len() {
         let mut palettes = [Vec::new(), Vec::new(), Vec::new()];
@@ -238,8 +242,8 @@ fn detached_character_is_identical_in_a_loaded_world() {
                 world.step();
                 character.update(world);
             }
-            assert_eq!(world.hash(), other_world.hash(), "{state:?}, step {step}");
-            assert_eq!(character.pose(), other.pose(), "{state:?}, step {step}");
+            assert_eq!(world.hash(), other_world.hash(), "other world: {state:?}, step {step}");
+            assert_eq!(character.pose(), other.pose(), "other pose: {state:?}, step {step}");
         }
         for (mut world, limbs) in [(world, limbs), (other_world, loaded)] {
             limbs.into_iter().for_each(|limb| limb.despawn(&mut world));

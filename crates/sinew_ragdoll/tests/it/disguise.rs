@@ -41,7 +41,7 @@ pub fn shuffled(rig: &Rig, seed: u64) -> (Rig, Vec<usize>) {
             .collect();
         place[free[random.index(free.len())]] = Some(new);
     }
-    let place: Vec<usize> = place.into_iter().map(|new| new.expect("every joint has a place")).collect();
+    let place: Vec<usize> = place.into_iter().map(|new| new.expect("every joint has a position")).collect();
     let mut other = rig.clone();
     for (old, &new) in place.iter().enumerate() {
         other.joints[new] = rig.joints[old].clone();
@@ -389,7 +389,7 @@ pub fn affixed(rig: &Rig, prefix: &str, suffix: &str) -> Rig {
 }
 
 /// Binds meshes in another unit than the joints, as in exports through FBX, or mirrored by a negative unit; the skin is
-/// drawn in the same place.
+/// drawn at the same position.
 pub fn bound_in(rig: &Rig, unit: f32) -> Rig {
     let mut rig = rig.clone();
     let joints_from_mesh =
@@ -689,8 +689,8 @@ pub fn with_eyes(rig: &Rig, analysis: &RigAnalysis, head: JointIdx) -> Rig {
     rig
 }
 
-/// Moves half of the skin of a joint to a new bone in the same place, with the same parent, like the halves of a pelvis
-/// or a breast.
+/// Moves half of the skin of a joint to a new bone at the same position, with the same parent, like the halves of a
+/// pelvis or a breast.
 pub fn with_halves(rig: &Rig, joint: JointIdx, name: &str) -> Rig {
     let Some((mesh, slot)) = skinned_by(rig, joint) else { return rig.clone() };
     let mut rig = rig.clone();

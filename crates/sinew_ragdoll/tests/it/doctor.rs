@@ -63,7 +63,7 @@ fn without(repair: &mut Repair, roles: &[&str]) {
     let def = &mut repair.def;
     for role in roles {
         let gone = body(def, role);
-        assert!(def.joints.iter().all(|joint| joint.parent != gone), "{role} carries another");
+        assert!(def.joints.iter().all(|joint| joint.parent != gone), "another body has the role {role}");
         def.bodies.remove(gone);
         def.joints.remove(gone - 1);
         let moved = |body: &mut usize| *body -= usize::from(*body > gone);
@@ -324,7 +324,7 @@ fn falls_well(def: &RagdollDef, what: &str) {
     let gap = sinew_math::max(report.drop.joint_gap_max_m, report.wall.joint_gap_max_m);
     assert!(gap < 5e-3 && report.drop.asleep_s.is_some(), "{what}: {:?}", report.reasons);
     let gain = sinew_math::max(report.drop.energy_gain_max, report.wall.energy_gain_max);
-    assert!(gain < 0.02, "{what}: energy gain {gain}");
+    assert!(gain < 0.02, "{what}: the energy rose by {gain}");
 }
 
 /// Findings of severity error are harmful: the simulation shows the harm.
@@ -339,15 +339,15 @@ fn findings_of_severity_error_show_in_simulation() {
         plant(&mut repair);
         let findings = doctor(&repair);
         assert_eq!(findings[0].severity, Severity::Error, "{what}");
-        if !findings[0].evidence.contains("left alone without gravity") {
+        if !findings[0].evidence.contains("a fall without gravity and contacts") {
             wrong.push(format!("{what}: {findings:#?}"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Returns three upright pieces; the last is folded back to 120° about the middle one, and its hinge can turn further
-/// by `range`.
+/// Returns three upright pieces; the last is folded back to 120° relative to the second one, and its hinge can turn
+/// further by `range`.
 fn folding(range: Range) -> RagdollDef {
     let piece = |role: &str, x: f32, z: f32| {
         let shape = Shape::Capsule { half_height: 0.12, radius: 0.05 };
@@ -493,7 +493,8 @@ fn the_page_lists_every_code() {
     }
 }
 
-/// Starting from the middle of its cone a joint reaches the cone's ends; from another rotation, the remaining range.
+/// From the centre of its cone, a joint can rotate to the ends of the cone; from another rotation, through the
+/// remaining range.
 #[test]
 fn joint_reach_follows_its_limits() {
     let limit = SwingTwistLimit {

@@ -126,7 +126,7 @@ fn powered_arm_sags_by_moment_over_stiffness() {
         driven.run(5.0);
         let sag = -driven.bend();
         let expected = 2.0 * G * 0.3 * sinew_math::trig::cos(sag) / (ARM_MOMENT * omega2(hertz));
-        assert!((sag - expected).abs() < 0.02 * expected, "{hertz} Hz: {sag} is not {expected}");
+        assert!((sag - expected).abs() < 0.02 * expected, "{hertz} Hz: sag {sag}, expected {expected}");
     }
 }
 
@@ -135,7 +135,10 @@ fn motor_torque_stays_below_its_cap() {
     let mut driven = Driven::new(arm(), Transform::IDENTITY, 60);
     let cap = sinew_ragdoll::torque_caps(&driven.def)[1];
     let scaled = 100.0 * 52.0 / 75.0;
-    assert!((cap - scaled).abs() < 0.01 * scaled, "{cap}: a shoulder of 52 kg");
+    assert!(
+        (cap - scaled).abs() < 0.01 * scaled,
+        "largest torque {cap} N·m at a shoulder that carries 52 kg"
+    );
     driven.drives.set(0, DriveMode::Keyed, 0.0);
     // The arm needs 5.9 N m to be held; a twentieth of its strength is less.
     let weak = Muscle { strength: 0.05, ..Muscle::STIFF };
@@ -149,7 +152,7 @@ fn motor_torque_stays_below_its_cap() {
     assert!(driven.bend() < -0.2, "a weak arm sinks");
     driven.drives.set(1, DriveMode::Powered(Muscle::STIFF), 0.0);
     driven.run(2.0);
-    assert!(driven.bend().abs() < 0.02, "with full strength it lifts: {}", driven.bend());
+    assert!(driven.bend().abs() < 0.02, "with full strength the arm must rise: {}", driven.bend());
 }
 
 #[test]
@@ -164,12 +167,18 @@ fn pins_carry_and_report_the_weight() {
             let id = driven.ragdoll.bodies[body];
             let center = driven.def.bodies[body].mass.center;
             let sunk = target.point(center) - driven.world.center_of_mass(id);
-            assert!((sunk - Vec3::Y * sag).length() < 0.02 * sag + 2e-5, "{hertz} Hz, body {body}: {sunk}");
+            assert!(
+                (sunk - Vec3::Y * sag).length() < 0.02 * sag + 2e-5,
+                "{hertz} Hz, body {body}: sunk by {sunk}"
+            );
         }
         let carried: Vec3 =
             (0..driven.targets.len()).map(|b| driven.drives.pin_force(&driven.world, b).force).sum();
         let weight = driven.weight();
-        assert!((carried - Vec3::Y * weight).length() < 0.01 * weight, "{carried} N of {weight}");
+        assert!(
+            (carried - Vec3::Y * weight).length() < 0.01 * weight,
+            "the pins carry {carried} N of a weight of {weight} N"
+        );
         assert!((driven.drives.pin_effort(&driven.world).0 - weight).abs() < 0.01 * weight);
     }
 }
@@ -186,7 +195,7 @@ fn pelvis_pin_carries_the_whole_weight() {
     let center = driven.def.bodies[0].mass.center;
     let sunk = driven.targets[0].point(center).y - driven.world.center_of_mass(driven.ragdoll.bodies[0]).y;
     let expected = G / omega2(8.0);
-    assert!((sunk - expected).abs() < 0.05 * expected, "{sunk} is not {expected}");
+    assert!((sunk - expected).abs() < 0.05 * expected, "sunk by {sunk}, expected {expected}");
 }
 
 #[test]
@@ -255,10 +264,10 @@ fn drive_blending_is_independent_of_the_rate() {
         (falling, driven.bend())
     };
     let [slow, middle, fast] = [30, 60, 120].map(end);
-    assert!(fast.0 < -0.05 && fast.1 > fast.0, "it falls and comes back: {fast:?}");
+    assert!(fast.0 < -0.05 && fast.1 > fast.0, "the character must fall and get up: {fast:?}");
     for other in [slow, middle] {
-        assert!((other.0 - fast.0).abs() < 0.05 * fast.0.abs(), "{other:?} and {fast:?}");
-        assert!((other.1 - fast.1).abs() < 0.05 * fast.0.abs(), "{other:?} and {fast:?}");
+        assert!((other.0 - fast.0).abs() < 0.05 * fast.0.abs(), "other events {other:?}, expected {fast:?}");
+        assert!((other.1 - fast.1).abs() < 0.05 * fast.0.abs(), "other events {other:?}, expected {fast:?}");
     }
 }
 
@@ -322,14 +331,17 @@ fn hit_arm_yields_and_returns_while_the_rest_stays() {
             far = max(far, (place(&driven, arm) - rest[arm]).length());
             leg_far = max(leg_far, (place(&driven, leg) - rest[leg]).length());
         }
-        assert!((place(&driven, hand) - rest[hand]).length() < 2e-3, "it returns within two seconds");
+        assert!(
+            (place(&driven, hand) - rest[hand]).length() < 2e-3,
+            "the character must return within two seconds"
+        );
         assert!((driven.drives.vigour(arm) - 1.0).abs() < 0.02);
         (far, leg_far)
     };
     let (firm, _) = farthest(0.0);
     let (weak, leg) = farthest(30.0);
-    assert!(weak > 1.5 * firm && weak > 0.05, "{weak} m, {firm} m without weakening");
-    assert!(leg < 0.2 * weak, "the leg is pushed by {leg} m");
+    assert!(weak > 1.5 * firm && weak > 0.05, "displaced by {weak} m with weakening, {firm} m without");
+    assert!(leg < 0.2 * weak, "the leg moved by {leg} m");
 }
 
 #[test]
@@ -471,7 +483,7 @@ fn a_target_beyond_a_stop_is_held_at_the_stop() {
     }
     let knee = driven.ragdoll.bodies[driven.index("leftLowerLeg")];
     let spin = driven.world.velocity(knee).angular;
-    assert!(spin.length() < 0.02, "it oscillates at {spin} rad/s");
+    assert!(spin.length() < 0.02, "the tail oscillates at {spin} rad/s");
 }
 
 #[test]
@@ -586,15 +598,15 @@ fn random_drive_changes_stay_stable() {
             let (gap, gain) = if jumps.is_some() { (0.05, f32::INFINITY) } else { (5e-3, 0.01) };
             let speed = 70.0;
             opened += usize::from(q.joint_gap_max_m > 0.01);
-            assert!(fastest < speed, "{seed}, {jumps:?}: {fastest} m/s");
+            assert!(fastest < speed, "seed {seed}, {jumps:?}: fastest {fastest} m/s");
             assert!(q.joint_gap_max_m < gap, "{seed}, {jumps:?}: {}", q.joint_gap_max_m);
             assert!(q.energy_gain_max < gain, "{seed}, {jumps:?}: {}", q.energy_gain_max);
         }
     }
-    assert!(opened <= 1, "{opened} joints opened");
+    assert!(opened <= 1, "{opened} joints are open");
 }
 
-/// Random lives found this case: pins to the old place of a teleported body threw the whole body at 38 m/s.
+/// Random lives found this case: pins to the old position of a teleported body threw the whole body at 38 m/s.
 #[test]
 fn teleported_powered_character_is_not_thrown() {
     let def = shared(walker());
@@ -609,7 +621,7 @@ fn teleported_powered_character_is_not_thrown() {
             run(&mut world, &mut character, 1);
             for &body in character.bodies() {
                 let speed = world.velocity(body).linear.length();
-                assert!(speed < 6.0, "{steps}, {step}: {speed} m/s");
+                assert!(speed < 6.0, "{steps} steps, step {step}: {speed} m/s");
             }
         }
     }

@@ -25,7 +25,7 @@ const ALL: [Lying; 4] = [Lying::Supine, Lying::Prone, Lying::LeftSide, Lying::Ri
 
 /// Classifies the posture by the directions of the pelvis's front and left.
 fn lying(character: &Character, world: &World) -> Lying {
-    let ragdoll = character.ragdoll().expect("it lies there by its bodies");
+    let ragdoll = character.ragdoll().expect("the pose must follow the lying bodies");
     let bind = character.def().ragdoll.bodies[0].character_from_body.rotation;
     let turn = world.transform(ragdoll.bodies[0]).rotation * bind.inverse();
     let (forward, left) = (turn * Vec3::Z, turn * Vec3::X);
@@ -91,7 +91,11 @@ fn fall(def: &Arc<CharacterDef>, random: &mut Random, pops: &mut Pops) -> Fall {
             fall.up = Some(step as f32 * world.def().dt());
         }
     }
-    assert!(head(&character) > 0.9 * standing, "its head is at {} of {standing} m", head(&character));
+    assert!(
+        head(&character) > 0.9 * standing,
+        "the head is at {} m, standing at {standing} m",
+        head(&character)
+    );
     fall
 }
 

@@ -1,4 +1,4 @@
-//! Faults that no single figure shows, each injected into the mannequin.
+//! Faults that no single metric shows, each injected into the mannequin.
 
 use sinew_anim::analyze;
 use sinew_math::{Rotation, Vec3};
@@ -80,7 +80,7 @@ fn implausible_masses_and_sizes_are_reported() {
     assert_eq!(Doubt::of(&bear), None);
 }
 
-/// A blocky figure of 625 kg at 1.75 m is not recognised as human.
+/// A blocky character of 625 kg at 1.75 m is not recognised as human.
 #[test]
 fn creature_too_heavy_for_its_length_is_reported() {
     let creature = |mass: f32| {
@@ -141,7 +141,7 @@ fn upright_body_is_pushed_over() {
     assert_eq!(pushed(0.0), None);
     let (topple, faults) = pushed(1e4).expect("a push fells it");
     assert!(topple.z > 0.5 && topple.length() < 5.0, "not a weak forward push: {topple}");
-    assert_eq!(faults, [], "it has no fault after the push");
+    assert_eq!(faults, [], "the push must leave no fault");
 }
 
 /// A clip that scales the hips, before a get-up clip that does not.

@@ -80,7 +80,7 @@ fn skirt_is_closed_and_cape_is_open() {
         assert_eq!(is_joined(group, rows - 1, count - 1), closed);
         assert!(is_joined(group, rows - 1, 2 * rows - 1) && is_joined(group, 0, 1));
         let longest = group.springs().iter().map(|spring| spring.rest_length).fold(0.0, max);
-        assert!(longest < 1.45 * 0.05, "the gap between lines is {longest} m");
+        assert!(longest < 1.45 * 0.05, "the gap between chains is {longest} m");
     }
 }
 
@@ -137,7 +137,7 @@ fn garment_bones_keep_the_bind_pose_without_gravity() {
     let def = character.def().clone();
     let pairs = character.pose().iter().zip(character.pose_without_springs());
     let most = pairs.map(|(worn, rest)| worn.rotation.angle_to(rest.rotation)).fold(0.0, max);
-    assert!(most < 0.01, "without gravity the bones turn {most} rad");
+    assert!(most < 0.01, "without gravity the bones rotate by {most} rad");
     // With gravity the hem sinks, and only free bones turn noticeably.
     assert!(def.garments().particles().all(|count| count > 100));
 }
@@ -152,15 +152,16 @@ fn garment_bones_follow_the_sheet() {
         local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
         let moved = character.pose().iter().zip(character.pose_without_springs());
         let turned = moved.map(|(worn, rest)| worn.rotation.angle_to(rest.rotation)).fold(0.0, max);
-        assert!(turned > 0.1, "after {second} s it swings by {turned} rad");
+        assert!(turned > 0.1, "after {second} s the garment swings by {turned} rad");
         for (garment, &id) in def.garments().source().iter().zip(character.garments()) {
             let positions = world.particles(id).positions();
             for joint in garment.joints() {
                 let place = model[joint].translation;
                 let away = positions.iter().map(|p| (*p - place).length()).fold(f32::INFINITY, min);
-                // Bones keep their length where the sheet is wavy, so the tolerance is an eighth of the cape's length.
+                // Bones keep their length although the sheet is wavy, so the tolerance is an eighth of the cape's
+                // length.
                 let bar = if garment.closed { 0.045 } else { 0.12 };
-                assert!(away < bar, "{} {away} m from the sheet", def.rig.joints[joint].name);
+                assert!(away < bar, "{} is {away} m from the sheet", def.rig.joints[joint].name);
             }
         }
     }
@@ -212,7 +213,7 @@ fn sheet_put_on_in_mid_stride_starts_outside_the_legs() {
         }
     }
     assert!(deepest < 0.005, "{deepest} m in a body");
-    assert!(stretch < 0.05, "stretched by {stretch}");
+    assert!(stretch < 0.05, "stretch {stretch}");
 }
 
 #[test]
@@ -229,7 +230,7 @@ fn teleport_moves_garments_and_reset_restores_them() {
     }
     go_on(&mut world, &mut character, 1);
     let stretch = largest_stretch(world.particles(id));
-    assert!(stretch < 0.2, "it lags behind: {stretch}");
+    assert!(stretch < 0.2, "the garment lags behind: stretch {stretch}");
     // A particle is displaced; the reset puts it back to the pose.
     world.particles_mut(id).set_position(20, to.point(Vec3::new(0.0, 3.0, 0.0)));
     character.reset_garments(&mut world);
@@ -321,7 +322,7 @@ fn bake_includes_garment_bones() {
     let joint = def.garments().joints().next().expect("it has bones");
     let swings = worn.frames.iter().filter(|frame| frame.time < 0.5);
     let most = swings.map(|frame| frame.pose[joint].rotation.angle_to(def.rest()[joint].rotation));
-    assert!(most.fold(0.0, max) > 0.02, "it does not swing while walking");
+    assert!(most.fold(0.0, max) > 0.02, "the garment must swing while walking");
     let bare = baked(Arc::new(bare));
     assert!(
         !bare.clip.channels.iter().any(|channel| def.garments().joints().any(|joint| joint == channel.joint))
@@ -368,6 +369,10 @@ fn garment_bones_do_not_shape_the_body() {
     let shapes = |def: &sinew_ragdoll::RagdollDef| -> Vec<_> {
         def.bodies.iter().map(|body| (body.shape.clone(), body.mass, body.character_from_body)).collect()
     };
-    assert_eq!(shapes(&dressed), shapes(&bare), "a skirt changes the shapes");
-    assert_ne!(shapes(&of(&rig, &Settings::default())), shapes(&bare), "without settings the skirt counts");
+    assert_eq!(shapes(&dressed), shapes(&bare), "a skirt must not change the shapes");
+    assert_ne!(
+        shapes(&of(&rig, &Settings::default())),
+        shapes(&bare),
+        "without settings the skirt changes the shapes"
+    );
 }

@@ -161,18 +161,21 @@ fn walker_drags_a_limp_character() {
                 victim.update(&mut world);
                 if world.contains_joint(joint) {
                     seen.look(&world, &[joint]);
-                    assert_eq!(victim.state(), State::Limp, "{limb}: a held character does not get up");
+                    assert_eq!(victim.state(), State::Limp, "{limb}: a held character must not get up");
                 }
             }
             assert!(seen.is_within(2.0, &grab), "{limb}, {phase}: {seen:?}");
             (all, beyond) = (all + 1, beyond + usize::from(!seen.is_within(1.0, &grab)));
             let gone = (hero.world_from_character().translation - from).length();
-            assert!(gone > 0.95 * 1.2 * 4.0 && hero.state() == State::Animated, "{limb}: it walked {gone} m");
+            assert!(
+                gone > 0.95 * 1.2 * 4.0 && hero.state() == State::Animated,
+                "{limb}: the character walked {gone} m"
+            );
             dragged += usize::from((world.center_of_mass(victim.bodies()[0]) - lay).length() > 3.0);
         }
-        assert!(tried >= 3 && dragged + 1 >= tried, "{limb}: it dragged {dragged} of {tried}");
+        assert!(tried >= 3 && dragged + 1 >= tried, "{limb}: dragged {dragged} m of {tried} m");
     }
-    assert!(12 * beyond <= all, "{beyond} of {all} exceed the bounds");
+    assert!(12 * beyond <= all, "{beyond} of {all} readings exceed the bounds");
 }
 
 #[test]
@@ -210,7 +213,7 @@ fn grip_releases_at_its_maximum_force() {
         }
     }
     seen.expect("fixed", &grab);
-    assert!(let_go.is_some(), "it releases a fixed body");
+    assert!(let_go.is_some(), "a hand must release a fixed body");
     assert_eq!(hero.state(), State::Animated);
     // A crate hangs on a grip: the grip holds it if its weight is slightly less than the grip's force, and drops it if
     // slightly more.
@@ -235,7 +238,7 @@ fn grip_releases_at_its_maximum_force() {
         }
         let y = world.transform(held).translation.y;
         assert!(most <= grab.max_force, "{most} N");
-        assert_eq!(held_on && y > 1.7, holds, "{share} of its force, at {y} m");
+        assert_eq!(held_on && y > 1.7, holds, "{share} of the grip's force, at a height of {y} m");
     }
 }
 
@@ -277,7 +280,7 @@ fn characters_holding_each_other_stay_together() {
         seen.expect(&format!("powered {powered:?}"), &grab);
         assert!(apart < 1.0, "{apart} m apart");
         let held: usize = pair.iter().map(|character| character.held().count()).sum();
-        assert!(held == 2, "{held} of them still hold");
+        assert!(held == 2, "{held} grips still hold");
     }
 }
 
@@ -314,8 +317,11 @@ fn character_carried_over_the_shoulder_stays_on() {
     }
     let at = world.center_of_mass(hips) - hero.world_from_character().translation;
     seen.expect("carried", &grab);
-    assert!(at.y > 1.2 && (at - Vec3::Y * at.y).length() < 0.4, "it hangs at {at} from the carrier's feet");
-    assert!(hero.world_from_character().translation.z > lies.z + 6.0, "the carrier stops walking");
+    assert!(
+        at.y > 1.2 && (at - Vec3::Y * at.y).length() < 0.4,
+        "the load hangs at {at} from the carrier's feet"
+    );
+    assert!(hero.world_from_character().translation.z > lies.z + 6.0, "the carrier must not stop walking");
     assert_eq!((hero.state(), victim.state()), (State::Animated, State::Limp));
     assert!(hero.release(&mut world, hips));
     for _ in 0..900 {

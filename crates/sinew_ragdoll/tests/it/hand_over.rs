@@ -101,9 +101,14 @@ fn ragdoll_inherits_the_momentum_of_the_walk() {
         let start = somewhere() * Transform::from_translation(Vec3::Z * -WALK_SPEED * PHASE);
         let carried = carried_momentum(&def, start, time, 0.003);
         let error = (momentum.linear - carried.linear).length() / carried.linear.length();
-        assert!(error < 0.01, "step {steps}: linear {} for {}", momentum.linear, carried.linear);
+        assert!(
+            error < 0.01,
+            "step {steps}: linear momentum {}, expected {}",
+            momentum.linear,
+            carried.linear
+        );
         let error = (about_center - carried.angular).length() / carried.swing;
-        assert!(error < 0.01, "step {steps}: angular {about_center} for {}", carried.angular);
+        assert!(error < 0.01, "step {steps}: angular momentum {about_center}, expected {}", carried.angular);
     }
 }
 
@@ -209,8 +214,8 @@ fn momentum_matches_random_blends_of_clips() {
         let angular = (about_center - carried.angular).length() / scale[1];
         worst = [max(worst[0], linear), max(worst[1], angular)];
     }
-    assert!(checked > 40, "{checked} of 60 were not at a key");
-    println!("worst of {checked} mixtures: linear {:.4}, angular {:.4}", worst[0], worst[1]);
+    assert!(checked > 40, "{checked} of 60 times were not at a key");
+    println!("largest errors of {checked} mixtures: linear {:.4}, angular {:.4}", worst[0], worst[1]);
     assert!(worst.iter().all(|&error| error < 0.01), "{worst:?}");
 }
 
@@ -312,9 +317,17 @@ fn ragdoll_inherits_the_momentum_of_any_blend() {
         for step in 0..3 {
             let (linear, angular) = momentum_of_ragdoll(&world, &ragdoll);
             let error = (linear - animated.linear).length() / max(animated.linear.length(), 10.0);
-            assert!(error < 0.01, "case {case}, step {step}: linear {linear} for {}", animated.linear);
+            assert!(
+                error < 0.01,
+                "case {case}, step {step}: linear momentum {linear}, expected {}",
+                animated.linear
+            );
             let error = (angular - animated.angular).length() / max(animated.swing, 1.0);
-            assert!(error < 0.01, "case {case}, step {step}: angular {angular} for {}", animated.angular);
+            assert!(
+                error < 0.01,
+                "case {case}, step {step}: angular momentum {angular}, expected {}",
+                animated.angular
+            );
             world.step();
         }
     }
@@ -371,5 +384,5 @@ fn check_friction(def: CharacterDef) {
     let [usual, without] = [def, smooth].map(|def| first_jolt(&shared(def)));
     println!("{usual} rad/s² in the first step, {without} without friction");
     // The remaining acceleration comes from limits that a clip exceeds.
-    assert!(usual <= 1.001 * without, "{usual} rad/s² in the first step, {without} without friction");
+    assert!(usual <= 1.001 * without, "in the first step {usual} rad/s², without friction {without} rad/s²");
 }

@@ -90,7 +90,11 @@ fn hook_drags_a_limp_character_until_released() {
             seen.expect(&format!("{limb} at {speed} m/s"));
             world.remove_joint(joint);
             let events = run(&mut world, &mut character, 900);
-            assert_eq!(character.state(), State::Animated, "{limb}: released, it gets up: {events:?}");
+            assert_eq!(
+                character.state(),
+                State::Animated,
+                "{limb}: a released character must get up: {events:?}"
+            );
         }
     }
 }
@@ -128,7 +132,7 @@ fn hook_moves_or_fells_a_standing_character() {
             assert!((way - speed * 4.75).abs() < 1.2, "{what}");
             world.remove_joint(joint);
             let events = run(&mut world, &mut character, 900);
-            assert_eq!(character.state(), State::Animated, "{what}, then {events:?}");
+            assert_eq!(character.state(), State::Animated, "{what}: further events {events:?}");
         }
     }
 }
@@ -213,10 +217,10 @@ fn carried_character_does_not_get_up_in_the_air() {
         assert_eq!(character.state(), State::Limp, "carried, step {step}");
         high = high.min(world.center_of_mass(character.bodies()[0]).y);
     }
-    assert!(high > 0.9, "the bars carry it: {high} m");
+    assert!(high > 0.9, "the bars must carry the character; height {high} m");
     bars.into_iter().for_each(|bar| world.remove_body(bar));
     let events = run(&mut world, &mut character, 900);
-    assert_eq!(character.state(), State::Animated, "put down, it gets up: {events:?}");
+    assert_eq!(character.state(), State::Animated, "a character put down must get up: {events:?}");
 }
 
 #[test]
@@ -251,7 +255,7 @@ fn character_grabbed_while_getting_up_goes_limp() {
     seen.expect("on a crane");
     assert_eq!(character.state(), State::Limp);
     character.set_preset(&mut world, Preset::Animated);
-    assert_eq!(character.state(), State::Limp, "a held character does not get up on request");
+    assert_eq!(character.state(), State::Limp, "a held character must not get up on request");
     world.remove_joint(joint);
     run(&mut world, &mut character, 900);
     assert_eq!(character.state(), State::Animated);
@@ -292,7 +296,10 @@ fn character_place_follows_its_body() {
         before = now;
     }
     println!("{jump} m in a step, {aside} m beside, {lowered} m in height, {rise} m where it begins to rise");
-    assert!(jump < 0.06 && aside < 0.15 && lowered < 0.1, "{jump}, {aside}, {lowered} m");
+    assert!(
+        jump < 0.06 && aside < 0.15 && lowered < 0.1,
+        "largest step {jump} m, aside {aside} m, lowered {lowered} m"
+    );
     assert!(character.state() == State::Animated && before.x > 28.0, "{:?} at {before}", character.state());
 }
 

@@ -48,7 +48,7 @@ fn wall_stops_a_walking_character() {
     run(&mut world, &mut character, 300);
     let radius = def.in_world.mover.as_ref().expect("it has one").radius;
     let z = place(&character).z;
-    assert!((z - (2.0 - radius)).abs() < 0.02, "it stands at {z} m before the wall at 2 m");
+    assert!((z - (2.0 - radius)).abs() < 0.02, "the character stands at {z} m; the wall is at 2 m");
     assert_eq!(character.state(), State::Animated);
     // Without a mover the character passes through.
     let mut ghost = Character::new(def, Transform::IDENTITY, 0.0);
@@ -94,7 +94,7 @@ fn shown_bodies(character: &Character) -> Vec<Transform> {
     poses
 }
 
-/// Returns a horizontal ray through the middle of a drawn bone.
+/// Returns a horizontal ray through the midpoint of a drawn bone.
 fn across(character: &Character, bone: &str) -> Ray {
     let def = character.def();
     let body = def.body_named(bone).expect("a bone");
@@ -127,7 +127,10 @@ fn rays_and_shape_casts_hit_the_drawn_bone() {
     }
     let mean = sum / count;
     // A foot that lands at 2.5 m/s stops within a step.
-    assert!(worst < 0.05 && mean < 0.004, "bodies are {mean} m from their bones, one {worst} m");
+    assert!(
+        worst < 0.05 && mean < 0.004,
+        "bodies are {mean} m from their bones on average, {worst} m at most"
+    );
     let ball = Probe::at(Shape::Sphere { radius: 0.05 }, place(&character) + Vec3::new(0.0, 1.2, 5.0));
     let hit = world.query().first(&ShapeCast { probe: ball, translation: Vec3::Z * -10.0 }).expect("a hit");
     assert!(character.body_index(hit.body).is_some());
@@ -161,7 +164,7 @@ fn ball_bounces_off_and_the_contact_is_reported() {
     }
     assert!(met, "the contact event names the bone");
     let speed = world.velocity(thrown).linear.z;
-    assert!(speed > 5.0, "it rebounds at {speed} m/s");
+    assert!(speed > 5.0, "the ball rebounds at {speed} m/s");
     assert!(events.iter().any(|event| matches!(event, CharacterEvent::Struck { .. })), "{events:?}");
     assert!(events.iter().any(|event| matches!(event, CharacterEvent::Flinched { .. })), "{events:?}");
     assert!(!events.iter().any(|event| matches!(event, CharacterEvent::WentLimp)), "17 N·s do not fell it");
@@ -203,10 +206,10 @@ fn crate_is_pushed_with_at_most_the_movers_force() {
         (world.transform(load).translation.z - 1.5, fastest)
     };
     let (way, fastest) = pushed(40.0);
-    assert!(way > 1.0 && fastest < 1.3 * WALK_SPEED, "{way} m, {fastest} m/s");
+    assert!(way > 1.0 && fastest < 1.3 * WALK_SPEED, "moved {way} m, fastest {fastest} m/s");
     // Sliding 500 kg takes 2.9 kN. Without a bound, hands and feet would push the crate by their own motion.
     let (way, fastest) = pushed(500.0);
-    assert!(way.abs() < 0.02 && fastest < 0.1, "{way} m, {fastest} m/s");
+    assert!(way.abs() < 0.02 && fastest < 0.1, "moved {way} m, fastest {fastest} m/s");
 }
 
 /// A sliding crate of 300 kg at walking speed pushes the character along; without a mover it would pass through.
@@ -224,8 +227,11 @@ fn moving_crate_pushes_the_character() {
         nearest = sinew_math::min(nearest, place(&character).z - world.transform(load).translation.z);
     }
     let (went, crate_went) = (place(&character).z, world.transform(load).translation.z + 1.0);
-    assert!(crate_went > 0.5, "the crate went {crate_went} m");
-    assert!(went > 0.3 && nearest > 0.4, "it was pushed {went} m, its middle {nearest} m from the crate's");
+    assert!(crate_went > 0.5, "the crate moved {crate_went} m");
+    assert!(
+        went > 0.3 && nearest > 0.4,
+        "the character moved {went} m; its centre was at least {nearest} m from the crate's"
+    );
     assert!(matches!(character.state(), State::Animated | State::Flinching), "{:?}", character.state());
 }
 
@@ -239,7 +245,7 @@ fn character_falls_off_a_cliff() {
     assert!(events.contains(&CharacterEvent::WentLimp), "{events:?}");
     let pelvis = world.transform(character.bodies()[0]).translation;
     assert!(pelvis.y < 1.0 && pelvis.is_finite(), "it lies at {pelvis}");
-    assert!(character.mover().is_none(), "a fallen character has no mover");
+    assert!(character.mover().is_none(), "a fallen character must have no mover");
 }
 
 #[test]
@@ -261,7 +267,10 @@ fn fast_landing_makes_the_character_limp() {
     let mut character = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::Y * 4.0));
     let events = run(&mut world, &mut character, 180);
     // A fall of 4 m takes 0.9 s, which is too short for the threshold on time in the air.
-    assert!(events.contains(&CharacterEvent::WentLimp), "8.9 m/s are more than 7");
+    assert!(
+        events.contains(&CharacterEvent::WentLimp),
+        "an impact at 8.9 m/s exceeds the toughness of 7 m/s"
+    );
 }
 
 /// Adds a moving platform.
@@ -281,7 +290,7 @@ fn stander() -> Arc<CharacterDef> {
     let mut def = walker();
     let motions = def.motions().clone();
     def.set_motions(sinew_ragdoll::MotionSet { idle: Some(1), ..motions })
-        .expect("they could be played before");
+        .expect("the motions were accepted before");
     shared(def)
 }
 
@@ -315,7 +324,10 @@ fn code_steers_the_character() {
     run(&mut world, &mut character, 120);
     let at = character.world_from_character();
     assert!((at.translation.x - 0.9 * 2.0).abs() < 0.1 && at.translation.z.abs() < 0.05, "{at:?}");
-    assert!((at.rotation * Vec3::Z - Vec3::X).length() < 0.01, "it faces its direction of motion");
+    assert!(
+        (at.rotation * Vec3::Z - Vec3::X).length() < 0.01,
+        "the character must face its direction of motion"
+    );
     character.jump(&mut world);
     let mut highest = 0.0;
     for _ in 0..60 {
@@ -323,7 +335,7 @@ fn code_steers_the_character() {
         highest = max(highest, place(&character).y);
     }
     let expected = 3.5 * 3.5 / (2.0 * 9.81);
-    assert!((highest - expected).abs() < 0.05, "it jumps {highest} m for {expected}");
+    assert!((highest - expected).abs() < 0.05, "jumps {highest} m, expected {expected} m");
     character.teleport(&mut world, Transform::from_translation(Vec3::new(-4.0, 0.0, 2.0)));
     character.set_move(Vec3::ZERO);
     run(&mut world, &mut character, 60);
@@ -360,7 +372,7 @@ fn character_gets_up_with_the_same_bodies() {
     assert_eq!(character.state(), State::Limp);
     let events = run(&mut world, &mut character, 60 * 12);
     assert!(events.contains(&CharacterEvent::Up), "{events:?}");
-    assert_eq!(character.bodies(), bodies, "its bodies have the same ids");
+    assert_eq!(character.bodies(), bodies, "the bodies must keep their ids");
     assert!(bodies.iter().all(|&body| world.kind(body) == BodyKind::Kinematic));
     let before = place(&character);
     run(&mut world, &mut character, 60);
@@ -417,10 +429,10 @@ fn character_gets_up_on_a_rising_lift_and_on_a_crate() {
     character.hit(&mut world, 2, Vec3::new(0.0, 0.0, -70.0));
     let events = run(&mut world, &mut character, 60 * 12);
     let settled = events.iter().any(|event| matches!(event, CharacterEvent::Settled { .. }));
-    assert!(settled, "it never settled on the platform: {events:?}");
+    assert!(settled, "the character never settled on the platform: {events:?}");
     assert!(events.contains(&CharacterEvent::Up), "{events:?}");
     let height = place(&character).y - (world.transform(platform).translation.y + 0.1);
-    assert!(height.abs() < 0.02, "it stands {height} m over the lift");
+    assert!(height.abs() < 0.02, "the character stands {height} m above the lift");
 
     let mut world = level();
     let shape = Shape::Box { half_extents: Vec3::new(1.5, 0.3, 1.5) };
@@ -467,7 +479,7 @@ fn character_waits_to_get_up_until_nobody_stands_on_it() {
         let was = fallen.state();
         fallen.update(&mut world);
         let begins = was == State::Limp && fallen.state() == State::GettingUp;
-        assert!(!(begins && stands), "it gets up at {step} while another character stands on it");
+        assert!(!(begins && stands), "the character gets up in step {step} while another stands on it");
         stood += u32::from(stands && was == State::Limp);
         other.update(&mut world);
         if fallen.mover().is_some() {
@@ -478,8 +490,8 @@ fn character_waits_to_get_up_until_nobody_stands_on_it() {
             up_after = Some(step);
         }
     }
-    assert!(stood > 10, "the other stood on it for {stood} steps");
-    assert!(up_after.is_some(), "it stays down after the other has left: {:?}", fallen.state());
+    assert!(stood > 10, "the other character stood on it for only {stood} steps");
+    assert!(up_after.is_some(), "the character stays down although the other has left: {:?}", fallen.state());
     assert!(least > -0.01, "they overlap by {} m", -least);
 }
 
@@ -541,7 +553,7 @@ fn upper_of_two_fallen_characters_gets_up_first() {
             }
             // Skipped when both begin: then neither carries the other.
             if let [load] = loads[..] {
-                assert!(load < share, "seed {seed}: it gets up with a load of {load} N·s at {step}");
+                assert!(load < share, "seed {seed}: gets up under a load of {load} N·s in step {step}");
             }
             for (character, up) in both.iter().zip(&mut up) {
                 if character.state() == State::Animated {
@@ -554,7 +566,7 @@ fn upper_of_two_fallen_characters_gets_up_first() {
         struck += u32::from(fastest > 10.0);
     }
     // Without waiting for each other, 8 of 12 are hit.
-    assert!(struck <= 3, "{struck} of 12 are hit at more than 10 m/s");
+    assert!(struck <= 3, "{struck} of 12 characters are hit at more than 10 m/s");
 }
 
 /// The character walks over crates lower than a step: its mover presses on them, and its feet do not kick them away.
@@ -578,8 +590,8 @@ fn low_crates_are_not_kicked_away() {
             fastest = max(fastest, world.velocity(load).linear.length());
             highest = max(highest, place(&character).y);
         }
-        assert!(fastest < 3.0, "case {case}: a crate of {half} m reached {fastest} m/s");
-        assert!(highest < 2.0 * half + 0.05, "case {case}: it was thrown to {highest} m");
+        assert!(fastest < 3.0, "case {case}: a crate of half size {half} m reached {fastest} m/s");
+        assert!(highest < 2.0 * half + 0.05, "case {case}: the crate was thrown to {highest} m");
     }
 }
 
@@ -600,7 +612,7 @@ fn object_under_a_foot_is_no_hit() {
         character.set_move(Vec3::Z * 1.3);
         for event in run(&mut world, &mut character, 200) {
             let struck = if let CharacterEvent::Struck { impulse, .. } = event { impulse } else { 0.0 };
-            assert!(struck < 10.0, "half a kilogram struck it with {struck} N·s");
+            assert!(struck < 10.0, "an object of half a kilogram hit with {struck} N·s");
         }
         assert!(place(&character).z > 2.5 && character.state() != State::Limp);
     }
@@ -613,7 +625,7 @@ fn walk_starts_and_stops_smoothly() {
     let mut def = walker();
     let motions = def.motions().clone();
     def.set_motions(sinew_ragdoll::MotionSet { idle: Some(1), ..motions })
-        .expect("they could be played before");
+        .expect("the motions were accepted before");
     let mut world = level();
     let mut character = Character::spawn(&mut world, &shared(def), Transform::IDENTITY);
     let mut fastest = 0.0;
@@ -644,6 +656,6 @@ fn body_created_inside_pushes_the_character_aside_smoothly() {
         last = place(&character);
     }
     let gone = (last - before).length();
-    assert!(gone > 0.2, "it moved {gone} m aside");
-    assert!(most < 0.08, "it moved {most} of {gone} m within a step");
+    assert!(gone > 0.2, "the character moved {gone} m aside");
+    assert!(most < 0.08, "the character moved {most} m of {gone} m within a step");
 }

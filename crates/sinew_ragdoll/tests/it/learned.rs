@@ -98,10 +98,18 @@ fn check(name: &str, rig: &Rig, takes: &[Take]) {
             // Compute the relative rotation of the bodies in the old frames.
             let child = new.frame_parent.rotation * turn * new.frame_child.rotation.inverse();
             let excess = beyond(old, joint_turn(old, Rotation::IDENTITY, child)) - shown;
-            assert!(excess.to_degrees() < 6.0, "{label}: {}° wider than the clips", excess.to_degrees());
+            assert!(
+                excess.to_degrees() < 6.0,
+                "{label}: the limits are {}° wider than the clips",
+                excess.to_degrees()
+            );
         }
     }
-    assert!(changed * 2 > table.joints.len(), "{name}: {changed} of {} joints", table.joints.len());
+    assert!(
+        changed * 2 > table.joints.len(),
+        "{name}: limits of {changed} of {} joints changed",
+        table.joints.len()
+    );
 }
 
 #[needs_data]
@@ -157,9 +165,9 @@ fn learned_hinge_margin_stays_within_the_anatomy() {
     for side in ["left", "right"] {
         // The straight bind pose counts as part of the motion.
         let [lo, hi] = range(&format!("{side}LowerArm"));
-        assert!(lo > -3.0 && lo < 1.0 && (hi - 80.0).abs() < 1.0, "{side} elbow {lo}..{hi}°");
+        assert!(lo > -3.0 && lo < 1.0 && (hi - 80.0).abs() < 1.0, "{side} elbow: range {lo}..{hi}°");
         let [lo, hi] = range(&format!("{side}LowerLeg"));
-        assert!((lo + 20.0).abs() < 1.0 && hi > 5.0 && hi < 20.0, "{side} knee {lo}..{hi}°");
+        assert!((lo + 20.0).abs() < 1.0 && hi > 5.0 && hi < 20.0, "{side} knee: range {lo}..{hi}°");
     }
     // Joints that do not move keep the table's limits.
     let table = built(&rig, &[], LimitSource::Anatomy).expect("bones");

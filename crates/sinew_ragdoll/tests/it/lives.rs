@@ -18,7 +18,7 @@ fn walker_with_footsteps() -> CharacterDef {
     let events =
         [("left", 0.0), ("right", half)].map(|(foot, time)| (0, sinew_anim::ClipEvent::new(time, foot)));
     let motions = MotionSet { idle: Some(1), events: events.to_vec(), ..motions };
-    def.set_motions(motions).expect("they could be played before");
+    def.set_motions(motions).expect("the motions were accepted before");
     def
 }
 
@@ -43,8 +43,11 @@ fn each_footstep_is_reported_once() {
         })
         .collect();
     let expected = 2.0 * 10.0 / def.motions().clips[0].duration;
-    assert!((steps.len() as f32 - expected).abs() <= 1.0, "{} steps, {expected} expected", steps.len());
-    assert!(steps.windows(2).all(|pair| pair[0] != pair[1]), "left and right in turn: {steps:?}");
+    assert!((steps.len() as f32 - expected).abs() <= 1.0, "{} steps, expected {expected}", steps.len());
+    assert!(
+        steps.windows(2).all(|pair| pair[0] != pair[1]),
+        "steps must alternate between left and right: {steps:?}"
+    );
     // A lying character takes no steps.
     character.hit(&mut world, 0, Vec3::X * 90.0);
     let events = run(&mut world, &mut character, 60);
@@ -93,7 +96,7 @@ fn contacts_are_reported_by_bone_on_request() {
     assert!(contact_count(true) >= 1 && contact_count(true) - contact_count(false) <= 1, "{events:?}");
 }
 
-/// Returns the largest distance, over some steps, of the held body from its place at the bone, metres.
+/// Returns the largest distance, over some steps, of the held body from its pose at the bone, metres.
 fn apart(
     world: &mut World,
     character: &mut Character,
@@ -124,7 +127,10 @@ fn held_sword_stays_in_the_hand_until_released() {
     character.hold(&mut world, "rightHand", sword, &grip);
     assert!(apart(&mut world, &mut character, hand, sword, at, 120) < 2e-3, "walking");
     let walked = character.world_from_character().translation;
-    assert!((walked.z - 2.0 * WALK_SPEED).abs() < 0.1, "the sword blocks its own walk: {walked}");
+    assert!(
+        (walked.z - 2.0 * WALK_SPEED).abs() < 0.1,
+        "the sword must not block its bearer; walked {walked}"
+    );
     character.hit(&mut world, hand, Vec3::X * 4.0);
     assert_eq!(character.state(), State::Flinching);
     assert!(apart(&mut world, &mut character, hand, sword, at, 60) < 2e-3, "flinching");
@@ -175,7 +181,7 @@ fn lost_or_dropped_sword_is_reported() {
     character.go_limp(&mut world);
     assert_eq!(lost(&run(&mut world, &mut character, 2)), 1);
     character.despawn(&mut world);
-    assert_eq!(world.body_ids().count(), 2, "the floor and the sword are left");
+    assert_eq!(world.body_ids().count(), 2, "only the floor and the sword must remain");
     assert_eq!(world.joint_ids().count(), 0);
 }
 
@@ -194,7 +200,7 @@ fn scaled_characters_walk_fall_and_get_up() {
         let mut character = Character::spawn(&mut world, &sized, Transform::IDENTITY);
         let head = sized.rig.joints.iter().position(|joint| joint.name == "head").expect("it has a head");
         let high = joints(&character)[head].y;
-        assert!((1.3..1.7).contains(&(high / factor)), "its head is at {high} m, {factor}");
+        assert!((1.3..1.7).contains(&(high / factor)), "the head is at {high} m, scale {factor}");
         run(&mut world, &mut character, 120);
         let way = character.world_from_character().translation.z;
         assert!((way - 2.0 * factor * WALK_SPEED).abs() < 0.1, "{way} m, {factor}");
@@ -222,7 +228,10 @@ fn level_of_detail_changes_without_a_pop() {
         run(&mut twins, &mut twin, 17);
         assert_eq!(character.pose(), twin.pose(), "{detail:?}");
         let (place, other) = (character.world_from_character(), twin.world_from_character());
-        assert!((place.translation - other.translation).length() < 1e-5, "{detail:?}: {place:?} {other:?}");
+        assert!(
+            (place.translation - other.translation).length() < 1e-5,
+            "{detail:?}: pose {place:?}, expected {other:?}"
+        );
     }
 }
 
@@ -238,7 +247,7 @@ fn lower_detail_waits_until_the_character_is_up() {
     assert_eq!((character.state(), character.bodies().is_empty()), (State::Limp, false));
     let events = run(&mut world, &mut character, 600);
     assert!(events.contains(&CharacterEvent::Up) && character.bodies().is_empty());
-    // A light hit has no effect; a hard one still fells the character.
+    // A light hit has no effect; a hard one still makes the character fall.
     character.hit(&mut world, 2, Vec3::X * 5.0);
     assert_eq!(character.state(), State::Animated);
     character.hit(&mut world, 2, Vec3::X * 90.0);
@@ -269,14 +278,18 @@ fn distant_character_freezes_and_resumes_its_pose() {
     assert_eq!((character.world_from_character(), character.pose()), (place, &pose[..]));
     assert_eq!(look(&mut world, &mut character, 125.0), Detail::Frozen);
     assert_eq!(look(&mut world, &mut character, 119.0), Detail::Keyed);
-    assert_eq!(look(&mut world, &mut character, 125.0), Detail::Keyed, "the level of detail oscillates");
+    assert_eq!(
+        look(&mut world, &mut character, 125.0),
+        Detail::Keyed,
+        "the level of detail must not oscillate"
+    );
     assert_eq!(look(&mut world, &mut character, 10.0), Detail::Full);
     assert_eq!(look(&mut world, &mut character, f32::NAN), Detail::Frozen);
     assert_eq!(look(&mut world, &mut character, 10.0), Detail::Full);
     let before = joints(&character);
     run(&mut world, &mut character, 1);
     let step = joints(&character).iter().zip(&before).map(|(a, b)| (*a - *b).length()).fold(0.0, max);
-    assert!(step < 0.12, "it does not resume its pose: a joint moves by {step} m");
+    assert!(step < 0.12, "the pose must resume smoothly: a joint moves by {step} m");
     run(&mut world, &mut character, 119);
     let way = character.world_from_character().translation.z - place.translation.z;
     assert!((way - 2.0 * WALK_SPEED).abs() < 0.1, "{way} m");

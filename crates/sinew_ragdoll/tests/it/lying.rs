@@ -107,7 +107,7 @@ impl Lain {
         let low = |body: usize| world.bounds(bodies[body]).min.y;
         let hips = world.transform(bodies[parts.hips]).translation.y;
         let mut note = String::new();
-        // Figures with short legs exceed the share even when they lie.
+        // Characters with short legs exceed the share even when they lie.
         if hips > LIES * stands && low(parts.hips) > 0.1 * stands {
             self.high += 1;
             let _ = write!(note, "hips at {hips:.2} of {stands:.2} m; ");

@@ -67,7 +67,7 @@ fn pose_survives_the_round_trip_through_bodies() {
             let (back, stretch) = round_trip(&def, &pose, &base);
             let gap = distance(&def, &pose, &back);
             assert!(gap < 1e-4, "pose {k}: {gap} m");
-            assert!(stretch < 1e-4, "pose {k}: {stretch} m stretched");
+            assert!(stretch < 1e-4, "pose {k}: stretched by {stretch} m");
         }
     }
 }
@@ -75,7 +75,7 @@ fn pose_survives_the_round_trip_through_bodies() {
 #[test]
 fn joints_without_a_body_keep_their_local_pose() {
     let mut def = walker();
-    // Hands without bodies keep their local pose on turning forearms.
+    // Hands without bodies keep their local pose on rotating forearms.
     let hand = def.rig.joints.iter().position(|joint| joint.name == "leftHand").expect("it has hands");
     def.ragdoll.bodies.retain(|body| !body.role.contains("Hand"));
     let kept = def.ragdoll.bodies.len();
@@ -178,5 +178,5 @@ fn an_object_beside_the_skeleton_goes_with_the_character() {
     let carrier = ragdoll.bodies.iter().find(|body| body.merged.contains(&hat) || body.joint == hat);
     assert!(carrier.is_some(), "no body carries the hat");
     let mapping = Mapping::new(&rig, &ragdoll, &analysis.bind_model);
-    assert!(mapping.heads().any(|joint| joint == hat), "the hat stays where the file has it");
+    assert!(mapping.heads().any(|joint| joint == hat), "the hat must keep the file's position");
 }

@@ -67,9 +67,9 @@ fn mesh_garment_starts_where_it_is_drawn_and_is_held_at_the_top() {
             0.5 * (b - a).cross(c - a).length()
         })
         .sum();
-    assert!((mass / (0.4 * area) - 1.0).abs() < 0.1, "{mass} kg on {area} m²");
+    assert!((mass / (0.4 * area) - 1.0).abs() < 0.1, "mass {mass} kg of an area of {area} m²");
     let whole = 0.4 * sheet.areas.iter().sum::<f32>();
-    assert!((mass / whole - 1.0).abs() < 1e-3, "mass of the mesh: {mass} of {whole} kg");
+    assert!((mass / whole - 1.0).abs() < 1e-3, "mass of the mesh: {mass} kg, expected {whole} kg");
     assert!(deepest(&world, &character) < 1e-3, "particles start inside a body");
 }
 
@@ -89,11 +89,11 @@ fn garment_bones_keep_the_bind_pose_without_gravity() {
     let off = places.iter().zip(&rest.positions).map(|(a, b)| (*a - *b).length()).fold(0.0, max);
     assert!(off < 0.01, "drawn {off} m off");
     let turn = normals.iter().zip(&rest.normals).map(|(a, b)| a.dot(*b)).fold(1.0, sinew_math::min);
-    assert!(turn > 0.95, "normals turn with it: {turn}");
+    assert!(turn > 0.95, "normals must rotate with the body: {turn}");
     let group = world.particles(character.garments()[0]);
     let moved = group.positions().iter().zip(&moving.rig.sheets[0].joints);
     let moved = moved.map(|(&at, &joint)| (at - bind_model[joint].translation).length()).fold(0.0, max);
-    assert!(moved > 0.003, "particles were moved: {moved}");
+    assert!(moved > 0.003, "particles moved by only {moved} m");
 }
 
 #[test]
@@ -115,10 +115,10 @@ fn mesh_garment_stays_on_through_a_walk_and_a_fall() {
         let moved = |at: usize| character.world_from_character().inverse_point(hem[at]) - bound[at];
         swung = max(swung, moved(CELLS[1] / 2).length());
     }
-    assert!(inside < 0.01, "{inside} m in a body as it walks");
+    assert!(inside < 0.01, "{inside} m inside a body while walking");
     // The first steps are long: feet on the ground wait until the clips reach the mover's speed.
-    assert!(stretch < 0.05, "threads stretched by {stretch}");
-    assert!(swung > 0.02, "the skirt swings by {swung} m");
+    assert!(stretch < 0.05, "the stretch of a thread is {stretch}");
+    assert!(swung > 0.02, "the skirt swings by only {swung} m");
     character.go_limp(&mut world);
     go_on(&mut world, &mut character, 120);
     let hips = world.center_of_mass(character.bodies()[0]);
@@ -126,11 +126,11 @@ fn mesh_garment_stays_on_through_a_walk_and_a_fall() {
     let far = places.iter().map(|&place| (place - hips).length()).fold(0.0, max);
     assert!(
         hips.y < 0.5 && far < 0.9,
-        "the wearer is not down in its skirt: hips at {} m, the hem {far} m from them",
+        "the wearer must lie in its skirt: hips at {} m, hem {far} m from them",
         hips.y
     );
     let low = places.iter().map(|place| place.y).fold(1.0, sinew_math::min);
-    assert!(low > -0.03, "the skirt sinks into the floor: {low}");
+    assert!(low > -0.03, "the skirt sinks into the floor to {low} m");
 }
 
 #[test]
@@ -175,7 +175,7 @@ fn coarse_mesh_is_used_as_its_own_sheet() {
     let usual = Garment::default();
     let soft = group.springs().iter().filter(|spring| spring.stiffness == 0.5 * usual.shearing).count();
     // One of the 160 cells is slightly too skewed.
-    assert!((316..=320).contains(&soft), "two diagonals for each cell: {soft}");
+    assert!((316..=320).contains(&soft), "expected two diagonals for each cell, found {soft}");
     let others = group.springs().iter().map(|s| s.stiffness).filter(|&k| k != 0.5 * usual.shearing);
     let (low, high) = others.fold((f32::MAX, 0.0), |(low, high), k| (sinew_math::min(low, k), max(high, k)));
     assert!(low > 0.25 * usual.stretching && high < 4.0 * usual.stretching, "{low} to {high} N/m");
@@ -198,13 +198,13 @@ fn flared(parent: Option<&str>) -> CharacterDef {
     let skirt = rig.meshes.iter_mut().find(|mesh| mesh.name == "Skirt").expect("it is there");
     let primitive = &mut skirt.primitives[0];
     for (vertex, place) in primitive.positions.iter().enumerate().filter(|(_, place)| place.y < 0.65) {
-        assert!(place.y > 0.4, "the vertex is at the skirt's height");
+        assert!(place.y > 0.4, "the vertex must stay at the skirt's height");
         primitive.joints[vertex] = [slot, 0, 0, 0];
         primitive.weights[vertex] = [1.0, 0.0, 0.0, 0.0];
     }
     let sheet = lay_skirt(&mut rig, 400, COARSE).expect("it can be cloth");
     let flare = rig.sheets[sheet].joints.iter().filter(|&&at| rig.joints[at].parent == Some(source)).count();
-    assert!(flare >= 20, "{flare} particles are weighted to it");
+    assert!(flare >= 20, "only {flare} vertices are weighted to the particles");
     let garment = Garment::of_sheet(&rig.sheets[sheet]);
     let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
     let mut def = CharacterDef::new(rig, skirted(|_| ()).ragdoll.clone(), &analysis.bind_model);
@@ -342,10 +342,10 @@ fn cloth_below_spring_bones_is_drawn_at_its_particles() {
     for ((hash, turn, places), (still_hash, _, still)) in walk(true).iter().zip(walk(false)) {
         assert_eq!(*hash, still_hash, "the cloth is the same");
         let off = places.iter().zip(&still).map(|(a, b)| (*a - *b).length()).fold(0.0, max);
-        assert!(off < 1e-4, "drawn {off} m off, with its bone turned by {turn}");
+        assert!(off < 1e-4, "drawn {off} m off; the bone rotated by {turn}");
         swung = max(swung, *turn);
     }
-    assert!(swung > 0.1, "the bone swings: {swung}");
+    assert!(swung > 0.1, "the bone must swing: {swung}");
 }
 
 /// A skirt has ten cells around, each wider than a leg: cells are split for the cloth, so that no leg passes between
@@ -377,9 +377,9 @@ fn legs_do_not_pass_through_a_coarse_mesh() {
     };
     let (few, coarse) = deepest_face(0.5);
     let (many, split) = deepest_face(Garment::default().spacing);
-    assert!(few == 50 && (200..=400).contains(&many), "{few} and {many} particles");
-    assert!(coarse > 0.025, "without the split it passes through: {coarse} m");
-    assert!(split < 0.015, "{split} m, {coarse} m without");
+    assert!(few == 50 && (200..=400).contains(&many), "{few} particles coarse, {many} split");
+    assert!(coarse > 0.025, "without the split the body must pass through: {coarse} m");
+    assert!(split < 0.015, "depth {split} m with the split, {coarse} m without");
 }
 
 /// Returns the largest depth of the centre of a face without attached corners in bodies with which it collides, metres.

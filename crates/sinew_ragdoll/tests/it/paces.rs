@@ -74,20 +74,20 @@ fn clips_play_at_the_movers_speed() {
         let (events, slide) = moved(&mut world, &mut hero, speed, 120);
         let steps = steps_of(&def, &events);
         println!("{speed} m/s: {steps:?}, lower foot {slide:.2} m/s");
-        assert!(steps.iter().all(|(name, _)| name == clip), "{speed} m/s: {steps:?}");
+        assert!(steps.iter().all(|(name, _)| name == clip), "{speed} m/s: steps of other clips: {steps:?}");
         let sides: Vec<&str> = steps.iter().map(|(_, side)| *side).collect();
         assert!(
             sides.len() >= 3 && sides.windows(2).all(|pair| pair[0] != pair[1]),
-            "{speed} m/s: {sides:?}"
+            "{speed} m/s: feet must alternate: {sides:?}"
         );
         let went = (hero.world_from_character().translation.z - from) / 2.0;
-        assert!((went - speed).abs() < 0.02 * speed, "moved at {went} m/s, not {speed}");
+        assert!((went - speed).abs() < 0.02 * speed, "moved at {went} m/s, expected {speed} m/s");
         assert_eq!(hero.state(), State::Animated);
     }
 }
 
-/// Between walk and run the clips are synchronised: sides alternate, and the lower foot slides little more than in the
-/// clips themselves.
+/// Between walk and run the clips are synchronised: left and right foot alternate, and the lower foot slides little
+/// more than in the clips themselves.
 #[test]
 fn feet_alternate_between_walk_and_run() {
     let def = runner();
@@ -100,11 +100,17 @@ fn feet_alternate_between_walk_and_run() {
         let (events, slide) = moved(&mut world, &mut hero, speed, 240);
         let sides: Vec<&str> = steps_of(&def, &events).iter().map(|(_, side)| *side).collect();
         println!("{speed:.2} m/s: {} steps, lower foot {slide:.2} m/s", sides.len());
-        assert!(sides.windows(2).all(|pair| pair[0] != pair[1]), "{speed} m/s: {sides:?}");
+        assert!(
+            sides.windows(2).all(|pair| pair[0] != pair[1]),
+            "{speed} m/s: feet must alternate: {sides:?}"
+        );
         slides.push(slide / speed);
     }
     let ends = max(slides[0], slides[4]);
-    assert!(slides.iter().all(|&slide| slide < ends + 0.1), "shares of the speed: {slides:?}");
+    assert!(
+        slides.iter().all(|&slide| slide < ends + 0.1),
+        "feet slide at these shares of the speed: {slides:?}"
+    );
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! Pops at hand-over to bodies and back: accelerations of joints beyond what the offset and the time of a transition
-//! require, by the measure used for transitions between clips.
+//! Pops at hand-over to bodies and back: accelerations of joints greater than the offset and the duration of a
+//! transition require, measured as for transitions between clips.
 
 use core::fmt;
 use sinew_anim::{Cursor, Decay, LocalTransform, Pose, local_to_model};
@@ -57,7 +57,7 @@ fn centers(character: &Character) -> Vec<Transform> {
 #[derive(Clone, Copy, Default)]
 struct Budget([f32; 2]);
 
-/// An open window.
+/// A time window in which pops are measured.
 struct Window {
     kind: usize,
     left: usize,

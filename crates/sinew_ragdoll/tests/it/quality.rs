@@ -1,4 +1,4 @@
-//! Figures of falls, and the standard tests of every ragdoll.
+//! Metrics of falls, and the standard tests of every ragdoll.
 
 use crate::actor::{floor, walker};
 use sinew_math::{Rotation, Transform, Vec3};
@@ -138,7 +138,7 @@ fn fitted_joints_match_any_pose() {
         for (index, &joint) in ragdoll.joints.iter().enumerate() {
             assert!(world.joint_gap(joint) < 1e-5, "joint {index}");
             let overshoot = world.joint_overshoot(joint).to_degrees();
-            assert!(overshoot < 0.1, "joint {index}: {overshoot}°");
+            assert!(overshoot < 0.1, "joint {index}: overshoot {overshoot}°");
         }
     }
 }

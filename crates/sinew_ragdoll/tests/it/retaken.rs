@@ -87,10 +87,18 @@ fn repeated_step_equals_a_step_with_short_substeps() {
             short.add_object(Box::new(Idle));
             short.step();
             for &body in &ragdoll.bodies {
-                assert_eq!(world.transform(body), short.transform(body), "fall {seed}, step {step}");
-                assert_eq!(world.velocity(body), short.velocity(body), "fall {seed}, step {step}");
+                assert_eq!(
+                    world.transform(body),
+                    short.transform(body),
+                    "other transform: fall {seed}, step {step}"
+                );
+                assert_eq!(
+                    world.velocity(body),
+                    short.velocity(body),
+                    "other velocity: fall {seed}, step {step}"
+                );
             }
         }
     }
-    assert!(retaken >= 3, "{retaken} steps were repeated");
+    assert!(retaken >= 3, "only {retaken} steps were repeated");
 }

@@ -8,7 +8,7 @@ use sinew_anim::Rig;
 use sinew_math::Rotation;
 use sinew_ragdoll::{BuildOptions, DropReport, RagdollBodyDef, RagdollDef, Verdict, drop_test, gate};
 
-/// Checks that both ragdolls have the same bodies on the same joints, at the same places, with the same masses.
+/// Checks that both ragdolls have the same bodies on the same joints, at the same positions, with the same masses.
 fn check_same(what: &str, plain: &RagdollDef, other: &RagdollDef, place: &[usize]) {
     assert_eq!(plain.bodies.len(), other.bodies.len(), "{what}");
     let of = |joint: usize| other.bodies.iter().find(|body| body.joint == place[joint]);
@@ -16,7 +16,7 @@ fn check_same(what: &str, plain: &RagdollDef, other: &RagdollDef, place: &[usize
         let Some(b) = of(a.joint) else { panic!("{what}: no body on the joint of {}", a.role) };
         assert_eq!(a.role, b.role, "{what}, {}", a.bone);
         let (m, n) = (a.mass.mass, b.mass.mass);
-        assert!((m - n).abs() < 0.01 * m, "{what}, {}: {m} and {n} kg", a.role);
+        assert!((m - n).abs() < 0.01 * m, "{what}, {}: masses {m} and {n} kg", a.role);
         // The up direction of a fish is unknown, so positions are relative to the first body.
         let place = |def: &RagdollDef, body: &RagdollBodyDef| {
             def.bodies[0].character_from_body.inverse_point(body.character_from_body.translation)
@@ -31,7 +31,7 @@ fn check_same(what: &str, plain: &RagdollDef, other: &RagdollDef, place: &[usize
         pairs.sort();
         pairs
     };
-    assert_eq!(named(plain), named(other), "{what}: pairs that do not collide");
+    assert_eq!(named(plain), named(other), "{what}: disabled pairs differ");
 }
 
 fn check_variant(rig: &Rig, what: &str, other: &Rig, place: &[usize]) -> [RagdollDef; 2] {
@@ -98,7 +98,7 @@ fn mirroring_parent_node_does_not_change_the_ragdoll() {
     }
 }
 
-/// Rigs that need their names: names show which of two joints in one place is the pelvis, or where a shoulder ends.
+/// Rigs that need their names: names show which of two joints at one position is the pelvis, or where a shoulder ends.
 const NAMED: [&str; 2] = ["quaternius_cyberpunk_Character.glb", "quaternius_Robot.glb"];
 
 #[needs_data]
@@ -113,7 +113,7 @@ fn names_do_not_matter_where_the_shape_is_clear() {
                 check_sound(&what, &other);
                 assert!(other.bodies.iter().any(|body| body.role == "head"), "{what}: no human");
                 let (m, n) = (plain.total_mass, other.total_mass);
-                assert!((m - n).abs() < 0.01 * m, "{what}: {m} and {n} kg");
+                assert!((m - n).abs() < 0.01 * m, "{what}: masses {m} and {n} kg");
             } else {
                 check_variant(&rig, &what, &other, &same);
             }
@@ -121,9 +121,10 @@ fn names_do_not_matter_where_the_shape_is_clear() {
     }
 }
 
-/// Checks that a ragdoll falls no worse than another. A fall is chaotic: for any rig, three in a thousand exceed a bar
-/// of comfort, and one of these may be among the eight drops. In that case a hundred random falls of each are compared.
-/// The numbers of failures may differ by two standard deviations, or by three plus one where failures are rare.
+/// Checks that a ragdoll falls no worse than another. A fall is chaotic: for any rig, three in a thousand miss a
+/// threshold for comfort, and one of these may be among the eight drops. In that case a hundred random falls of each
+/// are compared. The numbers of failures may differ by two standard deviations, or by three plus one where failures are
+/// rare.
 pub fn check_falls(what: &str, plain: &RagdollDef, other: &RagdollDef) {
     let worse = Falls::of(plain).worse(plain, other);
     assert!(worse.is_none(), "{what}: {}", worse.unwrap_or_default());

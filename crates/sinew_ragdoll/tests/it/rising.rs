@@ -24,7 +24,7 @@ const PUSHES: [Vec3; 6] = [
     Vec3::new(45.0, 0.0, 60.0),
 ];
 
-/// Bakes a fall and get-up; returns the bake, its figures, and the lowest point of the skin while getting up, metres.
+/// Bakes a fall and get-up; returns the bake, its metrics, and the lowest point of the skin while getting up, metres.
 fn lives(contact: GroundContact, push: Vec3) -> (Baked, RisingQuality, f32) {
     let mut def = walker();
     def.ground_contact = contact;
@@ -78,11 +78,11 @@ fn sword_stays_in_its_hand_in_a_mirrored_get_up() {
             for joint in ["sword", "blade"].map(held) {
                 let rest = def.rig.joints[joint].rest.rotation;
                 let off = (frame.pose[joint].rotation * rest.inverse()).to_scaled_axis().length();
-                assert!(off < 0.01, "{push}: {off} rad at {} s", frame.time);
+                assert!(off < 0.01, "push {push}: off by {off} rad at {} s", frame.time);
             }
         }
     }
-    assert!(frames > 100, "it gets up in {frames} frames");
+    assert!(frames > 100, "the get-up takes only {frames} frames");
 }
 
 /// Rotates a joint about an axis of the character, with its descendants.
@@ -93,7 +93,7 @@ fn turn(def: &CharacterDef, pose: &mut [LocalTransform], joint: usize, turn: Rot
     pose[joint].rotation = parent.to_rigid().rotation.inverse() * (turn * model[joint].to_rigid().rotation);
 }
 
-/// Legs that a sitting body draws in bear nothing: their feet may drag. Feet of a standing body may not.
+/// Legs that a sitting body draws in carry no weight, so their feet may drag. Feet of a standing body may not.
 #[test]
 fn only_feet_that_bear_the_body_slide() {
     let def = shared(walker());
@@ -130,8 +130,8 @@ fn only_feet_that_bear_the_body_slide() {
         turn(&def, &mut sits, joint(&format!("{side}LowerLeg")), back.inverse());
     }
     let (standing, sitting) = (slide(def.rest()), slide(&sits));
-    assert!(standing > 0.15, "a standing foot slides by {standing} m");
-    assert!(sitting < 0.001, "a sitting body's foot slides by {sitting} m");
+    assert!(standing > 0.15, "a standing foot slides by only {standing} m");
+    assert!(sitting < 0.001, "a sitting character's foot slides by {sitting} m");
 }
 
 #[test]
@@ -205,7 +205,7 @@ fn arms_rise_over_a_step_beside_the_body() {
     }
     println!("{readings} readings of arms deeper than 5 cm in the step");
     // Without the ground under the arms the number was 767.
-    assert!(readings <= 450, "{readings} readings of arms deeper than 5 cm in the step");
+    assert!(readings <= 450, "arms deeper than 5 cm in the step: {readings} readings");
 }
 
 /// In the past limbs and heads passed through a wall beside the body, because only the clip moved them.
@@ -243,5 +243,5 @@ fn parts_stay_out_of_a_wall_beside_the_body() {
     let by_clip = deepest(GroundContact::AsBlended, FootPlanting::AsClips);
     let now = deepest(GroundContact::Enforced, FootPlanting::OnGround);
     println!("{by_clip} m deep by the clips, {now} m now");
-    assert!(by_clip > 0.2 && now < 0.1, "{by_clip} m deep by the clips, {now} m now");
+    assert!(by_clip > 0.2 && now < 0.1, "depth {by_clip} m by the clips, {now} m now");
 }

@@ -145,7 +145,11 @@ fn repeating_eight_frames_gives_the_same_bits() {
             let from = frame + 1 - BACK;
             game.load(&frames[from as usize]);
             for again in from..=frame {
-                assert_eq!(game.step(again), hashes[again as usize], "frame {again}, again from {from}");
+                assert_eq!(
+                    game.step(again),
+                    hashes[again as usize],
+                    "frame {again} of the repetition from frame {from}"
+                );
             }
         }
         if frames.len() as u32 > BACK {
@@ -155,5 +159,5 @@ fn repeating_eight_frames_gives_the_same_bits() {
     let all =
         [State::Animated, State::Limp, State::Preparing, State::GettingUp, State::Flinching, State::Powered];
     assert_eq!(states.len(), all.len(), "not every state occurred: {states:?}");
-    assert!(held.len() >= 3 && stumbled > 20, "held in {held:?}, stumbled for {stumbled} frames");
+    assert!(held.len() >= 3 && stumbled > 20, "held in states {held:?}, stumbled for {stumbled} frames");
 }

@@ -189,10 +189,10 @@ fn unit_height_and_up_are_applied() {
     let scaled = with(&scaled).expect("grows");
     assert!((scaled.height - 2.0 * before.height).abs() < 1e-4);
     let lying = with(&Settings { up_axis: Some(Vec3::Z), ..Settings::default() }).expect("lies");
-    // The figure lies on its back, so its height is its former depth.
+    // The ragdoll lies on its back, so its height is its former depth.
     assert!(lying.height < 0.5 * before.height, "{}", lying.height);
     let lowest = lying.bodies.iter().map(|body| body.shape.aabb(&body.character_from_body).min.y);
-    assert!(lowest.fold(f32::INFINITY, sinew_math::min).abs() < 0.06, "it is not on the floor");
+    assert!(lowest.fold(f32::INFINITY, sinew_math::min).abs() < 0.06, "the character is not on the floor");
 }
 
 #[test]
@@ -207,7 +207,7 @@ fn roles_and_ignored_bones_are_applied() {
     let def = with(&Settings { ignore: vec![hand.clone()], ..Settings::default() }).expect("a body");
     assert!(def.bodies.iter().all(|body| body.bone != hand && body.role != "leftHand"));
     let forearm = |def: &RagdollDef| def.bodies[body(def, "leftLowerArm")].shape.volume();
-    assert!(forearm(&def) < 1.1 * forearm(&before), "the hand's skin affects the forearm's shape");
+    assert!(forearm(&def) < 1.1 * forearm(&before), "the hand's skin must not affect the forearm's shape");
     // Applying settings to an analysis that already contains them changes nothing.
     let rig = mannequin().rig;
     let settings = Settings { unit: Some(Unit::Height(1.2)), ..of_bone("chest", chest) };

@@ -1,4 +1,4 @@
-//! The verdict on the skin: each figure on a mannequin with only one defect, and on other rigs.
+//! The verdict on the skin: each metric on a mannequin with only one defect, and on other rigs.
 
 use crate::data::document;
 use needs_data::needs_data;
@@ -70,7 +70,7 @@ fn mannequin_skin_has_no_flaw() {
     // The skin is on the floor, not above it.
     assert!(skin.rest_height_m.is_some_and(|height| (-0.06..0.01).contains(&height)), "{skin:?}");
     assert!(skin.edge_stretch_max > 0.0 && skin.edge_stretch_max >= skin.edge_stretch_p999, "{skin:?}");
-    assert_eq!(skin, subject.over(&tested.falls), "the sample is not deterministic");
+    assert_eq!(skin, subject.over(&tested.falls), "the sample must be deterministic");
 }
 
 /// In the bind pose nothing is stretched, and the soles are on the floor.
@@ -95,7 +95,7 @@ fn torn_skin_is_reported() {
     subject.analysis.bind_model.push(Affine::IDENTITY);
     for skin in &mut subject.rig.skins {
         if let Some(slot) = skin.joints.iter().position(|&joint| joint == hand) {
-            // The joint is bound at the hand, so the vertices are in place until a joint moves.
+            // The joint is bound at the hand, so the vertices are at their correct positions until a joint moves.
             skin.inverse_bind[slot] = subject.analysis.bind_model[hand] * skin.inverse_bind[slot];
             skin.joints[slot] = stray;
         }
@@ -146,7 +146,7 @@ fn asymmetric_body_is_reported() {
     assert!(sound < 1e-3, "{sound}");
     subject.def.bodies[arm].mass.mass *= 3.0;
     let skin = subject.over(&[]);
-    // The figure is a third of the relative difference of the masses (2/3), as a length.
+    // The metric is a third of the relative difference of the masses (2/3), as a length.
     let radius = subject.def.bodies[arm].shape.bounding_radius();
     assert!((skin.symmetry_error_m - radius * 2.0 / 9.0).abs() < 1e-3, "{skin:?}");
     subject.def.bodies[arm].shape = Shape::Sphere { radius: 0.4 };
@@ -292,7 +292,7 @@ fn knight_rests_on_top_of_his_sword() {
     let (skin, def) = skin_of("kaykit_Knight.glb");
     assert_eq!(skin.flaws(&def), [], "{skin:?}");
     let held = def.joints.iter().filter(|joint| joint.kind == sinew_physics::JointKind::Fixed).count();
-    assert_eq!(held, 3, "bodies for both hands and the cape");
+    assert_eq!(held, 3, "expected bodies for both hands and the cape");
 }
 
 /// The sword is skinned to the hand, whose shape encloses it. In the past it sank 1 m into the floor.
@@ -337,7 +337,7 @@ fn cap_joins_the_head_and_pack_and_sword_get_bodies() {
     };
     let mut rig = mannequin().rig;
     carried(&mut rig, "cap", Role::Head, Vec3::Y * 0.12, Vec3::new(0.09, 0.05, 0.09));
-    assert_eq!(bones(&Subject::of(rig.clone())), bones(&plain), "a cap hardly reaches beyond the head");
+    assert_eq!(bones(&Subject::of(rig.clone())), bones(&plain), "the cap must hardly reach beyond the head");
     carried(&mut rig, "pack", Role::Chest, Vec3::new(0.0, 0.05, -0.35), Vec3::new(0.18, 0.25, 0.12));
     let hand = Role::Hand(sinew_anim::Side::Right);
     carried(&mut rig, "sword", hand, Vec3::Z * 0.45, Vec3::new(0.02, 0.03, 0.4));

@@ -98,11 +98,11 @@ fn rising_character_neither_sinks_nor_floats_on_a_slope() {
         }
         // Following an edge accelerates a foot no more than a transition between clips may: 6 x₀/t₁² for a step of 17
         // cm within 0.3 s.
-        assert!(hardest < on_floor + 12.0, "{name}: {hardest} m/s², on a floor {on_floor}");
+        assert!(hardest < on_floor + 12.0, "{name}: {hardest} m/s², on a floor {on_floor} m/s²");
     }
 }
 
-/// The resting place on stairs is random, and a clip recorded on a floor sometimes moves a hand or knee through an
+/// The resting position on stairs is random, and a clip recorded on a floor sometimes moves a hand or knee through an
 /// edge. In three builds this happened in 3, 4 and 6 of 32 falls, by at most 16, 20 and 19 cm.
 #[test]
 fn few_joints_pass_through_the_edge_of_a_step() {
@@ -114,7 +114,7 @@ fn few_joints_pass_through_the_edge_of_a_step() {
     let mut depths: Vec<f32> = (0..64).map(|k| gets_up(&def, &stairs(), push(k))[0]).collect();
     depths.sort_unstable_by(f32::total_cmp);
     println!("deepest of each, m: {depths:.3?}");
-    assert!(depths[51] < 0.1, "at most 12 of 64: {depths:?}");
+    assert!(depths[51] < 0.1, "at most 12 of 64 may be deep: {depths:?}");
     assert!(depths[63] < 0.25, "{depths:?}");
 }
 
@@ -158,7 +158,7 @@ fn stands_again(def: &Arc<CharacterDef>, world: &mut World, start: Transform, pu
 fn stander() -> Arc<CharacterDef> {
     let mut def = walker();
     let motions = MotionSet { looped: None, locomotion: Locomotion::InPlace, ..def.motions().clone() };
-    def.set_motions(motions).expect("they could be played before");
+    def.set_motions(motions).expect("the motions were accepted before");
     shared(def)
 }
 
@@ -182,7 +182,7 @@ fn feet_align_with_a_slope() {
             worst = soles.as_flattened().iter().fold(worst, |worst, over| max(worst, over.abs()));
         }
         println!("{degrees}°: heels and balls {worst} m off");
-        assert!(worst < 0.01, "{degrees}°: {worst} m off");
+        assert!(worst < 0.01, "slope of {degrees}°: off by {worst} m");
     }
 }
 
@@ -205,7 +205,7 @@ fn both_feet_touch_the_ground_across_an_edge() {
             bent += u32::from(max(knee("leftLowerLeg"), knee("rightLowerLeg")) > 0.5);
         }
     }
-    println!("{worst} m off, a leg bent {bent} times");
+    println!("largest error {worst} m; a leg bent {bent} times");
     assert!(worst < 0.005, "{worst} m off");
     assert!(bent > 0, "no character got up across an edge");
 }
@@ -235,7 +235,7 @@ fn planted_feet_survive_snapshots_and_hand_over() {
         for step in 0..40 {
             other.update(&mut world);
             original.update(&mut world);
-            assert_eq!(other.pose(), original.pose(), "step {step} after {rising} and {up}");
+            assert_eq!(other.pose(), original.pose(), "other pose: step {step} after {rising} and {up}");
         }
     }
     // While the character stands still, its bodies are still as well, and match the drawn pose.

@@ -23,7 +23,7 @@ mod reference;
 use avatar::{Calming, random_avatar, strands, vrm};
 use reference::Reference;
 
-/// Returns the character's pose at a time: its head walks, sways and turns. The head accelerates over a third of a
+/// Returns the character's transform at a time: its head walks, sways and turns. The head accelerates over a third of a
 /// second, because a sudden start has no defined motion between frames.
 fn place_at(time: f32) -> Transform {
     let time = time - 0.3 * (1.0 - trig::exp(-time / 0.3));
@@ -140,11 +140,11 @@ fn springs_match_the_reference_at_60_frames_per_second() {
             for (tip, due) in tips.iter().zip(reference.tips()) {
                 let apart = (tip.as_dvec3() - due).length();
                 worst = worst.max(apart);
-                assert!(apart < 1e-4, "case {case}, frame {frame}: {apart} m apart, {springs:?}");
+                assert!(apart < 1e-4, "case {case}, frame {frame}: off by {apart} m, {springs:?}");
             }
         }
     }
-    println!("at most {worst:.2e} m from the reference");
+    println!("largest distance from the reference: {worst:.2e} m");
 }
 
 #[test]
@@ -167,12 +167,12 @@ fn spring_motion_is_independent_of_the_frame_rate() {
                     // The shortest bone is 63 mm long.
                     let apart = (*tip - due).length() / 0.063;
                     *worst = worst.max(apart);
-                    assert!(apart < 0.05, "case {case} at {rate}: {apart} bone lengths apart");
+                    assert!(apart < 0.05, "case {case} at {rate} Hz: off by {apart} bone lengths");
                 }
             }
         }
     }
-    println!("30, 90, 144, 240 a second: at most {worst:.4?} bone lengths from 60");
+    println!("30, 90, 144, 240 Hz: at most {worst:.4?} bone lengths from 60 Hz");
 }
 
 #[test]
@@ -187,7 +187,10 @@ fn motion_between_ticks_is_smooth() {
         let jerks = (2..ways.len()).map(|frame| (motion(frame) - motion(frame - 1)).length());
         let jerk = jerks.fold(0.0, sinew_math::max);
         println!("tip {tip}: {:.1} mm a frame, {:.2} mm from one to the next", 1e3 * fastest, 1e3 * jerk);
-        assert!(fastest > 4e-3 && jerk < 0.2 * fastest, "tip {tip}: {jerk} of {fastest}");
+        assert!(
+            fastest > 4e-3 && jerk < 0.2 * fastest,
+            "tip {tip}: change of speed {jerk}, fastest {fastest}"
+        );
     }
 }
 
@@ -224,7 +227,7 @@ fn resting_hair_stays_still_for_a_minute() {
                 most = most.max(now.angle_to(*then));
             }
         }
-        assert!(most < 2e-3, "stiffness {stiffness}, drag {drag}: turned by {most} rad");
+        assert!(most < 2e-3, "stiffness {stiffness}, drag {drag}: rotated by {most} rad");
     }
 }
 
@@ -323,7 +326,7 @@ fn colliders_hold_between_ticks() {
         }
     }
     println!("{touched} touched; {:.2e} m deep at ticks, {:.2e} m between", depth[0], depth[1]);
-    assert!(touched > 1000 && depth[1] < depth[0] + 1e-3, "{touched} touched, {depth:?} m deep");
+    assert!(touched > 1000 && depth[1] < depth[0] + 1e-3, "{touched} contacts, depths {depth:?} m");
 }
 
 #[test]
@@ -362,14 +365,14 @@ fn wind_moves_hair_and_teleports_do_not() {
     character.teleport(&mut world, Transform::from_translation(Vec3::new(50.0, 0.0, -20.0)));
     steps(&mut world, &mut character, 1);
     for (now, then) in hair_of(&character).iter().zip(&calm) {
-        assert!(now.angle_to(*then) < 0.02, "the teleport swings the hair: {}", now.angle_to(*then));
+        assert!(now.angle_to(*then) < 0.02, "the teleport swings the hair by {} rad", now.angle_to(*then));
     }
     steps(&mut world, &mut character, 120);
     let field = FieldKind::Wind(Wind { velocity: Vec3::new(3.0, 0.0, 0.0), ..Wind::default() });
     world.add_field(&FieldDef::new(field));
     steps(&mut world, &mut character, 200);
     let blown = hair_of(&character)[0].angle_to(calm[0]);
-    assert!(blown > 0.3, "a wind of 3 m/s: {blown} rad");
+    assert!(blown > 0.3, "a wind of 3 m/s rotates the hair by only {blown} rad");
     // The wind pushes the tip by drag · wind = 1.5 m/s, against a stiffness of 0.8 m/s.
 }
 
@@ -411,7 +414,7 @@ fn hair_follows_a_fall_without_a_pop() {
         for (&tip, &length) in tips.iter().zip(&lengths) {
             assert!(tip.is_finite() && length > 0.0);
             // The tips are on the floor, not below it, except where the head pushes them.
-            assert!(tip.y > -0.02, "step {step}: a tip at {tip}");
+            assert!(tip.y > -0.02, "step {step}: a tip is at {tip}");
         }
         if let Some(before) = &before {
             for (now, then) in tips.iter().zip(before) {
@@ -561,7 +564,7 @@ fn fast_tip_is_stopped_by_a_thin_collider() {
     let stopped = needle(tip + aside - out, tip + aside + out);
     println!("free {free}, stopped at {stopped}");
     assert!(free > 0.02, "the free tip moves only {free} m");
-    assert!(stopped < 0.013, "the tip passed through: {stopped}");
+    assert!(stopped < 0.013, "the tip passed through the collider: {stopped} m");
     // A needle that the bone does not reach has no effect.
     assert_eq!(needle(tip + aside - Vec3::Y, tip + aside - Vec3::Y * 0.9), free);
 }
@@ -577,12 +580,12 @@ fn fast_tip_is_stopped_by_a_thin_wall() {
     assert_eq!(free, thrown(Vec::new(), None));
     world.add_body(&wall(0.012));
     let stopped = thrown(Vec::new(), Some(&world));
-    println!("free {free}, stopped at {stopped}");
-    assert!(free > 0.02 && stopped < 0.012, "the tip passed through: {stopped} of {free}");
+    println!("the free tip moves {free} m, the stopped one {stopped} m");
+    assert!(free > 0.02 && stopped < 0.012, "the tip passed through the collider: {stopped} m of {free} m");
 }
 
-/// Blows braids apart, with and without links, and returns the smallest and largest distance of their ends at 30 frames
-/// a second, relative to the bind pose.
+/// Moves braids apart by wind, with and without links, and returns the smallest and largest distance of their ends at
+/// 30 frames a second, relative to the bind pose.
 fn parted(links: bool, holds_apart: bool, push: f32, rate: f32) -> Vec<f32> {
     let mut def = maned(&HAIR);
     let mut springs = def.springs().source().clone();
@@ -625,9 +628,12 @@ fn spring_links_limit_the_distance_of_strands() {
     let (close, _) = range(&parted(false, false, -0.5, 60.0));
     let (still_close, _) = range(&parted(true, false, -0.5, 60.0));
     let (apart, _) = range(&parted(true, true, -0.5, 60.0));
-    println!("blown together: {close}, by links that only hold together {still_close}, by both {apart}");
+    println!("distance in wind: {close}, with one-sided links {still_close}, with two-sided links {apart}");
     let least = 1.0 - 0.2 * (1.0 - close);
-    assert!(close < 0.6 && still_close == close && apart > least, "{close} {still_close} {apart}");
+    assert!(
+        close < 0.6 && still_close == close && apart > least,
+        "distance in wind: {close}, one-sided links {still_close}, two-sided links {apart}"
+    );
 }
 
 #[test]
@@ -668,7 +674,10 @@ fn linked_motion_is_independent_of_the_frame_rate() {
     for rate in [30.0, 90.0, 240.0] {
         for (frame, (now, due)) in parted(true, true, 0.5, rate).iter().zip(&due).enumerate() {
             // The braids are 0.34 m apart, and a bone is 0.063 m long.
-            assert!((now - due).abs() * 0.34 < 0.05 * 0.063, "frame {frame} at {rate}: {now} {due}");
+            assert!(
+                (now - due).abs() * 0.34 < 0.05 * 0.063,
+                "frame {frame} at {rate} Hz: {now}, expected {due}"
+            );
         }
     }
 }

@@ -13,7 +13,7 @@ use std::sync::Arc;
 fn puppet() -> Arc<CharacterDef> {
     let mut def = walker();
     let motions = def.motions().clone();
-    def.set_motions(MotionSet { idle: Some(1), ..motions }).expect("they could be played before");
+    def.set_motions(MotionSet { idle: Some(1), ..motions }).expect("the motions were accepted before");
     shared(def)
 }
 
@@ -51,12 +51,12 @@ fn powered_character_steps_to_catch_a_push() {
             events.extend(run(&mut world, &mut character, 1));
         }
         assert_eq!(character.state(), State::Powered, "pushed along {way}: {events:?}");
-        assert!((1..=4).contains(&steps_of(&events)), "along {way}: {events:?}");
+        assert!((1..=4).contains(&steps_of(&events)), "pushed along {way}: {events:?}");
         assert!(!character.stumbles());
         let gone = character.world_from_character().translation - before;
-        assert!(gone.dot(way) > 0.15 && gone.length() < 1.5, "along {way} it stepped {gone}");
+        assert!(gone.dot(way) > 0.15 && gone.length() < 1.5, "pushed along {way}: stepped {gone}");
         let velocity = world.velocity(character.bodies()[0]).linear;
-        assert!(velocity.length() < 0.1, "it still moves: {velocity}");
+        assert!(velocity.length() < 0.1, "the character still moves: {velocity}");
     }
 }
 
@@ -83,7 +83,7 @@ fn planted_foot_stays_while_the_other_steps() {
         }
     }
     let (stands, steps) = if gone[0] < gone[1] { (gone[0], gone[1]) } else { (gone[1], gone[0]) };
-    assert!(stands < 0.05 && steps > 0.2, "one foot moves {stands} m, the other {steps} m");
+    assert!(stands < 0.05 && steps > 0.2, "one foot moved {stands} m, the other {steps} m");
 }
 
 #[test]
@@ -151,7 +151,7 @@ impl Tally {
 /// Impulses of the pushes, N·s.
 const SIZES: [f32; 5] = [20.0, 60.0, 100.0, 150.0, 200.0];
 
-/// Any body of a character is pushed in any level direction at any moment, standing or walking: 500 times if
+/// Any body of a character is pushed in any horizontal direction at any time, standing or walking: 500 times if
 /// `SINEW_FULL` is set, otherwise a tenth.
 #[test]
 fn random_pushes_are_mostly_survived() {
@@ -252,7 +252,7 @@ fn outside(character: &Character, point: Vec3) -> Option<f32> {
 }
 
 /// The external force (net force minus weight), averaged over a tenth of a second, is the force that the feet would
-/// have to exert. Two figures are bounded: the distance outside of the planted soles at which the force acts on the
+/// have to exert. Two values are bounded: the distance outside of the planted soles at which the force acts on the
 /// floor (metres), and the ratio of its horizontal and vertical parts.
 #[test]
 fn balance_forces_act_near_the_soles() {
@@ -294,6 +294,9 @@ fn balance_forces_act_near_the_soles() {
         println!(
             "{size} N·s: outside of the soles by {half:.3} m (half), {most:.3} (9 of 10); along the floor {grip:.2}, {grips:.2} of the force up"
         );
-        assert!(half < bar && grip < 0.4 && grips < 1.0, "{size}: {half} m, {grip}, {grips}");
+        assert!(
+            half < bar && grip < 0.4 && grips < 1.0,
+            "size {size}: half-way at {half} m, grip {grip}, grips {grips}"
+        );
     }
 }

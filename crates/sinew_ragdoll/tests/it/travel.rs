@@ -50,7 +50,7 @@ fn travelling_clip_continues_past_its_end() {
         let way = cycle.speed * 300.0 / 60.0;
         let expected = path.at(way).translation;
         let at = last[0] * Vec3::new(1.0, 0.0, 1.0);
-        assert!((at - expected).length() < 0.05, "{path:?}: it is at {at} for {expected}");
+        assert!((at - expected).length() < 0.05, "{path:?}: at {at}, expected {expected}");
         assert!(fastest < 6.0, "{path:?}: a joint moves at {fastest} m/s");
     }
     // Played in place, the character returns to the start of each cycle.
@@ -79,12 +79,12 @@ fn fall_around_the_seam_keeps_the_walking_speed() {
             let bodies = &character.ragdoll().expect("it is limp").bodies;
             let velocity = |id| world.velocity(id).linear;
             let fastest = bodies.iter().map(|&id| velocity(id).length()).fold(0.0, max);
-            assert!(fastest < 5.0, "{locomotion:?} at {phase} s: {fastest} m/s");
+            assert!(fastest < 5.0, "{locomotion:?} at {phase} s: a joint moves at {fastest} m/s");
             let momentum: Vec3 = bodies.iter().map(|&id| velocity(id) * world.mass(id).mass).sum();
             let speed = momentum.z / total;
             assert!(
                 (speed - cycle.speed).abs() < 0.1 * cycle.speed,
-                "{locomotion:?} at {phase} s: {speed} m/s"
+                "{locomotion:?} at {phase} s: speed {speed} m/s"
             );
         }
     }
@@ -108,7 +108,7 @@ fn clip_that_begins_elsewhere_starts_at_the_place_of_the_character() {
         }
         def.set_motions(motions).expect("it can be played");
         let mut world = World::new(WorldDef::default());
-        // Add a platform of 1 m under the character's place alone.
+        // Add a platform of 1 m under the character's position alone.
         world.add_body(&BodyDef {
             position: Vec3::Y * 0.5,
             ..BodyDef::fixed(Shape::Box { half_extents: Vec3::new(2.0, 0.5, 4.0) })
@@ -122,5 +122,5 @@ fn clip_that_begins_elsewhere_starts_at_the_place_of_the_character() {
     };
     let (near, far) = (at(Vec3::ZERO), at(Vec3::new(5.0, 0.0, -5.0)));
     let most = near.iter().zip(&far).map(|(a, b)| (*a - *b).length()).fold(0.0, max);
-    assert!(most < 0.02, "a joint is {most} m from its place");
+    assert!(most < 0.02, "a joint is {most} m from its target");
 }

@@ -15,7 +15,7 @@ use sinew_math::{Random, Rotation};
 use sinew_ragdoll::{BuildOptions, RagdollDef, build};
 use sinew_scenes::mannequin::mannequin;
 
-/// Humans, stylised figures, animals and eight-legged creatures, in addition to the rigs built in code.
+/// Humans, stylised characters, animals and eight-legged creatures, in addition to the rigs built in code.
 const RIGS: [&str; 10] = [
     "CesiumMan.glb",
     "RiggedFigure.glb",

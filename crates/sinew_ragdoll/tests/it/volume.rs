@@ -39,7 +39,7 @@ fn overlapping_volumes_count_once() {
     let one = triangles(Vec3::ZERO, half);
     let is = |triangles: &[[Vec3; 3]], wanted: f32| {
         let volume = enclosed(triangles).expect("it is closed");
-        assert!((volume / wanted - 1.0).abs() < 0.02, "{volume}, not {wanted}");
+        assert!((volume / wanted - 1.0).abs() < 0.02, "volume {volume}, expected {wanted}");
     };
     is(&one, 6.0);
     let mut random = Random::new(3);

@@ -72,7 +72,7 @@ pub fn note(
 /// Largest distance of a character from the origin in a wild life, metres; beyond it, squares of lengths overflow.
 const FARTHEST: f32 = 1e12;
 
-/// Returns a place to stand: on the floor or slightly above it; in a wild life anywhere.
+/// Returns a transform for a standing character: on the floor or slightly above it; in a wild life anywhere.
 fn place(n: &mut Numbers) -> Transform {
     let turn = n.between(-3.0, 3.0);
     let (x, z) = (n.signed(2.0).clamp(-FARTHEST, FARTHEST), n.signed(2.0).clamp(-FARTHEST, FARTHEST));

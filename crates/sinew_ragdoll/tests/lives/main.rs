@@ -66,7 +66,7 @@ fn methods_are_read_from_the_sources() {
 
 /// Prints which lives find each injected fault, and after how many steps.
 #[test]
-#[ignore = "a manual tool: prints, asserts nothing"]
+#[ignore = "manual tool: prints, asserts nothing"]
 fn finders() {
     for plant in Plant::ALL {
         println!("{plant:?}: {:?}", plant.found_in(0..20));

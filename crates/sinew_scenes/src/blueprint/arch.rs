@@ -34,7 +34,7 @@ pub fn arch(stones: usize, blocks: usize) -> Blueprint {
         let stone = Shape::Hull(Arc::new(Hull::new(&corners).expect("a stone is a solid")));
         scene.body(made_of(body(stone, middle), MASONRY));
     }
-    // The keystone's top is level.
+    // The keystone's top is horizontal.
     let [keystone, _] = joints(stones)[stones / 2].ends();
     for i in 0..blocks {
         let at = Vec3::Y * (keystone.y + BLOCK_HALF.y * (2 * i + 1) as f32);

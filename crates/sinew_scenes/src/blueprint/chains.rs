@@ -1,4 +1,4 @@
-//! Weights on chains of light links, which iterative solvers cannot hold together. Nothing collides, nothing is damped.
+//! Weights on chains of light links, which iterative solvers cannot hold together. Without collisions and damping.
 
 use super::{Blueprint, weighed_ghost};
 use crate::parts::{ball, cuboid, hook, level_rod};
@@ -47,7 +47,7 @@ pub fn chain_100_links() -> Blueprint {
         let mut last = scene.body(anchor);
         for i in 0..LINKS {
             let start = LENGTH * i as f32;
-            // Capsules a little longer than the distance between joints: 0.1 m and a cap of 0.05 m each way.
+            // Capsules a little longer than the distance between joints: 0.1 m, with a cap of 0.05 m at each end.
             let mut rod = level_rod(start - 0.025, 0.3, 0.05);
             rod.position += origin;
             let link = scene.body(weighed_ghost(1.0, rod));

@@ -1,11 +1,11 @@
-//! Many figures of 15 bodies each.
+//! Many humanoids of 15 bodies each.
 
 use super::{Blueprint, BlueprintJoint, box_pyramid_of, damped, in_box, rotation};
 use crate::parts::{body, cuboid, fixed, tilt};
 use sinew::math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3};
 use sinew::physics::{BodyDef, JointKind, Shape, Sleeping};
 
-/// 100 figures fall into a heap on strewn boxes.
+/// 100 humanoids fall into a heap on strewn boxes.
 pub fn ragdoll_pile() -> Blueprint {
     const LAYERS: usize = 5;
     let mut scene = Blueprint::new("ragdoll_pile", Sleeping::Off, 600);
@@ -28,7 +28,7 @@ pub fn ragdoll_pile() -> Blueprint {
     scene
 }
 
-/// `count` figures in a column are thrown down onto each other and form a small heap.
+/// `count` humanoids in a column are thrown down onto each other and form a small heap.
 pub fn ragdoll_column(count: usize) -> Blueprint {
     /// Initial downward speed, m/s.
     const DOWN: f32 = 8.0;
@@ -44,19 +44,20 @@ pub fn ragdoll_column(count: usize) -> Blueprint {
     scene
 }
 
-/// A pyramid of `layers` layers of unit cubes, and a figure that falls on the pyramid.
+/// A pyramid of `layers` layers of unit cubes, and a humanoid that falls on the pyramid.
 pub fn ragdoll_on_boxes(layers: usize) -> Blueprint {
     let mut scene = Blueprint { name: "ragdoll_on_boxes", steps: 60, ..box_pyramid_of(layers) };
     figure(&mut scene, Vec3::Y * (layers as f32 + 0.05), 0.0);
     scene
 }
 
-/// 300 figures rain on 10 × 10 boxes, three on each; each column of boxes is hit later than the one before.
+/// 300 humanoids fall on 10 × 10 boxes, three on each; each column of boxes is hit later than the one before.
 ///
-/// Modelled on Box3D's `rain`, whose figures are created during the run and fall on triangle meshes. Here all start in the air.
+/// Modelled on Box3D's `rain`, whose humanoids are created during the run and fall on triangle meshes. Here all start
+/// in the air.
 pub fn rain() -> Blueprint {
     const CELLS: usize = 10;
-    /// Width of the cell of three figures, metres.
+    /// Width of the cell of three humanoids, metres.
     const CELL: f32 = 15.0;
     let mut scene = Blueprint::new("rain", Sleeping::On, 600);
     let half = 0.5 * CELL * CELLS as f32;
@@ -79,7 +80,7 @@ pub fn rain() -> Blueprint {
     scene
 }
 
-/// 8 figures with joint friction fall from 15 m on two by two cells of 15 m, each with a tilted box at its centre.
+/// 8 humanoids with joint friction fall from 15 m on two by two cells of 15 m, each with a tilted box at its centre.
 ///
 /// Modelled on Box3D's falling ragdolls, which verify repeatability by the step at which all sleep. Those fall on meshes, and have springs
 /// in their joints.
@@ -111,13 +112,13 @@ fn across() -> Rotation {
     tilt(90.0)
 }
 
-/// Adds a standing figure with its arms stretched out sideways: 15 bodies and 14 joints. Its soles are at `base`; without `yaw` (radians
-/// about y) it faces +z, with its left toward +x.
+/// Adds a standing humanoid with its arms stretched out sideways: 15 bodies and 14 joints. Its soles are at `base`;
+/// without `yaw` (radians about y) it faces +z, with its left toward +x.
 fn figure(scene: &mut Blueprint, base: Vec3, yaw: f32) {
     figure_at(scene, Transform::new(base, Rotation::from_axis_angle(Vec3::Y, yaw)), 1.0);
 }
 
-/// Adds a figure as [`figure`] does, at any rotation and scaled by `scale`.
+/// Adds a humanoid as [`figure`] does, at any rotation and scaled by `scale`.
 pub(super) fn figure_at(scene: &mut Blueprint, stand: Transform, scale: f32) {
     let mut figure = Figure { scene, stand, scale };
     let pelvis = figure.cuboid([0.15, 0.09, 0.09], [0.0, 0.95, 0.0]);
@@ -131,10 +132,10 @@ pub(super) fn figure_at(scene: &mut Blueprint, stand: Transform, scale: f32) {
     }
 }
 
-/// Builder of a figure.
+/// Builder of a humanoid.
 struct Figure<'a> {
     scene: &'a mut Blueprint,
-    /// World from the figure's own frame.
+    /// World from the humanoid's own frame.
     stand: Transform,
     /// Factor of all lengths.
     scale: f32,

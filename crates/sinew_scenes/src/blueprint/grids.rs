@@ -30,7 +30,7 @@ pub fn joint_grid_of(side: usize) -> Blueprint {
 }
 
 /// A net of 8 × 8 knots of 0.1 kg with rods of 0.5 m and 0.1 kg between neighbours, released to sag from its two upper corners, with 20 kg
-/// below the middle of its lower edge: 112 rods, 225 ball joints, 49 loops.
+/// below the midpoint of its lower edge: 112 rods, 225 ball joints, 49 loops.
 pub fn net() -> Blueprint {
     const SIDE: usize = 8;
     const SPACING: f32 = 0.5;

@@ -11,15 +11,15 @@ use sinew::ragdoll::{BuildOptions, RagdollDef, RagdollJointDef, build};
 /// Friction coefficient of all bodies in these scenes: the one of flesh.
 const FRICTION: f32 = 0.7;
 
-/// Initial gap between a figure and the ground, metres.
+/// Initial gap between a humanoid and the ground, metres.
 const ABOVE: f32 = 0.05;
 
-/// Half width of the pit of a heap of 100, metres: 16 figures fit in the pit side by side.
+/// Half width of the pit of a heap of 100, metres: 16 humanoids fit in the pit side by side.
 const PIT: f32 = 3.6;
-/// Spacing of figures in a heap, metres, limited by the reach of their arms.
+/// Spacing of humanoids in a heap, metres, limited by the reach of their arms.
 const APART: f32 = 1.8;
 
-/// The mannequin's ragdoll with plain capsules. In its bind pose all joints are at the zero of their limits, as blueprints require. A hinge
+/// The mannequin's ragdoll with plain capsules. In its bind pose all joints are at zero, as blueprints require. A hinge
 /// whose range excludes zero starts at the nearer end of its range.
 pub fn humanoid() -> RagdollDef {
     let rig = mannequin().rig;
@@ -50,7 +50,7 @@ fn start_angle(kind: JointKind) -> f32 {
     }
 }
 
-/// Limits of a figure in a blueprint.
+/// Limits of a humanoid in a blueprint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Limits {
     /// The ragdoll's own limits and joint friction.
@@ -59,7 +59,7 @@ enum Limits {
     Common,
 }
 
-/// A figure that lies on its back; sleeping is off.
+/// A humanoid that lies on its back; sleeping is off.
 pub fn humanoid_lying() -> Blueprint {
     let mut scene = Blueprint::new("humanoid_lying", Sleeping::Off, 600);
     scene.body(made_of_flesh(floor()));
@@ -68,12 +68,12 @@ pub fn humanoid_lying() -> Blueprint {
     scene
 }
 
-/// `count` figures fall into a pit and form one heap that does not sleep.
+/// `count` humanoids fall into a pit and form one heap that does not sleep.
 pub fn humanoid_pile(count: usize) -> Blueprint {
     heap("humanoid_pile", count, Limits::Own)
 }
 
-/// 100 figures fall into a pit and form one heap, with limits that every engine supports.
+/// 100 humanoids fall into a pit and form one heap, with limits that every engine supports.
 pub fn crowd_pile() -> Blueprint {
     heap("crowd_pile", 100, Limits::Common)
 }
@@ -111,7 +111,7 @@ fn made_of_flesh(mut def: BodyDef) -> BodyDef {
     def
 }
 
-/// Adds a figure with the rotation of `stand`, its lowest point at the height of `stand`.
+/// Adds a humanoid with the rotation of `stand`, its lowest point at the height of `stand`.
 fn figure(scene: &mut Blueprint, def: &RagdollDef, stand: Transform, limits: Limits) {
     let turned =
         |index: usize| Transform::new(Vec3::ZERO, stand.rotation) * def.bodies[index].character_from_body;
@@ -180,7 +180,7 @@ fn rounded(limit: &SwingTwistLimit, twist: Range) -> SwingTwistLimit {
     SwingTwistLimit { swing_y: cone, swing_z: cone, twist }
 }
 
-/// Indices in a blueprint of the first body of each figure.
+/// Indices in a blueprint of the first body of each humanoid.
 pub fn roots(scene: &Blueprint) -> Vec<usize> {
     scene.dynamic().filter(|&place| scene.joints.iter().all(|joint| joint.b != place)).collect()
 }

@@ -7,7 +7,8 @@ use core::f32::consts::FRAC_PI_2;
 use sinew::math::{Rotation, Transform, Vec3, trig};
 use sinew::physics::{BodyDef, JointKind, Shape};
 
-/// Adds two boxes end to end on a level place, with the total length `2 half`, the total mass `mass`, and a ball joint between them.
+/// Adds two boxes end to end on a horizontal surface at `place`, with the total length `2 half`, the total mass `mass`,
+/// and a ball joint between them.
 pub(crate) fn pair(scene: &mut Blueprint, place: Transform, half: f32, mass: f32) {
     let side = half * Vec3::new(0.45, 0.15, 0.3);
     let [a, b] = [-1.0, 1.0].map(|way| {
@@ -25,7 +26,7 @@ pub(crate) fn rope(scene: &mut Blueprint, points: &[Vec3], radius: f32, mass: f3
     let links = points.len() - 1;
     for (i, ends) in points.windows(2).enumerate() {
         let along = ends[1] - ends[0];
-        // The meeting ends of links do not collide, so they reach up to the joint.
+        // The adjacent ends of links do not collide, so links reach up to the joint.
         let half_height = 0.5 * along.length() - radius;
         let link = body(Shape::Capsule { half_height, radius }, 0.5 * (ends[0] + ends[1]));
         let rotation = Rotation::from_arc(Vec3::Y, along.normalize());
@@ -76,9 +77,9 @@ pub(crate) fn leaning(scene: &mut Blueprint, touch: Vec3, degrees: f32, mass: f3
     });
 }
 
-/// Adds a limp figure, `scale` times as large as a man, on its back along x, with its centre of mass over the centre of a level place.
+/// Adds a limp humanoid, `scale` times as large as a man, on its back along x, with its centre of mass over `place`.
 pub(crate) fn figure(scene: &mut Blueprint, place: Transform, scale: f32) {
-    /// Height of the figure's centre of mass above its soles, and half the depth of its chest, metres.
+    /// Height of the humanoid's centre of mass above its soles, and half the depth of its chest, metres.
     const CENTER: f32 = 1.04;
     const BACK: f32 = 0.1;
     let on_its_back = Rotation::from_axis_angle(Vec3::X, -FRAC_PI_2);

@@ -114,7 +114,7 @@ impl Blueprint {
     }
 
     /// Perturbs the start: each moving body is displaced by up to `most` metres, depending on `seed`. Joints move with their second bodies.
-    /// Heaps are chaotic: a result for one start may not hold for another.
+    /// Heaps are chaotic: results differ between starts.
     pub fn perturbed(mut self, seed: u64, most: f32) -> Self {
         let mut random = Random::new(seed);
         let aside: Vec<Vec3> = self.bodies.iter().map(|_| in_box(&mut random, -most, most)).collect();

@@ -103,7 +103,7 @@ fn house_of_cards(pairs: usize) -> Vec<Transform> {
     cards
 }
 
-/// Height of the centre of a leaning card, metres: half that of its uppermost corner.
+/// Height of the centre of a leaning card, metres: half the height of its uppermost corner.
 fn middle() -> f32 {
     let (sin, cos) = trig::sin_cos(LEAN);
     0.5 * (THICKNESS * sin + LENGTH * cos)
@@ -119,7 +119,7 @@ fn leaning(foot: Transform) -> [Transform; 2] {
     })
 }
 
-/// Returns the transform of the middle of a card on two points: x from the left to the right point, y up.
+/// Returns the transform of the centre of a card on two points: x from the left to the right point, y up.
 fn lying(left: Vec3, right: Vec3) -> Transform {
     let turn = Rotation::from_arc(Vec3::X, (right - left).normalize());
     Transform::new(0.5 * (left + right) + turn * (Vec3::Y * (0.5 * THICKNESS)), turn)

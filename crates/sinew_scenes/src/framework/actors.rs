@@ -86,7 +86,7 @@ impl Actor {
         actor
     }
 
-    /// Adds balls to a world that follow head, hands and feet and collide with nothing.
+    /// Adds balls that mark head, hands and feet, follow them, and collide with nothing.
     pub fn mark(&mut self, world: &mut World) {
         for name in MARKED {
             let joint = self.cast.joint(name);
@@ -127,8 +127,8 @@ impl Actor {
     }
 }
 
-/// Number of world steps that the animation has followed. After a world was restored in the middle, the animation catches up from its
-/// start.
+/// Number of world steps that the animation has followed. After a world was restored during a run, the animation
+/// catches up from its start.
 #[derive(Default)]
 pub(crate) struct Gone(u64);
 

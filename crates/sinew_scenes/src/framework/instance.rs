@@ -41,7 +41,7 @@ pub trait Script: Send {
         0.0
     }
 
-    /// Returns the figures so far.
+    /// Returns the metrics so far.
     fn metrics(&self, world: &World) -> Vec<Metric>;
 
     /// View of the scene in a picture.
@@ -52,7 +52,7 @@ pub trait Script: Send {
     /// Draws additional content of a picture, such as query results.
     fn draw(&self, _world: &World, _out: &mut dyn DebugDraw) {}
 
-    /// Curves that a picture compares, each in a colour of its own.
+    /// Curves that a picture compares, each in its own colour.
     fn curves(&self) -> Vec<Curve> {
         Vec::new()
     }
@@ -130,7 +130,7 @@ impl Instance {
         self.script.draw(&self.world, out);
     }
 
-    /// Curves that a picture compares, each in a colour of its own.
+    /// Curves that a picture compares, each in its own colour.
     pub fn curves(&self) -> Vec<Curve> {
         self.script.curves()
     }
@@ -162,7 +162,7 @@ impl Instance {
         self.script.steer(way);
     }
 
-    /// Place of the character that a user may control, metres, world space; `None` in scenes that have none.
+    /// Position of the character that a user may control, metres, world space; `None` in scenes without one.
     pub fn steered(&self) -> Option<Vec3> {
         self.script.steered()
     }
@@ -223,10 +223,10 @@ impl Instance {
         world.update_with(time, |world| step(world, script.as_mut(), health, &World::step, &mut |_| {}))
     }
 
-    /// Number of figures that follow the scene's own figures, the same for every scene.
+    /// Number of metrics that follow the scene's own metrics, the same for every scene.
     pub const METRICS_OF_EVERY_SCENE: usize = 2;
 
-    /// Returns the figures so far: those of the scene, then `energy_gain_max` and `nan`, which every scene has.
+    /// Returns the metrics so far: those of the scene, then `energy_gain_max` and `nan`, which every scene has.
     pub fn metrics(&self) -> Vec<Metric> {
         let mut metrics = self.script.metrics(&self.world);
         metrics.extend(self.health.metrics());

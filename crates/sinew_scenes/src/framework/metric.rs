@@ -1,18 +1,18 @@
-//! Figures of a run, and their bars.
+//! Metrics of a run, and their expectations.
 
-/// Expectation of a figure at the end of a scene's steps.
+/// Expectation of a metric at the end of a scene's steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Expected {
     /// The value of a closed form within a tolerance.
     Near {
         /// Value of the closed form.
         value: f64,
-        /// Absolute tolerance, in the figure's unit.
+        /// Absolute tolerance, in the metric's unit.
         tolerance: f64,
     },
     /// At most this value.
     AtMost(f64),
-    /// Any value; the figure is only printed.
+    /// Any value; the metric is only printed.
     Anything,
 }
 
@@ -24,7 +24,7 @@ impl Expected {
     }
 }
 
-/// A figure of a run, computed from queries to the world alone. Its name ends in its unit: `_m`, `_s`, `_j`, `_deg` and
+/// A metric of a run, computed from queries to the world alone. Its name ends in its unit: `_m`, `_s`, `_j`, `_deg` and
 /// so on; shares and counts have none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
@@ -41,12 +41,12 @@ impl Metric {
         Self { name, value: Some(value.into()), expected }
     }
 
-    /// Creates the figure of an event that may not have happened yet.
+    /// Creates the metric of an event that may not have happened yet.
     pub(crate) fn awaited(name: &'static str, value: Option<f32>, expected: Expected) -> Self {
         Self { name, value: value.map(f64::from), expected }
     }
 
-    /// Returns true if the figure meets its expectation. An event with an expectation must have happened.
+    /// Returns true if the metric meets its expectation. An event with an expectation must have happened.
     pub fn is_met(&self) -> bool {
         match (self.expected, self.value) {
             (Expected::Anything, _) => true,

@@ -6,7 +6,7 @@ use sinew::math::{Rotation, Transform, Vec3, min};
 use sinew::physics::{Velocity, World};
 use sinew::ragdoll::{BodySettings, BodyState, BuildOptions, Ragdoll, RagdollDef, build};
 
-/// Spawns a character in a pose, rotated and moving as one rigid piece, with its lowest point at the height of `place`.
+/// Spawns a character in a pose, rotated and moving as one rigid piece, with its lowest point at `place`.
 pub(crate) fn spawn_at(
     world: &mut World,
     def: &RagdollDef,
@@ -21,7 +21,7 @@ pub(crate) fn spawn_at(
     Ragdoll::spawn(world, def, &states, &BodySettings::default())
 }
 
-/// Returns the transforms of the bodies of a rotated pose, with its lowest point at the height of `place`.
+/// Returns the transforms of the bodies of a rotated pose, with its lowest point at `place`.
 pub(crate) fn placed(
     def: &RagdollDef,
     pose: &[Transform],

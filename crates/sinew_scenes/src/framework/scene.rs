@@ -18,7 +18,7 @@ pub enum Chapter {
     Particles,
     /// Stacks and heaps.
     Piles,
-    /// Limp and driven figures.
+    /// Limp and driven ragdolls.
     Ragdolls,
     /// Clips, movers, simulated characters.
     Characters,

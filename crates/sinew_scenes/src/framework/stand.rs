@@ -38,7 +38,7 @@ pub(crate) struct Stand {
 }
 
 impl Stand {
-    /// Creates the measurement of bodies at their present places.
+    /// Creates the measurement of bodies at their present positions.
     pub fn new(world: &World, bodies: &[BodyId], flight: Flight, bars: Bars) -> Self {
         let placed: Vec<_> = bodies.iter().map(|&id| (id, center(world, id))).collect();
         let centers = placed.iter().map(|(_, at)| Aabb::around(at.translation, Vec3::ZERO));

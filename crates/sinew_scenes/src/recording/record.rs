@@ -116,7 +116,7 @@ pub struct Replay {
     recording: Recording,
 }
 
-/// Saved state in the middle of a replay, to which the replay can return.
+/// Saved state within a replay, to which the replay can return.
 #[derive(Clone, Debug)]
 pub struct Mark {
     step: u64,
@@ -180,8 +180,8 @@ impl Replay {
         Mark { step, state: out.into_bytes(), hands: self.hands.clone() }
     }
 
-    /// Returns to a state of this recording. Returns false if the scene cannot be restored; the replay is then unusable. Figures are those
-    /// of the last playback, except those that a scene saves.
+    /// Returns to a state of this recording. Returns false if the scene cannot be restored; the replay is then
+    /// unusable. Metrics are those of the last playback, except those that a scene saves.
     pub fn go_to(&mut self, mark: &Mark) -> bool {
         let loaded = self.instance.load(&mut Reader::new(&mark.state));
         self.hands = mark.hands.clone();

@@ -1,4 +1,4 @@
-//! Named scenarios: each builds a world, drives it, and verifies the physics by figures.
+//! Named scenarios: each builds a world, drives it, and verifies the physics by metrics.
 //!
 //! ```
 //! let scene = sinew_scenes::scenes::find("pendulum").expect("it is one of the registry's");

@@ -1,5 +1,5 @@
 //! Random walks of a capsule over uneven ground, for Sinew's mover and others: the ground, the wanted velocities, and a flood fill that
-//! finds the reachable places.
+//! finds the reachable positions.
 
 mod room;
 mod terrain;
@@ -14,7 +14,7 @@ use sinew::physics::{MoverDef, MoverId, World};
 /// Number of steps of a random walk, and of steps between turns.
 pub const STEPS: usize = 120;
 const TURNS: usize = 20;
-/// Number of steps in which a walker comes to rest before its surroundings are checked.
+/// Number of steps in which a walker comes to rest before the positions around it are checked.
 const SETTLES: usize = 60;
 /// Depth from which a capsule counts as inside a body, metres.
 pub const INSIDE: f32 = 0.005;
@@ -38,14 +38,14 @@ pub fn capsule() -> MoverDef {
     MoverDef { ground_acceleration: 300.0, ..MoverDef::default() }
 }
 
-/// Sinew's mover in a world of its own.
+/// Sinew's mover in a separate world.
 pub struct Ours {
     world: World,
     id: MoverId,
 }
 
 impl Ours {
-    /// A mover with its feet at a place.
+    /// A mover with its feet at a position.
     pub fn new(mut world: World, feet: Vec3) -> Self {
         let id = world.add_mover(&MoverDef { position: feet, ..capsule() });
         Self { world, id }
@@ -80,7 +80,7 @@ pub struct Tally {
     pub margin: f32,
     /// Number of walks, and of their steps.
     pub walks: usize,
-    /// Number of steps of all walks, without those to reachable places.
+    /// Number of steps of all walks, without those to reachable positions.
     pub steps: usize,
     /// Number of steps after which the capsule was inside a body by more than [`INSIDE`].
     pub inside: usize,
@@ -90,9 +90,9 @@ pub struct Tally {
     pub through: usize,
     /// Number of walks that ended on ground from which a flood searched for room.
     pub floods: usize,
-    /// Number of places found by all floods.
+    /// Number of positions found by all flood fills.
     pub places: usize,
-    /// Number of floods whose last place was not reached.
+    /// Number of flood fills whose last position was not reached.
     pub stuck: usize,
     /// Description of each fault, with its seed.
     pub wrong: Vec<String>,
@@ -116,8 +116,8 @@ impl Default for Tally {
 }
 
 impl Tally {
-    /// Walks at random for two seconds from the walker's place, at up to `fast` m/s, with a new direction every third of a second; then
-    /// walks to the farthest place that a flood finds.
+    /// Walks at random for two seconds from the walker's position, at up to `fast` m/s, with a new direction every
+    /// third of a second; then walks to the farthest position that a flood fill finds.
     pub fn walk(
         &mut self,
         on: &Terrain,
@@ -168,7 +168,7 @@ impl Tally {
         if worst > INSIDE { Err(format!("{worst} m inside at {place}")) } else { Ok(()) }
     }
 
-    /// Lets a walker stand still, and sends it to the farthest reachable place; returns where it is stuck. A walker
+    /// Lets a walker stand still, and sends it to the farthest reachable position; returns where it is stuck. A walker
     /// that slides off an edge on the way searches again from there.
     fn explore(&mut self, on: &Terrain, walker: &mut dyn Walker) -> Result<(), String> {
         const TRIES: usize = 3;

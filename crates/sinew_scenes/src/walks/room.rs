@@ -1,4 +1,5 @@
-//! Reachable places of a walker: a flood fill over moves within the step height and slope limit, and walks along its paths.
+//! Reachable positions of a walker: a flood fill over moves within the step height and slope limit, and walks along its
+//! paths.
 
 use super::{Terrain, Walker, capsule};
 use sinew::math::{Transform, Vec3, min, trig};
@@ -14,13 +15,13 @@ const SHARE: f32 = 0.9;
 /// Distances behind an edge, and above and below the edge, at which a tread is searched, metres.
 const BEHIND_EDGE: f32 = 0.02;
 const OVER_EDGE: f32 = 0.04;
-/// Distance at which a place counts as reached, metres, and the largest number of steps for that.
+/// Distance at which a position counts as reached, metres, and the largest number of steps for that.
 const REACHED: f32 = 0.02;
 const PATIENCE: u32 = 60;
 /// Speed of the walk, m/s.
 const SPEED: f32 = 1.5;
 
-/// Places that a walker can reach, each with the previous place.
+/// Positions that a walker can reach, each with the previous one.
 pub struct Room {
     /// Positions of the walker's feet, metres.
     places: Vec<Vec3>,
@@ -53,16 +54,16 @@ impl Room {
         room
     }
 
-    /// Number of places, at least 1.
+    /// Number of positions, at least 1.
     #[expect(clippy::len_without_is_empty, reason = "the place it stands at is always there")]
     pub fn len(&self) -> usize {
         self.places.len()
     }
 
-    /// Walks to the place that was found last.
+    /// Walks to the position that was found last.
     ///
     /// # Errors
-    /// The place that the walker does not reach, and the one before that.
+    /// The position that the walker does not reach, and the one before that.
     pub fn walk(&self, walker: &mut dyn Walker) -> Result<(), [Vec3; 2]> {
         let mut path = vec![self.len() - 1];
         while let Some(&at) = path.last().filter(|at| **at != 0) {

@@ -107,7 +107,7 @@ impl Terrain {
         build(&self.bodies)
     }
 
-    /// Returns a random place for the feet of the walks' capsule, with room around it.
+    /// Returns a random position for the feet of the walks' capsule, with room around it.
     pub fn free_place(&self, random: &mut Random) -> Vec3 {
         loop {
             let mut between = |axis: usize| random.range(self.within.min[axis], self.within.max[axis]);
@@ -126,7 +126,7 @@ impl Terrain {
         found.first().map_or(0.0, |deepest| deepest.depth)
     }
 
-    /// Returns true if a body is between the axes of the capsule at two places.
+    /// Returns true if a body is between the axes of the capsule at two positions.
     pub(super) fn parts(&self, before: Vec3, now: Vec3) -> bool {
         let middle = Vec3::Y * (0.5 * capsule().height);
         let blocked = |over: Vec3| {

@@ -56,7 +56,7 @@ fn blueprints_have_their_described_sizes() {
 
 /// Returns the largest initial depth of a moving body in a fixed one or in a moving one at least `stride` indices away, metres.
 fn overlap(scene: &Blueprint, stride: usize) -> f32 {
-    /// Bodies whose centres are further apart do not touch, metres.
+    /// Distance of their centres above which two bodies do not touch, metres.
     const NEAR: f32 = 1.1;
     let (world, bodies, _) = scene.build();
     let far = |a: usize, b: usize| {
@@ -75,7 +75,7 @@ fn overlap(scene: &Blueprint, stride: usize) -> f32 {
 
 #[test]
 fn figures_and_boxes_of_heaps_start_apart() {
-    // Bodies of one figure follow each other, and may overlap where the definition disables the pair.
+    // Bodies of one humanoid follow each other, and may overlap where the definition disables the pair.
     let heaps = [(blueprint::humanoid_lying(), 19), (blueprint::humanoid_pile(33), 19)];
     for (scene, stride) in heaps.into_iter().chain([(blueprint::box_heap(6, 6), 1)]) {
         let overlap = overlap(&scene, stride);

@@ -35,7 +35,7 @@ fn props_are_static_boxes_on_one_ground() {
             assert!((rotation.dot(*rotation) - 1.0).abs() < 1e-5, "{name}");
         }
         for half in props.iter().filter_map(half_extents) {
-            assert!(half.x > 0.02 && half.y > 0.02 && half.z > 0.02, "thinner than 4 cm: {half}");
+            assert!(half.x > 0.02 && half.y > 0.02 && half.z > 0.02, "a box is thinner than 4 cm: {half}");
         }
     }
 }
@@ -46,7 +46,7 @@ fn stairs_go_down_to_the_ground_in_equal_steps() {
     let treads = (0..=STEPS).map(|k| height(&props, 0.3, (k as f32 - 0.5) * STEP_RUN));
     for (k, top) in treads.enumerate() {
         let expected = PORCH_HEIGHT - k as f32 * STEP_RISE;
-        assert!((top - expected).abs() < 1e-4, "height after step {k}: {top} m, not {expected}");
+        assert!((top - expected).abs() < 1e-4, "height after step {k}: {top} m, expected {expected} m");
     }
     let step = props.iter().find(|p| p.name == "step").and_then(half_extents).expect("a step");
     assert!((2.0 * step.x - STAIRS_WIDTH).abs() < 1e-5);
@@ -59,7 +59,7 @@ fn path_to_the_stairs_is_level_and_free() {
         let (props, spawn) = (site.props(), site.spawn());
         let start = spawn.world_from_character.translation;
         let end = spawn.world_from_character.point(Vec3::Z * spawn.walk_length);
-        assert!(end.z.abs() < 1e-5, "the porch ends at z = 0");
+        assert!(end.z.abs() < 1e-5, "the porch must end at z = 0");
         for k in 0..20 {
             let z = start.z + (end.z - start.z) * k as f32 / 20.0;
             assert!((height(&props, 0.0, z) - start.y).abs() < 1e-5, "{site:?} at {z}");

@@ -64,7 +64,7 @@ fn weights_add_up_to_one_and_every_bone_has_skin() {
         assert!(vertices[slot] >= 24, "{name}: {} vertices", vertices[slot]);
         assert!(area[slot] > 0.004, "{name}: {} m²", area[slot]);
     }
-    assert!(blended > 300, "{blended} blended vertices");
+    assert!(blended > 300, "only {blended} blended vertices");
 }
 
 /// Checks that each edge of a closed, consistently wound surface exists exactly once in each direction.
@@ -79,7 +79,7 @@ fn surface_is_closed_and_winds_outward() {
         }
         for (&(a, b), &count) in &edges {
             assert_eq!(count, 1, "edge {a}-{b}");
-            assert_eq!(edges.get(&(b, a)), Some(&1), "edge {a}-{b} has one side only");
+            assert_eq!(edges.get(&(b, a)), Some(&1), "edge {a}-{b} has only one triangle");
         }
     }
 }
@@ -113,12 +113,12 @@ fn every_part_encloses_volume_and_all_parts_that_of_a_person() {
             *volumes.entry(label[t[0]]).or_default() += a.cross(b).dot(c) / 6.0;
         }
         for (part, volume) in volumes {
-            assert!(volume > 2e-6, "part {part}: {volume} m³");
+            assert!(volume > 2e-6, "part {part}: volume {volume} m³");
             count += 1;
             total += volume;
         }
     }
-    assert_eq!(count, 2 * 9 + 7, "nine parts on each side, seven in the middle");
+    assert_eq!(count, 2 * 9 + 7, "expected nine parts on each side and seven in the middle");
     // Parts overlap at the joints, so the sum is above the 0.065 to 0.075 m³ of a slim adult.
     assert!((0.06..0.09).contains(&total), "{total} m³");
 }

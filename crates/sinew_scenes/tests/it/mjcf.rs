@@ -30,7 +30,7 @@ fn mujocos_humanoid_rests_as_high_as_in_mujoco() {
         assert_eq!(unmet(pose, 1.0), []);
     }
     for factor in [0.99, 1.01] {
-        assert!(!unmet(1, factor).is_empty(), "no figure misses its bar at {factor} g");
+        assert!(!unmet(1, factor).is_empty(), "no metric misses its limit at {factor} g");
     }
 }
 

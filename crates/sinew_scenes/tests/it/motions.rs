@@ -84,7 +84,7 @@ fn planted_feet_do_not_slide_at_the_walking_speed() {
             let track: Vec<Vec3> =
                 (0..=40).map(|k| on_ground(start + (end - start) * k as f32 / 40.0)).collect();
             let slide = track.iter().fold(0.0, |worst: f32, p| worst.max((*p - track[0]).length()));
-            assert!(slide < 0.01, "{name} at {point}: {slide} m");
+            assert!(slide < 0.01, "{name} at {point}: slides {slide} m");
         }
     }
 }
@@ -118,8 +118,12 @@ fn knees_and_elbows_bend_one_way_only() {
             for time in times(clip) {
                 let (bend, off_axis) = hinge(&character, clip, time, name, *axis);
                 let straight = bend + bind_bend;
-                assert!((0.0..=146.0).contains(&straight), "{} {name}: {straight}° at {time} s", clip.name);
-                assert!(off_axis < 1.0, "{} {name}: {off_axis}° off the hinge at {time} s", clip.name);
+                assert!(
+                    (0.0..=146.0).contains(&straight),
+                    "{} {name}: hyperextended: {straight}° at {time} s",
+                    clip.name
+                );
+                assert!(off_axis < 1.0, "{} {name}: {off_axis}° off the hinge axis at {time} s", clip.name);
             }
         }
     }
@@ -132,7 +136,7 @@ fn skin_stays_above_the_floor_and_touches_it() {
         for time in times(clip).step_by(2) {
             let skin = skin_at(&character, clip, time);
             let lowest = skin.iter().flatten().fold(f32::MAX, |low, v| low.min(v.y));
-            assert!((-0.02..0.02).contains(&lowest), "{} at {time} s: lowest {lowest} m", clip.name);
+            assert!((-0.02..0.02).contains(&lowest), "{} at {time} s: lowest point {lowest} m", clip.name);
         }
     }
 }
@@ -146,7 +150,7 @@ fn runners_and_boxers_are_on_the_floor_or_above_it() {
         for time in times(&clip).step_by(4) {
             let skin = skin_at(&character, &clip, time);
             let lowest = skin.iter().flatten().fold(f32::MAX, |low, v| low.min(v.y));
-            assert!((-0.02..highest).contains(&lowest), "{} at {time} s: lowest {lowest} m", clip.name);
+            assert!((-0.02..highest).contains(&lowest), "{} at {time} s: lowest point {lowest} m", clip.name);
         }
     }
 }
@@ -200,7 +204,7 @@ fn joints_move_at_human_speed() {
             for (index, (a, b)) in before.iter().zip(&now).enumerate() {
                 let speed = (b.translation - a.translation).length() * RATE;
                 let name = &character.rig.joints[index].name;
-                assert!(speed < 4.5, "{} {name}: {speed} m/s at {time} s", clip.name);
+                assert!(speed < 4.5, "{} {name}: moves at {speed} m/s at {time} s", clip.name);
             }
             before = now;
         }
@@ -224,6 +228,6 @@ fn feet_pass_each_other_without_touching() {
         let (left, right) = (of("left"), of("right"));
         let gap = left.iter().flat_map(|a| right.iter().map(move |b| (*a - *b).length()));
         let nearest = gap.fold(f32::MAX, f32::min);
-        assert!(nearest > 0.01, "{nearest} m apart at {time} s");
+        assert!(nearest > 0.01, "bodies are {nearest} m apart at {time} s");
     }
 }

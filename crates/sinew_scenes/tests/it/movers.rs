@@ -65,7 +65,7 @@ fn depth(world: &World, id: MoverId) -> f32 {
 }
 
 /// Runs `SHARE` walks for each seed on the ground of that seed, never inside of or through a body. From the end of each
-/// walk the mover reaches the farthest place that a flood fill finds, `places` or more on average.
+/// walk the mover reaches the farthest position that a flood fill finds, `places` or more on average.
 fn wander(name: &str, all: usize, places: usize, ground: impl Fn(u64) -> Terrain) {
     let mut tally = Tally::default();
     for seed in seeds(all) {
@@ -87,7 +87,7 @@ fn wander(name: &str, all: usize, places: usize, ground: impl Fn(u64) -> Terrain
     );
     assert!(wrong.is_empty(), "{wrong:#?}");
     assert!(deepest < 1e-3, "{deepest} m inside");
-    assert!(floods > walks / 2 && mean >= places, "{floods} floods of {mean} places");
+    assert!(floods > walks / 2 && mean >= places, "{floods} floods reach {mean} cells on average");
 }
 
 #[test]
@@ -129,13 +129,13 @@ fn mover_walks_the_cabins_stairs_down_and_up_on_the_ground() {
             while (world.mover(id).position().z - end) * way < 0.0 {
                 world.step();
                 let mover = world.mover(id);
-                assert!(mover.is_grounded(), "{speed} m/s: off the ground at {}", mover.position());
+                assert!(mover.is_grounded(), "{speed} m/s: not grounded at {}", mover.position());
                 assert!(world.step_count() < 2_000, "{speed} m/s: stuck at {}", mover.position());
                 assert_eq!(depth(&world, id), 0.0);
             }
             let height = world.mover(id).position().y;
             let expected = if way > 0.0 { 0.0 } else { start.y };
-            assert!((height - expected).abs() < 0.02, "{speed} m/s: {height} m high");
+            assert!((height - expected).abs() < 0.02, "{speed} m/s: at a height of {height} m");
         }
     }
 }
@@ -166,5 +166,5 @@ fn mover_climbs_the_dungeons_stairs() {
         }
     }
     // The landing is 4 m high; its walls continue above.
-    assert!((highest - 4.0).abs() < 0.02, "it reached {highest} m");
+    assert!((highest - 4.0).abs() < 0.02, "the mover reached {highest} m");
 }

@@ -103,7 +103,7 @@ fn stored_file_is_read() {
     assert_eq!(recording.steps[0].operations, [Operation::Release]);
     assert_eq!(recording.steps[0].hash, 0x0123_4567_89ab_cdef);
     assert_eq!(recording.key_frames[0].bodies[0].1.translation, Vec3::new(1.0, 2.0, 3.0));
-    let mut replay = Replay::start(recording).expect("the scene is still there");
+    let mut replay = Replay::start(recording).expect("the scene still exists");
     let step = replay.step().expect("one step");
     assert_ne!(step.found, step.recorded);
     let refused = |bytes: &[u8]| Recording::read(bytes).expect_err("it is refused").to_string();

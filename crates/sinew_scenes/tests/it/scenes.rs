@@ -1,24 +1,25 @@
-//! Every scene of the registry: its figures, and their dependence on gravity.
+//! Every scene of the registry: its metrics, and their dependence on gravity.
 
 use sinew::physics::World;
 use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, Settings, find, registry};
 
-/// Figures outside their bars, by scene. A figure that is met must be removed, or its test fails.
+/// Metrics that miss their expectations, by scene. A metric that meets its expectation must be removed, otherwise its
+/// test fails.
 const NOT_YET: &[(&str, &[&str])] = &[
-    // 2.07 mm instead of 2; the line of thrust is nearer to the middle than when the scene met this bar.
+    // 2.07 mm instead of 2; the line of thrust is nearer to the centre than when the scene met this expectation.
     ("arch", &["shift_max_m"]),
     // A character that has just got up is lifted by half a metre if it stands on another; walks put feet into stairs
     // and toes into the floor; rest, roll and get-up take 4.3 s.
     ("brawl", &["animated_ms", "depth_m", "up_after_s"]),
     // Heaps are chaotic: from starts that differ by 1 mm the sticks sleep after 212 to 226 steps.
     ("mesh_drop", &["asleep_steps"]),
-    // A get-up clip puts a foot on the cape for a frame with 2 mm of free space, so its middle is 17 mm inside. The
+    // A get-up clip puts a foot on the cape for a frame with 2 mm of free space, so its centre is 17 mm inside. The
     // shin stretches the skirt to three times its length, whose energy its rows overestimate (ADR 0027): limbs do 2.3 J
     // of work in a step in which the skirt gains 3.3 J.
     ("skirt", &["deepest_in_wearer_m", "energy_gain_max"]),
 ];
 
-/// Scenes without gravity, and one whose bar is about walls alone (`fast_particle`).
+/// Scenes without gravity, and one with expectations about walls only (`fast_particle`).
 const BLIND_TO_GRAVITY: &[&str] = &[
     "fast_particle",
     "gimbal",
@@ -82,7 +83,7 @@ fn not_yet(name: &str) -> &'static [&'static str] {
     NOT_YET.iter().find(|(scene, _)| *scene == name).map_or(&[], |(_, figures)| figures)
 }
 
-/// Runs a scene with its defaults: exactly the figures of [`NOT_YET`] miss their bars, and no warm step
+/// Runs a scene with its defaults: exactly the metrics of [`NOT_YET`] miss their expectations, and no warm step
 /// allocates.
 fn check(name: &str) {
     let mut run = after(scene(name), &scene(name).settings(), 1.0);
@@ -94,13 +95,17 @@ fn check(name: &str) {
     assert_eq!(warm_allocations(run.world_mut()), 0, "{name} allocates");
 }
 
-/// Checks a scene as `check` does, and that more figures miss if gravity is slightly wrong.
+/// Checks a scene as `check` does, and that more metrics miss if gravity is slightly wrong.
 fn check_with_gravity(name: &str) {
     check(name);
     for factor in [0.99, 1.01] {
         let wrong = metrics_after(scene(name), &scene(name).settings(), factor);
         let noticed = unmet(&wrong).iter().any(|figure| !not_yet(name).contains(figure));
-        assert_eq!(noticed, !BLIND_TO_GRAVITY.contains(&name), "{name} under {factor} g: {wrong:#?}");
+        assert_eq!(
+            noticed,
+            !BLIND_TO_GRAVITY.contains(&name),
+            "{name} under {factor} g: missed limits {wrong:#?}"
+        );
     }
 }
 
@@ -270,7 +275,7 @@ fn closed_forms_of_rotations_hold_with_other_settings() {
             let mut settings = scene(name).settings();
             settings.assign(assignment).expect("it is in range");
             let metrics = metrics_after(scene(name), &settings, 1.0);
-            assert_eq!(unmet(&metrics), [""; 0], "{name}, {assignment}: {metrics:#?}");
+            assert_eq!(unmet(&metrics), [""; 0], "{name}, {assignment}: metrics {metrics:#?}");
         }
     }
 }
@@ -297,7 +302,7 @@ fn pyramid_of_a_hundred_rows_stands() {
     assert_eq!(unmet(&metrics), UNMET, "{metrics:#?}");
 }
 
-/// 100 falls in random poses; the default run has a few of them.
+/// 100 falls in random poses; the default run simulates only a few of them.
 #[test]
 #[ignore = "minutes in a debug build: cargo test --release --package sinew_scenes -- --ignored"]
 fn falls_in_a_hundred_poses() {

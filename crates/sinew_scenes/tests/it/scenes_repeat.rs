@@ -70,7 +70,7 @@ fn bits_are_equal_at_any_frame_rate() {
                 left -= frame;
             }
             assert_eq!(run.world().step_count(), steps);
-            assert!(poses(run.world()) == expected, "{} at {rate} frames a second", scene.name);
+            assert!(poses(run.world()) == expected, "{}: other poses at {rate} frames a second", scene.name);
         }
     }
 }
@@ -121,7 +121,7 @@ fn snapshot_loaded_into_an_unrelated_world_continues_equally() {
             assert_eq!(stranger.world().hash(), run.world().hash(), "{}, step {step}", scene.name);
         }
     }
-    assert!(met * 10 > registry().len() * 9, "{met} of {} scenes could be loaded", registry().len());
+    assert!(met * 10 > registry().len() * 9, "only {met} of {} scenes can be loaded", registry().len());
 }
 
 /// A brawl saved at any step, with characters in every state, continues in a new world as in its own.
@@ -149,7 +149,10 @@ fn saved_brawl_continues_in_an_unrelated_world() {
                 let [mut own, mut other] = [Writer::new(), Writer::new()];
                 run.save(&mut own);
                 stranger.save(&mut other);
-                assert!(own.as_bytes() == other.as_bytes(), "powered {powered}, round {round}, step {step}");
+                assert!(
+                    own.as_bytes() == other.as_bytes(),
+                    "other bytes: powered {powered}, round {round}, step {step}"
+                );
             }
         }
     }
@@ -188,7 +191,7 @@ fn names_and_settings_are_valid_on_a_command_line() {
         for setting in scene.settings().declared() {
             assert!(plain(setting.key), "{}", setting.key);
             let default = format!("{}={}", setting.key, setting.default);
-            scene.settings().assign(&default).expect("a default is in its own range");
+            scene.settings().assign(&default).expect("a default must be in its own range");
         }
     }
 }

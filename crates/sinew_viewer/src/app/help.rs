@@ -54,7 +54,7 @@ pub(super) fn overlay(app: &App, ui: &mut egui::Ui) {
     }
 }
 
-/// Draws a line of text on a dark plate, readable over any picture; returns its place.
+/// Draws a line of text on a dark plate, readable over any picture; returns its rectangle.
 fn plate(ui: &egui::Ui, at: egui::Pos2, align: Align2, text: &str, font: &FontId) -> egui::Rect {
     let width = 0.7 * ui.max_rect().width();
     let galley = ui.painter().layout(text.to_owned(), font.clone(), Color32::WHITE, width);

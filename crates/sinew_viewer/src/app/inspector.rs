@@ -1,4 +1,4 @@
-//! The right panel: the scene's description, settings, figures, layers, stage times and state.
+//! The right panel: the scene's description, settings, metrics, layers, stage times and state.
 
 use super::{App, editor, style, timeline};
 use crate::layers::Layer;
@@ -145,10 +145,10 @@ fn figures(app: &App, ui: &mut egui::Ui) {
     }
 }
 
-/// Rounding error of a 32-bit figure, a ratio.
+/// Rounding error of a 32-bit value, a ratio.
 const ROUNDING: f64 = 1e-6;
 
-/// Plots the history of a figure, and a line at its expected value.
+/// Plots the history of a metric, and a line at its expected value.
 fn plot(ui: &mut egui::Ui, history: &VecDeque<f64>, metric: &Metric) {
     let known: Vec<(usize, f64)> =
         history.iter().enumerate().filter(|(_, it)| it.is_finite()).map(|(i, &it)| (i, it)).collect();

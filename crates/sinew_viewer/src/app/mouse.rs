@@ -16,7 +16,8 @@ const THROW: f32 = 14.0;
 /// Rotation of the camera per point of mouse motion, radians.
 const TURN: f32 = 0.0065;
 
-/// Impulse of a push, N·s: a shove with both hands that fells a man; and largest speed of a light body after it, m/s.
+/// Impulse of a push, N·s: a shove with both hands that makes a man fall; and largest speed of a light body after it,
+/// m/s.
 const SHOVE: f32 = 130.0;
 const SHOVE_SPEED: f32 = 6.0;
 /// Factor on the slope of a push, from the slope of the view: pushes go along the ground.
@@ -113,7 +114,7 @@ pub(super) fn push_subject(app: &mut App) {
     push(app, subject(app));
 }
 
-/// Returns the position of the subject in the window, points; the middle of the picture if the subject is out of sight.
+/// Returns the position of the subject in the window, points; the centre of the picture if the subject is out of sight.
 fn subject(app: &App) -> Pos2 {
     let place = app.subject_place().map(|[x, y]| app.area.lerp_inside(egui::vec2(x, y)));
     place.filter(|at| app.area.contains(*at)).unwrap_or(app.area.center())

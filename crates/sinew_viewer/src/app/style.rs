@@ -8,9 +8,9 @@ pub(super) const PANEL: Color32 = Color32::from_rgb(27, 30, 36);
 pub(super) const FAINT: Color32 = Color32::from_rgb(150, 158, 170);
 /// Colour of curves and bars.
 pub(super) const ACCENT: Color32 = Color32::from_rgb(88, 166, 255);
-/// Colour of a figure that meets its expectation.
+/// Colour of a metric that meets its expectation.
 pub(super) const GOOD: Color32 = Color32::from_rgb(96, 200, 130);
-/// Colour of a figure that misses its expectation.
+/// Colour of a metric that misses its expectation.
 pub(super) const BAD: Color32 = Color32::from_rgb(240, 120, 100);
 
 /// Sets the style, once.
@@ -31,7 +31,7 @@ pub(super) fn apply(ctx: &egui::Context) {
             style.text_styles.insert(text, FontId::proportional(size));
         }
         style.text_styles.insert(TextStyle::Monospace, FontId::monospace(12.5));
-        // A panel that fades in delays reading, and a picture might be taken in the middle of the fade.
+        // A panel that fades in delays reading, and a picture might be taken during the fade.
         style.animation_time = 0.0;
         style.spacing.item_spacing = egui::vec2(8.0, 5.0);
         style.spacing.button_padding = egui::vec2(8.0, 3.0);

@@ -39,7 +39,7 @@ pub(crate) struct ModelDraw {
     pub casts: bool,
 }
 
-/// All figures of a rig, for one of its parts.
+/// All characters of a rig, for one of its parts.
 #[derive(Debug)]
 pub(crate) struct FigureDraw {
     /// Address of the rig.
@@ -166,7 +166,7 @@ impl Lists {
         }
     }
 
-    /// Appends the matrices of a figure's meshes; returns the index of the first matrix of each mesh.
+    /// Appends the matrices of a character's meshes; returns the index of the first matrix of each mesh.
     fn push_palette(&mut self, figure: &Figure<'_>) -> Vec<f32> {
         let Figure { rig, world_from_joint } = figure;
         let palette = &mut self.palette;

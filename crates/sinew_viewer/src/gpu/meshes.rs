@@ -185,7 +185,7 @@ const PALETTE_ROW: usize = 512;
 /// Numbers of a row.
 const PALETTE_NUMBERS: usize = PALETTE_ROW * 12;
 
-/// The matrices of all figures as a texture that is rewritten for each picture, and grows.
+/// The matrices of all characters as a texture that is rewritten for each picture, and grows.
 #[derive(Debug)]
 pub(crate) struct Palette {
     texture: wgpu::Texture,

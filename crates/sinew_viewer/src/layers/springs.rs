@@ -18,7 +18,7 @@ const LIES: f32 = 1e-3;
 /// Half the side of the square that shows a plane, in lengths of a file's unit.
 const PLANE: f32 = 0.25;
 
-/// Adds the springs of the rigs of figures.
+/// Adds the springs of the rigs of characters.
 pub(super) fn add_springs(figures: &[Figure<'_>], lines: &mut Vec<Line>) {
     for figure in figures {
         let Springs { chains, colliders, .. } = &figure.rig.springs;

@@ -50,7 +50,7 @@ pub struct Session {
     step_time: Duration,
     report: Vec<String>,
     workbench: Option<Box<Workbench>>,
-    /// Bodies of the ragdoll, if no figure lists them.
+    /// Bodies of the ragdoll, if no character lists them.
     bodies: Vec<BodyId>,
     ghost: Option<Box<Ghost>>,
     /// Poses of the workbench's character at its start and after each step, world from joint.
@@ -244,7 +244,7 @@ impl Session {
         went_on
     }
 
-    /// Returns the figures so far; for a recording, those when the step was first played.
+    /// Returns the metrics so far; for a recording, those when the step was first played.
     pub fn metrics(&self) -> Vec<Metric> {
         match &self.run {
             Run::Live(recorder) => recorder.instance().metrics(),
@@ -252,7 +252,7 @@ impl Session {
         }
     }
 
-    /// Returns the figures of a recording up to now, after each number of steps; empty for live subjects.
+    /// Returns the metrics of a recording up to now, after each number of steps; empty for live subjects.
     pub fn past_metrics(&self) -> &[Vec<Metric>] {
         match &self.run {
             Run::Live(_) => &[],

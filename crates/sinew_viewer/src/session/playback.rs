@@ -18,7 +18,7 @@ pub(super) struct Playback {
     /// Marks by the number of steps taken, in order.
     marks: Vec<Mark>,
     mark_steps: u64,
-    /// Figures after each number of steps that has been reached.
+    /// Metrics after each number of steps that has been reached.
     metrics: Vec<Vec<Metric>>,
     /// Hash of the state after each step, from its first playback.
     hashes: Vec<u64>,
@@ -50,7 +50,7 @@ impl Playback {
         self.replay.recording().steps.len() as u64
     }
 
-    /// Returns the figures up to now, after each number of steps.
+    /// Returns the metrics up to now, after each number of steps.
     pub fn metrics(&self) -> &[Vec<Metric>] {
         &self.metrics[..=(self.at() as usize).min(self.metrics.len() - 1)]
     }

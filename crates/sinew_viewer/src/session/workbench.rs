@@ -117,7 +117,7 @@ impl Workbench {
         Ok(())
     }
 
-    /// Returns the falling ragdoll, and its bodies if no figure lists them.
+    /// Returns the falling ragdoll, and its bodies if no character lists them.
     pub(super) fn fall(&self) -> (Instance, Vec<BodyId>) {
         match &self.source {
             Source::Rig(it) => {

@@ -94,7 +94,7 @@ impl Shown {
     }
 
     fn send(&self, told: Told) {
-        // If the viewer has ended, there is no receiver; the page learns of that separately.
+        // If the viewer has ended, there is no receiver; the page is notified of that separately.
         let _ = self.proxy.send_event(told);
     }
 }

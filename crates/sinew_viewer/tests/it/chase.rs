@@ -11,7 +11,7 @@ const ASPECTS: [f32; 4] = [0.8, 1.1, 1.5, 2.6];
 const STEPS: u32 = 60 * 25;
 /// Frames a second of a slow machine: two steps a frame.
 const FRAME: f32 = 1.0 / 30.0;
-/// Least distance of the subject's middle from the edges, as a share of the picture.
+/// Least distance of the subject's centre from the edges, as a share of the picture.
 const EDGE: f32 = 0.12;
 
 /// Returns the position of a point in the picture, 0 to 1 from the upper left corner.
@@ -26,8 +26,8 @@ fn place(orbit: &Orbit, point: Vec3, aspect: f32) -> [f32; 2] {
     ]
 }
 
-/// Returns the largest distance of the subject from the middle of a picture, as a share of the picture, with a camera that
-/// follows or stands.
+/// Returns the largest distance of the subject from the centre of a picture, as a share of the picture, with a camera
+/// that follows or stands.
 fn outermost(sample: Sample, aspect: f32, follows: bool, pushes: bool) -> f32 {
     let mut stage = staged(sample.character());
     let first = bounds(&stage);
@@ -67,11 +67,11 @@ fn the_subject_stays_in_the_picture() {
         }
         let most = outermost(Sample::Mannequin, aspect, true, true);
         println!("pushed {aspect}: {most:.3}");
-        assert!(most < 0.5 - EDGE, "pushed {aspect}: {most}");
+        assert!(most < 0.5 - EDGE, "aspect {aspect}: the figure is {most} from the centre");
     }
 }
 
-/// The test above can fail: a camera that stands loses the subject.
+/// The test above can fail: a camera that does not move loses the subject.
 #[test]
 fn a_camera_that_stands_loses_it() {
     assert!(outermost(Sample::Mannequin, 1.5, false, false) > 0.6);

@@ -74,7 +74,7 @@ fn keys_change_a_limit_which_is_saved() {
     let [Some(y), ..] = after else { panic!("it swings") };
     assert!((y[0] - f32::min(lo + 20.0, 0.0)).abs() < 0.01 && (y[1] - f32::max(hi - 20.0, 0.0)).abs() < 0.01);
     assert_eq!(degrees(def(&viewer), "rightUpperArm"), degrees(&saved(&mut viewer), "rightUpperArm"));
-    // The new test starts again and falls by the new limits.
+    // The ragdoll is dropped again, with the new limits.
     assert_eq!(viewer.app().session().world().step_count(), 0);
     let world = viewer.app().session().world();
     let ragdoll = viewer.app().session().ragdoll();
@@ -106,7 +106,7 @@ fn dragging_a_handle_changes_a_limit() {
     viewer.frame().expect("the card draws");
     let after = degrees(def(&viewer), "rightUpperLeg");
     println!("{before:.1?} became {after:.1?}");
-    assert_eq!(before[0], after[0], "the other range is as it was");
+    assert_eq!(before[0], after[0], "the other range must not change");
     let [_, Some(z), _] = before.map(|it| it.map(|[_, hi]| hi)) else { panic!("it swings") };
     let [_, Some(new), _] = after.map(|it| it.map(|[_, hi]| hi)) else { panic!("it swings") };
     assert!((z - new).abs() > 3.0, "{z}° and then {new}°");
@@ -114,10 +114,7 @@ fn dragging_a_handle_changes_a_limit() {
     let (_, now) =
         viewer.app().handles().into_iter().find(|(name, _)| *name == "swing z high").expect("it is there");
     let (was, goal) = (at, egui::pos2(at.x + 40.0, at.y + 30.0));
-    assert!(
-        (now - goal).length() < (was - goal).length(),
-        "it went from {was:?} to {now:?}, asked for {goal:?}"
-    );
+    assert!((now - goal).length() < (was - goal).length(), "moved from {was:?} to {now:?}, target {goal:?}");
     // Dragging the side of the shape outward enlarges the body.
     let (_, at) =
         viewer.app().handles().into_iter().find(|(name, _)| *name == "size").expect("it has a size");
@@ -157,7 +154,10 @@ fn roles_shapes_and_masses() {
     assert!(matches!(built.bodies[head].shape, sinew::physics::Shape::Sphere { .. }));
     assert!((built.bodies[head].mass.mass - 7.5).abs() < 1e-3);
     let world = session.world();
-    assert!((world.mass(session.ragdoll()[head]).mass - 7.5).abs() < 1e-3, "it falls with that mass");
+    assert!(
+        (world.mass(session.ragdoll()[head]).mass - 7.5).abs() < 1e-3,
+        "the body must have the edited mass"
+    );
     // A body without hips is refused with a message, and nothing changes.
     let dropped = BoneSettings { body: Some(BodyWish::Drop), ..BoneSettings::default() };
     let line = session.edit(place(&built, "hips"), dropped).expect_err("it hangs on its hips");
@@ -173,7 +173,7 @@ fn roles_shapes_and_masses() {
     println!("{bone}: {now:?}");
     assert!(
         other.bodies.iter().all(|body| body.role != "leftFoot" || body.bone != bone),
-        "it is no foot any more"
+        "the bone must lose the role of a foot"
     );
     assert_eq!(other.bodies[shin].role, "leftLowerLeg");
     let foot = other.bodies.iter().position(|body| body.bone == bone);

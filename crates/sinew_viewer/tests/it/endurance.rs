@@ -60,11 +60,16 @@ fn every_scene_opens_and_closes() {
         &slowest[..5]
     );
     if let (Some(early), Some(late)) = (early, resident()) {
-        assert!(late < early + NOISE, "{} MiB after five rounds, {} at the end", early >> 20, late >> 20);
+        assert!(
+            late < early + NOISE,
+            "memory: {} MiB after five rounds, {} MiB at the end",
+            early >> 20,
+            late >> 20
+        );
     }
 }
 
-/// Prints the time that encoding a frame with a hundred skinned figures takes, beside an empty stage, which
+/// Prints the time that encoding a frame with a hundred skinned characters takes, beside an empty stage, which
 /// reads back as much.
 #[test]
 #[ignore = "a measurement, which asserts no time: `cargo xtask ci --full`"]

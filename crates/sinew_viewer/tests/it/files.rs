@@ -45,7 +45,7 @@ fn height(viewer: &Headless) -> f32 {
     world.body_ids().map(|id| world.transform(id).translation.y).fold(0.0, f32::max)
 }
 
-/// Runs two seconds of steps, after which standing figures lie on the ground.
+/// Runs two seconds of steps, after which standing characters lie on the ground.
 fn falls(viewer: &mut Headless, name: &str) {
     let before = height(viewer);
     for _ in 0..120 {
@@ -55,7 +55,7 @@ fn falls(viewer: &mut Headless, name: &str) {
     look(name, &viewer.frame().expect("the card draws"));
     assert_eq!(viewer.app().session().world().step_count(), 120);
     let after = height(viewer);
-    assert!(before > 1.2 && after < 0.5 * before, "highest body at {before} m, then at {after} m");
+    assert!(before > 1.2 && after < 0.5 * before, "highest body at {before} m, later at {after} m");
 }
 
 /// A dropped ragdoll without its rig: its bodies fall.
@@ -148,7 +148,7 @@ fn a_bvh_that_is_dropped_plays() {
         figures[0].world_from_joint[head].translation
     };
     let before = head(&viewer);
-    assert!((1.2..2.0).contains(&before.y), "a head at {before}: metres, feet on the floor");
+    assert!((1.2..2.0).contains(&before.y), "the head is at {before}; expected metres, feet on the floor");
     let still = viewer.frame().expect("the card draws");
     for _ in 0..20 {
         viewer.app_mut().step();

@@ -73,7 +73,7 @@ fn a_drag_pulls_a_body_and_is_recorded() {
     viewer.frame().expect("the card draws");
     let session = viewer.app().session();
     let moved = (session.world().transform(body).translation - before).length();
-    assert!(moved > 0.1, "it has moved by {moved} m");
+    assert!(moved > 0.1, "the character moved only {moved} m");
     let recording = session.recording().expect("a scene is recorded");
     assert!(recording.steps.iter().any(|step| !step.operations.is_empty()));
     let mut replay = sinew_scenes::recording::Replay::start(recording.clone()).expect("it starts");
@@ -136,7 +136,7 @@ fn keys_walk_a_character() {
     let ahead = camera.target - camera.position;
     assert!(way.length() > 0.8, "it walked {way}");
     let level = |v: sinew::math::Vec3| sinew::math::Vec3::new(v.x, 0.0, v.z).normalize();
-    assert!(level(way).dot(level(ahead)) > 0.9, "it walked {way}, the camera looks along {ahead}");
+    assert!(level(way).dot(level(ahead)) > 0.9, "the character walked {way}, the camera looks along {ahead}");
     viewer.hold(Key::W, false);
     viewer.frame().expect("the card draws");
     for _ in 0..30 {
@@ -156,7 +156,7 @@ fn keys_walk_a_character() {
     assert_eq!(replay.instance().steered(), Some(place(&viewer)));
 }
 
-/// The first scene opens with figures drawn with their skin, which stay in the picture.
+/// The first scene opens with characters drawn with their skin, which stay in the picture.
 #[test]
 fn the_first_scene_stays_in_sight() {
     let Some(gpu) = gpu() else { return };
@@ -173,7 +173,7 @@ fn the_first_scene_stays_in_sight() {
         for figure in instance.figures() {
             let to = figure.world_from_joint[0].translation - camera.position;
             let angle = to.angle_between(camera.target - camera.position);
-            assert!(angle < 0.5, "a figure is {angle} rad from the middle");
+            assert!(angle < 0.5, "a character is {angle} rad from the centre of the view");
         }
     }
     look("first", &settled(&mut viewer));

@@ -77,7 +77,7 @@ fn is_alike((tile, far): (f64, f64)) -> bool {
 }
 
 fn read(name: &str) -> Image {
-    let bytes = std::fs::read(path(name)).expect("it is kept in tests/pictures");
+    let bytes = std::fs::read(path(name)).expect("the picture is in tests/pictures");
     assert!(bytes.len() <= MOST_BYTES, "{name} has {} bytes", bytes.len());
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("it is a PNG");
     let (width, height) = (reader.info().width, reader.info().height);
@@ -113,9 +113,9 @@ fn check(name: &str, picture: &Image, changed: &Image) {
     if !is_alike(found) {
         let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
         std::fs::write(&place, png(&picture)).expect("the target folder is there");
-        panic!("{} is not what is kept: {found:?}; SINEW_BLESS=1 keeps it", place.display());
+        panic!("{} differs from the stored picture: {found:?}; SINEW_BLESS=1 replaces it", place.display());
     }
-    assert!(!is_alike(other), "{name}: a change is not noticed: {other:?}");
+    assert!(!is_alike(other), "{name}: the comparison misses a change: {other:?}");
 }
 
 /// Returns a paused viewer of a subject without times.

@@ -113,12 +113,12 @@ fn graphics_card_and_processor_draw_the_same_picture() {
     // Edges and the borders of shadows are smoothed differently.
     let (mean, far) = difference(&expected, &found);
     println!("mean difference {mean:.3} of 255, {:.2} % of pixels far off", 100.0 * far);
-    assert!(mean < 3.0 && far < 0.02, "mean {mean}, far {far}");
+    assert!(mean < 3.0 && far < 0.02, "mean difference {mean}, share of pixels far off {far}");
     // The test can fail: the pictures without shapes and without shadows differ.
     let bare = offscreen.render(&Stage::of(Scene { sun, ..Scene::default() }), &camera());
     assert!(difference(&expected, &bare.expect("the card draws")).0 > 10.0);
     let again = offscreen.render(&stage, &camera()).expect("the card draws");
-    assert_eq!(again, found, "the same stage is the same picture");
+    assert_eq!(again, found, "the same stage must give the same picture");
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn a_skin_is_where_its_joints_are() {
     let mut offscreen = Offscreen::new(gpu, SIZE);
     let found = offscreen.render(&stage, &camera).expect("the card draws");
     look("skin_card", &found);
-    // The same figures as models skinned by the processor.
+    // The same characters as models skinned by the processor.
     let mut skinned = self::stage(&session, &camera, &[]);
     let figures = std::mem::take(&mut skinned.figures);
     for figure in &figures {
@@ -163,9 +163,9 @@ fn a_skin_is_where_its_joints_are() {
     look("skin_processor", &expected);
     let (mean, far) = difference(&expected, &found);
     println!("mean difference {mean:.3} of 255, {:.2} % of pixels far off", 100.0 * far);
-    assert!(mean < 0.5 && far < 0.002, "mean {mean}, far {far}");
+    assert!(mean < 0.5 && far < 0.002, "mean difference {mean}, share of pixels far off {far}");
     let mut empty = self::stage(&session, &camera, &[]);
     empty.figures.clear();
     let (mean, _) = difference(&offscreen.render(&empty, &camera).expect("the card draws"), &found);
-    assert!(mean > 0.3, "without figures it is another picture: {mean}");
+    assert!(mean > 0.3, "without characters the picture must differ; mean difference {mean}");
 }

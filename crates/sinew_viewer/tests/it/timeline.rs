@@ -37,7 +37,7 @@ fn seek(session: &mut Session, step: u64) {
 }
 
 /// Scenes of bodies, joints, particles, and characters: after any seek the state is that
-/// of the recording, and so are the figures.
+/// of the recording, and so are the metrics.
 #[test]
 fn seeking_gives_the_same_bits() {
     for scene in ["stack", "pendulum", "rope_on_box", "stairs", "two_tracks", "flag", "dominoes"] {
@@ -70,12 +70,12 @@ fn seeking_gives_the_same_bits() {
 fn a_second_run_is_a_ghost() {
     let (plain, struck) = (recorded("stack", 100, None), recorded("stack", 100, Some(30)));
     let mut session = Session::start(played(&plain)).expect("it is ours");
-    session.set_ghost("struck.sinewrec", struck).expect("it is of the same scene");
+    session.set_ghost("struck.sinewrec", struck).expect("both recordings are of the same scene");
     let ghost = session.ghost().expect("it has one");
     let Some(Difference::State { step, body: Some((_, [a, b])) }) = ghost.difference().cloned() else {
         panic!("{:?}", ghost.difference())
     };
-    assert_eq!(step, 31, "the strike is felt in the step that follows it");
+    assert_eq!(step, 31, "the impulse must act in the step after it");
     assert_ne!(a, b);
     for step in [100, 20, 30, 31] {
         seek(&mut session, step);

@@ -118,7 +118,7 @@ fn character_follows_bevys_animation() {
             most = most.max(apart(&walker.given[step], &walker.given[0]));
         }
     }
-    assert!(most > 0.3, "the walk moves it by {most} rad");
+    assert!(most > 0.3, "the walk moves the joint by only {most} rad");
     // The character moves at the requested velocity, not by its clips.
     assert!(walker.handle().world_from_character().translation.length() < 0.01);
     let mut handle = walker.app.world_mut().get_mut::<CharacterHandle>(walker.entity).expect("it has one");
@@ -136,7 +136,7 @@ fn character_animated_by_bevy_falls_and_gets_up() {
     walker.go_limp();
     let fastest = led.iter().map(|spin| spin.length()).fold(0.0, f32::max);
     let lost = led.iter().zip(walker.spins()).map(|(led, now)| (*led - now).length()).fold(0.0, f32::max);
-    assert!(fastest > 1.0 && lost < 0.4 * fastest, "{lost} of {fastest} rad/s are lost at hand-over");
+    assert!(fastest > 1.0 && lost < 0.4 * fastest, "the hand-over loses {lost} of {fastest} rad/s");
     // The joints show the fall although the player continues.
     (0..45).for_each(|_| walker.frame());
     assert_eq!(walker.handle().state(), State::Limp);
@@ -146,7 +146,7 @@ fn character_animated_by_bevy_falls_and_gets_up() {
         let of = Quat::from_xyzw(local.rotation.x, local.rotation.y, local.rotation.z, local.rotation.w);
         assert!(shown.angle_between(of) < 1e-3);
     }
-    assert!(walker.off() > 0.3, "the joints do not show the fall");
+    assert!(walker.off() > 0.3, "the joints do not follow the fall");
     // After getting up the character shows the player's pose, including the head, which nothing has animated
     // since.
     for _ in 0..900 {
@@ -155,7 +155,7 @@ fn character_animated_by_bevy_falls_and_gets_up() {
             return;
         }
     }
-    panic!("{:?}, {} rad from its target pose", walker.handle().state(), walker.off());
+    panic!("{:?}, joints are {} rad from the target pose", walker.handle().state(), walker.off());
 }
 
 #[test]

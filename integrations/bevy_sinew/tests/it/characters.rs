@@ -147,6 +147,6 @@ fn characters_teleport_report_and_despawn() {
     run(&mut app, 1);
     let physics = physics(&app);
     let left = (physics.body_ids().count(), physics.joint_ids().count(), physics.mover_ids().count());
-    assert_eq!(left, (1, 0, 0), "something besides the ground remains");
+    assert_eq!(left, (1, 0, 0), "only the ground may remain");
     assert_eq!(physics.entity(limb), None);
 }

@@ -125,7 +125,7 @@ fn memory() -> Option<u64> {
     line.split_whitespace().nth(1)?.parse().ok()
 }
 
-/// The test runs in a process of its own, because memory is counted by process.
+/// The test runs in a separate process, because memory is counted by process.
 #[test]
 fn thousand_spawns_per_frame_do_not_leak() {
     const ALONE: &str = "SINEW_TEST_ALONE";
@@ -155,8 +155,8 @@ fn thousand_spawns_per_frame_do_not_leak() {
         }
     }
     if let (Some(warm), Some(end)) = (warm, memory()) {
-        println!("{warm} kB at frame 200, {end} kB at the end");
-        assert!(end < warm + 4000, "{warm} kB at frame 200, {end} kB at the end");
+        println!("memory: {warm} kB at frame 200, {end} kB at the end");
+        assert!(end < warm + 4000, "memory: {warm} kB at frame 200, {end} kB at the end");
     }
 }
 
@@ -190,7 +190,7 @@ fn children_follow_their_bodies() {
         let body = physics(&app).transform(id).translation;
         assert!((body - global(&app, entity)).length() < 1e-4);
     }
-    // With another parent, and with none, the body keeps its place.
+    // With another parent, and with none, the body keeps its pose.
     for parent in [Some(root), None] {
         let before = global(&app, child);
         match parent {
@@ -199,7 +199,7 @@ fn children_follow_their_bodies() {
         };
         run(&mut app, 1);
         let way = before - global(&app, child);
-        assert!(way.length() < 0.2, "it moved {way}, more than in a step's fall");
+        assert!(way.length() < 0.2, "the body moved {way}, more than a step of fall");
     }
 }
 
@@ -276,10 +276,10 @@ fn joints_and_fields_are_added_changed_and_removed() {
     let hinge = app.world_mut().spawn(hinge).id();
     run(&mut app, 120);
     let sunk = 3.0 - at(&app, bob).y;
-    assert!((sunk - math::trig::sin(0.5)).abs() < 0.02, "it is not at its limit: {sunk}");
+    assert!((sunk - math::trig::sin(0.5)).abs() < 0.02, "the slider is not at its limit: {sunk}");
     app.world_mut().get_mut::<Joint>(hinge).expect("it has one").kind = JointKind::Hinge { limit: None };
     run(&mut app, 20);
-    assert!(3.0 - at(&app, bob).y > 0.6, "it does not swing further");
+    assert!(3.0 - at(&app, bob).y > 0.6, "the pendulum does not swing further");
     let up = UniformGravity { acceleration: Vec3::Y * 20.0 };
     let field = app.world_mut().spawn(Field(FieldDef::new(FieldKind::Uniform(up)))).id();
     app.world_mut().despawn(hinge);

@@ -37,7 +37,10 @@ fn movers_have_the_same_bits_as_in_the_library() {
         assert_eq!(physics(&app).hash(), world.hash(), "step {step}");
         assert_eq!(at(&app, entity), world.mover(id).position());
     }
-    assert!(at(&app, entity).x > 4.0 && at(&app, crate_).x > 3.0, "it did not walk or push");
+    assert!(
+        at(&app, entity).x > 4.0 && at(&app, crate_).x > 3.0,
+        "the mover did not walk or did not push the crate"
+    );
 }
 
 #[test]
@@ -77,7 +80,7 @@ fn rope_attached_to_entities_is_removed_with_them() {
     assert_eq!(physics(&app).group_ids().collect::<Vec<_>>(), [id]);
     app.world_mut().despawn(hook);
     run(&mut app, 1);
-    assert_eq!(physics(&app).group_ids().count(), 0, "particles remain after their body");
+    assert_eq!(physics(&app).group_ids().count(), 0, "particles remain although their body is removed");
     app.world_mut().despawn(rope);
     run(&mut app, 1);
 }

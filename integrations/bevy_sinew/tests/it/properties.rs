@@ -118,7 +118,7 @@ fn locked_axes_hold_until_they_are_removed() {
     push(&mut app);
     run(&mut app, 60);
     assert!(up(&app) > 0.9999);
-    // A body moved by the user is locked at its new place.
+    // A body moved by the user is locked at its new position.
     app.world_mut().get_mut::<Transform>(pawn).expect("it has one").translation = Vec3::new(5.0, 0.8, 0.0);
     run(&mut app, 30);
     assert!(up(&app) > 0.9999 && at(&app, pawn).x > 4.9);
@@ -164,12 +164,12 @@ fn colliders_below_a_body_are_part_of_it() {
     run(&mut app, 120);
     let id = body(&app, table);
     assert_eq!(physics(&app).shape_ids(id).count(), 5);
-    // Two legs of 0.7 m under the middle of the plate, whose place is 0.75 m above the ground.
+    // Two legs of 0.7 m under the centre of the plate, which is 0.75 m above the ground.
     assert!((at(&app, table).y - 0.75).abs() < 0.01, "{}", at(&app, table));
     let (mass, leg_mass) = (physics(&app).mass(id).mass, 1000.0 * 0.1 * 0.7 * 0.1);
     assert!((mass - (1000.0 * 1.0 * 0.1 * 1.0 + 4.0 * leg_mass)).abs() < 0.1, "{mass}");
     assert_eq!(app.world().get::<ColliderOf>(legs[0]).map(ColliderOf::body), Some(table));
-    // A leg is shortened, one is taken off, one becomes a body.
+    // One leg is shortened, one is removed, one becomes a body.
     set(&mut app, legs[0], Collider::from(Shape::cuboid(Vec3::new(0.05, 0.3, 0.05))));
     app.world_mut().despawn(legs[1]);
     app.world_mut().entity_mut(legs[2]).insert(RigidBody::Dynamic);

@@ -1,7 +1,7 @@
 //! The examples of `bevy_sinew` in a window: `cargo run -p window -- character`.
 //!
 //! `cargo run -p window -- NAME [FILE.glb] [--picture OUT.png [--at SECONDS]]`, where NAME is `hello`, `door`, `character`, `shooter`
-//! or `crowd`. With `--picture` it writes a picture, checks that moving bodies are visible in their places, and ends.
+//! or `crowd`. With `--picture` it writes a picture, checks that moving bodies are visible at their positions, and ends.
 #![forbid(unsafe_code)]
 
 mod examples;

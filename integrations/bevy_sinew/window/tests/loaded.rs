@@ -21,7 +21,7 @@ use bevy_sinew::{
 use std::path::Path;
 use std::time::Duration;
 
-/// Largest distance of a joint's entity from its place on the body that carries it, metres: a tenth of a millimetre, for
+/// Largest distance of a joint's entity from its pose on the body that carries it, metres: a tenth of a millimetre, for
 /// rounding.
 const OFF: f32 = 1e-4;
 
@@ -107,7 +107,7 @@ impl Hero {
         self.app.world().resource::<Physics>().transform(self.handle().bodies()[0]).translation.y
     }
 
-    /// Returns the joints of the skinned mesh that bodies carry: name, pose as Bevy draws it, and place on the body.
+    /// Returns the joints of the skinned mesh that bodies carry: name, pose as Bevy draws it, and pose on the body.
     fn joints_and_bodies(&mut self) -> Vec<(String, Pose, Pose)> {
         let world = self.app.world_mut();
         let mut skins = world.query::<&SkinnedMesh>();
@@ -168,7 +168,7 @@ fn bevys_player_poses_the_character() {
         for (joint, (due, rest)) in own.rig.joints.iter().zip(due.iter().zip(own.rest())).skip(pelvis) {
             let is = rig.joints.iter().position(|of| of.name == joint.name).expect("the file has it");
             let off = pose[is].rotation.angle_to(due.rotation);
-            assert!(off < 0.01, "{time} s, {}: {off} rad", joint.name);
+            assert!(off < 0.01, "at {time} s, {}: off by {off} rad", joint.name);
             most = most.max(due.rotation.angle_to(rest.rotation));
         }
     }
@@ -189,7 +189,7 @@ fn mesh_follows_the_fall() {
         for (bone, drawn, on_body) in hero.joints_and_bodies() {
             let off = (drawn.translation - on_body.translation).length();
             let turned = drawn.rotation.angle_to(on_body.rotation);
-            assert!(off < OFF && turned < 1e-3, "frame {frame}, {bone}: {off} m, {turned} rad");
+            assert!(off < OFF && turned < 1e-3, "frame {frame}, {bone}: off by {off} m and {turned} rad");
         }
     }
     assert!(hero.height() < 0.4 * stands, "{} m of {stands}", hero.height());
@@ -208,7 +208,11 @@ fn despawn_during_a_fall_removes_everything() {
     let stands = hero.height();
     hero.go_limp();
     hero.run(25);
-    assert!((0.3 * stands..0.95 * stands).contains(&hero.height()), "it is not falling: {} m", hero.height());
+    assert!(
+        (0.3 * stands..0.95 * stands).contains(&hero.height()),
+        "the character is not falling: height {} m",
+        hero.height()
+    );
     let limbs = hero.handle().bodies().to_vec();
     let joints = hero.handle().def().rig.joints.len();
     assert!(hero.parts() > joints, "{} parts", hero.parts());
@@ -216,9 +220,9 @@ fn despawn_during_a_fall_removes_everything() {
     hero.run(3);
     let physics = hero.app.world().resource::<Physics>();
     let left = (physics.body_ids().count(), physics.joint_ids().count(), physics.mover_ids().count());
-    assert_eq!(left, (1, 0, 0), "something besides the ground remains");
+    assert_eq!(left, (1, 0, 0), "only the ground may remain");
     assert!(limbs.iter().all(|&limb| physics.entity(limb).is_none()));
-    assert_eq!((physics.len(), hero.parts()), (1, 1), "something besides the ground remains");
+    assert_eq!((physics.len(), hero.parts()), (1, 1), "only the ground may remain");
     // Bevy frees its assets once nothing uses the file any more.
     assert_eq!(hero.app.world().resource::<Assets<Mesh>>().len(), 0);
     assert_eq!(hero.app.world().resource::<Assets<Gltf>>().len(), 0);

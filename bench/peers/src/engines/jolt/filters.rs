@@ -16,7 +16,7 @@ struct Kind {
     is_static: bool,
 }
 
-/// Place of a body in a group of bodies, some pairs of which do not collide.
+/// Index of a body in a group of bodies, some pairs of which do not collide.
 #[derive(Clone)]
 struct Member {
     table: GroupFilterTable,

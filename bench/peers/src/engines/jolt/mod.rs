@@ -1,11 +1,11 @@
 //! Jolt with its defaults, through the safe crate `oxijolt`.
 //!
-//! Compared with earlier figures of Jolt 5.5.1 with link-time optimisation on a Zen 4, this Jolt 5.6.0 without it on an Intel
-//! Xeon takes about as long relative to Rapier for joints (pile of figures 0.79 of Rapier's time, then 0.72; chain 0.98, then
-//! 1.01), but longer for stacks of boxes (pyramid of 15 layers 1.40, then 0.98 to 1.10) and rays (0.9, then 0.6). This
-//! crate is not the cause: one function of Jolt takes 51 % of the pyramid's time, the velocity solver of a contact,
-//! which has new friction in 5.6, and Jolt's tree and boxes take 86 % of the rays' time. Caches are not the cause either: pyramids of 6 and 11
-//! layers have 1.43 and 1.44.
+//! Compared with earlier results of Jolt 5.5.1 with link-time optimisation on a Zen 4, this Jolt 5.6.0 without it on an
+//! Intel Xeon takes about as long relative to Rapier for joints (pile of humanoids 0.79 of Rapier's time, then 0.72;
+//! chain 0.98, then 1.01), but longer for stacks of boxes (pyramid of 15 layers 1.40, then 0.98 to 1.10) and rays (0.9,
+//! then 0.6). This crate is not the cause: one function of Jolt takes 51 % of the pyramid's time, the velocity solver
+//! of a contact, which has new friction in 5.6, and Jolt's tree and boxes take 86 % of the rays' time. Caches are not
+//! the cause either: pyramids of 6 and 11 layers have 1.43 and 1.44.
 
 mod cloth;
 mod filters;

@@ -69,7 +69,8 @@ pub struct SheetOptions<'a> {
     pub spacing: f32,
     /// Depth below the top of the mesh down to which it is held, metres; `None`: a tenth of its height.
     pub held: Option<f32>,
-    /// Most particles, at least 4: finer meshes are reduced to this number, and coarser ones not split beyond it.
+    /// Largest number of particles, at least 4: finer meshes are reduced to this number, and coarser ones are not split
+    /// beyond it.
     pub most_particles: usize,
     /// File node of the first new joint ([`Joint::source`]); the others follow.
     pub first_source: usize,
@@ -125,7 +126,7 @@ impl MeshPart {
     }
 }
 
-/// Makes a sheet of a part of a rig. Vertices in one place are merged; a finer mesh is reduced to particles no farther
+/// Makes a sheet of a part of a rig. Coinciding vertices are merged; a finer mesh is reduced to particles no farther
 /// apart than the spacing, borders first; longer edges are split. The rig gets a joint per particle, and each vertex
 /// is weighted to its own particle, or to the three of its triangle. While the new joints are not moved, the mesh
 /// follows the old ones.

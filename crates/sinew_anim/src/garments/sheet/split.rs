@@ -59,7 +59,7 @@ impl Welded {
     /// Returns the edges that are too long, the longest first.
     fn long_edges(&self, spacing: f32, hangs: impl Fn(usize) -> bool) -> Vec<Edge> {
         let mut long: BTreeMap<Edge, f32> = BTreeMap::new();
-        // Parts without area are no cloth.
+        // Parts without area do not become cloth.
         for &[a, b, c] in self.faces.iter().filter(|face| hangs(face[0]) && self.area(face) > 0.0) {
             for [from, to, tip] in [[a, b, c], [b, c, a], [c, a, b]] {
                 let length = self.length(edge(from, to));
@@ -75,7 +75,7 @@ impl Welded {
         long.into_iter().map(|(edge, _)| edge).collect()
     }
 
-    /// Adds a vertex in the middle of an edge, in the component of its first end.
+    /// Adds a vertex at the midpoint of an edge, in the component of its first end.
     fn halve(&mut self, [a, b]: Edge) -> usize {
         self.places.push((self.places[a] + self.places[b]) * 0.5);
         self.at.push((self.at[a] + self.at[b]) * 0.5);

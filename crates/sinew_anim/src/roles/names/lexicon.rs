@@ -5,7 +5,7 @@ use super::super::role::Side;
 /// Meaning of one word of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Word {
-    /// No body part: prefixes and suffixes of exporters.
+    /// Not a body part: prefixes and suffixes of exporters.
     Noise,
     Side(Side),
     /// The part nearer to the trunk, or higher in it.
@@ -13,7 +13,7 @@ pub(super) enum Word {
     Lower,
     /// The part between upper and lower: another part of the spine; in a limb, a part that humans lack.
     Mid,
-    /// The lower part before "arm"; before "leg", a part of a quadruped.
+    /// Before "arm" the lower part; before "leg" a part of a quadruped.
     Fore,
     /// Front of a quadruped; `Back` is its hind part.
     Front,

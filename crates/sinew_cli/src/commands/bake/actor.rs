@@ -17,9 +17,9 @@ pub enum GetsUpBy {
     Own,
     /// The built-in motions.
     Builtin,
-    /// No clips; holds the reason, appended to 'it does not get up: '.
+    /// No clips; contains the reason, appended to 'it does not get up: '.
     Nothing(String),
-    /// The built-in motions, none of which works on this body; holds the reason, as above.
+    /// The built-in motions, none of which works on this body; contains the reason, as above.
     Unfit(String),
 }
 

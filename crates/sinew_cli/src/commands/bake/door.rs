@@ -5,7 +5,7 @@ use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyHit, BodyKind, BodyKinds, QueryFilter, Shape, World, WorldDef};
 
-/// Number of sample positions on each side of the middle.
+/// Number of sample positions on each side of the centre.
 const PLACES: i32 = 6;
 /// Spacing of sample heights, as a share of the room's height.
 const LEVELS: u8 = 24;

@@ -22,12 +22,12 @@ struct Node {
     at: Vec3,
 }
 
-/// Returns the grounds by size, largest first, each as its positions, nearest to the middle first. `floors` returns the
+/// Returns the grounds by size, largest first, each as its positions, nearest to the centre first. `floors` returns the
 /// walkable heights below a position, down to a depth.
 pub fn grounds(bounds: &Aabb, height: f32, floors: impl Fn(Vec3, f32) -> Vec<f32>) -> Vec<Vec<Vec3>> {
     let size = bounds.max - bounds.min;
     let count = |length: f32| ((length / (CELL * height)) as usize).clamp(COLUMNS[0], COLUMNS[1]) | 1;
-    // An odd count, so that the middle of the world is on a column.
+    // An odd count, so that the centre of the world is on a column.
     let (nx, nz) = (count(size.x), count(size.z));
     let cell = Vec3::new(size.x / nx as f32, 0.0, size.z / nz as f32);
     let top = bounds.max.y + height;
@@ -106,7 +106,7 @@ fn by_size(nodes: &[Node], mut parts: Vec<Vec<usize>>) -> Vec<Vec<Vec3>> {
 mod tests {
     use super::*;
 
-    /// A field of 20 m with a hut of 4 m, whose roof is in the middle: the field is chosen.
+    /// A field of 20 m with a hut of 4 m, whose roof is at the centre: the field is chosen.
     #[test]
     fn larger_field_comes_before_the_roof() {
         let bounds = Aabb::around(Vec3::ZERO, Vec3::new(10.0, 3.0, 10.0));

@@ -5,7 +5,7 @@ use sinew::anim::{Wrap, local_to_model, rest_pose, sample::sample, skin_vertices
 use sinew::math::{Affine, Rotation, Transform, Vec3, min};
 use sinew::ragdoll::{CharacterDef, RagdollDef};
 
-/// Cosine above which a character counts as standing: its own up axis within 45° of the file's.
+/// Cosine above which a character counts as standing: the up axis of its body within 45° of the file's.
 const STANDS: f32 = 0.7;
 
 /// Number of sampled times of the looped clip besides its start: about ten per second.

@@ -111,7 +111,7 @@ impl Ground {
         !self.below(at + Vec3::Y * (0.5 * height), DEPTH).is_empty()
     }
 
-    /// Returns a flat position with free space above, near the middle of the largest walkable ground; if that has
+    /// Returns a flat position with free space above, near the centre of the largest walkable ground; if that has
     /// none, on the next one. Positions that meet more [demands](DEMANDS) are preferred.
     fn flat_place(&self, height: f32) -> Option<Vec3> {
         let bounds = self.bounds.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::splat(0.5 * height)));

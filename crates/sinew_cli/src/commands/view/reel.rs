@@ -16,7 +16,7 @@ use sinew_scenes::scenes::{CameraHint, Curve, Expected, Figure, Instance, Metric
 
 /// Pictures per second: a whole number of a GIF's hundredths of a second.
 const FPS: u32 = 20;
-/// Largest number of figures on a picture.
+/// Largest number of metrics on a picture.
 const MOST_FIGURES: usize = 3;
 /// Largest number of bodies with drawn trails; more would be indistinguishable.
 const MOST_TRAILS: usize = 4;
@@ -95,7 +95,7 @@ struct Take {
     whole: Aabb,
     /// Paths of the centres of mass so far, each with its colour.
     trails: Vec<Trail>,
-    /// Materials of each figure.
+    /// Materials of each character.
     looks: Vec<Vec<RenderMaterial>>,
 }
 
@@ -286,7 +286,7 @@ enum Moment {
     AtTheEnd,
 }
 
-/// Returns the main figures of a scene: those with a closed form, else its other measurements, never those
+/// Returns the main metrics of a scene: those with a closed form, else its other metrics, never those
 /// common to all scenes. Expectations apply at the end; before that only the satisfied ones are shown.
 fn figures(metrics: &[Metric], moment: Moment) -> Vec<String> {
     let own = &metrics[..metrics.len().saturating_sub(Instance::METRICS_OF_EVERY_SCENE)];

@@ -87,7 +87,7 @@ impl Obb {
 /// A box in the form that the formulas use.
 struct Placed<R> {
     center: Vector3<R>,
-    /// Unit directions of the sides.
+    /// Unit vectors along the box's axes.
     axes: [Vector3<R>; 3],
     half: Vector3<R>,
 }

@@ -65,7 +65,7 @@ impl<R: Real> Record<R> {
         self.inverse_vector(point - self.center)
     }
 
-    /// Unit directions of the sides.
+    /// Unit vectors along the box's axes.
     #[inline(always)]
     pub fn axes(&self) -> [Vector3<R>; 3] {
         let [x, y, z] = matrix(self.vector, self.w);

@@ -305,8 +305,8 @@ mod tests {
     use super::*;
     use sinew_math::Transform;
 
-    /// An edge parallel to a side of the face above it is under the face as a whole or not at all; a crossing edge is
-    /// clipped between the sides.
+    /// An edge that is parallel to a side of the face above it is either wholly under the face or not at all; a
+    /// crossing edge is clipped between the sides.
     #[test]
     fn an_edge_is_under_a_face_between_its_sides() {
         let placed = PlacedBox::new(Vec3::new(2.0, 0.5, 1.0), &Transform::IDENTITY);

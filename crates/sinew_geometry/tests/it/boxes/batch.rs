@@ -85,20 +85,24 @@ fn many_points_are_answered_like_one() {
         for level in Level::available() {
             let (inside, distances) = (contained(level, &of, &batch), distances(level, &of, &batch));
             for (k, &point) in points.iter().enumerate() {
-                assert_eq!(bit(&inside, k), of.contains_point(point), "{level:?}: {point} in {of:?}");
+                assert_eq!(
+                    bit(&inside, k),
+                    of.contains_point(point),
+                    "{level:?}: wrong answer for point {point} in {of:?}"
+                );
                 let (found, one) = (distances[k], of.signed_distance(point));
                 // A single box counts closer points as on the surface.
                 let is_same =
                     found.to_bits() == one.to_bits() || (found.abs() <= 1e-12 && one.abs() <= 1e-12);
-                assert!(is_same, "{level:?}: {found:e}, {one:e}: {point} and {of:?}");
+                assert!(is_same, "{level:?}: distance {found:e} in lanes, {one:e} alone: {point} and {of:?}");
             }
             let beyond = inside.last().map_or(0, |last| u32::from(*last) >> ((points.len() - 1) % 8 + 1));
-            assert_eq!(beyond, 0, "{level:?}: a point that is not there is inside");
+            assert_eq!(beyond, 0, "{level:?}: an absent point counts as inside");
         }
         held += points.iter().filter(|point| of.contains_point(**point)).count();
         asked += points.len();
     }
-    assert!((15..60).contains(&(held * 100 / asked)), "{held} of {asked} inside");
+    assert!((15..60).contains(&(held * 100 / asked)), "{held} of {asked} points are inside");
 }
 
 #[test]
@@ -110,12 +114,16 @@ fn many_pairs_are_answered_like_one() {
         let overlapping = overlapping(level, &pairs);
         let separated = separated(level, Axes::Fifteen, &pairs);
         for (k, ([a, b], found)) in boxes.iter().zip(separated.iter()).enumerate() {
-            assert_eq!(bit(&overlapping, k), a.overlaps(b), "{level:?}: {a:?} {b:?}");
+            assert_eq!(bit(&overlapping, k), a.overlaps(b), "{level:?}: wrong overlap of {a:?} and {b:?}");
             let one = Separation::between(a, b);
-            assert_eq!(found.distance.to_bits(), one.distance.to_bits(), "{level:?}: {a:?} {b:?}");
-            assert_eq!(found.axis, one.axis, "{level:?}: {a:?} {b:?}");
+            assert_eq!(
+                found.distance.to_bits(),
+                one.distance.to_bits(),
+                "{level:?}: other distance of {a:?} and {b:?}"
+            );
+            assert_eq!(found.axis, one.axis, "{level:?}: other axis of {a:?} and {b:?}");
         }
-        assert_eq!(overlapping[CASES / 8] >> 3, 0, "{level:?}: a pair that is not there overlaps");
+        assert_eq!(overlapping[CASES / 8] >> 3, 0, "{level:?}: an absent pair counts as overlapping");
     }
 }
 
@@ -133,7 +141,7 @@ fn separations_match_enumeration() {
         check(way, |shift, grow| wide_a.meets(&wide_b.moved(shift), grow), tolerances, &mut random)
             .unwrap_or_else(|what| panic!("{what}: {a:?} {b:?} {found:?}"));
         let apart = f64::from((found.distance - back.distance).abs());
-        assert!(apart <= tolerances[1], "{found:?} {back:?}: {a:?} {b:?}");
+        assert!(apart <= tolerances[1], "distances {found:?} and {back:?} of {a:?} and {b:?}");
     }
 }
 
@@ -150,7 +158,7 @@ fn face_axes_never_exceed_all_axes() {
         assert!(face.distance <= all.distance);
         edges += usize::from(face != all);
     }
-    assert!(edges > CASES / 50, "edges were better {edges} times");
+    assert!(edges > CASES / 50, "edge axes were better in only {edges} cases");
 }
 
 /// Returns two boxes in which number `index` of twenty is replaced by `value`.
@@ -193,12 +201,18 @@ fn nan_affects_only_its_own_lane() {
                         if k != lane {
                             assert_eq!(found.to_bits(), sound.to_bits());
                         } else if !is_infinite_size {
-                            assert!(found.is_nan(), "{level:?} {axes:?}: number {index} is {value}: {found}");
+                            assert!(
+                                found.is_nan(),
+                                "{level:?} {axes:?}: input {index} is {value}: distance {found}"
+                            );
                         }
                     }
                 }
                 let overlapping = overlapping(level, &pairs);
-                assert!(value.is_infinite() || !bit(&overlapping, lane), "{level:?}: number {index}");
+                assert!(
+                    value.is_infinite() || !bit(&overlapping, lane),
+                    "{level:?}: invalid input {index} counts as overlapping"
+                );
             }
         }
     }
@@ -214,7 +228,7 @@ fn a_point_with_nan_is_nowhere() {
             let points: Points = [of.center, point].into_iter().collect();
             assert_eq!(contained(level, &of, &points), [0b01]);
             let distances = distances(level, &of, &points);
-            assert!(distances[0] <= 0.0 && distances[1].is_nan(), "{level:?}: {distances:?}");
+            assert!(distances[0] <= 0.0 && distances[1].is_nan(), "{level:?}: distances {distances:?}");
         }
     }
 }

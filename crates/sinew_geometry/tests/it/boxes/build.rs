@@ -74,7 +74,7 @@ fn corners_are_numbered_by_their_sides() {
                 let off = local[axis] - side * obb.half_extents[axis];
                 assert!(
                     off.abs() <= 2e-6 + 3e-7 * obb.center.length(),
-                    "{obb:?}: corner {index} at {corner}"
+                    "{obb:?} lacks corner {index} at {corner}"
                 );
             }
         }

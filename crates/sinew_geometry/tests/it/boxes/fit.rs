@@ -110,7 +110,10 @@ fn no_box_is_much_smaller() {
         let excess = fit.volume() / searched(&points, &mut random) - 1.0;
         (worst, sum) = (worst.max(excess), sum + excess);
     }
-    println!("{count} clouds: {:.4} above the search on average, {worst:.4} at worst", sum / count as f32);
+    println!(
+        "{count} clouds: volume above the search's by {:.4} on average, {worst:.4} at most",
+        sum / count as f32
+    );
     assert!(worst < 0.06 && sum < 0.0, "{worst}, {sum}");
 }
 
@@ -181,7 +184,7 @@ fn bounds_touch_corners() {
         let obb = Obb::new(place(&mut random), random.rotation(), half_extents(1.0, &mut random));
         let (bounds, corners) = (obb.bounds(), Aabb::from_points(&obb.corners()).expect("finite points"));
         let off = (bounds.min - corners.min).length() + (bounds.max - corners.max).length();
-        assert!(off <= 2e-6 + 3e-7 * obb.center.length(), "{obb:?}: {bounds:?} {corners:?}");
+        assert!(off <= 2e-6 + 3e-7 * obb.center.length(), "{obb:?}: bounds {bounds:?}, corners {corners:?}");
         let m: Mat3 = obb.rotation.to_mat3();
         assert!((bounds.half_extents().x - (m.transpose().x_axis.abs()).dot(obb.half_extents)).abs() <= 2e-3);
     }

@@ -55,10 +55,13 @@ fn boxes_are_culled_as_their_points_are_seen() {
         let seen = frustum.sees(&obb);
         match seen {
             Visibility::Inside => {
-                assert!(lowest > -tolerance, "case {case}: {lowest} of {obb:?} {frustum:?}");
+                assert!(lowest > -tolerance, "case {case}: lowest distance {lowest} of {obb:?} {frustum:?}");
             }
             Visibility::Outside => {
-                assert!(highest < tolerance, "case {case}: {highest} of {obb:?} {frustum:?}");
+                assert!(
+                    highest < tolerance,
+                    "case {case}: highest distance {highest} of {obb:?} {frustum:?}"
+                );
             }
             Visibility::Intersects => {
                 assert!(lowest < tolerance, "case {case}: {obb:?} {frustum:?}");
@@ -70,7 +73,7 @@ fn boxes_are_culled_as_their_points_are_seen() {
     let all = cases(100_000);
     assert!(counts.iter().all(|count| count * 20 > all), "{counts:?}");
     // Sampling misses some visible points, so this is an upper bound.
-    assert!(untold * 100 < 15 * all, "{untold} of {all} are called intersecting and show no point");
+    assert!(untold * 100 < 15 * all, "{untold} of {all} boxes count as intersecting without a visible point");
 }
 
 #[test]
@@ -146,7 +149,7 @@ fn degenerate_cameras_panic() {
     ];
     for (fov_y, aspect, near, far) in bad {
         let seen = catch_unwind(|| Frustum::new(at, fov_y, aspect, near, far));
-        assert!(seen.is_err(), "{fov_y} {aspect} {near} {far}");
+        assert!(seen.is_err(), "angle {fov_y}, aspect {aspect}, near {near}, far {far}");
     }
     let corners = Frustum::new(at, core::f32::consts::FRAC_PI_2, 2.0, 1.0, 3.0).corners();
     assert!((corners[0] - Vec3::new(-2.0, -1.0, -1.0)).length() < 1e-6, "{corners:?}");

@@ -263,7 +263,7 @@ fn overlaps_move_with_the_boxes() {
             let [_, coarse] = tolerances(&WideBox::from(&a), &WideBox::from(&b), 0.0);
             assert!(
                 f64::from((here.depth - there.depth).abs()) <= 2.0 * coarse,
-                "{a:?} {b:?}: {here:?} {there:?}"
+                "{a:?} {b:?}: overlaps {here:?} and {there:?}"
             );
             compared += 1;
         }

@@ -31,24 +31,33 @@ fn check(cuboid: &impl Cuboid, wide_box: &WideBox, point: Vec3, case: u32) {
     let tolerance = 1e-6 * (wide_box.size() + distance.abs());
     let on_grid = tolerance + 2e-7 * length(wide_box.center);
     let found = cuboid.nearest_surface(point);
-    assert!((f64::from(found.distance) - distance).abs() <= tolerance, "case {case}: {found:?}, {distance}");
+    assert!(
+        (f64::from(found.distance) - distance).abs() <= tolerance,
+        "case {case}: found {found:?}, distance {distance}"
+    );
     assert_eq!(cuboid.signed_distance(point), found.distance);
     assert!((found.normal.length() - 1.0).abs() < 1e-5, "case {case}: {found:?}");
     let off = wide_box.signed_distance(wide(found.point)).abs();
-    assert!(off <= on_grid, "case {case}: {found:?} is {off} off the surface of {wide_box:?}");
+    assert!(off <= on_grid, "case {case}: {found:?} is {off} from the surface of {wide_box:?}");
     let (inside, outside) = (distance < -tolerance, distance > tolerance);
     let held = cuboid.contains_point(point);
     assert!(held || !inside, "case {case}: {point} is in {wide_box:?}");
     assert!(!held || !outside, "case {case}: {point} is not in {wide_box:?}");
     let closest = cuboid.closest_point(point);
     let apart = f64::from((closest - point).length());
-    assert!((apart - distance.max(0.0)).abs() <= on_grid, "case {case}: {closest} is {apart} from {point}");
-    assert!(wide_box.signed_distance(wide(closest)) <= on_grid, "case {case}: {closest} is in {wide_box:?}");
+    assert!(
+        (apart - distance.max(0.0)).abs() <= on_grid,
+        "case {case}: the distance from {closest} to {point} is {apart}"
+    );
+    assert!(
+        wide_box.signed_distance(wide(closest)) <= on_grid,
+        "case {case}: {closest} is outside {wide_box:?}"
+    );
     match cuboid.point_penetration(point) {
         Some(Penetration { depth, direction }) => {
             assert!(!outside && depth >= 0.0, "case {case}");
             let out = wide_box.signed_distance(wide(point + direction * depth)).abs();
-            assert!(out <= on_grid, "case {case}: the way out ends {out} off the surface");
+            assert!(out <= on_grid, "case {case}: the push-out ends {out} from the surface");
         }
         None => assert!(!inside, "case {case}"),
     }
@@ -65,7 +74,7 @@ fn points_match_the_nearest_of_six_faces() {
     }
 }
 
-/// For exact numbers the surface belongs to the box, and the next number does not.
+/// With exact coordinates a point on the surface is inside the box, and the next representable one is outside.
 #[test]
 fn the_surface_belongs_to_the_box() {
     let aabb = Aabb::new(Vec3::new(-1.0, 2.0, 4.0), Vec3::new(1.0, 4.0, 4.0));
@@ -109,6 +118,6 @@ fn answers_move_with_the_box() {
         let point = point_about(&obb, &mut random);
         let (here, there) = (obb.signed_distance(point), moved.signed_distance(motion.point(point)));
         let tolerance = 1e-6 * (scale + here.abs() + 2.0);
-        assert!((here - there).abs() <= tolerance, "case {case}: {here} and {there}");
+        assert!((here - there).abs() <= tolerance, "case {case}: distances {here} and {there}");
     }
 }

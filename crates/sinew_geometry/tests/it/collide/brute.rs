@@ -79,7 +79,7 @@ fn random_pair(ka: Kind, kb: Kind, random: &mut Random) -> (Placed, Placed) {
 
 /// Returns the gap by GJK and EPA, whose direction is also tested.
 fn way(a: &Placed, b: &Placed) -> convex::Gap {
-    convex::gap(&a.shape, &a.frame, &b.shape, &b.frame).expect("one of them has an end")
+    convex::gap(&a.shape, &a.frame, &b.shape, &b.frame).expect("one of the two shapes is bounded")
 }
 
 fn nearest(manifold: &Manifold) -> f64 {
@@ -192,7 +192,7 @@ fn points_lie_between_the_surfaces() {
     }
     let [points, off] =
         [|t: &Tally| t.points, |t: &Tally| t.off].map(|of| tallies.values().map(of).sum::<u32>());
-    assert!(off * 100 < points, "{off} of {points} points are off a surface");
+    assert!(off * 100 < points, "{off} of {points} points are not on a surface");
 }
 
 /// Number of points, and of those off a surface by more than a hundredth and by more than a twentieth of the larger
@@ -253,7 +253,7 @@ fn is_exchanged(ka: Kind, kb: Kind, size: f32, ab: &Manifold, ba: &Manifold) -> 
     Ok(())
 }
 
-/// A pair that moves as one has the moved contact.
+/// Moving both shapes together moves the contact with them.
 #[test]
 fn contacts_turn_with_the_shapes() {
     let mut other = 0;
@@ -275,5 +275,5 @@ fn contacts_turn_with_the_shapes() {
         hold((near - far).abs() < slack, context)
     });
     println!("{other} have another normal when turned");
-    assert!(other < 35 * cases(1_000), "{other} have another normal");
+    assert!(other < 35 * cases(1_000), "{other} manifolds have another normal");
 }

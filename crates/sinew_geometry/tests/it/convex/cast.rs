@@ -44,12 +44,12 @@ fn casts_stop_where_the_gap_closes() {
                 for shape in [&a, &b] {
                     let shift = if core::ptr::eq(shape, &a) { motion * hit.fraction } else { Vec3::ZERO };
                     let (off, _) = shape.shape.signed_distance(&shape.frame, hit.point - shift);
-                    assert!(off.abs() <= close, "{off} off, {close} of {size}: {}", context());
+                    assert!(off.abs() <= close, "off by {off}, bound {close}, size {size}: {}", context());
                 }
             }
         }
-        assert!(hits > cases(100_000) / 10, "{ka:?} {kb:?}: {hits} hits");
-        assert!(starts > cases(100_000) / 20, "{ka:?} {kb:?}: {starts} starts");
+        assert!(hits > cases(100_000) / 10, "{ka:?} {kb:?}: only {hits} hits");
+        assert!(starts > cases(100_000) / 20, "{ka:?} {kb:?}: only {starts} overlaps at the start");
     }
 }
 

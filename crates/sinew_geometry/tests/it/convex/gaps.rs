@@ -10,7 +10,7 @@ use sinew_geometry::convex::{Gap, gap, overlaps};
 use sinew_math::{Random, Transform, Vec3};
 
 fn ask(a: &Placed, b: &Placed) -> Gap {
-    gap(&a.shape, &a.frame, &b.shape, &b.frame).expect("one of them has an end")
+    gap(&a.shape, &a.frame, &b.shape, &b.frame).expect("one of the two shapes is bounded")
 }
 
 /// Returns the shape with some sides randomly scaled down, so that it is up to a thousand times as long as thick.
@@ -114,8 +114,8 @@ fn gaps_are_proved_by_points_and_planes() {
             deep += u32::from(found.distance <= 0.0);
             assert_eq!(overlaps(&a.shape, &a.frame, &b.shape, &b.frame), found.distance <= 0.0);
         }
-        println!("{ka:?} {kb:?}: off by {worst:.1e} of the sizes, {deep} overlap");
-        assert!(deep > cases(10_000), "{ka:?} {kb:?}: {deep} overlap");
+        println!("{ka:?} {kb:?}: error {worst:.1e} of the sizes, {deep} overlaps");
+        assert!(deep > cases(10_000), "{ka:?} {kb:?}: only {deep} overlaps");
     }
 }
 

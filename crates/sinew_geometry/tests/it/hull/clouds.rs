@@ -58,7 +58,7 @@ fn check_solid(hull: &Hull, size: f32, context: &str) {
         assert!((face.normal().length() - 1.0).abs() < 1e-6, "{context}");
         for corner in face.corners() {
             let height = face.normal().dot(hull.vertices()[corner]) - face.offset();
-            assert!(height.abs() < 1e-5 * size + 1e-6 * far, "a corner is {height} off its face: {context}");
+            assert!(height.abs() < 1e-5 * size + 1e-6 * far, "a corner is {height} from its face: {context}");
         }
         let highest = hull.vertices().iter().map(|v| v.dot(face.normal()) - face.offset()).fold(-1.0, max);
         assert!(highest <= 1e-6 * (size + far), "a corner is {highest} above a face: {context}");
@@ -90,7 +90,7 @@ fn random_clouds_have_hulls_that_hold_them() {
         let far = size + points[0].length();
         for &p in &points {
             let (distance, _) = hull.distance(p);
-            assert!(distance <= 1e-5 * size + 1e-6 * far, "{p} is {distance} outside: {context}");
+            assert!(distance <= 1e-5 * size + 1e-6 * far, "{p} is {distance} outside the hull: {context}");
         }
         for &vertex in hull.vertices() {
             let off = points.iter().map(|p| (*p - vertex).length()).fold(f32::INFINITY, f32::min);
@@ -99,7 +99,7 @@ fn random_clouds_have_hulls_that_hold_them() {
         if kind == 4 && far < 4.0 * size {
             assert_eq!((hull.vertices().len(), hull.faces().len()), (8, 6), "a box: {context}");
         }
-        let again = Hull::new(hull.vertices()).expect("a hull is a cloud with a hull");
+        let again = Hull::new(hull.vertices()).expect("the points of a hull must have a hull");
         assert!(again.volume() > (1.0 - 1e-3) * hull.volume(), "{context}");
     }
     println!("{made} hulls, {refused} clouds without one");
@@ -142,7 +142,7 @@ fn a_round_cloud_is_simplified() {
     let hull = Hull::new(&points).expect("a solid");
     check_solid(&hull, 2.0, "ball");
     let lost = points.iter().map(|&p| hull.distance(p).0).fold(0.0, max);
-    println!("{} corners, {} faces, {lost} of the radius lost", hull.vertices().len(), hull.faces().len());
+    println!("{} corners, {} faces, {lost} of the radius is lost", hull.vertices().len(), hull.faces().len());
     assert!(hull.faces().len() > 100 && lost < 0.07, "{} faces, {lost} lost", hull.faces().len());
 }
 

@@ -87,7 +87,7 @@ fn rays_and_distances_agree() {
                 assert!(shape.signed_distance(&frame, hit.point).0.abs() < 1e-5);
                 assert!(hit.normal.dot(direction) < 0.0);
             }
-            (None, Some(t)) => panic!("missed what is inside at {t}"),
+            (None, Some(t)) => panic!("the ray missed the hull although a point at {t} is inside"),
             // A ray may graze an edge between two steps.
             (Some(hit), None) => assert!(shape.signed_distance(&frame, ray.at(hit.fraction + 1e-3)).0 < 1e-3),
             (None, None) => {}
@@ -96,7 +96,7 @@ fn rays_and_distances_agree() {
         let p = frame.point(random.in_cube() * 2.0);
         let (distance, normal) = shape.signed_distance(&frame, p);
         let (on_surface, _) = shape.signed_distance(&frame, p - normal * distance);
-        assert!(on_surface.abs() < 1e-5, "{on_surface} at {distance}");
+        assert!(on_surface.abs() < 1e-5, "the hit at {distance} is {on_surface} from the surface");
         assert!(
             (shape.signed_distance(&frame, p + normal * 0.1).0 - distance - 0.1).abs() < 1e-4
                 || distance < 0.0
@@ -117,19 +117,22 @@ fn a_hull_of_box_corners_answers_as_the_box() {
         assert!((hull.min - cuboid.min).length() < 1e-6 && (hull.max - cuboid.max).length() < 1e-6);
         let plane = WaterPlane { normal: random.direction(), height: random.range(-1.0, 1.0) };
         let [hull, cuboid] = shapes.each_ref().map(|shape| shape.submerged(&frame, &plane));
-        assert!((hull.volume - cuboid.volume).abs() < 1e-5, "case {case}: {hull:?} {cuboid:?}");
+        assert!(
+            (hull.volume - cuboid.volume).abs() < 1e-5,
+            "case {case}: volume of {hull:?}, box {cuboid:?}"
+        );
         let apart = hull.center() * hull.volume - cuboid.center() * cuboid.volume;
         assert!(apart.length() < 1e-5, "case {case}: {apart}");
         let point = frame.point(random.in_cube() * 1.5);
         let [hull, cuboid] = shapes.each_ref().map(|shape| shape.signed_distance(&frame, point));
-        assert!((hull.0 - cuboid.0).abs() < 1e-5, "case {case}: {hull:?} {cuboid:?}");
+        assert!((hull.0 - cuboid.0).abs() < 1e-5, "case {case}: distance of {hull:?}, box {cuboid:?}");
         let ray = Ray::between(point, frame.point(random.in_cube() * 1.5));
         match shapes.each_ref().map(|shape| shape.cast_ray(&frame, &ray)) {
             [Some(hull), Some(cuboid)] => {
                 assert!((hull.fraction - cuboid.fraction).abs() < 1e-4, "case {case}");
             }
             [None, None] => {}
-            other => panic!("case {case}: {other:?}"),
+            other => panic!("case {case}: unexpected {other:?}"),
         }
     }
 }

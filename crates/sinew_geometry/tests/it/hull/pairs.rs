@@ -237,7 +237,7 @@ fn equals_brute_force() {
             deep += 1;
         }
     }
-    println!("{deep} deep, {apart} apart within the margin, {missing} beyond");
+    println!("{deep} overlaps, {apart} within the margin, {missing} beyond");
     assert!(deep > 10 * apart.min(20) && apart > 10);
 }
 
@@ -266,7 +266,7 @@ fn neither_order_nor_turning_matters() {
             && (nearest(&found) - nearest(&turned)).abs() < f64::from(tolerance);
         other += u32::from(!same);
     }
-    println!("{other} of {all} are other contacts when turned");
+    println!("{other} of {all} manifolds differ after a rotation");
     assert!(other * 50 <= all, "{other} of {all}");
 }
 

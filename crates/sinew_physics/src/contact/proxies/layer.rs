@@ -29,7 +29,7 @@ impl Leaf {
 pub(super) struct Layer {
     pub tree: Tree,
     pub owners: Vec<Owner>,
-    /// True for each leaf whose pairs are pending a search.
+    /// True for each leaf whose pairs must be searched.
     pub is_pending: Vec<bool>,
     /// Free leaf ranges, by length.
     pub gaps: BTreeMap<u32, Vec<u32>>,

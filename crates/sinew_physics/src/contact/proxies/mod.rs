@@ -24,7 +24,7 @@ use sinew_math::{Transform, Vec3, max, max3, min3};
 /// Number of shapes up to which a body's shapes are inserted into a tree one by one.
 const FEW: usize = 64;
 
-/// A shape of a body: indices.
+/// A shape of a body, by indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Owner {
     pub body: u32,
@@ -54,7 +54,7 @@ pub(crate) struct Proxies {
     stamp: u64,
     /// Length of the step of the last `update_motion`, seconds.
     dt: f32,
-    /// Bodies whose shapes are all pending a search.
+    /// Bodies all of whose shapes must be searched for pairs.
     dirty: Vec<u32>,
     /// Leaves of `moving` whose bounds have changed since their last search.
     enlarged: Vec<u32>,
@@ -150,7 +150,7 @@ impl Proxies {
         }
     }
 
-    /// Updates all bodies, each of which may have changed; keeps data that still matches.
+    /// Updates all bodies, any of which may have changed; keeps data that still applies.
     pub fn adopt(&mut self, bodies: &Arena<Body>) {
         for index in 0..self.homes.len() as u32 {
             let body = bodies.try_at(index);
@@ -289,7 +289,7 @@ impl Proxies {
             return;
         }
         if !home.moves && home.count as usize > FEW {
-            // It is cheaper to search from the movable bodies.
+            // With many pending shapes it is cheaper to search from the movable bodies.
             self.all_pending = true;
         }
         self.dirty.push(index);

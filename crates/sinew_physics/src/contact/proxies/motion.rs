@@ -155,7 +155,7 @@ impl Proxies {
             }
         }
         if self.dirty.len() > self.active.len() {
-            // It is cheaper to search from the movable bodies.
+            // With many pending shapes it is cheaper to search from the movable bodies.
             self.all_pending = true;
         }
         self.forget_motion(bodies);

@@ -18,7 +18,7 @@ impl Proxies {
         self.all_pending || !(self.dirty.is_empty() && self.enlarged.is_empty() && self.pending.is_empty())
     }
 
-    /// True if only shapes that left their bounds are pending.
+    /// True if the only pending shapes are those that left their bounds.
     pub fn only_enlarged(&self) -> bool {
         !self.all_pending && self.dirty.is_empty() && !self.has_gone
     }
@@ -43,9 +43,9 @@ impl Proxies {
         }
     }
 
-    /// Pairs of a pending shape and another with overlapping tree bounds, of which one can touch something and whose
-    /// kinds may collide (a kind change makes a body pending): each at least once, in unspecified order. Call
-    /// [`update_motion`](Self::update_motion) before.
+    /// Visits the pairs of a pending shape and another shape whose tree bounds overlap, if one of them can touch and
+    /// their kinds may collide (a body whose kind changes becomes pending). Each pair is visited at least once, in
+    /// unspecified order. Call [`update_motion`](Self::update_motion) first.
     pub fn search(&mut self, bodies: &Arena<Body>, mut visit: impl FnMut((Owner, Leaf), (Owner, Leaf))) {
         if self.all_pending {
             for &index in &self.active {
@@ -100,7 +100,7 @@ impl Proxies {
         let bounds = self.wide_bounds(body, owner, leaf);
         let sensing = body.surface(owner.shape as usize).sensing;
         let mut meet = |other: Owner, its: Leaf| {
-            // A pair of pending movable shapes would be found twice.
+            // The search finds a pair of pending movable shapes from both shapes; the second time it is skipped.
             let is_found = leaf.moves() && its.moves() && its.at() < leaf.at() && self.is_asking(other, its);
             let its_body = bodies.at(other.body);
             let its_sensing = its_body.surface(other.shape as usize).sensing;

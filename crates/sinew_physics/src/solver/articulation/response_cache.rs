@@ -132,7 +132,7 @@ impl ResponseCache {
         }
     }
 
-    /// Entries of a column at the places of its two bodies; zero for a body without a place.
+    /// Entries of a column for its two bodies; zero for a body without an entry.
     pub fn ends(&self, column: usize, places: [Option<usize>; 2]) -> [Vec6; 2] {
         places.map(|place| place.map_or(ZERO6, |place| self.entries[column + place]))
     }
@@ -174,7 +174,7 @@ impl ResponseCache {
         CoveredBodies::new(response, links, bodies).places
     }
 
-    /// Rate change of a row by a unit impulse of the column's row; `places` are the places of its bodies in the column.
+    /// Rate change of a row by a unit impulse of the column's row; `places` are the indices of its bodies in the column.
     pub fn answer(&self, column: usize, places: [Option<usize>; 2], row: &Row) -> f32 {
         let [a, b] = places.map(|place| place.map(|place| &self.entries[column + place]));
         a.map_or(0.0, |on_a| dot(&row.a, on_a)) + b.map_or(0.0, |on_b| dot(&row.b, on_b))
@@ -247,7 +247,7 @@ impl Kernel for Push<'_> {
     }
 }
 
-/// Adds columns in arbitrary places times the changes of their rows to velocities.
+/// Adds columns at arbitrary indices times the changes of their rows to velocities.
 struct PushAll<'a> {
     entries: &'a [Vec6],
     starts: &'a [usize],

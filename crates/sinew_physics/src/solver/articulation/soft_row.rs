@@ -33,7 +33,7 @@ impl SoftRow {
         let shown = omega2 > 0.0 && omega2 < FASTEST_SPRING;
         let implicit = (2.0 * a + omega2, 0.0);
         let (mut alpha, mut gamma) = if shown { exact_oscillator(omega2, a) } else { implicit };
-        // If a share `r` of the mass moves, the update is stable as long as `4r + 2(α − γ) > (ωh)²`: a pin that carries a figure by its
+        // If a share `r` of the mass moves, the update is stable as long as `4r + 2(α − γ) > (ωh)²`: a pin that carries a ragdoll by its
         // hand must not shake if only the hand moves. Implicit Euler is stable for any mass.
         if 4.0 * least + 2.0 * mass * (alpha - gamma) < SPRING_MARGIN * mass * omega2 {
             (alpha, gamma) = implicit;

@@ -422,7 +422,7 @@ impl IslandSolver {
 
 /// Velocity of a body as the rows use it, clamped by the largest speed and spin of bodies, m/s and rad/s.
 ///
-/// Rows extrapolate along tangents, and the tangent of a kinematic body with an extreme spin leads to places that its surface never
+/// Rows extrapolate along tangents, and the tangent of a kinematic body with an extreme spin leads to positions that its surface never
 /// reaches. A dynamic body that was given an extreme speed keeps a finite approach speed until its forces are integrated and slow it;
 /// otherwise its bounce would have no finite speed.
 fn seen_velocity(body: &Body, [max_speed, max_spin]: [f32; 2]) -> Vec6 {

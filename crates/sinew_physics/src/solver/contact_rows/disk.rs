@@ -77,7 +77,7 @@ mod tests {
                     let other = [c * most * share, s * most * share];
                     assert!(
                         found <= energy(other) + 1e-3 * (1.0 + found.abs()),
-                        "{best:?} against {other:?}"
+                        "{best:?} has more energy than {other:?}"
                     );
                 }
             }

@@ -171,10 +171,13 @@ mod tests {
                 // The proximal term allows an error of 1e-5 of the response to the change.
                 let allowed = 1e-4 * (1.0 + k[i][i] * (new[i] - old[i]).abs().max(1.0));
                 let allowed = allowed * 8.0;
-                assert!(new[i] >= 0.0 && rate > -allowed, "case {case}: row {i} {new:?} rate {rate}");
+                assert!(
+                    new[i] >= 0.0 && rate > -allowed,
+                    "case {case}: row {i}, impulses {new:?}, rate {rate}"
+                );
                 assert!(
                     new[i] == 0.0 || rate < allowed,
-                    "case {case}: row {i} pushes {new:?} while it opens at {rate}"
+                    "case {case}: row {i} has impulse {new:?} while it opens at {rate}"
                 );
             }
         }

@@ -24,7 +24,7 @@ pub(super) const fn packed(i: usize, j: usize) -> usize {
 
 /// Data of eight manifolds with up to `N` points that sweeps read and write; their responses to each other are `T = N (N + 1) / 2` numbers.
 ///
-/// Points stay at their places of the step's beginning; the lanes of a body that turns fast are rewritten. World axes,
+/// Points stay at their positions at the start of the step; the lanes of a body that turns fast are rewritten. World axes,
 /// metres, kilograms, seconds.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]

@@ -24,7 +24,7 @@ pub(super) struct Color {
 }
 
 impl<const N: usize, const T: usize> Class<N, T> {
-    /// Size of the blocks without their memory, bytes.
+    /// Size of the blocks that a sweep reads, bytes, without their stored impulses.
     pub(super) fn swept_bytes(&self) -> usize {
         self.count * size_of::<Block<N, T>>()
     }

@@ -103,8 +103,8 @@ impl Coloring {
         }
     }
 
-    /// Assigns colours from `first` on to the edges at `places`, up to the number of bits in a mask, and leaves the remaining edges.
-    /// Returns the number of colours used.
+    /// Assigns colours from `first` on to the edges `places`, up to the number of bits in a mask, and leaves the remaining edges. Returns the
+    /// number of colours used.
     fn round(&mut self, places: impl Iterator<Item = u32>, moving: usize, first: u32) -> u32 {
         let Self { edges, used, left, .. } = self;
         used.clear();
@@ -198,7 +198,7 @@ mod tests {
                 let is_fixed = edge.bodies.iter().any(|&body| body as usize >= moving);
                 assert!(
                     !is_fixed || edge.color > last_moving || last_moving == 0,
-                    "case {case}: fixed come last"
+                    "case {case}: constraints to fixed bodies must come last"
                 );
             }
         }

@@ -61,7 +61,7 @@ impl Side {
         }
     }
 
-    /// Position of the contact point between the surfaces, as a share of the separation: from the middle toward B.
+    /// Position of the contact point between the surfaces, as a share of the separation: from the midpoint toward B.
     pub fn share(self) -> f32 {
         match self {
             Self::OfA => -0.5,

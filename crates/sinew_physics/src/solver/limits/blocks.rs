@@ -37,7 +37,7 @@ struct Block {
     bodies: [[u32; WIDTH]; 2],
     /// Index of each row in the island's list of limits.
     limits: [u32; WIDTH],
-    /// Column of each row, and the places of its bodies in columns.
+    /// Column of each row, and the positions of its bodies in columns.
     columns: [usize; WIDTH],
     places: [[Option<usize>; 2]; WIDTH],
     count: usize,

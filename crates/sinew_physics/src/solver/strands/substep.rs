@@ -352,7 +352,7 @@ mod tests {
                             (&link.spin, &expected.spin, 1e-2),
                         ] {
                             let off = (take(of, lane) - take(from, 0)).length();
-                            assert!(off < most, "{count} links, lane {lane}: {off}");
+                            assert!(off < most, "{count} links, lane {lane}: off by {off}");
                         }
                     }
                 }

@@ -38,7 +38,7 @@ pub(crate) struct Firmness {
 }
 
 impl Firmness {
-    /// For contacts between bodies without joints. Nearly hard: soft contacts sink under any load, whatever the bodies' own mass,
+    /// For contacts between bodies without joints. Nearly hard: soft contacts sink under any load, for any mass of the bodies,
     /// and a tower of 18 levels fell.
     pub const FREE: Self = Self { softness: 1e-3, bias: 1.0, push_speed: 3.0 };
     /// For contacts of jointed bodies. A body on the edge of a foot must sink in slightly; otherwise it never comes to rest. Overlap
@@ -64,7 +64,7 @@ pub(in crate::solver) enum Order {
 }
 
 /// Sweep policy for islands with joints that are swept with the response of all links. Changes soon become negligible: a quarter
-/// of all passes of falling figures went through all 24 sweeps for a thousandth of the first one's energy.
+/// of all passes of falling ragdolls went through all 24 sweeps for a thousandth of the first one's energy.
 pub(super) const JOINTED: SweepPolicy = SweepPolicy {
     solve: 24,
     relax: 24,

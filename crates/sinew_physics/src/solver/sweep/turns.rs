@@ -1,4 +1,4 @@
-//! Sweeps by turns, for heaps of figures: each visits limits with the exact response of their trees, then all blocks of contacts with the
+//! Sweeps by turns, for heaps of ragdolls: each visits limits with the exact response of their trees, then all blocks of contacts with the
 //! bodies' own masses, then solves the trees exactly with the impulses of both.
 //!
 //! Each of the three lowers the energy of the error (block Gauss-Seidel on the impulses of limits, contacts and joints), and conjugate steps

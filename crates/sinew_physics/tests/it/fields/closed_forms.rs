@@ -29,7 +29,7 @@ pub fn particle(mass: f32, radius: f32, position: Vec3) -> GroupDef {
 
 pub fn close(found: f32, expected: f32, share: f32, what: &str) {
     let off = (found / expected - 1.0).abs();
-    assert!(off <= share, "{what}: {found} for {expected}, off by {off:e}");
+    assert!(off <= share, "{what}: {found}, expected {expected}, relative error {off:e}");
 }
 
 #[test]
@@ -89,11 +89,11 @@ fn masses_of_stars_do_not_overflow() {
     let field = world.add_field(&FieldDef::new(FieldKind::Mutual(MutualGravity::default())));
     let (on_sun, on_earth) = (world.field_force(field, sun).force, world.field_force(field, earth).force);
     close(on_earth.x, -3.542e22, 1e-3, "the book's figure, N");
-    assert_eq!(on_sun, -on_earth, "equal and opposite, bit for bit");
+    assert_eq!(on_sun, -on_earth, "forces must be equal and opposite, bit for bit");
     run(&mut world, 24);
     close(world.velocity(earth).linear.x, -5.931e-3 * 86_400.0, 1e-2, "falls for a day");
     let p = world.momentum().linear.x.abs() / (5.972e24 * 512.0);
-    assert!(p < 1e-5, "momentum {p} of the Earth's");
+    assert!(p < 1e-5, "momentum {p} of the Earth's momentum");
 }
 
 #[test]
@@ -120,9 +120,9 @@ fn mutual_gravity_is_equal_and_opposite() {
     let drift = (after.linear - before.linear).length();
     assert!(drift < 80.0 * 1e-5, "momentum drifts by {drift} N·s");
     let drift = (after.angular - before.angular).length();
-    assert!(drift < 5e-3, "angular momentum drifts by {drift} N·m·s of {}", before.angular.length());
-    close(now.total(), energy.total(), 0.05, "energy, close encounters included");
-    assert!((now.kinetic / energy.kinetic - 1.0).abs() > 0.1, "they did move each other");
+    assert!(drift < 5e-3, "angular momentum drifts by {drift} of {} N·m·s", before.angular.length());
+    close(now.total(), energy.total(), 0.05, "energy, including close encounters");
+    assert!((now.kinetic / energy.kinetic - 1.0).abs() > 0.1, "the bodies must exchange kinetic energy");
 }
 
 #[test]
@@ -204,7 +204,7 @@ fn a_tilted_plate_gets_lift() {
     let pressure = 0.5 * 1.2 * 100.0;
     close(force.x, pressure * cos, 1e-4, "drag");
     close(force.y, -pressure * 0.8 * cos * sin, 1e-4, "lift");
-    assert!(torque.length() < 1e-3, "its middle bears it: {torque}");
+    assert!(torque.length() < 1e-3, "the torque about the centre must vanish; it is {torque}");
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn gusts_are_smooth_bounded_and_seeded() {
     let (mean, deviation) = (sum.length() / count as f32, (square / count as f32).sqrt());
     assert!(mean < 0.3, "mean {mean}");
     assert!((0.28..0.36).contains(&(deviation / 4.0)), "deviation {deviation}");
-    assert!(step < 0.4, "jumps by {step} m/s within 2 cm and 5 ms");
+    assert!(step < 0.4, "the velocity jumps by {step} m/s within 2 cm and 5 ms");
     let place = Vec3::new(1.3, 0.2, 0.9);
     assert_eq!(wind(1).at(place, 123_456), wind(1).at(place, 123_456));
     assert_ne!(wind(1).at(place, 123_456), wind(2).at(place, 123_456));

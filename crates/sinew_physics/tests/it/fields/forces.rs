@@ -24,7 +24,7 @@ fn a_lasting_force_equals_a_force_each_step() {
     assert_eq!(lasting.velocity(a).angular, Vec3::ZERO);
     lasting.set_force(id, &ForceDef { force: -force, ..ForceDef::default() });
     run(&mut lasting, 60);
-    assert!(lasting.velocity(a).linear.length() < 1e-4, "the opposite push stops it");
+    assert!(lasting.velocity(a).linear.length() < 1e-4, "the opposite force must stop the body");
     lasting.remove_force(id);
     let before = lasting.velocity(a);
     run(&mut lasting, 10);
@@ -92,7 +92,7 @@ fn a_bullet_leaves_its_momentum() {
     assert!((after.linear - expected).length() < 1e-5, "{after:?}");
     assert_eq!(after.angular, Vec3::ZERO);
     let total = after.linear * 2.01;
-    assert!((total - (Vec3::Y * 2.0 + velocity * 0.01)).length() < 1e-4, "momentum with the bullet's");
+    assert!((total - (Vec3::Y * 2.0 + velocity * 0.01)).length() < 1e-4, "momentum with the bullet's share");
     assert!((impulse - (expected - Vec3::Y) * 2.0).length() < 1e-4);
 }
 

@@ -59,7 +59,10 @@ fn sheet_force_follows_normal_speed_squared() {
             let force = blown(angle, wind(Vec3::NEG_Y * (8.0 * down)));
             close(force.length(), 0.5 * 1.2 * 1.3 * 64.0 * cos * cos, 1e-4, "pressure");
             let normal = Vec3::new(-sin, cos, 0.0) * (if cos < 0.0 { -down } else { down });
-            assert!((force.normalize() + normal).length() < 1e-4, "{degrees}°: {force} along {normal}");
+            assert!(
+                (force.normalize() + normal).length() < 1e-4,
+                "{degrees}°: force {force}, expected along {normal}"
+            );
         }
     }
     assert!(blown(90f32.to_radians(), wind(Vec3::Y * 8.0)).length() < 1e-6, "it slides along it");

@@ -154,7 +154,7 @@ fn fields_wake_and_keep_awake() {
     world.set_field(field, &FieldDef::new(up));
     assert!(world.is_awake(id), "reached now");
     run(&mut world, 120);
-    assert!(!world.is_awake(id), "a steady field lets it sleep");
+    assert!(!world.is_awake(id), "a steady field must let the body sleep");
     world.remove_field(field);
     assert!(world.is_awake(id), "it was reached");
     let gusts = Some(Gusts { speed: 1.0, length: 1.0, time: 1.0, seed: 1 });
@@ -175,11 +175,11 @@ fn attracting_bodies_sleep_and_wake_together() {
     run(&mut world, 120);
     assert!(!world.is_awake(id) && !world.is_awake(other));
     world.wake(other);
-    assert!(world.is_awake(id), "they fell asleep as one");
+    assert!(world.is_awake(id), "bodies that attract each other must be one island");
     run(&mut world, 120);
     let third = world.add_body(&box_body(Vec3::splat(0.2), Vec3::new(0.0, 0.2, 3.0)));
     world.step();
-    assert!(world.is_awake(id) && world.is_awake(third), "a new body wakes those it attracts");
+    assert!(world.is_awake(id) && world.is_awake(third), "a new body must wake those that it attracts");
 }
 
 #[test]

@@ -47,7 +47,7 @@ fn a_state_comes_back_in_another_world_with_the_library() {
     (0..60).for_each(|_| world.step());
     let (state, shapes) = (saved(&world), library(&world));
     let corners = &shapes[shapes.len() / 2..][..48];
-    assert!(!state.windows(corners.len()).any(|bytes| bytes == corners), "shapes are no part of the state");
+    assert!(!state.windows(corners.len()).any(|bytes| bytes == corners), "the state must not contain shapes");
     let mut other = World::new(WorldDef::default());
     let unknown = other.load(&mut Reader::new(&state)).expect_err("it has no shapes");
     assert!(matches!(unknown, LoadError::UnknownShape { kind: DataKind::Hull, .. }), "{unknown}");
@@ -112,5 +112,5 @@ fn damaged_shape_libraries_give_errors() {
             }
         }
     }
-    assert!(errors > 2 * bytes.len(), "{errors} of {} are errors", 3 * bytes.len());
+    assert!(errors > 2 * bytes.len(), "{errors} of {} mutations are errors", 3 * bytes.len());
 }

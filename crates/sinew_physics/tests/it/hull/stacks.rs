@@ -37,8 +37,8 @@ fn small_props_are_as_solid_as_crates() {
         for shape in [Shape::Box { half_extents: Vec3::splat(half) }, box_hull(Vec3::splat(half))] {
             let (sunk, drift, asleep) = stack(&shape, half);
             println!("{half}: sunk {sunk}, drift {drift}, {asleep} asleep");
-            assert!(sunk < 0.08, "{half}: sunk by {sunk} of the half side");
-            assert!(drift < 0.02, "{half}: moved by {drift} of the half side");
+            assert!(sunk < 0.08, "half side {half}: sunk by {sunk} half sides");
+            assert!(drift < 0.02, "half side {half}: moved by {drift} half sides");
             assert_eq!(asleep, 5, "{half}");
         }
     }

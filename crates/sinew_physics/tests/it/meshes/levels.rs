@@ -97,8 +97,8 @@ fn a_ramp_lifts_sliding_bodies() {
             }
             let what = format!("{slider:?} up {degrees}° at {speed} m/s");
             println!("{what}: lowest {lowest}, energy {energy}");
-            assert!(lowest > 0.08, "{what}: {lowest} over the ramp");
-            assert!(energy < 1.01, "{what}: {energy} of its energy");
+            assert!(lowest > 0.08, "{what}: lowest point {lowest} m above the ramp");
+            assert!(energy < 1.01, "{what}: {energy} times its initial energy");
         }
     }
 }
@@ -133,7 +133,7 @@ fn fast_bodies_do_not_pass() {
         world.step();
         for (id, shape) in &bodies {
             let y = world.center_of_mass(*id).y;
-            assert!(y > 0.0, "{shape:?} at {y} after {step} steps");
+            assert!(y > 0.0, "{shape:?} at height {y} after {step} steps");
         }
     }
 }
@@ -165,7 +165,7 @@ fn a_ball_swings_in_a_bowl() {
     let expected = core::f32::consts::TAU * (arm / 9.81).sqrt() * (1.0 + amplitude * amplitude / 16.0);
     let period = (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f32;
     println!("period {period} for {expected}, off the bowl by {off}");
-    assert!((period / expected - 1.0).abs() < 0.01, "{period} for {expected}");
+    assert!((period / expected - 1.0).abs() < 0.01, "period {period} s, expected {expected} s");
     assert!(off < 3e-3, "{off} off the bowl");
 }
 
@@ -186,7 +186,7 @@ fn events_report_a_pair_once() {
         ended += world.events().end.len();
     }
     // The ball may leave once, when it bounces.
-    assert!(begun == ended + 1 && begun <= 2, "{begun} begun, {ended} ended");
+    assert!(begun == ended + 1 && begun <= 2, "{begun} contacts begun, {ended} ended");
     let p = world.center_of_mass(id);
     assert!((p - Vec3::splat(0.2)).length() < 0.02, "in the corner: {p}");
     world.set_velocity(id, Velocity { linear: Vec3::splat(4.0), ..Velocity::default() });
@@ -318,7 +318,7 @@ fn particles_rest_on_a_mesh_and_slide_down_it() {
         assert!((over - 0.05).abs() < 1e-3, "{over} over the slope");
     }
     let slid = world.particles(slick).velocities()[0];
-    assert!(slid.x < -0.5, "it slides down: {slid}");
+    assert!(slid.x < -0.5, "the body must slide down; it moved {slid}");
     // The triangles do not stop the particle from below.
     assert!(world.particles(under).positions()[0].y < -5.0);
 }

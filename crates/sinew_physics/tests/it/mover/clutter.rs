@@ -93,13 +93,16 @@ fn random_walks_in_clutter_are_never_inside_and_never_through() {
                 let now = world.mover(id).center();
                 let deep = depth(&world, id);
                 deepest = if deep > deepest { deep } else { deepest };
-                assert!(deep < 1e-4, "{deep} m inside at {now}");
+                assert!(deep < 1e-4, "{deep} m inside an obstacle at {now}");
                 assert!(now.x.abs() < ROOM && now.z.abs() < ROOM && now.y > 0.89, "it got out: {now}");
                 // A step up passes over a corner: up, then along.
                 let over = before + Vec3::Y * 0.4;
                 let along = |from: Vec3| world.query().any(&Ray { origin: from, direction: now - from });
                 let slides = (now - before).length() < 0.25;
-                assert!(slides || !along(before) || !along(over), "it went through from {before} to {now}");
+                assert!(
+                    slides || !along(before) || !along(over),
+                    "the mover passed through a wall from {before} to {now}"
+                );
             }
             world.remove_mover(id);
         }
@@ -148,6 +151,6 @@ fn movers_are_never_stuck_where_there_is_room() {
             world.remove_mover(id);
         }
     }
-    assert!(tried > 100, "only {tried} ways were free");
+    assert!(tried > 100, "only {tried} paths were free");
     assert_eq!(stuck, 0, "of {tried}");
 }

@@ -32,18 +32,26 @@ fn stairs_are_climbed_and_descended_without_leaving_the_ground() {
                 let mover = world.mover(id);
                 assert!(
                     mover.is_grounded(),
-                    "{rise} m at {speed} m/s: off the ground at {}",
+                    "steps of {rise} m at {speed} m/s: not grounded at {}",
                     mover.position()
                 );
-                assert_eq!(depth(&world, id), 0.0, "{rise} m at {speed} m/s: {}", mover.position());
+                assert_eq!(
+                    depth(&world, id),
+                    0.0,
+                    "steps of {rise} m at {speed} m/s: inside the steps at {}",
+                    mover.position()
+                );
                 highest = if mover.position().y > highest { mover.position().y } else { highest };
                 let gone = mover.position().x - before;
                 slowest = if gone < slowest { gone } else { slowest };
             }
             let at = world.mover(id).position();
-            assert!(highest > rise * 11.9, "{rise} m at {speed} m/s: only {highest} m high, at {at}");
-            assert!(at.x > end && at.y < 0.01, "{rise} m at {speed} m/s: {at}");
-            assert!(slowest > -1e-3, "{rise} m at {speed} m/s: it was thrown back by {slowest} m");
+            assert!(
+                highest > rise * 11.9,
+                "steps of {rise} m at {speed} m/s: highest point only {highest} m, at {at}"
+            );
+            assert!(at.x > end && at.y < 0.01, "steps of {rise} m at {speed} m/s: the end is at {at}");
+            assert!(slowest > -1e-3, "steps of {rise} m at {speed} m/s: thrown back by {slowest} m");
         }
     }
 }
@@ -63,7 +71,7 @@ fn edges_above_the_step_height_are_walls() {
                 world.step();
             }
             let at = world.mover(id).position();
-            assert_eq!(at.x > 2.5, climbs, "{height} m at {speed} m/s: {at}");
+            assert_eq!(at.x > 2.5, climbs, "a step of {height} m at {speed} m/s: the end is at {at}");
         }
     }
 }
@@ -86,7 +94,7 @@ fn a_mover_off_a_ledge_falls_freely() {
         if !world.mover(id).is_grounded() {
             let t = steps as f32 * dt;
             let fallen = from.y - world.mover(id).position().y;
-            assert!((fallen - 4.905 * t * t).abs() < 0.01 + 1e-3 * fallen, "{fallen} m after {t} s");
+            assert!((fallen - 4.905 * t * t).abs() < 0.01 + 1e-3 * fallen, "fell {fallen} m in {t} s");
         }
         assert!(steps < 200);
     }
@@ -134,13 +142,13 @@ fn a_mover_grows_only_where_there_is_room() {
     for _ in 0..120 {
         world.step();
     }
-    assert!(world.mover(id).position().x < 2.0, "upright it does not fit under");
+    assert!(world.mover(id).position().x < 2.0, "an upright mover must not fit under the roof");
     assert!(world.set_mover_height(id, 1.0));
     while world.mover(id).position().x < 3.0 {
         world.step();
         assert!(world.step_count() < 600);
     }
-    assert!(!world.set_mover_height(id, 1.8), "there is no room under the roof");
+    assert!(!world.set_mover_height(id, 1.8), "there is no room to stand up under the roof");
     assert!(world.mover(id).def().height == 1.0 && depth(&world, id) == 0.0);
     while world.mover(id).position().x < 5.0 {
         world.step();

@@ -29,7 +29,7 @@ fn push_force_bounds_what_a_mover_moves() {
         assert_eq!(at.x > 2.0, moves, "{mass} kg: {at}");
         assert!(moves || at.x < 1.6, "{mass} kg: {at}");
         let behind = at.x - 0.4 - 0.3 - world.mover(id).position().x;
-        assert!((-0.002..0.08).contains(&behind), "{mass} kg: it is {behind} m behind");
+        assert!((-0.002..0.08).contains(&behind), "a crate of {mass} kg: the mover is {behind} m behind it");
     }
 }
 
@@ -55,7 +55,10 @@ fn a_heavy_ball_pushes_a_mover_by_momentum() {
         let momentum = 200.0 * after + 80.0 * world.mover(id).velocity().x;
         assert!((momentum - 200.0 * speed).abs() < 0.01 * 200.0 * speed, "{momentum} of {}", 200.0 * speed);
         let common = 200.0 / 280.0 * speed;
-        assert!((fastest - common).abs() < 0.05 * common, "{speed} m/s: {fastest} of {common}");
+        assert!(
+            (fastest - common).abs() < 0.05 * common,
+            "{speed} m/s: fastest {fastest}, common speed {common}"
+        );
     }
 }
 
@@ -138,8 +141,11 @@ fn flying_bodies_pass_a_mover_that_lets_them() {
         (world.velocity(ball).linear.x, world.mover(id).position().length())
     };
     let (speed, moved) = after(60.0, 0.5);
-    assert!(speed == 20.0 && moved < 0.01, "it has gone through at {speed} m/s, the mover stands at {moved}");
-    assert!(after(0.0, 0.5).0 < 1.0 && after(60.0, 5.0).0 < 19.0, "else, and if it is heavy, it is stopped");
+    assert!(speed == 20.0 && moved < 0.01, "the ball passed at {speed} m/s, the mover moved {moved} m");
+    assert!(
+        after(0.0, 0.5).0 < 1.0 && after(60.0, 5.0).0 < 19.0,
+        "a ball with more momentum than `lets_pass` must be slowed"
+    );
 }
 
 /// A door of 16 kg at 3 m/s at its centre has less momentum than the mover lets pass; on its hinge it does not pass.
@@ -171,12 +177,12 @@ fn a_hinged_door_never_passes_a_mover() {
         (deepest, farthest, world.mover(id).position().z)
     };
     let (deepest, farthest, moved) = swing(true);
-    assert!(deepest < 0.005, "the leaf is {deepest} m inside of the mover");
+    assert!(deepest < 0.005, "the door leaf is {deepest} m inside the mover");
     // Without the mover, the centre of the door would swing to -0.45 m.
-    assert!((-0.85..-0.46).contains(&farthest), "the leaf comes as far as {farthest} m");
-    assert!(moved > 0.01, "it pushes the mover by {moved} m");
+    assert!((-0.85..-0.46).contains(&farthest), "the door leaf reaches {farthest} m");
+    assert!(moved > 0.01, "the leaf must push the mover; it moved {moved} m");
     let (deepest, ..) = swing(false);
-    assert!(deepest > 0.05, "let loose it flies into the mover: {deepest} m");
+    assert!(deepest > 0.05, "a released leaf must enter the mover; depth {deepest} m");
 }
 
 #[test]
@@ -193,7 +199,10 @@ fn the_work_of_a_push_is_reported() {
     }
     let (way, speed) = (world.transform(load).translation.x, world.velocity(load).linear.length());
     let expected = 30.0 * (0.6 * 9.81 * way + 0.5 * speed * speed);
-    assert!(way > 1.0 && (work / expected - 1.0).abs() < 0.05, "{work} J for {expected} over {way} m");
+    assert!(
+        way > 1.0 && (work / expected - 1.0).abs() < 0.05,
+        "work {work} J over {way} m, expected {expected} J"
+    );
 }
 
 /// The energy of a seesaw rises by the work of the mover's weight.
@@ -217,7 +226,10 @@ fn the_work_of_a_movers_weight_is_reported() {
         rise = now.kinetic - start.kinetic + now.potential - start.potential;
         // The first substep already moves at the speed at its end.
         let late = 0.3 * work / step as f32;
-        assert!(rise < work + 0.1 && work < rise + late + 0.1, "{rise} J more by {work} J in step {step}");
+        assert!(
+            rise < work + 0.1 && work < rise + late + 0.1,
+            "step {step}: the energy rose by {rise} J, work {work} J"
+        );
     }
     assert!(rise > 20.0, "it tipped: {rise} J");
 }

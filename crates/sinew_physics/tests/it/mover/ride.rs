@@ -26,7 +26,11 @@ fn a_lift_carries_a_mover() {
         world.set_velocity(lift, Velocity { linear: Vec3::Y * speed, angular: Vec3::ZERO });
         world.step();
         assert!(world.mover(id).is_grounded(), "in step {step}");
-        assert!((over(&world) - start).length() < 1e-3, "in step {step}: {} from {start}", over(&world));
+        assert!(
+            (over(&world) - start).length() < 1e-3,
+            "step {step}: at {}, at the start {start}",
+            over(&world)
+        );
         assert_eq!(depth(&world, id), 0.0);
         assert!((world.mover(id).velocity().y - speed).abs() < 1e-4);
     }
@@ -51,7 +55,10 @@ fn a_jump_from_a_lift_adds_its_velocity() {
             let linear = Vec3::new(side, speed, 0.0) * share;
             world.set_velocity(lift, Velocity { linear, angular: Vec3::ZERO });
             if step == 240 {
-                assert!(world.mover(id).is_grounded(), "case {case}: it rides at {speed} m/s");
+                assert!(
+                    world.mover(id).is_grounded(),
+                    "case {case}: not grounded on a platform at {speed} m/s"
+                );
                 world.mover_jump(id, jump);
             }
             world.step();
@@ -65,12 +72,15 @@ fn a_jump_from_a_lift_adds_its_velocity() {
         }
         let (g, dt) = (9.81, world.def().dt());
         let expected = Vec3::new(side, speed + jump - g * dt, 0.0);
-        assert!((left - expected).length() < 1e-3, "case {case}: {left} for {expected}");
+        assert!(
+            (left - expected).length() < 1e-3,
+            "case {case}: left with velocity {left}, expected {expected}"
+        );
         // The apex may be half a step away from the nearest step.
         let rise = jump * jump / (2.0 * g);
         assert!(
             (apex - rise).abs() < 2e-3 + 0.01 * rise,
-            "case {case}: {jump} m/s at {speed}: {apex} for {rise}"
+            "case {case}: a jump at {jump} m/s from {speed} m/s: apex {apex} m, expected {rise} m"
         );
     }
 }
@@ -90,7 +100,7 @@ fn a_turntable_carries_and_turns_a_mover() {
     for step in 0..1200 {
         world.step();
         assert!(world.mover(id).is_grounded(), "in step {step}");
-        assert!((on(&world) - start).length() < 1e-3, "in step {step}: {} from {start}", on(&world));
+        assert!((on(&world) - start).length() < 1e-3, "step {step}: at {}, at the start {start}", on(&world));
     }
     let turned = world.mover(id).yaw() - yaw;
     assert!((turned - 1.5 * 1200.0 * world.def().dt()).abs() < 1e-3, "it turned by {turned}");
@@ -225,7 +235,10 @@ fn a_support_pulled_away_slips_under_a_mover() {
         let mover = world.mover(id);
         yaw = sinew_math::max(yaw, mover.yaw().abs());
         let went = (mover.position() - start) * Vec3::new(1.0, 0.0, 1.0);
-        assert!(went.length() < 0.05 && mover.velocity().length() < 1.0, "in step {step}: it went {went}");
+        assert!(
+            went.length() < 0.05 && mover.velocity().length() < 1.0,
+            "step {step}: the mover moved {went}"
+        );
     }
-    assert!(yaw < 0.05, "it was turned by {yaw} rad");
+    assert!(yaw < 0.05, "the platform rotated the mover by {yaw} rad");
 }

@@ -75,14 +75,20 @@ fn wedges_hold_a_mover_still() {
             for _ in 0..120 {
                 world.step();
                 let now = world.mover(id).position();
-                assert!((now - last).length() < 1e-4, "{degrees}° {aside}: it jumps from {last} to {now}");
+                assert!(
+                    (now - last).length() < 1e-4,
+                    "{degrees}° {aside}: the mover jumps from {last} to {now}"
+                );
                 assert_eq!(depth(&world, id), 0.0, "{degrees}° {aside}");
                 last = now;
             }
             // Position at which a capsule and its skin just fit.
             let deepest = -0.3 / sin(half);
-            assert!(last.x < deepest + 1e-3, "{degrees}° {aside}: {last} beyond {deepest}");
-            assert!(last.x > deepest - 0.02 / sin(half), "{degrees}° {aside}: {last} before {deepest}");
+            assert!(last.x < deepest + 1e-3, "{degrees}° {aside}: {last} is beyond the corner at {deepest}");
+            assert!(
+                last.x > deepest - 0.02 / sin(half),
+                "{degrees}° {aside}: {last} is short of the corner at {deepest}"
+            );
         }
     }
 }
@@ -145,7 +151,7 @@ fn a_mover_does_not_catch_on_mesh_seams() {
         let now = world.mover(id).position();
         assert!(
             (now.x - last.x - 3.0 * world.def().dt()).abs() < 2e-3,
-            "the mover got stuck at {now} from {last}"
+            "the mover is stuck at {now}, from {last}"
         );
         assert!((now.y - last.y).abs() < 1e-3 && world.mover(id).is_grounded(), "it hops at {now}");
         last = now;
@@ -181,7 +187,7 @@ fn thin_walls_stop_a_mover_at_50_metres_a_second() {
             for _ in 0..60 {
                 world.step();
                 let far = world.mover(id).position().dot(way);
-                assert!(far < 6.71, "at {far} in direction {way}, triangles {triangles}");
+                assert!(far < 6.71, "distance {far} in direction {way}, triangles {triangles}");
                 assert_eq!(depth(&world, id), 0.0);
             }
             assert!(world.mover(id).position().dot(way) > 6.65);
@@ -208,7 +214,7 @@ fn a_slope_is_walked_on_up_to_the_limit_and_slid_down_beyond_it() {
         let at = world.mover(id).position();
         let seconds = 180.0 * world.def().dt();
         if walks {
-            assert!((at.x - (2.0 * seconds - 2.0)).abs() < 0.15, "{degrees}°: {at} {seconds}");
+            assert!((at.x - (2.0 * seconds - 2.0)).abs() < 0.15, "{degrees}°: at {at} after {seconds} s");
             assert!(world.mover(id).is_grounded() && at.y > 2.0 * sin(angle), "{degrees}°: {at}");
             let ground = world.mover_ground(id).expect("it stands");
             assert!((ground.normal - up).length() < 1e-3, "{degrees}°: {}", ground.normal);
@@ -223,7 +229,7 @@ fn a_slope_is_walked_on_up_to_the_limit_and_slid_down_beyond_it() {
             }
             assert!((world.mover(id).position() - stood).length() < 1e-4, "{degrees}°");
         } else {
-            assert!(at.y < 0.4 && at.x < 0.8, "{degrees}°: it climbed to {at}");
+            assert!(at.y < 0.4 && at.x < 0.8, "{degrees}°: the mover climbed to {at}");
             // Dropped from above, the mover moves down to the floor.
             world.set_mover_walk(id, Vec3::ZERO);
             world.set_mover_position(id, along * 4.0 + up * 0.2);

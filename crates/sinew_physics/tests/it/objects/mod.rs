@@ -86,7 +86,7 @@ fn a_force_acts_substep_by_substep() {
         world.step();
         let expected = ((f64::from(step * 4) + 0.5) * theta).cos() / (0.5 * theta).cos();
         let x = f64::from(world.transform(body).translation.x);
-        assert!((x - expected).abs() < 2e-4, "step {step}: {x} for {expected}");
+        assert!((x - expected).abs() < 2e-4, "step {step}: {x}, expected {expected}");
     }
 }
 
@@ -173,11 +173,11 @@ fn a_leash_is_a_pendulum() {
         }
         before = at.x;
     }
-    assert!(error < 1e-5, "its length is off by {error} m");
+    assert!(error < 1e-5, "the length is off by {error} m");
     let period = (passes[passes.len() - 1] - passes[0]) / (passes.len() - 1) as f32;
     // Mass on a thread: 2π √(l/g) (1 + θ²/16).
     let expected = core::f32::consts::TAU * (1.0f32 / 9.81).sqrt() * (1.0 + amplitude * amplitude / 16.0);
-    assert!((period / expected - 1.0).abs() < 1e-3, "{period} s for {expected} s");
+    assert!((period / expected - 1.0).abs() < 1e-3, "period {period} s, expected {expected} s");
 }
 
 #[test]
@@ -200,7 +200,7 @@ fn corrections_act_through_joints() {
         off = max(off, ((world.center_of_mass(last) - place).length() - length).abs());
         gap = joints.iter().fold(gap, |gap, &joint| max(gap, world.joint_gap(joint)));
     }
-    assert!(off < 1e-3 && gap < 1e-3, "off by {off} m, joints by {gap} m");
+    assert!(off < 1e-3 && gap < 1e-3, "the tether is off by {off} m, the joints by {gap} m");
 }
 
 #[test]
@@ -239,7 +239,7 @@ fn particles_rest_on_an_obstacle_of_the_users_own() {
             nearest = sinew_math::min(nearest, at.length());
         }
     }
-    assert!(nearest > 0.52 - 1e-5, "none was inside: {nearest} m");
+    assert!(nearest > 0.52 - 1e-5, "no particle may be inside; nearest {nearest} m");
     // The middle particle rests on top, the others slide down.
     let middle = world.particles(group).positions()[4];
     assert!((middle - Vec3::Y * 0.52).length() < 1e-3, "{middle}");
@@ -266,7 +266,7 @@ fn only_a_push_of_an_object_wakes() {
     assert!(!world.is_awake(body), "nothing wakes nobody");
     act_once(&mut world, move |forces| forces.apply_force_at_center(body, Vec3::X));
     assert!(world.is_awake(body) && world.transform(body) == rest);
-    assert_eq!(world.velocity(body), Velocity::default(), "a force counts from the next step on");
+    assert_eq!(world.velocity(body), Velocity::default(), "a force must act from the next step on");
     asleep(&mut world);
     let mass = world.mass(body).mass;
     act_once(&mut world, move |forces| forces.apply_impulse(body, Vec3::Y * mass, rest.translation));

@@ -42,7 +42,7 @@ fn threads_do_not_matter() {
         let mut world = inhabited();
         for (step, hash) in hashes.iter().enumerate() {
             world.step_with(&Threads::new(threads), &NoProfiler);
-            assert_eq!(world.hash(), *hash, "{threads} threads, step {step}");
+            assert_eq!(world.hash(), *hash, "{threads} threads, step {step}: other hash");
         }
     }
 }
@@ -76,10 +76,10 @@ fn reset_is_exact() {
     assert!(first.0 != removed);
     for _ in 0..3 {
         world.reset();
-        assert_eq!(saved(&world), marked, "time that waits for a step included");
+        assert_eq!(saved(&world), marked, "the reset must restore the time left for the next step");
         assert_eq!(*world.events(), Events::default());
         assert!(!world.contains(first.0) && !world.contains_object(first.1));
-        assert_eq!(add(&mut world), first, "ids and all that follows");
+        assert_eq!(add(&mut world), first, "ids must repeat after the reset");
     }
 }
 
@@ -91,7 +91,7 @@ fn snapshots_add_and_remove_objects() {
     world.remove_object(first);
     let one = saved(&world);
     let third = world.add_object(Box::new(Counter { asked: 7 }));
-    assert!(third != first, "the slot is used again, the id is not");
+    assert!(third != first, "a reused slot must get a new id");
     let other = saved(&world);
 
     // Loads the state before the third object existed, then the one in which it exists again, since its kind is
@@ -110,7 +110,7 @@ fn snapshots_add_and_remove_objects() {
 
     let mut new = World::new(WorldDef::default());
     new.register_kind(|| Box::new(Counter::default()));
-    new.load(&mut Reader::new(&both)).expect("a new world makes both");
+    new.load(&mut Reader::new(&both)).expect("a new world loads both kinds");
     assert_eq!(new.hash(), { world.hash() });
 }
 
@@ -146,7 +146,10 @@ fn a_wrong_load_is_an_error_and_changes_nothing() {
     }
     for reads in [3, 5] {
         world.object_mut::<Careless>(careless).reads = reads;
-        assert!(panics(|| drop(world.load(&mut Reader::new(&bytes)))), "it does not take its own");
+        assert!(
+            panics(|| drop(world.load(&mut Reader::new(&bytes)))),
+            "a world must refuse the snapshot of another kind"
+        );
     }
 }
 

@@ -58,7 +58,7 @@ fn ball_queries_follow_centre_distances() {
                 // The cast may stop early by the touch tolerance, 1e-5 of the smaller shape and 1e-7 of the motion.
                 let there =
                     wide_shape.signed_distance(wide(center + translation * hit.fraction)) - f64::from(radius);
-                assert!(there.abs() < 1.5e-5, "{}: {hit:?}, {there} from touching", told("hit"));
+                assert!(there.abs() < 1.5e-5, "{}: {hit:?} is {there} m from touching", told("hit"));
                 assert!(along(fraction) > -NEAR, "{}: {hit:?} is late", told("hit"));
                 assert!(
                     wide_shape.signed_distance(wide(hit.point)).abs() < 1.5e-5,
@@ -66,7 +66,7 @@ fn ball_queries_follow_centre_distances() {
                     told("place")
                 );
             }
-            None => assert!(along(1.0) > -NEAR, "{}: {translation} misses", told("cast")),
+            None => assert!(along(1.0) > -NEAR, "{}: the cast along {translation} misses", told("cast")),
         }
     }
     assert!(overlaps > cases(100_000) / 20 && hits > cases(100_000) / 5, "{overlaps} overlaps, {hits} hits");

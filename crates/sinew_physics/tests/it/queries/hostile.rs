@@ -77,7 +77,7 @@ fn long_rays_hit() {
             let ray = Ray { origin: Vec3::new(-3.0, 0.1, 0.1), direction: Vec3::X * length };
             let hit = world.query().first(&ray).expect("it is in the way");
             let place = hit.fraction * length;
-            assert!((place - 2.5).abs() < 0.05, "{kind}: {hit:?} of {length}");
+            assert!((place - 2.5).abs() < 0.05, "{kind}: {hit:?}, length {length}");
         }
         world.remove_body(id);
     }
@@ -123,7 +123,7 @@ fn extreme_shape(random: &mut Random) -> Shape {
     }
 }
 
-/// Returns a world with many bodies at one place, tiny beside huge, possibly far from the origin.
+/// Returns a world with many bodies at one position, tiny beside huge, possibly far from the origin.
 fn extreme_world(random: &mut Random) -> World {
     let mut world = World::new(WorldDef::default());
     let far = [0.0f32, 1.0, 1e3, 1e6][random.index(4)];
@@ -168,7 +168,7 @@ fn check_hits<Q: QueryKind<Answer = BodyHit> + core::fmt::Debug>(world: &World, 
 fn check_near<Q: QueryKind<Answer = BodySurface> + core::fmt::Debug>(world: &World, question: &Q) {
     if let Some(near) = world.query().first(question) {
         let sound = finite(near.point) && finite(near.normal) && near.distance.is_finite();
-        assert!(sound, "{near:?} of {question:?}");
+        assert!(sound, "wrong answer {near:?} to {question:?}");
     }
 }
 

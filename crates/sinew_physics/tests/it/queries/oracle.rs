@@ -64,7 +64,7 @@ impl<'a> WideShape<'a> {
             }
             Shape::HalfSpace => q[1],
             Shape::Hull(_) | Shape::Mesh(_) | Shape::HeightField(_) => {
-                panic!("hulls and surfaces have tests of their own")
+                panic!("hulls and surfaces have their own tests")
             }
         }
     }

@@ -37,7 +37,10 @@ fn a_ray_enters_where_the_distance_becomes_zero() {
         let outside = wide_shape.signed_distance(start);
         let Some(hit) = found else {
             let least = wide_shape.least_distance(start, way);
-            assert!(least > -NEAR, "case {case}: {shape:?} missed, though {least} deep");
+            assert!(
+                least > -NEAR,
+                "case {case}: the ray missed {shape:?} although its least distance is {least}"
+            );
             continue;
         };
         hits += 1;
@@ -52,16 +55,19 @@ fn a_ray_enters_where_the_distance_becomes_zero() {
             assert_eq!((hit.fraction, hit.point), (0.0, ray.origin), "case {case}");
             assert!((hit.normal + ray.direction.normalize()).length() < 1e-5, "case {case}: {hit:?}");
             let out = wide_shape.signed_distance(wide(origin + start.direction * start.depth));
-            assert!(out.abs() < NEAR, "case {case}: the way out ends {out} off the surface");
+            assert!(out.abs() < NEAR, "case {case}: the push-out ends {out} from the surface");
             continue;
         }
-        assert!(off.abs() < 2.0 * NEAR, "case {case}: {shape:?} is met {off} off its surface");
+        assert!(off.abs() < 2.0 * NEAR, "case {case}: the hit on {shape:?} is {off} from its surface");
         // For a grazing ray rounding decides the hit: the whole path is near the surface there.
         let fraction = f64::from(hit.fraction);
         let before = wide_shape.least_distance(start, way.map(|x| x * (fraction - 1e-6).max(0.0)));
-        assert!(before > -2.0 * NEAR, "case {case}: {shape:?} is entered {before} before {fraction}");
+        assert!(
+            before > -2.0 * NEAR,
+            "case {case}: {shape:?}: distance {before} before the hit at {fraction}"
+        );
         let outward = wide_shape.signed_distance(wide(hit.point + hit.normal * 1e-3));
-        assert!(outward > 0.5e-3, "case {case}: {shape:?}: the normal leads {outward} out");
+        assert!(outward > 0.5e-3, "case {case}: {shape:?}: distance {outward} at 1 mm along the normal");
     }
     assert!(hits > cases(100_000) / 3 && starts > cases(100_000) / 50, "{hits} hits, {starts} starts inside");
 }
@@ -143,7 +149,7 @@ fn many_rays_hit_what_each_by_itself_hits() {
         asked += rays.len();
         inside += hits.iter().flatten().filter(|hit| hit.start.is_some()).count();
     }
-    assert!(inside > asked / 100, "{inside} of {asked} start inside");
+    assert!(inside > asked / 100, "{inside} of {asked} rays start inside");
 }
 
 #[test]

@@ -62,7 +62,7 @@ fn a_ray_that_starts_on_the_surface() {
             let hit =
                 world.query().first(&Ray { origin: Vec3::Y * top, direction: way }).expect("it touches");
             assert_eq!((hit.fraction, hit.normal), (0.0, -way), "{shape:?}");
-            let depth = hit.start.expect("what touches is inside").depth;
+            let depth = hit.start.expect("touching shapes must count as overlapping").depth;
             assert!(depth < 1e-6, "{shape:?}: {depth}");
         }
     }
@@ -74,13 +74,16 @@ fn places_inside() {
         assert!(world.query().any(&ContainsPoint(INSIDE)), "{shape:?}");
         let nearest =
             world.query().first(&NearestTo { point: INSIDE, within: 0.0 }).expect("it holds the point");
-        assert!(nearest.distance < 0.0, "{shape:?}: {nearest:?}");
+        assert!(nearest.distance < 0.0, "{shape:?}: not inside: {nearest:?}");
         let (distance, _) = shape.signed_distance(&Transform::IDENTITY, nearest.point);
         assert!(distance.abs() < 1e-6, "{shape:?}: {distance}");
         let speck = Probe::at(Shape::Sphere { radius: 0.005 }, INSIDE);
         assert!(world.query().any(&OverlapWith(speck.clone())), "{shape:?}");
         let way = world.query().first(&PenetrationOf(speck)).expect("wholly inside");
-        assert!((way.depth + nearest.distance - 0.005).abs() < 1e-6, "{shape:?}: {way:?}, {nearest:?}");
+        assert!(
+            (way.depth + nearest.distance - 0.005).abs() < 1e-6,
+            "{shape:?}: depth {way:?}, nearest {nearest:?}"
+        );
     }
 }
 

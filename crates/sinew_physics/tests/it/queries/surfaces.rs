@@ -42,20 +42,25 @@ fn a_closed_mesh_answers_as_a_box_does() {
         let ray =
             Ray { origin, direction: (at.point(random.in_cube() * 0.5) - origin) * random.range(0.5, 2.0) };
         match (meshed.first(&ray), solid.first(&ray)) {
-            (found, Some(hit)) if hit.start.is_some() => assert_eq!(found, None, "case {case}: from inside"),
+            (found, Some(hit)) if hit.start.is_some() => {
+                assert_eq!(found, None, "case {case}: the cast starts inside")
+            }
             (Some(a), Some(b)) => {
                 hits += 1;
-                assert!((a.point - b.point).length() < 1e-4, "case {case}: {a:?} {b:?}");
-                assert!(a.normal.dot(b.normal) > 0.999, "case {case}: {a:?} {b:?}");
+                assert!((a.point - b.point).length() < 1e-4, "case {case}: other points: {a:?} {b:?}");
+                assert!(a.normal.dot(b.normal) > 0.999, "case {case}: other normals: {a:?} {b:?}");
             }
-            (a, b) => assert_eq!(a.is_some(), b.is_some(), "case {case}: {ray:?} {a:?} {b:?}"),
+            (a, b) => assert_eq!(a.is_some(), b.is_some(), "case {case}: {ray:?} gives {a:?} and {b:?}"),
         }
 
         let probe = Probe::new(shape(random.index(KINDS), &mut random), frame(2.0, &mut random));
         let start = solid.first(&NearestToShape { probe: probe.clone(), within: 9.0 }).expect("near by");
         if start.distance > 1e-5 {
             let near = meshed.first(&NearestToShape { probe: probe.clone(), within: 9.0 }).expect("near by");
-            assert!((near.distance - start.distance).abs() < 1e-5, "case {case}: {near:?} {start:?}");
+            assert!(
+                (near.distance - start.distance).abs() < 1e-5,
+                "case {case}: nearest {near:?}, start {start:?}"
+            );
             assert!(!meshed.any(&OverlapWith(probe.clone())), "case {case}");
             let translation = at.point(random.in_cube() * 0.5) - probe.world_from_shape.translation;
             let cast = ShapeCast { probe, translation };
@@ -66,21 +71,24 @@ fn a_closed_mesh_answers_as_a_box_does() {
                 (Some(a), Some(b)) => {
                     casts += 1;
                     let apart = (a.fraction - b.fraction).abs() * translation.length();
-                    assert!(apart * closing(b) < 5e-5, "case {case}: {a:?} {b:?}");
+                    assert!(apart * closing(b) < 5e-5, "case {case}: other fractions: {a:?} {b:?}");
                 }
                 (None, None) => {}
                 (a, b) => {
                     let grazes = a.or(b).is_some_and(|hit| closing(hit) < 0.03);
-                    assert!(grazes, "case {case}: {cast:?} {a:?} {b:?}");
+                    assert!(grazes, "case {case}: {cast:?} gives {a:?} and {b:?}");
                 }
             }
         } else if start.distance < -1e-4 && !meshed.any(&OverlapWith(probe.clone())) {
             // The probe is wholly inside: it contains no point of the surface.
             let middle = at.inverse_point(probe.world_from_shape.translation);
-            assert!(middle.abs().cmplt(half).all(), "case {case}: {start:?}");
+            assert!(
+                middle.abs().cmplt(half).all(),
+                "case {case}: the centre is beyond the border: {start:?}"
+            );
         }
     }
-    assert!(hits > cases(20_000) / 3 && casts > cases(20_000) / 5, "{hits} hits, {casts} casts");
+    assert!(hits > cases(20_000) / 3 && casts > cases(20_000) / 5, "{hits} ray hits, {casts} cast hits");
 }
 
 /// Terrain is hit from above, pushes up, and contains no points.
@@ -106,7 +114,7 @@ fn height_fields_are_met_from_above() {
     }
     assert!(!query.any(&OverlapWith(ball(0.26))) && !query.any(&OverlapWith(ball(-0.26))));
     let fall = ShapeCast { probe: ball(1.25), translation: Vec3::Y * -4.0 };
-    let landing = query.first(&fall).expect("it falls on the ground");
+    let landing = query.first(&fall).expect("the shape falls on the ground");
     assert!(
         (landing.fraction - 0.25).abs() < 1e-5 && (landing.point - middle).length() < 1e-4,
         "{landing:?}"

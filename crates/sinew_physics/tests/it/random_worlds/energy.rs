@@ -170,7 +170,7 @@ fn an_undamped_swing_keeps_its_energy() {
     world.add_joint(&JointDef { spring: Some(Spring { softness, rest }), ..def });
     for step in 0..120 {
         let found = energies(&world).total;
-        assert!((found - 50.0).abs() < 0.25, "step {step}: {found} J of ½ k x² = 50 J");
+        assert!((found - 50.0).abs() < 0.25, "step {step}: {found} J, expected ½ k x² = 50 J");
         world.step();
     }
 }

@@ -19,7 +19,7 @@ const STOP_REACHED: f32 = 0.02;
 /// Largest distance of bodies between which joints are created, metres: beyond it their arms would be a hundred times
 /// the bodies' size.
 const REACH: f32 = 10.0;
-/// Steps after a save after which the world is compared with its restored twin.
+/// Steps after a save after which the world is compared with its restored copy.
 const TWIN_STEPS: u32 = 60;
 /// Speed of a body above which the world is violent, m/s and rad/s.
 const VIOLENT_LINEAR: f32 = 15.0;

@@ -44,7 +44,7 @@ fn overlapping_bounds_do_not_wake_a_body() {
     }
     world.add_particles(&flying);
     run(&mut world, 60);
-    assert!(!world.is_awake(sleeper), "they are 0.2 m away and more");
+    assert!(!world.is_awake(sleeper), "particles 0.2 m away must not wake the body");
     run(&mut world, 40);
     assert!(world.is_awake(sleeper));
 }
@@ -56,7 +56,7 @@ fn bodies_under_resting_particles_sleep() {
     run(&mut world, 30);
     let group = world.particles(id);
     assert!(group.positions().iter().all(|at| (at.y - 0.41).abs() < 1e-3), "they lie on it");
-    assert!(!world.is_awake(sleeper), "they were put down gently");
+    assert!(!world.is_awake(sleeper), "particles put down gently must not wake the body");
 }
 
 #[test]
@@ -164,7 +164,7 @@ fn contacts_wake_particles() {
     let (mut world, id) = curtain();
     world.add_body(&ball(Vec3::new(0.0, 1.5, 2.0), Vec3::X));
     run(&mut world, 60);
-    assert!(!world.particles(id).is_awake(), "what flies past wakes nobody");
+    assert!(!world.particles(id).is_awake(), "a passing ball must not wake the particles");
 }
 
 /// Returns a world with a box that hangs on a rope, both asleep.
@@ -184,7 +184,7 @@ fn hung() -> (World, GroupId, BodyId) {
         world.step();
         !world.particles(id).is_awake()
     });
-    assert!(asleep && !world.is_awake(body), "they fall asleep together");
+    assert!(asleep && !world.is_awake(body), "box and particles must fall asleep together");
     (world, id, body)
 }
 
@@ -200,7 +200,7 @@ fn attached_groups_and_bodies_wake_together() {
     assert!(world.is_awake(body), "the box with its rope");
     let (mut world, id, body) = hung();
     world.remove_particles(id);
-    assert!(world.is_awake(body), "the box whose rope is gone");
+    assert!(world.is_awake(body), "removing the rope must wake the box");
 }
 
 #[test]
@@ -224,7 +224,7 @@ fn a_restored_world_sleeps_and_wakes_equally() {
     let mut other = World::new(WorldDef::default());
     other.load(&mut Reader::new(&roused)).expect("it was saved");
     run(&mut other, 50);
-    assert_eq!(other.hash(), expected, "from between the push and the step");
+    assert_eq!(other.hash(), expected, "saved between the push and the step");
 }
 
 #[test]
@@ -247,11 +247,14 @@ fn a_body_under_a_swinging_rope_sleeps() {
     let group = world.particles(rope);
     let fastest = group.velocities().iter().fold(0.0, |most, v| max(most, v.length()));
     // Particles may fall asleep below 0.001 m/s.
-    assert!(group.is_awake() && fastest > 0.003, "the rope still swings on it, at {fastest} m/s");
-    assert!(!world.is_awake(body), "the box sleeps under it");
+    assert!(
+        group.is_awake() && fastest > 0.003,
+        "the rope must still swing on the box; fastest {fastest} m/s"
+    );
+    assert!(!world.is_awake(body), "the box must sleep under the rope");
     run(&mut world, 260);
     let way = (world.center_of_mass(body) - at).length();
-    assert!(!world.is_awake(body) && way < 1e-3, "the box has gone {way} m");
+    assert!(!world.is_awake(body) && way < 1e-3, "the sleeping box moved {way} m");
 }
 
 /// Returns a net of a square metre at a height of 1 m.
@@ -309,7 +312,7 @@ fn bodies_wake_when_the_particles_below_are_removed() {
         world.particles_mut(net).move_pin(pin, place - Vec3::Y * 0.5);
     }
     run(&mut world, 30);
-    assert!(world.is_awake(ball), "the net went away below it");
+    assert!(world.is_awake(ball), "removing the net below must wake the ball");
     assert!((world.center_of_mass(ball) - at).y < -0.1, "it falls after it");
 
     let (mut world, net, ball) = netted();
@@ -319,7 +322,7 @@ fn bodies_wake_when_the_particles_below_are_removed() {
     let (mut world, net, ball) = netted();
     world.particles_mut(net).apply_impulse(115, Vec3::Y * 1e-4);
     world.step();
-    assert!(!world.is_awake(ball), "nothing that it lies on has gone anywhere");
+    assert!(!world.is_awake(ball), "removing a net that does not support the ball must not wake it");
 }
 
 #[test]
@@ -343,5 +346,5 @@ fn a_body_in_a_net_falls_asleep() {
     assert!(!world.is_awake(ball), "it rests");
     assert!((0.9..1.1).contains(&at.y) && at.x.abs() < 0.05 && at.z.abs() < 0.05, "it lies at {at:?}");
     run(&mut world, 300);
-    assert_eq!(world.center_of_mass(ball), at, "the net does not wake it");
+    assert_eq!(world.center_of_mass(ball), at, "the net must not move the sleeping ball");
 }

@@ -38,7 +38,7 @@ fn creeping_bodies_do_not_sleep() {
     }
     let (mut world, id) = adrift(linear(Vec3::X * 0.005));
     run(&mut world, SECOND);
-    assert!(!world.is_awake(id), "2.5 mm in half a second are rest");
+    assert!(!world.is_awake(id), "2.5 mm in half a second must count as rest");
 }
 
 #[test]
@@ -52,7 +52,10 @@ fn bodies_creeping_down_a_slope_do_not_sleep() {
     run(&mut world, 10 * SECOND);
     let expected = 9.81 * trig::sin(angle) * (1.0 / damping + 1.0 / 240.0);
     let speed = world.velocity(id).linear.length();
-    assert!(world.is_awake(id) && (speed - expected).abs() < 0.03 * expected, "{speed} m/s, not {expected}");
+    assert!(
+        world.is_awake(id) && (speed - expected).abs() < 0.03 * expected,
+        "{speed} m/s, expected {expected} m/s"
+    );
 }
 
 /// At the highest point on a slope a ball is slow for seconds and still rolls back; a crate that friction holds there
@@ -82,10 +85,13 @@ fn a_ball_turning_back_on_a_slope_does_not_sleep() {
         let steps = 2.0 * speed / (5.0 / 7.0 * 9.81 * trig::sin(angle)) * 60.0;
         for step in 0..steps as u32 {
             world.step();
-            assert!(world.is_awake(ball), "{angle} rad: it sleeps in step {step}");
+            assert!(world.is_awake(ball), "{angle} rad: asleep in step {step}");
         }
         let back = world.velocity(ball).linear.dot(along);
-        assert!((back + speed).abs() < 0.05 * speed, "{angle} rad: {back} m/s for {speed}");
+        assert!(
+            (back + speed).abs() < 0.05 * speed,
+            "{angle} rad: returns at {back} m/s, thrown at {speed} m/s"
+        );
         assert!(!world.is_awake(crate_));
     }
 }
@@ -218,14 +224,14 @@ fn separated_parts_sleep_independently() {
     let joint = world.add_joint(&joint);
     world.set_velocity(mover, Velocity { angular: Vec3::X, ..Velocity::default() });
     run(&mut world, 2 * SECOND);
-    assert!(world.is_awake(still) && world.is_awake(mover), "one holds the other awake");
+    assert!(world.is_awake(still) && world.is_awake(mover), "the moving body must keep the other awake");
     world.remove_joint(joint);
     run(&mut world, SECOND);
     assert!(!world.is_awake(still) && world.is_awake(mover));
     world.set_velocity(mover, Velocity::default());
     run(&mut world, SECOND);
     world.wake(mover);
-    assert!(!world.is_awake(still), "they fell asleep apart");
+    assert!(!world.is_awake(still), "separate bodies must fall asleep separately");
 }
 
 #[test]
@@ -242,6 +248,6 @@ fn static_bodies_do_not_connect_islands() {
         world.wake(left);
         run(&mut world, 10);
         assert!(world.is_awake(left) && !world.is_awake(right) && !world.is_awake(hanging), "{kind:?}");
-        assert!(world.is_awake(carrier), "what is not dynamic never sleeps");
+        assert!(world.is_awake(carrier), "kinematic bodies must never sleep");
     }
 }

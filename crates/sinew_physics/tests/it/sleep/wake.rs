@@ -14,7 +14,7 @@ fn wakes(what: &str, act: impl FnOnce(&mut Nap)) {
     assert!(nap.world.is_awake(nap.sleeper), "{what} wakes");
 }
 
-/// Checks that after `act` a crate that sleeps on a floor still sleeps at the same place.
+/// Checks that after `act` a crate that sleeps on a floor still sleeps at the same position.
 fn leaves_asleep(what: &str, act: impl FnOnce(&mut Nap)) {
     let mut nap = nap();
     let at = nap.world.transform(nap.sleeper);
@@ -100,7 +100,10 @@ fn an_awake_body_wakes_bodies_on_contact() {
     }
     // A fall of 1 m takes 27.1 steps.
     let (step, height) = woke.expect("it was hit");
-    assert!((25..=28).contains(&step) && (height - 0.5).abs() < 0.1, "step {step}, at {height} m");
+    assert!(
+        (25..=28).contains(&step) && (height - 0.5).abs() < 0.1,
+        "woke in step {step} at a height of {height} m"
+    );
 }
 
 #[test]
@@ -111,10 +114,10 @@ fn a_moving_kinematic_body_wakes_its_contacts() {
     steps_to_sleep(&mut world);
     world.set_velocity(lift, linear(Vec3::Y * -0.5));
     world.step();
-    assert!(world.is_awake(passenger), "what carried it leaves");
+    assert!(world.is_awake(passenger), "removing the carrier must wake the passenger");
     run(&mut world, 60);
     let gap = world.center_of_mass(passenger).y - world.center_of_mass(lift).y;
-    assert!((gap - 0.15).abs() < 5e-3, "it rides along, {gap} m above");
+    assert!((gap - 0.15).abs() < 5e-3, "the passenger must ride along; it is {gap} m above");
     world.set_velocity(lift, Velocity::default());
     steps_to_sleep(&mut world);
 
@@ -128,7 +131,7 @@ fn a_moving_kinematic_body_wakes_its_contacts() {
     run(&mut world, 20);
     assert!(world.is_awake(passenger) && world.velocity(passenger).linear.x > 0.9);
     let ahead = world.center_of_mass(passenger).x - world.center_of_mass(ram).x;
-    assert!(ahead > 0.295, "it is pushed along, {ahead} m ahead");
+    assert!(ahead > 0.295, "the body must be pushed along; it is {ahead} m ahead");
 }
 
 /// Returns a world with a ball that hangs asleep on a kinematic hook, by a hinge about z.

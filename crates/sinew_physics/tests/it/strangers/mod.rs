@@ -5,8 +5,9 @@
 //! saved at random steps and continues next to the worlds that loaded its snapshots, which get the same calls.
 //! Snapshots and events are equal after each step.
 //!
-//! A few worlds, or 300 with `SINEW_FULL` set. `SINEW_WORLDS=17..18 cargo test --release -p sinew_physics --test it -- --nocapture strangers`
-//! runs the seeds of the range and prints progress. `cargo xtask lives --of strangers` goes on from seed to seed, 600 steps each.
+//! A few worlds, or 300 with `SINEW_FULL` set.
+//! `SINEW_WORLDS=17..18 cargo test --release -p sinew_physics --test it -- --nocapture strangers` runs the seeds of the
+//! range and prints progress. `cargo xtask lives --of strangers` continues from seed to seed, 600 steps each.
 
 mod deeds;
 mod populate;
@@ -44,7 +45,7 @@ impl Stranger {
         let (mut shapes, mut state) = (Writer::new(), Writer::new());
         original.save_shapes(&mut shapes);
         original.save(&mut state);
-        world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("a library that was saved is valid");
+        world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("a saved library is valid");
         world.load(&mut Reader::new(state.as_bytes())).expect("a saved world is valid");
         Self { world, born, threads: Threads::new(threads) }
     }
@@ -79,8 +80,8 @@ fn meet_strangers(seed: u64, steps: usize, most: usize) {
         for Stranger { world: other, born, threads } in &mut strangers {
             let others = moved_on(other, seed, step, Some(threads));
             let who = format!("world {seed}, saved before step {born}, {} threads", threads.count());
-            assert_eq!(others, events, "{who}: other events of step {step}");
-            assert_eq!(other.hash(), hash, "{who}: another state after step {step}");
+            assert_eq!(others, events, "{who}: other events in step {step}");
+            assert_eq!(other.hash(), hash, "{who}: other state after step {step}");
         }
     }
 }
@@ -128,5 +129,5 @@ fn for_minutes(minutes: f32) {
         writeln!(file, "seeds {first}..{end}, {MORE_STEPS} steps, failed: {failed:?}")
             .expect("the log can be written");
     }
-    assert!(failed.is_empty(), "worlds {failed:?} part");
+    assert!(failed.is_empty(), "worlds {failed:?} differ from their copies");
 }

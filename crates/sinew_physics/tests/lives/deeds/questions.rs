@@ -162,10 +162,10 @@ fn query(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     query.all(&NearestTo { point: pose.translation, within: 1.0 }, &mut near);
     let firsts = (query.first(&ray), query.first(&cast), query.any(&ContainsPoint(pose.translation)));
     let nearest = query.first(&NearestToShape { probe, within: 2.0 });
-    assert_eq!(firsts.0, hits.first().copied(), "the first of all hits is the first hit");
+    assert_eq!(firsts.0, hits.first().copied(), "the first of all hits must equal the first hit");
     let mut each = [None; 2];
     query.first_each(&[ray, ray], &mut each);
-    assert_eq!(each, [firsts.0; 2], "several rays are answered as one is");
+    assert_eq!(each, [firsts.0; 2], "several rays must get the same answers as single rays");
     writeln!(a.said, "{hits:?} {shapes:?} {bodies:?} {near:?} {firsts:?} {nearest:?}").expect("memory");
     Some(())
 }

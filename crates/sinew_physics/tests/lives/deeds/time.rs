@@ -69,7 +69,7 @@ fn mark_and_reset(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     a.world.mark();
     (0..steps).for_each(|_| a.world.step());
     a.world.reset();
-    assert_eq!(a.world.hash(), hash, "a world that is reset is as it was marked");
+    assert_eq!(a.world.hash(), hash, "a reset must restore the marked world");
     a.line(format!("world.mark();\n    (0..{steps}).for_each(|_| world.step());\n    world.reset();"));
     Some(())
 }

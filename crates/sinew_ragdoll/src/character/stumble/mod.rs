@@ -1,9 +1,10 @@
 //! Steps by which a powered character catches itself after a push.
 //!
 //! A push gives the whole body a velocity. While the point at which the body would come to rest is over the feet,
-//! muscles and pins absorb the push. Beyond, the character stumbles: its mover moves as a pendulum on the planted feet,
-//! and a foot swings to the place that stops this pendulum, repeatedly. Once its speed is right, each foot steps back
-//! to the clips. Muscles and pins drive the bodies; inverse kinematics moves only the legs of their pose.
+//! muscles and pins absorb the push. If the point is beyond the feet, the character stumbles: its mover moves as a
+//! pendulum on the planted feet, and a foot swings to the position that stops this pendulum, repeatedly. Once its speed
+//! is right, each foot steps back to the clips. Muscles and pins drive the bodies; inverse kinematics moves only the
+//! legs of their pose.
 
 mod step;
 mod support;
@@ -200,7 +201,7 @@ impl Balancing<'_> {
         false
     }
 
-    /// Aims a swinging foot at its best place, and puts it down immediately if the other foot must step.
+    /// Aims a swinging foot at its best position, and puts it down immediately if the other foot must step.
     fn aim(&self, world: &World, body: &Pendulum, stumble: &mut Stumble, foot: usize) {
         let Footing::Swinging { from, to, time, lasts, home: false } = stumble.feet[foot] else { return };
         let Some(stance) = stumble.feet[1 - foot].planted().filter(|_| time < AIMS_UNTIL * lasts) else {
@@ -221,7 +222,7 @@ impl Balancing<'_> {
         stumble.feet[foot] = Footing::Swinging { from, to, time, lasts, home: false };
     }
 
-    /// Swings the foot that gets nearer to a needed place.
+    /// Swings the foot that can land nearer to a needed position.
     fn begin_step(&self, world: &World, body: &Pendulum, stumble: &mut Stumble) {
         let plans = (0..2).flat_map(|foot| STEP_TIMES.map(|lasts| (foot, lasts)));
         let plans = plans.filter_map(|(foot, lasts)| {
@@ -247,7 +248,7 @@ impl Balancing<'_> {
         body.print(foot, middle(from, foot), middle(stance, other), on, seconds)
     }
 
-    /// Returns the pose of the ankle when the middle of the sole is on the ground at `at`.
+    /// Returns the pose of the ankle when the centre of the sole is on the ground at `at`.
     fn tread(&self, world: &World, foot: usize, at: Vec3) -> Transform {
         let def = self.def;
         let legs = def.legs().expect("it stands on feet");
@@ -352,7 +353,7 @@ impl Footing {
 
 impl Stumble {
     /// Moves the legs of a pose of the clips to the feet of a stumble after the given seconds; `way`: displacement of
-    /// the character until then. `place`: its place then.
+    /// the character until then. `place`: its transform then.
     pub fn hold_feet(
         &self,
         def: &CharacterDef,
@@ -395,8 +396,8 @@ impl Stumble {
         );
     }
 
-    /// Restarts balancing after a caught character loses its balance again: feet that do not swing are planted in
-    /// place.
+    /// Restarts balancing after a caught character loses its balance again: feet that do not swing are planted where
+    /// they are.
     fn regain(&mut self, ankles: &[Transform; 2]) {
         self.caught = false;
         for (foot, &ankle) in self.feet.iter_mut().zip(ankles) {

@@ -1,4 +1,4 @@
-//! Place of a step: the body as an inverted pendulum.
+//! Position of a step: the body as an inverted pendulum.
 //!
 //! With `ω² = g / h` the centre of mass `x` moves away from the point of support `p`, `x″ = ω² (x − p)`. It comes to
 //! rest over `p` if `p` is the **capture point** `ξ = x + x′ / ω`, which itself moves away: `ξ(t) = p + (ξ − p) exp(ω
@@ -27,12 +27,12 @@ pub(super) struct Pendulum {
     pub height: f32,
 }
 
-/// A place for a foot.
+/// A position for a foot to land.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Print {
-    /// Middle of the sole, level.
+    /// Centre of the sole, with the sole horizontal.
     pub at: Vec3,
-    /// Distance from `at` to the ideal place, metres.
+    /// Distance from `at` to the ideal position, metres.
     pub miss: f32,
     /// Distance by which the body would then exceed the other foot's reach, metres.
     pub strain: f32,
@@ -59,8 +59,8 @@ impl Pendulum {
         self.wish * (STRIDE_TIME / (trig::exp(self.omega * STRIDE_TIME) - 1.0))
     }
 
-    /// Returns the place of a foot (0 left, 1 right) that lands in `seconds`. The middle of its sole is at `from` now,
-    /// the body stands on `on`, and the other foot is at `stance`.
+    /// Returns the landing position of a foot (0 left, 1 right) that lands in `seconds`. The centre of its sole is at
+    /// `from` now, the body stands on `on`, and the other foot is at `stance`.
     pub fn print(&self, foot: usize, from: Vec3, stance: Vec3, on: Vec3, seconds: f32) -> Print {
         let (grown, shrunk) = (trig::exp(self.omega * seconds), trig::exp(-self.omega * seconds));
         let (cosh, sinh) = (0.5 * (grown + shrunk), 0.5 * (grown - shrunk));

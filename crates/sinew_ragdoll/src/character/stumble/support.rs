@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn two_soles_bear_what_is_between_them() {
         let mut support = Support::new(0.05);
-        assert_eq!(support.outside(at(3.0, 1.0)), 0.0, "nothing is outside of nothing");
+        assert_eq!(support.outside(at(3.0, 1.0)), 0.0, "a point cannot be outside an empty support");
         support.add([at(0.1, -0.05), at(0.1, 0.15)]);
         assert!((support.outside(at(0.0, 0.0)) - 0.05).abs() < 1e-6);
         support.add([at(-0.1, 0.25), at(-0.1, 0.45)]);

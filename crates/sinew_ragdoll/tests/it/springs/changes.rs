@@ -220,7 +220,7 @@ fn away_and_back(rate: u64, seconds: f32) -> (Watch, Slack) {
         least.easing = min(least.easing, watch.look(&character).easing);
     }
     let is_away = core::ptr::eq(character.pose(), character.pose_without_springs());
-    assert_eq!(is_away, seconds > 3.5, "after {seconds} s at {rate}");
+    assert_eq!(is_away, seconds > 3.5, "after {seconds} s at {rate} Hz");
     character.set_level_of_detail(&mut world, Detail::Full);
     for frame in 0..frames(0.33) {
         step(&mut world, &mut character);
@@ -231,7 +231,7 @@ fn away_and_back(rate: u64, seconds: f32) -> (Watch, Slack) {
         }
     }
     let off = watch.bones.iter().map(|bone| bone.off).fold(0.0, max);
-    assert!(off > 0.05, "it does not swing again: {off} rad");
+    assert!(off > 0.05, "the hair does not swing again: {off} rad");
     (watch, least)
 }
 
@@ -246,7 +246,7 @@ fn tips_do_not_jump_on_changes_of_detail() {
             );
             assert!(
                 least.easing > 0.0 && least.law > 0.0 && least.back > 0.0,
-                "{rate}, {seconds}: {least:?} m/s"
+                "{rate} Hz, {seconds} s: margins {least:?} m/s"
             );
         }
     }
@@ -358,7 +358,11 @@ fn snapshot_during_easing_continues_identically() {
             }
             step(&mut world, &mut character);
             step(&mut other, &mut copy);
-            assert_eq!(bytes(&copy), bytes(&character), "{eased} {near}, frame {frame}");
+            assert_eq!(
+                bytes(&copy),
+                bytes(&character),
+                "easing {eased}, near {near}, frame {frame}: other bytes"
+            );
             assert_eq!(copy.pose(), character.pose());
         }
         let cut = &bytes(&character)[..bytes(&character).len() - 9];
@@ -440,7 +444,7 @@ fn tip_speed_is_bounded_when_going_limp_without_a_mover() {
         }
         step(&mut world, &mut character);
         let slack = watch.look(&character);
-        assert!(!(50..80).contains(&frame) || slack.law > 0.0, "frame {frame}: {slack:?} m/s");
+        assert!(!(50..80).contains(&frame) || slack.law > 0.0, "frame {frame}: margins {slack:?} m/s");
     }
     assert_eq!(character.state(), State::Limp);
 }
@@ -468,8 +472,11 @@ fn tip_speed_is_bounded_after_a_teleport() {
             }
             let slack = watch.look(&character);
             let since = frame >= rate && frame < rate + rate / 5;
-            assert!(!since || slack.law > 0.0, "{rate}, {reset}, frame {frame}: {slack:?} m/s");
-            assert!(!since || reset || slack.back > -0.2, "{rate}, frame {frame}: {slack:?} m/s");
+            assert!(
+                !since || slack.law > 0.0,
+                "{rate} Hz, reset {reset}, frame {frame}: margins {slack:?} m/s"
+            );
+            assert!(!since || reset || slack.back > -0.2, "{rate} Hz, frame {frame}: margins {slack:?} m/s");
         }
     }
 }
@@ -512,7 +519,7 @@ fn pause_does_not_change_springs() {
         let (_, due) = alone(&def, frames(0), rate);
         let (slack, turns) = alone(&def, frames(7), rate);
         assert_eq!(turns, due, "at {rate}");
-        assert!(slack > 0.0, "at {rate}: {slack} m/s");
+        assert!(slack > 0.0, "at {rate} Hz: margin {slack} m/s");
     }
 }
 
@@ -532,7 +539,7 @@ fn tip_speed_is_bounded_in_slow_motion() {
         let off = turns.iter().zip(&due).map(|(turn, due)| turn.angle_to(*due)).fold(0.0, max);
         println!("{segments}: {slack} m/s left, {off} rad from 60 a second all the time");
         // The tolerance is a twentieth of a bone's length.
-        assert!(slack > 0.0 && off < 0.05, "{segments}: {slack} m/s, {off} rad");
+        assert!(slack > 0.0 && off < 0.05, "{segments} segments: margin {slack} m/s, off by {off} rad");
     }
 }
 
@@ -551,7 +558,7 @@ fn tip_speed_is_bounded_on_changes_of_size() {
         let frames = (0..5 * rate).map(|frame| (seconds(1), size(seconds(frame))));
         let (slack, turns) = alone(&def, frames, f32::from(rate));
         println!("{rate} a second: {slack} m/s left");
-        assert!(slack > 0.0, "{rate} a second: {slack} m/s");
+        assert!(slack > 0.0, "{rate} Hz: margin {slack} m/s");
         assert!(turns.iter().all(|turn| turn.is_finite()));
     }
 }

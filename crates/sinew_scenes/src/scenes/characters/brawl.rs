@@ -1,5 +1,5 @@
-//! A brawl in a room: characters walk at random among crates and stairs and are hit; fallen ones get up. The figures measure how well all
-//! character features work together.
+//! A brawl in a room: characters walk at random among crates and stairs and are hit; fallen ones get up. The metrics
+//! measure how well all character features work together.
 
 mod watch;
 
@@ -47,7 +47,7 @@ const SPEEDS: (f32, f32) = (0.7, 1.4);
 const KEEPS: (f32, f32) = (1.0, 4.0);
 /// Time after which a fallen character gets up although it still moves, seconds: in a crowd other characters push it.
 const PATIENCE: f32 = 2.0;
-/// Impulses of blows, N·s.
+/// Impulses of hits, N·s.
 const BLOWS: (f32, f32) = (5.0, 90.0);
 /// Stairs: number of steps, their height and depth, half their width, metres.
 const STAIRS: (usize, f32, f32, f32) = (4, 0.18, 0.32, 1.0);
@@ -118,7 +118,7 @@ fn walls_and_stairs() -> Vec<(Vec3, Vec3)> {
     boxes
 }
 
-/// Height of the stairs under a place of the initial grid, given from the room's corner.
+/// Height of the stairs under a position of the initial grid, which is relative to the room's corner.
 fn on_stairs(place: Vec3, apart: f32) -> Vec3 {
     let (steps, height, depth, half) = STAIRS;
     let (x, z) = (place.x - 0.9 * ROOM, place.z - 0.9 * ROOM);

@@ -254,7 +254,7 @@ struct Punched {
     /// Target of the knuckles in the world.
     fist: Vec3,
     hit: Option<Hit>,
-    /// Heights of the ball, at three moments of its flight, metres.
+    /// Heights of the ball, at three times of its flight, metres.
     heights: Vec<f32>,
     /// Speed of the ball after the punch, m/s.
     speed: Option<f32>,

@@ -28,7 +28,7 @@ pub(in crate::scenes) const CAPE: Scene = Scene {
     build: cape,
 };
 
-/// Position of the middle of the cape's upper edge, on the back between the shoulders, measured from the soles, metres.
+/// Position of the midpoint of the cape's upper edge, on the back between the shoulders, relative to the soles, metres.
 const NAPE: Vec3 = Vec3::new(0.0, 1.42, -0.09);
 /// Width and length of the cape, metres.
 const WIDE: f32 = 0.36;
@@ -164,7 +164,7 @@ impl Worn {
         watch.wear.note_stretch(stretch(group, THREADS as usize));
     }
 
-    /// Vector from the middle of the first row to that of the last, in the wearer's axes, metres.
+    /// Vector from the midpoint of the first row to that of the last, in the wearer's axes, metres.
     fn hem(&self, world: &World) -> Vec3 {
         let positions = world.particles(self.cape).positions();
         let row = COLUMNS as usize + 1;

@@ -169,7 +169,7 @@ impl Script for Hair {
 
     fn metrics(&self, _: &World) -> Vec<Metric> {
         vec![
-            // Without this bar, hair that never moves would pass.
+            // Without this expectation, hair that never moves would pass.
             Metric::awaited(
                 "apart_over_length",
                 (self.swung > LEAST_SWING).then_some(self.apart),
@@ -183,7 +183,8 @@ impl Script for Hair {
         CameraHint { direction: Vec3::new(-0.1, 0.12, -1.0), ..CameraHint::default() }
     }
 
-    /// The finest curve is solid, each coarser one is drawn over it in shorter dashes: where they coincide, all are visible.
+    /// The finest curve is solid; each coarser curve is drawn over it with shorter dashes, so that coinciding curves
+    /// stay visible.
     fn curves(&self) -> Vec<Curve> {
         let place =
             |&(time, side): &(f32, f32)| GRAPH + Vec3::new(time * GRAPH_SECOND, side * GRAPH_METRE, 0.0);

@@ -1,4 +1,4 @@
-//! Movers on a course: each has a lane of its own.
+//! Movers on a course: each has its own lane.
 
 use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
@@ -25,7 +25,7 @@ pub(in crate::scenes) const COURSE: Scene = Scene {
     build: course,
 };
 
-/// Number of steps until all movers stand.
+/// Number of steps until all movers are at rest.
 const SETTLING: u64 = 60;
 /// Number of steps up, which equals the number of steps down, and the depth of each, metres.
 const STEPS: u8 = 6;
@@ -126,7 +126,7 @@ struct Watch {
     deepest: f32,
     /// Number of steps in which a mover on the stairs, the ramp or the table was off the ground.
     aloft: u32,
-    /// Distance of the mover on the table from its first place on the table, metres.
+    /// Distance of the mover on the table from its first position on the table, metres.
     drift: f32,
     on_table: Option<Vec3>,
     /// Position along x at the start of the last second on the belt, and the displacement since then, metres.

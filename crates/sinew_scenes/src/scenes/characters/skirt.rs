@@ -90,7 +90,7 @@ impl Dressed {
 
     /// Returns the largest depth of a free particle's centre, metres: in a body of the wearer, in another body, and of
     /// particles that touch two bodies; 0 if all are outside. Where a clip folds the thigh on the belly, or lays a leg
-    /// on the floor, a particle between the two has no place outside of both.
+    /// on the floor, a particle between the two cannot be outside of both.
     fn deepest(&self, world: &World, id: GroupId) -> [f32; 3] {
         let (group, own) = (world.particles(id), self.character.bodies());
         let bounds = group.bounds();

@@ -73,7 +73,7 @@ impl History {
         self.0.push(pose.clone());
     }
 
-    /// Angular acceleration of a joint at the middle of the three poses, rad/s².
+    /// Angular acceleration of a joint at the second of three poses, rad/s².
     fn acceleration(&self, joint: usize, dt: f32) -> f32 {
         let [a, b, c] = &self.0[..] else { return 0.0 };
         let [a, b, c] = [a, b, c].map(|pose| pose.get(joint));

@@ -42,7 +42,7 @@ pub(in crate::scenes) const UNEVEN_GROUND: Scene = Scene {
 const CAPSULE: [f32; 2] = [0.57, 0.3];
 /// Height of the mannequin, metres.
 const HEIGHT: f32 = 1.75;
-/// Vector from the soles to the middle of the capsule.
+/// Vector from the soles to the centre of the capsule.
 const MIDDLE: Vec3 = Vec3::new(0.0, CAPSULE[0] + CAPSULE[1], 0.0);
 
 fn root_walk(setup: &Setup<'_>) -> Instance {
@@ -119,7 +119,7 @@ impl RootWalk {
         share_of_lap(&self.actor, &self.cycle)
     }
 
-    /// Poses the unchanged clip, lap after lap.
+    /// Computes the poses of the unchanged clip, lap by lap.
     fn play_alone(&mut self) {
         let Cycle { clip, path, speed, .. } = &self.cycle;
         let rig = &self.actor.cast.rig;

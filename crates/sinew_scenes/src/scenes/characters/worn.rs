@@ -1,4 +1,4 @@
-//! Cloth worn by a figure during a fall: its measurements, and the state of its wearer.
+//! Cloth worn by a character during a fall: its measurements, and the state of its wearer.
 
 use crate::framework::metric::{Expected, Metric};
 use sinew::math::{ReadError, Reader, Writer, max};
@@ -6,7 +6,7 @@ use sinew::physics::World;
 use sinew::physics::particles::{AttachmentTarget, ParticleGroup};
 use sinew::ragdoll::{Character, CharacterEvent};
 
-/// Figures of a wearer and its cloth since the start.
+/// Metrics of a wearer and its cloth since the start.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Wear {
     /// Largest value over the steps of the threads' mean relative length error.
@@ -17,7 +17,7 @@ pub(super) struct Wear {
     pub torn: f32,
     /// Number of times that the wearer went limp.
     falls: u32,
-    /// Time at which the wearer was up again, seconds; 0 if it has not got up.
+    /// Time at which the wearer was up again, seconds; 0 before that.
     up: f32,
     /// Work of drives and of bodies that clips move, J.
     pub work_in: f32,
@@ -42,7 +42,7 @@ impl Wear {
         self.stretch_sum += mean;
     }
 
-    /// Figures of stretch and attachment, then of the wearer, which must be up within `up_within` seconds.
+    /// Metrics of stretch and attachment, then of the wearer, which must be up within `up_within` seconds.
     pub fn metrics(&self, world: &World, up_within: f64) -> [Vec<Metric>; 2] {
         let mean = (world.step_count() > 0).then_some(self.stretch_sum / world.step_count() as f32);
         let up = (self.up > 0.0).then_some(self.up);

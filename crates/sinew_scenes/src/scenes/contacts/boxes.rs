@@ -171,13 +171,13 @@ struct Probes {
 }
 
 impl Probes {
-    /// Height of a probe over the middle plane of the box, by the formula of free fall, metres.
+    /// Height of a probe over the centre plane of the box, by the formula of free fall, metres.
     fn height(&self, x: f32, fallen: f64) -> f32 {
         (self.rotation * Vec3::Y).dot(Vec3::new(x, (f64::from(START_HEIGHT) - fallen) as f32, 0.0))
     }
 
-    /// Time at which a probe is at a distance over the middle plane, seconds: `y = y₀ − g t (t + h) / 2` on the line
-    /// `x`, solved for `t` (see [`fallen`]).
+    /// Time at which a probe is at a height over the centre plane, seconds: `y = y₀ − g t (t + h) / 2` on the line `x`,
+    /// solved for `t` (see [`fallen`]).
     fn time_at(&self, x: f32, over: f32, world: &World) -> f64 {
         let normal = self.rotation * Vec3::Y;
         let y = f64::from((over - normal.x * x) / normal.y);

@@ -63,7 +63,7 @@ fn rate(sin: f32, cos: f32) -> f32 {
 
 struct Coin {
     coin: BodyId,
-    /// Turn of the coin's axis about the vertical.
+    /// Rotation of the coin's axis about the vertical.
     turn: Turn,
     /// Sum of the theoretical rates at the observed tilts, rad/s.
     due: f32,

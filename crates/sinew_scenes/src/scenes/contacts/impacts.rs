@@ -31,7 +31,7 @@ pub(in crate::scenes) const ELASTIC_PAIRS: Scene = Scene {
 /// Velocities before the hits, m/s.
 const SPEEDS: [f32; 2] = [4.0, -1.0];
 const PAIR_RADIUS: f32 = 0.1;
-/// Mass of the second ball, kg (the first has 1 kg), with the names of the figures that are the speeds after the hit.
+/// Mass of the second ball, kg (the first has 1 kg), with the names of the metrics that are the speeds after the hit.
 const PAIRS: [(f32, [&str; 2]); 3] = [
     (1.0, ["first_of_equal_m_s", "second_of_equal_m_s"]),
     (3.0, ["first_at_3_m_s", "second_at_3_m_s"]),

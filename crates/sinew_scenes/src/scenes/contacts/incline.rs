@@ -46,7 +46,7 @@ pub(in crate::scenes) const ROLLS: Scene = Scene {
     settings: &[Setting::number("angle", 35.0, (0.0, 60.0), "angle of the slope, degrees"), FRICTION],
     build: |setup| {
         let (world, slope) = incline(setup, ball(BALL_RADIUS, Vec3::Y * BALL_RADIUS));
-        // A homogeneous ball gets `1 / (1 + 2/5)` of the acceleration.
+        // A homogeneous ball has `1 / (1 + 2/5)` of the acceleration.
         let pull = slope.pull * 5.0 / 7.0;
         Instance::new(world, Slides { slope, pull, settled: None })
     },
@@ -67,7 +67,7 @@ fn box_on_incline(setup: &Setup<'_>) -> (World, Slope) {
     incline(setup, cuboid(HALF_EXTENTS, Vec3::Y * HALF_EXTENTS.y))
 }
 
-/// Builds a slope with a body given at the origin of a level floor.
+/// Builds a slope with a body given at the origin of a horizontal floor.
 fn incline(setup: &Setup<'_>, body_at_origin: BodyDef) -> (World, Slope) {
     let mut world = setup.world();
     let (angle, friction) = (setup.number("angle"), setup.number("friction"));
@@ -94,7 +94,7 @@ struct Slope {
     hold: f32,
 }
 
-/// Motion of the box at some moment.
+/// Motion of the box at some time.
 #[derive(Clone, Copy)]
 struct Motion {
     /// Position along the slope, metres.

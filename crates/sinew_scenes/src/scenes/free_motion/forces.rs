@@ -30,7 +30,7 @@ fn two_men(setup: &Setup<'_>) -> Instance {
     world.add_body(&made_of(floor(), iron));
     let (first, second) = (setup.number("first"), setup.number("second"));
     let mut cart = |place: f32, forces: [f32; 2]| {
-        // The cart is low and long, so that friction does not tip it when it is pushed at its middle.
+        // The cart is low and long, so that friction does not tip it when a force acts at its centre.
         let half = Vec3::new(0.8, 0.1, 0.3);
         let mut def = made_of(cuboid(half, Vec3::new(0.0, half.y, place)), iron);
         def.shapes[0].density = CART_MASS / def.shapes[0].shape.volume();
@@ -178,7 +178,7 @@ pub(in crate::scenes) const BULLET: Scene = Scene {
     build: bullet,
 };
 
-/// Distance from the hook to the middle of the block, metres.
+/// Distance from the hook to the centre of the block, metres.
 const ROPE: f32 = 1.5;
 /// Number of steps before the shot.
 const WAIT: u64 = 10;
@@ -201,7 +201,7 @@ fn bullet(setup: &Setup<'_>) -> Instance {
 }
 
 struct Shot {
-    /// The blocks: hit in the middle, hit off-centre, and hanging.
+    /// The blocks: hit at the centre, hit off-centre, and hanging.
     blocks: [BodyId; 3],
     mass: f32,
     speed: f32,
@@ -217,7 +217,7 @@ impl Script for Shot {
             let velocity = Vec3::X * self.speed;
             for (block, aside) in [(middle, 0.0), (beside, ASIDE), (hung, 0.0)] {
                 let Transform { translation, .. } = world.transform(block);
-                // The bullet stops in the middle of the block.
+                // The bullet stops at the centre of the block.
                 let point = translation + Vec3::Y * aside;
                 world.apply_bullet_impact(block, self.mass, velocity, point);
             }

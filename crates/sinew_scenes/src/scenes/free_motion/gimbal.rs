@@ -119,9 +119,9 @@ impl Gimbal {
         world.apply_angular_impulse(self.body, Vec3::Z * (KICK * INERTIA));
     }
 
-    /// Returns the angular velocity of the body after the kick, as a share of a free body's. Rings turn about `A = (y,
-    /// x, z″)`, the body with `A q̇`: an impulse L gives `A (Aᵀ I A + J)⁻¹ Aᵀ L`. For L along z, with the inertia r of
-    /// both rings relative to the body's and the cosine c of the pitch, it is `c² (1 + r) / (c² + r)`.
+    /// Returns the angular velocity of the body after the impulse, as a share of a free body's. Rings turn about
+    /// `A = (y, x, z″)`, the body with `A q̇`: an impulse L gives `A (Aᵀ I A + J)⁻¹ Aᵀ L`. For L along z, with the
+    /// inertia r of both rings relative to the body's and the cosine c of the pitch, it is `c² (1 + r) / (c² + r)`.
     fn expected(&self) -> f32 {
         let c = trig::cos(self.pitch);
         let (square, r) = (c * c, 2.0 * RING);
@@ -143,7 +143,7 @@ struct Flyer {
     unsteady: f32,
 }
 
-/// Steps in which the flyer makes its first quarter turn: the flyer comes closest to lock in the middle of a step.
+/// Steps in which the flyer makes its first quarter turn: the flyer is closest to gimbal lock in the middle of a step.
 const QUARTER: f32 = 90.5;
 
 impl Flyer {

@@ -135,7 +135,7 @@ fn versor(_: &Setup<'_>) -> Instance {
     Instance::new(world, journey)
 }
 
-/// A body that moves from one place to another, and beyond, by equal rotations and equal factors.
+/// A body that moves from one position to another, and beyond, by equal rotations and equal factors.
 struct Journey {
     from: BodyId,
     to: BodyId,
@@ -145,7 +145,7 @@ struct Journey {
 }
 
 impl Journey {
-    /// Quaternion that maps the first place to the second.
+    /// Quaternion that maps the first position to the second.
     fn quotient(&self, world: &World) -> Quaternion {
         let at = |id| world.center_of_mass(id);
         Quaternion::quotient(at(self.to), at(self.from)).expect("no place is the origin")

@@ -66,7 +66,7 @@ struct Flips {
     start: Momentum,
     /// Kinetic energy at the start, J.
     energy: f32,
-    /// Component of the angular momentum along the middle axis in the last step.
+    /// Component of the angular momentum along the intermediate axis in the last step.
     before: f32,
     /// Times of the flips, s.
     flips: Vec<f64>,

@@ -78,7 +78,7 @@ pub(in crate::scenes) const HANGING_ROPE: Scene = Scene {
 const LINK: Setting =
     Setting::number("link", 0.0, (0.0, 10.0), "length of a link, m; 0: three chains with 1, 0.5 and 0.25 m");
 
-/// Bounds for the figures of a chain.
+/// Bounds for the metrics of a chain.
 struct Musts {
     gap: Expected,
     gap_per_link: Expected,

@@ -38,7 +38,7 @@ fn pendulum(setup: &Setup<'_>) -> Instance {
 }
 
 struct Bob {
-    /// Name of the figure for the pendulum's period.
+    /// Name of the metric for the pendulum's period.
     name: &'static str,
     id: BodyId,
     joint: JointId,
@@ -193,7 +193,7 @@ impl Script for Rods {
 
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let count = self.rods.len() as f32;
-        // From the horizontal to the vertical the middle of rod i falls by (i + ½) l.
+        // From horizontal to vertical, the centre of rod i falls by (i + ½) l.
         let depth = 0.5 * count * count * ROD_MASS * GRAVITY * ROD_LENGTH;
         let names = ["first_rad_s2", "second_rad_s2", "third_rad_s2"];
         let mut metrics: Vec<_> = names

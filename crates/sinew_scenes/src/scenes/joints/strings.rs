@@ -156,7 +156,7 @@ fn swinging(world: &mut World, mode: usize) -> Mode {
     }
 }
 
-/// A chain, the displacement of its mode, and the times of its passes through the middle.
+/// A chain, the displacement of its mode, and the times at which it passes its rest position.
 struct Mode {
     mode: usize,
     group: GroupId,
@@ -165,7 +165,7 @@ struct Mode {
     first: Option<f64>,
     last: f64,
     crossings: u32,
-    /// Sum over the steps of the depth of the chain's middle mass below the hook, metres.
+    /// Sum over the steps of the depth of the chain's central mass below the hook, metres.
     lowest: f32,
 }
 
@@ -218,7 +218,7 @@ impl Script for Modes {
                 Metric::awaited(NAMES[chain.mode - 1], chain.frequency(), expected)
             })
             .collect();
-        // The oscillation of mode 3 is the fastest; its mean over many swings is the rest position under gravity.
+        // Mode 3 oscillates fastest; its mean over many swings is the rest position under gravity.
         let mean = self.chains[MODES - 1].lowest / world.step_count() as f32;
         let sunk = STRETCHED * (MASSES / 2) as f32;
         let expected = Expected::near(rest(MASSES / 2) - sunk, 0.005);

@@ -50,8 +50,8 @@ fn trampoline(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Trampoline { boxes, sag: sag(weight), heights: [0.0; 2], moved: 0.0 })
 }
 
-/// A square of particles, each on two ties. In a net they are connected to their neighbours; under a level box these springs keep their
-/// length.
+/// A square of particles, each on two ties. In a net springs connect neighbours; under a level box these springs keep
+/// their length.
 fn mat(mass: f32, is_net: bool, center: Vec3) -> GroupDef {
     let mut group = GroupDef { iterations: 4, ..GroupDef::default() };
     let critical = [f32::INFINITY, mass / TIES as f32];

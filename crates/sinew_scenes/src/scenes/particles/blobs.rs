@@ -128,7 +128,7 @@ const STEEL: f32 = 0.8;
 /// Measurements of one ball's bounce.
 #[derive(Clone, Copy, Default)]
 struct Bounce {
-    /// Speed of the ball's middle during the fall, m/s.
+    /// Speed of the ball's centre during the fall, m/s.
     fall: Option<f32>,
     /// Number of steps in which the ball touched the floor.
     contact: u32,

@@ -156,7 +156,7 @@ fn pierces([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
     sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0)
 }
 
-/// Smallest distance of two particles more than a spring apart in the cloth, metres.
+/// Smallest distance of two particles that are more than one spring apart in the cloth, metres.
 fn least_apart(positions: &[Vec3]) -> f32 {
     let wide = COLUMNS as usize + 1;
     let mut least = f32::INFINITY;

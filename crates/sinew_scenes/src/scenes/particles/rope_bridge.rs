@@ -1,4 +1,4 @@
-//! Figures fall on planks that hang on two ropes.
+//! Ragdolls fall on planks that hang on two ropes.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -26,14 +26,14 @@ pub(in crate::scenes) const ROPE_BRIDGE: Scene = Scene {
 };
 
 const PLANKS: usize = 8;
-/// Distance from the middle of one plank to that of the next, metres.
+/// Distance between the centres of neighbouring planks, metres.
 const SPACING: f32 = 0.6;
 /// Half extents of a plank, metres, and its mass, kg.
 const PLANK: Vec3 = Vec3::new(0.28, 0.03, 1.0);
 const PLANK_MASS: f32 = 15.0;
-/// Distance from a plank's middle to its hangers, metres.
+/// Position of a hanger relative to the plank's centre, metres.
 const TIED: Vec3 = Vec3::new(0.2, 0.0, 0.95);
-/// Heights of the deck, of the ropes' middles and of their ends, metres.
+/// Heights of the deck, and of the ropes at mid-span and at their ends, metres.
 const DECK: f32 = 2.0;
 const LOW: f32 = 2.6;
 const HIGH: f32 = 3.6;
@@ -151,7 +151,7 @@ struct RopeBridge {
     ropes: GroupId,
     /// Particles that are attached to the world.
     held: Vec<usize>,
-    /// Total weight of planks, ropes and figures, N.
+    /// Total weight of planks, ropes and ragdolls, N.
     weight: f32,
     /// Pull of the attached particles in each step, N.
     pulls: Vec<f64>,

@@ -131,7 +131,7 @@ pub(in crate::scenes) const FAST_PARTICLE: Scene = Scene {
     build: fast_particle,
 };
 
-/// Distance from the middle of the room to its walls, and half of their thickness, metres.
+/// Distance from the centre of the room to its walls, and half of their thickness, metres.
 const ROOM: f32 = 1.0;
 const WALL: f32 = 0.025;
 /// Radius of a fast particle, metres.

@@ -101,7 +101,7 @@ impl Pier {
         Self { weight: world.mass(pier).mass * GRAVITY, held }
     }
 
-    /// Reaction of the pier on the arch, about the middle of their joint.
+    /// Reaction of the pier on the arch, about the centre of their joint.
     fn load(self, world: &World) -> Reaction {
         // The pier's own weight acts right below that point.
         let Reaction { force, torque } = world.reaction(self.held);
@@ -134,8 +134,8 @@ impl Masonry {
         Self { joints, weights }
     }
 
-    /// Largest distance from the middle of a joint at which the line of thrust crosses the joint, as a share of half the
-    /// joint. The line follows from the reaction of the first pier. At 1 the joint opens like a hinge.
+    /// Largest distance from the centre of a joint at which the line of thrust crosses the joint, as a share of half
+    /// the joint. The line follows from the reaction of the first pier. At 1 the joint opens like a hinge.
     fn line_of_thrust(&self, pier: Reaction) -> f32 {
         let mut force = pier.force;
         // Moment about the world's z axis.

@@ -1,4 +1,4 @@
-//! Many figures at once.
+//! Many ragdolls at once.
 
 use crate::blueprint::{box_rain_of, ragdoll_pile};
 use crate::framework::flight::Flight;
@@ -73,7 +73,7 @@ fn pile(setup: &Setup<'_>) -> Instance {
     Instance::new(world, heap)
 }
 
-/// Number of bodies of a figure.
+/// Number of bodies of a ragdoll.
 const BODIES_OF_ONE: usize = 15;
 /// Overshoot that counts as exceeded, radians.
 const EXCEEDED: f32 = 0.1;
@@ -83,7 +83,7 @@ const LOOK: u64 = 30;
 struct Pile {
     bodies: Vec<BodyId>,
     joints: Vec<JointId>,
-    /// Free fall of the first figure.
+    /// Free fall of the first ragdoll.
     flight: Flight,
     gap_max: f32,
     /// Largest number of joints beyond their limits at the same time.

@@ -1,4 +1,4 @@
-//! Structures with jointed loads on them, hanging from them or leaning on them: they must stand as well as without
+//! Structures that carry jointed loads, on them, below them or leaning on them: they must stand as well as without
 //! loads.
 
 use crate::blueprint::{self, Blueprint, arch, loads};
@@ -79,7 +79,7 @@ struct Host {
     top: Transform,
     /// Half of the top's width along x, metres.
     half: f32,
-    /// Size of the figure on the structure, relative to a man.
+    /// Size of the ragdoll on the structure, relative to a man.
     figure: f32,
     /// Mass of one of the supporting bodies, kg.
     mass: f32,
@@ -95,7 +95,7 @@ struct Host {
 
 /// Radius of a rope over its host, as a share of half the host's width.
 const ROPE_RADIUS: f32 = 0.06;
-/// Half of the least width on which a man lies with his trunk, metres: narrower tops get a smaller figure.
+/// Half of the smallest width on which a man's trunk fits, metres: narrower tops get a smaller ragdoll.
 const CHEST: f32 = 0.35;
 /// Mass of the plank, as a share of the lightest body's mass.
 const PLANK: f32 = 0.1;
@@ -136,7 +136,7 @@ fn mass_of(plan: &Blueprint, place: usize) -> f32 {
     shape.shape.mass_properties(shape.density).mass
 }
 
-/// A kind of load, and the names of its figures.
+/// A kind of load, and the names of its metrics.
 struct Load {
     shift: &'static str,
     sink: &'static str,
@@ -171,7 +171,7 @@ const LOADS: [Load; 6] = [
         depth: "hanging_depth_m",
         add: |setup, host, plan| {
             let (body, at) = host.edge;
-            // The figure lies beside its support.
+            // The ragdoll lies beside its support.
             let link = 0.5 * host.half;
             loads::hanging(plan, body, at + Vec3::X * (0.15 * link), link, setup.number("light") * host.mass);
         },
@@ -321,8 +321,8 @@ struct Laden {
     asleep: Option<f32>,
 }
 
-/// Shift, sink and depth that are always allowed for a loaded structure, metres: twice a value near zero is no useful
-/// bar. An unloaded one may shift by 5 mm in its own scene.
+/// Shift, sink and depth that are always allowed for a loaded structure, metres, because twice a value near zero is too
+/// strict. An unloaded one may shift by 5 mm in its own scene.
 const ROOM: [f32; 3] = [0.005, 0.005, 0.001];
 
 impl Script for Laden {

@@ -46,7 +46,7 @@ pub(in crate::scenes) const ROCKS: Scene = Scene {
     build: |setup| settling(setup, &blueprint::rocks(), 1, 600),
 };
 
-/// Number of bodies of two figures, which touch from the start.
+/// Number of bodies of two ragdolls, which touch from the start.
 const FIGURES: usize = 30;
 
 /// Builds the scene of a blueprint whose bodies start apart; all must sleep after the given number of steps.

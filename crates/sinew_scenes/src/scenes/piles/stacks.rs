@@ -1,4 +1,4 @@
-//! Stacks that stand if contacts hold: heavy on light, crosswise, leaning, a hundred rows high.
+//! Stacks that stand only if contacts are accurate: heavy on light, crosswise, leaning, a hundred rows high.
 
 use crate::blueprint::{self, Blueprint};
 use crate::framework::flight::Flight;

@@ -98,7 +98,7 @@ impl Script for Falls {
         }
     }
 
-    /// Returns the worst figures of all mannequins.
+    /// Returns the worst metrics of all mannequins.
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let all: Vec<_> = self.falls.iter().map(|fall| fall.meter.quality()).collect();
         let worst = |figure: fn(&sinew::ragdoll::FallQuality) -> f32| all.iter().map(figure).fold(0.0, max);

@@ -61,8 +61,8 @@ fn house(setup: &Setup<'_>) -> Instance {
     Instance::new(world, limp)
 }
 
-/// Returns the first place from `place` on along +z where a character in its bind pose has room around it: otherwise
-/// the arms of a wide character would start in the jambs. Returns `place` if there is none within 2 m.
+/// Returns the first position from `place` on along +z where a character in its bind pose has room: otherwise the arms
+/// of a wide character would start inside the jambs. Returns `place` if there is none within 2 m.
 fn out_of_the_door(world: &World, def: &RagdollDef, place: Vec3) -> Vec3 {
     const ROOM: f32 = 0.03;
     const STRIDE: f32 = 0.05;

@@ -146,7 +146,7 @@ const PUSH_STEP: u64 = 12;
 
 impl Limp {
     /// Spawns the mannequin in its bind pose, rotated about its soles and moving as one rigid piece, with its lowest
-    /// point at the height of `place`.
+    /// point at `place`.
     fn spawn(world: &mut World, turn: Rotation, place: Vec3, speed: Vec3) -> Self {
         Self::spawn_of(ragdoll_of_mannequin(), world, turn, place, speed)
     }
@@ -203,7 +203,7 @@ impl Script for Limp {
         self.meter.before_step(world);
     }
 
-    /// Returns the figures with the specification's limits for the quality of a ragdoll.
+    /// Returns the metrics with the specification's limits for the quality of a ragdoll.
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let q = self.meter.quality();
         let Requirements { gap_p99, gap_max, overshoot_p99, overshoot_max } = self.requirements;

@@ -27,12 +27,12 @@ pub(in crate::scenes) const DROP: Scene = Scene {
 struct Start {
     keyframe: &'static str,
     /// Height of the centre of mass at rest, metres: MuJoCo 4.0.0 after 10 s, in which its soft friction lets the
-    /// figure creep. Without slip (stiff contacts, `noslip_iterations`) it rests at 0.082 and 0.090.
+    /// humanoid creep. Without slip (stiff contacts, `noslip_iterations`) it rests at 0.082 and 0.090.
     rest_height: f64,
     names: Names,
 }
 
-/// Names of the figures for a start.
+/// Names of the metrics for a start.
 struct Names {
     rest_height: &'static str,
     asleep: &'static str,
@@ -75,7 +75,7 @@ const STARTS: [Start; 2] = [
     },
 ];
 
-/// Distance from one figure to the next, metres.
+/// Distance from one humanoid to the next, metres.
 const APART: f32 = 3.0;
 
 fn drop(setup: &Setup<'_>) -> Instance {
@@ -97,7 +97,7 @@ fn drop(setup: &Setup<'_>) -> Instance {
 #[derive(Clone, Copy, PartialEq)]
 enum Ground {
     Keep,
-    /// There is a floor already, and contacts with a second one in the same place would push twice.
+    /// The world already has a floor, and contacts with a second one at the same position would push twice.
     Remove,
 }
 
@@ -158,7 +158,7 @@ impl Figure {
         self.bodies.iter().fold(0.0, |deepest, &body| max(deepest, world.penetration(body)))
     }
 
-    /// Height of the centre of mass of the whole figure, metres.
+    /// Height of the centre of mass of the whole humanoid, metres.
     fn height(&self, world: &World) -> f32 {
         let mass = |body: &BodyId| world.mass(*body).mass;
         let moment: f32 = self.bodies.iter().map(|body| mass(body) * world.center_of_mass(*body).y).sum();
@@ -191,7 +191,7 @@ fn p99(values: &[f32]) -> f32 {
 
 struct Fallen {
     figures: Vec<Figure>,
-    /// Free fall of the first figure.
+    /// Free fall of the first humanoid.
     flight: Flight,
 }
 

@@ -63,12 +63,12 @@ fn level(triangles: &[[Vec3; 3]]) -> BodyDef {
     fixed(body(Shape::Mesh(Arc::new(mesh)), Vec3::ZERO))
 }
 
-/// Balls of 100 g in layers, in a pattern whose period matches no side of the cabin.
+/// Balls of 100 g in layers, in a pattern whose period matches no edge of the cabin.
 fn rain(count: usize) -> GroupDef {
     const ACROSS: usize = 10;
     let ball = |i: usize| {
         let (row, column, layer) = (i / ACROSS % ACROSS, i % ACROSS, i / (ACROSS * ACROSS));
-        // Golden-ratio shifts keep layers from falling onto the same places.
+        // Golden-ratio shifts keep layers from falling onto the same points.
         let shift = 0.618_034 * layer as f32;
         let (x, z) = (row as f32 + shift % 1.0, column as f32 + 1.7 * shift % 1.0);
         let position = Vec3::new(0.62 * x - 3.0, HEIGHT + 0.5 * layer as f32, 0.95 * z - 7.0);

@@ -20,7 +20,7 @@ pub(in crate::scenes) const FRAME_RATES: Scene = Scene {
     build: frame_rates,
 };
 
-/// Rates of even frames, per second, and the figure of each.
+/// Rates of even frames, per second, and the metric of each.
 const RATES: [(u32, &str); 4] =
     [(24, "differ_24"), (30, "differ_30"), (60, "differ_60"), (144, "differ_144")];
 
@@ -73,7 +73,7 @@ enum Frames {
 
 /// A copy of the world at another frame rate.
 struct Other {
-    /// Name of the copy's figure.
+    /// Name of the copy's metric.
     name: &'static str,
     frames: Frames,
     world: World,
@@ -156,7 +156,7 @@ pub(in crate::scenes) const TAUTOCHRONE: Scene = Scene {
     },
 };
 
-/// Figures of the periods, from the lowest start to the highest.
+/// Metrics of the periods, from the lowest start to the highest.
 const PERIODS: [&str; 3] = ["period_low_s", "period_middle_s", "period_high_s"];
 
 /// Radius of the circle that draws the cycloid, metres.
@@ -246,7 +246,7 @@ impl PhysicsObject for Wire {
 /// Measurements of a bead.
 struct Bead {
     id: BodyId,
-    /// Name of the figure of the bead's period.
+    /// Name of the metric of the bead's period.
     name: &'static str,
     /// Energy at the start, and largest deviation from it, J.
     start: f32,

@@ -23,7 +23,7 @@ pub(in crate::scenes) const SHOWROOM: Scene = Scene {
     build,
 };
 
-/// Half the side of a floor, and the distance between the middles of neighbouring floors, metres.
+/// Half the side of a floor, and the distance between the centres of neighbouring floors, metres.
 const HALF_SIDE: f32 = 3.0;
 const NEXT_FLOOR: f32 = 6.5;
 /// Distance between neighbouring bodies on a floor, metres: some are on corners, some on edges, some inside of
@@ -56,7 +56,7 @@ fn build(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Showroom { floors, flight, asleep: None })
 }
 
-/// Names of figures, and for each a floor whose surface is at the height of the origin.
+/// Names of metrics, and for each a floor whose surface is at the height of the origin.
 fn grounds() -> [(&'static str, BodyDef); 4] {
     let flat = Waves { cells: (2.0 * HALF_SIDE) as usize, height: 0.0, frequencies: [0.0; 2] };
     let half_extents = Vec3::new(HALF_SIDE, 0.25, HALF_SIDE);
@@ -105,7 +105,7 @@ fn exhibits() -> [Exhibit; 7] {
 
 /// Exhibits on one floor.
 struct Floor {
-    /// Name of the floor's figure.
+    /// Name of the floor's metric.
     figure: &'static str,
     /// Bodies with the expected heights of their centres of mass.
     shown: Vec<(BodyId, f32)>,

@@ -2,7 +2,7 @@
 //!
 //! Factor and solve are those of [`tree`](crate::solver::articulation::tree), but the elimination of a joint is stored as its pivot and
 //! coupling instead of as 6×6 matrices of a link, which needs fewer operations in lanes. Two trees have the same shape if each link has the
-//! same parent and each joint locks the same number of rotations. Figures of one kind therefore share a batch, whatever their sizes and
+//! same parent and each joint locks the same number of rotations. Ragdolls of one kind therefore share a batch, for any sizes and
 //! poses.
 //!
 //! Only islands solved by [turns](crate::solver::Coupling::Turns) use batches. Trees held by fixed bodies, trees with motors, and trees

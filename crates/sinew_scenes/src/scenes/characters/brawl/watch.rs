@@ -1,4 +1,4 @@
-//! Figures of a brawl.
+//! Metrics of a brawl.
 
 use super::{Fighter, ROOM};
 use crate::framework::metric::{Expected, Metric};
@@ -6,7 +6,7 @@ use sinew::math::{ReadError, Reader, Vec3, Writer, max};
 use sinew::physics::{BodyId, World};
 use sinew::ragdoll::{CharacterEvent, State};
 
-/// States of a character that have separate figures.
+/// States of a character that have separate metrics.
 pub(super) const STATES: [State; 6] =
     [State::Animated, State::Flinching, State::Powered, State::Limp, State::Preparing, State::GettingUp];
 /// Number of steps between measurements of the penetration into static bodies.
@@ -75,7 +75,7 @@ impl Watched {
         Ok(())
     }
 
-    /// Largest displacement of a joint in the frame before the last, beyond those of the neighbouring frames, metres.
+    /// Largest displacement of a joint in the second to last frame beyond those of the neighbouring frames, metres.
     fn jump(&self, now: &[Vec3]) -> f32 {
         let [c, b, a] = &self.frames;
         if a.len() != now.len() || b.len() != now.len() || c.len() != now.len() {
@@ -94,7 +94,7 @@ impl Watched {
     }
 }
 
-/// Figures of all characters.
+/// Metrics of all characters.
 #[derive(Default)]
 pub(super) struct Watch {
     /// Static bodies: floor, walls, stairs.
@@ -271,7 +271,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Figures so far; the expectations are the bars of a crowd fit for a game.
+    /// Metrics so far; the expectations are those of a crowd fit for a game.
     pub fn metrics(&self) -> Vec<Metric> {
         let count = |name: &str| {
             f64::from(self.counts[COUNTS.iter().position(|&other| other == name).expect("it is counted")])
