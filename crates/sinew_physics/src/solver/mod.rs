@@ -171,6 +171,8 @@ struct Scratch {
     errors_left: Vec<f32>,
     corrected: Vec<bool>,
     looked_at: Vec<bool>,
+    /// Position error of each tree that needs no correction, m or rad.
+    tolerances: Vec<f32>,
     /// Velocities within a sweep by turns, after the limits.
     swept: Vec<Vec6>,
     /// Velocities within a sweep by turns, after the contacts.
