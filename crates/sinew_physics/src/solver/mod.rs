@@ -171,6 +171,8 @@ struct Scratch {
     errors_left: Vec<f32>,
     corrected: Vec<bool>,
     looked_at: Vec<bool>,
+    /// Position error of each tree that needs no correction, m or rad.
+    tolerances: Vec<f32>,
     /// Velocities within a sweep by turns, after the limits.
     swept: Vec<Vec6>,
     /// Velocities within a sweep by turns, after the contacts.
@@ -280,8 +282,9 @@ impl IslandSolver {
         self.sweep(Pass::Solve, runner);
         self.limit_inner_turn();
         let mut torn = self.correct_positions(Corrected::All);
-        self.is_settled = false;
-        for _ in 0..PREDICTIONS {
+        self.is_settled = !self.predicts();
+        let rounds = if self.predicts() { PREDICTIONS } else { 0 };
+        for _ in 0..rounds {
             let tightened = self.tighten_limits();
             self.is_settled = !self.predict_contacts() && !tightened;
             if self.is_settled {
@@ -536,7 +539,7 @@ impl IslandSolver {
     /// True if the substep is longer than the world's and left predicted violations of limits or contacts unresolved, or moved a
     /// joint far beyond a limit.
     pub fn overreaches(&self) -> bool {
-        self.stretch > 1.0 && (!self.is_settled || self.leaps_limits())
+        self.stretch > 1.0 && self.predicts() && (!self.is_settled || self.leaps_limits())
     }
 
     /// Number of substeps of the island in this step.

@@ -383,11 +383,12 @@ pub(super) const POSITION_CORRECTIONS_ITERATED: usize = 1;
 /// 3e-7 to 1e-5. Shown by `triple_pendulum`.
 pub(super) const POSITION_TOLERANCE: f32 = 1e-6;
 
-/// Position error of a strand that needs no correction, as a share of its largest coordinate.
+/// Position error that needs no correction, as a share of the largest coordinate of a tree or strand.
 ///
-/// The value is 1.5 ulp, the rounding error of the difference of two positions: at 40 m from the origin, two of three corrections corrected
-/// rounding errors (ADR 0018). Larger: gaps stay open. Smaller: corrections act on rounding errors. Sensible from 1 to 4 times `EPSILON`.
-/// Shown by `chain_100_links`.
+/// The value is 1.5 ulp, the rounding error of the difference of two positions; below 5.6 m [`POSITION_TOLERANCE`] is larger. With that
+/// alone, figures up to 75 m from the origin took five corrections a substep instead of 0.8, and chains at 40 m made two of three for
+/// rounding errors (ADR 0018, ADR 0019). Larger: gaps stay open. Smaller: corrections act on rounding errors. Sensible from 1 to 4 times
+/// `EPSILON`. Shown by `rain` of `cargo xtask bench`, `chain_100_links`.
 pub(super) const POSITION_ROUNDING: f32 = 1.5 * f32::EPSILON;
 
 /// Largest share of a tree's error that a correction may leave for another one to follow.

@@ -7,11 +7,11 @@ use crate::solver::joint::SolverJoint;
 use crate::solver::motion::{FindErrors, ListInertias, Predict};
 use crate::solver::pass::{Corrected, Coupling, Pass};
 use crate::solver::tuning::{
-    POSITION_CORRECTIONS, POSITION_CORRECTIONS_ITERATED, POSITION_TOLERANCE, RATE_SHARE, REFINEMENTS,
-    WORTH_ANOTHER,
+    POSITION_CORRECTIONS, POSITION_CORRECTIONS_ITERATED, POSITION_ROUNDING, POSITION_TOLERANCE, RATE_SHARE,
+    REFINEMENTS, WORTH_ANOTHER,
 };
 use crate::spatial::{Vec6, ZERO6, add_scaled, largest, linear};
-use sinew_math::{Transform, dispatch, max, min};
+use sinew_math::{Transform, Vec3, abs3, dispatch, max, min};
 
 impl IslandSolver {
     /// Recomputes poses and rows of all joints.
@@ -121,7 +121,9 @@ impl IslandSolver {
             _ => POSITION_CORRECTIONS,
         };
         self.choose_corrected(of);
+        self.find_tolerances();
         let mut errors = core::mem::take(&mut self.scratch.errors);
+        let tolerances = core::mem::take(&mut self.scratch.tolerances);
         self.predict(of == Corrected::All);
         self.find_errors(&mut errors);
         self.scratch.before.clear();
@@ -130,7 +132,7 @@ impl IslandSolver {
             joint.bent_before = joint.bent;
         }
         for _ in 0..rounds {
-            self.leave_corrected(|tree| errors[tree] < POSITION_TOLERANCE);
+            self.leave_corrected(|tree| errors[tree] < tolerances[tree]);
             if !self.scratch.corrected.contains(&true) {
                 break;
             }
@@ -149,8 +151,32 @@ impl IslandSolver {
         }
         self.take_back();
         let most = errors.iter().fold(0.0, |most, error| max(most, *error));
-        self.scratch.errors = errors;
+        (self.scratch.errors, self.scratch.tolerances) = (errors, tolerances);
         most
+    }
+
+    /// Writes the error of each tree that needs no correction: the rounding error of its positions, but at least [`POSITION_TOLERANCE`]. Trees
+    /// that stop together have the tolerance of the one with the largest.
+    fn find_tolerances(&mut self) {
+        let apart = self.trees_stop_apart();
+        let tolerances = &mut self.scratch.tolerances;
+        tolerances.clear();
+        tolerances.extend(self.trees.iter().map(|range| {
+            let positions = self.bodies[range.clone()].iter().map(|body| abs3(body.pose.translation));
+            let reach = positions.fold(Vec3::ZERO, |most, at| {
+                Vec3::new(max(most.x, at.x), max(most.y, at.y), max(most.z, at.z))
+            });
+            max(POSITION_TOLERANCE, POSITION_ROUNDING * max(reach.x, max(reach.y, reach.z)))
+        }));
+        if !apart {
+            let most = tolerances.iter().fold(0.0, |most, tolerance| max(most, *tolerance));
+            tolerances.fill(most);
+        }
+    }
+
+    /// True if each tree ends its position corrections by its own error.
+    fn trees_stop_apart(&self) -> bool {
+        self.coupling == Coupling::Turns && self.loops.is_empty()
     }
 
     /// Chooses the trees to correct and clears their residuals.
@@ -258,7 +284,8 @@ impl IslandSolver {
     /// Computes the residuals that remove the position errors of the trees being corrected at their predicted poses, and writes the largest
     /// error of each tree (m or rad).
     fn find_errors(&mut self, errors: &mut [f32]) {
-        let Self { velocities, joints, links, loops, trees, coupling, h, scratch: s, .. } = self;
+        let apart = self.trees_stop_apart();
+        let Self { velocities, joints, links, loops, trees, h, scratch: s, .. } = self;
         let (h, poses) = (*h, &s.predicted[..]);
         // The residuals were used where loops were closed.
         s.residuals.resize(links.len(), ZERO6);
@@ -268,7 +295,7 @@ impl IslandSolver {
             errors[tree] = dispatch::run(FindErrors { links, joints, poses, velocities, h, residuals });
         }
         s.loop_residuals.clear();
-        if *coupling == Coupling::Turns && loops.is_empty() {
+        if apart {
             return;
         }
         let mut most = errors.iter().fold(0.0, |most, error| max(most, *error));

@@ -100,7 +100,7 @@ impl IslandSolver {
         s.pieces.reserve(island.bodies.len());
         s.motor_impulses.clear();
         s.motor_impulses.reserve(DIRECTIONS * island.joints.len());
-        for errors in [&mut s.errors, &mut s.errors_left] {
+        for errors in [&mut s.errors, &mut s.errors_left, &mut s.tolerances] {
             errors.clear();
             errors.reserve(island.bodies.len());
         }

@@ -175,6 +175,11 @@ impl Contacts {
         }
     }
 
+    /// Velocities before the sweep.
+    pub(in crate::solver) fn before_sweep(&self) -> &[Vec6] {
+        &self.conjugate.was.velocities
+    }
+
     /// Moves along the search direction after a sweep whose changes had this energy; blocks move when the next sweep visits them. The next
     /// sweep corrects rows that moved too far. `moved`, if given, is called for the bodies, in order, with the change of each.
     pub(in crate::solver) fn after_conjugate(

@@ -50,7 +50,14 @@ impl IslandSolver {
             _ if self.paired.contains(&true) => self.policy_with_joints().at_least(of_pile(0)),
             _ => self.policy_with_joints(),
         }
-        .of_quality(self.quality);
+        .of_quality(if self.predicts() { self.quality } else { Quality::Balanced });
+    }
+
+    /// False for heaps at `Quality::Fast`, which do not check limits at the predicted poses: these checks take up to a third of the time of a
+    /// heap, and without them a tenth of its joints exceed a limit by more than 0.1 rad in the crash (gaps stay below 0.01 mm). Such heaps keep
+    /// the sweeps of `Balanced`: half of them save 8 % and leave twice the overlap.
+    pub(in crate::solver) fn predicts(&self) -> bool {
+        self.quality != Quality::Fast || self.coupling != Coupling::Turns
     }
 
     fn policy_with_joints(&self) -> SweepPolicy {

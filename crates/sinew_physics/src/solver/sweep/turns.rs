@@ -129,9 +129,7 @@ impl IslandSolver {
         let conjugate = pass != Pass::Restitution;
         for done in 1..=sweeps.most {
             self.note_limits();
-            if conjugate {
-                self.contacts.before_conjugate(&self.velocities, &self.scratch.limits);
-            }
+            self.contacts.before_conjugate(&self.velocities, &self.scratch.limits);
             let rows = self.contacts.tally().manifolds as usize + self.limits.len();
             self.tally.sweep(pass, done, rows);
             self.take_turn_of_limits(pass);
@@ -156,9 +154,6 @@ impl IslandSolver {
 
     /// Visits the limits and stores their impulses as the first ones of the sweep.
     fn take_turn_of_limits(&mut self, pass: Pass) {
-        let moving = self.links.len();
-        self.scratch.before.clear();
-        self.scratch.before.extend_from_slice(&self.velocities[..moving]);
         (self.largest_change, self.change_energy) = (0.0, 0.0);
         self.reset_impulses();
         self.visit_limits(pass);
@@ -186,9 +181,9 @@ impl IslandSolver {
     /// Solves velocities exactly from those before the sweep and its impulses. Trees without impulses keep their velocities. Returns the
     /// largest change, without the changes by the contacts.
     fn take_turn_of_trees(&mut self) -> f32 {
-        let Self { batches, impulses, scratch, velocities, dirty, .. } = self;
-        let mut velocities =
-            TurnVelocities { before: &scratch.before, limited: &scratch.swept, now: velocities };
+        let Self { batches, contacts, impulses, scratch, velocities, dirty, .. } = self;
+        let before = contacts.before_sweep();
+        let mut velocities = TurnVelocities { before, limited: &scratch.swept, now: velocities };
         let change = batches.take_turns(impulses, &mut velocities, dirty);
         self.add_pushes();
         if self.batches.alone.is_empty() {
@@ -201,7 +196,7 @@ impl IslandSolver {
             let s = &mut self.scratch;
             s.contacted.clear();
             s.contacted.extend_from_slice(&self.velocities[..moving]);
-            self.velocities[..moving].copy_from_slice(&s.before);
+            self.velocities[..moving].copy_from_slice(&self.contacts.before_sweep()[..moving]);
             self.answer_impulses();
             self.velocities[..moving].swap_with_slice(&mut self.scratch.contacted);
         }
@@ -213,7 +208,7 @@ impl IslandSolver {
             batches: &self.batches,
             impulses: &mut s.impulses,
             dv: &mut s.dv,
-            before: &s.before,
+            before: self.contacts.before_sweep(),
             solved: if entangled { &s.contacted } else { &[] },
             swept: &s.swept,
             velocities: &mut self.velocities[..moving],
