@@ -1,6 +1,6 @@
 //! Faults that no single figure shows, each injected into the mannequin.
 
-use sinew_anim::{Joint, LocalTransform, Primitive, Rig, RigMesh, Skin, analyze};
+use sinew_anim::{Hints, Joint, LocalTransform, Primitive, Rig, RigMesh, Skin, analyze, analyze_hinted};
 use sinew_math::{Affine, Rotation, Vec3};
 use sinew_physics::{BodyDef, Shape};
 use sinew_ragdoll::quality::{Doubt, faults_of_bake, faults_of_ragdoll, toppled};
@@ -257,9 +257,9 @@ fn block(skinned: &mut Primitive, center: Vec3, half_extents: Vec3, slot: u16) {
 fn animal(rust: f32) -> CharacterDef {
     let legs = |z: f32| [0.13, -0.13].map(|x| Vec3::new(x, 0.4, z));
     let mut places = vec![(None, Vec3::ZERO)];
-    places.extend([(Some(0), Vec3::new(0.0, 0.5, -0.2)), (Some(1), Vec3::new(0.0, 0.5, 0.2))]);
-    places.extend(legs(0.3).map(|place| (Some(2), place)));
-    places.extend(legs(-0.3).map(|place| (Some(1), place)));
+    places.extend([(Some(0), Vec3::new(0.0, 0.5, -0.3)), (Some(1), Vec3::new(0.0, 0.5, 0.3))]);
+    places.extend(legs(0.5).map(|place| (Some(2), place)));
+    places.extend(legs(-0.5).map(|place| (Some(1), place)));
     let mut rig = Rig::default();
     let mut skinned = Primitive::default();
     for (i, &(parent, place)) in places.iter().enumerate() {
@@ -269,7 +269,7 @@ fn animal(rust: f32) -> CharacterDef {
         let slot = u16::try_from(i).expect("few");
         match i {
             0 => {}
-            1 | 2 => block(&mut skinned, place, Vec3::new(0.18, 0.12, 0.2), slot),
+            1 | 2 => block(&mut skinned, place, Vec3::new(0.18, 0.12, 0.3), slot),
             _ => block(&mut skinned, place - Vec3::Y * 0.2, Vec3::new(0.06, 0.2, 0.06), slot),
         }
     }
@@ -277,7 +277,8 @@ fn animal(rust: f32) -> CharacterDef {
         places.iter().map(|&(_, at)| Affine { translation: -at, ..Affine::IDENTITY }).collect();
     rig.skins = vec![Skin { name: String::new(), joints: (0..places.len()).collect(), inverse_bind }];
     rig.meshes = vec![RigMesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![skinned] }];
-    let analysis = analyze(&rig).expect("a skin");
+    let upright = Hints { up: Some(Vec3::Y), ..Hints::default() };
+    let analysis = analyze_hinted(&rig, &upright).expect("a skin");
     let (mut ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
     ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque += rust);
     CharacterDef::new(rig, ragdoll, &analysis.bind_model)
