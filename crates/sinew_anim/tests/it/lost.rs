@@ -177,7 +177,6 @@ fn legs_of_one_bone_follow_the_line_from_hip_to_ankle() {
         name: "kneel".into(),
         duration: 1.0,
         channels: vec![turn("leftUpperLeg", -sixty), turn("leftLowerLeg", 2.0 * sixty)],
-        ..Clip::default()
     };
     let (from, to) = (Body { rig: &actor, analysis: &seen }, Body { rig: &rig, analysis: &found });
     let moved = retarget(from, &clip, to, &RetargetOptions::default()).expect("legs");
