@@ -98,8 +98,11 @@ pub(super) fn read_names(names: &[&str], parents: &[Option<usize>]) -> Vec<Readi
     }
     if parents.len() == readings.len() {
         name_ball(&mut readings, parents);
-        name_halves(&mut readings, &senses, parents);
-        name_hubs(&mut readings, &senses, parents);
+        // Only CAT rigs have hubs.
+        if senses.iter().filter(|&&sense| sense == Some(Sense::Hub)).count() > 1 {
+            name_halves(&mut readings, &senses, parents);
+            name_hubs(&mut readings, &senses, parents);
+        }
     }
     readings
 }
@@ -109,7 +112,8 @@ fn carries(parents: &[Option<usize>], above: usize, joint: usize) -> bool {
     core::iter::successors(parents[joint], |&at| parents[at]).any(|at| at == above)
 }
 
-/// Reads two joints in line that are only named leg, or arm, as the two halves of the limb ("LLeg1", "LLeg2").
+/// Reads two joints in line that are only named leg, or arm, as the two halves of the limb ("LLeg1", "LLeg2"). A
+/// quadruped's limbs may be named so, too.
 fn name_halves(readings: &mut [Reading], senses: &[Option<Sense>], parents: &[Option<usize>]) {
     let limbs =
         [(Sense::Leg, [Part::UpperLeg, Part::LowerLeg]), (Sense::Arm, [Part::UpperArm, Part::LowerArm])];
@@ -133,7 +137,7 @@ fn name_halves(readings: &mut [Reading], senses: &[Option<Sense>], parents: &[Op
 /// Reads the lowest of several hubs in line as hips, the highest as head, those between as spine.
 fn name_hubs(readings: &mut [Reading], senses: &[Option<Sense>], parents: &[Option<usize>]) {
     let hubs: Vec<usize> = (0..senses.len()).filter(|&joint| senses[joint] == Some(Sense::Hub)).collect();
-    for &hub in hubs.iter().filter(|_| hubs.len() > 1) {
+    for &hub in &hubs {
         let is_carried = hubs.iter().any(|&other| carries(parents, other, hub));
         let is_last = !hubs.iter().any(|&other| carries(parents, hub, other));
         readings[hub].part = match (is_carried, is_last) {
