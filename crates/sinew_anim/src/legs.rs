@@ -90,6 +90,11 @@ impl Legs {
         Some(Self { pelvis, feet, strays: strays(rig, analysis) })
     }
 
+    /// True for legs of one bone, whose knees are [added](add_ankles): they are drawn straight.
+    pub fn are_stiff(&self, rig: &Rig) -> bool {
+        self.feet.iter().any(|foot| rig.joints[foot.leg.lower].source == usize::MAX)
+    }
+
     /// Moves stray joints to their anatomical place; rotations stay. Call it after moving their anatomical parents.
     pub fn gather(&self, rig: &Rig, local: &mut [LocalTransform], model: &mut [Affine]) {
         for stray in &self.strays {
@@ -132,41 +137,59 @@ fn strays(rig: &Rig, analysis: &RigAnalysis) -> Vec<Stray> {
     HUMANOID_ROLES.into_iter().filter_map(stray).collect()
 }
 
-/// Adds ankle joints to a humanoid whose legs end with the shank, so that motions with feet fit low-poly figures.
+/// Adds ankle joints to a humanoid whose legs end with the shank, and knees and ankles to one whose legs are one bone,
+/// so that motions with feet fit low-poly figures.
 ///
-/// Each is a new joint at the end of the rig, without skin, a child of the shank, at the centre of the shank's lowest
-/// skin. Its [`Joint::source`] is beyond the file's nodes. The analysis treats the joint as a foot. Returns the number
-/// of joints added; a side without thigh or shank gets none.
+/// An ankle is a new joint at the end of the rig, without skin, at the centre of the lowest skin of the leg; a knee is
+/// one in the middle between hip and ankle. Their [`Joint::source`] is beyond the file's nodes. The analysis treats
+/// them as shank and foot. Returns the number of ankles added; a side without thigh gets none.
 ///
 /// # Panics
 /// If the analysis does not fit the rig.
 pub fn add_ankles(rig: &mut Rig, analysis: &mut RigAnalysis) -> usize {
     assert_eq!(analysis.bind_model.len(), rig.joints.len(), "an analysis of this rig");
-    let before = rig.joints.len();
+    let mut added = 0;
     for side in [Side::Left, Side::Right] {
         let [thigh, shank, foot] = [Role::UpperLeg(side), Role::LowerLeg(side), Role::Foot(side)]
             .map(|role| analysis.joint_with(role));
-        let (true, Some(_), Some(shank), None) = (analysis.humanoid, thigh, shank, foot) else { continue };
-        let Some(at) = end_of_shank(rig, analysis, shank) else { continue };
-        let translation = analysis.bind_model[shank].inverse().point(at);
-        let local = LocalTransform { translation, ..LocalTransform::default() };
-        let bind = analysis.bind_model[shank] * local.to_affine();
-        if !bind.is_finite() {
-            continue;
-        }
-        let role = Role::Foot(side);
-        rig.joints.push(Joint { name: role.name(), parent: Some(shank), rest: local, source: usize::MAX });
-        analysis.bind_model.push(bind);
-        analysis.roles.push(Some(RoleGuess { role, confidence: MADE_UP, basis: Basis::Shape }));
-        analysis.merge_into.push(Some(shank));
+        let (true, Some(thigh), None) = (analysis.humanoid, thigh, foot) else { continue };
+        let last = shank.unwrap_or(thigh);
+        let Some(ankle) = end_of_leg(rig, analysis, last) else { continue };
+        let knee = (analysis.bind_model[thigh].translation + ankle) * 0.5;
+        let shank = shank.or_else(|| add_joint(rig, analysis, thigh, Role::LowerLeg(side), knee));
+        let Some(shank) = shank else { continue };
+        added += usize::from(add_joint(rig, analysis, shank, Role::Foot(side), ankle).is_some());
     }
-    rig.joints.len() - before
+    added
 }
 
-/// Mean of the lowest skin that a shank moves most, raised to ankle height; model space, file units.
-fn end_of_shank(rig: &Rig, analysis: &RigAnalysis, shank: JointIdx) -> Option<Vec3> {
+/// Adds a joint without skin at `at`, model space, that moves with the body of its parent; `None` if its place is not
+/// finite.
+fn add_joint(
+    rig: &mut Rig,
+    analysis: &mut RigAnalysis,
+    parent: JointIdx,
+    role: Role,
+    at: Vec3,
+) -> Option<JointIdx> {
+    let translation = analysis.bind_model[parent].inverse().point(at);
+    let local = LocalTransform { translation, ..LocalTransform::default() };
+    let bind = analysis.bind_model[parent] * local.to_affine();
+    if !bind.is_finite() {
+        return None;
+    }
+    rig.joints.push(Joint { name: role.name(), parent: Some(parent), rest: local, source: usize::MAX });
+    analysis.bind_model.push(bind);
+    analysis.roles.push(Some(RoleGuess { role, confidence: MADE_UP, basis: Basis::Shape }));
+    let body = analysis.merge_into[parent].unwrap_or(parent);
+    analysis.merge_into.push(Some(body));
+    Some(rig.joints.len() - 1)
+}
+
+/// Mean of the lowest skin that the last bone of a leg moves most, raised to ankle height; model space, file units.
+fn end_of_leg(rig: &Rig, analysis: &RigAnalysis, bone: JointIdx) -> Option<Vec3> {
     let (character, bound) = (analysis.character_from_file(), Bound::of(rig)?);
-    let skin = bound.vertices.iter().zip(&bound.movers).filter(|(_, mover)| **mover == shank);
+    let skin = bound.vertices.iter().zip(&bound.movers).filter(|(_, mover)| **mover == bone);
     let own: Vec<Vec3> = skin.map(|(&vertex, _)| character.point(vertex)).collect();
     let lowest = own.iter().map(|at| at.y).reduce(sinew_math::min)?;
     let sole = lowest + ANKLE_HEIGHT * analysis.height;
@@ -174,9 +197,9 @@ fn end_of_shank(rig: &Rig, analysis: &RigAnalysis, shank: JointIdx) -> Option<Ve
         .iter()
         .filter(|at| at.y <= sole)
         .fold((Vec3::ZERO, 0.0_f32), |(sum, count), &at| (sum + at, count + 1.0));
-    let knee = character.point(analysis.bind_model[shank].translation);
+    let start = character.point(analysis.bind_model[bone].translation);
     // A foot extends forward from its ankle, which is under the knee.
     let middle = sum / count;
-    let ankle = Vec3::new(middle.x, sole, sinew_math::min(middle.z, knee.z));
-    (knee.y > sole).then(|| character.inverse().point(ankle))
+    let ankle = Vec3::new(middle.x, sole, sinew_math::min(middle.z, start.z));
+    (start.y > sole).then(|| character.inverse().point(ankle))
 }

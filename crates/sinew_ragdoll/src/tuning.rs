@@ -457,6 +457,25 @@ pub(crate) const NEVER_STILL: f32 = 6.0;
 /// Larger: kneeling or leaning counts as fallen. Smaller: sitting counts as standing. Shown by the tests of `faults`.
 pub(crate) const STILL_UPRIGHT: f32 = 0.8;
 
+/// Height of a heavy part of a creature's trunk over the floor at rest, as a share of the trunk's mean height at
+/// release, above which the creature counts as standing on its legs.
+///
+/// Larger: animals with their rump up count as lying. Smaller: animals that lie on a side count as standing. Shown by
+/// the tests of `faults`.
+pub(crate) const STILL_ON_LEGS: f32 = 0.25;
+
+/// Least share of the trunk's mass of a heavy part, 0 to 1.
+///
+/// Larger: a rump of many bones counts as light. Smaller: a raised neck counts as standing. Shown by the tests of
+/// `faults`.
+pub(crate) const HEAVY_PART: f32 = 0.1;
+
+/// Least mean height of a creature's trunk over the floor at release to count as standing on legs, as a share of its
+/// height.
+///
+/// Larger: short-legged animals are never pushed over. Smaller: slugs are. Shown by the tests of `faults`.
+pub(crate) const OFF_FLOOR: f32 = 0.15;
+
 /// Velocities of the highest point used to push over a limp body that stays upright, weakest first, as shares of √(g
 /// h), h its height.
 ///

@@ -104,7 +104,9 @@ impl<'a> Clearing<'a> {
         for (frame, ankles) in ankles.iter().enumerate() {
             let time = fitted.take.time(frame);
             let pose = fitted.take.pose_mut(frame);
-            for (k, foot) in self.legs.feet.iter().enumerate() {
+            // Legs without knees cannot tread; the raised body carries them.
+            let legs = if self.legs.are_stiff(&def.rig) { 0 } else { 2 };
+            for (k, foot) in self.legs.feet.iter().enumerate().take(legs) {
                 let stands = standing(&fitted.contacts, foot.side, time, TREAD * fitted.pace);
                 self.tread(k, ankles[k], stands, pose, &mut model);
             }

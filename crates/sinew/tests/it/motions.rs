@@ -1,7 +1,7 @@
 //! Tests of the built-in motions on other bodies.
 
 use sinew::anim::contact::sole_points;
-use sinew::anim::legs::Legs;
+use sinew::anim::legs::{Legs, add_ankles};
 use sinew::anim::retarget::Retargeted;
 use sinew::anim::{
     Channel, Clip, Interpolation, Joint, LocalTransform, Primitive, Property, Rig, RigAnalysis, RigMesh,
@@ -258,5 +258,56 @@ fn a_human_with_a_staff_gets_up() {
         assert!(depths.iter().all(|&depth| depth < 0.1), "{what}: depths in the floor {depths:?} m");
         set_motions_with_builtin(&mut def, &analysis, MotionSet::default()).expect("get-ups");
         assert_eq!(def.motions().get_ups.len(), 2, "{what}");
+    }
+}
+
+/// Returns the mannequin with legs of one bone: the skin below the knees belongs to the thighs.
+fn without_knees() -> Rig {
+    let mut rig = mannequin().rig;
+    let analysis = analyze(&rig).expect("a skin");
+    let joint = |role: Role| analysis.joint_with(role);
+    for side in [Side::Left, Side::Right] {
+        let thigh = joint(Role::UpperLeg(side)).expect("a thigh");
+        let below: Vec<usize> = [Role::LowerLeg(side), Role::Foot(side), Role::Toes(side)]
+            .into_iter()
+            .filter_map(joint)
+            .collect();
+        for &joint in &below {
+            rig.joints[joint].name = format!("helper{joint}");
+        }
+        for mesh in &mut rig.meshes {
+            let Some(skin) = mesh.skin.map(|skin| &rig.skins[skin]) else { continue };
+            let slot = |joint: usize| skin.joints.iter().position(|&own| own == joint);
+            let to = u16::try_from(slot(thigh).expect("skinned")).expect("few");
+            for slots in mesh.primitives.iter_mut().flat_map(|primitive| &mut primitive.joints) {
+                for own in slots {
+                    if below.contains(&skin.joints[usize::from(*own)]) {
+                        *own = to;
+                    }
+                }
+            }
+        }
+    }
+    rig
+}
+
+/// Legs of one bone are straight in all built-in motions, and the figure stands at the end of its get-ups.
+#[test]
+fn figure_without_knees_gets_up() {
+    let mut rig = without_knees();
+    let mut analysis = analyze(&rig).expect("a skin");
+    assert!(analysis.humanoid && analysis.joint_with(Role::LowerLeg(Side::Left)).is_none());
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
+    assert_eq!(add_ankles(&mut rig, &mut analysis), 2);
+    let def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    let motions = builtin_motions(&def, &analysis).expect("a human");
+    for fit in &motions.fits {
+        let last = fit.take.pose(fit.take.frames() - 1);
+        let low = lowest(&def, last, |_| true);
+        assert!(low.abs() < 0.03, "its lowest part is at {low} m");
+        let head = lowest(&def, last, |body| body.role == "head");
+        assert!(head > 0.75 * def.ragdoll.height, "its head is at {head} m");
+        let deepest = def.deepest_skin(&fit.take);
+        assert!(deepest < 0.1 * def.ragdoll.height, "it is {deepest} m in the floor");
     }
 }

@@ -24,7 +24,7 @@ use crate::rig::{JointIdx, Rig};
 use crate::roles::{RigAnalysis, Role, Side};
 use crate::tuning::{FLOOR_TIME, FOOT_HOLD};
 use align::Alignment;
-use sinew_math::{Affine, Rotation, Vec3, max};
+use sinew_math::{Affine, Rotation, Vec3, direction, max};
 
 /// A body: its rig and analysis.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +51,7 @@ pub enum Pace {
 /// Treatment of the feet at the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Feet {
-    /// Feet are held where the actor's feet stand, flat on the floor.
+    /// Feet are held where the actor's feet stand, flat on the floor; those of legs without knees are free.
     #[default]
     Locked,
     /// Feet follow the rotations of the leg, and tilt like the actor's.
@@ -229,6 +229,8 @@ struct Transfer<'a> {
     actor_feet: [Foot; 2],
     /// Legs of the character.
     legs: Legs,
+    /// True if they have no knees.
+    is_stiff: bool,
     /// Vector from the pelvis to the middle of its hip joints, in the pelvis' axes without scale, metres.
     hips_to_legs: Vec3,
     /// Ratio of the character's leg length to the actor's.
@@ -251,10 +253,13 @@ impl<'a> Transfer<'a> {
                 return Err(RetargetError::NotHumanoid(name));
             }
         }
-        let alignment = Alignment::of(actor.analysis, character.analysis);
+        let mut alignment = Alignment::of(actor.analysis, character.analysis);
         let legs =
             |body: Body<'_>, name| Legs::of(body.rig, body.analysis).ok_or(RetargetError::RoleMissing(name));
         let (actor_feet, legs) = (legs(actor, "actor")?.feet, legs(character, "character")?);
+        let is_stiff = legs.are_stiff(character.rig);
+        let is_shown = |role: Role| !is_stiff || !matches!(role, Role::LowerLeg(_) | Role::Foot(_));
+        alignment.pairs.retain(|pair| is_shown(pair.role));
         let root = character.analysis.character_from_file();
         let stands = |joint: JointIdx| (root * character.analysis.bind_model[joint]).to_rigid();
         let hip_joints = legs.feet.map(|foot| stands(foot.leg.upper).translation);
@@ -271,6 +276,7 @@ impl<'a> Transfer<'a> {
             hips_to_legs: pelvis.rotation.inverse()
                 * ((hip_joints[0] + hip_joints[1]) * 0.5 - pelvis.translation),
             legs,
+            is_stiff,
         })
     }
 
@@ -315,7 +321,7 @@ impl<'a> Transfer<'a> {
         take: &mut Take,
     ) -> FootSlideReport {
         let (rig, root) = (self.character.rig, &self.character_root);
-        if feet == Feet::Locked {
+        if feet == Feet::Locked && !self.is_stiff {
             return remove_foot_slide(rig, root, &self.legs, contacts, ground, take);
         }
         let points = ground.seen_from(take, sole_points(rig, root, &self.legs.feet, take));
@@ -359,11 +365,23 @@ impl<'a> Transfer<'a> {
         for (joint, local) in pose.iter_mut().enumerate() {
             let parent = self.character.rig.joints[joint].parent.map_or(self.character_root, |p| to[p]);
             if let Some(pair) = pairs.next_if(|pair| pair.to == joint) {
-                let wanted = from[pair.from].to_rigid().rotation * pair.correction;
+                let straight = self.straight_leg(pair.role, from);
+                let wanted = straight * from[pair.from].to_rigid().rotation * pair.correction;
                 local.rotation = (parent.to_rigid().rotation.inverse() * wanted).normalize();
             }
             to.push(parent * local.to_affine());
         }
+    }
+
+    /// Rotation of the actor's thigh to the direction from hip to ankle, if the role is the thigh of a leg of one bone.
+    fn straight_leg(&self, role: Role, from: &[Affine]) -> Rotation {
+        let leg = match role {
+            Role::UpperLeg(side) if self.is_stiff => self.actor_feet[usize::from(side == Side::Right)].leg,
+            _ => return Rotation::IDENTITY,
+        };
+        let [hip, knee, ankle] = [leg.upper, leg.lower, leg.end].map(|joint| from[joint].translation);
+        let ways = direction(knee - hip).zip(direction(ankle - hip));
+        ways.map_or(Rotation::IDENTITY, |(thigh, whole)| Rotation::from_arc(thigh, whole))
     }
 
     /// Target of the character's pelvis: the position of the actor's hip joints times the ratio of the leg lengths.

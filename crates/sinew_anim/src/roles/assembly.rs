@@ -13,8 +13,8 @@ use sinew_math::{Vec3, direction};
 
 const LONG: [Part; 4] = [Part::UpperArm, Part::LowerArm, Part::UpperLeg, Part::LowerLeg];
 
-/// Returns limb bones without skin that carry a skinned part of the same limb, or whose mirrored bone has skin: the
-/// nearest bone for each part of a side.
+/// Returns limb bones without skin that carry a skinned part of the same limb, or whose mirrored bone does or has
+/// skin: the nearest bone for each part of a side.
 ///
 /// The name and the hierarchy confirm such a bone, even without skin.
 pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<JointIdx> {
@@ -41,12 +41,17 @@ pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<
             }
         }
     }
-    // The mirrored bone has skin, and a mirrored figure has both.
+    // The mirrored bone has skin or carries some, and a mirrored figure has both.
+    let first = found.clone();
     for (joint, reading) in readings.iter().enumerate().filter(|&(joint, _)| !moves(joint)) {
         let Some(part) = reading.part.filter(|part| LONG.contains(part)) else { continue };
         let Some(side) = reading.side else { continue };
         let is_new = found.iter().all(|&(other, of, _)| (other, of) != (part, Some(side)));
-        if is_new && has_skin(part, Some(side.mirror())) && !has_skin(part, Some(side)) {
+        let is_there = |side: Side| {
+            has_skin(part, Some(side))
+                || first.iter().any(|&(other, of, _)| (other, of) == (part, Some(side)))
+        };
+        if is_new && is_there(side.mirror()) && !is_there(side) {
             found.push((part, Some(side), joint));
         }
     }

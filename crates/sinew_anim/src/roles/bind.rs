@@ -54,7 +54,8 @@ impl Bound {
     }
 
     /// Counts rigid meshes as the skin of their joint if the joint has no skin, and is named as a body part or carries
-    /// both legs. Low-poly characters consist of such parts.
+    /// both legs. Low-poly characters consist of such parts. A mesh beside the skeleton is the skin of a neck or head
+    /// without any, if it surrounds that bone.
     fn add_rigid_parts(&mut self, rig: &Rig) {
         let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
         let parents: Vec<Option<JointIdx>> = rig.joints.iter().map(|joint| joint.parent).collect();
@@ -72,23 +73,55 @@ impl Bound {
             let is_named = part.is_some_and(|part| !matches!(part, Part::Appendix | Part::Tail));
             is_bare[joint] && (is_named || legs[joint] == [true; 2])
         };
-        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        let has_head = (0..readings.len()).any(|i| readings[i].part == Some(Part::Head) && !is_bare[i]);
+        let is_top = |joint: JointIdx| matches!(readings[joint].part, Some(Part::Head | Part::Neck));
+        let tops: Vec<JointIdx> = (0..readings.len())
+            .filter(|&joint| !has_head && in_skin[joint] && is_bare[joint] && is_top(joint))
+            .collect();
         for (m, mesh) in rig.meshes.iter().enumerate().filter(|(_, mesh)| mesh.skin.is_none()) {
             let mut line = core::iter::once(mesh.joint).chain(ancestors(rig, mesh.joint));
-            let Some(carrier) = line.find(|&joint| in_skin[joint]).filter(|&joint| is_part(joint)) else {
-                continue;
+            let carrier = match line.find(|&joint| in_skin[joint]) {
+                Some(joint) => Some(joint).filter(|&joint| is_part(joint)),
+                None => self.surrounded(rig, m, &tops),
             };
-            for (p, primitive) in mesh.primitives.iter().enumerate() {
-                skin_vertices(rig, m, p, &self.model, &mut positions, &mut normals);
-                let share = vertex_areas(&positions, &primitive.indices);
-                for (&position, share) in positions.iter().zip(share) {
-                    if position.is_finite() && share.is_finite() {
-                        self.add_vertex(position, carrier);
-                        self.area[carrier] += share;
-                    }
+            if let Some(carrier) = carrier {
+                self.add_rigid(rig, m, carrier);
+            }
+        }
+    }
+
+    fn add_rigid(&mut self, rig: &Rig, mesh: usize, carrier: JointIdx) {
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        for (p, primitive) in rig.meshes[mesh].primitives.iter().enumerate() {
+            skin_vertices(rig, mesh, p, &self.model, &mut positions, &mut normals);
+            let share = vertex_areas(&positions, &primitive.indices);
+            for (&position, share) in positions.iter().zip(share) {
+                if position.is_finite() && share.is_finite() {
+                    self.add_vertex(position, carrier);
+                    self.area[carrier] += share;
                 }
             }
         }
+    }
+
+    /// Returns the bone of `bones` whose middle is inside the box of a mesh; of several the last.
+    fn surrounded(&self, rig: &Rig, mesh: usize, bones: &[JointIdx]) -> Option<JointIdx> {
+        if bones.is_empty() {
+            return None;
+        }
+        let (mut lo, mut hi) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        for p in 0..rig.meshes[mesh].primitives.len() {
+            skin_vertices(rig, mesh, p, &self.model, &mut positions, &mut normals);
+            positions.iter().for_each(|&at| (lo, hi) = (min3(lo, at), max3(hi, at)));
+        }
+        let middle = |bone: JointIdx| {
+            let end = (0..rig.joints.len()).find(|&joint| rig.joints[joint].parent == Some(bone));
+            let start = self.model[bone].translation;
+            end.map_or(start, |end| (start + self.model[end].translation) * 0.5)
+        };
+        let is_inside = |at: Vec3| at.cmpge(lo).all() && at.cmple(hi).all();
+        bones.iter().copied().rfind(|&bone| is_inside(middle(bone)))
     }
 
     fn add_vertex(&mut self, position: Vec3, mover: JointIdx) {

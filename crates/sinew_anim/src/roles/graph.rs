@@ -2,7 +2,7 @@
 
 use super::bind::Bound;
 use crate::rig::{JointIdx, Rig};
-use crate::roles::tuning::{FOOT_AT_END, FOOT_AT_SKIN, TWIN_AREA, TWIN_PLACE};
+use crate::roles::tuning::{FOOT_AT_END, FOOT_AT_SKIN, LARGEST_FOOT, TWIN_AREA, TWIN_PLACE};
 use sinew_math::Vec3;
 
 /// A joint that moves skin.
@@ -169,8 +169,10 @@ impl Graph {
                 continue;
             }
             let start = self.nodes[foot].position;
+            let large = own.iter().map(|&node| self.nodes[node].area).sum::<f32>() / LARGEST_FOOT;
             let is_leg = |node: usize| {
-                node != self.root && self.nodes[node].children.is_empty() && !own.contains(&node)
+                let is_end = node != self.root && self.nodes[node].children.is_empty();
+                is_end && !own.contains(&node) && self.nodes[node].area > large
             };
             let at_end =
                 |&&(node, at): &&(usize, Vec3)| is_leg(node) && (at - start).length() < FOOT_AT_END * size;
@@ -213,7 +215,13 @@ impl Graph {
     /// trees belong to the node of `trunk` with connected skin, or at whose skin they start; else to the root.
     fn place_for(&self, stray: usize, trunk: &[usize], ends: &[(usize, Vec3)], bound: &Bound) -> usize {
         let (size, start) = (bound.size(), self.nodes[stray].position);
-        let body = self.subtree(self.root);
+        let area = |tree: usize| self.subtree(tree).iter().map(|&node| self.nodes[node].area).sum::<f32>();
+        // A hand that hangs beside the hips carries no leg.
+        let own = area(stray);
+        let carries = |node: &usize| {
+            !self.nodes[*node].children.is_empty() || own < LARGEST_FOOT * self.nodes[*node].area
+        };
+        let body: Vec<usize> = self.subtree(self.root).into_iter().filter(carries).collect();
         let nearest = |places: &mut dyn Iterator<Item = (usize, Vec3)>| {
             places
                 .filter(|(node, _)| body.contains(node))

@@ -5,7 +5,7 @@ use super::bind::Bound;
 use super::graph::Graph;
 use super::names::{Part, Reading};
 use super::symmetry::Symmetry;
-use crate::roles::tuning::{AS_HIGH, AT_WRIST, FORKED, INNER_END, LONGEST_PALM, LOWEST_HIP};
+use crate::roles::tuning::{AS_HIGH, AT_SHOULDER, AT_WRIST, FORKED, INNER_END, LONGEST_PALM, LOWEST_HIP};
 use sinew_math::{Vec3, clamp, max, min, trig};
 
 /// Directions and sizes of the bind pose if `up` is the up axis.
@@ -88,7 +88,10 @@ impl Evidence<'_> {
         let chest = self.attachment(&arms);
         let mut spine: Vec<usize> = self.graph.up_from(chest).take_while(|&i| i != pelvis).collect();
         spine.reverse();
-        let (mut neck, head) = self.neck_and_head(chest, &arms, pelvis)?;
+        // Arms may be parented to a joint of the trunk far below the shoulders.
+        spine.extend(self.trunk_below_shoulders(chest, &arms, pelvis));
+        let top = spine.last().copied().unwrap_or(chest);
+        let (mut neck, head) = self.neck_and_head(top, &arms, pelvis)?;
         // Arms may be parented to the neck.
         let trunk = spine.iter().position(|&i| self.part(i) == Some(Part::Neck)).unwrap_or(spine.len());
         neck.splice(..0, spine.drain(trunk..));
@@ -279,6 +282,28 @@ impl Evidence<'_> {
         fair.reduce(|a, b| if leads(a, b) { b } else { a }).unwrap_or(trunk[0])
     }
 
+    /// Returns the midline chain from the joint that carries the arms up to their height.
+    fn trunk_below_shoulders(&self, chest: usize, arms: &[Vec<usize>; 2], pelvis: usize) -> Vec<usize> {
+        let shoulder = self.level(arms[0][0]);
+        let mut chain = Vec::new();
+        let mut at = chest;
+        loop {
+            let rises = |&i: &usize| {
+                let is_trunk = self.symmetry.on_midline(i) && i != pelvis && self.level(i) > self.level(at);
+                is_trunk && self.level(i) <= shoulder - AT_SHOULDER
+            };
+            let next = self.graph.nodes[at].children.iter().copied().filter(rises);
+            let Some(next) = self.with_most_skin(next) else { return chain };
+            chain.push(next);
+            at = next;
+        }
+    }
+
+    fn with_most_skin(&self, nodes: impl Iterator<Item = usize>) -> Option<usize> {
+        let sized = nodes.map(|i| (self.graph.nodes[i].subtree_area, i));
+        sized.reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, i)| i)
+    }
+
     /// Returns the midline chain above the arms with the most skin; its last joint with a fair share of skin is the
     /// head.
     fn neck_and_head(
@@ -289,15 +314,12 @@ impl Evidence<'_> {
     ) -> Option<(Vec<usize>, usize)> {
         let shoulder = self.level(arms[0][0]);
         let above =
-            |&i: &usize| self.symmetry.on_midline(i) && i != pelvis && self.level(i) > shoulder - 0.03;
+            |&i: &usize| self.symmetry.on_midline(i) && i != pelvis && self.level(i) > shoulder - AT_SHOULDER;
         let mut chain: Vec<usize> = Vec::new();
         let mut at = chest;
         loop {
             let next = self.graph.nodes[at].children.iter().copied().filter(above);
-            let best = next
-                .map(|i| (self.graph.nodes[i].subtree_area, i))
-                .reduce(|a, b| if b.0 > a.0 { b } else { a });
-            let Some((_, next)) = best else { break };
+            let Some(next) = self.with_most_skin(next) else { break };
             chain.push(next);
             at = next;
         }

@@ -159,6 +159,11 @@ pub(crate) const FOOT_AT_SKIN: f32 = 0.06;
 /// Larger: IK targets count as feet. Smaller: feet with a gap are not attached. Shown by the tests of `wild`.
 pub(crate) const FOOT_AT_END: f32 = 0.01;
 
+/// Largest ratio of the skin of a foot beside the body to that of the shank before it.
+///
+/// Larger: legs beside the body hang on hands. Smaller: large boots have no leg. Shown by the tests of `assembly`.
+pub(crate) const LARGEST_FOOT: f32 = 2.0;
+
 /// Largest difference of the distances of twins from the root, as a share of the skin's size.
 ///
 /// Larger: any two trees are twins. Smaller: slightly asymmetric rigs have no twins. Shown by the tests of `creatures`.
@@ -189,6 +194,11 @@ pub(crate) const AT_WRIST: f32 = 0.15;
 ///
 /// Larger: forearms count as palms. Smaller: large hands count as forearms. Shown by the tests of `roles`.
 pub(crate) const LONGEST_PALM: f32 = 0.7;
+
+/// Largest distance of a joint of the neck below the shoulders, as a share of the body's height.
+///
+/// Larger: the chest counts as neck. Smaller: raised shoulders hide the neck. Shown by the tests of `assembly`.
+pub(crate) const AT_SHOULDER: f32 = 0.03;
 
 /// Largest difference of the heights of two joints that count as equally high, as a share of the body's height.
 ///

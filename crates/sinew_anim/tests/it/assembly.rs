@@ -623,9 +623,9 @@ fn rigid_trunk_above_the_legs_is_the_hips() {
 }
 
 #[test]
-fn head_parented_to_the_armature_joins_the_neck() {
+fn head_parented_to_the_armature_joins_the_head() {
     let mut rig = toy::body(mixamo);
-    let [head, neck] = ["head", "neck"].map(part);
+    let head = part("head");
     // The head is half a metre high, larger than any human's.
     let armature = add_bare(&mut rig, "Armature", None, Vec3::ZERO, Vec3::ZERO);
     rig.joints[part("hips")].parent = Some(armature);
@@ -636,7 +636,7 @@ fn head_parented_to_the_armature_joins_the_neck() {
     make_rigid(&mut rig, head, mesh, Vec3::ZERO);
     make_rigid(&mut rig, part("leftHand"), beside, Vec3::from_array(toy::BODY[part("leftHand")].2));
     let own = rig.meshes.iter_mut().find(|other| other.joint == mesh).expect("just added");
-    // One of four corners touches the neck.
+    // One of four corners touches the neck. The mesh surrounds the bone of the head.
     let corners = own.primitives[0].positions.iter_mut().enumerate();
     corners.for_each(|(k, corner)| {
         *corner = place + (*corner - place) * 6.0 + Vec3::Y * if k == 0 { -0.1 } else { 0.6 };
@@ -647,7 +647,7 @@ fn head_parented_to_the_armature_joins_the_neck() {
     // The hat protrudes enough to get its own body.
     let body = |name: &str| found.kept.iter().find(|bone| bone.joint == at(name));
     let carrier = body("Goblin_head").and_then(|head| found.kept[head.parent?].joint.into());
-    assert_eq!(carrier, Some(at(&rig.joints[neck].name)), "{:?}", found.notes);
+    assert_eq!(carrier, Some(at(&rig.joints[head].name)), "{:?}", found.notes);
     assert!(body("Table").is_none() && found.merge_into[at("Table")].is_none());
     assert_eq!(found.merge_into[at(&rig.joints[hair].name)], Some(at("Goblin_head")));
 }
@@ -727,7 +727,7 @@ fn rootless_figure_with_squatting_rest_pose_stands_in_the_bind_pose() {
 #[test]
 fn head_object_on_the_armature_keeps_its_mesh_and_hair() {
     let mut rig = toy::body(mixamo);
-    let [head, neck] = ["head", "neck"].map(part);
+    let head = part("head");
     let armature = add_bare(&mut rig, "Armature", None, Vec3::ZERO, Vec3::ZERO);
     rig.joints[part("hips")].parent = Some(armature);
     let place = Vec3::from_array(toy::BODY[head].2);
@@ -757,7 +757,7 @@ fn head_object_on_the_armature_keeps_its_mesh_and_hair() {
     let found = analyze(&sorted).expect("a skin");
     let body = found.kept.iter().find(|bone| bone.joint == at("Goblin_head")).expect("the object has a body");
     let carrier = body.parent.map(|parent| found.kept[parent].joint);
-    assert_eq!(carrier, Some(at(&rig.joints[neck].name)), "{:?}", found.notes);
+    assert_eq!(carrier, Some(at(&rig.joints[head].name)), "{:?}", found.notes);
     for worn in ["Sphere", "Hair", "Circle"] {
         assert_eq!(found.merge_into[at(worn)], Some(at("Goblin_head")), "{worn}");
     }

@@ -12,6 +12,7 @@ mod feeding;
 mod hints;
 mod ik;
 mod learned_limits;
+mod lost;
 mod mocap;
 mod playheads;
 mod pose;

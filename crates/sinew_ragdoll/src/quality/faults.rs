@@ -4,9 +4,12 @@ use super::Verdict;
 use crate::bake::{BakeInput, Baked, Frame, bake};
 use crate::character::{CharacterEvent, State};
 use crate::def::{RagdollBodyDef, RagdollDef};
-use crate::tuning::{FALLEN_OUT, NEVER_STILL, ON_A_SIDE, OTHER_SIZE, STARTS_INSIDE, STILL_UPRIGHT, TOPPLES};
-use sinew_anim::{LocalTransform, Rig, local_to_model};
-use sinew_math::{Affine, Transform, Vec3, max, min};
+use crate::tuning::{
+    FALLEN_OUT, HEAVY_PART, NEVER_STILL, OFF_FLOOR, ON_A_SIDE, OTHER_SIZE, STARTS_INSIDE, STILL_ON_LEGS,
+    STILL_UPRIGHT, TOPPLES,
+};
+use sinew_anim::{LocalTransform, Rig, Role, local_to_model};
+use sinew_math::{Affine, Transform, Vec3, max, min, trig};
 use sinew_physics::{BodyKind, OverlapWith, PenetrationOf, Probe, Shape, World, WorldDef};
 
 /// Number of joints with skin from which a single body is not a ragdoll: few one-part characters have as many.
@@ -105,7 +108,7 @@ fn sides(def: &RagdollDef) -> Option<Fault> {
 pub fn faults_of_bake(input: &BakeInput<'_>, baked: &Baked) -> Vec<Fault> {
     let fault = fell_out(input, baked).or_else(|| inside(input, baked));
     let fault = fault.or_else(|| never_still(input, baked));
-    let fault = fault.or_else(|| stays_upright(input, baked));
+    let fault = fault.or_else(|| stays_standing(input, baked));
     fault.into_iter().chain(changes_size(input, baked)).collect()
 }
 
@@ -116,7 +119,8 @@ fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let mut model = Vec::new();
     let mut size = |pose: &[LocalTransform]| {
         local_to_model(&input.character.rig, pose, &Affine::IDENTITY, &mut model);
-        model[first.joint].linear.x_axis.length()
+        // Under a parent with unequal scales, rotation changes the lengths of the axes, but not the volume.
+        trig::pow(model[first.joint].linear.determinant().abs(), 1.0 / 3.0)
     };
     let by_clip = baked.frames.iter().find(|frame| frame.state == State::Animated)?;
     let by_clip = size(&by_clip.pose);
@@ -236,36 +240,54 @@ fn never_still(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     })
 }
 
-/// Returns the input of a bake with the weakest forward [push](BakeInput::topple) that fells the character. `None` if
-/// the character does not stay upright when it goes limp, or no push fells it.
+/// Returns the input of a bake with the weakest [push](BakeInput::topple) that fells the character: forward, or
+/// sideways for a creature on its legs. `None` if the character does not stay upright when it goes limp, or no push
+/// fells it.
 ///
 /// # Panics
 /// If the bake does not belong to the input.
 pub fn toppled<'a>(input: &BakeInput<'a>, baked: &Baked) -> Option<BakeInput<'a>> {
-    stays_upright(input, baked)?;
-    let speed = (input.world.gravity.length() * input.character.ragdoll.height).sqrt();
     let forward = input.world_from_character.rotation * Vec3::Z;
+    let sideways = input.world_from_character.rotation * Vec3::X;
+    let way = if stays_upright(input, baked).is_some() {
+        forward
+    } else {
+        stays_on_legs(input, baked).map(|_| sideways)?
+    };
+    let speed = (input.world.gravity.length() * input.character.ragdoll.height).sqrt();
     TOPPLES.into_iter().find_map(|share| {
-        let pushed = BakeInput { topple: forward * (share * speed), ..input.clone() };
-        let falls = stays_upright(&pushed, &bake(&pushed)).is_none();
+        let pushed = BakeInput { topple: way * (share * speed), ..input.clone() };
+        let falls = stays_standing(&pushed, &bake(&pushed)).is_none();
         falls.then_some(pushed)
     })
+}
+
+/// Returns a fault if a limp body does not fall.
+fn stays_standing(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+    stays_upright(input, baked).or_else(|| stays_on_legs(input, baked))
+}
+
+/// Places of the bodies at the first and the last frame of the first limp phase, if the character lies still there.
+fn let_go_and_still(input: &BakeInput<'_>, baked: &Baked) -> Option<[Vec<Transform>; 2]> {
+    baked.quality.settled_s?;
+    let is_limp = |frame: &Frame| frame.state == State::Limp;
+    let first = baked.frames.iter().position(is_limp)?;
+    let last = first + baked.frames[first..].iter().take_while(|frame| is_limp(frame)).count() - 1;
+    let mut model = Vec::new();
+    Some([first, last].map(|frame| {
+        let mut bodies = Vec::new();
+        local_to_model(&input.character.rig, &baked.frames[frame].pose, &Affine::IDENTITY, &mut model);
+        input.character.mapping().bodies_from_model(&model, input.world_from_character, &mut bodies);
+        bodies
+    }))
 }
 
 /// Returns a fault if a body taller than wide has its highest part at rest about as high as at release.
 fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let def = &input.character.ragdoll;
     let floor = input.world_from_character.translation.y;
-    let (mut model, mut bodies) = (Vec::new(), Vec::new());
-    let mut places = |pose: &[LocalTransform]| {
-        local_to_model(&input.character.rig, pose, &Affine::IDENTITY, &mut model);
-        input.character.mapping().bodies_from_model(&model, input.world_from_character, &mut bodies);
-        bodies.iter().map(|body| body.translation).collect::<Vec<_>>()
-    };
-    let first = baked.frames.iter().position(|frame| frame.state == State::Limp)?;
-    let last =
-        first + baked.frames[first..].iter().take_while(|frame| frame.state == State::Limp).count() - 1;
-    let [start, end] = [first, last].map(|frame| places(&baked.frames[frame].pose));
+    let [start, end] = let_go_and_still(input, baked)?
+        .map(|places| places.iter().map(|place| place.translation).collect::<Vec<_>>());
     let top = (0..start.len()).reduce(|a, b| if start[b].y > start[a].y { b } else { a })?;
     let [begins, ends] = [&start, &end].map(|places| places[top].y - floor);
     let flat = |a: Vec3, b: Vec3| Vec3::new(a.x - b.x, 0.0, a.z - b.z).length();
@@ -274,11 +296,35 @@ fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let low: Vec<Vec3> = end.iter().filter(is_low).copied().collect();
     let stance = if low.is_empty() { &end } else { &low };
     let wide = stance.iter().flat_map(|&a| stance.iter().map(move |&b| flat(a, b))).fold(0.0, max);
-    let is_still = baked.quality.settled_s.is_some();
-    (is_still && begins > wide && ends > STILL_UPRIGHT * begins).then(|| {
+    (begins > wide && ends > STILL_UPRIGHT * begins).then(|| {
         let bone = &def.bodies[top].bone;
         let reason = format!(
             "limp, it stays upright: {bone} is {ends:.2} m over the floor, {begins:.2} m when it was let go; --hit pushes it over"
+        );
+        Fault::new(Verdict::Usable, reason)
+    })
+}
+
+/// Returns a fault if a heavy part of the trunk of a creature that stood on its legs is held off the floor at rest.
+fn stays_on_legs(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+    let def = &input.character.ragdoll;
+    let floor = input.world_from_character.translation.y;
+    // The hind part of a trunk may count as the root of the tail.
+    let is_trunk = |body: &RagdollBodyDef| {
+        matches!(Role::from_name(&body.role), Some(Role::SpineSegment(_) | Role::TailSegment(_)))
+    };
+    let trunk: Vec<usize> = (0..def.bodies.len()).filter(|&i| is_trunk(&def.bodies[i])).collect();
+    let all: f32 = trunk.iter().map(|&i| def.bodies[i].mass.mass).sum();
+    let share = |i: usize| def.bodies[i].mass.mass / all;
+    let [first, last] = let_go_and_still(input, baked)?;
+    let under = |places: &[Transform], i: usize| max(def.bodies[i].shape.aabb(&places[i]).min.y - floor, 0.0);
+    let begins: f32 = trunk.iter().map(|&i| share(i) * under(&first, i)).sum();
+    let heavy = trunk.iter().filter(|&&i| share(i) > HEAVY_PART);
+    let (ends, body) = heavy.map(|&i| (under(&last, i), i)).reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+    (begins > OFF_FLOOR * def.height && ends > STILL_ON_LEGS * begins).then(|| {
+        let bone = &def.bodies[body].bone;
+        let reason = format!(
+            "limp, it stays on its legs: {bone} is {ends:.2} m over the floor, its trunk {begins:.2} m when it was let go; --hit pushes it over"
         );
         Fault::new(Verdict::Usable, reason)
     })

@@ -1,7 +1,7 @@
 //! Faults that no single metric shows, each injected into the mannequin.
 
-use sinew_anim::analyze;
-use sinew_math::{Rotation, Vec3};
+use sinew_anim::{Hints, Joint, LocalTransform, Primitive, Rig, RigMesh, Skin, analyze, analyze_hinted};
+use sinew_math::{Affine, Rotation, Vec3};
 use sinew_physics::{BodyDef, Shape};
 use sinew_ragdoll::quality::{Doubt, faults_of_bake, faults_of_ragdoll, toppled};
 use sinew_ragdoll::{
@@ -234,4 +234,87 @@ fn character_inside_the_world_is_bad() {
     assert!(at_once.starts_with("it starts inside the world"), "{at_once}");
     let later = reasons(Vec3::Z * 3.0, Vec3::new(3.0, 3.0, 1.0));
     assert!(later.starts_with("its clip moves it into the world"), "{later}");
+}
+
+/// Returns a box of `half_extents` at `center`, bound to the joint of `slot`.
+fn block(skinned: &mut Primitive, center: Vec3, half_extents: Vec3, slot: u16) {
+    let first = u32::try_from(skinned.positions.len()).expect("few");
+    let corner = |i: u32| {
+        let sign = |bit: u32| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+        center + half_extents * Vec3::new(sign(0), sign(1), sign(2))
+    };
+    skinned.positions.extend((0..8).map(corner));
+    skinned.joints.extend([[slot, 0, 0, 0]; 8]);
+    skinned.weights.extend([[1.0, 0.0, 0.0, 0.0]; 8]);
+    let faces = [[0, 2, 1, 3], [4, 5, 6, 7], [0, 1, 4, 5], [2, 6, 3, 7], [0, 4, 2, 6], [1, 3, 5, 7]];
+    for [a, b, c, d] in faces {
+        skinned.indices.extend([a, b, c, b, d, c].map(|corner| first + corner));
+    }
+}
+
+/// Returns an animal of blocks: a node that carries a trunk of two parts on four legs of one bone. `rust` is added to
+/// the friction of its joints, N·m.
+fn animal(rust: f32) -> CharacterDef {
+    let legs = |z: f32| [0.13, -0.13].map(|x| Vec3::new(x, 0.4, z));
+    let mut places = vec![(None, Vec3::ZERO)];
+    places.extend([(Some(0), Vec3::new(0.0, 0.5, -0.3)), (Some(1), Vec3::new(0.0, 0.5, 0.3))]);
+    places.extend(legs(0.5).map(|place| (Some(2), place)));
+    places.extend(legs(-0.5).map(|place| (Some(1), place)));
+    let mut rig = Rig::default();
+    let mut skinned = Primitive::default();
+    for (i, &(parent, place)) in places.iter().enumerate() {
+        let translation = place - parent.map_or(Vec3::ZERO, |parent: usize| places[parent].1);
+        let rest = LocalTransform { translation, ..LocalTransform::default() };
+        rig.joints.push(Joint { name: format!("bone{i}"), parent, rest, source: i });
+        let slot = u16::try_from(i).expect("few");
+        match i {
+            0 => {}
+            1 | 2 => block(&mut skinned, place, Vec3::new(0.18, 0.12, 0.3), slot),
+            _ => block(&mut skinned, place - Vec3::Y * 0.2, Vec3::new(0.06, 0.2, 0.06), slot),
+        }
+    }
+    let inverse_bind =
+        places.iter().map(|&(_, at)| Affine { translation: -at, ..Affine::IDENTITY }).collect();
+    rig.skins = vec![Skin { name: String::new(), joints: (0..places.len()).collect(), inverse_bind }];
+    rig.meshes = vec![RigMesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![skinned] }];
+    let upright = Hints { up: Some(Vec3::Y), ..Hints::default() };
+    let analysis = analyze_hinted(&rig, &upright).expect("a skin");
+    let (mut ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
+    ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque += rust);
+    CharacterDef::new(rig, ragdoll, &analysis.bind_model)
+}
+
+/// Under a node with unequal scales, a body that turns is drawn at the same size.
+#[test]
+fn turning_under_unequal_scales_changes_no_size() {
+    let character = animal(0.0);
+    let (node, trunk) = (0, character.ragdoll.bodies[0].joint);
+    let ground = [BodyDef::fixed(Shape::HalfSpace)];
+    let input = BakeInput { bodies: &ground, limp_at: Some(0.5), ..BakeInput::new(Arc::new(character)) };
+    let mut baked = bake(&input);
+    baked.frames.iter_mut().for_each(|frame| frame.pose[node].scale = Vec3::new(1.0, 1.3, 1.0));
+    baked.frames[0].pose[trunk].rotation = Rotation::from_axis_angle(Vec3::Z, core::f32::consts::FRAC_PI_2);
+    let last = baked.frames.len() - 1;
+    baked.frames[last].state = State::GettingUp;
+    let found = faults_of_bake(&input, &baked);
+    assert!(found.iter().all(|fault| !fault.reason.contains("times as large")), "{found:?}");
+}
+
+/// An animal with stiff joints stays on its legs when it goes limp: it is pushed over sideways, and lies.
+#[test]
+fn animal_on_its_legs_is_pushed_over_sideways() {
+    let mut character = animal(1e4);
+    character.after_settling = AfterSettling::StayDown;
+    let ground = [BodyDef::fixed(Shape::HalfSpace)];
+    let input = BakeInput {
+        bodies: &ground,
+        limp_at: Some(0.0),
+        seconds: 6.0,
+        ..BakeInput::new(Arc::new(character))
+    };
+    let found = faults_of_bake(&input, &bake(&input));
+    assert!(found.iter().any(|fault| fault.reason.contains("stays on its legs")), "{found:?}");
+    let pushed = toppled(&input, &bake(&input)).expect("a push fells it");
+    assert!(pushed.topple.x.abs() > 0.5 && pushed.topple.z.abs() < 1e-3, "sideways: {}", pushed.topple);
+    assert_eq!(faults_of_bake(&pushed, &bake(&pushed)), []);
 }

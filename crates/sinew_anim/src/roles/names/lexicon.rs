@@ -25,6 +25,8 @@ pub(super) enum Word {
     /// Leg or foot, which Japanese names do not distinguish.
     LegOrFoot,
     Body,
+    /// Hips, chest or head of a CAT rig, by its place.
+    Hub,
     Hip,
     Pelvis,
     Spine,
@@ -91,6 +93,7 @@ const WORDS: &[(Word, &str)] = &[
     (Leg, "leg tui bein pierna jambe gamba perna 腿 脚部 다리 нога"),
     (LegOrFoot, "ashi 足 脚 あし"),
     (Body, "body 半身 hanshin"),
+    (Hub, "hub"),
     (
         Pelvis,
         "pelvis becken kahanshin kanpan gupen tunbu koshibone bassin bacino pelve 골반 таз 骨盆 骨盤 臀 臀部",

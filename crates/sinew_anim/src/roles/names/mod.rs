@@ -91,14 +91,62 @@ pub(super) fn read_names(names: &[&str], parents: &[Option<usize>]) -> Vec<Readi
             Some(Sense::Wrist) => Some(Part::Hand),
             Some(Sense::Foot) => Some(if on_side(ankles, reading.side) { Part::Toes } else { Part::Foot }),
             Some(Sense::Ankle) => Some(Part::Foot),
+            Some(Sense::Hub) => None,
             Some(Sense::Part(Part::Spine | Part::Neck | Part::Head)) if sided => None,
             Some(Sense::Part(part)) => Some(*part),
         };
     }
     if parents.len() == readings.len() {
         name_ball(&mut readings, parents);
+        // Only CAT rigs have hubs.
+        if senses.iter().filter(|&&sense| sense == Some(Sense::Hub)).count() > 1 {
+            name_halves(&mut readings, &senses, parents);
+            name_hubs(&mut readings, &senses, parents);
+        }
     }
     readings
+}
+
+/// True if joint `above` is an ancestor of `joint`.
+fn carries(parents: &[Option<usize>], above: usize, joint: usize) -> bool {
+    core::iter::successors(parents[joint], |&at| parents[at]).any(|at| at == above)
+}
+
+/// Reads two joints in line that are only named leg, or arm, as the two halves of the limb ("LLeg1", "LLeg2"). A
+/// quadruped's limbs may be named so, too.
+fn name_halves(readings: &mut [Reading], senses: &[Option<Sense>], parents: &[Option<usize>]) {
+    let limbs =
+        [(Sense::Leg, [Part::UpperLeg, Part::LowerLeg]), (Sense::Arm, [Part::UpperArm, Part::LowerArm])];
+    for (sense, halves) in limbs {
+        if senses.iter().flatten().any(|other| halves.iter().any(|&half| *other == Sense::Part(half))) {
+            continue;
+        }
+        for side in [Side::Left, Side::Right] {
+            let is = |&joint: &usize| senses[joint] == Some(sense) && readings[joint].side == Some(side);
+            let own: Vec<usize> = (0..senses.len()).filter(is).collect();
+            let (upper, lower) = match *own.as_slice() {
+                [a, b] if carries(parents, a, b) => (a, b),
+                [a, b] if carries(parents, b, a) => (b, a),
+                _ => continue,
+            };
+            (readings[upper].part, readings[lower].part) = (Some(halves[0]), Some(halves[1]));
+        }
+    }
+}
+
+/// Reads the lowest of several hubs in line as hips, the highest as head, those between as spine.
+fn name_hubs(readings: &mut [Reading], senses: &[Option<Sense>], parents: &[Option<usize>]) {
+    let hubs: Vec<usize> = (0..senses.len()).filter(|&joint| senses[joint] == Some(Sense::Hub)).collect();
+    for &hub in &hubs {
+        let is_carried = hubs.iter().any(|&other| carries(parents, other, hub));
+        let is_last = !hubs.iter().any(|&other| carries(parents, hub, other));
+        readings[hub].part = match (is_carried, is_last) {
+            (false, false) => Some(Part::Hips),
+            (true, true) => Some(Part::Head),
+            (true, false) => Some(Part::Spine),
+            (false, true) => None,
+        };
+    }
 }
 
 /// Reads a foot below a foot as its ball if no joint is named toes.
@@ -164,10 +212,7 @@ pub(super) fn settle_limbs(readings: &mut [Reading], parents: &[Option<usize>]) 
                 of_part.next().filter(|_| of_part.next().is_none())
             };
             let (Some(above), Some(below)) = (with(upper), with(lower)) else { continue };
-            let carries = |carrier: usize, at: usize| {
-                core::iter::successors(parents[at], |&up| parents[up]).any(|up| up == carrier)
-            };
-            if carries(below, above) {
+            if carries(parents, below, above) {
                 (readings[above].part, readings[below].part) = (Some(lower), Some(upper));
             }
         }
@@ -245,6 +290,7 @@ enum Sense {
     Wrist,
     Foot,
     Ankle,
+    Hub,
 }
 
 fn read(tokens: &[Token]) -> (Reading, Option<Sense>) {
@@ -329,7 +375,8 @@ fn sense(words: &[Word]) -> Option<Sense> {
         [Word::Spine, ..] => Some(Sense::Part(Part::Spine)),
         [one] => plain(one),
         [Word::Shoulder, Word::Clavicle] | [Word::Clavicle, Word::Shoulder] => plain(Word::Clavicle),
-        [Arm, last @ (Word::Hand | Word::Wrist)] | [Leg, last @ (Word::Foot | Word::Ankle)] => plain(last),
+        [Arm, last @ (Word::Hand | Word::Wrist | Word::Clavicle)]
+        | [Leg, last @ (Word::Foot | Word::Ankle)] => plain(last),
         [Word::Hand, Word::Wrist] | [Word::Wrist, Word::Hand] => plain(Word::Wrist),
         [Word::Foot, Word::Ankle] | [Word::Ankle, Word::Foot] => plain(Word::Ankle),
         [Word::Foot, Word::Toes] | [Word::Toes, Word::Foot] => plain(Word::Toes),
@@ -361,6 +408,7 @@ fn plain(word: Word) -> Option<Sense> {
         Word::LegOrFoot => Sense::LegOrFoot,
         Word::Foot => Sense::Foot,
         Word::Ankle => Sense::Ankle,
+        Word::Hub => Sense::Hub,
         Word::Toes => Sense::Part(Part::Toes),
         Word::Tail => Sense::Part(Part::Tail),
         _ => return None,
@@ -386,6 +434,32 @@ mod tests {
         let expected = [Clavicle, UpperArm, LowerArm, Hand, UpperLeg, LowerLeg].map(Some);
         let found: Vec<Option<Part>> = readings.into_iter().map(|reading| reading.part).collect();
         assert_eq!(found, expected);
+    }
+
+    /// A CAT rig: hubs, and limbs of two bones with one name.
+    #[test]
+    fn hubs_and_numbered_halves_of_limbs_are_read() {
+        let names = [
+            "CATRigHub004",
+            "CATRigLLeg003",
+            "CATRigLLeg004",
+            "CATRigLLegAnkle001",
+            "CATRigSpine011",
+            "CATRigHub005",
+            "CATRigRArmCollarbone001",
+            "CATRigRArm004",
+            "CATRigRArm003",
+            "CATRigRArmPalm001",
+            "CATRigHub006",
+        ];
+        let parents =
+            [None, Some(0), Some(1), Some(2), Some(0), Some(4), Some(5), Some(6), Some(7), Some(8), Some(5)];
+        use Part::*;
+        let expected =
+            [Hips, UpperLeg, LowerLeg, Foot, Spine, Spine, Clavicle, UpperArm, LowerArm, Hand, Head];
+        let found: Vec<Option<Part>> =
+            read_names(&names, &parents).into_iter().map(|reading| reading.part).collect();
+        assert_eq!(found, expected.map(Some));
     }
 
     #[test]
