@@ -123,7 +123,7 @@ impl Character {
             figure: &self.figure,
             feet: &self.feet,
             stumble: self.activity.stumble(),
-            leads: false,
+            leads: matches!(self.activity, Activity::Flinching(_)),
         };
         (foresight, &mut self.scratch)
     }
@@ -305,7 +305,7 @@ impl Character {
     /// Lets clips move all bodies again.
     pub(super) fn recover(&mut self, world: &mut World) {
         let (foresight, scratch) = self.ahead();
-        Foresight { leads: true, ..foresight }.next(world.def().dt(), scratch);
+        foresight.next(world.def().dt(), scratch);
         self.leave_bodies(world);
         self.activity = Activity::Animated;
         self.events.push(CharacterEvent::Recovered);

@@ -6,7 +6,9 @@
 //! arm.
 
 use super::{CharacterDef, State};
-use crate::character::tuning::{LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STEPS_FROM, STRAIGHT_UP};
+use crate::character::tuning::{
+    LIMB_SOFTNESS, LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STEPS_FROM, STRAIGHT_UP,
+};
 use crate::def::RagdollDef;
 use crate::fit::surface::carried;
 use crate::skin::surface::Surface;
@@ -385,7 +387,8 @@ pub(super) fn spread(mut left: Vec<Vec3>, apart: f32, most: usize, size: impl Fn
     chosen
 }
 
-/// Moves the end of a limb to a position, in the axes of `model`.
+/// Moves the end of a limb to a position, in the axes of `model`. A moved limb slows down before it is straight, so that
+/// its middle joint does not snap.
 fn put(
     rig: &Rig,
     bones: TwoBone,
@@ -394,9 +397,13 @@ fn put(
     pose: &mut [LocalTransform],
     model: &mut Vec<Affine>,
 ) {
-    let middle = (model[bones.upper].translation + end.translation) * 0.5;
-    let side = model[bones.lower].translation - middle;
-    two_bone_ik(rig, bones, &TwoBoneGoal::at(end.translation, Pole::Keep(side)), pose, model);
+    let [upper, lower, now] =
+        [bones.upper, bones.lower, bones.end].map(|joint: JointIdx| model[joint].translation);
+    let length = (lower - upper).length() + (now - lower).length();
+    let softness = min((end.translation - now).length() / max(length, f32::MIN_POSITIVE), LIMB_SOFTNESS);
+    let side = lower - (upper + end.translation) * 0.5;
+    let goal = TwoBoneGoal { softness, ..TwoBoneGoal::at(end.translation, Pole::Keep(side)) };
+    two_bone_ik(rig, bones, &goal, pose, model);
     turn_to(rig, bones.end, end.rotation, root, pose, model);
 }
 

@@ -109,6 +109,13 @@ pub(crate) const RETURNS: f32 = 1.0;
 /// Larger: hands jerk over edges. Smaller: hands pass through them. Shown by `brawl`.
 pub(crate) const PART_QUICKNESS: f32 = 12.0;
 
+/// Largest softness of a limb whose end is moved out of a floor or a wall, or steps, as a share of the limb's length: see
+/// [`TwoBoneGoal`](sinew_anim::ik::TwoBoneGoal::softness).
+///
+/// Larger: the end stops short of its target. Smaller: the knee snaps when the leg becomes straight. Shown by the scene
+/// `brawl`.
+pub(crate) const LIMB_SOFTNESS: f32 = 0.08;
+
 // character/foot_bodies.rs
 
 /// Distance by which the body of a foot may be lower than its drawn skin, as a share of the character's height.
