@@ -339,7 +339,7 @@ fn findings_of_severity_error_show_in_simulation() {
         plant(&mut repair);
         let findings = doctor(&repair);
         assert_eq!(findings[0].severity, Severity::Error, "{what}");
-        if !findings[0].evidence.contains("a fall without gravity and contacts") {
+        if !findings[0].evidence.contains("left alone without gravity") {
             wrong.push(format!("{what}: {findings:#?}"));
         }
     }
