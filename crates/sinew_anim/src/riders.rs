@@ -55,7 +55,7 @@ impl Riders {
             let carrier = (*carrier)?;
             let [from, to] = [carrier, joint].map(|at| analysis.bind_model[at].to_rigid());
             let carrier_from_joint = from.inverse() * to;
-            // Feet beside the body have a role, so the motion places them.
+            // A foot outside the hierarchy of its limb has a role, so the clip animates it.
             let rides = body_above(joint) != Some(carrier) && analysis.roles[joint].is_none();
             (rides && carrier_from_joint.is_finite()).then_some(Rider { joint, carrier, carrier_from_joint })
         };

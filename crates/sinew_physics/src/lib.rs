@@ -14,8 +14,8 @@
 //! All calls are methods of [`World`]: bodies from a [`BodyDef`], joints from a [`JointDef`], [queries](World::query), [events](World::events),
 //! [snapshots](World::save).
 //!
-//! SI units, radians, +Y up, right-handed, `f32`. Shapes are those of [`sinew_geometry`]. Read `step/mod.rs` first: it is
-//! the physics, in order.
+//! SI units, radians, +Y up, right-handed, `f32`. Shapes are those of [`sinew_geometry`]. Read `step/mod.rs` first: it
+//! runs the stages of a step in order.
 #![deny(unsafe_code)] // `slices` alone allows it
 
 pub mod field;

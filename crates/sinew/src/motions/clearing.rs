@@ -197,7 +197,7 @@ fn standing(contacts: &[FootContact], side: Side, time: f32, blend: f32) -> f32 
     share.fold(0.0, max)
 }
 
-/// Bodies without a human role whose joint is not a child of the carrying body's joint.
+/// Bodies without a humanoid role whose rig joint is not a descendant of the parent body's joint.
 fn props(def: &CharacterDef, analysis: &RigAnalysis) -> Vec<Prop> {
     let bodies = &def.ragdoll.bodies;
     let strays = def.ragdoll.joints.iter().filter(|joint| {

@@ -25,7 +25,8 @@ impl Take {
     ///
     /// # Panics
     /// If `frame_time` is not above 0, the rig has no joints, or the take would have more than
-    /// [`MOST_FRAMES`](Self::MOST_FRAMES) frames; also as [`sample`](crate::clip::sample::sample()).
+    /// [`MOST_FRAMES`](Self::MOST_FRAMES) frames; and under the conditions of
+    /// [`sample`](crate::clip::sample::sample()).
     pub fn of(rig: &Rig, clip: &Clip, frame_time: f64) -> Self {
         assert!(frame_time > 0.0, "frame_time must be positive, not {frame_time} s");
         assert!(!rig.joints.is_empty(), "the rig must have joints");

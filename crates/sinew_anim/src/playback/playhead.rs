@@ -210,8 +210,8 @@ impl Recurring {
 }
 
 impl Passage {
-    /// Returns every passage of `time` in the clip, 0 to its length, in order. The first step after a start or a seek
-    /// also passes a time exactly there.
+    /// Returns each crossing of the clip time `time`, 0 to the clip's length, in order. The first step after a start or a
+    /// seek also crosses a time equal to its start.
     pub fn crossings(self, time: f32) -> impl Iterator<Item = Crossing> {
         self.recurring(f64::from(time)).into_iter().flatten().flat_map(move |moment| self.of(moment))
     }

@@ -14,7 +14,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// Creates a ball from its parts.
+    /// Creates a sphere from its centre and radius.
     ///
     /// # Panics
     /// If a number is not finite or the radius is negative.

@@ -235,7 +235,7 @@ pub(super) struct Line {
 
 /// Near or far faces of boxes, along each axis.
 struct Faces {
-    /// Row of a node with these faces.
+    /// For each axis, the index of the node's row that holds these faces.
     row: [usize; 3],
     /// Start of the line, shifted by the half extents of the swept box and by rounding.
     origin: [f32; 3],

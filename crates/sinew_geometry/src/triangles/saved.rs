@@ -6,7 +6,7 @@ use super::mesh::{MAX_TRIANGLES, Mesh};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
 impl Mesh {
-    /// Writes the vertices, the triangles with their indices in the user's list, and the numbers of dropped triangles.
+    /// Writes the vertices, the triangles with their indices in the user's list, and the counts of dropped triangles.
     pub fn save(&self, w: &mut Writer) {
         w.count(self.vertices().len());
         for &vertex in self.vertices() {

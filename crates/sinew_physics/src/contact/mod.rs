@@ -211,7 +211,7 @@ pub(crate) struct Contact {
     /// True if its pair was reported as touching, or as a sensor pair.
     pub touching: bool,
     pub sensed: bool,
-    /// True if a one-way shape let the other pass at its last decision.
+    /// True if the last one-way test disabled this contact.
     pub passes: bool,
     /// Largest approach speed of the contact's points at the start of the step, m/s.
     pub approach: f32,

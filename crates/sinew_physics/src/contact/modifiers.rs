@@ -11,7 +11,7 @@ use crate::registered::Registered;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Modifiers {
     pub registered: Registered<ContactModifier>,
-    /// Positions of the contacts modified in this step, ascending, with their materials.
+    /// Indices of the contacts modified in this step, ascending, with their materials.
     changed: Vec<(u32, ContactMaterial)>,
 }
 

@@ -72,7 +72,7 @@ impl ObstacleBody {
         (whole - coupling).inverse()
     }
 
-    /// Priority of the body against another one if both leave a particle no room.
+    /// Priority of this body over another body when a particle is squeezed between the two.
     pub(super) fn firmness(&self) -> Firmness {
         match self.inverse_mass {
             0.0 if self.rests() => Firmness::Rests,

@@ -41,7 +41,7 @@ pub(super) struct SelfCollision {
     /// Normal of each particle's support: of unit length once the particle is processed, before that the sum over all
     /// its supports.
     supports: Vec<Vec3>,
-    /// Length of the sum of each particle's supports.
+    /// Length of the sum of each particle's support normals.
     bearing: Vec<f32>,
     /// Displacement in the iteration of the surface that finally supports each particle, metres.
     ways: Vec<Vec3>,

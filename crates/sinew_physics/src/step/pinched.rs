@@ -25,7 +25,7 @@ use core::cmp::Ordering;
 use core::ops::ControlFlow;
 use sinew_math::{Transform, Vec3, max, min};
 
-/// Contacts through particles found in a step, and memory to find them.
+/// Contacts of shapes that pinch particles between them, found in this step, and buffers for the search.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pinches {
     /// Number of the world's contacts that are not through particles.

@@ -213,8 +213,7 @@ impl Feet {
         };
     }
 
-    /// Sets these bodies, in the world, as the target of the new transition: feet with far goals are lifted
-    /// immediately.
+    /// Sets `to` as the target of the new transition. Feet whose targets are far from `bodies` are lifted immediately.
     pub fn pass_to(&mut self, def: &CharacterDef, bodies: &[Transform], motion: Transform, to: &[Transform]) {
         if !self.is_passing() {
             return;

@@ -226,7 +226,7 @@ fn locked(exam: &Exam<'_>, index: usize) -> RagdollJointDef {
     at_bind(exam, RagdollJointDef { kind, ..joint })
 }
 
-/// Returns a narrow range, widened to be stable (±5°).
+/// Widens a range to at least ±5°, because narrower limits make the joint unstable.
 fn quiet(range: Range) -> Range {
     Range::new(min(range.lo, -0.09), max(range.hi, 0.09))
 }

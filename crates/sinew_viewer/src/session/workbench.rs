@@ -179,7 +179,7 @@ impl Character {
     }
 }
 
-/// Returns a definition with other masses and limits, which need no rig.
+/// Returns a definition with the requested masses and limits. Such changes need no rig.
 fn changed(def: &RagdollDef, wishes: &[(String, BoneSettings)]) -> Result<RagdollDef, String> {
     let mut def = def.clone();
     for (bone, wish) in wishes {

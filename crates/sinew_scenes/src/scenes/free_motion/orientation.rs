@@ -151,7 +151,7 @@ impl Journey {
         Quaternion::quotient(at(self.to), at(self.from)).expect("no place is the origin")
     }
 
-    /// Moves the body by a step's fraction of the quotient.
+    /// Sets the velocity that turns the body by one step's fraction of the quotient.
     fn go_on(&self, world: &mut World) {
         let (q, dt) = (self.quotient(world), world.def().dt());
         let axis = q.axis().expect("the places do not lie in line with the origin");
