@@ -63,7 +63,7 @@ fn limbs(name: &str, found: &RigAnalysis) -> Vec<usize> {
         let on = &found.kept[bone.parent.expect("a limb has a parent")];
         match on.role {
             Role::LimbSegment { limb: other, .. } => {
-                assert_eq!(limb, other, "{name}: a limb is attached to another limb")
+                assert_eq!(limb, other, "{name}: a limb is attached to another limb");
             }
             _ => assert_eq!(side(on.joint), 0.0, "{name}"),
         }

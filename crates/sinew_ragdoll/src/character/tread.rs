@@ -155,7 +155,7 @@ impl Feet {
         offsets: [Vec3; 2],
         (now, later): (Transform, f32),
         pose: &mut [LocalTransform],
-        model: &mut Vec<Affine>,
+        model: &mut [Affine],
     ) -> f32 {
         let Some(legs) = def.legs() else { return 0.0 };
         let least = self.treads.map_or(0.0, |treads| treads.lowering * trig::exp(-PELVIS_RISES * later));

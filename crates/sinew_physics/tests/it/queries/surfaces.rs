@@ -43,7 +43,7 @@ fn a_closed_mesh_answers_as_a_box_does() {
             Ray { origin, direction: (at.point(random.in_cube() * 0.5) - origin) * random.range(0.5, 2.0) };
         match (meshed.first(&ray), solid.first(&ray)) {
             (found, Some(hit)) if hit.start.is_some() => {
-                assert_eq!(found, None, "case {case}: the cast starts inside")
+                assert_eq!(found, None, "case {case}: the cast starts inside");
             }
             (Some(a), Some(b)) => {
                 hits += 1;
