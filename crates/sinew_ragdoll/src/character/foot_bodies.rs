@@ -10,7 +10,7 @@ use sinew_anim::{Rig, smoothstep};
 use sinew_math::trig::atan2;
 use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
 
-/// Number of bisections: a milliradian.
+/// Number of bisections of [`flat_angle`](FootBody::flat_angle): about a milliradian.
 const BISECTIONS: usize = 11;
 
 /// The body of a foot.
@@ -65,7 +65,8 @@ impl FootBodies {
 }
 
 impl FootBody {
-    /// Rotates the body about its joint until its shape is no lower than `least`, metres.
+    /// Rotates the body about its joint, at most until the foot is flat, until its shape is no lower than `least`,
+    /// metres.
     fn raise(&self, def: &RagdollDef, least: f32, world_from_body: &mut Transform) {
         let shape = &def.bodies[self.body].shape;
         let joint = def.joints[self.body - 1].frame_child.translation;
@@ -78,7 +79,7 @@ impl FootBody {
             let rotation = (from * Rotation::from_axis_angle(self.axis, angle)).normalize();
             Transform { translation: pivot - rotation * joint, rotation }
         };
-        let (mut low, mut high) = (0.0, self.most(from));
+        let (mut low, mut high) = (0.0, self.flat_angle(from));
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
             if is_deep(&turned(middle)) {
@@ -89,9 +90,10 @@ impl FootBody {
         }
         *world_from_body = turned(high);
     }
+
     /// Returns the angle about the axis at which the foot is flat, radians; 0 if its toes point up already. A foot on
     /// its side, or with its sole up, keeps its pose.
-    fn most(&self, world_from_body: Rotation) -> f32 {
+    fn flat_angle(&self, world_from_body: Rotation) -> f32 {
         let vertical = world_from_body.inverse() * Vec3::Y;
         let (up, ahead) = (vertical.dot(self.up), vertical.dot(self.axis.cross(self.up)));
         let upright = smoothstep(1.0 + up / UPSIDE_DOWN);
