@@ -10,8 +10,8 @@ PAGE = ROOT / "docs/python-api.md"
 HEAD = """# Sinew in Python: all names
 
 Made of the stubs by `bindings/python/api_page.py`; [python.md](python.md) shows how they are used. Metres, kilograms, seconds, radians; +Y is up. A pose is seven
-numbers (place, quaternion x y z w), a velocity six (linear, angular). `(n, 7)` is the shape of an array. Arguments stand here with their
-choices and defaults; their types are in the stubs, where editors and type checkers find them.
+numbers (place, quaternion x y z w), a velocity six (linear, angular). `(n, 7)` is the shape of an array. The stubs have the
+types of arguments.
 """
 
 
