@@ -31,6 +31,27 @@ pub(crate) const LEAST_HERTZ: f32 = 0.02;
 /// Larger: the body lags longer. Smaller: it jumps to the animation. Shown by the tests of `drive`.
 pub(crate) const KEYED_AFTER: f32 = 5.0;
 
+// drive/apply.rs
+
+/// Largest acceleration that the pin of a body that becomes keyed gives to this body, m/s²: a leg that is raised
+/// against a bystander.
+///
+/// Larger: a returning foot throws whoever lies in its way. Smaller: the limb hangs until it is keyed. Shown by the
+/// scene `brawl`.
+pub(crate) const RETURN_ACCELERATION: f32 = 300.0;
+
+/// Lever with which the largest force of such a pin gives its largest torque, metres.
+///
+/// Larger: a returning hand spins. Smaller: it arrives with another rotation. Shown by the scene `brawl`.
+pub(crate) const RETURN_LEVER: f32 = 0.15;
+
+/// Largest speed, m/s, and angular speed, rad/s, at which a body that becomes keyed approaches its animation.
+///
+/// Larger: a limb that a hit has raised snaps back. Smaller: it lags behind the animation. Shown by the scene `brawl`.
+pub(crate) const RETURN_SPEED: f32 = 6.0;
+/// See [`RETURN_SPEED`].
+pub(crate) const RETURN_TURN: f32 = 15.0;
+
 // drive/mod.rs
 
 /// Speed of the whole ragdoll for which a hit's impulse removes all strength from the muscles at the struck body, m/s.

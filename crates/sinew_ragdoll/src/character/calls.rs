@@ -364,7 +364,7 @@ impl Character {
         let def = self.def.clone();
         let named = |name: &str| def.body_named(name).unwrap_or_else(|| panic!("no body is called '{name}'"));
         if self.state() == State::Animated {
-            self.take_bodies(world, DriveMode::Keyed);
+            self.take_bodies(world, DriveMode::Keyed, 0.0);
         }
         if matches!(self.state(), State::Animated | State::Flinching) {
             self.become_powered();

@@ -1,6 +1,8 @@
 //! State changes that involve several parts.
 
 use super::activity::{Activity, Flinch};
+use super::clearance::Depths;
+use super::feet::Depth;
 use super::figure::Scratch;
 use super::foresight::Foresight;
 use super::get_up::{Choice, Rising, Way, choose, is_taken, is_under, standing};
@@ -15,7 +17,7 @@ use super::{
     Toughness, blows, ground, powered, prepare,
 };
 use crate::character::tuning::{
-    ABOVE_PELVIS, FELLING_SPEED, INTO_GET_UP, INTO_LOOP, INTO_STANDING, LYING_MOVER,
+    ABOVE_PELVIS, BACK_WITHIN, FELLING_SPEED, FLINCH_KEYS, INTO_GET_UP, INTO_LOOP, INTO_STANDING, LYING_MOVER,
 };
 use crate::drive::{DriveMode, Muscle};
 use crate::ragdoll::BodyState;
@@ -128,6 +130,16 @@ impl Character {
         (foresight, &mut self.scratch)
     }
 
+    /// Returns true if every body is near its pose in the clips. An obstacle may have kept a body away.
+    pub(super) fn is_at_clips(&mut self, world: &World) -> bool {
+        let (foresight, scratch) = self.ahead();
+        foresight.next(world.def().dt(), scratch);
+        let bodies = self.physique.ids().iter().zip(&self.scratch.before).enumerate();
+        bodies.filter(|(index, _)| self.physique.has(*index)).all(|(_, (&id, clip))| {
+            (world.transform(id).translation - clip.translation).length() < BACK_WITHIN
+        })
+    }
+
     fn carried(&mut self) -> Vec<BodyState> {
         let (foresight, scratch) = self.ahead();
         foresight.carried(scratch)
@@ -143,10 +155,10 @@ impl Character {
     }
 
     /// Turns the bodies into a ragdoll, at the pose and speed of the animation, with the same drive for all.
-    pub(super) fn take_bodies(&mut self, world: &mut World, mode: DriveMode) {
+    pub(super) fn take_bodies(&mut self, world: &mut World, mode: DriveMode, half_life: f32) {
         if self.physique.ragdoll.is_none() {
             self.become_bodies(world, self.def.in_world.rule());
-            self.physique.drives.set_all(mode, 0.0);
+            self.physique.drives.set_all(mode, half_life);
         }
     }
 
@@ -156,7 +168,8 @@ impl Character {
             self.figure.pose.clone_from(&self.feet.pose);
             self.feet.pose.clear();
         }
-        let states = self.carried();
+        let mut states = self.carried();
+        self.physique.bound_change(&mut states, world);
         self.feet.passage = Default::default();
         self.physique.physical.rebase(self.def.mapping(), &self.def.rig, &self.figure.pose);
         self.scratch.posed.clear();
@@ -266,7 +279,7 @@ impl Character {
         };
         if gives_way && state != State::Preparing {
             if state == State::Animated {
-                self.take_bodies(world, DriveMode::Keyed);
+                self.take_bodies(world, DriveMode::Keyed, FLINCH_KEYS);
                 self.activity = Activity::Flinching(Flinch::begun());
             }
             if let Activity::Flinching(flinch) = &mut self.activity {
@@ -317,7 +330,7 @@ impl Character {
     /// Muscles and pins drive all bodies to the clips.
     pub(super) fn power(&mut self, world: &mut World) {
         self.end_clearing(world);
-        self.take_bodies(world, DriveMode::Powered(Muscle::ALIVE));
+        self.take_bodies(world, DriveMode::Powered(Muscle::ALIVE), 0.0);
         powered::set_drives(&self.def, &mut self.physique, world);
         self.become_powered();
         self.drive_bodies(world);
@@ -480,7 +493,7 @@ impl Character {
             self.feet.shown_depths(&def, &self.figure, Grounds { world, own }, &mut self.scratch.model);
         let upright = moves.landmarks.compare(&moves.upright, &stands).motion;
         self.settle_into(world, upright, Vec3::ZERO, INTO_LOOP);
-        self.feet.pass(&def, from, moves.deepest, INTO_LOOP);
+        self.pass_from(world, from, moves.deepest, INTO_LOOP);
         def.play_looped(&mut self.gait.animator, 0.0);
         self.be_up();
     }
@@ -491,10 +504,17 @@ impl Character {
     }
 
     /// Starts a transition of this many seconds to a pose no deeper than `to`, from the shown pose.
-    fn pass(&mut self, world: &World, to: super::clearance::Depths, seconds: f32) {
+    fn pass(&mut self, world: &World, to: Depths, seconds: f32) {
         let own = self.detail.map(|_| self.physique.own());
         let (grounds, model) = (Grounds { world, own }, &mut self.scratch.model);
         let from = self.feet.shown_depths(&self.def, &self.figure, grounds, model);
+        self.pass_from(world, from, to, seconds);
+    }
+
+    /// Starts a transition from a pose with the depths `from`.
+    fn pass_from(&mut self, world: &World, from: Depth, to: Depths, seconds: f32) {
+        let own = self.detail.map(|_| self.physique.own());
+        let (grounds, model) = (Grounds { world, own }, &mut self.scratch.model);
         self.feet.pass(&self.def, from, to, seconds);
         if self.feet.is_passing() {
             self.feet.passage.follow_ground(&self.def, &self.figure, grounds, model);

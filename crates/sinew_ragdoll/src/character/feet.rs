@@ -44,6 +44,8 @@ pub(super) struct Stand<'a> {
     pub figure: &'a Figure,
     /// Speed of the character over the ground, m/s.
     pub speed: f32,
+    /// Displacement of the character up its ground in the last step, metres.
+    pub lifted: f32,
     /// True if the character jumps or falls.
     pub aloft: bool,
     /// True if the character's feet follow the ground.
@@ -73,11 +75,12 @@ impl Feet {
     /// Plants the feet of a character that gets up, or has got up and still stands there. The feet of a walking
     /// character return to the clips.
     pub fn plant(&mut self, stand: &Stand<'_>, world: &World, model: &mut Vec<Affine>) {
+        self.go_on_passing(stand.activity.state(), world.def().dt());
         if self.is_passing() {
             let grounds = Grounds { world, own: stand.own };
+            self.passage.rises.iter_mut().for_each(|rise| *rise -= stand.lifted);
             self.passage.follow_ground(stand.def, stand.figure, grounds, model);
         }
-        self.go_on_passing(stand.activity.state(), world.def().dt());
         self.follow_ground(stand, world, model);
         let state = stand.activity.state();
         self.pose.clear();

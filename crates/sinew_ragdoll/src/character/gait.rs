@@ -4,9 +4,9 @@ use super::activity::Activity;
 use super::figure::Figure;
 use super::{CharacterDef, HitBodies, Locomotion, State, ground};
 use crate::character::tuning::{
-    CLIMB_SPEED, FASTEST_PACE, HIGHEST_STEP, LIFTS_OFF, MOST_BESIDE, MOST_PACES, OFF_GROUND, PACE_RATE,
-    PICKS_UP, POWERED_TURNS, PULL_RATE, PULL_SLACK, PULL_SPEED, PUSHED_ASIDE, STANDS_BELOW, STANDS_IN,
-    STEP_SETTLES, STEP_SLOPE,
+    CLIMB_SPEED, FASTEST_PACE, HIGHEST_STEP, LIFTS_OFF, MOST_ASIDE, MOST_BESIDE, MOST_PACES, OFF_GROUND,
+    PACE_RATE, PICKS_UP, POWERED_TURNS, PULL_RATE, PULL_SLACK, PULL_SPEED, PUSHED_ASIDE, STANDS_BELOW,
+    STANDS_IN, STEP_SETTLES, STEP_SLOPE,
 };
 use sinew_anim::{Animator, ClipId, TrackDef, TrackId, smoothstep, weights_on_line};
 use sinew_math::{Rotation, Transform, Vec3, clamp, max, min, normalize_or, trig};
@@ -30,6 +30,9 @@ pub(super) struct Gait {
     pub speed: f32,
     /// Speed at which the ground raised the character's origin in the last step, m/s; 0 with a mover.
     pub climbing: f32,
+    /// Displacement of the character's origin up its ground in the last step, metres; 0 without a mover, and between
+    /// updates.
+    pub lifted: f32,
     /// Speed at which the looped clip is played, m/s.
     pub pace: f32,
     /// Time since the mover last had ground, seconds.
@@ -67,6 +70,7 @@ impl Gait {
             velocity: Vec3::ZERO,
             speed: 0.0,
             climbing: 0.0,
+            lifted: 0.0,
             pace: 0.0,
             air: 0.0,
             beside: Vec3::ZERO,
@@ -140,8 +144,10 @@ impl Gait {
         if ground.is_some() && beyond.y.abs() > STEP_SLOPE * level(way - pushed).length() + 1e-3 {
             self.beside.y -= beyond.y;
         }
-        let length = max(self.beside.length(), 1e-6);
-        self.beside *= min(MOST_BESIDE / length, 1.0) * trig::exp(-STEP_SETTLES * dt);
+        let away = level(self.beside);
+        let kept = away * min(MOST_ASIDE / max(away.length(), 1e-6), 1.0);
+        let raised = clamp(self.beside.y, -MOST_BESIDE, MOST_BESIDE);
+        self.beside = (kept + Vec3::Y * raised) * trig::exp(-STEP_SETTLES * dt);
         let fell = floor.y - self.velocity.y;
         let landed = ground.is_some() && self.air > 0.0;
         self.air = if ground.is_some() { 0.0 } else { self.air + dt };
@@ -151,6 +157,7 @@ impl Gait {
             self.velocity = velocity;
         }
         self.speed = level(velocity - floor).length();
+        self.lifted = -from.translation.y - floor.y * dt;
         let carried = Rotation::from_axis_angle(Vec3::Y, mover.yaw() - self.yaw);
         self.yaw = mover.yaw();
         let heading = carried * from.rotation;
@@ -160,7 +167,9 @@ impl Gait {
             None => heading * step.rotation,
         };
         // The mover keeps its skin distance; the character stands on its soles.
-        Some(Transform::new(feet + self.beside - Vec3::Y * mover.def().skin, rotation.normalize()))
+        let to = feet + self.beside - Vec3::Y * mover.def().skin;
+        self.lifted += to.y;
+        Some(Transform::new(to, rotation.normalize()))
     }
 
     /// Sets the mover's motion for the next step, and lets it grow to its full height. `on_feet`: the mover accelerates

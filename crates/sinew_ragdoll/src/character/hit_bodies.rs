@@ -3,9 +3,10 @@
 use super::figure::Scratch;
 use super::physique::Physique;
 use super::{CharacterDef, CharacterEvent};
-use crate::character::tuning::{GIVES_WAY, HIT_SPEED, TELEPORTED};
+use crate::character::tuning::{CATCHES_UP, GIVES_WAY, HAND_OVER_CHANGE, HIT_SPEED, SUDDEN, TELEPORTED};
 use crate::def::RagdollDef;
 use crate::owner::{is_limb, together};
+use crate::ragdoll::BodyState;
 use sinew_anim::LocalTransform;
 use sinew_math::{Transform, Vec3, max, min, normalize_or};
 use sinew_physics::{BodyId, BodyKind, Hit, Push, Velocity, World};
@@ -38,16 +39,23 @@ impl Physique {
         if before.len() != now.len() {
             before.clone_from(&now);
         }
-        for (before, now) in before.iter_mut().zip(&now) {
+        let dt = world.def().dt();
+        let mut next = now.clone();
+        for (index, (before, now)) in before.iter_mut().zip(&mut next).enumerate() {
             if (now.translation - before.translation).length_squared() > TELEPORTED * TELEPORTED {
                 *before = *now;
+            } else if self.has(index) {
+                let away = now.translation - world.transform(self.hit[index]).translation;
+                let missed = away.length();
+                slow_down(before, now, SUDDEN * dt * dt / missed);
+                let late = away * max(1.0 - CATCHES_UP * dt / max(missed, f32::MIN_POSITIVE), 0.0);
+                (before.translation, now.translation) = (before.translation - late, now.translation - late);
             }
         }
-        let dt = world.def().dt();
         if self.lost.is_empty() {
-            world.lead_all(&self.hit, &before, &now, dt);
+            world.lead_all(&self.hit, &before, &next, dt);
         } else {
-            let own = self.hit.iter().zip(before.iter().zip(&now)).enumerate();
+            let own = self.hit.iter().zip(before.iter().zip(&next)).enumerate();
             for (_, (&id, (before, now))) in own.filter(|(index, _)| self.has(*index)) {
                 world.lead_all(&[id], &[*before], &[*now], dt);
             }
@@ -62,6 +70,24 @@ impl Physique {
         let dt = world.def().dt();
         let own = self.hit.iter().zip(next).enumerate().filter(|(index, _)| self.has(*index));
         own.for_each(|(_, (&id, &next))| world.move_to(id, next, dt));
+    }
+
+    /// Bounds how much the velocities of bodies that become dynamic differ from those of the hit bodies: a lift out of
+    /// the floor that has just begun is no motion.
+    pub fn bound_change(&self, states: &mut [BodyState], world: &World) {
+        if self.before.is_empty() {
+            return;
+        }
+        let own = self.hit.iter().zip(states).enumerate().filter(|(index, _)| self.has(*index));
+        for (_, (&id, state)) in own {
+            let (now, velocity) = (world.velocity(id), &mut state.velocity);
+            let bounded = |from: Vec3, to: Vec3, most: f32| {
+                let change = to - from;
+                from + change * min(most / max(change.length(), f32::MIN_POSITIVE), 1.0)
+            };
+            velocity.linear = bounded(now.linear, velocity.linear, HAND_OVER_CHANGE[0]);
+            velocity.angular = bounded(now.angular, velocity.angular, HAND_OVER_CHANGE[1]);
+        }
     }
 
     /// Returns the strongest hit on the character's bodies in the last step, with the body's index, if it exceeds the
@@ -191,6 +217,15 @@ impl Physique {
             work += world.body_energy(id).kinetic - before;
         }
         work
+    }
+}
+
+/// Moves the earlier pose of a body toward its present one until `share` of its motion is left; a larger share than 1
+/// changes nothing. A jump is not extrapolated, since the body would overshoot by the length of the jump.
+fn slow_down(before: &mut Transform, now: &Transform, share: f32) {
+    if share < 1.0 {
+        let translation = now.translation + (before.translation - now.translation) * share;
+        *before = Transform::new(translation, now.rotation.nlerp(before.rotation, share));
     }
 }
 

@@ -224,6 +224,7 @@ impl Character {
             animator: &self.gait.animator,
             figure: &self.figure,
             speed: self.gait.speed,
+            lifted: core::mem::take(&mut self.gait.lifted),
             aloft: self.gait.is_aloft(),
             follows: self.follows_ground(),
             own: self.detail.map(|_| self.physique.hit.as_slice()),
@@ -330,7 +331,7 @@ impl Character {
         self.steer(world);
     }
 
-    /// Advances a flinch; returns false once its limb has returned, and true while powered.
+    /// Advances a flinch; returns false once its limb has returned to the clips, and true while powered.
     fn goes_on_flinching(&mut self, world: &World) -> bool {
         let Activity::Flinching(flinch) = &mut self.activity else { return true };
         if self.grips.is_gripped(&self.physique, world) {
@@ -339,7 +340,7 @@ impl Character {
         if flinch.turns_back(world.def().dt()) {
             self.physique.drives.set_all(DriveMode::Keyed, FLINCH_HALF_LIFE);
         }
-        flinch.seconds > 0.0
+        flinch.seconds > 0.0 || !self.is_at_clips(world)
     }
 
     /// Steps to keep the character's balance; returns true if that fails.

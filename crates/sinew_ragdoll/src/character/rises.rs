@@ -5,7 +5,7 @@ use super::clearance::{Clearance, Depths, PARTS, Passage, spread};
 use super::figure::Figure;
 use super::legs::follow;
 use super::{CharacterDef, ground};
-use crate::character::tuning::{LEAST_TREAD, MOST_LIFT, PART_QUICKNESS, PROBES_APART};
+use crate::character::tuning::{LEAST_TREAD, PART_QUICKNESS, PART_SEARCH, PROBES_APART};
 use sinew_anim::{LocalTransform, local_to_model};
 use sinew_math::{Affine, Vec3, max};
 use sinew_physics::{BodyId, World};
@@ -38,7 +38,8 @@ impl Grounds<'_> {
         for part in 0..PARTS {
             let points = clearance.low_points(part, model, PROBES_APART * def.ragdoll.height, &mut palette);
             let Some(lowest) = points.first() else { continue };
-            let ground = points.iter().filter_map(|&point| self.depth(def, figure.place.point(point)));
+            let ground =
+                points.iter().map(|&point| self.depth(def, figure.place.point(point)).unwrap_or(-point.y));
             both[0][part] = -lowest.y;
             both[1][part] = ground.reduce(max).unwrap_or(-lowest.y);
         }
@@ -47,7 +48,7 @@ impl Grounds<'_> {
 
     /// Returns the depth of a point in the ground below it.
     fn depth(self, def: &CharacterDef, point: Vec3) -> Option<f32> {
-        let above = MOST_LIFT * def.ragdoll.height;
+        let above = PART_SEARCH * def.ragdoll.height;
         let least = LEAST_TREAD * def.ragdoll.total_mass;
         Some(ground::firm_below(self.world, point, above, self.own, least)? - point.y)
     }

@@ -296,6 +296,7 @@ impl Gait {
             velocity,
             speed,
             climbing,
+            lifted: 0.0,
             pace,
             air,
             beside,

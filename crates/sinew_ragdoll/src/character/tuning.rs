@@ -17,6 +17,18 @@ pub(crate) const CLIMB_SPEED: f32 = 1.2;
 /// Larger: the limb hangs down. Smaller: the hit is not visible. Shown by the tests of `blows`.
 pub(crate) const FLINCH_TIME: f32 = 0.12;
 
+/// Distance from its clip within which a struck body has returned, metres.
+///
+/// Larger: the limb jumps at the end of a flinch. Smaller: characters in a crowd flinch for longer. Shown by the scene
+/// `brawl`.
+pub(crate) const BACK_WITHIN: f32 = 0.04;
+
+/// Half-life within which the other bodies of a flinching character become keyed, seconds: less than any step, but not
+/// 0, so that their speed is bounded where the pose with planted feet ends.
+///
+/// Larger: the bodies hang from springs for a step. Smaller: the same. Shown by the scene `brawl`.
+pub(crate) const FLINCH_KEYS: f32 = 1e-4;
+
 /// Half-life of a struck limb's return, seconds.
 ///
 /// Larger: the limb drifts back slowly. Smaller: it snaps back. Shown by the tests of `blows`.
@@ -93,6 +105,12 @@ pub(crate) const GRIP_SHARE: f32 = 0.9;
 ///
 /// Larger: a hand over the edge of a step sinks into it. Smaller: more rays are cast. Shown by `brawl`.
 pub(crate) const PROBES_APART: f32 = 0.08;
+
+/// Height above a part of a rising character from which the ground is searched, as a share of the height.
+///
+/// Larger: a body that leans against a crate is lifted onto it. Smaller: hands pass through stairs. Shown by `brawl` and
+/// `rising::arms_rise_over_a_step_beside_the_body`.
+pub(crate) const PART_SEARCH: f32 = 0.14;
 
 /// Largest speed at which the end of a limb moves out of a wall, relative to its clip, m/s.
 ///
@@ -464,6 +482,25 @@ pub(crate) const LEVEL_GROUND: f32 = 0.02;
 /// `in_world`.
 pub(crate) const TELEPORTED: f32 = 1.0;
 
+/// Largest speed at which a body of a clip that is away from its pose approaches the pose, m/s, in addition to its
+/// clip's own.
+///
+/// Larger: a character whose pose jumps throws whoever lies there. Smaller: its bodies lag behind its pose. Shown by the
+/// scene `brawl`.
+pub(crate) const CATCHES_UP: f32 = 10.0;
+
+/// Largest difference between the velocity at which a body becomes dynamic and that of the hit body, m/s and rad/s.
+///
+/// Larger: a limb that has just been lifted out of a crate flies away in a fall. Smaller: bodies fall at the speed of the
+/// step before. Shown by the scene `brawl`.
+pub(crate) const HAND_OVER_CHANGE: [f32; 2] = [4.0, 12.0];
+
+/// Largest acceleration of a clip's body whose motion is extrapolated in full, m/s²; a punch stays below it.
+///
+/// Larger: a body overshoots each jump of its clip by the length of the jump. Smaller: bodies lag behind fast clips.
+/// Shown by `feet::bodies_do_not_overshoot_a_jump`.
+pub(crate) const SUDDEN: f32 = 70.0;
+
 // character/in_world.rs
 
 /// Least speed of the whole character after a hit that makes it fall, m/s.
@@ -798,10 +835,16 @@ pub(crate) const STRAIGHT: f32 = 1e-4;
 /// Larger: the character jerks. Smaller: its feet sink into the steps. Shown by the tests of `in_world`.
 pub(crate) const STEP_SETTLES: f32 = 14.0;
 
-/// Largest distance of a shown character from its mover, metres.
+/// Largest height difference of a shown character from its mover, metres.
 ///
 /// Larger: the character floats after a drop. Smaller: high steps jerk. Shown by the tests of `in_world`.
 pub(crate) const MOST_BESIDE: f32 = 0.4;
+
+/// Largest horizontal distance of a shown character from its mover, metres: a mover that begins inside a crate leaves
+/// the crate within a step.
+///
+/// Larger: the character overlaps what its mover has left. Smaller: it jumps with its mover. Shown by the scene `brawl`.
+pub(crate) const MOST_ASIDE: f32 = 0.8;
 
 /// Extra speed up to which a mover that is pushed aside takes its character along immediately, m/s; the character
 /// follows the rest later.

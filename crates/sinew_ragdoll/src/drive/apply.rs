@@ -1,10 +1,10 @@
 //! Applies drives to a world: joint motors, pins, kinematic bodies.
 
-use super::{Drive, Drives, target};
+use super::{Drive, DriveMode, Drives, target};
 use crate::def::RagdollDef;
 use crate::ragdoll::Ragdoll;
-use crate::tuning::NO_STRENGTH;
-use sinew_math::{Rotation, Transform, Vec3};
+use crate::tuning::{LEAST_HERTZ, NO_STRENGTH, RETURN_ACCELERATION, RETURN_LEVER, RETURN_SPEED, RETURN_TURN};
+use sinew_math::{Rotation, Transform, Vec3, max, min};
 use sinew_physics::{
     BodyDef, BodyId, BodyKind, Gains, JointCollision, JointDef, JointId, JointKind, Motor, Reaction, SixDof,
     Softness, Velocity, World,
@@ -44,7 +44,10 @@ impl Drives {
                 world.set_kind(id, if keyed { BodyKind::Kinematic } else { BodyKind::Dynamic });
             }
             if keyed {
-                world.move_to(id, targets[body], dt);
+                let is_back = drive.half_life == 0.0;
+                let target =
+                    if is_back { targets[body] } else { nearer(world, id, targets[body], velocities[body]) };
+                world.move_to(id, target, dt);
             }
             self.pin(world, id, body, def.bodies[body].mass.center, targets[body], velocities[body]);
         }
@@ -135,13 +138,16 @@ impl Drives {
         };
         let back = Lag::of(world).back(wanted.rotation, velocity.angular);
         let place = wanted.point(center) - velocity.linear * Lag::of(world).seconds;
-        let motor = Motor {
+        let mut motor = Motor {
             gains: Gains::Position(softness),
             target: Transform::new(place, back),
             velocity,
             max_force: drive.level.force * vigour,
             max_torque: drive.level.torque * vigour,
         };
+        if drive.mode == DriveMode::Keyed {
+            return_slowly(&mut motor, world, id);
+        }
         match old {
             Some(pin) => world.set_motor(pin, Some(motor)),
             None => {
@@ -167,6 +173,40 @@ impl Drives {
         self.ground = Some(ground);
         ground
     }
+}
+
+/// Returns the pose that a keyed body reaches within a step on its way to a moving target, at the bounded speeds of a
+/// return: an obstacle may have kept it away.
+fn nearer(world: &World, id: BodyId, target: Transform, velocity: Velocity) -> Transform {
+    let (dt, now) = (world.def().dt(), world.transform(id));
+    let left = target.translation - now.translation - velocity.linear * dt;
+    let turn = (target.rotation * now.rotation.inverse()).to_scaled_axis();
+    let share = |size: f32, most: f32| min(most * dt / max(size, f32::MIN_POSITIVE), 1.0);
+    let share_left = share(left.length(), RETURN_SPEED);
+    let share_turn = share(turn.length(), RETURN_TURN + velocity.angular.length());
+    let place =
+        if share_left < 1.0 { target.translation - left * (1.0 - share_left) } else { target.translation };
+    let turned = Rotation::from_scaled_axis(turn * share_turn) * now.rotation;
+    let rotation = if share_turn < 1.0 { turned.normalize() } else { target.rotation };
+    Transform::new(place, rotation)
+}
+
+/// Bounds the force of a pin on its way to keyed, and the speed at which its body approaches the target.
+fn return_slowly(motor: &mut Motor, world: &World, id: BodyId) {
+    let Gains::Position(Softness::Frequency { hertz, damping_ratio }) = motor.gains else { return };
+    motor.max_force = min(motor.max_force, RETURN_ACCELERATION * world.mass(id).mass);
+    motor.max_torque = min(motor.max_torque, RETURN_LEVER * motor.max_force);
+    // A damped spring approaches its target at its angular frequency times the distance, over twice the damping ratio.
+    // The bound is smooth, so that no limb jerks where it ends.
+    let rate = core::f32::consts::PI * hertz / max(damping_ratio, LEAST_HERTZ);
+    let from = Transform::new(world.center_of_mass(id), world.transform(id).rotation);
+    let (way, turn) =
+        (motor.target.translation - from.translation, motor.target.rotation * from.rotation.inverse());
+    let turn = turn.to_scaled_axis();
+    let share = |size: f32, speed: f32| speed / (speed + rate * size);
+    let translation = from.translation + way * share(way.length(), RETURN_SPEED);
+    let turned = Rotation::from_scaled_axis(turn * share(turn.length(), RETURN_TURN));
+    motor.target = Transform::new(translation, (turned * from.rotation).normalize());
 }
 
 /// Returns the motor of a joint; `None` if it has no strength or no motion to drive.

@@ -365,3 +365,28 @@ fn joints_of_a_walker_do_not_shake() {
         }
     }
 }
+
+/// In the past a body that its pose had left behind moved twice as far, and back in the next step.
+#[test]
+fn bodies_do_not_overshoot_a_jump() {
+    let def = shared(sinew::mannequin::character());
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&floor());
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    let mut fastest = 0.0;
+    for step in 0..70 {
+        if step == 60 {
+            let mover = character.mover().expect("it stands");
+            let place = world.mover(mover).position();
+            world.set_mover_position(mover, place + Vec3::X * 0.15);
+        }
+        world.step();
+        character.update(&mut world);
+        if step >= 60 {
+            let speed = |&body: &BodyId| world.velocity(body).linear.length();
+            fastest = character.bodies().iter().map(speed).fold(fastest, max);
+        }
+    }
+    // The jump itself is 9 m/s.
+    assert!(fastest < 12.0, "a body moves at {fastest} m/s");
+}

@@ -1,6 +1,7 @@
 //! A brawl in a room: characters walk at random among crates and stairs and are hit; fallen ones get up. The metrics
 //! measure how well all character features work together.
 
+mod readings;
 mod watch;
 
 use crate::framework::actors::Figure;

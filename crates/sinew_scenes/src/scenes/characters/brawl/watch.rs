@@ -1,5 +1,6 @@
 //! Metrics of a brawl.
 
+use super::readings::Readings;
 use super::{Fighter, ROOM};
 use crate::framework::metric::{Expected, Metric};
 use sinew::math::{ReadError, Reader, Vec3, Writer, max};
@@ -102,6 +103,7 @@ pub(super) struct Watch {
     /// Counts and sizes, in the order of [`COUNTS`] and [`SIZES`].
     counts: [u32; COUNTS.len()],
     sizes: [f32; SIZES.len()],
+    readings: Readings,
     work_in: f32,
 }
 
@@ -189,6 +191,13 @@ impl Watch {
             let jump = watched.jump(&joints);
             self.size(SIZES[8 + last as usize], jump);
         }
+        let is_long = watched.frames.iter().all(|frame| frame.len() == joints.len());
+        if is_long && !watched.blows[0] {
+            for (index, &now) in joints.iter().enumerate() {
+                let before = [0, 1, 2].map(|frame| watched.frames[frame][index]);
+                self.readings.add_joint(state, before, now);
+            }
+        }
         watched.push(joints, state as u8);
         watched.since_blow = watched.since_blow.saturating_add(1);
         let fastest = fighter
@@ -246,10 +255,15 @@ impl Watch {
 
     fn look_deep(&mut self, world: &World, fighters: &[Fighter]) {
         for fighter in fighters {
-            for &body in fighter.character.bodies() {
+            let def = fighter.character.def();
+            let state = state_index(fighter.character.state());
+            for (&body, part) in fighter.character.bodies().iter().zip(&def.ragdoll.bodies) {
                 let depth = self.stands.iter().map(|&stand| world.overlap(body, stand)).fold(0.0, max);
                 self.size("depth_m", depth);
-                self.count("deep", u32::from(f64::from(depth) > SEEN));
+                if f64::from(depth) > SEEN {
+                    self.count("deep", 1);
+                    self.readings.add_deep(state, &part.role);
+                }
             }
         }
     }
@@ -257,6 +271,7 @@ impl Watch {
     pub fn save(&self, out: &mut Writer) {
         self.counts.iter().for_each(|&count| out.u32(count));
         self.sizes.iter().for_each(|&size| out.f32(size));
+        self.readings.save(out);
         out.f32(self.work_in);
     }
 
@@ -267,6 +282,7 @@ impl Watch {
         for size in &mut self.sizes {
             *size = bytes.f32()?;
         }
+        self.readings.load(bytes)?;
         self.work_in = bytes.f32()?;
         Ok(())
     }
@@ -295,6 +311,7 @@ impl Watch {
         metrics.extend(counts.map(|(&name, value)| Metric::new(name, value, expected(name))));
         let sizes = SIZES.iter().zip(self.sizes);
         metrics.extend(sizes.map(|(&name, value)| Metric::new(name, value, expected(name))));
+        metrics.extend(self.readings.metrics());
         metrics
     }
 }
