@@ -17,6 +17,11 @@ const BLEND: f32 = 0.07;
 const TREAD: f32 = 0.1;
 /// Largest distance by which a standing foot is lowered, in leg lengths.
 const REACH: f32 = 0.3;
+/// Number of halvings that find how far a foot can return to its position before the body was raised.
+const HALVINGS: usize = 5;
+/// Largest height of the skin above the floor to which shapes outside the skin raise the body, in heights of the
+/// character.
+const OUTSIDE: f32 = 0.035;
 /// Largest height by which the body is raised, in heights of the character; deeper penetration remains.
 const MOST: f32 = 0.3;
 
@@ -31,8 +36,9 @@ pub(super) struct Clearing<'a> {
     stands: Vec<f32>,
     /// Bodies that the pelvis is raised for: the trunk, the head, thighs and shanks.
     trunk: Vec<usize>,
-    /// Bodies of the feet, left and right.
+    /// Bodies of the feet, and of the legs above them, left and right.
     feet: [Vec<usize>; 2],
+    shanks: [Vec<usize>; 2],
     arms: Vec<Arm>,
     /// Bodies whose rig parent differs from the body that carries them.
     props: Vec<Prop>,
@@ -61,6 +67,10 @@ impl<'a> Clearing<'a> {
             (0..bodies.len()).filter(|&body| hangs(def, bodies[body].joint, top)).collect()
         };
         let foot = |side: Side| analysis.joint_with(Role::Foot(side)).map_or(Vec::new(), hanging_on);
+        let shank = |side: Side| {
+            let leg = [Role::UpperLeg(side), Role::LowerLeg(side)].map(Role::name);
+            (0..bodies.len()).filter(|&body| leg.contains(&bodies[body].role)).collect()
+        };
         let is_trunk = |body: &usize| {
             use Role::{Chest, Head, Hips, LowerLeg, Neck, Spine, UpperChest, UpperLeg};
             let role = Role::from_name(&bodies[*body].role);
@@ -81,6 +91,7 @@ impl<'a> Clearing<'a> {
             stands: (0..bodies.len()).map(|body| max(-low(body), 0.0)).collect(),
             trunk: (0..bodies.len()).filter(is_trunk).collect(),
             feet: [Side::Left, Side::Right].map(foot),
+            shanks: [Side::Left, Side::Right].map(shank),
             arms: [Side::Left, Side::Right].into_iter().filter_map(arm).collect(),
             props: props(def, analysis),
             def,
@@ -96,7 +107,9 @@ impl<'a> Clearing<'a> {
         for frame in 0..fitted.take.frames() {
             let pose = fitted.take.pose_mut(frame);
             self.bring_props(pose, &mut model);
-            depths.push(clamp(self.depth(&self.trunk, pose), 0.0, most));
+            let shapes = self.depth(&self.trunk, pose);
+            let skin = def.trunk_depth(pose).map(|skin| max(skin, 0.0) + OUTSIDE * def.ragdoll.height);
+            depths.push(clamp(min(shapes, skin.unwrap_or(shapes)), 0.0, most));
             local_to_model(&def.rig, pose, &self.root, &mut model);
             ankles.push(self.legs.feet.each_ref().map(|foot| model[foot.leg.end].to_rigid()));
         }
@@ -124,8 +137,8 @@ impl<'a> Clearing<'a> {
         }
     }
 
-    /// Moves a foot by the share `stands` back to its position before the body was raised, then onto the floor or out
-    /// of the floor.
+    /// Moves a foot back to its position before the body was raised, then by the share `stands` onto the floor, or out
+    /// of it.
     fn tread(
         &self,
         k: usize,
@@ -137,9 +150,8 @@ impl<'a> Clearing<'a> {
         let (rig, foot) = (&self.def.rig, &self.legs.feet[k]);
         local_to_model(rig, pose, &self.root, model);
         let raised = model[foot.leg.end].translation;
-        let wanted = raised + (was.translation - raised) * stands;
-        if stands > 0.0 && wanted != raised {
-            self.put(foot, Transform::new(wanted, was.rotation), pose, model);
+        if was.translation != raised {
+            self.put_back(k, (was, raised), stands, pose, model);
         }
         let shape = -self.depth(&self.feet[k], pose);
         local_to_model(rig, pose, &self.root, model);
@@ -151,6 +163,29 @@ impl<'a> Clearing<'a> {
             let on_floor = Transform::new(ankle.translation - Vec3::Y * off, ankle.rotation);
             self.put(foot, on_floor, pose, model);
         }
+    }
+
+    /// Moves a foot from its position after the body was `raised` back to where it `was`, by the share `least` at least,
+    /// and farther while the leg above it stays out of the floor: a raised pelvis leaves its feet on the floor.
+    fn put_back(
+        &self,
+        k: usize,
+        (was, raised): (Transform, Vec3),
+        least: f32,
+        pose: &mut [LocalTransform],
+        model: &mut [Affine],
+    ) {
+        let foot = &self.legs.feet[k];
+        let most = max(self.depth(&self.shanks[k], pose), 0.0);
+        let at = |share: f32| Transform::new(raised + (was.translation - raised) * share, was.rotation);
+        let (mut good, mut tried, mut bad) = (least, 1.0, 1.0);
+        for _ in 0..HALVINGS {
+            self.put(foot, at(tried), pose, model);
+            let is_out = self.depth(&self.shanks[k], pose) <= most;
+            (good, bad) = if is_out { (tried, bad) } else { (good, tried) };
+            tried = 0.5 * (good + bad);
+        }
+        self.put(foot, at(good), pose, model);
     }
 
     fn put(&self, foot: &Foot, ankle: Transform, pose: &mut [LocalTransform], model: &mut [Affine]) {

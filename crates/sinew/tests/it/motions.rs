@@ -5,13 +5,17 @@ use sinew::anim::legs::{Legs, add_ankles};
 use sinew::anim::retarget::Retargeted;
 use sinew::anim::{
     Channel, Clip, Interpolation, Joint, LocalTransform, Primitive, Property, Rig, RigAnalysis, RigMesh,
-    Role, Side, analyze, local_to_model,
+    Role, Side, Skin, analyze, local_to_model,
 };
 use sinew::formats::{ReadOptions, load_gltf};
 use sinew::mannequin::{WALK_SPEED, mannequin};
 use sinew::math::{Affine, Rotation, Transform, Vec3};
 use sinew::motions::{builtin_motions, set_motions_with_builtin};
-use sinew::ragdoll::{BuildOptions, CharacterDef, Locomotion, MotionSet, Opening, RagdollBodyDef, build};
+use sinew::physics::Shape;
+use sinew::ragdoll::skin::Stage;
+use sinew::ragdoll::{
+    BuildOptions, CharacterDef, Locomotion, MotionSet, Opening, RagdollBodyDef, SkinMeter, build,
+};
 use std::path::PathBuf;
 
 fn character(rig: Rig) -> (CharacterDef, RigAnalysis) {
@@ -210,24 +214,29 @@ fn a_mirrored_skeleton_gets_up() {
     assert!((plain - mirrored).abs() < 0.01, "depth in the floor: mirrored {mirrored} m, plain {plain} m");
 }
 
+/// Returns a box with the centre `middle` (model space, metres), skinned to a slot.
+fn block(middle: Vec3, half: Vec3, slot: usize) -> Primitive {
+    let corner = |i: u32| {
+        let side = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        middle + half * Vec3::new(side(0), side(1), side(2))
+    };
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    Primitive {
+        positions: (0..8).map(corner).collect(),
+        joints: vec![[u16::try_from(slot).expect("few"), 0, 0, 0]; 8],
+        weights: vec![[1.0, 0.0, 0.0, 0.0]; 8],
+        indices: faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect(),
+        ..Primitive::default()
+    }
+}
+
 /// Adds a box skinned to a joint to the rig, its centre `off` from the joint (model space, metres).
 fn with_box(mut rig: Rig, role: Role, off: Vec3, half: Vec3) -> Rig {
     let analysis = analyze(&rig).expect("a skin");
     let joint = analysis.joint_with(role).expect("the role");
     let slot = rig.skins[0].joints.iter().position(|&at| at == joint).expect("it moves skin");
     let middle = analysis.bind_model[joint].translation + off;
-    let corner = |i: u32| {
-        let side = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
-        middle + half * Vec3::new(side(0), side(1), side(2))
-    };
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let part = Primitive {
-        positions: (0..8).map(corner).collect(),
-        joints: vec![[u16::try_from(slot).expect("few"), 0, 0, 0]; 8],
-        weights: vec![[1.0, 0.0, 0.0, 0.0]; 8],
-        indices: faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect(),
-        ..Primitive::default()
-    };
+    let part = block(middle, half, slot);
     let joint = rig.meshes[0].joint;
     rig.meshes.push(RigMesh { name: "box".into(), joint, skin: Some(0), primitives: vec![part] });
     rig
@@ -289,6 +298,70 @@ fn without_knees() -> Rig {
         }
     }
     rig
+}
+
+/// Returns a figure of six blocks: a trunk that carries a head, arms and legs of one bone.
+fn of_blocks() -> Rig {
+    let parts = [
+        ("Root", Vec3::new(0.0, 0.6, 0.0), Vec3::new(0.0, 0.9, 0.0), Vec3::new(0.2, 0.3, 0.09)),
+        ("Head", Vec3::new(0.0, 1.2, 0.0), Vec3::new(0.0, 1.4, 0.0), Vec3::splat(0.2)),
+        ("Arm Left", Vec3::new(0.28, 1.12, 0.0), Vec3::new(0.28, 0.9, 0.0), Vec3::new(0.08, 0.3, 0.08)),
+        ("Arm Right", Vec3::new(-0.28, 1.12, 0.0), Vec3::new(-0.28, 0.9, 0.0), Vec3::new(0.08, 0.3, 0.08)),
+        ("Leg Left", Vec3::new(0.1, 0.6, 0.0), Vec3::new(0.1, 0.3, 0.0), Vec3::new(0.08, 0.3, 0.08)),
+        ("Leg Right", Vec3::new(-0.1, 0.6, 0.0), Vec3::new(-0.1, 0.3, 0.0), Vec3::new(0.08, 0.3, 0.08)),
+    ];
+    let mut rig = Rig::default();
+    let mut skin = Skin { name: String::new(), joints: Vec::new(), inverse_bind: Vec::new() };
+    let mut primitives = Vec::new();
+    for (i, (name, place, middle, half)) in parts.into_iter().enumerate() {
+        let parent = (i > 0).then_some(0);
+        let translation = place - parent.map_or(Vec3::ZERO, |_| parts[0].1);
+        let rest = LocalTransform { translation, ..LocalTransform::default() };
+        rig.joints.push(Joint { name: name.into(), parent, rest, source: i });
+        skin.joints.push(i);
+        skin.inverse_bind.push(Affine { translation: -place, ..Affine::IDENTITY });
+        primitives.push(block(middle, half, i));
+    }
+    rig.skins = vec![skin];
+    rig.meshes = vec![RigMesh { name: "blocks".into(), joint: 0, skin: Some(0), primitives }];
+    rig
+}
+
+/// Arms of one bone turn about their shoulders out of the floor, and the figure keeps both get-ups.
+#[test]
+fn figure_without_elbows_gets_up() {
+    let mut rig = of_blocks();
+    let mut analysis = analyze(&rig).expect("a skin");
+    assert!(analysis.humanoid && analysis.joint_with(Role::UpperArm(Side::Left)).is_some());
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
+    add_ankles(&mut rig, &mut analysis);
+    let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    let motions = builtin_motions(&def, &analysis).expect("a human");
+    for fit in &motions.fits[2..] {
+        let deepest = def.deepest_skin(&fit.take);
+        assert!(deepest < 0.05 * def.ragdoll.height, "it is {deepest} m in the floor");
+    }
+    set_motions_with_builtin(&mut def, &analysis, MotionSet::default()).expect("get-ups");
+    assert_eq!(def.motions().get_ups.len(), 2);
+}
+
+/// Shapes that are larger than the skin do not raise a get-up from the floor.
+#[test]
+fn large_shapes_do_not_raise_a_get_up() {
+    let (mut def, analysis) = character(mannequin().rig);
+    let hips = def.ragdoll.bodies.iter_mut().find(|body| body.role == "hips").expect("hips");
+    hips.shape = Shape::Sphere { radius: 0.4 };
+    let def = CharacterDef::new(def.rig.clone(), def.ragdoll.clone(), &analysis.bind_model);
+    let motions = builtin_motions(&def, &analysis).expect("a human");
+    for fit in &motions.fits[2..] {
+        let mut meter = SkinMeter::new(&def.rig, &def.ragdoll, &analysis.bind_model, &[]);
+        let to_world = def.mapping().character_from_model();
+        for frame in 0..fit.take.frames() {
+            meter.stand(Stage::Rising, fit.take.pose(frame), &to_world, 0.0);
+        }
+        let above = meter.figures().rising_above_m.expect("it was measured");
+        assert!(above < 0.05 * def.ragdoll.height, "it is {above} m above the floor");
+    }
 }
 
 /// Legs of one bone are straight in all built-in motions, and the figure stands at the end of its get-ups.

@@ -124,6 +124,8 @@ pub fn skin_json(report: &SkinReport) -> Value {
         "standing_height_m": known(skin.standing_height_m),
         "rising_height_m": known(skin.rising_height_m),
         "up_height_m": known(skin.up_height_m),
+        "rising_above_m": known(skin.rising_above_m),
+        "clips_above_m": known(skin.clips_above_m),
         "foot_slide_m": known(rising.foot_slide_m),
         "pose_jump_m": known(rising.pose_jump_m),
         "contiguous": skin.contiguous,

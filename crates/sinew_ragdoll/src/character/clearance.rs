@@ -7,7 +7,7 @@
 
 use super::{CharacterDef, State};
 use crate::character::tuning::{
-    LIMB_SOFTNESS, LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STEPS_FROM, STRAIGHT_UP,
+    ARMS_ASIDE, LIMB_SOFTNESS, LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STEPS_FROM, STRAIGHT_UP,
 };
 use crate::def::RagdollDef;
 use crate::fit::surface::carried;
@@ -16,11 +16,13 @@ use sinew_anim::ik::{Pole, TwoBone, TwoBoneGoal, two_bone_ik};
 use sinew_anim::roles::{HUMANOID_ROLES, Role, Side};
 use sinew_anim::take::Take;
 use sinew_anim::{JointIdx, LocalTransform, Rig, local_to_model, smoothstep};
-use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
+use sinew_math::{Affine, Rotation, Transform, Vec3, max, min, trig};
 
 /// Number of parts: the trunk with its knees, then feet, hands and elbows, the left one first.
 pub(super) const PARTS: usize = 7;
 const TRUNK: usize = 0;
+/// Number of halvings of the angle by which a stiff arm is raised.
+const HALVINGS: usize = 10;
 /// Largest number of passes that raise trunk and limbs: raising a foot may press its knee into the floor.
 const MOST_PASSES: usize = 3;
 pub(super) const FEET: [usize; 2] = [1, 2];
@@ -126,12 +128,23 @@ impl LimbChain {
     }
 }
 
+/// An arm without an elbow: it is raised by a rotation about the shoulder.
+#[derive(Clone, Copy, Debug)]
+struct StiffArm {
+    shoulder: JointIdx,
+    /// Part of the arm: that of its hand.
+    end: usize,
+}
+
 /// Candidates for the lowest points of the skin, and the limbs that raise them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Clearance {
     /// Skin of each part.
     parts: Vec<Surface>,
     limbs: Vec<LimbChain>,
+    stiff_arms: Vec<StiffArm>,
+    /// Skin of the pelvis; `None` for a rig without skin.
+    pelvis: Option<Surface>,
     /// Joint of each hand, and the skin of the hand with the objects that it holds.
     hands: Vec<(JointIdx, Surface)>,
     /// Joints that are not descendants of the limb that carries their body, each with the joint that it follows.
@@ -145,14 +158,15 @@ impl Clearance {
         if surface.sample.is_empty() {
             return Self::default();
         }
-        let limbs = limbs(rig, def);
+        let (limbs, stiff_arms) = (limbs(rig, def), stiff_arms(def));
         let mut palette = Vec::new();
         surface.palette(bind, &mut palette);
         let mut chosen: [Vec<usize>; PARTS] = Default::default();
         let mut held: [Vec<usize>; 2] = Default::default();
         for body in 0..def.bodies.len() {
             for (vertex, place) in outermost(&surface, body, &palette) {
-                let part = part_of(def, &limbs, bind, body, place);
+                let part =
+                    part_of_stiff(def, &stiff_arms, body).or_else(|| part_of(def, &limbs, bind, body, place));
                 part.into_iter().for_each(|part| chosen[part].push(vertex));
                 hand_of(def, body).into_iter().for_each(|hand| held[hand].push(vertex));
             }
@@ -163,7 +177,10 @@ impl Clearance {
         };
         let hands =
             held.map(skin).into_iter().enumerate().filter_map(|(hand, own)| Some((joint(hand)?, own)));
-        Self { parts: chosen.map(skin).into(), hands: hands.collect(), strays: strays(rig, def), limbs }
+        let (parts, hands) = (chosen.map(skin).into(), hands.collect());
+        let seat = outermost(&surface, 0, &palette).into_iter().map(|(vertex, _)| vertex);
+        let pelvis = Some(skin(seat.collect()));
+        Self { parts, hands, strays: strays(rig, def), limbs, stiff_arms, pelvis }
     }
 
     /// Returns true for a rig without skin.
@@ -250,6 +267,10 @@ impl Clearance {
                 let up = lift(self.depth(middle, model, &mut palette), middle);
                 raise_middle(rig, limb.bones, up, &root, pose, model);
             }
+            for &arm in &self.stiff_arms {
+                let up = lift(self.depth(arm.end, model, &mut palette), arm.end);
+                self.raise_stiff(def, arm, up, pose, model);
+            }
             // A raised foot presses its knee, which belongs to the trunk, into the floor.
             trunk = lift(self.depth(TRUNK, model, &mut palette), TRUNK);
             if trunk <= 0.0 {
@@ -257,6 +278,42 @@ impl Clearance {
             }
         }
         self.carry(def, &carried, 0..self.strays.len(), pose, model);
+    }
+
+    /// Rotates a stiff arm about its shoulder, at most until it is level, so that its lowest point is `up` metres
+    /// higher.
+    fn raise_stiff(
+        &self,
+        def: &CharacterDef,
+        arm: StiffArm,
+        up: f32,
+        pose: &mut [LocalTransform],
+        model: &mut Vec<Affine>,
+    ) {
+        let (rig, root) = (&def.rig, def.mapping().character_from_model());
+        let shoulder = model[arm.shoulder].to_rigid();
+        let from_shoulder = |place: Vec3| place - shoulder.translation;
+        let points: Vec<Vec3> =
+            self.places(arm.end, model, &mut Vec::new()).into_iter().map(from_shoulder).collect();
+        let low = |turn: Rotation| points.iter().map(|&point| (turn * point).y).fold(f32::INFINITY, min);
+        let middle = points.iter().fold(Vec3::ZERO, |sum, &point| sum + point);
+        // An arm that hangs straight down turns away from the pelvis.
+        let aside = from_shoulder(model[def.ragdoll.bodies[0].joint].translation) * -1.0;
+        let away = level(middle) + level(aside) * ARMS_ASIDE;
+        if up <= 0.0 || middle.y >= 0.0 {
+            return;
+        }
+        let away = away.normalize_or(Vec3::X);
+        let axis = Vec3::NEG_Y.cross(away);
+        let target = low(Rotation::IDENTITY) + up;
+        let (mut least, mut most) = (0.0, trig::atan2(-middle.y, middle.dot(away)));
+        for _ in 0..HALVINGS {
+            let angle = 0.5 * (least + most);
+            let is_out = low(Rotation::from_axis_angle(axis, angle)) >= target;
+            (least, most) = if is_out { (least, angle) } else { (angle, most) };
+        }
+        let turn = Rotation::from_axis_angle(axis, most);
+        turn_to(rig, arm.shoulder, turn * shoulder.rotation, &root, pose, model);
     }
 
     /// Displaces the trunk and the ends of the limbs; ends that are not listed keep their positions. Character space.
@@ -322,7 +379,11 @@ impl Clearance {
     pub fn origin(&self, def: &RagdollDef, part: usize) -> Option<JointIdx> {
         match part {
             TRUNK => def.bodies.first().map(|pelvis| pelvis.joint),
-            _ => self.limbs.iter().find(|limb| limb.end == part).map(|limb| limb.bones.upper),
+            _ => {
+                let chains = self.limbs.iter().map(|limb| (limb.end, limb.bones.upper));
+                let stiff = self.stiff_arms.iter().map(|arm| (arm.end, arm.shoulder));
+                chains.chain(stiff).find(|&(end, _)| end == part).map(|(_, upper)| upper)
+            }
         }
     }
 
@@ -407,6 +468,12 @@ fn put(
     turn_to(rig, bones.end, end.rotation, root, pose, model);
 }
 
+/// Returns the horizontal part of a vector's direction.
+fn level(way: Vec3) -> Vec3 {
+    let unit = way.normalize_or_zero();
+    Vec3::new(unit.x, 0.0, unit.z)
+}
+
 /// Returns the rotation about `wrist` that raises `lowest` to `allowed` metres below the floor; `None` if the point is
 /// not deeper, or no rotation suffices.
 fn raised_about(wrist: Vec3, lowest: Vec3, allowed: f32) -> Option<Rotation> {
@@ -474,6 +541,24 @@ fn limbs(rig: &Rig, def: &RagdollDef) -> Vec<LimbChain> {
         limbs.extend(arm.map(|bones| LimbChain { bones, end: HANDS[k], middle: Some(ELBOWS[k]) }));
     }
     limbs
+}
+
+/// Returns the arms whose bodies have neither a lower arm nor a hand.
+fn stiff_arms(def: &RagdollDef) -> Vec<StiffArm> {
+    let joint = |role: Role| def.bodies.iter().find(|body| body.role == role.name()).map(|body| body.joint);
+    let arm = |(k, side): (usize, Side)| {
+        let is_stiff = joint(Role::LowerArm(side)).is_none() && joint(Role::Hand(side)).is_none();
+        let shoulder = joint(Role::UpperArm(side)).filter(|_| is_stiff)?;
+        Some(StiffArm { shoulder, end: HANDS[k] })
+    };
+    [Side::Left, Side::Right].into_iter().enumerate().filter_map(arm).collect()
+}
+
+/// Returns the part of the stiff arm that a body is or that carries the body.
+fn part_of_stiff(def: &RagdollDef, arms: &[StiffArm], body: usize) -> Option<usize> {
+    let parent = |body: usize| def.joints.iter().find(|joint| joint.child == body).map(|joint| joint.parent);
+    let mut bearers = core::iter::successors(Some(body), |&body| parent(body));
+    bearers.find_map(|body| arms.iter().find(|arm| def.bodies[body].joint == arm.shoulder).map(|arm| arm.end))
 }
 
 /// Returns the part of a skin point, in model space of the bind pose; `None` for tails and other points without a part.
@@ -587,6 +672,22 @@ impl CharacterDef {
     /// metres; at least 0, and 0 for a rig without skin.
     pub fn deepest_skin(&self, take: &Take) -> f32 {
         self.clearance.deepest(self, take).into_iter().fold(0.0, max)
+    }
+
+    /// Returns the depth in the floor of the lowest drawn point of trunk, head and legs down to the knees in a pose,
+    /// metres; negative above the floor, `None` for a rig without skin.
+    pub fn trunk_depth(&self, pose: &[LocalTransform]) -> Option<f32> {
+        let mut model = Vec::new();
+        local_to_model(&self.rig, pose, &self.mapping().character_from_model(), &mut model);
+        let depth = self.clearance.depth(TRUNK, &model, &mut Vec::new());
+        depth.is_finite().then_some(depth)
+    }
+
+    /// Returns the height of the lowest point of the pelvis's skin in the space of `model`; ∞ without skin.
+    pub(crate) fn seat_height(&self, model: &[Affine], palette: &mut Vec<Affine>) -> f32 {
+        let pelvis = self.clearance.pelvis.iter();
+        let places = pelvis.flat_map(|pelvis| pelvis.places(model, palette));
+        places.map(|place| place.y).fold(f32::INFINITY, min)
     }
 
     /// Raises feet, hands and elbows whose drawn skin is in the floor of a pose, by bending their limbs. If a hand

@@ -323,6 +323,13 @@ pub(crate) const OFF_ORIGIN: f32 = 0.3;
 /// the tests of `rising`.
 pub(crate) const MOST_LIFT: f32 = 0.25;
 
+/// Weight of the direction away from the pelvis in the direction in which an arm of one bone is raised out of the floor;
+/// the arm's own horizontal direction has the sine of its angle to the vertical.
+///
+/// Larger: arms that push in front of the body spread to the sides. Smaller: arms that hang straight down turn in any
+/// direction. Shown by the tests of `motions`.
+pub(crate) const ARMS_ASIDE: f32 = 0.2;
+
 /// Depth of the skin of feet, hands and elbows in the floor up to which a get-up clip is not corrected, as a share of
 /// the character's height.
 ///

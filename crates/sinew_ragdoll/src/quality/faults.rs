@@ -4,6 +4,7 @@ use super::Verdict;
 use crate::bake::{BakeInput, Baked, Frame, bake};
 use crate::character::{CharacterEvent, State};
 use crate::def::{RagdollBodyDef, RagdollDef};
+use crate::skin::surface::Surface;
 use crate::tuning::{
     FALLEN_OUT, HEAVY_PART, NEVER_STILL, OFF_FLOOR, ON_A_SIDE, OTHER_SIZE, STARTS_INSIDE, STILL_ON_LEGS,
     STILL_UPRIGHT, TOPPLES,
@@ -267,27 +268,45 @@ fn stays_standing(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     stays_upright(input, baked).or_else(|| stays_on_legs(input, baked))
 }
 
-/// Places of the bodies at the first and the last frame of the first limp phase, if the character lies still there.
-fn let_go_and_still(input: &BakeInput<'_>, baked: &Baked) -> Option<[Vec<Transform>; 2]> {
+/// Returns the first and the last frame of the first limp phase, if the character lies still there.
+fn let_go_and_still(baked: &Baked) -> Option<[&Frame; 2]> {
     baked.quality.settled_s?;
     let is_limp = |frame: &Frame| frame.state == State::Limp;
     let first = baked.frames.iter().position(is_limp)?;
     let last = first + baked.frames[first..].iter().take_while(|frame| is_limp(frame)).count() - 1;
-    let mut model = Vec::new();
-    Some([first, last].map(|frame| {
-        let mut bodies = Vec::new();
-        local_to_model(&input.character.rig, &baked.frames[frame].pose, &Affine::IDENTITY, &mut model);
-        input.character.mapping().bodies_from_model(&model, input.world_from_character, &mut bodies);
-        bodies
-    }))
+    Some([first, last].map(|frame| &baked.frames[frame]))
+}
+
+/// Returns the positions of the bodies in a frame, world.
+fn bodies_in(input: &BakeInput<'_>, frame: &Frame) -> Vec<Transform> {
+    let (mut model, mut bodies) = (Vec::new(), Vec::new());
+    local_to_model(&input.character.rig, &frame.pose, &Affine::IDENTITY, &mut model);
+    input.character.mapping().bodies_from_model(&model, input.world_from_character, &mut bodies);
+    bodies
+}
+
+/// Returns the height of the lowest point of each body's skin in a frame, world; ∞ for a body without skin.
+fn lowest_skin(input: &BakeInput<'_>, baked: &Baked, frame: &Frame) -> Vec<f32> {
+    let (rig, def) = (&input.character.rig, &input.character.ragdoll);
+    let surface = Surface::of(rig, def);
+    let (mut model, mut palette) = (Vec::new(), Vec::new());
+    local_to_model(rig, &frame.pose, &baked.world_from_model, &mut model);
+    surface.palette(&model, &mut palette);
+    let mut lowest = vec![f32::INFINITY; def.bodies.len()];
+    for &vertex in &surface.sample {
+        if let Some(body) = surface.owner(vertex) {
+            lowest[body] = min(lowest[body], surface.place(&palette, vertex).y);
+        }
+    }
+    lowest
 }
 
 /// Returns a fault if a body taller than wide has its highest part at rest about as high as at release.
 fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let def = &input.character.ragdoll;
     let floor = input.world_from_character.translation.y;
-    let [start, end] = let_go_and_still(input, baked)?
-        .map(|places| places.iter().map(|place| place.translation).collect::<Vec<_>>());
+    let [start, end] = let_go_and_still(baked)?
+        .map(|frame| bodies_in(input, frame).iter().map(|place| place.translation).collect::<Vec<_>>());
     let top = (0..start.len()).reduce(|a, b| if start[b].y > start[a].y { b } else { a })?;
     let [begins, ends] = [&start, &end].map(|places| places[top].y - floor);
     let flat = |a: Vec3, b: Vec3| Vec3::new(a.x - b.x, 0.0, a.z - b.z).length();
@@ -309,18 +328,33 @@ fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
 fn stays_on_legs(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let def = &input.character.ragdoll;
     let floor = input.world_from_character.translation.y;
-    // The hind part of a trunk may count as the root of the tail.
-    let is_trunk = |body: &RagdollBodyDef| {
-        matches!(Role::from_name(&body.role), Some(Role::SpineSegment(_) | Role::TailSegment(_)))
+    // The hind part of a trunk may count as the root of the tail, or as that of a limb with two legs on it.
+    let is_trunk = |&i: &usize| match Role::from_name(&def.bodies[i].role) {
+        Some(Role::SpineSegment(_) | Role::TailSegment(_)) => true,
+        Some(Role::LimbSegment { .. }) => def.joints.iter().filter(|joint| joint.parent == i).count() > 1,
+        _ => false,
     };
-    let trunk: Vec<usize> = (0..def.bodies.len()).filter(|&i| is_trunk(&def.bodies[i])).collect();
+    let trunk: Vec<usize> = (0..def.bodies.len()).filter(is_trunk).collect();
+    if trunk.is_empty() || def.bodies[0].role == "hips" {
+        return None;
+    }
     let all: f32 = trunk.iter().map(|&i| def.bodies[i].mass.mass).sum();
     let share = |i: usize| def.bodies[i].mass.mass / all;
-    let [first, last] = let_go_and_still(input, baked)?;
+    let [first, last] = let_go_and_still(baked)?;
+    let skin = lowest_skin(input, baked, last);
+    let [first, last] = [first, last].map(|frame| bodies_in(input, frame));
     let under = |places: &[Transform], i: usize| max(def.bodies[i].shape.aabb(&places[i]).min.y - floor, 0.0);
     let begins: f32 = trunk.iter().map(|&i| share(i) * under(&first, i)).sum();
+    // A rotated shape reaches lower than the skin; where legs hold a part up, the skin counts.
+    let is_limb =
+        |body: usize| matches!(Role::from_name(&def.bodies[body].role), Some(Role::LimbSegment { .. }));
+    let bears_limb = |i: usize| def.joints.iter().any(|joint| joint.parent == i && is_limb(joint.child));
+    let held = |i: usize| {
+        let skin = if bears_limb(i) && skin[i].is_finite() { skin[i] - floor } else { 0.0 };
+        max(under(&last, i), skin)
+    };
     let heavy = trunk.iter().filter(|&&i| share(i) > HEAVY_PART);
-    let (ends, body) = heavy.map(|&i| (under(&last, i), i)).reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+    let (ends, body) = heavy.map(|&i| (held(i), i)).reduce(|a, b| if b.0 > a.0 { b } else { a })?;
     (begins > OFF_FLOOR * def.height && ends > STILL_ON_LEGS * begins).then(|| {
         let bone = &def.bodies[body].bone;
         let reason = format!(

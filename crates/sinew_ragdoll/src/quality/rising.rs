@@ -72,7 +72,8 @@ fn foot_slide(def: &CharacterDef, baked: &Baked, floor: f32) -> Option<f32> {
             let up = model[foot.joint].to_rigid().rotation * foot.up;
             let places = foot.places(&model, &mut palette);
             let is_on = |place: Vec3| place.y < floor + near;
-            let is_up = up.y >= STANDS_UPRIGHT && model[hips].translation.y >= bears;
+            let sits = def.seat_height(&model, &mut palette) <= floor + near;
+            let is_up = up.y >= STANDS_UPRIGHT && model[hips].translation.y >= bears && !sits;
             if !is_up || !places.iter().any(|&place| is_on(place)) {
                 stance = None;
                 continue;

@@ -6,7 +6,7 @@
 use super::{Phase, SkinQuality, Stage};
 use crate::def::RagdollDef;
 use crate::quality::Verdict;
-use crate::tuning::{GROSS, HANGS, STANDS_OFF, SUNK_RISING};
+use crate::tuning::{FLOATS_RISING, GROSS, HANGS, LEAPS, STANDS_OFF, SUNK_RISING};
 use sinew_math::max;
 
 /// Least share of vertices that are near their body.
@@ -93,6 +93,7 @@ impl SkinQuality {
             self.stands_off(&names, Stage::Standing),
             self.stands_off(&names, Stage::Rising),
             self.stands_off(&names, Stage::Up),
+            self.above_floor(&names),
             self.airborne(&names),
         ]
         .into_iter()
@@ -272,6 +273,36 @@ impl SkinQuality {
         let flaw = names.flaw(FlawKind::OffFloor, flaw_text, remedy.to_owned(), lowest.as_slice());
         let is_gross = height.is_nan() || height.abs() > GROSS * bar;
         Some(Flaw { at_most: if is_gross { Verdict::Bad } else { Verdict::Usable }, ..flaw })
+    }
+
+    /// Returns a flaw if a human floats while getting up, or its clips leave the floor by more than a leap of a runner.
+    fn above_floor(&self, names: &BodyNames<'_>) -> Option<Flaw> {
+        if names.0.bodies[0].role != "hips" {
+            return None;
+        }
+        let rising = (
+            self.rising_above_m,
+            FLOATS_RISING,
+            "getting up it floats",
+            "--clips FILE brings a clip to get up by that is made for this body",
+        );
+        let clips = (
+            self.clips_above_m,
+            LEAPS,
+            "its clip carries it",
+            "--clip NAME plays a clip that stays on the floor",
+        );
+        [rising, clips].into_iter().find_map(|(height, bar, what, remedy)| {
+            let (height, bar) = (height?, max(bar * self.size, LEAST_OFF));
+            // A comparison with NaN is false, and NaN is a flaw.
+            if height <= bar {
+                return None;
+            }
+            let [cm, most] = [height, bar].map(|metres| 100.0 * metres);
+            let flaw_text =
+                format!("{what}: its lowest point is {cm:.1} cm above the floor, more than {most:.1} cm");
+            Some(names.flaw(FlawKind::OffFloor, flaw_text, remedy.to_owned(), &[]))
+        })
     }
 
     fn airborne(&self, names: &BodyNames<'_>) -> Option<Flaw> {

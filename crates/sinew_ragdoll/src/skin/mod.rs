@@ -68,6 +68,11 @@ pub struct SkinQuality {
     pub rising_height_m: Option<f32>,
     /// Lowest height of the drawn skin above the floor once the character is up again.
     pub up_height_m: Option<f32>,
+    /// Largest height of the lowest drawn point above the floor during a get-up; `None` if not measured.
+    pub rising_above_m: Option<f32>,
+    /// Largest height of the lowest drawn point above the floor while the character's clips move it, before its fall
+    /// and once it is up again; `None` if not measured.
+    pub clips_above_m: Option<f32>,
     /// Longest time in a drop without a body near the floor after the ragdoll had become calm, seconds; `None` if not
     /// measured.
     pub airborne_s: Option<f32>,
@@ -269,7 +274,7 @@ impl<'a> SkinMeter<'a> {
     }
 
     /// Measures a pose above a floor at height `floor` (metres) of the world, at a stage of a get-up, and keeps the
-    /// lowest point.
+    /// lowest point, and the largest height of the whole skin.
     ///
     /// # Panics
     /// As [`show`](Self::show).
@@ -287,6 +292,14 @@ impl<'a> SkinMeter<'a> {
         if height.is_finite() && known.is_none_or(|known| height - floor < known) {
             *known = Some(height - floor);
             skin.worst.lowest_in[stage as usize] = self.surface.owner(vertex);
+        }
+        let (above, _) = self.lowest(to_world, |_| true);
+        let highest = match stage {
+            Stage::Rising => &mut self.skin.rising_above_m,
+            Stage::Standing | Stage::Up => &mut self.skin.clips_above_m,
+        };
+        if above.is_finite() {
+            *highest = Some(highest.map_or(above - floor, |known| max(known, above - floor)));
         }
     }
 

@@ -5,8 +5,8 @@ use sinew_math::{Affine, Rotation, Vec3};
 use sinew_physics::{BodyDef, Shape};
 use sinew_ragdoll::quality::{Doubt, faults_of_bake, faults_of_ragdoll, toppled};
 use sinew_ragdoll::{
-    AfterSettling, BakeInput, Baked, BuildOptions, CharacterDef, Locomotion, MotionSet, RagdollDef, State,
-    Verdict, bake, build,
+    AfterSettling, BakeInput, Baked, BuildOptions, CharacterDef, Locomotion, MotionSet, RagdollBodyDef,
+    RagdollDef, State, Verdict, bake, build,
 };
 use sinew_scenes::mannequin::mannequin;
 use std::sync::Arc;
@@ -317,4 +317,25 @@ fn animal_on_its_legs_is_pushed_over_sideways() {
     let pushed = toppled(&input, &bake(&input)).expect("a push fells it");
     assert!(pushed.topple.x.abs() > 0.5 && pushed.topple.z.abs() < 1e-3, "sideways: {}", pushed.topple);
     assert_eq!(faults_of_bake(&pushed, &bake(&pushed)), []);
+}
+
+/// A rump that is recognised as the root of a limb with two legs on it counts as trunk: held off the floor, it is a
+/// fault.
+#[test]
+fn rump_that_counts_as_a_limb_is_seen() {
+    let mut character = animal(1e4);
+    character.after_settling = AfterSettling::StayDown;
+    let heavy = |body: &RagdollBodyDef| body.role.starts_with("spine") || body.role.starts_with("tail");
+    for (i, body) in character.ragdoll.bodies.iter_mut().filter(|body| heavy(body)).enumerate() {
+        body.role = format!("limb_{}_0", 8 + i);
+    }
+    let ground = [BodyDef::fixed(Shape::HalfSpace)];
+    let input = BakeInput {
+        bodies: &ground,
+        limp_at: Some(0.0),
+        seconds: 6.0,
+        ..BakeInput::new(Arc::new(character))
+    };
+    let found = faults_of_bake(&input, &bake(&input));
+    assert!(found.iter().any(|fault| fault.reason.contains("stays on its legs")), "{found:?}");
 }

@@ -8,9 +8,10 @@ use sinew_physics::Shape;
 use sinew_ragdoll::build::takes;
 use sinew_ragdoll::doctor::Code;
 use sinew_ragdoll::quality::Fallen;
+use sinew_ragdoll::skin::Stage;
 use sinew_ragdoll::{
-    BuildOptions, Flaw, FlawKind, RagdollDef, Repair, SkinQuality, Verdict, build, doctor, drop_test,
-    measure_skin,
+    BuildOptions, Flaw, FlawKind, Mapping, RagdollDef, Repair, SkinMeter, SkinQuality, Verdict, build,
+    doctor, drop_test, measure_skin,
 };
 use sinew_scenes::mannequin::mannequin;
 
@@ -231,6 +232,30 @@ fn stretch_of_the_clips_is_allowed() {
     assert_eq!(SkinQuality::verdict(&less.flaws(&subject.def), Verdict::Good), Verdict::Usable);
     assert_eq!(SkinQuality::verdict(&less.flaws(&subject.def), Verdict::Bad), Verdict::Bad);
     assert_eq!(SkinQuality::verdict(&[], Verdict::Good), Verdict::Good);
+}
+
+/// A get-up that floats and a clip that leaps are flaws, although both touch the floor in other frames; the clip of a
+/// runner is none.
+#[test]
+fn floating_get_ups_and_leaping_clips_are_reported() {
+    let Subject { rig, analysis, def } = Subject::mannequin();
+    let rest: Vec<LocalTransform> = rig.joints.iter().map(|joint| joint.rest).collect();
+    let after = |stage: Stage, share: f32| {
+        let mut meter = SkinMeter::new(&rig, &def, &analysis.bind_model, &[]);
+        let to_world = Mapping::new(&rig, &def, &analysis.bind_model).character_from_model();
+        for height in [0.0, share * def.height] {
+            meter.stand(stage, &rest, &to_world, -height);
+        }
+        meter.figures().flaws(&def)
+    };
+    for (stage, share) in [(Stage::Rising, 0.02), (Stage::Up, 0.15), (Stage::Standing, 0.15)] {
+        assert_eq!(kinds(&after(stage, share)), [], "{stage:?}");
+    }
+    for (stage, share) in [(Stage::Rising, 0.07), (Stage::Up, 0.4), (Stage::Standing, 0.4)] {
+        let flaws = after(stage, share);
+        assert_eq!(kinds(&flaws), [FlawKind::OffFloor], "{stage:?}");
+        assert_eq!(flaws[0].at_most, Verdict::Usable, "{stage:?}");
+    }
 }
 
 #[test]
