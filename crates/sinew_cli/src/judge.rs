@@ -1,6 +1,6 @@
 //! Judges a character for `ragdoll build` and `bake`: its drops, a baked run, and the skin in both.
 
-use crate::commands::bake::{Motions, actor, as_in_file};
+use crate::commands::bake::{GetUps, Motions, actor, as_in_file};
 use crate::failure::Result;
 use crate::fall::Fall;
 use crate::input::files::CharacterFile;
@@ -71,7 +71,7 @@ pub fn with_default_life<T>(
     see: impl FnOnce(Life<'_>) -> T,
 ) -> Result<T> {
     let motions = Motions::gather(character, &[], None)?;
-    let (falls, gets_up_by) = actor(character, def.clone(), motions, true)?;
+    let (falls, gets_up_by) = actor(character, def.clone(), motions, GetUps::Any)?;
     let ground = [BodyDef::fixed(Shape::HalfSpace)];
     let up = character.analysis.hints.up.unwrap_or(Vec3::Y);
     let input = BakeInput {

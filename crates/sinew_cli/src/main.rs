@@ -11,6 +11,7 @@ mod render;
 mod report;
 
 use clap::builder::styling::{AnsiColor, Styles};
+use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory, FromArgMatches, Parser};
 use commands::Command;
 use failure::Failure;
@@ -81,7 +82,13 @@ fn with_negative_numbers(command: clap::Command) -> clap::Command {
 /// Prints help or the version to stdout, argument errors to stderr.
 fn help_or_usage(problem: &clap::Error) -> ExitCode {
     let code = ExitCode::from(u8::try_from(problem.exit_code()).unwrap_or(2));
-    written(problem.print().and_then(|()| io::stdout().flush()), code)
+    let code = written(problem.print().and_then(|()| io::stdout().flush()), code);
+    if let Some(ContextValue::String(name)) = problem.get(ContextKind::InvalidSubcommand)
+        && ["build", "doctor", "export"].contains(&name.as_str())
+    {
+        eprintln!("\nsinew ragdoll {name} is the command");
+    }
+    code
 }
 
 /// Writes text to stdout; returns the process's exit code if all of it is written.

@@ -35,7 +35,14 @@ pub fn find_clip(clips: &[Clip], name: &str) -> Result<usize, String> {
         return Ok(only);
     }
     if let Some(several) = tries.iter().find(|found| found.len() > 1) {
-        let names: Vec<String> = several.iter().map(|&index| called(index, &clips[index].name)).collect();
+        let is_double = |index: usize| clips.iter().filter(|clip| clip.name == clips[index].name).count() > 1;
+        let names: Vec<String> = several
+            .iter()
+            .map(|&index| match called(index, &clips[index].name) {
+                called if is_double(index) => format!("{called} (number {index})"),
+                called => called,
+            })
+            .collect();
         return Err(format!("'{name}' may be {} clips: {}", several.len(), few(&names)));
     }
     let names: Vec<String> =
@@ -126,6 +133,8 @@ mod tests {
         }
         let two = "'run' may be 2 clips: Run_Fast, Run_Slow";
         assert_eq!(found(&["Run_Fast", "Run_Slow"], "run"), Err(two.into()));
+        let three = "'walk' may be 2 clips: A|Walk (number 0), A|Walk (number 2)";
+        assert_eq!(found(&["A|Walk", "A|Run", "A|Walk"], "walk"), Err(three.into()));
         // A word common to all clips does not distinguish them; a word may be a prefix.
         assert_eq!(found(&["Rig|Walk", "Rig|Walk_Gun", "Rig|Idle"], "walk"), Ok(0));
         assert_eq!(found(&["Walking_A", "Running_A"], "walk"), Ok(0));

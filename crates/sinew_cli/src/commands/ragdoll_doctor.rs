@@ -135,9 +135,16 @@ impl RagdollDoctor {
     }
 
     fn to_text(&self, name: &str, findings: &[Finding], notes: &[String]) -> String {
-        let count = |severity| findings.iter().filter(|finding| finding.severity == severity).count();
+        let is_fixed = |finding: &Finding| self.fix && finding.fixed;
+        let count = |severity| {
+            findings.iter().filter(|finding| finding.severity == severity && !is_fixed(finding)).count()
+        };
+        let fixed = match findings.iter().filter(|finding| is_fixed(finding)).count() {
+            0 => String::new(),
+            fixed => format!(", {fixed} fixed"),
+        };
         let mut text = format!(
-            "{}: {}, {}\n",
+            "{}: {}, {}{fixed}\n",
             shown(name),
             counted(count(Severity::Error), "error", "errors"),
             counted(count(Severity::Warning), "warning", "warnings")
@@ -156,7 +163,7 @@ impl RagdollDoctor {
             text += &table.to_text();
         }
         if findings.iter().all(|finding| finding.severity == Severity::Note) {
-            text += "no findings\n";
+            text += "no errors and no warnings\n";
         }
         for note in notes {
             text += &format!("note: {}\n", shown(note));

@@ -72,8 +72,12 @@ pub fn is_character(bytes: &[u8]) -> bool {
 /// Reads a definition for a character, with joints matched by name.
 pub fn read_definition(path: &Path, character: &CharacterFile) -> Result<RagdollDef> {
     let name = name(path);
-    let def = read_bytes(path).and_then(|bytes| read_ragdoll(&bytes));
-    let def = def.map_err(|error| error.with_file(&name))?;
+    let bytes = read_bytes(path).map_err(|error| error.with_file(&name))?;
+    if bytes.starts_with(b"glTF") {
+        let what = "a character, not the definition of a ragdoll: `sinew ragdoll build` writes one";
+        return Err(Failure::of_file(&name, what));
+    }
+    let def = read_ragdoll(&bytes).map_err(|error| error.with_file(&name))?;
     def.for_rig(&character.document.rig).map_err(|error| {
         let place = format!("bodies[{}]", error.body());
         Failure::at(&name, format!("{error} ({})", character.name), place)

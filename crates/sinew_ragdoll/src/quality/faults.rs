@@ -318,10 +318,16 @@ fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     (begins > wide && ends > STILL_UPRIGHT * begins).then(|| {
         let bone = &def.bodies[top].bone;
         let reason = format!(
-            "limp, it stays upright: {bone} is {ends:.2} m over the floor, {begins:.2} m when it was let go; --hit pushes it over"
+            "limp, it stays upright: {bone} is {ends:.2} m over the floor, {begins:.2} m when it was let go; {} pushes it over",
+            stronger(input)
         );
         Fault::new(Verdict::Usable, reason)
     })
+}
+
+/// Option of `bake` that fells a character that stays upright.
+fn stronger(input: &BakeInput<'_>) -> &'static str {
+    if input.hits.is_empty() { "--hit" } else { "a stronger --hit" }
 }
 
 /// Returns a fault if a heavy part of the trunk of a creature that stood on its legs is held off the floor at rest.
@@ -358,7 +364,8 @@ fn stays_on_legs(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     (begins > OFF_FLOOR * def.height && ends > STILL_ON_LEGS * begins).then(|| {
         let bone = &def.bodies[body].bone;
         let reason = format!(
-            "limp, it stays on its legs: {bone} is {ends:.2} m over the floor, its trunk {begins:.2} m when it was let go; --hit pushes it over"
+            "limp, it stays on its legs: {bone} is {ends:.2} m over the floor, its trunk {begins:.2} m when it was let go; {} pushes it over",
+            stronger(input)
         );
         Fault::new(Verdict::Usable, reason)
     })

@@ -87,12 +87,17 @@ impl Motions {
             };
         };
         let steps = footsteps(&file.document.rig, &file.analysis, clip);
-        let feet = steps.map_or(0.0, |steps| steps.speed);
+        let feet = steps.as_ref().map_or(0.0, |steps| steps.speed);
         match speed {
             Some(Speed::Given(speed)) => self.ahead = speed,
             Some(Speed::Feet) if feet > 0.0 => self.ahead = feet,
             Some(Speed::Feet) => {
-                let what = format!("'{}' does not walk on the spot: give a number of m/s", shown(&clip.name));
+                let why = match steps {
+                    Ok(_) => "no feet of it alternately move back at one speed".to_owned(),
+                    Err(error) => error.to_string(),
+                };
+                let what =
+                    format!("'{}' has no speed of its feet: {why}; give a number of m/s", shown(&clip.name));
                 return Err(Failure::at(&file.name, what, "--speed"));
             }
             None if feet > 0.0 => {

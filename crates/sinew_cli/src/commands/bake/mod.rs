@@ -11,6 +11,7 @@ mod lies;
 mod notes;
 mod place;
 
+use crate::commands::clip_choice::find_clip;
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
 use crate::input::files::{CharacterFile, Outputs, WeightSource, never_over};
@@ -24,7 +25,7 @@ use crate::report::garments_report::GarmentsReport;
 use crate::report::skin_report::{Life, skin_json};
 use crate::report::springs_report::SpringsReport;
 use crate::report::table::shown;
-pub use actor::actor;
+pub use actor::{GetUps, actor};
 use aim::aim;
 use clip_file::{ClipFile, ClipFormat};
 pub use clips::Motions;
@@ -99,6 +100,10 @@ pub struct Bake {
     /// motions
     #[arg(long)]
     no_builtin_motions: bool,
+    /// The clip by which it gets up, chosen as by --clip; 'none': it stays down. By default the get-up clip, among those of
+    /// the file and of --clips, that begins in the pose nearest to the lying one
+    #[arg(long, value_name = "NAME|none")]
+    get_up: Option<String>,
     #[command(flatten)]
     settings: SettingsArg,
     /// Do not simulate the file's springs (hair, tails, …)
@@ -178,8 +183,9 @@ impl Bake {
         let mut motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
         notes.extend(motions.notes.iter().cloned());
         notes.extend(motions.go_ahead(&file, self.speed)?);
+        let get_ups = self.get_ups(&file, &motions)?;
         let place = self.place(&bodies, ragdoll.height)?;
-        let (mut character, gets_up_by) = actor(&file, ragdoll, motions, !self.no_builtin_motions)?;
+        let (mut character, gets_up_by) = actor(&file, ragdoll, motions, get_ups)?;
         character.set_garments(&garments);
         let springs = SpringsReport::of(&character);
         notes.extend(springs.notes());
@@ -225,6 +231,18 @@ impl Bake {
         report.json["springs"] = springs.to_json();
         report.json["garments"] = garments.to_json();
         Ok(report)
+    }
+
+    /// Returns the get-ups that the user wants.
+    fn get_ups(&self, file: &CharacterFile, motions: &Motions) -> Result<GetUps> {
+        match self.get_up.as_deref() {
+            Some("none") => Ok(GetUps::None),
+            Some(name) => find_clip(&motions.clips, name)
+                .map(GetUps::Clip)
+                .map_err(|what| Failure::at(&file.name, what, "--get-up")),
+            None if self.no_builtin_motions => Ok(GetUps::OfFiles),
+            None => Ok(GetUps::Any),
+        }
     }
 
     /// Returns the bodies of the world: from the file, and a floor if requested, at y = 0 without a file.

@@ -96,6 +96,9 @@ fn stays_down(
     }
     let end = input.seconds;
     let touched = events.iter().any(|(_, event)| matches!(event, CharacterEvent::Touched));
+    if touched && *gets_up_by == GetsUpBy::Unwanted {
+        return None;
+    }
     let why = if !touched {
         format!("it touches nothing until the end, at {end} s")
     } else if let GetsUpBy::Nothing(why) | GetsUpBy::Unfit(why) = gets_up_by {

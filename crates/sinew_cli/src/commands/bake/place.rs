@@ -37,6 +37,11 @@ const AROUND: [f32; 2] = [0.5, 0.95];
 /// Height over the ground where the free space starts, in heights of the character: ignores pebbles.
 const OVER: f32 = 0.06;
 
+/// Largest number of surfaces in a column.
+const MOST_SURFACES: usize = 32;
+/// Least distance of two surfaces, metres.
+const SURFACE_GAP: f32 = 1e-3;
+
 /// A position and a facing, given or found.
 pub struct Place {
     /// Transform from the character to the world.
@@ -97,12 +102,20 @@ impl Ground {
         !self.world.body_ids().any(stands)
     }
 
-    /// Returns the hits of a vertical ray, the highest first.
+    /// Returns the surfaces below a position, the highest first; a mesh may have several.
     fn below(&self, from: Vec3, depth: f32) -> Vec<BodyHit> {
-        let mut hits = Vec::new();
-        let ray = Ray { origin: from, direction: Vec3::Y * -depth };
-        self.world.query().filter(QueryFilter::of(BodyKinds::STATIC)).all(&ray, &mut hits);
-        hits
+        let (mut surfaces, mut hits) = (Vec::new(), Vec::new());
+        let mut origin = from;
+        while surfaces.len() < MOST_SURFACES {
+            let ray = Ray { origin, direction: Vec3::Y * (from.y - depth - origin.y) };
+            hits.clear();
+            self.world.query().filter(QueryFilter::of(BodyKinds::STATIC)).all(&ray, &mut hits);
+            // The ray may begin within the body of the last surface.
+            let Some(hit) = hits.iter().find(|hit| hit.start.is_none()) else { break };
+            origin.y = hit.point.y - SURFACE_GAP;
+            surfaces.push(hit.clone());
+        }
+        surfaces
     }
 
     /// Returns true if there is ground below a position at any depth.
@@ -112,26 +125,31 @@ impl Ground {
     }
 
     /// Returns a flat position with free space above, near the centre of the largest walkable ground; if that has
-    /// none, on the next one. Positions that meet more [demands](DEMANDS) are preferred.
+    /// none, on the next one. Main grounds come first, and among them positions that meet more [demands](DEMANDS).
     fn flat_place(&self, height: f32) -> Option<Vec3> {
         let bounds = self.bounds.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::splat(0.5 * height)));
         let grounds = grounds(&bounds, height, |from, depth| self.floors(from, depth, height));
-        let places = |demand: &Demand| {
+        let place = |is_main: bool, demand: &Demand| {
             let good = move |at: &&Vec3| {
                 let hits = self.below(**at + Vec3::Y * (OVER * height), 2.0 * OVER * height);
                 hits.first().is_some_and(|hit| self.is_good(hit, height, demand))
             };
-            grounds.iter().find_map(|ground| ground.iter().find(good).copied())
+            let grounds = grounds.iter().filter(|ground| ground.is_main == is_main);
+            grounds.into_iter().find_map(|ground| ground.places.iter().find(good).copied())
         };
-        DEMANDS.iter().find_map(places)
+        [true, false].into_iter().find_map(|is_main| DEMANDS.iter().find_map(|demand| place(is_main, demand)))
     }
 
     /// Returns the walkable heights below a position: level enough, with head room.
     fn floors(&self, from: Vec3, depth: f32, height: f32) -> Vec<f32> {
         let hits = self.below(from, depth);
         let has_room = |hit: &&BodyHit| {
+            let over = hit.point.y..hit.point.y + height;
+            let is_covered =
+                hits.iter().any(|other| other.point.y > over.start && over.contains(&other.point.y));
             let up = Ray { origin: hit.point + Vec3::Y * (OVER * height), direction: Vec3::Y * height };
-            hit.start.is_none() && hit.normal.y > WALKABLE && !self.world.query().any(&up)
+            let is_walkable = hit.start.is_none() && hit.normal.y > WALKABLE;
+            is_walkable && !is_covered && !self.world.query().any(&up)
         };
         hits.iter().filter(has_room).map(|hit| hit.point.y).collect()
     }
@@ -199,11 +217,28 @@ pub fn degrees(text: &str) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sinew::physics::ShapeDef;
+    use sinew::physics::{Mesh, ShapeDef};
+    use std::sync::Arc;
 
     fn slab(half_extents: Vec3, position: Vec3, rotation: Rotation) -> BodyDef {
         let shapes = vec![ShapeDef::new(Shape::Box { half_extents })];
         BodyDef { kind: BodyKind::Static, position, rotation, shapes, ..BodyDef::default() }
+    }
+
+    /// A house of one mesh: a roof with a hidden sheet below it, and a floor with less room around than the roof has.
+    #[test]
+    fn floor_of_a_mesh_comes_before_its_roof() {
+        let level = |y: f32| [-4.0, 4.0].map(|x| [-4.0, 4.0].map(|z| Vec3::new(x, y, z))).concat();
+        let vertices = [level(3.0), level(2.95), level(0.0)].concat();
+        let sides = |first: u32| [[first, first + 1, first + 3], [first, first + 3, first + 2]];
+        let triangles = [sides(0), sides(4), sides(8)].concat();
+        let mesh = Mesh::new(&vertices, &triangles).expect("a mesh");
+        let walls =
+            [-1.2, 1.2].map(|x| slab(Vec3::new(0.1, 1.4, 4.0), Vec3::new(x, 1.4, 0.0), Rotation::IDENTITY));
+        let house = BodyDef::fixed(Shape::Mesh(Arc::new(mesh)));
+        let bodies: Vec<BodyDef> = walls.into_iter().chain([house]).collect();
+        let found = place(&bodies, 1.75, None, 0.0).expect("a place");
+        assert!(found.stands.translation.y.abs() < 0.01, "on the floor: {}", found.stands.translation);
     }
 
     /// A room whose ceiling is 1.3 heights above its floor, without ground above it.
