@@ -557,8 +557,8 @@ pub(crate) const STANDS_OFF: f32 = 0.04;
 /// the tests of `skin`.
 pub(crate) const SUNK_RISING: f32 = 0.1;
 
-/// Largest height of the lowest drawn point over the floor while getting up, as a share of the size. Of 53 humans that
-/// were inspected, those that float visibly reach 5 to 9 %, the others 3 %.
+/// Largest height of the lowest drawn point over the floor while getting up, as a share of the size. Humans that
+/// float visibly reach 5 to 9 %, others 3 %.
 ///
 /// Larger: floating get-ups pass. Smaller: rounding of a sitting body counts. Shown by the tests of `skin`.
 pub(crate) const FLOATS_RISING: f32 = 0.04;

@@ -113,7 +113,7 @@ impl Ground {
             // The ray may begin within the body of the last surface.
             let Some(hit) = hits.iter().find(|hit| hit.start.is_none()) else { break };
             origin.y = hit.point.y - SURFACE_GAP;
-            surfaces.push(hit.clone());
+            surfaces.push(*hit);
         }
         surfaces
     }
