@@ -86,7 +86,7 @@ fn help_or_usage(problem: &clap::Error) -> ExitCode {
     if let Some(ContextValue::String(name)) = problem.get(ContextKind::InvalidSubcommand)
         && ["build", "doctor", "export"].contains(&name.as_str())
     {
-        eprintln!("\nsinew ragdoll {name} is the command");
+        eprintln!("\n  tip: the command is 'sinew ragdoll {name}'");
     }
     code
 }

@@ -342,6 +342,30 @@ fn human_without_clips_gets_up_by_builtin_motions() {
     says(&object, "it does not get up: the built-in motions are for humans, and this character is not human");
 }
 
+#[test]
+fn get_up_is_chosen_by_name_or_left_out() {
+    let folder = Folder::new("get_up");
+    let whole = mannequin();
+    let (file, out) = (folder.file("whole.glb", glb(&whole.rig, &whole.clips)), folder.path("out.glb"));
+    let arguments = ["bake", &file, "--seconds", "9", "-o", &out, "--json", "--get-up"];
+    let get_up = &whole.clips[whole.motions.get_up_supine].name;
+    assert!(!sinew(&[&arguments[..], &[get_up]].concat()).json()["up_s"].is_null());
+    let object = sinew(&[&arguments[..], &["none"]].concat()).json();
+    assert!(object["up_s"].is_null());
+    assert!(!object["notes"].to_string().contains("does not get up"), "{}", object["notes"]);
+    let line = sinew(&[&arguments[..], &["Fly"]].concat()).refusal(1).to_owned();
+    assert!(line.contains("no clip 'Fly'") && line.ends_with("(--get-up)"), "{line}");
+}
+
+#[test]
+fn character_in_place_of_a_definition_is_named() {
+    let folder = Folder::new("definition");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let line = sinew(&["bake", &file, "--ragdoll", &file, "-o", &out]).refusal(1).to_owned();
+    assert!(line.contains("a character, not the definition of a ragdoll"), "{line}");
+    assert!(sinew(&["doctor", &file]).stderr.contains("the command is 'sinew ragdoll doctor'"));
+}
+
 fn block(min: [f32; 3], max: [f32; 3]) -> BodyDef {
     let (min, max) = (Vec3::from_array(min), Vec3::from_array(max));
     let half_extents = (max - min) * 0.5;
