@@ -5,6 +5,7 @@
 //! Deeper parts are raised: the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper
 //! arm.
 
+use super::stumble::level;
 use super::{CharacterDef, State};
 use crate::character::tuning::{
     ARMS_ASIDE, LIMB_SOFTNESS, LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STEPS_FROM, STRAIGHT_UP,
@@ -299,7 +300,7 @@ impl Clearance {
         let middle = points.iter().fold(Vec3::ZERO, |sum, &point| sum + point);
         // An arm that hangs straight down turns away from the pelvis.
         let aside = from_shoulder(model[def.ragdoll.bodies[0].joint].translation) * -1.0;
-        let away = level(middle) + level(aside) * ARMS_ASIDE;
+        let away = level(middle.normalize_or_zero()) + level(aside.normalize_or_zero()) * ARMS_ASIDE;
         if up <= 0.0 || middle.y >= 0.0 {
             return;
         }
@@ -466,12 +467,6 @@ fn put(
     let goal = TwoBoneGoal { softness, ..TwoBoneGoal::at(end.translation, Pole::Keep(side)) };
     two_bone_ik(rig, bones, &goal, pose, model);
     turn_to(rig, bones.end, end.rotation, root, pose, model);
-}
-
-/// Returns the horizontal part of a vector's direction.
-fn level(way: Vec3) -> Vec3 {
-    let unit = way.normalize_or_zero();
-    Vec3::new(unit.x, 0.0, unit.z)
 }
 
 /// Returns the rotation about `wrist` that raises `lowest` to `allowed` metres below the floor; `None` if the point is

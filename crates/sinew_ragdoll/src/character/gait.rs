@@ -2,6 +2,7 @@
 
 use super::activity::Activity;
 use super::figure::Figure;
+use super::stumble::level;
 use super::{CharacterDef, HitBodies, Locomotion, State, ground};
 use crate::character::tuning::{
     CLIMB_SPEED, FASTEST_PACE, HIGHEST_STEP, LIFTS_OFF, MOST_ASIDE, MOST_BESIDE, MOST_PACES, OFF_GROUND,
@@ -135,7 +136,6 @@ impl Gait {
         let ground = world.mover_ground(self.mover?);
         let floor = ground.map_or(Vec3::ZERO, |ground| ground.velocity);
         let way = feet - mover.interpolated(0.0);
-        let level = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
         let beyond = way - velocity * dt;
         // Overlapping bodies and a step in front of the mover push it aside within a step of the world.
         let aside = if ground.is_some() { level(beyond) } else { beyond };

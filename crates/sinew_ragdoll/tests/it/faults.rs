@@ -300,18 +300,17 @@ fn turning_under_unequal_scales_changes_no_size() {
     assert!(found.iter().all(|fault| !fault.reason.contains("times as large")), "{found:?}");
 }
 
+fn limp_for_6_s(character: CharacterDef, ground: &[BodyDef]) -> BakeInput<'_> {
+    BakeInput { bodies: ground, limp_at: Some(0.0), seconds: 6.0, ..BakeInput::new(Arc::new(character)) }
+}
+
 /// An animal with stiff joints stays on its legs when it goes limp: it is pushed over sideways, and lies.
 #[test]
 fn animal_on_its_legs_is_pushed_over_sideways() {
     let mut character = animal(1e4);
     character.after_settling = AfterSettling::StayDown;
     let ground = [BodyDef::fixed(Shape::HalfSpace)];
-    let input = BakeInput {
-        bodies: &ground,
-        limp_at: Some(0.0),
-        seconds: 6.0,
-        ..BakeInput::new(Arc::new(character))
-    };
+    let input = limp_for_6_s(character, &ground);
     let found = faults_of_bake(&input, &bake(&input));
     assert!(found.iter().any(|fault| fault.reason.contains("stays on its legs")), "{found:?}");
     let pushed = toppled(&input, &bake(&input)).expect("a push fells it");
@@ -330,12 +329,7 @@ fn rump_that_counts_as_a_limb_is_seen() {
         body.role = format!("limb_{}_0", 8 + i);
     }
     let ground = [BodyDef::fixed(Shape::HalfSpace)];
-    let input = BakeInput {
-        bodies: &ground,
-        limp_at: Some(0.0),
-        seconds: 6.0,
-        ..BakeInput::new(Arc::new(character))
-    };
+    let input = limp_for_6_s(character, &ground);
     let found = faults_of_bake(&input, &bake(&input));
     assert!(found.iter().any(|fault| fault.reason.contains("stays on its legs")), "{found:?}");
 }

@@ -93,7 +93,7 @@ impl Motions {
             Some(Speed::Feet) if feet > 0.0 => self.ahead = feet,
             Some(Speed::Feet) => {
                 let why = match steps {
-                    Ok(_) => "no feet of it alternately move back at one speed".to_owned(),
+                    Ok(_) => "its feet do not alternately move back at one speed".to_owned(),
                     Err(error) => error.to_string(),
                 };
                 let what =

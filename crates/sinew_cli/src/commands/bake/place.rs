@@ -144,9 +144,8 @@ impl Ground {
     fn floors(&self, from: Vec3, depth: f32, height: f32) -> Vec<f32> {
         let hits = self.below(from, depth);
         let has_room = |hit: &&BodyHit| {
-            let over = hit.point.y..hit.point.y + height;
-            let is_covered =
-                hits.iter().any(|other| other.point.y > over.start && over.contains(&other.point.y));
+            let over = |other: &BodyHit| other.point.y - hit.point.y;
+            let is_covered = hits.iter().any(|other| over(other) > 0.0 && over(other) < height);
             let up = Ray { origin: hit.point + Vec3::Y * (OVER * height), direction: Vec3::Y * height };
             let is_walkable = hit.start.is_none() && hit.normal.y > WALKABLE;
             is_walkable && !is_covered && !self.world.query().any(&up)

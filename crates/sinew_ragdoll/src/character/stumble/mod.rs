@@ -24,7 +24,8 @@ use sinew_anim::{LocalTransform, local_to_model, smoothstep};
 use sinew_math::{Affine, ReadError, Reader, Transform, Vec3, Writer, max, min, trig};
 use sinew_physics::World;
 use step::{Pendulum, Print, STEP_TIMES};
-use support::{Support, level};
+use support::Support;
+pub(super) use support::level;
 
 /// Number of steps after which the mover has its requested speed.
 const FOLLOWS: u32 = 4;

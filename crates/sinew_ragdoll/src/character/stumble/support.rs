@@ -51,7 +51,8 @@ impl Support {
     }
 }
 
-pub(super) fn level(v: Vec3) -> Vec3 {
+/// Returns the horizontal part of a vector.
+pub(in crate::character) fn level(v: Vec3) -> Vec3 {
     Vec3::new(v.x, 0.0, v.z)
 }
 
