@@ -5,6 +5,7 @@ import os
 import tempfile
 
 import bpy
+import numpy as np
 from mathutils import Matrix
 
 import installed
@@ -205,6 +206,69 @@ def a_cancelled_simulation_leaves_nothing():
     check(not job.thread.is_alive() and job.baked is None, "it ends")
     check(isinstance(job.error, addon().bridge.engine().Cancelled), f"as cancelled, not {job.error}")
     check(counts() == before, "and leaves nothing")
+
+
+def skin_of(arm):
+    """Vertices of the evaluated skin in the world."""
+    ob = next(ob for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == arm)
+    evaluated = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    me = evaluated.to_mesh()
+    points = np.empty(len(me.vertices) * 3, np.float32)
+    me.vertices.foreach_get("co", points)
+    evaluated.to_mesh_clear()
+    m = np.array(ob.matrix_world)
+    return points.reshape(-1, 3) @ m[:3, :3].T + m[:3, 3]
+
+
+@case
+def a_preview_shows_the_fall_and_changes_nothing():
+    arm, names = fresh()
+    before, own = counts(), posed(arm, names)
+    settings(by="FRAME", handover=45)
+    check(bpy.ops.sinew.preview() == {"FINISHED"}, "it is previewed")
+    check(counts() == before and arm.sinew.report == "", "nothing is added")
+    check(max(off(a, b, names) for a, b in zip(posed(arm, names), own)) == 0.0, "and nothing moves")
+    ghost, frames = addon().preview.of(arm), (10, 44, 60, 100, LAST)
+    drawn = {f: ghost.vertices(f).copy() for f in frames}
+    colors = ghost.colors(60)
+    check(colors.shape == (len(drawn[60]), 4) and 0 < colors.min() and colors.max() <= 1, "it is shaded")
+    check(ghost.stamp == addon().preview.stamp(bpy.context.scene, arm), "it is up to date")
+    settings(stiffness=0.1)
+    check(ghost.stamp != addon().preview.stamp(bpy.context.scene, arm), "another setting makes it out of date")
+    settings(stiffness=0.0)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    check(addon().preview.of(arm) is None, "the keys take its place")
+    for f in frames:
+        bpy.context.scene.frame_set(f)
+        apart = np.abs(skin_of(arm) - drawn[f]).max()
+        check(apart < 1e-3, f"at {f} the keyed skin is {1e3 * apart:.2f} mm from the preview")
+    bpy.ops.sinew.preview()
+    check(bpy.ops.sinew.end_preview() == {"FINISHED"} and addon().preview.of(arm) is None, "it ends")
+
+
+@case
+def limits_have_handles_where_they_are_drawn():
+    for make in (rigs.cesium_man, rigs.scale_100):
+        arm, _ = fresh(make)
+        handles, overlay = addon().handles, addon().overlay
+        bone = next(b for b in arm.pose.bones if b.sinew.has_swing and b.sinew.has_twist)
+        arm.data.bones.active = arm.data.bones[bone.name]
+        check(handles.limits_of(bone) == ["swing_y", "swing_z", "twist"], "it has all limits")
+        frame, reach = handles.frame_of(arm, bone.name)
+        drawn = overlay.lines_of(arm, {bone.name})
+        for key, lines in (("swing_y", overlay.LIMIT), ("swing_z", overlay.LIMIT), ("twist", overlay.TWIST)):
+            for end in (0, 1):
+                angle = getattr(bone.sinew, key)[end]
+                offset = handles.offset_of(key, angle, reach)
+                check(abs(handles.angle_of(key, offset) - angle) < 1e-5, "an angle comes back")
+                nearest = min((p - frame @ offset).length for p in drawn[lines])
+                check(nearest < 0.02 * reach, f"{key}: the handle is {nearest / reach:.3f} cones from its line")
+        handles.drag(bone, "swing_y", 1, handles.offset_of("swing_y", 0.3, 5 * reach))
+        handles.drag(bone, "swing_z", 0, handles.offset_of("swing_z", 0.4, reach))
+        handles.drag(bone, "twist", 1, handles.offset_of("twist", 0.2, reach))
+        limits = next(b for b in json.loads(arm.sinew.definition)["bodies"] if b["bone"] == bone.name)["joint"]["limits_deg"]
+        got = [limits["swing_y"][1], limits["swing_z"][0], limits["twist"][1]]
+        check([round(x, 2) for x in got] == [17.19, 0.0, 11.46], f"the definition has {got}")
 
 
 @case
