@@ -326,6 +326,40 @@ def files_are_written():
 
 
 @case
+def names_of_mixamo_and_auto_rig_pro_are_recognised():
+    parts = {"hips", "chest", "neck", "head"} | {s + p for s in ("left", "right") for p in ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")}
+    for wanted in (rigs.MIXAMO, rigs.AUTO_RIG_PRO):
+        arm, names = fresh(lambda wanted=wanted: rigs.metarig(wanted))
+        by_role = {b["role"]: b["bone"] for b in json.loads(arm.sinew.definition)["bodies"]}
+        check(parts <= set(by_role), f"roles {sorted(parts - set(by_role))} are missing")
+        left = wanted["shin"].format(long="Left", short="l")
+        check(by_role["leftLowerLeg"] == left, f"the left shin is {by_role['leftLowerLeg']}")
+        own = posed(arm, names, LAST, LAST)[0]
+        settings(by="FRAME", handover=45, keys="AUTO", use_return=False)
+        check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+        check(report(arm)["verdict"] == "good" and report(arm)["before_handover_mm"] < 1.0, f"{report(arm)}")
+        head = wanted["spine.006"]
+        check(own[head].translation.z - posed(arm, names, LAST, LAST)[0][head].translation.z > 0.8, "and it falls")
+
+
+@case
+def shape_keys_and_loose_parts_do_not_change_the_body():
+    arm, names = fresh()
+    before = json.loads(arm.sinew.definition)
+    skin = next(ob for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == arm)
+    skin.shape_key_add(name="Basis")
+    smile = skin.shape_key_add(name="Smile")
+    for point in smile.data[:200]:
+        point.co.x += 0.3
+    smile.value = 1.0
+    check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built with shape keys")
+    check(json.loads(arm.sinew.definition)["bodies"] == before["bodies"], "with the same bodies")
+    settings(by="FRAME", handover=45, use_return=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["verdict"] == "good", "and falls")
+    check(smile.value == 1.0, "the shape stays")
+
+
+@case
 def what_cannot_be_is_one_line():
     rigs.empty_scene()
     arm = rigs.cesium_man()
