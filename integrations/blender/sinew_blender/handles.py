@@ -37,26 +37,43 @@ def offset_of(key, angle, reach):
     return Quaternion(axis, angle) @ (reach * (TWIST if key == "twist" else 1.0) * vector)
 
 
-def angle_of(key, offset):
-    """Angle of a position in the joint's frame about the limit's axis."""
-    axis, vector = AXES[key]
-    flat = offset - offset.dot(axis) * axis
-    return math.atan2(axis.dot(vector.cross(flat)), vector.dot(flat))
-
-
 def limits_of(bone):
     """Names of the limits of a pose bone that have handles."""
     settings = bone.sinew
     return [k for k in AXES if (settings.has_twist if k == "twist" else settings.has_swing)]
 
 
-def drag(bone, key, end, offset):
-    """Sets an end of a limit to the angle of a position in the joint's frame. A swing's range includes zero."""
-    angle, value = angle_of(key, offset), list(getattr(bone.sinew, key))
+# Largest change of an angle within one movement of the mouse, and the steps in which it is sought, radians.
+SWEEP, STEP = 1.0, 0.01
+
+
+def angle_on_screen(key, frame, reach, place, near, project):
+    """Angle, near another, at which the handle is drawn closest to a place of the world; `project` gives the pixel of a place."""
+    goal = project(place)
+    if goal is None:
+        return near
+
+    def off(angle):
+        pixel = project(frame @ offset_of(key, angle, reach))
+        return (pixel - goal).length if pixel is not None else math.inf
+
+    count = round(SWEEP / STEP)
+    return min((near + STEP * i for i in range(-count, count + 1)), key=off)
+
+
+def drag(bone, key, end, angle):
+    """Sets an end of a limit. A swing's range includes zero."""
+    value = list(getattr(bone.sinew, key))
     if key != "twist":
         angle = min(angle, 0.0) if end == 0 else max(angle, 0.0)
     value[end] = min(angle, value[1]) if end == 0 else max(angle, value[0])
     setattr(bone.sinew, key, value)
+
+
+def _pixel(place):
+    from bpy_extras.view3d_utils import location_3d_to_region_2d
+
+    return location_3d_to_region_2d(bpy.context.region, bpy.context.region_data, place)
 
 
 class SINEW_GGT_limits(bpy.types.GizmoGroup):
@@ -83,19 +100,27 @@ class SINEW_GGT_limits(bpy.types.GizmoGroup):
                 handle.target_set_handler("offset", get=self._getter(key, end), set=self._setter(key, end))
                 self.all.append((key, handle))
 
+    # Blender's handle has its offset along the axes of the world.
+
     def _getter(self, key, end):
         def get():
             bone = bpy.context.active_pose_bone
             found = frame_of(bpy.context.object, bone.name) if bone is not None else None
-            return offset_of(key, getattr(bone.sinew, key)[end], found[1]) if found is not None else (0.0, 0.0, 0.0)
+            if found is None:
+                return (0.0, 0.0, 0.0)
+            return found[0].to_3x3() @ offset_of(key, getattr(bone.sinew, key)[end], found[1])
 
         return get
 
     def _setter(self, key, end):
         def put(value):
             bone = bpy.context.active_pose_bone
-            if bone is not None:
-                drag(bone, key, end, Vector(value))
+            found = frame_of(bpy.context.object, bone.name) if bone is not None else None
+            if found is None:
+                return
+            frame, reach = found
+            place, near = frame.translation + Vector(value), getattr(bone.sinew, key)[end]
+            drag(bone, key, end, angle_on_screen(key, frame, reach, place, near, _pixel))
 
         return put
 
@@ -106,7 +131,7 @@ class SINEW_GGT_limits(bpy.types.GizmoGroup):
         for key, handle in self.all:
             handle.hide = key not in shown
             if found is not None:
-                handle.matrix_basis = found[0]
+                handle.matrix_basis = Matrix.Translation(found[0].translation)
 
 
 def register():

@@ -1,4 +1,4 @@
-"""Works in a window, and takes screenshots: `blender --factory-startup --enable-event-simulate --window-geometry 0 0 1600 1000 -P window.py`.
+"""Works in a window, and takes screenshots: `blender --factory-startup --enable-event-simulate --window-geometry 0 0 1200 800 -P window.py`.
 
 SINEW_WHEEL is a folder with the unpacked wheel, SINEW_SHOTS a folder for the pictures, SINEW_DATA has the rigs. Debian's Blender 3.4 under Xvfb
 will do: the extension is then used as an add-on.
@@ -127,11 +127,14 @@ def drag_a_limit(window, arm):
     frame, reach = addon.handles.frame_of(arm, bone.name)
     start, end = (pixel(frame @ addon.handles.offset_of("swing_z", angle, reach)) for angle in (before[1], 0.3 * before[1]))
     window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=start[0] + 30, y=start[1])
-    yield 0.3
+    yield 2.0
+    # A handle takes a click once it is highlighted, which needs the picture drawn.
     window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=start[0], y=start[1])
-    yield 0.5
-    window.event_simulate(type="LEFTMOUSE", value="PRESS", x=start[0], y=start[1])
-    yield 0.3
+    yield 4.0
+    window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=start[0] + 1, y=start[1])
+    yield 4.0
+    window.event_simulate(type="LEFTMOUSE", value="PRESS", x=start[0] + 1, y=start[1])
+    yield 1.0
     for i in range(1, 11):
         x, y = (int(a + (b - a) * i / 10) for a, b in zip(start, end))
         window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=x, y=y)
@@ -168,4 +171,5 @@ def main():
 
 
 bpy.context.preferences.view.show_splash = False
+bpy.context.preferences.system.viewport_aa = "OFF"
 main()
