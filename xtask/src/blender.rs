@@ -11,7 +11,7 @@ use std::process::Command;
 const BPY: &str = "bpy==5.0.1";
 const PYTHON: &str = "python3.11";
 /// Rigs of tests/rigs.py for the whole test; those of files need the data.
-const RIGS: &[&str] = &["cesium_man", "knight", "rigify_human", "fox", "scale_100"];
+const RIGS: &[&str] = &["cesium_man", "knight", "rigify_human", "fox", "scale_100", "gunner"];
 /// Debian's packages for the test in a window.
 const WINDOW: &[&str] = &["blender", "xvfb", "xauth", "python3-numpy", "libgl1-mesa-dri"];
 const DATA: &str = "../shared/data";
@@ -19,7 +19,7 @@ const DATA: &str = "../shared/data";
 /// `cargo xtask blender`.
 #[derive(clap::Args)]
 pub struct Blender {
-    /// Also install it into Blender's Python module (1 GB from PyPI), test everything on five rigs, and take screenshots in a window
+    /// Also install it into Blender's Python module (1 GB from PyPI), test everything on six rigs, and take screenshots in a window
     #[arg(long)]
     check: bool,
 }

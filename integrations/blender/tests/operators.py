@@ -345,6 +345,38 @@ def names_of_mixamo_and_auto_rig_pro_are_recognised():
 
 
 @case
+def meshes_may_be_called_like_bones():
+    arm, names = fresh(rigs.knight)
+    own = posed(arm, names)
+    skins = [ob for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == arm]
+    check(len(skins) > 3, "it has several meshes")
+    for ob, name in zip(skins, ("head", "chest", "upperarm.l", "hips")):
+        check(name in arm.data.bones, f"{name} is a bone")
+        ob.name = name
+    settings(by="FRAME", handover=45, use_return=False)
+    check(bpy.ops.sinew.build() == {"FINISHED"} and bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    check(report(arm)["before_handover_mm"] < 1.0, f"{report(arm)['before_handover_mm']} mm before the hand-over")
+    keyed = posed(arm, names)
+    jump = max((keyed[44][n].translation - keyed[43][n].translation).length for n in names)
+    check(jump < 0.05, f"a bone jumps by {jump} m at the hand-over, {max((own[44][n].translation - own[43][n].translation).length for n in names)} m in the user's own")
+
+
+@case
+def bones_above_the_hips_stay_with_the_animation():
+    arm, names = fresh(rigs.robot)
+    own = posed(arm, names)
+    settings(by="FRAME", handover=45, use_return=True, return_frame=120, return_blend=20)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    check(report(arm)["before_handover_mm"] < 1.0 and report(arm)["verdict"] == "good", f"{report(arm)}")
+    keyed = posed(arm, names)
+    check(max(off(keyed[f], own[f], ["Bone", "Body"]) for f in range(LAST - FIRST + 1)) < 1e-3, "they have no skin, and do not follow the fall")
+    check(off(keyed[70], own[70], ["Hips"]) > 0.3, "the hips fall")
+    for f in (44, 119):
+        jump = max(((keyed[f][n].translation - keyed[f - 1][n].translation) - (own[f][n].translation - own[f - 1][n].translation)).length for n in names)
+        check(jump < 0.03, f"a bone jumps by {jump} m at {f + 1}")
+
+
+@case
 def shape_keys_and_loose_parts_do_not_change_the_body():
     arm, names = fresh()
     before = json.loads(arm.sinew.definition)

@@ -56,6 +56,16 @@ def fox():
     return imported(os.path.join(DATA, "rigs/Fox.glb"), "Walk")
 
 
+def robot():
+    """Meshes called like bones, and a bone above the hips."""
+    return imported(os.path.join(DATA, "rigs/quaternius_Robot.glb"), "Robot_Walking")
+
+
+def gunner():
+    """As `robot`, with skin on that bone."""
+    return imported(os.path.join(DATA, "rigs/quaternius_cyberpunk_Character.glb"), "Walk")
+
+
 def scale_100():
     """The man scaled by a hundred through the armature's parent, rotated and moved, without applying the transforms."""
     arm = cesium_man()
@@ -175,4 +185,11 @@ def metarig(names):
     return activate(rig)
 
 
-RIGS = {"cesium_man": cesium_man, "knight": knight, "rigify_human": rigify_human, "fox": fox, "scale_100": scale_100}
+RIGS = {
+    "cesium_man": cesium_man,
+    "knight": knight,
+    "rigify_human": rigify_human,
+    "fox": fox,
+    "scale_100": scale_100,
+    "gunner": gunner,
+}
