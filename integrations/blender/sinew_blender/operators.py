@@ -335,9 +335,10 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
             ("SINEW", "Sinew (.sinew.json)", "Definition that Sinew's commands and engines read"),
             ("MJCF", "MuJoCo (.xml)", "A model for MuJoCo"),
             ("GLB", "Character (.glb)", "Skeleton, skin and the sampled animation as Sinew has them"),
+            ("USD", "Fall (.usdc)", "Simulate, and write skeleton, skin, fall and physics as USD; a name with .usda makes text"),
         ),
     )
-    ENDS = {"SINEW": ".sinew.json", "MJCF": ".xml", "GLB": ".glb"}
+    ENDS = {"SINEW": ".sinew.json", "MJCF": ".xml", "GLB": ".glb", "USD": ".usdc"}
 
     def invoke(self, context, event):
         self.filepath = active_armature(context).name + self.ENDS[self.format]
@@ -347,8 +348,12 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
     def act(self, context):
         arm = active_armature(context)
         path = bpy.path.abspath(self.filepath)
-        path = path if path.endswith(self.ENDS[self.format]) else path + self.ENDS[self.format]
+        is_text = self.format == "USD" and path.endswith(".usda")
+        path = path if is_text or path.endswith(self.ENDS[self.format]) else path + self.ENDS[self.format]
         try:
+            if self.format == "USD":
+                self.write_usd(context, arm, path)
+                return
             if self.format == "GLB":
                 first, last = simulation.frames_of(context.scene)
                 take = sk.sample(arm, sk.skeleton_of(arm), first, last)
@@ -361,8 +366,21 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
             with open(path, "wb") as file:
                 file.write(data)
         except OSError as error:
-            raise SinewError(f"{path}: {error.strerror}") from error
+            raise SinewError(f"{path}: {error.strerror or error}") from error
         self.report({"INFO"}, f"Wrote {path}")
+
+    def write_usd(self, context, arm, path):
+        from sinew import usd
+
+        job = simulation.prepare(context, [arm])
+        job.run()
+        if job.error is not None:
+            raise SinewError(str(job.error))
+        try:
+            notes = usd.save(job.baked[0], path)
+        except ImportError as error:
+            raise SinewError(str(error)) from error
+        self.report({"INFO"}, f"Wrote {path}: {'; '.join(notes)}")
 
 
 CLASSES = (

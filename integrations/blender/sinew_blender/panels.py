@@ -156,7 +156,7 @@ class SINEW_PT_export(Side, bpy.types.Panel):
     def draw(self, context):
         layout = self.layout
         layout.operator_context = "INVOKE_DEFAULT"
-        for name, text in (("SINEW", "Ragdoll"), ("MJCF", "MuJoCo"), ("GLB", "Character")):
+        for name, text in (("SINEW", "Ragdoll"), ("MJCF", "MuJoCo"), ("GLB", "Character"), ("USD", "Fall as USD")):
             layout.operator("sinew.export", text=text, icon="EXPORT").format = name
 
 

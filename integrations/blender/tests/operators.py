@@ -1,5 +1,6 @@
 """Runs every operator on some rig: `python operators.py`."""
 
+import importlib.util
 import json
 import os
 import tempfile
@@ -320,10 +321,16 @@ def fk_controls_of_rigify_take_the_fall():
 def files_are_written():
     arm, _ = fresh()
     with tempfile.TemporaryDirectory() as folder:
-        for kind, end in (("SINEW", ".sinew.json"), ("MJCF", ".xml"), ("GLB", ".glb")):
+        settings(by="FRAME", handover=45)
+        for kind, end in (("SINEW", ".sinew.json"), ("MJCF", ".xml"), ("GLB", ".glb"), ("USD", ".usda")):
             path = os.path.join(folder, "it" + end)
             check(bpy.ops.sinew.export(filepath=path, format=kind) == {"FINISHED"}, kind)
             check(os.path.getsize(path) > 1000, f"{path} is written")
+        path = os.path.join(folder, "it.usdc")
+        if importlib.util.find_spec("pxr") is None:
+            refused(bpy.ops.sinew.export, "needs pxr", filepath=path, format="USD")
+        else:
+            check(bpy.ops.sinew.export(filepath=path, format="USD") == {"FINISHED"}, "USD")
         refused(bpy.ops.sinew.export, "No such file", filepath=os.path.join(folder, "no", "it"), format="SINEW")
 
 
