@@ -89,7 +89,8 @@ def stamp(scene, arm):
     found = [arm.sinew.definition, scene.frame_start, scene.frame_end, tuple(scene.gravity)]
     for name in settings.bl_rna.properties.keys():
         value = getattr(settings, name)
-        found.append(tuple(value) if name == "wind" else str(value))
+        if name != "overrides":
+            found.append(tuple(value) if name == "wind" else str(value))
     for ob in scene.objects:
         hit = ob.sinew_hit
         if ob.type == "EMPTY" and hit.enabled:

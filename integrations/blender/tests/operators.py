@@ -428,6 +428,39 @@ def what_cannot_be_is_one_line():
 
 
 @case
+def a_library_override_falls():
+    rigs.empty_scene()
+    arm = rigs.cesium_man()
+    with tempfile.TemporaryDirectory() as folder:
+        path, name = os.path.join(folder, "linked.blend"), arm.name
+        skin = next(ob.name for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == arm)
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        rigs.empty_scene()
+        with bpy.data.libraries.load(path, link=True) as (_, into):
+            into.objects = [name, skin]
+        scene = bpy.context.scene
+        for ob in into.objects:
+            scene.collection.objects.link(ob)
+        made = bpy.data.objects[name].override_hierarchy_create(scene, bpy.context.view_layer)
+        arm = made if made.type == "ARMATURE" else next(ob for ob in bpy.data.objects if ob.type == "ARMATURE" and ob.override_library)
+        rigs.activate(arm)
+        settings(by="FRAME", handover=45, use_return=False)
+        check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built")
+        check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["verdict"] == "good", "and falls")
+        check(report(arm)["before_handover_mm"] < 1.0, f"{report(arm)}")
+        bodies = len(json.loads(arm.sinew.definition)["bodies"])
+        copy = os.path.join(folder, "overriding.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=copy)
+        bpy.ops.wm.open_mainfile(filepath=copy)
+        arm = next(ob for ob in bpy.data.objects if ob.type == "ARMATURE" and ob.override_library)
+        check(len(json.loads(arm.sinew.definition)["bodies"]) == bodies, "the ragdoll is in the saved file")
+        rigs.activate(arm)
+        check(arm.animation_data.action == arm.sinew.made_action is not None, "with its keys")
+        check(bpy.ops.sinew.clear() == {"FINISHED"} and arm.animation_data.action != arm.sinew.made_action, "and is cleared")
+        rigs.empty_scene()
+
+
+@case
 def an_armature_without_skin_has_tubes():
     rigs.empty_scene()
     addon_utils = __import__("addon_utils")
