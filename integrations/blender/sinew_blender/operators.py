@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from mathutils import Matrix
 
-from . import bodies, bridge, keys, simulation
+from . import bodies, bridge, keys, preview, simulation
 from . import skeleton as sk
 from .skeleton import SinewError
 
@@ -73,6 +73,7 @@ class SINEW_OT_forget(Sinew, bpy.types.Operator):
     def act(self, context):
         for arm in selected_armatures(context):
             keys.clear(arm)
+            preview.clear(arm)
             for name in ("definition", "fitted", "place", "report"):
                 setattr(arm.sinew, name, "")
             arm.sinew.findings.clear()
@@ -143,10 +144,8 @@ class SINEW_OT_cure(Sinew, bpy.types.Operator):
         self.report({"INFO"}, f"{mended} mended, {left} left")
 
 
-class SINEW_OT_simulate(Sinew, bpy.types.Operator):
-    """Play your animation until the hand-over, simulate from there, and key the result. Esc cancels"""
-
-    bl_idname, bl_label = "sinew.simulate", "Simulate"
+class Simulates(Sinew):
+    """Base of the operators that simulate: in a window step by step, with progress, cancelled by Esc."""
 
     def act(self, context):
         job = simulation.prepare(context, selected_armatures(context))
@@ -218,12 +217,50 @@ class SINEW_OT_simulate(Sinew, bpy.types.Operator):
             if isinstance(job.error, SinewError):
                 raise job.error
             raise SinewError(f"The simulation failed: {job.error}")
+        self.done(context, job)
+        redraw(context)
+        return {"FINISHED"}
+
+
+class SINEW_OT_simulate(Simulates, bpy.types.Operator):
+    """Play your animation until the hand-over, simulate from there, and key the result. Esc cancels"""
+
+    bl_idname, bl_label = "sinew.simulate", "Simulate"
+
+    def done(self, context, job):
         at = context.scene.frame_current
         ways = simulation.write(job, context.scene.sinew.keys)
         context.scene.frame_set(at)
+        for arm in job.arms:
+            preview.clear(arm)
         verdicts = ", ".join(f"{arm.name} {baked.verdict}" for arm, baked in zip(job.arms, job.baked))
         self.report({"INFO"}, f"{job.last - job.first + 1} frames as {', '.join(sorted(set(ways))).lower()}: {verdicts}")
-        return {"FINISHED"}
+
+
+class SINEW_OT_preview(Simulates, bpy.types.Operator):
+    """Simulate, and draw the fall over your animation without keys; scrub to see it. Esc cancels"""
+
+    bl_idname, bl_label, bl_options = "sinew.preview", "Preview", {"REGISTER"}
+
+    def done(self, context, job):
+        preview.show(job)
+        self.report({"INFO"}, f"Preview from frame {min(preview.of(arm).handover for arm in job.arms)} on: scrub to see it")
+
+
+class SINEW_OT_end_preview(Sinew, bpy.types.Operator):
+    """Stop drawing the preview"""
+
+    bl_idname, bl_label, bl_options = "sinew.end_preview", "End preview", {"REGISTER"}
+
+    def act(self, context):
+        for arm in selected_armatures(context):
+            preview.clear(arm)
+        redraw(context)
+
+
+def redraw(context):
+    for area in context.screen.areas if context.screen is not None else ():
+        area.tag_redraw()
 
 
 class SINEW_OT_clear(Sinew, bpy.types.Operator):
@@ -298,9 +335,10 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
             ("SINEW", "Sinew (.sinew.json)", "Definition that Sinew's commands and engines read"),
             ("MJCF", "MuJoCo (.xml)", "A model for MuJoCo"),
             ("GLB", "Character (.glb)", "Skeleton, skin and the sampled animation as Sinew has them"),
+            ("USD", "Fall (.usdc)", "Simulate, and write skeleton, skin, fall and physics as USD; a name with .usda makes text"),
         ),
     )
-    ENDS = {"SINEW": ".sinew.json", "MJCF": ".xml", "GLB": ".glb"}
+    ENDS = {"SINEW": ".sinew.json", "MJCF": ".xml", "GLB": ".glb", "USD": ".usdc"}
 
     def invoke(self, context, event):
         self.filepath = active_armature(context).name + self.ENDS[self.format]
@@ -310,8 +348,12 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
     def act(self, context):
         arm = active_armature(context)
         path = bpy.path.abspath(self.filepath)
-        path = path if path.endswith(self.ENDS[self.format]) else path + self.ENDS[self.format]
+        is_text = self.format == "USD" and path.endswith(".usda")
+        path = path if is_text or path.endswith(self.ENDS[self.format]) else path + self.ENDS[self.format]
         try:
+            if self.format == "USD":
+                self.write_usd(context, arm, path)
+                return
             if self.format == "GLB":
                 first, last = simulation.frames_of(context.scene)
                 take = sk.sample(arm, sk.skeleton_of(arm), first, last)
@@ -324,8 +366,21 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
             with open(path, "wb") as file:
                 file.write(data)
         except OSError as error:
-            raise SinewError(f"{path}: {error.strerror}") from error
+            raise SinewError(f"{path}: {error.strerror or error}") from error
         self.report({"INFO"}, f"Wrote {path}")
+
+    def write_usd(self, context, arm, path):
+        from sinew import usd
+
+        job = simulation.prepare(context, [arm])
+        job.run()
+        if job.error is not None:
+            raise SinewError(str(job.error))
+        try:
+            notes = usd.save(job.baked[0], path)
+        except ImportError as error:
+            raise SinewError(str(error)) from error
+        self.report({"INFO"}, f"Wrote {path}: {'; '.join(notes)}")
 
 
 CLASSES = (
@@ -335,6 +390,8 @@ CLASSES = (
     SINEW_OT_select_finding,
     SINEW_OT_cure,
     SINEW_OT_simulate,
+    SINEW_OT_preview,
+    SINEW_OT_end_preview,
     SINEW_OT_clear,
     SINEW_OT_add_hit,
     SINEW_OT_collide,

@@ -82,6 +82,20 @@ class ArmatureSettings(bpy.types.PropertyGroup):
     finding: IntProperty()
 
 
+class Override(bpy.types.PropertyGroup):
+    """The ragdoll of a library override, see `overrides`."""
+
+    armature: PointerProperty(type=bpy.types.Object)
+    definition: StringProperty()
+    fitted: StringProperty()
+    place: StringProperty()
+    report: StringProperty()
+    keyed: StringProperty()
+    own_pose: StringProperty()
+    own_action: PointerProperty(type=bpy.types.Action)
+    made_action: PointerProperty(type=bpy.types.Action)
+
+
 class BodySettings(bpy.types.PropertyGroup):
     collides: BoolProperty(name="Collides", description="Simulated characters collide with this mesh, also while it moves")
     friction: FloatProperty(name="Friction", min=0, max=2, default=0.6)
@@ -96,6 +110,7 @@ class HitSettings(bpy.types.PropertyGroup):
 
 
 class SceneSettings(bpy.types.PropertyGroup):
+    overrides: CollectionProperty(type=Override)
     use_range: BoolProperty(name="Own range", description="Simulate other frames than the scene's")
     frame_start: IntProperty(name="Start", default=1)
     frame_end: IntProperty(name="End", default=150)
@@ -132,7 +147,7 @@ class SceneSettings(bpy.types.PropertyGroup):
     )
 
 
-CLASSES = (Finding, BoneSettings, ArmatureSettings, BodySettings, HitSettings, SceneSettings)
+CLASSES = (Finding, BoneSettings, ArmatureSettings, Override, BodySettings, HitSettings, SceneSettings)
 POINTERS = (
     (bpy.types.Scene, "sinew", SceneSettings),
     (bpy.types.Object, "sinew", ArmatureSettings),
@@ -152,12 +167,19 @@ class filling:
         _filling[0] = False
 
 
+def _make_overridable(cls):
+    """Marks all values of a group as values that can change on a library override; `overrides` saves them."""
+    for prop in cls.__annotations__.values():
+        insertion = {"USE_INSERTION"} if prop.function is CollectionProperty else set()
+        prop.keywords["override"] = {"LIBRARY_OVERRIDABLE"} | insertion
+
+
 def register():
     for cls in CLASSES:
+        _make_overridable(cls)
         bpy.utils.register_class(cls)
     for owner, name, cls in POINTERS:
-        # Properties on the data can be overridden in linked files.
-        setattr(owner, name, PointerProperty(type=cls, override={"LIBRARY_OVERRIDABLE"}))
+        setattr(owner, name, PointerProperty(type=cls))
     # Separate, since values within a property group of a bone cannot be keyed.
     bpy.types.PoseBone.sinew_mode = EnumProperty(
         items=MODES,

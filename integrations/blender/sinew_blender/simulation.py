@@ -173,10 +173,31 @@ def drives(loaded, take, fps):
     return out
 
 
+def simulated(arm, loaded, take, baked):
+    """Matrix of each bone at each frame. Bones above the first body, which Sinew keeps at rest, follow that body as in the user's animation
+    if they have skin, and otherwise the user's animation itself."""
+    frames, skeleton = bridge.model_matrices(baked, loaded), loaded.skeleton
+    first = next((b["bone"] for b in bodies_of(arm) if b["bone"] in skeleton.parent), None)
+    above, at = [], skeleton.parent.get(first)
+    while at is not None:
+        above.append(at)
+        at = skeleton.parent[at]
+    skinned = sk.skinned(arm, skeleton) if above else set()
+    for frame, own in zip(frames, take.frames):
+        moved = frame[first] @ own[first].inverted() if above else None
+        for name in above:
+            frame[name] = moved @ own[name] if name in skinned else own[name].copy()
+    return frames
+
+
+def bodies_of(arm):
+    return json.loads(arm.sinew.definition)["bodies"] if arm.sinew.definition else []
+
+
 def falls_of(job):
     """The simulated part of each bake, as frames of Blender."""
     found = []
-    for loaded, take, baked in zip(job.loaded, job.takes, job.baked):
+    for arm, loaded, take, baked in zip(job.arms, job.loaded, job.takes, job.baked):
         states = baked.states
         began = next((i for i, state in enumerate(states) if state not in OWN), None)
         if began is None:
@@ -185,7 +206,7 @@ def falls_of(job):
         if bpy.context.scene.sinew.use_return:
             back = bpy.context.scene.sinew.return_frame
             end = min(back - job.first, len(states))
-        frames = bridge.model_matrices(baked, loaded)
+        frames = simulated(arm, loaded, take, baked)
         found.append(
             Fall(job.first + began, frames[began:end], take.worlds[began:end], take.carriers[began:end], back)
         )
@@ -210,19 +231,19 @@ def write(job, how):
         else:
             keys.as_action(arm, names, fall)
         arm.sinew.keyed = way
-        arm.sinew.report = json.dumps(report(loaded, take, baked, fall, way))
+        arm.sinew.report = json.dumps(report(arm, loaded, take, baked, fall, way))
         done.append(way)
     return done
 
 
-def report(loaded, take, baked, fall, way):
+def report(arm, loaded, take, baked, fall, way):
     """Results for the panel and for tests: lengths in mm of Blender's unit in metres."""
     unit = 1e3 * loaded.unit
     off = 0.0
-    simulated = bridge.model_matrices(baked, loaded)
+    frames = simulated(arm, loaded, take, baked)
     for i in range(fall.first - take.first):
         for n in loaded.skeleton.names:
-            off = max(off, (simulated[i][n].translation - take.frames[i][n].translation).length * unit)
+            off = max(off, (frames[i][n].translation - take.frames[i][n].translation).length * unit)
     return {
         "keyed": way,
         "frames": len(fall.frames),

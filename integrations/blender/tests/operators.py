@@ -1,10 +1,12 @@
 """Runs every operator on some rig: `python operators.py`."""
 
+import importlib.util
 import json
 import os
 import tempfile
 
 import bpy
+import numpy as np
 from mathutils import Matrix
 
 import installed
@@ -207,6 +209,71 @@ def a_cancelled_simulation_leaves_nothing():
     check(counts() == before, "and leaves nothing")
 
 
+def skin_of(arm):
+    """Vertices of the evaluated skin in the world."""
+    ob = next(ob for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == arm)
+    evaluated = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    me = evaluated.to_mesh()
+    points = np.empty(len(me.vertices) * 3, np.float32)
+    me.vertices.foreach_get("co", points)
+    evaluated.to_mesh_clear()
+    m = np.array(ob.matrix_world)
+    return points.reshape(-1, 3) @ m[:3, :3].T + m[:3, 3]
+
+
+@case
+def a_preview_shows_the_fall_and_changes_nothing():
+    arm, names = fresh()
+    before, own = counts(), posed(arm, names)
+    settings(by="FRAME", handover=45)
+    check(bpy.ops.sinew.preview() == {"FINISHED"}, "it is previewed")
+    check(counts() == before and arm.sinew.report == "", "nothing is added")
+    check(max(off(a, b, names) for a, b in zip(posed(arm, names), own)) == 0.0, "and nothing moves")
+    ghost, frames = addon().preview.of(arm), (10, 44, 60, 100, LAST)
+    drawn = {f: ghost.vertices(f).copy() for f in frames}
+    colors = ghost.colors(60)
+    check(colors.shape == (len(drawn[60]), 4) and 0 < colors.min() and colors.max() <= 1, "it is shaded")
+    check(ghost.stamp == addon().preview.stamp(bpy.context.scene, arm), "it is up to date")
+    settings(stiffness=0.1)
+    check(ghost.stamp != addon().preview.stamp(bpy.context.scene, arm), "another setting makes it out of date")
+    settings(stiffness=0.0)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    check(addon().preview.of(arm) is None, "the keys take its place")
+    for f in frames:
+        bpy.context.scene.frame_set(f)
+        apart = np.abs(skin_of(arm) - drawn[f]).max()
+        check(apart < 1e-3, f"at {f} the keyed skin is {1e3 * apart:.2f} mm from the preview")
+    bpy.ops.sinew.preview()
+    check(bpy.ops.sinew.end_preview() == {"FINISHED"} and addon().preview.of(arm) is None, "it ends")
+
+
+@case
+def limits_have_handles_where_they_are_drawn():
+    for make in (rigs.cesium_man, rigs.scale_100):
+        arm, _ = fresh(make)
+        handles, overlay = addon().handles, addon().overlay
+        bone = next(b for b in arm.pose.bones if b.sinew.has_swing and b.sinew.has_twist)
+        arm.data.bones.active = arm.data.bones[bone.name]
+        check(handles.limits_of(bone) == ["swing_y", "swing_z", "twist"], "it has all limits")
+        frame, reach = handles.frame_of(arm, bone.name)
+        drawn = overlay.lines_of(arm, {bone.name})
+        for key, lines in (("swing_y", overlay.LIMIT), ("swing_z", overlay.LIMIT), ("twist", overlay.TWIST)):
+            for end in (0, 1):
+                angle = getattr(bone.sinew, key)[end]
+                offset = handles.offset_of(key, angle, reach)
+                flat = lambda place: place.xz  # noqa: E731
+                found = handles.angle_on_screen(key, frame, reach, frame @ offset, angle + 0.2, flat)
+                check((flat(frame @ handles.offset_of(key, found, reach)) - flat(frame @ offset)).length < 0.02 * reach, "it is found on the screen")
+                nearest = min((p - frame @ offset).length for p in drawn[lines])
+                check(nearest < 0.02 * reach, f"{key}: the handle is {nearest / reach:.3f} cones from its line")
+        handles.drag(bone, "swing_y", 1, 0.3)
+        handles.drag(bone, "swing_z", 0, 0.4)
+        handles.drag(bone, "twist", 1, 0.2)
+        limits = next(b for b in json.loads(arm.sinew.definition)["bodies"] if b["bone"] == bone.name)["joint"]["limits_deg"]
+        got = [limits["swing_y"][1], limits["swing_z"][0], limits["twist"][1]]
+        check([round(x, 2) for x in got] == [17.19, 0.0, 11.46], f"the definition has {got}")
+
+
 @case
 def two_characters_meet():
     rigs.empty_scene()
@@ -254,11 +321,83 @@ def fk_controls_of_rigify_take_the_fall():
 def files_are_written():
     arm, _ = fresh()
     with tempfile.TemporaryDirectory() as folder:
-        for kind, end in (("SINEW", ".sinew.json"), ("MJCF", ".xml"), ("GLB", ".glb")):
+        settings(by="FRAME", handover=45)
+        for kind, end in (("SINEW", ".sinew.json"), ("MJCF", ".xml"), ("GLB", ".glb"), ("USD", ".usda")):
             path = os.path.join(folder, "it" + end)
             check(bpy.ops.sinew.export(filepath=path, format=kind) == {"FINISHED"}, kind)
             check(os.path.getsize(path) > 1000, f"{path} is written")
+        path = os.path.join(folder, "it.usdc")
+        if importlib.util.find_spec("pxr") is None:
+            refused(bpy.ops.sinew.export, "needs pxr", filepath=path, format="USD")
+        else:
+            check(bpy.ops.sinew.export(filepath=path, format="USD") == {"FINISHED"}, "USD")
         refused(bpy.ops.sinew.export, "No such file", filepath=os.path.join(folder, "no", "it"), format="SINEW")
+
+
+@case
+def names_of_mixamo_and_auto_rig_pro_are_recognised():
+    parts = {"hips", "spine", "upperChest", "neck", "head"} | {s + p for s in ("left", "right") for p in ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")}
+    for wanted in (rigs.MIXAMO, rigs.AUTO_RIG_PRO):
+        arm, names = fresh(lambda wanted=wanted: rigs.metarig(wanted))
+        by_role = {b["role"]: b["bone"] for b in json.loads(arm.sinew.definition)["bodies"]}
+        check(parts <= set(by_role), f"roles {sorted(parts - set(by_role))} are missing")
+        left = wanted["shin"].format(long="Left", short="l")
+        check(by_role["leftLowerLeg"] == left, f"the left shin is {by_role['leftLowerLeg']}")
+        own = posed(arm, names, LAST, LAST)[0]
+        settings(by="FRAME", handover=45, keys="AUTO", use_return=False)
+        check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+        check(report(arm)["verdict"] == "good" and report(arm)["before_handover_mm"] < 1.0, f"{report(arm)}")
+        head = wanted["spine.006"]
+        check(own[head].translation.z - posed(arm, names, LAST, LAST)[0][head].translation.z > 0.8, "and it falls")
+
+
+@case
+def meshes_may_be_called_like_bones():
+    arm, names = fresh(rigs.knight)
+    own = posed(arm, names)
+    skins = [ob for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == arm]
+    check(len(skins) > 3, "it has several meshes")
+    for ob, name in zip(skins, ("head", "chest", "upperarm.l", "hips")):
+        check(name in arm.data.bones, f"{name} is a bone")
+        ob.name = name
+    settings(by="FRAME", handover=45, use_return=False)
+    check(bpy.ops.sinew.build() == {"FINISHED"} and bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    check(report(arm)["before_handover_mm"] < 1.0, f"{report(arm)['before_handover_mm']} mm before the hand-over")
+    keyed = posed(arm, names)
+    jump = max((keyed[44][n].translation - keyed[43][n].translation).length for n in names)
+    check(jump < 0.05, f"a bone jumps by {jump} m at the hand-over, {max((own[44][n].translation - own[43][n].translation).length for n in names)} m in the user's own")
+
+
+@case
+def bones_above_the_hips_stay_with_the_animation():
+    arm, names = fresh(rigs.robot)
+    own = posed(arm, names)
+    settings(by="FRAME", handover=45, use_return=True, return_frame=120, return_blend=20)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    check(report(arm)["before_handover_mm"] < 1.0 and report(arm)["verdict"] == "good", f"{report(arm)}")
+    keyed = posed(arm, names)
+    check(max(off(keyed[f], own[f], ["Bone", "Body"]) for f in range(LAST - FIRST + 1)) < 1e-3, "they have no skin, and do not follow the fall")
+    check(off(keyed[70], own[70], ["Hips"]) > 0.3, "the hips fall")
+    for f in (44, 119):
+        jump = max(((keyed[f][n].translation - keyed[f - 1][n].translation) - (own[f][n].translation - own[f - 1][n].translation)).length for n in names)
+        check(jump < 0.03, f"a bone jumps by {jump} m at {f + 1}")
+
+
+@case
+def shape_keys_and_loose_parts_do_not_change_the_body():
+    arm, names = fresh()
+    before = json.loads(arm.sinew.definition)
+    skin = next(ob for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == arm)
+    skin.shape_key_add(name="Basis")
+    smile = skin.shape_key_add(name="Smile")
+    for point in smile.data[:200]:
+        point.co.x += 0.3
+    smile.value = 1.0
+    check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built with shape keys")
+    check(json.loads(arm.sinew.definition)["bodies"] == before["bodies"], "with the same bodies")
+    settings(by="FRAME", handover=45, use_return=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["verdict"] == "good", "and falls")
+    check(smile.value == 1.0, "the shape stays")
 
 
 @case
@@ -286,6 +425,39 @@ def what_cannot_be_is_one_line():
         bpy.context.scene.collection.objects.link(linked)
         rigs.activate(linked)
         refused(bpy.ops.sinew.build, "library override")
+
+
+@case
+def a_library_override_falls():
+    rigs.empty_scene()
+    arm = rigs.cesium_man()
+    with tempfile.TemporaryDirectory() as folder:
+        path, name = os.path.join(folder, "linked.blend"), arm.name
+        skin = next(ob.name for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == arm)
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        rigs.empty_scene()
+        with bpy.data.libraries.load(path, link=True) as (_, into):
+            into.objects = [name, skin]
+        scene = bpy.context.scene
+        for ob in into.objects:
+            scene.collection.objects.link(ob)
+        made = bpy.data.objects[name].override_hierarchy_create(scene, bpy.context.view_layer)
+        arm = made if made.type == "ARMATURE" else next(ob for ob in bpy.data.objects if ob.type == "ARMATURE" and ob.override_library)
+        rigs.activate(arm)
+        settings(by="FRAME", handover=45, use_return=False)
+        check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built")
+        check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["verdict"] == "good", "and falls")
+        check(report(arm)["before_handover_mm"] < 1.0, f"{report(arm)}")
+        bodies = len(json.loads(arm.sinew.definition)["bodies"])
+        copy = os.path.join(folder, "overriding.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=copy)
+        bpy.ops.wm.open_mainfile(filepath=copy)
+        arm = next(ob for ob in bpy.data.objects if ob.type == "ARMATURE" and ob.override_library)
+        check(len(json.loads(arm.sinew.definition)["bodies"]) == bodies, "the ragdoll is in the saved file")
+        rigs.activate(arm)
+        check(arm.animation_data.action == arm.sinew.made_action is not None, "with its keys")
+        check(bpy.ops.sinew.clear() == {"FINISHED"} and arm.animation_data.action != arm.sinew.made_action, "and is cleared")
+        rigs.empty_scene()
 
 
 @case
