@@ -135,12 +135,12 @@ fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
     );
     axes(&mut out, (across, xs), (up, ys));
     let at = |dot: &Dot| [place(dot.gap.max(LEAST_GAP), across, xs), place(dot.time, up, ys)];
-    for [from, to] in dots.array_windows().filter(|[from, to]| from.engine == to.engine) {
-        let ([x, y], [x2, y2]) = (at(from), at(to));
+    for pair in dots.windows(2).filter(|pair| pair[0].engine == pair[1].engine) {
+        let ([x, y], [x2, y2]) = (at(&pair[0]), at(&pair[1]));
         _ = writeln!(
             out,
             "<path d=\"M{x:.1} {y:.1}L{x2:.1} {y2:.1}\" stroke=\"{}\" stroke-width=\"2\"/>",
-            to.color
+            pair[0].color
         );
     }
     let mut labels: Vec<[f64; 2]> = Vec::new();
