@@ -44,8 +44,8 @@ pub struct WorldDef {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quality {
-    /// Half of the sweeps, and half of the world's substeps unless masses differ by more than a factor of 100, or a body
-    /// spins fast and few contacts damp it: for crowds in the distance. Heaps of three and more jointed bodies do not check
+    /// Half of the world's substeps unless masses differ by more than a factor of 100 or a body spins fast, and half of
+    /// the sweeps: for crowds in the distance. Heaps of three and more jointed bodies keep the sweeps, but do not check
     /// limits ahead: in a crash, limbs pass their limits.
     Fast,
     /// Half of the world's substeps where many contacts damp all motion, otherwise all of them.
