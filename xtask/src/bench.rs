@@ -151,7 +151,10 @@ impl Bench {
             [requirements::HOLDS, requirements::STANDS].map(|rows| page::holds(&results, rows));
         let [physics, animation] = [page::glance(&results), page::animation(&results)];
         println!("{physics}\n{joints}\n{stands}\n{animation}\n{}", page::ragdolls(&results));
-        println!("{}\n{}", page::efforts(&results), page::speeds(&results));
+        if !results.efforts.is_empty() {
+            println!("{}", page::efforts(&results));
+        }
+        println!("{}", page::speeds(&results));
         Ok(self.verdict(&results))
     }
 

@@ -19,7 +19,9 @@ pub fn page(results: &Results, missing: &[&str]) -> String {
     };
     add("At a glance", &format!("{GLANCE}\n{}\n{LEGEND}{}", glance(results), gaps(missing)));
     add("Joints and stacks", &format!("{HOLD}\n{}", holds(results, HOLDS.iter().chain(STANDS))));
-    add("Time against quality", &format!("{EFFORTS}\n{}", efforts(results)));
+    if !results.efforts.is_empty() {
+        add("Time against quality", &format!("{EFFORTS}\n{}", efforts(results)));
+    }
     add("Characters that blend clips", &format!("{ANIMATION}\n{}", animation(results)));
     add("Ragdolls beside MuJoCo", &format!("{RAGDOLLS}\n{}", ragdolls(results)));
     add("Against the specification", &format!("{SPECIFICATION}\n{}", speeds(results)));
