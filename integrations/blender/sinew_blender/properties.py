@@ -124,7 +124,7 @@ class SceneSettings(bpy.types.PropertyGroup):
     handover: IntProperty(name="Frame", default=45, description="First frame that is simulated")
     use_return: BoolProperty(name="Return", description="Come back to your animation at a frame")
     return_frame: IntProperty(name="Frame", default=120, description="First frame that your animation alone has again")
-    return_blend: IntProperty(name="Blend", default=15, min=1, description="Frames before that in which the simulated pose dies away")
+    return_blend: IntProperty(name="Blend", default=15, min=1, description="Frames before that in which the simulated pose dies away; fewer than between hand-over and return")
     gets_up: BoolProperty(name="Get up", description="Once it lies still it gets up, if it is a humanoid")
     push_over: BoolProperty(
         name="Push over", default=True, description="One that is limp and would stay upright on its broad feet is pushed forward"

@@ -105,6 +105,7 @@ def preparing(context, arms):
             given["return_seconds"] = settings.return_blend / fps
         if not given["hits"] and not given["drives"] and "limp_at" not in given:
             raise SinewError(f"Nothing fells {arm.name}: add a hit, or choose the hand-over by frame")
+        check_return(settings, first, fps, given)
         actors.append(bridge.asked(sinew.Actor, character, pose=character.place_in_file, **given))
         loaded.append(one)
         takes.append(take)
@@ -119,6 +120,22 @@ def preparing(context, arms):
         "gravity": gravity(scene),
     }
     return Job(arms, loaded, takes, actors, world, first, last, fps)
+
+
+def check_return(settings, first, fps, given):
+    """Refuses a blend that begins before the character falls: it would move the hand-over to its begin."""
+    starts = [given["limp_at"]] if "limp_at" in given else []
+    starts += [time for time, _, _ in given["hits"]]
+    if not settings.use_return or not starts:
+        return
+    began = first + round(max(min(starts), 0.0) * fps)
+    most = settings.return_frame - began - 1
+    if most < 1:
+        raise SinewError(f"A return at frame {settings.return_frame} leaves no blend after the hand-over at frame {began}: choose at least {began + 2}")
+    if settings.return_blend > most:
+        raise SinewError(
+            f"The blend ({settings.return_blend} frames) begins before the hand-over at frame {began}: choose at most {most}"
+        )
 
 
 def gravity(scene):

@@ -401,6 +401,18 @@ def shape_keys_and_loose_parts_do_not_change_the_body():
 
 
 @case
+def a_blend_begins_after_the_hand_over():
+    arm, _ = fresh()
+    settings(by="FRAME", handover=20, use_return=True)
+    for back, blend, words in ((50, 100, "choose at most 29"), (25, 15, "choose at most 4"), (21, 15, "choose at least 22")):
+        settings(return_frame=back, return_blend=blend)
+        refused(bpy.ops.sinew.simulate, words)
+    settings(return_frame=50, return_blend=29)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "the largest blend is simulated")
+    check(report(arm)["handover"] == 20, f"it falls at {report(arm)['handover']}")
+
+
+@case
 def what_cannot_be_is_one_line():
     rigs.empty_scene()
     arm = rigs.cesium_man()
