@@ -361,6 +361,8 @@ def sampling(arm, skeleton, first, last):
     scene = bpy.context.scene
     at, sub = scene.frame_current, scene.frame_subframe
     take, carried = Take(first), carriers(arm, skeleton.names)
+    # Blender copies a mode that Python has set, and that has no keys, only on request.
+    arm.update_tag()
     try:
         for frame in range(first, last + 1):
             scene.frame_set(frame)
