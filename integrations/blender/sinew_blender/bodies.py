@@ -64,7 +64,7 @@ def edit(arm, name):
     if settings.has_swing:
         # The range of a swing must include zero.
         wanted["swing_y"], wanted["swing_z"] = (
-            (min(v[0], 0.0), max(v[1], 0.0)) for v in (settings.swing_y, settings.swing_z)
+            (min(*v, 0.0), max(*v, 0.0)) for v in (settings.swing_y, settings.swing_z)
         )
     if settings.has_twist:
         low, high = settings.twist

@@ -1,6 +1,7 @@
 """Operators behind the buttons."""
 
 import json
+import os
 import time
 
 import bpy
@@ -34,6 +35,10 @@ def selected_armatures(context):
     return [active, *sorted(others, key=lambda ob: ob.name)]
 
 
+def counted(count, one, many):
+    return f"{count} {one if count == 1 else many}"
+
+
 class Sinew:
     """Base of all operators: shows errors as a line in the status bar."""
 
@@ -41,6 +46,7 @@ class Sinew:
 
     @classmethod
     def poll(cls, context):
+        cls.poll_message_set("Select an armature or one of its meshes")
         return active_armature(context) is not None
 
     def execute(self, context):
@@ -62,7 +68,7 @@ class SINEW_OT_build(Sinew, bpy.types.Operator):
             ragdoll = bridge.build(arm)
             bodies.store(arm, ragdoll)
             examine(arm, ragdoll)
-            self.report({"INFO"}, f"{arm.name}: {len(ragdoll)} bodies, {ragdoll.total_mass:.1f} kg, {ragdoll.height:.2f} m")
+            self.report({"INFO"}, f"{arm.name}: {counted(len(ragdoll), 'body', 'bodies')}, {ragdoll.total_mass:.1f} kg, {ragdoll.height:.2f} m")
 
 
 class SINEW_OT_forget(Sinew, bpy.types.Operator):
@@ -99,7 +105,7 @@ class SINEW_OT_doctor(Sinew, bpy.types.Operator):
     def act(self, context):
         arm = active_armature(context)
         count = examine(arm, bridge.ragdoll(arm))
-        self.report({"INFO"}, f"{count} findings" if count != 1 else "1 finding")
+        self.report({"INFO"}, counted(count, "finding", "findings"))
 
 
 class SINEW_OT_select_finding(Sinew, bpy.types.Operator):
@@ -348,6 +354,8 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
     def act(self, context):
         arm = active_armature(context)
         path = bpy.path.abspath(self.filepath)
+        if not os.path.basename(path):
+            raise SinewError("Give the file a name: filepath has none")
         is_text = self.format == "USD" and path.endswith(".usda")
         path = path if is_text or path.endswith(self.ENDS[self.format]) else path + self.ENDS[self.format]
         try:

@@ -105,6 +105,9 @@ def preparing(context, arms):
             given["return_seconds"] = settings.return_blend / fps
         if not given["hits"] and not given["drives"] and "limp_at" not in given:
             raise SinewError(f"Nothing fells {arm.name}: add a hit, or choose the hand-over by frame")
+        if not given["drives"] and "limp_at" not in given and given["hits"][0][0] * fps > last - first:
+            when = first + round(given["hits"][0][0] * fps)
+            raise SinewError(f"Nothing fells {arm.name}: its first hit, at frame {when}, is after the end, frame {last}")
         check_return(settings, first, fps, given)
         actors.append(bridge.asked(sinew.Actor, character, pose=character.place_in_file, **given))
         loaded.append(one)

@@ -110,6 +110,8 @@ def hits(scene, arm, first, fps):
                 continue
             raise SinewError(f"Hit {ob.name}: {arm.name} has no bone {hit.bone}")
         way = (TO_Y @ ob.matrix_world).to_3x3().col[2].normalized()
+        if way.length == 0:
+            raise SinewError(f"Hit {ob.name} has no direction: it is scaled to 0")
         found.append(((hit.frame - first) / fps, hit.bone, tuple(way * hit.impulse)))
     return sorted(found, key=lambda one: one[0])
 

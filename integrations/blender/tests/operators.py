@@ -147,6 +147,18 @@ def a_bone_can_be_limp_or_powered_over_time():
 
 
 @case
+def a_mode_without_keys_is_taken():
+    arm, names = fresh()
+    own = posed(arm, names)
+    for joint in ("Skeleton_arm_joint_L__4_", "Skeleton_arm_joint_L__3_", "Skeleton_arm_joint_L__2_"):
+        arm.pose.bones[joint].sinew_mode = "LIMP"
+    settings(by="FRAME", handover=140, use_return=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    away = off(posed(arm, names, 100, 100)[0], own[100 - FIRST], ["Skeleton_arm_joint_L__2_"])
+    check(away > 0.05, f"the arm hangs: {away}")
+
+
+@case
 def values_of_a_bone_go_into_the_definition():
     arm, _ = fresh()
     bone = next(b for b in arm.pose.bones if b.sinew.has_swing)
@@ -161,6 +173,9 @@ def values_of_a_bone_go_into_the_definition():
     check(pick(now)["shape"] != pick(was)["shape"], "size")
     check(abs(bone.sinew.size - 1.2) < 1e-3, "which the panel shows")
     check(bpy.ops.sinew.simulate() == {"FINISHED"}, "and it falls with them")
+    bone.sinew.swing_y = (0.4, -0.3)
+    now = json.loads(arm.sinew.definition)
+    check([round(x, 1) for x in pick(now)["joint"]["limits_deg"]["swing_y"]] == [-17.2, 22.9], "inverted limits are sorted")
 
 
 @case
@@ -420,6 +435,19 @@ def what_cannot_be_is_one_line():
     bpy.ops.sinew.build()
     settings(by="HITS")
     refused(bpy.ops.sinew.simulate, "Nothing fells")
+    arm.data.bones.active = arm.data.bones["torso_joint_3"]
+    bpy.ops.sinew.add_hit()
+    hit = bpy.data.objects["Hit torso_joint_3"]
+    hit.sinew_hit.frame = LAST + 50
+    refused(bpy.ops.sinew.simulate, "is after the end, frame 150")
+    hit.sinew_hit.frame, hit.scale = 50, (0, 0, 0)
+    bpy.context.view_layer.update()
+    refused(bpy.ops.sinew.simulate, "has no direction")
+    bpy.data.objects.remove(hit)
+    refused(bpy.ops.sinew.export, "Give the file a name", format="SINEW")
+    bpy.context.view_layer.objects.active = None
+    refused(bpy.ops.sinew.build, "Select an armature or one of its meshes")
+    rigs.activate(arm)
     settings(by="FRAME", handover=500)
     refused(bpy.ops.sinew.simulate, "outside of the range")
     settings(handover=45)
