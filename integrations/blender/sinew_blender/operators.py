@@ -223,7 +223,12 @@ class Simulates(Sinew):
             if isinstance(job.error, SinewError):
                 raise job.error
             raise SinewError(f"The simulation failed: {job.error}")
+        for arm, ragdoll in job.built:
+            bodies.store(arm, ragdoll)
+            examine(arm, ragdoll)
         self.done(context, job)
+        for note in job.notes:
+            self.report({"WARNING"}, note)
         redraw(context)
         return {"FINISHED"}
 

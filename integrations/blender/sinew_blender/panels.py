@@ -113,7 +113,7 @@ class SINEW_PT_simulate(Side, bpy.types.Panel):
             report = json.loads(arm.sinew.report)
             box = layout.column()
             box.label(text=f"{report['verdict']}, {report['frames']} frames from {report['handover']}")
-            for reason in report["reasons"][:3]:
+            for reason in [*report.get("notes", ()), *report["reasons"][:3]]:
                 for line in wrapped(reason, max(24, context.region.width // 8)):
                     box.label(text=line)
             if arm.sinew.keyed == "PROXY":

@@ -38,6 +38,10 @@ class Job:
     first: int
     last: int
     fps: float
+    # Armatures without a ragdoll and those that they got for this run.
+    built: list
+    # Warnings.
+    notes: list
     share: float = 0.0
     cancelled: bool = False
     baked: object = None
@@ -84,12 +88,16 @@ def preparing(context, arms):
         raise SinewError(f"The hand-over, frame {at}, is outside of the range {first} to {last}")
     if settings.use_return and not max(at, first) < settings.return_frame <= last:
         raise SinewError(f"The return, frame {settings.return_frame}, is not between hand-over and end")
-    loaded, takes, actors, units = [], [], [], []
+    loaded, takes, actors, units, built, notes = [], [], [], [], [], []
     for arm in arms:
         with own_animation(arm):
             take = yield from sk.sampling(arm, sk.skeleton_of(arm), first, last)
         one = bridge.load(arm, take.frames, fps)
-        ragdoll = bridge.ragdoll(arm) if arm.sinew.definition else bridge.build(arm)
+        if arm.sinew.definition:
+            ragdoll = bridge.ragdoll(arm)
+        else:
+            ragdoll = bridge.build(arm)
+            built.append((arm, ragdoll))
         one.unit = ragdoll.unit_scale
         falling = None
         if settings.stiffness > 0:
@@ -97,7 +105,7 @@ def preparing(context, arms):
         character = bridge.asked(
             one.file.character, ragdoll, clip=bridge.CLIP, exact=True, gets_up=settings.gets_up, falling=falling
         )
-        given = {"hits": stage.hits(scene, arm, first, fps), "drives": drives(one, take, fps), "topple": settings.push_over}
+        given = {"hits": stage.hits(scene, arm, json.loads(ragdoll.to_json()), first, fps, notes), "drives": drives(one, take, fps), "topple": settings.push_over}
         if settings.by == "FRAME":
             given["limp_at"] = (at - first) / fps
         if settings.use_return:
@@ -122,7 +130,7 @@ def preparing(context, arms):
         "wind": stage.wind(scene),
         "gravity": gravity(scene),
     }
-    return Job(arms, loaded, takes, actors, world, first, last, fps)
+    return Job(arms, loaded, takes, actors, world, first, last, fps, built, notes)
 
 
 def check_return(settings, first, fps, given):
@@ -251,7 +259,7 @@ def write(job, how):
         else:
             keys.as_action(arm, names, fall)
         arm.sinew.keyed = way
-        arm.sinew.report = json.dumps(report(arm, loaded, take, baked, fall, way))
+        arm.sinew.report = json.dumps(report(arm, loaded, take, baked, fall, way) | {"notes": job.notes})
         done.append(way)
     return done
 

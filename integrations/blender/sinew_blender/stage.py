@@ -9,6 +9,8 @@ from .skeleton import TO_Y, SinewError
 
 # Largest number of triangles of one collider.
 MOST_TRIANGLES = 500_000
+# Largest speeds that a hit gives to a whole character and to the struck body, m/s: harder hits can have no effect.
+MOST_SPEED, MOST_BODY_SPEED = 30.0, 1500.0
 # Smallest change of a matrix of a moving object, in Blender's unit.
 MOVES = 1e-6
 
@@ -96,8 +98,18 @@ def world(scene, arms, first, last, fps, unit):
     return made
 
 
-def hits(scene, arm, first, fps):
-    """Hits of empties on this armature: time in seconds, body, impulse in N·s along the empty's arrow (+Z)."""
+def hardest(arm, definition, bone):
+    """The largest impulse on a bone, N·s. A bone without a body belongs to the next one above that has one."""
+    masses = {body["bone"]: body["mass"]["kg"] for body in definition["bodies"]}
+    at, most = arm.data.bones[bone], MOST_SPEED * sum(masses.values())
+    while at is not None and at.name not in masses:
+        at = at.parent
+    return most if at is None else min(most, MOST_BODY_SPEED * masses[at.name])
+
+
+def hits(scene, arm, definition, first, fps, notes):
+    """Hits of empties on this armature: time in seconds, body, impulse in N·s along the empty's arrow (+Z). Says in `notes` which are
+    limited."""
     found = []
     for ob in scene.objects:
         hit = ob.sinew_hit
@@ -112,7 +124,10 @@ def hits(scene, arm, first, fps):
         way = (TO_Y @ ob.matrix_world).to_3x3().col[2].normalized()
         if way.length == 0:
             raise SinewError(f"Hit {ob.name} has no direction: it is scaled to 0")
-        found.append(((hit.frame - first) / fps, hit.bone, tuple(way * hit.impulse)))
+        most = hardest(arm, definition, hit.bone)
+        if hit.impulse > most:
+            notes.append(f"{ob.name}: {hit.impulse:,.0f} N·s is more than {hit.bone} takes, and was limited to {most:,.0f} N·s")
+        found.append(((hit.frame - first) / fps, hit.bone, tuple(way * min(hit.impulse, most))))
     return sorted(found, key=lambda one: one[0])
 
 

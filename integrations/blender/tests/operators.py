@@ -68,6 +68,35 @@ def hits_of_empties_fell_it_where_they_strike():
 
 
 @case
+def a_hit_is_limited_to_what_a_body_takes():
+    arm, names = fresh()
+    masses = {b["bone"]: b["mass"]["kg"] for b in json.loads(arm.sinew.definition)["bodies"]}
+    settings(by="HITS", use_return=False)
+    own = posed(arm, names, 53, 53)[0]
+    hand, chest = "Skeleton_arm_joint_L__2_", "torso_joint_3"
+    for bone, most in ((hand, 1500.0 * masses[hand]), (chest, 30.0 * sum(masses.values()))):
+        bpy.context.scene.frame_set(50)
+        arm.data.bones.active = arm.data.bones[bone]
+        bpy.ops.sinew.add_hit(impulse=20000)
+        check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+        notes = report(arm)["notes"]
+        check(len(notes) == 1 and f"Hit {bone}: 20,000 N·s" in notes[0] and f"{most:,.0f} N·s" in notes[0], f"{notes}")
+        moved = posed(arm, names, 53, 53)[0][names[0]].translation.y - own[names[0]].translation.y
+        check(moved > 0.5, f"it is thrown along the arrow: {moved}")
+        bpy.data.objects.remove(bpy.data.objects[f"Hit {bone}"])
+
+
+@case
+def a_run_without_a_build_keeps_its_ragdoll():
+    for run in (bpy.ops.sinew.preview, bpy.ops.sinew.simulate):
+        rigs.empty_scene()
+        arm = rigs.cesium_man()
+        settings(by="FRAME", handover=45, use_return=False)
+        check(run() == {"FINISHED"} and arm.sinew.definition, "it has a ragdoll")
+        check(bpy.ops.sinew.doctor() == {"FINISHED"}, "which the doctor examines")
+
+
+@case
 def it_lies_on_what_it_collides_with_and_is_moved_by_what_moves():
     arm, names = fresh()
     table = box("table", (0, 0, -0.55), (6, 6, 1))
