@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from . import actions, bridge, keys, stage
+from . import actions, bridge, keys, overlap, stage
 from . import skeleton as sk
 from .skeleton import SinewError
 
@@ -238,6 +238,17 @@ def falls_of(job):
         found.append(
             Fall(job.first + began, frames[began:end], take.worlds[began:end], take.carriers[began:end], back)
         )
+    return found
+
+
+def overlaps(job):
+    """Warnings about characters that are inside of ground or colliders when the bodies take over."""
+    found = []
+    for arm, loaded, take, baked in zip(job.arms, job.loaded, job.takes, job.baked):
+        began = next((i for i, state in enumerate(baked.states) if state not in OWN), None)
+        if began is not None:
+            definition = json.loads(arm.sinew.definition)
+            found += overlap.told(bpy.context.scene, arm, loaded.skeleton, definition, take.frames[began], job.first + began)
     return found
 
 

@@ -21,7 +21,7 @@ def colliders(scene, arms):
     return [ob for ob in scene.objects if ob.type == "MESH" and ob.sinew_body.collides and ob not in own]
 
 
-def _triangles(ob, to_local):
+def triangles(ob, to_local):
     """Triangles of the evaluated mesh, Blender's length and Sinew's axes."""
     evaluated = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
     me = evaluated.to_mesh()
@@ -86,12 +86,12 @@ def world(scene, arms, first, last, fps, unit):
     for ob in found:
         friction = ob.sinew_body.friction
         if ob not in moving:
-            vertices, corners = _triangles(ob, TO_Y @ ob.matrix_world)
+            vertices, corners = triangles(ob, TO_Y @ ob.matrix_world)
             made.append(bridge.asked(sinew.Collider.mesh, vertices * unit, corners, friction=friction))
             continue
         # The mesh contains the scale of the first frame; the keys contain position and rotation of each frame.
         track = [sk.to_sinew(m) for m in moving[ob]]
-        vertices, corners = _triangles(ob, sk.to_sinew(moving[ob][0]).inverted() @ TO_Y @ moving[ob][0])
+        vertices, corners = triangles(ob, sk.to_sinew(moving[ob][0]).inverted() @ TO_Y @ moving[ob][0])
         shape = bridge.asked(sinew.Collider.mesh, vertices * unit, corners, friction=friction)
         poses = np.array([bridge.pose7(bridge.scaled(m, unit)) for m in track])
         made.append(shape.keyed(np.arange(len(track)) / fps, poses))

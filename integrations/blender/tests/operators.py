@@ -87,6 +87,25 @@ def a_hit_is_limited_to_what_a_body_takes():
 
 
 @case
+def an_overlap_at_the_hand_over_is_told():
+    arm, _ = fresh()
+    settings(by="FRAME", handover=45, use_return=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["notes"] == [], f"{report(arm)['notes']}")
+    settings(ground_height=0.19)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated in the ground")
+    notes = report(arm)["notes"]
+    check(len(notes) == 1 and "Armature is 0.22 m" in notes[0] and "inside the ground" in notes[0], f"{notes}")
+    settings(ground_height=0.0)
+    crate = box("crate", (0, 0, 0), (4, 4, 0.38))
+    beside = box("beside", (0, 3, 0), (1, 1, 4))
+    crate.sinew_body.collides = beside.sinew_body.collides = True
+    rigs.activate(arm)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated in the crate")
+    notes = report(arm)["notes"]
+    check(len(notes) == 1 and "inside crate: move it" in notes[0], f"{notes}")
+
+
+@case
 def a_run_without_a_build_keeps_its_ragdoll():
     for run in (bpy.ops.sinew.preview, bpy.ops.sinew.simulate):
         rigs.empty_scene()
