@@ -71,6 +71,8 @@ class ArmatureSettings(bpy.types.PropertyGroup):
     # Values of the bones' channels before they were keyed.
     own_pose: StringProperty()
     own_action: PointerProperty(type=bpy.types.Action)
+    # Name of the track that took the user's Action below a strip.
+    own_track: StringProperty()
     made_action: PointerProperty(type=bpy.types.Action)
     height: FloatProperty(name="Height", description="Height of the character in metres; 0: read from the armature", min=0, soft_max=4)
     mass: FloatProperty(name="Mass", description="Mass of the character in kg; 0: by its height and volume", min=0, soft_max=300)
@@ -93,6 +95,8 @@ class Override(bpy.types.PropertyGroup):
     keyed: StringProperty()
     own_pose: StringProperty()
     own_action: PointerProperty(type=bpy.types.Action)
+    # Name of the track that took the user's Action below a strip.
+    own_track: StringProperty()
     made_action: PointerProperty(type=bpy.types.Action)
 
 
