@@ -38,6 +38,14 @@ def show(arm):
                     setattr(settings, key, [math.radians(x) for x in limits[key]])
 
 
+def edits(arm):
+    """Number of bones whose bodies differ from those that were built."""
+    if not arm.sinew.definition or not arm.sinew.fitted:
+        return 0
+    fitted = {body["bone"]: body for body in json.loads(arm.sinew.fitted)["bodies"]}
+    return sum(body != fitted.get(body["bone"]) for body in json.loads(arm.sinew.definition)["bodies"])
+
+
 def _size(arm, body):
     """Size of a body's shape relative to the fitted one."""
     fitted = next((b for b in json.loads(arm.sinew.fitted)["bodies"] if b["bone"] == body["bone"]), body)

@@ -58,17 +58,19 @@ class Sinew:
 
 
 class SINEW_OT_build(Sinew, bpy.types.Operator):
-    """Build the ragdoll of the armature: bodies, limits and masses"""
+    """Build the ragdoll of the armature: bodies, limits and masses. Resets edits of bones"""
 
     bl_idname, bl_label = "sinew.build", "Build ragdoll"
 
     def act(self, context):
         for arm in selected_armatures(context):
-            arm.sinew.place = ""
+            arm.sinew.place, edits = "", bodies.edits(arm)
             ragdoll = bridge.build(arm)
             bodies.store(arm, ragdoll)
             examine(arm, ragdoll)
             self.report({"INFO"}, f"{arm.name}: {counted(len(ragdoll), 'body', 'bodies')}, {ragdoll.total_mass:.1f} kg, {ragdoll.height:.2f} m")
+            if edits:
+                self.report({"WARNING"}, f"{arm.name}: edits of {counted(edits, 'bone', 'bones')} were reset")
 
 
 class SINEW_OT_forget(Sinew, bpy.types.Operator):
@@ -86,10 +88,28 @@ class SINEW_OT_forget(Sinew, bpy.types.Operator):
             bodies.show(arm)
 
 
+# Texts of Sinew's commands, and what they are in Blender.
+HERE = (
+    ("Give `unit_scale` or `height` in settings (`--unit`, `--height`) if it is another.", "Set Height in the ragdoll panel if it is another, and build again."),
+    ("Give what sticks out a body (`--body`), say that it is no part of the body (`--ignore`), or", "Choose No body for bones of what sticks out, or"),
+    ("Give the joint that stays behind a body (`--body`), or say what it is (`--role`).", "Say by the bone's Role what the joint is that stays behind."),
+    ("Give that part a body (`--body`), leave it out (`--ignore`), or change the shape's `scale` in settings.", "Choose No body for that part's bone, or change Size."),
+    ("Say with `--role` which", "Say by the bone's Role which"),
+)
+
+
+def spoken(finding):
+    return finding["code"].replace("-", " ")
+
+
 def examine(arm, ragdoll):
     """Fills in the doctor's findings."""
     arm.sinew.findings.clear()
     for found in bridge.asked(ragdoll.doctor)["findings"]:
+        if found["code"] == "unit-inferred" and arm.sinew.height > 0:
+            continue
+        for text, here in HERE:
+            found["fix"] = found["fix"].replace(text, here)
         one = arm.sinew.findings.add()
         for key in ("code", "severity", "cause", "evidence", "fix"):
             setattr(one, key, found[key])
@@ -146,8 +166,11 @@ class SINEW_OT_cure(Sinew, bpy.types.Operator):
         arm.sinew.definition = cured.to_json()
         bodies.show(arm)
         left = examine(arm, cured)
-        mended = sum(finding["fixed"] for finding in report["findings"])
-        self.report({"INFO"}, f"{mended} mended, {left} left")
+        mended = [finding for finding in report["findings"] if finding["fixed"]]
+        for finding in mended:
+            self.report({"INFO"}, f"{spoken(finding)}: {', '.join(finding['bones'])}")
+        kinds = f" ({', '.join(sorted({spoken(finding) for finding in mended}))})" if mended else ""
+        self.report({"INFO"}, f"{len(mended)} mended{kinds}, {left} left")
 
 
 class Simulates(Sinew):

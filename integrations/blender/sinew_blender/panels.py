@@ -56,7 +56,7 @@ class SINEW_PT_doctor(Side, bpy.types.Panel):
         for index, finding in enumerate(settings.findings):
             box = layout.box()
             head = box.row()
-            head.label(text=finding.code.replace("_", " "), icon=ICONS.get(finding.severity, "INFO"))
+            head.label(text=finding.code.replace("-", " "), icon=ICONS.get(finding.severity, "INFO"))
             head.operator("sinew.select_finding", text="", icon="RESTRICT_SELECT_OFF").index = index
             if index == settings.finding:
                 for text in (finding.cause, finding.evidence, finding.fix):

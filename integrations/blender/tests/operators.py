@@ -1,5 +1,6 @@
 """Runs every operator on some rig: `python operators.py`."""
 
+import ctypes
 import importlib.util
 import json
 import os
@@ -42,6 +43,23 @@ def refused(operator, words, **arguments):
         check("Traceback" not in str(error) and str(error).count("\n") <= 1, f"one line: {error}")
         return
     raise AssertionError(f"{operator} is refused, not {done}")
+
+
+def said(operator, **arguments):
+    """What an operator reports: Blender prints it."""
+    flush = ctypes.CDLL(None).fflush
+    with tempfile.TemporaryFile() as file:
+        flush(None)
+        kept = os.dup(1)
+        os.dup2(file.fileno(), 1)
+        try:
+            operator(**arguments)
+        finally:
+            flush(None)
+            os.dup2(kept, 1)
+            os.close(kept)
+        file.seek(0)
+        return file.read().decode()
 
 
 def box(name, at, size):
@@ -175,6 +193,27 @@ def nla_tracks_stay_below_a_strip():
 
 
 @case
+def clearing_a_strip_makes_the_action_active_again():
+    arm, names = fresh()
+    own, data = posed(arm, names), arm.animation_data
+    if data.action is None:
+        strip = data.nla_tracks[0].strips[0]
+        action, slot = strip.action, getattr(strip, "action_slot", None)
+        data.nla_tracks.remove(data.nla_tracks[0])
+        data.action = action
+        if slot is not None:
+            data.action_slot = slot
+        own = posed(arm, names)
+    action, tracks = data.action, len(data.nla_tracks)
+    settings(by="FRAME", handover=40, keys="STRIP", use_return=False)
+    for _ in range(2):
+        check(bpy.ops.sinew.simulate() == {"FINISHED"} and data.action is None, "the strip is over a track of the Action")
+    check(bpy.ops.sinew.clear() == {"FINISHED"}, "it is cleared")
+    check(data.action == action and len(data.nla_tracks) == tracks, f"{data.action}, {len(data.nla_tracks)} tracks")
+    check(max(off(a, b, names) for a, b in zip(posed(arm, names), own)) == 0.0, "it moves as before")
+
+
+@case
 def a_bone_can_be_limp_or_powered_over_time():
     arm, names = fresh()
     hand, elbow = "Skeleton_arm_joint_L__2_", "Skeleton_arm_joint_L__3_"
@@ -239,6 +278,34 @@ def the_doctor_selects_and_mends():
     check(bone.name in chosen, f"it is among {chosen}")
     check(bpy.ops.sinew.cure() == {"FINISHED"}, "and mended")
     check(bone.sinew.mass < 100, f"it weighs {bone.sinew.mass} kg")
+
+
+@case
+def a_build_tells_what_it_resets_and_a_fix_what_it_changes():
+    arm, _ = fresh()
+    for name in ("torso_joint_3", "leg_joint_L_1"):
+        arm.pose.bones[name].sinew.mass = 90.0
+    words = said(bpy.ops.sinew.cure)
+    check("mass ratio: Skeleton_neck_joint_1, torso_joint_3" in words and "mended (limits not mirrored, " in words, words)
+    bpy.ops.sinew.build()
+    check("edits of" not in said(bpy.ops.sinew.build), "nothing was edited")
+    arm.pose.bones["torso_joint_3"].sinew.mass = 9.0
+    words = said(bpy.ops.sinew.build)
+    check("edits of 1 bone were reset" in words and "17 bodies" in words, words)
+
+
+@case
+def the_doctor_speaks_of_the_panel():
+    rigs.empty_scene()
+    arm = rigs.cesium_man()
+    arm.scale = (20, 20, 20)
+    bpy.context.view_layer.update()
+    bpy.ops.sinew.build()
+    fixes = {f.code: f.fix for f in arm.sinew.findings}
+    check("Set Height" in fixes["unit-inferred"] and "--" not in "".join(fixes.values()), f"{fixes}")
+    arm.sinew.height = 1.8
+    bpy.ops.sinew.build()
+    check("unit-inferred" not in {f.code for f in arm.sinew.findings}, "a height was given")
 
 
 @case
